@@ -1,0 +1,62 @@
+// A collider: a set of depth maps that together represent the outer shape of an object, and what they say of
+// a point. CPU truth of shaders/collider.glsl.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "formats/depth_map.h"
+
+namespace relief {
+
+/// An axis-aligned box in object space. min > max on every axis means "holds nothing".
+struct Bounds {
+    glm::vec3 min{std::numeric_limits<float>::max()};
+    glm::vec3 max{-std::numeric_limits<float>::max()};
+
+    void add(const glm::vec3& p);
+    [[nodiscard]] glm::vec3 size() const { return max - min; }
+    [[nodiscard]] glm::vec3 center() const { return 0.5F * min + 0.5F * max; }
+    [[nodiscard]] float longestSide() const;
+    friend bool operator==(const Bounds&, const Bounds&) = default;
+};
+
+/// Where a collider comes from. Nothing in it depends on time, machine or folder.
+struct Provenance {
+    std::string mesh_name;      ///< file name without its folder; UTF-8
+    std::string mesh_hash;      ///< XXH3-128 of the mesh file's bytes, 32 hexadecimal digits
+    std::uint64_t triangles = 0;
+    std::string tool_version;   ///< "relief 0.1.0"
+    std::string options;        ///< the effective options, such as "--map front-back:dir=+x,size=512x512,…"
+    friend bool operator==(const Provenance&, const Provenance&) = default;
+};
+
+struct Collider {
+    Bounds bounds;        ///< of the mesh, object units
+    std::string unit;     ///< of lengths: "m", or "" where the source does not say
+    Provenance provenance;
+    std::vector<DepthMap> maps;
+
+    /// Bytes of all maps' texels, uncompressed: what the maps take on the GPU.
+    [[nodiscard]] std::size_t texelBytes() const;
+    friend bool operator==(const Collider&, const Collider&) = default;
+};
+
+/// The combined vote for a point.
+struct FieldSample {
+    /// Signed distance in object units, positive outside; kFarOutside where P is known to be outside and no
+    /// more; meaningless where map is −1.
+    float distance = 0.0F;
+    glm::vec3 normal{0.0F};  ///< of the deciding surface; zero where distance is kFarOutside
+    int map = -1;            ///< the deciding map; the first of equals; −1 where every map abstains
+
+    [[nodiscard]] bool inside() const { return map >= 0 && distance < 0.0F; }
+};
+
+/// Combines the votes of all maps by the paper's rule 2.
+/// \param p  object space, finite.
+[[nodiscard]] FieldSample evaluate(const Collider& collider, const glm::vec3& p);
+
+}  // namespace relief

@@ -1,0 +1,62 @@
+// A Collider as the bytes of a `.relief` file and back. Layout: README.md beside this file, which wins where
+// the two disagree.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "formats/collider.h"
+#include "formats/result.h"
+
+namespace relief {
+
+inline constexpr std::uint16_t kContainerMajor = 1;
+inline constexpr std::uint16_t kContainerMinor = 0;
+
+struct ContainerWriteOptions {
+    /// zstd level of the payloads, 1…19; 0 stores them as they are, ready to be mapped and uploaded.
+    int compression_level = 0;
+};
+
+/// Errors: kInvalidInput (a map breaks an invariant of depth_map.h), kLimit, kUsage (compression level).
+[[nodiscard]] Result<std::vector<std::byte>> writeContainer(const Collider& collider,
+                                                            const ContainerWriteOptions& options = {});
+
+struct ContainerLimits {
+    std::uint32_t maps = 1024;
+    std::uint64_t texel_bytes = std::uint64_t{2} << 30;  ///< of all maps together, uncompressed
+};
+
+/// Reads untrusted bytes: whatever they are, the answer is a collider that keeps every invariant of
+/// depth_map.h, or an error that says what is wrong and where. Nothing is allocated before its size has been
+/// checked against `bytes` and `limits`.
+/// Errors: kInvalidInput, kUnsupported (a later major version), kLimit.
+[[nodiscard]] Result<Collider> readContainer(std::span<const std::byte> bytes, const ContainerLimits& limits = {});
+
+/// readFile and readContainer; messages name the file.
+[[nodiscard]] Result<Collider> loadCollider(const std::filesystem::path& path, const ContainerLimits& limits = {});
+/// writeContainer and writeFile.
+[[nodiscard]] Result<void> saveCollider(const std::filesystem::path& path, const Collider& collider,
+                                        const ContainerWriteOptions& options = {});
+
+/// How each payload lies in a file; for `relief info`.
+struct PayloadInfo {
+    std::uint64_t offset = 0;
+    std::uint64_t stored_size = 0;
+    std::uint64_t raw_size = 0;
+    bool compressed = false;
+};
+struct ContainerInfo {
+    std::uint16_t major = 0;
+    std::uint16_t minor = 0;
+    std::uint64_t file_size = 0;
+    std::vector<PayloadInfo> payloads;  ///< one a map, in the maps' order
+};
+/// Header and metadata alone, checked like readContainer's; payloads are neither hashed nor decompressed.
+[[nodiscard]] Result<ContainerInfo> readContainerInfo(std::span<const std::byte> bytes,
+                                                      const ContainerLimits& limits = {});
+
+}  // namespace relief

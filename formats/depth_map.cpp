@@ -1,0 +1,164 @@
+#include "formats/depth_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace relief {
+namespace {
+
+float length(const glm::vec3& v) {
+    return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+}
+
+const Vote kFarOutsideVote{kFarOutside, glm::vec3(0.0F)};
+
+std::optional<Vote> voteOrthographic(const DepthMap& map, const glm::vec3& p) {
+    // Compared as floats first: the cast of a coordinate far outside an int's range is undefined.
+    const float x = p.x * static_cast<float>(map.width);
+    const float y = p.y * static_cast<float>(map.height);
+    const bool in_window = x >= 1.0F && y >= 1.0F && x < static_cast<float>(map.width - 1) &&
+                           y < static_cast<float>(map.height - 1);
+    const bool in_depth = p.z >= 0.0F && p.z <= 1.0F;
+    if (!map.encloses && !(in_window && in_depth)) {
+        return std::nullopt;
+    }
+    if (!in_window) {
+        return kFarOutsideVote;
+    }
+    const Texel texel = decodeTexel(
+        map.format, map.texelAt(0, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)));
+    if (!texel.front && !texel.back) {
+        return map.empty_is_outside ? std::optional(kFarOutsideVote) : std::nullopt;
+    }
+
+    Vote best;
+    const auto add = [&](const Surface& surface, bool keeps_nearest) {
+        const float ahead = keeps_nearest ? surface.depth - p.z : p.z - surface.depth;
+        const float distance = map.object_per_map.z * ahead;
+        if (replaces(distance, best.distance)) {
+            best = {distance, surface.normal};
+        }
+    };
+    if (texel.front) {
+        add(*texel.front, map.compare != Compare::kGreater);
+    }
+    if (texel.back) {
+        add(*texel.back, false);
+    }
+    // Past the far end of the volume nothing of the collider remains.
+    if (!in_depth && best.distance < 0.0F) {
+        return kFarOutsideVote;
+    }
+    return best;
+}
+
+std::optional<Vote> voteCube(const DepthMap& map, const glm::vec3& p) {
+    const float largest = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    const bool in_volume = largest <= 1.0F;
+    if (!map.encloses && !in_volume) {
+        return std::nullopt;
+    }
+    // The squares below must not overflow; NaN, from an overflow in the transform, ends here too.
+    if (!(largest <= 1e15F)) {
+        return kFarOutsideVote;
+    }
+    const float radius = length(p);
+    // At the very centre every direction is as good as another.
+    const glm::vec3 direction = radius > 0.0F ? p / radius : glm::vec3(1.0F, 0.0F, 0.0F);
+    const CubeCoordinates at = cubeCoordinates(direction);
+    const auto size = static_cast<float>(map.width);
+    const auto x = std::min(static_cast<std::uint32_t>(at.s * size), map.width - 1);
+    const auto y = std::min(static_cast<std::uint32_t>(at.t * size), map.width - 1);
+    const Texel texel = decodeTexel(map.format, map.texelAt(at.face, x, y));
+    if (!texel.front) {
+        return map.empty_is_outside ? std::optional(kFarOutsideVote) : std::nullopt;
+    }
+    const float ahead = map.compare == Compare::kGreater ? radius - texel.front->depth : texel.front->depth - radius;
+    const float distance = ahead * length(map.object_per_map * direction);
+    if (!in_volume && distance < 0.0F) {
+        return kFarOutsideVote;
+    }
+    return Vote{distance, texel.front->normal};
+}
+
+}  // namespace
+
+const char* compareName(Compare compare) {
+    switch (compare) {
+        case Compare::kLess:
+            return "less";
+        case Compare::kGreater:
+            return "greater";
+        case Compare::kBoth:
+            return "both";
+    }
+    return "unknown";
+}
+
+glm::vec3 Affine::apply(const glm::vec3& p) const {
+    const auto one = [&](const glm::vec4& r) { return r.x * p.x + (r.y * p.y + (r.z * p.z + r.w)); };
+    return {one(row[0]), one(row[1]), one(row[2])};
+}
+
+std::span<const std::byte> DepthMap::texelAt(std::uint32_t face, std::uint32_t x, std::uint32_t y) const {
+    const std::size_t size = texelSize(format);
+    return std::span(texels).subspan(((std::size_t{face} * height + y) * width + x) * size, size);
+}
+
+std::span<std::byte> DepthMap::texelAt(std::uint32_t face, std::uint32_t x, std::uint32_t y) {
+    const std::size_t size = texelSize(format);
+    return std::span(texels).subspan(((std::size_t{face} * height + y) * width + x) * size, size);
+}
+
+std::optional<Vote> vote(const DepthMap& map, const glm::vec3& p) {
+    const glm::vec3 in_map = map.object_to_map.apply(p);
+    return map.projection() == Projection::kCube ? voteCube(map, in_map) : voteOrthographic(map, in_map);
+}
+
+CubeCoordinates cubeCoordinates(const glm::vec3& d) {
+    const float ax = std::abs(d.x);
+    const float ay = std::abs(d.y);
+    const float az = std::abs(d.z);
+    std::uint32_t face = 0;
+    float sc = 0.0F;
+    float tc = 0.0F;
+    float major = 1.0F;
+    if (ax >= ay && ax >= az) {
+        face = d.x < 0.0F ? 1 : 0;
+        sc = d.x < 0.0F ? d.z : -d.z;
+        tc = -d.y;
+        major = ax;
+    } else if (ay >= az) {
+        face = d.y < 0.0F ? 3 : 2;
+        sc = d.x;
+        tc = d.y < 0.0F ? -d.z : d.z;
+        major = ay;
+    } else {
+        face = d.z < 0.0F ? 5 : 4;
+        sc = d.z < 0.0F ? -d.x : d.x;
+        tc = -d.y;
+        major = az;
+    }
+    return {face, 0.5F * (sc / major + 1.0F), 0.5F * (tc / major + 1.0F)};
+}
+
+glm::vec3 cubeDirection(const CubeCoordinates& at) {
+    const float sc = 2.0F * at.s - 1.0F;
+    const float tc = 2.0F * at.t - 1.0F;
+    switch (at.face) {
+        case 0:
+            return {1.0F, -tc, -sc};
+        case 1:
+            return {-1.0F, -tc, sc};
+        case 2:
+            return {sc, 1.0F, tc};
+        case 3:
+            return {sc, -1.0F, -tc};
+        case 4:
+            return {sc, -tc, 1.0F};
+        default:
+            return {-sc, -tc, -1.0F};
+    }
+}
+
+}  // namespace relief

@@ -1,0 +1,16 @@
+// XXH3 of bytes: the checksums of the container, and the content hash that names a mesh.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace relief {
+
+[[nodiscard]] std::uint64_t xxh3_64(std::span<const std::byte> bytes);
+
+/// XXH3-128 as 32 lower-case hexadecimal digits, high half first, as `xxhsum -H2` prints it.
+[[nodiscard]] std::string xxh3_128Hex(std::span<const std::byte> bytes);
+
+}  // namespace relief

@@ -1,0 +1,65 @@
+#include "formats/normal_index.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace relief {
+namespace {
+
+constexpr float kHalfRange = 127.0F;
+
+/// The fold of equation 3: swaps the corners of the square (lower octants) with the inner diamond's outside.
+float signNotZero(float value) {
+    return value < 0.0F ? -1.0F : 1.0F;
+}
+
+}  // namespace
+
+glm::vec3 decodeNormal(NormalIndex index) {
+    const float s = (static_cast<float>(std::min<int>(index.s, 254)) - kHalfRange) / kHalfRange;
+    const float t = (static_cast<float>(std::min<int>(index.t, 254)) - kHalfRange) / kHalfRange;
+    glm::vec3 v(s, t, 1.0F - std::abs(s) - std::abs(t));
+    if (v.z < 0.0F) {
+        v.x = signNotZero(s) * (1.0F - std::abs(t));
+        v.y = signNotZero(t) * (1.0F - std::abs(s));
+    }
+    return v / std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+}
+
+NormalIndex encodeNormal(const glm::vec3& normal) {
+    // Double throughout: tiny or huge vectors must not lose their direction on the way to the octahedron.
+    const double x = normal.x;
+    const double y = normal.y;
+    const double z = normal.z;
+    const double norm = std::abs(x) + std::abs(y) + std::abs(z);
+    double s = x / norm;
+    double t = y / norm;
+    if (z < 0.0) {
+        const double folded_s = (x < 0.0 ? -1.0 : 1.0) * (1.0 - std::abs(t));
+        const double folded_t = (y < 0.0 ? -1.0 : 1.0) * (1.0 - std::abs(s));
+        s = folded_s;
+        t = folded_t;
+    }
+    const int low_s = std::clamp(static_cast<int>(std::floor(s * 127.0)) + 127, 0, 253);
+    const int low_t = std::clamp(static_cast<int>(std::floor(t * 127.0)) + 127, 0, 253);
+
+    NormalIndex best;
+    double best_cosine = -std::numeric_limits<double>::infinity();
+    for (int dt = 0; dt <= 1; ++dt) {
+        for (int ds = 0; ds <= 1; ++ds) {
+            const NormalIndex candidate{static_cast<std::uint8_t>(low_s + ds),
+                                        static_cast<std::uint8_t>(low_t + dt)};
+            const glm::vec3 decoded = decodeNormal(candidate);
+            const double cosine = x * decoded.x + y * decoded.y + z * decoded.z;
+            // A clear improvement is needed, so that ties go to the lower index on every machine.
+            if (cosine > best_cosine + 1e-9 * norm) {
+                best = candidate;
+                best_cosine = cosine;
+            }
+        }
+    }
+    return best;
+}
+
+}  // namespace relief

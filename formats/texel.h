@@ -1,0 +1,80 @@
+// One texel of a depth map in each of the four formats: what it holds and how its bytes are laid out.
+//
+//     format        bytes  channels
+//     float32        16    R,G,B = normal x,y,z   A = depth            four little-endian floats
+//     fixed8          4    R = normal s   G = normal t   B = depth high byte   A = depth low byte
+//     front-back16    8    R = packed normal of the front   G = of the back     four little-endian uint16
+//                          B = half-float depth of the front   A = of the back
+//     cube8           4    as fixed8, in six faces
+//
+// Depth is in map coordinates: 0 at the near plane and 1 at the far plane of an orthographic map, distance
+// from the centre in units of the normalised volume, in (0, √3], for a cube.
+// An empty texel (no surface on its ray) is all zero bits but in float32, where its depth is −1.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <span>
+
+#include "formats/normal_index.h"
+
+namespace relief {
+
+enum class MapFormat : std::uint8_t { kFloat32 = 0, kFixed8 = 1, kFrontBack16 = 2, kCube8 = 3 };
+inline constexpr int kMapFormatCount = 4;
+
+/// Bytes of one texel, see the table above.
+[[nodiscard]] constexpr std::size_t texelSize(MapFormat format) {
+    switch (format) {
+        case MapFormat::kFloat32:
+            return 16;
+        case MapFormat::kFrontBack16:
+            return 8;
+        case MapFormat::kFixed8:
+        case MapFormat::kCube8:
+            return 4;
+    }
+    return 0;
+}
+
+/// "float", "fixed8", "front-back" or "cube": the words of `relief bake --map` and of the reports.
+[[nodiscard]] const char* mapFormatName(MapFormat format);
+
+/// One surface as a texel holds it.
+struct Surface {
+    float depth = 0.0F;       ///< in map coordinates
+    glm::vec3 normal{0.0F};   ///< unit length, object space, outwards
+};
+
+/// A texel's surface or surfaces; nullopt where it is empty. `back` is used by front-back maps alone.
+struct Texel {
+    std::optional<Surface> front;
+    std::optional<Surface> back;
+};
+
+/// The largest depth of a cube texel, √3 rounded up to a float: a corner of the normalised volume.
+inline constexpr float kCubeDepthMax = 1.7320509F;
+
+/// 16-bit fixed point with 0 kept for "empty": code c in 1…65535 is the depth (c − 1)/65534 · depth_max.
+/// \param depth  clamped to [0, depth_max].
+[[nodiscard]] std::uint16_t encodeFixedDepth(float depth, float depth_max);
+/// \param code  not 0.
+[[nodiscard]] float decodeFixedDepth(std::uint16_t code, float depth_max);
+
+/// IEEE half with the bits 0 kept for "empty". Written values lie in [2^-14, 1], the normal halves, because
+/// a GL may flush subnormal halves to zero.
+/// \param depth  clamped to that range.
+[[nodiscard]] std::uint16_t encodeHalfDepth(float depth);
+[[nodiscard]] float decodeHalfDepth(std::uint16_t bits);
+
+/// Writes one texel.
+/// \param bytes  exactly texelSize(format) bytes.
+void encodeTexel(MapFormat format, const Texel& texel, std::span<std::byte> bytes);
+
+/// Reads one texel; any bytes have a meaning for the integer formats. Float texels are read as they are:
+/// the container's reader has refused those that are not finite.
+[[nodiscard]] Texel decodeTexel(MapFormat format, std::span<const std::byte> bytes);
+
+}  // namespace relief

@@ -1,0 +1,10 @@
+# Writes OUTPUT, a C++ file that holds every file of FILES as a raw string literal.
+set(text "// Generated from shaders/ by embed.cmake.\n#include \"shaders/shader_sources.h\"\n\nnamespace relief {\n\n")
+string(APPEND text "std::string_view shaderSource(std::string_view name) {\n")
+foreach(file IN LISTS FILES)
+    get_filename_component(name ${file} NAME)
+    file(READ ${file} source)
+    string(APPEND text "    if (name == \"${name}\") {\n        return R\"GLSL(${source})GLSL\";\n    }\n")
+endforeach()
+string(APPEND text "    return {};\n}\n\n}  // namespace relief\n")
+file(WRITE ${OUTPUT} "${text}")
