@@ -5,6 +5,7 @@
 #include <epoxy/gl.h>
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -41,12 +42,24 @@ class GlName {
 };
 
 namespace gl_detail {
-inline void deleteTexture(GLuint name) { glDeleteTextures(1, &name); }
-inline void deleteFramebuffer(GLuint name) { glDeleteFramebuffers(1, &name); }
-inline void deleteBuffer(GLuint name) { glDeleteBuffers(1, &name); }
-inline void deleteVertexArray(GLuint name) { glDeleteVertexArrays(1, &name); }
-inline void deleteProgram(GLuint name) { glDeleteProgram(name); }
-inline void deleteRenderbuffer(GLuint name) { glDeleteRenderbuffers(1, &name); }
+inline void deleteTexture(GLuint name) {
+    glDeleteTextures(1, &name);
+}
+inline void deleteFramebuffer(GLuint name) {
+    glDeleteFramebuffers(1, &name);
+}
+inline void deleteBuffer(GLuint name) {
+    glDeleteBuffers(1, &name);
+}
+inline void deleteVertexArray(GLuint name) {
+    glDeleteVertexArrays(1, &name);
+}
+inline void deleteProgram(GLuint name) {
+    glDeleteProgram(name);
+}
+inline void deleteRenderbuffer(GLuint name) {
+    glDeleteRenderbuffers(1, &name);
+}
 }  // namespace gl_detail
 
 using GlTexture = GlName<gl_detail::deleteTexture>;
@@ -86,13 +99,14 @@ using GlRenderbuffer = GlName<gl_detail::deleteRenderbuffer>;
 [[nodiscard]] bool isGles();
 
 /// Reads a texture (level 0 of a 2-D texture of a float format) back as RGBA floats, 4 · width · height.
-[[nodiscard]] Result<std::vector<float>> readTextureFloats(const GlTexture& texture, GLsizei width, GLsizei height);
+[[nodiscard]] Result<std::vector<float>> readTextureFloats(const GlTexture& texture, GLsizei width,
+                                                           GLsizei height);
 
-/// Saves, on construction, the GL state that Relief's passes touch, and restores it on destruction: current
-/// program, vertex array, array/uniform/pixel-unpack buffer, draw and read framebuffer, viewport, scissor,
-/// active texture unit and the 2-D and 2-D-array textures of the first `kUnits` units, blend, depth, cull
-/// and scissor switches, blend functions, depth function and mask, colour mask, clear colour, pixel store
-/// alignment.
+/// Saves, on construction, the GL state that Relief's passes touch, sets what they count on (no blending,
+/// tests or masks, tight pixel rows), and restores it on destruction: current program, vertex array,
+/// array/uniform/pixel-unpack buffer, draw and read framebuffer, viewport, scissor, active texture unit and
+/// the 2-D and 2-D-array textures of the first `kUnits` units, blend, depth, cull and scissor switches, blend
+/// functions, depth function and mask, colour mask, clear colour, pixel store alignment.
 class GlStateGuard {
   public:
     static constexpr int kUnits = 8;
@@ -103,7 +117,7 @@ class GlStateGuard {
 
   private:
     struct Saved;
-    Saved* saved_;
+    std::unique_ptr<Saved> saved_;
 };
 
 }  // namespace relief

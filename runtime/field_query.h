@@ -1,0 +1,33 @@
+// Evaluates a collider at many points on the GPU, with the very shader code that the simulation runs:
+// `relief query --gpu`, and the proof that shaders/collider.glsl is formats/collider.cpp.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "formats/collider.h"
+#include "formats/result.h"
+#include "runtime/collider_textures.h"
+#include "runtime/gl_object.h"
+
+namespace relief {
+
+class FieldQuery {
+  public:
+    /// Needs a current context, of any GlApi; uploads the collider.
+    /// Errors: those of ColliderTextures::create, makeProgram and makeFramebuffer.
+    [[nodiscard]] static Result<FieldQuery> create(const Collider& collider);
+
+    /// One sample a point, in order. Blocks until the GPU is done.
+    [[nodiscard]] Result<std::vector<FieldSample>> evaluate(std::span<const glm::vec3> points) const;
+
+  private:
+    explicit FieldQuery(ColliderTextures textures) : textures_(std::move(textures)) {}
+
+    ColliderTextures textures_;
+    GlProgram program_;
+    GlVertexArray no_attributes_;
+};
+
+}  // namespace relief

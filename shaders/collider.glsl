@@ -1,0 +1,228 @@
+// The method's core: what the depth maps of a collider say of a point. formats/depth_map.cpp and
+// formats/collider.cpp are the same in C++, formats/README.md in words; all three change together.
+//
+// Needs RELIEF_MAP_CAPACITY, the length of the block's array; ColliderTextures gives it, and binds all below.
+//
+//     P ──T_i──▶ P'    orthographic                       cube
+//                      z'                                        ╲  dist  ╱
+//                      │  near                                 ╲   ┌──┐  ╱
+//                      │ ┌──────────┐ 0                          ╲ │ ╲│╱   P' in [−1,1]³
+//                      │ │   dist   │     f = z_scale·           ──┤  ●──┤
+//                      │ │ ~~~~~~~~~│        (dist − z')         ╱ │ ╱│╲   f = (|P'| − dist)·|s∘d|
+//                      ▼ │ ● P'     │     negative: inside     ╱   └──┘  ╲   d = P'/|P'|
+//                        └──────────┘ 1
+//
+// An orthographic map that keeps the farthest surface, and a cube that keeps the nearest, turn the sign.
+
+struct ReliefMap {
+    vec4 row[3];           // object_to_map
+    vec4 object_per_map;   // xyz; z is z_scale of an orthographic map, xyz the paper's s of a cube
+    ivec4 rect;            // x, y of texel (0,0) in its layer; layer of face 0; width
+    ivec4 info;            // height; format; flags: 1 keeps the farthest, 2 encloses, 4 empty is outside
+};
+
+layout(std140) uniform ReliefCollider {
+    ivec4 u_relief_count;  // x: maps in use
+    ReliefMap u_relief_maps[RELIEF_MAP_CAPACITY];
+};
+
+uniform highp sampler2DArray u_relief_float;
+uniform highp sampler2DArray u_relief_fixed;
+uniform highp usampler2DArray u_relief_front_back;
+
+const int RELIEF_FLOAT32 = 0;
+const int RELIEF_FIXED8 = 1;
+const int RELIEF_FRONT_BACK16 = 2;
+const int RELIEF_CUBE8 = 3;
+
+const int RELIEF_KEEPS_FARTHEST = 1;
+const int RELIEF_ENCLOSES = 2;
+const int RELIEF_EMPTY_IS_OUTSIDE = 4;
+
+const float RELIEF_FAR_INSIDE = -3.4028235e38;
+const float RELIEF_FAR_OUTSIDE = 1e30;
+const float RELIEF_CUBE_DEPTH_MAX = 1.7320509;
+
+// The combined vote. map is the deciding map, −1 where every map abstains; normal is zero where the point
+// is known to be outside and no more (distance RELIEF_FAR_OUTSIDE).
+struct ReliefField {
+    float distance;
+    vec3 normal;
+    int map;
+};
+
+bool reliefInside(ReliefField field) {
+    return field.map >= 0 && field.distance < 0.0;
+}
+
+// Rule 2 of the paper: outside as soon as one map sees P outside; the smallest positive or the largest
+// negative vote wins.
+bool reliefReplaces(float vote, float best) {
+    return (best < 0.0 && vote > best) || (vote > 0.0 && vote < best);
+}
+
+// Equation 3: indices 0…254 in each direction to the octahedron, to the sphere.
+vec3 reliefNormal(vec2 index) {
+    vec2 st = (min(index, vec2(254.0)) - 127.0) / 127.0;
+    vec3 v = vec3(st, 1.0 - abs(st.x) - abs(st.y));
+    if (v.z < 0.0) {
+        v.x = (st.x < 0.0 ? -1.0 : 1.0) * (1.0 - abs(st.y));
+        v.y = (st.y < 0.0 ? -1.0 : 1.0) * (1.0 - abs(st.x));
+    }
+    return v / sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+}
+
+float reliefRow(vec4 r, vec3 p) {
+    return r.x * p.x + (r.y * p.y + (r.z * p.z + r.w));
+}
+
+float reliefLength(vec3 v) {
+    return sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+}
+
+// The face that d meets and where on it, OpenGL's rule; x wins over y over z among equals. Done by hand on
+// six layers, so that every GL picks the same texel as the CPU and no seam is filtered.
+vec3 reliefCubeCoordinates(vec3 d) {
+    vec3 a = abs(d);
+    float face, sc, tc, major;
+    if (a.x >= a.y && a.x >= a.z) {
+        face = d.x < 0.0 ? 1.0 : 0.0;
+        sc = d.x < 0.0 ? d.z : -d.z;
+        tc = -d.y;
+        major = a.x;
+    } else if (a.y >= a.z) {
+        face = d.y < 0.0 ? 3.0 : 2.0;
+        sc = d.x;
+        tc = d.y < 0.0 ? -d.z : d.z;
+        major = a.y;
+    } else {
+        face = d.z < 0.0 ? 5.0 : 4.0;
+        sc = d.z < 0.0 ? -d.x : d.x;
+        tc = -d.y;
+        major = a.z;
+    }
+    return vec3(0.5 * (sc / major + 1.0), 0.5 * (tc / major + 1.0), face);
+}
+
+void reliefAdd(inout ReliefField best, float distance, vec3 normal, int map) {
+    if (reliefReplaces(distance, best.distance)) {
+        best = ReliefField(distance, normal, map);
+    }
+}
+
+// A half-float depth: a positive normal half, whose exponent's bias is moved from 15 to 127. By hand, since
+// GLSL 3.30 has no unpackHalf2x16.
+float reliefHalf(uint bits) {
+    return uintBitsToFloat((bits << 13) + (112u << 23));
+}
+
+// R,G: normal; B,A: 16-bit fixed-point depth, 0 where empty.
+bool reliefFixedTexel(ivec3 at, float depth_max, out float depth, out vec3 normal) {
+    vec4 bytes = floor(texelFetch(u_relief_fixed, at, 0) * 255.0 + 0.5);
+    float code = bytes.b * 256.0 + bytes.a;
+    depth = (code - 1.0) * (depth_max / 65534.0);
+    normal = reliefNormal(bytes.rg);
+    return code > 0.0;
+}
+
+void reliefVoteOrthographic(inout ReliefField best, int i, vec3 p, ivec4 rect, ivec4 info) {
+    bool encloses = (info.z & RELIEF_ENCLOSES) != 0;
+    vec2 size = vec2(float(rect.w), float(info.x));
+    vec2 at = p.xy * size;
+    bool in_window = at.x >= 1.0 && at.y >= 1.0 && at.x < size.x - 1.0 && at.y < size.y - 1.0;
+    bool in_depth = p.z >= 0.0 && p.z <= 1.0;
+    if (!in_window || !(in_depth || encloses)) {
+        if (encloses) {
+            reliefAdd(best, RELIEF_FAR_OUTSIDE, vec3(0.0), i);
+        }
+        return;
+    }
+    ivec3 texel = ivec3(rect.xy + ivec2(at), rect.z);
+
+    // One texel holds one surface or, front-back, two: the nearer in front, the farther in back.
+    bool found;
+    float depth;
+    vec3 normal;
+    float vote;
+    if (info.y == RELIEF_FRONT_BACK16) {
+        uvec4 words = texelFetch(u_relief_front_back, texel, 0);
+        found = words.b != 0u || words.a != 0u;
+        float front = words.b != 0u ? reliefHalf(words.b) - p.z : RELIEF_FAR_INSIDE;
+        float back = words.a != 0u ? p.z - reliefHalf(words.a) : RELIEF_FAR_INSIDE;
+        bool take_back = reliefReplaces(back, front);
+        uint packed_normal = take_back ? words.g : words.r;
+        normal = reliefNormal(vec2(float(packed_normal >> 8), float(packed_normal & 255u)));
+        vote = take_back ? back : front;
+    } else {
+        if (info.y == RELIEF_FLOAT32) {
+            vec4 values = texelFetch(u_relief_float, texel, 0);
+            normal = values.rgb;
+            depth = values.a;
+            found = depth >= 0.0;
+        } else {
+            found = reliefFixedTexel(texel, 1.0, depth, normal);
+        }
+        vote = (info.z & RELIEF_KEEPS_FARTHEST) != 0 ? p.z - depth : depth - p.z;
+    }
+    if (!found) {
+        if ((info.z & RELIEF_EMPTY_IS_OUTSIDE) != 0) {
+            reliefAdd(best, RELIEF_FAR_OUTSIDE, vec3(0.0), i);
+        }
+        return;
+    }
+    vote *= u_relief_maps[i].object_per_map.z;
+    if (!in_depth && vote < 0.0) {  // past the far end of the volume nothing of the collider remains
+        vote = RELIEF_FAR_OUTSIDE;
+        normal = vec3(0.0);
+    }
+    reliefAdd(best, vote, normal, i);
+}
+
+void reliefVoteCube(inout ReliefField best, int i, vec3 p, ivec4 rect, ivec4 info) {
+    float largest = max(max(abs(p.x), abs(p.y)), abs(p.z));
+    bool in_volume = largest <= 1.0;
+    if (!in_volume && (info.z & RELIEF_ENCLOSES) == 0) {
+        return;
+    }
+    if (!(largest <= 1e15)) {  // the squares below must not overflow
+        reliefAdd(best, RELIEF_FAR_OUTSIDE, vec3(0.0), i);
+        return;
+    }
+    float radius = reliefLength(p);
+    vec3 direction = radius > 0.0 ? p / radius : vec3(1.0, 0.0, 0.0);
+    vec3 st_face = reliefCubeCoordinates(direction);
+    ivec2 at = min(ivec2(st_face.xy * float(rect.w)), ivec2(rect.w - 1));
+    float depth;
+    vec3 normal;
+    if (!reliefFixedTexel(ivec3(rect.xy + at, rect.z + int(st_face.z)), RELIEF_CUBE_DEPTH_MAX, depth, normal)) {
+        if ((info.z & RELIEF_EMPTY_IS_OUTSIDE) != 0) {
+            reliefAdd(best, RELIEF_FAR_OUTSIDE, vec3(0.0), i);
+        }
+        return;
+    }
+    float ahead = (info.z & RELIEF_KEEPS_FARTHEST) != 0 ? radius - depth : depth - radius;
+    float vote = ahead * reliefLength(u_relief_maps[i].object_per_map.xyz * direction);
+    if (!in_volume && vote < 0.0) {
+        vote = RELIEF_FAR_OUTSIDE;
+        normal = vec3(0.0);
+    }
+    reliefAdd(best, vote, normal, i);
+}
+
+ReliefField reliefEvaluate(vec3 p) {
+    ReliefField best = ReliefField(RELIEF_FAR_INSIDE, vec3(0.0), -1);
+    for (int i = 0; i < u_relief_count.x; ++i) {
+        vec4 row0 = u_relief_maps[i].row[0];
+        vec4 row1 = u_relief_maps[i].row[1];
+        vec4 row2 = u_relief_maps[i].row[2];
+        vec3 in_map = vec3(reliefRow(row0, p), reliefRow(row1, p), reliefRow(row2, p));
+        ivec4 rect = u_relief_maps[i].rect;
+        ivec4 info = u_relief_maps[i].info;
+        if (info.y == RELIEF_CUBE8) {
+            reliefVoteCube(best, i, in_map, rect, info);
+        } else {
+            reliefVoteOrthographic(best, i, in_map, rect, info);
+        }
+    }
+    return best;
+}
