@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,7 @@ struct Bounds {
 /// Where a collider comes from. Nothing in it depends on time, machine or folder.
 struct Provenance {
     std::string mesh_name;      ///< file name without its folder; UTF-8
-    std::string mesh_hash;      ///< XXH3-128 of the mesh file's bytes, 32 hexadecimal digits
+    std::string mesh_hash;      ///< XXH3-128 of the mesh file's bytes, 32 lower-case hexadecimal digits; or ""
     std::uint64_t triangles = 0;
     std::string tool_version;   ///< "relief 0.1.0"
     std::string options;        ///< the effective options, such as "--map front-back:dir=+x,size=512x512,…"

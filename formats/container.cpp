@@ -1,1 +1,462 @@
 #include "formats/container.h"
+
+#include <flatbuffers/flatbuffers.h>
+#include <zstd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <string>
+
+#include "collider_generated.h"
+#include "formats/container_header.h"
+#include "formats/file_io.h"
+#include "formats/hash.h"
+#include "formats/validate.h"
+
+namespace relief {
+namespace {
+
+constexpr std::uint64_t kPayloadAlignment = 64;
+/// zstd packs at most a block of 128 KiB into four bytes, so a payload that claims more is a lie.
+constexpr std::uint64_t kZstdRatioMax = 32768;
+constexpr int kZstdLevelMax = 19;
+constexpr flatbuffers::uoffset_t kMetadataDepthMax = 4;  // collider, map or provenance
+
+/// One payload in a file, and how to check it.
+struct StoredPayload {
+    PayloadInfo info;
+    std::uint64_t hash = 0;
+};
+
+/// All of a file but its texels.
+struct Description {
+    ContainerHeader header;
+    Collider collider;  ///< its maps have no texels
+    std::vector<StoredPayload> payloads;
+};
+
+tl::unexpected<Error> invalid(std::string message) {
+    return fail(ErrorCode::kInvalidInput, std::move(message));
+}
+
+tl::unexpected<Error> invalidMap(std::size_t index, const std::string& message) {
+    return tl::unexpected<Error>(inMap(index, {ErrorCode::kInvalidInput, message}));
+}
+
+std::string decimal(std::uint64_t value) {
+    return std::to_string(value);
+}
+
+std::uint64_t alignUp(std::uint64_t offset) {
+    return (offset + kPayloadAlignment - 1) / kPayloadAlignment * kPayloadAlignment;
+}
+
+// ---- write
+// ----------------------------------------------------------------------------------------------------
+
+/// A map's payload as it will lie in the file: `compressed`, or the map's own texels where that is empty.
+struct PackedPayload {
+    std::vector<std::byte> compressed;
+    std::span<const std::byte> stored;
+};
+
+Result<PackedPayload> pack(const DepthMap& map, int level) {
+    PackedPayload packed;
+    packed.stored = map.texels;
+    if (level == 0) {
+        return packed;
+    }
+    std::vector<std::byte> bytes(ZSTD_compressBound(map.texels.size()));
+    const std::size_t size =
+        ZSTD_compress(bytes.data(), bytes.size(), map.texels.data(), map.texels.size(), level);
+    if (ZSTD_isError(size) != 0) {
+        return fail(ErrorCode::kFailure,
+                    std::string("zstd could not compress it: ") + ZSTD_getErrorName(size));
+    }
+    if (size < map.texels.size()) {
+        bytes.resize(size);
+        bytes.shrink_to_fit();
+        packed.compressed = std::move(bytes);
+        packed.stored = packed.compressed;
+    }
+    return packed;
+}
+
+fb::Vec3 toFb(const glm::vec3& v) {
+    return {v.x, v.y, v.z};
+}
+
+fb::Row toFb(const glm::vec4& r) {
+    return {r.x, r.y, r.z, r.w};
+}
+
+flatbuffers::Offset<fb::Map> addMap(flatbuffers::FlatBufferBuilder& builder, const DepthMap& map,
+                                    const fb::Payload& payload) {
+    const fb::Transform transform(toFb(map.object_to_map.row[0]), toFb(map.object_to_map.row[1]),
+                                  toFb(map.object_to_map.row[2]));
+    const fb::Vec3 object_per_map = toFb(map.object_per_map);
+    const bool compressed = payload.stored_size() != payload.raw_size();
+    return fb::CreateMap(builder, static_cast<fb::Format>(map.format), static_cast<fb::Compare>(map.compare),
+                         map.width, map.height, &transform, &object_per_map, map.encloses,
+                         map.empty_is_outside, compressed ? fb::Compression::Zstd : fb::Compression::None,
+                         &payload);
+}
+
+/// \param payloads  one a map. Their offsets do not change the size of the answer.
+std::vector<std::byte> writeMetadata(const Collider& collider, std::span<const fb::Payload> payloads) {
+    flatbuffers::FlatBufferBuilder builder;
+    std::vector<flatbuffers::Offset<fb::Map>> maps;
+    for (std::size_t i = 0; i < collider.maps.size(); ++i) {
+        maps.push_back(addMap(builder, collider.maps[i], payloads[i]));
+    }
+    const Provenance& from = collider.provenance;
+    const auto provenance = fb::CreateProvenance(
+        builder, builder.CreateString(from.mesh_name), builder.CreateString(from.mesh_hash), from.triangles,
+        builder.CreateString(from.tool_version), builder.CreateString(from.options));
+    const fb::Vec3 bounds_min = toFb(collider.bounds.min);
+    const fb::Vec3 bounds_max = toFb(collider.bounds.max);
+    const auto unit = builder.CreateString(collider.unit);
+    const auto map_vector = builder.CreateVector(maps);
+    fb::FinishColliderBuffer(
+        builder, fb::CreateCollider(builder, &bounds_min, &bounds_max, unit, provenance, map_vector));
+    const auto bytes = std::as_bytes(std::span(builder.GetBufferPointer(), builder.GetSize()));
+    return {bytes.begin(), bytes.end()};
+}
+
+Result<void> checkWritable(const Collider& collider, const ContainerWriteOptions& options) {
+    if (options.compression_level < 0 || options.compression_level > kZstdLevelMax) {
+        return fail(ErrorCode::kUsage, "compression level " + std::to_string(options.compression_level) +
+                                           " is not in 0..." + std::to_string(kZstdLevelMax));
+    }
+    const ContainerLimits limits;
+    if (collider.maps.size() > limits.maps) {
+        return fail(ErrorCode::kLimit, decimal(collider.maps.size()) + " maps are more than the limit of " +
+                                           decimal(limits.maps) + "; use fewer maps");
+    }
+    if (const Result<void> ok = validate(collider); !ok) {
+        return ok;
+    }
+    if (collider.texelBytes() > limits.texel_bytes) {
+        return fail(ErrorCode::kLimit, decimal(collider.texelBytes()) +
+                                           " bytes of texels are more than the limit of " +
+                                           decimal(limits.texel_bytes) + "; use smaller or fewer maps");
+    }
+    return {};
+}
+
+Result<std::vector<std::byte>> writeChecked(const Collider& collider, const ContainerWriteOptions& options) {
+    std::vector<PackedPayload> packed;
+    for (std::size_t i = 0; i < collider.maps.size(); ++i) {
+        Result<PackedPayload> one = pack(collider.maps[i], options.compression_level);
+        if (!one) {
+            return tl::unexpected<Error>(inMap(i, one.error()));
+        }
+        packed.push_back(std::move(*one));
+    }
+
+    // Payloads lie behind the metadata, which says where they lie: its size first, then its values.
+    std::vector<fb::Payload> payloads;
+    for (std::size_t i = 0; i < packed.size(); ++i) {
+        payloads.emplace_back(0, packed[i].stored.size(), collider.maps[i].texels.size(),
+                              xxh3_64(packed[i].stored));
+    }
+    ContainerHeader header;
+    header.metadata_size = writeMetadata(collider, payloads).size();
+    std::uint64_t end = header.metadata_offset + header.metadata_size;
+    for (fb::Payload& payload : payloads) {
+        payload = fb::Payload(alignUp(end), payload.stored_size(), payload.raw_size(), payload.xxh3());
+        end = payload.offset() + payload.stored_size();
+    }
+    const std::vector<std::byte> metadata = writeMetadata(collider, payloads);
+    if (metadata.size() != header.metadata_size || metadata.size() > kContainerMetadataMax) {
+        return fail(ErrorCode::kLimit, "the metadata does not fit into the container; use fewer maps");
+    }
+    header.file_size = end;
+    header.metadata_hash = xxh3_64(metadata);
+    header.header_hash = header.computeHash();
+
+    std::vector<std::byte> bytes(end);  // zero: the padding
+    std::memcpy(bytes.data(), &header, sizeof(header));
+    std::ranges::copy(metadata, bytes.begin() + static_cast<std::ptrdiff_t>(header.metadata_offset));
+    for (std::size_t i = 0; i < packed.size(); ++i) {
+        std::ranges::copy(packed[i].stored,
+                          bytes.begin() + static_cast<std::ptrdiff_t>(payloads[i].offset()));
+    }
+    return bytes;
+}
+
+// ---- read
+// -----------------------------------------------------------------------------------------------------
+
+glm::vec3 fromFb(const fb::Vec3& v) {
+    return {v.x(), v.y(), v.z()};
+}
+
+glm::vec4 fromFb(const fb::Row& r) {
+    return {r.x(), r.y(), r.z(), r.w()};
+}
+
+/// A map without its texels.
+DepthMap readFrame(const fb::Map& map) {
+    DepthMap frame;
+    frame.format = static_cast<MapFormat>(map.format());
+    frame.compare = static_cast<Compare>(map.compare());
+    frame.width = map.width();
+    frame.height = map.height();
+    const fb::Transform& transform = *map.object_to_map();
+    frame.object_to_map.row[0] = fromFb(transform.row0());
+    frame.object_to_map.row[1] = fromFb(transform.row1());
+    frame.object_to_map.row[2] = fromFb(transform.row2());
+    frame.object_per_map = fromFb(*map.object_per_map());
+    frame.encloses = map.encloses();
+    frame.empty_is_outside = map.empty_is_outside();
+    return frame;
+}
+
+/// What a payload's sizes say of each other. Its place is checkLayout's.
+Result<StoredPayload> readPayloadInfo(const fb::Map& map, const DepthMap& frame) {
+    const fb::Payload& payload = *map.payload();
+    StoredPayload stored{{payload.offset(), payload.stored_size(), payload.raw_size(),
+                          map.compression() == fb::Compression::Zstd},
+                         payload.xxh3()};
+    const PayloadInfo& info = stored.info;
+    if (!info.compressed && map.compression() != fb::Compression::None) {
+        return invalid("its compression " + decimal(static_cast<std::uint64_t>(map.compression())) +
+                       " is unknown");
+    }
+    if (info.raw_size != frame.texelBytes()) {
+        return invalid("its raw_size is " + decimal(info.raw_size) + " where its size and format need " +
+                       decimal(frame.texelBytes()) + " bytes");
+    }
+    if (info.compressed ? info.stored_size >= info.raw_size : info.stored_size != info.raw_size) {
+        return invalid("its stored_size " + decimal(info.stored_size) + " does not go with its raw_size " +
+                       decimal(info.raw_size) + " and its compression");
+    }
+    if (info.compressed && info.raw_size / kZstdRatioMax > info.stored_size) {
+        return invalid("its " + decimal(info.stored_size) + " stored bytes cannot hold the " +
+                       decimal(info.raw_size) + " that they claim");
+    }
+    return stored;
+}
+
+Result<void> readMaps(const fb::Collider& metadata, const ContainerLimits& limits, Description& into) {
+    const auto& maps = *metadata.maps();
+    if (maps.size() == 0) {
+        return invalid("there is no map");
+    }
+    if (maps.size() > limits.maps) {
+        return fail(ErrorCode::kLimit,
+                    decimal(maps.size()) + " maps are more than the limit of " + decimal(limits.maps));
+    }
+    std::uint64_t texel_bytes = 0;
+    for (flatbuffers::uoffset_t i = 0; i < maps.size(); ++i) {
+        DepthMap frame = readFrame(*maps.Get(i));
+        const Result<StoredPayload> payload =
+            validateFrame(frame).and_then([&] { return readPayloadInfo(*maps.Get(i), frame); });
+        if (!payload) {
+            return tl::unexpected<Error>(inMap(i, payload.error()));
+        }
+        texel_bytes += payload->info.raw_size;
+        if (texel_bytes > limits.texel_bytes) {
+            return fail(ErrorCode::kLimit, "map " + decimal(i) +
+                                               ": with it, the texels take more than the limit of " +
+                                               decimal(limits.texel_bytes) + " bytes");
+        }
+        into.collider.maps.push_back(std::move(frame));
+        into.payloads.push_back(*payload);
+    }
+    return {};
+}
+
+Result<void> readMetadata(std::span<const std::byte> bytes, const ContainerLimits& limits,
+                          Description& into) {
+    // Accessors need the alignment that the file has, and that `bytes` need not have.
+    const auto aligned = std::make_unique<std::uint64_t[]>(bytes.size() / sizeof(std::uint64_t) + 1);
+    std::memcpy(aligned.get(), bytes.data(), bytes.size());
+    const auto* data = reinterpret_cast<const std::uint8_t*>(aligned.get());
+    flatbuffers::Verifier verifier(data, bytes.size(), kMetadataDepthMax);
+    if (!fb::VerifyColliderBuffer(verifier)) {
+        return invalid("the metadata at byte " + decimal(into.header.metadata_offset) +
+                       " is no FlatBuffers table of a collider");
+    }
+    const fb::Collider& metadata = *fb::GetCollider(data);
+    Collider& collider = into.collider;
+    collider.bounds = {fromFb(*metadata.bounds_min()), fromFb(*metadata.bounds_max())};
+    collider.unit = metadata.unit()->str();
+    const fb::Provenance& from = *metadata.provenance();
+    collider.provenance = {from.mesh_name()->str(), from.mesh_hash()->str(), from.triangles(),
+                           from.tool_version()->str(), from.options()->str()};
+    return validateDescription(collider).and_then([&] { return readMaps(metadata, limits, into); });
+}
+
+/// Payloads lie one after the other, each at the next multiple of 64, zeros between, and nothing behind.
+Result<void> checkLayout(std::span<const std::byte> bytes, const Description& description) {
+    std::uint64_t end = description.header.metadata_offset + description.header.metadata_size;
+    for (std::size_t i = 0; i < description.payloads.size(); ++i) {
+        const PayloadInfo& info = description.payloads[i].info;
+        const std::uint64_t expected = alignUp(end);
+        if (info.offset != expected) {
+            return invalidMap(i, "its payload's offset is " + decimal(info.offset) +
+                                     " where the layout has " + decimal(expected));
+        }
+        if (expected > bytes.size() || info.stored_size > bytes.size() - expected) {
+            return invalidMap(i, "its payload at byte " + decimal(expected) + " of " +
+                                     decimal(info.stored_size) + " bytes reaches beyond the end of the file");
+        }
+        const auto padding = bytes.subspan(end, expected - end);
+        if (const auto at = std::ranges::find_if(padding, [](std::byte b) { return b != std::byte{0}; });
+            at != padding.end()) {
+            return invalidMap(i, "damaged: byte " +
+                                     decimal(end + static_cast<std::uint64_t>(at - padding.begin())) +
+                                     ", padding before its payload, is not zero");
+        }
+        end = expected + info.stored_size;
+    }
+    if (end != bytes.size()) {
+        return invalid(decimal(bytes.size() - end) + " bytes follow the last payload's end at byte " +
+                       decimal(end));
+    }
+    return {};
+}
+
+Result<Description> readDescription(std::span<const std::byte> bytes, const ContainerLimits& limits) {
+    const Result<ContainerHeader> header = readContainerHeader(bytes);
+    if (!header) {
+        return forward(header);
+    }
+    const auto metadata = bytes.subspan(header->metadata_offset, header->metadata_size);
+    if (header->metadata_hash != xxh3_64(metadata)) {
+        return invalid("damaged: the checksum at byte 48 is not that of the metadata");
+    }
+    Description description;
+    description.header = *header;
+    if (const Result<void> ok = readMetadata(metadata, limits, description); !ok) {
+        return forward(ok);
+    }
+    if (const Result<void> ok = checkLayout(bytes, description); !ok) {
+        return forward(ok);
+    }
+    return description;
+}
+
+Result<std::vector<std::byte>> unpack(std::span<const std::byte> stored, std::uint64_t raw_size) {
+    if (ZSTD_getFrameContentSize(stored.data(), stored.size()) != raw_size) {
+        return invalid("its payload is no zstd frame that states a content of " + decimal(raw_size) +
+                       " bytes");
+    }
+    if (ZSTD_findFrameCompressedSize(stored.data(), stored.size()) != stored.size()) {
+        return invalid("its payload is not exactly one zstd frame");
+    }
+    std::vector<std::byte> raw(raw_size);
+    const std::size_t size = ZSTD_decompress(raw.data(), raw.size(), stored.data(), stored.size());
+    if (ZSTD_isError(size) != 0) {
+        return invalid(std::string("its payload does not decompress: ") + ZSTD_getErrorName(size));
+    }
+    if (size != raw_size) {
+        return invalid("its payload decompresses to " + decimal(size) + " bytes, not " + decimal(raw_size));
+    }
+    return raw;
+}
+
+Result<void> readTexels(std::span<const std::byte> bytes, const StoredPayload& payload, DepthMap& map) {
+    const auto stored = bytes.subspan(payload.info.offset, payload.info.stored_size);
+    if (payload.hash != xxh3_64(stored)) {
+        return invalid("damaged: the checksum of its payload at byte " + decimal(payload.info.offset) +
+                       " is wrong");
+    }
+    if (payload.info.compressed) {
+        Result<std::vector<std::byte>> raw = unpack(stored, payload.info.raw_size);
+        if (!raw) {
+            return forward(raw);
+        }
+        map.texels = std::move(*raw);
+    } else {
+        map.texels.assign(stored.begin(), stored.end());
+    }
+    return validateTexels(map);
+}
+
+Result<Collider> readCollider(std::span<const std::byte> bytes, const ContainerLimits& limits) {
+    Result<Description> description = readDescription(bytes, limits);
+    if (!description) {
+        return forward(description);
+    }
+    for (std::size_t i = 0; i < description->payloads.size(); ++i) {
+        if (const Result<void> ok =
+                readTexels(bytes, description->payloads[i], description->collider.maps[i]);
+            !ok) {
+            return tl::unexpected<Error>(inMap(i, ok.error()));
+        }
+    }
+    return std::move(description->collider);
+}
+
+/// Runs f with the exceptions of allocation, by the standard library and by FlatBuffers, as an Error.
+template <class F>
+auto withoutExceptions(F f) -> decltype(f()) {
+    try {
+        return f();
+    } catch (const std::exception&) {
+        return fail(ErrorCode::kLimit, "the collider does not fit into memory; use fewer or smaller maps");
+    }
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> writeContainer(const Collider& collider,
+                                              const ContainerWriteOptions& options) {
+    return withoutExceptions([&]() -> Result<std::vector<std::byte>> {
+        if (const Result<void> ok = checkWritable(collider, options); !ok) {
+            return forward(ok);
+        }
+        return writeChecked(collider, options);
+    });
+}
+
+Result<Collider> readContainer(std::span<const std::byte> bytes, const ContainerLimits& limits) {
+    return withoutExceptions([&] { return readCollider(bytes, limits); });
+}
+
+Result<ContainerInfo> readContainerInfo(std::span<const std::byte> bytes, const ContainerLimits& limits) {
+    return withoutExceptions([&]() -> Result<ContainerInfo> {
+        const Result<Description> description = readDescription(bytes, limits);
+        if (!description) {
+            return forward(description);
+        }
+        const ContainerHeader& header = description->header;
+        ContainerInfo info{header.major, header.minor, header.file_size, {}};
+        for (const StoredPayload& payload : description->payloads) {
+            info.payloads.push_back(payload.info);
+        }
+        return info;
+    });
+}
+
+Result<Collider> loadCollider(const std::filesystem::path& path, const ContainerLimits& limits) {
+    // The longest file that readContainer could take: payloads are never longer than their texels.
+    const std::uint64_t texel_bytes = std::min(limits.texel_bytes, std::uint64_t{1} << 62);
+    const std::uint64_t size_max =
+        sizeof(ContainerHeader) + kContainerMetadataMax + texel_bytes + limits.maps * kPayloadAlignment;
+    const Result<std::vector<std::byte>> bytes = readFile(path, size_max);
+    if (!bytes) {
+        return forward(bytes);
+    }
+    Result<Collider> collider = readContainer(*bytes, limits);
+    if (!collider) {
+        return fail(collider.error().code, quotedPath(path) + ": " + collider.error().message);
+    }
+    return collider;
+}
+
+Result<void> saveCollider(const std::filesystem::path& path, const Collider& collider,
+                          const ContainerWriteOptions& options) {
+    const Result<std::vector<std::byte>> bytes = writeContainer(collider, options);
+    if (!bytes) {
+        return fail(bytes.error().code, "cannot write " + quotedPath(path) + ": " + bytes.error().message);
+    }
+    return writeFile(path, *bytes);
+}
+
+}  // namespace relief

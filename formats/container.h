@@ -17,11 +17,13 @@ inline constexpr std::uint16_t kContainerMajor = 1;
 inline constexpr std::uint16_t kContainerMinor = 0;
 
 struct ContainerWriteOptions {
-    /// zstd level of the payloads, 1…19; 0 stores them as they are, ready to be mapped and uploaded.
+    /// zstd level of the payloads, 1…19; 0 stores them as they are, ready to be mapped and uploaded. A payload
+    /// that zstd does not shrink is stored as it is, too.
     int compression_level = 0;
 };
 
-/// Errors: kInvalidInput (a map breaks an invariant of depth_map.h), kLimit, kUsage (compression level).
+/// The same collider, options and zstd version give the same bytes. Keeps the default ContainerLimits.
+/// Errors: kInvalidInput (an invariant of validate.h is broken), kLimit, kUsage (compression level).
 [[nodiscard]] Result<std::vector<std::byte>> writeContainer(const Collider& collider,
                                                             const ContainerWriteOptions& options = {});
 
@@ -31,9 +33,9 @@ struct ContainerLimits {
 };
 
 /// Reads untrusted bytes: whatever they are, the answer is a collider that keeps every invariant of
-/// depth_map.h, or an error that says what is wrong and where. Nothing is allocated before its size has been
+/// validate.h, or an error that says what is wrong and where. Nothing is allocated before its size has been
 /// checked against `bytes` and `limits`.
-/// Errors: kInvalidInput, kUnsupported (a later major version), kLimit.
+/// Errors: kInvalidInput, kUnsupported (another major version), kLimit.
 [[nodiscard]] Result<Collider> readContainer(std::span<const std::byte> bytes, const ContainerLimits& limits = {});
 
 /// readFile and readContainer; messages name the file.

@@ -25,8 +25,8 @@ std::optional<Vote> voteOrthographic(const DepthMap& map, const glm::vec3& p) {
     if (!in_window) {
         return kFarOutsideVote;
     }
-    const Texel texel = decodeTexel(
-        map.format, map.texelAt(0, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)));
+    const Texel texel =
+        decodeTexel(map.format, map.texelAt(0, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)));
     if (!texel.front && !texel.back) {
         return map.empty_is_outside ? std::optional(kFarOutsideVote) : std::nullopt;
     }
@@ -53,13 +53,15 @@ std::optional<Vote> voteOrthographic(const DepthMap& map, const glm::vec3& p) {
 }
 
 std::optional<Vote> voteCube(const DepthMap& map, const glm::vec3& p) {
-    const float largest = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-    const bool in_volume = largest <= 1.0F;
+    // Component by component, because std::max may lose the NaN that an overflow in the transform leaves.
+    const auto withinCube = [&](float half) {
+        return std::abs(p.x) <= half && std::abs(p.y) <= half && std::abs(p.z) <= half;
+    };
+    const bool in_volume = withinCube(1.0F);
     if (!map.encloses && !in_volume) {
         return std::nullopt;
     }
-    // The squares below must not overflow; NaN, from an overflow in the transform, ends here too.
-    if (!(largest <= 1e15F)) {
+    if (!withinCube(1e15F)) {  // the squares below must not overflow
         return kFarOutsideVote;
     }
     const float radius = length(p);
@@ -73,7 +75,8 @@ std::optional<Vote> voteCube(const DepthMap& map, const glm::vec3& p) {
     if (!texel.front) {
         return map.empty_is_outside ? std::optional(kFarOutsideVote) : std::nullopt;
     }
-    const float ahead = map.compare == Compare::kGreater ? radius - texel.front->depth : texel.front->depth - radius;
+    const float ahead =
+        map.compare == Compare::kGreater ? radius - texel.front->depth : texel.front->depth - radius;
     const float distance = ahead * length(map.object_per_map * direction);
     if (!in_volume && distance < 0.0F) {
         return kFarOutsideVote;

@@ -90,9 +90,10 @@ struct Vote {
 };
 
 /// The rule that combines votes, in any order (paper section 4.1, rule 2): outside as soon as one vote is
-/// outside; of several the smallest positive, or else the largest negative, wins.
+/// outside; of several the smallest positive, or else the largest negative, wins. A vote of 0 is outside: the
+/// paper's `vote > 0` would make the answer depend on the order where P lies exactly on a surface.
 [[nodiscard]] constexpr bool replaces(float vote, float best) {
-    return (best < 0.0F && vote > best) || (vote > 0.0F && vote < best);
+    return (best < 0.0F && vote > best) || (vote >= 0.0F && vote < best);
 }
 
 /// f_i(P) of the paper's equation 1 (../formats/README.md, "The vote of a map").

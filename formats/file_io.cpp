@@ -1,1 +1,361 @@
 #include "formats/file_io.h"
+
+#include <fcntl.h>
+#include <sys/random.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <exception>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+namespace relief {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kChunk = std::size_t{1} << 20;  // bytes a system call, for streams
+constexpr int kLinksMax = 40;                         // as Linux follows
+constexpr int kTemporaryNamesTried = 100;
+
+/// Owns a file descriptor.
+class Descriptor {
+  public:
+    explicit Descriptor(int fd = -1) : fd_(fd) {}
+    Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+    Descriptor& operator=(Descriptor&& other) noexcept {
+        std::swap(fd_, other.fd_);
+        return *this;
+    }
+    ~Descriptor() {
+        if (fd_ >= 0) {
+            ::close(fd_);
+        }
+    }
+
+    [[nodiscard]] int get() const { return fd_; }
+    [[nodiscard]] explicit operator bool() const { return fd_ >= 0; }
+
+    /// Some file systems report a failed write only here.
+    /// \return 0 or an errno. EINTR is no error: Linux has released the descriptor all the same.
+    [[nodiscard]] int close() {
+        const int result = ::close(std::exchange(fd_, -1));
+        return result == 0 || errno == EINTR ? 0 : errno;
+    }
+
+  private:
+    int fd_;
+};
+
+/// What a person can do about an errno.
+const char* cure(int code) {
+    switch (code) {
+        case ENOENT:
+            return "check the path; a folder is not created for you";
+        case ENOTDIR:
+            return "a part of the path is no folder; check the path";
+        case EISDIR:
+            return "name a file, not a folder";
+        case EACCES:
+        case EPERM:
+            return "check the permissions of the file and of its folder";
+        case EROFS:
+            return "choose a folder that can be written";
+        case ENOSPC:
+        case EDQUOT:
+        case EFBIG:
+            return "free some space, raise the limit, or write elsewhere";
+        case ENAMETOOLONG:
+            return "choose a shorter name";
+        case ELOOP:
+            return "the symbolic links lead in a circle; mend them";
+        case EMFILE:
+        case ENFILE:
+            return "close other files, or raise the limit (ulimit -n)";
+        case EPIPE:
+            return "the program that reads the output has ended";
+        case EINVAL:
+            return "check the path";
+        default:
+            return "check the disk, or choose another place";
+    }
+}
+
+tl::unexpected<Error> ioError(const char* action, const std::string& name, int code) {
+    return fail(ErrorCode::kIo, std::string("cannot ") + action + " " + name + ": " +
+                                    std::system_category().message(code) + "; " + cure(code));
+}
+
+/// A path that the system would cut short or take for something else.
+/// \return 0 or an errno.
+int checkPath(const fs::path& path) {
+    if (path.empty()) {
+        return ENOENT;
+    }
+    return path.native().find('\0') == std::string::npos ? 0 : EINVAL;
+}
+
+int openRetry(const char* path, int flags, mode_t mode = 0) {
+    int fd = -1;
+    do {
+        fd = ::open(path, flags | O_CLOEXEC | O_NOCTTY, mode);
+    } while (fd < 0 && errno == EINTR);
+    return fd;
+}
+
+/// Reads until the end.
+/// \param expected  bytes that are probably there, at most size_max.
+Result<std::vector<std::byte>> readAll(int fd, const std::string& name, std::uint64_t expected,
+                                       std::uint64_t size_max) {
+    std::vector<std::byte> bytes;
+    std::size_t used = 0;
+    // One byte more than expected or allowed, so that the end is seen without growing.
+    std::uint64_t room = expected + 1;
+    while (true) {
+        if (used == bytes.size()) {
+            try {
+                bytes.resize(static_cast<std::size_t>(room));
+            } catch (const std::exception&) {
+                return fail(ErrorCode::kLimit,
+                            "cannot read " + name + ": it does not fit into memory; use a smaller file");
+            }
+            const std::uint64_t more = std::max<std::uint64_t>(room, kChunk);
+            room += std::min(more, size_max < room ? 1 : size_max + 1 - room);
+        }
+        const ssize_t got = ::read(fd, bytes.data() + used, bytes.size() - used);
+        if (got < 0) {
+            if (errno == EINTR) {
+                continue;
+            }
+            return ioError("read", name, errno);
+        }
+        if (got == 0) {
+            bytes.resize(used);
+            return bytes;
+        }
+        used += static_cast<std::size_t>(got);
+        if (used > size_max) {
+            return fail(ErrorCode::kLimit, "cannot read " + name + ": it is longer than the limit of " +
+                                               std::to_string(size_max) + " bytes; use a smaller file");
+        }
+    }
+}
+
+/// \return 0 or an errno.
+int writeAll(int fd, std::span<const std::byte> bytes) {
+    while (!bytes.empty()) {
+        const ssize_t written = ::write(fd, bytes.data(), std::min(bytes.size(), std::size_t{1} << 30));
+        if (written < 0) {
+            if (errno == EINTR) {
+                continue;
+            }
+            return errno;
+        }
+        bytes = bytes.subspan(static_cast<std::size_t>(written));
+    }
+    return 0;
+}
+
+/// \return 0 or an errno. A file system that knows no fsync is no error.
+int sync(int fd) {
+    int result = 0;
+    do {
+        result = ::fsync(fd);
+    } while (result != 0 && errno == EINTR);
+    return result == 0 || errno == EINVAL || errno == EOPNOTSUPP || errno == ENOSYS ? 0 : errno;
+}
+
+/// Where a path leads when its last part is a symbolic link, one that leads to nothing included.
+/// \return 0 or an errno.
+int followLinks(fs::path& path) {
+    for (int i = 0; i < kLinksMax; ++i) {
+        std::error_code error;
+        const fs::path target = fs::read_symlink(path, error);
+        if (error) {
+            return 0;  // no link: an error of any other kind comes back when the file is written
+        }
+        path = path.parent_path() / target;  // an absolute target replaces the left side
+    }
+    return ELOOP;
+}
+
+/// A temporary file beside the file that it will replace. Removed unless it has been renamed.
+class TemporaryFile {
+  public:
+    TemporaryFile() = default;
+    TemporaryFile(const TemporaryFile&) = delete;
+    TemporaryFile& operator=(const TemporaryFile&) = delete;
+    ~TemporaryFile() {
+        if (!name_.empty()) {
+            ::unlink(name_.c_str());
+        }
+    }
+
+    /// \return 0 or an errno, as of all members.
+    [[nodiscard]] int create(const fs::path& folder, mode_t mode) {
+        static std::atomic<unsigned> counter = 0;
+        for (int i = 0; i < kTemporaryNamesTried; ++i) {
+            unsigned random = 0;  // stays 0 where the system has none to give: O_EXCL alone keeps this safe
+            [[maybe_unused]] const ssize_t got = ::getrandom(&random, sizeof(random), GRND_NONBLOCK);
+            char text[64];
+            std::snprintf(text, sizeof(text), ".relief-%ld-%u-%08x.tmp", static_cast<long>(::getpid()),
+                          counter.fetch_add(1), random);
+            const fs::path name = folder / text;
+            file_ = Descriptor(openRetry(name.c_str(), O_WRONLY | O_CREAT | O_EXCL, mode));
+            if (file_) {
+                name_ = name;
+                return 0;
+            }
+            if (errno != EEXIST) {
+                return errno;
+            }
+        }
+        return EEXIST;
+    }
+
+    [[nodiscard]] int fill(std::span<const std::byte> bytes, std::optional<mode_t> mode) {
+        if (const int code = writeAll(file_.get(), bytes)) {
+            return code;
+        }
+        if (mode && ::fchmod(file_.get(), *mode) != 0) {
+            return errno;
+        }
+        if (const int code = sync(file_.get())) {
+            return code;
+        }
+        return file_.close();
+    }
+
+    [[nodiscard]] int renameTo(const fs::path& target) {
+        if (::rename(name_.c_str(), target.c_str()) != 0) {
+            return errno;
+        }
+        name_.clear();
+        return 0;
+    }
+
+  private:
+    fs::path name_;
+    Descriptor file_;
+};
+
+Result<void> writeInPlace(const fs::path& path, std::span<const std::byte> bytes) {
+    Descriptor file(openRetry(path.c_str(), O_WRONLY));
+    if (!file) {
+        return ioError("write", quotedPath(path), errno);
+    }
+    int code = writeAll(file.get(), bytes);
+    if (code == 0) {
+        code = file.close();
+    }
+    if (code != 0) {
+        return ioError("write", quotedPath(path), code);
+    }
+    return {};
+}
+
+/// \param older_mode  permission bits of the file that is replaced, if there is one.
+Result<void> replaceFile(const fs::path& target, const std::string& name, std::span<const std::byte> bytes,
+                         std::optional<mode_t> older_mode) {
+    const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+    // Private until it has the older file's permissions: nobody reads what they could not read before.
+    const mode_t first_mode = older_mode ? 0600 : 0666;
+    TemporaryFile temporary;
+    int code = temporary.create(folder, first_mode);
+    if (code == 0) {
+        code = temporary.fill(bytes, older_mode);
+    }
+    if (code == 0) {
+        code = temporary.renameTo(target);
+    }
+    if (code != 0) {
+        return ioError("write", name, code);
+    }
+    // A folder that may be written but not read cannot be synced: the file is whole all the same.
+    if (const Descriptor opened(openRetry(folder.c_str(), O_RDONLY | O_DIRECTORY)); opened) {
+        if (const int sync_code = sync(opened.get())) {
+            return ioError("make sure that the disk holds (though it is in place)", name, sync_code);
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> readFile(const fs::path& path, std::uint64_t size_max) {
+    if (path == "-") {
+        return readAll(STDIN_FILENO, "standard input", 0, size_max);
+    }
+    const std::string name = quotedPath(path);
+    if (const int code = checkPath(path)) {
+        return ioError("read", name, code);
+    }
+    const Descriptor file(openRetry(path.c_str(), O_RDONLY));
+    struct stat status {};
+    if (!file || ::fstat(file.get(), &status) != 0) {
+        return ioError("read", name, errno);
+    }
+    if (S_ISDIR(status.st_mode)) {
+        return ioError("read", name, EISDIR);
+    }
+    const std::uint64_t size = S_ISREG(status.st_mode) ? static_cast<std::uint64_t>(status.st_size) : 0;
+    if (size > size_max) {
+        return fail(ErrorCode::kLimit, "cannot read " + name + ": its " + std::to_string(size) +
+                                           " bytes are more than the limit of " + std::to_string(size_max) +
+                                           "; use a smaller file");
+    }
+    return readAll(file.get(), name, size, size_max);
+}
+
+Result<void> writeFile(const fs::path& path, std::span<const std::byte> bytes) {
+    if (path == "-") {
+        if (const int code = writeAll(STDOUT_FILENO, bytes)) {
+            return ioError("write", "standard output", code);
+        }
+        return {};
+    }
+    const std::string name = quotedPath(path);
+    if (const int code = checkPath(path)) {
+        return ioError("write", name, code);
+    }
+    struct stat status {};
+    std::optional<mode_t> older_mode;
+    if (::stat(path.c_str(), &status) == 0) {
+        if (S_ISDIR(status.st_mode)) {
+            return ioError("write", name, EISDIR);
+        }
+        if (!S_ISREG(status.st_mode)) {
+            return writeInPlace(path, bytes);
+        }
+        older_mode = status.st_mode & 0777;
+    } else if (errno != ENOENT) {
+        return ioError("write", name, errno);
+    }
+    fs::path target = path;
+    if (const int code = followLinks(target)) {
+        return ioError("write", name, code);
+    }
+    return replaceFile(target, name, bytes, older_mode);
+}
+
+std::string quotedPath(const fs::path& path) {
+    std::string text = "'";
+    for (const char c : path.native()) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte < 0x20 || byte == 0x7f) {
+            char escaped[5];
+            std::snprintf(escaped, sizeof(escaped), "\\x%02x", static_cast<unsigned>(byte));
+            text += escaped;
+        } else {
+            text += c;
+        }
+    }
+    return text + "'";
+}
+
+}  // namespace relief

@@ -5,22 +5,29 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "formats/result.h"
 
 namespace relief {
 
-/// Reads a whole regular file; "-" reads standard input.
-/// \param size_max  refuse (kLimit) anything longer, before it is read into memory.
+/// Reads a whole file; "-" reads standard input. Pipes and devices are read to their end.
+/// \param size_max  refuse (kLimit) anything longer: a regular file before any of it is read, a stream after
+///                  size_max + 1 bytes.
 /// Errors: kIo (with the system's words), kLimit.
 [[nodiscard]] Result<std::vector<std::byte>> readFile(const std::filesystem::path& path,
                                                       std::uint64_t size_max = std::uint64_t{4} << 30);
 
 /// Replaces a file, all or nothing: writes a temporary file in the same folder, fsync, rename, fsync of the
-/// folder. On any error the older file stays as it was and no temporary file is left. "-" writes standard
-/// output; a path that exists and is no regular file (a pipe, /dev/full) is written in place.
-/// Errors: kIo.
+/// folder. On any error before the rename the older file stays as it was and no temporary file is left;
+/// should only the last fsync fail, the message says that the new file is in place. An older file's
+/// permission bits are kept; where the path is a symbolic link, what it points to is replaced and not the
+/// link. "-" writes standard output; a path that exists and is no regular file (a pipe, /dev/full) is written
+/// in place. Errors: kIo.
 [[nodiscard]] Result<void> writeFile(const std::filesystem::path& path, std::span<const std::byte> bytes);
+
+/// A path for a message: in single quotes, control characters as \xNN so that the message stays one line.
+[[nodiscard]] std::string quotedPath(const std::filesystem::path& path);
 
 }  // namespace relief

@@ -1,0 +1,250 @@
+#include "formats/validate.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+namespace relief {
+namespace {
+
+constexpr std::uint16_t kHalfSmallest = 0x0400;  // 2^-14
+constexpr std::uint16_t kHalfOne = 0x3c00;
+
+tl::unexpected<Error> invalid(std::string message) {
+    return fail(ErrorCode::kInvalidInput, std::move(message));
+}
+
+/// Nine significant digits: enough to tell any two floats apart.
+std::string number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof(text), "%.9g", value);
+    return text;
+}
+
+bool isFinite(const glm::vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+std::string words(const glm::vec3& v) {
+    return "(" + number(v.x) + ", " + number(v.y) + ", " + number(v.z) + ")";
+}
+
+Result<void> validateText(const char* field, std::string_view text, std::size_t size_max) {
+    if (text.size() > size_max) {
+        return invalid(std::string(field) + " has " + std::to_string(text.size()) + " bytes, " +
+                       std::to_string(size_max) + " are allowed");
+    }
+    if (!isPlainText(text)) {
+        return invalid(std::string(field) + " is not UTF-8 without control characters");
+    }
+    return {};
+}
+
+Result<void> validateHash(std::string_view hash) {
+    const bool digits = hash.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+    if (!digits || (!hash.empty() && hash.size() != 32)) {
+        return invalid("provenance.mesh_hash is neither empty nor 32 lower-case hexadecimal digits");
+    }
+    return {};
+}
+
+Result<void> validateSize(const DepthMap& map) {
+    const std::string size = std::to_string(map.width) + "x" + std::to_string(map.height);
+    if (map.width > kMapSizeMax || map.height > kMapSizeMax) {
+        return fail(ErrorCode::kLimit, "its size " + size + " is beyond " + std::to_string(kMapSizeMax) +
+                                           "x" + std::to_string(kMapSizeMax));
+    }
+    const bool cube = map.projection() == Projection::kCube;
+    const std::uint32_t smallest = cube ? 1 : kMapSizeMin;
+    if (map.width < smallest || map.height < smallest) {
+        return invalid("its size " + size + " is below " + std::to_string(smallest) + "x" +
+                       std::to_string(smallest));
+    }
+    if (cube && map.width != map.height) {
+        return invalid("its size " + size + " is not square, as the faces of a cube are");
+    }
+    return {};
+}
+
+/// T must be invertible, and object_per_map must say what T says: its entries are the lengths of the columns
+/// of T's inverse.
+Result<void> validateTransform(const DepthMap& map) {
+    std::array<glm::dvec3, 3> row;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const glm::vec4& r = map.object_to_map.row[i];
+        if (!isFinite(glm::vec3(r)) || !std::isfinite(r.w)) {
+            return invalid("object_to_map row " + std::to_string(i) + " is not finite");
+        }
+        row[i] = glm::dvec3(r.x, r.y, r.z);
+    }
+    // In units of the largest entry, so that nothing below overflows.
+    double largest = 0.0;
+    for (const glm::dvec3& r : row) {
+        largest = std::max({largest, std::abs(r.x), std::abs(r.y), std::abs(r.z)});
+    }
+    if (!(largest > 0.0)) {
+        return invalid("object_to_map is zero");
+    }
+    for (glm::dvec3& r : row) {
+        r /= largest;
+    }
+    const double determinant = glm::dot(row[0], glm::cross(row[1], row[2]));
+    const double box = glm::length(row[0]) * glm::length(row[1]) * glm::length(row[2]);
+    if (!(std::abs(determinant) > kFrameVolumeMin * box)) {
+        return invalid("object_to_map is degenerate: its rows are (nearly) in one plane");
+    }
+    for (int i = 0; i < 3; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        const double expected =
+            glm::length(glm::cross(row[(at + 1) % 3], row[(at + 2) % 3])) / std::abs(determinant) / largest;
+        const double given = map.object_per_map[i];
+        if (!(given > 0.0) || !std::isfinite(given)) {
+            return invalid("object_per_map " + words(map.object_per_map) + " is not positive and finite");
+        }
+        if (!(std::abs(given - expected) <= kObjectPerMapTolerance * expected)) {
+            return invalid("object_per_map." + std::string(1, "xyz"[i]) + " is " + number(given) +
+                           " where object_to_map gives " + number(expected));
+        }
+    }
+    return {};
+}
+
+/// What is wrong with one texel; nullptr if nothing is.
+const char* faultOfFloat(std::span<const std::byte> texel) {
+    float channels[4];
+    std::memcpy(channels, texel.data(), sizeof(channels));
+    const glm::vec3 normal(channels[0], channels[1], channels[2]);
+    const float depth = channels[3];
+    if (!isFinite(normal) || !std::isfinite(depth)) {
+        return "holds a number that is not finite";
+    }
+    if (depth == -1.0F) {
+        return normal == glm::vec3(0.0F) ? nullptr : "is empty (depth -1) but has a normal";
+    }
+    if (depth < 0.0F || depth > 1.0F) {
+        return "has a depth that is neither -1 nor in 0...1";
+    }
+    const glm::dvec3 n(normal);
+    if (std::abs(std::sqrt(glm::dot(n, n)) - 1.0) > static_cast<double>(kUnitLengthTolerance)) {
+        return "has a normal that is not of unit length";
+    }
+    return nullptr;
+}
+
+const char* faultOfFrontBack(std::span<const std::byte> texel) {
+    std::uint16_t channels[4];
+    std::memcpy(channels, texel.data(), sizeof(channels));
+    for (const std::uint16_t depth : {channels[2], channels[3]}) {
+        if (depth != 0 && (depth < kHalfSmallest || depth > kHalfOne)) {
+            return "has a half-float depth that is neither 0 nor in 2^-14...1";
+        }
+    }
+    return nullptr;
+}
+
+}  // namespace
+
+bool isPlainText(std::string_view text) {
+    const auto byteAt = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    for (std::size_t i = 0; i < text.size();) {
+        const unsigned first = byteAt(i);
+        const std::size_t size = first < 0x80 ? 1 : first >> 5 == 0x6 ? 2 : first >> 4 == 0xe ? 3 : 4;
+        if ((size == 4 && first >> 3 != 0x1e) || size > text.size() - i) {
+            return false;
+        }
+        std::uint32_t code = size == 1 ? first : first & (0x7fU >> size);
+        for (std::size_t k = 1; k < size; ++k) {
+            if (byteAt(i + k) >> 6 != 0x2) {
+                return false;
+            }
+            code = code << 6 | (byteAt(i + k) & 0x3fU);
+        }
+        constexpr std::uint32_t kSmallest[] = {0, 0, 0x80, 0x800, 0x10000};
+        const bool control = code < 0x20 || (code >= 0x7f && code < 0xa0);
+        const bool surrogate = code >= 0xd800 && code < 0xe000;
+        if (code < kSmallest[size] || code > 0x10ffff || control || surrogate) {
+            return false;
+        }
+        i += size;
+    }
+    return true;
+}
+
+Result<void> validateDescription(const Collider& collider) {
+    const Bounds& bounds = collider.bounds;
+    if (!isFinite(bounds.min) || !isFinite(bounds.max)) {
+        return invalid("bounds are not finite");
+    }
+    if (bounds.min.x > bounds.max.x || bounds.min.y > bounds.max.y || bounds.min.z > bounds.max.z) {
+        return invalid("bounds.min " + words(bounds.min) + " lies beyond bounds.max " + words(bounds.max));
+    }
+    const Provenance& from = collider.provenance;
+    if (from.mesh_name.find('/') != std::string::npos) {
+        return invalid("provenance.mesh_name has a '/': it is a name without its folder");
+    }
+    return validateText("unit", collider.unit, kUnitMax)
+        .and_then([&] { return validateText("provenance.mesh_name", from.mesh_name, kMeshNameMax); })
+        .and_then([&] { return validateHash(from.mesh_hash); })
+        .and_then([&] { return validateText("provenance.tool_version", from.tool_version, kToolVersionMax); })
+        .and_then([&] { return validateText("provenance.options", from.options, kOptionsMax); });
+}
+
+Result<void> validateFrame(const DepthMap& map) {
+    if (static_cast<int>(map.format) >= kMapFormatCount) {
+        return invalid("its format " + std::to_string(static_cast<int>(map.format)) + " is unknown");
+    }
+    if (static_cast<int>(map.compare) > static_cast<int>(Compare::kBoth)) {
+        return invalid("its compare " + std::to_string(static_cast<int>(map.compare)) + " is unknown");
+    }
+    if ((map.compare == Compare::kBoth) != (map.format == MapFormat::kFrontBack16)) {
+        return invalid(std::string("its compare \"") + compareName(map.compare) +
+                       "\" does not go with its format \"" + mapFormatName(map.format) + "\"");
+    }
+    return validateSize(map).and_then([&] { return validateTransform(map); });
+}
+
+Result<void> validateTexels(const DepthMap& map) {
+    if (map.texels.size() != map.texelBytes()) {
+        return invalid("it has " + std::to_string(map.texels.size()) +
+                       " bytes of texels where its size needs " + std::to_string(map.texelBytes()));
+    }
+    if (map.format == MapFormat::kFixed8 || map.format == MapFormat::kCube8) {
+        return {};  // every code has a meaning
+    }
+    for (std::uint32_t y = 0; y < map.height; ++y) {
+        for (std::uint32_t x = 0; x < map.width; ++x) {
+            const std::span<const std::byte> texel = map.texelAt(0, x, y);
+            const char* fault =
+                map.format == MapFormat::kFloat32 ? faultOfFloat(texel) : faultOfFrontBack(texel);
+            if (fault != nullptr) {
+                return invalid("texel (" + std::to_string(x) + ", " + std::to_string(y) + ") " + fault);
+            }
+        }
+    }
+    return {};
+}
+
+Result<void> validate(const Collider& collider) {
+    if (const Result<void> ok = validateDescription(collider); !ok) {
+        return ok;
+    }
+    if (collider.maps.empty()) {
+        return invalid("there is no map");
+    }
+    for (std::size_t i = 0; i < collider.maps.size(); ++i) {
+        const DepthMap& map = collider.maps[i];
+        if (const Result<void> ok = validateFrame(map).and_then([&] { return validateTexels(map); }); !ok) {
+            return tl::unexpected<Error>(inMap(i, ok.error()));
+        }
+    }
+    return {};
+}
+
+Error inMap(std::size_t index, const Error& error) {
+    return {error.code, "map " + std::to_string(index) + ": " + error.message};
+}
+
+}  // namespace relief

@@ -1,0 +1,82 @@
+// Shapes whose rays have closed-form hits, and depth maps made of them in double precision: the truth that
+// the code under test is held against. Nothing here calls vote(), cubeCoordinates() or cubeDirection().
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <vector>
+
+#include "formats/depth_map.h"
+
+namespace relief::test {
+
+struct Hit {
+    double t;           // object units along a ray of unit direction, > 0
+    glm::dvec3 normal;  // unit length, outwards
+};
+
+class Shape {
+  public:
+    virtual ~Shape() = default;
+    /// All hits, the nearest first.
+    [[nodiscard]] virtual std::vector<Hit> hits(const glm::dvec3& origin,
+                                                const glm::dvec3& direction) const = 0;
+    [[nodiscard]] virtual bool inside(const glm::dvec3& p) const = 0;
+};
+
+[[nodiscard]] std::unique_ptr<Shape> makeSphere(const glm::dvec3& center, double radius);
+[[nodiscard]] std::unique_ptr<Shape> makeBox(const glm::dvec3& center, const glm::dvec3& half);
+/// Around the z axis of object space. Only for rays through its centre or parallel to its axis, whose hits
+/// are roots of a quadratic.
+[[nodiscard]] std::unique_ptr<Shape> makeTorus(double ring_radius, double tube_radius);
+/// The points with dot(normal, p) < offset.
+[[nodiscard]] std::unique_ptr<Shape> makeHalfSpace(const glm::dvec3& normal, double offset);
+
+/// The volume of an orthographic map: p = origin + axes · (sides ∘ p').
+struct OrthographicFrame {
+    glm::dvec3 origin;
+    glm::dmat3 axes;  // columns: orthonormal
+    glm::dvec3 sides;
+
+    [[nodiscard]] glm::dvec3 toObject(const glm::dvec3& map) const { return origin + axes * (sides * map); }
+    [[nodiscard]] glm::dvec3 toMap(const glm::dvec3& p) const;
+};
+
+/// The volume of a cube map: p = center + axes · (half ∘ p').
+struct CubeFrame {
+    glm::dvec3 center;
+    glm::dmat3 axes;
+    glm::dvec3 half;
+
+    [[nodiscard]] glm::dvec3 toObject(const glm::dvec3& map) const { return center + axes * (half * map); }
+};
+
+[[nodiscard]] glm::dmat3 rotation(const glm::dvec3& axis, double degrees);
+
+/// The centred volume of the given sides.
+[[nodiscard]] OrthographicFrame centeredFrame(const glm::dvec3& center, const glm::dmat3& axes,
+                                              const glm::dvec3& sides);
+
+/// A map without surfaces; the frame alone.
+[[nodiscard]] DepthMap emptyMap(const OrthographicFrame& frame, MapFormat format, Compare compare,
+                                std::uint32_t width, std::uint32_t height);
+[[nodiscard]] DepthMap emptyMap(const CubeFrame& frame, Compare compare, std::uint32_t size);
+
+/// Hits of the ray through a texel's centre that lie in the volume, the nearest first.
+[[nodiscard]] std::vector<Hit> texelHits(const Shape& shape, const OrthographicFrame& frame,
+                                         const DepthMap& map, std::uint32_t x, std::uint32_t y);
+
+/// The direction in map space, not of unit length, through a texel's centre: OpenGL 3.3, table 3.21, solved
+/// for the direction.
+[[nodiscard]] glm::dvec3 cubeTexelDirection(std::uint32_t face, std::uint32_t x, std::uint32_t y,
+                                            std::uint32_t size);
+
+[[nodiscard]] DepthMap makeMap(const Shape& shape, const OrthographicFrame& frame, MapFormat format,
+                               Compare compare, std::uint32_t width, std::uint32_t height);
+[[nodiscard]] DepthMap makeMap(const Shape& shape, const CubeFrame& frame, Compare compare,
+                               std::uint32_t size);
+
+[[nodiscard]] double angleInDegrees(const glm::dvec3& a, const glm::dvec3& b);
+
+}  // namespace relief::test

@@ -1,0 +1,140 @@
+#include "formats/collider.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <vector>
+
+#include "tests/formats/analytic_shapes.h"
+
+namespace relief {
+namespace {
+
+/// A 3×3 float map over [−2, 2]³ that votes `distance` at the origin, or abstains.
+DepthMap voter(std::optional<float> distance) {
+    // z_scale 4 and z' = ½ at the origin: distance = 4 · (depth − ½).
+    DepthMap map = test::emptyMap(test::centeredFrame({0, 0, 0}, glm::dmat3(1.0), {4, 4, 4}),
+                                  MapFormat::kFloat32, Compare::kLess, 3, 3);
+    if (distance == kFarOutside) {
+        return map;
+    }
+    if (!distance) {
+        map.empty_is_outside = false;
+        return map;
+    }
+    // The normal tells the voters apart.
+    const glm::dvec3 normal = test::rotation({0, 0, 1}, *distance * 40.0)[0];
+    encodeTexel(map.format, {Surface{*distance / 4.0F + 0.5F, glm::vec3(normal)}, std::nullopt},
+                map.texelAt(0, 1, 1));
+    return map;
+}
+
+using Votes = std::vector<std::optional<float>>;
+
+Collider colliderOf(const Votes& votes) {
+    Collider collider;
+    for (const std::optional<float>& v : votes) {
+        collider.maps.push_back(voter(v));
+    }
+    return collider;
+}
+
+const glm::vec3 kOrigin(0.0F);
+constexpr float kFar = kFarOutside;
+
+TEST(Voter, SaysWhatItIsTold) {
+    for (const float distance : {-1.5F, -0.25F, 0.0F, 0.25F, 1.5F, kFar}) {
+        ASSERT_TRUE(vote(voter(distance), kOrigin));
+        EXPECT_EQ(vote(voter(distance), kOrigin)->distance, distance);
+    }
+    EXPECT_FALSE(vote(voter(std::nullopt), kOrigin));
+}
+
+TEST(Rule2, AnyOutsideWinsThenTheSmallestPositiveOrTheLargestNegative) {
+    const auto distance = [](const Votes& votes) { return evaluate(colliderOf(votes), kOrigin).distance; };
+    EXPECT_EQ(distance({-1.0F, -0.25F, -0.5F}), -0.25F);
+    EXPECT_EQ(distance({-1.0F, 1.5F, -0.5F}), 1.5F);
+    EXPECT_EQ(distance({1.0F, 0.25F, -0.5F, 0.5F}), 0.25F);
+    EXPECT_EQ(distance({-0.25F, kFar}), kFar);
+    EXPECT_EQ(distance({kFar, 1.0F}), 1.0F);
+    EXPECT_EQ(distance({std::nullopt, -1.0F}), -1.0F);
+    EXPECT_EQ(distance({-1.0F, 0.0F}), 0.0F);
+}
+
+TEST(Rule2, OrderDoesNotMatter) {
+    const Votes sets[] = {
+        {-1.0F, -0.5F, -0.25F, -1.5F, std::nullopt, -0.75F},
+        {-1.0F, 0.5F, -0.25F, 1.5F, std::nullopt, kFar},
+        {0.0F, 0.5F, -0.25F, kFar, -1.0F, std::nullopt},
+        {0.0F, -0.5F, -0.25F, -1.0F, std::nullopt, -1.5F},
+        {kFar, -0.5F, std::nullopt, -0.25F, -1.0F, -1.5F},
+        {0.25F, 0.5F, 0.75F, 1.0F, 1.5F, kFar},
+    };
+    for (const Votes& votes : sets) {
+        const Collider first = colliderOf(votes);
+        const FieldSample expected = evaluate(first, kOrigin);
+        std::vector<std::size_t> order(votes.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        do {
+            Collider shuffled;
+            for (const std::size_t i : order) {
+                shuffled.maps.push_back(first.maps[i]);
+            }
+            const FieldSample sample = evaluate(shuffled, kOrigin);
+            ASSERT_EQ(sample.distance, expected.distance);
+            ASSERT_EQ(sample.normal, expected.normal);
+            ASSERT_EQ(order[static_cast<std::size_t>(sample.map)], static_cast<std::size_t>(expected.map));
+        } while (std::next_permutation(order.begin(), order.end()));
+    }
+}
+
+TEST(Rule2, NoVoteIsMapMinusOneAndNotInside) {
+    for (const Votes& votes : {Votes{}, Votes{std::nullopt}, Votes{std::nullopt, std::nullopt}}) {
+        const FieldSample sample = evaluate(colliderOf(votes), kOrigin);
+        EXPECT_EQ(sample.map, -1);
+        EXPECT_FALSE(sample.inside());
+        EXPECT_EQ(sample.normal, kOrigin);
+    }
+}
+
+TEST(Rule2, FirstOfEqualsDecides) {
+    EXPECT_EQ(evaluate(colliderOf({std::nullopt, -0.5F, -0.5F}), kOrigin).map, 1);
+    EXPECT_EQ(evaluate(colliderOf({-1.0F, 0.5F, 0.5F, kFar}), kOrigin).map, 1);
+    EXPECT_EQ(evaluate(colliderOf({-1.0F, kFar, kFar}), kOrigin).map, 1);
+    EXPECT_EQ(evaluate(colliderOf({0.0F, 0.0F}), kOrigin).map, 0);
+}
+
+TEST(Rule2, FarOutsideHasNoNormalAndTheDecidingMapGivesIt) {
+    EXPECT_EQ(evaluate(colliderOf({-0.5F, kFar}), kOrigin).normal, kOrigin);
+    const Collider collider = colliderOf({-0.5F, 0.25F, kFar});
+    const FieldSample sample = evaluate(collider, kOrigin);
+    EXPECT_EQ(sample.map, 1);
+    EXPECT_EQ(sample.normal, vote(collider.maps[1], kOrigin)->normal);
+    EXPECT_FALSE(sample.inside());
+    EXPECT_TRUE(evaluate(colliderOf({-0.5F}), kOrigin).inside());
+}
+
+TEST(Collider, TexelBytesIsTheSumOfItsMaps) {
+    Collider collider = colliderOf({-0.5F, kFar});
+    EXPECT_EQ(collider.texelBytes(), 2U * 9U * 16U);
+    collider.maps.push_back(
+        test::emptyMap(test::CubeFrame{{0, 0, 0}, glm::dmat3(1.0), {1, 1, 1}}, Compare::kLess, 5));
+    EXPECT_EQ(collider.texelBytes(), 2U * 9U * 16U + 6U * 25U * 4U);
+}
+
+TEST(Bounds, GrowByPoints) {
+    Bounds bounds;
+    EXPECT_GT(bounds.min.x, bounds.max.x);
+    bounds.add({1, 2, 3});
+    EXPECT_EQ(bounds.size(), glm::vec3(0.0F));
+    bounds.add({-1, 2, 8});
+    EXPECT_EQ(bounds.min, glm::vec3(-1, 2, 3));
+    EXPECT_EQ(bounds.max, glm::vec3(1, 2, 8));
+    EXPECT_EQ(bounds.center(), glm::vec3(0, 2, 5.5F));
+    EXPECT_EQ(bounds.longestSide(), 5.0F);
+}
+
+}  // namespace
+}  // namespace relief

@@ -1,0 +1,368 @@
+// What the writer writes, the reader reads; and no damage, by a bit or by a cut, goes unseen.
+#include "formats/container.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <string>
+
+#include "formats/container_header.h"
+#include "formats/file_io.h"
+#include "formats/validate.h"
+#include "tests/formats/analytic_shapes.h"
+#include "tests/formats/sample_colliders.h"
+
+namespace relief {
+namespace {
+
+using test::oneMapOfEveryFormat;
+
+std::vector<std::byte> written(const Collider& collider, int level = 0) {
+    Result<std::vector<std::byte>> bytes = writeContainer(collider, {level});
+    EXPECT_TRUE(bytes) << bytes.error().message;
+    return bytes ? *bytes : std::vector<std::byte>();
+}
+
+TEST(Container, RoundTripOfEveryFormatAtEveryLevel) {
+    const Collider collider = oneMapOfEveryFormat();
+    for (int level = 0; level <= 19; ++level) {
+        const Result<Collider> read = readContainer(written(collider, level));
+        ASSERT_TRUE(read) << read.error().message;
+        EXPECT_EQ(*read, collider) << "level " << level;
+    }
+}
+
+TEST(Container, RoundTripFromBytesAtAnyAlignment) {
+    const Collider collider = oneMapOfEveryFormat();
+    const std::vector<std::byte> bytes = written(collider, 3);
+    for (std::size_t shift = 1; shift < 16; ++shift) {
+        std::vector<std::byte> shifted(shift);
+        shifted.insert(shifted.end(), bytes.begin(), bytes.end());
+        const Result<Collider> read = readContainer(std::span(shifted).subspan(shift));
+        ASSERT_TRUE(read) << read.error().message;
+        EXPECT_EQ(*read, collider);
+    }
+}
+
+TEST(Container, SmallestMapsAndEmptyTexts) {
+    Collider collider;
+    collider.bounds = {glm::vec3(0.0F), glm::vec3(0.0F)};
+    collider.maps.push_back(test::emptyMap(test::centeredFrame({0, 0, 0}, glm::dmat3(1.0), {1e-20, 1, 1e20}),
+                                           MapFormat::kFloat32, Compare::kLess, 3, 3));
+    collider.maps.push_back(
+        test::emptyMap(test::CubeFrame{{0, 0, 0}, glm::dmat3(1.0), {1, 1, 1}}, Compare::kGreater, 1));
+    for (const int level : {0, 9}) {
+        const Result<Collider> read = readContainer(written(collider, level));
+        ASSERT_TRUE(read) << read.error().message;
+        EXPECT_EQ(*read, collider);
+    }
+}
+
+TEST(Container, SameColliderSameBytes) {
+    for (const int level : {0, 3, 19}) {
+        EXPECT_EQ(written(oneMapOfEveryFormat(), level), written(oneMapOfEveryFormat(), level));
+        const Result<Collider> read = readContainer(written(oneMapOfEveryFormat(), level));
+        ASSERT_TRUE(read);
+        EXPECT_EQ(written(*read, level), written(oneMapOfEveryFormat(), level));
+    }
+}
+
+TEST(Container, LayoutIsTheOneOfTheReadme) {
+    for (const int level : {0, 19}) {
+        const std::vector<std::byte> bytes = written(oneMapOfEveryFormat(), level);
+        ContainerHeader header;
+        std::memcpy(&header, bytes.data(), sizeof(header));
+        EXPECT_EQ(header.file_size, bytes.size());
+        const Result<ContainerInfo> info = readContainerInfo(bytes);
+        ASSERT_TRUE(info) << info.error().message;
+        EXPECT_EQ(info->major, 1);
+        EXPECT_EQ(info->minor, 0);
+        EXPECT_EQ(info->file_size, bytes.size());
+        const Collider collider = oneMapOfEveryFormat();
+        ASSERT_EQ(info->payloads.size(), collider.maps.size());
+        std::uint64_t end = 64 + header.metadata_size;
+        for (std::size_t i = 0; i < info->payloads.size(); ++i) {
+            const PayloadInfo& payload = info->payloads[i];
+            EXPECT_EQ(payload.offset % 64, 0U);
+            EXPECT_GE(payload.offset, end);
+            EXPECT_LT(payload.offset, end + 64);
+            EXPECT_EQ(payload.raw_size, collider.maps[i].texelBytes());
+            EXPECT_EQ(payload.compressed, level != 0);
+            if (level == 0) {
+                EXPECT_EQ(payload.stored_size, payload.raw_size);
+                EXPECT_EQ(std::memcmp(bytes.data() + payload.offset, collider.maps[i].texels.data(),
+                                      payload.raw_size),
+                          0);
+            } else {
+                EXPECT_LT(payload.stored_size, payload.raw_size);
+            }
+            end = payload.offset + payload.stored_size;
+        }
+        EXPECT_EQ(end, bytes.size());
+    }
+}
+
+TEST(Container, APayloadThatDoesNotShrinkIsStored) {
+    Collider collider = test::readmeExample();
+    for (std::size_t i = 0; i < collider.maps[0].texels.size(); ++i) {
+        collider.maps[0].texels[i] = static_cast<std::byte>(i * 37 + 11);
+    }
+    const std::vector<std::byte> bytes = written(collider, 19);
+    EXPECT_FALSE(readContainerInfo(bytes)->payloads[0].compressed);
+    EXPECT_EQ(bytes, written(collider, 0));
+}
+
+TEST(Damage, EveryPrefixIsRefused) {
+    for (const int level : {0, 19}) {
+        const std::vector<std::byte> bytes = written(oneMapOfEveryFormat(), level);
+        for (std::size_t size = 0; size < bytes.size(); ++size) {
+            // A copy of its own, so that the address sanitizer sees a step beyond it.
+            const std::vector<std::byte> prefix(bytes.begin(),
+                                                bytes.begin() + static_cast<std::ptrdiff_t>(size));
+            const Result<Collider> read = readContainer(prefix);
+            ASSERT_FALSE(read) << size << " of " << bytes.size() << " bytes";
+            ASSERT_EQ(read.error().code, ErrorCode::kInvalidInput);
+            ASSERT_NE(read.error().message.find("truncated"), std::string::npos) << read.error().message;
+            ASSERT_FALSE(readContainerInfo(prefix));
+        }
+    }
+}
+
+TEST(Damage, EverySingleBitFlipIsRefused) {
+    for (const int level : {0, 19}) {
+        std::vector<std::byte> bytes = written(oneMapOfEveryFormat(), level);
+        for (std::size_t i = 0; i < bytes.size(); ++i) {
+            for (int bit = 0; bit < 8; ++bit) {
+                const auto mask = static_cast<std::byte>(1 << bit);
+                bytes[i] ^= mask;
+                const Result<Collider> read = readContainer(bytes);
+                ASSERT_FALSE(read) << "byte " << i << " bit " << bit << " level " << level;
+                ASSERT_FALSE(read.error().message.empty());
+                bytes[i] ^= mask;
+            }
+        }
+    }
+}
+
+TEST(Damage, BytesBehindTheEndAreRefused) {
+    std::vector<std::byte> bytes = written(oneMapOfEveryFormat());
+    bytes.push_back(std::byte{0});
+    const Result<Collider> read = readContainer(bytes);
+    ASSERT_FALSE(read);
+    EXPECT_NE(read.error().message.find("1 bytes follow its end"), std::string::npos) << read.error().message;
+}
+
+TEST(Damage, ATransferAsTextIsNamed) {
+    std::vector<std::byte> bytes = written(oneMapOfEveryFormat());
+    bytes.erase(bytes.begin() + 8);  // CR LF became LF
+    const Result<Collider> read = readContainer(bytes);
+    ASSERT_FALSE(read);
+    EXPECT_NE(read.error().message.find("as text"), std::string::npos) << read.error().message;
+}
+
+TEST(Damage, OtherFilesAreNamedAsSuch) {
+    const Result<Collider> read = readContainer(test::toBytes(std::string(500, 'v')));
+    ASSERT_FALSE(read);
+    EXPECT_NE(read.error().message.find("no .relief container"), std::string::npos) << read.error().message;
+    EXPECT_FALSE(readContainer({}));
+}
+
+// ---- what the writer refuses
+// ----------------------------------------------------------------------------------
+
+struct Refusal {
+    const char* words;  // what the message has to say
+    std::function<void(Collider&)> breakIt;
+    ErrorCode code = ErrorCode::kInvalidInput;
+};
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+template <class T>
+void poke(DepthMap& map, std::size_t texel, std::size_t channel, T value) {
+    std::memcpy(map.texels.data() + texel * texelSize(map.format) + channel * sizeof(T), &value, sizeof(T));
+}
+
+/// A texel of the map that is not empty.
+std::size_t fullTexel(const DepthMap& map) {
+    for (std::uint32_t i = 0; i < map.width * map.height; ++i) {
+        const Texel texel = decodeTexel(map.format, map.texelAt(0, i % map.width, i / map.width));
+        if (texel.front) {
+            return i;
+        }
+    }
+    ADD_FAILURE() << "the sample map is empty";
+    return 0;
+}
+
+const std::vector<Refusal>& refusals() {
+    static const std::vector<Refusal> all = {
+        {"there is no map", [](Collider& c) { c.maps.clear(); }},
+        {"bounds are not finite", [](Collider& c) { c.bounds.max.y = kInfinity; }},
+        {"bounds are not finite", [](Collider& c) { c.bounds.min.x = kNaN; }},
+        {"lies beyond bounds.max", [](Collider& c) { c.bounds.min.z = 9.0F; }},
+        {"lies beyond bounds.max", [](Collider& c) { c.bounds = {}; }},
+        {"mesh_name has a '/'", [](Collider& c) { c.provenance.mesh_name = "../x.obj"; }},
+        {"mesh_name has 256 bytes", [](Collider& c) { c.provenance.mesh_name.assign(256, 'a'); }},
+        {"mesh_name is not UTF-8", [](Collider& c) { c.provenance.mesh_name = "a\xff"; }},
+        {"mesh_hash is neither", [](Collider& c) { c.provenance.mesh_hash = "0123"; }},
+        {"mesh_hash is neither", [](Collider& c) { c.provenance.mesh_hash.assign(32, 'G'); }},
+        {"unit has 17 bytes", [](Collider& c) { c.unit.assign(17, 'm'); }},
+        {"unit is not UTF-8", [](Collider& c) { c.unit = std::string("m\0", 2); }},
+        {"tool_version is not UTF-8", [](Collider& c) { c.provenance.tool_version = "a\nb"; }},
+        {"tool_version has", [](Collider& c) { c.provenance.tool_version.assign(65, 'a'); }},
+        {"options is not UTF-8", [](Collider& c) { c.provenance.options = "\x1b[2J"; }},
+        {"options has", [](Collider& c) { c.provenance.options.assign((1 << 20) + 1, 'a'); }},
+        {"map 0: its format 4 is unknown", [](Collider& c) { c.maps[0].format = static_cast<MapFormat>(4); }},
+        {"map 0: its compare 3 is unknown", [](Collider& c) { c.maps[0].compare = static_cast<Compare>(3); }},
+        {"does not go with its format", [](Collider& c) { c.maps[1].compare = Compare::kBoth; }},
+        {"does not go with its format", [](Collider& c) { c.maps[2].compare = Compare::kLess; }},
+        {"map 3: its size 4x5 is not square", [](Collider& c) { c.maps[3].height = 5; }},
+        {"map 3: its size 0x0 is below 1x1", [](Collider& c) { c.maps[3].width = c.maps[3].height = 0; }},
+        {"map 1: its size 2x8 is below 3x3", [](Collider& c) { c.maps[1].width = 2; }},
+        {"map 1: its size 16385x8 is beyond", [](Collider& c) { c.maps[1].width = 16385; },
+         ErrorCode::kLimit},
+        {"map 1: it has 224 bytes of texels", [](Collider& c) { c.maps[1].height = 9; }},
+        {"map 1: it has 225 bytes of texels", [](Collider& c) { c.maps[1].texels.push_back({}); }},
+        {"object_to_map row 2 is not finite", [](Collider& c) { c.maps[0].object_to_map.row[2].x = kNaN; }},
+        {"object_to_map row 0 is not finite",
+         [](Collider& c) { c.maps[0].object_to_map.row[0].w = kInfinity; }},
+        {"object_to_map is zero",
+         [](Collider& c) {
+             for (glm::vec4& row : c.maps[0].object_to_map.row) {
+                 row = glm::vec4(0.0F);
+             }
+         }},
+        {"object_to_map is degenerate",
+         [](Collider& c) { c.maps[0].object_to_map.row[1] = 3.0F * c.maps[0].object_to_map.row[0]; }},
+        {"object_to_map is degenerate",
+         [](Collider& c) { c.maps[0].object_to_map.row[1] = glm::vec4(0, 0, 0, 1); }},
+        {"object_per_map (0, ", [](Collider& c) { c.maps[3].object_per_map.x = 0.0F; }},
+        {"is not positive and finite", [](Collider& c) { c.maps[0].object_per_map.z = -1.0F; }},
+        {"is not positive and finite", [](Collider& c) { c.maps[0].object_per_map.y = kNaN; }},
+        {"is not positive and finite", [](Collider& c) { c.maps[0].object_per_map.y = kInfinity; }},
+        {"object_per_map.z is 2.0", [](Collider& c) { c.maps[0].object_per_map.z = 2.01F; }},
+        {"map 0: texel (0, 0) is empty", [](Collider& c) { poke(c.maps[0], 0, 0, 1.0F); }},
+        {"neither -1 nor in 0...1", [](Collider& c) { poke(c.maps[0], fullTexel(c.maps[0]), 3, 1.5F); }},
+        {"neither -1 nor in 0...1", [](Collider& c) { poke(c.maps[0], fullTexel(c.maps[0]), 3, -0.5F); }},
+        {"not finite", [](Collider& c) { poke(c.maps[0], fullTexel(c.maps[0]), 3, kNaN); }},
+        {"not finite", [](Collider& c) { poke(c.maps[0], 0, 1, kInfinity); }},
+        {"not of unit length", [](Collider& c) { poke(c.maps[0], fullTexel(c.maps[0]), 0, 1.5F); }},
+        {"map 2: texel (0, 0) has a half-float",
+         [](Collider& c) { poke<std::uint16_t>(c.maps[2], 0, 2, 1); }},
+        {"half-float depth", [](Collider& c) { poke<std::uint16_t>(c.maps[2], 0, 2, 0x03ff); }},
+        {"half-float depth", [](Collider& c) { poke<std::uint16_t>(c.maps[2], 0, 3, 0x3c01); }},
+        {"half-float depth", [](Collider& c) { poke<std::uint16_t>(c.maps[2], 0, 3, 0x7c00); }},
+        {"half-float depth", [](Collider& c) { poke<std::uint16_t>(c.maps[2], 0, 3, 0x7e00); }},
+        {"half-float depth", [](Collider& c) { poke<std::uint16_t>(c.maps[2], 0, 2, 0x8400); }},
+        {"1025 maps are more", [](Collider& c) { c.maps.assign(1025, c.maps[3]); }, ErrorCode::kLimit},
+    };
+    return all;
+}
+
+TEST(Writer, RefusesWhatTheReaderWouldRefuse) {
+    for (const Refusal& refusal : refusals()) {
+        Collider collider = oneMapOfEveryFormat();
+        refusal.breakIt(collider);
+        const Result<std::vector<std::byte>> bytes = writeContainer(collider);
+        ASSERT_FALSE(bytes) << refusal.words;
+        EXPECT_EQ(bytes.error().code, refusal.code) << bytes.error().message;
+        EXPECT_NE(bytes.error().message.find(refusal.words), std::string::npos)
+            << "\"" << bytes.error().message << "\" does not say \"" << refusal.words << "\"";
+    }
+}
+
+TEST(Writer, RefusesUnknownCompressionLevels) {
+    for (const int level : {-1, 20, 1000}) {
+        const Result<std::vector<std::byte>> bytes = writeContainer(oneMapOfEveryFormat(), {level});
+        ASSERT_FALSE(bytes);
+        EXPECT_EQ(bytes.error().code, ErrorCode::kUsage);
+    }
+}
+
+TEST(Validate, TakesFramesOfAnyHandednessScaleAndShear) {
+    DepthMap map = oneMapOfEveryFormat().maps[0];
+    map.object_to_map.row[0] *= -1.0F;
+    EXPECT_TRUE(validateFrame(map));
+    // A sheared frame: x' = x + y, so that map's x axis is (1, 0, 0) and its y axis is (−1, 1, 0) long √2.
+    map.object_to_map.row[0] = {1, 1, 0, 0};
+    map.object_to_map.row[1] = {0, 1, 0, 0};
+    map.object_to_map.row[2] = {0, 0, 1, 0};
+    map.object_per_map = {1, std::sqrt(2.0F), 1};
+    EXPECT_TRUE(validateFrame(map));
+    map.object_per_map = {1, 1, 1};
+    EXPECT_FALSE(validateFrame(map));
+    for (const float scale : {1e-30F, 1e-10F, 1e10F, 1e30F}) {
+        map.object_to_map = {};
+        for (glm::vec4& row : map.object_to_map.row) {
+            row *= scale;
+        }
+        map.object_per_map = glm::vec3(1.0F / scale);
+        EXPECT_TRUE(validateFrame(map)) << scale;
+    }
+}
+
+TEST(Validate, PlainTextIsStrictUtf8WithoutControls) {
+    for (const char* text : {"", "bunny.obj", "Kugel – 球 🐇", "\xed\x9f\xbf", "\xf4\x8f\xbf\xbf"}) {
+        EXPECT_TRUE(isPlainText(text)) << text;
+    }
+    const std::string bad[] = {"a\tb",
+                               "\x7f",
+                               "\xc2\x80",
+                               "\xc0\x80",
+                               "\xc1\xbf",
+                               "\xe0\x80\xaf",
+                               "\xed\xa0\x80",
+                               "\xf0\x80\x80\x80",
+                               "\xf4\x90\x80\x80",
+                               "\xf8\x88\x80\x80\x80",
+                               "\x80",
+                               "\xc3",
+                               "\xe7\x90",
+                               "\xc3(",
+                               "\xff",
+                               std::string("\0", 1)};
+    for (const std::string& text : bad) {
+        EXPECT_FALSE(isPlainText(text)) << testing::PrintToString(text);
+    }
+}
+
+TEST(Files, SaveAndLoadNameTheFile) {
+    const std::filesystem::path folder =
+        std::filesystem::path(testing::TempDir()) / ("relief-container-" + std::to_string(::getpid()));
+    std::filesystem::create_directory(folder);
+    const std::filesystem::path path = folder / "a.relief";
+    ASSERT_TRUE(saveCollider(path, oneMapOfEveryFormat(), {3}));
+    const Result<Collider> read = loadCollider(path);
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(*read, oneMapOfEveryFormat());
+
+    const Result<Collider> missing = loadCollider(folder / "b.relief");
+    ASSERT_FALSE(missing);
+    EXPECT_EQ(missing.error().code, ErrorCode::kIo);
+    EXPECT_NE(missing.error().message.find("b.relief"), std::string::npos);
+
+    ASSERT_TRUE(writeFile(path, test::toBytes("solid cube")));
+    const Result<Collider> wrong = loadCollider(path);
+    ASSERT_FALSE(wrong);
+    EXPECT_EQ(wrong.error().code, ErrorCode::kInvalidInput);
+    EXPECT_NE(wrong.error().message.find("a.relief"), std::string::npos);
+
+    Collider broken = oneMapOfEveryFormat();
+    broken.maps[0].width = 0;
+    const Result<void> unsaved = saveCollider(path, broken);
+    ASSERT_FALSE(unsaved);
+    EXPECT_NE(unsaved.error().message.find("a.relief"), std::string::npos);
+    EXPECT_EQ(*readFile(path), test::toBytes("solid cube")) << "the older file stays";
+    std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace relief

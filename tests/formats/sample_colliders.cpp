@@ -1,0 +1,59 @@
+#include "tests/formats/sample_colliders.h"
+
+#include <cstring>
+
+#include "formats/container_header.h"
+#include "formats/hash.h"
+#include "tests/formats/analytic_shapes.h"
+
+namespace relief::test {
+
+Collider oneMapOfEveryFormat() {
+    const auto sphere = makeSphere({0.5, 0.25, -0.5}, 0.6);
+    const OrthographicFrame frame =
+        centeredFrame({0.5, 0.25, -0.5}, rotation({1, 2, 3}, 40.0), {3.0, 3.5, 2.0});
+    Collider collider;
+    collider.bounds = {{-0.125F, -0.375F, -1.125F}, {1.125F, 0.875F, 0.125F}};
+    collider.unit = "m";
+    collider.provenance = {"Kugel – 球.obj", "0123456789abcdef0123456789abcdef", 1'234'567'890'123,
+                           "relief 0.1.0", "--map float:dir=+x,size=8x7"};
+    collider.maps.push_back(makeMap(*sphere, frame, MapFormat::kFloat32, Compare::kGreater, 8, 7));
+    collider.maps.push_back(makeMap(*sphere, frame, MapFormat::kFixed8, Compare::kLess, 7, 8));
+    collider.maps.push_back(makeMap(*sphere, frame, MapFormat::kFrontBack16, Compare::kBoth, 8, 8));
+    collider.maps.push_back(makeMap(*makeSphere({0.9, 0.25, -0.5}, 0.3),
+                                    CubeFrame{{0.5, 0.25, -0.5}, rotation({1, 0, 0}, 10.0), {1.0, 1.1, 1.2}},
+                                    Compare::kLess, 4));
+    collider.maps[1].encloses = false;
+    collider.maps[3].empty_is_outside = false;
+    return collider;
+}
+
+Collider readmeExample() {
+    Collider collider;
+    collider.bounds = {{-0.5F, -0.5F, -0.5F}, {0.5F, 0.5F, 0.5F}};
+    collider.unit = "m";
+    collider.provenance = {"cube.obj", "00112233445566778899aabbccddeeff", 12, "relief 0.1.0",
+                           "--map fixed8"};
+    // [−2, 2]² × [−1, 1], seen along +z: the middle texel holds the plane z = −½.
+    const OrthographicFrame frame = centeredFrame({0, 0, 0}, glm::dmat3(1.0), {4, 4, 2});
+    DepthMap map = emptyMap(frame, MapFormat::kFixed8, Compare::kLess, 3, 3);
+    encodeTexel(map.format, {Surface{0.25F, {0, 0, -1}}, std::nullopt}, map.texelAt(0, 1, 1));
+    collider.maps.push_back(map);
+    return collider;
+}
+
+void mendChecksums(std::vector<std::byte>& bytes) {
+    ContainerHeader header;
+    std::memcpy(&header, bytes.data(), sizeof(header));
+    const std::span<const std::byte> all(bytes);
+    header.metadata_hash = xxh3_64(all.subspan(header.metadata_offset, header.metadata_size));
+    header.header_hash = header.computeHash();
+    std::memcpy(bytes.data(), &header, sizeof(header));
+}
+
+std::vector<std::byte> toBytes(const std::string& text) {
+    const auto bytes = std::as_bytes(std::span(text));
+    return {bytes.begin(), bytes.end()};
+}
+
+}  // namespace relief::test

@@ -1,0 +1,25 @@
+// Small colliders for the tests of the container, and the worked example of formats/README.md.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "formats/collider.h"
+
+namespace relief::test {
+
+/// One map of every format, 8 texels wide at most, sparse enough for zstd to shrink each.
+[[nodiscard]] Collider oneMapOfEveryFormat();
+
+/// The worked example of formats/README.md.
+[[nodiscard]] Collider readmeExample();
+
+/// Sets a container's checksums to what its bytes say: the metadata's and then the header's.
+void mendChecksums(std::vector<std::byte>& bytes);
+
+[[nodiscard]] std::vector<std::byte> toBytes(const std::string& text);
+
+}  // namespace relief::test
