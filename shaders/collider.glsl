@@ -56,9 +56,9 @@ bool reliefInside(ReliefField field) {
 }
 
 // Rule 2 of the paper: outside as soon as one map sees P outside; the smallest positive or the largest
-// negative vote wins.
+// negative vote wins. A vote of 0 is outside, so that the order of the maps does not matter.
 bool reliefReplaces(float vote, float best) {
-    return (best < 0.0 && vote > best) || (vote > 0.0 && vote < best);
+    return (best < 0.0 && vote > best) || (vote >= 0.0 && vote < best);
 }
 
 // Equation 3: indices 0…254 in each direction to the octahedron, to the sphere.
@@ -179,12 +179,11 @@ void reliefVoteOrthographic(inout ReliefField best, int i, vec3 p, ivec4 rect, i
 }
 
 void reliefVoteCube(inout ReliefField best, int i, vec3 p, ivec4 rect, ivec4 info) {
-    float largest = max(max(abs(p.x), abs(p.y)), abs(p.z));
-    bool in_volume = largest <= 1.0;
+    bool in_volume = all(lessThanEqual(abs(p), vec3(1.0)));
     if (!in_volume && (info.z & RELIEF_ENCLOSES) == 0) {
         return;
     }
-    if (!(largest <= 1e15)) {  // the squares below must not overflow
+    if (!all(lessThanEqual(abs(p), vec3(1e15)))) {  // the squares below must not overflow
         reliefAdd(best, RELIEF_FAR_OUTSIDE, vec3(0.0), i);
         return;
     }

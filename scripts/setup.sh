@@ -1,0 +1,37 @@
+#!/usr/bin/env bash
+# Installs what Relief builds and runs with, from Debian 12's own packages. Does nothing, and needs no network,
+# when all are there already. The other scripts call it.
+set -euo pipefail
+
+packages=(
+    # tools
+    ca-certificates clang-format cmake g++ git ninja-build pkg-config
+    # formats
+    flatbuffers-compiler libexpected-dev libflatbuffers-dev libglm-dev libxxhash-dev libzstd-dev
+    # bake
+    libassimp-dev libcairo2-dev libcgal-dev libcli11-dev libembree-dev libopenexr-dev libspdlog-dev libtbb-dev
+    nlohmann-json3-dev fonts-dejavu-core
+    # runtime: libepoxy, and Mesa's llvmpipe for machines without a GPU
+    libegl-dev libepoxy-dev libgl-dev libgles-dev libpng-dev libtomlplusplus-dev libegl1 libegl-mesa0 libgl1-mesa-dri
+    # tests, benchmarks and the demo
+    assimp-testmodels glmark2-data imagemagick libbenchmark-dev libgtest-dev openexr python3
+)
+
+missing=()
+for package in "${packages[@]}"; do
+    status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
+    [ "$status" = installed ] || missing+=("$package")
+done
+[ ${#missing[@]} -gt 0 ] || exit 0
+
+sudo=()
+if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || {
+        echo "setup.sh: these packages are missing, and installing them needs root: ${missing[*]}" >&2
+        exit 1
+    }
+    sudo=(sudo)
+fi
+echo "Installing ${#missing[@]} packages: ${missing[*]}" >&2
+"${sudo[@]}" apt-get update -qq
+"${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >&2

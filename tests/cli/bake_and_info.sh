@@ -1,0 +1,69 @@
+# The baker and its report on a small closed mesh and on the bunny.
+. "$(dirname "$0")/lib.sh"
+
+cat >box.obj <<'O'
+v -1 -2 -3
+v 1 -2 -3
+v 1 2 -3
+v -1 2 -3
+v -1 -2 3
+v 1 -2 3
+v 1 2 3
+v -1 2 3
+f 4 3 2 1
+f 5 6 7 8
+f 1 2 6 5
+f 3 4 8 7
+f 2 3 7 6
+f 1 5 8 4
+O
+
+# The default set: three orthogonal front-back maps and one cube, in a container that says where it comes from.
+expect 0 "$relief" bake box.obj -o box.relief --resolution 64 -q
+[ ! -s stderr ] || die "-q is not quiet"
+expect 0 "$relief" info box.relief --json
+cp stdout info.json
+json info.json "[m['format'] for m in d['maps']] == ['front-back'] * 3 + ['cube']"
+json info.json "d['version'] == '1.0' or d['version'] == [1, 0] or d['version']['major'] == 1"
+json info.json "d['bounds']['min'] == [-1, -2, -3] and d['bounds']['max'] == [1, 2, 3]"
+json info.json "d['provenance']['mesh_name'] == 'box.obj' and len(d['provenance']['mesh_hash']) == 32"
+json info.json "d['provenance']['triangles'] == 12"
+json info.json "d['maps'][3]['compare'] == 'greater' and d['maps'][3]['width'] == 64"
+expect 0 "$relief" info box.relief
+grep -q 'front-back' stdout || die "info does not list the maps"
+
+# Every format, projection and compare by hand; the effective settings are echoed.
+expect 0 "$relief" bake box.obj -o all.relief --resolution 32 --json \
+    --map float:dir=+x --map float:dir=-y,compare=greater --map fixed8:dir=1/2/3,size=48x24 \
+    --map front-back:dir=-z --map cube:size=16 --map cube:center=5/0/0,compare=less
+cp stdout report.json
+expect 0 "$relief" info all.relief --json
+cp stdout info.json
+json info.json "[(m['format'], m['compare']) for m in d['maps']] == [('float', 'less'), ('float', 'greater'), ('fixed8', 'less'), ('front-back', 'both'), ('cube', 'greater'), ('cube', 'less')]"
+json info.json "(d['maps'][2]['width'], d['maps'][2]['height']) == (48, 24)"
+
+# The same bytes whatever the number of threads, the folder and the name of the output; compressed ones too.
+for threads in 1 2 5; do
+    expect 0 "$relief" bake "$bunny" -o "t$threads.relief" --resolution 128 --threads $threads -q
+done
+cmp t1.relief t2.relief || die "two threads bake other bytes than one"
+cmp t1.relief t5.relief || die "five threads bake other bytes than one"
+mkdir elsewhere
+(cd elsewhere && "$relief" bake "$bunny" -o x.relief --resolution 128 -q)
+cmp t1.relief elsewhere/x.relief || die "another folder gives other bytes"
+! grep -aq "$work" t1.relief || die "the output holds a path"
+
+# An older output is replaced; no temporary file stays.
+expect 0 "$relief" bake box.obj -o t1.relief --resolution 32 -q
+[ "$(ls -A elsewhere)" = x.relief ] || die "files left behind: $(ls -A elsewhere)"
+
+# Help leads with an example, for every verb; versions are printed.
+for verb in bake info query slice export; do
+    expect 0 "$relief" $verb --help
+    head -8 stdout | grep -q "relief $verb " || die "help of $verb does not lead with an example"
+done
+expect 0 "$relief" --help
+expect 0 "$relief" --version
+grep -qE '[0-9]+\.[0-9]+\.[0-9]+' stdout || die "no version"
+expect 0 "$relief_sim" --help
+head -8 stdout | grep -q 'relief-sim ' || die "help of relief-sim does not lead with an example"

@@ -1,0 +1,50 @@
+# Sourced by every test of this folder: a scratch folder, and what a test may expect.
+set -euo pipefail
+
+relief="$RELIEF_BIN/relief"
+relief_sim="$RELIEF_BIN/relief-sim"
+bunny=/usr/share/glmark2/models/bunny.obj
+models=/usr/share/assimp/models
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+
+die() {
+    echo "FAILED: $*" >&2
+    exit 1
+}
+
+# expect CODE COMMAND…: the exit code must be CODE. Output goes to $work/stdout and $work/stderr.
+expect() {
+    local wanted=$1 code=0
+    shift
+    "$@" >"$work/stdout" 2>"$work/stderr" </dev/null || code=$?
+    [ "$code" -eq "$wanted" ] || {
+        cat "$work/stderr" >&2
+        die "exit code $code instead of $wanted: $*"
+    }
+}
+
+# expect_error CODE PATTERN COMMAND…: as expect; and there is exactly one line on stderr, it starts with the
+# program's name, matches PATTERN (extended, any case), and nothing is on stdout.
+expect_error() {
+    local code=$1 pattern=$2
+    shift 2
+    expect "$code" "$@"
+    [ "$(wc -l <"$work/stderr")" -eq 1 ] || {
+        cat "$work/stderr" >&2
+        die "not one line of error: $*"
+    }
+    grep -qE '^relief(-sim)?: error: ' "$work/stderr" || die "error without the program's name: $(cat "$work/stderr")"
+    grep -qiE -- "$pattern" "$work/stderr" || die "'$(cat "$work/stderr")' does not match '$pattern'"
+    [ ! -s "$work/stdout" ] || die "output on stdout beside an error: $*"
+}
+
+# json FILE EXPRESSION: evaluates a Python expression over the document `d`; must be true.
+json() {
+    python3 - "$1" "$2" <<'P' || die "not true of $1: $2"
+import json, sys
+d = json.load(open(sys.argv[1]))
+sys.exit(0 if eval(sys.argv[2]) else 1)
+P
+}

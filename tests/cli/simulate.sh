@@ -1,0 +1,43 @@
+# relief-sim from outside: its dependencies, its outputs, its repeatability.
+. "$(dirname "$0")/lib.sh"
+
+for library in assimp embree CGAL OpenEXR IlmImf tbb; do
+    ! ldd "$relief_sim" | grep -qi "$library" || die "relief-sim needs $library"
+done
+
+"$relief" bake "$bunny" -o bunny.relief --resolution 128 -q
+expect 0 "$relief_sim" bunny.relief --steps 40 --frames frames --size 160x120 --dump a.ply --json --seed 3
+cp stdout report.json
+json report.json "d['steps'] == 40 or d['settings']['steps'] == 40"
+[ "$(find frames -name '*.png' | wc -l)" -ge 1 ] || die "no frames"
+first=$(find frames -name '*.png' | sort | head -1)
+[ "$(identify -format '%wx%h' "$first")" = 160x120 ] || die "frames are not 160x120"
+[ "$(identify -format '%k' "$first")" -gt 50 ] || die "a frame of fewer than 50 colours shows nothing"
+
+# The same seed gives the same run, another seed another one.
+"$relief_sim" bunny.relief --steps 40 --dump b.ply --seed 3 -q
+cmp a.ply b.ply || die "the same seed gives another run"
+"$relief_sim" bunny.relief --steps 40 --dump c.ply --seed 4 -q
+! cmp -s a.ply c.ply || die "another seed gives the same run"
+
+# The other API runs the same scene.
+"$relief_sim" bunny.relief --steps 40 --dump es.ply --seed 3 --api gles -q
+
+python3 - <<'P'
+# The PLY is what its header says, and every number is finite.
+import math, struct
+for name in ('a.ply', 'es.ply'):
+    data = open(name, 'rb').read()
+    head, body = data.split(b'end_header\n', 1)
+    lines = head.decode().splitlines()
+    assert lines[0] == 'ply' and lines[1] == 'format binary_little_endian 1.0', lines
+    count = next(int(l.split()[2]) for l in lines if l.startswith('element vertex'))
+    kinds = {'float': 'f', 'int': 'i', 'uint': 'I', 'uchar': 'B', 'float32': 'f', 'uint32': 'I'}
+    properties = [l.split() for l in lines if l.startswith('property')]
+    record = struct.Struct('<' + ''.join(kinds[p[1]] for p in properties))
+    names = [p[2] for p in properties]
+    assert {'x', 'y', 'z', 'vx', 'vy', 'vz'} <= set(names), names
+    assert count > 100 and len(body) == count * record.size, (count, len(body), record.size)
+    for values in record.iter_unpack(body):
+        assert all(math.isfinite(v) for v in values), values
+P
