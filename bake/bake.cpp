@@ -1,0 +1,228 @@
+#include "bake/bake.h"
+
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+#include <glm/common.hpp>
+#include <optional>
+
+#include "bake/encode.h"
+#include "bake/inside.h"
+#include "bake/raycast.h"
+#include "bake/view.h"
+#include "formats/container.h"
+
+namespace relief {
+namespace {
+
+/// Texels traced before they are encoded: bounds the memory for samples to 64 MiB whatever the maps' sizes.
+constexpr std::uint64_t kStripeTexels = std::uint64_t{1} << 22;
+
+class Stopwatch {
+  public:
+    explicit Stopwatch(double& total_ms) : total_ms_(total_ms) {}
+    Stopwatch(const Stopwatch&) = delete;
+    Stopwatch& operator=(const Stopwatch&) = delete;
+    ~Stopwatch() {
+        total_ms_ +=
+            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+  private:
+    double& total_ms_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+struct Job {
+    MapSpec spec;  // complete
+    View view;
+    bool compare_was_given;
+
+    [[nodiscard]] std::uint64_t texels() const {
+        return std::uint64_t{view.faceCount()} * view.width * view.height;
+    }
+};
+
+Result<std::vector<Job>> planJobs(const TriangleMesh& mesh, const BakeOptions& options) {
+    const std::vector<MapSpec> specs = options.maps.empty() ? defaultMapSpecs() : options.maps;
+    const ContainerLimits limits;
+    if (specs.size() > limits.maps) {
+        return fail(ErrorCode::kLimit, std::to_string(specs.size()) + " maps are more than the limit of " +
+                                           std::to_string(limits.maps) + "; bake fewer");
+    }
+    std::vector<Job> jobs;
+    std::uint64_t bytes = 0;
+    for (const MapSpec& spec : specs) {
+        const Result<MapSpec> complete = completeSpec(spec, mesh, options.resolution);
+        if (!complete) {
+            return forward(complete);
+        }
+        const Result<View> view = makeView(*complete, mesh);
+        if (!view) {
+            return forward(view);
+        }
+        jobs.push_back({*complete, *view, spec.compare.has_value()});
+        bytes += jobs.back().texels() * texelSize(view->format);
+    }
+    if (bytes > limits.texel_bytes) {
+        return fail(ErrorCode::kLimit,
+                    "the maps' texels take " + std::to_string(bytes) + " bytes, more than the limit of " +
+                        std::to_string(limits.texel_bytes) + "; lower --resolution or the maps' sizes");
+    }
+    return jobs;
+}
+
+std::string effectiveOptions(const std::vector<Job>& jobs) {
+    std::string text;
+    for (const Job& job : jobs) {
+        text.append(text.empty() ? "" : " ").append("--map ").append(toString(job.spec));
+    }
+    return text;
+}
+
+void warnAbout(const TriangleMesh& mesh, const std::vector<Job>& jobs, BakeReport& report) {
+    const glm::vec3 far_corner = glm::max(glm::abs(mesh.bounds.min), glm::abs(mesh.bounds.max));
+    const float farthest = std::max({far_corner.x, far_corner.y, far_corner.z});
+    if (mesh.bounds.longestSide() < 1e-3F * farthest) {
+        report.warnings.push_back(mesh.name +
+                                  " lies more than 1000 times its size away from the origin, where floats "
+                                  "are coarse; move it to the origin");
+    }
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        const View& view = jobs[i].view;
+        if (view.projection() == Projection::kCube && jobs[i].compare_was_given &&
+            view.compare == Compare::kLess && insideByParity(mesh, view.origin)) {
+            report.warnings.push_back(
+                "map " + std::to_string(i) + " (" + toString(jobs[i].spec) +
+                ") compares less but its centre seems to lie inside the mesh; move center, or "
+                "use compare=greater");
+        }
+        if (report.maps[i].covered == 0) {
+            report.warnings.push_back(
+                "map " + std::to_string(i) + " (" + toString(jobs[i].spec) +
+                ") is empty: none of its rays meets the mesh; change its dir, box or size");
+        }
+    }
+}
+
+/// Bakes one map, a stripe of rows at a time.
+class MapBaker {
+  public:
+    MapBaker(const TriangleMesh& mesh, const RayScene& scene, const NormalTable& normals)
+        : mesh_(mesh), scene_(scene), normals_(normals) {}
+
+    /// \param stripeDone  called with the number of texels finished.
+    template <class StripeDone>
+    DepthMap bake(const View& view, BakeReport& report, std::uint64_t& covered,
+                  const StripeDone& stripeDone) {
+        DepthMap map = view.emptyMap();
+        const auto stripe_rows =
+            static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kStripeTexels / view.width, 4, view.height));
+        for (std::uint32_t face = 0; face < view.faceCount(); ++face) {
+            for (std::uint32_t y = 0; y < view.height; y += stripe_rows) {
+                const RowRange rows{face, y, std::min(y + stripe_rows, view.height)};
+                {
+                    const Stopwatch watch(report.trace_ms);
+                    trace(view, RayEnd::kNear, rows);
+                    trace(view, RayEnd::kFar, rows);
+                }
+                {
+                    const Stopwatch watch(report.encode_ms);
+                    covered +=
+                        encodeRows(mesh_, scene_.winding(), normals_, view, rows, hits_[0], hits_[1], map);
+                }
+                stripeDone(std::uint64_t{rows.end - rows.begin} * view.width);
+            }
+        }
+        return map;
+    }
+
+  private:
+    void trace(const View& view, RayEnd end, const RowRange& rows) {
+        std::vector<Hit>& hits = hits_[static_cast<std::size_t>(end)];
+        if (!view.keeps(end)) {
+            hits.clear();
+            return;
+        }
+        hits.resize(std::size_t{rows.end - rows.begin} * view.width);
+        scene_.trace(view, end, rows, hits);
+    }
+
+    const TriangleMesh& mesh_;
+    const RayScene& scene_;
+    const NormalTable& normals_;
+    std::vector<Hit> hits_[2];
+};
+
+Result<Baked> bakeOnThisArena(const TriangleMesh& mesh, const BakeOptions& options) {
+    const Result<std::vector<Job>> jobs = planJobs(mesh, options);
+    if (!jobs) {
+        return forward(jobs);
+    }
+    std::uint64_t texels = 0;
+    for (const Job& job : *jobs) {
+        texels += job.texels();
+    }
+
+    Baked baked;
+    BakeReport& report = baked.report;
+    std::optional<Result<RayScene>> scene;
+    {
+        const Stopwatch watch(report.build_ms);
+        scene.emplace(RayScene::build(mesh));
+    }
+    if (!*scene) {
+        return forward(*scene);
+    }
+    std::optional<NormalTable> normals;
+    {
+        const Stopwatch watch(report.encode_ms);
+        normals.emplace(mesh, (*scene)->winding(), texels);
+    }
+
+    std::uint64_t done = 0;
+    const auto stripeDone = [&](std::uint64_t stripe) {
+        done += stripe;
+        if (options.progress) {
+            options.progress(static_cast<double>(done) / static_cast<double>(texels));
+        }
+    };
+    MapBaker baker(mesh, **scene, *normals);
+    std::uint64_t all_covered = 0;
+    for (const Job& job : *jobs) {
+        MapReport map_report{job.spec, 0, job.texels()};
+        baked.collider.maps.push_back(baker.bake(job.view, report, map_report.covered, stripeDone));
+        all_covered += map_report.covered;
+        report.maps.push_back(std::move(map_report));
+    }
+    if (all_covered == 0) {
+        return fail(
+            ErrorCode::kFailure,
+            mesh.name +
+                ": no ray of any map meets the mesh; raise the maps' sizes, or change their dir or box");
+    }
+    warnAbout(mesh, *jobs, report);
+
+    baked.collider.bounds = mesh.bounds;
+    baked.collider.unit = mesh.unit;
+    baked.collider.provenance = {mesh.name, mesh.content_hash, mesh.triangles.size(),
+                                 "relief " RELIEF_VERSION, effectiveOptions(*jobs)};
+    return baked;
+}
+
+}  // namespace
+
+Result<Baked> bake(const TriangleMesh& mesh, const BakeOptions& options) {
+    if (options.threads == 0) {
+        return bakeOnThisArena(mesh, options);
+    }
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, options.threads);
+    tbb::task_arena arena(static_cast<int>(options.threads));
+    std::optional<Result<Baked>> result;
+    arena.execute([&] { result.emplace(bakeOnThisArena(mesh, options)); });
+    return std::move(*result);
+}
+
+}  // namespace relief

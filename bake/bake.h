@@ -1,0 +1,47 @@
+// The pipeline: mesh -> views -> samples -> texels -> collider.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "bake/map_spec.h"
+#include "bake/mesh.h"
+#include "formats/collider.h"
+#include "formats/result.h"
+
+namespace relief {
+
+struct BakeOptions {
+    std::vector<MapSpec> maps;       ///< empty: defaultMapSpecs()
+    std::uint32_t resolution = 512;  ///< texels along a side, for maps whose spec names no size
+    unsigned threads = 0;            ///< 0: all cores. Never changes the result.
+    /// Called now and then, from the calling thread, with the share of the work done, in [0, 1].
+    std::function<void(double)> progress;
+};
+
+struct MapReport {
+    MapSpec spec;               ///< complete
+    std::uint64_t covered = 0;  ///< texels with a surface
+    std::uint64_t texels = 0;
+};
+
+struct BakeReport {
+    double build_ms = 0.0;   ///< acceleration structure
+    double trace_ms = 0.0;   ///< rays
+    double encode_ms = 0.0;  ///< normals and texels
+    std::vector<MapReport> maps;
+    std::vector<std::string> warnings;  ///< what is probably not meant; one line each
+};
+
+struct Baked {
+    Collider collider;
+    BakeReport report;
+};
+
+/// Errors: kUsage and kLimit (a spec, the resolution, too many maps or texels), kFailure (Embree; no ray of
+/// any map meets the mesh).
+[[nodiscard]] Result<Baked> bake(const TriangleMesh& mesh, const BakeOptions& options);
+
+}  // namespace relief

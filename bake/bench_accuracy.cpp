@@ -1,0 +1,436 @@
+// relief-accuracy: wrong points per byte of a distance volume, of the paper's maps, and of ours.
+// scripts/accuracy.sh runs it on its list of meshes.
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "bake/accuracy.h"
+#include "bake/accuracy_report.h"
+#include "bake/bake.h"
+#include "bake/byte_count.h"
+#include "bake/distance_volume.h"
+#include "bake/mesh_import.h"
+#include "bake/report.h"
+#include "bake/text.h"
+#include "bake/view.h"
+#include "formats/file_io.h"
+
+namespace relief {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class Stopwatch {
+  public:
+    [[nodiscard]] double seconds() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+  private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+// --- who takes part ---
+
+/// Three front-back maps along the axes on tight boxes, texels as square and as equal in size as whole
+/// numbers allow, as many as fit.
+Result<std::vector<MapSpec>> threeMaps(const TriangleMesh& mesh, std::uint64_t bytes) {
+    std::vector<MapSpec> specs(3);
+    glm::dvec2 extent[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        MapSpec& spec = specs[static_cast<std::size_t>(axis)];
+        spec.direction = glm::vec3(0.0F);
+        spec.direction[axis] = -1.0F;
+        spec.width = spec.height = kMapSizeMin;
+        const Result<View> view = makeView(spec, mesh);
+        if (!view) {
+            return forward(view);
+        }
+        // One texel between the borders: the tight volume is a third of the texture.
+        extent[axis] = glm::dvec2(view->object_per_map.x, view->object_per_map.y) / 3.0;
+    }
+    const auto resize = [&](double texel) {
+        std::uint64_t total = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const auto side = [&](double length) {
+                const double texels = std::ceil(length / texel * (1.0 - 1e-9)) + 2.0;
+                return static_cast<std::uint32_t>(std::min<double>(texels, kMapSizeMax));
+            };
+            specs[i].width = side(extent[i].x);
+            specs[i].height = side(extent[i].y);
+            total += std::uint64_t{specs[i].width} * specs[i].height * texelSize(specs[i].format);
+        }
+        return total <= bytes;
+    };
+    double large = static_cast<double>(mesh.bounds.longestSide()) * 2.0;
+    if (!resize(large)) {
+        return fail(ErrorCode::kUsage, "--budget is too small for three maps; give it more bytes");
+    }
+    double small = 0.0;
+    for (int i = 0; i < 60; ++i) {
+        const double middle = 0.5 * (small + large);
+        (resize(middle) ? large : small) = middle;
+    }
+    (void)resize(large);
+    return specs;
+}
+
+/// The paper's projected depth in the paper's front-back format.
+Result<Baked> bakePaper(const TriangleMesh& mesh, std::uint64_t bytes) {
+    Result<std::vector<MapSpec>> specs = threeMaps(mesh, bytes);
+    if (!specs) {
+        return forward(specs);
+    }
+    BakeOptions options;
+    options.maps = std::move(*specs);
+    return bake(mesh, options);
+}
+
+/// What `relief bake --budget` makes.
+Result<Baked> bakeOurs(const TriangleMesh& mesh, std::uint64_t bytes) {
+    return bakePaper(mesh, bytes);
+}
+
+// --- measuring ---
+
+/// One line of the table.
+struct Entry {
+    std::string mesh;
+    std::uint64_t budget = 0;
+    std::string method;  ///< "volume", "paper" or "ours"
+    std::string what;    ///< lattice or maps
+    std::uint64_t bytes = 0;
+    double build_seconds = 0.0;
+    Json accuracy;  ///< of jsonFieldAccuracy or jsonColliderAccuracy
+
+    [[nodiscard]] double number(const char* group, const char* name) const {
+        return accuracy.at(group).at(name).get<double>();
+    }
+    [[nodiscard]] double wrong() const { return number("near", "wrong_percent"); }
+};
+
+Json toJson(const Entry& entry) {
+    return {{"mesh", entry.mesh},        {"budget", entry.budget}, {"method", entry.method},
+            {"what", entry.what},        {"bytes", entry.bytes},   {"build_seconds", entry.build_seconds},
+            {"accuracy", entry.accuracy}};
+}
+
+Entry measureVolume(const MeshQuery& query, const TruthSamples& samples, std::uint64_t budget) {
+    const Stopwatch watch;
+    const DistanceGrid grid =
+        sampleDistances(query, makeLattice(query.mesh().bounds, budget / sizeof(std::int16_t)));
+    Entry entry;
+    entry.build_seconds = watch.seconds();
+    entry.method = "volume";
+    // Four standard deviations hold all but 6 in 100 000 of the points near the surface.
+    const double reach = 4.0 * samples.options.sigma_share * samples.longest_side;
+    const double ranges[2] = {DistanceVolume::fullRange(grid), DistanceVolume::bandRange(grid, reach)};
+    std::optional<FieldAccuracy> best;
+    for (int i = 0; i < 2; ++i) {
+        const DistanceVolume volume(grid, ranges[i]);
+        const FieldAccuracy accuracy = measureField(samples, fieldOf(volume));
+        if (!best || accuracy.near.total() < best->near.total()) {
+            best = accuracy;
+            const glm::uvec3 n = grid.lattice.nodes;
+            entry.what = std::to_string(n.x) + "x" + std::to_string(n.y) + "x" + std::to_string(n.z) +
+                         (i == 0 ? ", full range" : ", narrow band");
+            entry.bytes = volume.bytes();
+        }
+    }
+    entry.accuracy = jsonFieldAccuracy(*best, samples.longest_side);
+    return entry;
+}
+
+Result<Entry> measureMaps(const MeshQuery& query, const TruthSamples& samples, const std::string& method,
+                          std::uint64_t budget) {
+    const Stopwatch watch;
+    const Result<Baked> baked =
+        method == "paper" ? bakePaper(query.mesh(), budget) : bakeOurs(query.mesh(), budget);
+    if (!baked) {
+        return forward(baked);
+    }
+    Entry entry;
+    entry.build_seconds = watch.seconds();
+    entry.method = method;
+    const ColliderAccuracy accuracy = measureCollider(samples, query, baked->collider);
+    for (const DepthMap& map : baked->collider.maps) {
+        entry.what += (entry.what.empty() ? "" : " ") + std::to_string(map.width) + "x" +
+                      std::to_string(map.height) + (map.faceCount() == 6 ? "x6" : "");
+    }
+    entry.bytes = accuracy.gpu_bytes;
+    entry.accuracy = jsonColliderAccuracy(accuracy, samples.longest_side);
+    return entry;
+}
+
+/// Measured volumes, kept between runs in a file for those who work on the maps: the volume's figures change
+/// with the key alone.
+class Cache {
+  public:
+    explicit Cache(std::string path) : path_(std::move(path)) {
+        if (const Result<std::vector<std::byte>> bytes =
+                path_.empty() ? fail(ErrorCode::kIo, "") : readFile(path_);
+            bytes) {
+            const auto* first = reinterpret_cast<const char*>(bytes->data());
+            json_ = Json::parse(first, first + bytes->size(), nullptr, false);
+        }
+        if (!json_.is_object()) {
+            json_ = Json::object();
+        }
+    }
+
+    static std::string key(const TriangleMesh& mesh, std::uint64_t budget, const AccuracyOptions& options) {
+        return "volume " + std::to_string(kDistanceVolumeVersion) + ", mesh " + mesh.content_hash + ", " +
+               std::to_string(budget) + " bytes, " + std::to_string(options.samples) + " samples, seed " +
+               std::to_string(options.seed);
+    }
+
+    [[nodiscard]] std::optional<Entry> find(const std::string& key) const {
+        if (!json_.contains(key)) {
+            return std::nullopt;
+        }
+        const Json& json = json_[key];
+        Entry entry;
+        entry.method = "volume";
+        entry.what = json.at("what");
+        entry.bytes = json.at("bytes");
+        entry.build_seconds = json.at("build_seconds");
+        entry.accuracy = json.at("accuracy");
+        return entry;
+    }
+
+    [[nodiscard]] Result<void> add(const std::string& key, const Entry& entry) {
+        if (path_.empty()) {
+            return {};
+        }
+        json_[key] = toJson(entry);
+        const std::string text = json_.dump(1) + "\n";
+        return writeFile(path_, std::as_bytes(std::span(text)));
+    }
+
+  private:
+    std::string path_;
+    Json json_;
+};
+
+// --- the table ---
+
+std::string fixedText(double value, int digits) {
+    char text[32];
+    std::snprintf(text, sizeof(text), "%.*f", digits, value);
+    return text;
+}
+
+std::string tableText(const std::vector<Entry>& entries) {
+    std::vector<std::vector<std::string>> rows = {{"mesh", "budget>", "method", "wrong %>", "in>", "out>",
+                                                   "box %>", "dist mean %>", "p99 %>", "normal>", "unseen %>",
+                                                   "bytes>", "s>", "what"}};
+    for (const Entry& entry : entries) {
+        rows.push_back({entry.mesh, bytesText(entry.budget), entry.method, fixedText(entry.wrong(), 3),
+                        fixedText(entry.number("near", "false_inside_percent"), 3),
+                        fixedText(entry.number("near", "false_outside_percent"), 3),
+                        fixedText(entry.number("uniform", "wrong_percent"), 3),
+                        fixedText(entry.number("distance_error", "mean_percent"), 4),
+                        fixedText(entry.number("distance_error", "p99_percent"), 4),
+                        fixedText(entry.number("normal_error_degrees", "mean"), 2),
+                        entry.accuracy.contains("unseen_area_percent")
+                            ? fixedText(entry.accuracy["unseen_area_percent"], 2)
+                            : "-",
+                        std::to_string(entry.bytes), fixedText(entry.build_seconds, 2), entry.what});
+    }
+    return table(rows);
+}
+
+/// Of one budget: wrong points of maps over those of the volume.
+struct Comparison {
+    std::uint64_t budget = 0;
+    std::string method;
+    double geometric_mean = 0.0;
+    double worst = 0.0;
+    std::size_t meshes = 0;
+    std::vector<std::string> above;  ///< meshes where the volume makes fewer mistakes
+};
+
+std::vector<Comparison> compare(const std::vector<Entry>& entries, const std::vector<std::uint64_t>& budgets,
+                                std::uint32_t samples) {
+    // Half a point stands for none, so that ratios and logarithms exist.
+    const double least = 0.5 * 100.0 / samples;
+    std::vector<Comparison> comparisons;
+    for (const char* method : {"ours", "paper"}) {
+        for (const std::uint64_t budget : budgets) {
+            std::map<std::string, double> volume;
+            for (const Entry& entry : entries) {
+                if (entry.budget == budget && entry.method == "volume") {
+                    volume[entry.mesh] = std::max(entry.wrong(), least);
+                }
+            }
+            Comparison comparison{budget, method, 0.0, 0.0, 0, {}};
+            double sum = 0.0;
+            for (const Entry& entry : entries) {
+                if (entry.budget == budget && entry.method == method && volume.contains(entry.mesh)) {
+                    const double ratio = std::max(entry.wrong(), least) / volume[entry.mesh];
+                    sum += std::log(ratio);
+                    comparison.worst = std::max(comparison.worst, ratio);
+                    ++comparison.meshes;
+                    if (ratio > 1.0) {
+                        comparison.above.push_back(entry.mesh);
+                    }
+                }
+            }
+            if (comparison.meshes > 0) {
+                comparison.geometric_mean = std::exp(sum / static_cast<double>(comparison.meshes));
+                comparisons.push_back(std::move(comparison));
+            }
+        }
+    }
+    return comparisons;
+}
+
+std::string comparisonText(const std::vector<Comparison>& comparisons) {
+    std::vector<std::vector<std::string>> rows = {{"wrong points of", "over the volume's at", "meshes>",
+                                                   "geometric mean>", "worst>", "more than the volume on"}};
+    for (const Comparison& c : comparisons) {
+        std::string above;
+        for (const std::string& mesh : c.above) {
+            above.append(above.empty() ? "" : ", ").append(mesh);
+        }
+        rows.push_back({c.method, bytesText(c.budget), std::to_string(c.meshes),
+                        fixedText(c.geometric_mean, 3), fixedText(c.worst, 3),
+                        above.empty() ? "none" : above});
+    }
+    return table(rows);
+}
+
+// --- the program ---
+
+struct Arguments {
+    std::vector<std::string> meshes;
+    std::vector<std::string> budgets = {"0.25MB", "1MB", "4MB"};
+    std::uint32_t samples = AccuracyOptions{}.samples;
+    std::uint64_t seed = AccuracyOptions{}.seed;
+    std::vector<std::string> only = {"volume", "paper", "ours"};
+    std::string cache;
+    bool json = false;
+};
+
+Result<void> run(const Arguments& arguments) {
+    std::vector<std::uint64_t> budgets;
+    for (const std::string& text : arguments.budgets) {
+        const std::optional<std::uint64_t> bytes = parseByteCount(text);
+        if (!bytes) {
+            return fail(ErrorCode::kUsage, "--budget has '" + cleanUtf8(text) + "'; write 0.25MB,1MB,4MB");
+        }
+        budgets.push_back(*bytes);
+    }
+    Cache cache(arguments.cache);
+    AccuracyOptions options;
+    options.samples = arguments.samples;
+    options.seed = arguments.seed;
+    std::vector<Entry> entries;
+    Json mesh_reports = Json::array();
+    for (const std::string& path : arguments.meshes) {
+        const Stopwatch watch;
+        const Result<TriangleMesh> mesh = importMesh(path);
+        if (!mesh) {
+            return forward(mesh);
+        }
+        const Result<MeshQuery> query = MeshQuery::build(*mesh);
+        if (!query) {
+            return forward(query);
+        }
+        const TruthSamples samples = sampleTruth(*query, options);
+        Json mesh_report = jsonSamples(samples);
+        mesh_report["mesh"] = mesh->name;
+        mesh_report["mesh_hash"] = mesh->content_hash;
+        mesh_report["triangles"] = mesh->triangles.size();
+        mesh_reports.push_back(std::move(mesh_report));
+        for (const std::uint64_t budget : budgets) {
+            for (const std::string& method : arguments.only) {
+                Entry entry;
+                if (method == "volume") {
+                    const std::string key = Cache::key(*mesh, budget, options);
+                    if (std::optional<Entry> known = cache.find(key)) {
+                        entry = std::move(*known);
+                    } else {
+                        entry = measureVolume(*query, samples, budget);
+                        if (const Result<void> added = cache.add(key, entry); !added) {
+                            return added;
+                        }
+                    }
+                } else {
+                    Result<Entry> measured = measureMaps(*query, samples, method, budget);
+                    if (!measured) {
+                        return forward(measured);
+                    }
+                    entry = std::move(*measured);
+                }
+                entry.mesh = mesh->name;
+                entry.budget = budget;
+                entries.push_back(std::move(entry));
+            }
+        }
+        std::fprintf(stderr, "%s: %.1f s\n", mesh->name.c_str(), watch.seconds());
+    }
+    const std::vector<Comparison> comparisons = compare(entries, budgets, options.samples);
+    std::string text;
+    if (arguments.json) {
+        Json json = {{"meshes", mesh_reports}, {"results", Json::array()}, {"comparisons", Json::array()}};
+        for (const Entry& entry : entries) {
+            json["results"].push_back(toJson(entry));
+        }
+        for (const Comparison& c : comparisons) {
+            json["comparisons"].push_back({{"budget", c.budget},
+                                           {"method", c.method},
+                                           {"meshes", c.meshes},
+                                           {"geometric_mean", c.geometric_mean},
+                                           {"worst", c.worst},
+                                           {"above_volume", c.above}});
+        }
+        text = dump(json);
+    } else {
+        text =
+            tableText(entries) + (comparisons.empty() ? "" : "\n" + comparisonText(comparisons)) +
+            "\nwrong: points near the surface on the wrong side, in: false inside, out: false outside; box: "
+            "wrong points\nanywhere in the box; dist: error of the signed distance near the surface, of the "
+            "longest side; normal: mean error in\ndegrees; s: building it. " +
+            std::to_string(options.samples) + " points of each kind, seed " + std::to_string(options.seed) +
+            ".\n";
+    }
+    return writeFile("-", std::as_bytes(std::span(text)));
+}
+
+int report(const Error& error) {
+    std::fprintf(stderr, "relief-accuracy: error: %s\n", error.message.c_str());
+    return static_cast<int>(error.code);
+}
+
+}  // namespace
+}  // namespace relief
+
+int main(int argc, char** argv) {
+    using namespace relief;
+    CLI::App app("Wrong points per byte: a distance volume, the paper's maps, and ours", "relief-accuracy");
+    Arguments arguments;
+    app.add_option("mesh", arguments.meshes, "Meshes")->option_text("MESH...")->required();
+    app.add_option("--budget", arguments.budgets, "Bytes for each collider; default 0.25MB,1MB,4MB")
+        ->delimiter(',');
+    app.add_option("--samples", arguments.samples, "Points of each kind; default 200000")
+        ->check(CLI::Range(1U, 100'000'000U));
+    app.add_option("--seed", arguments.seed, "Of the points; default 1");
+    app.add_option("--only", arguments.only, "volume, paper or ours; default: all")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"volume", "paper", "ours"}));
+    app.add_option("--cache", arguments.cache, "Keep the volume's figures in this file (for development)");
+    app.add_flag("--json", arguments.json, "Print JSON");
+    CLI11_PARSE(app, argc, argv);
+    try {
+        const Result<void> done = run(arguments);
+        return done ? 0 : report(done.error());
+    } catch (const std::exception& e) {
+        return report({ErrorCode::kFailure, e.what()});
+    }
+}

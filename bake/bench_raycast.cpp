@@ -1,0 +1,117 @@
+// relief-bench-raycast MESH: where the baker's time goes, and how near its tracing is to a bare loop. Prints
+// JSON: medians of repeats that take turns, all from this one run.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "bake/bake.h"
+#include "bake/bench_bare_loop.h"
+#include "bake/mesh_import.h"
+#include "bake/raycast.h"
+#include "bake/view.h"
+#include "formats/container.h"
+
+namespace {
+
+constexpr int kRepeats = 15;
+constexpr std::uint32_t kResolution = 512;  // texels, a multiple of 4
+
+double milliseconds(const std::function<void()>& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+double median(std::vector<double> values) {
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
+                     values.end());
+    return values[values.size() / 2];
+}
+
+int failure(const relief::Error& error) {
+    std::fprintf(stderr, "relief-bench-raycast: error: %s\n", error.message.c_str());
+    return static_cast<int>(error.code);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    using namespace relief;
+    if (argc != 2) {
+        return failure({ErrorCode::kUsage, "usage: relief-bench-raycast MESH"});
+    }
+    const Result<TriangleMesh> mesh = importMesh(argv[1]);
+    if (!mesh) {
+        return failure(mesh.error());
+    }
+    BakeOptions options;
+    options.maps = defaultMapSpecs();
+    options.maps.pop_back();  // the cube: six orthographic ends are left
+    options.resolution = kResolution;
+    std::vector<View> views;
+    for (const MapSpec& spec : options.maps) {
+        const Result<MapSpec> complete = completeSpec(spec, *mesh, kResolution);
+        const Result<View> view = complete ? makeView(*complete, *mesh) : forward(complete);
+        if (!view) {
+            return failure(view.error());
+        }
+        views.push_back(*view);
+    }
+    const Result<RayScene> scene = RayScene::build(*mesh);
+    const Result<Baked> baked = bake(*mesh, options);
+    if (!scene || !baked) {
+        return failure(scene ? baked.error() : scene.error());
+    }
+    const BareLoop bare(*mesh);
+    const std::string output =
+        (std::filesystem::temp_directory_path() / "relief-bench-raycast.relief").string();
+
+    std::map<std::string, std::vector<double>> times;
+    std::vector<Hit> hits(std::size_t{kResolution} * kResolution);
+    std::uint64_t bare_hits = 0;
+    std::uint64_t our_hits = 0;
+    for (int repeat = 0; repeat < kRepeats; ++repeat) {
+        times["import"].push_back(milliseconds([&] { (void)importMesh(argv[1]); }));
+        times["embree_build"].push_back(BareLoop(*mesh).buildMs());
+        times["bare_loop"].push_back(milliseconds([&] { bare_hits = bare.trace(views); }));
+        our_hits = 0;
+        times["trace"].push_back(milliseconds([&] {
+            for (const View& view : views) {
+                for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
+                    scene->trace(view, end, {0, 0, kResolution}, hits);
+                }
+            }
+        }));
+        const Result<Baked> again = bake(*mesh, options);
+        times["our_build"].push_back(again->report.build_ms);
+        times["encode"].push_back(again->report.encode_ms);
+        times["trace_in_bake"].push_back(again->report.trace_ms);
+        times["write"].push_back(milliseconds([&] { (void)saveCollider(output, baked->collider); }));
+    }
+    std::filesystem::remove(output);
+    for (const View& view : views) {
+        for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
+            scene->trace(view, end, {0, 0, kResolution}, hits);
+            our_hits += static_cast<std::uint64_t>(
+                std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return !hit.empty(); }));
+        }
+    }
+
+    nlohmann::ordered_json json = {
+        {"mesh", mesh->name}, {"triangles", mesh->triangles.size()}, {"repeats", kRepeats}};
+    for (const auto& [name, values] : times) {
+        json["median_ms"][name] = median(values);
+    }
+    json["rays"] = views.size() * 2 * kResolution * kResolution;
+    json["hits"] = {{"bare_loop", bare_hits}, {"trace", our_hits}};
+    json["trace_over_bare_loop"] = median(times["trace"]) / median(times["bare_loop"]);
+    json["floor_of_bake_ms"] = median(times["import"]) + median(times["embree_build"]) +
+                               median(times["bare_loop"]) + median(times["write"]);
+    std::printf("%s\n", json.dump(2).c_str());
+    return 0;
+}

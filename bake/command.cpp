@@ -1,0 +1,156 @@
+#include "bake/command.h"
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <cstdlib>
+#include <span>
+#include <vector>
+
+#include "bake/text.h"
+#include "formats/file_io.h"
+
+namespace relief {
+namespace {
+
+/// Help that begins with examples (the footer, at the top).
+class ExampleFormatter : public CLI::Formatter {
+  public:
+    std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
+        if (mode == CLI::AppFormatMode::Sub) {
+            return Formatter::make_help(app, name, mode);
+        }
+        std::string text = "Examples:\n";
+        for (const std::string_view line : split(app->get_footer(), '\n')) {
+            text.append("  ").append(line).append("\n");
+        }
+        return text + "\n" + make_description(app) + make_usage(app, name) + make_positionals(app) +
+               make_groups(app, mode) + make_subcommands(app, mode);
+    }
+};
+
+void makeLogger() {
+    auto sink = std::make_shared<spdlog::sinks::stderr_color_sink_mt>();
+    if (const char* no_color = std::getenv("NO_COLOR"); no_color != nullptr && *no_color != '\0') {
+        sink->set_color_mode(spdlog::color_mode::never);
+    }
+    auto logger = std::make_shared<spdlog::logger>("relief", std::move(sink));
+    logger->set_pattern("relief: %^%l%$: %v");
+    spdlog::set_default_logger(std::move(logger));
+}
+
+std::vector<std::string_view> optionNames(const CLI::App& app) {
+    std::vector<std::string_view> names;
+    for (const CLI::Option* option : app.get_options()) {
+        for (const std::string& name : option->get_lnames()) {
+            names.push_back(name);
+        }
+    }
+    return names;
+}
+
+std::vector<std::string> verbNames(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+        names.push_back(verb->get_name());
+    }
+    return names;
+}
+
+/// The message for a command line that CLI11 did not take.
+std::string parseErrorMessage(const CLI::App& app, const CLI::ParseError& error) {
+    const std::vector<CLI::App*> called = app.get_subcommands();
+    const CLI::App& verb = called.empty() ? app : *called.front();
+    const std::string help =
+        "see " + (called.empty() ? std::string("relief") : "relief " + verb.get_name()) + " --help";
+    const std::vector<std::string> unknown = verb.remaining();
+    for (const std::string& word : unknown) {
+        if (word.size() > 1 && word[0] == '-') {
+            const std::string name = word.substr(
+                word.find_first_not_of('-') == std::string::npos ? word.size() : word.find_first_not_of('-'));
+            const std::string guess = didYouMean(name.substr(0, name.find('=')), optionNames(verb));
+            return "unknown option " + cleanUtf8(word) + (guess.empty() ? "; " + help : guess);
+        }
+    }
+    if (called.empty()) {
+        const std::vector<std::string> names = verbNames(app);
+        const std::vector<std::string_view> known(names.begin(), names.end());
+        if (unknown.empty()) {
+            return "no verb; use one of " + listed(known) + ", or " + help;
+        }
+        const std::string guess = didYouMean(unknown.front(), known);
+        return "unknown verb '" + cleanUtf8(unknown.front()) + "'" +
+               (guess.empty() ? "; use one of " + listed(known) : guess);
+    }
+    if (!unknown.empty()) {
+        return "unexpected argument '" + cleanUtf8(unknown.front()) + "'; " + help;
+    }
+    return cleanUtf8(error.what()) + "; " + help;
+}
+
+}  // namespace
+
+CLI::App& addVerb(CLI::App& app, CommonOptions& common, const std::string& name,
+                  const std::string& description, const std::string& example) {
+    CLI::App* verb = app.add_subcommand(name, description);
+    verb->footer(example);
+    verb->set_help_flag("-h,--help", "Print this help and exit");
+    CLI::Option* quiet = verb->add_flag("-q,--quiet", common.quiet, "Print errors only");
+    verb->add_flag("-v,--verbose", common.verbose, "Print details too")->excludes(quiet);
+    return *verb;
+}
+
+void startLogging(const CommonOptions& common) {
+    spdlog::set_level(common.quiet     ? spdlog::level::err
+                      : common.verbose ? spdlog::level::debug
+                                       : spdlog::level::info);
+}
+
+Result<std::uint64_t> parseCount(const std::string& text, const std::string& what) {
+    const std::optional<std::uint64_t> value = parseUnsigned(text);
+    if (!value) {
+        return fail(ErrorCode::kUsage, what + " is '" + cleanUtf8(text) + "' but must be a whole number");
+    }
+    return *value;
+}
+
+Result<void> printOut(const std::string& text) {
+    return writeFile("-", std::as_bytes(std::span(text)));
+}
+
+Result<void> runCommandLine(int argc, char** argv) {
+    makeLogger();
+    CLI::App app("Bakes meshes into depth map colliders, and looks into them", "relief");
+    app.formatter(std::make_shared<ExampleFormatter>());
+    app.footer(
+        "relief bake bunny.obj -o bunny.relief\nrelief info bunny.relief\n"
+        "relief slice bunny.relief --axis z --at center -o slice.png");
+    app.set_help_flag("-h,--help", "Print this help and exit; `relief VERB --help` explains a verb");
+    app.set_version_flag("--version", std::string("relief ") + RELIEF_VERSION, "Print the version and exit");
+    app.require_subcommand(1);
+    Action action;
+    addBake(app, action);
+    addInfo(app, action);
+    addQuery(app, action);
+    addSlice(app, action);
+    addExport(app, action);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        const std::vector<CLI::App*> called = app.get_subcommands();
+        return printOut(called.empty() ? app.help()
+                                       : called.front()->help("relief " + called.front()->get_name()));
+    } catch (const CLI::CallForVersion& version) {
+        return printOut(std::string(version.what()) + "\n");
+    } catch (const CLI::ParseError& error) {
+        return fail(ErrorCode::kUsage, parseErrorMessage(app, error));
+    }
+    return action();
+}
+
+int reportError(const Error& error) {
+    spdlog::error(error.message);
+    return static_cast<int>(error.code);
+}
+
+}  // namespace relief

@@ -1,0 +1,63 @@
+#include "bake/inside.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+
+#include "bake/triangle_plane.h"
+
+namespace relief {
+namespace {
+
+constexpr std::size_t kDirections = kParityDirections.size();
+
+using Crossings = std::array<std::uint64_t, kDirections>;
+
+/// Moeller and Trumbore (1997): whether the ray from the origin of the corners' space crosses the triangle.
+bool crosses(const glm::dvec3& a, const glm::dvec3& edge1, const glm::dvec3& edge2,
+             const glm::dvec3& direction) {
+    const glm::dvec3 p = cross(direction, edge2);
+    const double determinant = dot(edge1, p);
+    if (determinant == 0.0) {
+        return false;
+    }
+    const glm::dvec3 from_corner = -a;
+    const double u = dot(from_corner, p) / determinant;
+    if (u < 0.0 || u > 1.0) {
+        return false;
+    }
+    const glm::dvec3 q = cross(from_corner, edge1);
+    const double v = dot(direction, q) / determinant;
+    return v >= 0.0 && u + v <= 1.0 && dot(edge2, q) / determinant > 0.0;
+}
+
+}  // namespace
+
+bool insideByParity(const TriangleMesh& mesh, const glm::vec3& point) {
+    const glm::dvec3 origin = point;
+    const auto count = [&](const tbb::blocked_range<std::size_t>& range, Crossings crossings) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            const glm::uvec3& t = mesh.triangles[i];
+            const glm::dvec3 a = glm::dvec3(mesh.positions[t.x]) - origin;
+            const glm::dvec3 edge1 = glm::dvec3(mesh.positions[t.y]) - origin - a;
+            const glm::dvec3 edge2 = glm::dvec3(mesh.positions[t.z]) - origin - a;
+            for (std::size_t d = 0; d < kDirections; ++d) {
+                crossings[d] += crosses(a, edge1, edge2, kParityDirections[d]) ? 1 : 0;
+            }
+        }
+        return crossings;
+    };
+    const auto sum = [](Crossings a, const Crossings& b) {
+        for (std::size_t d = 0; d < kDirections; ++d) {
+            a[d] += b[d];
+        }
+        return a;
+    };
+    const Crossings crossings = tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, mesh.triangles.size(), 4096), Crossings{}, count, sum);
+    return std::count_if(crossings.begin(), crossings.end(), [](std::uint64_t n) { return n % 2 == 1; }) >
+           static_cast<std::ptrdiff_t>(kDirections / 2);
+}
+
+}  // namespace relief

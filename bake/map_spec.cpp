@@ -1,0 +1,267 @@
+#include "bake/map_spec.h"
+
+#include <algorithm>
+#include <array>
+
+#include "bake/text.h"
+
+namespace relief {
+namespace {
+
+constexpr std::array<std::string_view, kMapFormatCount> kFormatWords = {"float", "fixed8", "front-back",
+                                                                        "cube"};
+constexpr std::array<std::string_view, 5> kKeys = {"dir", "size", "compare", "center", "box"};
+constexpr std::array<std::string_view, 2> kCompareWords = {"less", "greater"};
+
+struct AxisWord {
+    std::string_view word;
+    glm::vec3 direction;
+};
+constexpr std::array<AxisWord, 9> kAxisWords = {{{"+x", {1, 0, 0}},
+                                                 {"-x", {-1, 0, 0}},
+                                                 {"+y", {0, 1, 0}},
+                                                 {"-y", {0, -1, 0}},
+                                                 {"+z", {0, 0, 1}},
+                                                 {"-z", {0, 0, -1}},
+                                                 {"x", {1, 0, 0}},
+                                                 {"y", {0, 1, 0}},
+                                                 {"z", {0, 0, 1}}}};
+
+/// Parses one SPEC; every message starts with the whole of it.
+class Parser {
+  public:
+    explicit Parser(std::string_view text) : text_(text) {}
+
+    Result<MapSpec> parse() {
+        const std::size_t colon = text_.find(':');
+        if (const Result<void> format = setFormat(text_.substr(0, colon)); !format) {
+            return forward(format);
+        }
+        if (colon != std::string_view::npos) {
+            for (const std::string_view pair : split(text_.substr(colon + 1), ',')) {
+                if (const Result<void> set = setPair(pair); !set) {
+                    return forward(set);
+                }
+            }
+        }
+        if (isCube() && spec_.center && spec_.box) {
+            return usage("a cube with a box is centred on the box; leave out center or box");
+        }
+        return spec_;
+    }
+
+  private:
+    [[nodiscard]] bool isCube() const { return spec_.format == MapFormat::kCube8; }
+
+    [[nodiscard]] tl::unexpected<Error> usage(const std::string& message) const {
+        return fail(ErrorCode::kUsage, "--map '" + cleanUtf8(text_) + "': " + message);
+    }
+    [[nodiscard]] tl::unexpected<Error> badValue(std::string_view key, std::string_view value,
+                                                 const std::string& wanted) const {
+        return usage(std::string(key) + " is '" + cleanUtf8(value) + "' but must be " + wanted);
+    }
+
+    Result<void> setFormat(std::string_view word) {
+        const auto* found = std::find(kFormatWords.begin(), kFormatWords.end(), word);
+        if (found == kFormatWords.end()) {
+            const std::string guess = didYouMean(word, kFormatWords);
+            return usage("unknown format '" + cleanUtf8(word) + "'" +
+                         (guess.empty() ? "; use one of " + listed(kFormatWords) : guess));
+        }
+        spec_.format = static_cast<MapFormat>(found - kFormatWords.begin());
+        return {};
+    }
+
+    Result<void> setPair(std::string_view pair) {
+        const std::size_t equals = pair.find('=');
+        const std::string_view key = pair.substr(0, equals);
+        const auto* found = std::find(kKeys.begin(), kKeys.end(), key);
+        if (found == kKeys.end()) {
+            const std::string guess = didYouMean(key, kKeys);
+            return usage("unknown key '" + cleanUtf8(key) + "'" +
+                         (guess.empty() ? "; use one of " + listed(kKeys) : guess));
+        }
+        if (equals == std::string_view::npos) {
+            return usage(std::string(key) + " has no value; write " + std::string(key) + "=…");
+        }
+        bool& seen = seen_.at(static_cast<std::size_t>(found - kKeys.begin()));
+        if (seen) {
+            return usage(std::string(key) + " is given twice; keep one");
+        }
+        seen = true;
+        const std::string_view value = pair.substr(equals + 1);
+        if (key == "dir") {
+            return setDirection(value);
+        }
+        if (key == "size") {
+            return setSize(value);
+        }
+        if (key == "compare") {
+            return setCompare(value);
+        }
+        return key == "center" ? setCenter(value) : setBox(value);
+    }
+
+    Result<void> setDirection(std::string_view value) {
+        if (isCube()) {
+            return usage("dir does nothing for a cube, which looks all round; leave it out");
+        }
+        for (const AxisWord& axis : kAxisWords) {
+            if (axis.word == value) {
+                spec_.direction = axis.direction;
+                return {};
+            }
+        }
+        const std::optional<std::array<float, 3>> numbers = parseNumbers<3>(value);
+        if (!numbers || *numbers == std::array<float, 3>{}) {
+            return badValue("dir", value, "+x, -x, +y, -y, +z, -z or a vector a/b/c that is not 0/0/0");
+        }
+        spec_.direction = {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+        return {};
+    }
+
+    Result<void> setSize(std::string_view value) {
+        const std::vector<std::string_view> parts = split(value, 'x');
+        const std::optional<std::uint64_t> width = parseUnsigned(parts.front());
+        const std::optional<std::uint64_t> height = parseUnsigned(parts.back());
+        if (parts.size() > 2 || !width || !height || (isCube() && *width != *height)) {
+            return badValue("size", value, isCube() ? "N, as a cube's faces are square" : "N or WxH");
+        }
+        const std::string what = "--map '" + cleanUtf8(text_) + "': size";
+        const Result<std::uint32_t> w = checkMapSize(*width, spec_.format, what);
+        const Result<std::uint32_t> h = checkMapSize(*height, spec_.format, what);
+        if (!w || !h) {
+            return w ? forward(h) : forward(w);
+        }
+        spec_.width = *w;
+        spec_.height = *h;
+        return {};
+    }
+
+    Result<void> setCompare(std::string_view value) {
+        if (spec_.format == MapFormat::kFrontBack16) {
+            return usage("compare does nothing for front-back, which keeps both surfaces; leave it out");
+        }
+        if (value != "less" && value != "greater") {
+            return badValue("compare", value, "less or greater" + didYouMean(value, kCompareWords));
+        }
+        spec_.compare = value == "less" ? Compare::kLess : Compare::kGreater;
+        return {};
+    }
+
+    Result<void> setCenter(std::string_view value) {
+        if (!isCube()) {
+            return usage("center does nothing but for a cube; use box to move an orthographic map");
+        }
+        const std::optional<std::array<float, 3>> numbers = parseNumbers<3>(value);
+        if (!numbers) {
+            return badValue("center", value, "three numbers a/b/c");
+        }
+        spec_.center = glm::vec3((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+        return {};
+    }
+
+    Result<void> setBox(std::string_view value) {
+        if (value == "tight") {
+            return {};
+        }
+        const std::optional<std::array<float, 6>> n = parseNumbers<6>(value);
+        if (!n) {
+            return badValue("box", value, "tight or two corners x0/y0/z0/x1/y1/z1");
+        }
+        Bounds box;
+        box.min = {(*n)[0], (*n)[1], (*n)[2]};
+        box.max = {(*n)[3], (*n)[4], (*n)[5]};
+        if (!(box.min.x < box.max.x && box.min.y < box.max.y && box.min.z < box.max.z)) {
+            return badValue("box", value, "two corners x0/y0/z0/x1/y1/z1 with x0 < x1, y0 < y1 and z0 < z1");
+        }
+        spec_.box = box;
+        return {};
+    }
+
+    template <std::size_t N>
+    static std::optional<std::array<float, N>> parseNumbers(std::string_view value) {
+        const std::vector<std::string_view> parts = split(value, '/');
+        if (parts.size() != N) {
+            return std::nullopt;
+        }
+        std::array<float, N> numbers{};
+        for (std::size_t i = 0; i < N; ++i) {
+            const std::optional<float> number = parseFloat(parts[i]);
+            if (!number) {
+                return std::nullopt;
+            }
+            numbers[i] = *number + 0.0F;  // −0 becomes 0, so that one setting has one text
+        }
+        return numbers;
+    }
+
+    std::string_view text_;
+    MapSpec spec_;
+    std::array<bool, kKeys.size()> seen_{};
+};
+
+std::string directionText(const glm::vec3& direction) {
+    for (const AxisWord& axis : kAxisWords) {
+        if (axis.direction == direction) {
+            return std::string(axis.word);
+        }
+    }
+    return shortest(direction);
+}
+
+}  // namespace
+
+Result<MapSpec> parseMapSpec(std::string_view text) {
+    return Parser(text).parse();
+}
+
+std::string toString(const MapSpec& spec) {
+    const bool cube = spec.format == MapFormat::kCube8;
+    std::string text = mapFormatName(spec.format);
+    char separator = ':';
+    const auto add = [&](const char* key, const std::string& value) {
+        text.append(1, separator).append(key).append("=").append(value);
+        separator = ',';
+    };
+    if (!cube) {
+        add("dir", directionText(spec.direction));
+    }
+    if (spec.width != 0) {
+        add("size", cube ? std::to_string(spec.width)
+                         : std::to_string(spec.width) + "x" + std::to_string(spec.height));
+    }
+    if (spec.compare && spec.format != MapFormat::kFrontBack16) {
+        add("compare", compareName(*spec.compare));
+    }
+    if (spec.center) {
+        add("center", shortest(*spec.center));
+    }
+    add("box", spec.box ? shortest(spec.box->min) + '/' + shortest(spec.box->max) : "tight");
+    return text;
+}
+
+std::vector<MapSpec> defaultMapSpecs() {
+    std::vector<MapSpec> specs(4);
+    specs[0].direction = {-1.0F, 0.0F, 0.0F};
+    specs[1].direction = {0.0F, -1.0F, 0.0F};
+    specs[2].direction = {0.0F, 0.0F, -1.0F};
+    specs[3].format = MapFormat::kCube8;
+    return specs;
+}
+
+Result<std::uint32_t> checkMapSize(std::uint64_t texels, MapFormat format, const std::string& what) {
+    const std::uint32_t smallest = format == MapFormat::kCube8 ? 1 : kMapSizeMin;
+    if (texels < smallest) {
+        return fail(ErrorCode::kUsage, what + " is " + std::to_string(texels) +
+                                           " texels but must be at least " + std::to_string(smallest));
+    }
+    if (texels > kMapSizeMax) {
+        const bool overflow = texels == std::numeric_limits<std::uint64_t>::max();
+        return fail(ErrorCode::kLimit, what + " is " + (overflow ? "far too many" : std::to_string(texels)) +
+                                           " texels; the limit is " + std::to_string(kMapSizeMax));
+    }
+    return static_cast<std::uint32_t>(texels);
+}
+
+}  // namespace relief

@@ -1,0 +1,292 @@
+#include "bake/mesh_query.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <string>
+
+#include "bake/inside.h"
+#include "bake/triangle_plane.h"
+
+namespace relief {
+namespace {
+
+struct DeviceRelease {
+    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct SceneRelease {
+    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+struct GeometryRelease {
+    void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+};
+using Device = std::unique_ptr<RTCDeviceTy, DeviceRelease>;
+using Scene = std::unique_ptr<RTCSceneTy, SceneRelease>;
+using Geometry = std::unique_ptr<RTCGeometryTy, GeometryRelease>;
+
+tl::unexpected<Error> embreeError(RTCError error, const std::string& what) {
+    if (error == RTC_ERROR_OUT_OF_MEMORY) {
+        return fail(ErrorCode::kLimit, what + ": the ray tracer is out of memory; simplify the mesh");
+    }
+    const ErrorCode code = error == RTC_ERROR_UNSUPPORTED_CPU ? ErrorCode::kUnsupported : ErrorCode::kFailure;
+    return fail(code, what + ": the ray tracer failed with error " + std::to_string(static_cast<int>(error)));
+}
+
+/// Counts the surfaces on a ray, and lets it pass through them.
+struct CrossingCounter {
+    RTCIntersectContext context{};
+    unsigned count = 0;
+
+    CrossingCounter() {
+        rtcInitIntersectContext(&context);
+        context.filter = filter;
+    }
+
+    static void filter(const RTCFilterFunctionNArguments* args) {
+        // RTCIntersectContext is the first member: Embree hands back the pointer it was given.
+        auto* self = reinterpret_cast<CrossingCounter*>(args->context);
+        for (unsigned i = 0; i < args->N; ++i) {
+            if (args->valid[i] != 0) {
+                ++self->count;
+                args->valid[i] = 0;
+            }
+        }
+    }
+};
+
+template <class Ray>
+void setRay(Ray& ray, const glm::vec3& origin, const glm::vec3& direction, float end) {
+    ray.org_x = origin.x;
+    ray.org_y = origin.y;
+    ray.org_z = origin.z;
+    ray.dir_x = direction.x;
+    ray.dir_y = direction.y;
+    ray.dir_z = direction.z;
+    ray.tnear = 0.0F;
+    ray.tfar = end;
+    ray.time = 0.0F;
+    ray.mask = 0xffffffff;
+    ray.flags = 0;
+}
+
+RTCRayHit rayHit(const glm::vec3& origin, const glm::vec3& direction, float end) {
+    RTCRayHit query{};
+    setRay(query.ray, origin, direction, end);
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    return query;
+}
+
+/// The point of a triangle closest to p. Ericson, "Real-Time Collision Detection" (2005), section 5.1.5.
+glm::dvec3 closestOnTriangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
+                             const glm::dvec3& c) {
+    const glm::dvec3 ab = b - a;
+    const glm::dvec3 ac = c - a;
+    const glm::dvec3 ap = p - a;
+    const double d1 = dot(ab, ap);
+    const double d2 = dot(ac, ap);
+    if (d1 <= 0.0 && d2 <= 0.0) {
+        return a;
+    }
+    const glm::dvec3 bp = p - b;
+    const double d3 = dot(ab, bp);
+    const double d4 = dot(ac, bp);
+    if (d3 >= 0.0 && d4 <= d3) {
+        return b;
+    }
+    const double vc = d1 * d4 - d3 * d2;
+    if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) {
+        return a + (d1 / (d1 - d3)) * ab;
+    }
+    const glm::dvec3 cp = p - c;
+    const double d5 = dot(ab, cp);
+    const double d6 = dot(ac, cp);
+    if (d6 >= 0.0 && d5 <= d6) {
+        return c;
+    }
+    const double vb = d5 * d2 - d1 * d6;
+    if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) {
+        return a + (d2 / (d2 - d6)) * ac;
+    }
+    const double va = d3 * d6 - d5 * d4;
+    if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) {
+        return b + ((d4 - d3) / ((d4 - d3) + (d5 - d6))) * (c - b);
+    }
+    const double sum = va + vb + vc;
+    return a + (vb / sum) * ab + (vc / sum) * ac;
+}
+
+}  // namespace
+
+struct MeshQuery::Impl {
+    const TriangleMesh* mesh = nullptr;
+    Device device;
+    Scene scene;
+    /// Embree sees (p − center) · scale: floats are finest there, and no product of coordinates can overflow.
+    glm::dvec3 center{0.0};
+    double scale = 1.0;  // a power of two
+
+    [[nodiscard]] glm::dvec3 toLocal(const glm::dvec3& p) const { return (p - center) * scale; }
+
+    /// State of one search for the closest point; local space.
+    struct Search {
+        const Impl* impl;
+        glm::dvec3 p;
+        double best_squared;
+        float slack;  // added to the search radius: Embree's boxes and the query are floats
+        std::uint32_t triangle = RTC_INVALID_GEOMETRY_ID;
+        glm::dvec3 point{0.0};
+
+        [[nodiscard]] float radius() const { return static_cast<float>(std::sqrt(best_squared)) + slack; }
+
+        static bool visit(RTCPointQueryFunctionArguments* args) {
+            auto* self = static_cast<Search*>(args->userPtr);
+            const TriangleMesh& mesh = *self->impl->mesh;
+            const glm::uvec3& t = mesh.triangles[args->primID];
+            const glm::dvec3 point = closestOnTriangle(self->p, self->impl->toLocal(mesh.positions[t.x]),
+                                                       self->impl->toLocal(mesh.positions[t.y]),
+                                                       self->impl->toLocal(mesh.positions[t.z]));
+            const glm::dvec3 offset = point - self->p;
+            const double squared = dot(offset, offset);
+            // Of equals the lowest index: the order of the visits must not matter.
+            if (squared < self->best_squared ||
+                (squared == self->best_squared && args->primID < self->triangle)) {
+                self->best_squared = squared;
+                self->triangle = args->primID;
+                self->point = point;
+                args->query->radius = self->radius();
+                return true;
+            }
+            return false;
+        }
+    };
+};
+
+MeshQuery::MeshQuery(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+MeshQuery::MeshQuery(MeshQuery&&) noexcept = default;
+MeshQuery& MeshQuery::operator=(MeshQuery&&) noexcept = default;
+MeshQuery::~MeshQuery() = default;
+
+const TriangleMesh& MeshQuery::mesh() const {
+    return *impl_->mesh;
+}
+
+Result<MeshQuery> MeshQuery::build(const TriangleMesh& mesh) {
+    auto impl = std::make_unique<Impl>();
+    impl->mesh = &mesh;
+    impl->center = 0.5 * glm::dvec3(mesh.bounds.min) + 0.5 * glm::dvec3(mesh.bounds.max);
+    impl->scale = std::ldexp(1.0, -std::ilogb(mesh.bounds.longestSide()));
+    impl->device.reset(rtcNewDevice(nullptr));
+    if (!impl->device) {
+        return embreeError(rtcGetDeviceError(nullptr), mesh.name);
+    }
+    RTCDevice device = impl->device.get();
+    impl->scene.reset(rtcNewScene(device));
+    const Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
+    if (!impl->scene || !geometry) {
+        return embreeError(rtcGetDeviceError(device), mesh.name);
+    }
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0,
+                                                                 RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
+                                                                 mesh.positions.size()));
+    if (vertices == nullptr) {
+        return embreeError(rtcGetDeviceError(device), mesh.name);
+    }
+    for (const glm::vec3& p : mesh.positions) {
+        const glm::vec3 local = impl->toLocal(p);
+        *vertices++ = local.x;
+        *vertices++ = local.y;
+        *vertices++ = local.z;
+    }
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                               mesh.triangles.data(), 0, sizeof(glm::uvec3), mesh.triangles.size());
+    rtcCommitGeometry(geometry.get());
+    rtcAttachGeometry(impl->scene.get(), geometry.get());
+    // Medium quality never splits a triangle: each is met at most once a ray, so that crossings can be
+    // counted.
+    rtcSetSceneFlags(impl->scene.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+    rtcSetSceneBuildQuality(impl->scene.get(), RTC_BUILD_QUALITY_MEDIUM);
+    rtcCommitScene(impl->scene.get());
+    if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE) {
+        return embreeError(error, mesh.name);
+    }
+    return MeshQuery(std::move(impl));
+}
+
+bool MeshQuery::inside(const glm::vec3& p) const {
+    const glm::vec3& low = impl_->mesh->bounds.min;
+    const glm::vec3& high = impl_->mesh->bounds.max;
+    for (int i = 0; i < 3; ++i) {
+        // Written so that NaN is outside.
+        if (!(p[i] >= low[i] && p[i] <= high[i])) {
+            return false;
+        }
+    }
+    const glm::vec3 origin = impl_->toLocal(p);
+    constexpr std::size_t kMajority = kParityDirections.size() / 2 + 1;
+    std::size_t votes[2] = {0, 0};
+    for (const glm::dvec3& direction : kParityDirections) {
+        CrossingCounter counter;
+        RTCRayHit query = rayHit(origin, direction, std::numeric_limits<float>::infinity());
+        rtcIntersect1(impl_->scene.get(), &counter.context, &query);
+        if (++votes[counter.count % 2] == kMajority) {
+            break;
+        }
+    }
+    return votes[1] >= kMajority;
+}
+
+ClosestPoint MeshQuery::closest(const glm::vec3& p, double within) const {
+    Impl::Search search{impl_.get(), impl_->toLocal(p), 0.0, 0.0F};
+    const glm::dvec3 size = glm::abs(search.p);
+    search.slack = static_cast<float>(2e-6 * (1.0 + std::max({size.x, size.y, size.z})));
+    const auto run = [&](double bound) {
+        search.best_squared = std::numeric_limits<double>::infinity();
+        RTCPointQueryContext context;
+        rtcInitPointQueryContext(&context);
+        RTCPointQuery query{};
+        const glm::vec3 at = search.p;
+        query.x = at.x;
+        query.y = at.y;
+        query.z = at.z;
+        query.radius = static_cast<float>(bound * impl_->scale) + search.slack;
+        rtcPointQuery(impl_->scene.get(), &query, &context, Impl::Search::visit, &search);
+    };
+    run(within);
+    if (search.triangle == RTC_INVALID_GEOMETRY_ID ||
+        std::sqrt(search.best_squared) > within * impl_->scale + static_cast<double>(search.slack)) {
+        run(std::numeric_limits<double>::infinity());
+    }
+    return {std::sqrt(search.best_squared) / impl_->scale, search.triangle,
+            search.point / impl_->scale + impl_->center};
+}
+
+double MeshQuery::signedDistance(const glm::vec3& p) const {
+    const double distance = closest(p).distance;
+    return inside(p) ? -distance : distance;
+}
+
+bool MeshQuery::segmentIsFree(const glm::dvec3& from, const glm::dvec3& to) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRay ray{};
+    setRay(ray, impl_->toLocal(from), (to - from) * impl_->scale, 1.0F);
+    rtcOccluded1(impl_->scene.get(), &context, &ray);
+    return ray.tfar >= 0.0F;
+}
+
+std::optional<FirstHit> MeshQuery::firstHit(const glm::dvec3& origin, const glm::dvec3& direction) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRayHit query =
+        rayHit(impl_->toLocal(origin), direction * impl_->scale, std::numeric_limits<float>::infinity());
+    rtcIntersect1(impl_->scene.get(), &context, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
+        return std::nullopt;
+    }
+    return FirstHit{static_cast<double>(query.ray.tfar), query.hit.primID};
+}
+
+}  // namespace relief

@@ -1,0 +1,423 @@
+#include "bake/raycast.h"
+
+#include <embree3/rtcore.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "bake/triangle_plane.h"
+
+namespace relief {
+namespace {
+
+constexpr std::uint32_t kTile = 4;  // a packet is 4×4 texels
+constexpr int kLanes = 16;
+/// A hit this near to an edge, in barycentric coordinates, may as well be the neighbour's.
+constexpr float kEdgeWidth = 1e-4F;
+/// Surfaces this near along the ray, in units of its length, meet at an edge.
+constexpr float kTieDepth = 1e-5F;
+/// Below this cosine between a triangle's normal and the ray, its plane is a poor guide outside the triangle.
+constexpr double kGrazing = 1e-3;
+constexpr std::size_t kPlaneDepths = 64;
+constexpr std::uint32_t kNone = 0xffffffff;
+
+struct DeviceRelease {
+    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct SceneRelease {
+    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+struct GeometryRelease {
+    void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+};
+using Device = std::unique_ptr<RTCDeviceTy, DeviceRelease>;
+using Scene = std::unique_ptr<RTCSceneTy, SceneRelease>;
+using Geometry = std::unique_ptr<RTCGeometryTy, GeometryRelease>;
+
+const char* errorWords(RTCError error) {
+    switch (error) {
+        case RTC_ERROR_NONE:
+            return "no error";
+        case RTC_ERROR_INVALID_ARGUMENT:
+            return "invalid argument";
+        case RTC_ERROR_INVALID_OPERATION:
+            return "invalid operation";
+        case RTC_ERROR_OUT_OF_MEMORY:
+            return "out of memory";
+        case RTC_ERROR_UNSUPPORTED_CPU:
+            return "this processor is not supported";
+        case RTC_ERROR_CANCELLED:
+            return "cancelled";
+        default:
+            return "unknown error";
+    }
+}
+
+tl::unexpected<Error> embreeError(RTCError error, const std::string& what) {
+    if (error == RTC_ERROR_OUT_OF_MEMORY) {
+        return fail(ErrorCode::kLimit, what + ": the ray tracer is out of memory; simplify the mesh");
+    }
+    const ErrorCode code = error == RTC_ERROR_UNSUPPORTED_CPU ? ErrorCode::kUnsupported : ErrorCode::kFailure;
+    return fail(code, what + ": the ray tracer reports: " + errorWords(error));
+}
+
+/// Collects the triangles that one ray meets, and lets it pass through them.
+struct Collector {
+    RTCIntersectContext context{};
+    std::vector<std::uint32_t> triangles;
+
+    static void filter(const RTCFilterFunctionNArguments* args) {
+        // RTCIntersectContext is the first member: Embree hands back the pointer it was given.
+        auto* self = reinterpret_cast<Collector*>(args->context);
+        for (unsigned i = 0; i < args->N; ++i) {
+            if (args->valid[i] != 0) {
+                self->triangles.push_back(RTCHitN_primID(args->hit, args->N, i));
+                args->valid[i] = 0;
+            }
+        }
+    }
+};
+
+}  // namespace
+
+struct RayScene::Impl {
+    const TriangleMesh* mesh = nullptr;
+    Device device;
+    Scene scene;
+    /// Embree sees (p − center) · scale: floats are finest there, and no product of coordinates can overflow.
+    glm::dvec3 center{0.0};
+    double scale = 1.0;  // a power of two
+    double winding = 1.0;
+
+    [[nodiscard]] glm::vec3 toLocal(const glm::dvec3& p) const { return (p - center) * scale; }
+
+    class Tracer;
+};
+
+/// Traces the packets of one row of tiles.
+class RayScene::Impl::Tracer {
+  public:
+    Tracer(const Impl& impl, const View& view, RayEnd end) : impl_(impl), view_(view), end_(end) {
+        rtcInitIntersectContext(&context_);
+        context_.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+        if (view.projection() == Projection::kOrthographic) {
+            prepareOrthographic();
+        }
+    }
+
+    /// \param hits  rows of the view from y0 on.
+    void traceTileRow(std::uint32_t face, std::uint32_t y0, std::uint32_t y_end, Hit* hits) {
+        for (std::uint32_t x0 = 0; x0 < view_.width; x0 += kTile) {
+            const std::uint32_t columns = std::min(kTile, view_.width - x0);
+            const std::uint32_t rows = std::min(kTile, y_end - y0);
+            for (int lane = 0; lane < kLanes; ++lane) {
+                const bool used = column(lane) < columns && row(lane) < rows;
+                valid_[lane] = used ? -1 : 0;
+            }
+            if (view_.projection() == Projection::kOrthographic) {
+                setOrthographicRays(x0, y0);
+            } else {
+                setCubeRays(face, x0, y0);
+            }
+            rtcIntersect16(valid_, impl_.scene.get(), &context_, &packet_);
+            for (int lane = 0; lane < kLanes; ++lane) {
+                if (valid_[lane] != 0) {
+                    hits[std::size_t{row(lane)} * view_.width + x0 + column(lane)] =
+                        resolve(face, x0 + column(lane), y0 + row(lane), lane);
+                }
+            }
+        }
+    }
+
+  private:
+    static std::uint32_t column(int lane) { return static_cast<std::uint32_t>(lane) % kTile; }
+    static std::uint32_t row(int lane) { return static_cast<std::uint32_t>(lane) / kTile; }
+
+    /// A ray as it is traced: from a little outside the volume, along or against the depth.
+    struct Segment {
+        glm::dvec3 origin;
+        glm::dvec3 direction;
+        double length;  ///< of the parameter
+    };
+    [[nodiscard]] Segment segmentOf(const TexelRay& ray) const {
+        const double depth_max = view_.depthMax(ray);
+        // A cube's rays start in its very centre.
+        const bool from_point = view_.projection() == Projection::kCube && end_ == RayEnd::kNear;
+        const double slack = from_point ? 0.0 : kDepthSlack;
+        if (end_ == RayEnd::kNear) {
+            return {ray.origin - slack * ray.direction, ray.direction, depth_max + 2.0 * slack};
+        }
+        const double back = view_.projection() == Projection::kCube ? 0.0 : slack;
+        return {ray.origin + (depth_max + slack) * ray.direction, -ray.direction, depth_max + slack + back};
+    }
+
+    void prepareOrthographic() {
+        first_ray_ = view_.ray(0, 0, 0);
+        column_step_ = view_.axis[0] / static_cast<double>(view_.width);
+        row_step_ = view_.axis[1] / static_cast<double>(view_.height);
+        const Segment segment = segmentOf(first_ray_);
+        const glm::vec3 direction = segment.direction * impl_.scale;
+        for (int lane = 0; lane < kLanes; ++lane) {
+            const glm::vec3 offset = impl_.scale * (static_cast<double>(column(lane)) * column_step_ +
+                                                    static_cast<double>(row(lane)) * row_step_);
+            offset_x_[lane] = offset.x;
+            offset_y_[lane] = offset.y;
+            offset_z_[lane] = offset.z;
+            packet_.ray.dir_x[lane] = direction.x;
+            packet_.ray.dir_y[lane] = direction.y;
+            packet_.ray.dir_z[lane] = direction.z;
+        }
+        length_ = static_cast<float>(segment.length);
+    }
+
+    void setOrthographicRays(std::uint32_t x0, std::uint32_t y0) {
+        const glm::vec3 corner = impl_.toLocal(segmentOf(view_.ray(0, x0, y0)).origin);
+        for (int lane = 0; lane < kLanes; ++lane) {
+            packet_.ray.org_x[lane] = corner.x + offset_x_[lane];
+            packet_.ray.org_y[lane] = corner.y + offset_y_[lane];
+            packet_.ray.org_z[lane] = corner.z + offset_z_[lane];
+            packet_.ray.tfar[lane] = length_;
+        }
+        resetHits();
+    }
+
+    void setCubeRays(std::uint32_t face, std::uint32_t x0, std::uint32_t y0) {
+        for (int lane = 0; lane < kLanes; ++lane) {
+            const Segment segment = segmentOf(view_.ray(face, x0 + column(lane), y0 + row(lane)));
+            const glm::vec3 origin = impl_.toLocal(segment.origin);
+            const glm::vec3 direction = segment.direction * impl_.scale;
+            packet_.ray.org_x[lane] = origin.x;
+            packet_.ray.org_y[lane] = origin.y;
+            packet_.ray.org_z[lane] = origin.z;
+            packet_.ray.dir_x[lane] = direction.x;
+            packet_.ray.dir_y[lane] = direction.y;
+            packet_.ray.dir_z[lane] = direction.z;
+            packet_.ray.tfar[lane] = static_cast<float>(segment.length);
+        }
+        resetHits();
+    }
+
+    void resetHits() {
+        for (int lane = 0; lane < kLanes; ++lane) {
+            packet_.ray.tnear[lane] = 0.0F;
+            packet_.ray.time[lane] = 0.0F;
+            packet_.ray.mask[lane] = 0xffffffff;
+            packet_.ray.flags[lane] = 0;
+            packet_.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+            packet_.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+        }
+    }
+
+    Hit resolve(std::uint32_t face, std::uint32_t x, std::uint32_t y, int lane) {
+        if (packet_.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) {
+            return {};
+        }
+        std::uint32_t triangle = packet_.hit.primID[lane];
+        const float u = packet_.hit.u[lane];
+        const float v = packet_.hit.v[lane];
+        if (std::min({u, v, 1.0F - u - v}) < kEdgeWidth) {
+            triangle = bestAtEdge(segmentOf(view_.ray(face, x, y)), packet_.ray.tfar[lane], triangle);
+        }
+        return view_.projection() == Projection::kOrthographic ? orthographicHit(x, y, triangle)
+                                                               : cubeHit(view_.ray(face, x, y), triangle);
+    }
+
+    /// Of the triangles that the ray meets about `at`, the one that the contract of trace() names.
+    std::uint32_t bestAtEdge(const Segment& segment, float at, std::uint32_t first) {
+        collector_.triangles.assign(1, first);
+        rtcInitIntersectContext(&collector_.context);
+        collector_.context.filter = Collector::filter;
+        const glm::vec3 origin = impl_.toLocal(segment.origin);
+        const glm::vec3 direction = segment.direction * impl_.scale;
+        const float tie = kTieDepth * static_cast<float>(segment.length);
+        RTCRayHit query{};
+        query.ray.org_x = origin.x;
+        query.ray.org_y = origin.y;
+        query.ray.org_z = origin.z;
+        query.ray.dir_x = direction.x;
+        query.ray.dir_y = direction.y;
+        query.ray.dir_z = direction.z;
+        query.ray.tnear = std::max(0.0F, at - tie);
+        query.ray.tfar = at + tie;
+        query.ray.mask = 0xffffffff;
+        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        rtcIntersect1(impl_.scene.get(), &collector_.context, &query);
+
+        // A front side always beats a back side.
+        std::uint32_t best = first;
+        double best_score = -2.0;
+        for (const std::uint32_t triangle : collector_.triangles) {
+            const TrianglePlane plane = planeOf(*impl_.mesh, triangle);
+            const double length =
+                std::sqrt(dot(plane.normal, plane.normal) * dot(segment.direction, segment.direction));
+            const double facing = -impl_.winding * dot(plane.normal, segment.direction) / length;
+            const double score = facing > 0.0 ? facing : -1.0 - facing;
+            if (score > best_score || (score == best_score && triangle < best)) {
+                best = triangle;
+                best_score = score;
+            }
+        }
+        return best;
+    }
+
+    /// The depth of a triangle's plane at the texels of an orthographic map: at (x, y) it is
+    /// base + x · per_column + y · per_row.
+    struct PlaneDepth {
+        std::uint32_t triangle = kNone;
+        bool from_behind = false;
+        bool grazing = false;
+        double base = 0.0;
+        double per_column = 0.0;
+        double per_row = 0.0;
+    };
+
+    Hit orthographicHit(std::uint32_t x, std::uint32_t y, std::uint32_t triangle) {
+        // Neighbouring texels mostly see the same few triangles.
+        PlaneDepth& plane = plane_depths_[triangle % kPlaneDepths];
+        if (plane.triangle != triangle) {
+            plane = planeDepth(triangle);
+        }
+        double depth =
+            plane.base + static_cast<double>(x) * plane.per_column + static_cast<double>(y) * plane.per_row;
+        if (plane.grazing) {
+            depth = insideTriangle(view_.ray(0, x, y), triangle, depth);
+        }
+        return {static_cast<float>(std::clamp(depth, 0.0, 1.0)), triangle, plane.from_behind};
+    }
+
+    [[nodiscard]] PlaneDepth planeDepth(std::uint32_t triangle) const {
+        const TrianglePlane plane = planeOf(*impl_.mesh, triangle);
+        const double along = dot(plane.normal, first_ray_.direction);
+        const double per_along = 1.0 / along;
+        PlaneDepth depth;
+        depth.triangle = triangle;
+        depth.from_behind = isFromBehind(along);
+        depth.grazing = isGrazing(plane, first_ray_.direction, along);
+        depth.base = dot(plane.normal, plane.point - first_ray_.origin) * per_along;
+        depth.per_column = -dot(plane.normal, column_step_) * per_along;
+        depth.per_row = -dot(plane.normal, row_step_) * per_along;
+        return depth;
+    }
+
+    [[nodiscard]] Hit cubeHit(const TexelRay& ray, std::uint32_t triangle) const {
+        const TrianglePlane plane = planeOf(*impl_.mesh, triangle);
+        const double along = dot(plane.normal, ray.direction);
+        double depth = dot(plane.normal, plane.point - ray.origin) / along;
+        if (isGrazing(plane, ray.direction, along)) {
+            depth = insideTriangle(ray, triangle, depth);
+        }
+        return {static_cast<float>(std::clamp(depth, 0.0, double{kCubeDepthMax})), triangle,
+                isFromBehind(along)};
+    }
+
+    /// \param along  dot(normal, direction of growing depth)
+    [[nodiscard]] bool isFromBehind(double along) const {
+        return end_ == RayEnd::kNear ? along > 0.0 : along < 0.0;
+    }
+    [[nodiscard]] static bool isGrazing(const TrianglePlane& plane, const glm::dvec3& direction,
+                                        double along) {
+        return !(along * along >
+                 kGrazing * kGrazing * dot(plane.normal, plane.normal) * dot(direction, direction));
+    }
+
+    /// A depth on a triangle seen almost edge-on, held between the depths of its corners.
+    [[nodiscard]] double insideTriangle(const TexelRay& ray, std::uint32_t triangle, double depth) const {
+        const glm::uvec3& t = impl_.mesh->triangles[triangle];
+        const double per_depth = dot(ray.direction, ray.direction);
+        double low = std::numeric_limits<double>::max();
+        double high = -low;
+        for (const std::uint32_t corner : {t.x, t.y, t.z}) {
+            const double at =
+                dot(glm::dvec3(impl_.mesh->positions[corner]) - ray.origin, ray.direction) / per_depth;
+            low = std::min(low, at);
+            high = std::max(high, at);
+        }
+        return depth >= low && depth <= high ? depth : std::isnan(depth) || depth < low ? low : high;
+    }
+
+    const Impl& impl_;
+    const View& view_;
+    RayEnd end_;
+    std::array<PlaneDepth, kPlaneDepths> plane_depths_;
+    RTCIntersectContext context_{};
+    Collector collector_;
+    // Of an orthographic view: the ray of texel (0, 0), and from one texel's origin to the next one's.
+    TexelRay first_ray_{};
+    glm::dvec3 column_step_{0.0};
+    glm::dvec3 row_step_{0.0};
+    float length_ = 1.0F;
+    alignas(64) int valid_[kLanes] = {};
+    alignas(64) float offset_x_[kLanes] = {};
+    alignas(64) float offset_y_[kLanes] = {};
+    alignas(64) float offset_z_[kLanes] = {};
+    alignas(64) RTCRayHit16 packet_{};
+};
+
+RayScene::RayScene(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+RayScene::RayScene(RayScene&&) noexcept = default;
+RayScene& RayScene::operator=(RayScene&&) noexcept = default;
+RayScene::~RayScene() = default;
+
+Result<RayScene> RayScene::build(const TriangleMesh& mesh) {
+    auto impl = std::make_unique<Impl>();
+    impl->mesh = &mesh;
+    impl->winding = orientation(mesh);
+    impl->center = 0.5 * glm::dvec3(mesh.bounds.min) + 0.5 * glm::dvec3(mesh.bounds.max);
+    impl->scale = std::ldexp(1.0, -std::ilogb(mesh.bounds.longestSide()));
+    impl->device.reset(rtcNewDevice(nullptr));
+    if (!impl->device) {
+        return embreeError(rtcGetDeviceError(nullptr), mesh.name);
+    }
+    RTCDevice device = impl->device.get();
+    impl->scene.reset(rtcNewScene(device));
+    const Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
+    if (!impl->scene || !geometry) {
+        return embreeError(rtcGetDeviceError(device), mesh.name);
+    }
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0,
+                                                                 RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
+                                                                 mesh.positions.size()));
+    if (vertices == nullptr) {
+        return embreeError(rtcGetDeviceError(device), mesh.name);
+    }
+    for (const glm::vec3& p : mesh.positions) {
+        const glm::vec3 local = impl->toLocal(p);
+        *vertices++ = local.x;
+        *vertices++ = local.y;
+        *vertices++ = local.z;
+    }
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                               mesh.triangles.data(), 0, sizeof(glm::uvec3), mesh.triangles.size());
+    rtcCommitGeometry(geometry.get());
+    rtcAttachGeometry(impl->scene.get(), geometry.get());
+    rtcSetSceneFlags(impl->scene.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+    rtcSetSceneBuildQuality(impl->scene.get(), RTC_BUILD_QUALITY_MEDIUM);
+    rtcCommitScene(impl->scene.get());
+    if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE) {
+        return embreeError(error, mesh.name);
+    }
+    return RayScene(std::move(impl));
+}
+
+double RayScene::winding() const {
+    return impl_->winding;
+}
+
+void RayScene::trace(const View& view, RayEnd end, const RowRange& rows, std::span<Hit> hits) const {
+    const std::uint32_t tile_rows = (rows.end - rows.begin + kTile - 1) / kTile;
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, tile_rows), [&](const auto& block) {
+        Impl::Tracer tracer(*impl_, view, end);
+        for (std::uint32_t tile_row = block.begin(); tile_row != block.end(); ++tile_row) {
+            const std::uint32_t y = rows.begin + tile_row * kTile;
+            tracer.traceTileRow(rows.face, y, rows.end, &hits[std::size_t{y - rows.begin} * view.width]);
+        }
+    });
+}
+
+}  // namespace relief

@@ -1,0 +1,40 @@
+// Numbers and words of the command line and of text files: strict, exact, and the same in every locale.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace relief {
+
+/// The shortest decimal that reads back as the same float: 0.1F -> "0.1". Infinity is "inf", NaN "nan".
+[[nodiscard]] std::string shortest(float value);
+/// Appends shortest(value) to `out` without a temporary string.
+void appendShortest(std::string& out, float value);
+/// "a/b/c"
+[[nodiscard]] std::string shortest(const glm::vec3& value);
+
+/// The whole of `text` as a finite float; a leading '+' is allowed. nullopt otherwise.
+[[nodiscard]] std::optional<float> parseFloat(std::string_view text);
+/// The whole of `text` as decimal digits. Numbers too large for 64 bits come back as the largest one.
+[[nodiscard]] std::optional<std::uint64_t> parseUnsigned(std::string_view text);
+
+/// "a,b,,c" by ',' -> a b "" c. An empty text has one empty part.
+[[nodiscard]] std::vector<std::string_view> split(std::string_view text, char separator);
+/// Without spaces, tabs and a carriage return at both ends.
+[[nodiscard]] std::string_view trimmed(std::string_view text);
+
+/// "; did you mean 'size'?" if one of `known` is near `word` (a third of its letters changed at most), or "".
+[[nodiscard]] std::string didYouMean(std::string_view word, std::span<const std::string_view> known);
+/// "less, greater"
+[[nodiscard]] std::string listed(std::span<const std::string_view> words);
+
+/// Any bytes as valid UTF-8: what is none becomes U+FFFD, control characters included.
+/// \param size_max  bytes: the text ends before the character that would exceed it.
+[[nodiscard]] std::string cleanUtf8(std::string_view bytes, std::size_t size_max = std::string::npos);
+
+}  // namespace relief

@@ -1,0 +1,49 @@
+// A perspective camera without roll.
+#pragma once
+
+#include <cmath>
+#include <glm/glm.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "formats/collider.h"
+
+namespace relief {
+
+struct Camera {
+    glm::vec3 eye{0.0F, 0.0F, 1.0F};  ///< object space; not equal to target, nor straight above or below it
+    glm::vec3 target{0.0F};
+    float fov = 30.0F;  ///< vertical angle of view in degrees, in (0, 180)
+    float near_plane = 0.1F;  ///< distances along the viewing direction
+    float far_plane = 100.0F;
+
+    [[nodiscard]] glm::vec3 forward() const { return glm::normalize(target - eye); }
+    [[nodiscard]] glm::vec3 right() const {
+        return glm::normalize(glm::cross(forward(), glm::vec3(0.0F, 1.0F, 0.0F)));
+    }
+    [[nodiscard]] glm::vec3 up() const { return glm::cross(right(), forward()); }
+    /// Half the height of the picture at distance 1.
+    [[nodiscard]] float tanHalfFov() const { return std::tan(0.5F * glm::radians(fov)); }
+    [[nodiscard]] glm::mat4 view() const { return glm::lookAt(eye, target, glm::vec3(0.0F, 1.0F, 0.0F)); }
+    [[nodiscard]] glm::mat4 projection(float aspect) const {
+        return glm::perspective(glm::radians(fov), aspect, near_plane, far_plane);
+    }
+    friend bool operator==(const Camera&, const Camera&) = default;
+};
+
+/// Places the eye in front of the box (+z, glTF's front), a little to the right and above, so that a sphere
+/// round the box fills about four fifths of the height.
+/// \param radius  of that sphere, > 0.
+[[nodiscard]] inline glm::vec3 defaultEye(const glm::vec3& target, float radius, float fov) {
+    const float distance = 1.18F * radius / std::sin(0.5F * glm::radians(fov));
+    return target + distance * glm::normalize(glm::vec3(0.42F, 0.36F, 1.0F));
+}
+
+/// Near and far plane round everything that a scene of this size shows from that eye.
+inline void setClipPlanes(Camera& camera, const Bounds& bounds) {
+    const float distance = glm::length(camera.eye - bounds.center());
+    const float radius = 0.5F * glm::length(bounds.size());
+    camera.near_plane = 0.01F * std::fmax(std::fmax(distance, radius), 1e-6F);
+    camera.far_plane = 2.0F * distance + 40.0F * radius + 1e-3F;
+}
+
+}  // namespace relief

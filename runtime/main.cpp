@@ -1,0 +1,199 @@
+// relief-sim: the command line of the player.
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <charconv>
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/file_io.h"
+#include "runtime/player.h"
+#include "runtime/report.h"
+#include "runtime/suggestion.h"
+
+namespace {
+
+using relief::ErrorCode;
+
+constexpr std::string_view kHelpHead =
+    "Example:\n"
+    "  relief-sim bunny_in_the_snow.toml --frames frames --dump snow.ply\n"
+    "\n"
+    "Plays a scene against a baked collider, headless: particles fall, collide and rest.\n"
+    "Given a collider alone it lets snow fall on it.\n";
+
+constexpr std::string_view kHelpFoot =
+    "\n"
+    "Exit codes: 0 done, 1 usage, 2 file or I/O, 3 invalid input, 4 failure, 5 unsupported here, 6 above a limit.\n";
+
+constexpr std::array<std::string_view, 11> kOptions{"--steps", "--frames", "--size",  "--seed",    "--dump", "--json",
+                                                    "--api",   "-q",       "--quiet", "--version", "--help"};
+
+int report(ErrorCode code, const std::string& message) {
+    std::fprintf(stderr, "relief-sim: error: %s\n", message.c_str());
+    return static_cast<int>(code);
+}
+
+/// A word of the command line, in quotes and on one line.
+std::string quotedWord(const std::string& word) {
+    return relief::quotedPath(word);
+}
+
+template <class T>
+bool parseNumber(std::string_view text, T& out) {
+    const char* end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data(), end, out);
+    return error == std::errc() && rest == end;
+}
+
+/// "640x480"; false if it is not that.
+bool parseSize(std::string_view text, std::uint32_t& width, std::uint32_t& height) {
+    const std::size_t cross = text.find('x');
+    return cross != std::string_view::npos && parseNumber(text.substr(0, cross), width) &&
+           parseNumber(text.substr(cross + 1), height) && width > 0 && height > 0;
+}
+
+struct CommandLine {
+    std::string input;
+    std::string steps;
+    std::string frames;
+    std::string size;
+    std::string seed;
+    std::string dump;
+    std::string api = "gl";
+    bool json = false;
+    bool quiet = false;
+};
+
+/// Fills the options from the words; an empty string, or what is wrong with them.
+std::string toOptions(const CommandLine& line, relief::PlayerOptions& options) {
+    options.input = line.input;
+    options.frames = line.frames;
+    options.dump = line.dump;
+    options.count_collisions = line.json;
+    if (!line.steps.empty()) {
+        std::uint32_t steps = 0;
+        if (!parseNumber(line.steps, steps) || steps > 10'000'000) {
+            return "--steps " + quotedWord(line.steps) + " is not a whole number from 0 to 10000000";
+        }
+        options.steps = steps;
+    }
+    if (!line.seed.empty()) {
+        std::uint64_t seed = 0;
+        if (!parseNumber(line.seed, seed) || seed > 9007199254740992U) {
+            return "--seed " + quotedWord(line.seed) + " is not a whole number from 0 to 9007199254740992";
+        }
+        options.seed = seed;
+    }
+    if (!line.size.empty()) {
+        std::uint32_t width = 0;
+        std::uint32_t height = 0;
+        if (!parseSize(line.size, width, height)) {
+            return "--size " + quotedWord(line.size) + " is not a size; write it as 960x720, each side at least 1";
+        }
+        if (line.frames.empty()) {
+            return "--size does nothing without --frames; add --frames DIR";
+        }
+        options.width = width;
+        options.height = height;
+    }
+    if (line.api == "gles") {
+        options.api = relief::GlApi::kGles30;
+    } else if (line.api != "gl") {
+        return "--api " + quotedWord(line.api) + " is unknown; choose gl or gles";
+    }
+    if (line.json && line.dump == "-") {
+        return "--json and --dump - both write standard output; dump to a file";
+    }
+    return {};
+}
+
+/// "--fames" -> ", did you mean '--frames'?"
+std::string unknownOption(const CLI::App& app) {
+    for (const std::string& word : app.remaining()) {
+        if (word.size() > 1 && word.front() == '-') {
+            const std::string name = word.substr(0, word.find('='));
+            const std::string hint = relief::suggestion(name, kOptions);
+            return "unknown option " + quotedWord(name) + (hint.empty() ? "; see relief-sim --help" : hint);
+        }
+    }
+    return "one scene or collider at a time; " + quotedWord(app.remaining().front()) + " is one too many";
+}
+
+void showProgress(std::uint32_t step, std::uint32_t steps) {
+    constexpr int kWidth = 40;
+    const int done = steps == 0 ? kWidth : static_cast<int>(std::uint64_t{kWidth} * step / steps);
+    std::fprintf(stderr, "\r[%s%s] %u/%u%s", std::string(static_cast<std::size_t>(done), '#').c_str(),
+                 std::string(static_cast<std::size_t>(kWidth - done), '.').c_str(), step, steps,
+                 step >= steps ? "\n" : "");
+}
+
+int run(int argc, char** argv) {
+    CLI::App app{std::string(kHelpHead)};
+    CommandLine line;
+    app.name("relief-sim");
+    app.footer(std::string(kHelpFoot));
+    app.allow_extras();
+    app.set_version_flag("--version", "relief-sim " RELIEF_VERSION);
+    app.add_option("INPUT", line.input, "Scene (.toml) or collider (.relief)")->type_name("SCENE.toml|COLLIDER.relief");
+    app.add_option("--steps", line.steps, "Steps to play, instead of the scene's")->type_name("N");
+    app.add_option("--frames", line.frames,
+                   "Write frame_0000.png and so on into this folder, made if missing. Frames of an earlier run are "
+                   "overwritten one by one; any beyond this run's last stay")
+        ->type_name("DIR");
+    app.add_option("--size", line.size, "Size of the frames in pixels, instead of the scene's")->type_name("WxH");
+    app.add_option("--seed", line.seed, "Seed of the births, instead of the scene's")->type_name("S");
+    app.add_option("--dump", line.dump, "Write the final particles as PLY; - for standard output")->type_name("OUT.ply");
+    app.add_option("--api", line.api, "gl for OpenGL 3.3 (default), gles for OpenGL ES 3.0")->type_name("gl|gles");
+    app.add_flag("--json", line.json, "Print the report as JSON");
+    app.add_flag("-q,--quiet", line.quiet, "No progress and no summary; errors still, and what --json asks for");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& success) {  // --help, --version
+        return app.exit(success);
+    } catch (const CLI::ParseError& error) {
+        return report(ErrorCode::kUsage, std::string(error.what()) + "; see relief-sim --help");
+    }
+    if (app.remaining_size() > 0) {
+        return report(ErrorCode::kUsage, unknownOption(app));
+    }
+    if (line.input.empty()) {
+        return report(ErrorCode::kUsage, "name a scene (.toml) or a collider (.relief); see relief-sim --help");
+    }
+    relief::PlayerOptions options;
+    if (const std::string wrong = toOptions(line, options); !wrong.empty()) {
+        return report(ErrorCode::kUsage, wrong);
+    }
+    if (!line.quiet && isatty(STDERR_FILENO) != 0) {
+        options.progress = showProgress;
+    }
+    const auto played = relief::play(options);
+    if (!played) {
+        return report(played.error().code, played.error().message);
+    }
+    if (line.json || !line.quiet) {
+        // The dump may have standard output to itself.
+        const bool to_stderr = !line.json && line.dump == "-";
+        const std::string text = line.json ? relief::reportJson(*played) : relief::reportText(*played);
+        if (std::fputs(text.c_str(), to_stderr ? stderr : stdout) < 0 || std::fflush(stdout) != 0) {
+            return report(ErrorCode::kIo, "cannot write the report to standard output");
+        }
+    }
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return run(argc, argv);
+    } catch (const std::bad_alloc&) {
+        return report(ErrorCode::kLimit, "out of memory; choose a smaller capacity or size");
+    } catch (const std::exception& error) {
+        return report(ErrorCode::kFailure, error.what());
+    }
+}

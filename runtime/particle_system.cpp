@@ -1,0 +1,375 @@
+#include "runtime/particle_system.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <string>
+
+#include "runtime/pass_state.h"
+
+namespace relief {
+namespace {
+
+// Texture units of the step's inputs; the collider's follow.
+constexpr int kPositionUnit = 0;
+constexpr int kVelocityUnit = 1;
+constexpr int kBirthUnit = 2;
+constexpr ColliderTextures::Binding kColliderBinding{3, 0};
+
+// A dead particle, as step.glsl writes it.
+constexpr std::array<float, 4> kDeadPosition{0.0F, -1e30F, 0.0F, -1.0F};
+constexpr std::array<float, 4> kZero{};
+
+// Below every floor and every particle, and yet finite when a height is subtracted from it.
+constexpr float kNoGround = -1e30F;
+
+constexpr std::uint32_t kIdMask = (1U << 24) - 1;  // what a float counts exactly
+
+void useTexture(int unit, const GlTexture& texture) {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    glBindTexture(GL_TEXTURE_2D, texture.name());
+}
+
+GlTexture makeStateTexture(std::uint32_t width, std::uint32_t height) {
+    return makeTexture2D(GL_RGBA32F, static_cast<GLsizei>(width), static_cast<GLsizei>(height), GL_RGBA, GL_FLOAT);
+}
+
+/// Draws quad.vert's triangle over the first rows of the bound framebuffer.
+void drawRows(const GlVertexArray& no_attributes, std::uint32_t width, std::uint32_t rows) {
+    glViewport(0, 0, static_cast<GLsizei>(width), static_cast<GLsizei>(rows));
+    glBindVertexArray(no_attributes.name());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+}  // namespace
+
+Result<ParticleSystem> ParticleSystem::create(const ParticleSystemOptions& options) {
+    if (options.capacity == 0 || options.capacity > kCapacityMax) {
+        return fail(ErrorCode::kUsage, "a particle system of " + std::to_string(options.capacity) +
+                                           " particles is not possible; choose 1 to " +
+                                           std::to_string(kCapacityMax));
+    }
+    // The upper end keeps the resolution of the GPU's clock below 8 ms.
+    if (!(options.epoch_seconds > 0.0 && options.epoch_seconds <= 65536.0)) {
+        return fail(ErrorCode::kUsage, "epoch_seconds must be above 0 and at most 65536");
+    }
+    ParticleSystem system(options.capacity);
+    system.epoch_seconds_ = options.epoch_seconds;
+    system.width_ = std::min(options.capacity, kStateWidth);
+    system.height_ = (options.capacity + system.width_ - 1) / system.width_;
+    system.ids_.resize(options.capacity);
+
+    GLint side_max = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side_max);
+    if (system.height_ > static_cast<std::uint32_t>(side_max)) {
+        return fail(ErrorCode::kLimit, std::to_string(options.capacity) + " particles need a texture of " +
+                                           std::to_string(system.height_) + " rows; this GL takes at most " +
+                                           std::to_string(side_max));
+    }
+    const PassState state;
+    if (auto done = system.createTextures(); !done) {
+        return forward(done);
+    }
+    if (auto done = system.createPrograms(); !done) {
+        return forward(done);
+    }
+    return system;
+}
+
+Result<void> ParticleSystem::createTextures() {
+    birth_ = makeStateTexture(width_, height_);
+    no_attributes_ = makeVertexArray();
+    for (int i = 0; i < 2; ++i) {
+        position_[i] = makeStateTexture(width_, height_);
+        velocity_[i] = makeStateTexture(width_, height_);
+    }
+    for (int i = 0; i < 2; ++i) {
+        const std::array<GLuint, 3> textures{position_[i].name(), velocity_[i].name(), birth_.name()};
+        auto step_target = makeFramebuffer(std::span(textures).first(2));
+        auto birth_target = makeFramebuffer(textures);
+        if (!step_target || !birth_target) {
+            return forward(!step_target ? step_target : birth_target);
+        }
+        step_target_[i] = std::move(*step_target);
+        birth_target_[i] = std::move(*birth_target);
+        glBindFramebuffer(GL_FRAMEBUFFER, birth_target_[i].name());
+        glClearBufferfv(GL_COLOR, 0, kDeadPosition.data());
+        glClearBufferfv(GL_COLOR, 1, kZero.data());
+        glClearBufferfv(GL_COLOR, 2, kZero.data());
+    }
+
+    birth_vertices_ = makeBuffer();
+    birth_array_ = makeVertexArray();
+    glBindVertexArray(birth_array_.name());
+    glBindBuffer(GL_ARRAY_BUFFER, birth_vertices_.name());
+    const auto at = [](std::size_t offset) { return reinterpret_cast<const void*>(offset); };
+    constexpr GLsizei kStride = sizeof(BirthVertex);
+    glVertexAttribIPointer(0, 1, GL_UNSIGNED_INT, kStride, at(offsetof(BirthVertex, index)));
+    glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, kStride, at(offsetof(BirthVertex, position)));
+    glVertexAttribPointer(2, 3, GL_FLOAT, GL_FALSE, kStride, at(offsetof(BirthVertex, velocity)));
+    glVertexAttribPointer(3, 4, GL_FLOAT, GL_FALSE, kStride, at(offsetof(BirthVertex, birth)));
+    for (GLuint i = 0; i < 4; ++i) {
+        glEnableVertexAttribArray(i);
+    }
+    return {};
+}
+
+Result<void> ParticleSystem::createPrograms() {
+    auto birth = makeProgram("birth.vert", "birth.frag");
+    auto rebase = makeProgram("quad.vert", "rebase.frag");
+    if (!birth || !rebase) {
+        return forward(!birth ? birth : rebase);
+    }
+    birth_program_ = std::move(*birth);
+    glUseProgram(birth_program_.name());
+    glUniform2i(uniformLocation(birth_program_, "u_size"), static_cast<GLint>(width_), static_cast<GLint>(height_));
+    rebase_program_ = std::move(*rebase);
+    glUseProgram(rebase_program_.name());
+    glUniform1i(uniformLocation(rebase_program_, "u_birth"), kBirthUnit);
+    rebase_shift_ = uniformLocation(rebase_program_, "u_shift");
+
+    auto step = makeStepProgram(nullptr);
+    if (!step) {
+        return forward(step);
+    }
+    step_ = std::move(*step);
+    return {};
+}
+
+Result<ParticleSystem::StepProgram> ParticleSystem::makeStepProgram(const ColliderTextures* collider) const {
+    auto program = collider != nullptr ? makeProgram("quad.vert", "step.frag", collider->defines())
+                                       : makeProgram("quad.vert", "step_free.frag");
+    if (!program) {
+        return forward(program);
+    }
+    StepProgram step;
+    step.program = std::move(*program);
+    const auto at = [&](const char* name) { return uniformLocation(step.program, name); };
+    step.now = at("u_now");
+    step.dt = at("u_dt");
+    step.extent = at("u_extent");
+    step.gain = at("u_gain");
+    step.keep = at("u_keep");
+    step.restitution = at("u_restitution");
+    step.slide = at("u_slide");
+    step.friction_threshold = at("u_friction_threshold");
+    step.ground = at("u_ground");
+    glUseProgram(step.program.name());
+    glUniform1i(at("u_position"), kPositionUnit);
+    glUniform1i(at("u_velocity"), kVelocityUnit);
+    glUniform1i(at("u_birth"), kBirthUnit);
+    glUniform1i(at("u_width"), static_cast<GLint>(width_));
+    if (collider != nullptr) {
+        collider->attach(step.program, kColliderBinding);
+    }
+    return step;
+}
+
+Result<void> ParticleSystem::setColliders(std::span<const ColliderInstance> colliders) {
+    if (colliders.size() > 1) {
+        return fail(ErrorCode::kUnsupported, "a particle system takes one collider, not " +
+                                                 std::to_string(colliders.size()) +
+                                                 "; bake them into one collider");
+    }
+    const PassState state;
+    const ColliderTextures* collider = colliders.empty() ? nullptr : colliders.front().textures;
+    auto step = makeStepProgram(collider);
+    if (!step) {
+        return forward(step);
+    }
+    step_ = std::move(*step);
+    collider_ = collider;
+    return {};
+}
+
+std::size_t ParticleSystem::spawn(std::span<const Birth> births) {
+    const float now = clock();
+    std::size_t accepted = 0;
+    for (const Birth& birth : births) {
+        const std::optional<std::uint32_t> index = allocator_.acquire();
+        if (!index) {
+            break;
+        }
+        const float death = now + birth.lifetime;
+        const auto id = static_cast<std::uint32_t>(born_ + accepted);
+        ids_[*index] = id;
+        deaths_.push_back({death, *index});
+        std::push_heap(deaths_.begin(), deaths_.end(), std::greater<>());
+        newborn_.push_back({*index, birth.position, birth.velocity,
+                            glm::vec4(now, death, static_cast<float>(birth.type & kIdMask),
+                                      static_cast<float>(id & kIdMask))});
+        ++accepted;
+    }
+    born_ += accepted;
+    refused_ += births.size() - accepted;
+    return accepted;
+}
+
+void ParticleSystem::step(float dt) {
+    const PassState state;
+    drawBirths();
+    time_ += static_cast<double>(dt);
+    const float now = clock();
+    drawStep(dt, now);
+    freeDead(now);
+    if (time_ - epoch_ >= epoch_seconds_) {
+        setEpochForward();
+    }
+    drawn_extent_ = allocator_.extent();
+}
+
+float ParticleSystem::clock() const {
+    return clockOf(time_);
+}
+
+void ParticleSystem::drawBirths() {
+    if (newborn_.empty()) {
+        return;
+    }
+    glBindFramebuffer(GL_FRAMEBUFFER, birth_target_[current_].name());
+    glViewport(0, 0, static_cast<GLsizei>(width_), static_cast<GLsizei>(height_));
+    glUseProgram(birth_program_.name());
+    glBindVertexArray(birth_array_.name());
+    glBindBuffer(GL_ARRAY_BUFFER, birth_vertices_.name());
+    // A fresh store each time: the driver need not wait until the last one has been drawn.
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(newborn_.size() * sizeof(BirthVertex)), newborn_.data(),
+                 GL_STREAM_DRAW);
+    glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(newborn_.size()));
+    newborn_.clear();
+}
+
+void ParticleSystem::drawStep(float dt, float now) {
+    const std::uint32_t extent = allocator_.extent();
+    if (extent == 0) {
+        return;
+    }
+    const int next = 1 - current_;
+    glBindFramebuffer(GL_FRAMEBUFFER, step_target_[next].name());
+    glUseProgram(step_.program.name());
+    useTexture(kPositionUnit, position_[current_]);
+    useTexture(kVelocityUnit, velocity_[current_]);
+    useTexture(kBirthUnit, birth_);
+    if (collider_ != nullptr) {
+        collider_->bind(kColliderBinding);
+    }
+    const glm::vec3 gain = dt * (forces_.gravity + forces_.drag * forces_.wind);
+    glUniform1f(step_.now, now);
+    glUniform1f(step_.dt, dt);
+    glUniform1i(step_.extent, static_cast<GLint>(extent));
+    glUniform3f(step_.gain, gain.x, gain.y, gain.z);
+    glUniform1f(step_.keep, 1.0F / (1.0F + dt * forces_.drag));
+    glUniform1f(step_.restitution, collision_.restitution);
+    glUniform1f(step_.slide, 1.0F - collision_.friction);
+    glUniform1f(step_.friction_threshold, collision_.friction_threshold);
+    glUniform1f(step_.ground, ground_.value_or(kNoGround));
+    // Rows beyond the extent keep what they held in either buffer. That is sound: an index beyond it is only
+    // reached again through a birth, which overwrites it, and an index below it has been stepped ever since.
+    drawRows(no_attributes_, width_, (extent + width_ - 1) / width_);
+    current_ = next;
+}
+
+void ParticleSystem::freeDead(float now) {
+    while (!deaths_.empty() && now >= deaths_.front().time) {
+        allocator_.release(deaths_.front().index);
+        std::pop_heap(deaths_.begin(), deaths_.end(), std::greater<>());
+        deaths_.pop_back();
+        ++died_;
+    }
+}
+
+void ParticleSystem::setEpochForward() {
+    const double epochs = std::floor((time_ - epoch_) / epoch_seconds_);
+    const auto shift = static_cast<float>(epochs * epoch_seconds_);
+    epoch_ += static_cast<double>(shift);
+    // The same subtraction of the same floats as in rebase.frag. It keeps the order, so the heap stays one.
+    for (Death& death : deaths_) {
+        death.time -= shift;
+    }
+    if (allocator_.extent() == 0) {
+        return;
+    }
+    if (!birth_spare_) {
+        birth_spare_ = makeStateTexture(width_, height_);
+        rebase_target_ = makeFramebuffer();
+    }
+    // By hand, for a step has nobody to report an error to: this is the combination that create() has tried.
+    glBindFramebuffer(GL_FRAMEBUFFER, rebase_target_.name());
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, birth_spare_.name(), 0);
+    glUseProgram(rebase_program_.name());
+    useTexture(kBirthUnit, birth_);
+    glUniform1f(rebase_shift_, shift);
+    drawRows(no_attributes_, width_, (allocator_.extent() + width_ - 1) / width_);
+
+    std::swap(birth_, birth_spare_);
+    for (const GlFramebuffer& target : birth_target_) {
+        glBindFramebuffer(GL_FRAMEBUFFER, target.name());
+        glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT2, GL_TEXTURE_2D, birth_.name(), 0);
+    }
+}
+
+ParticleCounts ParticleSystem::counts() const {
+    return {born_, died_, refused_, allocator_.liveCount(), allocator_.extent()};
+}
+
+Result<RawState> ParticleSystem::readRaw() const {
+    RawState raw;
+    const std::uint32_t rows = (drawn_extent_ + width_ - 1) / width_;
+    if (rows == 0) {
+        return raw;
+    }
+    const PassState state;
+    const auto read = [&](const GlTexture& texture, std::vector<float>& floats) -> Result<void> {
+        auto all = readTextureFloats(texture, static_cast<GLsizei>(width_), static_cast<GLsizei>(rows));
+        if (!all) {
+            return forward(all);
+        }
+        floats = std::move(*all);
+        floats.resize(std::size_t{4} * drawn_extent_);
+        return {};
+    };
+    for (auto done : {read(positions(), raw.position), read(velocities(), raw.velocity), read(births(), raw.birth)}) {
+        if (!done) {
+            return forward(done);
+        }
+    }
+    return raw;
+}
+
+Result<std::vector<ParticleState>> ParticleSystem::readState() const {
+    auto raw = readRaw();
+    if (!raw) {
+        return forward(raw);
+    }
+    std::vector<bool> unborn(drawn_extent_);
+    for (const BirthVertex& vertex : newborn_) {
+        if (vertex.index < drawn_extent_) {
+            unborn[vertex.index] = true;
+        }
+    }
+    const float now = clock();
+    std::vector<ParticleState> particles;
+    particles.reserve(allocator_.liveCount());
+    for (std::uint32_t index = 0; index < drawn_extent_; ++index) {
+        if (!allocator_.isLive(index) || unborn[index]) {
+            continue;
+        }
+        const float* position = &raw->position[std::size_t{4} * index];
+        const float* velocity = &raw->velocity[std::size_t{4} * index];
+        const float* birth = &raw->birth[std::size_t{4} * index];
+        ParticleState& particle = particles.emplace_back();
+        particle.id = ids_[index];
+        particle.index = index;
+        particle.position = {position[0], position[1], position[2]};
+        particle.velocity = {velocity[0], velocity[1], velocity[2]};
+        particle.age = now - birth[0];
+        particle.lifetime = birth[1] - birth[0];
+        particle.type = static_cast<std::uint32_t>(birth[2]);
+        particle.collisions = static_cast<std::uint32_t>(std::max(position[3], 0.0F));
+        particle.contact = static_cast<Contact>(std::clamp(static_cast<int>(velocity[3]), 0, 2));
+    }
+    return particles;
+}
+
+}  // namespace relief

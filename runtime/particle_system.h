@@ -1,0 +1,206 @@
+// The particle simulation: state in float textures, moved by fragment shaders (paper, section 3). Nothing is
+// read back and nothing waits for the GPU but in readState().
+//
+//     bytes on the GPU = 80 · texels, texels = capacity rounded up to whole rows of kStateWidth:
+//         position  2 × RGBA32F (double-buffered)      xyz, collisions (−1: dead)
+//         velocity  2 × RGBA32F (double-buffered)      xyz, contact of the last step
+//         birth     1 × RGBA32F                        time of birth, time of death, type, id mod 2^24
+//     (96 · texels once the clock has been set back for the first time)
+//
+// A step, in this order: births are drawn into the textures as points; one pass over the occupied rows
+// decides deaths, moves and collides (shaders/step.glsl); the CPU frees the indices of the dead.
+//
+// Time. The CPU counts in double. The GPU sees floats relative to an epoch that is set forward whenever
+// epoch_seconds have passed, so that a float resolves half a millisecond even after days. A particle dies at
+// the first step whose end is at or after its time of death; that time is one float, made by the CPU, and
+// both sides compare the same two floats, so they agree on the step.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "formats/result.h"
+#include "runtime/collider_textures.h"
+#include "runtime/emitter.h"
+#include "runtime/gl_object.h"
+#include "runtime/index_allocator.h"
+
+namespace relief {
+
+struct Forces {
+    glm::vec3 gravity{0.0F};  ///< object units a second squared
+    glm::vec3 wind{0.0F};     ///< velocity of the air, object units a second
+    float drag = 0.0F;        ///< a = drag · (wind − v); 1/s, ≥ 0
+};
+
+/// What a collision does to a velocity (paper, section 3.3.2).
+struct Collision {
+    float restitution = 0.0F;         ///< ε, 0…1: how much of the normal speed comes back
+    float friction = 0.0F;            ///< ν, 0…1: how much of the tangential speed is lost
+    float friction_threshold = 0.0F;  ///< no friction below this speed, object units a second
+};
+
+/// A collider among the particles. It must outlive its use by the system.
+struct ColliderInstance {
+    const ColliderTextures* textures = nullptr;
+};
+
+struct ParticleSystemOptions {
+    std::uint32_t capacity = 65536;  ///< particles that may live at once, 1…kCapacityMax
+    double epoch_seconds = 4096.0;   ///< how far the GPU's clock runs before it is set back
+};
+
+struct ParticleCounts {
+    std::uint64_t born = 0;
+    std::uint64_t died = 0;
+    std::uint64_t refused = 0;  ///< births without a free index
+    std::uint32_t alive = 0;
+    std::uint32_t extent = 0;  ///< the largest live index + 1
+};
+
+enum class Contact : std::uint8_t { kNone = 0, kCollided = 1, kCaught = 2 };
+
+/// One live particle, read back.
+struct ParticleState {
+    std::uint32_t id = 0;     ///< births before its own, modulo 2^32
+    std::uint32_t index = 0;  ///< its texel
+    glm::vec3 position{0.0F};
+    glm::vec3 velocity{0.0F};
+    float age = 0.0F;       ///< seconds
+    float lifetime = 0.0F;  ///< seconds
+    std::uint32_t type = 0;
+    std::uint32_t collisions = 0;  ///< steps in contact so far
+    Contact contact = Contact::kNone;  ///< of the last step
+};
+
+/// The state textures as they are, four floats a texel, index after index up to the extent.
+struct RawState {
+    std::vector<float> position;
+    std::vector<float> velocity;
+    std::vector<float> birth;
+};
+
+class ParticleSystem {
+  public:
+    static constexpr std::uint32_t kStateWidth = 1024;  ///< texels in a row, fewer if the capacity is
+    static constexpr std::uint32_t kCapacityMax = 1U << 24;
+
+    /// Needs a current context, as every call does that is not const.
+    /// Errors: kUsage (capacity, epoch), kLimit (above what this GL takes), kUnsupported, kFailure.
+    [[nodiscard]] static Result<ParticleSystem> create(const ParticleSystemOptions& options = {});
+
+    /// What the particles collide with from the next step on; compiles the step for it. So far one collider
+    /// at most, in its own object space.
+    /// Errors: kUnsupported (more than one), kFailure (the driver's compiler).
+    [[nodiscard]] Result<void> setColliders(std::span<const ColliderInstance> colliders);
+    void setForces(const Forces& forces) { forces_ = forces; }
+    void setCollision(const Collision& collision) { collision_ = collision; }
+    /// A floor: everything below this height is solid, in union with the collider. nullopt: none.
+    void setGround(std::optional<float> height) { ground_ = height; }
+
+    /// Gives birth at the start of the next step. Texels without a particle are taken in ascending order.
+    /// \return how many found a place; the rest are refused and counted.
+    std::size_t spawn(std::span<const Birth> births);
+
+    /// Moves everything by `dt` seconds, > 0. Restores the GL state that it touches (runtime/README.md).
+    void step(float dt);
+
+    [[nodiscard]] std::uint32_t capacity() const { return allocator_.capacity(); }
+    /// Places left for spawn().
+    [[nodiscard]] std::uint32_t room() const { return allocator_.capacity() - allocator_.liveCount(); }
+    [[nodiscard]] ParticleCounts counts() const;
+    [[nodiscard]] double time() const { return time_; }  ///< seconds since the beginning
+    [[nodiscard]] bool isLive(std::uint32_t index) const { return allocator_.isLive(index); }
+
+    // For renderers: particle i < extent() lies at texel (i mod width, i / width). Births since the last step
+    // are not in the textures yet.
+    [[nodiscard]] const GlTexture& positions() const { return position_[current_]; }
+    [[nodiscard]] const GlTexture& velocities() const { return velocity_[current_]; }
+    [[nodiscard]] const GlTexture& births() const { return birth_; }
+    [[nodiscard]] std::uint32_t textureWidth() const { return width_; }
+    [[nodiscard]] std::uint32_t extent() const { return drawn_extent_; }
+    [[nodiscard]] float clock() const;  ///< the time that births() counts in
+
+    /// The live particles in ascending order of index, without those born since the last step. Waits for the
+    /// GPU: for dumps and tests.
+    /// Errors: kFailure.
+    [[nodiscard]] Result<std::vector<ParticleState>> readState() const;
+    /// Errors: kFailure.
+    [[nodiscard]] Result<RawState> readRaw() const;
+
+  private:
+    struct Death {
+        float time = 0.0F;
+        std::uint32_t index = 0;
+        friend bool operator>(const Death& a, const Death& b) { return a.time > b.time; }
+    };
+    /// A vertex of the births' draw.
+    struct BirthVertex {
+        std::uint32_t index;
+        glm::vec3 position;
+        glm::vec3 velocity;
+        glm::vec4 birth;
+    };
+    struct StepProgram {
+        GlProgram program;
+        GLint now = -1;
+        GLint dt = -1;
+        GLint extent = -1;
+        GLint gain = -1;
+        GLint keep = -1;
+        GLint restitution = -1;
+        GLint slide = -1;
+        GLint friction_threshold = -1;
+        GLint ground = -1;
+    };
+
+    explicit ParticleSystem(std::uint32_t capacity) : allocator_(capacity) {}
+    [[nodiscard]] Result<void> createTextures();
+    [[nodiscard]] Result<void> createPrograms();
+    [[nodiscard]] Result<StepProgram> makeStepProgram(const ColliderTextures* collider) const;
+    [[nodiscard]] float clockOf(double time) const { return static_cast<float>(time - epoch_); }
+    void setEpochForward();
+    void drawBirths();
+    void drawStep(float dt, float now);
+    void freeDead(float now);
+
+    IndexAllocator allocator_;
+    std::vector<Death> deaths_;          // a heap, the earliest in front
+    std::vector<std::uint32_t> ids_;     // of each index
+    std::vector<BirthVertex> newborn_;   // since the last step
+    std::uint64_t born_ = 0;
+    std::uint64_t died_ = 0;
+    std::uint64_t refused_ = 0;
+    double time_ = 0.0;
+    double epoch_ = 0.0;
+    double epoch_seconds_ = 0.0;
+
+    Forces forces_;
+    Collision collision_;
+    std::optional<float> ground_;
+    const ColliderTextures* collider_ = nullptr;
+
+    std::uint32_t width_ = 0;
+    std::uint32_t height_ = 0;
+    std::uint32_t drawn_extent_ = 0;  // the extent after the last step
+    int current_ = 0;                 // which of the two buffers holds the state
+    GlTexture position_[2];
+    GlTexture velocity_[2];
+    GlTexture birth_;
+    GlTexture birth_spare_;          // made when the clock is first set back
+    GlFramebuffer step_target_[2];   // position and velocity
+    GlFramebuffer birth_target_[2];  // position, velocity, birth
+    GlFramebuffer rebase_target_;    // birth_spare_
+    GlBuffer birth_vertices_;
+    GlVertexArray birth_array_;
+    GlVertexArray no_attributes_;
+    GlProgram birth_program_;
+    GlProgram rebase_program_;
+    GLint rebase_shift_ = -1;
+    StepProgram step_;
+};
+
+}  // namespace relief

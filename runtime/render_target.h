@@ -1,0 +1,18 @@
+// Where a renderer draws.
+#pragma once
+
+#include <epoxy/gl.h>
+
+namespace relief {
+
+/// A framebuffer of the caller's with colour and depth, and the part of it that is drawn to: pixels
+/// (0, 0) … (width − 1, height − 1).
+struct RenderTarget {
+    GLuint framebuffer = 0;
+    GLsizei width = 0;
+    GLsizei height = 0;
+
+    [[nodiscard]] float aspect() const { return static_cast<float>(width) / static_cast<float>(height); }
+};
+
+}  // namespace relief

@@ -1,0 +1,506 @@
+#include "runtime/scene.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <initializer_list>
+#include <vector>
+
+#define TOML_HEADER_ONLY 1
+#include <toml++/toml.h>
+
+#include "formats/file_io.h"
+#include "runtime/camera.h"
+#include "runtime/suggestion.h"
+
+namespace relief {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kSceneBytesMax = std::uint64_t{1} << 20;
+
+// Generous, yet small enough that nothing overflows a float within a lifetime: see runtime/README.md.
+constexpr double kLengthMax = 1e9;
+constexpr double kRateMax = 1e9;
+constexpr double kSpeedMax = 1e6;
+constexpr double kAccelerationMax = 1e6;
+constexpr double kSecondsMax = 1e6;
+constexpr double kDragMax = 1e6;
+constexpr double kStepsMax = 1e7;
+constexpr double kPixelsMax = 65535;
+
+/// Raised inside this file alone, where a value is found wrong; parseScene turns it into its Result.
+struct SceneError {
+    std::string message;
+};
+
+std::string number(double value) {
+    char text[40];
+    std::snprintf(text, sizeof(text), "%.9g", value);
+    return text;
+}
+
+/// A line of text that a hostile file can neither break nor colour.
+std::string oneLine(std::string_view text) {
+    std::string quoted = quotedPath(fs::path(text));
+    return quoted.substr(1, quoted.size() - 2);
+}
+
+struct Range {
+    double low;
+    double high;
+    bool low_included = true;
+
+    [[nodiscard]] bool holds(double value) const {
+        return (low_included ? value >= low : value > low) && value <= high;  // false for NaN
+    }
+    [[nodiscard]] std::string text() const {
+        return (low_included ? "choose " + number(low) : "choose above " + number(low)) + " to " + number(high);
+    }
+};
+
+constexpr Range symmetric(double limit) {
+    return {-limit, limit};
+}
+
+/// One table of the file. Remembers which keys were asked for: what is left over at the end is unknown.
+class Table {
+  public:
+    Table(const toml::table* table, std::string_view name, std::string_view file)
+        : table_(table), name_(name), file_(file) {}
+
+    [[nodiscard]] const toml::node* find(std::string_view key) {
+        if (std::find(known_.begin(), known_.end(), key) == known_.end()) {
+            known_.push_back(key);
+        }
+        return table_ == nullptr ? nullptr : table_->get(key);
+    }
+
+    template <class T>
+    bool number(std::string_view key, const Range& range, T& out) {
+        const toml::node* node = find(key);
+        if (node == nullptr) {
+            return false;
+        }
+        out = static_cast<T>(numberOf(*node, key, range));
+        return true;
+    }
+
+    template <class T>
+    bool integer(std::string_view key, const Range& range, T& out) {
+        const toml::node* node = find(key);
+        if (node == nullptr) {
+            return false;
+        }
+        out = static_cast<T>(integerOf(*node, key, range));
+        return true;
+    }
+
+    bool boolean(std::string_view key, bool& out) {
+        const toml::node* node = find(key);
+        if (node == nullptr) {
+            return false;
+        }
+        if (!node->is_boolean()) {
+            wrongType(*node, key, "true or false");
+        }
+        out = *node->value_exact<bool>();
+        return true;
+    }
+
+    bool text(std::string_view key, std::string& out) {
+        const toml::node* node = find(key);
+        if (node == nullptr) {
+            return false;
+        }
+        if (!node->is_string()) {
+            wrongType(*node, key, "a string");
+        }
+        out = *node->value_exact<std::string>();
+        return true;
+    }
+
+    bool vector(std::string_view key, const Range& range, glm::vec3& out) {
+        const toml::node* node = find(key);
+        if (node == nullptr) {
+            return false;
+        }
+        const toml::array* values = node->as_array();
+        if (values == nullptr || values->size() != 3) {
+            wrongType(*node, key, "three numbers [x, y, z]");
+        }
+        for (int i = 0; i < 3; ++i) {
+            out[i] = static_cast<float>(numberOf(*values->get(static_cast<std::size_t>(i)), key, range));
+        }
+        return true;
+    }
+    bool vector(std::string_view key, const Range& range, std::optional<glm::vec3>& out) {
+        glm::vec3 value{0.0F};
+        const bool found = vector(key, range, value);
+        if (found) {
+            out = value;
+        }
+        return found;
+    }
+
+    [[nodiscard]] double numberOf(const toml::node& node, std::string_view key, const Range& range) const {
+        if (!node.is_number()) {
+            wrongType(node, key, "a number");
+        }
+        const double value = node.is_integer() ? static_cast<double>(*node.value_exact<std::int64_t>())
+                                               : *node.value_exact<double>();
+        if (!range.holds(value)) {
+            failAt(node, full(key) + " = " + relief::number(value) + " is out of range; " + range.text());
+        }
+        return value;
+    }
+
+    [[nodiscard]] std::int64_t integerOf(const toml::node& node, std::string_view key, const Range& range) const {
+        if (!node.is_integer()) {
+            wrongType(node, key, "a whole number");
+        }
+        const std::int64_t value = *node.value_exact<std::int64_t>();
+        if (!range.holds(static_cast<double>(value))) {
+            failAt(node, full(key) + " = " + std::to_string(value) + " is out of range; " + range.text());
+        }
+        return value;
+    }
+
+    [[noreturn]] void wrongType(const toml::node& node, std::string_view key, std::string_view wanted) const {
+        failAt(node, full(key) + " must be " + std::string(wanted));
+    }
+
+    /// "file:line:column: message"
+    [[noreturn]] void failAt(const toml::node& node, const std::string& message) const {
+        failAt(node.source().begin, message);
+    }
+    [[noreturn]] void failAt(const toml::source_position& at, const std::string& message) const {
+        throw SceneError{place(at) + ": " + message};
+    }
+    [[nodiscard]] std::string place(const toml::source_position& at) const {
+        return std::string(file_) + ":" + std::to_string(at.line) + ":" + std::to_string(at.column);
+    }
+    [[nodiscard]] std::string full(std::string_view key) const {
+        return name_.empty() ? std::string(key) : std::string(name_) + "." + std::string(key);
+    }
+
+    /// A setting that has no effect, and why.
+    [[noreturn]] void failUseless(std::string_view key, const std::string& why) const {
+        failAt(*table_->get(key), full(key) + " does nothing " + why);
+    }
+
+    /// Call last: any key that nobody has asked for is unknown.
+    void finish() const {
+        if (table_ == nullptr) {
+            return;
+        }
+        // In the order of the file, so that the first mistake is the one reported.
+        const toml::key* first = nullptr;
+        for (const auto& [key, node] : *table_) {
+            const bool known = std::find(known_.begin(), known_.end(), key.str()) != known_.end();
+            if (!known && (first == nullptr || before(key.source().begin, first->source().begin))) {
+                first = &key;
+            }
+        }
+        if (first == nullptr) {
+            return;
+        }
+        std::string list;
+        for (const std::string_view key : known_) {
+            list += (list.empty() ? "" : ", ") + std::string(key);
+        }
+        const std::string hint = suggestion(first->str(), known_);
+        failAt(first->source().begin, "unknown " + std::string(name_.empty() ? "table" : "key") + " '" +
+                                          oneLine(full(first->str())) + "'" +
+                                          (hint.empty() ? "; known are " + list : hint));
+    }
+
+  private:
+    static bool before(const toml::source_position& a, const toml::source_position& b) {
+        return a.line != b.line ? a.line < b.line : a.column < b.column;
+    }
+
+    const toml::table* table_;
+    std::string_view name_;
+    std::string_view file_;
+    std::vector<std::string_view> known_;
+};
+
+Table subTable(Table& root, std::string_view name, std::string_view file) {
+    const toml::node* node = root.find(name);
+    if (node != nullptr && !node->is_table()) {
+        root.wrongType(*node, name, "a table, as in [" + std::string(name) + "]");
+    }
+    return {node == nullptr ? nullptr : node->as_table(), name, file};
+}
+
+void readCollider(Table table, const toml::table& root, const fs::path& folder, Scene& scene) {
+    std::string file;
+    const bool found = table.text("file", file);
+    table.finish();
+    if (!found || file.empty()) {
+        table.failAt(root.get("collider") == nullptr ? toml::source_position{1, 1}
+                                                     : root.get("collider")->source().begin,
+                     "a scene needs collider.file, the .relief file to collide with; bake one with 'relief bake'");
+    }
+    const toml::node& node = *root.get("collider")->as_table()->get("file");
+    if (file.find('\0') != std::string::npos) {
+        table.failAt(node, "collider.file holds a zero byte");
+    }
+    scene.collider = folder / fs::path(file);
+    scene.collider_origin = table.place(node.source().begin);
+}
+
+void readEmitter(Table table, Scene& scene) {
+    auto& emitter = scene.emitter;
+    const Range length = symmetric(kLengthMax);
+    const bool low = table.vector("box_min", length, emitter.box_min);
+    const bool high = table.vector("box_max", length, emitter.box_max);
+    if (low != high) {
+        const std::string_view given = low ? "box_min" : "box_max";
+        table.failAt(*table.find(given),
+                     table.full(given) + " needs " + table.full(low ? "box_max" : "box_min") + " beside it");
+    }
+    for (int i = 0; low && i < 3; ++i) {
+        if ((*emitter.box_min)[i] > (*emitter.box_max)[i]) {
+            table.failAt(*table.find("box_min"),
+                         "emitter.box_min lies above emitter.box_max on the " + std::string(1, "xyz"[i]) +
+                             " axis; exchange them");
+        }
+    }
+    glm::vec3 point{0.0F};
+    if (table.vector("point", length, point)) {
+        if (low) {
+            table.failAt(*table.find("point"), "emitter.point and emitter.box_min are two places; remove one");
+        }
+        emitter.box_min = point;
+        emitter.box_max = point;
+    }
+    double rate = 0.0;
+    if (table.number("rate", {0.0, kRateMax}, rate)) {
+        emitter.rate = rate;
+    }
+    const bool burst = table.integer("burst", {0.0, ParticleSystem::kCapacityMax}, emitter.burst);
+    if (emitter.rate == 0.0 && emitter.burst == 0) {
+        table.failAt(*table.find(burst ? "burst" : "rate"),
+                     "emitter.rate = 0 without emitter.burst gives birth to nothing; raise one of them");
+    }
+    if (burst && emitter.burst > scene.capacity) {
+        table.failAt(*table.find("burst"), "emitter.burst = " + std::to_string(emitter.burst) +
+                                               " is more than particles.capacity = " +
+                                               std::to_string(scene.capacity) + "; raise the capacity");
+    }
+    table.vector("velocity", symmetric(kSpeedMax), emitter.velocity);
+    table.vector("velocity_spread", {0.0, kSpeedMax}, emitter.velocity_spread);
+
+    const Range seconds{0.0, kSecondsMax, false};
+    if (const toml::node* node = table.find("lifetime"); node != nullptr) {
+        const toml::array* both = node->as_array();
+        if (both == nullptr ? !node->is_number() : both->size() != 2) {
+            table.wrongType(*node, "lifetime", "a number of seconds, or two [least, most]");
+        }
+        const double least = table.numberOf(both == nullptr ? *node : *both->get(0), "lifetime", seconds);
+        const double most = table.numberOf(both == nullptr ? *node : *both->get(1), "lifetime", seconds);
+        if (least > most) {
+            table.failAt(*node, "emitter.lifetime has its least above its most; exchange them");
+        }
+        // A lifetime below the smallest float would be none.
+        emitter.lifetime_min = std::max(static_cast<float>(least), std::numeric_limits<float>::min());
+        emitter.lifetime_max = std::max(static_cast<float>(most), std::numeric_limits<float>::min());
+    }
+    table.integer("seed", {0.0, 9007199254740992.0}, emitter.seed);
+    table.finish();
+}
+
+void readForces(Table table, Scene& scene) {
+    auto& forces = scene.forces;
+    table.vector("gravity", symmetric(kAccelerationMax), forces.gravity);
+    const bool wind = table.vector("wind", symmetric(kSpeedMax), forces.wind);
+    table.number("drag", {0.0, kDragMax}, forces.drag);
+    table.finish();
+    if (wind && forces.wind != glm::vec3(0.0F) && forces.drag == 0.0F) {
+        table.failUseless("wind", "while forces.drag is 0; raise the drag or remove the wind");
+    }
+}
+
+void readCollision(Table table, Scene& scene) {
+    Collision& collision = scene.collision;
+    table.number("restitution", {0.0, 1.0}, collision.restitution);
+    table.number("friction", {0.0, 1.0}, collision.friction);
+    table.number("friction_threshold", {0.0, kSpeedMax}, collision.friction_threshold);
+    table.finish();
+    if (collision.friction_threshold > 0.0F && collision.friction == 0.0F) {
+        table.failUseless("friction_threshold", "while collision.friction is 0; raise the friction or remove it");
+    }
+}
+
+void readGround(Table table, Scene& scene) {
+    table.boolean("enabled", scene.ground.enabled);
+    float height = 0.0F;
+    const bool found = table.number("height", symmetric(kLengthMax), height);
+    table.finish();
+    if (found && !scene.ground.enabled) {
+        table.failUseless("height", "while ground.enabled is false; remove one of them");
+    }
+    if (found) {
+        scene.ground.height = height;
+    }
+}
+
+std::string_view cameraProblem(const glm::vec3& eye, const glm::vec3& target) {
+    const glm::vec3 d = eye - target;
+    const float flat = std::hypot(d.x, d.z);
+    if (!(glm::length(d) > 0.0F)) {
+        return "camera.eye is at camera.target; move one of them";
+    }
+    if (flat <= 1e-4F * std::abs(d.y)) {
+        return "camera.eye is straight above or below camera.target, where no side is up; move it aside";
+    }
+    return {};
+}
+
+void readCamera(Table table, Scene& scene) {
+    auto& camera = scene.camera;
+    const bool eye = table.vector("eye", symmetric(kLengthMax), camera.eye);
+    const bool target = table.vector("target", symmetric(kLengthMax), camera.target);
+    table.number("fov", {1.0, 170.0}, camera.fov);
+    table.finish();
+    if (eye && target) {
+        if (const std::string_view problem = cameraProblem(*camera.eye, *camera.target); !problem.empty()) {
+            table.failAt(*table.find("eye"), std::string(problem));
+        }
+    }
+}
+
+void readRender(Table table, Scene& scene) {
+    auto& render = scene.render;
+    if (const toml::node* node = table.find("size"); node != nullptr) {
+        const toml::array* both = node->as_array();
+        if (both == nullptr || both->size() != 2) {
+            table.wrongType(*node, "size", "two whole numbers [width, height]");
+        }
+        render.width = static_cast<std::uint32_t>(table.integerOf(*both->get(0), "size", {1.0, kPixelsMax}));
+        render.height = static_cast<std::uint32_t>(table.integerOf(*both->get(1), "size", {1.0, kPixelsMax}));
+    }
+    float point_size = 0.0F;
+    if (table.number("point_size", {0.0, kLengthMax, false}, point_size)) {
+        render.point_size = std::max(point_size, std::numeric_limits<float>::min());
+    }
+    table.vector("color", {0.0, 1.0}, render.color);
+    table.number("opacity", {0.0, 1.0, false}, render.opacity);
+    table.vector("background", {0.0, 1.0}, render.background);
+    table.integer("every", {1.0, kStepsMax}, render.every);
+    table.finish();
+}
+
+Scene readScene(const toml::table& root, const fs::path& path, std::string_view file) {
+    Scene scene;
+    Table top(&root, "", file);
+    Table collider = subTable(top, "collider", file);
+    Table time = subTable(top, "time", file);
+    Table particles = subTable(top, "particles", file);
+    Table emitter = subTable(top, "emitter", file);
+    Table forces = subTable(top, "forces", file);
+    Table collision = subTable(top, "collision", file);
+    Table ground = subTable(top, "ground", file);
+    Table camera = subTable(top, "camera", file);
+    Table render = subTable(top, "render", file);
+    top.finish();
+
+    readCollider(collider, root, path.parent_path(), scene);
+    time.number("dt", {1e-6, 1.0}, scene.dt);
+    time.integer("steps", {0.0, kStepsMax}, scene.steps);
+    time.finish();
+    particles.integer("capacity", {1.0, ParticleSystem::kCapacityMax}, scene.capacity);
+    particles.finish();
+    readEmitter(emitter, scene);
+    readForces(forces, scene);
+    readCollision(collision, scene);
+    readGround(ground, scene);
+    readCamera(camera, scene);
+    readRender(render, scene);
+    return scene;
+}
+
+}  // namespace
+
+Result<Scene> parseScene(std::string_view text, const fs::path& path) {
+    const std::string file = oneLine(path.native());
+    try {
+        const toml::table root = toml::parse(text, file);
+        return readScene(root, path, file);
+    } catch (const toml::parse_error& error) {
+        const toml::source_position& at = error.source().begin;
+        return fail(ErrorCode::kInvalidInput, file + ":" + std::to_string(at.line) + ":" +
+                                                  std::to_string(at.column) + ": not TOML: " +
+                                                  oneLine(error.description()));
+    } catch (const SceneError& error) {
+        return fail(ErrorCode::kInvalidInput, error.message);
+    } catch (const std::exception& error) {
+        return fail(ErrorCode::kInvalidInput, file + ":1:1: cannot be read: " + oneLine(error.what()));
+    }
+}
+
+Result<Scene> loadScene(const fs::path& path) {
+    const auto bytes = readFile(path, kSceneBytesMax);
+    if (!bytes) {
+        return forward(bytes);
+    }
+    return parseScene({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, path);
+}
+
+Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
+    for (int i = 0; i < 3; ++i) {
+        if (!(bounds.min[i] >= -kLengthMax && bounds.min[i] <= bounds.max[i] && bounds.max[i] <= kLengthMax)) {
+            return fail(ErrorCode::kInvalidInput, "the collider's bounds are empty, or reach beyond " +
+                                                      number(kLengthMax) + "; bake the mesh again, scaled");
+        }
+    }
+    // A collider without extent still gets a scene of some size, one that floats can resolve where it lies.
+    const glm::vec3 center = bounds.center();
+    const float away = std::max({std::abs(center.x), std::abs(center.y), std::abs(center.z)});
+    const float scale = std::max({bounds.longestSide(), 1e-3F * away, 1e-6F});
+    auto& emitter = scene.emitter;
+    if (!emitter.box_min) {
+        const float aside = 1.1F * scale;
+        emitter.box_min = glm::vec3(center.x - aside, bounds.max.y + 0.15F * scale, center.z - aside);
+        emitter.box_max = glm::vec3(center.x + aside, bounds.max.y + 0.75F * scale, center.z + aside);
+    }
+    if (!emitter.rate) {
+        // The capacity is just used up at the end of the run, and never before.
+        const double seconds = static_cast<double>(scene.dt) * scene.steps;
+        const double room = static_cast<double>(scene.capacity) - std::min(emitter.burst, scene.capacity);
+        emitter.rate = seconds > 0.0 ? std::min(room / seconds, kRateMax) : 0.0;
+    }
+    if (!emitter.velocity) {
+        emitter.velocity = glm::vec3(0.0F, -0.3F * scale, 0.0F);
+    }
+    if (!emitter.velocity_spread) {
+        emitter.velocity_spread = glm::vec3(0.12F * scale, 0.1F * scale, 0.12F * scale);
+    }
+    if (!scene.forces.gravity) {
+        scene.forces.gravity = glm::vec3(0.0F, -1.5F * scale, 0.0F);
+    }
+    if (scene.ground.enabled && !scene.ground.height) {
+        scene.ground.height = bounds.min.y;
+    }
+    if (!scene.camera.target) {
+        scene.camera.target = center + glm::vec3(0.0F, 0.04F * scale, 0.0F);
+    }
+    if (!scene.camera.eye) {
+        scene.camera.eye = defaultEye(*scene.camera.target, std::max(0.5F * glm::length(bounds.size()), 0.5F * scale),
+                                      scene.camera.fov);
+    }
+    if (const std::string_view problem = cameraProblem(*scene.camera.eye, *scene.camera.target); !problem.empty()) {
+        return fail(ErrorCode::kInvalidInput, std::string(problem));
+    }
+    if (!scene.render.point_size) {
+        scene.render.point_size = 0.008F * scale;
+    }
+    return scene;
+}
+
+}  // namespace relief

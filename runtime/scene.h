@@ -1,0 +1,81 @@
+// A scene file: TOML to plain structs. Every key, its unit, default and range: README.md beside this file.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "formats/collider.h"
+#include "formats/result.h"
+#include "runtime/particle_system.h"
+
+namespace relief {
+
+/// What a scene file says. Where a default depends on the collider's size the value is optional, and
+/// withDefaults() fills it.
+struct Scene {
+    std::filesystem::path collider;  ///< resolved against the scene's folder
+    std::string collider_origin;     ///< "scene.toml:3:8" of that key, for messages; empty without a scene file
+
+    float dt = 1.0F / 60.0F;  ///< seconds
+    std::uint32_t steps = 300;
+    std::uint32_t capacity = 65536;
+
+    struct {
+        std::optional<glm::vec3> box_min;  ///< a point if equal to box_max; given both or neither
+        std::optional<glm::vec3> box_max;
+        std::optional<double> rate;  ///< births a second
+        std::uint32_t burst = 0;
+        std::optional<glm::vec3> velocity;
+        std::optional<glm::vec3> velocity_spread;
+        float lifetime_min = 30.0F;  ///< seconds
+        float lifetime_max = 30.0F;
+        std::uint64_t seed = 1;
+    } emitter;
+
+    struct {
+        std::optional<glm::vec3> gravity;
+        glm::vec3 wind{0.0F};
+        float drag = 2.5F;
+    } forces;
+
+    Collision collision{0.0F, 1.0F, 0.0F};
+
+    struct {
+        bool enabled = true;
+        std::optional<float> height;
+    } ground;
+
+    struct {
+        std::optional<glm::vec3> eye;
+        std::optional<glm::vec3> target;
+        float fov = 30.0F;  ///< degrees
+    } camera;
+
+    struct {
+        std::uint32_t width = 960;
+        std::uint32_t height = 720;
+        std::optional<float> point_size;  ///< diameter, object units
+        glm::vec3 color{0.97F, 0.98F, 1.0F};  ///< sRGB
+        float opacity = 0.95F;
+        glm::vec3 background{0.62F, 0.69F, 0.76F};  ///< sRGB
+        std::uint32_t every = 10;  ///< steps from frame to frame
+    } render;
+};
+
+/// \param text    the file's contents; may be hostile.
+/// \param path    names it in messages and resolves relative paths.
+/// Errors: kInvalidInput, one line "file:line:column: what is wrong; the cure".
+[[nodiscard]] Result<Scene> parseScene(std::string_view text, const std::filesystem::path& path);
+
+/// readFile and parseScene. Errors: theirs, kLimit above 1 MiB.
+[[nodiscard]] Result<Scene> loadScene(const std::filesystem::path& path);
+
+/// Every optional filled from the collider's bounds: snow that falls on it from above, seen from the front.
+/// Errors: kInvalidInput (the eye straight above the target once defaults are in).
+[[nodiscard]] Result<Scene> withDefaults(Scene scene, const Bounds& bounds);
+
+}  // namespace relief

@@ -1,0 +1,12 @@
+// Colour and depth of a stored picture into the bound framebuffer, pixel by pixel.
+uniform highp sampler2D u_color;
+uniform highp sampler2D u_depth_texture;
+uniform ivec2 u_origin;  // of the viewport
+
+layout(location = 0) out vec4 o_color;
+
+void main() {
+    ivec2 at = ivec2(gl_FragCoord.xy) - u_origin;
+    o_color = texelFetch(u_color, at, 0);
+    gl_FragDepth = texelFetch(u_depth_texture, at, 0).r;
+}

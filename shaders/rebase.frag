@@ -1,0 +1,11 @@
+// Moves the zero of the clock, so that times stay small enough for a float: both times of the birth texture
+// fall by as much as the clock does.
+uniform highp sampler2D u_birth;
+uniform float u_shift;  // seconds
+
+layout(location = 0) out vec4 o_birth;
+
+void main() {
+    vec4 birth = texelFetch(u_birth, ivec2(gl_FragCoord.xy), 0);
+    o_birth = vec4(birth.x - u_shift, birth.y - u_shift, birth.zw);
+}

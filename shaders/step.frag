@@ -1,0 +1,10 @@
+// A step among the floor and a collider.
+//!include collider.glsl
+//!include solid.glsl
+//!include step.glsl
+
+Solid solid(vec3 p) {
+    ReliefField field = reliefSolid(p);
+    // Where no map votes nothing is known to be solid.
+    return Solid(reliefInside(field) ? field.distance : 1e30, field.normal);
+}
