@@ -102,7 +102,7 @@ void warnAbout(const TriangleMesh& mesh, const std::vector<Job>& jobs, BakeRepor
         if (report.maps[i].covered == 0) {
             report.warnings.push_back(
                 "map " + std::to_string(i) + " (" + toString(jobs[i].spec) +
-                ") is empty: none of its rays meets the mesh; change its dir, box or size");
+                ") is empty: its rays meet no outer side of the mesh; change its dir, box or size");
         }
     }
 }
@@ -201,7 +201,7 @@ Result<Baked> bakeOnThisArena(const TriangleMesh& mesh, const BakeOptions& optio
         return fail(
             ErrorCode::kFailure,
             mesh.name +
-                ": no ray of any map meets the mesh; raise the maps' sizes, or change their dir or box");
+                ": no map sees a surface of the mesh; raise the maps' sizes, or change their dir or box");
     }
     warnAbout(mesh, *jobs, report);
 

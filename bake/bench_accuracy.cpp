@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <glm/vec2.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -15,6 +16,7 @@
 #include "bake/byte_count.h"
 #include "bake/distance_volume.h"
 #include "bake/mesh_import.h"
+#include "bake/points_csv.h"
 #include "bake/report.h"
 #include "bake/text.h"
 #include "bake/view.h"
@@ -120,26 +122,33 @@ Json toJson(const Entry& entry) {
             {"accuracy", entry.accuracy}};
 }
 
+/// The best of all ways to place and to quantise the volume.
 Entry measureVolume(const MeshQuery& query, const TruthSamples& samples, std::uint64_t budget) {
-    const Stopwatch watch;
-    const DistanceGrid grid =
-        sampleDistances(query, makeLattice(query.mesh().bounds, budget / sizeof(std::int16_t)));
     Entry entry;
-    entry.build_seconds = watch.seconds();
     entry.method = "volume";
     // Four standard deviations hold all but 6 in 100 000 of the points near the surface.
     const double reach = 4.0 * samples.options.sigma_share * samples.longest_side;
-    const double ranges[2] = {DistanceVolume::fullRange(grid), DistanceVolume::bandRange(grid, reach)};
     std::optional<FieldAccuracy> best;
-    for (int i = 0; i < 2; ++i) {
-        const DistanceVolume volume(grid, ranges[i]);
-        const FieldAccuracy accuracy = measureField(samples, fieldOf(volume));
-        if (!best || accuracy.near.total() < best->near.total()) {
-            best = accuracy;
-            const glm::uvec3 n = grid.lattice.nodes;
-            entry.what = std::to_string(n.x) + "x" + std::to_string(n.y) + "x" + std::to_string(n.z) +
-                         (i == 0 ? ", full range" : ", narrow band");
-            entry.bytes = volume.bytes();
+    for (const LatticeFit fit : {LatticeFit::kCentered, LatticeFit::kCorner, LatticeFit::kStretched}) {
+        const Stopwatch watch;
+        const DistanceGrid grid =
+            sampleDistances(query, makeLattice(query.mesh().bounds, budget / sizeof(std::int16_t), fit));
+        const double seconds = watch.seconds();
+        for (const bool band : {false, true}) {
+            const DistanceVolume volume(
+                grid, band ? DistanceVolume::bandRange(grid, reach) : DistanceVolume::fullRange(grid));
+            const FieldAccuracy accuracy = measureField(samples, fieldOf(volume));
+            if (!best || accuracy.near.total() < best->near.total()) {
+                best = accuracy;
+                const glm::uvec3 n = grid.lattice.nodes;
+                entry.what = std::to_string(n.x) + "x" + std::to_string(n.y) + "x" + std::to_string(n.z) +
+                             (fit == LatticeFit::kCentered ? " centred"
+                              : fit == LatticeFit::kCorner ? " from a corner"
+                                                           : " stretched") +
+                             (band ? ", band" : "");
+                entry.bytes = volume.bytes();
+                entry.build_seconds = seconds;
+            }
         }
     }
     entry.accuracy = jsonFieldAccuracy(*best, samples.longest_side);
@@ -172,14 +181,15 @@ Result<Entry> measureMaps(const MeshQuery& query, const TruthSamples& samples, c
 class Cache {
   public:
     explicit Cache(std::string path) : path_(std::move(path)) {
-        if (const Result<std::vector<std::byte>> bytes =
-                path_.empty() ? fail(ErrorCode::kIo, "") : readFile(path_);
-            bytes) {
+        if (path_.empty()) {
+            return;
+        }
+        if (const Result<std::vector<std::byte>> bytes = readFile(path_); bytes) {
             const auto* first = reinterpret_cast<const char*>(bytes->data());
             json_ = Json::parse(first, first + bytes->size(), nullptr, false);
         }
         if (!json_.is_object()) {
-            json_ = Json::object();
+            json_ = Json::object();  // no file yet, or none of ours
         }
     }
 
@@ -214,7 +224,7 @@ class Cache {
 
   private:
     std::string path_;
-    Json json_;
+    Json json_ = Json::object();
 };
 
 // --- the table ---
@@ -314,8 +324,36 @@ struct Arguments {
     std::uint64_t seed = AccuracyOptions{}.seed;
     std::vector<std::string> only = {"volume", "paper", "ours"};
     std::string cache;
+    std::string values;
     bool json = false;
 };
+
+/// For the cross-check against other tools: what the volume knows of given points, one line for each:
+/// x,y,z, the exact signed distance that its nodes are made of, and its own lookup.
+Result<void> printValues(const MeshQuery& query, std::uint64_t budget, const std::string& path) {
+    const Result<std::vector<std::byte>> text = readFile(path);
+    if (!text) {
+        return forward(text);
+    }
+    const Result<std::vector<glm::vec3>> points =
+        parsePoints({reinterpret_cast<const char*>(text->data()), text->size()}, path);
+    if (!points) {
+        return forward(points);
+    }
+    const DistanceGrid grid = sampleDistances(
+        query, makeLattice(query.mesh().bounds, budget / sizeof(std::int16_t), LatticeFit::kCentered));
+    const DistanceVolume volume(grid, DistanceVolume::fullRange(grid));
+    std::string out;
+    for (const glm::vec3& p : *points) {
+        const float values[5] = {p.x, p.y, p.z, static_cast<float>(query.signedDistance(p)),
+                                 volume.at(p).distance};
+        for (int i = 0; i < 5; ++i) {
+            appendShortest(out, values[i]);
+            out += i == 4 ? '\n' : ',';
+        }
+    }
+    return writeFile("-", std::as_bytes(std::span(out)));
+}
 
 Result<void> run(const Arguments& arguments) {
     std::vector<std::uint64_t> budgets;
@@ -342,11 +380,15 @@ Result<void> run(const Arguments& arguments) {
         if (!query) {
             return forward(query);
         }
+        if (!arguments.values.empty()) {
+            return printValues(*query, budgets.front(), arguments.values);
+        }
         const TruthSamples samples = sampleTruth(*query, options);
         Json mesh_report = jsonSamples(samples);
         mesh_report["mesh"] = mesh->name;
         mesh_report["mesh_hash"] = mesh->content_hash;
         mesh_report["triangles"] = mesh->triangles.size();
+        mesh_report["watertight"] = query->watertight();
         mesh_reports.push_back(std::move(mesh_report));
         for (const std::uint64_t budget : budgets) {
             for (const std::string& method : arguments.only) {
@@ -425,6 +467,8 @@ int main(int argc, char** argv) {
         ->delimiter(',')
         ->check(CLI::IsMember({"volume", "paper", "ours"}));
     app.add_option("--cache", arguments.cache, "Keep the volume's figures in this file (for development)");
+    app.add_option("--values", arguments.values,
+                   "Only print x,y,z, exact distance, volume's distance for the points of this CSV file");
     app.add_flag("--json", arguments.json, "Print JSON");
     CLI11_PARSE(app, argc, argv);
     try {

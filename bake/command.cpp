@@ -3,8 +3,10 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <span>
+#include <sstream>
 #include <vector>
 
 #include "bake/text.h"
@@ -13,19 +15,28 @@
 namespace relief {
 namespace {
 
-/// Help that begins with examples (the footer, at the top).
+/// Help that begins with examples (CLI11's footer, moved to the top).
 class ExampleFormatter : public CLI::Formatter {
   public:
     std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
         if (mode == CLI::AppFormatMode::Sub) {
             return Formatter::make_help(app, name, mode);
         }
+        const std::string examples = app->get_footer();
         std::string text = "Examples:\n";
-        for (const std::string_view line : split(app->get_footer(), '\n')) {
+        for (const std::string_view line : split(examples, '\n')) {
             text.append("  ").append(line).append("\n");
         }
         return text + "\n" + make_description(app) + make_usage(app, name) + make_positionals(app) +
                make_groups(app, mode) + make_subcommands(app, mode);
+    }
+    /// In the list of verbs: the first line of the description.
+    std::string make_subcommand(const CLI::App* sub) const override {
+        const std::string description = sub->get_description();
+        std::stringstream out;
+        CLI::detail::format_help(out, sub->get_name(), description.substr(0, description.find('\n')),
+                                 column_width_);
+        return out.str();
     }
 };
 
@@ -39,8 +50,8 @@ void makeLogger() {
     spdlog::set_default_logger(std::move(logger));
 }
 
-std::vector<std::string_view> optionNames(const CLI::App& app) {
-    std::vector<std::string_view> names;
+std::vector<std::string> optionNames(const CLI::App& app) {
+    std::vector<std::string> names;
     for (const CLI::Option* option : app.get_options()) {
         for (const std::string& name : option->get_lnames()) {
             names.push_back(name);
@@ -66,10 +77,13 @@ std::string parseErrorMessage(const CLI::App& app, const CLI::ParseError& error)
     const std::vector<std::string> unknown = verb.remaining();
     for (const std::string& word : unknown) {
         if (word.size() > 1 && word[0] == '-') {
-            const std::string name = word.substr(
-                word.find_first_not_of('-') == std::string::npos ? word.size() : word.find_first_not_of('-'));
-            const std::string guess = didYouMean(name.substr(0, name.find('=')), optionNames(verb));
-            return "unknown option " + cleanUtf8(word) + (guess.empty() ? "; " + help : guess);
+            const std::size_t start = std::min(word.find_first_not_of('-'), word.size());
+            const std::string_view name = std::string_view(word).substr(start);
+            const std::vector<std::string> names = optionNames(verb);
+            const std::vector<std::string_view> known(names.begin(), names.end());
+            const std::string guess(nearest(name.substr(0, name.find('=')), known));
+            return "unknown option " + cleanUtf8(word) +
+                   (guess.empty() ? "; " + help : "; did you mean '--" + guess + "'?");
         }
     }
     if (called.empty()) {
@@ -130,6 +144,7 @@ Result<void> runCommandLine(int argc, char** argv) {
     app.require_subcommand(1);
     Action action;
     addBake(app, action);
+    addCheck(app, action);
     addInfo(app, action);
     addQuery(app, action);
     addSlice(app, action);
@@ -138,8 +153,7 @@ Result<void> runCommandLine(int argc, char** argv) {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {
         const std::vector<CLI::App*> called = app.get_subcommands();
-        return printOut(called.empty() ? app.help()
-                                       : called.front()->help("relief " + called.front()->get_name()));
+        return printOut(called.empty() ? app.help() : called.front()->help("relief"));
     } catch (const CLI::CallForVersion& version) {
         return printOut(std::string(version.what()) + "\n");
     } catch (const CLI::ParseError& error) {

@@ -232,8 +232,8 @@ void addBake(CLI::App& app, Action& action) {
                 "relief bake bunny.obj -o bunny.relief\n"
                 "relief bake rock.glb -o rock.relief --map cube:size=256 --map fixed8:dir=-y,size=512x256\n"
                 "relief bake hall.fbx -o hall.relief --map cube:center=0/2/0,compare=less --json");
-    verb.add_option("mesh", command->mesh, "The mesh, in any format that assimp reads")
-        ->option_text("MESH")
+    verb.add_option("MESH", command->mesh, "The mesh, in any format that assimp reads")
+        ->type_name("")
         ->required();
     verb.add_option("-o,--output", command->output, "The collider to write; - for standard output")
         ->option_text("OUT.relief")

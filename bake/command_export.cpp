@@ -26,6 +26,7 @@ Result<void> runExport(const ExportCommand& command) {
     if (const Result<void> ready = preflightFolder(folder); !ready) {
         return ready;
     }
+    std::size_t count = 0;
     for (std::size_t i = 0; i < collider->maps.size(); ++i) {
         const DepthMap& map = collider->maps[i];
         for (std::uint32_t face = 0; face < map.faceCount(); ++face) {
@@ -37,9 +38,11 @@ Result<void> runExport(const ExportCommand& command) {
             if (const Result<void> written = writeFile(path, *bytes); !written) {
                 return written;
             }
-            spdlog::info("wrote {}", quotedPath(path));
+            spdlog::debug("wrote {}", quotedPath(path));
+            ++count;
         }
     }
+    spdlog::info("wrote {} images into {}", count, quotedPath(folder));
     return {};
 }
 
@@ -49,14 +52,13 @@ void addExport(CLI::App& app, Action& action) {
     auto command = std::make_shared<ExportCommand>();
     CLI::App& verb =
         addVerb(app, command->common, "export",
-                "Every map as OpenEXR: map0_front-back.exr, and map3_cube_+x.exr to map3_cube_-z.exr for the "
+                "Writes every map as OpenEXR\n\nFiles are map0_front-back.exr, and map3_cube_+x.exr to "
+                "map3_cube_-z.exr for the "
                 "six faces\nof a cube. Channels Z and N.X N.Y N.Z, and ZBack and NBack.X NBack.Y NBack.Z of "
                 "front-back maps;\nZ is in object units from the near plane or the cube's centre, +inf where "
                 "there is no surface",
                 "relief export bunny.relief -o maps/");
-    verb.add_option("file", command->file, "The collider; - for standard input")
-        ->option_text("FILE")
-        ->required();
+    verb.add_option("FILE", command->file, "The collider; - for standard input")->type_name("")->required();
     verb.add_option("-o,--output", command->output, "The folder; made if it is missing")
         ->option_text("DIR")
         ->required();

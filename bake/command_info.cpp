@@ -82,9 +82,7 @@ void addInfo(CLI::App& app, Action& action) {
         addVerb(app, command->common, "info", "Shows what is in a collider, and where it comes from",
                 "relief info bunny.relief\n"
                 "relief info bunny.relief --json | jq .maps[0].object_to_map");
-    verb.add_option("file", command->file, "The collider; - for standard input")
-        ->option_text("FILE")
-        ->required();
+    verb.add_option("FILE", command->file, "The collider; - for standard input")->type_name("")->required();
     verb.add_flag("--json", command->json, "Print JSON");
     verb.callback([command, &action] { action = [command] { return runInfo(*command); }; });
 }

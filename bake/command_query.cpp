@@ -83,14 +83,13 @@ void addQuery(CLI::App& app, Action& action) {
     auto command = std::make_shared<QueryCommand>();
     CLI::App& verb =
         addVerb(app, command->common, "query",
-                "Signed distance and normal at points. A line of the output is x,y,z,f,nx,ny,nz,map: f is "
+                "Evaluates the field at points\n\nA line of the output is x,y,z,f,nx,ny,nz,map: signed "
+                "distance, normal, deciding map. f is "
                 "negative inside,\ninf where a point is outside and no more is known, and empty where no map "
                 "votes",
                 "relief query bunny.relief --points in.csv -o out.csv\n"
                 "echo 0,0.1,0 | relief query bunny.relief --points - -o - --gpu");
-    verb.add_option("file", command->file, "The collider; - for standard input")
-        ->option_text("FILE")
-        ->required();
+    verb.add_option("FILE", command->file, "The collider; - for standard input")->type_name("")->required();
     verb.add_option("--points", command->points, "Lines x,y,z in object space; - for standard input")
         ->option_text("IN.csv")
         ->required();

@@ -97,13 +97,11 @@ void addSlice(CLI::App& app, Action& action) {
     auto command = std::make_shared<SliceCommand>();
     CLI::App& verb =
         addVerb(app, command->common, "slice",
-                "The combined field on a plane. PNG: inside and outside beside the distance in false "
+                "Draws the field on a plane\n\nPNG: inside and outside beside the distance in false "
                 "colours.\nEXR: channels distance, inside, map, N.X N.Y N.Z",
                 "relief slice bunny.relief --axis z --at center -o slice.png\n"
                 "relief slice bunny.relief --axis y --at 0.1 --size 1024 -o slice.exr");
-    verb.add_option("file", command->file, "The collider; - for standard input")
-        ->option_text("FILE")
-        ->required();
+    verb.add_option("FILE", command->file, "The collider; - for standard input")->type_name("")->required();
     verb.add_option("--axis", command->axis, "The plane is across this axis; default z")
         ->option_text("x|y|z");
     verb.add_option("--at", command->at,

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <optional>
 
 namespace relief {
 namespace {
@@ -24,7 +25,7 @@ glm::uvec3 nodesFor(const glm::dvec3& size, double spacing) {
 
 }  // namespace
 
-Lattice makeLattice(const Bounds& box, std::uint64_t nodes_max) {
+Lattice makeLattice(const Bounds& box, std::uint64_t nodes_max, LatticeFit fit) {
     const glm::dvec3 size = glm::dvec3(box.max) - glm::dvec3(box.min);
     const auto fits = [&](double spacing) {
         const glm::uvec3 nodes = nodesFor(size, spacing);
@@ -39,10 +40,14 @@ Lattice makeLattice(const Bounds& box, std::uint64_t nodes_max) {
     }
     Lattice lattice;
     lattice.box = box;
-    lattice.spacing = large;
     lattice.nodes = nodesFor(size, large);
-    const glm::dvec3 covered = large * (glm::dvec3(lattice.nodes) - 1.0);
-    lattice.origin = 0.5 * (glm::dvec3(box.min) + glm::dvec3(box.max)) - 0.5 * covered;
+    const glm::dvec3 voxels = glm::dvec3(lattice.nodes) - 1.0;
+    lattice.spacing =
+        fit == LatticeFit::kStretched ? glm::max(size / voxels, 1e-9 * large) : glm::dvec3(large);
+    lattice.origin = glm::dvec3(box.min);
+    if (fit == LatticeFit::kCentered) {
+        lattice.origin += 0.5 * (size - large * voxels);
+    }
     return lattice;
 }
 
@@ -52,14 +57,18 @@ DistanceGrid sampleDistances(const MeshQuery& query, const Lattice& lattice) {
     tbb::parallel_for(std::uint32_t{0}, nodes.y * nodes.z, [&](std::uint32_t row) {
         const std::uint32_t y = row % nodes.y;
         const std::uint32_t z = row / nodes.y;
-        double within = std::numeric_limits<double>::infinity();
+        std::optional<std::uint32_t> nearby;
+        double before = 0.0;  // distance of the node before
         for (std::uint32_t x = 0; x < nodes.x; ++x) {
             const glm::vec3 p = lattice.origin + lattice.spacing * glm::dvec3(x, y, z);
-            const double distance = query.closest(p, within).distance;
-            // The triangle inequality, and a little for the rounding of p.
-            within = distance + 1.001 * lattice.spacing;
-            grid.distances[std::size_t{row} * nodes.x + x] =
-                static_cast<float>(query.inside(p) ? -distance : distance);
+            const ClosestPoint closest = query.closest(p, nearby);
+            nearby = closest.triangle;
+            // No surface lies between this node and the one before if that is farther from the surface than
+            // from this node; a little more for the rounding of p.
+            const bool same_side = query.watertight() && std::abs(before) > 1.01 * lattice.spacing.x;
+            const bool inside = same_side ? before < 0.0 : query.inside(p);
+            before = inside ? -closest.distance : closest.distance;
+            grid.distances[std::size_t{row} * nodes.x + x] = static_cast<float>(before);
         }
     });
     return grid;
@@ -75,7 +84,7 @@ double DistanceVolume::fullRange(const DistanceGrid& grid) {
 
 double DistanceVolume::bandRange(const DistanceGrid& grid, double reach) {
     // The corners of a voxel are at most its diagonal farther away than any of its points.
-    return std::min(fullRange(grid), reach + std::sqrt(3.0) * grid.lattice.spacing);
+    return std::min(fullRange(grid), reach + glm::length(grid.lattice.spacing));
 }
 
 DistanceVolume::DistanceVolume(const DistanceGrid& grid, double range)

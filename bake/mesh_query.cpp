@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
+#include <limits>
+#include <numeric>
 #include <string>
+#include <vector>
 
 #include "bake/inside.h"
 #include "bake/triangle_plane.h"
@@ -118,6 +120,44 @@ glm::dvec3 closestOnTriangle(const glm::dvec3& p, const glm::dvec3& a, const glm
     return a + (vb / sum) * ab + (vc / sum) * ac;
 }
 
+bool hasEvenEdges(const TriangleMesh& mesh) {
+    // Equal positions get one number, that of the first of them in lexicographic order.
+    const auto count = static_cast<std::uint32_t>(mesh.positions.size());
+    std::vector<std::uint32_t> order(count);
+    std::iota(order.begin(), order.end(), 0U);
+    const auto less = [&](std::uint32_t i, std::uint32_t j) {
+        const glm::vec3& a = mesh.positions[i];
+        const glm::vec3& b = mesh.positions[j];
+        return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+    };
+    std::sort(order.begin(), order.end(), less);
+    std::vector<std::uint32_t> number(count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const bool same = i > 0 && mesh.positions[order[i]] == mesh.positions[order[i - 1]];
+        number[order[i]] = same ? number[order[i - 1]] : order[i];
+    }
+    std::vector<std::uint64_t> edges;
+    edges.reserve(3 * mesh.triangles.size());
+    for (const glm::uvec3& t : mesh.triangles) {
+        for (int i = 0; i < 3; ++i) {
+            const std::uint64_t a = number[t[i]];
+            const std::uint64_t b = number[t[(i + 1) % 3]];
+            edges.push_back(std::min(a, b) << 32 | std::max(a, b));
+        }
+    }
+    std::sort(edges.begin(), edges.end());
+    for (std::size_t i = 0; i < edges.size();) {
+        const std::size_t first = i;
+        while (i < edges.size() && edges[i] == edges[first]) {
+            ++i;
+        }
+        if ((i - first) % 2 == 1) {
+            return false;
+        }
+    }
+    return true;
+}
+
 }  // namespace
 
 struct MeshQuery::Impl {
@@ -127,39 +167,47 @@ struct MeshQuery::Impl {
     /// Embree sees (p − center) · scale: floats are finest there, and no product of coordinates can overflow.
     glm::dvec3 center{0.0};
     double scale = 1.0;  // a power of two
+    bool watertight = false;
 
     [[nodiscard]] glm::dvec3 toLocal(const glm::dvec3& p) const { return (p - center) * scale; }
 
-    /// State of one search for the closest point; local space.
+    /// One search for the closest point; local space.
     struct Search {
         const Impl* impl;
         glm::dvec3 p;
-        double best_squared;
         float slack;  // added to the search radius: Embree's boxes and the query are floats
+        double best_squared = std::numeric_limits<double>::infinity();
         std::uint32_t triangle = RTC_INVALID_GEOMETRY_ID;
         glm::dvec3 point{0.0};
 
         [[nodiscard]] float radius() const { return static_cast<float>(std::sqrt(best_squared)) + slack; }
 
-        static bool visit(RTCPointQueryFunctionArguments* args) {
-            auto* self = static_cast<Search*>(args->userPtr);
-            const TriangleMesh& mesh = *self->impl->mesh;
-            const glm::uvec3& t = mesh.triangles[args->primID];
-            const glm::dvec3 point = closestOnTriangle(self->p, self->impl->toLocal(mesh.positions[t.x]),
-                                                       self->impl->toLocal(mesh.positions[t.y]),
-                                                       self->impl->toLocal(mesh.positions[t.z]));
-            const glm::dvec3 offset = point - self->p;
+        /// \return true if the triangle is closer than the best so far.
+        bool add(std::uint32_t index) {
+            const TriangleMesh& mesh = *impl->mesh;
+            const glm::uvec3& t = mesh.triangles[index];
+            const glm::dvec3 closest =
+                closestOnTriangle(p, impl->toLocal(mesh.positions[t.x]), impl->toLocal(mesh.positions[t.y]),
+                                  impl->toLocal(mesh.positions[t.z]));
+            const glm::dvec3 offset = closest - p;
             const double squared = dot(offset, offset);
             // Of equals the lowest index: the order of the visits must not matter.
-            if (squared < self->best_squared ||
-                (squared == self->best_squared && args->primID < self->triangle)) {
-                self->best_squared = squared;
-                self->triangle = args->primID;
-                self->point = point;
-                args->query->radius = self->radius();
+            if (squared < best_squared || (squared == best_squared && index < triangle)) {
+                best_squared = squared;
+                triangle = index;
+                point = closest;
                 return true;
             }
             return false;
+        }
+
+        static bool visit(RTCPointQueryFunctionArguments* args) {
+            auto* self = static_cast<Search*>(args->userPtr);
+            if (!self->add(args->primID)) {
+                return false;
+            }
+            args->query->radius = self->radius();
+            return true;
         }
     };
 };
@@ -173,11 +221,16 @@ const TriangleMesh& MeshQuery::mesh() const {
     return *impl_->mesh;
 }
 
+bool MeshQuery::watertight() const {
+    return impl_->watertight;
+}
+
 Result<MeshQuery> MeshQuery::build(const TriangleMesh& mesh) {
     auto impl = std::make_unique<Impl>();
     impl->mesh = &mesh;
     impl->center = 0.5 * glm::dvec3(mesh.bounds.min) + 0.5 * glm::dvec3(mesh.bounds.max);
     impl->scale = std::ldexp(1.0, -std::ilogb(mesh.bounds.longestSide()));
+    impl->watertight = hasEvenEdges(mesh);
     impl->device.reset(rtcNewDevice(nullptr));
     if (!impl->device) {
         return embreeError(rtcGetDeviceError(nullptr), mesh.name);
@@ -238,27 +291,22 @@ bool MeshQuery::inside(const glm::vec3& p) const {
     return votes[1] >= kMajority;
 }
 
-ClosestPoint MeshQuery::closest(const glm::vec3& p, double within) const {
-    Impl::Search search{impl_.get(), impl_->toLocal(p), 0.0, 0.0F};
-    const glm::dvec3 size = glm::abs(search.p);
-    search.slack = static_cast<float>(2e-6 * (1.0 + std::max({size.x, size.y, size.z})));
-    const auto run = [&](double bound) {
-        search.best_squared = std::numeric_limits<double>::infinity();
-        RTCPointQueryContext context;
-        rtcInitPointQueryContext(&context);
-        RTCPointQuery query{};
-        const glm::vec3 at = search.p;
-        query.x = at.x;
-        query.y = at.y;
-        query.z = at.z;
-        query.radius = static_cast<float>(bound * impl_->scale) + search.slack;
-        rtcPointQuery(impl_->scene.get(), &query, &context, Impl::Search::visit, &search);
-    };
-    run(within);
-    if (search.triangle == RTC_INVALID_GEOMETRY_ID ||
-        std::sqrt(search.best_squared) > within * impl_->scale + static_cast<double>(search.slack)) {
-        run(std::numeric_limits<double>::infinity());
+ClosestPoint MeshQuery::closest(const glm::vec3& p, std::optional<std::uint32_t> hint) const {
+    const glm::dvec3 local = impl_->toLocal(p);
+    const double size = std::max({std::abs(local.x), std::abs(local.y), std::abs(local.z)});
+    Impl::Search search{impl_.get(), local, static_cast<float>(2e-6 * (1.0 + size))};
+    if (hint) {
+        search.add(*hint);
     }
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    RTCPointQuery query{};
+    const glm::vec3 at = local;
+    query.x = at.x;
+    query.y = at.y;
+    query.z = at.z;
+    query.radius = search.radius();
+    rtcPointQuery(impl_->scene.get(), &query, &context, Impl::Search::visit, &search);
     return {std::sqrt(search.best_squared) / impl_->scale, search.triangle,
             search.point / impl_->scale + impl_->center};
 }

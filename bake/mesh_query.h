@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
-#include <limits>
 #include <memory>
 #include <optional>
 
@@ -44,10 +43,13 @@ class MeshQuery {
     /// the mesh is open, most directions still pass its holes by.
     [[nodiscard]] bool inside(const glm::vec3& p) const;
 
-    /// \param within  object units: the surface is known to be at most so far. Saves time; should it be
-    ///                wrong, the answer is right all the same.
-    [[nodiscard]] ClosestPoint closest(const glm::vec3& p,
-                                       double within = std::numeric_limits<double>::infinity()) const;
+    /// Every edge belongs to an even number of triangles, where equal positions are one: inside() is then the
+    /// same at both ends of any segment that meets no surface.
+    [[nodiscard]] bool watertight() const;
+
+    /// The lowest index of equally close triangles.
+    /// \param hint  a triangle that is probably near: saves time, and does not change the distance.
+    [[nodiscard]] ClosestPoint closest(const glm::vec3& p, std::optional<std::uint32_t> hint = {}) const;
 
     /// The distance to the surface, negative where p is inside. Object units.
     [[nodiscard]] double signedDistance(const glm::vec3& p) const;

@@ -23,7 +23,7 @@ constexpr float kEdgeWidth = 1e-4F;
 constexpr float kTieDepth = 1e-5F;
 /// Below this cosine between a triangle's normal and the ray, its plane is a poor guide outside the triangle.
 constexpr double kGrazing = 1e-3;
-constexpr std::size_t kPlaneDepths = 64;
+constexpr std::size_t kPlaneDepths = 2048;
 constexpr std::uint32_t kNone = 0xffffffff;
 
 struct DeviceRelease {

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <memory>
 
+#include "bake/color.h"
 #include "bake/text.h"
 
 namespace relief {
@@ -25,11 +26,6 @@ using Context = std::unique_ptr<cairo_t, ContextDestroy>;
 
 // --- colours ---
 
-/// sRGB, each in [0, 1].
-struct Color {
-    double r, g, b;
-};
-
 constexpr Color kPaper{1.0, 1.0, 1.0};
 constexpr Color kInk{0.13, 0.14, 0.16};
 constexpr Color kFaintInk{0.42, 0.44, 0.47};
@@ -38,41 +34,15 @@ constexpr Color kOutsideColor{0.94, 0.945, 0.95};
 constexpr Color kFarColor{0.865, 0.87, 0.86};
 constexpr Color kAbstainedColor{0.80, 0.70, 0.82};
 
-double toSrgb(double linear) {
-    const double c = std::clamp(linear, 0.0, 1.0);
-    return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055;
-}
-
-/// Ottosson, "A perceptual color space for image processing" (2020). Hue in degrees.
-Color fromOklch(double lightness, double chroma, double hue) {
-    const double a = chroma * std::cos(hue * 3.14159265358979323846 / 180.0);
-    const double b = chroma * std::sin(hue * 3.14159265358979323846 / 180.0);
-    const auto cube = [](double v) { return v * v * v; };
-    const double l = cube(lightness + 0.3963377774 * a + 0.2158037573 * b);
-    const double m = cube(lightness - 0.1055613458 * a - 0.0638541728 * b);
-    const double s = cube(lightness - 0.0894841775 * a - 1.2914855480 * b);
-    return {toSrgb(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s),
-            toSrgb(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
-            toSrgb(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s)};
-}
-
-/// Diverging: lightness falls evenly with |u| on both sides, blue inside and orange outside, so that sides
-/// and amounts can be told apart in print and by the colour-blind.
-/// \param u  distance over its largest shown value, in [−1, 1].
-Color distanceColor(double u) {
-    const double amount = std::min(std::abs(u), 1.0);
-    const double lightness = 0.97 - 0.56 * amount;
-    const double chroma = 0.135 * std::sqrt(amount) * (1.0 - 0.25 * amount);
-    return u < 0.0 ? fromOklch(lightness, chroma, 255.0) : fromOklch(lightness, chroma, 60.0 - 12.0 * amount);
-}
-
-std::uint32_t toPixel(const Color& c) {
-    const auto byte = [](double v) { return static_cast<std::uint32_t>(std::lround(v * 255.0)); };
-    return byte(c.r) << 16 | byte(c.g) << 8 | byte(c.b);
-}
-
 void setColor(cairo_t* cr, const Color& color, double alpha = 1.0) {
     cairo_set_source_rgba(cr, color.r, color.g, color.b, alpha);
+}
+
+cairo_status_t append(void* png, const unsigned char* data, unsigned length) {
+    auto* bytes = static_cast<std::vector<std::byte>*>(png);
+    const auto* first = reinterpret_cast<const std::byte*>(data);
+    bytes->insert(bytes->end(), first, first + length);
+    return CAIRO_STATUS_SUCCESS;
 }
 
 // --- numbers ---
@@ -264,13 +234,6 @@ class Figure {
     }
 
   private:
-    static cairo_status_t append(void* png, const unsigned char* data, unsigned length) {
-        auto* bytes = static_cast<std::vector<std::byte>*>(png);
-        const auto* first = reinterpret_cast<const std::byte*>(data);
-        bytes->insert(bytes->end(), first, first + length);
-        return CAIRO_STATUS_SUCCESS;
-    }
-
     /// Lengths follow the text's size, 12 pixels for a panel of 480.
     [[nodiscard]] double em(double n) const { return 12.0 * n * unit_; }
     [[nodiscard]] std::string withUnit() const {
@@ -546,6 +509,29 @@ class Figure {
 };
 
 }  // namespace
+
+Result<std::vector<std::byte>> encodePng(const RgbImage& image) {
+    const std::unique_ptr<cairo_surface_t, SurfaceDestroy> surface(cairo_image_surface_create(
+        CAIRO_FORMAT_RGB24, static_cast<int>(image.width), static_cast<int>(image.height)));
+    std::vector<std::byte> png;
+    cairo_status_t status = cairo_surface_status(surface.get());
+    if (status == CAIRO_STATUS_SUCCESS) {
+        cairo_surface_flush(surface.get());
+        unsigned char* to = cairo_image_surface_get_data(surface.get());
+        const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(surface.get()));
+        for (std::uint32_t y = 0; y < image.height; ++y) {
+            std::memcpy(to + y * stride, &image.pixels[std::size_t{y} * image.width],
+                        image.width * sizeof(std::uint32_t));
+        }
+        cairo_surface_mark_dirty(surface.get());
+        status = cairo_surface_write_to_png_stream(surface.get(), append, &png);
+    }
+    if (status != CAIRO_STATUS_SUCCESS) {
+        return fail(ErrorCode::kFailure,
+                    std::string("cannot make a picture: ") + cairo_status_to_string(status));
+    }
+    return png;
+}
 
 Result<std::vector<std::byte>> drawSlice(const Slice& slice, const SliceFigureOptions& options) {
     return Figure(slice, options).draw();

@@ -116,7 +116,7 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-std::string didYouMean(std::string_view word, std::span<const std::string_view> known) {
+std::string_view nearest(std::string_view word, std::span<const std::string_view> known) {
     std::string_view best;
     std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
     if (word.size() > 64) {
@@ -131,6 +131,11 @@ std::string didYouMean(std::string_view word, std::span<const std::string_view> 
             best_distance = distance;
         }
     }
+    return best;
+}
+
+std::string didYouMean(std::string_view word, std::span<const std::string_view> known) {
+    const std::string_view best = nearest(word, known);
     return best.empty() ? std::string() : "; did you mean '" + std::string(best) + "'?";
 }
 
@@ -155,7 +160,7 @@ std::string cleanUtf8(std::string_view bytes, std::size_t size_max) {
             break;
         }
         text += character;
-        bytes.remove_prefix(bad ? 1 : length);
+        bytes.remove_prefix(length == 0 ? 1 : length);
     }
     return text;
 }

@@ -28,7 +28,9 @@ void appendShortest(std::string& out, float value);
 /// Without spaces, tabs and a carriage return at both ends.
 [[nodiscard]] std::string_view trimmed(std::string_view text);
 
-/// "; did you mean 'size'?" if one of `known` is near `word` (a third of its letters changed at most), or "".
+/// The one of `known` that is nearest to `word`, if at most a third of its letters are changed; else "".
+[[nodiscard]] std::string_view nearest(std::string_view word, std::span<const std::string_view> known);
+/// "; did you mean 'size'?" for the nearest one, or "".
 [[nodiscard]] std::string didYouMean(std::string_view word, std::span<const std::string_view> known);
 /// "less, greater"
 [[nodiscard]] std::string listed(std::span<const std::string_view> words);

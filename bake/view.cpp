@@ -49,7 +49,14 @@ std::array<glm::dvec3, 3> orthographicFrame(const glm::vec3& direction) {
     return {right, cross(right, d), d};
 }
 
+std::array<Range, 3> projectedRanges(const Bounds& box, const std::array<glm::dvec3, 3>& frame);
+
 std::array<Range, 3> projectedRanges(const TriangleMesh& mesh, const std::array<glm::dvec3, 3>& frame) {
+    // Along the axes of object space the bounds say it all, exactly.
+    if (frame[0].x * frame[0].y == 0.0 && frame[0].y * frame[0].z == 0.0 && frame[0].z * frame[0].x == 0.0 &&
+        std::abs(frame[2].x) + std::abs(frame[2].y) + std::abs(frame[2].z) == 1.0) {
+        return projectedRanges(mesh.bounds, frame);
+    }
     std::array<Range, 3> ranges;
     for (const glm::vec3& p : mesh.positions) {
         for (std::size_t i = 0; i < 3; ++i) {

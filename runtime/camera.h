@@ -12,7 +12,7 @@ namespace relief {
 struct Camera {
     glm::vec3 eye{0.0F, 0.0F, 1.0F};  ///< object space; not equal to target, nor straight above or below it
     glm::vec3 target{0.0F};
-    float fov = 30.0F;  ///< vertical angle of view in degrees, in (0, 180)
+    float fov = 30.0F;        ///< vertical angle of view in degrees, in (0, 180)
     float near_plane = 0.1F;  ///< distances along the viewing direction
     float far_plane = 100.0F;
 

@@ -20,7 +20,8 @@ constexpr GLsizei kCoarseStride = 4;
 // A ray's step in texels: what is two texels thick is met.
 constexpr float kStepTexels = 1.5F;
 
-// Across the diagonal of a box whose finest texel is 1/2048 of its longest side, with room for the bisections.
+// Across the diagonal of a box whose finest texel is 1/2048 of its longest side, with room for the
+// bisections.
 constexpr int kRayStepsMax = 2560;
 constexpr int kBisections = 10;
 constexpr int kNormals = 13;
@@ -35,8 +36,8 @@ void setVector(const GlProgram& program, const char* name, const glm::vec3& v) {
     glUniform3f(uniformLocation(program, name), v.x, v.y, v.z);
 }
 
-void setViewUniforms(const GlProgram& program, const Camera& camera, const ColliderStyle& style, GLsizei width,
-                     GLsizei height) {
+void setViewUniforms(const GlProgram& program, const Camera& camera, const ColliderStyle& style,
+                     GLsizei width, GLsizei height) {
     const float tangent = camera.tanHalfFov();
     const float aspect = static_cast<float>(width) / static_cast<float>(height);
     const float near = camera.near_plane;
@@ -71,7 +72,8 @@ void drawInBands(GLsizei width, GLsizei height) {
 Result<ColliderRenderer> ColliderRenderer::create(const ColliderView& view) {
     const PassState state;
     auto trace = makeProgram("quad.vert", "collider_view.frag", view.textures->defines());
-    auto coarse = makeProgram("quad.vert", "collider_view.frag", "#define RELIEF_COARSE 1\n" + view.textures->defines());
+    auto coarse = makeProgram("quad.vert", "collider_view.frag",
+                              "#define RELIEF_COARSE 1\n" + view.textures->defines());
     auto copy = makeProgram("quad.vert", "copy_view.frag");
     if (!trace || !coarse || !copy) {
         return forward(!trace ? trace : (!coarse ? coarse : copy));
@@ -99,7 +101,8 @@ Result<ColliderRenderer> ColliderRenderer::create(const ColliderView& view) {
     return renderer;
 }
 
-Result<void> ColliderRenderer::draw(const Camera& camera, const ColliderStyle& style, const RenderTarget& target) {
+Result<void> ColliderRenderer::draw(const Camera& camera, const ColliderStyle& style,
+                                    const RenderTarget& target) {
     const PassState state;
     const Drawn wanted{camera, style, target.width, target.height};
     if (drawn_ != wanted) {
@@ -130,9 +133,9 @@ Result<void> ColliderRenderer::trace(const Camera& camera, const ColliderStyle& 
     GLint side_max = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side_max);
     if (std::max(width, height) > side_max) {
-        return fail(ErrorCode::kLimit, "a picture of " + std::to_string(width) + "x" + std::to_string(height) +
-                                           " pixels is larger than this GL takes (" + std::to_string(side_max) +
-                                           " along a side)");
+        return fail(ErrorCode::kLimit, "a picture of " + std::to_string(width) + "x" +
+                                           std::to_string(height) + " pixels is larger than this GL takes (" +
+                                           std::to_string(side_max) + " along a side)");
     }
     color_ = makeTexture2D(GL_RGBA16F, width, height, GL_RGBA, GL_HALF_FLOAT);
     depth_ = makeTexture2D(GL_DEPTH_COMPONENT32F, width, height, GL_DEPTH_COMPONENT, GL_FLOAT);

@@ -1,6 +1,6 @@
-// Draws a collider from its own depth maps, on a floor before a background: no mesh is needed. Rays through the
-// combined field cost much and collider and camera stand still, so the picture is kept and drawn again from a
-// texture until camera, size or style change.
+// Draws a collider from its own depth maps, on a floor before a background: no mesh is needed. Rays through
+// the combined field cost much and collider and camera stand still, so the picture is kept and drawn again
+// from a texture until camera, size or style change.
 //
 //     bytes on the GPU = 12 · width · height   (RGBA16F and 32-bit depth)
 #pragma once
@@ -16,7 +16,7 @@
 namespace relief {
 
 struct ColliderStyle {
-    std::optional<float> ground;             ///< height of the floor, object units; nullopt: none
+    std::optional<float> ground;                ///< height of the floor, object units; nullopt: none
     glm::vec3 background{0.62F, 0.69F, 0.76F};  ///< sRGB
     glm::vec3 clay{0.74F, 0.60F, 0.52F};        ///< sRGB
     friend bool operator==(const ColliderStyle&, const ColliderStyle&) = default;
@@ -30,10 +30,12 @@ class ColliderRenderer {
 
     /// Fills the target's colour, in linear light, and its depth.
     /// Errors: kUnsupported, kLimit (the target's size).
-    [[nodiscard]] Result<void> draw(const Camera& camera, const ColliderStyle& style, const RenderTarget& target);
+    [[nodiscard]] Result<void> draw(const Camera& camera, const ColliderStyle& style,
+                                    const RenderTarget& target);
 
   private:
-    [[nodiscard]] Result<void> trace(const Camera& camera, const ColliderStyle& style, GLsizei width, GLsizei height);
+    [[nodiscard]] Result<void> trace(const Camera& camera, const ColliderStyle& style, GLsizei width,
+                                     GLsizei height);
 
     struct Drawn {
         Camera camera;

@@ -15,7 +15,8 @@ struct ColliderView {
     float texel = 0.0F;  ///< object units across the finest texel of the maps, > 0
 };
 
-/// The side, in object units, of the finest texel among the maps, but no less than 1/2048 of the longest side.
+/// The side, in object units, of the finest texel among the maps, but no less than 1/2048 of the longest
+/// side.
 [[nodiscard]] float finestTexel(const Collider& collider);
 
 /// Unit vector towards the sun of all pictures: from the upper left, in front.

@@ -39,7 +39,8 @@ Emitter::Emitter(const EmitterSettings& settings, std::uint64_t seed) : settings
 std::uint64_t Emitter::emit(double dt, std::uint64_t room, std::vector<Birth>& births) {
     elapsed_ += dt;
     // The small extra keeps 60 steps of 1/60 s from missing the last birth of a second by rounding.
-    const double by_rate = std::min(settings_.rate * elapsed_ * (1.0 + 1e-12), kCountMax);
+    const double by_rate =
+        std::min(settings_.rate * std::min(elapsed_, settings_.duration) * (1.0 + 1e-12), kCountMax);
     const std::uint64_t target = settings_.burst + static_cast<std::uint64_t>(by_rate);
     const std::uint64_t wanted = target - std::min(target, asked_for_);
     asked_for_ = std::max(asked_for_, target);

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <vector>
 
 namespace relief {
@@ -34,9 +35,11 @@ struct Birth {
 struct EmitterSettings {
     glm::vec3 box_min{0.0F};  ///< births are uniform in this box; a point where box_min = box_max
     glm::vec3 box_max{0.0F};
-    double rate = 0.0;        ///< births a second, ≥ 0
-    std::uint64_t burst = 0;  ///< births at the very start, on top of the rate
-    glm::vec3 velocity{0.0F};         ///< mean velocity at birth
+    double rate = 0.0;  ///< births a second, ≥ 0
+    double duration =
+        std::numeric_limits<double>::infinity();  ///< seconds after which no more births come, > 0
+    std::uint64_t burst = 0;                      ///< births at the very start, on top of the rate
+    glm::vec3 velocity{0.0F};                     ///< mean velocity at birth
     glm::vec3 velocity_spread{0.0F};  ///< each component is uniform in velocity ± velocity_spread
     float lifetime_min = 1.0F;        ///< seconds; lifetimes are uniform between the two
     float lifetime_max = 1.0F;
@@ -47,11 +50,10 @@ class Emitter {
   public:
     Emitter(const EmitterSettings& settings, std::uint64_t seed);
 
-    /// The births of the next `dt` seconds: after time t, burst + ⌊rate · t⌋ births have been asked for in
-    /// all, however t was cut into steps.
-    /// \param room    at most so many are made: what the particle system has place for.
-    /// \param births  they are added at its end.
-    /// \return how many were asked for but found no room; they are not made up for later.
+    /// The births of the next `dt` seconds: after time t, burst + ⌊rate · min(t, duration)⌋ births have been
+    /// asked for in all, however t was cut into steps. \param room    at most so many are made: what the
+    /// particle system has place for. \param births  they are added at its end. \return how many were asked
+    /// for but found no room; they are not made up for later.
     std::uint64_t emit(double dt, std::uint64_t room, std::vector<Birth>& births);
 
     [[nodiscard]] const EmitterSettings& settings() const { return settings_; }
@@ -59,7 +61,7 @@ class Emitter {
   private:
     EmitterSettings settings_;
     Pcg32 random_;
-    double elapsed_ = 0.0;       // seconds
+    double elapsed_ = 0.0;         // seconds
     std::uint64_t asked_for_ = 0;  // births so far, those without room included
 };
 

@@ -11,7 +11,8 @@ namespace relief {
 Result<Frame> Frame::create(std::uint32_t width, std::uint32_t height) {
     const std::string size = std::to_string(width) + "x" + std::to_string(height);
     if (width == 0 || height == 0) {
-        return fail(ErrorCode::kUsage, "a picture of " + size + " pixels has nothing to show; sides start at 1");
+        return fail(ErrorCode::kUsage,
+                    "a picture of " + size + " pixels has nothing to show; sides start at 1");
     }
     GLint side_max = 0;
     std::array<GLint, 2> viewport_max{};
@@ -20,9 +21,9 @@ Result<Frame> Frame::create(std::uint32_t width, std::uint32_t height) {
     const auto limit = static_cast<std::uint32_t>(std::min({side_max, viewport_max[0], viewport_max[1]}));
     const std::uint64_t pixels = std::uint64_t{width} * height;
     if (std::max(width, height) > limit || pixels > kPixelsMax) {
-        return fail(ErrorCode::kLimit, "a picture of " + size + " pixels is too large; this GL takes sides up to " +
-                                           std::to_string(limit) + ", Relief " + std::to_string(kPixelsMax) +
-                                           " pixels in all");
+        return fail(ErrorCode::kLimit,
+                    "a picture of " + size + " pixels is too large; this GL takes sides up to " +
+                        std::to_string(limit) + ", Relief " + std::to_string(kPixelsMax) + " pixels in all");
     }
     Frame frame;
     frame.width_ = width;
@@ -36,8 +37,8 @@ Result<Frame> Frame::create(std::uint32_t width, std::uint32_t height) {
     frame.color_ = makeTexture2D(GL_RGBA16F, large.width, large.height, GL_RGBA, GL_HALF_FLOAT);
     frame.depth_ =
         makeTexture2D(GL_DEPTH_COMPONENT32F, large.width, large.height, GL_DEPTH_COMPONENT, GL_FLOAT);
-    frame.finished_ = makeTexture2D(GL_RGBA8, static_cast<GLsizei>(width), static_cast<GLsizei>(height), GL_RGBA,
-                                    GL_UNSIGNED_BYTE);
+    frame.finished_ = makeTexture2D(GL_RGBA8, static_cast<GLsizei>(width), static_cast<GLsizei>(height),
+                                    GL_RGBA, GL_UNSIGNED_BYTE);
     if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
         return fail(error == GL_OUT_OF_MEMORY ? ErrorCode::kLimit : ErrorCode::kFailure,
                     "a picture of " + size + " pixels finds no room on the GPU; choose a smaller size");

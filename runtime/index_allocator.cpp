@@ -92,7 +92,9 @@ bool IndexAllocator::isLive(std::uint32_t index) const {
 }
 
 std::uint32_t IndexAllocator::highestLive() const {
-    const auto highest = [](std::uint64_t bits) { return kBits - 1 - static_cast<std::uint32_t>(std::countl_zero(bits)); };
+    const auto highest = [](std::uint64_t bits) {
+        return kBits - 1 - static_cast<std::uint32_t>(std::countl_zero(bits));
+    };
     std::uint32_t word = 0;
     for (std::size_t level = any_.size(); level-- > 0;) {
         word = word * kBits + highest(any_[level][word]);

@@ -28,10 +28,12 @@ constexpr std::string_view kHelpHead =
 
 constexpr std::string_view kHelpFoot =
     "\n"
-    "Exit codes: 0 done, 1 usage, 2 file or I/O, 3 invalid input, 4 failure, 5 unsupported here, 6 above a limit.\n";
+    "Exit codes: 0 done, 1 usage, 2 file or I/O, 3 invalid input, 4 failure, 5 unsupported here, 6 above a "
+    "limit.\n";
 
-constexpr std::array<std::string_view, 11> kOptions{"--steps", "--frames", "--size",  "--seed",    "--dump", "--json",
-                                                    "--api",   "-q",       "--quiet", "--version", "--help"};
+constexpr std::array<std::string_view, 11> kOptions{"--steps", "--frames",  "--size", "--seed",
+                                                    "--dump",  "--json",    "--api",  "-q",
+                                                    "--quiet", "--version", "--help"};
 
 int report(ErrorCode code, const std::string& message) {
     std::fprintf(stderr, "relief-sim: error: %s\n", message.c_str());
@@ -93,7 +95,8 @@ std::string toOptions(const CommandLine& line, relief::PlayerOptions& options) {
         std::uint32_t width = 0;
         std::uint32_t height = 0;
         if (!parseSize(line.size, width, height)) {
-            return "--size " + quotedWord(line.size) + " is not a size; write it as 960x720, each side at least 1";
+            return "--size " + quotedWord(line.size) +
+                   " is not a size; write it as 960x720, each side at least 1";
         }
         if (line.frames.empty()) {
             return "--size does nothing without --frames; add --frames DIR";
@@ -139,18 +142,24 @@ int run(int argc, char** argv) {
     app.footer(std::string(kHelpFoot));
     app.allow_extras();
     app.set_version_flag("--version", "relief-sim " RELIEF_VERSION);
-    app.add_option("INPUT", line.input, "Scene (.toml) or collider (.relief)")->type_name("SCENE.toml|COLLIDER.relief");
+    app.add_option("INPUT", line.input, "Scene (.toml) or collider (.relief)")
+        ->type_name("SCENE.toml|COLLIDER.relief");
     app.add_option("--steps", line.steps, "Steps to play, instead of the scene's")->type_name("N");
-    app.add_option("--frames", line.frames,
-                   "Write frame_0000.png and so on into this folder, made if missing. Frames of an earlier run are "
-                   "overwritten one by one; any beyond this run's last stay")
+    app.add_option(
+           "--frames", line.frames,
+           "Write frame_0000.png and so on into this folder, made if missing. Frames of an earlier run are "
+           "overwritten one by one; any beyond this run's last stay")
         ->type_name("DIR");
-    app.add_option("--size", line.size, "Size of the frames in pixels, instead of the scene's")->type_name("WxH");
+    app.add_option("--size", line.size, "Size of the frames in pixels, instead of the scene's")
+        ->type_name("WxH");
     app.add_option("--seed", line.seed, "Seed of the births, instead of the scene's")->type_name("S");
-    app.add_option("--dump", line.dump, "Write the final particles as PLY; - for standard output")->type_name("OUT.ply");
-    app.add_option("--api", line.api, "gl for OpenGL 3.3 (default), gles for OpenGL ES 3.0")->type_name("gl|gles");
+    app.add_option("--dump", line.dump, "Write the final particles as PLY; - for standard output")
+        ->type_name("OUT.ply");
+    app.add_option("--api", line.api, "gl for OpenGL 3.3 (default), gles for OpenGL ES 3.0")
+        ->type_name("gl|gles");
     app.add_flag("--json", line.json, "Print the report as JSON");
-    app.add_flag("-q,--quiet", line.quiet, "No progress and no summary; errors still, and what --json asks for");
+    app.add_flag("-q,--quiet", line.quiet,
+                 "No progress and no summary; errors still, and what --json asks for");
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& success) {  // --help, --version
@@ -162,7 +171,13 @@ int run(int argc, char** argv) {
         return report(ErrorCode::kUsage, unknownOption(app));
     }
     if (line.input.empty()) {
-        return report(ErrorCode::kUsage, "name a scene (.toml) or a collider (.relief); see relief-sim --help");
+        return report(ErrorCode::kUsage,
+                      "name a scene (.toml) or a collider (.relief); see relief-sim --help");
+    }
+    for (const CLI::Option* option : app.get_options()) {
+        if (option->count() > 0 && option->get_expected_max() > 0 && option->results().back().empty()) {
+            return report(ErrorCode::kUsage, option->get_name() + " is given without a value; see relief-sim --help");
+        }
     }
     relief::PlayerOptions options;
     if (const std::string wrong = toOptions(line, options); !wrong.empty()) {

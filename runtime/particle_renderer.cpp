@@ -17,13 +17,14 @@ constexpr ColliderTextures::Binding kColliderBinding{2, 0};
 constexpr float kPixelsMin = 1.5F;
 
 // A few for each grain, each with its own noise: neighbours make up for it.
-constexpr LightRays kLightRays{.sun = 1, .sky = 3, .sun_steps = 20, .sky_steps = 4};
+constexpr LightRays kLightRays{.sun = 1, .sky = 2, .sun_steps = 16, .sky_steps = 3};
 
 }  // namespace
 
 Result<ParticleRenderer> ParticleRenderer::create(const std::optional<ColliderView>& collider) {
     const PassState state;
-    const std::string defines = collider ? "#define RELIEF_LIT 1\n" + collider->textures->defines() : std::string();
+    const std::string defines =
+        collider ? "#define RELIEF_LIT 1\n" + collider->textures->defines() : std::string();
     auto program = makeProgram("point.vert", "point.frag", defines);
     if (!program) {
         return forward(program);

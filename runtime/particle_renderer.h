@@ -13,10 +13,10 @@
 namespace relief {
 
 struct ParticleStyle {
-    float diameter = 0.01F;           ///< object units
+    float diameter = 0.01F;               ///< object units
     glm::vec3 color{0.97F, 0.98F, 1.0F};  ///< sRGB
-    float opacity = 0.95F;            ///< 0…1
-    float fade_in = 0.2F;             ///< seconds after birth, and before death, over which opacity rises and falls
+    float opacity = 0.95F;                ///< 0…1
+    float fade_in = 0.2F;  ///< seconds after birth, and before death, over which opacity rises and falls
     float fade_out = 0.5F;
 };
 

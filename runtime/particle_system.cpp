@@ -33,7 +33,8 @@ void useTexture(int unit, const GlTexture& texture) {
 }
 
 GlTexture makeStateTexture(std::uint32_t width, std::uint32_t height) {
-    return makeTexture2D(GL_RGBA32F, static_cast<GLsizei>(width), static_cast<GLsizei>(height), GL_RGBA, GL_FLOAT);
+    return makeTexture2D(GL_RGBA32F, static_cast<GLsizei>(width), static_cast<GLsizei>(height), GL_RGBA,
+                         GL_FLOAT);
 }
 
 /// Draws quad.vert's triangle over the first rows of the bound framebuffer.
@@ -124,7 +125,8 @@ Result<void> ParticleSystem::createPrograms() {
     }
     birth_program_ = std::move(*birth);
     glUseProgram(birth_program_.name());
-    glUniform2i(uniformLocation(birth_program_, "u_size"), static_cast<GLint>(width_), static_cast<GLint>(height_));
+    glUniform2i(uniformLocation(birth_program_, "u_size"), static_cast<GLint>(width_),
+                static_cast<GLint>(height_));
     rebase_program_ = std::move(*rebase);
     glUseProgram(rebase_program_.name());
     glUniform1i(uniformLocation(rebase_program_, "u_birth"), kBirthUnit);
@@ -149,7 +151,6 @@ Result<ParticleSystem::StepProgram> ParticleSystem::makeStepProgram(const Collid
     const auto at = [&](const char* name) { return uniformLocation(step.program, name); };
     step.now = at("u_now");
     step.dt = at("u_dt");
-    step.extent = at("u_extent");
     step.gain = at("u_gain");
     step.keep = at("u_keep");
     step.restitution = at("u_restitution");
@@ -160,7 +161,6 @@ Result<ParticleSystem::StepProgram> ParticleSystem::makeStepProgram(const Collid
     glUniform1i(at("u_position"), kPositionUnit);
     glUniform1i(at("u_velocity"), kVelocityUnit);
     glUniform1i(at("u_birth"), kBirthUnit);
-    glUniform1i(at("u_width"), static_cast<GLint>(width_));
     if (collider != nullptr) {
         collider->attach(step.program, kColliderBinding);
     }
@@ -234,8 +234,8 @@ void ParticleSystem::drawBirths() {
     glBindVertexArray(birth_array_.name());
     glBindBuffer(GL_ARRAY_BUFFER, birth_vertices_.name());
     // A fresh store each time: the driver need not wait until the last one has been drawn.
-    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(newborn_.size() * sizeof(BirthVertex)), newborn_.data(),
-                 GL_STREAM_DRAW);
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(newborn_.size() * sizeof(BirthVertex)),
+                 newborn_.data(), GL_STREAM_DRAW);
     glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(newborn_.size()));
     newborn_.clear();
 }
@@ -257,7 +257,6 @@ void ParticleSystem::drawStep(float dt, float now) {
     const glm::vec3 gain = dt * (forces_.gravity + forces_.drag * forces_.wind);
     glUniform1f(step_.now, now);
     glUniform1f(step_.dt, dt);
-    glUniform1i(step_.extent, static_cast<GLint>(extent));
     glUniform3f(step_.gain, gain.x, gain.y, gain.z);
     glUniform1f(step_.keep, 1.0F / (1.0F + dt * forces_.drag));
     glUniform1f(step_.restitution, collision_.restitution);
@@ -329,7 +328,8 @@ Result<RawState> ParticleSystem::readRaw() const {
         floats.resize(std::size_t{4} * drawn_extent_);
         return {};
     };
-    for (auto done : {read(positions(), raw.position), read(velocities(), raw.velocity), read(births(), raw.birth)}) {
+    for (auto done :
+         {read(positions(), raw.position), read(velocities(), raw.velocity), read(births(), raw.birth)}) {
         if (!done) {
             return forward(done);
         }

@@ -72,11 +72,12 @@ struct ParticleState {
     float age = 0.0F;       ///< seconds
     float lifetime = 0.0F;  ///< seconds
     std::uint32_t type = 0;
-    std::uint32_t collisions = 0;  ///< steps in contact so far
+    std::uint32_t collisions = 0;      ///< steps in contact so far
     Contact contact = Contact::kNone;  ///< of the last step
 };
 
-/// The state textures as they are, four floats a texel, index after index up to the extent.
+/// The state textures as they are, four floats a texel, index after index up to the extent. (Texels beyond it
+/// hold leftovers, which no renderer may draw.)
 struct RawState {
     std::vector<float> position;
     std::vector<float> velocity;
@@ -148,7 +149,6 @@ class ParticleSystem {
         GlProgram program;
         GLint now = -1;
         GLint dt = -1;
-        GLint extent = -1;
         GLint gain = -1;
         GLint keep = -1;
         GLint restitution = -1;
@@ -168,9 +168,9 @@ class ParticleSystem {
     void freeDead(float now);
 
     IndexAllocator allocator_;
-    std::vector<Death> deaths_;          // a heap, the earliest in front
-    std::vector<std::uint32_t> ids_;     // of each index
-    std::vector<BirthVertex> newborn_;   // since the last step
+    std::vector<Death> deaths_;         // a heap, the earliest in front
+    std::vector<std::uint32_t> ids_;    // of each index
+    std::vector<BirthVertex> newborn_;  // since the last step
     std::uint64_t born_ = 0;
     std::uint64_t died_ = 0;
     std::uint64_t refused_ = 0;

@@ -27,8 +27,8 @@ constexpr Switch kSwitches[] = {
 };
 
 // The parts of a picture that transfers step over; GL ES 3.0 has them all.
-constexpr GLenum kWindows[] = {GL_PACK_ROW_LENGTH,    GL_PACK_SKIP_ROWS,     GL_PACK_SKIP_PIXELS,
-                               GL_UNPACK_ROW_LENGTH,  GL_UNPACK_SKIP_ROWS,   GL_UNPACK_SKIP_PIXELS,
+constexpr GLenum kWindows[] = {GL_PACK_ROW_LENGTH,     GL_PACK_SKIP_ROWS,    GL_PACK_SKIP_PIXELS,
+                               GL_UNPACK_ROW_LENGTH,   GL_UNPACK_SKIP_ROWS,  GL_UNPACK_SKIP_PIXELS,
                                GL_UNPACK_IMAGE_HEIGHT, GL_UNPACK_SKIP_IMAGES};
 
 void set(GLenum name, bool on) {

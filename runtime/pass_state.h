@@ -5,12 +5,12 @@
 
 namespace relief {
 
-/// On construction: saves what GlStateGuard saves and, on top of it, what else could spoil a pass (stencil test,
-/// dithering, alpha-to-coverage, rasterizer discard, sampler objects, polygon offset, primitive restart, uniform
-/// block binding 0, pack buffer and pack/unpack windows; on desktop GL also polygon mode, logic operation,
-/// program point size, point sprite origin, sRGB conversion), and switches all of it, blending, depth, cull and
-/// scissor test off, so that a draw writes what its shader says and a transfer is tightly packed.
-/// On destruction: puts everything back.
+/// On construction: saves what GlStateGuard saves and, on top of it, what else could spoil a pass (stencil
+/// test, dithering, alpha-to-coverage, rasterizer discard, sampler objects, polygon offset, primitive
+/// restart, uniform block binding 0, pack buffer and pack/unpack windows; on desktop GL also polygon mode,
+/// logic operation, program point size, point sprite origin, sRGB conversion), and switches all of it,
+/// blending, depth, cull and scissor test off, so that a draw writes what its shader says and a transfer is
+/// tightly packed. On destruction: puts everything back.
 class PassState {
   public:
     PassState();

@@ -21,8 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-// Steps between two calls of PlayerOptions::progress, and between two waits for the GPU: without them a driver
-// would be handed a whole run at once.
+// Steps between two calls of PlayerOptions::progress, and between two waits for the GPU: without them a
+// driver would be handed a whole run at once.
 constexpr std::uint32_t kStepsAtOnce = 16;
 
 std::string lowerCaseExtension(const fs::path& path) {
@@ -43,13 +43,15 @@ Result<Scene> openScene(const fs::path& input) {
         scene.collider = input;
         return scene;
     }
-    return fail(ErrorCode::kUsage, quotedPath(input) + " is neither a scene nor a collider; name a .toml or a .relief file");
+    return fail(ErrorCode::kUsage,
+                quotedPath(input) + " is neither a scene nor a collider; name a .toml or a .relief file");
 }
 
 Result<Collider> openCollider(const Scene& scene) {
     auto collider = loadCollider(scene.collider);
     if (!collider && !scene.collider_origin.empty()) {
-        return fail(collider.error().code, scene.collider_origin + ": collider.file: " + collider.error().message);
+        return fail(collider.error().code,
+                    scene.collider_origin + ": collider.file: " + collider.error().message);
     }
     return collider;
 }
@@ -70,11 +72,13 @@ Result<void> checkDumpFolder(const fs::path& dump) {
     std::error_code error;
     const fs::path folder = dump.has_parent_path() ? dump.parent_path() : fs::path(".");
     if (dump != "-" && !fs::is_directory(folder, error)) {
-        return fail(ErrorCode::kIo, "cannot write " + quotedPath(dump) + ": there is no folder " + quotedPath(folder) +
+        return fail(ErrorCode::kIo, "cannot write " + quotedPath(dump) + ": there is no folder " +
+                                        quotedPath(folder) +
                                         "; make it, or choose another place with --dump");
     }
     if (fs::is_directory(dump, error)) {
-        return fail(ErrorCode::kIo, "cannot write " + quotedPath(dump) + ": it is a folder; name a file with --dump");
+        return fail(ErrorCode::kIo,
+                    "cannot write " + quotedPath(dump) + ": it is a folder; name a file with --dump");
     }
     return {};
 }
@@ -82,7 +86,8 @@ Result<void> checkDumpFolder(const fs::path& dump) {
 /// Everything that draws, made only where frames are wanted.
 class Picture {
   public:
-    static Result<Picture> create(const Scene& scene, const Collider& collider, const ColliderTextures& textures) {
+    static Result<Picture> create(const Scene& scene, const Collider& collider,
+                                  const ColliderTextures& textures) {
         const ColliderView view{&textures, collider.bounds, finestTexel(collider)};
         auto frame = Frame::create(scene.render.width, scene.render.height);
         if (!frame) {
@@ -157,6 +162,7 @@ EmitterSettings emitterSettings(const Scene& scene) {
     settings.box_min = *scene.emitter.box_min;
     settings.box_max = *scene.emitter.box_max;
     settings.rate = *scene.emitter.rate;
+    settings.duration = scene.emitter.duration.value_or(settings.duration);
     settings.burst = scene.emitter.burst;
     settings.velocity = *scene.emitter.velocity;
     settings.velocity_spread = *scene.emitter.velocity_spread;
@@ -175,7 +181,8 @@ Result<void> run(const PlayerOptions& options, ParticleSystem& particles, std::o
     Clock::duration spent{};
     std::uint32_t step = 0;
     while (step < scene.steps || (step == 0 && picture)) {
-        const std::uint32_t next_frame = picture ? step + scene.render.every - step % scene.render.every : scene.steps;
+        const std::uint32_t next_frame =
+            picture ? step + scene.render.every - step % scene.render.every : scene.steps;
         const std::uint32_t end = std::min({scene.steps, next_frame, step + kStepsAtOnce});
         const Clock::time_point begun = Clock::now();
         for (; step < end; ++step) {
@@ -262,7 +269,8 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     report.device = (*context)->description();
     auto textures = ColliderTextures::create(*collider);
     if (!textures) {
-        return fail(textures.error().code, quotedPath(report.scene.collider) + ": " + textures.error().message);
+        return fail(textures.error().code,
+                    quotedPath(report.scene.collider) + ": " + textures.error().message);
     }
     report.collider_maps = collider->maps.size();
     report.collider_bytes = textures->bytes();

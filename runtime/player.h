@@ -14,14 +14,17 @@
 namespace relief {
 
 struct PlayerOptions {
-    std::filesystem::path input;  ///< a scene (.toml) or a collider (.relief), for which the default scene is played
+    std::filesystem::path
+        input;  ///< a scene (.toml) or a collider (.relief), for which the default scene is played
     std::optional<std::uint32_t> steps;  ///< instead of the scene's, as are the next three
     std::optional<std::uint32_t> width;
     std::optional<std::uint32_t> height;
     std::optional<std::uint64_t> seed;
-    std::filesystem::path frames;  ///< folder for frame_0000.png and so on, made if missing; empty: no pictures
-    std::filesystem::path dump;    ///< PLY of the final particles, "-" for standard output; empty: none
-    bool count_collisions = false;  ///< reads the state back at the end for the report's collisions and contacts
+    std::filesystem::path
+        frames;                  ///< folder for frame_0000.png and so on, made if missing; empty: no pictures
+    std::filesystem::path dump;  ///< PLY of the final particles, "-" for standard output; empty: none
+    bool count_collisions =
+        false;  ///< reads the state back at the end for the report's collisions and contacts
     GlApi api = GlApi::kGl33Core;
     std::function<void(std::uint32_t step, std::uint32_t steps)> progress;  ///< now and then; may be empty
 };
@@ -32,9 +35,10 @@ struct PlayerReport {
     std::size_t collider_maps = 0;
     std::size_t collider_bytes = 0;  ///< of textures on the GPU
     ParticleCounts counts;
-    std::optional<std::uint64_t> collisions;  ///< steps in contact, summed over the particles alive at the end
+    std::optional<std::uint64_t>
+        collisions;  ///< steps in contact, summed over the particles alive at the end
     std::optional<std::uint32_t> in_contact;  ///< alive particles that touched something in the last step
-    double ms_per_step = 0.0;                 ///< wall clock, births and waiting for the GPU included; 0 without steps
+    double ms_per_step = 0.0;  ///< wall clock, births and waiting for the GPU included; 0 without steps
     std::uint32_t frames_written = 0;
 };
 

@@ -41,12 +41,13 @@ void onWrite(png_structp png, png_bytep data, png_size_t size) {
 void onFlush(png_structp /*png*/) {}
 
 /// Everything between setjmp and a possible longjmp, without objects that have destructors.
-bool writeAll(png_structp png, png_infop info, const std::uint8_t* rgb, std::uint32_t width, std::uint32_t height) {
+bool writeAll(png_structp png, png_infop info, const std::uint8_t* rgb, std::uint32_t width,
+              std::uint32_t height) {
     if (setjmp(png_jmpbuf(png)) != 0) {
         return false;
     }
-    png_set_IHDR(png, info, width, height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-                 PNG_FILTER_TYPE_DEFAULT);
+    png_set_IHDR(png, info, width, height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_set_compression_level(png, kCompressionLevel);
     png_write_info(png, info);
@@ -63,9 +64,10 @@ Result<std::vector<std::byte>> encodePng(std::span<const std::uint8_t> rgb, std:
                                          std::uint32_t height) {
     if (width == 0 || height == 0 || width > kSideMax || height > kSideMax ||
         rgb.size() != std::size_t{3} * width * height) {
-        return fail(ErrorCode::kUsage, "a picture of " + std::to_string(width) + "x" + std::to_string(height) +
-                                           " pixels cannot be written as PNG from " + std::to_string(rgb.size()) +
-                                           " bytes; sides go from 1 to " + std::to_string(kSideMax));
+        return fail(ErrorCode::kUsage, "a picture of " + std::to_string(width) + "x" +
+                                           std::to_string(height) + " pixels cannot be written as PNG from " +
+                                           std::to_string(rgb.size()) + " bytes; sides go from 1 to " +
+                                           std::to_string(kSideMax));
     }
     std::vector<std::byte> out;
     out.reserve(rgb.size() / 2);
@@ -79,8 +81,9 @@ Result<std::vector<std::byte>> encodePng(std::span<const std::uint8_t> rgb, std:
     }
     png_destroy_write_struct(&png, &info);
     if (!written) {
-        return fail(ErrorCode::kFailure, "the picture cannot be encoded as PNG: " +
-                                             (error.text.empty() ? std::string("out of memory") : error.text));
+        return fail(ErrorCode::kFailure,
+                    "the picture cannot be encoded as PNG: " +
+                        (error.text.empty() ? std::string("out of memory") : error.text));
     }
     return out;
 }

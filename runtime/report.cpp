@@ -32,14 +32,16 @@ Json settings(const Scene& scene) {
     json["collider"]["file"] = scene.collider.native();
     json["time"] = {{"dt", shortest(scene.dt)}, {"steps", scene.steps}};
     json["particles"] = {{"capacity", scene.capacity}};
-    json["emitter"] = {{"box_min", triple(*scene.emitter.box_min)},
-                       {"box_max", triple(*scene.emitter.box_max)},
-                       {"rate", *scene.emitter.rate},
-                       {"burst", scene.emitter.burst},
-                       {"velocity", triple(*scene.emitter.velocity)},
-                       {"velocity_spread", triple(*scene.emitter.velocity_spread)},
-                       {"lifetime", {shortest(scene.emitter.lifetime_min), shortest(scene.emitter.lifetime_max)}},
-                       {"seed", scene.emitter.seed}};
+    json["emitter"] = {
+        {"box_min", triple(*scene.emitter.box_min)},
+        {"box_max", triple(*scene.emitter.box_max)},
+        {"rate", *scene.emitter.rate},
+        {"duration", scene.emitter.duration ? Json(*scene.emitter.duration) : Json()},
+        {"burst", scene.emitter.burst},
+        {"velocity", triple(*scene.emitter.velocity)},
+        {"velocity_spread", triple(*scene.emitter.velocity_spread)},
+        {"lifetime", {shortest(scene.emitter.lifetime_min), shortest(scene.emitter.lifetime_max)}},
+        {"seed", scene.emitter.seed}};
     json["forces"] = {{"gravity", triple(*scene.forces.gravity)},
                       {"wind", triple(scene.forces.wind)},
                       {"drag", shortest(scene.forces.drag)}};
@@ -75,6 +77,7 @@ std::string reportJson(const PlayerReport& report) {
                          {"refused", report.counts.refused}};
     json["particles"]["in_contact"] = report.in_contact ? Json(*report.in_contact) : Json();
     json["particles"]["collisions"] = report.collisions ? Json(*report.collisions) : Json();
+    json["steps"] = report.scene.steps;
     json["ms_per_step"] = report.ms_per_step;
     json["frames"] = report.frames_written;
     // A file name that is no UTF-8 must not end the program.

@@ -58,7 +58,8 @@ struct Range {
         return (low_included ? value >= low : value > low) && value <= high;  // false for NaN
     }
     [[nodiscard]] std::string text() const {
-        return (low_included ? "choose " + number(low) : "choose above " + number(low)) + " to " + number(high);
+        return (low_included ? "choose " + number(low) : "choose above " + number(low)) + " to " +
+               number(high);
     }
 };
 
@@ -158,7 +159,8 @@ class Table {
         return value;
     }
 
-    [[nodiscard]] std::int64_t integerOf(const toml::node& node, std::string_view key, const Range& range) const {
+    [[nodiscard]] std::int64_t integerOf(const toml::node& node, std::string_view key,
+                                         const Range& range) const {
         if (!node.is_integer()) {
             wrongType(node, key, "a whole number");
         }
@@ -242,9 +244,10 @@ void readCollider(Table table, const toml::table& root, const fs::path& folder, 
     const bool found = table.text("file", file);
     table.finish();
     if (!found || file.empty()) {
-        table.failAt(root.get("collider") == nullptr ? toml::source_position{1, 1}
-                                                     : root.get("collider")->source().begin,
-                     "a scene needs collider.file, the .relief file to collide with; bake one with 'relief bake'");
+        table.failAt(
+            root.get("collider") == nullptr ? toml::source_position{1, 1}
+                                            : root.get("collider")->source().begin,
+            "a scene needs collider.file, the .relief file to collide with; bake one with 'relief bake'");
     }
     const toml::node& node = *root.get("collider")->as_table()->get("file");
     if (file.find('\0') != std::string::npos) {
@@ -266,15 +269,15 @@ void readEmitter(Table table, Scene& scene) {
     }
     for (int i = 0; low && i < 3; ++i) {
         if ((*emitter.box_min)[i] > (*emitter.box_max)[i]) {
-            table.failAt(*table.find("box_min"),
-                         "emitter.box_min lies above emitter.box_max on the " + std::string(1, "xyz"[i]) +
-                             " axis; exchange them");
+            table.failAt(*table.find("box_min"), "emitter.box_min lies above emitter.box_max on the " +
+                                                     std::string(1, "xyz"[i]) + " axis; exchange them");
         }
     }
     glm::vec3 point{0.0F};
     if (table.vector("point", length, point)) {
         if (low) {
-            table.failAt(*table.find("point"), "emitter.point and emitter.box_min are two places; remove one");
+            table.failAt(*table.find("point"),
+                         "emitter.point and emitter.box_min are two places; remove one");
         }
         emitter.box_min = point;
         emitter.box_max = point;
@@ -282,6 +285,13 @@ void readEmitter(Table table, Scene& scene) {
     double rate = 0.0;
     if (table.number("rate", {0.0, kRateMax}, rate)) {
         emitter.rate = rate;
+    }
+    double duration = 0.0;
+    if (table.number("duration", {0.0, kSecondsMax, false}, duration)) {
+        emitter.duration = duration;
+        if (emitter.rate == 0.0) {
+            table.failUseless("duration", "while emitter.rate is 0; raise the rate or remove it");
+        }
     }
     const bool burst = table.integer("burst", {0.0, ParticleSystem::kCapacityMax}, emitter.burst);
     if (emitter.rate == 0.0 && emitter.burst == 0) {
@@ -333,7 +343,8 @@ void readCollision(Table table, Scene& scene) {
     table.number("friction_threshold", {0.0, kSpeedMax}, collision.friction_threshold);
     table.finish();
     if (collision.friction_threshold > 0.0F && collision.friction == 0.0F) {
-        table.failUseless("friction_threshold", "while collision.friction is 0; raise the friction or remove it");
+        table.failUseless("friction_threshold",
+                          "while collision.friction is 0; raise the friction or remove it");
     }
 }
 
@@ -435,8 +446,8 @@ Result<Scene> parseScene(std::string_view text, const fs::path& path) {
     } catch (const toml::parse_error& error) {
         const toml::source_position& at = error.source().begin;
         return fail(ErrorCode::kInvalidInput, file + ":" + std::to_string(at.line) + ":" +
-                                                  std::to_string(at.column) + ": not TOML: " +
-                                                  oneLine(error.description()));
+                                                  std::to_string(at.column) +
+                                                  ": not TOML: " + oneLine(error.description()));
     } catch (const SceneError& error) {
         return fail(ErrorCode::kInvalidInput, error.message);
     } catch (const std::exception& error) {
@@ -454,7 +465,8 @@ Result<Scene> loadScene(const fs::path& path) {
 
 Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
     for (int i = 0; i < 3; ++i) {
-        if (!(bounds.min[i] >= -kLengthMax && bounds.min[i] <= bounds.max[i] && bounds.max[i] <= kLengthMax)) {
+        if (!(bounds.min[i] >= -kLengthMax && bounds.min[i] <= bounds.max[i] &&
+              bounds.max[i] <= kLengthMax)) {
             return fail(ErrorCode::kInvalidInput, "the collider's bounds are empty, or reach beyond " +
                                                       number(kLengthMax) + "; bake the mesh again, scaled");
         }
@@ -465,24 +477,25 @@ Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
     const float scale = std::max({bounds.longestSide(), 1e-3F * away, 1e-6F});
     auto& emitter = scene.emitter;
     if (!emitter.box_min) {
-        const float aside = 1.1F * scale;
+        const float aside = 1.45F * scale;
         emitter.box_min = glm::vec3(center.x - aside, bounds.max.y + 0.15F * scale, center.z - aside);
         emitter.box_max = glm::vec3(center.x + aside, bounds.max.y + 0.75F * scale, center.z + aside);
     }
     if (!emitter.rate) {
         // The capacity is just used up at the end of the run, and never before.
-        const double seconds = static_cast<double>(scene.dt) * scene.steps;
+        const double run = static_cast<double>(scene.dt) * scene.steps;
+        const double seconds = std::min(run, emitter.duration.value_or(run));
         const double room = static_cast<double>(scene.capacity) - std::min(emitter.burst, scene.capacity);
         emitter.rate = seconds > 0.0 ? std::min(room / seconds, kRateMax) : 0.0;
     }
     if (!emitter.velocity) {
-        emitter.velocity = glm::vec3(0.0F, -0.3F * scale, 0.0F);
+        emitter.velocity = glm::vec3(0.0F, -0.8F * scale, 0.0F);
     }
     if (!emitter.velocity_spread) {
         emitter.velocity_spread = glm::vec3(0.12F * scale, 0.1F * scale, 0.12F * scale);
     }
     if (!scene.forces.gravity) {
-        scene.forces.gravity = glm::vec3(0.0F, -1.5F * scale, 0.0F);
+        scene.forces.gravity = glm::vec3(0.0F, -3.0F * scale, 0.0F);
     }
     if (scene.ground.enabled && !scene.ground.height) {
         scene.ground.height = bounds.min.y;
@@ -491,14 +504,16 @@ Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
         scene.camera.target = center + glm::vec3(0.0F, 0.04F * scale, 0.0F);
     }
     if (!scene.camera.eye) {
-        scene.camera.eye = defaultEye(*scene.camera.target, std::max(0.5F * glm::length(bounds.size()), 0.5F * scale),
-                                      scene.camera.fov);
+        scene.camera.eye =
+            defaultEye(*scene.camera.target, std::max(0.5F * glm::length(bounds.size()), 0.5F * scale),
+                       scene.camera.fov);
     }
-    if (const std::string_view problem = cameraProblem(*scene.camera.eye, *scene.camera.target); !problem.empty()) {
+    if (const std::string_view problem = cameraProblem(*scene.camera.eye, *scene.camera.target);
+        !problem.empty()) {
         return fail(ErrorCode::kInvalidInput, std::string(problem));
     }
     if (!scene.render.point_size) {
-        scene.render.point_size = 0.008F * scale;
+        scene.render.point_size = 0.0065F * scale;
     }
     return scene;
 }

@@ -18,7 +18,7 @@ namespace relief {
 /// withDefaults() fills it.
 struct Scene {
     std::filesystem::path collider;  ///< resolved against the scene's folder
-    std::string collider_origin;     ///< "scene.toml:3:8" of that key, for messages; empty without a scene file
+    std::string collider_origin;  ///< "scene.toml:3:8" of that key, for messages; empty without a scene file
 
     float dt = 1.0F / 60.0F;  ///< seconds
     std::uint32_t steps = 300;
@@ -27,7 +27,8 @@ struct Scene {
     struct {
         std::optional<glm::vec3> box_min;  ///< a point if equal to box_max; given both or neither
         std::optional<glm::vec3> box_max;
-        std::optional<double> rate;  ///< births a second
+        std::optional<double> rate;      ///< births a second
+        std::optional<double> duration;  ///< seconds of births; nullopt: to the end
         std::uint32_t burst = 0;
         std::optional<glm::vec3> velocity;
         std::optional<glm::vec3> velocity_spread;
@@ -58,11 +59,11 @@ struct Scene {
     struct {
         std::uint32_t width = 960;
         std::uint32_t height = 720;
-        std::optional<float> point_size;  ///< diameter, object units
+        std::optional<float> point_size;      ///< diameter, object units
         glm::vec3 color{0.97F, 0.98F, 1.0F};  ///< sRGB
         float opacity = 0.95F;
         glm::vec3 background{0.62F, 0.69F, 0.76F};  ///< sRGB
-        std::uint32_t every = 10;  ///< steps from frame to frame
+        std::uint32_t every = 10;                   ///< steps from frame to frame
     } render;
 };
 

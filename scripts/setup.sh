@@ -14,7 +14,7 @@ packages=(
     # runtime: libepoxy, and Mesa's llvmpipe for machines without a GPU
     libegl-dev libepoxy-dev libgl-dev libgles-dev libpng-dev libtomlplusplus-dev libegl1 libegl-mesa0 libgl1-mesa-dri
     # tests, benchmarks and the demo
-    assimp-testmodels glmark2-data imagemagick libbenchmark-dev libgtest-dev openexr python3
+    assimp-testmodels glmark2-data imagemagick libbenchmark-dev libcgal-demo libgtest-dev openexr python3
 )
 
 missing=()

@@ -16,8 +16,6 @@ uniform highp sampler2D u_birth;
 
 uniform float u_now;      // the clock at the end of this step
 uniform float u_dt;       // seconds
-uniform int u_width;      // of the textures
-uniform int u_extent;     // texels from here on hold no particle
 uniform vec3 u_gain;      // dt (gravity + drag wind)
 uniform float u_keep;     // 1 / (1 + dt drag)
 uniform float u_restitution;
@@ -52,7 +50,7 @@ void main() {
     vec4 birth = texelFetch(u_birth, texel, 0);
 
     // Dead, and out of sight. A comparison alone, of numbers that the CPU made: both agree on the step.
-    if (position.w < 0.0 || u_now >= birth.y || texel.y * u_width + texel.x >= u_extent) {
+    if (position.w < 0.0 || u_now >= birth.y) {
         o_position = vec4(0.0, -1e30, 0.0, -1.0);
         o_velocity = vec4(0.0);
         return;

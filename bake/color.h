@@ -1,0 +1,32 @@
+// Colours of figures, and pictures made of them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace relief {
+
+/// sRGB, each in [0, 1].
+struct Color {
+    double r, g, b;
+};
+
+/// Ottosson, "A perceptual color space for image processing" (2020). Hue in degrees; what sRGB does not hold
+/// is clamped.
+[[nodiscard]] Color fromOklch(double lightness, double chroma, double hue);
+
+/// Diverging: lightness falls evenly with |u| on both sides, blue inside and orange outside, so that sides
+/// and amounts can be told apart in print and by the colour-blind.
+/// \param u  distance over its largest shown value, clamped to [−1, 1].
+[[nodiscard]] Color distanceColor(double u);
+
+/// 0xRRGGBB
+[[nodiscard]] std::uint32_t toPixel(const Color& c);
+
+struct RgbImage {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::vector<std::uint32_t> pixels;  ///< 0xRRGGBB, row by row from the top
+};
+
+}  // namespace relief

@@ -1,0 +1,58 @@
+// Supporting planes: the plane that a texel stores when its map's decode is "plane".
+//
+// A texel speaks for a footprint, not for one ray. Its footprint is sampled by a block of rays. Of the planes
+// with a normal from the footprint, each is pushed towards the viewer until no sampled surface point lies in
+// front of it, quantised so that it stays there, and the one that leaves the least free space behind it wins:
+//
+//       viewer            The texel says "outside" in front of its plane and "inside" behind it. Pushed
+//      | | | | |          planes never call a sampled surface point's inside "outside"; what they may call
+//     --.-----.-- plane   "inside" wrongly is the space between plane and surface, which is what is
+//       |\   /|           minimised. Another map that sees this space says so: more views only help.
+//      surface
+//
+// Both ends of a map are fitted the same way, seen from where their rays start.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <span>
+
+#include "bake/view.h"
+#include "formats/normal_index.h"
+#include "formats/texel.h"
+
+namespace relief {
+
+/// One ray of a footprint.
+struct FootprintRay {
+    /// From the viewer on: the point at u is origin + u · direction, u in units of map depth.
+    glm::dvec3 origin{0.0};
+    glm::dvec3 direction{0.0};
+    double u = -1.0;         ///< of the surface; negative: the ray meets none
+    glm::dvec3 normal{0.0};  ///< unit length, of the surface, towards the viewer
+};
+
+struct PlaneFitOptions {
+    double u_max = 1.0;       ///< depth range: map depth 1, or kCubeDepthMax
+    double reach = 1.0;       ///< free space behind the plane counts up to this length, in u
+    double pixel_cost = 0.0;  ///< per ray: a fit whose mean error is below this, in u, is good enough, in u
+    int refinements = 3;      ///< rounds of search among neighbouring normals; 0: none
+};
+
+/// A half-space in a texel's own units.
+struct FittedPlane {
+    glm::dvec3 normal{0.0};  ///< unit length, towards the viewer; as decodeNormal gives it if quantised
+    NormalIndex index;
+    std::uint16_t u_code = 0;  ///< 16-bit fixed point over [0, u_max]: u = u_code / 65534 · u_max
+};
+
+/// Fits one texel.
+/// \param rays    the footprint; at least one.
+/// \param centre  the texel's centre ray, from the viewer on: where the plane's depth is stored.
+/// \return nullopt if no ray meets a surface: the texel is empty.
+[[nodiscard]] std::optional<FittedPlane> fitSupportingPlane(std::span<const FootprintRay> rays,
+                                                            const FootprintRay& centre,
+                                                            const PlaneFitOptions& options);
+
+}  // namespace relief

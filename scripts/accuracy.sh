@@ -1,0 +1,72 @@
+#!/usr/bin/env bash
+# Wrong points per byte, on the meshes that the README's claims are about: a dense signed distance volume, the
+# paper's maps and ours, at 0.25, 1 and 4 MB. Prints one table; takes a few minutes. Further arguments go to
+# relief-accuracy, which scripts/build.sh builds: --json, --budget 1MB, --only ours, --cache FILE.
+#
+#   scripts/accuracy.sh                  the table
+#   scripts/accuracy.sh --cross-check    compares the volume with OpenVDB's mesh2ls, on the bunny
+#
+# The cross-check samples the level set that Debian's vdb_tool (libopenvdb-tools) makes of the bunny at 128
+# voxels, read by python3-openvdb; neither package is needed for anything else. Found with OpenVDB 10.0.1:
+CROSS_CHECK_FIGURES
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+bunny=/usr/share/glmark2/models/bunny.obj
+scripts/setup.sh
+bin=$(scripts/build.sh release relief-accuracy)
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+
+if [ "${1:-}" = --cross-check ]; then
+    for tool in vdb_tool /usr/bin/python3; do
+        command -v "$tool" >/dev/null || {
+            echo "accuracy.sh: $tool is missing; apt-get install libopenvdb-tools python3-openvdb" >&2
+            exit 1
+        }
+    done
+    vdb_tool -read "$bunny" -mesh2ls dim=128 width=3 -write "$folder/bunny.vdb" >&2
+    # Debian's own Python: the binding is built for it.
+    /usr/bin/python3 - "$folder" "$bin/relief-accuracy" "$bunny" <<'PYTHON'
+import subprocess, sys
+import pyopenvdb as vdb
+
+folder, program, mesh = sys.argv[1:]
+grid = vdb.readAll(folder + "/bunny.vdb")[0][0]
+voxel = grid.transform.voxelSize()[0]
+points, theirs = [], []
+for item in grid.citerOnValues():
+    if item.count != 1:
+        continue
+    points.append(grid.transform.indexToWorld(item.min))
+    theirs.append(item.value)
+with open(folder + "/points.csv", "w") as file:
+    file.writelines("%.9g,%.9g,%.9g\n" % p for p in points)
+lines = subprocess.run([program, mesh, "--budget", "4MB", "--values", folder + "/points.csv"],
+                       check=True, capture_output=True, text=True).stdout.split()
+exact, looked_up = zip(*[[float(v) for v in line.split(",")[3:5]] for line in lines])
+
+def compare(name, ours):
+    errors = sorted(abs(a - b) / voxel for a, b in zip(ours, theirs))
+    signs = sum((a < 0) != (b < 0) for a, b in zip(ours, theirs))
+    n = len(errors)
+    print("%-28s mean %.2g, 99 %% below %.2g, largest %.2g voxels; %d other signs" %
+          (name, sum(errors) / n, errors[(99 * n + 99) // 100 - 1], errors[-1], signs))
+
+print("%d voxels of the level set's band, %.6g object units each" % (len(points), voxel))
+compare("the volume's exact values", exact)
+compare("its lookup at 4 MB", looked_up)
+PYTHON
+    exit 0
+fi
+
+tar -xzf /usr/share/doc/libcgal-dev/data.tar.gz -C "$folder" data/meshes
+meshes=("$bunny")
+# lion-head is open; ChineseDragon-10kv has six open edges; all others are closed.
+for name in camel ChineseDragon-10kv fandisk anchor_dense cheese knot2 man refined_elephant lion-head couplingdown; do
+    meshes+=("$folder/data/meshes/$name.off")
+done
+models=/usr/share/assimp/models
+meshes+=("$models/Collada/duck.dae" "$models/BLEND/HUMAN.blend")
+
+"$bin/relief-accuracy" "${meshes[@]}" "$@"

@@ -1,0 +1,182 @@
+#include "tests/bake/meshes.h"
+
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <glm/geometric.hpp>
+#include <map>
+#include <utility>
+
+namespace relief::test {
+
+TriangleMesh finished(std::vector<glm::vec3> positions, std::vector<glm::uvec3> triangles) {
+    TriangleMesh mesh;
+    mesh.name = "test";
+    mesh.content_hash = std::string(32, '0');
+    mesh.positions = std::move(positions);
+    mesh.triangles = std::move(triangles);
+    Result<TriangleMesh> result = finishMesh(std::move(mesh));
+    if (!result) {
+        ADD_FAILURE() << result.error().message;
+        std::abort();
+    }
+    return *result;
+}
+
+TriangleMesh makeBoxMesh(const glm::dvec3& center, const glm::dvec3& half, const glm::dmat3& axes) {
+    std::vector<glm::vec3> positions;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 sign((corner & 1U) != 0 ? 1 : -1, (corner & 2U) != 0 ? 1 : -1,
+                              (corner & 4U) != 0 ? 1 : -1);
+        positions.emplace_back(center + axes * (sign * half));
+    }
+    return finished(positions, {{0, 4, 6},
+                                {0, 6, 2},
+                                {1, 3, 7},
+                                {1, 7, 5},
+                                {0, 1, 5},
+                                {0, 5, 4},
+                                {2, 6, 7},
+                                {2, 7, 3},
+                                {0, 2, 3},
+                                {0, 3, 1},
+                                {4, 5, 7},
+                                {4, 7, 6}});
+}
+
+TriangleMesh makeIcosphere(const glm::dvec3& center, double radius, int levels) {
+    const double g = (1.0 + std::sqrt(5.0)) / 2.0;
+    std::vector<glm::dvec3> unit = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0},
+                                    {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g},
+                                    {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
+    for (glm::dvec3& p : unit) {
+        p = glm::normalize(p);
+    }
+    std::vector<glm::uvec3> triangles = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
+                                         {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+                                         {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
+                                         {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
+    for (int level = 0; level < levels; ++level) {
+        std::map<std::pair<unsigned, unsigned>, unsigned> middles;
+        const auto middle = [&](unsigned a, unsigned b) {
+            const auto [at, added] =
+                middles.try_emplace({std::min(a, b), std::max(a, b)}, static_cast<unsigned>(unit.size()));
+            if (added) {
+                unit.push_back(glm::normalize(unit[a] + unit[b]));
+            }
+            return at->second;
+        };
+        std::vector<glm::uvec3> finer;
+        for (const glm::uvec3& t : triangles) {
+            const unsigned a = middle(t.x, t.y);
+            const unsigned b = middle(t.y, t.z);
+            const unsigned c = middle(t.z, t.x);
+            finer.insert(finer.end(), {{t.x, a, c}, {t.y, b, a}, {t.z, c, b}, {a, b, c}});
+        }
+        triangles = std::move(finer);
+    }
+    std::vector<glm::vec3> positions;
+    for (const glm::dvec3& p : unit) {
+        positions.emplace_back(center + radius * p);
+    }
+    return finished(positions, triangles);
+}
+
+TriangleMesh makeTorusMesh(double ring_radius, double tube_radius, unsigned around, unsigned across) {
+    constexpr double kTurn = 6.283185307179586;
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec3> triangles;
+    for (unsigned i = 0; i < around; ++i) {
+        for (unsigned j = 0; j < across; ++j) {
+            const double a = kTurn * i / around;
+            const double b = kTurn * j / across;
+            const double r = ring_radius + tube_radius * std::cos(b);
+            positions.emplace_back(r * std::cos(a), r * std::sin(a), tube_radius * std::sin(b));
+            const auto index = [&](unsigned u, unsigned v) { return (u % around) * across + v % across; };
+            triangles.emplace_back(index(i, j), index(i + 1, j), index(i + 1, j + 1));
+            triangles.emplace_back(index(i, j), index(i + 1, j + 1), index(i, j + 1));
+        }
+    }
+    return finished(positions, triangles);
+}
+
+TriangleMesh makePlane(float height, unsigned n) {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec3> triangles;
+    for (unsigned i = 0; i <= n; ++i) {
+        for (unsigned j = 0; j <= n; ++j) {
+            const auto at = [&](unsigned k) {
+                return -1.0F + 2.0F * static_cast<float>(k) / static_cast<float>(n);
+            };
+            positions.emplace_back(at(i), height, at(j));
+            if (i < n && j < n) {
+                const unsigned k = i * (n + 1) + j;
+                triangles.emplace_back(k, k + 1, k + n + 2);
+                triangles.emplace_back(k, k + n + 2, k + n + 1);
+            }
+        }
+    }
+    return finished(positions, triangles);
+}
+
+TriangleMesh reversed(TriangleMesh mesh) {
+    for (glm::uvec3& t : mesh.triangles) {
+        std::swap(t.y, t.z);
+    }
+    return mesh;
+}
+
+Collider bakeSpecs(const TriangleMesh& mesh, const std::vector<std::string>& specs, std::uint32_t resolution,
+                   unsigned threads) {
+    BakeOptions options;
+    options.resolution = resolution;
+    options.threads = threads;
+    for (const std::string& text : specs) {
+        const Result<MapSpec> spec = parseMapSpec(text);
+        EXPECT_TRUE(spec) << spec.error().message;
+        options.maps.push_back(spec.value_or(MapSpec{}));
+    }
+    const Result<Baked> baked = bake(mesh, options);
+    if (!baked) {
+        ADD_FAILURE() << baked.error().message;
+        std::abort();
+    }
+    return baked->collider;
+}
+
+DepthMap bakeMap(const TriangleMesh& mesh, const std::string& spec, std::uint32_t resolution) {
+    // A collider without any surface is refused, a map without one is not: the second map is for company.
+    return bakeSpecs(mesh, {spec, "float:size=16", "float:dir=-y,size=16"}, resolution).maps.front();
+}
+
+glm::dmat3 rotation(const glm::dvec3& axis, double degrees) {
+    const glm::dvec3 k = glm::normalize(axis);
+    const double angle = degrees * 3.14159265358979323846 / 180.0;
+    const auto turned = [&](const glm::dvec3& v) {  // Rodrigues
+        return v * std::cos(angle) + glm::cross(k, v) * std::sin(angle) +
+               k * glm::dot(k, v) * (1.0 - std::cos(angle));
+    };
+    return {turned({1, 0, 0}), turned({0, 1, 0}), turned({0, 0, 1})};
+}
+
+TemporaryFolder::TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "relief-test-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) {
+        ADD_FAILURE() << "no temporary folder";
+    }
+    path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+    std::error_code error;
+    std::filesystem::remove_all(path_, error);
+}
+
+std::filesystem::path TemporaryFolder::write(const std::string& name, std::string_view contents) const {
+    const std::filesystem::path path = path_ / name;
+    std::ofstream(path, std::ios::binary) << contents;
+    return path;
+}
+
+}  // namespace relief::test

@@ -1,0 +1,58 @@
+// Meshes made by formula, closed and wound outwards, and helpers to bake and read them.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bake/bake.h"
+#include "bake/mesh.h"
+
+namespace relief::test {
+
+[[nodiscard]] TriangleMesh finished(std::vector<glm::vec3> positions, std::vector<glm::uvec3> triangles);
+
+/// Columns of `axes` are the box's axes.
+[[nodiscard]] TriangleMesh makeBoxMesh(const glm::dvec3& center, const glm::dvec3& half,
+                                       const glm::dmat3& axes = glm::dmat3(1.0));
+/// An icosahedron whose triangles are halved `levels` times along each edge; vertices on the sphere.
+[[nodiscard]] TriangleMesh makeIcosphere(const glm::dvec3& center, double radius, int levels);
+/// Around the z axis.
+[[nodiscard]] TriangleMesh makeTorusMesh(double ring_radius, double tube_radius, unsigned around,
+                                         unsigned across);
+/// n × n squares of y = height over [−1, 1]²; normals +y.
+[[nodiscard]] TriangleMesh makePlane(float height, unsigned n);
+
+[[nodiscard]] TriangleMesh reversed(TriangleMesh mesh);
+
+/// Bakes specs, which must be right.
+[[nodiscard]] Collider bakeSpecs(const TriangleMesh& mesh, const std::vector<std::string>& specs,
+                                 std::uint32_t resolution = 64, unsigned threads = 0);
+[[nodiscard]] DepthMap bakeMap(const TriangleMesh& mesh, const std::string& spec,
+                               std::uint32_t resolution = 64);
+
+/// A rotation by `degrees` about an axis.
+[[nodiscard]] glm::dmat3 rotation(const glm::dvec3& axis, double degrees);
+
+/// A folder that is gone after the test.
+class TemporaryFolder {
+  public:
+    TemporaryFolder();
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    ~TemporaryFolder();
+
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+    /// Writes a file of this name; returns its path.
+    std::filesystem::path write(const std::string& name, std::string_view contents) const;
+
+  private:
+    std::filesystem::path path_;
+};
+
+}  // namespace relief::test
