@@ -26,11 +26,29 @@ FieldSample evaluate(const Collider& collider, const glm::vec3& p) {
     FieldSample best;
     best.distance = Vote{}.distance;
     for (std::size_t i = 0; i < collider.maps.size(); ++i) {
-        if (const std::optional<Vote> v = vote(collider.maps[i], p); v && replaces(v->distance, best.distance)) {
+        if (const std::optional<Vote> v = vote(collider.maps[i], p);
+            v && replaces(v->distance, best.distance)) {
             best = {v->distance, v->normal, static_cast<int>(i)};
         }
     }
     return best;
+}
+
+InsideSample evaluateInside(const Collider& collider, const glm::vec3& p) {
+    Vote best;
+    InsideSample sample;
+    for (std::size_t i = 0; i < collider.maps.size() && best.distance < 0.0F; ++i) {
+        if (const std::optional<Vote> v = vote(collider.maps[i], p);
+            v && replaces(v->distance, best.distance)) {
+            best = *v;
+            sample.map = static_cast<int>(i);
+        }
+    }
+    sample.inside = sample.map >= 0 && best.distance < 0.0F;
+    if (sample.inside) {
+        sample.normal = best.normal;
+    }
+    return sample;
 }
 
 }  // namespace relief

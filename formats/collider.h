@@ -26,17 +26,17 @@ struct Bounds {
 
 /// Where a collider comes from. Nothing in it depends on time, machine or folder.
 struct Provenance {
-    std::string mesh_name;      ///< file name without its folder; UTF-8
-    std::string mesh_hash;      ///< XXH3-128 of the mesh file's bytes, 32 lower-case hexadecimal digits; or ""
+    std::string mesh_name;  ///< file name without its folder; UTF-8
+    std::string mesh_hash;  ///< XXH3-128 of the mesh file's bytes, 32 lower-case hexadecimal digits; or ""
     std::uint64_t triangles = 0;
-    std::string tool_version;   ///< "relief 0.1.0"
-    std::string options;        ///< the effective options, such as "--map front-back:dir=+x,size=512x512,…"
+    std::string tool_version;  ///< "relief 0.1.0"
+    std::string options;       ///< the effective options, such as "--map front-back:dir=+x,size=512x512,…"
     friend bool operator==(const Provenance&, const Provenance&) = default;
 };
 
 struct Collider {
-    Bounds bounds;        ///< of the mesh, object units
-    std::string unit;     ///< of lengths: "m", or "" where the source does not say
+    Bounds bounds;     ///< of the mesh, object units
+    std::string unit;  ///< of lengths: "m", or "" where the source does not say
     Provenance provenance;
     std::vector<DepthMap> maps;
 
@@ -59,5 +59,16 @@ struct FieldSample {
 /// Combines the votes of all maps by the paper's rule 2.
 /// \param p  object space, finite.
 [[nodiscard]] FieldSample evaluate(const Collider& collider, const glm::vec3& p);
+
+/// What a step of a simulation needs: the sign, and the normal where it is negative.
+struct InsideSample {
+    bool inside = false;
+    glm::vec3 normal{0.0F};  ///< of the largest negative vote; zero where P is not inside
+    int map = -1;  ///< inside: the map of that vote; outside: the first that sees P outside; or −1
+};
+
+/// The same as evaluate(…).inside(), and its normal and map where that is true, but stops at the first map
+/// that sees P outside: put the map that decides most often first.
+[[nodiscard]] InsideSample evaluateInside(const Collider& collider, const glm::vec3& p);
 
 }  // namespace relief

@@ -101,7 +101,7 @@ flatbuffers::Offset<fb::Map> addMap(flatbuffers::FlatBufferBuilder& builder, con
     return fb::CreateMap(builder, static_cast<fb::Format>(map.format), static_cast<fb::Compare>(map.compare),
                          map.width, map.height, &transform, &object_per_map, map.encloses,
                          map.empty_is_outside, compressed ? fb::Compression::Zstd : fb::Compression::None,
-                         &payload);
+                         &payload, static_cast<fb::Decode>(map.decode));
 }
 
 /// \param payloads  one a map. Their offsets do not change the size of the answer.
@@ -203,6 +203,7 @@ DepthMap readFrame(const fb::Map& map) {
     DepthMap frame;
     frame.format = static_cast<MapFormat>(map.format());
     frame.compare = static_cast<Compare>(map.compare());
+    frame.decode = static_cast<Decode>(map.decode());
     frame.width = map.width();
     frame.height = map.height();
     const fb::Transform& transform = *map.object_to_map();

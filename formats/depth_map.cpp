@@ -10,6 +10,18 @@ float length(const glm::vec3& v) {
     return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
 }
 
+/// n·(P − S) in object space, of q = P' − S' in map space. As T's rows are orthogonal, the columns of its
+/// inverse are the rows times object_per_map squared; one factor goes to each side, so that no frame
+/// overflows.
+float planeDistance(const DepthMap& map, const glm::vec3& normal, const glm::vec3& q) {
+    const auto along = [&](int k) {
+        const glm::vec4& r = map.object_to_map.row[k];
+        const float scale = map.object_per_map[k];
+        return (scale * (r.x * normal.x + (r.y * normal.y + r.z * normal.z))) * (scale * q[k]);
+    };
+    return along(0) + (along(1) + along(2));
+}
+
 const Vote kFarOutsideVote{kFarOutside, glm::vec3(0.0F)};
 
 std::optional<Vote> voteOrthographic(const DepthMap& map, const glm::vec3& p) {
@@ -25,16 +37,23 @@ std::optional<Vote> voteOrthographic(const DepthMap& map, const glm::vec3& p) {
     if (!in_window) {
         return kFarOutsideVote;
     }
-    const Texel texel =
-        decodeTexel(map.format, map.texelAt(0, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)));
+    const auto column = static_cast<std::uint32_t>(x);
+    const auto row = static_cast<std::uint32_t>(y);
+    const Texel texel = decodeTexel(map.format, map.texelAt(0, column, row));
     if (!texel.front && !texel.back) {
         return map.empty_is_outside ? std::optional(kFarOutsideVote) : std::nullopt;
     }
 
+    // From the texel's centre.
+    const float across_x = (x - (static_cast<float>(column) + 0.5F)) / static_cast<float>(map.width);
+    const float across_y = (y - (static_cast<float>(row) + 0.5F)) / static_cast<float>(map.height);
     Vote best;
     const auto add = [&](const Surface& surface, bool keeps_nearest) {
         const float ahead = keeps_nearest ? surface.depth - p.z : p.z - surface.depth;
-        const float distance = map.object_per_map.z * ahead;
+        const float distance =
+            map.decode == Decode::kPlane
+                ? planeDistance(map, surface.normal, {across_x, across_y, p.z - surface.depth})
+                : map.object_per_map.z * ahead;
         if (replaces(distance, best.distance)) {
             best = {distance, surface.normal};
         }
@@ -75,13 +94,21 @@ std::optional<Vote> voteCube(const DepthMap& map, const glm::vec3& p) {
     if (!texel.front) {
         return map.empty_is_outside ? std::optional(kFarOutsideVote) : std::nullopt;
     }
-    const float ahead =
-        map.compare == Compare::kGreater ? radius - texel.front->depth : texel.front->depth - radius;
-    const float distance = ahead * length(map.object_per_map * direction);
-    if (!in_volume && distance < 0.0F) {
+    const Surface& surface = *texel.front;
+    float distance = 0.0F;
+    if (map.decode == Decode::kPlane) {
+        const glm::vec3 center = cubeDirection(
+            {at.face, (static_cast<float>(x) + 0.5F) / size, (static_cast<float>(y) + 0.5F) / size});
+        distance = planeDistance(map, surface.normal, p - center * (surface.depth / length(center)));
+    } else {
+        const float ahead =
+            map.compare == Compare::kGreater ? radius - surface.depth : surface.depth - radius;
+        distance = ahead * length(map.object_per_map * direction);
+    }
+    if (!in_volume && !(distance >= 0.0F)) {
         return kFarOutsideVote;
     }
-    return Vote{distance, texel.front->normal};
+    return Vote{distance, surface.normal};
 }
 
 }  // namespace
@@ -94,6 +121,16 @@ const char* compareName(Compare compare) {
             return "greater";
         case Compare::kBoth:
             return "both";
+    }
+    return "unknown";
+}
+
+const char* decodeName(Decode decode) {
+    switch (decode) {
+        case Decode::kProjected:
+            return "projected";
+        case Decode::kPlane:
+            return "plane";
     }
     return "unknown";
 }

@@ -35,6 +35,13 @@ enum class Compare : std::uint8_t { kLess = 0, kGreater = 1, kBoth = 2 };
 
 [[nodiscard]] const char* compareName(Compare compare);  ///< "less", "greater" or "both"
 
+/// How a vote is read from a texel: as the distance along the ray to a surface that faces the viewer (the
+/// paper's), or as the distance to the plane through the surface point at the texel's centre. plane.h has
+/// what encoders of planes need.
+enum class Decode : std::uint8_t { kProjected = 0, kPlane = 1 };
+
+[[nodiscard]] const char* decodeName(Decode decode);  ///< "projected" or "plane"
+
 /// An affine map as three rows: result i = dot(row[i].xyz, p) + row[i].w, evaluated as
 /// x·p.x + (y·p.y + (z·p.z + w)), in the CPU's and in the shader's code alike.
 struct Affine {
@@ -49,15 +56,16 @@ struct Affine {
 inline constexpr float kFarOutside = 1e30F;
 
 /// Limits that every map keeps; `container.h` refuses files beyond them.
-inline constexpr std::uint32_t kMapSizeMax = 16384;     ///< texels along one side
-inline constexpr std::uint32_t kMapSizeMin = 3;         ///< orthographic: one texel inside the border
+inline constexpr std::uint32_t kMapSizeMax = 16384;  ///< texels along one side
+inline constexpr std::uint32_t kMapSizeMin = 3;      ///< orthographic: one texel inside the border
 
 struct DepthMap {
     MapFormat format = MapFormat::kFixed8;
-    Compare compare = Compare::kLess;  ///< kBoth if and only if format is kFrontBack16
-    std::uint32_t width = 0;           ///< texels; a cube's faces are width × width
+    Compare compare = Compare::kLess;  ///< kBoth if and only if isFrontBack(format)
+    Decode decode = Decode::kProjected;
+    std::uint32_t width = 0;  ///< texels; a cube's faces are width × width
     std::uint32_t height = 0;
-    Affine object_to_map;
+    Affine object_to_map;  ///< its rows are orthogonal: a turn, a scale an axis, maybe a mirror, and a shift
     /// Object units for one unit along each map axis. Orthographic: z is the paper's z_scale. Cube: half the
     /// sides of the volume, the paper's s.
     glm::vec3 object_per_map{1.0F};
@@ -77,7 +85,8 @@ struct DepthMap {
     [[nodiscard]] std::size_t texelBytes() const {
         return std::size_t{faceCount()} * width * height * texelSize(format);
     }
-    [[nodiscard]] std::span<const std::byte> texelAt(std::uint32_t face, std::uint32_t x, std::uint32_t y) const;
+    [[nodiscard]] std::span<const std::byte> texelAt(std::uint32_t face, std::uint32_t x,
+                                                     std::uint32_t y) const;
     [[nodiscard]] std::span<std::byte> texelAt(std::uint32_t face, std::uint32_t x, std::uint32_t y);
 
     friend bool operator==(const DepthMap&, const DepthMap&) = default;
@@ -85,7 +94,8 @@ struct DepthMap {
 
 /// What a map, or a whole collider, says of a point.
 struct Vote {
-    float distance = -std::numeric_limits<float>::max();  ///< object units, positive outside; "far inside" at first
+    float distance =
+        -std::numeric_limits<float>::max();  ///< object units, positive outside; "far inside" at first
     glm::vec3 normal{0.0F};  ///< unit length, outwards; zero where the vote is only "far outside"
 };
 

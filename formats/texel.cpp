@@ -47,6 +47,32 @@ Texel decodeFixed(std::span<const std::byte> bytes, float depth_max) {
     return {Surface{decodeFixedDepth(code, depth_max), decodeNormal({channel(0), channel(1)})}, std::nullopt};
 }
 
+void encodeFrontBack(const Texel& texel, bool half, std::span<std::byte> bytes) {
+    for (std::size_t end = 0; end < 2; ++end) {
+        std::uint16_t normal = 0;
+        std::uint16_t depth = 0;
+        if (const std::optional<Surface>& surface = end == 0 ? texel.front : texel.back) {
+            normal = packNormal(encodeNormal(surface->normal));
+            depth = half ? encodeHalfDepth(surface->depth) : encodeFixedDepth(surface->depth, 1.0F);
+        }
+        store(bytes, end, normal);
+        store(bytes, 2 + end, depth);
+    }
+}
+
+Texel decodeFrontBack(std::span<const std::byte> bytes, bool half) {
+    Texel texel;
+    for (std::size_t end = 0; end < 2; ++end) {
+        const auto code = load<std::uint16_t>(bytes, 2 + end);
+        if (code != 0) {
+            const float depth = half ? decodeHalfDepth(code) : decodeFixedDepth(code, 1.0F);
+            const NormalIndex normal = unpackNormal(load<std::uint16_t>(bytes, end));
+            (end == 0 ? texel.front : texel.back) = Surface{depth, decodeNormal(normal)};
+        }
+    }
+    return texel;
+}
+
 }  // namespace
 
 const char* mapFormatName(MapFormat format) {
@@ -55,10 +81,25 @@ const char* mapFormatName(MapFormat format) {
             return "float";
         case MapFormat::kFixed8:
             return "fixed8";
-        case MapFormat::kFrontBack16:
+        case MapFormat::kFrontBackHalf:
+        case MapFormat::kFrontBackFixed:
             return "front-back";
         case MapFormat::kCube8:
             return "cube";
+    }
+    return "unknown";
+}
+
+const char* depthEncodingName(MapFormat format) {
+    switch (format) {
+        case MapFormat::kFloat32:
+            return "float32";
+        case MapFormat::kFrontBackHalf:
+            return "half";
+        case MapFormat::kFixed8:
+        case MapFormat::kCube8:
+        case MapFormat::kFrontBackFixed:
+            return "unorm16";
     }
     return "unknown";
 }
@@ -94,12 +135,9 @@ void encodeTexel(MapFormat format, const Texel& texel, std::span<std::byte> byte
         case MapFormat::kCube8:
             encodeFixed(texel, kCubeDepthMax, bytes);
             return;
-        case MapFormat::kFrontBack16:
-            for (std::size_t end = 0; end < 2; ++end) {
-                const std::optional<Surface>& surface = end == 0 ? texel.front : texel.back;
-                store<std::uint16_t>(bytes, end, surface ? packNormal(encodeNormal(surface->normal)) : 0U);
-                store<std::uint16_t>(bytes, 2 + end, surface ? encodeHalfDepth(surface->depth) : 0U);
-            }
+        case MapFormat::kFrontBackHalf:
+        case MapFormat::kFrontBackFixed:
+            encodeFrontBack(texel, format == MapFormat::kFrontBackHalf, bytes);
             return;
     }
 }
@@ -109,22 +147,17 @@ Texel decodeTexel(MapFormat format, std::span<const std::byte> bytes) {
     switch (format) {
         case MapFormat::kFloat32:
             if (const float depth = load<float>(bytes, 3); depth >= 0.0F) {
-                texel.front = Surface{depth, {load<float>(bytes, 0), load<float>(bytes, 1), load<float>(bytes, 2)}};
+                texel.front =
+                    Surface{depth, {load<float>(bytes, 0), load<float>(bytes, 1), load<float>(bytes, 2)}};
             }
             return texel;
         case MapFormat::kFixed8:
             return decodeFixed(bytes, 1.0F);
         case MapFormat::kCube8:
             return decodeFixed(bytes, kCubeDepthMax);
-        case MapFormat::kFrontBack16:
-            for (std::size_t end = 0; end < 2; ++end) {
-                const auto depth = load<std::uint16_t>(bytes, 2 + end);
-                if (depth != 0) {
-                    const auto normal = unpackNormal(load<std::uint16_t>(bytes, end));
-                    (end == 0 ? texel.front : texel.back) = Surface{decodeHalfDepth(depth), decodeNormal(normal)};
-                }
-            }
-            return texel;
+        case MapFormat::kFrontBackHalf:
+        case MapFormat::kFrontBackFixed:
+            return decodeFrontBack(bytes, format == MapFormat::kFrontBackHalf);
     }
     return texel;
 }

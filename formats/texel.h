@@ -1,11 +1,15 @@
-// One texel of a depth map in each of the four formats: what it holds and how its bytes are laid out.
+// One texel of a depth map in each of the formats: what it holds and how its bytes are laid out.
 //
-//     format        bytes  channels
-//     float32        16    R,G,B = normal x,y,z   A = depth            four little-endian floats
-//     fixed8          4    R = normal s   G = normal t   B = depth high byte   A = depth low byte
-//     front-back16    8    R = packed normal of the front   G = of the back     four little-endian uint16
-//                          B = half-float depth of the front   A = of the back
-//     cube8           4    as fixed8, in six faces
+//     format            bytes  channels
+//     float32            16    R,G,B = normal x,y,z   A = depth            four little-endian floats
+//     fixed8              4    R = normal s   G = normal t   B = depth high byte   A = depth low byte
+//     front-back half     8    R = packed normal of the front   G = of the back     four little-endian uint16
+//                              B = half-float depth of the front   A = of the back
+//     front-back fixed    8    the same with 16-bit fixed-point depths, as fixed8's
+//     cube8               4    as fixed8, in six faces
+//
+// Over a box of length 2 a half's 11 significant bits alone move a surface by 2·10^-4 on average; fixed point
+// is 32 times finer in the far half of the volume. Half floats are the paper's choice.
 //
 // Depth is in map coordinates: 0 at the near plane and 1 at the far plane of an orthographic map, distance
 // from the centre in units of the normalised volume, in (0, √3], for a cube.
@@ -22,15 +26,27 @@
 
 namespace relief {
 
-enum class MapFormat : std::uint8_t { kFloat32 = 0, kFixed8 = 1, kFrontBack16 = 2, kCube8 = 3 };
-inline constexpr int kMapFormatCount = 4;
+enum class MapFormat : std::uint8_t {
+    kFloat32 = 0,
+    kFixed8 = 1,
+    kFrontBackHalf = 2,
+    kCube8 = 3,
+    kFrontBackFixed = 4
+};
+inline constexpr int kMapFormatCount = 5;
+
+/// Whether a texel holds two surfaces, the nearest and the farthest.
+[[nodiscard]] constexpr bool isFrontBack(MapFormat format) {
+    return format == MapFormat::kFrontBackHalf || format == MapFormat::kFrontBackFixed;
+}
 
 /// Bytes of one texel, see the table above.
 [[nodiscard]] constexpr std::size_t texelSize(MapFormat format) {
     switch (format) {
         case MapFormat::kFloat32:
             return 16;
-        case MapFormat::kFrontBack16:
+        case MapFormat::kFrontBackHalf:
+        case MapFormat::kFrontBackFixed:
             return 8;
         case MapFormat::kFixed8:
         case MapFormat::kCube8:
@@ -39,13 +55,17 @@ inline constexpr int kMapFormatCount = 4;
     return 0;
 }
 
-/// "float", "fixed8", "front-back" or "cube": the words of `relief bake --map` and of the reports.
+/// "float", "fixed8", "front-back" (of either depth) or "cube": the words of `relief bake --map` and of the
+/// reports.
 [[nodiscard]] const char* mapFormatName(MapFormat format);
+
+/// How depths are stored: "float32", "unorm16" or "half".
+[[nodiscard]] const char* depthEncodingName(MapFormat format);
 
 /// One surface as a texel holds it.
 struct Surface {
-    float depth = 0.0F;       ///< in map coordinates
-    glm::vec3 normal{0.0F};   ///< unit length, object space, outwards
+    float depth = 0.0F;      ///< in map coordinates
+    glm::vec3 normal{0.0F};  ///< unit length, object space, outwards
 };
 
 /// A texel's surface or surfaces; nullopt where it is empty. `back` is used by front-back maps alone.

@@ -1,5 +1,6 @@
 #include "formats/validate.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -69,37 +70,33 @@ Result<void> validateSize(const DepthMap& map) {
     return {};
 }
 
-/// T must be invertible, and object_per_map must say what T says: its entries are the lengths of the columns
-/// of T's inverse.
+/// T's rows must be orthogonal, for the vote of a plane inverts T by that, and object_per_map must say what T
+/// says: its entries are the lengths of the columns of T's inverse, here one over those of T's rows.
 Result<void> validateTransform(const DepthMap& map) {
-    std::array<glm::dvec3, 3> row;
+    std::array<glm::dvec3, 3> row;  // of unit length
+    std::array<double, 3> length{};
     for (std::size_t i = 0; i < 3; ++i) {
         const glm::vec4& r = map.object_to_map.row[i];
         if (!isFinite(glm::vec3(r)) || !std::isfinite(r.w)) {
             return invalid("object_to_map row " + std::to_string(i) + " is not finite");
         }
-        row[i] = glm::dvec3(r.x, r.y, r.z);
+        const glm::dvec3 wide(r.x, r.y, r.z);
+        length[i] = glm::length(wide);  // of floats in double: neither overflows nor vanishes
+        if (!(length[i] > 0.0)) {
+            return invalid("object_to_map row " + std::to_string(i) + " is zero");
+        }
+        row[i] = wide / length[i];
     }
-    // In units of the largest entry, so that nothing below overflows.
-    double largest = 0.0;
-    for (const glm::dvec3& r : row) {
-        largest = std::max({largest, std::abs(r.x), std::abs(r.y), std::abs(r.z)});
-    }
-    if (!(largest > 0.0)) {
-        return invalid("object_to_map is zero");
-    }
-    for (glm::dvec3& r : row) {
-        r /= largest;
-    }
-    const double determinant = glm::dot(row[0], glm::cross(row[1], row[2]));
-    const double box = glm::length(row[0]) * glm::length(row[1]) * glm::length(row[2]);
-    if (!(std::abs(determinant) > kFrameVolumeMin * box)) {
-        return invalid("object_to_map is degenerate: its rows are (nearly) in one plane");
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t next = (i + 1) % 3;
+        if (!(std::abs(glm::dot(row[i], row[next])) <= kFrameCosineMax)) {
+            return invalid("object_to_map is no rotation and scale: rows " +
+                           std::to_string(std::min(i, next)) + " and " + std::to_string(std::max(i, next)) +
+                           " are not orthogonal");
+        }
     }
     for (int i = 0; i < 3; ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        const double expected =
-            glm::length(glm::cross(row[(at + 1) % 3], row[(at + 2) % 3])) / std::abs(determinant) / largest;
+        const double expected = 1.0 / length[static_cast<std::size_t>(i)];
         const double given = map.object_per_map[i];
         if (!(given > 0.0) || !std::isfinite(given)) {
             return invalid("object_per_map " + words(map.object_per_map) + " is not positive and finite");
@@ -134,7 +131,7 @@ const char* faultOfFloat(std::span<const std::byte> texel) {
     return nullptr;
 }
 
-const char* faultOfFrontBack(std::span<const std::byte> texel) {
+const char* faultOfHalves(std::span<const std::byte> texel) {
     std::uint16_t channels[4];
     std::memcpy(channels, texel.data(), sizeof(channels));
     for (const std::uint16_t depth : {channels[2], channels[3]}) {
@@ -199,9 +196,12 @@ Result<void> validateFrame(const DepthMap& map) {
     if (static_cast<int>(map.compare) > static_cast<int>(Compare::kBoth)) {
         return invalid("its compare " + std::to_string(static_cast<int>(map.compare)) + " is unknown");
     }
-    if ((map.compare == Compare::kBoth) != (map.format == MapFormat::kFrontBack16)) {
+    if ((map.compare == Compare::kBoth) != isFrontBack(map.format)) {
         return invalid(std::string("its compare \"") + compareName(map.compare) +
                        "\" does not go with its format \"" + mapFormatName(map.format) + "\"");
+    }
+    if (static_cast<int>(map.decode) > static_cast<int>(Decode::kPlane)) {
+        return invalid("its decode " + std::to_string(static_cast<int>(map.decode)) + " is unknown");
     }
     return validateSize(map).and_then([&] { return validateTransform(map); });
 }
@@ -211,14 +211,14 @@ Result<void> validateTexels(const DepthMap& map) {
         return invalid("it has " + std::to_string(map.texels.size()) +
                        " bytes of texels where its size needs " + std::to_string(map.texelBytes()));
     }
-    if (map.format == MapFormat::kFixed8 || map.format == MapFormat::kCube8) {
+    if (map.format != MapFormat::kFloat32 && map.format != MapFormat::kFrontBackHalf) {
         return {};  // every code has a meaning
     }
     for (std::uint32_t y = 0; y < map.height; ++y) {
         for (std::uint32_t x = 0; x < map.width; ++x) {
             const std::span<const std::byte> texel = map.texelAt(0, x, y);
             const char* fault =
-                map.format == MapFormat::kFloat32 ? faultOfFloat(texel) : faultOfFrontBack(texel);
+                map.format == MapFormat::kFloat32 ? faultOfFloat(texel) : faultOfHalves(texel);
             if (fault != nullptr) {
                 return invalid("texel (" + std::to_string(x) + ", " + std::to_string(y) + ") " + fault);
             }

@@ -16,7 +16,7 @@ inline constexpr std::size_t kUnitMax = 16;
 inline constexpr std::size_t kToolVersionMax = 64;
 inline constexpr std::size_t kOptionsMax = std::size_t{1} << 20;
 inline constexpr float kUnitLengthTolerance = 1e-3F;    ///< of a float texel's normal
-inline constexpr double kFrameVolumeMin = 1e-3;         ///< |det T| over the product of its rows' lengths
+inline constexpr double kFrameCosineMax = 1e-4;         ///< between any two of T's rows, either sign
 inline constexpr double kObjectPerMapTolerance = 1e-3;  ///< relative, against the inverse of T
 
 // The errors of all functions: kInvalidInput, and kLimit for a map of too many texels. A message names the

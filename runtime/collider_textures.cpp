@@ -27,7 +27,8 @@ std::size_t layoutOf(MapFormat format) {
     switch (format) {
         case MapFormat::kFloat32:
             return 0;
-        case MapFormat::kFrontBack16:
+        case MapFormat::kFrontBackHalf:
+        case MapFormat::kFrontBackFixed:
             return 2;
         case MapFormat::kFixed8:
         case MapFormat::kCube8:
@@ -107,12 +108,14 @@ BlockMap blockMap(const DepthMap& map, const Place& place) {
     constexpr int kKeepsFarthest = 1;
     constexpr int kEncloses = 2;
     constexpr int kEmptyIsOutside = 4;
+    constexpr int kPlane = 8;
     BlockMap block{};
     std::copy(std::begin(map.object_to_map.row), std::end(map.object_to_map.row), std::begin(block.row));
     block.object_per_map = glm::vec4(map.object_per_map, 0.0F);
     const std::int32_t rect[4] = {place.x, place.y, place.layer, static_cast<std::int32_t>(map.width)};
     const std::int32_t flags = (map.compare == Compare::kGreater ? kKeepsFarthest : 0) |
-                               (map.encloses ? kEncloses : 0) | (map.empty_is_outside ? kEmptyIsOutside : 0);
+                               (map.encloses ? kEncloses : 0) | (map.empty_is_outside ? kEmptyIsOutside : 0) |
+                               (map.decode == Decode::kPlane ? kPlane : 0);
     const std::int32_t info[4] = {static_cast<std::int32_t>(map.height),
                                   static_cast<std::int32_t>(map.format), flags, 0};
     std::memcpy(block.rect, rect, sizeof(rect));

@@ -1,8 +1,8 @@
 // One Collider on the GPU: three texture arrays and a uniform block, read by shaders/collider.glsl.
 //
 // Maps of one texel layout share a 2-D texture array: RGBA32F for float, RGBA8 for fixed8 and cube,
-// RGBA16UI for front-back. A map is a rectangle in a layer, a cube six rectangles at the same place of six
-// layers in a row. Payloads are uploaded as they lie in the container.
+// RGBA16UI for front-back of either depth. A map is a rectangle in a layer, a cube six rectangles at the same
+// place of six layers in a row. Payloads are uploaded as they lie in the container.
 //
 //     bytes on the GPU = Σ over the three arrays: layer width · layer height · layers · texel size
 #pragma once

@@ -12,13 +12,15 @@
 //                      ▼ │ ● P'     │     negative: inside     ╱   └──┘  ╲   d = P'/|P'|
 //                        └──────────┘ 1
 //
-// An orthographic map that keeps the farthest surface, and a cube that keeps the nearest, turn the sign.
+// An orthographic map that keeps the farthest surface, and a cube that keeps the nearest, turn the sign. Those
+// are the paper's projected distances. A map of planes says f = n·(P − S) instead, with S the surface point on
+// the ray through the texel's centre; the normal points outwards, so that no sign turns.
 
 struct ReliefMap {
-    vec4 row[3];           // object_to_map
+    vec4 row[3];           // object_to_map; rows are orthogonal
     vec4 object_per_map;   // xyz; z is z_scale of an orthographic map, xyz the paper's s of a cube
     ivec4 rect;            // x, y of texel (0,0) in its layer; layer of face 0; width
-    ivec4 info;            // height; format; flags: 1 keeps the farthest, 2 encloses, 4 empty is outside
+    ivec4 info;            // height; format; flags: the sum of RELIEF_KEEPS_FARTHEST…
 };
 
 layout(std140) uniform ReliefCollider {
@@ -32,12 +34,14 @@ uniform highp usampler2DArray u_relief_front_back;
 
 const int RELIEF_FLOAT32 = 0;
 const int RELIEF_FIXED8 = 1;
-const int RELIEF_FRONT_BACK16 = 2;
+const int RELIEF_FRONT_BACK_HALF = 2;
 const int RELIEF_CUBE8 = 3;
+const int RELIEF_FRONT_BACK_FIXED = 4;
 
 const int RELIEF_KEEPS_FARTHEST = 1;
 const int RELIEF_ENCLOSES = 2;
 const int RELIEF_EMPTY_IS_OUTSIDE = 4;
+const int RELIEF_PLANE = 8;
 
 const float RELIEF_FAR_INSIDE = -3.4028235e38;
 const float RELIEF_FAR_OUTSIDE = 1e30;
@@ -104,6 +108,37 @@ vec3 reliefCubeCoordinates(vec3 d) {
     return vec3(0.5 * (sc / major + 1.0), 0.5 * (tc / major + 1.0), face);
 }
 
+// The direction, of largest component 1, through (s, t) of a face.
+vec3 reliefCubeDirection(vec3 st_face) {
+    vec2 c = 2.0 * st_face.xy - 1.0;
+    int face = int(st_face.z);
+    if (face == 0) {
+        return vec3(1.0, -c.y, -c.x);
+    } else if (face == 1) {
+        return vec3(-1.0, -c.y, c.x);
+    } else if (face == 2) {
+        return vec3(c.x, 1.0, c.y);
+    } else if (face == 3) {
+        return vec3(c.x, -1.0, -c.y);
+    } else if (face == 4) {
+        return vec3(c.x, -c.y, 1.0);
+    }
+    return vec3(-c.x, -c.y, -1.0);
+}
+
+float reliefAlong(vec4 r, float scale, vec3 normal, float q) {
+    return (scale * (r.x * normal.x + (r.y * normal.y + r.z * normal.z))) * (scale * q);
+}
+
+// n·(P − S) in object space, of q = P' − S' in map space: the columns of T's inverse are its orthogonal rows
+// times object_per_map squared.
+float reliefPlane(int i, vec3 normal, vec3 q) {
+    vec3 scale = u_relief_maps[i].object_per_map.xyz;
+    return reliefAlong(u_relief_maps[i].row[0], scale.x, normal, q.x) +
+           (reliefAlong(u_relief_maps[i].row[1], scale.y, normal, q.y) +
+            reliefAlong(u_relief_maps[i].row[2], scale.z, normal, q.z));
+}
+
 void reliefAdd(inout ReliefField best, float distance, vec3 normal, int map) {
     if (reliefReplaces(distance, best.distance)) {
         best = ReliefField(distance, normal, map);
@@ -114,6 +149,14 @@ void reliefAdd(inout ReliefField best, float distance, vec3 normal, int map) {
 // GLSL 3.30 has no unpackHalf2x16.
 float reliefHalf(uint bits) {
     return uintBitsToFloat((bits << 13) + (112u << 23));
+}
+
+float reliefFrontBackDepth(int format, uint code) {
+    return format == RELIEF_FRONT_BACK_HALF ? reliefHalf(code) : (float(code) - 1.0) * (1.0 / 65534.0);
+}
+
+vec3 reliefPackedNormal(uint packed_normal) {
+    return reliefNormal(vec2(float(packed_normal >> 8), float(packed_normal & 255u)));
 }
 
 // R,G: normal; B,A: 16-bit fixed-point depth, 0 where empty.
@@ -140,19 +183,37 @@ void reliefVoteOrthographic(inout ReliefField best, int i, vec3 p, ivec4 rect, i
     ivec3 texel = ivec3(rect.xy + ivec2(at), rect.z);
 
     // One texel holds one surface or, front-back, two: the nearer in front, the farther in back.
+    bool plane = (info.z & RELIEF_PLANE) != 0;
+    vec2 across = (at - (vec2(ivec2(at)) + 0.5)) / size;  // from the texel's centre
+    float scale = u_relief_maps[i].object_per_map.z;
     bool found;
     float depth;
     vec3 normal;
     float vote;
-    if (info.y == RELIEF_FRONT_BACK16) {
+    if (info.y == RELIEF_FRONT_BACK_HALF || info.y == RELIEF_FRONT_BACK_FIXED) {
         uvec4 words = texelFetch(u_relief_front_back, texel, 0);
         found = words.b != 0u || words.a != 0u;
-        float front = words.b != 0u ? reliefHalf(words.b) - p.z : RELIEF_FAR_INSIDE;
-        float back = words.a != 0u ? p.z - reliefHalf(words.a) : RELIEF_FAR_INSIDE;
+        float front = p.z - reliefFrontBackDepth(info.y, words.b);
+        float back = p.z - reliefFrontBackDepth(info.y, words.a);
+        vec3 back_normal = vec3(0.0);
+        if (plane) {
+            normal = reliefPackedNormal(words.r);
+            back_normal = reliefPackedNormal(words.g);
+            front = reliefPlane(i, normal, vec3(across, front));
+            back = reliefPlane(i, back_normal, vec3(across, back));
+        } else {
+            front = scale * -front;
+            back = scale * back;
+        }
+        front = words.b != 0u ? front : RELIEF_FAR_INSIDE;
+        back = words.a != 0u ? back : RELIEF_FAR_INSIDE;
         bool take_back = reliefReplaces(back, front);
-        uint packed_normal = take_back ? words.g : words.r;
-        normal = reliefNormal(vec2(float(packed_normal >> 8), float(packed_normal & 255u)));
         vote = take_back ? back : front;
+        if (plane) {
+            normal = take_back ? back_normal : normal;
+        } else {  // only the normal that is needed
+            normal = reliefPackedNormal(take_back ? words.g : words.r);
+        }
     } else {
         if (info.y == RELIEF_FLOAT32) {
             vec4 values = texelFetch(u_relief_float, texel, 0);
@@ -162,7 +223,11 @@ void reliefVoteOrthographic(inout ReliefField best, int i, vec3 p, ivec4 rect, i
         } else {
             found = reliefFixedTexel(texel, 1.0, depth, normal);
         }
-        vote = (info.z & RELIEF_KEEPS_FARTHEST) != 0 ? p.z - depth : depth - p.z;
+        if (plane) {
+            vote = reliefPlane(i, normal, vec3(across, p.z - depth));
+        } else {
+            vote = scale * ((info.z & RELIEF_KEEPS_FARTHEST) != 0 ? p.z - depth : depth - p.z);
+        }
     }
     if (!found) {
         if ((info.z & RELIEF_EMPTY_IS_OUTSIDE) != 0) {
@@ -170,8 +235,7 @@ void reliefVoteOrthographic(inout ReliefField best, int i, vec3 p, ivec4 rect, i
         }
         return;
     }
-    vote *= u_relief_maps[i].object_per_map.z;
-    if (!in_depth && vote < 0.0) {  // past the far end of the volume nothing of the collider remains
+    if (!in_depth && !(vote >= 0.0)) {  // past the far end of the volume nothing of the collider remains
         vote = RELIEF_FAR_OUTSIDE;
         normal = vec3(0.0);
     }
@@ -199,29 +263,56 @@ void reliefVoteCube(inout ReliefField best, int i, vec3 p, ivec4 rect, ivec4 inf
         }
         return;
     }
-    float ahead = (info.z & RELIEF_KEEPS_FARTHEST) != 0 ? radius - depth : depth - radius;
-    float vote = ahead * reliefLength(u_relief_maps[i].object_per_map.xyz * direction);
-    if (!in_volume && vote < 0.0) {
+    float vote;
+    if ((info.z & RELIEF_PLANE) != 0) {
+        vec3 center = reliefCubeDirection(vec3((vec2(at) + 0.5) / float(rect.w), st_face.z));
+        vote = reliefPlane(i, normal, p - center * (depth / reliefLength(center)));
+    } else {
+        float ahead = (info.z & RELIEF_KEEPS_FARTHEST) != 0 ? radius - depth : depth - radius;
+        vote = ahead * reliefLength(u_relief_maps[i].object_per_map.xyz * direction);
+    }
+    if (!in_volume && !(vote >= 0.0)) {
         vote = RELIEF_FAR_OUTSIDE;
         normal = vec3(0.0);
     }
     reliefAdd(best, vote, normal, i);
 }
 
+void reliefVote(inout ReliefField best, int i, vec3 p) {
+    vec4 row0 = u_relief_maps[i].row[0];
+    vec4 row1 = u_relief_maps[i].row[1];
+    vec4 row2 = u_relief_maps[i].row[2];
+    vec3 in_map = vec3(reliefRow(row0, p), reliefRow(row1, p), reliefRow(row2, p));
+    ivec4 rect = u_relief_maps[i].rect;
+    ivec4 info = u_relief_maps[i].info;
+    if (info.y == RELIEF_CUBE8) {
+        reliefVoteCube(best, i, in_map, rect, info);
+    } else {
+        reliefVoteOrthographic(best, i, in_map, rect, info);
+    }
+}
+
 ReliefField reliefEvaluate(vec3 p) {
     ReliefField best = ReliefField(RELIEF_FAR_INSIDE, vec3(0.0), -1);
     for (int i = 0; i < u_relief_count.x; ++i) {
-        vec4 row0 = u_relief_maps[i].row[0];
-        vec4 row1 = u_relief_maps[i].row[1];
-        vec4 row2 = u_relief_maps[i].row[2];
-        vec3 in_map = vec3(reliefRow(row0, p), reliefRow(row1, p), reliefRow(row2, p));
-        ivec4 rect = u_relief_maps[i].rect;
-        ivec4 info = u_relief_maps[i].info;
-        if (info.y == RELIEF_CUBE8) {
-            reliefVoteCube(best, i, in_map, rect, info);
-        } else {
-            reliefVoteOrthographic(best, i, in_map, rect, info);
-        }
+        reliefVote(best, i, p);
     }
     return best;
+}
+
+// What a step of a simulation needs: the same as reliefInside(reliefEvaluate(p)), and its normal and map where
+// that is true, but the walk ends at the first map that sees P outside. Outside, normal is zero and map is that
+// map; −1 where every map abstains.
+bool reliefInsideAt(vec3 p, out vec3 normal, out int map) {
+    ReliefField best = ReliefField(RELIEF_FAR_INSIDE, vec3(0.0), -1);
+    for (int i = 0; i < u_relief_count.x; ++i) {
+        reliefVote(best, i, p);
+        if (best.distance >= 0.0) {
+            break;
+        }
+    }
+    bool inside = reliefInside(best);
+    normal = inside ? best.normal : vec3(0.0);
+    map = best.map;
+    return inside;
 }

@@ -1,5 +1,6 @@
 // Evaluates a collider at the points of a texture, one a texel: `relief query --gpu`, and the tests of
-// collider.glsl against its C++ twin.
+// collider.glsl against its C++ twin. With RELIEF_QUERY_INSIDE it asks reliefInsideAt: the distance then is −1
+// inside and 1 outside.
 //!include collider.glsl
 uniform highp sampler2D u_points;  // xyz: object space
 
@@ -7,7 +8,16 @@ layout(location = 0) out vec4 o_normal_distance;
 layout(location = 1) out vec4 o_map;  // x: deciding map, −1 for none
 
 void main() {
-    ReliefField field = reliefEvaluate(texelFetch(u_points, ivec2(gl_FragCoord.xy), 0).xyz);
+    vec3 p = texelFetch(u_points, ivec2(gl_FragCoord.xy), 0).xyz;
+#ifdef RELIEF_QUERY_INSIDE
+    vec3 normal;
+    int map;
+    bool inside = reliefInsideAt(p, normal, map);
+    o_normal_distance = vec4(normal, inside ? -1.0 : 1.0);
+    o_map = vec4(float(map), 0.0, 0.0, 0.0);
+#else
+    ReliefField field = reliefEvaluate(p);
     o_normal_distance = vec4(field.normal, field.distance);
     o_map = vec4(float(field.map), 0.0, 0.0, 0.0);
+#endif
 }

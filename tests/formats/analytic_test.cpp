@@ -22,14 +22,14 @@ struct Encoding {
     MapFormat format;
     Compare compare;
 };
-constexpr Encoding kOrthographic[] = {{MapFormat::kFloat32, Compare::kLess},
-                                      {MapFormat::kFloat32, Compare::kGreater},
-                                      {MapFormat::kFixed8, Compare::kLess},
-                                      {MapFormat::kFixed8, Compare::kGreater},
-                                      {MapFormat::kFrontBack16, Compare::kBoth}};
+constexpr Encoding kOrthographic[] = {
+    {MapFormat::kFloat32, Compare::kLess},       {MapFormat::kFloat32, Compare::kGreater},
+    {MapFormat::kFixed8, Compare::kLess},        {MapFormat::kFixed8, Compare::kGreater},
+    {MapFormat::kFrontBackHalf, Compare::kBoth}, {MapFormat::kFrontBackFixed, Compare::kBoth}};
 
 std::string nameOf(const Encoding& e) {
-    return std::string(mapFormatName(e.format)) + " " + compareName(e.compare);
+    return std::string(mapFormatName(e.format)) + " " + depthEncodingName(e.format) + " " +
+           compareName(e.compare);
 }
 
 /// How far a stored depth may be from the one given, in map units.
@@ -37,9 +37,10 @@ double depthQuantum(MapFormat format, double depth) {
     switch (format) {
         case MapFormat::kFloat32:
             return depth * 0x1p-24;
-        case MapFormat::kFrontBack16:
+        case MapFormat::kFrontBackHalf:
             return std::max(depth * 0x1p-11, depth < 0x1p-14 ? 0x1p-14 : 0.0);
         case MapFormat::kFixed8:
+        case MapFormat::kFrontBackFixed:
             return 0.5 / 65534.0 + 0x1p-22;
         case MapFormat::kCube8:
             return 0.5 * kCubeDepthMax / 65534.0 + 0x1p-22;
@@ -195,7 +196,7 @@ TEST(Analytic, SlabIsExactForAnyPoint) {
     std::uniform_real_distribution<double> unit(0.0, 1.0);
     const auto slab = makeBox({0.0, 0.0, 0.0}, {5.0, 5.0, 0.3});
     const OrthographicFrame frame = centeredFrame({0.0, 0.0, 0.1}, glm::dmat3(1.0), {2.0, 2.0, 1.6});
-    const DepthMap map = makeMap(*slab, frame, MapFormat::kFrontBack16, Compare::kBoth, 8, 8);
+    const DepthMap map = makeMap(*slab, frame, MapFormat::kFrontBackHalf, Compare::kBoth, 8, 8);
     for (int i = 0; i < 20000; ++i) {
         const glm::vec3 p(
             frame.toObject({0.13 + 0.74 * unit(random), 0.13 + 0.74 * unit(random), unit(random)}));
@@ -327,7 +328,7 @@ Collider threeFrontBackMaps(const Shape& shape, const glm::dvec3& center, double
                                 {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     for (const glm::dmat3& axes : looks) {
         collider.maps.push_back(makeMap(shape, centeredFrame(center, axes, glm::dvec3(side)),
-                                        MapFormat::kFrontBack16, Compare::kBoth, size, size));
+                                        MapFormat::kFrontBackHalf, Compare::kBoth, size, size));
     }
     return collider;
 }

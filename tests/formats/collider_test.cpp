@@ -116,6 +116,71 @@ TEST(Rule2, FarOutsideHasNoNormalAndTheDecidingMapGivesIt) {
     EXPECT_TRUE(evaluate(colliderOf({-0.5F}), kOrigin).inside());
 }
 
+/// Inside is evaluate's, and where it is true so are normal and map; outside, the first map that says so.
+void expectInsideAgrees(const Collider& collider, const glm::vec3& p) {
+    const FieldSample full = evaluate(collider, p);
+    const InsideSample early = evaluateInside(collider, p);
+    ASSERT_EQ(early.inside, full.inside());
+    if (early.inside) {
+        ASSERT_EQ(early.normal, full.normal);
+        ASSERT_EQ(early.map, full.map);
+        return;
+    }
+    ASSERT_EQ(early.normal, glm::vec3(0.0F));
+    int first = -1;
+    for (std::size_t i = collider.maps.size(); i-- > 0;) {
+        const std::optional<Vote> v = vote(collider.maps[i], p);
+        first = v && v->distance >= 0.0F ? static_cast<int>(i) : first;
+    }
+    ASSERT_EQ(early.map, first);
+}
+
+TEST(Inside, IsTheSignOfEvaluateForAnyOrderOfVotes) {
+    Votes votes = {std::nullopt, -1.0F, -0.25F, 0.0F, 0.5F, kFar, std::nullopt, -0.25F};
+    std::sort(votes.begin(), votes.end());
+    do {
+        expectInsideAgrees(colliderOf({votes.begin(), votes.begin() + 4}), kOrigin);
+    } while (std::next_permutation(votes.begin(), votes.end()));
+    expectInsideAgrees({}, kOrigin);
+}
+
+TEST(Inside, StopsAtTheFirstMapThatSeesThePointOutside) {
+    EXPECT_EQ(evaluateInside(colliderOf({-0.5F, 1.0F, 0.25F}), kOrigin).map, 1);
+    EXPECT_EQ(evaluateInside(colliderOf({std::nullopt, kFar, 0.25F}), kOrigin).map, 1);
+    EXPECT_EQ(evaluateInside(colliderOf({-0.5F, -0.25F, -0.75F}), kOrigin).map, 1);
+    EXPECT_EQ(evaluateInside(colliderOf({std::nullopt}), kOrigin).map, -1);
+    // What lies behind that map is not looked at: it has no texels to read.
+    Collider collider = colliderOf({-0.5F, 0.25F, -0.5F});
+    collider.maps[2].texels.clear();
+    EXPECT_FALSE(evaluateInside(collider, kOrigin).inside);
+}
+
+TEST(Inside, AgreesOnAShape) {
+    const auto torus = test::makeTorus(1.0, 0.4);
+    Collider collider;
+    for (const Decode decode : {Decode::kPlane, Decode::kProjected}) {
+        collider.maps.push_back(test::makeMap(
+            *torus, test::centeredFrame({0, 0, 0}, test::rotation({0, 0, 1}, 20.0), {3.2, 3.2, 1.2}),
+            MapFormat::kFrontBackFixed, Compare::kBoth, 40, 40));
+        collider.maps.push_back(test::makeMap(
+            *torus, test::CubeFrame{{0, 0, 0}, glm::dmat3(1.0), glm::dvec3(1.7)}, Compare::kLess, 20));
+        collider.maps.back().empty_is_outside = false;
+        for (DepthMap& map : collider.maps) {
+            map.decode = decode;
+        }
+        int inside = 0;
+        for (float x = -1.55F; x < 1.6F; x += 0.043F) {
+            for (float y = -1.55F; y < 1.6F; y += 0.043F) {
+                for (float z = -0.7F; z < 0.7F; z += 0.09F) {
+                    ASSERT_NO_FATAL_FAILURE(expectInsideAgrees(collider, {x, y, z}));
+                    inside += evaluateInside(collider, {x, y, z}).inside ? 1 : 0;
+                }
+            }
+        }
+        EXPECT_GT(inside, 1000);
+    }
+}
+
 TEST(Collider, TexelBytesIsTheSumOfItsMaps) {
     Collider collider = colliderOf({-0.5F, kFar});
     EXPECT_EQ(collider.texelBytes(), 2U * 9U * 16U);

@@ -28,6 +28,7 @@ struct MapRecipe {
     std::uint8_t format = 1;  // fixed8
     std::uint8_t compare = 0;
     std::uint8_t compression = 0;
+    std::uint8_t decode = 0;
     std::uint32_t width = 16;
     std::uint32_t height = 16;
     std::vector<fb::Row> rows = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
@@ -111,6 +112,7 @@ std::vector<std::byte> metadataOf(const Recipe& recipe, const std::vector<fb::Pa
         table.scalar<std::uint8_t>(fb::Map::VT_EMPTY_IS_OUTSIDE, 1);
         table.scalar(fb::Map::VT_COMPRESSION, map.compression);
         table.structure(fb::Map::VT_PAYLOAD, payloads[i]);
+        table.scalar(fb::Map::VT_DECODE, map.decode);
         if (recipe.later_fields) {
             table.scalar<std::uint64_t>(kLaterField, 77);
         }
@@ -302,8 +304,12 @@ TEST(Crafted, Description) {
 }
 
 TEST(Crafted, Frames) {
-    expectRefused(with([](Recipe& r) { r.maps[1].format = 4; }), "map 1: its format 4 is unknown");
+    expectRefused(with([](Recipe& r) { r.maps[1].format = 5; }), "map 1: its format 5 is unknown");
     expectRefused(with([](Recipe& r) { r.maps[1].format = 255; }), "map 1: its format 255 is unknown");
+    expectRefused(with([](Recipe& r) { r.maps[1].decode = 2; }), "map 1: its decode 2 is unknown");
+    expectRefused(with([](Recipe& r) { r.maps[0].decode = 255; }), "map 0: its decode 255 is unknown");
+    expectRefused(with([](Recipe& r) { r.maps[1].format = 4; }),
+                  "\"less\" does not go with its format \"front-back\"");
     expectRefused(with([](Recipe& r) { r.maps[1].compare = 3; }), "map 1: its compare 3 is unknown");
     expectRefused(with([](Recipe& r) { r.maps[1].compare = 2; }),
                   "\"both\" does not go with its format \"fixed8\"");
@@ -318,14 +324,41 @@ TEST(Crafted, Frames) {
                   }),
                   "not square");
     expectRefused(with([](Recipe& r) { r.maps[1].rows[1] = {0, kNaN, 0, 0}; }), "row 1 is not finite");
-    expectRefused(with([](Recipe& r) { r.maps[1].rows[1] = {0, 0, 0, 0}; }), "degenerate");
-    expectRefused(with([](Recipe& r) { r.maps[1].rows[2] = r.maps[1].rows[0]; }), "degenerate");
+    expectRefused(with([](Recipe& r) { r.maps[1].rows[1] = {0, 0, 0, 1}; }), "row 1 is zero");
+    expectRefused(with([](Recipe& r) { r.maps[1].rows[2] = r.maps[1].rows[0]; }),
+                  "rows 0 and 2 are not orthogonal");
     expectRefused(with([](Recipe& r) { r.maps[1].object_per_map = {1, 1, 0}; }), "not positive and finite");
     expectRefused(with([](Recipe& r) { r.maps[1].object_per_map = {1, 1, -1}; }), "not positive and finite");
     expectRefused(with([](Recipe& r) {
                       r.maps[1].object_per_map = {1, 1, 2};
                   }),
                   "where object_to_map gives 1");
+}
+
+TEST(Crafted, DecodeAndFixedFrontBack) {
+    // Decode without a field is the projected one; fixed-point front-back texels may hold any bits.
+    const Recipe without = with([](Recipe& r) {
+        r.maps[1].decode = 1;
+        r.maps[0].omitted = {fb::Map::VT_DECODE};
+    });
+    const Result<Collider> read = readContainer(fileOf(without));
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(read->maps[0].decode, Decode::kProjected);
+    EXPECT_EQ(read->maps[1].decode, Decode::kPlane);
+
+    Recipe recipe = with([](Recipe& r) {
+        MapRecipe& map = r.maps[1];
+        map.format = 4;
+        map.compare = 2;
+        map.decode = 1;
+        map.raw_size = 16 * 16 * 8;
+        map.stored.assign(16 * 16 * 8, std::byte{0xff});
+    });
+    const Result<Collider> fixed = readContainer(fileOf(recipe));
+    ASSERT_TRUE(fixed) << fixed.error().message;
+    EXPECT_EQ(fixed->maps[1].format, MapFormat::kFrontBackFixed);
+    recipe.maps[1].format = 2;
+    expectRefused(recipe, "map 1: texel (0, 0) has a half-float depth");
 }
 
 TEST(Crafted, PayloadSizesAndPlaces) {

@@ -220,10 +220,12 @@ const std::vector<Refusal>& refusals() {
         {"tool_version has", [](Collider& c) { c.provenance.tool_version.assign(65, 'a'); }},
         {"options is not UTF-8", [](Collider& c) { c.provenance.options = "\x1b[2J"; }},
         {"options has", [](Collider& c) { c.provenance.options.assign((1 << 20) + 1, 'a'); }},
-        {"map 0: its format 4 is unknown", [](Collider& c) { c.maps[0].format = static_cast<MapFormat>(4); }},
+        {"map 0: its format 5 is unknown", [](Collider& c) { c.maps[0].format = static_cast<MapFormat>(5); }},
+        {"map 2: its decode 2 is unknown", [](Collider& c) { c.maps[2].decode = static_cast<Decode>(2); }},
         {"map 0: its compare 3 is unknown", [](Collider& c) { c.maps[0].compare = static_cast<Compare>(3); }},
         {"does not go with its format", [](Collider& c) { c.maps[1].compare = Compare::kBoth; }},
         {"does not go with its format", [](Collider& c) { c.maps[2].compare = Compare::kLess; }},
+        {"does not go with its format", [](Collider& c) { c.maps[4].compare = Compare::kGreater; }},
         {"map 3: its size 4x5 is not square", [](Collider& c) { c.maps[3].height = 5; }},
         {"map 3: its size 0x0 is below 1x1", [](Collider& c) { c.maps[3].width = c.maps[3].height = 0; }},
         {"map 1: its size 2x8 is below 3x3", [](Collider& c) { c.maps[1].width = 2; }},
@@ -234,16 +236,14 @@ const std::vector<Refusal>& refusals() {
         {"object_to_map row 2 is not finite", [](Collider& c) { c.maps[0].object_to_map.row[2].x = kNaN; }},
         {"object_to_map row 0 is not finite",
          [](Collider& c) { c.maps[0].object_to_map.row[0].w = kInfinity; }},
-        {"object_to_map is zero",
-         [](Collider& c) {
-             for (glm::vec4& row : c.maps[0].object_to_map.row) {
-                 row = glm::vec4(0.0F);
-             }
-         }},
-        {"object_to_map is degenerate",
-         [](Collider& c) { c.maps[0].object_to_map.row[1] = 3.0F * c.maps[0].object_to_map.row[0]; }},
-        {"object_to_map is degenerate",
+        {"object_to_map row 1 is zero",
          [](Collider& c) { c.maps[0].object_to_map.row[1] = glm::vec4(0, 0, 0, 1); }},
+        {"rows 0 and 1 are not orthogonal",
+         [](Collider& c) { c.maps[0].object_to_map.row[1] = 3.0F * c.maps[0].object_to_map.row[0]; }},
+        {"rows 1 and 2 are not orthogonal",
+         [](Collider& c) { c.maps[0].object_to_map.row[2] += 3e-4F * c.maps[0].object_to_map.row[1]; }},
+        {"rows 0 and 2 are not orthogonal",
+         [](Collider& c) { c.maps[4].object_to_map.row[0] += 0.1F * c.maps[4].object_to_map.row[2]; }},
         {"object_per_map (0, ", [](Collider& c) { c.maps[3].object_per_map.x = 0.0F; }},
         {"is not positive and finite", [](Collider& c) { c.maps[0].object_per_map.z = -1.0F; }},
         {"is not positive and finite", [](Collider& c) { c.maps[0].object_per_map.y = kNaN; }},
@@ -287,17 +287,23 @@ TEST(Writer, RefusesUnknownCompressionLevels) {
     }
 }
 
-TEST(Validate, TakesFramesOfAnyHandednessScaleAndShear) {
+TEST(Validate, TakesFramesOfAnyHandednessAndScaleButNoShear) {
     DepthMap map = oneMapOfEveryFormat().maps[0];
     map.object_to_map.row[0] *= -1.0F;
     EXPECT_TRUE(validateFrame(map));
-    // A sheared frame: x' = x + y, so that map's x axis is (1, 0, 0) and its y axis is (−1, 1, 0) long √2.
+    // Rows may be 1e-4 off a right angle, whatever their lengths, and no more.
+    for (const auto& [cosine, valid] :
+         {std::pair(0.9e-4F, true), {-0.9e-4F, true}, {1.2e-4F, false}, {-1.2e-4F, false}}) {
+        map.object_to_map.row[0] = {1e-3F, cosine * 1e-3F, 0, 7};
+        map.object_to_map.row[1] = {0, 1e5F, 0, -3};
+        map.object_to_map.row[2] = {0, 0, 1, 0};
+        map.object_per_map = {1e3F, 1e-5F, 1};
+        EXPECT_EQ(validateFrame(map).has_value(), valid) << cosine;
+    }
+    // A sheared frame, with the lengths of the columns of its inverse.
     map.object_to_map.row[0] = {1, 1, 0, 0};
     map.object_to_map.row[1] = {0, 1, 0, 0};
-    map.object_to_map.row[2] = {0, 0, 1, 0};
     map.object_per_map = {1, std::sqrt(2.0F), 1};
-    EXPECT_TRUE(validateFrame(map));
-    map.object_per_map = {1, 1, 1};
     EXPECT_FALSE(validateFrame(map));
     for (const float scale : {1e-30F, 1e-10F, 1e10F, 1e30F}) {
         map.object_to_map = {};

@@ -19,12 +19,16 @@ Collider oneMapOfEveryFormat() {
                            "relief 0.1.0", "--map float:dir=+x,size=8x7"};
     collider.maps.push_back(makeMap(*sphere, frame, MapFormat::kFloat32, Compare::kGreater, 8, 7));
     collider.maps.push_back(makeMap(*sphere, frame, MapFormat::kFixed8, Compare::kLess, 7, 8));
-    collider.maps.push_back(makeMap(*sphere, frame, MapFormat::kFrontBack16, Compare::kBoth, 8, 8));
+    collider.maps.push_back(makeMap(*sphere, frame, MapFormat::kFrontBackHalf, Compare::kBoth, 8, 8));
     collider.maps.push_back(makeMap(*makeSphere({0.9, 0.25, -0.5}, 0.3),
                                     CubeFrame{{0.5, 0.25, -0.5}, rotation({1, 0, 0}, 10.0), {1.0, 1.1, 1.2}},
                                     Compare::kLess, 4));
+    collider.maps.push_back(makeMap(*sphere, frame, MapFormat::kFrontBackFixed, Compare::kBoth, 8, 8));
     collider.maps[1].encloses = false;
     collider.maps[3].empty_is_outside = false;
+    collider.maps[1].decode = Decode::kPlane;
+    collider.maps[3].decode = Decode::kPlane;
+    collider.maps[4].decode = Decode::kPlane;
     return collider;
 }
 

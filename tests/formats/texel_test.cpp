@@ -12,8 +12,8 @@
 namespace relief {
 namespace {
 
-constexpr MapFormat kFormats[] = {MapFormat::kFloat32, MapFormat::kFixed8, MapFormat::kFrontBack16,
-                                  MapFormat::kCube8};
+constexpr MapFormat kFormats[] = {MapFormat::kFloat32, MapFormat::kFixed8, MapFormat::kFrontBackHalf,
+                                  MapFormat::kCube8, MapFormat::kFrontBackFixed};
 
 std::vector<std::byte> encode(MapFormat format, const Texel& texel) {
     std::vector<std::byte> bytes(texelSize(format), std::byte{0xcc});
@@ -32,18 +32,30 @@ std::vector<std::byte> bytesOf(std::initializer_list<int> values) {
 TEST(Texel, SizesAndNames) {
     EXPECT_EQ(texelSize(MapFormat::kFloat32), 16U);
     EXPECT_EQ(texelSize(MapFormat::kFixed8), 4U);
-    EXPECT_EQ(texelSize(MapFormat::kFrontBack16), 8U);
+    EXPECT_EQ(texelSize(MapFormat::kFrontBackHalf), 8U);
     EXPECT_EQ(texelSize(MapFormat::kCube8), 4U);
+    EXPECT_EQ(texelSize(MapFormat::kFrontBackFixed), 8U);
     EXPECT_STREQ(mapFormatName(MapFormat::kFloat32), "float");
     EXPECT_STREQ(mapFormatName(MapFormat::kFixed8), "fixed8");
-    EXPECT_STREQ(mapFormatName(MapFormat::kFrontBack16), "front-back");
+    EXPECT_STREQ(mapFormatName(MapFormat::kFrontBackHalf), "front-back");
     EXPECT_STREQ(mapFormatName(MapFormat::kCube8), "cube");
+    EXPECT_STREQ(mapFormatName(MapFormat::kFrontBackFixed), "front-back");
+    EXPECT_STREQ(depthEncodingName(MapFormat::kFloat32), "float32");
+    EXPECT_STREQ(depthEncodingName(MapFormat::kFixed8), "unorm16");
+    EXPECT_STREQ(depthEncodingName(MapFormat::kFrontBackHalf), "half");
+    EXPECT_STREQ(depthEncodingName(MapFormat::kCube8), "unorm16");
+    EXPECT_STREQ(depthEncodingName(MapFormat::kFrontBackFixed), "unorm16");
+    EXPECT_EQ(std::size(kFormats), static_cast<std::size_t>(kMapFormatCount));
+    for (const MapFormat format : kFormats) {
+        EXPECT_EQ(isFrontBack(format), texelSize(format) == 8U) << mapFormatName(format);
+    }
 }
 
 TEST(Texel, EmptyIsZeroBitsButForFloat) {
     EXPECT_EQ(encode(MapFormat::kFixed8, {}), bytesOf({0, 0, 0, 0}));
     EXPECT_EQ(encode(MapFormat::kCube8, {}), bytesOf({0, 0, 0, 0}));
-    EXPECT_EQ(encode(MapFormat::kFrontBack16, {}), bytesOf({0, 0, 0, 0, 0, 0, 0, 0}));
+    EXPECT_EQ(encode(MapFormat::kFrontBackHalf, {}), bytesOf({0, 0, 0, 0, 0, 0, 0, 0}));
+    EXPECT_EQ(encode(MapFormat::kFrontBackFixed, {}), bytesOf({0, 0, 0, 0, 0, 0, 0, 0}));
     EXPECT_EQ(encode(MapFormat::kFloat32, {}),
               bytesOf({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0x80, 0xbf}));
     for (const MapFormat format : kFormats) {
@@ -60,7 +72,12 @@ TEST(Texel, ByteLayout) {
     // Code 1 + round(1/√3 · 65534) = 37837 = 0x93cd.
     EXPECT_EQ(encode(MapFormat::kCube8, {back, {}}), bytesOf({127, 0, 0x93, 0xcd}));
     // Half 0.25 = 0x3400, 1 = 0x3c00; words little-endian, s in the high byte.
-    EXPECT_EQ(encode(MapFormat::kFrontBack16, {front, back}), bytesOf({127, 254, 0, 127, 0, 0x34, 0, 0x3c}));
+    EXPECT_EQ(encode(MapFormat::kFrontBackHalf, {front, back}),
+              bytesOf({127, 254, 0, 127, 0, 0x34, 0, 0x3c}));
+    EXPECT_EQ(encode(MapFormat::kFrontBackFixed, {front, back}),
+              bytesOf({127, 254, 0, 127, 0x01, 0x40, 0xff, 0xff}));
+    EXPECT_EQ(encode(MapFormat::kFrontBackFixed, {{}, Surface{0.0F, {1, 0, 0}}}),
+              bytesOf({0, 0, 127, 254, 0, 0, 1, 0}));
     EXPECT_EQ(encode(MapFormat::kFloat32, {front, {}}),
               bytesOf({0, 0, 0x80, 0x3f, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0x80, 0x3e}));
 }
@@ -128,7 +145,8 @@ TEST(Texel, EveryFormatRoundTripsWithinItsBounds) {
         return Surface{unit(random), glm::vec3(n / std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z))};
     };
     for (const MapFormat format : kFormats) {
-        const bool both = format == MapFormat::kFrontBack16;
+        const bool both = isFrontBack(format);
+        const bool half = format == MapFormat::kFrontBackHalf;
         const bool exact = format == MapFormat::kFloat32;
         for (int i = 0; i < 20000; ++i) {
             Texel texel{surface(), std::nullopt};
@@ -148,7 +166,7 @@ TEST(Texel, EveryFormatRoundTripsWithinItsBounds) {
                 }
                 const double quantum =
                     exact  ? 0.0
-                    : both ? std::max(static_cast<double>(given->depth) * 0x1p-11, 0x1p-14)
+                    : half ? std::max(static_cast<double>(given->depth) * 0x1p-11, 0x1p-14)
                            : 0.5 * (format == MapFormat::kCube8 ? kCubeDepthMax : 1.0F) / 65534.0 + 3e-7;
                 ASSERT_NEAR(got->depth, given->depth, quantum);
                 ASSERT_LE(test::angleInDegrees(glm::dvec3(got->normal), glm::dvec3(given->normal)),

@@ -8,6 +8,7 @@
 // the CPU's answer at one of the surrounding points kBorder texels away, and such points are counted.
 #include "runtime/field_query.h"
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <glm/geometric.hpp>
@@ -40,6 +41,7 @@ DepthMap randomMap(MapFormat format, Compare compare, std::uint32_t width, std::
     map.compare = compare;
     map.width = width;
     map.height = height;
+    map.decode = unit(random) < 0.5F ? Decode::kPlane : Decode::kProjected;
     map.encloses = unit(random) < 0.5F;
     map.empty_is_outside = unit(random) < 0.5F;
     map.object_per_map = {1.0F + unit(random), 1.0F + unit(random), 1.0F + unit(random)};
@@ -55,7 +57,7 @@ DepthMap randomMap(MapFormat format, Compare compare, std::uint32_t width, std::
                 Texel texel;
                 if (unit(random) < 0.8F) {
                     texel.front = Surface{cube ? 0.2F + unit(random) : unit(random), direction()};
-                    if (format == MapFormat::kFrontBack16 && unit(random) < 0.9F) {
+                    if (isFrontBack(format) && unit(random) < 0.9F) {
                         texel.back = Surface{unit(random), direction()};
                     }
                 }
@@ -82,6 +84,11 @@ bool agrees(const FieldSample& a, const FieldSample& b) {
     return a.map < 0 ||
            (std::abs(a.distance - b.distance) <= kRelative * std::max(2.0F, std::abs(b.distance)) &&
             glm::length(a.normal - b.normal) <= kNormal);
+}
+
+std::string nameOf(const DepthMap& map) {
+    return std::string(mapFormatName(map.format)) + " " + depthEncodingName(map.format) + " " +
+           compareName(map.compare) + " " + decodeName(map.decode);
 }
 
 /// Agreement with the CPU's answer at p, or at one of the 26 neighbours `step` away.
@@ -143,21 +150,22 @@ struct Kind {
     std::uint32_t height;
 };
 constexpr Kind kKinds[] = {
-    {MapFormat::kFloat32, Compare::kLess, 32, 48},     {MapFormat::kFloat32, Compare::kGreater, 17, 9},
-    {MapFormat::kFixed8, Compare::kLess, 64, 64},      {MapFormat::kFixed8, Compare::kGreater, 5, 90},
-    {MapFormat::kFrontBack16, Compare::kBoth, 33, 40}, {MapFormat::kCube8, Compare::kLess, 31, 31},
-    {MapFormat::kCube8, Compare::kGreater, 40, 40},
+    {MapFormat::kFloat32, Compare::kLess, 32, 48},       {MapFormat::kFloat32, Compare::kGreater, 17, 9},
+    {MapFormat::kFixed8, Compare::kLess, 64, 64},        {MapFormat::kFixed8, Compare::kGreater, 5, 90},
+    {MapFormat::kFrontBackHalf, Compare::kBoth, 33, 40}, {MapFormat::kCube8, Compare::kLess, 31, 31},
+    {MapFormat::kCube8, Compare::kGreater, 40, 40},      {MapFormat::kFrontBackFixed, Compare::kBoth, 40, 33},
 };
 
 class FieldQueryGlTest : public GlTest {};
 
-TEST_P(FieldQueryGlTest, EveryFormatAndCompareAgreesWithTheCpu) {
+TEST_P(FieldQueryGlTest, EveryFormatCompareAndDecodeAgreesWithTheCpu) {
     std::mt19937 random(7);
     for (const Kind& kind : kKinds) {
-        for (int repeat = 0; repeat < 4; ++repeat) {
-            SCOPED_TRACE(std::string(mapFormatName(kind.format)) + " " + compareName(kind.compare));
+        for (int repeat = 0; repeat < 8; ++repeat) {
             Collider collider;
             collider.maps.push_back(randomMap(kind.format, kind.compare, kind.width, kind.height, random));
+            collider.maps[0].decode = repeat < 4 ? Decode::kProjected : Decode::kPlane;
+            SCOPED_TRACE(nameOf(collider.maps[0]));
             collider.maps[0].encloses = (repeat & 1) != 0;
             collider.maps[0].empty_is_outside = (repeat & 2) != 0;
             expectAgreement(collider, randomPoints(50'000, random), 1.0F / 90.0F, 1e-3);
@@ -184,9 +192,9 @@ TEST_P(FieldQueryGlTest, AnyMixtureOfMapsAgreesWithTheCpu) {
 TEST_P(FieldQueryGlTest, TexelBordersFallToEitherSideAndCornersOfCubesToo) {
     std::mt19937 random(13);
     for (const Kind& kind : kKinds) {
-        SCOPED_TRACE(std::string(mapFormatName(kind.format)) + " " + compareName(kind.compare));
         Collider collider;
         collider.maps.push_back(randomMap(kind.format, kind.compare, kind.width, kind.height, random));
+        SCOPED_TRACE(nameOf(collider.maps[0]));
         DepthMap& map = collider.maps[0];
         // Identity frame, so that the borders are representable numbers.
         map.object_per_map = glm::vec3(1.0F);
@@ -234,6 +242,112 @@ TEST_P(FieldQueryGlTest, ExtremePointsGiveAnAnswerAndNoNan) {
         EXPECT_EQ((*samples)[i].map, cpu.map) << i;
         EXPECT_EQ((*samples)[i].inside(), cpu.inside()) << i;
     }
+}
+
+// ---- the early out
+
+/// reliefInsideAt at every point, one a fragment.
+std::vector<InsideSample> insideByGpu(const Collider& collider, std::span<const glm::vec3> points) {
+    constexpr GLsizei kWidth = 1024;
+    const GlStateGuard guard;
+    std::vector<InsideSample> samples;
+    const auto height = static_cast<GLsizei>((points.size() + kWidth - 1) / kWidth);
+    std::vector<float> texels(std::size_t{4} * kWidth * static_cast<std::size_t>(height), 0.0F);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        std::copy_n(&points[i].x, 3, &texels[4 * i]);
+    }
+    const Result<ColliderTextures> textures = ColliderTextures::create(collider);
+    const Result<GlProgram> program =
+        makeProgram("quad.vert", "query.frag", textures->defines() + "#define RELIEF_QUERY_INSIDE\n");
+    EXPECT_TRUE(program) << program.error().message;
+    if (!program) {
+        return samples;
+    }
+    const GlTexture input = makeTexture2D(GL_RGBA32F, kWidth, height, GL_RGBA, GL_FLOAT, texels.data());
+    const GlTexture normal_sign = makeTexture2D(GL_RGBA32F, kWidth, height, GL_RGBA, GL_FLOAT);
+    const GlTexture map = makeTexture2D(GL_RGBA32F, kWidth, height, GL_RGBA, GL_FLOAT);
+    const std::array<GLuint, 2> targets = {normal_sign.name(), map.name()};
+    const Result<GlFramebuffer> framebuffer = makeFramebuffer(targets);
+    EXPECT_TRUE(framebuffer);
+    const GlVertexArray no_attributes = makeVertexArray();
+    const ColliderTextures::Binding binding{1, 0};
+    textures->attach(*program, binding);
+    glUniform1i(uniformLocation(*program, "u_points"), 0);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer->name());
+    glViewport(0, 0, kWidth, height);
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_2D, input.name());
+    textures->bind(binding);
+    glBindVertexArray(no_attributes.name());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    const Result<std::vector<float>> fields = readTextureFloats(normal_sign, kWidth, height);
+    const Result<std::vector<float>> maps = readTextureFloats(map, kWidth, height);
+    EXPECT_TRUE(fields && maps);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const float* field = &(*fields)[4 * i];
+        samples.push_back(
+            {field[3] < 0.0F, {field[0], field[1], field[2]}, static_cast<int>((*maps)[4 * i])});
+    }
+    return samples;
+}
+
+TEST_P(FieldQueryGlTest, TheEarlyOutIsTheSignOfTheWholeWalkAndAgreesWithTheCpu) {
+    std::mt19937 random(29);
+    std::size_t inside = 0;
+    std::size_t points_tested = 0;
+    for (int repeat = 0; repeat < 12; ++repeat) {
+        Collider collider;
+        for (int i = 0; i < 1 + repeat % 6; ++i) {
+            const Kind& kind = kKinds[random() % std::size(kKinds)];
+            collider.maps.push_back(randomMap(kind.format, kind.compare, kind.width, kind.height, random));
+            if (repeat % 2 == 0) {
+                collider.maps.back().encloses = false;  // more points that no map sees outside
+                collider.maps.back().empty_is_outside = false;
+            }
+        }
+        const std::vector<glm::vec3> points = randomPoints(20'000, random);
+        const std::vector<InsideSample> early = insideByGpu(collider, points);
+        ASSERT_EQ(early.size(), points.size());
+        const Result<FieldQuery> query = FieldQuery::create(collider);
+        ASSERT_TRUE(query) << query.error().message;
+        const Result<std::vector<FieldSample>> full = query->evaluate(points);
+        ASSERT_TRUE(full) << full.error().message;
+        std::size_t at_border = 0;
+        std::size_t other_sign = 0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            // On the GPU itself the same votes give the same sign, unless its compiler fuses them
+            // differently.
+            const FieldSample& whole = (*full)[i];
+            const bool same = early[i].inside == whole.inside() &&
+                              (!early[i].inside || (early[i].map == whole.map &&
+                                                    glm::length(early[i].normal - whole.normal) <= kNormal));
+            other_sign += same ? 0U : 1U;
+            if (!early[i].inside) {
+                ASSERT_EQ(early[i].normal, glm::vec3(0.0F)) << i;
+            }
+            const auto agreesAt = [&](const glm::vec3& p) {
+                const InsideSample cpu = evaluateInside(collider, p);
+                return cpu.inside == early[i].inside && cpu.map == early[i].map &&
+                       glm::length(cpu.normal - early[i].normal) <= kNormal;
+            };
+            if (!agreesAt(points[i])) {
+                bool near = false;
+                for (int k = 0; k < 27 && !near; ++k) {
+                    const glm::vec3 offset(static_cast<float>(k % 3 - 1), static_cast<float>(k / 3 % 3 - 1),
+                                           static_cast<float>(k / 9 - 1));
+                    near = agreesAt(points[i] + kBorder / 90.0F * offset);
+                }
+                ASSERT_TRUE(near) << i;
+                ++at_border;
+            }
+            inside += early[i].inside ? 1U : 0U;
+        }
+        EXPECT_LE(static_cast<double>(at_border), 2e-3 * static_cast<double>(points.size()));
+        EXPECT_LE(static_cast<double>(other_sign), 1e-4 * static_cast<double>(points.size()));
+        points_tested += points.size();
+    }
+    EXPECT_GT(inside, points_tested / 20);
+    EXPECT_LT(inside, points_tested / 2);
 }
 
 TEST_P(FieldQueryGlTest, TooManyMapsAndTooLargeMapsAreNamedErrors) {

@@ -1,0 +1,53 @@
+#include "formats/plane.h"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+namespace relief {
+
+TexelRay texelRay(const DepthMap& map, std::uint32_t face, std::uint32_t x, std::uint32_t y) {
+    glm::dmat3 rows;  // as columns
+    glm::dvec3 shift;
+    for (int k = 0; k < 3; ++k) {
+        const glm::vec4& r = map.object_to_map.row[k];
+        rows[k] = glm::dvec3(r.x, r.y, r.z);
+        shift[k] = r.w;
+    }
+    const glm::dmat3 object_from_map = glm::inverse(glm::transpose(rows));
+    const glm::dvec3 start = -(object_from_map * shift);  // the origin of map space
+    const double s = (x + 0.5) / map.width;
+    const double t = (y + 0.5) / map.height;
+    if (map.projection() == Projection::kOrthographic) {
+        return {start + object_from_map * glm::dvec3(s, t, 0.0), object_from_map[2]};
+    }
+    const double sc = 2.0 * s - 1.0;
+    const double tc = 2.0 * t - 1.0;
+    const glm::dvec3 through[6] = {{1.0, -tc, -sc}, {-1.0, -tc, sc}, {sc, 1.0, tc},
+                                   {sc, -1.0, -tc}, {sc, -tc, 1.0},  {-sc, -tc, -1.0}};
+    return {start, object_from_map * glm::normalize(through[face])};
+}
+
+double planeDepth(const TexelRay& ray, const glm::dvec3& normal, const glm::dvec3& point) {
+    return glm::dot(normal, point - ray.origin) / glm::dot(normal, ray.direction);
+}
+
+glm::dvec3 turnedToViewer(const glm::dvec3& normal, const glm::dvec3& viewer) {
+    // cos(a − e) ≤ cos a + e, so e more than the bound survives a turn by e.
+    constexpr double kCosine = kPlaneGrazingMin + kNormalIndexError;
+    const glm::dvec3 n = glm::normalize(normal);
+    const glm::dvec3 v = glm::normalize(viewer);
+    const double cosine = glm::dot(n, v);
+    if (cosine >= kCosine) {
+        return n;
+    }
+    const glm::dvec3 across = n - cosine * v;
+    const double length = glm::length(across);
+    if (!(length > 1e-9)) {  // looks straight away: no direction to turn in is better than another
+        return v;
+    }
+    return kCosine * v + (std::sqrt(1.0 - kCosine * kCosine) / length) * across;
+}
+
+}  // namespace relief
