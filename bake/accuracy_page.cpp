@@ -18,7 +18,7 @@
 namespace relief {
 namespace {
 
-constexpr std::uint32_t kMapPictureMax = 360;  // pixels along a side
+constexpr std::uint32_t kMapPictureMax = 252;  // pixels along a side
 constexpr std::size_t kMapsShownMax = 64;
 constexpr std::uint32_t kHeatMapSize = 440;
 constexpr std::uint32_t kSliceSize = 360;
@@ -41,7 +41,8 @@ td, th { text-align: left; padding: 5px 14px 5px 0; border-bottom: 1px solid #ec
 tr:last-child td { border-bottom: 0 }
 th { color: #6b7078; font-size: 13px }
 td.n, th.n { text-align: right; padding-right: 0; padding-left: 14px; white-space: nowrap }
-.views { display: grid; grid-template-columns: repeat(auto-fit, minmax(240px, 1fr)); gap: 4px }
+.tables { display: grid; gap: 12px; margin-bottom: 10px }
+.views { display: grid; grid-template-columns: repeat(auto-fit, minmax(400px, 1fr)); gap: 4px }
 .slices { display: grid; gap: 12px }
 img { display: block; max-width: 100%; height: auto; margin: 0 auto }
 .legend { display: flex; flex-wrap: wrap; align-items: center; gap: 6px 22px; margin-top: 10px; font-size: 13px }
@@ -54,7 +55,7 @@ img { display: block; max-width: 100%; height: auto; margin: 0 auto }
 .map h3 small { font-weight: 400; color: #6b7078; font-size: 13px }
 .pictures { display: flex; flex-wrap: wrap; gap: 10px }
 figure { margin: 0 }
-figure img { border: 1px solid #e1e3e8; image-rendering: pixelated }
+.pictures img { border: 1px solid #e1e3e8; image-rendering: pixelated }
 figcaption { color: #6b7078; font-size: 12px; margin-top: 3px }
 @media (max-width: 720px) { .tiles { grid-template-columns: repeat(2, 1fr) } }
 )css";
@@ -173,7 +174,7 @@ class Page {
     void addNumbers() {
         const FieldAccuracy& field = input_.accuracy.field;
         const TruthSamples& samples = input_.samples;
-        html_ += "<div class=card><table>\n";
+        html_ += "<div class=tables><div class=card><table>\n";
         html_ += row({"points on the wrong side", "all", "false inside", "false outside"}, true);
         const auto wrong = [&](const char* where, const WrongShare& share) {
             html_ += row({where, percentText(share.total()), percentText(share.false_inside),
@@ -181,20 +182,20 @@ class Page {
         };
         wrong("near the surface", field.near);
         wrong("anywhere in the box", field.uniform);
-        html_ += "</table></div>\n<div class=card style=\"margin-top:12px\"><table>\n";
+        html_ += "</table></div>\n<div class=card><table>\n";
         html_ += row({"error", "mean", "99 % stay below"}, true);
         html_ += row({"signed distance near the surface",
                       length(field.distance_mean) + " (" + ofSide(field.distance_mean) + ")",
                       length(field.distance_p99) + " (" + ofSide(field.distance_p99) + ")"});
         html_ += row({"normal at the surface", shortNumber(field.normal_mean) + "&deg;",
                       shortNumber(field.normal_p99) + "&deg;"});
-        html_ += "</table></div>\n<div class=card style=\"margin-top:12px\"><table>\n";
+        html_ += "</table></div>\n<div class=card><table>\n";
         html_ += row({"surface that no map sees", percentText(input_.accuracy.unseen_percent)});
         html_ += row(
             {"points near the surface that are outside without a distance", percentText(field.far_percent)});
         html_ += row({"points near the surface for which no map votes", percentText(field.unknown_percent)});
         html_ += row({"points on the surface without a normal", percentText(field.no_normal_percent)});
-        html_ += "</table></div>\n<p>" + std::to_string(samples.options.samples) +
+        html_ += "</table></div></div>\n<p>" + std::to_string(samples.options.samples) +
                  " points of each kind, seed " + std::to_string(samples.options.seed) +
                  ". Those near the surface are drawn evenly from its area and moved by a normal deviate of " +
                  percentText(100.0 * samples.options.sigma_share) + " of the longest side, which is " +
@@ -289,7 +290,7 @@ class Page {
             const std::string end = cube                        ? kFaces[face]
                                     : image.channels.size() > 4 ? (first == 0 ? "front " : "back ")
                                                                 : "";
-            const std::uint32_t most = cube ? kMapPictureMax / 2 : kMapPictureMax;
+            const std::uint32_t most = cube ? kMapPictureMax * 2 / 3 : kMapPictureMax;
             for (const bool normals : {false, true}) {
                 const Result<std::vector<std::byte>> png = encodePng(picture(image, first, normals, most));
                 if (!png) {

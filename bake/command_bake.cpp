@@ -65,7 +65,7 @@ Result<Settings> settingsOf(const BakeCommand& command) {
     if (!resolution) {
         return forward(resolution);
     }
-    const Result<std::uint32_t> texels = checkMapSize(*resolution, MapFormat::kFrontBack16, "--resolution");
+    const Result<std::uint32_t> texels = checkMapSize(*resolution, MapFormat::kFrontBackHalf, "--resolution");
     if (!texels) {
         return forward(texels);
     }

@@ -56,12 +56,15 @@ void writeTexel(MapFormat format, const std::optional<EncodedSurface>& front,
             writeBytes(texel, values, sizeof(values));
             return;
         }
-        case MapFormat::kFrontBack16: {
+        case MapFormat::kFrontBackHalf:
+        case MapFormat::kFrontBackFixed: {
             std::uint16_t values[4] = {0, 0, 0, 0};
             for (int end = 0; end < 2; ++end) {
                 if (const std::optional<EncodedSurface>& surface = end == 0 ? front : back) {
                     values[end] = packNormal(surface->index);
-                    values[2 + end] = encodeHalfDepth(surface->depth);
+                    values[2 + end] = format == MapFormat::kFrontBackHalf
+                                          ? encodeHalfDepth(surface->depth)
+                                          : encodeFixedDepth(surface->depth, 1.0F);
                 }
             }
             writeBytes(texel, values, sizeof(values));

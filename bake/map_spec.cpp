@@ -8,8 +8,7 @@
 namespace relief {
 namespace {
 
-constexpr std::array<std::string_view, kMapFormatCount> kFormatWords = {"float", "fixed8", "front-back",
-                                                                        "cube"};
+constexpr std::array<std::string_view, 4> kFormatWords = {"float", "fixed8", "front-back", "cube"};
 constexpr std::array<std::string_view, 5> kKeys = {"dir", "size", "compare", "center", "box"};
 constexpr std::array<std::string_view, 2> kCompareWords = {"less", "greater"};
 
@@ -139,7 +138,7 @@ class Parser {
     }
 
     Result<void> setCompare(std::string_view value) {
-        if (spec_.format == MapFormat::kFrontBack16) {
+        if (isFrontBack(spec_.format)) {
             return usage("compare does nothing for front-back, which keeps both surfaces; leave it out");
         }
         if (value != "less" && value != "greater") {
@@ -231,7 +230,7 @@ std::string toString(const MapSpec& spec) {
         add("size", cube ? std::to_string(spec.width)
                          : std::to_string(spec.width) + "x" + std::to_string(spec.height));
     }
-    if (spec.compare && spec.format != MapFormat::kFrontBack16) {
+    if (spec.compare && !isFrontBack(spec.format)) {
         add("compare", compareName(*spec.compare));
     }
     if (spec.center) {

@@ -28,7 +28,7 @@
 namespace relief {
 
 struct MapSpec {
-    MapFormat format = MapFormat::kFrontBack16;
+    MapFormat format = MapFormat::kFrontBackHalf;
     /// The view's direction in object space, of any length but 0; not for cubes.
     glm::vec3 direction{0.0F, 0.0F, -1.0F};
     /// Texels; 0 stands for the default resolution of the bake.

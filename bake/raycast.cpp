@@ -23,7 +23,7 @@ constexpr float kEdgeWidth = 1e-4F;
 constexpr float kTieDepth = 1e-5F;
 /// Below this cosine between a triangle's normal and the ray, its plane is a poor guide outside the triangle.
 constexpr double kGrazing = 1e-3;
-constexpr std::size_t kPlaneDepths = 2048;
+constexpr std::size_t kPlaneDepths = 256;
 constexpr std::uint32_t kNone = 0xffffffff;
 
 struct DeviceRelease {
@@ -105,6 +105,10 @@ class RayScene::Impl::Tracer {
     Tracer(const Impl& impl, const View& view, RayEnd end) : impl_(impl), view_(view), end_(end) {
         rtcInitIntersectContext(&context_);
         context_.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+        for (int lane = 0; lane < kLanes; ++lane) {
+            packet_.ray.mask[lane] = 0xffffffff;
+            packet_.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+        }
         if (view.projection() == Projection::kOrthographic) {
             prepareOrthographic();
         }
@@ -112,31 +116,42 @@ class RayScene::Impl::Tracer {
 
     /// \param hits  rows of the view from y0 on.
     void traceTileRow(std::uint32_t face, std::uint32_t y0, std::uint32_t y_end, Hit* hits) {
+        const std::uint32_t rows = std::min(kTile, y_end - y0);
         for (std::uint32_t x0 = 0; x0 < view_.width; x0 += kTile) {
             const std::uint32_t columns = std::min(kTile, view_.width - x0);
-            const std::uint32_t rows = std::min(kTile, y_end - y0);
-            for (int lane = 0; lane < kLanes; ++lane) {
-                const bool used = column(lane) < columns && row(lane) < rows;
-                valid_[lane] = used ? -1 : 0;
-            }
+            setValid(columns, rows);
             if (view_.projection() == Projection::kOrthographic) {
                 setOrthographicRays(x0, y0);
             } else {
                 setCubeRays(face, x0, y0);
             }
             rtcIntersect16(valid_, impl_.scene.get(), &context_, &packet_);
-            for (int lane = 0; lane < kLanes; ++lane) {
-                if (valid_[lane] != 0) {
-                    hits[std::size_t{row(lane)} * view_.width + x0 + column(lane)] =
-                        resolve(face, x0 + column(lane), y0 + row(lane), lane);
+            for (std::uint32_t row = 0; row < rows; ++row) {
+                Hit* const out = hits + std::size_t{row} * view_.width + x0;
+                for (std::uint32_t column = 0; column < columns; ++column) {
+                    const std::size_t lane = row * kTile + column;
+                    out[column] = packet_.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID
+                                      ? Hit()
+                                      : resolve(face, x0 + column, y0 + row, lane);
                 }
             }
         }
     }
 
   private:
-    static std::uint32_t column(int lane) { return static_cast<std::uint32_t>(lane) % kTile; }
-    static std::uint32_t row(int lane) { return static_cast<std::uint32_t>(lane) / kTile; }
+    static std::uint32_t columnOf(int lane) { return static_cast<std::uint32_t>(lane) % kTile; }
+    static std::uint32_t rowOf(int lane) { return static_cast<std::uint32_t>(lane) / kTile; }
+
+    /// Which lanes carry a ray: all but at the view's edges.
+    void setValid(std::uint32_t columns, std::uint32_t rows) {
+        if (columns != valid_columns_ || rows != valid_rows_) {
+            valid_columns_ = columns;
+            valid_rows_ = rows;
+            for (int lane = 0; lane < kLanes; ++lane) {
+                valid_[lane] = columnOf(lane) < columns && rowOf(lane) < rows ? -1 : 0;
+            }
+        }
+    }
 
     /// A ray as it is traced: from a little outside the volume, along or against the depth.
     struct Segment {
@@ -161,10 +176,13 @@ class RayScene::Impl::Tracer {
         column_step_ = view_.axis[0] / static_cast<double>(view_.width);
         row_step_ = view_.axis[1] / static_cast<double>(view_.height);
         const Segment segment = segmentOf(first_ray_);
+        local_origin_ = (segment.origin - impl_.center) * impl_.scale;
+        local_column_step_ = column_step_ * impl_.scale;
+        local_row_step_ = row_step_ * impl_.scale;
         const glm::vec3 direction = segment.direction * impl_.scale;
         for (int lane = 0; lane < kLanes; ++lane) {
-            const glm::vec3 offset = impl_.scale * (static_cast<double>(column(lane)) * column_step_ +
-                                                    static_cast<double>(row(lane)) * row_step_);
+            const glm::vec3 offset = static_cast<double>(columnOf(lane)) * local_column_step_ +
+                                     static_cast<double>(rowOf(lane)) * local_row_step_;
             offset_x_[lane] = offset.x;
             offset_y_[lane] = offset.y;
             offset_z_[lane] = offset.z;
@@ -176,19 +194,20 @@ class RayScene::Impl::Tracer {
     }
 
     void setOrthographicRays(std::uint32_t x0, std::uint32_t y0) {
-        const glm::vec3 corner = impl_.toLocal(segmentOf(view_.ray(0, x0, y0)).origin);
+        const glm::vec3 corner = local_origin_ + (static_cast<double>(x0) * local_column_step_ +
+                                                  static_cast<double>(y0) * local_row_step_);
         for (int lane = 0; lane < kLanes; ++lane) {
             packet_.ray.org_x[lane] = corner.x + offset_x_[lane];
             packet_.ray.org_y[lane] = corner.y + offset_y_[lane];
             packet_.ray.org_z[lane] = corner.z + offset_z_[lane];
             packet_.ray.tfar[lane] = length_;
+            packet_.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
         }
-        resetHits();
     }
 
     void setCubeRays(std::uint32_t face, std::uint32_t x0, std::uint32_t y0) {
         for (int lane = 0; lane < kLanes; ++lane) {
-            const Segment segment = segmentOf(view_.ray(face, x0 + column(lane), y0 + row(lane)));
+            const Segment segment = segmentOf(view_.ray(face, x0 + columnOf(lane), y0 + rowOf(lane)));
             const glm::vec3 origin = impl_.toLocal(segment.origin);
             const glm::vec3 direction = segment.direction * impl_.scale;
             packet_.ray.org_x[lane] = origin.x;
@@ -198,25 +217,11 @@ class RayScene::Impl::Tracer {
             packet_.ray.dir_y[lane] = direction.y;
             packet_.ray.dir_z[lane] = direction.z;
             packet_.ray.tfar[lane] = static_cast<float>(segment.length);
-        }
-        resetHits();
-    }
-
-    void resetHits() {
-        for (int lane = 0; lane < kLanes; ++lane) {
-            packet_.ray.tnear[lane] = 0.0F;
-            packet_.ray.time[lane] = 0.0F;
-            packet_.ray.mask[lane] = 0xffffffff;
-            packet_.ray.flags[lane] = 0;
             packet_.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
-            packet_.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
         }
     }
 
-    Hit resolve(std::uint32_t face, std::uint32_t x, std::uint32_t y, int lane) {
-        if (packet_.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) {
-            return {};
-        }
+    Hit resolve(std::uint32_t face, std::uint32_t x, std::uint32_t y, std::size_t lane) {
         std::uint32_t triangle = packet_.hit.primID[lane];
         const float u = packet_.hit.u[lane];
         const float v = packet_.hit.v[lane];
@@ -351,7 +356,13 @@ class RayScene::Impl::Tracer {
     TexelRay first_ray_{};
     glm::dvec3 column_step_{0.0};
     glm::dvec3 row_step_{0.0};
+    // The same as Embree sees it, for the traced segments.
+    glm::dvec3 local_origin_{0.0};
+    glm::dvec3 local_column_step_{0.0};
+    glm::dvec3 local_row_step_{0.0};
     float length_ = 1.0F;
+    std::uint32_t valid_columns_ = 0;
+    std::uint32_t valid_rows_ = 0;
     alignas(64) int valid_[kLanes] = {};
     alignas(64) float offset_x_[kLanes] = {};
     alignas(64) float offset_y_[kLanes] = {};

@@ -238,7 +238,7 @@ Result<MapSpec> completeSpec(MapSpec spec, const TriangleMesh& mesh, std::uint32
     if (cube && !spec.center && !spec.box) {
         spec.center = mesh.bounds.center();
     }
-    if (spec.format != MapFormat::kFrontBack16 && !spec.compare) {
+    if (!isFrontBack(spec.format) && !spec.compare) {
         const bool outwards = cube && insideByParity(mesh, spec.center ? *spec.center : spec.box->center());
         spec.compare = outwards ? Compare::kGreater : Compare::kLess;
     }

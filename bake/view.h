@@ -21,6 +21,7 @@
 #include "bake/map_spec.h"
 #include "bake/mesh.h"
 #include "formats/depth_map.h"
+#include "formats/plane.h"
 #include "formats/result.h"
 
 namespace relief {
@@ -28,13 +29,6 @@ namespace relief {
 /// The two surfaces that a map can keep of a ray: the one with the smallest and the one with the largest
 /// depth.
 enum class RayEnd : std::uint8_t { kNear = 0, kFar = 1 };
-
-/// The point of depth t is origin + t · direction, where t is the map's own depth: from 0 to 1 through an
-/// orthographic volume, length in the normalised volume for a cube.
-struct TexelRay {
-    glm::dvec3 origin;     ///< object space
-    glm::dvec3 direction;  ///< object units for one unit of depth
-};
 
 struct View {
     MapFormat format = MapFormat::kFixed8;

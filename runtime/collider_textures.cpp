@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "runtime/pass_state.h"
+
 namespace relief {
 namespace {
 
@@ -187,7 +189,7 @@ Result<ColliderTextures> ColliderTextures::create(const Collider& collider) {
         blocks.push_back(blockMap(map, places.back()));
     }
 
-    const GlStateGuard guard;
+    const PassState state;  // row lengths and skips among it: texels are tightly packed
     while (glGetError() != GL_NO_ERROR) {  // of the caller, not ours
     }
     ColliderTextures result;
@@ -233,6 +235,18 @@ Result<ColliderTextures> ColliderTextures::create(const Collider& collider) {
     }
     result.map_count_ = static_cast<int>(blocks.size());
     result.defines_ = "#define RELIEF_MAP_CAPACITY " + std::to_string(blocks.size()) + "\n";
+    // What no map needs is left out of the shader: a GL may run every branch for every map.
+    const auto defineIf = [&](const char* name, auto&& needed) {
+        if (std::any_of(collider.maps.begin(), collider.maps.end(), needed)) {
+            result.defines_ += std::string("#define RELIEF_HAS_") + name + "\n";
+        }
+    };
+    defineIf("FLOAT", [](const DepthMap& map) { return map.format == MapFormat::kFloat32; });
+    defineIf("FIXED", [](const DepthMap& map) { return map.format == MapFormat::kFixed8; });
+    defineIf("CUBE", [](const DepthMap& map) { return map.format == MapFormat::kCube8; });
+    defineIf("FRONT_BACK", [](const DepthMap& map) { return isFrontBack(map.format); });
+    defineIf("PLANE", [](const DepthMap& map) { return map.decode == Decode::kPlane; });
+    defineIf("PROJECTED", [](const DepthMap& map) { return map.decode == Decode::kProjected; });
     return result;
 }
 

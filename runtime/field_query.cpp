@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "runtime/pass_state.h"
+
 namespace relief {
 namespace {
 
@@ -17,7 +19,7 @@ Result<FieldQuery> FieldQuery::create(const Collider& collider) {
     if (!textures) {
         return forward(textures);
     }
-    const GlStateGuard guard;
+    const PassState state;
     FieldQuery query(std::move(*textures));
     Result<GlProgram> program = makeProgram("quad.vert", "query.frag", query.textures_.defines());
     if (!program) {
@@ -31,7 +33,7 @@ Result<FieldQuery> FieldQuery::create(const Collider& collider) {
 }
 
 Result<std::vector<FieldSample>> FieldQuery::evaluate(std::span<const glm::vec3> points) const {
-    const GlStateGuard guard;
+    const PassState state;
     std::vector<FieldSample> samples;
     samples.reserve(points.size());
     for (std::size_t first = 0; first < points.size(); first += kBatch) {

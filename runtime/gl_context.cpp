@@ -112,7 +112,7 @@ struct GlContext::Impl {
         if (context != EGL_NO_CONTEXT) {
             eglDestroyContext(display, context);
         }
-        eglTerminate(display);
+        // The display stays open: it is the process's, by EGL's rules, and someone else may be using it.
         display = EGL_NO_DISPLAY;
         context = EGL_NO_CONTEXT;
     }

@@ -176,7 +176,8 @@ int run(int argc, char** argv) {
     }
     for (const CLI::Option* option : app.get_options()) {
         if (option->count() > 0 && option->get_expected_max() > 0 && option->results().back().empty()) {
-            return report(ErrorCode::kUsage, option->get_name() + " is given without a value; see relief-sim --help");
+            return report(ErrorCode::kUsage,
+                          option->get_name() + " is given without a value; see relief-sim --help");
         }
     }
     relief::PlayerOptions options;

@@ -47,6 +47,46 @@ const float RELIEF_FAR_INSIDE = -3.4028235e38;
 const float RELIEF_FAR_OUTSIDE = 1e30;
 const float RELIEF_CUBE_DEPTH_MAX = 1.7320509;
 
+// What the maps of this collider are, as constants where they are all alike: a GL may otherwise run the branches
+// of all formats for every map. ColliderTextures defines RELIEF_HAS_… for what it holds.
+bool reliefIsCube(ivec4 info) {
+#if !defined(RELIEF_HAS_CUBE)
+    return false;
+#elif defined(RELIEF_HAS_FLOAT) || defined(RELIEF_HAS_FIXED) || defined(RELIEF_HAS_FRONT_BACK)
+    return info.y == RELIEF_CUBE8;
+#else
+    return true;
+#endif
+}
+
+bool reliefIsFrontBack(ivec4 info) {  // of an orthographic map, as is the next one
+#if !defined(RELIEF_HAS_FRONT_BACK)
+    return false;
+#elif defined(RELIEF_HAS_FLOAT) || defined(RELIEF_HAS_FIXED)
+    return info.y == RELIEF_FRONT_BACK_HALF || info.y == RELIEF_FRONT_BACK_FIXED;
+#else
+    return true;
+#endif
+}
+
+bool reliefIsFloat(ivec4 info) {
+#if !defined(RELIEF_HAS_FLOAT)
+    return false;
+#else
+    return info.y == RELIEF_FLOAT32;
+#endif
+}
+
+bool reliefIsPlane(ivec4 info) {
+#if !defined(RELIEF_HAS_PLANE)
+    return false;
+#elif defined(RELIEF_HAS_PROJECTED)
+    return (info.z & RELIEF_PLANE) != 0;
+#else
+    return true;
+#endif
+}
+
 // The combined vote. map is the deciding map, −1 where every map abstains; normal is zero where the point
 // is known to be outside and no more (distance RELIEF_FAR_OUTSIDE).
 struct ReliefField {
@@ -183,14 +223,14 @@ void reliefVoteOrthographic(inout ReliefField best, int i, vec3 p, ivec4 rect, i
     ivec3 texel = ivec3(rect.xy + ivec2(at), rect.z);
 
     // One texel holds one surface or, front-back, two: the nearer in front, the farther in back.
-    bool plane = (info.z & RELIEF_PLANE) != 0;
+    bool plane = reliefIsPlane(info);
     vec2 across = (at - (vec2(ivec2(at)) + 0.5)) / size;  // from the texel's centre
     float scale = u_relief_maps[i].object_per_map.z;
     bool found;
     float depth;
     vec3 normal;
     float vote;
-    if (info.y == RELIEF_FRONT_BACK_HALF || info.y == RELIEF_FRONT_BACK_FIXED) {
+    if (reliefIsFrontBack(info)) {
         uvec4 words = texelFetch(u_relief_front_back, texel, 0);
         found = words.b != 0u || words.a != 0u;
         float front = p.z - reliefFrontBackDepth(info.y, words.b);
@@ -215,7 +255,7 @@ void reliefVoteOrthographic(inout ReliefField best, int i, vec3 p, ivec4 rect, i
             normal = reliefPackedNormal(take_back ? words.g : words.r);
         }
     } else {
-        if (info.y == RELIEF_FLOAT32) {
+        if (reliefIsFloat(info)) {
             vec4 values = texelFetch(u_relief_float, texel, 0);
             normal = values.rgb;
             depth = values.a;
@@ -264,7 +304,7 @@ void reliefVoteCube(inout ReliefField best, int i, vec3 p, ivec4 rect, ivec4 inf
         return;
     }
     float vote;
-    if ((info.z & RELIEF_PLANE) != 0) {
+    if (reliefIsPlane(info)) {
         vec3 center = reliefCubeDirection(vec3((vec2(at) + 0.5) / float(rect.w), st_face.z));
         vote = reliefPlane(i, normal, p - center * (depth / reliefLength(center)));
     } else {
@@ -285,7 +325,7 @@ void reliefVote(inout ReliefField best, int i, vec3 p) {
     vec3 in_map = vec3(reliefRow(row0, p), reliefRow(row1, p), reliefRow(row2, p));
     ivec4 rect = u_relief_maps[i].rect;
     ivec4 info = u_relief_maps[i].info;
-    if (info.y == RELIEF_CUBE8) {
+    if (reliefIsCube(info)) {
         reliefVoteCube(best, i, in_map, rect, info);
     } else {
         reliefVoteOrthographic(best, i, in_map, rect, info);
@@ -300,19 +340,13 @@ ReliefField reliefEvaluate(vec3 p) {
     return best;
 }
 
-// What a step of a simulation needs: the same as reliefInside(reliefEvaluate(p)), and its normal and map where
-// that is true, but the walk ends at the first map that sees P outside. Outside, normal is zero and map is that
-// map; −1 where every map abstains.
-bool reliefInsideAt(vec3 p, out vec3 normal, out int map) {
+// What a step of a simulation needs: the same as reliefEvaluate where P is inside; where it is not, the first map
+// that sees it outside ends the walk, so that most points cost one fetch however many maps there are. (Rule 2
+// never turns a vote ≥ 0 into one below.)
+ReliefField reliefSolid(vec3 p) {
     ReliefField best = ReliefField(RELIEF_FAR_INSIDE, vec3(0.0), -1);
-    for (int i = 0; i < u_relief_count.x; ++i) {
+    for (int i = 0; i < u_relief_count.x && best.distance < 0.0; ++i) {
         reliefVote(best, i, p);
-        if (best.distance >= 0.0) {
-            break;
-        }
     }
-    bool inside = reliefInside(best);
-    normal = inside ? best.normal : vec3(0.0);
-    map = best.map;
-    return inside;
+    return best;
 }

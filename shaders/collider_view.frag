@@ -8,7 +8,6 @@
 // the distance kept; the second pass then starts a little before the nearest of the nine distances around it, and
 // follows no ray where all nine missed.
 //!include collider.glsl
-//!include solid.glsl
 //!include light.glsl
 
 in vec2 v_uv;

@@ -1,5 +1,5 @@
 // The light that a point among collider and floor receives: a sun of some width, and a sky, both hidden by the
-// collider's own field. Shared by the collider's picture and by the particles. Needs collider.glsl, solid.glsl.
+// collider's own field. Shared by the collider's picture and by the particles. Needs collider.glsl.
 
 uniform vec3 u_bounds_min;    // of the collider, with a small margin
 uniform vec3 u_bounds_max;

@@ -2,7 +2,6 @@
 // With RELIEF_LIT the collider shades them; else they lie in the open.
 #ifdef RELIEF_LIT
 //!include collider.glsl
-//!include solid.glsl
 //!include light.glsl
 #endif
 

@@ -1,6 +1,5 @@
 // A step among the floor and a collider.
 //!include collider.glsl
-//!include solid.glsl
 //!include step.glsl
 
 Solid solid(vec3 p) {

@@ -19,10 +19,11 @@ double depthTolerance(MapFormat format, double depth) {
         case MapFormat::kFloat32:
             return kFloats;
         case MapFormat::kFixed8:
+        case MapFormat::kFrontBackFixed:
             return 0.5 / 65534.0 + kFloats;
         case MapFormat::kCube8:
             return 0.5 * 1.7320509 / 65534.0 + kFloats;
-        case MapFormat::kFrontBack16:
+        case MapFormat::kFrontBackHalf:
             return std::ldexp(depth, -11) + kFloats;  // half a unit in the last of 11 bits, at most
     }
     return 0.0;

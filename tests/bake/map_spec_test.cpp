@@ -107,7 +107,7 @@ TEST(MapSpecDefaults, AreThreeOrthogonalFrontBacksAndACube) {
     const std::vector<MapSpec> specs = defaultMapSpecs();
     ASSERT_EQ(specs.size(), 4U);
     for (int i = 0; i < 3; ++i) {
-        EXPECT_EQ(specs[static_cast<std::size_t>(i)].format, MapFormat::kFrontBack16);
+        EXPECT_EQ(specs[static_cast<std::size_t>(i)].format, MapFormat::kFrontBackHalf);
         EXPECT_EQ(specs[static_cast<std::size_t>(i)].direction[i], -1.0F);
     }
     EXPECT_EQ(specs[3].format, MapFormat::kCube8);

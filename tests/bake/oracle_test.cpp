@@ -50,7 +50,7 @@ double boundOf(const Collider& collider) {
             const double s_max = std::max({scale.x, scale.y, scale.z});
             own = s_max * (std::sqrt(6.0) / map.width + std::sqrt(3.0) / 65534.0);
         } else {
-            const double quantum = map.format == MapFormat::kFrontBack16 ? 1.0 / 4096.0 : 1.0 / 65534.0;
+            const double quantum = map.format == MapFormat::kFrontBackHalf ? 1.0 / 4096.0 : 1.0 / 65534.0;
             own = 0.5 * std::hypot(scale.x / map.width, scale.y / map.height) + scale.z * quantum;
         }
         bound = std::max(bound, own);

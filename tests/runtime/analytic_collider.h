@@ -238,7 +238,7 @@ inline Collider frontBackCollider(const Shape& shape, std::uint32_t size) {
     collider.bounds = shape.bounds;
     for (int axis = 0; axis < 3; ++axis) {
         collider.maps.push_back(
-            orthographicMap(shape, MapFormat::kFrontBack16, Compare::kBoth, {axis, true}, size));
+            orthographicMap(shape, MapFormat::kFrontBackHalf, Compare::kBoth, {axis, true}, size));
     }
     return collider;
 }

@@ -246,7 +246,7 @@ TEST_P(FieldQueryGlTest, ExtremePointsGiveAnAnswerAndNoNan) {
 
 // ---- the early out
 
-/// reliefInsideAt at every point, one a fragment.
+/// reliefSolid at every point, one a fragment.
 std::vector<InsideSample> insideByGpu(const Collider& collider, std::span<const glm::vec3> points) {
     constexpr GLsizei kWidth = 1024;
     const GlStateGuard guard;

@@ -72,11 +72,15 @@ Collider mixedCollider() {
     Collider collider;
     collider.bounds = shape.bounds;
     using analytic::orthographicMap;
-    collider.maps.push_back(orthographicMap(shape, MapFormat::kFrontBack16, Compare::kBoth, {1, false}, 96));
+    collider.maps.push_back(
+        orthographicMap(shape, MapFormat::kFrontBackHalf, Compare::kBoth, {1, false}, 96));
     collider.maps.push_back(orthographicMap(shape, MapFormat::kFixed8, Compare::kLess, {0, true}, 128));
     collider.maps.push_back(orthographicMap(shape, MapFormat::kFixed8, Compare::kGreater, {0, true}, 64));
     collider.maps.push_back(orthographicMap(shape, MapFormat::kFloat32, Compare::kLess, {2, false}, 100));
     collider.maps.push_back(orthographicMap(shape, MapFormat::kFloat32, Compare::kGreater, {2, false}, 100));
+    collider.maps.push_back(
+        orthographicMap(shape, MapFormat::kFrontBackFixed, Compare::kBoth, {2, true}, 80));
+    collider.maps.back().decode = Decode::kPlane;
     collider.maps.push_back(
         analytic::cubeMap(shape, Compare::kGreater, {0.0, 0.1, 0.0}, {1.3, 1.2, 1.1}, 64));
     collider.maps.push_back(
