@@ -7,8 +7,15 @@
 #   scripts/accuracy.sh --cross-check    compares the volume with OpenVDB's mesh2ls, on the bunny
 #
 # The cross-check samples the level set that Debian's vdb_tool (libopenvdb-tools) makes of the bunny at 128
-# voxels, read by python3-openvdb; neither package is needed for anything else. Found with OpenVDB 10.0.1:
-CROSS_CHECK_FIGURES
+# voxels, read by python3-openvdb; neither package is needed for anything else. Found with OpenVDB 10.0.1, in
+# voxels of the level set, at the 213239 nodes of its band:
+#
+#     the volume's exact values    mean 0.008, 99 % below 0.12, largest 0.76; 564 other signs
+#     its lookup at 4 MB           mean 0.017, 99 % below 0.14, largest 0.9; 568 other signs
+#
+# Other signs are found within 0.29 voxels of the surface alone. The differences are the level set's: CGAL gives
+# the bunny our distances to nine digits and our signs (tests/bake/truth_oracle_test.cpp), while mesh2ls
+# renormalises its values.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

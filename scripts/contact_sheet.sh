@@ -19,5 +19,5 @@ paper='#f4f5f7'
 montage "${chosen[@]}" -tile 3x2 -geometry 640x480+6+6 -background "$paper" .frames.png
 montage slice_x.png slice_y.png slice_z.png -tile 3x1 -geometry '640x>+6+6' -background "$paper" .slices.png
 convert .frames.png .slices.png -background "$paper" -gravity center -append \
-    -bordercolor "$paper" -border 12 -strip contact_sheet.png
+    -bordercolor "$paper" -border 12 -depth 8 -strip contact_sheet.png
 rm -f .frames.png .slices.png
