@@ -35,7 +35,7 @@ struct CheckCommand {
 
 struct Settings {
     AccuracyOptions accuracy;
-    std::optional<double> max_error;  // percent
+    std::optional<float> max_error;  // percent
 };
 
 Result<Settings> settingsOf(const CheckCommand& command) {
@@ -67,7 +67,7 @@ Result<Settings> settingsOf(const CheckCommand& command) {
             return fail(ErrorCode::kUsage, "--max-error is '" + cleanUtf8(command.max_error) +
                                                "' but must be a share in percent, such as 1.5");
         }
-        settings.max_error = static_cast<double>(*percent);
+        settings.max_error = *percent;
     }
     return settings;
 }
@@ -154,7 +154,7 @@ Result<void> runCheck(const CheckCommand& command) {
             return written;
         }
     }
-    const bool passed = !settings->max_error || accuracy.field.near.total() <= *settings->max_error;
+    const bool passed = !settings->max_error || accuracy.field.near.total() <= double{*settings->max_error};
     std::string text;
     if (command.json) {
         nlohmann::ordered_json json = {
@@ -173,7 +173,7 @@ Result<void> runCheck(const CheckCommand& command) {
             {"warnings", warnings},
             {"times_ms", {{"truth", 1000.0 * samples.seconds}, {"field", 1000.0 * accuracy.field.seconds}}}};
         if (settings->max_error) {
-            json["max_error_percent"] = *settings->max_error;
+            json["max_error_percent"] = jsonNumber(*settings->max_error);
         }
         text = dump(json);
     } else {
@@ -189,7 +189,7 @@ Result<void> runCheck(const CheckCommand& command) {
         return fail(ErrorCode::kDifference, shortNumber(accuracy.field.near.total()) +
                                                 " % of the points near the surface are on the wrong side, "
                                                 "more than --max-error " +
-                                                shortNumber(*settings->max_error) +
+                                                shortest(*settings->max_error) +
                                                 " %; bake with larger or more maps");
     }
     return {};

@@ -128,9 +128,10 @@ FieldValue DistanceVolume::at(const glm::vec3& p) const {
     const double at_y0 = mix(edge[0][0], edge[0][1], t[2]);
     const double at_y1 = mix(edge[1][0], edge[1][1], t[2]);
     const double value = mix(at_y0, at_y1, t[1]) / kCodeMax * range_;
-    const glm::dvec3 gradient(
+    const glm::dvec3 per_voxel(
         mix(mix(slope[0][0], slope[0][1], t[2]), mix(slope[1][0], slope[1][1], t[2]), t[1]), at_y1 - at_y0,
         mix(edge[0][1] - edge[0][0], edge[1][1] - edge[1][0], t[1]));
+    const glm::dvec3 gradient = per_voxel / lattice_.spacing;
 
     FieldValue result;
     const double length = glm::length(gradient);

@@ -155,12 +155,16 @@ bool forEachUse(const aiScene& scene, const Visit& visit) {
         const Transform transform = next.parent * next.node->mTransformation;
         for (unsigned i = 0; i < next.node->mNumMeshes; ++i) {
             const unsigned index = next.node->mMeshes[i];
-            if (index < scene.mNumMeshes && !visit(*scene.mMeshes[index], transform)) {
+            if (index < scene.mNumMeshes && scene.mMeshes[index]->HasPositions() &&
+                !visit(*scene.mMeshes[index], transform)) {
                 return false;
             }
         }
         for (unsigned i = next.node->mNumChildren; i > 0; --i) {
-            pending.push_back({next.node->mChildren[i - 1], transform});
+            // Some importers (RAW in assimp 5.2) leave children out.
+            if (const aiNode* child = next.node->mChildren[i - 1]; child != nullptr) {
+                pending.push_back({child, transform});
+            }
         }
     }
     return true;

@@ -126,6 +126,7 @@ class RayScene::Impl::Tracer {
                 setCubeRays(face, x0, y0);
             }
             rtcIntersect16(valid_, impl_.scene.get(), &context_, &packet_);
+            prefetchCorners();
             for (std::uint32_t row = 0; row < rows; ++row) {
                 Hit* const out = hits + std::size_t{row} * view_.width + x0;
                 for (std::uint32_t column = 0; column < columns; ++column) {
@@ -149,6 +150,26 @@ class RayScene::Impl::Tracer {
             valid_rows_ = rows;
             for (int lane = 0; lane < kLanes; ++lane) {
                 valid_[lane] = columnOf(lane) < columns && rowOf(lane) < rows ? -1 : 0;
+            }
+        }
+    }
+
+    /// Asks for the corners of all triangles met before the first of them is needed: half the time of
+    /// resolving hits was waiting for them, one after the other. Inlined by force: GCC takes a function that
+    /// only prefetches for one without effect, and leaves its calls out.
+    [[gnu::always_inline]] void prefetchCorners() const {
+        const glm::uvec3* const triangles = impl_.mesh->triangles.data();
+        const glm::vec3* const positions = impl_.mesh->positions.data();
+        for (int lane = 0; lane < kLanes; ++lane) {
+            if (packet_.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID) {
+                __builtin_prefetch(triangles + packet_.hit.primID[lane]);
+            }
+        }
+        for (int lane = 0; lane < kLanes; ++lane) {
+            if (packet_.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID) {
+                const glm::uvec3& triangle = triangles[packet_.hit.primID[lane]];
+                __builtin_prefetch(positions + triangle.x);
+                __builtin_prefetch(positions + triangle.z);
             }
         }
     }

@@ -13,9 +13,8 @@
 #     the volume's exact values    mean 0.008, 99 % below 0.12, largest 0.76; 564 other signs
 #     its lookup at 4 MB           mean 0.017, 99 % below 0.14, largest 0.9; 568 other signs
 #
-# Other signs are found within 0.29 voxels of the surface alone. The differences are the level set's: CGAL gives
-# the bunny our distances to nine digits and our signs (tests/bake/truth_oracle_test.cpp), while mesh2ls
-# renormalises its values.
+# Other signs are found within 0.29 voxels of the surface alone. The differences are the level set's (why was not
+# looked into): CGAL gives the bunny our distances to nine digits, and our signs (tests/bake/truth_oracle_test.cpp).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

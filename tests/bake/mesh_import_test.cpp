@@ -271,6 +271,14 @@ TEST(MeshImport, BuffersBesideTheFileAreRead) {
     EXPECT_NEAR(signedVolume(*mesh), 1.0 / 6.0, 1e-6);
 }
 
+TEST(MeshImport, ASceneWithMissingNodesIsRead) {
+    // assimp 5.2 leaves null children in the scenes of this format.
+    const TemporaryFolder folder;
+    const Result<TriangleMesh> mesh = import(folder, "t.raw", "0 0 0 1 0 0 0 1 0\n0 0 0 0 1 0 0 0 1\n");
+    ASSERT_TRUE(mesh) << mesh.error().message;
+    EXPECT_EQ(mesh->triangles.size(), 2U);
+}
+
 TEST(MeshImport, NamesOfAnyBytes) {
     const TemporaryFolder folder;
     const Result<TriangleMesh> mesh = import(folder, "h\xc3\xa4se\xff \x1b.obj", kBoxObj);
