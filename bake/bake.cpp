@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "bake/encode.h"
+#include "bake/fitted_map.h"
 #include "bake/inside.h"
 #include "bake/raycast.h"
 #include "bake/view.h"
@@ -74,12 +75,14 @@ Result<std::vector<Job>> planJobs(const TriangleMesh& mesh, const BakeOptions& o
     return jobs;
 }
 
-std::string effectiveOptions(const std::vector<Job>& jobs) {
+std::string effectiveOptions(const std::vector<Job>& jobs, Quality quality) {
     std::string text;
+    bool has_planes = false;
     for (const Job& job : jobs) {
         text.append(text.empty() ? "" : " ").append("--map ").append(toString(job.spec));
+        has_planes = has_planes || job.spec.decode == Decode::kPlane;
     }
-    return text;
+    return has_planes ? text + " --quality " + qualityName(quality) : text;
 }
 
 void warnAbout(const TriangleMesh& mesh, const std::vector<Job>& jobs, BakeReport& report) {
@@ -107,7 +110,18 @@ void warnAbout(const TriangleMesh& mesh, const std::vector<Job>& jobs, BakeRepor
     }
 }
 
-/// Bakes one map, a stripe of rows at a time.
+FittedMapOptions fitOptions(const TriangleMesh& mesh, const View& view, Quality quality) {
+    const double side = mesh.bounds.longestSide();
+    FittedMapOptions options;
+    options.samples = quality == Quality::kFast ? 1 : quality == Quality::kNormal ? 4 : 6;
+    options.refinements = quality == Quality::kFast ? 0 : 3;
+    options.reach = 0.02 * side;
+    // A hundredth of a texel: far below what any texel can resolve.
+    options.good_enough = 0.01 * side / std::max(view.width, view.height);
+    return options;
+}
+
+/// Bakes one map of surfaces at the texels' centres, a stripe of rows at a time.
 class MapBaker {
   public:
     MapBaker(const TriangleMesh& mesh, const RayScene& scene, const NormalTable& normals)
@@ -190,10 +204,22 @@ Result<Baked> bakeOnThisArena(const TriangleMesh& mesh, const BakeOptions& optio
         }
     };
     MapBaker baker(mesh, **scene, *normals);
+    std::optional<TriangleNormals> unit_normals;
     std::uint64_t all_covered = 0;
     for (const Job& job : *jobs) {
         MapReport map_report{job.spec, 0, job.texels()};
-        baked.collider.maps.push_back(baker.bake(job.view, report, map_report.covered, stripeDone));
+        if (job.spec.decode == Decode::kPlane) {
+            const Stopwatch watch(report.fit_ms);
+            if (!unit_normals) {
+                unit_normals.emplace(mesh);
+            }
+            baked.collider.maps.push_back(
+                bakeFittedMap(**scene, *unit_normals, job.view, fitOptions(mesh, job.view, options.quality),
+                              map_report.covered,
+                              [&](std::uint32_t rows) { stripeDone(std::uint64_t{rows} * job.view.width); }));
+        } else {
+            baked.collider.maps.push_back(baker.bake(job.view, report, map_report.covered, stripeDone));
+        }
         all_covered += map_report.covered;
         report.maps.push_back(std::move(map_report));
     }
@@ -208,11 +234,23 @@ Result<Baked> bakeOnThisArena(const TriangleMesh& mesh, const BakeOptions& optio
     baked.collider.bounds = mesh.bounds;
     baked.collider.unit = mesh.unit;
     baked.collider.provenance = {mesh.name, mesh.content_hash, mesh.triangles.size(),
-                                 "relief " RELIEF_VERSION, effectiveOptions(*jobs)};
+                                 "relief " RELIEF_VERSION, effectiveOptions(*jobs, options.quality)};
     return baked;
 }
 
 }  // namespace
+
+const char* qualityName(Quality quality) {
+    switch (quality) {
+        case Quality::kFast:
+            return "fast";
+        case Quality::kNormal:
+            return "normal";
+        case Quality::kBest:
+            return "best";
+    }
+    return "unknown";
+}
 
 Result<Baked> bake(const TriangleMesh& mesh, const BakeOptions& options) {
     if (options.threads == 0) {

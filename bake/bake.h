@@ -13,10 +13,17 @@
 
 namespace relief {
 
+/// How much work goes into the texels of maps whose decode is plane: rays along each side of a texel's
+/// footprint, and rounds of search among neighbouring normals.
+enum class Quality : std::uint8_t { kFast, kNormal, kBest };
+
+[[nodiscard]] const char* qualityName(Quality quality);  ///< "fast", "normal" or "best"
+
 struct BakeOptions {
     std::vector<MapSpec> maps;       ///< empty: defaultMapSpecs()
     std::uint32_t resolution = 512;  ///< texels along a side, for maps whose spec names no size
-    unsigned threads = 0;            ///< 0: all cores. Never changes the result.
+    Quality quality = Quality::kNormal;
+    unsigned threads = 0;  ///< 0: all cores. Never changes the result.
     /// Called now and then, from the calling thread, with the share of the work done, in [0, 1].
     std::function<void(double)> progress;
 };
@@ -31,6 +38,7 @@ struct BakeReport {
     double build_ms = 0.0;   ///< acceleration structure
     double trace_ms = 0.0;   ///< rays
     double encode_ms = 0.0;  ///< normals and texels
+    double fit_ms = 0.0;     ///< rays and planes of the maps whose decode is plane
     std::vector<MapReport> maps;
     std::vector<std::string> warnings;  ///< what is probably not meant; one line each
 };

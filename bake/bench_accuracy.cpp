@@ -20,6 +20,7 @@
 #include "bake/report.h"
 #include "bake/text.h"
 #include "bake/view.h"
+#include "bake/view_planner.h"
 #include "formats/file_io.h"
 
 namespace relief {
@@ -96,7 +97,21 @@ Result<Baked> bakePaper(const TriangleMesh& mesh, std::uint64_t bytes) {
 
 /// What `relief bake --budget` makes.
 Result<Baked> bakeOurs(const TriangleMesh& mesh, std::uint64_t bytes) {
-    return bakePaper(mesh, bytes);
+    const Result<MeshQuery> query = MeshQuery::build(mesh);
+    if (!query) {
+        return forward(query);
+    }
+    PlanOptions plan_options;
+    plan_options.budget_bytes = bytes;
+    const Result<Plan> plan = planViews(mesh, *query, plan_options);
+    if (!plan) {
+        return forward(plan);
+    }
+    BakeOptions options;
+    for (const PlannedMap& map : plan->maps) {
+        options.maps.push_back(map.spec);
+    }
+    return bake(mesh, options);
 }
 
 // --- measuring ---

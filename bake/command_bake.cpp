@@ -2,16 +2,22 @@
 #include <spdlog/spdlog.h>
 #include <tbb/info.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
+#include <optional>
 
 #include "bake/bake.h"
+#include "bake/byte_count.h"
 #include "bake/command.h"
 #include "bake/mesh_import.h"
+#include "bake/mesh_query.h"
 #include "bake/preflight.h"
 #include "bake/progress.h"
 #include "bake/report.h"
 #include "bake/text.h"
+#include "bake/view_planner.h"
 #include "formats/file_io.h"
 
 namespace relief {
@@ -26,6 +32,8 @@ struct BakeCommand {
     std::string output;
     std::vector<std::string> maps;
     std::string resolution = "512";
+    std::string budget;
+    std::string quality = "normal";
     std::string threads;
     std::string compress = "0";
     bool json = false;
@@ -33,11 +41,13 @@ struct BakeCommand {
 
 struct Settings {
     BakeOptions bake;
+    std::optional<std::uint64_t> budget;  ///< bytes of texels to plan for
     ContainerWriteOptions write;
 };
 
 struct Times {
     double import_ms = 0.0;
+    double plan_ms = 0.0;
     double write_ms = 0.0;
     double total_ms = 0.0;
 };
@@ -52,8 +62,34 @@ class Stopwatch {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+Result<void> readPlanSettings(const BakeCommand& command, Settings& settings) {
+    if (!command.budget.empty()) {
+        if (!command.maps.empty()) {
+            return fail(ErrorCode::kUsage,
+                        "--budget chooses the maps by itself; leave out --budget or --map");
+        }
+        settings.budget = parseByteCount(command.budget);
+        if (!settings.budget) {
+            return fail(ErrorCode::kUsage, "--budget is '" + cleanUtf8(command.budget) +
+                                               "' but must be a number of bytes, such as 1MB or 512KiB");
+        }
+    }
+    constexpr std::array<std::string_view, 3> kQualities = {"fast", "normal", "best"};
+    const auto* found = std::find(kQualities.begin(), kQualities.end(), command.quality);
+    if (found == kQualities.end()) {
+        return fail(ErrorCode::kUsage, "--quality is '" + cleanUtf8(command.quality) +
+                                           "' but must be one of " + listed(kQualities) +
+                                           didYouMean(command.quality, kQualities));
+    }
+    settings.bake.quality = static_cast<Quality>(found - kQualities.begin());
+    return {};
+}
+
 Result<Settings> settingsOf(const BakeCommand& command) {
     Settings settings;
+    if (const Result<void> plan = readPlanSettings(command, settings); !plan) {
+        return forward(plan);
+    }
     for (const std::string& text : command.maps) {
         const Result<MapSpec> spec = parseMapSpec(text);
         if (!spec) {
@@ -125,10 +161,11 @@ void printReport(const TriangleMesh& mesh, const Baked& baked, const Times& time
     }
     text += "\n" + table(rows);
     char line[256];
-    std::snprintf(line, sizeof(line),
-                  "%.0f ms: import %.0f, tree %.0f, rays %.0f, texels %.0f, writing %.0f\n", times.total_ms,
-                  times.import_ms, baked.report.build_ms, baked.report.trace_ms, baked.report.encode_ms,
-                  times.write_ms);
+    std::snprintf(
+        line, sizeof(line),
+        "%.0f ms: import %.0f, plan %.0f, tree %.0f, rays %.0f, texels %.0f, planes %.0f, writing %.0f\n",
+        times.total_ms, times.import_ms, times.plan_ms, baked.report.build_ms, baked.report.trace_ms,
+        baked.report.encode_ms, baked.report.fit_ms, times.write_ms);
     text += line;
     text += (output == "-" ? "standard output" : quotedPath(output)) + ": " + bytesText(file_size) + "\n";
     std::fputs(text.c_str(), stderr);
@@ -148,15 +185,39 @@ nlohmann::ordered_json jsonReport(const BakeCommand& command, const Settings& se
                         {"output", command.output},
                         {"maps", specs},
                         {"resolution", settings.bake.resolution},
+                        {"budget", settings.budget ? nlohmann::ordered_json(*settings.budget) : nullptr},
+                        {"quality", qualityName(settings.bake.quality)},
                         {"threads", settings.bake.threads == 0 ? tbb::info::default_concurrency()
                                                                : static_cast<int>(settings.bake.threads)},
                         {"compress", settings.write.compression_level}};
     json["dropped_triangles"] = mesh.dropped_triangles;
-    json["times_ms"] = {{"import", times.import_ms},      {"build", baked.report.build_ms},
-                        {"trace", baked.report.trace_ms}, {"encode", baked.report.encode_ms},
-                        {"write", times.write_ms},        {"total", times.total_ms}};
+    json["times_ms"] = {{"import", times.import_ms},        {"plan", times.plan_ms},
+                        {"build", baked.report.build_ms},   {"trace", baked.report.trace_ms},
+                        {"encode", baked.report.encode_ms}, {"fit", baked.report.fit_ms},
+                        {"write", times.write_ms},          {"total", times.total_ms}};
     json["warnings"] = baked.report.warnings;
     return json;
+}
+
+/// Chooses the maps for the budget, and says why.
+Result<void> planMaps(const TriangleMesh& mesh, Settings& settings) {
+    const Result<MeshQuery> query = MeshQuery::build(mesh);
+    if (!query) {
+        return forward(query);
+    }
+    PlanOptions options;
+    options.budget_bytes = *settings.budget;
+    const Result<Plan> plan = planViews(mesh, *query, options);
+    if (!plan) {
+        return forward(plan);
+    }
+    for (const PlannedMap& map : plan->maps) {
+        spdlog::info("map {}: {}", settings.bake.maps.size(), map.reason);
+        settings.bake.maps.push_back(map.spec);
+    }
+    spdlog::info("{} maps, {}, texels of {:.3g} object units; no map sees {:.2f} % of the surface",
+                 plan->maps.size(), bytesText(plan->bytes), plan->texel, plan->unseen_percent);
+    return {};
 }
 
 Result<void> runBake(const BakeCommand& command) {
@@ -186,6 +247,13 @@ Result<void> runBake(const BakeCommand& command) {
         spdlog::debug("{}: {} triangles without area dropped", mesh->name, mesh->dropped_triangles);
     }
 
+    if (settings->budget) {
+        const Stopwatch plan_watch;
+        if (const Result<void> planned = planMaps(*mesh, *settings); !planned) {
+            return planned;
+        }
+        times.plan_ms = plan_watch.ms();
+    }
     std::optional<Result<Baked>> baked;
     {
         ProgressBar bar("baking " + mesh->name, !command.common.quiet);
@@ -245,6 +313,8 @@ void addBake(CLI::App& app, Action& action) {
                     "size     texels, N or WxH (cube: N)\n"
                     "compare  less or greater: keep the nearest or the farthest surface\n"
                     "center   a/b/c, where a cube looks from\n"
+                    "depth    half or unorm16: of front-back maps\n"
+                    "decode   projected (the paper's) or plane: fitted to the whole texel\n"
                     "box      tight, or x0/y0/z0/x1/y1/z1: the part of space to cover\n"
                     "Default: front-back along -x, -y and -z, and a cube")
         ->option_text("SPEC")
@@ -254,6 +324,12 @@ void addBake(CLI::App& app, Action& action) {
     verb.add_option("--resolution", command->resolution,
                     "Texels along a side of maps without size; default 512")
         ->option_text("N");
+    verb.add_option("--budget", command->budget,
+                    "Choose the maps for this many bytes, such as 1MB: directions, places and sizes")
+        ->option_text("BYTES");
+    verb.add_option("--quality", command->quality,
+                    "Of planes: fast (one ray a texel), normal (16 rays, default) or best (36)")
+        ->option_text("WORD");
     verb.add_option("-j,--threads", command->threads,
                     "Threads to use; default: all cores. The result is the same")
         ->option_text("N");

@@ -13,7 +13,8 @@
 namespace relief {
 
 struct FittedMapOptions {
-    /// Rays along each side of a texel's footprint: samples · samples in all, at the centres of as many parts.
+    /// Rays along each side of a texel's footprint: samples · samples in all, at the centres of as many
+    /// parts.
     std::uint32_t samples = 4;
     /// Rounds of search among neighbouring normals.
     int refinements = 3;

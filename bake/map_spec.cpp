@@ -9,8 +9,11 @@ namespace relief {
 namespace {
 
 constexpr std::array<std::string_view, 4> kFormatWords = {"float", "fixed8", "front-back", "cube"};
-constexpr std::array<std::string_view, 5> kKeys = {"dir", "size", "compare", "center", "box"};
+constexpr std::array<std::string_view, 7> kKeys = {"dir", "size",  "compare", "center",
+                                                   "box", "depth", "decode"};
 constexpr std::array<std::string_view, 2> kCompareWords = {"less", "greater"};
+constexpr std::array<std::string_view, 2> kDepthWords = {"half", "unorm16"};
+constexpr std::array<std::string_view, 2> kDecodeWords = {"projected", "plane"};
 
 struct AxisWord {
     std::string_view word;
@@ -98,7 +101,32 @@ class Parser {
         if (key == "compare") {
             return setCompare(value);
         }
+        if (key == "depth") {
+            return setDepth(value);
+        }
+        if (key == "decode") {
+            return setDecode(value);
+        }
         return key == "center" ? setCenter(value) : setBox(value);
+    }
+
+    Result<void> setDepth(std::string_view value) {
+        if (!isFrontBack(spec_.format)) {
+            return usage("depth does nothing but for front-back; leave it out");
+        }
+        if (value != "half" && value != "unorm16") {
+            return badValue("depth", value, "half or unorm16" + didYouMean(value, kDepthWords));
+        }
+        spec_.format = value == "half" ? MapFormat::kFrontBackHalf : MapFormat::kFrontBackFixed;
+        return {};
+    }
+
+    Result<void> setDecode(std::string_view value) {
+        if (value != "projected" && value != "plane") {
+            return badValue("decode", value, "projected or plane" + didYouMean(value, kDecodeWords));
+        }
+        spec_.decode = value == "plane" ? Decode::kPlane : Decode::kProjected;
+        return {};
     }
 
     Result<void> setDirection(std::string_view value) {
@@ -236,6 +264,10 @@ std::string toString(const MapSpec& spec) {
     if (spec.center) {
         add("center", shortest(*spec.center));
     }
+    if (isFrontBack(spec.format)) {
+        add("depth", depthEncodingName(spec.format));
+    }
+    add("decode", decodeName(spec.decode));
     add("box", spec.box ? shortest(spec.box->min) + '/' + shortest(spec.box->max) : "tight");
     return text;
 }

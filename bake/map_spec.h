@@ -11,6 +11,10 @@
 //     size     N or WxH             all (cube: N)      texels, border included; a cube's along one edge of a
 //     face compare  less, greater        all but front-back keep the nearest or the farthest surface along
 //     the ray center   a/b/c                cube               where the rays of a cube start, object space
+//     depth    half, unorm16        front-back         the paper's half floats, or 16-bit fixed point
+//     decode   projected, plane     all                the paper's distance along the ray to a flat texel, or
+//     the
+//                                                      distance to a plane fitted to the texel's footprint
 //     box      tight, or            all                the part of object space that the map speaks for;
 //              x0/y0/z0/x1/y1/z1                       a cube with a box is centred on it
 #pragma once
@@ -29,6 +33,8 @@ namespace relief {
 
 struct MapSpec {
     MapFormat format = MapFormat::kFrontBackHalf;
+    /// kPlane: texels hold supporting planes (plane_fit.h); kProjected: the surface at their centre.
+    Decode decode = Decode::kProjected;
     /// The view's direction in object space, of any length but 0; not for cubes.
     glm::vec3 direction{0.0F, 0.0F, -1.0F};
     /// Texels; 0 stands for the default resolution of the bake.

@@ -197,6 +197,7 @@ class Planner {
         for (const glm::dvec3& direction : outerDirections(mesh_.bounds)) {
             OuterView view;
             view.spec.format = MapFormat::kFrontBackFixed;
+            view.spec.decode = Decode::kPlane;
             view.spec.direction = glm::vec3(direction);
             view.spec.width = view.spec.height = 64;  // any: the extents do not depend on it
             const Result<View> frame = makeView(view.spec, mesh_);
@@ -315,6 +316,7 @@ class Planner {
         }
         Chosen chosen;
         chosen.map.spec.format = MapFormat::kCube8;
+        chosen.map.spec.decode = Decode::kPlane;
         chosen.map.spec.compare = Compare::kLess;
         chosen.map.spec.box =
             Bounds{glm::vec3(cavity.center - cavity.half), glm::vec3(cavity.center + cavity.half)};

@@ -31,20 +31,21 @@ struct PlanOptions {
 inline constexpr std::uint64_t kPlanBudgetMin = 4096;
 
 struct PlannedMap {
-    MapSpec spec;            ///< complete but for compare, which is set for cubes
-    double serves = 0.0;     ///< share of the points that this map serves and none before it does
-    std::string reason;      ///< for people: "front-back along (0, 1, 0): sees 61.2 % of the surface"
+    MapSpec spec;         ///< complete but for compare, which is set for cubes
+    double serves = 0.0;  ///< share of the points that this map serves and none before it does
+    std::string reason;   ///< for people: "front-back along (0, 1, 0): sees 61.2 % of the surface"
 };
 
 struct Plan {
     std::vector<PlannedMap> maps;
-    double texel = 0.0;            ///< side of a texel, object units
-    double unseen_percent = 0.0;   ///< of the surface's area: no chosen map sees it
-    std::uint64_t bytes = 0;       ///< of all texels
+    double texel = 0.0;           ///< side of a texel, object units
+    double unseen_percent = 0.0;  ///< of the surface's area: no chosen map sees it
+    std::uint64_t bytes = 0;      ///< of all texels
 };
 
 /// The same mesh and options give the same plan, for any number of threads.
 /// Errors: kUsage (a budget below kPlanBudgetMin or too small for the maps), those of makeView.
-[[nodiscard]] Result<Plan> planViews(const TriangleMesh& mesh, const MeshQuery& query, const PlanOptions& options);
+[[nodiscard]] Result<Plan> planViews(const TriangleMesh& mesh, const MeshQuery& query,
+                                     const PlanOptions& options);
 
 }  // namespace relief

@@ -82,9 +82,12 @@ TEST(BakeBunny, SurvivesTheContainerAndTellsItsStory) {
     EXPECT_EQ(back->provenance.mesh_name, "bunny.obj");
     EXPECT_EQ(back->provenance.mesh_hash, bunny().content_hash);
     EXPECT_EQ(back->provenance.triangles, 69666U);
-    EXPECT_EQ(back->provenance.options.find("--map front-back:dir=-x,size=32x32,box=tight --map "), 0U);
-    EXPECT_NE(back->provenance.options.find("cube:size=32,compare=less,center=0/5/0,box=tight"),
-              std::string::npos);
+    EXPECT_EQ(back->provenance.options.find(
+                  "--map front-back:dir=-x,size=32x32,depth=half,decode=projected,box=tight --map "),
+              0U);
+    EXPECT_NE(
+        back->provenance.options.find("cube:size=32,compare=less,center=0/5/0,decode=projected,box=tight"),
+        std::string::npos);
 
     // The recorded options bake the same maps again.
     std::vector<std::string> specs;

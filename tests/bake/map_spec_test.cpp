@@ -32,10 +32,12 @@ TEST(MapSpecParser, ReadsEveryKey) {
 
 TEST(MapSpecParser, TextAndSpecAreOne) {
     for (const std::string text :
-         {"float:dir=+x,size=512x512,compare=less,box=tight",
-          "fixed8:dir=1/2/0.25,size=3x16384,compare=greater,box=0/0/0/1/1/1",
-          "front-back:dir=-y,size=7x9,box=tight", "cube:size=256,compare=less,center=0/0.1/0,box=tight",
-          "cube:size=1,compare=greater,box=-1/-1/-1/0.1/1e+20/3"}) {
+         {"float:dir=+x,size=512x512,compare=less,decode=projected,box=tight",
+          "fixed8:dir=1/2/0.25,size=3x16384,compare=greater,decode=plane,box=0/0/0/1/1/1",
+          "front-back:dir=-y,size=7x9,depth=half,decode=projected,box=tight",
+          "front-back:dir=-y,size=7x9,depth=unorm16,decode=plane,box=tight",
+          "cube:size=256,compare=less,center=0/0.1/0,decode=projected,box=tight",
+          "cube:size=1,compare=greater,decode=plane,box=-1/-1/-1/0.1/1e+20/3"}) {
         const Result<MapSpec> spec = parseMapSpec(text);
         ASSERT_TRUE(spec) << text;
         EXPECT_EQ(toString(*spec), text);
@@ -55,6 +57,9 @@ TEST(MapSpecParser, RefusesWithTheCure) {
     constexpr ErrorCode kUsage = ErrorCode::kUsage;
     const Case cases[] = {
         {"", kUsage, "use one of float, fixed8, front-back, cube"},
+        {"fixed8:depth=half", kUsage, "depth does nothing but for front-back"},
+        {"front-back:depth=hlf", kUsage, "did you mean 'half'"},
+        {"cube:decode=plain", kUsage, "did you mean 'plane'"},
         {"fixd8", kUsage, "did you mean 'fixed8'"},
         {"frontback", kUsage, "did you mean 'front-back'"},
         {"FLOAT", kUsage, "unknown format"},
