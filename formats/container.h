@@ -17,8 +17,8 @@ inline constexpr std::uint16_t kContainerMajor = 1;
 inline constexpr std::uint16_t kContainerMinor = 0;
 
 struct ContainerWriteOptions {
-    /// zstd level of the payloads, 1…19; 0 stores them as they are, ready to be mapped and uploaded. A payload
-    /// that zstd does not shrink is stored as it is, too.
+    /// zstd level of the payloads, 1…19; 0 stores them as they are, ready to be mapped and uploaded. A
+    /// payload that zstd does not shrink is stored as it is, too.
     int compression_level = 0;
 };
 
@@ -36,10 +36,12 @@ struct ContainerLimits {
 /// validate.h, or an error that says what is wrong and where. Nothing is allocated before its size has been
 /// checked against `bytes` and `limits`.
 /// Errors: kInvalidInput, kUnsupported (another major version), kLimit.
-[[nodiscard]] Result<Collider> readContainer(std::span<const std::byte> bytes, const ContainerLimits& limits = {});
+[[nodiscard]] Result<Collider> readContainer(std::span<const std::byte> bytes,
+                                             const ContainerLimits& limits = {});
 
 /// readFile and readContainer; messages name the file.
-[[nodiscard]] Result<Collider> loadCollider(const std::filesystem::path& path, const ContainerLimits& limits = {});
+[[nodiscard]] Result<Collider> loadCollider(const std::filesystem::path& path,
+                                            const ContainerLimits& limits = {});
 /// writeContainer and writeFile.
 [[nodiscard]] Result<void> saveCollider(const std::filesystem::path& path, const Collider& collider,
                                         const ContainerWriteOptions& options = {});

@@ -189,7 +189,7 @@ Result<ColliderTextures> ColliderTextures::create(const Collider& collider) {
         blocks.push_back(blockMap(map, places.back()));
     }
 
-    const PassState state;  // row lengths and skips among it: texels are tightly packed
+    const PassState state;                 // row lengths and skips among it: texels are tightly packed
     while (glGetError() != GL_NO_ERROR) {  // of the caller, not ours
     }
     ColliderTextures result;

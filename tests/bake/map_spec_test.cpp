@@ -59,7 +59,7 @@ TEST(MapSpecParser, RefusesWithTheCure) {
         {"", kUsage, "use one of float, fixed8, front-back, cube"},
         {"fixed8:depth=half", kUsage, "depth does nothing but for front-back"},
         {"front-back:depth=hlf", kUsage, "did you mean 'half'"},
-        {"cube:decode=plain", kUsage, "did you mean 'plane'"},
+        {"cube:decode=plan", kUsage, "did you mean 'plane'"},
         {"fixd8", kUsage, "did you mean 'fixed8'"},
         {"frontback", kUsage, "did you mean 'front-back'"},
         {"FLOAT", kUsage, "unknown format"},
