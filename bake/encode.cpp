@@ -1,12 +1,9 @@
 #include "bake/encode.h"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
 
 #include <cmath>
 #include <cstring>
-#include <functional>
 #include <optional>
 
 #include "bake/triangle_plane.h"
@@ -138,30 +135,27 @@ NormalIndex NormalTable::index(std::uint32_t triangle, bool from_behind) const {
 std::uint64_t encodeRows(const TriangleMesh& mesh, double winding, const NormalTable& normals,
                          const View& view, const RowRange& rows, std::span<const Hit> near_hits,
                          std::span<const Hit> far_hits, DepthMap& map) {
-    const auto encodeBlock = [&](const tbb::blocked_range<std::uint32_t>& block, std::uint64_t covered) {
-        SurfaceEncoder near_encoder(mesh, winding, normals, view, RayEnd::kNear);
-        SurfaceEncoder far_encoder(mesh, winding, normals, view, RayEnd::kFar);
-        for (std::uint32_t y = block.begin(); y != block.end(); ++y) {
-            const std::size_t row = std::size_t{y - rows.begin} * view.width;
-            for (std::uint32_t x = 0; x < view.width; ++x) {
-                const std::optional<EncodedSurface> near_surface =
-                    near_hits.empty() ? std::nullopt : near_encoder.encode(near_hits[row + x]);
-                const std::optional<EncodedSurface> far_surface =
-                    far_hits.empty() ? std::nullopt : far_encoder.encode(far_hits[row + x]);
-                if (!near_surface && !far_surface && map.format != MapFormat::kFloat32) {
-                    continue;  // the map's bytes are zero already
-                }
-                // A map that keeps the far end alone holds it as its one surface.
-                const bool only_far = view.compare == Compare::kGreater;
-                writeTexel(map.format, only_far ? far_surface : near_surface, far_surface,
-                           map.texelAt(rows.face, x, y));
-                covered += near_surface || far_surface ? 1 : 0;
+    SurfaceEncoder near_encoder(mesh, winding, normals, view, RayEnd::kNear);
+    SurfaceEncoder far_encoder(mesh, winding, normals, view, RayEnd::kFar);
+    // A map that keeps the far end alone holds it as its one surface.
+    const bool only_far = view.compare == Compare::kGreater;
+    std::uint64_t covered = 0;
+    for (std::uint32_t y = rows.begin; y != rows.end; ++y) {
+        const std::size_t row = std::size_t{y - rows.begin} * view.width;
+        for (std::uint32_t x = 0; x < view.width; ++x) {
+            const std::optional<EncodedSurface> near_surface =
+                near_hits.empty() ? std::nullopt : near_encoder.encode(near_hits[row + x]);
+            const std::optional<EncodedSurface> far_surface =
+                far_hits.empty() ? std::nullopt : far_encoder.encode(far_hits[row + x]);
+            if (!near_surface && !far_surface && map.format != MapFormat::kFloat32) {
+                continue;  // the map's bytes are zero already
             }
+            writeTexel(map.format, only_far ? far_surface : near_surface, far_surface,
+                       map.texelAt(rows.face, x, y));
+            covered += near_surface || far_surface ? 1 : 0;
         }
-        return covered;
-    };
-    return tbb::parallel_reduce(tbb::blocked_range<std::uint32_t>(rows.begin, rows.end), std::uint64_t{0},
-                                encodeBlock, std::plus<>());
+    }
+    return covered;
 }
 
 }  // namespace relief

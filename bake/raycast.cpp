@@ -444,12 +444,18 @@ double RayScene::winding() const {
 void RayScene::trace(const View& view, RayEnd end, const RowRange& rows, std::span<Hit> hits) const {
     const std::uint32_t tile_rows = (rows.end - rows.begin + kTile - 1) / kTile;
     tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, tile_rows), [&](const auto& block) {
-        Impl::Tracer tracer(*impl_, view, end);
-        for (std::uint32_t tile_row = block.begin(); tile_row != block.end(); ++tile_row) {
-            const std::uint32_t y = rows.begin + tile_row * kTile;
-            tracer.traceTileRow(rows.face, y, rows.end, &hits[std::size_t{y - rows.begin} * view.width]);
-        }
+        const RowRange part{rows.face, rows.begin + block.begin() * kTile,
+                            std::min(rows.begin + block.end() * kTile, rows.end)};
+        const std::size_t first = std::size_t{part.begin - rows.begin} * view.width;
+        traceRows(view, end, part, hits.subspan(first));
     });
+}
+
+void RayScene::traceRows(const View& view, RayEnd end, const RowRange& rows, std::span<Hit> hits) const {
+    Impl::Tracer tracer(*impl_, view, end);
+    for (std::uint32_t y = rows.begin; y < rows.end; y += kTile) {
+        tracer.traceTileRow(rows.face, y, rows.end, &hits[std::size_t{y - rows.begin} * view.width]);
+    }
 }
 
 }  // namespace relief

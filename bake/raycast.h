@@ -60,6 +60,8 @@ class RayScene {
     /// threads nor on the order in which the structure was built.
     /// \param hits  (end − begin) · width, row by row.
     void trace(const View& view, RayEnd end, const RowRange& rows, std::span<Hit> hits) const;
+    /// The same on the calling thread alone.
+    void traceRows(const View& view, RayEnd end, const RowRange& rows, std::span<Hit> hits) const;
 
   private:
     struct Impl;
