@@ -17,6 +17,8 @@ namespace {
 /// Rays traced before their texels are fitted: bounds the memory for hits to 64 MiB whatever a map's size.
 constexpr std::uint64_t kStripeRays = std::uint64_t{1} << 22;
 constexpr double kDepthCodes = 65534.0;
+/// Parts of the way between two rays of a footprint to which the edge of a surface is found; odd.
+constexpr std::uint32_t kEdgeParts = 63;
 
 /// Looks at one end of a view from where its rays start: u grows away from the viewer.
 class EndView {
@@ -33,8 +35,8 @@ class EndView {
     [[nodiscard]] double uOf(double depth) const { return far_ ? u_max_ - depth : depth; }
     /// Map depth of a fitted plane. Exact in double: both count in the same 65534 parts.
     [[nodiscard]] double depthOf(const FittedPlane& plane) const {
-        const double code = plane.u_code;
-        return (far_ ? kDepthCodes - code : code) / kDepthCodes * u_max_;
+        const double code = plane.code;
+        return (far_ && !plane.stands ? kDepthCodes - code : code) / kDepthCodes * u_max_;
     }
     /// Towards the viewer in map depth.
     [[nodiscard]] bool outwardsIsLess() const { return !far_; }
@@ -67,29 +69,37 @@ float outwardHalf(double depth, bool outwards_is_less) {
 class EndFitter {
   public:
     EndFitter(const RayScene& scene, const TriangleNormals& normals, const View& view, const View& fine,
-              RayEnd end, const FittedMapOptions& options)
+              const View& finest, RayEnd end, const FittedMapOptions& options)
         : normals_(normals),
+          finest_(finest),
+          probe_(scene, finest, end),
+          probe_other_(scene, finest, end == RayEnd::kNear ? RayEnd::kFar : RayEnd::kNear),
           view_(view),
           fine_(fine),
           end_(view, end),
           samples_(options.samples),
           inside_out_(scene.winding() < 0.0),
-          starts_free_(view.starts_free[static_cast<std::size_t>(end)]) {
+          starts_free_(view.starts_free[static_cast<std::size_t>(end)]),
+          other_starts_free_(view.projection() == Projection::kOrthographic &&
+                             view.starts_free[end == RayEnd::kNear ? 1 : 0]) {
         // One unit of u in object units: the length of the depth axis, or of a cube's mean half side.
         const auto length = [](const glm::dvec3& v) { return std::sqrt(dot(v, v)); };
         const double unit = view.projection() == Projection::kCube
                                 ? (length(view.axis[0]) + length(view.axis[1]) + length(view.axis[2])) / 3.0
                                 : length(view.axis[2]);
         fit_.u_max = end_.uMax();
+        fit_.range = standingRange(view.projection(), view.object_per_map, view.width, view.height);
         fit_.reach = options.reach / unit;
         fit_.pixel_cost = options.good_enough / unit;
         fit_.refinements = options.refinements;
         rays_.resize(std::size_t{samples_} * samples_);
     }
 
-    /// \param hits  of the fine view, from row `first_row` of the face on.
+    /// \param hits, other_hits  of this and of the other end in the fine view, from row `first_row` of the
+    /// face
+    ///                          on; other_hits may be empty.
     std::optional<Surface> fit(std::uint32_t face, std::uint32_t x, std::uint32_t y, std::uint32_t first_row,
-                               std::span<const Hit> hits) {
+                               std::span<const Hit> hits, std::span<const Hit> other_hits) {
         bool any = false;
         for (std::uint32_t j = 0; j < samples_; ++j) {
             const std::uint32_t row = y * samples_ + j;
@@ -109,36 +119,91 @@ class EndFitter {
                 if (!hit.empty() && !starts_free_ && hit.fromBehind() != inside_out_) {
                     return std::nullopt;  // the ray starts inside: what lies before this surface is not free
                 }
-                FootprintRay& ray = rays_[std::size_t{j} * samples_ + i];
-                ray = end_.fromViewer(fine_.ray(face, column, row));
-                if (!hit.empty()) {
-                    ray.u = end_.uOf(hit.depth());
-                    const glm::dvec3& normal = normals_[hit.triangle()];
-                    ray.normal = hit.fromBehind() ? -normal : normal;
-                }
+                const std::size_t at = std::size_t{row - first_row} * fine_.width + column;
+                rays_[std::size_t{j} * samples_ + i] = footprintRay(
+                    fine_.ray(face, column, row), hit, other_hits.empty() ? Hit() : other_hits[at]);
             }
         }
+        findEdge(face, x, y);
+        const TexelRay centre = view_.ray(face, x, y);
         const std::optional<FittedPlane> plane =
-            fitSupportingPlane(rays_, end_.fromViewer(view_.ray(face, x, y)), fit_);
+            fitSupportingPlane(rays_, edge_, end_.fromViewer(centre), centre.origin, fit_);
         if (!plane) {
             return std::nullopt;
         }
         const double depth = end_.depthOf(*plane);
-        return Surface{view_.format == MapFormat::kFrontBackHalf ? outwardHalf(depth, end_.outwardsIsLess())
-                                                                 : static_cast<float>(depth),
+        return Surface{view_.format == MapFormat::kFrontBackHalf
+                           ? outwardHalf(depth, end_.outwardsIsLess() && !plane->stands)
+                           : static_cast<float>(depth),
                        glm::vec3(plane->normal)};
     }
 
   private:
+    [[nodiscard]] FootprintRay footprintRay(const TexelRay& along, const Hit& hit, const Hit& other) const {
+        FootprintRay ray = end_.fromViewer(along);
+        if (!hit.empty()) {
+            ray.u = end_.uOf(hit.depth());
+            ray.u_last =
+                other.empty() || !other_starts_free_ ? end_.uMax() : std::max(ray.u, end_.uOf(other.depth()));
+            const glm::dvec3& normal = normals_[hit.triangle()];
+            ray.normal = hit.fromBehind() ? -normal : normal;
+        }
+        return ray;
+    }
+
+    /// Between neighbours of which one meets a surface and the other does not, the last ray that does.
+    void findEdge(std::uint32_t face, std::uint32_t x, std::uint32_t y) {
+        edge_.clear();
+        for (std::uint32_t j = 0; j < samples_; ++j) {
+            for (std::uint32_t i = 0; i < samples_; ++i) {
+                for (const auto& [di, dj] : {std::pair{1U, 0U}, std::pair{0U, 1U}}) {
+                    if (i + di == samples_ || j + dj == samples_) {
+                        continue;
+                    }
+                    const bool meets = rays_[std::size_t{j} * samples_ + i].u >= 0.0;
+                    if (meets == (rays_[std::size_t{j + dj} * samples_ + i + di].u >= 0.0)) {
+                        continue;
+                    }
+                    // In the finest grid, whose odd count of parts has a texel at the centre of each
+                    // sample's.
+                    std::uint32_t on[2] = {(x * samples_ + i) * kEdgeParts + kEdgeParts / 2,
+                                           (y * samples_ + j) * kEdgeParts + kEdgeParts / 2};
+                    std::uint32_t off[2] = {on[0] + di * kEdgeParts, on[1] + dj * kEdgeParts};
+                    if (!meets) {
+                        std::swap(on, off);
+                    }
+                    Hit last = probe_.trace(face, on[0], on[1]);
+                    if (last.empty()) {
+                        continue;
+                    }
+                    while (on[0] + 1 < off[0] || off[0] + 1 < on[0] || on[1] + 1 < off[1] ||
+                           off[1] + 1 < on[1]) {
+                        const std::uint32_t middle[2] = {(on[0] + off[0]) / 2, (on[1] + off[1]) / 2};
+                        const Hit hit = probe_.trace(face, middle[0], middle[1]);
+                        std::copy_n(middle, 2, hit.empty() ? off : on);
+                        last = hit.empty() ? last : hit;
+                    }
+                    const Hit other = other_starts_free_ ? probe_other_.trace(face, on[0], on[1]) : Hit();
+                    edge_.push_back(footprintRay(finest_.ray(face, on[0], on[1]), last, other));
+                }
+            }
+        }
+    }
+
     const TriangleNormals& normals_;
+    const View& finest_;
+    RayProbe probe_;
+    RayProbe probe_other_;
     const View& view_;
     const View& fine_;
     EndView end_;
     std::uint32_t samples_;
     bool inside_out_;
     bool starts_free_;
+    bool other_starts_free_;
     PlaneFitOptions fit_;
     std::vector<FootprintRay> rays_;
+    std::vector<FootprintRay> edge_;
 };
 
 }  // namespace
@@ -156,6 +221,10 @@ DepthMap bakeFittedMap(const RayScene& scene, const TriangleNormals& normals, co
     View fine = view;
     fine.width *= options.samples;
     fine.height *= options.samples;
+
+    View finest = fine;
+    finest.width *= kEdgeParts;
+    finest.height *= kEdgeParts;
 
     DepthMap map = view.emptyMap();
     map.decode = Decode::kPlane;
@@ -175,8 +244,8 @@ DepthMap bakeFittedMap(const RayScene& scene, const TriangleNormals& normals, co
                 }
             }
             const auto fitRows = [&](const tbb::blocked_range<std::uint32_t>& block, std::uint64_t count) {
-                EndFitter near_fitter(scene, normals, view, fine, RayEnd::kNear, options);
-                EndFitter far_fitter(scene, normals, view, fine, RayEnd::kFar, options);
+                EndFitter near_fitter(scene, normals, view, fine, finest, RayEnd::kNear, options);
+                EndFitter far_fitter(scene, normals, view, fine, finest, RayEnd::kFar, options);
                 for (std::uint32_t row = block.begin(); row != block.end(); ++row) {
                     for (std::uint32_t x = 0; x < view.width; ++x) {
                         Texel texel;
@@ -185,10 +254,10 @@ DepthMap bakeFittedMap(const RayScene& scene, const TriangleNormals& normals, co
                             continue;
                         }
                         if (view.keeps(RayEnd::kNear)) {
-                            texel.front = near_fitter.fit(face, x, row, rows.begin, hits[0]);
+                            texel.front = near_fitter.fit(face, x, row, rows.begin, hits[0], hits[1]);
                         }
                         if (view.keeps(RayEnd::kFar)) {
-                            texel.back = far_fitter.fit(face, x, row, rows.begin, hits[1]);
+                            texel.back = far_fitter.fit(face, x, row, rows.begin, hits[1], hits[0]);
                         }
                         if (view.compare == Compare::kGreater) {
                             texel.front.swap(texel.back);  // a map of one surface holds it as its front

@@ -6,15 +6,20 @@
 #include <limits>
 
 #include "bake/triangle_plane.h"
+#include "formats/plane.h"
 
 namespace relief {
 namespace {
 
 constexpr double kDepthCodes = 65534.0;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Cosine between the normal and the centre ray below which a plane is not stored: its depth there would be
-/// ill-defined, and an error of the quantised normal moves it far.
-constexpr double kGrazingMin = 1.0 / 32.0;
+/// Below this cosine a plane cuts off what lies between the outermost ray that meets a surface and the
+/// surface's edge: the edge itself has to support it. Others pass over it, and lose more by that than they
+/// gain.
+constexpr double kSteepCosine = 0.35;
+/// Planes between this and kPlaneGrazingMin are not stored: a reader's rounding could take them for the other
+/// kind.
+constexpr double kStandingMax = double{kStandingCosine} - 1e-4;
 
 /// The decoded vectors of all indices, in double: candidates are looked up thousands of times a texel row.
 const std::array<glm::dvec3, 65536>& normalTable() {
@@ -35,10 +40,12 @@ std::uint16_t codeOf(const glm::dvec3& normal) {
 /// The search for one texel's plane.
 class PlaneSearch {
   public:
-    PlaneSearch(std::span<const FootprintRay> rays, const FootprintRay& centre,
-                const PlaneFitOptions& options)
+    PlaneSearch(std::span<const FootprintRay> rays, std::span<const FootprintRay> edge,
+                const FootprintRay& centre, const glm::dvec3& zero_depth, const PlaneFitOptions& options)
         : rays_(rays),
+          edge_(edge),
           centre_(centre),
+          from_zero_(centre.origin - zero_depth),
           options_(options),
           direction_length_(std::sqrt(dot(centre.direction, centre.direction))) {}
 
@@ -65,6 +72,9 @@ class PlaneSearch {
         }
         if (best_cost_ > good_enough_) {
             tryCode(codeOf(facing));
+        }
+        if (best_cost_ > good_enough_ && !edge_.empty()) {
+            tryStanding();
         }
         for (int step = 1 << options_.refinements >> 1; step > 0 && best_cost_ > good_enough_; step /= 2) {
             tryNeighbours(step);
@@ -100,22 +110,25 @@ class PlaneSearch {
 
         const glm::dvec3& normal = normalTable()[code];
         const double along = dot(normal, centre_.direction);
-        if (!(along <= -kGrazingMin * direction_length_)) {
+        const double cosine = along / direction_length_;
+        const bool stands = std::abs(cosine) < kStandingMax;
+        if (!stands && !(cosine <= -kPlaneGrazingMin)) {
             return;
         }
         // Pushed until no sampled surface point lies in front.
-        double offset = -kInfinity;
-        for (const FootprintRay& ray : rays_) {
-            if (ray.u >= 0.0) {
-                offset = std::max(
-                    offset, dot(normal, ray.origin - centre_.origin) + ray.u * dot(normal, ray.direction));
-            }
+        double offset = supportOf(rays_, normal);
+        if (cosine > -kSteepCosine) {
+            offset = std::max(offset, supportOf(edge_, normal));
         }
-        const double scaled = std::floor(offset / along / options_.u_max * kDepthCodes);
+        const double from_zero = dot(normal, from_zero_);
+        const double scaled =
+            stands ? std::ceil(((offset + from_zero) / options_.range + 1.0) * 0.5 * kDepthCodes)
+                   : std::floor(offset / along / options_.u_max * kDepthCodes);
         if (!(scaled >= 0.0 && scaled <= kDepthCodes)) {
             return;
         }
-        const double stored = scaled / kDepthCodes * options_.u_max * along;
+        const double stored = stands ? (2.0 * scaled / kDepthCodes - 1.0) * options_.range - from_zero
+                                     : scaled / kDepthCodes * options_.u_max * along;
         double cost = 0.0;
         for (const FootprintRay& ray : rays_) {
             cost += freeSpaceBehind(ray, normal, stored);
@@ -124,7 +137,65 @@ class PlaneSearch {
             }
         }
         best_cost_ = cost;
-        best_ = {normal, unpackNormal(code), static_cast<std::uint16_t>(scaled)};
+        best_ = {normal, unpackNormal(code), stands, static_cast<std::uint16_t>(scaled)};
+    }
+
+    /// A plane that leans away from the viewer must not cut what lies behind the surface that the ray meets.
+    [[nodiscard]] double supportOf(std::span<const FootprintRay> rays, const glm::dvec3& normal) const {
+        double offset = -kInfinity;
+        for (const FootprintRay& ray : rays) {
+            if (ray.u >= 0.0) {
+                const double along = dot(normal, ray.direction);
+                offset = std::max(offset, dot(normal, ray.origin - centre_.origin) +
+                                              (along > 0.0 ? ray.u_last : ray.u) * along);
+            }
+        }
+        return offset;
+    }
+
+    /// The wall between the rays that meet a surface and those that pass by it, seen edge-on.
+    void tryStanding() {
+        const glm::dvec3 unit = centre_.direction / direction_length_;
+        const auto at = [&](const FootprintRay& ray, double u) {
+            const glm::dvec3 p = ray.origin + u * ray.direction - centre_.origin;
+            return p - dot(p, unit) * unit;
+        };
+        double u = 0.0;
+        for (const FootprintRay& ray : edge_) {
+            u += ray.u / static_cast<double>(edge_.size());
+        }
+        glm::dvec3 met(0.0);
+        glm::dvec3 passed(0.0);
+        for (const FootprintRay& ray : rays_) {
+            if (ray.u >= 0.0) {
+                met += at(ray, u) / static_cast<double>(hits_);
+            } else {
+                passed += at(ray, u) / static_cast<double>(static_cast<int>(rays_.size()) - hits_);
+            }
+        }
+        const glm::dvec3 towards = passed - met;
+        tryAcross(towards);
+        // Along the edge: the two of its points that are farthest apart.
+        double longest = 0.0;
+        glm::dvec3 along(0.0);
+        for (std::size_t i = 0; i < edge_.size(); ++i) {
+            for (std::size_t j = 0; j < i; ++j) {
+                const glm::dvec3 d = at(edge_[i], u) - at(edge_[j], u);
+                if (dot(d, d) > longest) {
+                    longest = dot(d, d);
+                    along = d;
+                }
+            }
+        }
+        const glm::dvec3 normal = cross(along, unit);
+        tryAcross(dot(normal, towards) < 0.0 ? -normal : normal);
+    }
+
+    void tryAcross(const glm::dvec3& direction) {
+        const double length = std::sqrt(dot(direction, direction));
+        if (length > 0.0) {
+            tryCode(codeOf(direction / length));
+        }
     }
 
     /// Length of the part of a ray that is free but behind the plane, at most `reach`.
@@ -132,11 +203,14 @@ class PlaneSearch {
                                          double offset) const {
         const double along = dot(normal, ray.direction);
         const double start = dot(normal, ray.origin - centre_.origin);
-        if (!(along < 0.0)) {  // the ray runs beside the plane, or away from it
-            return start > offset ? 0.0 : options_.reach;
+        const double end = ray.u >= 0.0 ? ray.u : options_.u_max;  // of the free part
+        if (along < 0.0) {                                         // the plane is met from its free side
+            return std::clamp(end - std::max(0.0, (offset - start) / along), 0.0, options_.reach);
         }
-        const double at_plane = (offset - start) / along;
-        return ray.u >= 0.0 ? std::clamp(ray.u - at_plane, 0.0, options_.reach) : options_.reach;
+        if (start > offset) {
+            return 0.0;
+        }
+        return std::min({options_.reach, end, along > 0.0 ? (offset - start) / along : kInfinity});
     }
 
     /// The last resort, where every plane leaves the depth range: facing the viewer, at the nearest sample.
@@ -151,11 +225,13 @@ class PlaneSearch {
         }
         const double scaled = std::floor(std::clamp(nearest / options_.u_max, 0.0, 1.0) * kDepthCodes);
         const std::uint16_t code = codeOf(facing);
-        best_ = {normalTable()[code], unpackNormal(code), static_cast<std::uint16_t>(scaled)};
+        best_ = {normalTable()[code], unpackNormal(code), false, static_cast<std::uint16_t>(scaled)};
     }
 
     std::span<const FootprintRay> rays_;
+    std::span<const FootprintRay> edge_;
     const FootprintRay& centre_;
+    glm::dvec3 from_zero_;
     const PlaneFitOptions& options_;
     double direction_length_;
     int hits_ = 0;
@@ -168,9 +244,10 @@ class PlaneSearch {
 
 }  // namespace
 
-std::optional<FittedPlane> fitSupportingPlane(std::span<const FootprintRay> rays, const FootprintRay& centre,
-                                              const PlaneFitOptions& options) {
-    return PlaneSearch(rays, centre, options).run();
+std::optional<FittedPlane> fitSupportingPlane(std::span<const FootprintRay> rays,
+                                              std::span<const FootprintRay> edge, const FootprintRay& centre,
+                                              const glm::dvec3& zero_depth, const PlaneFitOptions& options) {
+    return PlaneSearch(rays, edge, centre, zero_depth, options).run();
 }
 
 }  // namespace relief

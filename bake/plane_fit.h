@@ -31,28 +31,37 @@ struct FootprintRay {
     glm::dvec3 direction{0.0};
     double u = -1.0;         ///< of the surface; negative: the ray meets none
     glm::dvec3 normal{0.0};  ///< unit length, of the surface, towards the viewer
+    double u_last = -1.0;    ///< of the last surface on the ray: nothing behind it is solid
 };
 
 struct PlaneFitOptions {
     double u_max = 1.0;       ///< depth range: map depth 1, or kCubeDepthMax
     double reach = 1.0;       ///< free space behind the plane counts up to this length, in u
+    double range = 0.0;       ///< standingRange of the map, object units
     double pixel_cost = 0.0;  ///< per ray: a fit whose mean error is below this, in u, is good enough, in u
     int refinements = 3;      ///< rounds of search among neighbouring normals; 0: none
 };
 
 /// A half-space in a texel's own units.
 struct FittedPlane {
-    glm::dvec3 normal{0.0};  ///< unit length, towards the viewer; as decodeNormal gives it if quantised
+    glm::dvec3 normal{0.0};  ///< unit length, of the free side; as decodeNormal gives it
     NormalIndex index;
-    std::uint16_t u_code = 0;  ///< 16-bit fixed point over [0, u_max]: u = u_code / 65534 · u_max
+    bool stands = false;  ///< along the ray (depth_map.h, kStandingCosine)
+    /// 16-bit fixed point. Where the centre ray meets the plane, u = code / 65534 · u_max; of a standing
+    /// plane its offset from zero_depth, (2 · code / 65534 − 1) · range.
+    std::uint16_t code = 0;
 };
 
 /// Fits one texel.
 /// \param rays    the footprint; at least one.
+/// \param edge    rays that just meet a surface, beside ones that meet none: what a standing plane leans on.
 /// \param centre  the texel's centre ray, from the viewer on: where the plane's depth is stored.
+/// \param zero_depth  the point of that ray whose map depth is 0.
 /// \return nullopt if no ray meets a surface: the texel is empty.
 [[nodiscard]] std::optional<FittedPlane> fitSupportingPlane(std::span<const FootprintRay> rays,
+                                                            std::span<const FootprintRay> edge,
                                                             const FootprintRay& centre,
+                                                            const glm::dvec3& zero_depth,
                                                             const PlaneFitOptions& options);
 
 }  // namespace relief

@@ -139,6 +139,19 @@ class RayScene::Impl::Tracer {
         }
     }
 
+    Hit traceOne(std::uint32_t face, std::uint32_t x, std::uint32_t y) {
+        const TexelRay ray = view_.ray(face, x, y);
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        RTCRayHit query = queryOf(segmentOf(ray));
+        rtcIntersect1(impl_.scene.get(), &context, &query);
+        if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
+            return {};
+        }
+        return view_.projection() == Projection::kOrthographic ? orthographicHit(x, y, query.hit.primID)
+                                                               : cubeHit(ray, query.hit.primID);
+    }
+
   private:
     static std::uint32_t columnOf(int lane) { return static_cast<std::uint32_t>(lane) % kTile; }
     static std::uint32_t rowOf(int lane) { return static_cast<std::uint32_t>(lane) / kTile; }
@@ -253,14 +266,9 @@ class RayScene::Impl::Tracer {
                                                                : cubeHit(view_.ray(face, x, y), triangle);
     }
 
-    /// Of the triangles that the ray meets about `at`, the one that the contract of trace() names.
-    std::uint32_t bestAtEdge(const Segment& segment, float at, std::uint32_t first) {
-        collector_.triangles.assign(1, first);
-        rtcInitIntersectContext(&collector_.context);
-        collector_.context.filter = Collector::filter;
+    [[nodiscard]] RTCRayHit queryOf(const Segment& segment) const {
         const glm::vec3 origin = impl_.toLocal(segment.origin);
         const glm::vec3 direction = segment.direction * impl_.scale;
-        const float tie = kTieDepth * static_cast<float>(segment.length);
         RTCRayHit query{};
         query.ray.org_x = origin.x;
         query.ray.org_y = origin.y;
@@ -268,11 +276,22 @@ class RayScene::Impl::Tracer {
         query.ray.dir_x = direction.x;
         query.ray.dir_y = direction.y;
         query.ray.dir_z = direction.z;
-        query.ray.tnear = std::max(0.0F, at - tie);
-        query.ray.tfar = at + tie;
+        query.ray.tfar = static_cast<float>(segment.length);
         query.ray.mask = 0xffffffff;
         query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        return query;
+    }
+
+    /// Of the triangles that the ray meets about `at`, the one that the contract of trace() names.
+    std::uint32_t bestAtEdge(const Segment& segment, float at, std::uint32_t first) {
+        collector_.triangles.assign(1, first);
+        rtcInitIntersectContext(&collector_.context);
+        collector_.context.filter = Collector::filter;
+        const float tie = kTieDepth * static_cast<float>(segment.length);
+        RTCRayHit query = queryOf(segment);
+        query.ray.tnear = std::max(0.0F, at - tie);
+        query.ray.tfar = at + tie;
         rtcIntersect1(impl_.scene.get(), &collector_.context, &query);
 
         // A front side always beats a back side.
@@ -456,6 +475,18 @@ void RayScene::traceRows(const View& view, RayEnd end, const RowRange& rows, std
     for (std::uint32_t y = rows.begin; y < rows.end; y += kTile) {
         tracer.traceTileRow(rows.face, y, rows.end, &hits[std::size_t{y - rows.begin} * view.width]);
     }
+}
+
+struct RayProbe::Impl {
+    RayScene::Impl::Tracer tracer;
+};
+
+RayProbe::RayProbe(const RayScene& scene, const View& view, RayEnd end)
+    : impl_(std::make_unique<Impl>(RayScene::Impl::Tracer(*scene.impl_, view, end))) {}
+RayProbe::~RayProbe() = default;
+
+Hit RayProbe::trace(std::uint32_t face, std::uint32_t x, std::uint32_t y) {
+    return impl_->tracer.traceOne(face, x, y);
 }
 
 }  // namespace relief

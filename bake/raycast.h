@@ -64,8 +64,22 @@ class RayScene {
     void traceRows(const View& view, RayEnd end, const RowRange& rows, std::span<Hit> hits) const;
 
   private:
+    friend class RayProbe;
     struct Impl;
     explicit RayScene(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Single rays of one end of a view, for a look between the texels of another. Not thread-safe.
+class RayProbe {
+  public:
+    /// \param scene, view  borrowed; must outlive the probe.
+    RayProbe(const RayScene& scene, const View& view, RayEnd end);
+    ~RayProbe();
+    [[nodiscard]] Hit trace(std::uint32_t face, std::uint32_t x, std::uint32_t y);
+
+  private:
+    struct Impl;
     std::unique_ptr<Impl> impl_;
 };
 

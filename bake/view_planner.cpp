@@ -21,6 +21,9 @@ constexpr std::size_t kPoints = 12'000;
 constexpr double kSpread = 0.005;
 /// Cosine of incidence from which on a point is served in full.
 constexpr double kFullCosine = 0.7;
+/// How well a point is served that a view sees from both sides: it is off a silhouette, through which a
+/// standing plane passes (plane_fit.h).
+constexpr float kSilhouette = 0.9F;
 /// An outer view must raise the mean service by this much.
 constexpr double kOuterGain = 0.004;
 /// Points served less than this are looked at from within.
@@ -214,13 +217,16 @@ class Planner {
             views[v].service.resize(points_.size());
             for (std::size_t i = 0; i < points_.size(); ++i) {
                 float best = 0.0F;
+                int free = 0;
                 for (const double sign : {1.0, -1.0}) {
                     const float value = service(sign * dot(points_[i].normal, along));
-                    if (value > best && !query_.firstHit(points_[i].position, sign * along)) {
-                        best = value;
+                    if (!query_.firstHit(points_[i].position, sign * along)) {
+                        best = std::max(best, value);
+                        ++free;
                     }
                 }
-                views[v].service[i] = best;
+
+                views[v].service[i] = free == 2 ? std::max(best, kSilhouette) : best;
             }
         });
         for (;;) {

@@ -22,6 +22,20 @@ float planeDistance(const DepthMap& map, const glm::vec3& normal, const glm::vec
     return along(0) + (along(1) + along(2));
 }
 
+/// The vote of a plane.
+/// \param q    P' − O', with O' where the ray of the texel's centre has depth 0
+/// \param ray  that ray's direction in map space, for a unit of depth
+float planeVote(const DepthMap& map, const Surface& surface, const glm::vec3& q, const glm::vec3& ray) {
+    const float along = planeDistance(map, surface.normal, ray);
+    if (std::abs(along) < kStandingCosine * length(map.object_per_map * ray)) {
+        const float depth_max = map.projection() == Projection::kCube ? kCubeDepthMax : 1.0F;
+        return planeDistance(map, surface.normal, q) -
+               (surface.depth * (2.0F / depth_max) - 1.0F) *
+                   standingRange(map.projection(), map.object_per_map, map.width, map.height);
+    }
+    return planeDistance(map, surface.normal, q - ray * surface.depth);
+}
+
 const Vote kFarOutsideVote{kFarOutside, glm::vec3(0.0F)};
 
 std::optional<Vote> voteOrthographic(const DepthMap& map, const glm::vec3& p) {
@@ -50,10 +64,9 @@ std::optional<Vote> voteOrthographic(const DepthMap& map, const glm::vec3& p) {
     Vote best;
     const auto add = [&](const Surface& surface, bool keeps_nearest) {
         const float ahead = keeps_nearest ? surface.depth - p.z : p.z - surface.depth;
-        const float distance =
-            map.decode == Decode::kPlane
-                ? planeDistance(map, surface.normal, {across_x, across_y, p.z - surface.depth})
-                : map.object_per_map.z * ahead;
+        const float distance = map.decode == Decode::kPlane
+                                   ? planeVote(map, surface, {across_x, across_y, p.z}, {0.0F, 0.0F, 1.0F})
+                                   : map.object_per_map.z * ahead;
         if (replaces(distance, best.distance)) {
             best = {distance, surface.normal};
         }
@@ -99,7 +112,7 @@ std::optional<Vote> voteCube(const DepthMap& map, const glm::vec3& p) {
     if (map.decode == Decode::kPlane) {
         const glm::vec3 center = cubeDirection(
             {at.face, (static_cast<float>(x) + 0.5F) / size, (static_cast<float>(y) + 0.5F) / size});
-        distance = planeDistance(map, surface.normal, p - center * (surface.depth / length(center)));
+        distance = planeVote(map, surface, p, center / length(center));
     } else {
         const float ahead =
             map.compare == Compare::kGreater ? radius - surface.depth : surface.depth - radius;
@@ -133,6 +146,14 @@ const char* decodeName(Decode decode) {
             return "plane";
     }
     return "unknown";
+}
+
+float standingRange(Projection projection, const glm::vec3& object_per_map, std::uint32_t width,
+                    std::uint32_t height) {
+    const glm::vec3& s = object_per_map;
+    return projection == Projection::kCube
+               ? 2.0F * (s.x + s.y + s.z) / static_cast<float>(width)
+               : s.x / static_cast<float>(width) + s.y / static_cast<float>(height);
 }
 
 glm::vec3 Affine::apply(const glm::vec3& p) const {

@@ -51,6 +51,17 @@ struct Affine {
     friend bool operator==(const Affine&, const Affine&) = default;
 };
 
+/// A plane whose normal has a smaller |cosine| than this with its texel's ray stands along the ray: there is
+/// no depth at which they meet well, and the texel stores how far the plane is from the ray instead. So a
+/// wall that a view sees edge-on, and a silhouette, pass through a texel where they are, not along its edges.
+inline constexpr float kStandingCosine = 1.0F / 32.0F;
+
+/// The largest offset of a standing plane, object units, a little more than a texel: depth d of a texel
+/// stands for n·(P − O) = (2·d/d_max − 1) · standingRange, with O where its ray has depth 0. \param
+/// object_per_map, width, height  as a DepthMap has them
+[[nodiscard]] float standingRange(Projection projection, const glm::vec3& object_per_map, std::uint32_t width,
+                                  std::uint32_t height);
+
 /// The distance of a vote that knows P to be outside but not how far. A finite float, so that shaders need
 /// no infinity; reports print it as "inf".
 inline constexpr float kFarOutside = 1e30F;

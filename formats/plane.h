@@ -4,7 +4,9 @@
 //          n   S = origin + depth · direction          f(P) = n·(P − S): positive on the side n points to
 //           \  |
 //     origin ●─┼──▶ direction       A plane (nearly) along the ray tells nothing of depth: f stays small
-//              |\                   however deep P lies. So |cos(n, direction)| ≥ kPlaneGrazingMin.
+//              |\                   however deep P lies. Below |cos(n, direction)| =
+//                                  kStandingCosine a texel holds its distance from the ray
+//                                  instead: the plane stands (depth_map.h).
 #pragma once
 
 #include <cstdint>
@@ -14,9 +16,9 @@
 
 namespace relief {
 
-/// The smallest |cosine| between the ray of a texel and the normal that is stored in it, as decoded. Readers
-/// take any normal.
-inline constexpr double kPlaneGrazingMin = 1.0 / 32.0;
+/// The smallest |cosine| between the ray of a texel and the normal of a plane, as decoded, that is stored by
+/// its depth: a little more than kStandingCosine, so that no reader's rounding makes it stand.
+inline constexpr double kPlaneGrazingMin = double{kStandingCosine} + 1e-4;
 
 /// The farthest that encodeNormal turns a normal, in radians: 0.65°, rounded up.
 inline constexpr double kNormalIndexError = 0.01135;

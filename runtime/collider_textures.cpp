@@ -113,7 +113,8 @@ BlockMap blockMap(const DepthMap& map, const Place& place) {
     constexpr int kPlane = 8;
     BlockMap block{};
     std::copy(std::begin(map.object_to_map.row), std::end(map.object_to_map.row), std::begin(block.row));
-    block.object_per_map = glm::vec4(map.object_per_map, 0.0F);
+    block.object_per_map = glm::vec4(
+        map.object_per_map, standingRange(map.projection(), map.object_per_map, map.width, map.height));
     const std::int32_t rect[4] = {place.x, place.y, place.layer, static_cast<std::int32_t>(map.width)};
     const std::int32_t flags = (map.compare == Compare::kGreater ? kKeepsFarthest : 0) |
                                (map.encloses ? kEncloses : 0) | (map.empty_is_outside ? kEmptyIsOutside : 0) |

@@ -14,11 +14,13 @@
 //
 // An orthographic map that keeps the farthest surface, and a cube that keeps the nearest, turn the sign. Those
 // are the paper's projected distances. A map of planes says f = n·(P − S) instead, with S the surface point on
-// the ray through the texel's centre; the normal points outwards, so that no sign turns.
+// the ray through the texel's centre; the normal points outwards, so that no sign turns. A plane along the ray has
+// no such S: its texel holds how far it is from the ray.
 
 struct ReliefMap {
     vec4 row[3];           // object_to_map; rows are orthogonal
-    vec4 object_per_map;   // xyz; z is z_scale of an orthographic map, xyz the paper's s of a cube
+    vec4 object_per_map;   // xyz; z is z_scale of an orthographic map, xyz the paper's s of a cube; w: the
+                           // largest offset of a standing plane
     ivec4 rect;            // x, y of texel (0,0) in its layer; layer of face 0; width
     ivec4 info;            // height; format; flags: the sum of RELIEF_KEEPS_FARTHEST…
 };
@@ -46,6 +48,7 @@ const int RELIEF_PLANE = 8;
 const float RELIEF_FAR_INSIDE = -3.4028235e38;
 const float RELIEF_FAR_OUTSIDE = 1e30;
 const float RELIEF_CUBE_DEPTH_MAX = 1.7320509;
+const float RELIEF_STANDING_COSINE = 0.03125;
 
 // What the maps of this collider are, as constants where they are all alike: a GL may otherwise run the branches
 // of all formats for every map. ColliderTextures defines RELIEF_HAS_… for what it holds.
@@ -170,13 +173,29 @@ float reliefAlong(vec4 r, float scale, vec3 normal, float q) {
     return (scale * (r.x * normal.x + (r.y * normal.y + r.z * normal.z))) * (scale * q);
 }
 
-// n·(P − S) in object space, of q = P' − S' in map space: the columns of T's inverse are its orthogonal rows
-// times object_per_map squared.
-float reliefPlane(int i, vec3 normal, vec3 q) {
+// The normal's product with an object vector, of q in map space: the columns of T's inverse are its orthogonal
+// rows times object_per_map squared.
+float reliefAcross(int i, vec3 normal, vec3 q) {
     vec3 scale = u_relief_maps[i].object_per_map.xyz;
     return reliefAlong(u_relief_maps[i].row[0], scale.x, normal, q.x) +
            (reliefAlong(u_relief_maps[i].row[1], scale.y, normal, q.y) +
             reliefAlong(u_relief_maps[i].row[2], scale.z, normal, q.z));
+}
+
+// The vote of a plane: n·(P − S), or n·(P − O) less the stored offset where the plane stands along the ray.
+// q: P' − O', with O' where the ray of the texel's centre has depth 0; ray: its direction, for a unit of depth;
+// along: of ray in object space, its length and its product with the normal.
+float reliefPlane(int i, vec3 normal, float depth, float depth_max, vec3 q, vec3 ray, vec2 along) {
+    if (abs(along.y) < RELIEF_STANDING_COSINE * along.x) {
+        return reliefAcross(i, normal, q) - (depth * (2.0 / depth_max) - 1.0) * u_relief_maps[i].object_per_map.w;
+    }
+    return reliefAcross(i, normal, q - ray * depth);
+}
+
+float reliefPlaneOrthographic(int i, vec3 normal, float depth, vec3 q) {
+    float scale = u_relief_maps[i].object_per_map.z;
+    vec2 along = vec2(scale, reliefAlong(u_relief_maps[i].row[2], scale, normal, 1.0));
+    return reliefPlane(i, normal, depth, 1.0, q, vec3(0.0, 0.0, 1.0), along);
 }
 
 void reliefAdd(inout ReliefField best, float distance, vec3 normal, int map) {
@@ -233,17 +252,17 @@ void reliefVoteOrthographic(inout ReliefField best, int i, vec3 p, ivec4 rect, i
     if (reliefIsFrontBack(info)) {
         uvec4 words = texelFetch(u_relief_front_back, texel, 0);
         found = words.b != 0u || words.a != 0u;
-        float front = p.z - reliefFrontBackDepth(info.y, words.b);
-        float back = p.z - reliefFrontBackDepth(info.y, words.a);
+        float front = reliefFrontBackDepth(info.y, words.b);
+        float back = reliefFrontBackDepth(info.y, words.a);
         vec3 back_normal = vec3(0.0);
         if (plane) {
             normal = reliefPackedNormal(words.r);
             back_normal = reliefPackedNormal(words.g);
-            front = reliefPlane(i, normal, vec3(across, front));
-            back = reliefPlane(i, back_normal, vec3(across, back));
+            front = reliefPlaneOrthographic(i, normal, front, vec3(across, p.z));
+            back = reliefPlaneOrthographic(i, back_normal, back, vec3(across, p.z));
         } else {
-            front = scale * -front;
-            back = scale * back;
+            front = scale * (front - p.z);
+            back = scale * (p.z - back);
         }
         front = words.b != 0u ? front : RELIEF_FAR_INSIDE;
         back = words.a != 0u ? back : RELIEF_FAR_INSIDE;
@@ -264,7 +283,7 @@ void reliefVoteOrthographic(inout ReliefField best, int i, vec3 p, ivec4 rect, i
             found = reliefFixedTexel(texel, 1.0, depth, normal);
         }
         if (plane) {
-            vote = reliefPlane(i, normal, vec3(across, p.z - depth));
+            vote = reliefPlaneOrthographic(i, normal, depth, vec3(across, p.z));
         } else {
             vote = scale * ((info.z & RELIEF_KEEPS_FARTHEST) != 0 ? p.z - depth : depth - p.z);
         }
@@ -306,7 +325,9 @@ void reliefVoteCube(inout ReliefField best, int i, vec3 p, ivec4 rect, ivec4 inf
     float vote;
     if (reliefIsPlane(info)) {
         vec3 center = reliefCubeDirection(vec3((vec2(at) + 0.5) / float(rect.w), st_face.z));
-        vote = reliefPlane(i, normal, p - center * (depth / reliefLength(center)));
+        vec3 ray = center / reliefLength(center);
+        vec2 along = vec2(reliefLength(u_relief_maps[i].object_per_map.xyz * ray), reliefAcross(i, normal, ray));
+        vote = reliefPlane(i, normal, depth, RELIEF_CUBE_DEPTH_MAX, p, ray, along);
     } else {
         float ahead = (info.z & RELIEF_KEEPS_FARTHEST) != 0 ? radius - depth : depth - radius;
         vote = ahead * reliefLength(u_relief_maps[i].object_per_map.xyz * direction);

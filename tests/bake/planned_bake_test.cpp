@@ -101,10 +101,11 @@ TEST(PlaneFit, NoSampledSurfacePointLiesInFrontOfThePlane) {
             }
         }
         const FootprintRay center{{0, 0, 0}, {0, 0, 1}, -1.0, glm::dvec3(0.0)};
-        const std::optional<FittedPlane> plane = fitSupportingPlane(rays, center, options);
+        const std::optional<FittedPlane> plane = fitSupportingPlane(rays, {}, center, center.origin, options);
         ASSERT_TRUE(plane);
+        ASSERT_FALSE(plane->stands);
         EXPECT_LE(plane->normal.z, -1.0 / 32.0);
-        const glm::dvec3 on_plane(0, 0, plane->u_code / 65534.0);
+        const glm::dvec3 on_plane(0, 0, plane->code / 65534.0);
         for (const FootprintRay& ray : rays) {
             if (ray.u >= 0.0) {
                 EXPECT_LE(dot(plane->normal, ray.origin + ray.u * ray.direction - on_plane), 1e-12);
@@ -115,7 +116,7 @@ TEST(PlaneFit, NoSampledSurfacePointLiesInFrontOfThePlane) {
 
 TEST(PlaneFit, FootprintWithoutSurfaceIsEmpty) {
     const FootprintRay ray{{0, 0, 0}, {0, 0, 1}, -1.0, glm::dvec3(0.0)};
-    EXPECT_FALSE(fitSupportingPlane(std::vector<FootprintRay>(4, ray), ray, {}));
+    EXPECT_FALSE(fitSupportingPlane(std::vector<FootprintRay>(4, ray), {}, ray, ray.origin, {}));
 }
 
 TEST(FittedMap, ATiltedFaceIsFoundToAQuantumEverywhere) {
@@ -139,6 +140,34 @@ TEST(FittedMap, ATiltedFaceIsFoundToAQuantumEverywhere) {
         EXPECT_LE(sample.distance, f + 0.002 * std::abs(f) + rim) << "in front of the face by " << f;
         EXPECT_GE(sample.distance, f - bound - 0.002 * std::abs(f)) << "in front of the face by " << f;
         EXPECT_GT(dot(glm::dvec3(sample.normal), normal), 0.9998);
+    }
+}
+
+TEST(FittedMap, WallsSeenEdgeOnAreFoundInsideTheirTexels) {
+    // A box whose walls run through texels, not along their edges, seen along three of its edges: the map's
+    // rays never meet the walls, yet it says on which side of them a point is, to the 63rd part of the
+    // quarter of a texel to which their place is known and the quantum of the offset.
+    const TriangleMesh mesh = makeBoxMesh({0, 0, 0}, {1.0, 0.7, 0.4}, glm::dmat3(1.0));
+    const Collider collider = bakeSpecs(
+        mesh, {"front-back:dir=-z,size=23x19,depth=unorm16,decode=plane,box=-1.2/-1.05/-0.4/1.3/1.15/0.4"});
+    const double texel = std::max(2.5 / 21.0, 2.2 / 17.0);
+    const double bound = texel / 4.0 / 63.0 + 4.0 * texel / 65534.0;
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    for (int i = 0; i < 4000; ++i) {
+        const double f = 0.3 * texel * unit(random);
+        const double sign = i % 4 < 2 ? 1.0 : -1.0;
+        const double along = 0.8 * unit(random);  // away from the corners
+        const glm::vec3 p = i % 2 == 0 ? glm::vec3(sign * (1.0 + f), 0.7 * along, 0.39 * unit(random))
+                                       : glm::vec3(along, sign * (0.7 + f), 0.39 * unit(random));
+        const FieldSample sample = evaluate(collider, p);
+        ASSERT_EQ(sample.map, 0);
+        if (std::abs(f) > bound) {
+            ASSERT_EQ(sample.inside(), f < 0.0) << p.x << " " << p.y << " " << p.z;
+        }
+        if (f > bound && sample.distance < kFarOutside) {
+            EXPECT_NEAR(sample.distance, f, bound);
+        }
     }
 }
 
