@@ -13,7 +13,9 @@
 #include "bake/encode.h"
 #include "bake/fitted_map.h"
 #include "bake/inside.h"
+#include "bake/mesh_query.h"
 #include "bake/raycast.h"
+#include "bake/refine.h"
 #include "bake/view.h"
 #include "formats/container.h"
 
@@ -80,14 +82,20 @@ Result<std::vector<Job>> planJobs(const TriangleMesh& mesh, const BakeOptions& o
     return jobs;
 }
 
-std::string effectiveOptions(const std::vector<Job>& jobs, Quality quality) {
+std::string effectiveOptions(const std::vector<Job>& jobs, const BakeOptions& options) {
     std::string text;
     bool has_planes = false;
     for (const Job& job : jobs) {
         text.append(text.empty() ? "" : " ").append("--map ").append(toString(job.spec));
         has_planes = has_planes || job.spec.decode == Decode::kPlane;
     }
-    return has_planes ? text + " --quality " + qualityName(quality) : text;
+    if (has_planes) {
+        text.append(" --quality ").append(qualityName(options.quality));
+        if (options.prefer != Prefer::kNeither) {
+            text.append(" --prefer ").append(preferName(options.prefer));
+        }
+    }
+    return text;
 }
 
 void warnAbout(const TriangleMesh& mesh, const std::vector<Job>& jobs, BakeReport& report) {
@@ -115,7 +123,8 @@ void warnAbout(const TriangleMesh& mesh, const std::vector<Job>& jobs, BakeRepor
     }
 }
 
-FittedMapOptions fitOptions(const TriangleMesh& mesh, const View& view, Quality quality) {
+FittedMapOptions fitOptions(const TriangleMesh& mesh, const View& view, const BakeOptions& bake) {
+    const Quality quality = bake.quality;
     const double side = mesh.bounds.longestSide();
     FittedMapOptions options;
     options.samples = quality == Quality::kFast ? 1 : quality == Quality::kNormal ? 4 : 6;
@@ -123,6 +132,27 @@ FittedMapOptions fitOptions(const TriangleMesh& mesh, const View& view, Quality 
     options.reach = 0.02 * side;
     // A hundredth of a texel: far below what any texel can resolve.
     options.good_enough = 0.01 * side / std::max(view.width, view.height);
+    options.look_around = bake.prefer == Prefer::kInside;
+    return options;
+}
+
+RefineOptions refineOptions(const BakeOptions& bake) {
+    RefineOptions options;
+    switch (bake.prefer) {
+        case Prefer::kNeither:
+            break;
+        case Prefer::kInside:
+            options.false_outside = 8.0;
+            break;
+        case Prefer::kOutside:
+            options.false_inside = 4.0;
+            options.false_outside = 1.0;
+            break;
+    }
+    if (bake.quality == Quality::kBest) {
+        options.sweeps = 2;
+        options.points_per_texel *= 3.0;
+    }
     return options;
 }
 
@@ -252,10 +282,9 @@ Result<Baked> bakeOnThisArena(const TriangleMesh& mesh, const BakeOptions& optio
             if (!unit_normals) {
                 unit_normals.emplace(mesh);
             }
-            baked.collider.maps.push_back(
-                bakeFittedMap(**scene, *unit_normals, job.view, fitOptions(mesh, job.view, options.quality),
-                              map_report.covered,
-                              [&](std::uint32_t rows) { stripeDone(std::uint64_t{rows} * job.view.width); }));
+            baked.collider.maps.push_back(bakeFittedMap(
+                **scene, *unit_normals, job.view, fitOptions(mesh, job.view, options), map_report.covered,
+                [&](std::uint32_t rows) { stripeDone(std::uint64_t{rows} * job.view.width); }));
         } else {
             baked.collider.maps.push_back(baker.bake(job.view, report, map_report.covered, stripeDone));
         }
@@ -268,12 +297,20 @@ Result<Baked> bakeOnThisArena(const TriangleMesh& mesh, const BakeOptions& optio
             mesh.name +
                 ": no map sees a surface of the mesh; raise the maps' sizes, or change their dir or box");
     }
+    if (unit_normals && (options.quality != Quality::kFast || options.prefer != Prefer::kNeither)) {
+        const Stopwatch watch(report.refine_ms);
+        const Result<MeshQuery> query = MeshQuery::build(mesh);
+        if (!query) {
+            return forward(query);
+        }
+        refineTexels(baked.collider, mesh, *query, refineOptions(options));
+    }
     warnAbout(mesh, *jobs, report);
 
     baked.collider.bounds = mesh.bounds;
     baked.collider.unit = mesh.unit;
     baked.collider.provenance = {mesh.name, mesh.content_hash, mesh.triangles.size(),
-                                 "relief " RELIEF_VERSION, effectiveOptions(*jobs, options.quality)};
+                                 "relief " RELIEF_VERSION, effectiveOptions(*jobs, options)};
     return baked;
 }
 
@@ -287,6 +324,18 @@ const char* qualityName(Quality quality) {
             return "normal";
         case Quality::kBest:
             return "best";
+    }
+    return "unknown";
+}
+
+const char* preferName(Prefer prefer) {
+    switch (prefer) {
+        case Prefer::kNeither:
+            return "neither";
+        case Prefer::kInside:
+            return "inside";
+        case Prefer::kOutside:
+            return "outside";
     }
     return "unknown";
 }

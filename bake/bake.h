@@ -19,10 +19,17 @@ enum class Quality : std::uint8_t { kFast, kNormal, kBest };
 
 [[nodiscard]] const char* qualityName(Quality quality);  ///< "fast", "normal" or "best"
 
+/// Which of the two mistakes is worse, in maps whose decode is plane. kInside: doubtful space is solid, so
+/// that no particle enters a wall. kOutside: doubtful space is free, so that no free volume is lost.
+enum class Prefer : std::uint8_t { kNeither, kInside, kOutside };
+
+[[nodiscard]] const char* preferName(Prefer prefer);  ///< "neither", "inside" or "outside"
+
 struct BakeOptions {
     std::vector<MapSpec> maps;       ///< empty: defaultMapSpecs()
     std::uint32_t resolution = 512;  ///< texels along a side, for maps whose spec names no size
     Quality quality = Quality::kNormal;
+    Prefer prefer = Prefer::kNeither;
     unsigned threads = 0;  ///< 0: all cores. Never changes the result.
     /// Called now and then, from the calling thread, with the share of the work done, in [0, 1].
     std::function<void(double)> progress;
@@ -39,6 +46,7 @@ struct BakeReport {
     double trace_ms = 0.0;   ///< rays
     double encode_ms = 0.0;  ///< normals and texels
     double fit_ms = 0.0;     ///< rays and planes of the maps whose decode is plane
+    double refine_ms = 0.0;  ///< texels of those maps chosen anew, knowing the other maps
     std::vector<MapReport> maps;
     std::vector<std::string> warnings;  ///< what is probably not meant; one line each
 };

@@ -161,11 +161,12 @@ void printReport(const TriangleMesh& mesh, const Baked& baked, const Times& time
     }
     text += "\n" + table(rows);
     char line[256];
-    std::snprintf(
-        line, sizeof(line),
-        "%.0f ms: import %.0f, plan %.0f, tree %.0f, rays %.0f, texels %.0f, planes %.0f, writing %.0f\n",
-        times.total_ms, times.import_ms, times.plan_ms, baked.report.build_ms, baked.report.trace_ms,
-        baked.report.encode_ms, baked.report.fit_ms, times.write_ms);
+    std::snprintf(line, sizeof(line),
+                  "%.0f ms: import %.0f, plan %.0f, tree %.0f, rays %.0f, texels %.0f, planes %.0f, refining "
+                  "%.0f, writing %.0f\n",
+                  times.total_ms, times.import_ms, times.plan_ms, baked.report.build_ms,
+                  baked.report.trace_ms, baked.report.encode_ms, baked.report.fit_ms, baked.report.refine_ms,
+                  times.write_ms);
     text += line;
     text += (output == "-" ? "standard output" : quotedPath(output)) + ": " + bytesText(file_size) + "\n";
     std::fputs(text.c_str(), stderr);

@@ -78,6 +78,7 @@ class EndFitter {
           fine_(fine),
           end_(view, end),
           samples_(options.samples),
+          look_around_(options.look_around),
           inside_out_(scene.winding() < 0.0),
           starts_free_(view.starts_free[static_cast<std::size_t>(end)]),
           other_starts_free_(view.projection() == Projection::kOrthographic &&
@@ -116,7 +117,7 @@ class EndFitter {
             for (std::uint32_t i = 0; i < samples_; ++i) {
                 const std::uint32_t column = x * samples_ + i;
                 const Hit& hit = hits[std::size_t{row - first_row} * fine_.width + column];
-                if (!hit.empty() && !starts_free_ && hit.fromBehind() != inside_out_) {
+                if (!hit.empty() && startsInside(hit)) {
                     return std::nullopt;  // the ray starts inside: what lies before this surface is not free
                 }
                 const std::size_t at = std::size_t{row - first_row} * fine_.width + column;
@@ -125,9 +126,13 @@ class EndFitter {
             }
         }
         findEdge(face, x, y);
+        around_.clear();
+        if (look_around_) {
+            lookAround(face, x, y, first_row, hits, other_hits);
+        }
         const TexelRay centre = view_.ray(face, x, y);
         const std::optional<FittedPlane> plane =
-            fitSupportingPlane(rays_, edge_, end_.fromViewer(centre), centre.origin, fit_);
+            fitSupportingPlane(rays_, around_, edge_, end_.fromViewer(centre), centre.origin, fit_);
         if (!plane) {
             return std::nullopt;
         }
@@ -149,6 +154,32 @@ class EndFitter {
             ray.normal = hit.fromBehind() ? -normal : normal;
         }
         return ray;
+    }
+
+    /// The ray of a hit started in the solid.
+    [[nodiscard]] bool startsInside(const Hit& hit) const {
+        return !starts_free_ && hit.fromBehind() != inside_out_;
+    }
+
+    /// The ring of rays about the footprint, as far as it lies on the same face.
+    void lookAround(std::uint32_t face, std::uint32_t x, std::uint32_t y, std::uint32_t first_row,
+                    std::span<const Hit> hits, std::span<const Hit> other_hits) {
+        const auto bounds = [&](std::uint32_t texel, std::uint32_t size) {
+            const std::uint32_t first = texel * samples_;
+            return std::pair{first - (first > 0 ? 1U : 0U), std::min(first + samples_ + 1, size)};
+        };
+        const auto [row_begin, row_end] = bounds(y, fine_.height);
+        const auto [column_begin, column_end] = bounds(x, fine_.width);
+        for (std::uint32_t row = row_begin; row < row_end; ++row) {
+            for (std::uint32_t column = column_begin; column < column_end; ++column) {
+                const std::size_t at = std::size_t{row - first_row} * fine_.width + column;
+                const bool own = row / samples_ == y && column / samples_ == x;
+                if (!own && !hits[at].empty() && !startsInside(hits[at])) {
+                    around_.push_back(footprintRay(fine_.ray(face, column, row), hits[at],
+                                                   other_hits.empty() ? Hit() : other_hits[at]));
+                }
+            }
+        }
     }
 
     /// Between neighbours of which one meets a surface and the other does not, the last ray that does.
@@ -198,11 +229,13 @@ class EndFitter {
     const View& fine_;
     EndView end_;
     std::uint32_t samples_;
+    bool look_around_;
     bool inside_out_;
     bool starts_free_;
     bool other_starts_free_;
     PlaneFitOptions fit_;
     std::vector<FootprintRay> rays_;
+    std::vector<FootprintRay> around_;
     std::vector<FootprintRay> edge_;
 };
 
@@ -235,7 +268,9 @@ DepthMap bakeFittedMap(const RayScene& scene, const TriangleNormals& normals, co
     for (std::uint32_t face = 0; face < view.faceCount(); ++face) {
         for (std::uint32_t y = 0; y < view.height; y += stripe_rows) {
             const std::uint32_t y_end = std::min(y + stripe_rows, view.height);
-            const RowRange rows{face, y * options.samples, y_end * options.samples};
+            const std::uint32_t ring = options.look_around ? 1 : 0;
+            const RowRange rows{face, y * options.samples - (y > 0 ? ring : 0),
+                                std::min(y_end * options.samples + ring, fine.height)};
             for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
                 if (view.keeps(end)) {
                     std::vector<Hit>& end_hits = hits[static_cast<std::size_t>(end)];

@@ -23,6 +23,9 @@ struct FittedMapOptions {
     double reach = 1.0;
     /// Object units. A plane that leaves less free space than this, on average, is not improved any further.
     double good_enough = 0.0;
+    /// Surface points half a sample beyond the texel may not lie in front of its plane either: half as many
+    /// points are called outside wrongly, and half as many again inside.
+    bool look_around = false;
 };
 
 /// What the fits of all maps share: the unit normal of every triangle.

@@ -21,18 +21,6 @@ constexpr double kSteepCosine = 0.35;
 /// kind.
 constexpr double kStandingMax = double{kStandingCosine} - 1e-4;
 
-/// The decoded vectors of all indices, in double: candidates are looked up thousands of times a texel row.
-const std::array<glm::dvec3, 65536>& normalTable() {
-    static const auto* const table = [] {
-        auto* t = new std::array<glm::dvec3, 65536>;
-        for (std::size_t code = 0; code < t->size(); ++code) {
-            (*t)[code] = glm::dvec3(decodeNormal(unpackNormal(static_cast<std::uint16_t>(code))));
-        }
-        return t;
-    }();
-    return *table;
-}
-
 std::uint16_t codeOf(const glm::dvec3& normal) {
     return packNormal(encodeNormal(glm::vec3(normal)));
 }
@@ -40,9 +28,11 @@ std::uint16_t codeOf(const glm::dvec3& normal) {
 /// The search for one texel's plane.
 class PlaneSearch {
   public:
-    PlaneSearch(std::span<const FootprintRay> rays, std::span<const FootprintRay> edge,
-                const FootprintRay& centre, const glm::dvec3& zero_depth, const PlaneFitOptions& options)
+    PlaneSearch(std::span<const FootprintRay> rays, std::span<const FootprintRay> around,
+                std::span<const FootprintRay> edge, const FootprintRay& centre, const glm::dvec3& zero_depth,
+                const PlaneFitOptions& options)
         : rays_(rays),
+          around_(around),
           edge_(edge),
           centre_(centre),
           from_zero_(centre.origin - zero_depth),
@@ -108,7 +98,7 @@ class PlaneSearch {
         }
         tried_[tried_count_++ % tried_.size()] = code;
 
-        const glm::dvec3& normal = normalTable()[code];
+        const glm::dvec3& normal = decodedNormals()[code];
         const double along = dot(normal, centre_.direction);
         const double cosine = along / direction_length_;
         const bool stands = std::abs(cosine) < kStandingMax;
@@ -116,7 +106,7 @@ class PlaneSearch {
             return;
         }
         // Pushed until no sampled surface point lies in front.
-        double offset = supportOf(rays_, normal);
+        double offset = std::max(supportOf(rays_, normal), supportOf(around_, normal));
         if (cosine > -kSteepCosine) {
             offset = std::max(offset, supportOf(edge_, normal));
         }
@@ -225,10 +215,11 @@ class PlaneSearch {
         }
         const double scaled = std::floor(std::clamp(nearest / options_.u_max, 0.0, 1.0) * kDepthCodes);
         const std::uint16_t code = codeOf(facing);
-        best_ = {normalTable()[code], unpackNormal(code), false, static_cast<std::uint16_t>(scaled)};
+        best_ = {decodedNormals()[code], unpackNormal(code), false, static_cast<std::uint16_t>(scaled)};
     }
 
     std::span<const FootprintRay> rays_;
+    std::span<const FootprintRay> around_;
     std::span<const FootprintRay> edge_;
     const FootprintRay& centre_;
     glm::dvec3 from_zero_;
@@ -244,10 +235,22 @@ class PlaneSearch {
 
 }  // namespace
 
+const std::array<glm::dvec3, 65536>& decodedNormals() {
+    static const auto* const table = [] {
+        auto* t = new std::array<glm::dvec3, 65536>;
+        for (std::size_t code = 0; code < t->size(); ++code) {
+            (*t)[code] = glm::dvec3(decodeNormal(unpackNormal(static_cast<std::uint16_t>(code))));
+        }
+        return t;
+    }();
+    return *table;
+}
+
 std::optional<FittedPlane> fitSupportingPlane(std::span<const FootprintRay> rays,
+                                              std::span<const FootprintRay> around,
                                               std::span<const FootprintRay> edge, const FootprintRay& centre,
                                               const glm::dvec3& zero_depth, const PlaneFitOptions& options) {
-    return PlaneSearch(rays, edge, centre, zero_depth, options).run();
+    return PlaneSearch(rays, around, edge, centre, zero_depth, options).run();
 }
 
 }  // namespace relief

@@ -13,6 +13,7 @@
 // Both ends of a map are fitted the same way, seen from where their rays start.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -52,13 +53,18 @@ struct FittedPlane {
     std::uint16_t code = 0;
 };
 
+/// The decoded vectors of all packed normals, in double: candidates are looked up thousands of times a row.
+[[nodiscard]] const std::array<glm::dvec3, 65536>& decodedNormals();
+
 /// Fits one texel.
 /// \param rays    the footprint; at least one.
+/// \param around  rays beside the footprint, whose surface points may not lie in front either; may be empty.
 /// \param edge    rays that just meet a surface, beside ones that meet none: what a standing plane leans on.
 /// \param centre  the texel's centre ray, from the viewer on: where the plane's depth is stored.
 /// \param zero_depth  the point of that ray whose map depth is 0.
 /// \return nullopt if no ray meets a surface: the texel is empty.
 [[nodiscard]] std::optional<FittedPlane> fitSupportingPlane(std::span<const FootprintRay> rays,
+                                                            std::span<const FootprintRay> around,
                                                             std::span<const FootprintRay> edge,
                                                             const FootprintRay& centre,
                                                             const glm::dvec3& zero_depth,

@@ -10,6 +10,7 @@
 #include <limits>
 #include <random>
 
+#include "bake/surface_sampler.h"
 #include "bake/triangle_plane.h"
 #include "bake/view.h"
 
@@ -40,36 +41,6 @@ double length(const glm::dvec3& v) {
     return std::sqrt(dot(v, v));
 }
 
-/// Uniform numbers with the same bits everywhere: no library distribution, no libm.
-class Random {
-  public:
-    explicit Random(std::uint64_t seed) : engine_(seed) {}
-    double uniform() { return static_cast<double>(engine_() >> 11U) * 0x1p-53; }
-    std::size_t below(std::size_t count) {
-        return std::min(static_cast<std::size_t>(uniform() * static_cast<double>(count)), count - 1);
-    }
-    /// About normal, of mean 0 and deviation 1: the sum of twelve uniform numbers.
-    double normal() {
-        double sum = -6.0;
-        for (int i = 0; i < 12; ++i) {
-            sum += uniform();
-        }
-        return sum;
-    }
-    glm::dvec3 direction() {
-        for (;;) {
-            const glm::dvec3 v(2.0 * uniform() - 1.0, 2.0 * uniform() - 1.0, 2.0 * uniform() - 1.0);
-            const double square = dot(v, v);
-            if (square <= 1.0 && square > 1e-4) {
-                return v / std::sqrt(square);
-            }
-        }
-    }
-
-  private:
-    std::mt19937_64 engine_;
-};
-
 /// A point of free space near the surface.
 struct PlanPoint {
     glm::dvec3 position;
@@ -77,11 +48,7 @@ struct PlanPoint {
 };
 
 std::vector<PlanPoint> drawPoints(const TriangleMesh& mesh, const MeshQuery& query, std::uint64_t seed) {
-    std::vector<double> area_before(mesh.triangles.size() + 1, 0.0);
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-        const glm::dvec3 n = planeOf(mesh, static_cast<std::uint32_t>(i)).normal;
-        area_before[i + 1] = area_before[i] + length(n);
-    }
+    const SurfaceSampler sampler(mesh);
     struct Draw {
         PlanPoint point;
         bool free = false;
@@ -91,18 +58,8 @@ std::vector<PlanPoint> drawPoints(const TriangleMesh& mesh, const MeshQuery& que
     tbb::parallel_for(std::size_t{0}, kPoints, [&](std::size_t i) {
         Random random(seed * 0x9e3779b97f4a7c15ULL + i);
         // Stratified over the area.
-        const double at =
-            (static_cast<double>(i) + random.uniform()) / static_cast<double>(kPoints) * area_before.back();
-        const auto above = std::upper_bound(area_before.begin() + 1, area_before.end() - 1, at);
-        const auto triangle = static_cast<std::uint32_t>(above - area_before.begin() - 1);
-        const double root = std::sqrt(random.uniform());
-        const double along = random.uniform();
-        const glm::uvec3& t = mesh.triangles[triangle];
-        const glm::dvec3 surface = (1.0 - root) * glm::dvec3(mesh.positions[t.x]) +
-                                   root * (1.0 - along) * glm::dvec3(mesh.positions[t.y]) +
-                                   root * along * glm::dvec3(mesh.positions[t.z]);
-        glm::dvec3 normal = planeOf(mesh, triangle).normal;
-        normal /= length(normal);
+        const double at = (static_cast<double>(i) + random.uniform()) / static_cast<double>(kPoints);
+        const auto [surface, normal] = sampler.draw(at, random);
         const double offset = side * std::max(5e-5, kSpread * std::abs(random.normal()));
         // Winding is not trusted: the free side is the one that is not inside; of two free sides, the front.
         for (const double sign : {1.0, -1.0}) {
