@@ -20,7 +20,7 @@ enum class Quality : std::uint8_t { kFast, kNormal, kBest };
 [[nodiscard]] const char* qualityName(Quality quality);  ///< "fast", "normal" or "best"
 
 struct BakeOptions {
-    std::vector<MapSpec> maps;       ///< empty: defaultMapSpecs()
+    std::vector<MapSpec> maps;       ///< empty: paperMapSpecs()
     std::uint32_t resolution = 512;  ///< texels along a side, for maps whose spec names no size
     Quality quality = Quality::kNormal;
     unsigned threads = 0;  ///< 0: all cores. Never changes the result.

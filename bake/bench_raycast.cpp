@@ -81,7 +81,7 @@ int main(int argc, char** argv) {
         return failure(mesh.error());
     }
     BakeOptions options;
-    options.maps = defaultMapSpecs();
+    options.maps = paperMapSpecs();
     options.maps.pop_back();  // the cube: six orthographic ends are left
     options.resolution = kResolution;
     std::vector<View> views;

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdio>
 #include <optional>
+#include <span>
 
 #include "bake/bake.h"
 #include "bake/byte_count.h"
@@ -33,6 +34,8 @@ struct BakeCommand {
     std::vector<std::string> maps;
     std::string resolution = "512";
     std::string budget;
+    std::string decode;
+    std::string depth;
     std::string quality = "normal";
     std::string threads;
     std::string compress = "0";
@@ -62,6 +65,17 @@ class Stopwatch {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// One of some words, or the error that lists them. \return its index.
+Result<std::size_t> wordOf(const std::string& option, const std::string& value,
+                           std::span<const std::string_view> words) {
+    const auto found = std::find(words.begin(), words.end(), value);
+    if (found == words.end()) {
+        return fail(ErrorCode::kUsage, option + " is '" + cleanUtf8(value) + "' but must be one of " +
+                                           listed(words) + didYouMean(value, words));
+    }
+    return static_cast<std::size_t>(found - words.begin());
+}
+
 Result<void> readPlanSettings(const BakeCommand& command, Settings& settings) {
     if (!command.budget.empty()) {
         if (!command.maps.empty()) {
@@ -75,14 +89,38 @@ Result<void> readPlanSettings(const BakeCommand& command, Settings& settings) {
         }
     }
     constexpr std::array<std::string_view, 3> kQualities = {"fast", "normal", "best"};
-    const auto* found = std::find(kQualities.begin(), kQualities.end(), command.quality);
-    if (found == kQualities.end()) {
-        return fail(ErrorCode::kUsage, "--quality is '" + cleanUtf8(command.quality) +
-                                           "' but must be one of " + listed(kQualities) +
-                                           didYouMean(command.quality, kQualities));
+    const Result<std::size_t> quality = wordOf("--quality", command.quality, kQualities);
+    if (!quality) {
+        return forward(quality);
     }
-    settings.bake.quality = static_cast<Quality>(found - kQualities.begin());
+    settings.bake.quality = static_cast<Quality>(*quality);
     return {};
+}
+
+/// What --decode and --depth make of maps that do not say it themselves.
+Result<MapSpecDefaults> mapDefaults(const BakeCommand& command) {
+    constexpr std::array<std::string_view, 2> kDecodes = {"projected", "plane"};
+    constexpr std::array<std::string_view, 2> kDepths = {"half", "unorm16"};
+    MapSpecDefaults defaults;
+    if (!command.decode.empty()) {
+        const Result<std::size_t> decode = wordOf("--decode", command.decode, kDecodes);
+        if (!decode) {
+            return forward(decode);
+        }
+        defaults.decode = *decode == 0 ? Decode::kProjected : Decode::kPlane;
+    }
+    if (!command.depth.empty()) {
+        const Result<std::size_t> depth = wordOf("--depth", command.depth, kDepths);
+        if (!depth) {
+            return forward(depth);
+        }
+        defaults.front_back = *depth == 0 ? MapFormat::kFrontBackHalf : MapFormat::kFrontBackFixed;
+    }
+    if (command.maps.empty() && !(command.decode.empty() && command.depth.empty())) {
+        return fail(ErrorCode::kUsage, std::string(command.decode.empty() ? "--depth" : "--decode") +
+                                           " does nothing without --map; leave it out");
+    }
+    return defaults;
 }
 
 Result<Settings> settingsOf(const BakeCommand& command) {
@@ -90,8 +128,12 @@ Result<Settings> settingsOf(const BakeCommand& command) {
     if (const Result<void> plan = readPlanSettings(command, settings); !plan) {
         return forward(plan);
     }
+    const Result<MapSpecDefaults> defaults = mapDefaults(command);
+    if (!defaults) {
+        return forward(defaults);
+    }
     for (const std::string& text : command.maps) {
-        const Result<MapSpec> spec = parseMapSpec(text);
+        const Result<MapSpec> spec = parseMapSpec(text, *defaults);
         if (!spec) {
             return forward(spec);
         }
@@ -310,17 +352,24 @@ void addBake(CLI::App& app, Action& action) {
                     "A map to bake, once for each: FORMAT[:key=value,...] with\n"
                     "FORMAT   float, fixed8, front-back or cube\n"
                     "dir      direction the view looks in: +x -x +y -y +z -z or a/b/c\n"
+                    "up       direction that points upwards in the image: as dir\n"
                     "size     texels, N or WxH (cube: N)\n"
                     "compare  less or greater: keep the nearest or the farthest surface\n"
                     "center   a/b/c, where a cube looks from\n"
-                    "depth    half or unorm16: of front-back maps\n"
-                    "decode   projected (the paper's) or plane: fitted to the whole texel\n"
+                    "depth    of front-back maps: unorm16, or half (the paper's)\n"
+                    "decode   plane: fitted to the whole texel, or projected (the paper's)\n"
                     "box      tight, or x0/y0/z0/x1/y1/z1: the part of space to cover\n"
                     "Default: front-back along -x, -y and -z, and a cube")
         ->option_text("SPEC")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->allow_extra_args(false);
+    verb.add_option("--decode", command->decode,
+                    "Of maps that do not say it: plane (default) or projected, the paper's")
+        ->option_text("WORD");
+    verb.add_option("--depth", command->depth,
+                    "Of front-back maps that do not say it: unorm16 (default) or half, the paper's")
+        ->option_text("WORD");
     verb.add_option("--resolution", command->resolution,
                     "Texels along a side of maps without size; default 512")
         ->option_text("N");

@@ -21,7 +21,7 @@ for name, value in ms.items():
     print(f'  {name:16s} {value:8.1f}')
 
 # The whole process, for the six maps (three front-back) that the loop above traces.
-specs = [a for d in ('-x', '-y', '-z') for a in ('--map', f'front-back:dir={d}')]
+specs = [a for d in ('-x', '-y', '-z') for a in ('--map', f'front-back:dir={d},decode=projected,depth=half')]
 command = [f'{bin}/relief', 'bake', mesh, '-o', f'{work}/out.relief', '-q', *specs]
 # Its floor is taken as cold as the process itself: a fresh process each time, in turns.
 times, floors = [], []

@@ -42,6 +42,14 @@ cp stdout info.json
 json info.json "[(m['format'], m['compare']) for m in d['maps']] == [('float', 'less'), ('float', 'greater'), ('fixed8', 'less'), ('front-back', 'both'), ('cube', 'greater'), ('cube', 'less')]"
 json info.json "(d['maps'][2]['width'], d['maps'][2]['height']) == (48, 24)"
 
+# --decode and --depth speak for the maps that do not say it themselves.
+expect 0 "$relief" bake box.obj -o all.relief --resolution 16 --json --map front-back --map front-back:depth=unorm16 \
+    --map cube:decode=plane --decode projected --depth half
+json stdout "['half' in m for m in d['settings']['maps']] == [True, False, False]"
+json stdout "['projected' in m for m in d['settings']['maps']] == [True, True, False]"
+expect 0 "$relief" bake box.obj -o all.relief --resolution 16 --json --map front-back --map float:dir=+x,up=-z
+json stdout "d['settings']['maps'] == ['front-back:dir=-z,size=16x16,depth=unorm16,decode=plane,box=tight', 'float:dir=+x,up=-z,size=16x16,compare=less,decode=plane,box=tight']"
+
 # The same bytes whatever the number of threads, the folder and the name of the output; compressed ones too.
 for threads in 1 2 5; do
     expect 0 "$relief" bake "$bunny" -o "t$threads.relief" --resolution 128 --threads $threads -q
