@@ -103,6 +103,10 @@ Result<void> MapSpecBuilder::setFormat(std::string_view word) {
     return {};
 }
 
+bool MapSpecBuilder::knows(std::string_view key) {
+    return std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end();
+}
+
 Result<void> MapSpecBuilder::set(std::string_view key, std::string_view value) {
     const auto* found = std::find(kKeys.begin(), kKeys.end(), key);
     if (found == kKeys.end()) {
@@ -275,8 +279,7 @@ Result<MapSpec> parseMapSpec(std::string_view text, const MapSpecDefaults& defau
         for (const std::string_view pair : split(text.substr(colon + 1), ',')) {
             const std::size_t equals = pair.find('=');
             const std::string_view key = pair.substr(0, equals);
-            if (equals == std::string_view::npos &&
-                std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end()) {
+            if (equals == std::string_view::npos && MapSpecBuilder::knows(key)) {
                 return usage(std::string(key) + " has no value; write " + std::string(key) + "=…");
             }
             const std::string_view value = equals == std::string_view::npos ? "" : pair.substr(equals + 1);

@@ -80,6 +80,7 @@ class MapSpecBuilder {
     /// Call it first: which keys do something depends on the format.
     [[nodiscard]] Result<void> setFormat(std::string_view word);
     [[nodiscard]] Result<void> set(std::string_view key, std::string_view value);
+    [[nodiscard]] static bool knows(std::string_view key);
     /// Checks what no key can tell alone.
     [[nodiscard]] Result<MapSpec> finish() const;
 

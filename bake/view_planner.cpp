@@ -424,7 +424,14 @@ Result<Plan> planViews(const TriangleMesh& mesh, const MeshQuery& query, const P
         return fail(ErrorCode::kUsage, "a budget of " + std::to_string(options.budget_bytes) +
                                            " bytes is below the least of " + std::to_string(kPlanBudgetMin));
     }
-    return Planner(mesh, query, options).run();
+    Result<Plan> plan = Planner(mesh, query, options).run();
+    if (plan && plan->maps.empty()) {
+        return fail(ErrorCode::kFailure,
+                    mesh.name +
+                        ": no free space was found beside the surface, so that no view can "
+                        "be planned; name the maps by --map");
+    }
+    return plan;
 }
 
 }  // namespace relief

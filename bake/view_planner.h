@@ -44,7 +44,8 @@ struct Plan {
 };
 
 /// The same mesh and options give the same plan, for any number of threads.
-/// Errors: kUsage (a budget below kPlanBudgetMin or too small for the maps), those of makeView.
+/// Errors: kUsage (a budget below kPlanBudgetMin or too small for the maps), kFailure (no free space beside
+/// the surface), those of makeView.
 [[nodiscard]] Result<Plan> planViews(const TriangleMesh& mesh, const MeshQuery& query,
                                      const PlanOptions& options);
 

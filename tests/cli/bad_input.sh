@@ -12,7 +12,7 @@ f 1 2 4
 f 2 3 4
 f 3 1 4
 O
-"$relief" bake good.obj -o good.relief --resolution 16 -q
+"$relief" bake good.obj -o good.relief --paper --resolution 16 -q
 echo "precious" >old.relief
 
 bake_fails() {
@@ -51,8 +51,8 @@ bake_fails 2 '/dev/full.*space' good.obj -o /dev/full
 bake_fails 1 'output' good.obj
 
 # Sizes, keys, options.
-bake_fails 1 'size|resolution' good.obj -o old.relief --resolution 0
-bake_fails 6 '16384' good.obj -o old.relief --resolution 16385
+bake_fails 1 'size|resolution' good.obj -o old.relief --paper --resolution 0
+bake_fails 6 '16384' good.obj -o old.relief --paper --resolution 16385
 bake_fails 6 '16384' good.obj -o old.relief --map fixed8:size=20000
 bake_fails 1 'size' good.obj -o old.relief --map fixed8:size=0
 bake_fails 1 'size' good.obj -o old.relief --map fixed8:size=-4
