@@ -42,14 +42,7 @@ glm::dvec3 normalized(const glm::dvec3& v) {
 /// Right, up and view direction as above.
 std::array<glm::dvec3, 3> orthographicFrame(const glm::vec3& direction, const std::optional<glm::vec3>& up) {
     const glm::dvec3 d = normalized(direction);
-    if (up) {
-        const glm::dvec3 right = normalized(cross(d, normalized(*up)));
-        return {right, cross(right, d), d};
-    }
-    const bool steep = std::abs(d.y) > 0.999;
-    const glm::dvec3 upwards =
-        steep ? glm::dvec3(0.0, 0.0, d.y > 0.0 ? 1.0 : -1.0) : glm::dvec3(0.0, 1.0, 0.0);
-    const glm::dvec3 right = normalized(cross(d, upwards));
+    const glm::dvec3 right = normalized(cross(d, up ? normalized(*up) : defaultUp(d)));
     return {right, cross(right, d), d};
 }
 
@@ -223,6 +216,11 @@ DepthMap View::emptyMap() const {
     map.empty_is_outside = emptyIsOutside();
     map.texels.resize(map.texelBytes());
     return map;
+}
+
+glm::dvec3 defaultUp(const glm::dvec3& direction) {
+    const bool steep = std::abs(direction.y) > 0.999;
+    return steep ? glm::dvec3(0.0, 0.0, direction.y > 0.0 ? 1.0 : -1.0) : glm::dvec3(0.0, 1.0, 0.0);
 }
 
 Result<MapSpec> completeSpec(MapSpec spec, const TriangleMesh& mesh, std::uint32_t resolution) {

@@ -70,6 +70,9 @@ struct View {
 /// depths are clamped to it: a surface in a face of the volume is met in spite of rounding.
 inline constexpr double kDepthSlack = 1e-6;
 
+/// What an orthographic view along a unit direction has upwards if its spec names no `up`.
+[[nodiscard]] glm::dvec3 defaultUp(const glm::dvec3& direction);
+
 /// The settings of a spec that were left open, decided for this mesh: size, a cube's centre, and compare.
 /// Errors: kUsage, kLimit (as checkMapSize).
 [[nodiscard]] Result<MapSpec> completeSpec(MapSpec spec, const TriangleMesh& mesh, std::uint32_t resolution);

@@ -1,7 +1,7 @@
 # relief-sim from outside: its dependencies, its outputs, its repeatability.
 . "$(dirname "$0")/lib.sh"
 
-for library in assimp embree CGAL OpenEXR IlmImf tbb; do
+for library in assimp embree CGAL gmp mpfr OpenEXR IlmImf tbb; do
     ! ldd "$relief_sim" | grep -qi "$library" || die "relief-sim needs $library"
 done
 
