@@ -262,7 +262,7 @@ class Planner {
             OuterView view;
             view.spec.format = MapFormat::kFrontBackFixed;
             view.spec.decode = Decode::kPlane;
-            view.spec.direction = glm::vec3(candidate.direction);
+            view.spec.direction = glm::vec3(candidate.direction) + 0.0F;  // no −0, for the reason
             if (candidate.up) {
                 view.spec.up = glm::vec3(*candidate.up);
             }
