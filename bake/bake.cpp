@@ -54,7 +54,7 @@ struct Job {
 };
 
 Result<std::vector<Job>> planJobs(const TriangleMesh& mesh, const BakeOptions& options) {
-    const std::vector<MapSpec> specs = options.maps.empty() ? defaultMapSpecs() : options.maps;
+    const std::vector<MapSpec> specs = options.maps.empty() ? paperMapSpecs() : options.maps;
     const ContainerLimits limits;
     if (specs.size() > limits.maps) {
         return fail(ErrorCode::kLimit, std::to_string(specs.size()) + " maps are more than the limit of " +

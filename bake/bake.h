@@ -26,7 +26,7 @@ enum class Prefer : std::uint8_t { kNeither, kInside, kOutside };
 [[nodiscard]] const char* preferName(Prefer prefer);  ///< "neither", "inside" or "outside"
 
 struct BakeOptions {
-    std::vector<MapSpec> maps;       ///< empty: defaultMapSpecs()
+    std::vector<MapSpec> maps;       ///< empty: paperMapSpecs()
     std::uint32_t resolution = 512;  ///< texels along a side, for maps whose spec names no size
     Quality quality = Quality::kNormal;
     Prefer prefer = Prefer::kNeither;

@@ -48,6 +48,7 @@ Result<std::vector<MapSpec>> threeMaps(const TriangleMesh& mesh, std::uint64_t b
     for (int axis = 0; axis < 3; ++axis) {
         MapSpec& spec = specs[static_cast<std::size_t>(axis)];
         spec.format = MapFormat::kFrontBackHalf;
+        spec.decode = Decode::kProjected;
         spec.direction = glm::vec3(0.0F);
         spec.direction[axis] = -1.0F;
         spec.width = spec.height = kMapSizeMin;

@@ -3,8 +3,8 @@
 //
 // relief-bench-raycast MESH OUT.relief: the least that a whole bake can cost, done once in this fresh
 // process: import, tree, the bare loop, and writing a container of that size. Prints JSON; its sum is to be
-// compared with the time of a process `relief bake MESH -o OUT.relief --map front-back:dir=-x --map …`, run
-// in turns.
+// compared with the time of a process `relief bake MESH -o OUT.relief --decode projected --depth half
+// --map front-back:dir=-x --map …`, run in turns.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -81,7 +81,7 @@ int main(int argc, char** argv) {
         return failure(mesh.error());
     }
     BakeOptions options;
-    options.maps = defaultMapSpecs();
+    options.maps = paperMapSpecs();
     options.maps.pop_back();  // the cube: six orthographic ends are left
     options.resolution = kResolution;
     std::vector<View> views;

@@ -128,6 +128,19 @@ Result<std::uint64_t> parseCount(const std::string& text, const std::string& wha
     return *value;
 }
 
+Result<float> parsePercent(const std::string& text, const std::string& what) {
+    std::string_view number = trimmed(text);
+    if (number.ends_with('%')) {
+        number = trimmed(number.substr(0, number.size() - 1));
+    }
+    const std::optional<float> percent = parseFloat(number);
+    if (!percent || *percent < 0.0F) {
+        return fail(ErrorCode::kUsage,
+                    what + " is '" + cleanUtf8(text) + "' but must be a share in percent, such as 1.5");
+    }
+    return *percent;
+}
+
 Result<void> printOut(const std::string& text) {
     return writeFile("-", std::as_bytes(std::span(text)));
 }

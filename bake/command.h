@@ -40,6 +40,11 @@ void startLogging(const CommonOptions& common);
 /// Errors: kUsage.
 [[nodiscard]] Result<std::uint64_t> parseCount(const std::string& text, const std::string& what);
 
+/// A share in percent, "1.5" or "1.5%", not negative.
+/// \param what  its name, for messages.
+/// Errors: kUsage.
+[[nodiscard]] Result<float> parsePercent(const std::string& text, const std::string& what);
+
 /// Writes text that a verb reports to standard output. Errors: kIo.
 [[nodiscard]] Result<void> printOut(const std::string& text);
 

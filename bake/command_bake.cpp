@@ -1,18 +1,24 @@
 // relief bake: a mesh becomes a collider.
 #include <spdlog/spdlog.h>
+#include <tbb/global_control.h>
 #include <tbb/info.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
+#include <span>
 
 #include "bake/bake.h"
+#include "bake/bake_report.h"
+#include "bake/budget_search.h"
 #include "bake/byte_count.h"
 #include "bake/command.h"
 #include "bake/mesh_import.h"
 #include "bake/mesh_query.h"
+#include "bake/plan_file.h"
 #include "bake/preflight.h"
 #include "bake/progress.h"
 #include "bake/report.h"
@@ -25,31 +31,36 @@ namespace {
 
 constexpr std::uint64_t kThreadsMax = 1024;
 constexpr std::uint64_t kCompressionMax = 19;
+constexpr std::uint64_t kBudgetDefault = 1'000'000;  // bytes
 
 struct BakeCommand {
     CommonOptions common;
     std::string mesh;
     std::string output;
     std::vector<std::string> maps;
-    std::string resolution = "512";
+    bool paper = false;
+    std::string plan;
+    std::string plan_out;
     std::string budget;
-    std::string quality = "normal";
+    std::string max_error;
+    std::string decode;
+    std::string depth;
+    std::string resolution;
+    std::string quality;
     std::string threads;
     std::string compress = "0";
     bool json = false;
 };
 
-struct Settings {
-    BakeOptions bake;
-    std::optional<std::uint64_t> budget;  ///< bytes of texels to plan for
-    ContainerWriteOptions write;
-};
+/// Who chooses the maps.
+enum class Source : std::uint8_t { kPlanner, kMaps, kPaper, kPlanFile };
 
-struct Times {
-    double import_ms = 0.0;
-    double plan_ms = 0.0;
-    double write_ms = 0.0;
-    double total_ms = 0.0;
+struct Settings {
+    Source source = Source::kPlanner;
+    BakeOptions bake;
+    std::optional<std::uint64_t> budget;  ///< bytes of texels
+    std::optional<double> max_error;      ///< percent
+    ContainerWriteOptions write;
 };
 
 class Stopwatch {
@@ -62,40 +73,128 @@ class Stopwatch {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// One of some words, or the error that lists them. \return its index.
+Result<std::size_t> wordOf(const std::string& option, const std::string& value,
+                           std::span<const std::string_view> words) {
+    const auto found = std::find(words.begin(), words.end(), value);
+    if (found == words.end()) {
+        return fail(ErrorCode::kUsage, option + " is '" + cleanUtf8(value) + "' but must be one of " +
+                                           listed(words) + didYouMean(value, words));
+    }
+    return static_cast<std::size_t>(found - words.begin());
+}
+
+/// What --decode and --depth make of maps that do not say it themselves.
+Result<MapSpecDefaults> mapDefaults(const BakeCommand& command) {
+    constexpr std::array<std::string_view, 2> kDecodes = {"projected", "plane"};
+    constexpr std::array<std::string_view, 2> kDepths = {"half", "unorm16"};
+    MapSpecDefaults defaults;
+    if (!command.decode.empty()) {
+        const Result<std::size_t> decode = wordOf("--decode", command.decode, kDecodes);
+        if (!decode) {
+            return forward(decode);
+        }
+        defaults.decode = *decode == 0 ? Decode::kProjected : Decode::kPlane;
+    }
+    if (!command.depth.empty()) {
+        const Result<std::size_t> depth = wordOf("--depth", command.depth, kDepths);
+        if (!depth) {
+            return forward(depth);
+        }
+        defaults.front_back = *depth == 0 ? MapFormat::kFrontBackHalf : MapFormat::kFrontBackFixed;
+    }
+    if (command.maps.empty() && !(command.decode.empty() && command.depth.empty())) {
+        return fail(ErrorCode::kUsage, std::string(command.decode.empty() ? "--depth" : "--decode") +
+                                           " does nothing without --map; leave it out");
+    }
+    return defaults;
+}
+
+/// Who chooses the maps; one alone may.
+Result<Source> sourceOf(const BakeCommand& command) {
+    const char* planning = !command.budget.empty() ? "--budget" : "--max-error";
+    struct Way {
+        const char* name;
+        bool given;
+        Source source;
+    };
+    const std::array<Way, 4> ways = {
+        {{"--map", !command.maps.empty(), Source::kMaps},
+         {"--paper", command.paper, Source::kPaper},
+         {"--plan", !command.plan.empty(), Source::kPlanFile},
+         {planning, !command.budget.empty() || !command.max_error.empty(), Source::kPlanner}}};
+    const Way* chosen = nullptr;
+    for (const Way& way : ways) {
+        if (!way.given) {
+            continue;
+        }
+        if (chosen != nullptr) {
+            return fail(ErrorCode::kUsage, std::string(chosen->name) + " and " + way.name +
+                                               " are two ways to choose the maps; leave one out");
+        }
+        chosen = &way;
+    }
+    return chosen == nullptr ? Source::kPlanner : chosen->source;
+}
+
 Result<void> readPlanSettings(const BakeCommand& command, Settings& settings) {
     if (!command.budget.empty()) {
-        if (!command.maps.empty()) {
-            return fail(ErrorCode::kUsage,
-                        "--budget chooses the maps by itself; leave out --budget or --map");
-        }
         settings.budget = parseByteCount(command.budget);
         if (!settings.budget) {
             return fail(ErrorCode::kUsage, "--budget is '" + cleanUtf8(command.budget) +
                                                "' but must be a number of bytes, such as 1MB or 512KiB");
         }
     }
-    constexpr std::array<std::string_view, 3> kQualities = {"fast", "normal", "best"};
-    const auto* found = std::find(kQualities.begin(), kQualities.end(), command.quality);
-    if (found == kQualities.end()) {
-        return fail(ErrorCode::kUsage, "--quality is '" + cleanUtf8(command.quality) +
-                                           "' but must be one of " + listed(kQualities) +
-                                           didYouMean(command.quality, kQualities));
+    if (!command.max_error.empty()) {
+        const Result<float> percent = parsePercent(command.max_error, "--max-error");
+        if (!percent) {
+            return forward(percent);
+        }
+        settings.max_error = double{*percent};
     }
-    settings.bake.quality = static_cast<Quality>(found - kQualities.begin());
+    if (!command.plan_out.empty()) {
+        if (settings.source != Source::kPlanner) {
+            return fail(ErrorCode::kUsage,
+                        "--plan-out writes what was planned, but the maps were named; leave it out");
+        }
+        if (command.plan_out == "-") {
+            return fail(ErrorCode::kUsage, "--plan-out cannot be standard output; name a file");
+        }
+    }
+    if (!command.quality.empty()) {
+        constexpr std::array<std::string_view, 3> kQualities = {"fast", "normal", "best"};
+        const Result<std::size_t> quality = wordOf("--quality", command.quality, kQualities);
+        if (!quality) {
+            return forward(quality);
+        }
+        settings.bake.quality = static_cast<Quality>(*quality);
+    }
     return {};
 }
 
-Result<Settings> settingsOf(const BakeCommand& command) {
-    Settings settings;
-    if (const Result<void> plan = readPlanSettings(command, settings); !plan) {
-        return forward(plan);
+Result<void> readMapSettings(const BakeCommand& command, Settings& settings) {
+    const Result<MapSpecDefaults> defaults = mapDefaults(command);
+    if (!defaults) {
+        return forward(defaults);
     }
     for (const std::string& text : command.maps) {
-        const Result<MapSpec> spec = parseMapSpec(text);
+        const Result<MapSpec> spec = parseMapSpec(text, *defaults);
         if (!spec) {
             return forward(spec);
         }
         settings.bake.maps.push_back(*spec);
+    }
+    if (settings.source == Source::kPaper) {
+        settings.bake.maps = paperMapSpecs();
+    }
+    if (command.resolution.empty()) {
+        return {};
+    }
+    if (settings.source != Source::kMaps && settings.source != Source::kPaper) {
+        return fail(
+            ErrorCode::kUsage,
+            "--resolution does nothing where maps are planned, each of the size that it needs; leave it "
+            "out, set --budget, or choose --map or --paper");
     }
     const Result<std::uint64_t> resolution = parseCount(command.resolution, "--resolution");
     if (!resolution) {
@@ -106,6 +205,21 @@ Result<Settings> settingsOf(const BakeCommand& command) {
         return forward(texels);
     }
     settings.bake.resolution = *texels;
+    return {};
+}
+
+Result<Settings> settingsOf(const BakeCommand& command) {
+    Settings settings;
+    const Result<Source> source = sourceOf(command);
+    if (!source) {
+        return forward(source);
+    }
+    settings.source = *source;
+    for (const auto& read : {readPlanSettings, readMapSettings}) {
+        if (const Result<void> done = read(command, settings); !done) {
+            return forward(done);
+        }
+    }
     if (!command.threads.empty()) {
         const Result<std::uint64_t> threads = parseCount(command.threads, "--threads");
         if (!threads) {
@@ -131,94 +245,145 @@ Result<Settings> settingsOf(const BakeCommand& command) {
     return settings;
 }
 
-std::string percent(const MapReport& map) {
-    char text[16];
-    std::snprintf(text, sizeof(text), "%.1f %%",
-                  100.0 * static_cast<double>(map.covered) / static_cast<double>(map.texels));
-    return text;
+Result<void> preflight(const BakeCommand& command) {
+    std::vector<Result<void>> checks = {preflightFile(command.output),
+                                        preflightDistinct(command.mesh, command.output)};
+    if (!command.plan.empty()) {
+        checks.push_back(preflightDistinct(command.plan, command.output));
+    }
+    if (!command.plan_out.empty()) {
+        checks.push_back(preflightFile(command.plan_out));
+        checks.push_back(preflightDistinct(command.mesh, command.plan_out));
+        checks.push_back(preflightTwoOutputs(command.output, command.plan_out));
+    }
+    for (const Result<void>& check : checks) {
+        if (!check) {
+            return check;
+        }
+    }
+    return {};
 }
 
-std::string sizeText(const DepthMap& map) {
-    const std::string size = std::to_string(map.width) + "x" + std::to_string(map.height);
-    return map.faceCount() == 1 ? size : std::to_string(map.faceCount()) + "x" + size;
-}
-
-void printReport(const TriangleMesh& mesh, const Baked& baked, const Times& times, std::size_t file_size,
-                 const std::string& output) {
-    std::vector<std::vector<std::string>> rows = {
-        {"map", "format", "projection", "keeps", "size>", "bytes>", "covered>", "spec"}};
-    for (std::size_t i = 0; i < baked.collider.maps.size(); ++i) {
-        const DepthMap& map = baked.collider.maps[i];
-        const MapReport& report = baked.report.maps[i];
-        rows.push_back({std::to_string(i), mapFormatName(map.format),
-                        map.projection() == Projection::kCube ? "cube" : "orthographic",
-                        compareName(map.compare), sizeText(map), bytesText(map.texelBytes()), percent(report),
-                        toString(report.spec)});
-    }
-    std::string text = mesh.name + ": " + std::to_string(mesh.triangles.size()) + " triangles";
-    if (mesh.dropped_triangles > 0) {
-        text += ", " + std::to_string(mesh.dropped_triangles) + " without area dropped";
-    }
-    text += "\n" + table(rows);
-    char line[256];
-    std::snprintf(line, sizeof(line),
-                  "%.0f ms: import %.0f, plan %.0f, tree %.0f, rays %.0f, texels %.0f, planes %.0f, refining "
-                  "%.0f, writing %.0f\n",
-                  times.total_ms, times.import_ms, times.plan_ms, baked.report.build_ms,
-                  baked.report.trace_ms, baked.report.encode_ms, baked.report.fit_ms, baked.report.refine_ms,
-                  times.write_ms);
-    text += line;
-    text += (output == "-" ? "standard output" : quotedPath(output)) + ": " + bytesText(file_size) + "\n";
-    std::fputs(text.c_str(), stderr);
-}
-
-nlohmann::ordered_json jsonReport(const BakeCommand& command, const Settings& settings,
-                                  const TriangleMesh& mesh, const Baked& baked, const Times& times,
-                                  const ContainerInfo& info) {
-    nlohmann::ordered_json json = jsonCollider(baked.collider, info);
-    nlohmann::ordered_json specs = nlohmann::ordered_json::array();
-    for (std::size_t i = 0; i < baked.report.maps.size(); ++i) {
-        const MapReport& map = baked.report.maps[i];
-        specs.push_back(toString(map.spec));
-        json["maps"][i]["coverage"] = static_cast<double>(map.covered) / static_cast<double>(map.texels);
-    }
-    json["settings"] = {{"mesh", command.mesh},
-                        {"output", command.output},
-                        {"maps", specs},
-                        {"resolution", settings.bake.resolution},
-                        {"budget", settings.budget ? nlohmann::ordered_json(*settings.budget) : nullptr},
-                        {"quality", qualityName(settings.bake.quality)},
-                        {"threads", settings.bake.threads == 0 ? tbb::info::default_concurrency()
-                                                               : static_cast<int>(settings.bake.threads)},
-                        {"compress", settings.write.compression_level}};
-    json["dropped_triangles"] = mesh.dropped_triangles;
-    json["times_ms"] = {{"import", times.import_ms},        {"plan", times.plan_ms},
-                        {"build", baked.report.build_ms},   {"trace", baked.report.trace_ms},
-                        {"encode", baked.report.encode_ms}, {"fit", baked.report.fit_ms},
-                        {"write", times.write_ms},          {"total", times.total_ms}};
-    json["warnings"] = baked.report.warnings;
-    return json;
-}
-
-/// Chooses the maps for the budget, and says why.
-Result<void> planMaps(const TriangleMesh& mesh, Settings& settings) {
-    const Result<MeshQuery> query = MeshQuery::build(mesh);
-    if (!query) {
-        return forward(query);
-    }
-    PlanOptions options;
-    options.budget_bytes = *settings.budget;
-    const Result<Plan> plan = planViews(mesh, *query, options);
+/// The maps of --plan, and its quality where the command line names none.
+Result<void> readPlanFile(const BakeCommand& command, Settings& settings) {
+    const Result<PlanFile> plan = loadPlan(command.plan);
     if (!plan) {
         return forward(plan);
     }
-    for (const PlannedMap& map : plan->maps) {
-        spdlog::info("map {}: {}", settings.bake.maps.size(), map.reason);
+    if (command.quality.empty()) {
+        settings.bake.quality = plan->quality;
+    }
+    for (const PlanFileMap& map : plan->maps) {
         settings.bake.maps.push_back(map.spec);
     }
-    spdlog::info("{} maps, {}, texels of {:.3g} object units; no map sees {:.2f} % of the surface",
-                 plan->maps.size(), bytesText(plan->bytes), plan->texel, plan->unseen_percent);
     return {};
+}
+
+/// Chooses the maps for the budget.
+Result<PlanReport> planMaps(const MeshQuery& query, Settings& settings) {
+    PlanReport report;
+    report.budget = settings.budget.value_or(kBudgetDefault);
+    PlanOptions options;
+    options.budget_bytes = report.budget;
+    Result<Plan> plan = planViews(query.mesh(), query, options);
+    if (!plan) {
+        return forward(plan);
+    }
+    report.plan = std::move(*plan);
+    for (const PlannedMap& map : report.plan.maps) {
+        settings.bake.maps.push_back(map.spec);
+    }
+    return report;
+}
+
+/// Bakes at the least budget that keeps --max-error.
+Result<Baked> searchBudget(const MeshQuery& query, const Settings& settings,
+                           std::optional<PlanReport>& report) {
+    BudgetSearchOptions options;
+    options.max_error_percent = *settings.max_error;
+    if (settings.budget) {
+        options.budget_max = *settings.budget;
+    }
+    options.bake = settings.bake;
+    options.tried = [](const BudgetTry& made) {
+        spdlog::info("{}: {:.3g} % of the points near the surface are on the wrong side",
+                     bytesText(made.budget), made.wrong_percent);
+    };
+    Result<BudgetSearchResult> found = bakeForError(query, options);
+    if (!found) {
+        return forward(found);
+    }
+    report = PlanReport{std::move(found->plan), found->chosen.budget, settings.max_error,
+                        found->chosen.wrong_percent, std::move(found->tries)};
+    return std::move(found->baked);
+}
+
+Result<Baked> bakeMaps(const BakeCommand& command, const TriangleMesh& mesh, Settings& settings) {
+    ProgressBar bar("baking " + mesh.name, !command.common.quiet);
+    settings.bake.progress = [&bar](double share) { bar.set(share); };
+    Result<Baked> baked = bake(mesh, settings.bake);
+    if (!baked && settings.source == Source::kPlanFile) {
+        // What no single map shows: too many texels, a volume that floats cannot hold, maps that see nothing.
+        const ErrorCode code = baked.error().code;
+        return fail(code == ErrorCode::kUsage ? ErrorCode::kInvalidInput : code,
+                    quotedPath(command.plan) + ": " + baked.error().message);
+    }
+    return baked;
+}
+
+/// Chooses the maps and bakes them.
+Result<Baked> makeCollider(const BakeCommand& command, const TriangleMesh& mesh, Settings& settings,
+                           std::optional<PlanReport>& plan, BakeTimes& times) {
+    if (settings.source == Source::kPlanner) {
+        const Stopwatch watch;
+        const Result<MeshQuery> query = MeshQuery::build(mesh);
+        if (!query) {
+            return forward(query);
+        }
+        if (settings.max_error) {
+            Result<Baked> baked = searchBudget(*query, settings, plan);
+            times.search_ms = watch.ms();
+            return baked;
+        }
+        Result<PlanReport> planned = planMaps(*query, settings);
+        if (!planned) {
+            return forward(planned);
+        }
+        plan = std::move(*planned);
+        times.plan_ms = watch.ms();
+    }
+    return bakeMaps(command, mesh, settings);
+}
+
+Result<void> writePlanFile(const std::string& path, const PlanReport& plan, const Baked& baked,
+                           Quality quality) {
+    PlanFile file;
+    file.quality = quality;
+    for (std::size_t i = 0; i < plan.plan.maps.size(); ++i) {
+        file.maps.push_back({baked.report.maps[i].spec, plan.plan.maps[i].reason});
+    }
+    const std::string text = planText(file);
+    return writeFile(path, std::as_bytes(std::span(text)));
+}
+
+nlohmann::ordered_json jsonSettings(const BakeCommand& command, const Settings& settings, const Baked& baked,
+                                    const std::optional<PlanReport>& plan) {
+    using Json = nlohmann::ordered_json;
+    Json specs = Json::array();
+    for (const MapReport& map : baked.report.maps) {
+        specs.push_back(toString(map.spec));
+    }
+    const bool sized = settings.source == Source::kMaps || settings.source == Source::kPaper;
+    return {{"mesh", command.mesh},
+            {"output", command.output},
+            {"plan_file", command.plan.empty() ? Json(nullptr) : Json(command.plan)},
+            {"maps", specs},
+            {"resolution", sized ? Json(settings.bake.resolution) : Json(nullptr)},
+            {"budget", plan ? Json(plan->budget) : Json(nullptr)},
+            {"quality", qualityName(settings.bake.quality)},
+            {"threads", settings.bake.threads == 0 ? tbb::info::default_concurrency()
+                                                   : static_cast<int>(settings.bake.threads)},
+            {"compress", settings.write.compression_level}};
 }
 
 Result<void> runBake(const BakeCommand& command) {
@@ -228,14 +393,21 @@ Result<void> runBake(const BakeCommand& command) {
     if (!settings) {
         return forward(settings);
     }
-    for (const Result<void>& ready :
-         {preflightFile(command.output), preflightDistinct(command.mesh, command.output)}) {
-        if (!ready) {
-            return ready;
+    if (const Result<void> ready = preflight(command); !ready) {
+        return ready;
+    }
+    if (settings->source == Source::kPlanFile) {
+        if (const Result<void> read = readPlanFile(command, *settings); !read) {
+            return read;
         }
     }
+    // Planning and measuring keep to --threads too.
+    std::optional<tbb::global_control> control;
+    if (settings->bake.threads != 0) {
+        control.emplace(tbb::global_control::max_allowed_parallelism, settings->bake.threads);
+    }
 
-    Times times;
+    BakeTimes times;
     const Stopwatch import_watch;
     const Result<TriangleMesh> mesh = importMesh(command.mesh);
     times.import_ms = import_watch.ms();
@@ -248,46 +420,43 @@ Result<void> runBake(const BakeCommand& command) {
         spdlog::debug("{}: {} triangles without area dropped", mesh->name, mesh->dropped_triangles);
     }
 
-    if (settings->budget) {
-        const Stopwatch plan_watch;
-        if (const Result<void> planned = planMaps(*mesh, *settings); !planned) {
-            return planned;
-        }
-        times.plan_ms = plan_watch.ms();
+    std::optional<PlanReport> plan;
+    const Result<Baked> baked = makeCollider(command, *mesh, *settings, plan, times);
+    if (!baked) {
+        return forward(baked);
     }
-    std::optional<Result<Baked>> baked;
-    {
-        ProgressBar bar("baking " + mesh->name, !command.common.quiet);
-        settings->bake.progress = [&bar](double share) { bar.set(share); };
-        baked.emplace(bake(*mesh, settings->bake));
-    }
-    if (!*baked) {
-        return forward(*baked);
-    }
-    for (const std::string& warning : (*baked)->report.warnings) {
+    for (const std::string& warning : baked->report.warnings) {
         spdlog::warn(warning);
     }
 
     const Stopwatch write_watch;
-    const Result<std::vector<std::byte>> bytes = writeContainer((*baked)->collider, settings->write);
+    const Result<std::vector<std::byte>> bytes = writeContainer(baked->collider, settings->write);
     if (!bytes) {
         return forward(bytes);
     }
     if (const Result<void> written = writeFile(command.output, *bytes); !written) {
         return written;
     }
+    if (!command.plan_out.empty()) {
+        if (const Result<void> written =
+                writePlanFile(command.plan_out, *plan, *baked, settings->bake.quality);
+            !written) {
+            return written;
+        }
+    }
     times.write_ms = write_watch.ms();
     times.total_ms = total.ms();
 
+    const BakeSummary summary{*mesh, *baked, plan, times};
     if (command.json) {
         const Result<ContainerInfo> info = readContainerInfo(*bytes);
         if (!info) {
             return forward(info);
         }
-        return printOut(dump(jsonReport(command, *settings, *mesh, **baked, times, *info)));
+        return printOut(dump(jsonBake(summary, *info, jsonSettings(command, *settings, *baked, plan))));
     }
     if (!command.common.quiet) {
-        printReport(*mesh, **baked, times, bytes->size(), command.output);
+        std::fputs(bakeText(summary, command.output, bytes->size()).c_str(), stderr);
     }
     return {};
 }
@@ -296,11 +465,17 @@ Result<void> runBake(const BakeCommand& command) {
 
 void addBake(CLI::App& app, Action& action) {
     auto command = std::make_shared<BakeCommand>();
-    CLI::App& verb =
-        addVerb(app, command->common, "bake", "Bakes a mesh into a collider",
-                "relief bake bunny.obj -o bunny.relief\n"
-                "relief bake rock.glb -o rock.relief --map cube:size=256 --map fixed8:dir=-y,size=512x256\n"
-                "relief bake hall.fbx -o hall.relief --map cube:center=0/2/0,compare=less --json");
+    CLI::App& verb = addVerb(
+        app, command->common, "bake",
+        "Bakes a mesh into a collider\n\nWithout --map, --paper or --plan, the maps are planned: "
+        "directions, places (cubes in cavities that no\nouter view sees) and sizes, for --budget bytes "
+        "or for --max-error.",
+        "relief bake bunny.obj -o bunny.relief\n"
+        "relief bake bunny.obj -o bunny.relief --budget 256kB --plan-out plan.toml\n"
+        "relief bake bunny.obj -o bunny.relief --plan plan.toml\n"
+        "relief bake bunny.obj -o bunny.relief --max-error 1%\n"
+        "relief bake rock.glb -o rock.relief --map cube:size=256 --map fixed8:dir=-y,size=512x256\n"
+        "relief bake hall.fbx -o hall.relief --map cube:center=0/2/0,compare=less --json");
     verb.add_option("MESH", command->mesh, "The mesh, in any format that assimp reads")
         ->type_name("")
         ->required();
@@ -308,28 +483,49 @@ void addBake(CLI::App& app, Action& action) {
         ->option_text("OUT.relief")
         ->required();
     verb.add_option("--map", command->maps,
-                    "A map to bake, once for each: FORMAT[:key=value,...] with\n"
+                    "A map to bake instead of planned ones, once for each: FORMAT[:key=value,...] with\n"
                     "FORMAT   float, fixed8, front-back or cube\n"
                     "dir      direction the view looks in: +x -x +y -y +z -z or a/b/c\n"
+                    "up       direction that points upwards in the image: as dir\n"
                     "size     texels, N or WxH (cube: N)\n"
                     "compare  less or greater: keep the nearest or the farthest surface\n"
                     "center   a/b/c, where a cube looks from\n"
-                    "depth    half or unorm16: of front-back maps\n"
-                    "decode   projected (the paper's) or plane: fitted to the whole texel\n"
-                    "box      tight, or x0/y0/z0/x1/y1/z1: the part of space to cover\n"
-                    "Default: front-back along -x, -y and -z, and a cube")
+                    "depth    of front-back maps: unorm16, or half (the paper's)\n"
+                    "decode   plane: fitted to the whole texel, or projected (the paper's)\n"
+                    "box      tight, or x0/y0/z0/x1/y1/z1: the part of space to cover")
         ->option_text("SPEC")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->allow_extra_args(false);
+    verb.add_option("--decode", command->decode,
+                    "Of --map that does not say it: plane (default) or projected, the paper's")
+        ->option_text("WORD");
+    verb.add_option("--depth", command->depth,
+                    "Of --map front-back that does not say it: unorm16 (default) or half, the paper's")
+        ->option_text("WORD");
+    verb.add_flag(
+        "--paper", command->paper,
+        "Bake the paper's maps instead of planned ones: front-back along -x, -y and -z and a cube,\n"
+        "depth=half, decode=projected");
     verb.add_option("--resolution", command->resolution,
-                    "Texels along a side of maps without size; default 512")
+                    "Texels along a side of --map without size, and of --paper; default 512")
         ->option_text("N");
     verb.add_option("--budget", command->budget,
-                    "Choose the maps for this many bytes, such as 1MB: directions, places and sizes")
+                    "Plan for this many bytes of texels; default 1MB. With --max-error: use no more")
         ->option_text("BYTES");
+    verb.add_option(
+            "--max-error", command->max_error,
+            "Plan for the least bytes (32kB to 64MB) that leave at most this share of the points near\n"
+            "the surface, in percent, on the wrong side; measured as by relief check, on 50000 points.\n"
+            "Exit with 7, and write nothing, if none do")
+        ->option_text("PCT");
+    verb.add_option("--plan-out", command->plan_out,
+                    "Also write what was planned, as TOML, to be changed and given to --plan")
+        ->option_text("FILE");
+    verb.add_option("--plan", command->plan, "Bake the maps of such a file")->option_text("FILE");
     verb.add_option("--quality", command->quality,
-                    "Of planes: fast (one ray a texel), normal (16 rays, default) or best (36)")
+                    "Of planes: fast (one ray a texel), normal (16 rays, default) or best (36).\n"
+                    "With --plan, the file's by default")
         ->option_text("WORD");
     verb.add_option("-j,--threads", command->threads,
                     "Threads to use; default: all cores. The result is the same")

@@ -58,14 +58,9 @@ Result<Settings> settingsOf(const CheckCommand& command) {
     }
     settings.accuracy.seed = *seed;
     if (!command.max_error.empty()) {
-        std::string_view text = command.max_error;
-        if (text.ends_with('%')) {
-            text = trimmed(text.substr(0, text.size() - 1));
-        }
-        const std::optional<float> percent = parseFloat(text);
-        if (!percent || *percent < 0.0F) {
-            return fail(ErrorCode::kUsage, "--max-error is '" + cleanUtf8(command.max_error) +
-                                               "' but must be a share in percent, such as 1.5");
+        const Result<float> percent = parsePercent(command.max_error, "--max-error");
+        if (!percent) {
+            return forward(percent);
         }
         settings.max_error = *percent;
     }

@@ -69,4 +69,15 @@ Result<void> preflightDistinct(const fs::path& input, const fs::path& output) {
     return {};
 }
 
+Result<void> preflightTwoOutputs(const fs::path& one, const fs::path& other) {
+    std::error_code error;
+    const auto full = [&](const fs::path& path) {
+        return fs::weakly_canonical(fs::absolute(path, error), error);
+    };
+    if (one != "-" && other != "-" && full(one) == full(other) && !error) {
+        return fail(ErrorCode::kUsage, "two outputs would be " + quotedPath(other) + "; name another file");
+    }
+    return preflightDistinct(one, other);
+}
+
 }  // namespace relief

@@ -19,4 +19,8 @@ namespace relief {
 [[nodiscard]] Result<void> preflightDistinct(const std::filesystem::path& input,
                                              const std::filesystem::path& output);
 
+/// Errors: kUsage if both would be written to the same file, whether or not it exists.
+[[nodiscard]] Result<void> preflightTwoOutputs(const std::filesystem::path& one,
+                                               const std::filesystem::path& other);
+
 }  // namespace relief

@@ -40,12 +40,9 @@ glm::dvec3 normalized(const glm::dvec3& v) {
 }
 
 /// Right, up and view direction as above.
-std::array<glm::dvec3, 3> orthographicFrame(const glm::vec3& direction) {
+std::array<glm::dvec3, 3> orthographicFrame(const glm::vec3& direction, const std::optional<glm::vec3>& up) {
     const glm::dvec3 d = normalized(direction);
-    const bool steep = std::abs(d.y) > 0.999;
-    const glm::dvec3 upwards =
-        steep ? glm::dvec3(0.0, 0.0, d.y > 0.0 ? 1.0 : -1.0) : glm::dvec3(0.0, 1.0, 0.0);
-    const glm::dvec3 right = normalized(cross(d, upwards));
+    const glm::dvec3 right = normalized(cross(d, up ? normalized(*up) : defaultUp(d)));
     return {right, cross(right, d), d};
 }
 
@@ -104,7 +101,7 @@ glm::vec4 affineRow(const glm::dvec3& direction, double offset, double scale) {
 }
 
 void placeOrthographic(View& view, const MapSpec& spec, const TriangleMesh& mesh) {
-    const std::array<glm::dvec3, 3> frame = orthographicFrame(spec.direction);
+    const std::array<glm::dvec3, 3> frame = orthographicFrame(spec.direction, spec.up);
     const std::array<Range, 3> of_mesh = projectedRanges(mesh, frame);
     std::array<Range, 3> volume;
     if (spec.box) {
@@ -221,8 +218,25 @@ DepthMap View::emptyMap() const {
     return map;
 }
 
+glm::dvec3 defaultUp(const glm::dvec3& direction) {
+    const bool steep = std::abs(direction.y) > 0.999;
+    return steep ? glm::dvec3(0.0, 0.0, direction.y > 0.0 ? 1.0 : -1.0) : glm::dvec3(0.0, 1.0, 0.0);
+}
+
 Result<MapSpec> completeSpec(MapSpec spec, const TriangleMesh& mesh, std::uint32_t resolution) {
     const bool cube = spec.format == MapFormat::kCube8;
+    // −0 becomes 0, so that equal settings have one text.
+    spec.direction += 0.0F;
+    if (spec.up) {
+        *spec.up += 0.0F;
+    }
+    if (spec.center) {
+        *spec.center += 0.0F;
+    }
+    if (spec.box) {
+        spec.box->min += 0.0F;
+        spec.box->max += 0.0F;
+    }
     if (spec.width == 0) {
         spec.width = resolution;
     }
@@ -246,6 +260,9 @@ Result<MapSpec> completeSpec(MapSpec spec, const TriangleMesh& mesh, std::uint32
 }
 
 Result<View> makeView(const MapSpec& spec, const TriangleMesh& mesh) {
+    if (const Result<void> up = checkUp(spec); !up) {
+        return fail(up.error().code, "--map '" + toString(spec) + "': " + up.error().message);
+    }
     View view;
     view.format = spec.format;
     view.compare = spec.compare.value_or(Compare::kBoth);

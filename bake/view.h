@@ -3,7 +3,8 @@
 // An orthographic view looks along its direction d. Its frame is r (to the right), u (upwards), d, as a
 // person who looks that way sees it: r = d × u, so the image is not mirrored, and the camera (r, u, −d) is
 // right-handed. u is what is left of +y when seen along d, or of ∓z for a view within 2.6° of ±y, so that -y
-// (from above) has +x to the right and −z upwards in the image.
+// (from above) has +x to the right and −z upwards in the image. A spec's `up` takes the place of +y; its part
+// along d does not count.
 //
 // The volume of an orthographic map is the box's extent along r, u and d. The texels inside the border cover
 // it exactly; the border lies outside:
@@ -69,12 +70,15 @@ struct View {
 /// depths are clamped to it: a surface in a face of the volume is met in spite of rounding.
 inline constexpr double kDepthSlack = 1e-6;
 
+/// What an orthographic view along a unit direction has upwards if its spec names no `up`.
+[[nodiscard]] glm::dvec3 defaultUp(const glm::dvec3& direction);
+
 /// The settings of a spec that were left open, decided for this mesh: size, a cube's centre, and compare.
 /// Errors: kUsage, kLimit (as checkMapSize).
 [[nodiscard]] Result<MapSpec> completeSpec(MapSpec spec, const TriangleMesh& mesh, std::uint32_t resolution);
 
 /// \param spec  complete.
-/// Errors: kUsage: a box that lies where floats cannot tell its texels apart.
+/// Errors: kUsage: a box that lies where floats cannot tell its texels apart; up along the direction.
 [[nodiscard]] Result<View> makeView(const MapSpec& spec, const TriangleMesh& mesh);
 
 }  // namespace relief

@@ -6,10 +6,14 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <limits>
+#include <optional>
 #include <random>
 
+#include "bake/oriented_box.h"
 #include "bake/surface_sampler.h"
 #include "bake/triangle_plane.h"
 #include "bake/view.h"
@@ -84,6 +88,12 @@ float service(double cosine) {
     return static_cast<float>(std::min(1.0, 0.3 + 0.7 * std::max(cosine, 0.05) / kFullCosine));
 }
 
+/// A direction to look along, and how its image is turned; nullopt: by the rule of view.h.
+struct Candidate {
+    glm::dvec3 direction;
+    std::optional<glm::dvec3> up;
+};
+
 /// Directions of the octahedron's lattice, one of each opposite pair, and the diagonals of the box.
 std::vector<glm::dvec3> outerDirections(const Bounds& bounds) {
     std::vector<glm::dvec3> directions = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -110,6 +120,60 @@ std::vector<glm::dvec3> outerDirections(const Bounds& bounds) {
         direction /= length(direction);
     }
     return directions;
+}
+
+/// Area of the rectangle round the points as a view with this frame shows them.
+double rectangleArea(const std::vector<glm::dvec3>& points, const glm::dvec3& direction,
+                     const glm::dvec3& up) {
+    const glm::dvec3 right = cross(direction, up) / length(cross(direction, up));
+    const glm::dvec3 upwards = cross(right, direction);
+    glm::dvec2 low(std::numeric_limits<double>::max());
+    glm::dvec2 high(std::numeric_limits<double>::lowest());
+    for (const glm::dvec3& p : points) {
+        const glm::dvec2 at(dot(p, right), dot(p, upwards));
+        low = glm::min(low, at);
+        high = glm::max(high, at);
+    }
+    return (high.x - low.x) * (high.y - low.y);
+}
+
+/// The outer directions and the axes of the oriented box, each turned by the axis of that box that makes its
+/// rectangle clearly smaller than the rule of view.h does.
+std::vector<Candidate> outerCandidates(const TriangleMesh& mesh, bool oriented_box) {
+    std::vector<Candidate> candidates;
+    for (const glm::dvec3& direction : outerDirections(mesh.bounds)) {
+        candidates.push_back({direction, std::nullopt});
+    }
+    if (!oriented_box) {
+        return candidates;
+    }
+    const std::vector<glm::dvec3> corners = extremeVertices(mesh);
+    const std::optional<std::array<glm::dvec3, 3>> axes = orientedBoxAxes(corners);
+    if (!axes) {
+        return candidates;
+    }
+    for (const glm::dvec3& axis : *axes) {
+        const bool known = std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& candidate) {
+            return std::abs(dot(candidate.direction, axis)) > 1.0 - 1e-9;
+        });
+        if (!known) {
+            candidates.push_back({axis, std::nullopt});
+        }
+    }
+    for (Candidate& candidate : candidates) {
+        double least = 0.99 * rectangleArea(corners, candidate.direction, defaultUp(candidate.direction));
+        for (const glm::dvec3& axis : *axes) {
+            if (std::abs(dot(candidate.direction, axis)) > 0.9) {
+                continue;
+            }
+            const double area = rectangleArea(corners, candidate.direction, axis);
+            if (area < least) {
+                least = 0.999999 * area;  // of equals, as of opposite faces of a cube, the first
+                candidate.up = axis;
+            }
+        }
+    }
+    return candidates;
 }
 
 std::string text(const char* format, double a, double b = 0.0, double c = 0.0, double d = 0.0) {
@@ -154,11 +218,14 @@ class Planner {
 
     Result<void> addOuterViews() {
         std::vector<OuterView> views;
-        for (const glm::dvec3& direction : outerDirections(mesh_.bounds)) {
+        for (const Candidate& candidate : outerCandidates(mesh_, options_.oriented_box)) {
             OuterView view;
             view.spec.format = MapFormat::kFrontBackFixed;
             view.spec.decode = Decode::kPlane;
-            view.spec.direction = glm::vec3(direction);
+            view.spec.direction = glm::vec3(candidate.direction) + 0.0F;  // no −0, for the reason
+            if (candidate.up) {
+                view.spec.up = glm::vec3(*candidate.up);
+            }
             view.spec.width = view.spec.height = 64;  // any: the extents do not depend on it
             const Result<View> frame = makeView(view.spec, mesh_);
             if (!frame) {
@@ -387,7 +454,14 @@ Result<Plan> planViews(const TriangleMesh& mesh, const MeshQuery& query, const P
         return fail(ErrorCode::kUsage, "a budget of " + std::to_string(options.budget_bytes) +
                                            " bytes is below the least of " + std::to_string(kPlanBudgetMin));
     }
-    return Planner(mesh, query, options).run();
+    Result<Plan> plan = Planner(mesh, query, options).run();
+    if (plan && plan->maps.empty()) {
+        return fail(ErrorCode::kFailure,
+                    mesh.name +
+                        ": no free space was found beside the surface, so that no view can "
+                        "be planned; name the maps by --map");
+    }
+    return plan;
 }
 
 }  // namespace relief

@@ -4,8 +4,9 @@
 // where a texel covers much surface. Maps are added greedily, each time the one that serves most for its
 // bytes:
 //
-//   1. front-back maps of the whole mesh, along directions spread over the sphere and the axes of its box,
-//      while one more serves a worthwhile share of the points;
+//   1. front-back maps of the whole mesh, along directions spread over the sphere and the axes of its box and
+//      of its oriented box (oriented_box.h), each turned so that its rectangle is small, while one more
+//      serves a worthwhile share of the points;
 //   2. for what no outer direction sees (cavities, armpits, insides of holes), small cubes in free space that
 //      keep the nearest surface, placed where they see most of it.
 //
@@ -26,6 +27,7 @@ namespace relief {
 struct PlanOptions {
     std::uint64_t budget_bytes = std::uint64_t{1} << 20;  ///< of all texels together, at least kPlanBudgetMin
     std::uint64_t seed = 1;
+    bool oriented_box = true;  ///< false: do without the axes of the oriented box, to see what they are worth
 };
 
 inline constexpr std::uint64_t kPlanBudgetMin = 4096;
@@ -44,7 +46,8 @@ struct Plan {
 };
 
 /// The same mesh and options give the same plan, for any number of threads.
-/// Errors: kUsage (a budget below kPlanBudgetMin or too small for the maps), those of makeView.
+/// Errors: kUsage (a budget below kPlanBudgetMin or too small for the maps), kFailure (no free space beside
+/// the surface), those of makeView.
 [[nodiscard]] Result<Plan> planViews(const TriangleMesh& mesh, const MeshQuery& query,
                                      const PlanOptions& options);
 

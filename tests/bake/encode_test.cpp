@@ -14,7 +14,8 @@ TEST(Encode, WritesWhatEncodeTexelWrites) {
     const Result<RayScene> scene = RayScene::build(mesh);
     ASSERT_TRUE(scene);
     for (const std::string text :
-         {"float:size=40", "fixed8:size=40", "front-back:size=40,dir=1/1/1", "cube:size=20"}) {
+         {"float:size=40", "fixed8:size=40", "front-back:size=40,dir=1/1/1,depth=half",
+          "front-back:size=40,dir=1/1/1,depth=unorm16", "cube:size=20"}) {
         const Result<MapSpec> spec = completeSpec(*parseMapSpec(text), mesh, 40);
         const Result<View> view = makeView(*spec, mesh);
         ASSERT_TRUE(view);

@@ -28,6 +28,23 @@ TEST(MapSpecParser, ReadsEveryKey) {
     EXPECT_EQ(parseMapSpec("front-back:dir=x")->direction, glm::vec3(1, 0, 0));
     EXPECT_EQ(parseMapSpec("front-back:dir=1/-2/0.5")->direction, glm::vec3(1, -2, 0.5F));
     EXPECT_FALSE(parseMapSpec("float")->compare) << "left to the baker";
+    EXPECT_FALSE(parseMapSpec("float")->up) << "left to the rule of view.h";
+    EXPECT_EQ(parseMapSpec("float:dir=+x,up=-z")->up, glm::vec3(0, 0, -1));
+    EXPECT_EQ(parseMapSpec("front-back:up=1/2/-0.5,dir=+x")->up, glm::vec3(1, 2, -0.5F));
+}
+
+TEST(MapSpecParser, TextsThatDoNotSayItTakeTheDefaults) {
+    for (const char* format : {"float", "fixed8", "front-back", "cube"}) {
+        EXPECT_EQ(parseMapSpec(format)->decode, Decode::kPlane) << format;
+        EXPECT_EQ(parseMapSpec(format, kPaperDefaults)->decode, Decode::kProjected) << format;
+    }
+    EXPECT_EQ(parseMapSpec("front-back")->format, MapFormat::kFrontBackFixed);
+    EXPECT_EQ(parseMapSpec("front-back", kPaperDefaults)->format, MapFormat::kFrontBackHalf);
+    // What a text says itself stays.
+    EXPECT_EQ(*parseMapSpec("front-back:depth=half,decode=projected"),
+              *parseMapSpec("front-back:depth=half,decode=projected", kPaperDefaults));
+    EXPECT_EQ(*parseMapSpec("front-back:depth=unorm16,decode=plane"),
+              *parseMapSpec("front-back:depth=unorm16,decode=plane", kPaperDefaults));
 }
 
 TEST(MapSpecParser, TextAndSpecAreOne) {
@@ -36,6 +53,8 @@ TEST(MapSpecParser, TextAndSpecAreOne) {
           "fixed8:dir=1/2/0.25,size=3x16384,compare=greater,decode=plane,box=0/0/0/1/1/1",
           "front-back:dir=-y,size=7x9,depth=half,decode=projected,box=tight",
           "front-back:dir=-y,size=7x9,depth=unorm16,decode=plane,box=tight",
+          "front-back:dir=1/2/3,up=0.1/-7/1e-20,size=7x9,depth=unorm16,decode=plane,box=tight",
+          "float:dir=-y,up=+x,size=7x9,compare=less,decode=plane,box=tight",
           "cube:size=256,compare=less,center=0/0.1/0,decode=projected,box=tight",
           "cube:size=1,compare=greater,decode=plane,box=-1/-1/-1/0.1/1e+20/3"}) {
         const Result<MapSpec> spec = parseMapSpec(text);
@@ -96,6 +115,13 @@ TEST(MapSpecParser, RefusesWithTheCure) {
         {"float:box=tigt", kUsage, "tight"},
         {"float:dir=+x,", kUsage, "unknown key"},
         {"float:dir=\x1b[31m", kUsage, "dir is"},
+        {"cube:up=+y", kUsage, "does nothing for a cube"},
+        {"float:up=0/0/0", kUsage, "up is '0/0/0'"},
+        {"float:up=high", kUsage, "up is 'high'"},
+        {"float:up=+x,up=+y", kUsage, "given twice"},
+        {"float:dir=-z,up=+z", kUsage, "parallel"},
+        {"float:up=-3/-2/-1,dir=3/2/1", kUsage, "parallel"},
+        {"float:dir=1e-38/2e-38/3e-38,up=1e38/2e38/3.00001e38", kUsage, "parallel"},
     };
     for (const Case& c : cases) {
         const Result<MapSpec> spec = parseMapSpec(c.text);
@@ -108,14 +134,17 @@ TEST(MapSpecParser, RefusesWithTheCure) {
     }
 }
 
-TEST(MapSpecDefaults, AreThreeOrthogonalFrontBacksAndACube) {
-    const std::vector<MapSpec> specs = defaultMapSpecs();
+TEST(MapSpecPaper, IsThreeOrthogonalFrontBacksAndACube) {
+    const std::vector<MapSpec> specs = paperMapSpecs();
     ASSERT_EQ(specs.size(), 4U);
     for (int i = 0; i < 3; ++i) {
         EXPECT_EQ(specs[static_cast<std::size_t>(i)].format, MapFormat::kFrontBackHalf);
         EXPECT_EQ(specs[static_cast<std::size_t>(i)].direction[i], -1.0F);
     }
     EXPECT_EQ(specs[3].format, MapFormat::kCube8);
+    for (const MapSpec& spec : specs) {
+        EXPECT_EQ(spec.decode, Decode::kProjected);
+    }
 }
 
 }  // namespace

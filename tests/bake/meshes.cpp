@@ -133,7 +133,7 @@ Collider bakeSpecs(const TriangleMesh& mesh, const std::vector<std::string>& spe
     options.resolution = resolution;
     options.threads = threads;
     for (const std::string& text : specs) {
-        const Result<MapSpec> spec = parseMapSpec(text);
+        const Result<MapSpec> spec = parseMapSpec(text, kPaperDefaults);
         EXPECT_TRUE(spec) << spec.error().message;
         options.maps.push_back(spec.value_or(MapSpec{}));
     }

@@ -30,7 +30,8 @@ namespace relief::test {
 
 [[nodiscard]] TriangleMesh reversed(TriangleMesh mesh);
 
-/// Bakes specs, which must be right.
+/// Bakes specs, which must be right. Maps that do not say otherwise are of the paper's texels: projected,
+/// half.
 [[nodiscard]] Collider bakeSpecs(const TriangleMesh& mesh, const std::vector<std::string>& specs,
                                  std::uint32_t resolution = 64, unsigned threads = 0);
 [[nodiscard]] DepthMap bakeMap(const TriangleMesh& mesh, const std::string& spec,

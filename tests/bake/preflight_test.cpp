@@ -51,5 +51,16 @@ TEST(Preflight, KeepsTheInput) {
     EXPECT_EQ(codeOf(preflightDistinct("/dev/null", "/dev/null")), 0);
 }
 
+TEST(Preflight, KeepsOutputsApart) {
+    const TemporaryFolder folder;
+    const std::filesystem::path old = folder.write("old", "x");
+    std::filesystem::create_symlink(old, folder.path() / "link");
+    EXPECT_EQ(codeOf(preflightTwoOutputs(old, folder.path() / "link")), 1);
+    EXPECT_EQ(codeOf(preflightTwoOutputs(folder.path() / "new", folder.path() / "." / "new")), 1);
+    EXPECT_EQ(codeOf(preflightTwoOutputs("new", "./new")), 1);
+    EXPECT_EQ(codeOf(preflightTwoOutputs(folder.path() / "new", folder.path() / "other")), 0);
+    EXPECT_EQ(codeOf(preflightTwoOutputs("-", folder.path() / "new")), 0);
+}
+
 }  // namespace
 }  // namespace relief::test

@@ -39,11 +39,41 @@ TEST(ViewFrame, AxesAreThoseOfThePicture) {
     }
 }
 
+TEST(ViewFrame, UpTurnsTheImage) {
+    // A box turned by 30° about z, seen along its own second axis with its third upwards: the frame is the
+    // box's, and its tight rectangle the box's side. `up` has a part along dir, which must not count.
+    const glm::dmat3 axes = rotation({0, 0, 1}, 30.0) * rotation({1, 0, 0}, 20.0);
+    const TriangleMesh mesh = makeBoxMesh({0, 0, 0}, {3, 2, 1}, axes);
+    MapSpec spec;
+    spec.width = spec.height = 12;
+    spec.direction = glm::vec3(axes[1]);
+    spec.up = glm::vec3(5.0 * axes[2] - 3.0 * axes[1]);
+    const Result<View> view = makeView(spec, mesh);
+    ASSERT_TRUE(view) << view.error().message;
+    const glm::dvec3 wanted[] = {glm::cross(axes[1], axes[2]), axes[2], axes[1]};
+    const double extent[] = {6.0, 2.0, 4.0};
+    const double pad = 2.0 * 1.01e-4 * static_cast<double>(mesh.bounds.longestSide());
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_LT(glm::length(glm::normalize(view->axis[i]) - wanted[i]), 1e-6) << i;
+        EXPECT_NEAR(glm::length(view->axis[i]) * (i < 2 ? 10.0 / 12.0 : 1.0), extent[i], pad) << i;
+    }
+    // The rule's own direction changes nothing; a direction along the view is refused.
+    const View plain = viewOf(mesh, "float:dir=1/2/3");
+    const View told = viewOf(mesh, "float:dir=1/2/3,up=+y");
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(plain.axis[i], told.axis[i]);
+    }
+    spec.up = -2.0F * spec.direction;
+    const Result<View> none = makeView(spec, mesh);
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.error().code, ErrorCode::kUsage);
+}
+
 TEST(ViewFrame, TransformAndRaysAgree) {
     const TriangleMesh mesh = makeIcosphere({1, -2, 0.5}, 1.5, 3);
-    for (const std::string text :
-         {"float:dir=1/2/3,size=31x17", "fixed8:dir=-0.001/1/0.001,size=16", "front-back:dir=-x",
-          "cube:size=9", "cube:size=8,center=3/1/1", "cube:box=0/0/0/1/2/3,compare=less"}) {
+    for (const std::string text : {"float:dir=1/2/3,size=31x17", "fixed8:dir=-0.001/1/0.001,size=16",
+                                   "front-back:dir=-x", "float:dir=1/2/3,up=-3/0/1,size=31x17", "cube:size=9",
+                                   "cube:size=8,center=3/1/1", "cube:box=0/0/0/1/2/3,compare=less"}) {
         SCOPED_TRACE(text);
         const View view = viewOf(mesh, text);
         for (std::uint32_t face = 0; face < view.faceCount(); ++face) {

@@ -12,7 +12,7 @@ f 1 2 4
 f 2 3 4
 f 3 1 4
 O
-"$relief" bake good.obj -o good.relief --resolution 16 -q
+"$relief" bake good.obj -o good.relief --paper --resolution 16 -q
 echo "precious" >old.relief
 
 bake_fails() {
@@ -51,8 +51,8 @@ bake_fails 2 '/dev/full.*space' good.obj -o /dev/full
 bake_fails 1 'output' good.obj
 
 # Sizes, keys, options.
-bake_fails 1 'size|resolution' good.obj -o old.relief --resolution 0
-bake_fails 6 '16384' good.obj -o old.relief --resolution 16385
+bake_fails 1 'size|resolution' good.obj -o old.relief --paper --resolution 0
+bake_fails 6 '16384' good.obj -o old.relief --paper --resolution 16385
 bake_fails 6 '16384' good.obj -o old.relief --map fixed8:size=20000
 bake_fails 1 'size' good.obj -o old.relief --map fixed8:size=0
 bake_fails 1 'size' good.obj -o old.relief --map fixed8:size=-4
@@ -65,6 +65,9 @@ bake_fails 1 'dir' good.obj -o old.relief --map cube:dir=+x
 bake_fails 1 'compare' good.obj -o old.relief --map front-back:compare=less
 bake_fails 1 'center' good.obj -o old.relief --map fixed8:center=0/0/0
 bake_fails 1 'size' good.obj -o old.relief --map fixed8:size=4,size=8
+bake_fails 1 'parallel' good.obj -o old.relief --map fixed8:dir=+x,up=-x
+bake_fails 1 'decode.*plane' good.obj -o old.relief --map fixed8 --decode plain
+bake_fails 1 'depth.*unorm16' good.obj -o old.relief --map front-back --depth 16
 bake_fails 1 'resolution' good.obj -o old.relief --resolutoin 16
 expect_error 1 'bake' "$relief" bkae good.obj
 expect_error 1 '' "$relief"

@@ -18,8 +18,8 @@ f 2 3 7 6
 f 1 5 8 4
 O
 
-# The default set: three orthogonal front-back maps and one cube, in a container that says where it comes from.
-expect 0 "$relief" bake box.obj -o box.relief --resolution 64 -q
+# The paper's set: three orthogonal front-back maps and one cube, in a container that says where it comes from.
+expect 0 "$relief" bake box.obj -o box.relief --paper --resolution 64 -q
 [ ! -s stderr ] || die "-q is not quiet"
 expect 0 "$relief" info box.relief --json
 cp stdout info.json
@@ -42,19 +42,27 @@ cp stdout info.json
 json info.json "[(m['format'], m['compare']) for m in d['maps']] == [('float', 'less'), ('float', 'greater'), ('fixed8', 'less'), ('front-back', 'both'), ('cube', 'greater'), ('cube', 'less')]"
 json info.json "(d['maps'][2]['width'], d['maps'][2]['height']) == (48, 24)"
 
+# --decode and --depth speak for the maps that do not say it themselves.
+expect 0 "$relief" bake box.obj -o all.relief --resolution 16 --json --map front-back --map front-back:depth=unorm16 \
+    --map cube:decode=plane --decode projected --depth half
+json stdout "['half' in m for m in d['settings']['maps']] == [True, False, False]"
+json stdout "['projected' in m for m in d['settings']['maps']] == [True, True, False]"
+expect 0 "$relief" bake box.obj -o all.relief --resolution 16 --json --map front-back --map float:dir=+x,up=-z
+json stdout "d['settings']['maps'] == ['front-back:dir=-z,size=16x16,depth=unorm16,decode=plane,box=tight', 'float:dir=+x,up=-z,size=16x16,compare=less,decode=plane,box=tight']"
+
 # The same bytes whatever the number of threads, the folder and the name of the output; compressed ones too.
 for threads in 1 2 5; do
-    expect 0 "$relief" bake "$bunny" -o "t$threads.relief" --resolution 128 --threads $threads -q
+    expect 0 "$relief" bake "$bunny" -o "t$threads.relief" --threads $threads -q
 done
 cmp t1.relief t2.relief || die "two threads bake other bytes than one"
 cmp t1.relief t5.relief || die "five threads bake other bytes than one"
 mkdir elsewhere
-(cd elsewhere && "$relief" bake "$bunny" -o x.relief --resolution 128 -q)
+(cd elsewhere && "$relief" bake "$bunny" -o x.relief -q)
 cmp t1.relief elsewhere/x.relief || die "another folder gives other bytes"
 ! grep -aq "$work" t1.relief || die "the output holds a path"
 
 # An older output is replaced; no temporary file stays.
-expect 0 "$relief" bake box.obj -o t1.relief --resolution 32 -q
+expect 0 "$relief" bake box.obj -o t1.relief --paper --resolution 32 -q
 [ "$(ls -A elsewhere)" = x.relief ] || die "files left behind: $(ls -A elsewhere)"
 
 # Help leads with an example, for every verb; versions are printed.

@@ -1,7 +1,7 @@
 # A collider measured against its mesh: report, JSON, page and exit codes.
 . "$(dirname "$0")/lib.sh"
 
-"$relief" bake "$bunny" -o b.relief --resolution 64 -q
+"$relief" bake "$bunny" -o b.relief --paper --resolution 64 -q
 expect 0 "$relief" check b.relief --mesh "$bunny" --samples 5000
 grep -q 'near the surface' stdout || die "no report: $(cat stdout)"
 expect 0 "$relief" check b.relief --mesh "$bunny" --samples 5000 --json

@@ -5,7 +5,7 @@
 # maps (half-float depth), and √2/512 · radius for the cube: together below 0.25 % of the longest side.
 . "$(dirname "$0")/lib.sh"
 
-"$relief" bake "$bunny" -o bunny.relief -q
+"$relief" bake "$bunny" -o bunny.relief --paper -q
 cp "$RELIEF_SOURCE/samples/bunny_in_the_snow.toml" .
 "$relief_sim" bunny_in_the_snow.toml --steps 300 --dump snow.ply --json >report.json
 "$RELIEF_BIN/relief-penetration" "$bunny" snow.ply >penetration.json

@@ -8,9 +8,10 @@ for mesh in "$bunny" "$models"/glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine
     "$models"/FBX/spider.fbx "$models"/OBJ/spider.obj "$models"/LWO/LWO2/box_2uv_1unused.lwo; do
     [ -f "$mesh" ] || die "no such mesh: $mesh"
     count=$((count + 1))
-    expect 0 "$relief" bake "$mesh" -o m.relief --resolution 128
+    expect 0 "$relief" bake "$mesh" -o m.relief --budget 200kB
     expect 0 "$relief" info m.relief --json
-    json stdout "d['provenance']['triangles'] > 0 and len(d['maps']) == 4"
+    json stdout "d['provenance']['triangles'] > 0 and len(d['maps']) > 0"
+    images=$(python3 -c "import json; print(sum(m['faces'] for m in json.load(open('stdout'))['maps']))")
     expect 0 "$relief" query m.relief --points points.csv -o out.csv
     [ "$(wc -l <out.csv)" -eq 3 ] || die "query lost points"
     expect 0 "$relief" query m.relief --points points.csv -o gpu.csv --gpu
@@ -18,7 +19,7 @@ for mesh in "$bunny" "$models"/glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine
     expect 0 "$relief" slice m.relief --axis y --at center --size 64 -o slice.png
     expect 0 "$relief" slice m.relief --axis y --at center --size 64 -o slice.exr
     expect 0 "$relief" export m.relief -o "maps$count"
-    [ "$(find "maps$count" -name '*.exr' | wc -l)" -eq 9 ] || die "export wrote $(ls "maps$count")"
+    [ "$(find "maps$count" -name '*.exr' | wc -l)" -eq "$images" ] || die "export wrote $(ls "maps$count")"
     expect 0 "$relief_sim" m.relief --steps 5 --json
     json stdout "d['particles']['alive'] > 0"
     echo "$(basename "$mesh"): good"

@@ -25,7 +25,7 @@ i=0
 while read -r specs; do
     i=$((i + 1))
     # shellcheck disable=SC2086
-    "$relief" bake "$bunny" -o "$i.relief" --resolution 256 -q $specs
+    "$relief" bake "$bunny" -o "$i.relief" -q $specs
     "$relief" query "$i.relief" --points points.csv -o cpu.csv
     "$relief" query "$i.relief" --points points.csv -o gpu.csv --gpu
     python3 - "$specs" <<'P' || die "CPU and GPU disagree: $specs"
@@ -42,17 +42,19 @@ for a, b in zip(cpu, gpu):
         same = a['f'] == b['f'] or abs(float(a['f']) - float(b['f'])) <= 1e-5 * side
         same = same and all(abs(float(a[k]) - float(b[k])) <= 1e-5 for k in ('nx', 'ny', 'nz'))
     bad += not same
-print(f"{sys.argv[1] or 'default':40s} votes {votes}  inside {inside}  differing {bad}")
+print(f"{sys.argv[1] or 'planned':40s} votes {votes}  inside {inside}  differing {bad}")
 sys.exit(0 if bad <= 10 and votes > 1000 and inside > 1000 else 1)
 P
 done <<'S'
 
---map float:dir=+x
---map float:dir=-y,compare=greater
---map fixed8:dir=+z
---map fixed8:dir=1/2/3,compare=greater
---map front-back:dir=-z
---map cube:compare=greater
---map cube:center=0/10/0,compare=less
---map float:dir=+x --map fixed8:dir=-y --map front-back:dir=1/1/1,size=200x100 --map cube:size=64 --map cube:size=96
+--paper --resolution 256
+--resolution 256 --decode projected --map float:dir=+x
+--resolution 256 --map float:dir=-y,compare=greater,up=1/2/3
+--resolution 256 --decode projected --map fixed8:dir=+z
+--resolution 256 --map fixed8:dir=1/2/3,compare=greater
+--resolution 256 --decode projected --depth half --map front-back:dir=-z
+--resolution 256 --map front-back:dir=-z
+--resolution 256 --decode projected --map cube:compare=greater
+--resolution 256 --map cube:center=0/10/0,compare=less
+--map float:dir=+x,size=256 --map fixed8:dir=-y,size=256 --map front-back:dir=1/1/1,size=200x100 --map cube:size=64 --map cube:size=96,decode=projected
 S

@@ -1,11 +1,11 @@
 # relief-sim from outside: its dependencies, its outputs, its repeatability.
 . "$(dirname "$0")/lib.sh"
 
-for library in assimp embree CGAL OpenEXR IlmImf tbb; do
+for library in assimp embree CGAL gmp mpfr OpenEXR IlmImf tbb; do
     ! ldd "$relief_sim" | grep -qi "$library" || die "relief-sim needs $library"
 done
 
-"$relief" bake "$bunny" -o bunny.relief --resolution 128 -q
+"$relief" bake "$bunny" -o bunny.relief --budget 200kB -q
 expect 0 "$relief_sim" bunny.relief --steps 40 --frames frames --size 160x120 --dump a.ply --json --seed 3
 cp stdout report.json
 json report.json "d['settings']['time']['steps'] == 40"

@@ -1,7 +1,7 @@
 # Slices and exported maps, read back with OpenEXR's own tool.
 . "$(dirname "$0")/lib.sh"
 
-"$relief" bake "$bunny" -o b.relief --resolution 96 -q
+"$relief" bake "$bunny" -o b.relief --paper --resolution 96 -q
 "$relief" slice b.relief --axis z --at center --size 200 -o s.exr
 "$relief" slice b.relief --axis z --at center --size 200 -o s.png
 exrheader s.exr >header
