@@ -94,9 +94,10 @@ std::string bakeText(const BakeSummary& summary, const std::string& output, std:
                   times.search_ms > 0.0 ? "search" : "plan",
                   times.search_ms > 0.0 ? times.search_ms : times.plan_ms);
     text += line;
-    std::snprintf(line, sizeof(line), "%stree %.0f, rays %.0f, texels %.0f, planes %.0f%s, writing %.0f\n",
+    std::snprintf(line, sizeof(line),
+                  "%stree %.0f, rays %.0f, texels %.0f, planes %.0f, refining %.0f%s, writing %.0f\n",
                   times.search_ms > 0.0 ? "its last bake: " : "", baked.report.build_ms,
-                  baked.report.trace_ms, baked.report.encode_ms, baked.report.fit_ms,
+                  baked.report.trace_ms, baked.report.encode_ms, baked.report.fit_ms, baked.report.refine_ms,
                   times.search_ms > 0.0 ? ";" : "", times.write_ms);
     text += line;
     return text + (output == "-" ? "standard output" : quotedPath(output)) + ": " + bytesText(file_size) +
@@ -113,9 +114,11 @@ Json jsonBake(const BakeSummary& summary, const ContainerInfo& info, const Json&
     json["settings"] = settings;
     json["plan"] = summary.plan ? jsonPlan(*summary.plan) : Json(nullptr);
     json["dropped_triangles"] = summary.mesh.dropped_triangles;
-    json["times_ms"] = {{"import", times.import_ms}, {"plan", times.plan_ms},    {"search", times.search_ms},
-                        {"build", report.build_ms},  {"trace", report.trace_ms}, {"encode", report.encode_ms},
-                        {"fit", report.fit_ms},      {"write", times.write_ms},  {"total", times.total_ms}};
+    json["times_ms"] = {{"import", times.import_ms}, {"plan", times.plan_ms},
+                        {"search", times.search_ms}, {"build", report.build_ms},
+                        {"trace", report.trace_ms},  {"encode", report.encode_ms},
+                        {"fit", report.fit_ms},      {"refine", report.refine_ms},
+                        {"write", times.write_ms},   {"total", times.total_ms}};
     json["warnings"] = report.warnings;
     return json;
 }

@@ -1,19 +1,20 @@
 // relief-accuracy: wrong points per byte of a distance volume, of the paper's maps, and of ours.
 // scripts/accuracy.sh runs it on its list of meshes.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <glm/vec2.hpp>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 
 #include "bake/accuracy.h"
 #include "bake/accuracy_report.h"
+#include "bake/accuracy_summary.h"
 #include "bake/bake.h"
-#include "bake/byte_count.h"
 #include "bake/distance_volume.h"
 #include "bake/mesh_import.h"
 #include "bake/points_csv.h"
@@ -117,15 +118,17 @@ Result<Baked> bakeOurs(const TriangleMesh& mesh, std::uint64_t bytes) {
 
 // --- measuring ---
 
-/// One line of the table.
+/// One mesh, budget and method.
 struct Entry {
     std::string mesh;
+    bool closed = false;
     std::uint64_t budget = 0;
     std::string method;  ///< "volume", "paper" or "ours"
     std::string what;    ///< lattice or maps
+    std::size_t maps = 0;
     std::uint64_t bytes = 0;
-    double build_seconds = 0.0;
-    Json accuracy;  ///< of jsonFieldAccuracy or jsonColliderAccuracy
+    double build_seconds = 0.0;  ///< of maps: acceleration structure, plan, rays and fit
+    Json accuracy;               ///< of jsonFieldAccuracy or jsonColliderAccuracy
 
     [[nodiscard]] double number(const char* group, const char* name) const {
         return accuracy.at(group).at(name).get<double>();
@@ -134,8 +137,10 @@ struct Entry {
 };
 
 Json toJson(const Entry& entry) {
-    return {{"mesh", entry.mesh},        {"budget", entry.budget}, {"method", entry.method},
-            {"what", entry.what},        {"bytes", entry.bytes},   {"build_seconds", entry.build_seconds},
+    return {{"mesh", entry.mesh},        {"closed", entry.closed},
+            {"budget", entry.budget},    {"method", entry.method},
+            {"what", entry.what},        {"maps", entry.maps},
+            {"bytes", entry.bytes},      {"build_seconds", entry.build_seconds},
             {"accuracy", entry.accuracy}};
 }
 
@@ -188,6 +193,7 @@ Result<Entry> measureMaps(const MeshQuery& query, const TruthSamples& samples, c
         entry.what += (entry.what.empty() ? "" : " ") + std::to_string(map.width) + "x" +
                       std::to_string(map.height) + (map.faceCount() == 6 ? "x6" : "");
     }
+    entry.maps = baked->collider.maps.size();
     entry.bytes = accuracy.gpu_bytes;
     entry.accuracy = jsonColliderAccuracy(accuracy, samples.longest_side);
     return entry;
@@ -220,14 +226,28 @@ class Cache {
         if (!json_.contains(key)) {
             return std::nullopt;
         }
-        const Json& json = json_[key];
-        Entry entry;
-        entry.method = "volume";
-        entry.what = json.at("what");
-        entry.bytes = json.at("bytes");
-        entry.build_seconds = json.at("build_seconds");
-        entry.accuracy = json.at("accuracy");
-        return entry;
+        try {
+            const Json& json = json_[key];
+            Entry entry;
+            entry.method = "volume";
+            entry.what = json.at("what");
+            entry.bytes = json.at("bytes");
+            entry.build_seconds = json.at("build_seconds");
+            entry.accuracy = json.at("accuracy");
+            // Everything that the tables read, so that a file of another version is measured again.
+            for (const char* name : {"wrong_percent", "false_inside_percent", "false_outside_percent"}) {
+                (void)entry.number("near", name);
+                (void)entry.number("uniform", name);
+            }
+            (void)entry.number("distance_error", "mean_percent");
+            (void)entry.number("distance_error", "p99_percent");
+            (void)entry.number("normal_error_degrees", "mean");
+            (void)entry.accuracy.at("far_percent").get<double>();
+            (void)entry.accuracy.at("unknown_percent").get<double>();
+            return entry;
+        } catch (const Json::exception&) {
+            return std::nullopt;
+        }
     }
 
     [[nodiscard]] Result<void> add(const std::string& key, const Entry& entry) {
@@ -252,12 +272,30 @@ std::string fixedText(double value, int digits) {
     return text;
 }
 
-std::string tableText(const std::vector<Entry>& entries) {
-    std::vector<std::vector<std::string>> rows = {{"mesh", "budget>", "method", "wrong %>", "in>", "out>",
-                                                   "box %>", "dist mean %>", "p99 %>", "normal>", "unseen %>",
-                                                   "bytes>", "s>", "what"}};
+using Rows = std::vector<std::vector<std::string>>;
+
+/// GitHub's tables; a heading that ends in '>' goes right, as in table().
+std::string markdown(const Rows& rows) {
+    std::string text;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        std::string rule = "|";
+        text += "|";
+        for (const std::string& cell : rows[i]) {
+            const bool right = i == 0 && cell.ends_with('>');
+            text += " " + (right ? cell.substr(0, cell.size() - 1) : cell) + " |";
+            rule += right ? " ---: |" : " --- |";
+        }
+        text += "\n" + (i == 0 ? rule + "\n" : "");
+    }
+    return text;
+}
+
+/// All of every entry, one a line.
+Rows detailRows(const std::vector<Entry>& entries) {
+    Rows rows = {{"mesh", "budget>", "method", "wrong %>", "in>", "out>", "box %>", "dist mean %>", "p99 %>",
+                  "normal>", "unseen %>", "bytes>", "s>", "what"}};
     for (const Entry& entry : entries) {
-        rows.push_back({entry.mesh, bytesText(entry.budget), entry.method, fixedText(entry.wrong(), 3),
+        rows.push_back({entry.mesh, budgetText(entry.budget), entry.method, fixedText(entry.wrong(), 3),
                         fixedText(entry.number("near", "false_inside_percent"), 3),
                         fixedText(entry.number("near", "false_outside_percent"), 3),
                         fixedText(entry.number("uniform", "wrong_percent"), 3),
@@ -269,67 +307,93 @@ std::string tableText(const std::vector<Entry>& entries) {
                             : "-",
                         std::to_string(entry.bytes), fixedText(entry.build_seconds, 2), entry.what});
     }
-    return table(rows);
+    return rows;
 }
 
-/// Of one budget: wrong points of maps over those of the volume.
-struct Comparison {
-    std::uint64_t budget = 0;
-    std::string method;
-    double geometric_mean = 0.0;
-    double worst = 0.0;
-    std::size_t meshes = 0;
-    std::vector<std::string> above;  ///< meshes where the volume makes fewer mistakes
+/// The entries of one mesh and budget side by side; null where a method was not measured.
+struct Contest {
+    const Entry* volume = nullptr;
+    const Entry* paper = nullptr;
+    const Entry* ours = nullptr;
+
+    [[nodiscard]] const Entry& any() const { return ours ? *ours : paper ? *paper : *volume; }
+    [[nodiscard]] std::optional<double> ratio(const Entry* maps, std::uint32_t samples) const {
+        return maps && volume ? std::optional(wrongRatio(maps->wrong(), volume->wrong(), samples))
+                              : std::nullopt;
+    }
 };
 
-std::vector<Comparison> compare(const std::vector<Entry>& entries, const std::vector<std::uint64_t>& budgets,
-                                std::uint32_t samples) {
-    // Half a point stands for none, so that ratios and logarithms exist.
-    const double least = 0.5 * 100.0 / samples;
-    std::vector<Comparison> comparisons;
-    for (const char* method : {"ours", "paper"}) {
-        for (const std::uint64_t budget : budgets) {
-            std::map<std::string, double> volume;
-            for (const Entry& entry : entries) {
-                if (entry.budget == budget && entry.method == "volume") {
-                    volume[entry.mesh] = std::max(entry.wrong(), least);
-                }
-            }
-            Comparison comparison{budget, method, 0.0, 0.0, 0, {}};
-            double sum = 0.0;
-            for (const Entry& entry : entries) {
-                if (entry.budget == budget && entry.method == method && volume.contains(entry.mesh)) {
-                    const double ratio = std::max(entry.wrong(), least) / volume[entry.mesh];
-                    sum += std::log(ratio);
-                    comparison.worst = std::max(comparison.worst, ratio);
-                    ++comparison.meshes;
-                    if (ratio > 1.0) {
-                        comparison.above.push_back(entry.mesh);
-                    }
-                }
-            }
-            if (comparison.meshes > 0) {
-                comparison.geometric_mean = std::exp(sum / static_cast<double>(comparison.meshes));
-                comparisons.push_back(std::move(comparison));
-            }
+std::vector<Contest> contestsOf(const std::vector<Entry>& entries) {
+    std::vector<Contest> contests;
+    for (const Entry& entry : entries) {  // neighbours: they were measured one after the other
+        if (contests.empty() || contests.back().any().mesh != entry.mesh ||
+            contests.back().any().budget != entry.budget) {
+            contests.emplace_back();
         }
+        Contest& contest = contests.back();
+        (entry.method == "volume"  ? contest.volume
+         : entry.method == "paper" ? contest.paper
+                                   : contest.ours) = &entry;
     }
-    return comparisons;
+    return contests;
 }
 
-std::string comparisonText(const std::vector<Comparison>& comparisons) {
-    std::vector<std::vector<std::string>> rows = {{"wrong points of", "over the volume's at", "meshes>",
-                                                   "geometric mean>", "worst>", "more than the volume on"}};
-    for (const Comparison& c : comparisons) {
-        std::string above;
-        for (const std::string& mesh : c.above) {
-            above.append(above.empty() ? "" : ", ").append(mesh);
-        }
-        rows.push_back({c.method, bytesText(c.budget), std::to_string(c.meshes),
-                        fixedText(c.geometric_mean, 3), fixedText(c.worst, 3),
-                        above.empty() ? "none" : above});
+Rows contestRows(const std::vector<Contest>& contests, std::uint32_t samples) {
+    Rows rows = {{"mesh", "budget>", "volume %>", "paper %>", "ours %>", "ours/volume>", "in %>", "out %>",
+                  "mean: volume>", "paper>", "ours>", "p99: volume>", "paper>", "ours>", "no distance %>",
+                  "bytes>", "maps>", "ms>"}};
+    for (const Contest& c : contests) {
+        const auto number = [](const Entry* entry, const char* group, const char* name, int digits) {
+            return entry ? fixedText(entry->number(group, name), digits) : std::string("-");
+        };
+        const auto wrong = [&](const Entry* entry) { return number(entry, "near", "wrong_percent", 3); };
+        const auto mean = [&](const Entry* e) { return number(e, "distance_error", "mean_percent", 4); };
+        const auto p99 = [&](const Entry* e) { return number(e, "distance_error", "p99_percent", 3); };
+        const std::optional<double> ratio = c.ratio(c.ours, samples);
+        const double no_distance = c.ours ? c.ours->accuracy.at("far_percent").get<double>() +
+                                                c.ours->accuracy.at("unknown_percent").get<double>()
+                                          : 0.0;
+        rows.push_back(
+            {c.any().mesh + (c.any().closed ? "" : " (open)"), budgetText(c.any().budget), wrong(c.volume),
+             wrong(c.paper), wrong(c.ours), ratio ? fixedText(*ratio, 3) : "-",
+             number(c.ours, "near", "false_inside_percent", 3),
+             number(c.ours, "near", "false_outside_percent", 3), mean(c.volume), mean(c.paper), mean(c.ours),
+             p99(c.volume), p99(c.paper), p99(c.ours), c.ours ? fixedText(no_distance, 2) : "-",
+             c.ours ? std::to_string(c.ours->bytes) : "-", c.ours ? std::to_string(c.ours->maps) : "-",
+             c.ours ? fixedText(1000.0 * c.ours->build_seconds, 0) : "-"});
     }
-    return table(rows);
+    return rows;
+}
+
+std::vector<AccuracyRow> summaryRows(const std::vector<Contest>& contests, std::uint32_t samples) {
+    std::vector<AccuracyRow> rows;
+    for (const Contest& c : contests) {
+        rows.push_back({c.any().mesh, c.any().closed, c.any().budget, c.ratio(c.paper, samples),
+                        c.ratio(c.ours, samples),
+                        c.ours ? std::optional(c.ours->build_seconds) : std::nullopt});
+    }
+    return rows;
+}
+
+/// \param gap  goes between the lines.
+std::string legend(const AccuracyOptions& options, const std::string& gap) {
+    const std::string lines[] = {
+        "%: points near the surface on the wrong side of it; in, out: ours, false inside and false "
+        "outside. " +
+            std::to_string(options.samples) + " points, seed " + std::to_string(options.seed) + ", " +
+            fixedText(100.0 * options.sigma_share, 1) +
+            " % of the longest side off the surface (standard deviation).",
+        "mean, p99: error of the signed distance at those points, in % of the longest side. Where maps say "
+        "outside and no more (infinitely far, or no vote) they have no distance and no error: no distance is "
+        "the share of such points in ours.",
+        "ms: one bake of ours with acceleration structure, plan, rays and fit. open: computed, some edge has "
+        "an "
+        "odd number of triangles."};
+    std::string text;
+    for (const std::string& line : lines) {
+        text += (text.empty() ? "" : gap) + line;
+    }
+    return text + "\n";
 }
 
 // --- the program ---
@@ -339,9 +403,12 @@ struct Arguments {
     std::vector<std::string> budgets = {"0.25MB", "1MB", "4MB"};
     std::uint32_t samples = AccuracyOptions{}.samples;
     std::uint64_t seed = AccuracyOptions{}.seed;
-    std::vector<std::string> only = {"volume", "paper", "ours"};
+    std::vector<std::string> methods = {"volume", "paper", "ours"};
+    std::vector<std::string> only;  ///< stems of meshes; empty: all
     std::string cache;
     std::string values;
+    bool details = false;
+    bool markdown = false;
     bool json = false;
 };
 
@@ -372,14 +439,51 @@ Result<void> printValues(const MeshQuery& query, std::uint64_t budget, const std
     return writeFile("-", std::as_bytes(std::span(out)));
 }
 
-Result<void> run(const Arguments& arguments) {
-    std::vector<std::uint64_t> budgets;
-    for (const std::string& text : arguments.budgets) {
-        const std::optional<std::uint64_t> bytes = parseByteCount(text);
-        if (!bytes) {
-            return fail(ErrorCode::kUsage, "--budget has '" + cleanUtf8(text) + "'; write 0.25MB,1MB,4MB");
+Json toJson(const BudgetSummary& summary) {
+    const auto orNull = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
+    Json above = Json::array();
+    for (const NamedValue& mesh : summary.closed_above) {
+        above.push_back(mesh.mesh);
+    }
+    return {{"budget", summary.budget},
+            {"meshes", summary.meshes},
+            {"ours_over_volume", orNull(summary.our_mean)},
+            {"paper_over_volume", orNull(summary.paper_mean)},
+            {"target", targetRatio(summary.budget)},
+            {"closed_above_volume", above},
+            {"slowest_bake_seconds", summary.slowest ? Json(summary.slowest->value) : Json()},
+            {"missed", summary.missed}};
+}
+
+/// The meshes of the command line that --only names, in the command line's order.
+Result<std::vector<std::string>> chosenMeshes(const Arguments& arguments) {
+    const auto stem = [](const std::string& path) { return std::filesystem::path(path).stem().string(); };
+    for (const std::string& name : arguments.only) {
+        if (std::none_of(arguments.meshes.begin(), arguments.meshes.end(),
+                         [&](const std::string& path) { return stem(path) == name; })) {
+            return fail(ErrorCode::kUsage, "--only has '" + cleanUtf8(name) +
+                                               "', but no mesh is called so; --methods chooses among volume, "
+                                               "paper and ours");
         }
-        budgets.push_back(*bytes);
+    }
+    std::vector<std::string> chosen;
+    for (const std::string& path : arguments.meshes) {
+        if (arguments.only.empty() ||
+            std::find(arguments.only.begin(), arguments.only.end(), stem(path)) != arguments.only.end()) {
+            chosen.push_back(path);
+        }
+    }
+    return chosen;
+}
+
+Result<void> run(const Arguments& arguments) {
+    const Result<std::vector<std::uint64_t>> budgets = parseBudgets(arguments.budgets);
+    if (!budgets) {
+        return forward(budgets);
+    }
+    const Result<std::vector<std::string>> paths = chosenMeshes(arguments);
+    if (!paths) {
+        return forward(paths);
     }
     Cache cache(arguments.cache);
     AccuracyOptions options;
@@ -387,7 +491,7 @@ Result<void> run(const Arguments& arguments) {
     options.seed = arguments.seed;
     std::vector<Entry> entries;
     Json mesh_reports = Json::array();
-    for (const std::string& path : arguments.meshes) {
+    for (const std::string& path : *paths) {
         const Stopwatch watch;
         const Result<TriangleMesh> mesh = importMesh(path);
         if (!mesh) {
@@ -398,7 +502,7 @@ Result<void> run(const Arguments& arguments) {
             return forward(query);
         }
         if (!arguments.values.empty()) {
-            return printValues(*query, budgets.front(), arguments.values);
+            return printValues(*query, budgets->front(), arguments.values);
         }
         const TruthSamples samples = sampleTruth(*query, options);
         Json mesh_report = jsonSamples(samples);
@@ -407,8 +511,8 @@ Result<void> run(const Arguments& arguments) {
         mesh_report["triangles"] = mesh->triangles.size();
         mesh_report["watertight"] = query->watertight();
         mesh_reports.push_back(std::move(mesh_report));
-        for (const std::uint64_t budget : budgets) {
-            for (const std::string& method : arguments.only) {
+        for (const std::uint64_t budget : *budgets) {
+            for (const std::string& method : arguments.methods) {
                 Entry entry;
                 if (method == "volume") {
                     const std::string key = Cache::key(*mesh, budget, options);
@@ -428,36 +532,31 @@ Result<void> run(const Arguments& arguments) {
                     entry = std::move(*measured);
                 }
                 entry.mesh = mesh->name;
+                entry.closed = query->watertight();
                 entry.budget = budget;
                 entries.push_back(std::move(entry));
             }
         }
         std::fprintf(stderr, "%s: %.1f s\n", mesh->name.c_str(), watch.seconds());
     }
-    const std::vector<Comparison> comparisons = compare(entries, budgets, options.samples);
+    const std::vector<Contest> contests = contestsOf(entries);
+    const std::vector<BudgetSummary> summaries = summarize(summaryRows(contests, options.samples), *budgets);
     std::string text;
     if (arguments.json) {
-        Json json = {{"meshes", mesh_reports}, {"results", Json::array()}, {"comparisons", Json::array()}};
+        Json json = {{"meshes", mesh_reports}, {"results", Json::array()}, {"summaries", Json::array()}};
         for (const Entry& entry : entries) {
             json["results"].push_back(toJson(entry));
         }
-        for (const Comparison& c : comparisons) {
-            json["comparisons"].push_back({{"budget", c.budget},
-                                           {"method", c.method},
-                                           {"meshes", c.meshes},
-                                           {"geometric_mean", c.geometric_mean},
-                                           {"worst", c.worst},
-                                           {"above_volume", c.above}});
+        for (const BudgetSummary& summary : summaries) {
+            json["summaries"].push_back(toJson(summary));
         }
         text = dump(json);
     } else {
-        text =
-            tableText(entries) + (comparisons.empty() ? "" : "\n" + comparisonText(comparisons)) +
-            "\nwrong: points near the surface on the wrong side, in: false inside, out: false outside; box: "
-            "wrong points\nanywhere in the box; dist: error of the signed distance near the surface, of the "
-            "longest side; normal: mean error in\ndegrees; s: building it. " +
-            std::to_string(options.samples) + " points of each kind, seed " + std::to_string(options.seed) +
-            ".\n";
+        const Rows rows = arguments.details ? detailRows(entries) : contestRows(contests, options.samples);
+        text = arguments.markdown
+                   ? markdown(rows) + "\n" + legend(options, "<br>\n") + "\n```text\n" +
+                         summaryText(summaries) + "```\n"
+                   : table(rows) + "\n" + legend(options, "\n") + "\n" + summaryText(summaries);
     }
     return writeFile("-", std::as_bytes(std::span(text)));
 }
@@ -475,17 +574,23 @@ int main(int argc, char** argv) {
     CLI::App app("Wrong points per byte: a distance volume, the paper's maps, and ours", "relief-accuracy");
     Arguments arguments;
     app.add_option("mesh", arguments.meshes, "Meshes")->option_text("MESH...")->required();
-    app.add_option("--budget", arguments.budgets, "Bytes for each collider; default 0.25MB,1MB,4MB")
+    app.add_option("--budgets,--budget", arguments.budgets, "Bytes for each collider; default 0.25MB,1MB,4MB")
         ->delimiter(',');
     app.add_option("--samples", arguments.samples, "Points of each kind; default 200000")
         ->check(CLI::Range(1U, 100'000'000U));
     app.add_option("--seed", arguments.seed, "Of the points; default 1");
-    app.add_option("--only", arguments.only, "volume, paper or ours; default: all")
+    app.add_option("--only", arguments.only,
+                   "Meshes to measure, by file name without extension; default: all")
+        ->delimiter(',');
+    app.add_option("--methods", arguments.methods, "volume, paper or ours; default: all")
         ->delimiter(',')
         ->check(CLI::IsMember({"volume", "paper", "ours"}));
     app.add_option("--cache", arguments.cache, "Keep the volume's figures in this file (for development)");
     app.add_option("--values", arguments.values,
                    "Only print x,y,z, exact distance, volume's distance for the points of this CSV file");
+    app.add_flag("--details", arguments.details,
+                 "One line for each method, with normals, unseen surface and what was built");
+    app.add_flag("--markdown", arguments.markdown, "Print tables for a README");
     app.add_flag("--json", arguments.json, "Print JSON");
     CLI11_PARSE(app, argc, argv);
     try {

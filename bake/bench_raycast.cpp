@@ -81,8 +81,14 @@ int main(int argc, char** argv) {
         return failure(mesh.error());
     }
     BakeOptions options;
-    options.maps = paperMapSpecs();
-    options.maps.pop_back();  // the cube: six orthographic ends are left
+    // Six orthographic ends, as texels that cost one ray each: said, not left to what a bake defaults to.
+    for (const glm::vec3& direction : {glm::vec3(-1, 0, 0), glm::vec3(0, -1, 0), glm::vec3(0, 0, -1)}) {
+        MapSpec spec;
+        spec.format = MapFormat::kFrontBackHalf;
+        spec.decode = Decode::kProjected;
+        spec.direction = direction;
+        options.maps.push_back(spec);
+    }
     options.resolution = kResolution;
     std::vector<View> views;
     for (const MapSpec& spec : options.maps) {

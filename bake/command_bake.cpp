@@ -47,6 +47,7 @@ struct BakeCommand {
     std::string depth;
     std::string resolution;
     std::string quality;
+    std::string prefer;
     std::string threads;
     std::string compress = "0";
     bool json = false;
@@ -169,6 +170,14 @@ Result<void> readPlanSettings(const BakeCommand& command, Settings& settings) {
         }
         settings.bake.quality = static_cast<Quality>(*quality);
     }
+    if (!command.prefer.empty()) {
+        constexpr std::array<std::string_view, 3> kPreferences = {"neither", "inside", "outside"};
+        const Result<std::size_t> prefer = wordOf("--prefer", command.prefer, kPreferences);
+        if (!prefer) {
+            return forward(prefer);
+        }
+        settings.bake.prefer = static_cast<Prefer>(*prefer);
+    }
     return {};
 }
 
@@ -264,7 +273,7 @@ Result<void> preflight(const BakeCommand& command) {
     return {};
 }
 
-/// The maps of --plan, and its quality where the command line names none.
+/// The maps of --plan, and its quality and preference where the command line names none.
 Result<void> readPlanFile(const BakeCommand& command, Settings& settings) {
     const Result<PlanFile> plan = loadPlan(command.plan);
     if (!plan) {
@@ -272,6 +281,9 @@ Result<void> readPlanFile(const BakeCommand& command, Settings& settings) {
     }
     if (command.quality.empty()) {
         settings.bake.quality = plan->quality;
+    }
+    if (command.prefer.empty()) {
+        settings.bake.prefer = plan->prefer;
     }
     for (const PlanFileMap& map : plan->maps) {
         settings.bake.maps.push_back(map.spec);
@@ -356,9 +368,10 @@ Result<Baked> makeCollider(const BakeCommand& command, const TriangleMesh& mesh,
 }
 
 Result<void> writePlanFile(const std::string& path, const PlanReport& plan, const Baked& baked,
-                           Quality quality) {
+                           const BakeOptions& options) {
     PlanFile file;
-    file.quality = quality;
+    file.quality = options.quality;
+    file.prefer = options.prefer;
     for (std::size_t i = 0; i < plan.plan.maps.size(); ++i) {
         file.maps.push_back({baked.report.maps[i].spec, plan.plan.maps[i].reason});
     }
@@ -381,6 +394,7 @@ nlohmann::ordered_json jsonSettings(const BakeCommand& command, const Settings& 
             {"resolution", sized ? Json(settings.bake.resolution) : Json(nullptr)},
             {"budget", plan ? Json(plan->budget) : Json(nullptr)},
             {"quality", qualityName(settings.bake.quality)},
+            {"prefer", preferName(settings.bake.prefer)},
             {"threads", settings.bake.threads == 0 ? tbb::info::default_concurrency()
                                                    : static_cast<int>(settings.bake.threads)},
             {"compress", settings.write.compression_level}};
@@ -438,8 +452,7 @@ Result<void> runBake(const BakeCommand& command) {
         return written;
     }
     if (!command.plan_out.empty()) {
-        if (const Result<void> written =
-                writePlanFile(command.plan_out, *plan, *baked, settings->bake.quality);
+        if (const Result<void> written = writePlanFile(command.plan_out, *plan, *baked, settings->bake);
             !written) {
             return written;
         }
@@ -526,6 +539,10 @@ void addBake(CLI::App& app, Action& action) {
     verb.add_option("--quality", command->quality,
                     "Of planes: fast (one ray a texel), normal (16 rays, default) or best (36).\n"
                     "With --plan, the file's by default")
+        ->option_text("WORD");
+    verb.add_option("--prefer", command->prefer,
+                    "Where planes must err: inside keeps particles out of walls, outside keeps free\n"
+                    "space free, neither (default) errs least")
         ->option_text("WORD");
     verb.add_option("-j,--threads", command->threads,
                     "Threads to use; default: all cores. The result is the same")

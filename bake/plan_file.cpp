@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kPlanBytesMax = std::uint64_t{1} << 20;
 constexpr std::int64_t kVersion = 1;
-constexpr std::array<std::string_view, 3> kTopKeys = {"version", "quality", "map"};
+constexpr std::array<std::string_view, 4> kTopKeys = {"version", "quality", "prefer", "map"};
 
 /// The keys of a table in the order of the file, so that the first mistake is the one reported.
 std::vector<const toml::key*> keysInOrder(const toml::table& table) {
@@ -81,6 +81,8 @@ class Reader {
             Result<void> done;
             if (key->str() == "quality") {
                 done = readQuality(node, plan);
+            } else if (key->str() == "prefer") {
+                done = readPrefer(node, plan);
             } else if (key->str() == "map") {
                 done = readMaps(node, plan);
             } else if (key->str() != "version") {
@@ -108,6 +110,17 @@ class Reader {
             }
         }
         return invalid(node.source().begin, "quality must be \"fast\", \"normal\" or \"best\"");
+    }
+
+    Result<void> readPrefer(const toml::node& node, PlanFile& plan) const {
+        const auto word = node.value_exact<std::string>();
+        for (const Prefer prefer : {Prefer::kNeither, Prefer::kInside, Prefer::kOutside}) {
+            if (word == preferName(prefer)) {
+                plan.prefer = prefer;
+                return {};
+            }
+        }
+        return invalid(node.source().begin, "prefer must be \"neither\", \"inside\" or \"outside\"");
     }
 
     Result<void> readMaps(const toml::node& node, PlanFile& plan) const {
@@ -187,7 +200,8 @@ std::string planText(const PlanFile& plan) {
     std::string text =
         "# The maps of a bake, to be changed by hand: relief bake MESH -o OUT.relief --plan THIS_FILE\n"
         "version = " +
-        std::to_string(kVersion) + "\nquality = \"" + qualityName(plan.quality) + "\"\n";
+        std::to_string(kVersion) + "\nquality = \"" + qualityName(plan.quality) + "\"\nprefer = \"" +
+        preferName(plan.prefer) + "\"\n";
     for (const PlanFileMap& map : plan.maps) {
         text += "\n";
         if (!map.comment.empty()) {

@@ -3,6 +3,7 @@
 //
 //     version = 1
 //     quality = "normal"
+//     prefer = "neither"
 //
 //     # both sides along (0, 0, 1) see 83.1 % of the surface; service +71.4 %
 //     [[map]]
@@ -36,10 +37,11 @@ struct PlanFileMap {
 
 struct PlanFile {
     Quality quality = Quality::kNormal;
+    Prefer prefer = Prefer::kNeither;
     std::vector<PlanFileMap> maps;
 };
 
-/// Parsing it gives the same quality and specs.
+/// Parsing it gives the same quality, prefer and specs.
 [[nodiscard]] std::string planText(const PlanFile& plan);
 
 /// \param path  for messages.

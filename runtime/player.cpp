@@ -171,6 +171,16 @@ EmitterSettings emitterSettings(const Scene& scene) {
     return settings;
 }
 
+/// The lower of the two middle ones where their number is even; 0 of none.
+double median(std::vector<double> values) {
+    if (values.empty()) {
+        return 0.0;
+    }
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
 /// The run itself: steps and, between them, frames.
 Result<void> run(const PlayerOptions& options, ParticleSystem& particles, std::optional<Picture>& picture,
                  PlayerReport& report) {
@@ -179,12 +189,14 @@ Result<void> run(const PlayerOptions& options, ParticleSystem& particles, std::o
     std::vector<Birth> births;
     std::uint64_t refused = 0;
     Clock::duration spent{};
+    std::vector<double> stretches;  // ms per step of each
     std::uint32_t step = 0;
     while (step < scene.steps || (step == 0 && picture)) {
         const std::uint32_t next_frame =
             picture ? step + scene.render.every - step % scene.render.every : scene.steps;
         const std::uint32_t end = std::min({scene.steps, next_frame, step + kStepsAtOnce});
         const Clock::time_point begun = Clock::now();
+        const std::uint32_t first = step;
         for (; step < end; ++step) {
             births.clear();
             refused += emitter.emit(static_cast<double>(scene.dt), particles.room(), births);
@@ -192,7 +204,11 @@ Result<void> run(const PlayerOptions& options, ParticleSystem& particles, std::o
             particles.step(scene.dt);
         }
         glFinish();
-        spent += Clock::now() - begun;
+        const Clock::duration stretch = Clock::now() - begun;
+        spent += stretch;
+        if (step > first) {
+            stretches.push_back(std::chrono::duration<double, std::milli>(stretch).count() / (step - first));
+        }
         if (options.progress) {
             options.progress(step, scene.steps);
         }
@@ -213,6 +229,7 @@ Result<void> run(const PlayerOptions& options, ParticleSystem& particles, std::o
     if (step > 0) {
         report.ms_per_step = std::chrono::duration<double, std::milli>(spent).count() / step;
     }
+    report.ms_per_step_median = median(std::move(stretches));
     report.counts = particles.counts();
     report.counts.refused += refused;
     return {};

@@ -39,6 +39,9 @@ struct PlayerReport {
         collisions;  ///< steps in contact, summed over the particles alive at the end
     std::optional<std::uint32_t> in_contact;  ///< alive particles that touched something in the last step
     double ms_per_step = 0.0;  ///< wall clock, births and waiting for the GPU included; 0 without steps
+    /// The same, as the median over stretches of up to 16 steps: without the first, in which a driver still
+    /// compiles, wherever there are three or more. 0 without steps.
+    double ms_per_step_median = 0.0;
     std::uint32_t frames_written = 0;
 };
 

@@ -79,6 +79,7 @@ std::string reportJson(const PlayerReport& report) {
     json["particles"]["collisions"] = report.collisions ? Json(*report.collisions) : Json();
     json["steps"] = report.scene.steps;
     json["ms_per_step"] = report.ms_per_step;
+    json["ms_per_step_median"] = report.ms_per_step_median;
     json["frames"] = report.frames_written;
     // A file name that is no UTF-8 must not end the program.
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
 # Wrong points per byte, on the meshes that the README's claims are about: a dense signed distance volume, the
-# paper's maps and ours, at 0.25, 1 and 4 MB. Prints one table; takes a few minutes. Further arguments go to
-# relief-accuracy, which scripts/build.sh builds: --json, --budget 1MB, --only ours, --cache FILE.
+# paper's maps and ours, at 0.25, 1 and 4 MB; then geometric means and a verdict on the claims. Takes a few
+# minutes. Further arguments go to relief-accuracy, which scripts/build.sh builds: --only bunny,camel --budgets 1MB
+# --methods ours --cache FILE for quick rounds of work on the baker, --details, --markdown (the README's), --json.
 #
 #   scripts/accuracy.sh                  the table
+#   scripts/accuracy.sh --markdown       the same, for the README
 #   scripts/accuracy.sh --cross-check    compares the volume with OpenVDB's mesh2ls, on the bunny
 #
 # The cross-check samples the level set that Debian's vdb_tool (libopenvdb-tools) makes of the bunny at 128
@@ -68,7 +70,7 @@ fi
 
 tar -xzf /usr/share/doc/libcgal-dev/data.tar.gz -C "$folder" data/meshes
 meshes=("$bunny")
-# lion-head is open; ChineseDragon-10kv has six open edges; all others are closed.
+# Which of them are closed is computed: lion-head is meant to be open, and some others have a few open edges.
 for name in camel ChineseDragon-10kv fandisk anchor_dense cheese knot2 man refined_elephant lion-head couplingdown; do
     meshes+=("$folder/data/meshes/$name.off")
 done
