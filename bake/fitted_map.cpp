@@ -96,20 +96,13 @@ class EndFitter {
         rays_.resize(std::size_t{samples_} * samples_);
     }
 
-    /// \param hits, other_hits  of this and of the other end in the fine view, from row `first_row` of the
-    /// face
-    ///                          on; other_hits may be empty.
+    /// \param hits        of this end in the fine view, from row `first_row` of the face on, the rows next to
+    ///                    the texel's included
+    /// \param other_hits  of the other end; may be empty
     std::optional<Surface> fit(std::uint32_t face, std::uint32_t x, std::uint32_t y, std::uint32_t first_row,
                                std::span<const Hit> hits, std::span<const Hit> other_hits) {
-        bool any = false;
-        for (std::uint32_t j = 0; j < samples_; ++j) {
-            const std::uint32_t row = y * samples_ + j;
-            for (std::uint32_t i = 0; i < samples_; ++i) {
-                const std::uint32_t column = x * samples_ + i;
-                any = any || !hits[std::size_t{row - first_row} * fine_.width + column].empty();
-            }
-        }
-        if (!any) {
+        const Footprint here{face, x, y, first_row, hits, other_hits};
+        if (!seesAnything(here)) {
             return std::nullopt;
         }
         for (std::uint32_t j = 0; j < samples_; ++j) {
@@ -125,10 +118,10 @@ class EndFitter {
                     fine_.ray(face, column, row), hit, other_hits.empty() ? Hit() : other_hits[at]);
             }
         }
-        findEdge(face, x, y);
+        findEdge(here);
         around_.clear();
         if (look_around_) {
-            lookAround(face, x, y, first_row, hits, other_hits);
+            lookAround(here);
         }
         const TexelRay centre = view_.ray(face, x, y);
         const std::optional<FittedPlane> plane =
@@ -161,63 +154,100 @@ class EndFitter {
         return !starts_free_ && hit.fromBehind() != inside_out_;
     }
 
-    /// The ring of rays about the footprint, as far as it lies on the same face.
-    void lookAround(std::uint32_t face, std::uint32_t x, std::uint32_t y, std::uint32_t first_row,
-                    std::span<const Hit> hits, std::span<const Hit> other_hits) {
+    /// A texel, and the hits of the fine view from row `first_row` of its face on.
+    struct Footprint {
+        std::uint32_t face;
+        std::uint32_t x;
+        std::uint32_t y;
+        std::uint32_t first_row;
+        std::span<const Hit> hits;
+        std::span<const Hit> other_hits;
+    };
+
+    [[nodiscard]] std::size_t indexOf(const Footprint& here, std::uint32_t column, std::uint32_t row) const {
+        return std::size_t{row - here.first_row} * fine_.width + column;
+    }
+
+    /// Calls visit(column, row) for the rays of a footprint and of the ring about it, as far as they are on
+    /// its face.
+    template <class Visit>
+    void forEachAround(const Footprint& here, const Visit& visit) const {
         const auto bounds = [&](std::uint32_t texel, std::uint32_t size) {
             const std::uint32_t first = texel * samples_;
             return std::pair{first - (first > 0 ? 1U : 0U), std::min(first + samples_ + 1, size)};
         };
-        const auto [row_begin, row_end] = bounds(y, fine_.height);
-        const auto [column_begin, column_end] = bounds(x, fine_.width);
+        const auto [row_begin, row_end] = bounds(here.y, fine_.height);
+        const auto [column_begin, column_end] = bounds(here.x, fine_.width);
         for (std::uint32_t row = row_begin; row < row_end; ++row) {
             for (std::uint32_t column = column_begin; column < column_end; ++column) {
-                const std::size_t at = std::size_t{row - first_row} * fine_.width + column;
-                const bool own = row / samples_ == y && column / samples_ == x;
-                if (!own && !hits[at].empty() && !startsInside(hits[at])) {
-                    around_.push_back(footprintRay(fine_.ray(face, column, row), hits[at],
-                                                   other_hits.empty() ? Hit() : other_hits[at]));
-                }
+                visit(column, row);
             }
         }
     }
 
-    /// Between neighbours of which one meets a surface and the other does not, the last ray that does.
-    void findEdge(std::uint32_t face, std::uint32_t x, std::uint32_t y) {
+    [[nodiscard]] bool isOwn(const Footprint& here, std::uint32_t column, std::uint32_t row) const {
+        return row / samples_ == here.y && column / samples_ == here.x;
+    }
+
+    [[nodiscard]] bool seesAnything(const Footprint& here) const {
+        bool any = false;
+        forEachAround(here, [&](std::uint32_t column, std::uint32_t row) {
+            any = any || !here.hits[indexOf(here, column, row)].empty();
+        });
+        return any;
+    }
+
+    void lookAround(const Footprint& here) {
+        forEachAround(here, [&](std::uint32_t column, std::uint32_t row) {
+            const std::size_t at = indexOf(here, column, row);
+            const Hit& hit = here.hits[at];
+            if (!isOwn(here, column, row) && !hit.empty() && !startsInside(hit)) {
+                around_.push_back(footprintRay(fine_.ray(here.face, column, row), hit,
+                                               here.other_hits.empty() ? Hit() : here.other_hits[at]));
+            }
+        });
+    }
+
+    /// Where the edges of surfaces run through the texel: between neighbours of which one meets a surface and
+    /// the other does not, the last ray that does. One of the neighbours may be of the ring about the texel:
+    /// a wall an eighth of a texel away from its border is as much of a wall.
+    void findEdge(const Footprint& here) {
         edge_.clear();
-        for (std::uint32_t j = 0; j < samples_; ++j) {
-            for (std::uint32_t i = 0; i < samples_; ++i) {
-                for (const auto& [di, dj] : {std::pair{1U, 0U}, std::pair{0U, 1U}}) {
-                    if (i + di == samples_ || j + dj == samples_) {
-                        continue;
-                    }
-                    const bool meets = rays_[std::size_t{j} * samples_ + i].u >= 0.0;
-                    if (meets == (rays_[std::size_t{j + dj} * samples_ + i + di].u >= 0.0)) {
-                        continue;
-                    }
-                    // In the finest grid, whose odd count of parts has a texel at the centre of each
-                    // sample's.
-                    std::uint32_t on[2] = {(x * samples_ + i) * kEdgeParts + kEdgeParts / 2,
-                                           (y * samples_ + j) * kEdgeParts + kEdgeParts / 2};
-                    std::uint32_t off[2] = {on[0] + di * kEdgeParts, on[1] + dj * kEdgeParts};
-                    if (!meets) {
-                        std::swap(on, off);
-                    }
-                    Hit last = probe_.trace(face, on[0], on[1]);
-                    if (last.empty()) {
-                        continue;
-                    }
-                    while (on[0] + 1 < off[0] || off[0] + 1 < on[0] || on[1] + 1 < off[1] ||
-                           off[1] + 1 < on[1]) {
-                        const std::uint32_t middle[2] = {(on[0] + off[0]) / 2, (on[1] + off[1]) / 2};
-                        const Hit hit = probe_.trace(face, middle[0], middle[1]);
-                        std::copy_n(middle, 2, hit.empty() ? off : on);
-                        last = hit.empty() ? last : hit;
-                    }
-                    const Hit other = other_starts_free_ ? probe_other_.trace(face, on[0], on[1]) : Hit();
-                    edge_.push_back(footprintRay(finest_.ray(face, on[0], on[1]), last, other));
+        forEachAround(here, [&](std::uint32_t column, std::uint32_t row) {
+            for (const auto& [right, up] : {std::pair{1U, 0U}, std::pair{0U, 1U}}) {
+                const bool on_face = column + right < fine_.width && row + up < fine_.height;
+                if (on_face && (isOwn(here, column, row) || isOwn(here, column + right, row + up))) {
+                    findEdgeBetween(here, column, row, right, up);
                 }
             }
+        });
+    }
+
+    void findEdgeBetween(const Footprint& here, std::uint32_t column, std::uint32_t row, std::uint32_t right,
+                         std::uint32_t up) {
+        const bool meets = !here.hits[indexOf(here, column, row)].empty();
+        if (meets == !here.hits[indexOf(here, column + right, row + up)].empty()) {
+            return;
+        }
+        // In the finest grid, whose odd count of parts has a texel at the centre of each sample's.
+        std::uint32_t on[2] = {column * kEdgeParts + kEdgeParts / 2, row * kEdgeParts + kEdgeParts / 2};
+        std::uint32_t off[2] = {on[0] + right * kEdgeParts, on[1] + up * kEdgeParts};
+        if (!meets) {
+            std::swap(on, off);
+        }
+        Hit last = probe_.trace(here.face, on[0], on[1]);
+        if (last.empty() || startsInside(last)) {
+            return;
+        }
+        while (on[0] + 1 < off[0] || off[0] + 1 < on[0] || on[1] + 1 < off[1] || off[1] + 1 < on[1]) {
+            const std::uint32_t middle[2] = {(on[0] + off[0]) / 2, (on[1] + off[1]) / 2};
+            const Hit hit = probe_.trace(here.face, middle[0], middle[1]);
+            std::copy_n(middle, 2, hit.empty() ? off : on);
+            last = hit.empty() ? last : hit;
+        }
+        if (isOwn(here, on[0] / kEdgeParts, on[1] / kEdgeParts)) {
+            const Hit other = other_starts_free_ ? probe_other_.trace(here.face, on[0], on[1]) : Hit();
+            edge_.push_back(footprintRay(finest_.ray(here.face, on[0], on[1]), last, other));
         }
     }
 
@@ -268,9 +298,9 @@ DepthMap bakeFittedMap(const RayScene& scene, const TriangleNormals& normals, co
     for (std::uint32_t face = 0; face < view.faceCount(); ++face) {
         for (std::uint32_t y = 0; y < view.height; y += stripe_rows) {
             const std::uint32_t y_end = std::min(y + stripe_rows, view.height);
-            const std::uint32_t ring = options.look_around ? 1 : 0;
-            const RowRange rows{face, y * options.samples - (y > 0 ? ring : 0),
-                                std::min(y_end * options.samples + ring, fine.height)};
+            // One more row on either side, for the rings about the texels.
+            const RowRange rows{face, y * options.samples - (y > 0 ? 1 : 0),
+                                std::min(y_end * options.samples + 1, fine.height)};
             for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
                 if (view.keeps(end)) {
                     std::vector<Hit>& end_hits = hits[static_cast<std::size_t>(end)];

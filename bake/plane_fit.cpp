@@ -47,11 +47,16 @@ class PlaneSearch {
                 ++hits_;
             }
         }
-        if (hits_ == 0) {
+        if (hits_ == 0 && edge_.empty()) {
             return std::nullopt;
         }
         good_enough_ = options_.pixel_cost * static_cast<double>(rays_.size());
         const glm::dvec3 facing = -centre_.direction / direction_length_;
+        if (hits_ == 0) {  // a surface enters the footprint between its rays
+            tryStanding();
+            refine();
+            return best_cost_ < kInfinity ? std::optional(best_) : std::nullopt;
+        }
         // The mean first: on a smooth surface nothing else is needed.
         const double sum_length = std::sqrt(dot(sum, sum));
         tryCode(codeOf(sum_length > 1e-6 ? sum / sum_length : facing));
@@ -63,12 +68,10 @@ class PlaneSearch {
         if (best_cost_ > good_enough_) {
             tryCode(codeOf(facing));
         }
-        if (best_cost_ > good_enough_ && !edge_.empty()) {
+        if (best_cost_ > good_enough_ && !edge_.empty() && hits_ < static_cast<int>(rays_.size())) {
             tryStanding();
         }
-        for (int step = 1 << options_.refinements >> 1; step > 0 && best_cost_ > good_enough_; step /= 2) {
-            tryNeighbours(step);
-        }
+        refine();
         if (best_cost_ == kInfinity) {
             takeFacing(facing);
         }
@@ -76,6 +79,12 @@ class PlaneSearch {
     }
 
   private:
+    void refine() {
+        for (int step = 1 << options_.refinements >> 1; step > 0 && best_cost_ > good_enough_; step /= 2) {
+            tryNeighbours(step);
+        }
+    }
+
     void tryNeighbours(int step) {
         const NormalIndex from = best_.index;
         for (int dt = -step; dt <= step; dt += step) {
@@ -156,10 +165,14 @@ class PlaneSearch {
         }
         glm::dvec3 met(0.0);
         glm::dvec3 passed(0.0);
-        for (const FootprintRay& ray : rays_) {
+        for (const FootprintRay& ray : hits_ > 0 ? rays_ : edge_) {
             if (ray.u >= 0.0) {
-                met += at(ray, u) / static_cast<double>(hits_);
-            } else {
+                met += at(ray, u) /
+                       static_cast<double>(hits_ > 0 ? static_cast<std::size_t>(hits_) : edge_.size());
+            }
+        }
+        for (const FootprintRay& ray : rays_) {
+            if (ray.u < 0.0) {
                 passed += at(ray, u) / static_cast<double>(static_cast<int>(rays_.size()) - hits_);
             }
         }
