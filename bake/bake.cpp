@@ -133,6 +133,7 @@ FittedMapOptions fitOptions(const TriangleMesh& mesh, const View& view, const Ba
     // A hundredth of a texel: far below what any texel can resolve.
     options.good_enough = 0.01 * side / std::max(view.width, view.height);
     options.look_around = bake.prefer == Prefer::kInside;
+    options.let_back = bake.prefer == Prefer::kOutside ? 0.4 : 0.0;
     return options;
 }
 
@@ -145,7 +146,7 @@ RefineOptions refineOptions(const BakeOptions& bake) {
             options.false_outside = 8.0;
             break;
         case Prefer::kOutside:
-            options.false_inside = 4.0;
+            options.false_inside = 2.0;
             options.false_outside = 1.0;
             break;
     }

@@ -93,6 +93,7 @@ class EndFitter {
         fit_.reach = options.reach / unit;
         fit_.pixel_cost = options.good_enough / unit;
         fit_.refinements = options.refinements;
+        fit_.let_back = options.let_back;
         rays_.resize(std::size_t{samples_} * samples_);
     }
 

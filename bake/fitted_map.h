@@ -26,6 +26,8 @@ struct FittedMapOptions {
     /// Surface points half a sample beyond the texel may not lie in front of its plane either: half as many
     /// points are called outside wrongly, and half as many again inside.
     bool look_around = false;
+    /// As PlaneFitOptions::let_back.
+    double let_back = 0.0;
 };
 
 /// What the fits of all maps share: the unit normal of every triangle.

@@ -119,6 +119,10 @@ class PlaneSearch {
         if (cosine > -kSteepCosine) {
             offset = std::max(offset, supportOf(edge_, normal));
         }
+        if (options_.let_back > 0.0 && !stands) {
+            const double spread = offset - lowestOf(rays_, normal);
+            offset -= spread < 0.25 * options_.range ? options_.let_back * spread : 0.0;
+        }
         const double from_zero = dot(normal, from_zero_);
         const double scaled =
             stands ? std::ceil(((offset + from_zero) / options_.range + 1.0) * 0.5 * kDepthCodes)
@@ -131,12 +135,24 @@ class PlaneSearch {
         double cost = 0.0;
         for (const FootprintRay& ray : rays_) {
             cost += freeSpaceBehind(ray, normal, stored);
+            cost += options_.let_back > 0.0 ? solidInFront(ray, normal, stored) : 0.0;
             if (cost >= best_cost_) {
                 return;
             }
         }
         best_cost_ = cost;
         best_ = {normal, unpackNormal(code), stands, static_cast<std::uint16_t>(scaled)};
+    }
+
+    [[nodiscard]] double lowestOf(std::span<const FootprintRay> rays, const glm::dvec3& normal) const {
+        double offset = kInfinity;
+        for (const FootprintRay& ray : rays) {
+            if (ray.u >= 0.0) {
+                offset = std::min(
+                    offset, dot(normal, ray.origin - centre_.origin) + ray.u * dot(normal, ray.direction));
+            }
+        }
+        return offset;
     }
 
     /// A plane that leans away from the viewer must not cut what lies behind the surface that the ray meets.
@@ -214,6 +230,17 @@ class PlaneSearch {
             return 0.0;
         }
         return std::min({options_.reach, end, along > 0.0 ? (offset - start) / along : kInfinity});
+    }
+
+    /// Length of the part of a ray that is solid but in front of the plane.
+    [[nodiscard]] double solidInFront(const FootprintRay& ray, const glm::dvec3& normal,
+                                      double offset) const {
+        const double along = dot(normal, ray.direction);
+        if (ray.u < 0.0 || !(along < 0.0)) {
+            return 0.0;
+        }
+        const double at_plane = (offset - dot(normal, ray.origin - centre_.origin)) / along;
+        return std::clamp(at_plane - ray.u, 0.0, options_.reach);
     }
 
     /// The last resort, where every plane leaves the depth range: facing the viewer, at the nearest sample.

@@ -41,6 +41,10 @@ struct PlaneFitOptions {
     double range = 0.0;       ///< standingRange of the map, object units
     double pixel_cost = 0.0;  ///< per ray: a fit whose mean error is below this, in u, is good enough, in u
     int refinements = 3;      ///< rounds of search among neighbouring normals; 0: none
+    /// Above 0 a plane is let back inwards by this part of the spread of the sampled points about it, so that
+    /// it cuts some of the solid and spares as much free space; not at steps, whose spread is more than
+    /// `range`/4.
+    double let_back = 0.0;
 };
 
 /// A half-space in a texel's own units.

@@ -19,7 +19,7 @@ namespace relief {
 namespace {
 
 constexpr double kDepthCodes = 65534.0;
-/// A change must be worth this: with few points a texel, less is noise.
+/// Points: a change must be worth as many of them; with few points a texel, less is noise.
 constexpr double kMargin = 3.0;
 /// Planes steeper than this reach deep into the solid, where no points are drawn; only the fit, which has
 /// seen the last surfaces too, may choose them.
@@ -193,7 +193,10 @@ struct Decided {
 /// The search for one end's plane among the points it decides.
 class PlaneChoice {
   public:
-    PlaneChoice(const TexelVotes& votes, const RefineOptions& options) : votes_(votes), options_(options) {}
+    PlaneChoice(const TexelVotes& votes, const RefineOptions& options)
+        : votes_(votes),
+          options_(options),
+          margin_(kMargin * std::max(options.false_inside, 0.5 * options.false_outside)) {}
 
     std::vector<Decided> points;
 
@@ -202,7 +205,7 @@ class PlaneChoice {
         end_ = end;
         best_ = current;
         const glm::dvec3& normal = decodedNormals()[current.normal];
-        best_cost_ = costOf(normal, votes_.offsetOf(current, normal, ray)) - kMargin;
+        best_cost_ = costOf(normal, votes_.offsetOf(current, normal, ray)) - margin_;
         if (best_cost_ < 0.0) {
             return current;
         }
@@ -294,6 +297,7 @@ class PlaneChoice {
 
     const TexelVotes& votes_;
     const RefineOptions& options_;
+    double margin_;
     const Ray* ray_ = nullptr;
     int end_ = 0;
     double steepest_ = 0.0;
