@@ -310,7 +310,7 @@ Result<Baked> bakeOnThisArena(const TriangleMesh& mesh, const BakeOptions& optio
 
     baked.collider.bounds = mesh.bounds;
     baked.collider.unit = mesh.unit;
-    baked.collider.provenance = {mesh.name, mesh.content_hash, mesh.triangles.size(),
+    baked.collider.provenance = {mesh.name, mesh.content_hash, mesh.sourceTriangles(),
                                  "relief " RELIEF_VERSION, effectiveOptions(*jobs, options)};
     return baked;
 }

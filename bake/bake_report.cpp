@@ -68,7 +68,7 @@ Json jsonPlan(const PlanReport& report) {
 std::string bakeText(const BakeSummary& summary, const std::string& output, std::size_t file_size) {
     const Baked& baked = summary.baked;
     std::string text =
-        summary.mesh.name + ": " + std::to_string(summary.mesh.triangles.size()) + " triangles";
+        summary.mesh.name + ": " + std::to_string(summary.mesh.sourceTriangles()) + " triangles";
     if (summary.mesh.dropped_triangles > 0) {
         text += ", " + std::to_string(summary.mesh.dropped_triangles) + " without area dropped";
     }
@@ -113,6 +113,8 @@ Json jsonBake(const BakeSummary& summary, const ContainerInfo& info, const Json&
     }
     json["settings"] = settings;
     json["plan"] = summary.plan ? jsonPlan(*summary.plan) : Json(nullptr);
+    json["closed_holes"] = summary.mesh.closed_holes;
+    json["cap_triangles"] = summary.mesh.cap_triangles;
     json["dropped_triangles"] = summary.mesh.dropped_triangles;
     json["times_ms"] = {{"import", times.import_ms}, {"plan", times.plan_ms},
                         {"search", times.search_ms}, {"build", report.build_ms},

@@ -16,6 +16,7 @@
 #include "bake/accuracy_summary.h"
 #include "bake/bake.h"
 #include "bake/distance_volume.h"
+#include "bake/hole_caps.h"
 #include "bake/mesh_import.h"
 #include "bake/points_csv.h"
 #include "bake/report.h"
@@ -98,7 +99,12 @@ Result<Baked> bakePaper(const TriangleMesh& mesh, std::uint64_t bytes) {
 }
 
 /// What `relief bake --budget` makes.
-Result<Baked> bakeOurs(const TriangleMesh& mesh, std::uint64_t bytes) {
+Result<Baked> bakeOurs(const TriangleMesh& open_mesh, std::uint64_t bytes) {
+    const Result<TriangleMesh> closed = closeHoles(open_mesh);
+    if (!closed) {
+        return forward(closed);
+    }
+    const TriangleMesh& mesh = *closed;
     const Result<MeshQuery> query = MeshQuery::build(mesh);
     if (!query) {
         return forward(query);

@@ -16,6 +16,7 @@
 #include "bake/budget_search.h"
 #include "bake/byte_count.h"
 #include "bake/command.h"
+#include "bake/hole_caps.h"
 #include "bake/mesh_import.h"
 #include "bake/mesh_query.h"
 #include "bake/plan_file.h"
@@ -50,6 +51,7 @@ struct BakeCommand {
     std::string prefer;
     std::string threads;
     std::string compress = "0";
+    std::string holes = "close";
     bool json = false;
 };
 
@@ -229,6 +231,10 @@ Result<Settings> settingsOf(const BakeCommand& command) {
             return forward(done);
         }
     }
+    if (command.holes != "close" && command.holes != "keep") {
+        return fail(ErrorCode::kUsage,
+                    "--holes is '" + cleanUtf8(command.holes) + "' but must be close or keep");
+    }
     if (!command.threads.empty()) {
         const Result<std::uint64_t> threads = parseCount(command.threads, "--threads");
         if (!threads) {
@@ -397,7 +403,8 @@ nlohmann::ordered_json jsonSettings(const BakeCommand& command, const Settings& 
             {"prefer", preferName(settings.bake.prefer)},
             {"threads", settings.bake.threads == 0 ? tbb::info::default_concurrency()
                                                    : static_cast<int>(settings.bake.threads)},
-            {"compress", settings.write.compression_level}};
+            {"compress", settings.write.compression_level},
+            {"holes", command.holes}};
 }
 
 Result<void> runBake(const BakeCommand& command) {
@@ -423,7 +430,7 @@ Result<void> runBake(const BakeCommand& command) {
 
     BakeTimes times;
     const Stopwatch import_watch;
-    const Result<TriangleMesh> mesh = importMesh(command.mesh);
+    Result<TriangleMesh> mesh = importMesh(command.mesh);
     times.import_ms = import_watch.ms();
     if (!mesh) {
         return forward(mesh);
@@ -434,8 +441,19 @@ Result<void> runBake(const BakeCommand& command) {
         spdlog::debug("{}: {} triangles without area dropped", mesh->name, mesh->dropped_triangles);
     }
 
+    if (command.holes == "close") {
+        mesh = closeHoles(std::move(*mesh));
+        if (!mesh) {
+            return forward(mesh);
+        }
+        if (mesh->closed_holes > 0) {
+            spdlog::info("{}: closed {} hole{} with {} triangles for baking: the mesh is nearly closed",
+                         mesh->name, mesh->closed_holes, mesh->closed_holes == 1 ? "" : "s",
+                         mesh->cap_triangles);
+        }
+    }
     std::optional<PlanReport> plan;
-    const Result<Baked> baked = makeCollider(command, *mesh, *settings, plan, times);
+    Result<Baked> baked = makeCollider(command, *mesh, *settings, plan, times);
     if (!baked) {
         return forward(baked);
     }
@@ -443,6 +461,9 @@ Result<void> runBake(const BakeCommand& command) {
         spdlog::warn(warning);
     }
 
+    if (command.holes == "keep") {
+        baked->collider.provenance.options += " --holes keep";
+    }
     const Stopwatch write_watch;
     const Result<std::vector<std::byte>> bytes = writeContainer(baked->collider, settings->write);
     if (!bytes) {
@@ -549,6 +570,9 @@ void addBake(CLI::App& app, Action& action) {
         ->option_text("N");
     verb.add_option("--compress", command->compress, "zstd level of the texels, 0 (none, default) to 19")
         ->option_text("LEVEL");
+    verb.add_option("--holes", command->holes,
+                    "Of a nearly closed mesh: close (bake it as a solid, default) or keep")
+        ->option_text("WORD");
     verb.add_flag("--json", command->json, "Print a report as JSON to standard output");
     verb.callback([command, &action] { action = [command] { return runBake(*command); }; });
 }

@@ -24,7 +24,12 @@ struct TriangleMesh {
     std::vector<glm::vec3> positions;   ///< object space
     std::vector<glm::uvec3> triangles;  ///< counter-clockwise seen from outside, if the source keeps to that
     std::uint64_t dropped_triangles = 0;  ///< without area, left out
-    Bounds bounds;                        ///< of positions
+    /// The last of `triangles` are not the source's: they close this many holes (hole_caps.h).
+    std::uint64_t cap_triangles = 0;
+    std::uint64_t closed_holes = 0;
+    Bounds bounds;  ///< of positions
+
+    [[nodiscard]] std::uint64_t sourceTriangles() const { return triangles.size() - cap_triangles; }
 };
 
 /// Turns raw positions and triangles into a mesh that keeps the invariants above: drops triangles without

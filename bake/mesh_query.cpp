@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <string>
-#include <vector>
 
 #include "bake/inside.h"
+#include "bake/mesh_edges.h"
 #include "bake/triangle_plane.h"
 
 namespace relief {
@@ -120,44 +119,6 @@ glm::dvec3 closestOnTriangle(const glm::dvec3& p, const glm::dvec3& a, const glm
     return a + (vb / sum) * ab + (vc / sum) * ac;
 }
 
-bool hasEvenEdges(const TriangleMesh& mesh) {
-    // Equal positions get one number, that of the first of them in lexicographic order.
-    const auto count = static_cast<std::uint32_t>(mesh.positions.size());
-    std::vector<std::uint32_t> order(count);
-    std::iota(order.begin(), order.end(), 0U);
-    const auto less = [&](std::uint32_t i, std::uint32_t j) {
-        const glm::vec3& a = mesh.positions[i];
-        const glm::vec3& b = mesh.positions[j];
-        return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
-    };
-    std::sort(order.begin(), order.end(), less);
-    std::vector<std::uint32_t> number(count);
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const bool same = i > 0 && mesh.positions[order[i]] == mesh.positions[order[i - 1]];
-        number[order[i]] = same ? number[order[i - 1]] : order[i];
-    }
-    std::vector<std::uint64_t> edges;
-    edges.reserve(3 * mesh.triangles.size());
-    for (const glm::uvec3& t : mesh.triangles) {
-        for (int i = 0; i < 3; ++i) {
-            const std::uint64_t a = number[t[i]];
-            const std::uint64_t b = number[t[(i + 1) % 3]];
-            edges.push_back(std::min(a, b) << 32 | std::max(a, b));
-        }
-    }
-    std::sort(edges.begin(), edges.end());
-    for (std::size_t i = 0; i < edges.size();) {
-        const std::size_t first = i;
-        while (i < edges.size() && edges[i] == edges[first]) {
-            ++i;
-        }
-        if ((i - first) % 2 == 1) {
-            return false;
-        }
-    }
-    return true;
-}
-
 }  // namespace
 
 struct MeshQuery::Impl {
@@ -230,7 +191,7 @@ Result<MeshQuery> MeshQuery::build(const TriangleMesh& mesh) {
     impl->mesh = &mesh;
     impl->center = 0.5 * glm::dvec3(mesh.bounds.min) + 0.5 * glm::dvec3(mesh.bounds.max);
     impl->scale = std::ldexp(1.0, -std::ilogb(mesh.bounds.longestSide()));
-    impl->watertight = hasEvenEdges(mesh);
+    impl->watertight = oddEdges(mesh).empty();
     impl->device.reset(rtcNewDevice(nullptr));
     if (!impl->device) {
         return embreeError(rtcGetDeviceError(nullptr), mesh.name);
@@ -277,18 +238,21 @@ bool MeshQuery::inside(const glm::vec3& p) const {
             return false;
         }
     }
-    const glm::vec3 origin = impl_->toLocal(p);
     constexpr std::size_t kMajority = kParityDirections.size() / 2 + 1;
     std::size_t votes[2] = {0, 0};
     for (const glm::dvec3& direction : kParityDirections) {
-        CrossingCounter counter;
-        RTCRayHit query = rayHit(origin, direction, std::numeric_limits<float>::infinity());
-        rtcIntersect1(impl_->scene.get(), &counter.context, &query);
-        if (++votes[counter.count % 2] == kMajority) {
+        if (++votes[crossings(p, direction) % 2] == kMajority) {
             break;
         }
     }
     return votes[1] >= kMajority;
+}
+
+unsigned MeshQuery::crossings(const glm::vec3& p, const glm::dvec3& direction) const {
+    CrossingCounter counter;
+    RTCRayHit query = rayHit(impl_->toLocal(p), direction, std::numeric_limits<float>::infinity());
+    rtcIntersect1(impl_->scene.get(), &counter.context, &query);
+    return counter.count;
 }
 
 ClosestPoint MeshQuery::closest(const glm::vec3& p, std::optional<std::uint32_t> hint) const {

@@ -43,6 +43,10 @@ class MeshQuery {
     /// the mesh is open, most directions still pass its holes by.
     [[nodiscard]] bool inside(const glm::vec3& p) const;
 
+    /// How many triangles a ray from `p` meets.
+    /// \param direction  of any length but 0.
+    [[nodiscard]] unsigned crossings(const glm::vec3& p, const glm::dvec3& direction) const;
+
     /// Every edge belongs to an even number of triangles, where equal positions are one: inside() is then the
     /// same at both ends of any segment that meets no surface.
     [[nodiscard]] bool watertight() const;

@@ -32,6 +32,21 @@ json info.json "d['maps'][3]['compare'] == 'greater' and d['maps'][3]['width'] =
 expect 0 "$relief" info box.relief
 grep -q 'front-back' stdout || die "info does not list the maps"
 
+# A nearly closed mesh is baked as a solid, and the report says so; what it was made from stays named.
+grep -v '^f 4 3 2 1' box.obj >open.obj
+expect 0 "$relief" bake open.obj -o open.relief --map cube:size=16 --json
+grep -q 'open.obj: closed 1 hole with 4 triangles for baking: the mesh is nearly closed' stderr ||
+    die "closing a hole is not reported: $(cat stderr)"
+cp stdout report.json
+json report.json "(d['closed_holes'], d['cap_triangles'], d['settings']['holes']) == (1, 4, 'close')"
+json report.json "d['provenance']['triangles'] == 10 and '--holes' not in d['provenance']['options']"
+expect 0 "$relief" bake open.obj -o kept.relief --map cube:size=16 --json --holes keep
+cp stdout report.json
+json report.json "(d['closed_holes'], d['cap_triangles'], d['settings']['holes']) == (0, 0, 'keep')"
+json report.json "d['provenance']['options'].endswith(' --holes keep')"
+cmp -s open.relief kept.relief && die "--holes keep closes holes"
+expect_error 1 'holes.*close or keep' "$relief" bake open.obj -o bad.relief --holes fill
+
 # Every format, projection and compare by hand; the effective settings are echoed.
 expect 0 "$relief" bake box.obj -o all.relief --resolution 32 --json \
     --map float:dir=+x --map float:dir=-y,compare=greater --map fixed8:dir=1/2/3,size=48x24 \

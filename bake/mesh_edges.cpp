@@ -1,0 +1,96 @@
+#include "bake/mesh_edges.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <bit>
+#include <functional>
+#include <numeric>
+
+namespace relief {
+namespace {
+
+/// Of each vertex the lowest index of an equal position.
+std::vector<std::uint32_t> weldedVertices(const TriangleMesh& mesh) {
+    std::vector<std::uint32_t> order(mesh.positions.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
+        const glm::vec3& a = mesh.positions[i];
+        const glm::vec3& b = mesh.positions[j];
+        return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z != b.z ? a.z < b.z : i < j;
+    });
+    std::vector<std::uint32_t> welded(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const bool same = i > 0 && mesh.positions[order[i]] == mesh.positions[order[i - 1]];
+        welded[order[i]] = same ? welded[order[i - 1]] : order[i];
+    }
+    return welded;
+}
+
+/// The last step of SplitMix64 (Steele, Lea, Flood 2014).
+std::uint64_t mixed(std::uint64_t z) {
+    z += 0x9e3779b97f4a7c15U;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebU;
+    return z ^ (z >> 31);
+}
+
+/// The same for equal positions.
+std::uint64_t hashOf(const glm::vec3& p) {
+    // −0 equals 0, and plus 0 is the same bits.
+    const auto bits = [](float value) { return std::uint64_t{std::bit_cast<std::uint32_t>(value + 0.0F)}; };
+    return mixed(mixed(bits(p.x) << 32 | bits(p.y)) + bits(p.z));
+}
+
+}  // namespace
+
+bool edgesAreEven(const TriangleMesh& mesh) {
+    std::vector<std::uint64_t> hashes(mesh.positions.size());
+    std::transform(mesh.positions.begin(), mesh.positions.end(), hashes.begin(), hashOf);
+    // Equal edges cancel out in pairs.
+    const auto sum = [&](const tbb::blocked_range<std::size_t>& range, std::uint64_t odd) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            const glm::uvec3& t = mesh.triangles[i];
+            odd ^= mixed(hashes[t.x] + hashes[t.y]) ^ mixed(hashes[t.y] + hashes[t.z]) ^
+                   mixed(hashes[t.z] + hashes[t.x]);
+        }
+        return odd;
+    };
+    return tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, mesh.triangles.size(), 4096),
+                                std::uint64_t{0}, sum, std::bit_xor<>()) == 0;
+}
+
+std::vector<OddEdge> oddEdges(const TriangleMesh& mesh) {
+    const std::vector<std::uint32_t> welded = weldedVertices(mesh);
+    // Lower vertex, higher vertex, and whether the triangle runs from the higher to the lower one: 31, 32 and
+    // 1 bit. Lower vertices fit, as a mesh of 2³¹ vertices is beyond kTriangleMax.
+    static_assert(3 * kTriangleMax < std::uint64_t{1} << 31);
+    std::vector<std::uint64_t> edges;
+    edges.reserve(3 * mesh.triangles.size());
+    for (const glm::uvec3& t : mesh.triangles) {
+        for (int i = 0; i < 3; ++i) {
+            const std::uint64_t a = welded[t[i]];
+            const std::uint64_t b = welded[t[(i + 1) % 3]];
+            edges.push_back(std::min(a, b) << 33 | std::max(a, b) << 1 | (a > b ? 1U : 0U));
+        }
+    }
+    std::sort(edges.begin(), edges.end());
+    std::vector<OddEdge> odd;
+    for (std::size_t i = 0; i < edges.size();) {
+        const std::uint64_t edge = edges[i] >> 1;
+        std::size_t up = 0;
+        std::size_t down = 0;
+        for (; i < edges.size() && edges[i] >> 1 == edge; ++i) {
+            ++((edges[i] & 1U) == 0 ? up : down);
+        }
+        if ((up + down) % 2 == 1) {
+            const auto low = static_cast<std::uint32_t>(edge >> 32);
+            const auto high = static_cast<std::uint32_t>(edge);
+            odd.push_back(up > down ? OddEdge{low, high} : OddEdge{high, low});
+        }
+    }
+    return odd;
+}
+
+}  // namespace relief
