@@ -132,7 +132,7 @@ FittedMapOptions fitOptions(const TriangleMesh& mesh, const View& view, const Ba
     options.reach = 0.02 * side;
     // A hundredth of a texel: far below what any texel can resolve.
     options.good_enough = 0.01 * side / std::max(view.width, view.height);
-    options.look_around = bake.prefer == Prefer::kInside;
+    options.cautious = bake.prefer == Prefer::kInside;
     options.let_back = bake.prefer == Prefer::kOutside ? 0.4 : 0.0;
     return options;
 }

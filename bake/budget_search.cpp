@@ -25,8 +25,8 @@ std::string percentText(double percent) {
 
 class Search {
   public:
-    Search(const MeshQuery& query, const BudgetSearchOptions& options)
-        : query_(query), options_(options), truth_(sampleTruth(query, options.accuracy)) {}
+    Search(const MeshQuery& query, const MeshQuery& truth, const BudgetSearchOptions& options)
+        : query_(query), options_(options), truth_(sampleTruth(truth, options.accuracy)) {}
 
     Result<BudgetSearchResult> run() {
         const std::uint64_t most = options_.budget_max;
@@ -113,8 +113,9 @@ class Search {
 
 }  // namespace
 
-Result<BudgetSearchResult> bakeForError(const MeshQuery& query, const BudgetSearchOptions& options) {
-    return Search(query, options).run();
+Result<BudgetSearchResult> bakeForError(const MeshQuery& query, const MeshQuery& truth,
+                                        const BudgetSearchOptions& options) {
+    return Search(query, truth, options).run();
 }
 
 }  // namespace relief

@@ -42,7 +42,9 @@ struct BudgetSearchResult {
 /// times what the promise needs (as far as more bytes mean fewer wrong points). Truth is sampled once. The
 /// same for any number of threads. Errors: kDifference (not reached: the message names the best), those of
 /// planViews and bake.
-[[nodiscard]] Result<BudgetSearchResult> bakeForError(const MeshQuery& query,
+/// \param query  of the mesh that is baked, its holes closed or not.
+/// \param truth  of the mesh that the points are measured against, as `relief check` does: with its holes.
+[[nodiscard]] Result<BudgetSearchResult> bakeForError(const MeshQuery& query, const MeshQuery& truth,
                                                       const BudgetSearchOptions& options);
 
 }  // namespace relief

@@ -315,7 +315,7 @@ Result<PlanReport> planMaps(const MeshQuery& query, Settings& settings) {
 }
 
 /// Bakes at the least budget that keeps --max-error.
-Result<Baked> searchBudget(const MeshQuery& query, const Settings& settings,
+Result<Baked> searchBudget(const MeshQuery& query, const MeshQuery& truth, const Settings& settings,
                            std::optional<PlanReport>& report) {
     BudgetSearchOptions options;
     options.max_error_percent = *settings.max_error;
@@ -327,7 +327,7 @@ Result<Baked> searchBudget(const MeshQuery& query, const Settings& settings,
         spdlog::info("{}: {:.3g} % of the points near the surface are on the wrong side",
                      bytesText(made.budget), made.wrong_percent);
     };
-    Result<BudgetSearchResult> found = bakeForError(query, options);
+    Result<BudgetSearchResult> found = bakeForError(query, truth, options);
     if (!found) {
         return forward(found);
     }
@@ -350,8 +350,10 @@ Result<Baked> bakeMaps(const BakeCommand& command, const TriangleMesh& mesh, Set
 }
 
 /// Chooses the maps and bakes them.
-Result<Baked> makeCollider(const BakeCommand& command, const TriangleMesh& mesh, Settings& settings,
-                           std::optional<PlanReport>& plan, BakeTimes& times) {
+/// \param imported  the mesh as it came, whose points --max-error is about.
+/// \param mesh      the same, its holes closed where it is nearly closed.
+Result<Baked> makeCollider(const BakeCommand& command, const TriangleMesh& imported, const TriangleMesh& mesh,
+                           Settings& settings, std::optional<PlanReport>& plan, BakeTimes& times) {
     if (settings.source == Source::kPlanner) {
         const Stopwatch watch;
         const Result<MeshQuery> query = MeshQuery::build(mesh);
@@ -359,7 +361,14 @@ Result<Baked> makeCollider(const BakeCommand& command, const TriangleMesh& mesh,
             return forward(query);
         }
         if (settings.max_error) {
-            Result<Baked> baked = searchBudget(*query, settings, plan);
+            std::optional<Result<MeshQuery>> open;
+            if (mesh.closed_holes > 0) {
+                open = MeshQuery::build(imported);
+                if (!*open) {
+                    return forward(*open);
+                }
+            }
+            Result<Baked> baked = searchBudget(*query, open ? **open : *query, settings, plan);
             times.search_ms = watch.ms();
             return baked;
         }
@@ -441,7 +450,11 @@ Result<void> runBake(const BakeCommand& command) {
         spdlog::debug("{}: {} triangles without area dropped", mesh->name, mesh->dropped_triangles);
     }
 
+    std::optional<TriangleMesh> imported;  // only --max-error looks back
     if (command.holes == "close") {
+        if (settings->max_error) {
+            imported = *mesh;
+        }
         mesh = closeHoles(std::move(*mesh));
         if (!mesh) {
             return forward(mesh);
@@ -453,7 +466,7 @@ Result<void> runBake(const BakeCommand& command) {
         }
     }
     std::optional<PlanReport> plan;
-    Result<Baked> baked = makeCollider(command, *mesh, *settings, plan, times);
+    Result<Baked> baked = makeCollider(command, imported ? *imported : *mesh, *mesh, *settings, plan, times);
     if (!baked) {
         return forward(baked);
     }

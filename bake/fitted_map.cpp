@@ -78,7 +78,6 @@ class EndFitter {
           fine_(fine),
           end_(view, end),
           samples_(options.samples),
-          look_around_(options.look_around),
           inside_out_(scene.winding() < 0.0),
           starts_free_(view.starts_free[static_cast<std::size_t>(end)]),
           other_starts_free_(view.projection() == Projection::kOrthographic &&
@@ -94,6 +93,7 @@ class EndFitter {
         fit_.pixel_cost = options.good_enough / unit;
         fit_.refinements = options.refinements;
         fit_.let_back = options.let_back;
+        fit_.cautious = options.cautious;
         rays_.resize(std::size_t{samples_} * samples_);
     }
 
@@ -120,10 +120,7 @@ class EndFitter {
             }
         }
         findEdge(here);
-        around_.clear();
-        if (look_around_) {
-            lookAround(here);
-        }
+        lookAround(here);
         const TexelRay centre = view_.ray(face, x, y);
         const std::optional<FittedPlane> plane =
             fitSupportingPlane(rays_, around_, edge_, end_.fromViewer(centre), centre.origin, fit_);
@@ -199,6 +196,7 @@ class EndFitter {
     }
 
     void lookAround(const Footprint& here) {
+        around_.clear();
         forEachAround(here, [&](std::uint32_t column, std::uint32_t row) {
             const std::size_t at = indexOf(here, column, row);
             const Hit& hit = here.hits[at];
@@ -260,7 +258,6 @@ class EndFitter {
     const View& fine_;
     EndView end_;
     std::uint32_t samples_;
-    bool look_around_;
     bool inside_out_;
     bool starts_free_;
     bool other_starts_free_;

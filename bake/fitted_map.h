@@ -25,7 +25,7 @@ struct FittedMapOptions {
     double good_enough = 0.0;
     /// Surface points half a sample beyond the texel may not lie in front of its plane either: half as many
     /// points are called outside wrongly, and half as many again inside.
-    bool look_around = false;
+    bool cautious = false;
     /// As PlaneFitOptions::let_back.
     double let_back = 0.0;
 };

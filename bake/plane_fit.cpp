@@ -17,6 +17,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// surface's edge: the edge itself has to support it. Others pass over it, and lose more by that than they
 /// gain.
 constexpr double kSteepCosine = 0.35;
+/// Planes steeper than this cut deep: a surface that stands out of the footprint's rays, in the rim of the
+/// texel, would leave a pit in the solid. The rays about the footprint have to lie behind them too.
+constexpr double kDeepCosine = 0.1;
 /// Planes between this and kPlaneGrazingMin are not stored: a reader's rounding could take them for the other
 /// kind.
 constexpr double kStandingMax = double{kStandingCosine} - 1e-4;
@@ -115,9 +118,12 @@ class PlaneSearch {
             return;
         }
         // Pushed until no sampled surface point lies in front.
-        double offset = std::max(supportOf(rays_, normal), supportOf(around_, normal));
+        double offset = supportOf(rays_, normal);
         if (cosine > -kSteepCosine) {
             offset = std::max(offset, supportOf(edge_, normal));
+        }
+        if (options_.cautious || cosine > -kDeepCosine) {
+            offset = std::max(offset, supportOf(around_, normal));
         }
         if (options_.let_back > 0.0 && !stands) {
             const double spread = offset - lowestOf(rays_, normal);

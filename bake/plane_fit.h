@@ -40,6 +40,7 @@ struct PlaneFitOptions {
     double reach = 1.0;       ///< free space behind the plane counts up to this length, in u
     double range = 0.0;       ///< standingRange of the map, object units
     double pixel_cost = 0.0;  ///< per ray: a fit whose mean error is below this, in u, is good enough, in u
+    bool cautious = false;    ///< all planes keep behind the rays about the footprint, not only steep ones
     int refinements = 3;      ///< rounds of search among neighbouring normals; 0: none
     /// Above 0 a plane is let back inwards by this part of the spread of the sampled points about it, so that
     /// it cuts some of the solid and spares as much free space; not at steps, whose spread is more than
@@ -62,7 +63,7 @@ struct FittedPlane {
 
 /// Fits one texel.
 /// \param rays    the footprint; at least one.
-/// \param around  rays beside the footprint, whose surface points may not lie in front either; may be empty.
+/// \param around  rays beside the footprint, whose surface points may not lie in front of steep planes either
 /// \param edge    rays that just meet a surface, beside ones that meet none: what a standing plane leans on.
 /// \param centre  the texel's centre ray, from the viewer on: where the plane's depth is stored.
 /// \param zero_depth  the point of that ray whose map depth is 0.

@@ -22,7 +22,7 @@ TEST(BudgetSearch, KeepsThePromiseWithLittleMoreThanItNeeds) {
     BudgetSearchOptions options = optionsFor(2.0);
     std::size_t told = 0;
     options.tried = [&](const BudgetTry&) { ++told; };
-    const Result<BudgetSearchResult> found = bakeForError(*query, options);
+    const Result<BudgetSearchResult> found = bakeForError(*query, *query, options);
     ASSERT_TRUE(found) << found.error().message;
     EXPECT_LE(found->chosen.wrong_percent, 2.0);
     EXPECT_EQ(found->chosen.bytes, found->baked.collider.texelBytes());
@@ -46,7 +46,7 @@ TEST(BudgetSearch, KeepsThePromiseWithLittleMoreThanItNeeds) {
 
     // The same again, on one thread.
     options.bake.threads = 1;
-    const Result<BudgetSearchResult> again = bakeForError(*query, options);
+    const Result<BudgetSearchResult> again = bakeForError(*query, *query, options);
     ASSERT_TRUE(again);
     EXPECT_EQ(*writeContainer(again->baked.collider), *writeContainer(found->baked.collider));
 }
@@ -55,7 +55,7 @@ TEST(BudgetSearch, AnEasyPromiseCostsTheLeastBudget) {
     const TriangleMesh mesh = makeTorusMesh(1.0, 0.4, 64, 32);
     const Result<MeshQuery> query = MeshQuery::build(mesh);
     ASSERT_TRUE(query);
-    const Result<BudgetSearchResult> found = bakeForError(*query, optionsFor(50.0));
+    const Result<BudgetSearchResult> found = bakeForError(*query, *query, optionsFor(50.0));
     ASSERT_TRUE(found);
     EXPECT_EQ(found->chosen.budget, 32'000U);
     EXPECT_EQ(found->tries.size(), 1U);
@@ -69,7 +69,7 @@ TEST(BudgetSearch, SaysWhatTheBestIsWhereThePromiseCannotBeKept) {
     options.budget_max = 50'000;
     std::vector<BudgetTry> tries;
     options.tried = [&](const BudgetTry& made) { tries.push_back(made); };
-    const Result<BudgetSearchResult> found = bakeForError(*query, options);
+    const Result<BudgetSearchResult> found = bakeForError(*query, *query, options);
     ASSERT_FALSE(found);
     EXPECT_EQ(found.error().code, ErrorCode::kDifference);
     ASSERT_EQ(tries.size(), 2U);
@@ -79,11 +79,12 @@ TEST(BudgetSearch, SaysWhatTheBestIsWhereThePromiseCannotBeKept) {
     // A limit below the usual start is the only budget.
     options.budget_max = 20'000;
     tries.clear();
-    EXPECT_FALSE(bakeForError(*query, options));
+    EXPECT_FALSE(bakeForError(*query, *query, options));
     ASSERT_EQ(tries.size(), 1U);
     EXPECT_EQ(tries[0].budget, 20'000U);
     options.budget_max = 10;
-    EXPECT_EQ(bakeForError(*query, options).error().code, ErrorCode::kUsage) << "too small for any plan";
+    EXPECT_EQ(bakeForError(*query, *query, options).error().code, ErrorCode::kUsage)
+        << "too small for any plan";
 }
 
 }  // namespace
