@@ -95,10 +95,10 @@ std::string bakeText(const BakeSummary& summary, const std::string& output, std:
                   times.search_ms > 0.0 ? times.search_ms : times.plan_ms);
     text += line;
     std::snprintf(line, sizeof(line),
-                  "%stree %.0f, rays %.0f, texels %.0f, planes %.0f, refining %.0f%s, writing %.0f\n",
+                  "%stree %.0f, rays %.0f, texels %.0f, planes %.0f, refining %.0f%s writing %.0f\n",
                   times.search_ms > 0.0 ? "its last bake: " : "", baked.report.build_ms,
                   baked.report.trace_ms, baked.report.encode_ms, baked.report.fit_ms, baked.report.refine_ms,
-                  times.search_ms > 0.0 ? ";" : "", times.write_ms);
+                  times.search_ms > 0.0 ? ";" : ",", times.write_ms);
     text += line;
     return text + (output == "-" ? "standard output" : quotedPath(output)) + ": " + bytesText(file_size) +
            "\n";

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,7 @@
 namespace relief {
 namespace {
 
-/// The three texel layouts that the shader samples, each in a texture array of its own.
+/// The three texel layouts that the shader samples, each in a texture of its own.
 struct Layout {
     const char* sampler;
     GLenum internal_format;
@@ -39,74 +40,37 @@ std::size_t layoutOf(MapFormat format) {
     return 1;
 }
 
-/// Where a map's texel (0, 0) lies: in layer `layer`, and a cube's face f in layer `layer` + f.
-struct Place {
-    GLint x = 0;
-    GLint y = 0;
-    GLint layer = 0;
+/// A texture whose texels are counted row by row.
+struct Wrapped {
+    int log2_width = 0;
+    std::size_t texels = 0;
+
+    [[nodiscard]] GLint width() const { return GLint{1} << log2_width; }
+    [[nodiscard]] std::size_t height() const {
+        return (texels + (std::size_t{1} << log2_width) - 1) >> log2_width;
+    }
 };
 
-/// Fills the layers of one texture array with rectangles, shelf by shelf from the bottom up. Cubes take
-/// stacks of six layers, other maps stacks of one.
-class LayerPacker {
-  public:
-    LayerPacker(GLint width, GLint height) : width_(width), height_(height) {}
-
-    Place add(GLint width, GLint height, GLint depth) {
-        for (Stack& stack : stacks_) {
-            if (stack.depth == depth && fits(stack, width, height)) {
-                return take(stack, width, height);
-            }
-        }
-        stacks_.push_back({layers_, depth, 0, 0, 0});
-        layers_ += depth;
-        return take(stacks_.back(), width, height);
+/// The narrowest that is no higher than wide.
+Wrapped wrappedFor(std::size_t texels) {
+    Wrapped wrapped{0, texels};
+    while (wrapped.height() > static_cast<std::size_t>(wrapped.width())) {
+        ++wrapped.log2_width;
     }
-    [[nodiscard]] GLint layers() const { return layers_; }
-
-  private:
-    struct Stack {
-        GLint layer;
-        GLint depth;
-        GLint x;  // next free column of the shelf
-        GLint y;  // lower edge of the shelf
-        GLint shelf_height;
-    };
-
-    bool fits(const Stack& stack, GLint width, GLint height) const {
-        const bool on_shelf = stack.x + width <= width_ && stack.y + height <= height_;
-        const bool on_next = stack.y + stack.shelf_height + height <= height_;
-        return on_shelf || on_next;
-    }
-    Place take(Stack& stack, GLint width, GLint height) const {
-        if (stack.x + width > width_ || stack.y + height > height_) {
-            stack.y += stack.shelf_height;
-            stack.x = 0;
-            stack.shelf_height = 0;
-        }
-        const Place place{stack.x, stack.y, stack.layer};
-        stack.x += width;
-        stack.shelf_height = std::max(stack.shelf_height, height);
-        return place;
-    }
-
-    GLint width_;
-    GLint height_;
-    GLint layers_ = 0;
-    std::vector<Stack> stacks_;
-};
+    return wrapped;
+}
 
 /// One element of the shader's ReliefMap array, std140.
 struct BlockMap {
     glm::vec4 row[3];
     glm::vec4 object_per_map;
-    std::int32_t rect[4];
+    std::int32_t place[4];
     std::int32_t info[4];
 };
 static_assert(sizeof(BlockMap) == 96);
 constexpr std::size_t kBlockHead = 16;
 
-BlockMap blockMap(const DepthMap& map, const Place& place) {
+BlockMap blockMap(const DepthMap& map, std::size_t first_texel) {
     constexpr int kKeepsFarthest = 1;
     constexpr int kEncloses = 2;
     constexpr int kEmptyIsOutside = 4;
@@ -115,32 +79,36 @@ BlockMap blockMap(const DepthMap& map, const Place& place) {
     std::copy(std::begin(map.object_to_map.row), std::end(map.object_to_map.row), std::begin(block.row));
     block.object_per_map = glm::vec4(
         map.object_per_map, standingRange(map.projection(), map.object_per_map, map.width, map.height));
-    const std::int32_t rect[4] = {place.x, place.y, place.layer, static_cast<std::int32_t>(map.width)};
+    const auto width = static_cast<std::int32_t>(map.width);
+    const auto height = static_cast<std::int32_t>(map.height);
+    const std::int32_t place[4] = {static_cast<std::int32_t>(first_texel), width, width * height, width};
     const std::int32_t flags = (map.compare == Compare::kGreater ? kKeepsFarthest : 0) |
                                (map.encloses ? kEncloses : 0) | (map.empty_is_outside ? kEmptyIsOutside : 0) |
                                (map.decode == Decode::kPlane ? kPlane : 0);
-    const std::int32_t info[4] = {static_cast<std::int32_t>(map.height),
-                                  static_cast<std::int32_t>(map.format), flags, 0};
-    std::memcpy(block.rect, rect, sizeof(rect));
+    const std::int32_t info[4] = {height, static_cast<std::int32_t>(map.format), flags, 0};
+    std::memcpy(block.place, place, sizeof(place));
     std::memcpy(block.info, info, sizeof(info));
     return block;
 }
 
-GlTexture makeArray(const Layout& layout, GLint width, GLint height, GLint layers) {
-    GLuint name = 0;
-    glGenTextures(1, &name);
-    GlTexture texture(name);
-    glBindTexture(GL_TEXTURE_2D_ARRAY, name);
-    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) {
-        glTexParameteri(GL_TEXTURE_2D_ARRAY, filter, GL_NEAREST);
+/// Uploads texels that follow each other, from index `first` on; the texture is bound.
+void upload(const Layout& layout, const Wrapped& wrapped, std::size_t first,
+            std::span<const std::byte> bytes) {
+    const auto width = static_cast<std::size_t>(wrapped.width());
+    std::size_t left = bytes.size() / layout.texel_size;
+    const std::byte* from = bytes.data();
+    while (left > 0) {
+        const std::size_t x = first % width;
+        // The rest of a row, or as many whole rows as there are.
+        const std::size_t columns = std::min(left, width - x);
+        const std::size_t rows = x == 0 && left >= width ? left / width : 1;
+        glTexSubImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(x), static_cast<GLint>(first / width),
+                        static_cast<GLsizei>(columns), static_cast<GLsizei>(rows), layout.format, layout.type,
+                        from);
+        first += columns * rows;
+        left -= columns * rows;
+        from += columns * rows * layout.texel_size;
     }
-    for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T}) {
-        glTexParameteri(GL_TEXTURE_2D_ARRAY, wrap, GL_CLAMP_TO_EDGE);
-    }
-    glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAX_LEVEL, 0);
-    glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, static_cast<GLint>(layout.internal_format), width, height, layers, 0,
-                 layout.format, layout.type, nullptr);
-    return texture;
 }
 
 GLint limit(GLenum what) {
@@ -163,68 +131,59 @@ Result<ColliderTextures> ColliderTextures::create(const Collider& collider) {
                                            "; bake it with fewer");
     }
 
-    // One array a layout, its layers as large as the largest of its maps.
-    std::array<GLint, 3> width{};
-    std::array<GLint, 3> height{};
-    const GLint size_max = limit(GL_MAX_TEXTURE_SIZE);
+    std::array<std::size_t, 3> texels{};
+    std::vector<std::size_t> first_texel;
     for (const DepthMap& map : collider.maps) {
-        const auto w = static_cast<GLint>(map.width);
-        const auto h = static_cast<GLint>(map.height);
-        if (std::max(w, h) > size_max) {
-            return fail(ErrorCode::kLimit, "a map has " + std::to_string(w) + "x" + std::to_string(h) +
-                                               " texels, this GL takes " + std::to_string(size_max) +
-                                               " along a side; bake it with a smaller size");
-        }
-        const std::size_t layout = layoutOf(map.format);
-        width[layout] = std::max(width[layout], w);
-        height[layout] = std::max(height[layout], h);
+        std::size_t& used = texels[layoutOf(map.format)];
+        first_texel.push_back(used);
+        used += std::size_t{map.width} * map.height * map.faceCount();
     }
-    std::array<LayerPacker, 3> packers = {LayerPacker{width[0], height[0]}, LayerPacker{width[1], height[1]},
-                                          LayerPacker{width[2], height[2]}};
-    std::vector<Place> places;
+    std::array<Wrapped, 3> wrapped;
+    const GLint size_max = limit(GL_MAX_TEXTURE_SIZE);
+    for (std::size_t i = 0; i < texels.size(); ++i) {
+        wrapped[i] = wrappedFor(texels[i]);
+        if (wrapped[i].width() > size_max) {
+            return fail(ErrorCode::kLimit, "the collider's maps have " + std::to_string(texels[i]) +
+                                               " texels of one layout, this GL takes " +
+                                               std::to_string(size_max) + "x" + std::to_string(size_max) +
+                                               " in a texture; bake it with fewer bytes");
+        }
+    }
+
     std::vector<BlockMap> blocks;
-    for (const DepthMap& map : collider.maps) {
-        places.push_back(packers[layoutOf(map.format)].add(static_cast<GLint>(map.width),
-                                                           static_cast<GLint>(map.height),
-                                                           static_cast<GLint>(map.faceCount())));
-        blocks.push_back(blockMap(map, places.back()));
+    for (std::size_t m = 0; m < collider.maps.size(); ++m) {
+        blocks.push_back(blockMap(collider.maps[m], first_texel[m]));
     }
 
     const PassState state;                 // row lengths and skips among it: texels are tightly packed
     while (glGetError() != GL_NO_ERROR) {  // of the caller, not ours
     }
     ColliderTextures result;
-    const std::array<GlTexture*, 3> arrays = {&result.float_maps_, &result.fixed_maps_,
-                                              &result.front_back_maps_};
-    const GLint layer_max = limit(GL_MAX_ARRAY_TEXTURE_LAYERS);
+    const std::array<GlTexture*, 3> textures = {&result.float_maps_, &result.fixed_maps_,
+                                                &result.front_back_maps_};
     glActiveTexture(GL_TEXTURE0);
-    for (std::size_t i = 0; i < arrays.size(); ++i) {
-        if (packers[i].layers() > layer_max) {
-            return fail(ErrorCode::kLimit, "the collider's maps need " + std::to_string(packers[i].layers()) +
-                                               " texture layers, this GL takes " + std::to_string(layer_max) +
-                                               "; bake it with fewer maps");
-        }
+    for (std::size_t i = 0; i < textures.size(); ++i) {
+        const Layout& layout = kLayouts[i];
+        const auto height = static_cast<GLsizei>(wrapped[i].height());
         // A layout that no map uses still gets one texel, for a sampler must have something bound.
-        const GLint layers = std::max(packers[i].layers(), 1);
-        *arrays[i] = makeArray(kLayouts[i], std::max(width[i], 1), std::max(height[i], 1), layers);
-        result.bytes_ += kLayouts[i].texel_size * static_cast<std::size_t>(width[i]) *
-                         static_cast<std::size_t>(height[i]) * static_cast<std::size_t>(packers[i].layers());
+        *textures[i] = makeTexture2D(layout.internal_format, wrapped[i].width(), std::max(height, 1),
+                                     layout.format, layout.type, nullptr);
+        result.bytes_ += layout.texel_size * static_cast<std::size_t>(wrapped[i].width()) *
+                         static_cast<std::size_t>(height);
     }
     for (std::size_t m = 0; m < collider.maps.size(); ++m) {
         const DepthMap& map = collider.maps[m];
         const std::size_t i = layoutOf(map.format);
-        glBindTexture(GL_TEXTURE_2D_ARRAY, arrays[i]->name());
-        // The faces of a cube follow each other in the payload as the layers do in the array.
-        glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, places[m].x, places[m].y, places[m].layer,
-                        static_cast<GLsizei>(map.width), static_cast<GLsizei>(map.height),
-                        static_cast<GLsizei>(map.faceCount()), kLayouts[i].format, kLayouts[i].type,
-                        map.texels.data());
+        glBindTexture(GL_TEXTURE_2D, textures[i]->name());
+        upload(kLayouts[i], wrapped[i], first_texel[m], map.texels);
     }
 
     result.block_ = makeBuffer();
     std::vector<std::byte> bytes(kBlockHead + blocks.size() * sizeof(BlockMap));
-    const auto count = static_cast<std::int32_t>(blocks.size());
-    std::memcpy(bytes.data(), &count, sizeof(count));
+    const std::int32_t head[4] = {static_cast<std::int32_t>(blocks.size()), wrapped[0].log2_width,
+                                  wrapped[1].log2_width, wrapped[2].log2_width};
+    static_assert(sizeof(head) == kBlockHead);
+    std::memcpy(bytes.data(), head, sizeof(head));
     std::memcpy(bytes.data() + kBlockHead, blocks.data(), blocks.size() * sizeof(BlockMap));
     glBindBuffer(GL_UNIFORM_BUFFER, result.block_.name());
     glBufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(bytes.size()), bytes.data(), GL_STATIC_DRAW);
@@ -267,7 +226,7 @@ void ColliderTextures::bind(const Binding& binding) const {
     const std::array<GLuint, 3> names = {float_maps_.name(), fixed_maps_.name(), front_back_maps_.name()};
     for (std::size_t i = 0; i < names.size(); ++i) {
         glActiveTexture(static_cast<GLenum>(GL_TEXTURE0 + binding.first_unit + static_cast<int>(i)));
-        glBindTexture(GL_TEXTURE_2D_ARRAY, names[i]);
+        glBindTexture(GL_TEXTURE_2D, names[i]);
     }
     glBindBufferBase(GL_UNIFORM_BUFFER, static_cast<GLuint>(binding.uniform_block), block_.name());
 }

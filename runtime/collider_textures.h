@@ -1,10 +1,12 @@
-// One Collider on the GPU: three texture arrays and a uniform block, read by shaders/collider.glsl.
+// One Collider on the GPU: three textures and a uniform block, read by shaders/collider.glsl.
 //
-// Maps of one texel layout share a 2-D texture array: RGBA32F for float, RGBA8 for fixed8 and cube,
-// RGBA16UI for front-back of either depth. A map is a rectangle in a layer, a cube six rectangles at the same
-// place of six layers in a row. Payloads are uploaded as they lie in the container.
+// Maps of one texel layout share a 2-D texture: RGBA32F for float, RGBA8 for fixed8 and cube, RGBA16UI for
+// front-back of either depth. Their texels follow each other as they do in the container, wrapped at the
+// texture's width, so that the textures take the maps' bytes and, each, less than a row more:
 //
-//     bytes on the GPU = Σ over the three arrays: layer width · layer height · layers · texel size
+//     bytes on the GPU < Σ texel bytes + Σ over the textures: width · texel size
+//
+// The width is the least power of two that makes the texture no higher than wide.
 #pragma once
 
 #include <cstddef>
@@ -24,8 +26,8 @@ class ColliderTextures {
     };
 
     /// Uploads a collider. Needs a current context.
-    /// Errors: kLimit (a map or the number of maps above what this GL takes; the message has both numbers),
-    /// kUnsupported (no maps).
+    /// Errors: kLimit (the texels or the number of maps above what this GL takes; the message has both
+    /// numbers), kUnsupported (no maps).
     [[nodiscard]] static Result<ColliderTextures> create(const Collider& collider);
 
     /// Connects a program that includes collider.glsl: samplers, block binding. Once after linking; leaves

@@ -65,7 +65,7 @@ Result<GLuint> compile(GLenum stage, std::string_view file, std::string_view def
     source += defines;
     source +=
         "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n"
-        "precision highp sampler3D;\nprecision highp sampler2DArray;\nprecision highp usampler2DArray;\n";
+        "precision highp usampler2D;\nprecision highp sampler3D;\n";
     source += "#line 1\n";
     source += *body;
 
@@ -207,7 +207,7 @@ struct GlStateGuard::Saved {
         read_framebuffer;
     std::array<GLint, 4> viewport, scissor;
     GLint active_texture;
-    std::array<GLint, kUnits> texture_2d, texture_2d_array;
+    std::array<GLint, kUnits> texture_2d;
     GLboolean blend, depth_test, cull_face, scissor_test;
     GLint blend_source_rgb, blend_destination_rgb, blend_source_alpha, blend_destination_alpha;
     GLint blend_equation_rgb, blend_equation_alpha;
@@ -234,7 +234,6 @@ GlStateGuard::GlStateGuard() : saved_(std::make_unique<Saved>()) {
     for (std::size_t unit = 0; unit < kUnits; ++unit) {
         glActiveTexture(static_cast<GLenum>(GL_TEXTURE0 + unit));
         glGetIntegerv(GL_TEXTURE_BINDING_2D, &s.texture_2d[unit]);
-        glGetIntegerv(GL_TEXTURE_BINDING_2D_ARRAY, &s.texture_2d_array[unit]);
     }
     s.blend = glIsEnabled(GL_BLEND);
     s.depth_test = glIsEnabled(GL_DEPTH_TEST);
@@ -282,7 +281,6 @@ GlStateGuard::~GlStateGuard() {
     for (std::size_t unit = 0; unit < kUnits; ++unit) {
         glActiveTexture(static_cast<GLenum>(GL_TEXTURE0 + unit));
         glBindTexture(GL_TEXTURE_2D, name(s.texture_2d[unit]));
-        glBindTexture(GL_TEXTURE_2D_ARRAY, name(s.texture_2d_array[unit]));
     }
     glActiveTexture(word(s.active_texture));
     set(GL_BLEND, s.blend);

@@ -105,7 +105,7 @@ using GlRenderbuffer = GlName<gl_detail::deleteRenderbuffer>;
 /// Saves, on construction, the GL state that Relief's passes touch, sets what they count on (no blending,
 /// tests or masks, tight pixel rows), and restores it on destruction: current program, vertex array,
 /// array/uniform/pixel-unpack buffer, draw and read framebuffer, viewport, scissor, active texture unit and
-/// the 2-D and 2-D-array textures of the first `kUnits` units, blend, depth, cull and scissor switches, blend
+/// the 2-D textures of the first `kUnits` units, blend, depth, cull and scissor switches, blend
 /// functions, depth function and mask, colour mask, clear colour, pixel store alignment.
 class GlStateGuard {
   public:

@@ -9,8 +9,7 @@ bin=$(scripts/build.sh release relief relief-sim)
 out=${1:-out/demo}
 mkdir -p "$out"
 
-"$bin/relief" bake /usr/share/glmark2/models/bunny.obj -o "$out/bunny.relief" --paper
-"$bin/relief" info "$out/bunny.relief"
+"$bin/relief" bake /usr/share/glmark2/models/bunny.obj -o "$out/bunny.relief" --prefer inside
 for axis in x y z; do
     "$bin/relief" slice "$out/bunny.relief" --axis $axis --at center --size 480 -o "$out/slice_$axis.png"
 done

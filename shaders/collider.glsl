@@ -21,18 +21,20 @@ struct ReliefMap {
     vec4 row[3];           // object_to_map; rows are orthogonal
     vec4 object_per_map;   // xyz; z is z_scale of an orthographic map, xyz the paper's s of a cube; w: the
                            // largest offset of a standing plane
-    ivec4 rect;            // x, y of texel (0,0) in its layer; layer of face 0; width
+    ivec4 place;           // index of texel (0,0) of face 0; from row to row; from face to face; width
     ivec4 info;            // height; format; flags: the sum of RELIEF_KEEPS_FARTHEST…
 };
 
 layout(std140) uniform ReliefCollider {
-    ivec4 u_relief_count;  // x: maps in use
+    ivec4 u_relief_count;  // maps in use; log2 of the widths of the textures: float, fixed, front-back
     ReliefMap u_relief_maps[RELIEF_MAP_CAPACITY];
 };
 
-uniform highp sampler2DArray u_relief_float;
-uniform highp sampler2DArray u_relief_fixed;
-uniform highp usampler2DArray u_relief_front_back;
+// Texels of all maps in a row, wrapped at the texture's width: texel i is at (i mod width, i / width). So maps of
+// any sizes lie together without a gap.
+uniform highp sampler2D u_relief_float;
+uniform highp sampler2D u_relief_fixed;
+uniform highp usampler2D u_relief_front_back;
 
 const int RELIEF_FLOAT32 = 0;
 const int RELIEF_FIXED8 = 1;
@@ -218,18 +220,22 @@ vec3 reliefPackedNormal(uint packed_normal) {
     return reliefNormal(vec2(float(packed_normal >> 8), float(packed_normal & 255u)));
 }
 
+ivec2 reliefTexel(int index, int log2_width) {
+    return ivec2(index & ((1 << log2_width) - 1), index >> log2_width);
+}
+
 // R,G: normal; B,A: 16-bit fixed-point depth, 0 where empty.
-bool reliefFixedTexel(ivec3 at, float depth_max, out float depth, out vec3 normal) {
-    vec4 bytes = floor(texelFetch(u_relief_fixed, at, 0) * 255.0 + 0.5);
+bool reliefFixedTexel(int index, float depth_max, out float depth, out vec3 normal) {
+    vec4 bytes = floor(texelFetch(u_relief_fixed, reliefTexel(index, u_relief_count.z), 0) * 255.0 + 0.5);
     float code = bytes.b * 256.0 + bytes.a;
     depth = (code - 1.0) * (depth_max / 65534.0);
     normal = reliefNormal(bytes.rg);
     return code > 0.0;
 }
 
-void reliefVoteOrthographic(inout ReliefField best, int i, vec3 p, ivec4 rect, ivec4 info) {
+void reliefVoteOrthographic(inout ReliefField best, int i, vec3 p, ivec4 place, ivec4 info) {
     bool encloses = (info.z & RELIEF_ENCLOSES) != 0;
-    vec2 size = vec2(float(rect.w), float(info.x));
+    vec2 size = vec2(float(place.w), float(info.x));
     vec2 at = p.xy * size;
     bool in_window = at.x >= 1.0 && at.y >= 1.0 && at.x < size.x - 1.0 && at.y < size.y - 1.0;
     bool in_depth = p.z >= 0.0 && p.z <= 1.0;
@@ -239,7 +245,7 @@ void reliefVoteOrthographic(inout ReliefField best, int i, vec3 p, ivec4 rect, i
         }
         return;
     }
-    ivec3 texel = ivec3(rect.xy + ivec2(at), rect.z);
+    int texel = place.x + int(at.y) * place.y + int(at.x);
 
     // One texel holds one surface or, front-back, two: the nearer in front, the farther in back.
     bool plane = reliefIsPlane(info);
@@ -250,7 +256,7 @@ void reliefVoteOrthographic(inout ReliefField best, int i, vec3 p, ivec4 rect, i
     vec3 normal;
     float vote;
     if (reliefIsFrontBack(info)) {
-        uvec4 words = texelFetch(u_relief_front_back, texel, 0);
+        uvec4 words = texelFetch(u_relief_front_back, reliefTexel(texel, u_relief_count.w), 0);
         found = words.b != 0u || words.a != 0u;
         float front = reliefFrontBackDepth(info.y, words.b);
         float back = reliefFrontBackDepth(info.y, words.a);
@@ -275,7 +281,7 @@ void reliefVoteOrthographic(inout ReliefField best, int i, vec3 p, ivec4 rect, i
         }
     } else {
         if (reliefIsFloat(info)) {
-            vec4 values = texelFetch(u_relief_float, texel, 0);
+            vec4 values = texelFetch(u_relief_float, reliefTexel(texel, u_relief_count.y), 0);
             normal = values.rgb;
             depth = values.a;
             found = depth >= 0.0;
@@ -301,7 +307,7 @@ void reliefVoteOrthographic(inout ReliefField best, int i, vec3 p, ivec4 rect, i
     reliefAdd(best, vote, normal, i);
 }
 
-void reliefVoteCube(inout ReliefField best, int i, vec3 p, ivec4 rect, ivec4 info) {
+void reliefVoteCube(inout ReliefField best, int i, vec3 p, ivec4 place, ivec4 info) {
     bool in_volume = all(lessThanEqual(abs(p), vec3(1.0)));
     if (!in_volume && (info.z & RELIEF_ENCLOSES) == 0) {
         return;
@@ -313,10 +319,11 @@ void reliefVoteCube(inout ReliefField best, int i, vec3 p, ivec4 rect, ivec4 inf
     float radius = reliefLength(p);
     vec3 direction = radius > 0.0 ? p / radius : vec3(1.0, 0.0, 0.0);
     vec3 st_face = reliefCubeCoordinates(direction);
-    ivec2 at = min(ivec2(st_face.xy * float(rect.w)), ivec2(rect.w - 1));
+    ivec2 at = min(ivec2(st_face.xy * float(place.w)), ivec2(place.w - 1));
     float depth;
     vec3 normal;
-    if (!reliefFixedTexel(ivec3(rect.xy + at, rect.z + int(st_face.z)), RELIEF_CUBE_DEPTH_MAX, depth, normal)) {
+    int texel = place.x + int(st_face.z) * place.z + at.y * place.y + at.x;
+    if (!reliefFixedTexel(texel, RELIEF_CUBE_DEPTH_MAX, depth, normal)) {
         if ((info.z & RELIEF_EMPTY_IS_OUTSIDE) != 0) {
             reliefAdd(best, RELIEF_FAR_OUTSIDE, vec3(0.0), i);
         }
@@ -324,7 +331,7 @@ void reliefVoteCube(inout ReliefField best, int i, vec3 p, ivec4 rect, ivec4 inf
     }
     float vote;
     if (reliefIsPlane(info)) {
-        vec3 center = reliefCubeDirection(vec3((vec2(at) + 0.5) / float(rect.w), st_face.z));
+        vec3 center = reliefCubeDirection(vec3((vec2(at) + 0.5) / float(place.w), st_face.z));
         vec3 ray = center / reliefLength(center);
         vec2 along = vec2(reliefLength(u_relief_maps[i].object_per_map.xyz * ray), reliefAcross(i, normal, ray));
         vote = reliefPlane(i, normal, depth, RELIEF_CUBE_DEPTH_MAX, p, ray, along);
@@ -344,12 +351,12 @@ void reliefVote(inout ReliefField best, int i, vec3 p) {
     vec4 row1 = u_relief_maps[i].row[1];
     vec4 row2 = u_relief_maps[i].row[2];
     vec3 in_map = vec3(reliefRow(row0, p), reliefRow(row1, p), reliefRow(row2, p));
-    ivec4 rect = u_relief_maps[i].rect;
+    ivec4 place = u_relief_maps[i].place;
     ivec4 info = u_relief_maps[i].info;
     if (reliefIsCube(info)) {
-        reliefVoteCube(best, i, in_map, rect, info);
+        reliefVoteCube(best, i, in_map, place, info);
     } else {
-        reliefVoteOrthographic(best, i, in_map, rect, info);
+        reliefVoteOrthographic(best, i, in_map, place, info);
     }
 }
 

@@ -361,12 +361,29 @@ TEST_P(FieldQueryGlTest, TooManyMapsAndTooLargeMapsAreNamedErrors) {
     EXPECT_NE(many.error().message.find("20000 maps"), std::string::npos) << many.error().message;
 
     collider.maps.resize(1);
-    collider.maps[0].width = 1U << 20U;
-    collider.maps[0].texels.resize(collider.maps[0].texelBytes());
+    collider.maps[0].width = collider.maps[0].height = 1U << 16U;
     const auto large = FieldQuery::create(collider);
     ASSERT_FALSE(large);
     EXPECT_EQ(large.error().code, ErrorCode::kLimit);
-    EXPECT_NE(large.error().message.find("1048576x3"), std::string::npos) << large.error().message;
+    EXPECT_NE(large.error().message.find("4294967296 texels"), std::string::npos) << large.error().message;
+}
+
+/// A map may be longer than the GL's textures are wide, and the bytes on the GPU are the maps' own.
+TEST_P(FieldQueryGlTest, MapsOfAnyShapeLieTogetherWithoutAGap) {
+    std::mt19937 random(20);
+    Collider collider;
+    for (const MapFormat format : {MapFormat::kFixed8, MapFormat::kFrontBackFixed, MapFormat::kFloat32}) {
+        const Compare compare = isFrontBack(format) ? Compare::kBoth : Compare::kLess;
+        collider.maps.push_back(randomMap(format, compare, 20'000, 3, random));
+        collider.maps.push_back(randomMap(format, compare, 3, 777, random));
+    }
+    collider.maps.push_back(randomMap(MapFormat::kCube8, Compare::kLess, 19, 19, random));
+    // A column is no more than a hundred roundings of x wide.
+    expectAgreement(collider, randomPoints(20'000, random), 1e-3F, 4e-2);
+    const auto textures = ColliderTextures::create(collider);
+    ASSERT_TRUE(textures);
+    EXPECT_GE(textures->bytes(), collider.texelBytes());
+    EXPECT_LE(textures->bytes(), collider.texelBytes() + 1024 * (4 + 8 + 16)) << "less than a row each";
 }
 
 /// What a caller has bound must still be bound afterwards.
