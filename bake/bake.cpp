@@ -329,18 +329,6 @@ const char* qualityName(Quality quality) {
     return "unknown";
 }
 
-const char* preferName(Prefer prefer) {
-    switch (prefer) {
-        case Prefer::kNeither:
-            return "neither";
-        case Prefer::kInside:
-            return "inside";
-        case Prefer::kOutside:
-            return "outside";
-    }
-    return "unknown";
-}
-
 Result<Baked> bake(const TriangleMesh& mesh, const BakeOptions& options) {
     if (options.threads == 0) {
         return bakeOnThisArena(mesh, options);

@@ -8,6 +8,7 @@
 
 #include "bake/map_spec.h"
 #include "bake/mesh.h"
+#include "bake/prefer.h"
 #include "formats/collider.h"
 #include "formats/result.h"
 
@@ -18,12 +19,6 @@ namespace relief {
 enum class Quality : std::uint8_t { kFast, kNormal, kBest };
 
 [[nodiscard]] const char* qualityName(Quality quality);  ///< "fast", "normal" or "best"
-
-/// Which of the two mistakes is worse, in maps whose decode is plane. kInside: doubtful space is solid, so
-/// that no particle enters a wall. kOutside: doubtful space is free, so that no free volume is lost.
-enum class Prefer : std::uint8_t { kNeither, kInside, kOutside };
-
-[[nodiscard]] const char* preferName(Prefer prefer);  ///< "neither", "inside" or "outside"
 
 struct BakeOptions {
     std::vector<MapSpec> maps;       ///< empty: paperMapSpecs()

@@ -67,6 +67,7 @@ class Search {
     Result<bool> keeps(std::uint64_t budget) {
         PlanOptions plan_options;
         plan_options.budget_bytes = budget;
+        plan_options.prefer = options_.bake.prefer;
         Result<Plan> plan = planViews(query_.mesh(), query_, plan_options);
         if (!plan) {
             return forward(plan);

@@ -303,6 +303,7 @@ Result<PlanReport> planMaps(const MeshQuery& query, Settings& settings) {
     report.budget = settings.budget.value_or(kBudgetDefault);
     PlanOptions options;
     options.budget_bytes = report.budget;
+    options.prefer = settings.bake.prefer;
     Result<Plan> plan = planViews(query.mesh(), query, options);
     if (!plan) {
         return forward(plan);

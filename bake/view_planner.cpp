@@ -29,8 +29,12 @@ constexpr double kFullCosine = 0.7;
 /// How well a point is served that a view sees from both sides: it is off a silhouette, through which a
 /// standing plane passes (plane_fit.h).
 constexpr float kSilhouette = 0.9F;
-/// An outer view must raise the mean service by this much.
+/// An outer view must raise the mean service by this much,
 constexpr double kOuterGain = 0.004;
+/// and by this much once the mean service is kEnoughService: every map more costs each step of a simulation,
+/// and takes bytes from the others.
+constexpr double kOuterGainLater = 0.03;
+constexpr double kEnoughService = 0.96;
 /// Points served less than this are looked at from within.
 constexpr double kUnserved = 0.25;
 constexpr std::size_t kCavityMapsMax = 32;
@@ -253,6 +257,8 @@ class Planner {
                 views[v].service[i] = free == 2 ? std::max(best, kSilhouette) : best;
             }
         });
+        const auto count = static_cast<double>(points_.size());
+        double served = 0.0;
         for (;;) {
             const OuterView* best = nullptr;
             double best_score = 0.0;
@@ -269,23 +275,25 @@ class Planner {
                     best_gain = gain;
                 }
             }
-            const bool worthwhile = best_gain >= kOuterGain * static_cast<double>(points_.size());
+            const bool enough = served >= kEnoughService * count && options_.prefer != Prefer::kOutside;
+            const double least = enough ? kOuterGainLater : kOuterGain;
+            const bool worthwhile = best_gain >= least * count;
             if (best == nullptr || (!worthwhile && !chosen_.empty())) {
                 return {};
             }
+            served += best_gain;
             std::size_t sees = 0;
             for (std::size_t i = 0; i < points_.size(); ++i) {
                 served_[i] = std::max(served_[i], best->service[i]);
                 sees += best->service[i] > 0.0F ? 1U : 0U;
             }
-            const double total = static_cast<double>(points_.size());
             Chosen chosen;
             chosen.map.spec = best->spec;
-            chosen.map.serves = best_gain / total;
+            chosen.map.serves = best_gain / count;
             const glm::vec3& d = best->spec.direction;
             chosen.map.reason = text("both sides along (%.3g, %.3g, %.3g)", d.x, d.y, d.z) +
                                 text(" see %.1f %% of the surface; service +%.1f %%",
-                                     100.0 * static_cast<double>(sees) / total, 100.0 * best_gain / total);
+                                     100.0 * static_cast<double>(sees) / count, 100.0 * best_gain / count);
             chosen.width = best->width;
             chosen.height = best->height;
             chosen.area = 8.0 * best->width * best->height;

@@ -20,6 +20,7 @@
 #include "bake/map_spec.h"
 #include "bake/mesh.h"
 #include "bake/mesh_query.h"
+#include "bake/prefer.h"
 #include "formats/result.h"
 
 namespace relief {
@@ -27,6 +28,7 @@ namespace relief {
 struct PlanOptions {
     std::uint64_t budget_bytes = std::uint64_t{1} << 20;  ///< of all texels together, at least kPlanBudgetMin
     std::uint64_t seed = 1;
+    Prefer prefer = Prefer::kNeither;  ///< kOutside: more views, so that less free space is doubtful
     bool oriented_box = true;  ///< false: do without the axes of the oriented box, to see what they are worth
 };
 

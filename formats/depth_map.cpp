@@ -10,30 +10,33 @@ float length(const glm::vec3& v) {
     return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
 }
 
-/// n·(P − S) in object space, of q = P' − S' in map space. As T's rows are orthogonal, the columns of its
-/// inverse are the rows times object_per_map squared; one factor goes to each side, so that no frame
-/// overflows.
-float planeDistance(const DepthMap& map, const glm::vec3& normal, const glm::vec3& q) {
-    const auto along = [&](int k) {
-        const glm::vec4& r = map.object_to_map.row[k];
-        const float scale = map.object_per_map[k];
-        return (scale * (r.x * normal.x + (r.y * normal.y + r.z * normal.z))) * (scale * q[k]);
-    };
-    return along(0) + (along(1) + along(2));
+float dot(const glm::vec3& a, const glm::vec3& b) {
+    return a.x * b.x + (a.y * b.y + a.z * b.z);
 }
 
-/// The vote of a plane.
-/// \param q    P' − O', with O' where the ray of the texel's centre has depth 0
-/// \param ray  that ray's direction in map space, for a unit of depth
-float planeVote(const DepthMap& map, const Surface& surface, const glm::vec3& q, const glm::vec3& ray) {
-    const float along = planeDistance(map, surface.normal, ray);
-    if (std::abs(along) < kStandingCosine * length(map.object_per_map * ray)) {
+/// Directions from map space to object space. As T's rows are orthogonal, the columns of its inverse are the
+/// rows times object_per_map squared; by one factor after the other, so that no frame overflows.
+glm::vec3 fromMap(const DepthMap& map, const glm::vec3& q) {
+    const auto column = [&](int k) {
+        return glm::vec3(map.object_to_map.row[k]) * map.object_per_map[k] * map.object_per_map[k];
+    };
+    return column(0) * q.x + (column(1) * q.y + column(2) * q.z);
+}
+
+/// The vote of a plane, in object space.
+/// \param from    P − O, with O where the ray of the texel's centre has depth 0
+/// \param ray     that ray's direction, for a unit of depth
+/// \param length  its length
+float planeVote(const DepthMap& map, const Surface& surface, const glm::vec3& from, const glm::vec3& ray,
+                float length) {
+    const float along = dot(surface.normal, ray);
+    float offset = surface.depth * along;
+    if (std::abs(along) < kStandingCosine * length) {
         const float depth_max = map.projection() == Projection::kCube ? kCubeDepthMax : 1.0F;
-        return planeDistance(map, surface.normal, q) -
-               (surface.depth * (2.0F / depth_max) - 1.0F) *
-                   standingRange(map.projection(), map.object_per_map, map.width, map.height);
+        offset = (surface.depth * (2.0F / depth_max) - 1.0F) *
+                 standingRange(map.projection(), map.object_per_map, map.width, map.height);
     }
-    return planeDistance(map, surface.normal, q - ray * surface.depth);
+    return dot(surface.normal, from) - offset;
 }
 
 const Vote kFarOutsideVote{kFarOutside, glm::vec3(0.0F)};
@@ -61,12 +64,14 @@ std::optional<Vote> voteOrthographic(const DepthMap& map, const glm::vec3& p) {
     // From the texel's centre.
     const float across_x = (x - (static_cast<float>(column) + 0.5F)) / static_cast<float>(map.width);
     const float across_y = (y - (static_cast<float>(row) + 0.5F)) / static_cast<float>(map.height);
+    const bool planes = map.decode == Decode::kPlane;
+    const glm::vec3 from = planes ? fromMap(map, {across_x, across_y, p.z}) : glm::vec3(0.0F);
+    const glm::vec3 ray = planes ? fromMap(map, {0.0F, 0.0F, 1.0F}) : glm::vec3(0.0F);
     Vote best;
     const auto add = [&](const Surface& surface, bool keeps_nearest) {
         const float ahead = keeps_nearest ? surface.depth - p.z : p.z - surface.depth;
-        const float distance = map.decode == Decode::kPlane
-                                   ? planeVote(map, surface, {across_x, across_y, p.z}, {0.0F, 0.0F, 1.0F})
-                                   : map.object_per_map.z * ahead;
+        const float distance =
+            planes ? planeVote(map, surface, from, ray, map.object_per_map.z) : map.object_per_map.z * ahead;
         if (replaces(distance, best.distance)) {
             best = {distance, surface.normal};
         }
@@ -112,7 +117,9 @@ std::optional<Vote> voteCube(const DepthMap& map, const glm::vec3& p) {
     if (map.decode == Decode::kPlane) {
         const glm::vec3 center = cubeDirection(
             {at.face, (static_cast<float>(x) + 0.5F) / size, (static_cast<float>(y) + 0.5F) / size});
-        distance = planeVote(map, surface, p, center / length(center));
+        const glm::vec3 ray = center / length(center);
+        distance =
+            planeVote(map, surface, fromMap(map, p), fromMap(map, ray), length(map.object_per_map * ray));
     } else {
         const float ahead =
             map.compare == Compare::kGreater ? radius - surface.depth : surface.depth - radius;

@@ -63,29 +63,35 @@ Wrapped wrappedFor(std::size_t texels) {
 /// One element of the shader's ReliefMap array, std140.
 struct BlockMap {
     glm::vec4 row[3];
+    glm::vec4 column[3];
     glm::vec4 object_per_map;
     std::int32_t place[4];
     std::int32_t info[4];
 };
-static_assert(sizeof(BlockMap) == 96);
+static_assert(sizeof(BlockMap) == 144);
 constexpr std::size_t kBlockHead = 16;
 
+/// RELIEF_KEEPS_FARTHEST and so on.
+std::int32_t flagsOf(const DepthMap& map) {
+    return (map.compare == Compare::kGreater ? 1 : 0) | (map.encloses ? 2 : 0) |
+           (map.empty_is_outside ? 4 : 0) | (map.decode == Decode::kPlane ? 8 : 0);
+}
+
 BlockMap blockMap(const DepthMap& map, std::size_t first_texel) {
-    constexpr int kKeepsFarthest = 1;
-    constexpr int kEncloses = 2;
-    constexpr int kEmptyIsOutside = 4;
-    constexpr int kPlane = 8;
     BlockMap block{};
     std::copy(std::begin(map.object_to_map.row), std::end(map.object_to_map.row), std::begin(block.row));
-    block.object_per_map = glm::vec4(
-        map.object_per_map, standingRange(map.projection(), map.object_per_map, map.width, map.height));
+    const float last[3] = {standingRange(map.projection(), map.object_per_map, map.width, map.height),
+                           1.0F / static_cast<float>(map.width), 1.0F / static_cast<float>(map.height)};
+    for (int i = 0; i < 3; ++i) {
+        // The rows are orthogonal and as long as the inverse of object_per_map.
+        const glm::vec3 row(map.object_to_map.row[i]);
+        block.column[i] = glm::vec4(row * map.object_per_map[i] * map.object_per_map[i], last[i]);
+    }
+    block.object_per_map = glm::vec4(map.object_per_map, kStandingCosine * map.object_per_map.z);
     const auto width = static_cast<std::int32_t>(map.width);
     const auto height = static_cast<std::int32_t>(map.height);
     const std::int32_t place[4] = {static_cast<std::int32_t>(first_texel), width, width * height, width};
-    const std::int32_t flags = (map.compare == Compare::kGreater ? kKeepsFarthest : 0) |
-                               (map.encloses ? kEncloses : 0) | (map.empty_is_outside ? kEmptyIsOutside : 0) |
-                               (map.decode == Decode::kPlane ? kPlane : 0);
-    const std::int32_t info[4] = {height, static_cast<std::int32_t>(map.format), flags, 0};
+    const std::int32_t info[4] = {height, static_cast<std::int32_t>(map.format), flagsOf(map), 0};
     std::memcpy(block.place, place, sizeof(place));
     std::memcpy(block.info, info, sizeof(info));
     return block;
@@ -195,6 +201,11 @@ Result<ColliderTextures> ColliderTextures::create(const Collider& collider) {
     }
     result.map_count_ = static_cast<int>(blocks.size());
     result.defines_ = "#define RELIEF_MAP_CAPACITY " + std::to_string(blocks.size()) + "\n";
+    std::int32_t all = ~0;
+    for (const DepthMap& map : collider.maps) {
+        all &= flagsOf(map);
+    }
+    result.defines_ += "#define RELIEF_ALL " + std::to_string(all) + "\n";
     // What no map needs is left out of the shader: a GL may run every branch for every map.
     const auto defineIf = [&](const char* name, auto&& needed) {
         if (std::any_of(collider.maps.begin(), collider.maps.end(), needed)) {

@@ -5,7 +5,8 @@
 # --methods ours --cache FILE for quick rounds of work on the baker, --details, --markdown (the README's), --json.
 #
 #   scripts/accuracy.sh                  the table
-#   scripts/accuracy.sh --markdown       the same, for the README
+#   scripts/accuracy.sh --markdown       the same as Markdown
+#   scripts/accuracy.sh --page           writes it to bake/accuracy.md, whose figures the README cites
 #   scripts/accuracy.sh --cross-check    compares the volume with OpenVDB's mesh2ls, on the bunny
 #
 # The cross-check samples the level set that Debian's vdb_tool (libopenvdb-tools) makes of the bunny at 128
@@ -77,4 +78,17 @@ done
 models=/usr/share/assimp/models
 meshes+=("$models/Collada/duck.dae" "$models/BLEND/HUMAN.blend")
 
+if [ "${1:-}" = --page ]; then
+    shift
+    {
+        echo '# Wrong points per byte'
+        echo
+        echo 'Written by `scripts/accuracy.sh --page`. For each mesh and budget: a dense 16-bit signed distance volume on the'
+        echo 'tight box, with exact values and trilinear lookup; the maps of the paper; the maps that `relief bake` plans.'
+        echo
+        "$bin/relief-accuracy" "${meshes[@]}" --markdown "$@"
+    } >"$folder/accuracy.md"
+    mv "$folder/accuracy.md" bake/accuracy.md
+    exit 0
+fi
 "$bin/relief-accuracy" "${meshes[@]}" "$@"

@@ -19,8 +19,10 @@
 
 struct ReliefMap {
     vec4 row[3];           // object_to_map; rows are orthogonal
+    vec4 column[3];        // xyz: an axis of map space in object units, so that they undo the rows; w: the
+                           // largest offset of a standing plane; 1 / width; 1 / height
     vec4 object_per_map;   // xyz; z is z_scale of an orthographic map, xyz the paper's s of a cube; w: the
-                           // largest offset of a standing plane
+                           // largest product of an orthographic ray and the normal of a plane along it
     ivec4 place;           // index of texel (0,0) of face 0; from row to row; from face to face; width
     ivec4 info;            // height; format; flags: the sum of RELIEF_KEEPS_FARTHEST…
 };
@@ -92,6 +94,15 @@ bool reliefIsPlane(ivec4 info) {
 #endif
 }
 
+// The flags that every map has.
+#if !defined(RELIEF_ALL)
+#define RELIEF_ALL 0
+#endif
+
+bool reliefHas(ivec4 info, int flag) {
+    return (RELIEF_ALL & flag) != 0 || (info.z & flag) != 0;
+}
+
 // The combined vote. map is the deciding map, −1 where every map abstains; normal is zero where the point
 // is known to be outside and no more (distance RELIEF_FAR_OUTSIDE).
 struct ReliefField {
@@ -112,13 +123,12 @@ bool reliefReplaces(float vote, float best) {
 
 // Equation 3: indices 0…254 in each direction to the octahedron, to the sphere.
 vec3 reliefNormal(vec2 index) {
-    vec2 st = (min(index, vec2(254.0)) - 127.0) / 127.0;
+    vec2 st = min(index, vec2(254.0)) * (1.0 / 127.0) - 1.0;
     vec3 v = vec3(st, 1.0 - abs(st.x) - abs(st.y));
-    if (v.z < 0.0) {
-        v.x = (st.x < 0.0 ? -1.0 : 1.0) * (1.0 - abs(st.y));
-        v.y = (st.y < 0.0 ? -1.0 : 1.0) * (1.0 - abs(st.x));
-    }
-    return v / sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+    float fold = max(-v.z, 0.0);  // |t| - (1 - |s|) of the lower half
+    v.x += st.x < 0.0 ? fold : -fold;
+    v.y += st.y < 0.0 ? fold : -fold;
+    return v * inversesqrt(v.x * v.x + v.y * v.y + v.z * v.z);
 }
 
 float reliefRow(vec4 r, vec3 p) {
@@ -171,33 +181,22 @@ vec3 reliefCubeDirection(vec3 st_face) {
     return vec3(-c.x, -c.y, -1.0);
 }
 
-float reliefAlong(vec4 r, float scale, vec3 normal, float q) {
-    return (scale * (r.x * normal.x + (r.y * normal.y + r.z * normal.z))) * (scale * q);
-}
-
-// The normal's product with an object vector, of q in map space: the columns of T's inverse are its orthogonal
-// rows times object_per_map squared.
-float reliefAcross(int i, vec3 normal, vec3 q) {
-    vec3 scale = u_relief_maps[i].object_per_map.xyz;
-    return reliefAlong(u_relief_maps[i].row[0], scale.x, normal, q.x) +
-           (reliefAlong(u_relief_maps[i].row[1], scale.y, normal, q.y) +
-            reliefAlong(u_relief_maps[i].row[2], scale.z, normal, q.z));
+// From map space to object space, directions alone.
+vec3 reliefFromMap(int i, vec3 q) {
+    return u_relief_maps[i].column[0].xyz * q.x +
+           (u_relief_maps[i].column[1].xyz * q.y + u_relief_maps[i].column[2].xyz * q.z);
 }
 
 // The vote of a plane: n·(P − S), or n·(P − O) less the stored offset where the plane stands along the ray.
-// q: P' − O', with O' where the ray of the texel's centre has depth 0; ray: its direction, for a unit of depth;
-// along: of ray in object space, its length and its product with the normal.
-float reliefPlane(int i, vec3 normal, float depth, float depth_max, vec3 q, vec3 ray, vec2 along) {
-    if (abs(along.y) < RELIEF_STANDING_COSINE * along.x) {
-        return reliefAcross(i, normal, q) - (depth * (2.0 / depth_max) - 1.0) * u_relief_maps[i].object_per_map.w;
-    }
-    return reliefAcross(i, normal, q - ray * depth);
-}
-
-float reliefPlaneOrthographic(int i, vec3 normal, float depth, vec3 q) {
-    float scale = u_relief_maps[i].object_per_map.z;
-    vec2 along = vec2(scale, reliefAlong(u_relief_maps[i].row[2], scale, normal, 1.0));
-    return reliefPlane(i, normal, depth, 1.0, q, vec3(0.0, 0.0, 1.0), along);
+// from: P − O, with O where the ray of the texel's centre has depth 0; ray: its direction, for a unit of depth;
+// standing: its length times RELIEF_STANDING_COSINE; depth: from 0 to depth_max.
+float reliefPlane(int i, vec3 normal, float depth, float depth_max, vec3 from, vec3 ray, float standing) {
+    float along = dot(normal, ray);
+    float range = u_relief_maps[i].column[0].w;
+    bool stands = abs(along) < standing;
+    float slope = stands ? range * (2.0 / depth_max) : along;
+    float base = stands ? range : 0.0;
+    return dot(normal, from) - (depth * slope - base);
 }
 
 void reliefAdd(inout ReliefField best, float distance, vec3 normal, int map) {
@@ -234,8 +233,9 @@ bool reliefFixedTexel(int index, float depth_max, out float depth, out vec3 norm
 }
 
 void reliefVoteOrthographic(inout ReliefField best, int i, vec3 p, ivec4 place, ivec4 info) {
-    bool encloses = (info.z & RELIEF_ENCLOSES) != 0;
+    bool encloses = reliefHas(info, RELIEF_ENCLOSES);
     vec2 size = vec2(float(place.w), float(info.x));
+    vec2 inverse_size = vec2(u_relief_maps[i].column[1].w, u_relief_maps[i].column[2].w);
     vec2 at = p.xy * size;
     bool in_window = at.x >= 1.0 && at.y >= 1.0 && at.x < size.x - 1.0 && at.y < size.y - 1.0;
     bool in_depth = p.z >= 0.0 && p.z <= 1.0;
@@ -249,7 +249,10 @@ void reliefVoteOrthographic(inout ReliefField best, int i, vec3 p, ivec4 place, 
 
     // One texel holds one surface or, front-back, two: the nearer in front, the farther in back.
     bool plane = reliefIsPlane(info);
-    vec2 across = (at - (vec2(ivec2(at)) + 0.5)) / size;  // from the texel's centre
+    // From the ray of the texel's centre.
+    vec3 from = reliefFromMap(i, vec3((at - (floor(at) + 0.5)) * inverse_size, p.z));
+    vec3 ray = u_relief_maps[i].column[2].xyz;
+    float standing = u_relief_maps[i].object_per_map.w;
     float scale = u_relief_maps[i].object_per_map.z;
     bool found;
     float depth;
@@ -264,8 +267,8 @@ void reliefVoteOrthographic(inout ReliefField best, int i, vec3 p, ivec4 place, 
         if (plane) {
             normal = reliefPackedNormal(words.r);
             back_normal = reliefPackedNormal(words.g);
-            front = reliefPlaneOrthographic(i, normal, front, vec3(across, p.z));
-            back = reliefPlaneOrthographic(i, back_normal, back, vec3(across, p.z));
+            front = reliefPlane(i, normal, front, 1.0, from, ray, standing);
+            back = reliefPlane(i, back_normal, back, 1.0, from, ray, standing);
         } else {
             front = scale * (front - p.z);
             back = scale * (p.z - back);
@@ -289,13 +292,13 @@ void reliefVoteOrthographic(inout ReliefField best, int i, vec3 p, ivec4 place, 
             found = reliefFixedTexel(texel, 1.0, depth, normal);
         }
         if (plane) {
-            vote = reliefPlaneOrthographic(i, normal, depth, vec3(across, p.z));
+            vote = reliefPlane(i, normal, depth, 1.0, from, ray, standing);
         } else {
             vote = scale * ((info.z & RELIEF_KEEPS_FARTHEST) != 0 ? p.z - depth : depth - p.z);
         }
     }
     if (!found) {
-        if ((info.z & RELIEF_EMPTY_IS_OUTSIDE) != 0) {
+        if (reliefHas(info, RELIEF_EMPTY_IS_OUTSIDE)) {
             reliefAdd(best, RELIEF_FAR_OUTSIDE, vec3(0.0), i);
         }
         return;
@@ -309,7 +312,7 @@ void reliefVoteOrthographic(inout ReliefField best, int i, vec3 p, ivec4 place, 
 
 void reliefVoteCube(inout ReliefField best, int i, vec3 p, ivec4 place, ivec4 info) {
     bool in_volume = all(lessThanEqual(abs(p), vec3(1.0)));
-    if (!in_volume && (info.z & RELIEF_ENCLOSES) == 0) {
+    if (!in_volume && !reliefHas(info, RELIEF_ENCLOSES)) {
         return;
     }
     if (!all(lessThanEqual(abs(p), vec3(1e15)))) {  // the squares below must not overflow
@@ -324,7 +327,7 @@ void reliefVoteCube(inout ReliefField best, int i, vec3 p, ivec4 place, ivec4 in
     vec3 normal;
     int texel = place.x + int(st_face.z) * place.z + at.y * place.y + at.x;
     if (!reliefFixedTexel(texel, RELIEF_CUBE_DEPTH_MAX, depth, normal)) {
-        if ((info.z & RELIEF_EMPTY_IS_OUTSIDE) != 0) {
+        if (reliefHas(info, RELIEF_EMPTY_IS_OUTSIDE)) {
             reliefAdd(best, RELIEF_FAR_OUTSIDE, vec3(0.0), i);
         }
         return;
@@ -333,8 +336,8 @@ void reliefVoteCube(inout ReliefField best, int i, vec3 p, ivec4 place, ivec4 in
     if (reliefIsPlane(info)) {
         vec3 center = reliefCubeDirection(vec3((vec2(at) + 0.5) / float(place.w), st_face.z));
         vec3 ray = center / reliefLength(center);
-        vec2 along = vec2(reliefLength(u_relief_maps[i].object_per_map.xyz * ray), reliefAcross(i, normal, ray));
-        vote = reliefPlane(i, normal, depth, RELIEF_CUBE_DEPTH_MAX, p, ray, along);
+        float standing = RELIEF_STANDING_COSINE * reliefLength(u_relief_maps[i].object_per_map.xyz * ray);
+        vote = reliefPlane(i, normal, depth, RELIEF_CUBE_DEPTH_MAX, reliefFromMap(i, p), reliefFromMap(i, ray), standing);
     } else {
         float ahead = (info.z & RELIEF_KEEPS_FARTHEST) != 0 ? radius - depth : depth - radius;
         vote = ahead * reliefLength(u_relief_maps[i].object_per_map.xyz * direction);
@@ -368,13 +371,40 @@ ReliefField reliefEvaluate(vec3 p) {
     return best;
 }
 
+#define RELIEF_VOTE_OF(n) \
+    if (n < RELIEF_MAP_CAPACITY && best.distance < 0.0) { \
+        reliefVote(best, min(n, RELIEF_MAP_CAPACITY - 1), p); \
+    }
+
 // What a step of a simulation needs: the same as reliefEvaluate where P is inside; where it is not, the first map
 // that sees it outside ends the walk, so that most points cost one fetch however many maps there are. (Rule 2
-// never turns a vote ≥ 0 into one below.)
+// never turns a vote ≥ 0 into one below.) The first maps are named by constants, so that GPUs need not index the
+// block for them.
 ReliefField reliefSolid(vec3 p) {
     ReliefField best = ReliefField(RELIEF_FAR_INSIDE, vec3(0.0), -1);
-    for (int i = 0; i < u_relief_count.x && best.distance < 0.0; ++i) {
+    RELIEF_VOTE_OF(0)
+    RELIEF_VOTE_OF(1)
+    RELIEF_VOTE_OF(2)
+    RELIEF_VOTE_OF(3)
+    RELIEF_VOTE_OF(4)
+    RELIEF_VOTE_OF(5)
+    RELIEF_VOTE_OF(6)
+    RELIEF_VOTE_OF(7)
+    for (int i = 8; i < u_relief_count.x && best.distance < 0.0; ++i) {
         reliefVote(best, i, p);
     }
     return best;
+}
+
+// reliefInside(reliefSolid(p)), by asking map `first` before the others, if it is one: the map that decides what is
+// inside nearby knows most often that p is outside.
+bool reliefSolidAt(vec3 p, int first) {
+    ReliefField best = ReliefField(RELIEF_FAR_INSIDE, vec3(0.0), -1);
+    if (first >= 0) {
+        reliefVote(best, first, p);
+    }
+    for (int i = 0; i < u_relief_count.x && best.distance < 0.0; ++i) {
+        reliefVote(best, i, p);
+    }
+    return reliefInside(best);
 }

@@ -26,19 +26,22 @@ uniform float u_ground;   // height of the floor; far below everything if there 
 layout(location = 0) out vec4 o_position;
 layout(location = 1) out vec4 o_velocity;
 
-// A point is inside where distance is negative; then normal is the way out.
+// A point is inside where distance is negative; then normal is the way out, and map the depth map that says so.
 struct Solid {
     float distance;
     vec3 normal;
+    int map;
 };
 
 Solid solid(vec3 p);
+// The sign alone, for a point near one where `map` decided.
+bool solidAt(vec3 p, int map);
 
 // Union of a body with the floor y < u_ground. Inside both, the deeper one decides.
 Solid withGround(Solid body, vec3 p) {
     float above = p.y - u_ground;
     if (above < body.distance) {
-        return Solid(above, vec3(0.0, 1.0, 0.0));
+        return Solid(above, vec3(0.0, 1.0, 0.0), body.map);
     }
     return body;
 }
@@ -73,7 +76,7 @@ void main() {
     if (next.distance < 0.0) {
         vec3 n = next.normal;
         float vn = dot(v, n);
-        if (withGround(solid(p), p).distance < 0.0) {
+        if (p.y - u_ground < 0.0 || solidAt(p, next.map)) {
             contact = 2.0;
             if (vn < 0.0) {
                 v -= (2.0 * vn) * n;

@@ -2,5 +2,9 @@
 //!include step.glsl
 
 Solid solid(vec3 p) {
-    return Solid(1e30, vec3(0.0));
+    return Solid(1e30, vec3(0.0), -1);
+}
+
+bool solidAt(vec3 p, int map) {
+    return false;
 }

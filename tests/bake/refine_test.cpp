@@ -29,6 +29,7 @@ WrongShare wrongNear(const MeshQuery& query, const Collider& collider) {
 Collider bakePlanned(const TriangleMesh& mesh, const MeshQuery& query, Quality quality, Prefer prefer) {
     PlanOptions plan_options;
     plan_options.budget_bytes = 65536;
+    plan_options.prefer = prefer;
     const Result<Plan> plan = planViews(mesh, query, plan_options);
     EXPECT_TRUE(plan);
     BakeOptions options;

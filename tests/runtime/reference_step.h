@@ -1,5 +1,5 @@
 // The step of shaders/step.glsl on the CPU: float32, the same operations in the same order, the field from
-// formats/. Written from the rule (paper, section 3.3.2; shared notes, section 4), and the truth that the GPU
+// formats/. Written from the rule (paper, section 3.3.2), and the truth that the GPU
 // is held to.
 #pragma once
 
