@@ -8,15 +8,9 @@
 #include <initializer_list>
 #include <vector>
 
-#define TOML_HEADER_ONLY 1
-// toml++ asserts that a key starts as a key must, just before it checks the same and reports the error: a
-// file must not be able to end a debug build.
-#define TOML_ASSERT(expression) static_cast<void>(0)
-#include <toml++/toml.h>
-
 #include "formats/file_io.h"
 #include "runtime/camera.h"
-#include "runtime/suggestion.h"
+#include "runtime/scene_table.h"
 
 namespace relief {
 namespace {
@@ -25,224 +19,10 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kSceneBytesMax = std::uint64_t{1} << 20;
 
-// Generous, yet small enough that nothing overflows a float within a lifetime: see runtime/README.md.
-constexpr double kLengthMax = 1e9;
-constexpr double kRateMax = 1e9;
-constexpr double kSpeedMax = 1e6;
-constexpr double kAccelerationMax = 1e6;
-constexpr double kSecondsMax = 1e6;
-constexpr double kDragMax = 1e6;
 constexpr double kStepsMax = 1e7;
 constexpr double kPixelsMax = 65535;
 
-/// Raised inside this file alone, where a value is found wrong; parseScene turns it into its Result.
-struct SceneError {
-    std::string message;
-};
-
-std::string number(double value) {
-    char text[40];
-    std::snprintf(text, sizeof(text), "%.9g", value);
-    return text;
-}
-
-/// A line of text that a hostile file can neither break nor colour.
-std::string oneLine(std::string_view text) {
-    std::string quoted = quotedPath(fs::path(text));
-    return quoted.substr(1, quoted.size() - 2);
-}
-
-struct Range {
-    double low;
-    double high;
-    bool low_included = true;
-
-    [[nodiscard]] bool holds(double value) const {
-        return (low_included ? value >= low : value > low) && value <= high;  // false for NaN
-    }
-    [[nodiscard]] std::string text() const {
-        return (low_included ? "choose " + number(low) : "choose above " + number(low)) + " to " +
-               number(high);
-    }
-};
-
-constexpr Range symmetric(double limit) {
-    return {-limit, limit};
-}
-
-/// One table of the file. Remembers which keys were asked for: what is left over at the end is unknown.
-class Table {
-  public:
-    Table(const toml::table* table, std::string_view name, std::string_view file)
-        : table_(table), name_(name), file_(file) {}
-
-    [[nodiscard]] const toml::node* find(std::string_view key) {
-        if (std::find(known_.begin(), known_.end(), key) == known_.end()) {
-            known_.push_back(key);
-        }
-        return table_ == nullptr ? nullptr : table_->get(key);
-    }
-
-    template <class T>
-    bool number(std::string_view key, const Range& range, T& out) {
-        const toml::node* node = find(key);
-        if (node == nullptr) {
-            return false;
-        }
-        out = static_cast<T>(numberOf(*node, key, range));
-        return true;
-    }
-
-    template <class T>
-    bool integer(std::string_view key, const Range& range, T& out) {
-        const toml::node* node = find(key);
-        if (node == nullptr) {
-            return false;
-        }
-        out = static_cast<T>(integerOf(*node, key, range));
-        return true;
-    }
-
-    bool boolean(std::string_view key, bool& out) {
-        const toml::node* node = find(key);
-        if (node == nullptr) {
-            return false;
-        }
-        if (!node->is_boolean()) {
-            wrongType(*node, key, "true or false");
-        }
-        out = *node->value_exact<bool>();
-        return true;
-    }
-
-    bool text(std::string_view key, std::string& out) {
-        const toml::node* node = find(key);
-        if (node == nullptr) {
-            return false;
-        }
-        if (!node->is_string()) {
-            wrongType(*node, key, "a string");
-        }
-        out = *node->value_exact<std::string>();
-        return true;
-    }
-
-    bool vector(std::string_view key, const Range& range, glm::vec3& out) {
-        const toml::node* node = find(key);
-        if (node == nullptr) {
-            return false;
-        }
-        const toml::array* values = node->as_array();
-        if (values == nullptr || values->size() != 3) {
-            wrongType(*node, key, "three numbers [x, y, z]");
-        }
-        for (int i = 0; i < 3; ++i) {
-            out[i] = static_cast<float>(numberOf(*values->get(static_cast<std::size_t>(i)), key, range));
-        }
-        return true;
-    }
-    bool vector(std::string_view key, const Range& range, std::optional<glm::vec3>& out) {
-        glm::vec3 value{0.0F};
-        const bool found = vector(key, range, value);
-        if (found) {
-            out = value;
-        }
-        return found;
-    }
-
-    [[nodiscard]] double numberOf(const toml::node& node, std::string_view key, const Range& range) const {
-        if (!node.is_number()) {
-            wrongType(node, key, "a number");
-        }
-        const double value = node.is_integer() ? static_cast<double>(*node.value_exact<std::int64_t>())
-                                               : *node.value_exact<double>();
-        if (!range.holds(value)) {
-            failAt(node, full(key) + " = " + relief::number(value) + " is out of range; " + range.text());
-        }
-        return value;
-    }
-
-    [[nodiscard]] std::int64_t integerOf(const toml::node& node, std::string_view key,
-                                         const Range& range) const {
-        if (!node.is_integer()) {
-            wrongType(node, key, "a whole number");
-        }
-        const std::int64_t value = *node.value_exact<std::int64_t>();
-        if (!range.holds(static_cast<double>(value))) {
-            failAt(node, full(key) + " = " + std::to_string(value) + " is out of range; " + range.text());
-        }
-        return value;
-    }
-
-    [[noreturn]] void wrongType(const toml::node& node, std::string_view key, std::string_view wanted) const {
-        failAt(node, full(key) + " must be " + std::string(wanted));
-    }
-
-    /// "file:line:column: message"
-    [[noreturn]] void failAt(const toml::node& node, const std::string& message) const {
-        failAt(node.source().begin, message);
-    }
-    [[noreturn]] void failAt(const toml::source_position& at, const std::string& message) const {
-        throw SceneError{place(at) + ": " + message};
-    }
-    [[nodiscard]] std::string place(const toml::source_position& at) const {
-        return std::string(file_) + ":" + std::to_string(at.line) + ":" + std::to_string(at.column);
-    }
-    [[nodiscard]] std::string full(std::string_view key) const {
-        return name_.empty() ? std::string(key) : std::string(name_) + "." + std::string(key);
-    }
-
-    /// A setting that has no effect, and why.
-    [[noreturn]] void failUseless(std::string_view key, const std::string& why) const {
-        failAt(*table_->get(key), full(key) + " does nothing " + why);
-    }
-
-    /// Call last: any key that nobody has asked for is unknown.
-    void finish() const {
-        if (table_ == nullptr) {
-            return;
-        }
-        // In the order of the file, so that the first mistake is the one reported.
-        const toml::key* first = nullptr;
-        for (const auto& [key, node] : *table_) {
-            const bool known = std::find(known_.begin(), known_.end(), key.str()) != known_.end();
-            if (!known && (first == nullptr || before(key.source().begin, first->source().begin))) {
-                first = &key;
-            }
-        }
-        if (first == nullptr) {
-            return;
-        }
-        std::string list;
-        for (const std::string_view key : known_) {
-            list += (list.empty() ? "" : ", ") + std::string(key);
-        }
-        const std::string hint = suggestion(first->str(), known_);
-        failAt(first->source().begin, "unknown " + std::string(name_.empty() ? "table" : "key") + " '" +
-                                          oneLine(full(first->str())) + "'" +
-                                          (hint.empty() ? "; known are " + list : hint));
-    }
-
-  private:
-    static bool before(const toml::source_position& a, const toml::source_position& b) {
-        return a.line != b.line ? a.line < b.line : a.column < b.column;
-    }
-
-    const toml::table* table_;
-    std::string_view name_;
-    std::string_view file_;
-    std::vector<std::string_view> known_;
-};
-
-Table subTable(Table& root, std::string_view name, std::string_view file) {
-    const toml::node* node = root.find(name);
-    if (node != nullptr && !node->is_table()) {
-        root.wrongType(*node, name, "a table, as in [" + std::string(name) + "]");
-    }
-    return {node == nullptr ? nullptr : node->as_table(), name, file};
-}
-
-void readCollider(Table table, const toml::table& root, const fs::path& folder, Scene& scene) {
+void readCollider(SceneTable table, const toml::table& root, const fs::path& folder, Scene& scene) {
     std::string file;
     const bool found = table.text("file", file);
     table.finish();
@@ -260,9 +40,9 @@ void readCollider(Table table, const toml::table& root, const fs::path& folder, 
     scene.collider_origin = table.place(node.source().begin);
 }
 
-void readEmitter(Table table, Scene& scene) {
+void readEmitter(SceneTable table, Scene& scene) {
     auto& emitter = scene.emitter;
-    const Range length = symmetric(kLengthMax);
+    const SceneRange length = symmetric(kLengthMax);
     const bool low = table.vector("box_min", length, emitter.box_min);
     const bool high = table.vector("box_max", length, emitter.box_max);
     if (low != high) {
@@ -309,7 +89,7 @@ void readEmitter(Table table, Scene& scene) {
     table.vector("velocity", symmetric(kSpeedMax), emitter.velocity);
     table.vector("velocity_spread", {0.0, kSpeedMax}, emitter.velocity_spread);
 
-    const Range seconds{0.0, kSecondsMax, false};
+    const SceneRange seconds{0.0, kSecondsMax, false};
     if (const toml::node* node = table.find("lifetime"); node != nullptr) {
         const toml::array* both = node->as_array();
         if (both == nullptr ? !node->is_number() : both->size() != 2) {
@@ -328,7 +108,7 @@ void readEmitter(Table table, Scene& scene) {
     table.finish();
 }
 
-void readForces(Table table, Scene& scene) {
+void readForces(SceneTable table, Scene& scene) {
     auto& forces = scene.forces;
     table.vector("gravity", symmetric(kAccelerationMax), forces.gravity);
     const bool wind = table.vector("wind", symmetric(kSpeedMax), forces.wind);
@@ -339,7 +119,7 @@ void readForces(Table table, Scene& scene) {
     }
 }
 
-void readCollision(Table table, Scene& scene) {
+void readCollision(SceneTable table, Scene& scene) {
     Collision& collision = scene.collision;
     table.number("restitution", {0.0, 1.0}, collision.restitution);
     table.number("friction", {0.0, 1.0}, collision.friction);
@@ -351,7 +131,7 @@ void readCollision(Table table, Scene& scene) {
     }
 }
 
-void readGround(Table table, Scene& scene) {
+void readGround(SceneTable table, Scene& scene) {
     table.boolean("enabled", scene.ground.enabled);
     float height = 0.0F;
     const bool found = table.number("height", symmetric(kLengthMax), height);
@@ -376,7 +156,7 @@ std::string_view cameraProblem(const glm::vec3& eye, const glm::vec3& target) {
     return {};
 }
 
-void readCamera(Table table, Scene& scene) {
+void readCamera(SceneTable table, Scene& scene) {
     auto& camera = scene.camera;
     const bool eye = table.vector("eye", symmetric(kLengthMax), camera.eye);
     const bool target = table.vector("target", symmetric(kLengthMax), camera.target);
@@ -389,7 +169,7 @@ void readCamera(Table table, Scene& scene) {
     }
 }
 
-void readRender(Table table, Scene& scene) {
+void readRender(SceneTable table, Scene& scene) {
     auto& render = scene.render;
     if (const toml::node* node = table.find("size"); node != nullptr) {
         const toml::array* both = node->as_array();
@@ -412,16 +192,16 @@ void readRender(Table table, Scene& scene) {
 
 Scene readScene(const toml::table& root, const fs::path& path, std::string_view file) {
     Scene scene;
-    Table top(&root, "", file);
-    Table collider = subTable(top, "collider", file);
-    Table time = subTable(top, "time", file);
-    Table particles = subTable(top, "particles", file);
-    Table emitter = subTable(top, "emitter", file);
-    Table forces = subTable(top, "forces", file);
-    Table collision = subTable(top, "collision", file);
-    Table ground = subTable(top, "ground", file);
-    Table camera = subTable(top, "camera", file);
-    Table render = subTable(top, "render", file);
+    SceneTable top(&root, "", file);
+    SceneTable collider = top.sub("collider");
+    SceneTable time = top.sub("time");
+    SceneTable particles = top.sub("particles");
+    SceneTable emitter = top.sub("emitter");
+    SceneTable forces = top.sub("forces");
+    SceneTable collision = top.sub("collision");
+    SceneTable ground = top.sub("ground");
+    SceneTable camera = top.sub("camera");
+    SceneTable render = top.sub("render");
     top.finish();
 
     readCollider(collider, root, path.parent_path(), scene);
@@ -471,7 +251,8 @@ Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
         if (!(bounds.min[i] >= -kLengthMax && bounds.min[i] <= bounds.max[i] &&
               bounds.max[i] <= kLengthMax)) {
             return fail(ErrorCode::kInvalidInput, "the collider's bounds are empty, or reach beyond " +
-                                                      number(kLengthMax) + "; bake the mesh again, scaled");
+                                                      numberText(kLengthMax) +
+                                                      "; bake the mesh again, scaled");
         }
     }
     // A collider without extent still gets a scene of some size, one that floats can resolve where it lies.
