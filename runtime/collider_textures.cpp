@@ -98,8 +98,8 @@ BlockMap blockMap(const DepthMap& map, std::size_t first_texel) {
 }
 
 /// Uploads texels that follow each other, from index `first` on; the texture is bound.
-void upload(const Layout& layout, const Wrapped& wrapped, std::size_t first,
-            std::span<const std::byte> bytes) {
+void uploadTexels(const Layout& layout, const Wrapped& wrapped, std::size_t first,
+                  std::span<const std::byte> bytes) {
     const auto width = static_cast<std::size_t>(wrapped.width());
     std::size_t left = bytes.size() / layout.texel_size;
     const std::byte* from = bytes.data();
@@ -117,6 +117,16 @@ void upload(const Layout& layout, const Wrapped& wrapped, std::size_t first,
     }
 }
 
+/// World to object space.
+void writeRows(const Pose& pose, glm::vec4 (&rows)[3]) {
+    const glm::mat3 rotation = glm::mat3_cast(pose.rotation);
+    for (int i = 0; i < 3; ++i) {
+        // Column i of the rotation is the body's axis i in the world.
+        const glm::vec3 row = rotation[i] / pose.scale;
+        rows[i] = glm::vec4(row, -glm::dot(row, pose.position));
+    }
+}
+
 GLint limit(GLenum what) {
     GLint value = 0;
     glGetIntegerv(what, &value);
@@ -126,23 +136,73 @@ GLint limit(GLenum what) {
 }  // namespace
 
 Result<ColliderTextures> ColliderTextures::create(const Collider& collider) {
-    if (collider.maps.empty()) {
+    std::vector<const DepthMap*> maps;
+    for (const DepthMap& map : collider.maps) {
+        maps.push_back(&map);
+    }
+    return upload(maps, {});
+}
+
+Result<ColliderTextures> ColliderTextures::create(std::span<const ColliderBody> bodies) {
+    if (bodies.size() > kBodiesMax) {
+        return fail(ErrorCode::kLimit, std::to_string(bodies.size()) + " colliders are more than " +
+                                           std::to_string(kBodiesMax) + "; bake some of them into one");
+    }
+    std::vector<const DepthMap*> maps;
+    std::vector<BlockBody> blocks;
+    for (const ColliderBody& body : bodies) {
+        if (!(body.pose.scale > 0.0F)) {
+            return fail(ErrorCode::kUsage, "the scale of a collider must be above 0");
+        }
+        const auto first = static_cast<std::int32_t>(maps.size());
+        for (const DepthMap& map : body.collider->maps) {
+            maps.push_back(&map);
+        }
+        BlockBody block{};
+        writeRows(body.pose, block.row);
+        writeRows(body.pose, block.before);
+        block.response = glm::vec4(body.pose.scale, body.restitution, 1.0F - body.friction, 0.0F);
+        block.maps[0] = first;
+        block.maps[1] = static_cast<std::int32_t>(maps.size()) - first;
+        blocks.push_back(block);
+    }
+    return upload(maps, std::move(blocks));
+}
+
+void ColliderTextures::setPoses(std::span<const Pose> poses) {
+    for (std::size_t i = 0; i < std::min(poses.size(), bodies_.size()); ++i) {
+        BlockBody& body = bodies_[i];
+        std::copy(std::begin(body.row), std::end(body.row), std::begin(body.before));
+        writeRows(poses[i], body.row);
+    }
+    if (!bodies_.empty()) {
+        const PassState state;
+        glBindBuffer(GL_UNIFORM_BUFFER, block_.name());
+        glBufferSubData(GL_UNIFORM_BUFFER, static_cast<GLintptr>(kBlockHead),
+                        static_cast<GLsizeiptr>(bodies_.size() * sizeof(BlockBody)), bodies_.data());
+    }
+}
+
+Result<ColliderTextures> ColliderTextures::upload(std::span<const DepthMap* const> maps,
+                                                  std::vector<BlockBody> bodies) {
+    if (maps.empty()) {
         return fail(ErrorCode::kUnsupported, "a collider without maps has nothing to collide with");
     }
+    const std::size_t head = kBlockHead + bodies.size() * sizeof(BlockBody);
     const auto block_max = static_cast<std::size_t>(limit(GL_MAX_UNIFORM_BLOCK_SIZE));
-    const std::size_t map_max = (block_max - kBlockHead) / sizeof(BlockMap);
-    if (collider.maps.size() > map_max) {
-        return fail(ErrorCode::kLimit, "the collider has " + std::to_string(collider.maps.size()) +
+    const std::size_t map_max = (block_max - head) / sizeof(BlockMap);
+    if (maps.size() > map_max) {
+        return fail(ErrorCode::kLimit, "the collider has " + std::to_string(maps.size()) +
                                            " maps, this GL takes " + std::to_string(map_max) +
                                            "; bake it with fewer");
     }
 
     std::array<std::size_t, 3> texels{};
     std::vector<std::size_t> first_texel;
-    for (const DepthMap& map : collider.maps) {
-        std::size_t& used = texels[layoutOf(map.format)];
+    for (const DepthMap* map : maps) {
+        std::size_t& used = texels[layoutOf(map->format)];
         first_texel.push_back(used);
-        used += std::size_t{map.width} * map.height * map.faceCount();
+        used += std::size_t{map->width} * map->height * map->faceCount();
     }
     std::array<Wrapped, 3> wrapped;
     const GLint size_max = limit(GL_MAX_TEXTURE_SIZE);
@@ -157,8 +217,8 @@ Result<ColliderTextures> ColliderTextures::create(const Collider& collider) {
     }
 
     std::vector<BlockMap> blocks;
-    for (std::size_t m = 0; m < collider.maps.size(); ++m) {
-        blocks.push_back(blockMap(collider.maps[m], first_texel[m]));
+    for (std::size_t m = 0; m < maps.size(); ++m) {
+        blocks.push_back(blockMap(*maps[m], first_texel[m]));
     }
 
     const PassState state;                 // row lengths and skips among it: texels are tightly packed
@@ -177,22 +237,26 @@ Result<ColliderTextures> ColliderTextures::create(const Collider& collider) {
         result.bytes_ += layout.texel_size * static_cast<std::size_t>(wrapped[i].width()) *
                          static_cast<std::size_t>(height);
     }
-    for (std::size_t m = 0; m < collider.maps.size(); ++m) {
-        const DepthMap& map = collider.maps[m];
+    for (std::size_t m = 0; m < maps.size(); ++m) {
+        const DepthMap& map = *maps[m];
         const std::size_t i = layoutOf(map.format);
         glBindTexture(GL_TEXTURE_2D, textures[i]->name());
-        upload(kLayouts[i], wrapped[i], first_texel[m], map.texels);
+        uploadTexels(kLayouts[i], wrapped[i], first_texel[m], map.texels);
     }
 
     result.block_ = makeBuffer();
-    std::vector<std::byte> bytes(kBlockHead + blocks.size() * sizeof(BlockMap));
-    const std::int32_t head[4] = {static_cast<std::int32_t>(blocks.size()), wrapped[0].log2_width,
-                                  wrapped[1].log2_width, wrapped[2].log2_width};
-    static_assert(sizeof(head) == kBlockHead);
-    std::memcpy(bytes.data(), head, sizeof(head));
-    std::memcpy(bytes.data() + kBlockHead, blocks.data(), blocks.size() * sizeof(BlockMap));
+    std::vector<std::byte> bytes(head + blocks.size() * sizeof(BlockMap));
+    const std::int32_t counts[4] = {static_cast<std::int32_t>(blocks.size()), wrapped[0].log2_width,
+                                    wrapped[1].log2_width, wrapped[2].log2_width};
+    static_assert(sizeof(counts) == kBlockHead);
+    std::memcpy(bytes.data(), counts, sizeof(counts));
+    if (!bodies.empty()) {
+        std::memcpy(bytes.data() + kBlockHead, bodies.data(), bodies.size() * sizeof(BlockBody));
+    }
+    std::memcpy(bytes.data() + head, blocks.data(), blocks.size() * sizeof(BlockMap));
     glBindBuffer(GL_UNIFORM_BUFFER, result.block_.name());
-    glBufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(bytes.size()), bytes.data(), GL_STATIC_DRAW);
+    glBufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(bytes.size()), bytes.data(),
+                 bodies.empty() ? GL_STATIC_DRAW : GL_DYNAMIC_DRAW);
 
     if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
         return fail(error == GL_OUT_OF_MEMORY ? ErrorCode::kLimit : ErrorCode::kFailure,
@@ -201,14 +265,17 @@ Result<ColliderTextures> ColliderTextures::create(const Collider& collider) {
     }
     result.map_count_ = static_cast<int>(blocks.size());
     result.defines_ = "#define RELIEF_MAP_CAPACITY " + std::to_string(blocks.size()) + "\n";
+    if (!bodies.empty()) {
+        result.defines_ += "#define RELIEF_BODIES " + std::to_string(bodies.size()) + "\n";
+    }
     std::int32_t all = ~0;
-    for (const DepthMap& map : collider.maps) {
-        all &= flagsOf(map);
+    for (const DepthMap* map : maps) {
+        all &= flagsOf(*map);
     }
     result.defines_ += "#define RELIEF_ALL " + std::to_string(all) + "\n";
     // What no map needs is left out of the shader: a GL may run every branch for every map.
     const auto defineIf = [&](const char* name, auto&& needed) {
-        if (std::any_of(collider.maps.begin(), collider.maps.end(), needed)) {
+        if (std::any_of(maps.begin(), maps.end(), [&](const DepthMap* map) { return needed(*map); })) {
             result.defines_ += std::string("#define RELIEF_HAS_") + name + "\n";
         }
     };
@@ -218,6 +285,7 @@ Result<ColliderTextures> ColliderTextures::create(const Collider& collider) {
     defineIf("FRONT_BACK", [](const DepthMap& map) { return isFrontBack(map.format); });
     defineIf("PLANE", [](const DepthMap& map) { return map.decode == Decode::kPlane; });
     defineIf("PROJECTED", [](const DepthMap& map) { return map.decode == Decode::kProjected; });
+    result.bodies_ = std::move(bodies);
     return result;
 }
 

@@ -1,4 +1,5 @@
-// One Collider on the GPU: three textures and a uniform block, read by shaders/collider.glsl.
+// Colliders on the GPU: three textures and a uniform block, read by shaders/collider.glsl. One collider in
+// its own object space, or several bodies with poses in a world.
 //
 // Maps of one texel layout share a 2-D texture: RGBA32F for float, RGBA8 for fixed8 and cube, RGBA16UI for
 // front-back of either depth. Their texels follow each other as they do in the container, wrapped at the
@@ -10,15 +11,29 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "formats/collider.h"
 #include "formats/result.h"
 #include "runtime/gl_object.h"
+#include "runtime/pose.h"
 
 namespace relief {
 
+/// A collider with a place in the world.
+struct ColliderBody {
+    const Collider* collider = nullptr;  ///< for create() alone
+    Pose pose;
+    float restitution = 1.0F;  ///< factor of the particle's own, 0…1
+    float friction =
+        0.0F;  ///< ν, 0…1: what is left of the tangential speed is (1 − ν) of the particle's share
+};
+
 class ColliderTextures {
   public:
+    static constexpr std::size_t kBodiesMax = 8;
     /// Texture units and the uniform block binding that bind() uses: `first_unit`, + 1, + 2.
     struct Binding {
         int first_unit = 0;
@@ -29,6 +44,14 @@ class ColliderTextures {
     /// Errors: kLimit (the texels or the number of maps above what this GL takes; the message has both
     /// numbers), kUnsupported (no maps).
     [[nodiscard]] static Result<ColliderTextures> create(const Collider& collider);
+    /// Uploads up to kBodiesMax of them, which share a world.
+    /// Errors: those above, kLimit (more bodies), kUsage (a scale that is not above 0).
+    [[nodiscard]] static Result<ColliderTextures> create(std::span<const ColliderBody> bodies);
+
+    /// The poses at the end of the next step; those of the call before become those at its beginning. Call it
+    /// before each step while anything moves, and once more when it has stopped. Needs as many as there are
+    /// bodies. Scales may not change.
+    void setPoses(std::span<const Pose> poses);
 
     /// Connects a program that includes collider.glsl: samplers, block binding. Once after linking; leaves
     /// the program current.
@@ -36,12 +59,27 @@ class ColliderTextures {
     /// Binds textures and block for the next draw.
     void bind(const Binding& binding) const;
 
+    /// 0 for one collider in its own space.
+    [[nodiscard]] std::size_t bodyCount() const { return bodies_.size(); }
     [[nodiscard]] int mapCount() const { return map_count_; }
     [[nodiscard]] std::size_t bytes() const { return bytes_; }
     /// "#define RELIEF_MAP_CAPACITY n\n" for makeProgram: the length of the block's array.
     [[nodiscard]] const std::string& defines() const { return defines_; }
 
   private:
+    /// A body's share of the block, std140.
+    struct BlockBody {
+        glm::vec4 row[3];
+        glm::vec4 before[3];
+        glm::vec4 response;
+        std::int32_t maps[4];
+    };
+    static_assert(sizeof(BlockBody) == 128);
+
+    [[nodiscard]] static Result<ColliderTextures> upload(std::span<const DepthMap* const> maps,
+                                                         std::vector<BlockBody> bodies);
+
+    std::vector<BlockBody> bodies_;
     GlTexture float_maps_;
     GlTexture fixed_maps_;
     GlTexture front_back_maps_;

@@ -12,12 +12,6 @@
 namespace relief {
 namespace {
 
-// Texture units of the step's inputs; the collider's follow.
-constexpr int kPositionUnit = 0;
-constexpr int kVelocityUnit = 1;
-constexpr int kBirthUnit = 2;
-constexpr ColliderTextures::Binding kColliderBinding{3, 0};
-
 // A dead particle, as step.glsl writes it.
 constexpr std::array<float, 4> kDeadPosition{0.0F, -1e30F, 0.0F, -1.0F};
 constexpr std::array<float, 4> kZero{};
@@ -58,6 +52,7 @@ Result<ParticleSystem> ParticleSystem::create(const ParticleSystemOptions& optio
     }
     ParticleSystem system(options.capacity);
     system.epoch_seconds_ = options.epoch_seconds;
+    system.integrator_ = options.integrator;
     system.width_ = std::min(options.capacity, kStateWidth);
     system.height_ = (options.capacity + system.width_ - 1) / system.width_;
     system.ids_.resize(options.capacity);
@@ -82,22 +77,29 @@ Result<ParticleSystem> ParticleSystem::create(const ParticleSystemOptions& optio
 Result<void> ParticleSystem::createTextures() {
     birth_ = makeStateTexture(width_, height_);
     no_attributes_ = makeVertexArray();
-    for (int i = 0; i < 2; ++i) {
+    const int buffers = verlet() ? 3 : 2;
+    for (int i = 0; i < buffers; ++i) {
         position_[i] = makeStateTexture(width_, height_);
-        velocity_[i] = makeStateTexture(width_, height_);
+        if (!verlet()) {
+            velocity_[i] = makeStateTexture(width_, height_);
+        }
     }
-    for (int i = 0; i < 2; ++i) {
-        const std::array<GLuint, 3> textures{position_[i].name(), velocity_[i].name(), birth_.name()};
-        auto step_target = makeFramebuffer(std::span(textures).first(2));
+    for (int i = 0; i < buffers; ++i) {
+        // Verlet reads the two positions before, and a birth writes both.
+        const GlTexture& second = verlet() ? position_[(i + 2) % 3] : velocity_[i];
+        const std::array<GLuint, 3> textures{position_[i].name(), second.name(), birth_.name()};
+        auto step_target = makeFramebuffer(std::span(textures).first(verlet() ? 1 : 2));
         auto birth_target = makeFramebuffer(textures);
         if (!step_target || !birth_target) {
             return forward(!step_target ? step_target : birth_target);
         }
         step_target_[i] = std::move(*step_target);
         birth_target_[i] = std::move(*birth_target);
+    }
+    for (int i = 0; i < buffers; ++i) {
         glBindFramebuffer(GL_FRAMEBUFFER, birth_target_[i].name());
         glClearBufferfv(GL_COLOR, 0, kDeadPosition.data());
-        glClearBufferfv(GL_COLOR, 1, kZero.data());
+        glClearBufferfv(GL_COLOR, 1, verlet() ? kDeadPosition.data() : kZero.data());
         glClearBufferfv(GL_COLOR, 2, kZero.data());
     }
 
@@ -118,7 +120,7 @@ Result<void> ParticleSystem::createTextures() {
 }
 
 Result<void> ParticleSystem::createPrograms() {
-    auto birth = makeProgram("birth.vert", "birth.frag");
+    auto birth = makeProgram("birth.vert", "birth.frag", verlet() ? "#define RELIEF_VERLET\n" : "");
     auto rebase = makeProgram("quad.vert", "rebase.frag");
     if (!birth || !rebase) {
         return forward(!birth ? birth : rebase);
@@ -127,44 +129,62 @@ Result<void> ParticleSystem::createPrograms() {
     glUseProgram(birth_program_.name());
     glUniform2i(uniformLocation(birth_program_, "u_size"), static_cast<GLint>(width_),
                 static_cast<GLint>(height_));
+    birth_dt_ = glGetUniformLocation(birth_program_.name(), "u_dt_before");
     rebase_program_ = std::move(*rebase);
     glUseProgram(rebase_program_.name());
-    glUniform1i(uniformLocation(rebase_program_, "u_birth"), kBirthUnit);
+    glUniform1i(uniformLocation(rebase_program_, "u_birth"), StepPass::kBirthUnit);
     rebase_shift_ = uniformLocation(rebase_program_, "u_shift");
 
-    auto step = makeStepProgram(nullptr);
-    if (!step) {
-        return forward(step);
+    return remakeStep(nullptr);
+}
+
+Result<void> ParticleSystem::remakeStep(const ColliderTextures* collider) {
+    const bool margin =
+        std::any_of(types_.begin(), types_.end(), [](const ParticleType& t) { return t.radius > 0.0F; });
+    const StepFeatures features{collider, verlet(), sweep_ > 0.0F, margin && collider != nullptr,
+                                static_cast<int>(types_.size())};
+    auto made = StepPass::create(features);
+    if (!made) {
+        return forward(made);
     }
-    step_ = std::move(*step);
+    step_ = std::move(*made);
     return {};
 }
 
-Result<ParticleSystem::StepProgram> ParticleSystem::makeStepProgram(const ColliderTextures* collider) const {
-    auto program = collider != nullptr ? makeProgram("quad.vert", "step.frag", collider->defines())
-                                       : makeProgram("quad.vert", "step_free.frag");
-    if (!program) {
-        return forward(program);
+void ParticleSystem::setCollision(const Collision& collision) {
+    ParticleType type;
+    type.restitution = collision.restitution;
+    type.friction = collision.friction;
+    type.friction_threshold = collision.friction_threshold;
+    types_.assign(types_.size(), type);
+}
+
+Result<void> ParticleSystem::setTypes(std::span<const ParticleType> types) {
+    if (types.empty() || types.size() > kParticleTypesMax) {
+        return fail(ErrorCode::kUsage, std::to_string(types.size()) + " types of particles; choose 1 to " +
+                                           std::to_string(kParticleTypesMax));
     }
-    StepProgram step;
-    step.program = std::move(*program);
-    const auto at = [&](const char* name) { return uniformLocation(step.program, name); };
-    step.now = at("u_now");
-    step.dt = at("u_dt");
-    step.gain = at("u_gain");
-    step.keep = at("u_keep");
-    step.restitution = at("u_restitution");
-    step.slide = at("u_slide");
-    step.friction_threshold = at("u_friction_threshold");
-    step.ground = at("u_ground");
-    glUseProgram(step.program.name());
-    glUniform1i(at("u_position"), kPositionUnit);
-    glUniform1i(at("u_velocity"), kVelocityUnit);
-    glUniform1i(at("u_birth"), kBirthUnit);
-    if (collider != nullptr) {
-        collider->attach(step.program, kColliderBinding);
+    const auto share = [](float value) { return value >= 0.0F && value <= 1.0F; };
+    for (const ParticleType& type : types) {
+        if (!(type.mass > 0.0F && type.radius >= 0.0F && share(type.restitution) && share(type.friction) &&
+              type.friction_threshold >= 0.0F && type.lifetime_loss >= 0.0F)) {
+            return fail(ErrorCode::kUsage,
+                        "a type of particles needs a mass above 0, a radius, friction threshold and loss of "
+                        "lifetime of at least 0, and restitution and friction from 0 to 1");
+        }
     }
-    return step;
+    types_.assign(types.begin(), types.end());
+    const PassState state;
+    return remakeStep(step_.features().collider);
+}
+
+Result<void> ParticleSystem::setSweep(float length) {
+    if (!(length >= 0.0F)) {
+        return fail(ErrorCode::kUsage, "the length of a sweep must be at least 0");
+    }
+    sweep_ = length;
+    const PassState state;
+    return remakeStep(step_.features().collider);
 }
 
 Result<void> ParticleSystem::setColliders(std::span<const ColliderInstance> colliders) {
@@ -174,14 +194,7 @@ Result<void> ParticleSystem::setColliders(std::span<const ColliderInstance> coll
                                                  "; bake them into one collider");
     }
     const PassState state;
-    const ColliderTextures* collider = colliders.empty() ? nullptr : colliders.front().textures;
-    auto step = makeStepProgram(collider);
-    if (!step) {
-        return forward(step);
-    }
-    step_ = std::move(*step);
-    collider_ = collider;
-    return {};
+    return remakeStep(colliders.empty() ? nullptr : colliders.front().textures);
 }
 
 std::size_t ParticleSystem::spawn(std::span<const Birth> births) {
@@ -209,6 +222,9 @@ std::size_t ParticleSystem::spawn(std::span<const Birth> births) {
 
 void ParticleSystem::step(float dt) {
     const PassState state;
+    if (dt_before_ == 0.0F) {
+        dt_before_ = dt;
+    }
     drawBirths();
     time_ += static_cast<double>(dt);
     const float now = clock();
@@ -231,6 +247,7 @@ void ParticleSystem::drawBirths() {
     glBindFramebuffer(GL_FRAMEBUFFER, birth_target_[current_].name());
     glViewport(0, 0, static_cast<GLsizei>(width_), static_cast<GLsizei>(height_));
     glUseProgram(birth_program_.name());
+    glUniform1f(birth_dt_, dt_before_);
     glBindVertexArray(birth_array_.name());
     glBindBuffer(GL_ARRAY_BUFFER, birth_vertices_.name());
     // A fresh store each time: the driver need not wait until the last one has been drawn.
@@ -245,24 +262,13 @@ void ParticleSystem::drawStep(float dt, float now) {
     if (extent == 0) {
         return;
     }
-    const int next = 1 - current_;
+    const int next = verlet() ? (current_ + 1) % 3 : 1 - current_;
     glBindFramebuffer(GL_FRAMEBUFFER, step_target_[next].name());
-    glUseProgram(step_.program.name());
-    useTexture(kPositionUnit, position_[current_]);
-    useTexture(kVelocityUnit, velocity_[current_]);
-    useTexture(kBirthUnit, birth_);
-    if (collider_ != nullptr) {
-        collider_->bind(kColliderBinding);
-    }
-    const glm::vec3 gain = dt * (forces_.gravity + forces_.drag * forces_.wind);
-    glUniform1f(step_.now, now);
-    glUniform1f(step_.dt, dt);
-    glUniform3f(step_.gain, gain.x, gain.y, gain.z);
-    glUniform1f(step_.keep, 1.0F / (1.0F + dt * forces_.drag));
-    glUniform1f(step_.restitution, collision_.restitution);
-    glUniform1f(step_.slide, 1.0F - collision_.friction);
-    glUniform1f(step_.friction_threshold, collision_.friction_threshold);
-    glUniform1f(step_.ground, ground_.value_or(kNoGround));
+    useTexture(StepPass::kPositionUnit, position_[current_]);
+    useTexture(StepPass::kVelocityUnit, verlet() ? position_[(current_ + 2) % 3] : velocity_[current_]);
+    useTexture(StepPass::kBirthUnit, birth_);
+    step_.use({now, dt, dt_before_, ground_.value_or(kNoGround), sweep_, forces_, types_});
+    dt_before_ = dt;
     // Rows beyond the extent keep what they held in either buffer. That is sound: an index beyond it is only
     // reached again through a birth, which overwrites it, and an index below it has been stepped ever since.
     drawRows(no_attributes_, width_, (extent + width_ - 1) / width_);
@@ -297,12 +303,15 @@ void ParticleSystem::setEpochForward() {
     glBindFramebuffer(GL_FRAMEBUFFER, rebase_target_.name());
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, birth_spare_.name(), 0);
     glUseProgram(rebase_program_.name());
-    useTexture(kBirthUnit, birth_);
+    useTexture(StepPass::kBirthUnit, birth_);
     glUniform1f(rebase_shift_, shift);
     drawRows(no_attributes_, width_, (allocator_.extent() + width_ - 1) / width_);
 
     std::swap(birth_, birth_spare_);
     for (const GlFramebuffer& target : birth_target_) {
+        if (!target) {  // Euler has two
+            continue;
+        }
         glBindFramebuffer(GL_FRAMEBUFFER, target.name());
         glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT2, GL_TEXTURE_2D, birth_.name(), 0);
     }
@@ -328,11 +337,22 @@ Result<RawState> ParticleSystem::readRaw() const {
         floats.resize(std::size_t{4} * drawn_extent_);
         return {};
     };
+    const GlTexture& second = verlet() ? position_[(current_ + 2) % 3] : velocities();
     for (auto done :
-         {read(positions(), raw.position), read(velocities(), raw.velocity), read(births(), raw.birth)}) {
+         {read(positions(), raw.position), read(second, raw.velocity), read(births(), raw.birth)}) {
         if (!done) {
             return forward(done);
         }
+    }
+    // What the shader would take: step.glsl.
+    for (std::size_t i = 0; verlet() && i < raw.position.size(); i += 4) {
+        const float rate = dt_before_ > 0.0F ? 1.0F / dt_before_ : 0.0F;
+        for (std::size_t k = i; k < i + 3; ++k) {
+            raw.velocity[k] = (raw.position[k] - raw.velocity[k]) * rate;
+        }
+        const float collisions = std::floor(raw.position[i + 3]);
+        raw.velocity[i + 3] = 16.0F * (raw.position[i + 3] - collisions);
+        raw.position[i + 3] = collisions;
     }
     return raw;
 }
@@ -358,6 +378,9 @@ Result<std::vector<ParticleState>> ParticleSystem::readState() const {
         const float* position = &raw->position[std::size_t{4} * index];
         const float* velocity = &raw->velocity[std::size_t{4} * index];
         const float* birth = &raw->birth[std::size_t{4} * index];
+        if (position[3] < 0.0F) {  // by a collision, of which the CPU does not know
+            continue;
+        }
         ParticleState& particle = particles.emplace_back();
         particle.id = ids_[index];
         particle.index = index;
@@ -367,7 +390,7 @@ Result<std::vector<ParticleState>> ParticleSystem::readState() const {
         particle.lifetime = birth[1] - birth[0];
         particle.type = static_cast<std::uint32_t>(birth[2]);
         particle.collisions = static_cast<std::uint32_t>(std::max(position[3], 0.0F));
-        particle.contact = static_cast<Contact>(std::clamp(static_cast<int>(velocity[3]), 0, 2));
+        particle.contact = static_cast<Contact>(std::clamp(static_cast<int>(velocity[3]), 0, 3));
     }
     return particles;
 }

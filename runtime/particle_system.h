@@ -4,6 +4,7 @@
 //     bytes on the GPU = 80 · texels, texels = capacity rounded up to whole rows of kStateWidth:
 //         position  2 × RGBA32F (double-buffered)      xyz, collisions (−1: dead)
 //         velocity  2 × RGBA32F (double-buffered)      xyz, contact of the last step
+//         (with Verlet: a third position instead; 64 · texels in all)
 //         birth     1 × RGBA32F                        time of birth, time of death, type, id mod 2^24
 //     (96 · texels once the clock has been set back for the first time)
 //
@@ -23,34 +24,36 @@
 #include <vector>
 
 #include "formats/result.h"
-#include "runtime/collider_textures.h"
 #include "runtime/emitter.h"
 #include "runtime/gl_object.h"
 #include "runtime/index_allocator.h"
+#include "runtime/step_pass.h"
 
 namespace relief {
 
-struct Forces {
-    glm::vec3 gravity{0.0F};  ///< object units a second squared
-    glm::vec3 wind{0.0F};     ///< velocity of the air, object units a second
-    float drag = 0.0F;        ///< a = drag · (wind − v); 1/s, ≥ 0
-};
-
-/// What a collision does to a velocity (paper, section 3.3.2).
+/// The collision of a particle system with a single type of particles (paper, section 3.3.2).
 struct Collision {
-    float restitution = 0.0F;         ///< ε, 0…1: how much of the normal speed comes back
-    float friction = 0.0F;            ///< ν, 0…1: how much of the tangential speed is lost
-    float friction_threshold = 0.0F;  ///< no friction below this speed, object units a second
+    float restitution = 0.0F;  ///< as those of ParticleType
+    float friction = 0.0F;
+    float friction_threshold = 0.0F;
 };
 
-/// A collider among the particles. It must outlive its use by the system.
+/// Colliders among the particles: one in its own object space, or bodies in a world, which the particles then
+/// live in. It must outlive its use by the system.
 struct ColliderInstance {
     const ColliderTextures* textures = nullptr;
 };
 
+/// How positions follow from velocities; both are of first order, and alike but for rounding.
+enum class Integrator : std::uint8_t {
+    kEuler,   ///< semi-implicit: v' = v + dt a, P' = P + dt v'
+    kVerlet,  ///< P' = P + dt/dt_before (P − P_before) + dt² a: the velocity is the way of the last step
+};
+
 struct ParticleSystemOptions {
     std::uint32_t capacity = 65536;  ///< particles that may live at once, 1…kCapacityMax
-    double epoch_seconds = 4096.0;   ///< how far the GPU's clock runs before it is set back
+    Integrator integrator = Integrator::kEuler;
+    double epoch_seconds = 4096.0;  ///< how far the GPU's clock runs before it is set back
 };
 
 struct ParticleCounts {
@@ -61,7 +64,12 @@ struct ParticleCounts {
     std::uint32_t extent = 0;  ///< the largest live index + 1
 };
 
-enum class Contact : std::uint8_t { kNone = 0, kCollided = 1, kCaught = 2 };
+enum class Contact : std::uint8_t {
+    kNone = 0,
+    kCollided = 1,
+    kCaught = 2,
+    kStopped = 3,  ///< at rest for good (OnCollision::kStop)
+};
 
 /// One live particle, read back.
 struct ParticleState {
@@ -76,8 +84,8 @@ struct ParticleState {
     Contact contact = Contact::kNone;  ///< of the last step
 };
 
-/// The state textures as they are, four floats a texel, index after index up to the extent. (Texels beyond it
-/// hold leftovers, which no renderer may draw.)
+/// The state textures as they are (velocities of Verlet worked out), four floats a texel, index after index
+/// up to the extent. (Texels beyond it hold leftovers, which no renderer may draw.)
 struct RawState {
     std::vector<float> position;
     std::vector<float> velocity;
@@ -93,12 +101,22 @@ class ParticleSystem {
     /// Errors: kUsage (capacity, epoch), kLimit (above what this GL takes), kUnsupported, kFailure.
     [[nodiscard]] static Result<ParticleSystem> create(const ParticleSystemOptions& options = {});
 
-    /// What the particles collide with from the next step on; compiles the step for it. So far one collider
-    /// at most, in its own object space.
+    /// What the particles collide with from the next step on; compiles the step for it. One instance at most,
+    /// which may hold several bodies.
     /// Errors: kUnsupported (more than one), kFailure (the driver's compiler).
     [[nodiscard]] Result<void> setColliders(std::span<const ColliderInstance> colliders);
     void setForces(const Forces& forces) { forces_ = forces; }
-    void setCollision(const Collision& collision) { collision_ = collision; }
+    /// One type of particles, without radius, that bounces.
+    void setCollision(const Collision& collision);
+    /// The types of particles: Birth::type is an index here, and the last one for what lies beyond.
+    /// Errors: kUsage (none or more than kParticleTypesMax; a mass that is not above 0, a negative radius, a
+    /// share outside 0…1), kFailure (the driver's compiler).
+    [[nodiscard]] Result<void> setTypes(std::span<const ParticleType> types);
+    /// Above 0 a step tests its way in pieces no longer than this, world units, and never ends inside what it
+    /// did not begin in: nothing crosses a body at rest that is thicker than this. What moves farther than
+    /// StepPass::kSweepPieces of them in a step is slowed down. 0: only both ends are tested, as in the
+    /// paper. Errors: kUsage, kFailure (the driver's compiler).
+    [[nodiscard]] Result<void> setSweep(float length);
     /// A floor: everything below this height is solid, in union with the collider. nullopt: none.
     void setGround(std::optional<float> height) { ground_ = height; }
 
@@ -119,6 +137,7 @@ class ParticleSystem {
     // For renderers: particle i < extent() lies at texel (i mod width, i / width). Births since the last step
     // are not in the textures yet.
     [[nodiscard]] const GlTexture& positions() const { return position_[current_]; }
+    /// Euler alone: with Verlet there are none.
     [[nodiscard]] const GlTexture& velocities() const { return velocity_[current_]; }
     [[nodiscard]] const GlTexture& births() const { return birth_; }
     [[nodiscard]] std::uint32_t textureWidth() const { return width_; }
@@ -145,22 +164,11 @@ class ParticleSystem {
         glm::vec3 velocity;
         glm::vec4 birth;
     };
-    struct StepProgram {
-        GlProgram program;
-        GLint now = -1;
-        GLint dt = -1;
-        GLint gain = -1;
-        GLint keep = -1;
-        GLint restitution = -1;
-        GLint slide = -1;
-        GLint friction_threshold = -1;
-        GLint ground = -1;
-    };
-
     explicit ParticleSystem(std::uint32_t capacity) : allocator_(capacity) {}
     [[nodiscard]] Result<void> createTextures();
     [[nodiscard]] Result<void> createPrograms();
-    [[nodiscard]] Result<StepProgram> makeStepProgram(const ColliderTextures* collider) const;
+    [[nodiscard]] Result<void> remakeStep(const ColliderTextures* collider);
+    [[nodiscard]] bool verlet() const { return integrator_ == Integrator::kVerlet; }
     [[nodiscard]] float clockOf(double time) const { return static_cast<float>(time - epoch_); }
     void setEpochForward();
     void drawBirths();
@@ -178,21 +186,23 @@ class ParticleSystem {
     double epoch_ = 0.0;
     double epoch_seconds_ = 0.0;
 
+    Integrator integrator_ = Integrator::kEuler;
     Forces forces_;
-    Collision collision_;
+    std::vector<ParticleType> types_{ParticleType{}};
+    float sweep_ = 0.0F;
     std::optional<float> ground_;
-    const ColliderTextures* collider_ = nullptr;
+    float dt_before_ = 0.0F;  // of the last step; 0 before the first
 
     std::uint32_t width_ = 0;
     std::uint32_t height_ = 0;
     std::uint32_t drawn_extent_ = 0;  // the extent after the last step
-    int current_ = 0;                 // which of the two buffers holds the state
-    GlTexture position_[2];
-    GlTexture velocity_[2];
+    int current_ = 0;                 // which of the buffers holds the state
+    GlTexture position_[3];           // the third is Verlet's
+    GlTexture velocity_[2];           // Euler's
     GlTexture birth_;
     GlTexture birth_spare_;          // made when the clock is first set back
-    GlFramebuffer step_target_[2];   // position and velocity
-    GlFramebuffer birth_target_[2];  // position, velocity, birth
+    GlFramebuffer step_target_[3];   // position and velocity
+    GlFramebuffer birth_target_[3];  // position, velocity or position before, birth
     GlFramebuffer rebase_target_;    // birth_spare_
     GlBuffer birth_vertices_;
     GlVertexArray birth_array_;
@@ -200,7 +210,8 @@ class ParticleSystem {
     GlProgram birth_program_;
     GlProgram rebase_program_;
     GLint rebase_shift_ = -1;
-    StepProgram step_;
+    GLint birth_dt_ = -1;
+    StepPass step_;
 };
 
 }  // namespace relief

@@ -27,8 +27,25 @@ struct ReliefMap {
     ivec4 info;            // height; format; flags: the sum of RELIEF_KEEPS_FARTHEST…
 };
 
+// Colliders with a pose of their own; 0: one collider, in its own object space.
+#if !defined(RELIEF_BODIES)
+#define RELIEF_BODIES 0
+#endif
+
+#if RELIEF_BODIES > 0
+struct ReliefBody {
+    vec4 row[3];     // world to object space at the end of the step: a rotation, divided by scale
+    vec4 before[3];  // the same at its beginning
+    vec4 response;   // scale (world units of an object unit); restitution; 1 - friction
+    ivec4 maps;      // the first map; how many
+};
+#endif
+
 layout(std140) uniform ReliefCollider {
     ivec4 u_relief_count;  // maps in use; log2 of the widths of the textures: float, fixed, front-back
+#if RELIEF_BODIES > 0
+    ReliefBody u_relief_bodies[RELIEF_BODIES];
+#endif
     ReliefMap u_relief_maps[RELIEF_MAP_CAPACITY];
 };
 
@@ -102,6 +119,13 @@ bool reliefIsPlane(ivec4 info) {
 bool reliefHas(ivec4 info, int flag) {
     return (RELIEF_ALL & flag) != 0 || (info.z & flag) != 0;
 }
+
+// How far the surface is moved outwards, in object units: the radius of what collides.
+#if defined(RELIEF_MARGIN)
+float relief_margin = 0.0;
+#else
+const float relief_margin = 0.0;
+#endif
 
 // The combined vote. map is the deciding map, −1 where every map abstains; normal is zero where the point
 // is known to be outside and no more (distance RELIEF_FAR_OUTSIDE).
@@ -273,8 +297,8 @@ void reliefVoteOrthographic(inout ReliefField best, int i, vec3 p, ivec4 place, 
             front = scale * (front - p.z);
             back = scale * (p.z - back);
         }
-        front = words.b != 0u ? front : RELIEF_FAR_INSIDE;
-        back = words.a != 0u ? back : RELIEF_FAR_INSIDE;
+        front = words.b != 0u ? front - relief_margin : RELIEF_FAR_INSIDE;
+        back = words.a != 0u ? back - relief_margin : RELIEF_FAR_INSIDE;
         bool take_back = reliefReplaces(back, front);
         vote = take_back ? back : front;
         if (plane) {
@@ -296,6 +320,7 @@ void reliefVoteOrthographic(inout ReliefField best, int i, vec3 p, ivec4 place, 
         } else {
             vote = scale * ((info.z & RELIEF_KEEPS_FARTHEST) != 0 ? p.z - depth : depth - p.z);
         }
+        vote -= relief_margin;
     }
     if (!found) {
         if (reliefHas(info, RELIEF_EMPTY_IS_OUTSIDE)) {
@@ -342,6 +367,7 @@ void reliefVoteCube(inout ReliefField best, int i, vec3 p, ivec4 place, ivec4 in
         float ahead = (info.z & RELIEF_KEEPS_FARTHEST) != 0 ? radius - depth : depth - radius;
         vote = ahead * reliefLength(u_relief_maps[i].object_per_map.xyz * direction);
     }
+    vote -= relief_margin;
     if (!in_volume && !(vote >= 0.0)) {
         vote = RELIEF_FAR_OUTSIDE;
         normal = vec3(0.0);
@@ -363,6 +389,9 @@ void reliefVote(inout ReliefField best, int i, vec3 p) {
     }
 }
 
+#if RELIEF_BODIES == 0
+
+// Of all maps, in the object space that they share.
 ReliefField reliefEvaluate(vec3 p) {
     ReliefField best = ReliefField(RELIEF_FAR_INSIDE, vec3(0.0), -1);
     for (int i = 0; i < u_relief_count.x; ++i) {
@@ -408,3 +437,79 @@ bool reliefSolidAt(vec3 p, int first) {
     }
     return reliefInside(best);
 }
+
+#else
+
+vec3 reliefToObject(vec4 row0, vec4 row1, vec4 row2, vec3 p) {
+    return vec3(reliefRow(row0, p), reliefRow(row1, p), reliefRow(row2, p));
+}
+
+// Where a point of a body's object space lies in the world. (The transposed of a rotation is its inverse.)
+vec3 reliefToWorld(vec4 row0, vec4 row1, vec4 row2, float scale, vec3 q) {
+    return (scale * scale) * (row0.xyz * (q.x - row0.w) + (row1.xyz * (q.y - row1.w) + row2.xyz * (q.z - row2.w)));
+}
+
+// What the maps of one body say of a point of its object space; with `sign_only` the first that sees it outside
+// ends the walk.
+ReliefField reliefBodyField(int body, vec3 q, bool sign_only) {
+    ReliefField best = ReliefField(RELIEF_FAR_INSIDE, vec3(0.0), -1);
+    int end = u_relief_bodies[body].maps.x + u_relief_bodies[body].maps.y;
+    for (int i = u_relief_bodies[body].maps.x; i < end && !(sign_only && best.distance >= 0.0); ++i) {
+        reliefVote(best, i, q);
+    }
+    return best;
+}
+
+// World to object space and back, at the beginning and at the end of the step.
+vec3 reliefBodyNow(int body, vec3 p) {
+    return reliefToObject(u_relief_bodies[body].row[0], u_relief_bodies[body].row[1], u_relief_bodies[body].row[2], p);
+}
+vec3 reliefBodyBefore(int body, vec3 p) {
+    return reliefToObject(u_relief_bodies[body].before[0], u_relief_bodies[body].before[1],
+                          u_relief_bodies[body].before[2], p);
+}
+vec3 reliefWorldNow(int body, vec3 q) {
+    return reliefToWorld(u_relief_bodies[body].row[0], u_relief_bodies[body].row[1], u_relief_bodies[body].row[2],
+                         u_relief_bodies[body].response.x, q);
+}
+vec3 reliefWorldBefore(int body, vec3 q) {
+    return reliefToWorld(u_relief_bodies[body].before[0], u_relief_bodies[body].before[1],
+                         u_relief_bodies[body].before[2], u_relief_bodies[body].response.x, q);
+}
+
+vec3 reliefWorldNormal(int body, vec3 n) {
+    return u_relief_bodies[body].response.x *
+           (u_relief_bodies[body].row[0].xyz * n.x +
+            (u_relief_bodies[body].row[1].xyz * n.y + u_relief_bodies[body].row[2].xyz * n.z));
+}
+
+// The union of all bodies in the world, which the nearest, inside the deepest, decides. The distance is in world
+// units. body is -1 where none has a say.
+ReliefField reliefUnion(vec3 p, bool sign_only, float margin, out int body) {
+    ReliefField best = ReliefField(RELIEF_FAR_OUTSIDE, vec3(0.0), -1);
+    body = -1;
+    for (int b = 0; b < RELIEF_BODIES; ++b) {
+        float scale = u_relief_bodies[b].response.x;
+#if defined(RELIEF_MARGIN)
+        relief_margin = margin / scale;
+#endif
+        ReliefField field = reliefBodyField(b, reliefBodyNow(b, p), sign_only);
+        if (field.map >= 0 && scale * field.distance < best.distance) {
+            best = ReliefField(scale * field.distance, reliefWorldNormal(b, field.normal), field.map);
+            body = b;
+        }
+    }
+    return best;
+}
+
+ReliefField reliefSolid(vec3 p) {
+    int body;
+    return reliefUnion(p, true, 0.0, body);
+}
+
+ReliefField reliefEvaluate(vec3 p) {
+    int body;
+    return reliefUnion(p, false, 0.0, body);
+}
+
+#endif

@@ -1,70 +1,151 @@
-// One step of the simulation: age, forces, collision reaction, Euler. A fragment is a particle. The file that
-// includes this one says what is solid, through solid().
+// One step of the simulation: age, forces, collision reaction, Euler or Verlet. A fragment is a particle. The file
+// that includes this one says what is solid.
 //
-//     position texture   x y z   object space
+//     position texture   x y z   world space
 //                        w       collisions so far, each step in contact counting; -1 once dead
-//     velocity texture   x y z   object units a second
-//                        w       what the last step did: 0 free flight, 1 collided, 2 caught and pushed out
+//     velocity texture   x y z   world units a second
+//                        w       what the last step did: 0 free flight, 1 collided, 2 caught and pushed out;
+//                                3 at rest for good on the floor, 4 + b on body b
 //     birth texture      x       time of birth   } seconds on the clock of u_now
 //                        y       time of death   }
 //                        z       type
 //                        w       id modulo 2^24
+//
+// With RELIEF_VERLET there is no velocity texture: the velocity is the way from the position before, and the
+// position's w holds both counts, collisions + (what the last step did) / 16.
 
 uniform highp sampler2D u_position;
+#if defined(RELIEF_VERLET)
+uniform highp sampler2D u_position_before;
+uniform float u_rate_before;  // 1 / seconds of the last step
+#else
 uniform highp sampler2D u_velocity;
+#endif
 uniform highp sampler2D u_birth;
 
 uniform float u_now;      // the clock at the end of this step
 uniform float u_dt;       // seconds
-uniform vec3 u_gain;      // dt (gravity + drag wind)
-uniform float u_keep;     // 1 / (1 + dt drag)
-uniform float u_restitution;
-uniform float u_slide;    // 1 - friction
-uniform float u_friction_threshold;
+uniform vec3 u_gravity;   // world units a second squared
+uniform vec3 u_wind;      // velocity of the air, world units a second
+uniform float u_rest;     // below this speed nothing bounces: what gravity gives within two steps
 uniform float u_ground;   // height of the floor; far below everything if there is none
+#if defined(RELIEF_SWEEP)
+uniform float u_sweep;    // the longest way between two tests, world units
+#endif
 
+// Of each type: radius; restitution; 1 - friction; speed below which there is no friction / drag, 1/s; what a
+// collision does; seconds of life that a collision costs.
+uniform vec4 u_types[2 * RELIEF_TYPES];
+const float RELIEF_BOUNCE = 0.0;
+const float RELIEF_STOP = 1.0;
+const float RELIEF_SLIDE = 2.0;
+const float RELIEF_DIE = 3.0;
+
+#if defined(RELIEF_VERLET)
+layout(location = 0) out vec4 o_position;
+#else
 layout(location = 0) out vec4 o_position;
 layout(location = 1) out vec4 o_velocity;
+#endif
 
-// A point is inside where distance is negative; then normal is the way out, and map the depth map that says so.
+// A point is inside where distance is negative; then normal is the way out, map the depth map that says so, and body
+// the body: -1 the floor.
 struct Solid {
     float distance;
     vec3 normal;
     int map;
+    int body;
 };
 
-Solid solid(vec3 p);
-// The sign alone, for a point near one where `map` decided.
-bool solidAt(vec3 p, int map);
+// Of everything but the floor, at the end of the step, moved outwards by a radius.
+Solid solid(vec3 p, float radius);
+// Whether p, where the step began, was inside the body of s at that time.
+bool insideBefore(vec3 p, float radius, Solid s);
+// Where a point of a body was at the beginning of the step, and where one of then is at its end.
+vec3 pointBefore(int body, vec3 p);
+vec3 pointNow(int body, vec3 p);
+// Restitution and 1 - friction of a body, factors of the particle's own.
+vec2 bodyResponse(int body);
 
-// Union of a body with the floor y < u_ground. Inside both, the deeper one decides.
-Solid withGround(Solid body, vec3 p) {
-    float above = p.y - u_ground;
+// Union with the floor y < u_ground. Inside both, the deeper one decides.
+Solid solidOrGround(vec3 p, float radius) {
+    Solid body = solid(p, radius);
+    float above = p.y - radius - u_ground;
     if (above < body.distance) {
-        return Solid(above, vec3(0.0, 1.0, 0.0), body.map);
+        return Solid(above, vec3(0.0, 1.0, 0.0), -1, -1);
     }
     return body;
+}
+
+bool caught(vec3 p, float radius, Solid s) {
+    return s.body < 0 ? p.y - radius < u_ground : insideBefore(p, radius, s);
+}
+
+vec3 surfaceVelocity(Solid s, vec3 p) {
+    return s.body < 0 ? vec3(0.0) : (p - pointBefore(s.body, p)) / u_dt;
+}
+
+void finish(vec3 p, vec3 v, float collisions, float contact) {
+#if defined(RELIEF_VERLET)
+    // Beyond 2^19 a float would lose the sixteenths.
+    o_position = vec4(p, min(collisions, 524287.0) + contact / 16.0);
+#else
+    o_position = vec4(p, collisions);
+    o_velocity = vec4(v, contact);
+#endif
+}
+
+// Dead, and out of sight.
+void finishDead() {
+    o_position = vec4(0.0, -1e30, 0.0, -1.0);
+#if !defined(RELIEF_VERLET)
+    o_velocity = vec4(0.0);
+#endif
 }
 
 void main() {
     ivec2 texel = ivec2(gl_FragCoord.xy);
     vec4 position = texelFetch(u_position, texel, 0);
-    vec4 velocity = texelFetch(u_velocity, texel, 0);
     vec4 birth = texelFetch(u_birth, texel, 0);
+    vec3 p = position.xyz;
+#if defined(RELIEF_VERLET)
+    vec3 v = (p - texelFetch(u_position_before, texel, 0).xyz) * u_rate_before;
+    float collisions = floor(position.w);
+    float contact = (position.w - collisions) * 16.0;
+#else
+    vec4 velocity = texelFetch(u_velocity, texel, 0);
+    vec3 v = velocity.xyz;
+    float collisions = position.w;
+    float contact = velocity.w;
+#endif
+    int type = RELIEF_TYPES == 1 ? 0 : clamp(int(birth.z), 0, RELIEF_TYPES - 1);
+    vec4 type_a = u_types[2 * type];      // radius, restitution, 1 - friction, threshold
+    vec4 type_b = u_types[2 * type + 1];  // drag, behaviour, loss
 
-    // Dead, and out of sight. A comparison alone, of numbers that the CPU made: both agree on the step.
-    if (position.w < 0.0 || u_now >= birth.y) {
-        o_position = vec4(0.0, -1e30, 0.0, -1.0);
-        o_velocity = vec4(0.0);
+    // A comparison alone, of numbers that the CPU made: both agree on the step. (A loss of life only the GPU knows;
+    // the CPU then frees the index at the time that it was born with.)
+    if (position.w < 0.0 || u_now >= birth.y || (type_b.z > 0.0 && u_now >= birth.y - type_b.z * collisions)) {
+        finishDead();
+        return;
+    }
+
+    // At rest for good, on something that may move.
+    if (contact >= 3.0) {
+        int body = int(contact) - 4;
+        vec3 carried = body < 0 ? p : pointNow(body, p);
+        finish(carried, (carried - p) / u_dt, collisions, contact);
         return;
     }
 
     // Forces. Drag is integrated implicitly, v' = v + dt (g + k (w - v')): it approaches the wind for any dt,
     // while the explicit form overshoots for dt k > 1 and grows without bound for dt k > 2.
-    vec3 p = position.xyz;
-    vec3 v = (velocity.xyz + u_gain) * u_keep;
-    vec3 p_next = p + u_dt * v;
-    float contact = 0.0;
+    vec3 acceleration = u_gravity;
+    vec3 air = u_wind;
+#if defined(RELIEF_AIR)
+    acceleration += fieldAcceleration(p, v, u_now);
+    air += airVelocity(p, u_now);
+#endif
+    v = (v + u_dt * (acceleration + type_b.x * air)) * (1.0 / (1.0 + u_dt * type_b.x));
 
     // Reaction (paper, section 3.3.2), with v split along the normal n where the step would end:
     //
@@ -72,25 +153,73 @@ void main() {
     //         \   |  outside     /                  ----\----/---------    Never pushed inwards; what points
     //      ----\--+-------------/----                    \  /              inwards is turned round.
     //           v p + dt v     about to collide
-    Solid next = withGround(solid(p_next), p_next);
+    vec3 from = p;       // the last point of the way that is known to be free
+    float share = 1.0;   // of the step, from there to where it would end
+#if defined(RELIEF_SWEEP)
+    // The way in pieces no longer than u_sweep; what is faster than that allows is slowed down.
+    float way = u_dt * length(v);
+    float longest = float(RELIEF_SWEEP) * u_sweep;
+    if (way > longest) {
+        v *= longest / way;
+        way = longest;
+    }
+    float pieces = max(ceil(way / u_sweep), 1.0);
+    share = 1.0 / pieces;
+    vec3 p_next = p + (share * u_dt) * v;
+    Solid next = solidOrGround(p_next, type_a.x);
+    for (int i = 1; i < RELIEF_SWEEP && float(i) < pieces && next.distance >= 0.0; ++i) {
+        from = p_next;
+        p_next = p + ((float(i) + 1.0) * share * u_dt) * v;
+        next = solidOrGround(p_next, type_a.x);
+    }
+    bool first_piece = from == p;
+#else
+    vec3 p_next = p + u_dt * v;
+    Solid next = solidOrGround(p_next, type_a.x);
+    const bool first_piece = true;
+#endif
+    contact = 0.0;
     if (next.distance < 0.0) {
         vec3 n = next.normal;
-        float vn = dot(v, n);
-        if (p.y - u_ground < 0.0 || solidAt(p, next.map)) {
+        vec3 carried = surfaceVelocity(next, p_next);
+        vec3 relative = v - carried;
+        float vn = dot(relative, n);
+        if (first_piece && caught(p, type_a.x, next)) {
             contact = 2.0;
             if (vn < 0.0) {
                 v -= (2.0 * vn) * n;
             }
+            p_next = p + (share * u_dt) * v;
         } else {
+            if (type_b.y == RELIEF_DIE) {
+                finishDead();
+                return;
+            }
+            vec2 response = vec2(type_a.y, type_a.z) * (next.body < 0 ? vec2(1.0) : bodyResponse(next.body));
             contact = 1.0;
-            vec3 along = v - vn * n;
-            float slide = dot(v, v) >= u_friction_threshold * u_friction_threshold ? u_slide : 1.0;
-            // Where the texels of a collider meet in a step, v may enter it and still head outwards: the
-            // magnitude keeps the bounce from driving it in.
-            v = slide * along + (u_restitution * abs(vn)) * n;
+            vec3 along = relative - vn * n;
+            if (type_b.y == RELIEF_STOP) {
+                v = carried;
+                contact = 4.0 + float(next.body);
+            } else if (type_b.y == RELIEF_SLIDE) {
+                v = carried + along;
+            } else {
+                float slide = dot(relative, relative) >= type_a.w * type_a.w ? response.y : 1.0;
+                // What gravity alone would do within a step or two is rest: a bounce of it would tremble for ever.
+                float bounce = abs(vn) > u_rest ? response.x : 0.0;
+                // Where the texels of a collider meet in a step, v may enter it and still head outwards: the
+                // magnitude keeps the bounce from driving it in.
+                v = carried + slide * along + (bounce * abs(vn)) * n;
+            }
+            p_next = from + (share * u_dt) * v;
+#if defined(RELIEF_SWEEP)
+            // What was outside stays outside, whatever lies beside.
+            if (solidOrGround(p_next, type_a.x).distance < 0.0) {
+                p_next = from;
+            }
+#endif
         }
-        p_next = p + u_dt * v;
+        collisions += 1.0;
     }
-    o_position = vec4(p_next, position.w + (contact == 0.0 ? 0.0 : 1.0));
-    o_velocity = vec4(v, contact);
+    finish(p_next, v, collisions, contact);
 }

@@ -108,10 +108,12 @@ TEST_P(ParticleSystemGlTest, StepEqualsTheReferenceParticleByParticle) {
     settings.collider = &world.collider;
     settings.ground = -0.4F;  // cuts through the box: in both, the deeper one decides
     settings.forces = {{0.1F, -3.0F, 0.0F}, {0.4F, 0.0F, -0.3F}, 0.5F};
-    settings.collision = {0.45F, 0.3F, 0.6F};
+    settings.type.restitution = 0.45F;
+    settings.type.friction = 0.3F;
+    settings.type.friction_threshold = 0.6F;
     settings.dt = kDt;
     world.particles->setForces(settings.forces);
-    world.particles->setCollision(settings.collision);
+    world.particles->setCollision({0.45F, 0.3F, 0.6F});
     world.particles->setGround(settings.ground);
 
     struct Model {

@@ -6,17 +6,29 @@
 #include <cmath>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <vector>
 
 #include "formats/collider.h"
 #include "runtime/particle_system.h"
+#include "runtime/pose.h"
 
 namespace relief {
 
-struct ReferenceSettings {
+/// A collider with the poses of the beginning and the end of a step.
+struct ReferenceBody {
     const Collider* collider = nullptr;
+    Pose before;
+    Pose now;
+    float restitution = 1.0F;
+    float friction = 0.0F;
+};
+
+struct ReferenceSettings {
+    const Collider* collider = nullptr;  ///< in its own space; or
+    std::vector<ReferenceBody> bodies;
     std::optional<float> ground;
     Forces forces;
-    Collision collision;
+    ParticleType type;
     float dt = 0.0F;
 };
 
@@ -68,49 +80,96 @@ inline bool isAmbiguous(const Collider& collider, const glm::vec3& p) {
     return false;
 }
 
-/// Signed distance of the union of collider and floor where inside, and the way out.
-inline FieldSample solidAt(const ReferenceSettings& settings, const glm::vec3& p) {
-    FieldSample best;
-    best.distance = 1e30F;
+/// What is solid at a point, and the way out: body −1 is the floor, −2 nothing.
+struct ReferenceSolid {
+    float distance = 1e30F;
+    glm::vec3 normal{0.0F};
+    int body = -2;
+};
+
+/// Of the body as it is now, or as it was before the step.
+inline ReferenceSolid solidOf(const ReferenceBody& body, int number, const glm::vec3& p, bool before) {
+    const Pose& pose = before ? body.before : body.now;
+    const FieldSample field = evaluate(*body.collider, toObject(pose, p));
+    return field.inside() ? ReferenceSolid{pose.scale * field.distance, pose.rotation * field.normal, number}
+                          : ReferenceSolid{};
+}
+
+/// The union of all bodies and the floor; the deepest decides.
+inline ReferenceSolid solidAt(const ReferenceSettings& settings, const glm::vec3& p) {
+    ReferenceSolid best;
     if (settings.collider != nullptr) {
-        const FieldSample field = evaluate(*settings.collider, p);
-        if (field.inside()) {
-            best = field;
-        }
+        best = solidOf({settings.collider, {}, {}, 1.0F, 0.0F}, 0, p, false);
+    }
+    for (std::size_t i = 0; i < settings.bodies.size(); ++i) {
+        const ReferenceSolid solid = solidOf(settings.bodies[i], static_cast<int>(i), p, false);
+        best = solid.distance < best.distance ? solid : best;
     }
     if (settings.ground && p.y - *settings.ground < best.distance) {
-        best.distance = p.y - *settings.ground;
-        best.normal = glm::vec3(0.0F, 1.0F, 0.0F);
+        best = {p.y - *settings.ground, glm::vec3(0.0F, 1.0F, 0.0F), -1};
     }
     return best;
+}
+
+/// Whether the step began inside what it ran into.
+inline bool wasInside(const ReferenceSettings& settings, const ReferenceSolid& solid, const glm::vec3& p) {
+    if (solid.body < 0) {
+        return p.y < *settings.ground;
+    }
+    if (settings.collider != nullptr) {
+        return evaluate(*settings.collider, p).inside();
+    }
+    return solidOf(settings.bodies[static_cast<std::size_t>(solid.body)], 0, p, true).distance < 0.0F;
 }
 
 inline ReferenceState referenceStep(const ReferenceSettings& settings, const glm::vec3& p,
                                     const glm::vec3& v_before) {
     const float dt = settings.dt;
-    const glm::vec3 gain = dt * (settings.forces.gravity + settings.forces.drag * settings.forces.wind);
-    const float keep = 1.0F / (1.0F + dt * settings.forces.drag);
-    glm::vec3 v = (v_before + gain) * keep;
+    const ParticleType& type = settings.type;
+    const float drag = dragRate(settings.forces, type);
+    glm::vec3 v = (v_before + dt * (settings.forces.gravity + drag * settings.forces.wind)) *
+                  (1.0F / (1.0F + dt * drag));
     const glm::vec3 p_star = p + dt * v;
 
     ReferenceState out;
     out.position = p_star;
-    const FieldSample ahead = solidAt(settings, p_star);
+    const ReferenceSolid ahead = solidAt(settings, p_star);
     if (settings.collider != nullptr) {
         out.ambiguous = isAmbiguous(*settings.collider, p_star) || isAmbiguous(*settings.collider, p);
     }
-    if (settings.ground) {
-        const float hair = kVolumeHair * (1.0F + std::abs(*settings.ground));
-        out.ambiguous =
-            out.ambiguous || std::abs(p_star.y - *settings.ground) < hair ||
-            std::abs(p.y - *settings.ground) < hair ||
-            // which of the two bodies is deeper
-            std::abs(p_star.y - *settings.ground - evaluate(*settings.collider, p_star).distance) < hair;
+    for (const ReferenceBody& body : settings.bodies) {
+        out.ambiguous = out.ambiguous || isAmbiguous(*body.collider, toObject(body.now, p_star)) ||
+                        isAmbiguous(*body.collider, toObject(body.before, p));
     }
+    // Which of two bodies is deeper, and on which side of the floor.
+    const float hair = kVolumeHair * (2.0F + std::abs(settings.ground.value_or(0.0F)));
+    int inside = 0;
+    for (std::size_t i = 0; i < settings.bodies.size(); ++i) {
+        const float distance = solidOf(settings.bodies[i], static_cast<int>(i), p_star, false).distance;
+        inside += std::abs(distance - ahead.distance) < hair ? 1 : 0;
+    }
+    if (settings.ground) {
+        inside += std::abs(p_star.y - *settings.ground - ahead.distance) < hair ? 1 : 0;
+        inside += settings.collider != nullptr &&
+                          std::abs(evaluate(*settings.collider, p_star).distance - ahead.distance) < hair
+                      ? 1
+                      : 0;
+        out.ambiguous = out.ambiguous || std::abs(p_star.y - *settings.ground) < hair ||
+                        std::abs(p.y - *settings.ground) < hair;
+    }
+    out.ambiguous = out.ambiguous || (ahead.distance < 0.0F && inside > 1);
     if (ahead.distance < 0.0F) {
         const glm::vec3 n = ahead.normal;
-        const float vn = dot(v, n);
-        if (solidAt(settings, p).distance < 0.0F) {
+        ReferenceBody body;
+        if (ahead.body >= 0 && !settings.bodies.empty()) {
+            body = settings.bodies[static_cast<std::size_t>(ahead.body)];
+        }
+        const glm::vec3 carried = body.collider == nullptr
+                                      ? glm::vec3(0.0F)
+                                      : (p_star - toWorld(body.before, toObject(body.now, p_star))) / dt;
+        const glm::vec3 relative = v - carried;
+        const float vn = dot(relative, n);
+        if (wasInside(settings, ahead, p)) {
             out.contact = Contact::kCaught;
             if (vn < 0.0F) {
                 v = v - (2.0F * vn) * n;
@@ -118,12 +177,16 @@ inline ReferenceState referenceStep(const ReferenceSettings& settings, const glm
             out.ambiguous = out.ambiguous || std::abs(vn) < 1e-5F;
         } else {
             out.contact = Contact::kCollided;
-            const glm::vec3 along = v - vn * n;
-            const float threshold = settings.collision.friction_threshold;
+            const glm::vec3 along = relative - vn * n;
+            const float threshold = type.friction_threshold;
+            const float rest = 2.0F * dt * glm::length(settings.forces.gravity);
+            const float speed = dot(relative, relative);
             const float slide =
-                dot(v, v) >= threshold * threshold ? 1.0F - settings.collision.friction : 1.0F;
-            v = slide * along + (settings.collision.restitution * std::abs(vn)) * n;
-            out.ambiguous = out.ambiguous || std::abs(dot(v, v) - threshold * threshold) < 1e-6F;
+                speed >= threshold * threshold ? (1.0F - type.friction) * (1.0F - body.friction) : 1.0F;
+            const float bounce = std::abs(vn) > rest ? type.restitution * body.restitution : 0.0F;
+            v = carried + slide * along + (bounce * std::abs(vn)) * n;
+            out.ambiguous = out.ambiguous || std::abs(speed - threshold * threshold) < 1e-5F ||
+                            std::abs(std::abs(vn) - rest) < 1e-5F;
         }
         out.position = p + dt * v;
     }
