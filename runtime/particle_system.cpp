@@ -139,9 +139,9 @@ Result<void> ParticleSystem::createPrograms() {
 }
 
 Result<void> ParticleSystem::remakeStep(const ColliderTextures* collider) {
-    const bool margin =
+    const bool radius =
         std::any_of(types_.begin(), types_.end(), [](const ParticleType& t) { return t.radius > 0.0F; });
-    const StepFeatures features{collider, verlet(), sweep_ > 0.0F, margin && collider != nullptr,
+    const StepFeatures features{collider, verlet(), sweep_ > 0.0F, radius && collider != nullptr,
                                 static_cast<int>(types_.size())};
     auto made = StepPass::create(features);
     if (!made) {

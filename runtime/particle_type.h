@@ -15,9 +15,10 @@ enum class OnCollision : std::uint8_t {
 };
 
 struct ParticleType {
-    float mass = 1.0F;                ///< divides the drag; > 0
-    float radius = 0.0F;              ///< of collision, world units, ≥ 0
-    float restitution = 0.0F;         ///< ε, 0…1: how much of the normal speed comes back
+    float mass = 1.0F;    ///< divides the drag; > 0
+    float radius = 0.0F;  ///< of collision, world units, ≥ 0
+    float restitution =
+        0.0F;  ///< ε, 0…1: how much comes back of the normal speed at the beginning of the step
     float friction = 0.0F;            ///< ν, 0…1: how much of the tangential speed is lost
     float friction_threshold = 0.0F;  ///< no friction below this speed, world units a second
     OnCollision on_collision = OnCollision::kBounce;

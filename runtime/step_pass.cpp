@@ -19,7 +19,7 @@ Result<StepPass> StepPass::create(const StepFeatures& features) {
     };
     defineIf(features.verlet, "RELIEF_VERLET");
     defineIf(features.sweep, "RELIEF_SWEEP " + std::to_string(kSweepPieces));
-    defineIf(features.margin, "RELIEF_MARGIN");
+    defineIf(features.radius, "RELIEF_RADIUS");
     auto program = features.collider != nullptr
                        ? makeProgram("quad.vert", "step.frag", defines + features.collider->defines())
                        : makeProgram("quad.vert", "step_free.frag", defines);
@@ -35,7 +35,7 @@ Result<StepPass> StepPass::create(const StepFeatures& features) {
     pass.rate_before_ = at("u_rate_before");
     pass.gravity_ = at("u_gravity");
     pass.wind_ = at("u_wind");
-    pass.rest_ = at("u_rest");
+    pass.still_ = at("u_still");
     pass.ground_ = at("u_ground");
     pass.sweep_ = at("u_sweep");
     pass.types_ = at("u_types");
@@ -60,7 +60,7 @@ void StepPass::use(const Values& values) const {
     glUniform1f(rate_before_, values.dt_before > 0.0F ? 1.0F / values.dt_before : 0.0F);
     glUniform3f(gravity_, forces.gravity.x, forces.gravity.y, forces.gravity.z);
     glUniform3f(wind_, forces.wind.x, forces.wind.y, forces.wind.z);
-    glUniform1f(rest_, 2.0F * values.dt * glm::length(forces.gravity));
+    glUniform1f(still_, 1e-3F * values.dt * glm::length(forces.gravity));
     glUniform1f(ground_, values.ground);
     glUniform1f(sweep_, values.sweep);
     std::array<float, 8 * kParticleTypesMax> types{};

@@ -26,7 +26,7 @@ struct StepFeatures {
     const ColliderTextures* collider = nullptr;  ///< null: nothing solid but the floor
     bool verlet = false;
     bool sweep = false;
-    bool margin = false;  ///< some type has a radius
+    bool radius = false;  ///< some type has a radius
     int types = 1;
     friend bool operator==(const StepFeatures&, const StepFeatures&) = default;
 };
@@ -63,7 +63,7 @@ class StepPass {
   private:
     StepFeatures features_;
     GlProgram program_;
-    GLint now_ = -1, dt_ = -1, rate_before_ = -1, gravity_ = -1, wind_ = -1, rest_ = -1, ground_ = -1,
+    GLint now_ = -1, dt_ = -1, rate_before_ = -1, gravity_ = -1, wind_ = -1, still_ = -1, ground_ = -1,
           sweep_ = -1, types_ = -1;
 };
 

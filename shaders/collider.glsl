@@ -120,13 +120,6 @@ bool reliefHas(ivec4 info, int flag) {
     return (RELIEF_ALL & flag) != 0 || (info.z & flag) != 0;
 }
 
-// How far the surface is moved outwards, in object units: the radius of what collides.
-#if defined(RELIEF_MARGIN)
-float relief_margin = 0.0;
-#else
-const float relief_margin = 0.0;
-#endif
-
 // The combined vote. map is the deciding map, −1 where every map abstains; normal is zero where the point
 // is known to be outside and no more (distance RELIEF_FAR_OUTSIDE).
 struct ReliefField {
@@ -297,8 +290,8 @@ void reliefVoteOrthographic(inout ReliefField best, int i, vec3 p, ivec4 place, 
             front = scale * (front - p.z);
             back = scale * (p.z - back);
         }
-        front = words.b != 0u ? front - relief_margin : RELIEF_FAR_INSIDE;
-        back = words.a != 0u ? back - relief_margin : RELIEF_FAR_INSIDE;
+        front = words.b != 0u ? front : RELIEF_FAR_INSIDE;
+        back = words.a != 0u ? back : RELIEF_FAR_INSIDE;
         bool take_back = reliefReplaces(back, front);
         vote = take_back ? back : front;
         if (plane) {
@@ -320,7 +313,6 @@ void reliefVoteOrthographic(inout ReliefField best, int i, vec3 p, ivec4 place, 
         } else {
             vote = scale * ((info.z & RELIEF_KEEPS_FARTHEST) != 0 ? p.z - depth : depth - p.z);
         }
-        vote -= relief_margin;
     }
     if (!found) {
         if (reliefHas(info, RELIEF_EMPTY_IS_OUTSIDE)) {
@@ -367,7 +359,6 @@ void reliefVoteCube(inout ReliefField best, int i, vec3 p, ivec4 place, ivec4 in
         float ahead = (info.z & RELIEF_KEEPS_FARTHEST) != 0 ? radius - depth : depth - radius;
         vote = ahead * reliefLength(u_relief_maps[i].object_per_map.xyz * direction);
     }
-    vote -= relief_margin;
     if (!in_volume && !(vote >= 0.0)) {
         vote = RELIEF_FAR_OUTSIDE;
         normal = vec3(0.0);
@@ -387,6 +378,34 @@ void reliefVote(inout ReliefField best, int i, vec3 p) {
     } else {
         reliefVoteOrthographic(best, i, in_map, place, info);
     }
+}
+
+// The maps [first, end) alone, by the rule of reliefSolid.
+ReliefField reliefSolidOf(int first, int end, vec3 p) {
+    ReliefField best = ReliefField(RELIEF_FAR_INSIDE, vec3(0.0), -1);
+    for (int i = first; i < end && best.distance < 0.0; ++i) {
+        reliefVote(best, i, p);
+    }
+    return best;
+}
+
+// Where a ball touches whose centre is outside: each map that sees a surface near says which way it lies, and the
+// point of the ball there is asked for. The deepest such point decides, with a distance below 0; else the result is
+// RELIEF_FAR_OUTSIDE.
+ReliefField reliefTouch(int first, int end, vec3 center, float radius) {
+    ReliefField best = ReliefField(RELIEF_FAR_OUTSIDE, vec3(0.0), -1);
+    for (int i = first; i < end; ++i) {
+        ReliefField near = ReliefField(RELIEF_FAR_INSIDE, vec3(0.0), -1);
+        reliefVote(near, i, center);
+        // A projected distance may be some times the distance.
+        if (near.distance >= 0.0 && near.distance < 4.0 * radius) {
+            ReliefField touched = reliefSolidOf(first, end, center - radius * near.normal);
+            if (reliefInside(touched) && touched.distance < best.distance) {
+                best = touched;
+            }
+        }
+    }
+    return best;
 }
 
 #if RELIEF_BODIES == 0
@@ -449,17 +468,6 @@ vec3 reliefToWorld(vec4 row0, vec4 row1, vec4 row2, float scale, vec3 q) {
     return (scale * scale) * (row0.xyz * (q.x - row0.w) + (row1.xyz * (q.y - row1.w) + row2.xyz * (q.z - row2.w)));
 }
 
-// What the maps of one body say of a point of its object space; with `sign_only` the first that sees it outside
-// ends the walk.
-ReliefField reliefBodyField(int body, vec3 q, bool sign_only) {
-    ReliefField best = ReliefField(RELIEF_FAR_INSIDE, vec3(0.0), -1);
-    int end = u_relief_bodies[body].maps.x + u_relief_bodies[body].maps.y;
-    for (int i = u_relief_bodies[body].maps.x; i < end && !(sign_only && best.distance >= 0.0); ++i) {
-        reliefVote(best, i, q);
-    }
-    return best;
-}
-
 // World to object space and back, at the beginning and at the end of the step.
 vec3 reliefBodyNow(int body, vec3 p) {
     return reliefToObject(u_relief_bodies[body].row[0], u_relief_bodies[body].row[1], u_relief_bodies[body].row[2], p);
@@ -483,17 +491,30 @@ vec3 reliefWorldNormal(int body, vec3 n) {
             (u_relief_bodies[body].row[1].xyz * n.y + u_relief_bodies[body].row[2].xyz * n.z));
 }
 
+// What one body says of a ball about a point of its object space, as reliefSolid or, with `whole`, reliefEvaluate.
+ReliefField reliefBodyField(int body, vec3 q, float radius, bool whole) {
+    int first = u_relief_bodies[body].maps.x;
+    int end = first + u_relief_bodies[body].maps.y;
+    ReliefField best = ReliefField(RELIEF_FAR_INSIDE, vec3(0.0), -1);
+    for (int i = first; i < end && (whole || best.distance < 0.0); ++i) {
+        reliefVote(best, i, q);
+    }
+#if defined(RELIEF_RADIUS)
+    if (radius > 0.0 && !reliefInside(best)) {
+        return reliefTouch(first, end, q, radius / u_relief_bodies[body].response.x);
+    }
+#endif
+    return best;
+}
+
 // The union of all bodies in the world, which the nearest, inside the deepest, decides. The distance is in world
 // units. body is -1 where none has a say.
-ReliefField reliefUnion(vec3 p, bool sign_only, float margin, out int body) {
+ReliefField reliefUnion(vec3 p, float radius, bool whole, out int body) {
     ReliefField best = ReliefField(RELIEF_FAR_OUTSIDE, vec3(0.0), -1);
     body = -1;
     for (int b = 0; b < RELIEF_BODIES; ++b) {
         float scale = u_relief_bodies[b].response.x;
-#if defined(RELIEF_MARGIN)
-        relief_margin = margin / scale;
-#endif
-        ReliefField field = reliefBodyField(b, reliefBodyNow(b, p), sign_only);
+        ReliefField field = reliefBodyField(b, reliefBodyNow(b, p), radius, whole);
         if (field.map >= 0 && scale * field.distance < best.distance) {
             best = ReliefField(scale * field.distance, reliefWorldNormal(b, field.normal), field.map);
             body = b;
@@ -504,12 +525,12 @@ ReliefField reliefUnion(vec3 p, bool sign_only, float margin, out int body) {
 
 ReliefField reliefSolid(vec3 p) {
     int body;
-    return reliefUnion(p, true, 0.0, body);
+    return reliefUnion(p, 0.0, false, body);
 }
 
 ReliefField reliefEvaluate(vec3 p) {
     int body;
-    return reliefUnion(p, false, 0.0, body);
+    return reliefUnion(p, 0.0, true, body);
 }
 
 #endif

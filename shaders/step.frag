@@ -5,15 +5,22 @@
 #if RELIEF_BODIES == 0
 
 Solid solid(vec3 p, float radius) {
-#if defined(RELIEF_MARGIN)
-    relief_margin = radius;
-#endif
     ReliefField field = reliefSolid(p);
+#if defined(RELIEF_RADIUS)
+    if (radius > 0.0 && !reliefInside(field)) {
+        field = reliefTouch(0, u_relief_count.x, p, radius);
+    }
+#endif
     // Where no map votes nothing is known to be solid.
     return Solid(reliefInside(field) ? field.distance : 1e30, field.normal, field.map, 0);
 }
 
 bool insideBefore(vec3 p, float radius, Solid s) {
+#if defined(RELIEF_RADIUS)
+    if (radius > 0.0 && reliefInside(reliefTouch(0, u_relief_count.x, p, radius))) {
+        return true;
+    }
+#endif
     return reliefSolidAt(p, s.map);
 }
 
@@ -33,15 +40,12 @@ vec2 bodyResponse(int body) {
 
 Solid solid(vec3 p, float radius) {
     int body;
-    ReliefField field = reliefUnion(p, true, radius, body);
+    ReliefField field = reliefUnion(p, radius, false, body);
     return Solid(reliefInside(field) ? field.distance : 1e30, field.normal, field.map, body);
 }
 
 bool insideBefore(vec3 p, float radius, Solid s) {
-#if defined(RELIEF_MARGIN)
-    relief_margin = radius / u_relief_bodies[s.body].response.x;
-#endif
-    return reliefInside(reliefBodyField(s.body, reliefBodyBefore(s.body, p), true));
+    return reliefInside(reliefBodyField(s.body, reliefBodyBefore(s.body, p), radius, false));
 }
 
 vec3 pointBefore(int body, vec3 p) {

@@ -27,7 +27,7 @@ uniform float u_now;      // the clock at the end of this step
 uniform float u_dt;       // seconds
 uniform vec3 u_gravity;   // world units a second squared
 uniform vec3 u_wind;      // velocity of the air, world units a second
-uniform float u_rest;     // below this speed nothing bounces: what gravity gives within two steps
+uniform float u_still;    // at or below this speed what is in contact rests: a thousandth of what gravity gives in a step
 uniform float u_ground;   // height of the floor; far below everything if there is none
 #if defined(RELIEF_SWEEP)
 uniform float u_sweep;    // the longest way between two tests, world units
@@ -57,7 +57,7 @@ struct Solid {
     int body;
 };
 
-// Of everything but the floor, at the end of the step, moved outwards by a radius.
+// Of everything but the floor, at the end of the step; what a ball about p touches.
 Solid solid(vec3 p, float radius);
 // Whether p, where the step began, was inside the body of s at that time.
 bool insideBefore(vec3 p, float radius, Solid s);
@@ -139,6 +139,7 @@ void main() {
 
     // Forces. Drag is integrated implicitly, v' = v + dt (g + k (w - v')): it approaches the wind for any dt,
     // while the explicit form overshoots for dt k > 1 and grows without bound for dt k > 2.
+    vec3 v_begin = v;
     vec3 acceleration = u_gravity;
     vec3 air = u_wind;
 #if defined(RELIEF_AIR)
@@ -205,11 +206,14 @@ void main() {
                 v = carried + along;
             } else {
                 float slide = dot(relative, relative) >= type_a.w * type_a.w ? response.y : 1.0;
-                // What gravity alone would do within a step or two is rest: a bounce of it would tremble for ever.
-                float bounce = abs(vn) > u_rest ? response.x : 0.0;
-                // Where the texels of a collider meet in a step, v may enter it and still head outwards: the
-                // magnitude keeps the bounce from driving it in.
-                v = carried + slide * along + (bounce * abs(vn)) * n;
+                // The particle stays at p, above what it would have met, so the speed that it had there comes back
+                // and not what this step's forces would add on the way: so no bounce adds energy, and bounces end.
+                // (Where texels meet in a step, v may enter the collider and still head outwards: no bounce.)
+                float arrives = min(max(-dot(v_begin - carried, n), 0.0), abs(vn));
+                vec3 left = slide * along + (response.x * arrives) * n;
+                // A thousandth of what gravity gives in a step is rounding, and would creep.
+                left = dot(left, left) > u_still * u_still ? left : vec3(0.0);
+                v = carried + left;
             }
             p_next = from + (share * u_dt) * v;
 #if defined(RELIEF_SWEEP)

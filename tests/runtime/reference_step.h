@@ -179,14 +179,15 @@ inline ReferenceState referenceStep(const ReferenceSettings& settings, const glm
             out.contact = Contact::kCollided;
             const glm::vec3 along = relative - vn * n;
             const float threshold = type.friction_threshold;
-            const float rest = 2.0F * dt * glm::length(settings.forces.gravity);
+            const float still = 1e-3F * dt * glm::length(settings.forces.gravity);
             const float speed = dot(relative, relative);
             const float slide =
                 speed >= threshold * threshold ? (1.0F - type.friction) * (1.0F - body.friction) : 1.0F;
-            const float bounce = std::abs(vn) > rest ? type.restitution * body.restitution : 0.0F;
-            v = carried + slide * along + (bounce * std::abs(vn)) * n;
-            out.ambiguous = out.ambiguous || std::abs(speed - threshold * threshold) < 1e-5F ||
-                            std::abs(std::abs(vn) - rest) < 1e-5F;
+            const float arrives = std::min(std::max(-dot(v_before - carried, n), 0.0F), std::abs(vn));
+            const glm::vec3 left = slide * along + (type.restitution * body.restitution * arrives) * n;
+            v = carried + (dot(left, left) > still * still ? left : glm::vec3(0.0F));
+            out.ambiguous = out.ambiguous || std::abs(glm::length(left) - still) < 1e-3F * still;
+            out.ambiguous = out.ambiguous || std::abs(speed - threshold * threshold) < 1e-5F;
         }
         out.position = p + dt * v;
     }
