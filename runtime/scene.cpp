@@ -10,6 +10,7 @@
 
 #include "formats/file_io.h"
 #include "runtime/camera.h"
+#include "runtime/scene_readers.h"
 #include "runtime/scene_table.h"
 
 namespace relief {
@@ -187,6 +188,7 @@ void readRender(SceneTable table, Scene& scene) {
     table.number("opacity", {0.0, 1.0, false}, render.opacity);
     table.vector("background", {0.0, 1.0}, render.background);
     table.integer("every", {1.0, kStepsMax}, render.every);
+    readSort(table, scene);
     table.finish();
 }
 

@@ -64,6 +64,7 @@ struct Scene {
         float opacity = 0.95F;
         glm::vec3 background{0.62F, 0.69F, 0.76F};  ///< sRGB
         std::uint32_t every = 10;                   ///< steps from frame to frame
+        std::uint32_t sort_frames = 0;  ///< that a depth sort is spread over, 2…200; 0: unsorted
     } render;
 };
 

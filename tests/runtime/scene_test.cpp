@@ -65,6 +65,15 @@ TEST(Scene, DefaultsAreThoseOfTheReadme) {
     EXPECT_EQ(scene.render.width, 960U);
     EXPECT_EQ(scene.render.height, 720U);
     EXPECT_EQ(scene.render.every, 10U);
+    EXPECT_EQ(scene.render.sort_frames, 0U);
+}
+
+TEST(Scene, ASortIsOffOrSpread) {
+    EXPECT_EQ(good("[render]\nsort_frames = 0\n").render.sort_frames, 0U);
+    EXPECT_EQ(good("[render]\nsort_frames = 2\n").render.sort_frames, 2U);
+    EXPECT_EQ(good("[render]\nsort_frames = 30\n").render.sort_frames, 30U);
+    expectError(kHead + "[render]\nsort_frames = 1\n", "dir/scene.toml:4:15: render.sort_frames = 1 ",
+                "choose 0, for no sort, or 2 to 200");
 }
 
 TEST(Scene, DefaultsFromTheBounds) {
@@ -171,7 +180,8 @@ INSTANTIATE_TEST_SUITE_P(
                     NumberKey{"camera", "fov", "1", "0.5", "170", "180"},
                     NumberKey{"render", "point_size", "1e-60", "0", "1e9", "2e9"},
                     NumberKey{"render", "opacity", "0.01", "0", "1", "1.1"},
-                    NumberKey{"render", "every", "1", "0", "10000000", "10000001", true}),
+                    NumberKey{"render", "every", "1", "0", "10000000", "10000001", true},
+                    NumberKey{"render", "sort_frames", "0", "-1", "200", "201", true}),
     [](const auto& key) { return std::string(key.param.table) + "_" + key.param.key; });
 
 struct VectorKey {
