@@ -63,12 +63,13 @@ struct AirSettings {
 [[nodiscard]] glm::vec3 fieldAcceleration(const AirSettings& air, const glm::vec3& p, const glm::vec3& v,
                                           float t);
 
-/// The time to hand to the functions above and to the shader, from seconds since the start. Take it from a
-/// clock that is never set back: a particle system's is.
+/// The time to hand to the functions above and to the shader, from seconds since the start. Count them
+/// in a double, and not by a particle system's own clock, which is set back now and then.
 [[nodiscard]] float airTime(const AirSettings& air, double seconds);
 
-/// k = 6π · viscosity · radius / mass, 1/s: the rate of Stokes drag, for v' = (v + dt (a + k air)) / (1 + dt
-/// k). \param mass  > 0
+/// k = 6π · viscosity · radius / mass, 1/s: the rate of Stokes drag, for
+/// v' = (v + dt (a + k air)) / (1 + dt k).
+/// \param mass  > 0
 [[nodiscard]] float stokesRate(float viscosity, float radius, float mass);
 
 }  // namespace relief

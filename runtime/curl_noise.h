@@ -27,8 +27,8 @@ struct CurlNoise {
 };
 
 /// The velocity at p and time t, object units a second. No speed exceeds 12 · √2 · 15/√85 · amplitude (the
-/// sum of all gradients at their worst); in practice none exceeds 4 · amplitude. \param t  seconds, as
-/// curlTime() gives them.
+/// sum of all gradients at their worst); in practice none exceeds 4 · amplitude.
+/// \param t  seconds, as curlTime() gives them.
 [[nodiscard]] glm::vec3 curlVelocity(const CurlNoise& noise, const glm::vec3& p, float t);
 
 /// Seconds since the start, taken back by whole periods of the noise: a float then holds them finely enough

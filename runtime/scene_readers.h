@@ -1,0 +1,18 @@
+// Readers of parts of a scene that have files of their own; parseScene calls them. All throw SceneError.
+#pragma once
+
+#include <filesystem>
+
+#include "runtime/scene.h"
+#include "runtime/scene_table.h"
+
+namespace relief {
+
+/// Makes the tables of readAir known to `top`; call before its finish().
+void nameAirTables(SceneTable& top);
+/// [[attractor]], [[vortex]], [flow] and [curl_noise]; call when scene.forces is read.
+void readAir(SceneTable& top, const std::filesystem::path& folder, Scene& scene);
+/// forces.viscosity; `forces` is the table of that name.
+void readViscosity(SceneTable& forces, Scene& scene);
+
+}  // namespace relief
