@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "runtime/report.h"
 #include "runtime/scene.h"
 
 namespace relief {
@@ -161,6 +162,45 @@ TEST(SceneAir, MistakesOfAirAreNamed) {
     expectError("[forces]\nviscosity = -1\n", "4:13", "out of range");
     expectError("[forces]\nviscosity = 0\nwind = [1, 0, 0]\n", "5:8", "forces.viscosity is 0");
     expectError("[flwo]\n", "3:2", "'flow'");
+}
+
+/// Every key and default of the air, and none of what the scene does not have.
+TEST(SceneAir, TheReportHasWhatThePlayerPlays) {
+    Bounds bounds;
+    bounds.add({0.0F, 0.0F, 0.0F});
+    bounds.add({1.0F, 1.0F, 1.0F});
+    const auto report = [&](const std::string& more) {
+        const auto scene = withDefaults(good(more), bounds);
+        EXPECT_TRUE(scene);
+        PlayerReport result;
+        result.scene = scene.value_or(Scene{});
+        std::string json = reportJson(result);
+        std::erase_if(json, [](char c) { return c == ' ' || c == '\n'; });
+        return json;
+    };
+    const std::string none = report("");
+    for (const char* key : {"attractor", "vortex", "flow", "curl_noise", "viscosity"}) {
+        EXPECT_EQ(none.find(key), std::string::npos) << key;
+    }
+    const std::string all = report(
+        "[forces]\nviscosity = 0.1\n"
+        "[[attractor]]\nposition = [1, 2, 3]\nstrength = 4\nradius = 0.1\n"
+        "[[attractor]]\nposition = [1, 2, 3]\nstrength = 4\nradius = 0.1\nreach = 2\n"
+        "[[vortex]]\ncenter = [1, 0, 1]\nstrength = 3\nradius = 0.25\n"
+        "[flow]\nraw = \"f.raw\"\nsize = [3, 2, 1]\n" +
+        kBox + "[curl_noise]\namplitude = 0.3\nscale = 2\n");
+    for (const char* part :
+         {"\"viscosity\":0.1",
+          "\"attractor\":[{\"position\":[1.0,2.0,3.0],\"strength\":4.0,\"radius\":0.1,\"falloff\":2},",
+          "\"falloff\":2,\"reach\":2.0}]",
+          "\"vortex\":[{\"center\":[1.0,0.0,1.0],\"axis\":[0.0,1.0,0.0],\"strength\":3.0,\"radius\":0.25,"
+          "\"falloff\":1}]",
+          "\"flow\":{\"raw\":\"dir/f.raw\",\"size\":[3,2,1],\"components\":3,\"box_min\":[0.0,0.0,0.0],"
+          "\"box_max\":[1.0,2.0,3.0],\"outside\":\"zero\",\"gain\":1.0}",
+          "\"curl_noise\":{\"amplitude\":0.3,\"scale\":2.0,\"octaves\":2,\"drift\":0.0,\"seed\":1}"}) {
+        EXPECT_NE(all.find(part), std::string::npos) << part << "\n" << all;
+    }
+    EXPECT_EQ(all.find("drag"), std::string::npos) << "the viscosity takes its place";
 }
 
 }  // namespace
