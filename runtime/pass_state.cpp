@@ -63,6 +63,7 @@ PassState::PassState() {
         glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(i));
         glGetIntegerv(GL_SAMPLER_BINDING, &samplers_[i]);
         glBindSampler(static_cast<GLuint>(i), 0);
+        glGetIntegerv(GL_TEXTURE_BINDING_3D, &textures_3d_[i]);
     }
     glActiveTexture(static_cast<GLenum>(active));
     if (!gles) {
@@ -80,9 +81,12 @@ PassState::PassState() {
     }
     glGetIntegerv(GL_PIXEL_PACK_BUFFER_BINDING, &pack_buffer_);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
-    glGetIntegeri_v(GL_UNIFORM_BUFFER_BINDING, 0, &block_buffer_);
-    glGetInteger64i_v(GL_UNIFORM_BUFFER_START, 0, &block_offset_);
-    glGetInteger64i_v(GL_UNIFORM_BUFFER_SIZE, 0, &block_size_);
+    for (int i = 0; i < kBlockCount; ++i) {
+        const auto binding = static_cast<GLuint>(i);
+        glGetIntegeri_v(GL_UNIFORM_BUFFER_BINDING, binding, &block_buffer_[i]);
+        glGetInteger64i_v(GL_UNIFORM_BUFFER_START, binding, &block_offset_[i]);
+        glGetInteger64i_v(GL_UNIFORM_BUFFER_SIZE, binding, &block_size_[i]);
+    }
 }
 
 PassState::~PassState() {
@@ -94,17 +98,23 @@ PassState::~PassState() {
     }
     for (int i = 0; i < GlStateGuard::kUnits; ++i) {
         glBindSampler(static_cast<GLuint>(i), static_cast<GLuint>(samplers_[i]));
+        glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(i));  // GlStateGuard restores which is active
+        glBindTexture(GL_TEXTURE_3D, static_cast<GLuint>(textures_3d_[i]));
     }
     for (int i = 0; i < kWindowCount; ++i) {
         glPixelStorei(kWindows[i], windows_[i]);
     }
     glBindBuffer(GL_PIXEL_PACK_BUFFER, static_cast<GLuint>(pack_buffer_));
     // Size 0 stands for "the whole buffer" or for none. GlStateGuard then restores the plain binding.
-    if (block_size_ > 0) {
-        glBindBufferRange(GL_UNIFORM_BUFFER, 0, static_cast<GLuint>(block_buffer_),
-                          static_cast<GLintptr>(block_offset_), static_cast<GLsizeiptr>(block_size_));
-    } else {
-        glBindBufferBase(GL_UNIFORM_BUFFER, 0, static_cast<GLuint>(block_buffer_));
+    for (int i = 0; i < kBlockCount; ++i) {
+        const auto binding = static_cast<GLuint>(i);
+        const auto buffer = static_cast<GLuint>(block_buffer_[i]);
+        if (block_size_[i] > 0) {
+            glBindBufferRange(GL_UNIFORM_BUFFER, binding, buffer, static_cast<GLintptr>(block_offset_[i]),
+                              static_cast<GLsizeiptr>(block_size_[i]));
+        } else {
+            glBindBufferBase(GL_UNIFORM_BUFFER, binding, buffer);
+        }
     }
     if (!gles) {
         glPolygonMode(GL_FRONT_AND_BACK, static_cast<GLenum>(polygon_mode_));

@@ -7,10 +7,10 @@ namespace relief {
 
 /// On construction: saves what GlStateGuard saves and, on top of it, what else could spoil a pass (stencil
 /// test, dithering, alpha-to-coverage, rasterizer discard, sampler objects, polygon offset, primitive
-/// restart, uniform block binding 0, pack buffer and pack/unpack windows; on desktop GL also polygon mode,
-/// logic operation, program point size, point sprite origin, sRGB conversion), and switches all of it,
-/// blending, depth, cull and scissor test off, so that a draw writes what its shader says and a transfer is
-/// tightly packed. On destruction: puts everything back.
+/// restart, uniform block bindings 0 and 1, 3-D textures, pack buffer and pack/unpack windows; on desktop GL
+/// also polygon mode, logic operation, program point size, point sprite origin, sRGB conversion), and
+/// switches all of it, blending, depth, cull and scissor test off, so that a draw writes what its shader says
+/// and a transfer is tightly packed. On destruction: puts everything back.
 class PassState {
   public:
     PassState();
@@ -27,9 +27,12 @@ class PassState {
 
     GLint windows_[kWindowCount] = {};
     GLint pack_buffer_ = 0;
-    GLint block_buffer_ = 0;
-    GLint64 block_offset_ = 0;
-    GLint64 block_size_ = 0;
+    static constexpr int kBlockCount = 2;
+
+    GLint block_buffer_[kBlockCount] = {};
+    GLint64 block_offset_[kBlockCount] = {};
+    GLint64 block_size_[kBlockCount] = {};
+    GLint textures_3d_[GlStateGuard::kUnits] = {};
     GLint samplers_[GlStateGuard::kUnits] = {};
     GLint polygon_mode_ = 0;
     GLint point_origin_ = 0;

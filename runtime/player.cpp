@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
+#include <memory>
 #include <system_error>
 #include <vector>
 
@@ -270,6 +271,13 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     auto complete = withDefaults(std::move(*scene), collider->bounds);
     if (!complete) {
         return fail(complete.error().code, quotedPath(options.input) + ": " + complete.error().message);
+    }
+    if (complete->flow) {
+        auto flow = loadFlow(*complete->flow);
+        if (!flow) {
+            return forward(flow);
+        }
+        complete->air.flow = std::make_shared<const FlowField>(std::move(*flow));
     }
     if (!options.dump.empty()) {
         if (auto done = checkDumpFolder(options.dump); !done) {

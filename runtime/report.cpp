@@ -5,13 +5,16 @@
 #include <nlohmann/json.hpp>
 
 #include "formats/file_io.h"
+#include "runtime/report_air.h"
+#include "runtime/report_number.h"
 
 namespace relief {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A float as the shortest decimal that reads back as it, rather than as the double beside it.
+}  // namespace
+
 Json shortest(float value) {
     char text[32];
     for (int digits = 6; digits <= 9; ++digits) {
@@ -26,6 +29,8 @@ Json shortest(float value) {
 Json triple(const glm::vec3& v) {
     return Json::array({shortest(v.x), shortest(v.y), shortest(v.z)});
 }
+
+namespace {
 
 Json settings(const Scene& scene) {
     Json json;
@@ -61,6 +66,7 @@ Json settings(const Scene& scene) {
                       {"opacity", shortest(scene.render.opacity)},
                       {"background", triple(scene.render.background)},
                       {"every", scene.render.every}};
+    addAirSettings(scene, json);
     return json;
 }
 

@@ -114,6 +114,7 @@ void readForces(SceneTable table, Scene& scene) {
     table.vector("gravity", symmetric(kAccelerationMax), forces.gravity);
     const bool wind = table.vector("wind", symmetric(kSpeedMax), forces.wind);
     table.number("drag", {0.0, kDragMax}, forces.drag);
+    readViscosity(table, scene);
     table.finish();
     if (wind && forces.wind != glm::vec3(0.0F) && forces.drag == 0.0F) {
         table.failUseless("wind", "while forces.drag is 0; raise the drag or remove the wind");
@@ -204,6 +205,7 @@ Scene readScene(const toml::table& root, const fs::path& path, std::string_view 
     SceneTable ground = top.sub("ground");
     SceneTable camera = top.sub("camera");
     SceneTable render = top.sub("render");
+    nameAirTables(top);
     top.finish();
 
     readCollider(collider, root, path.parent_path(), scene);
@@ -214,6 +216,7 @@ Scene readScene(const toml::table& root, const fs::path& path, std::string_view 
     particles.finish();
     readEmitter(emitter, scene);
     readForces(forces, scene);
+    readAir(top, path.parent_path(), scene);
     readCollision(collision, scene);
     readGround(ground, scene);
     readCamera(camera, scene);

@@ -10,6 +10,8 @@
 
 #include "formats/collider.h"
 #include "formats/result.h"
+#include "runtime/air.h"
+#include "runtime/flow_file.h"
 #include "runtime/particle_system.h"
 
 namespace relief {
@@ -42,6 +44,9 @@ struct Scene {
         glm::vec3 wind{0.0F};
         float drag = 2.5F;
     } forces;
+
+    AirSettings air;               ///< its flow is null: loadFlow() reads it from `flow`
+    std::optional<FlowFile> flow;  ///< box in object units
 
     Collision collision{0.0F, 1.0F, 0.0F};
 

@@ -1,5 +1,7 @@
-// Readers of parts of a scene file that have a source file of their own. For scene.cpp alone.
+// Readers of parts of a scene that have files of their own; parseScene calls them. All throw SceneError.
 #pragma once
+
+#include <filesystem>
 
 #include "runtime/scene.h"
 #include "runtime/scene_table.h"
@@ -8,5 +10,11 @@ namespace relief {
 
 /// The keys of [render] that say how particles are sorted (scene_sort.cpp). Throws SceneError.
 void readSort(SceneTable& table, Scene& scene);
+/// Makes the tables of readAir known to `top`; call before its finish().
+void nameAirTables(SceneTable& top);
+/// [[attractor]], [[vortex]], [flow] and [curl_noise]; call when scene.forces is read.
+void readAir(SceneTable& top, const std::filesystem::path& folder, Scene& scene);
+/// forces.viscosity; `forces` is the table of that name.
+void readViscosity(SceneTable& forces, Scene& scene);
 
 }  // namespace relief

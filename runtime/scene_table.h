@@ -63,6 +63,8 @@ class SceneTable {
     [[nodiscard]] SceneTable sub(std::string_view name);
     /// Whether the file has this table.
     [[nodiscard]] bool present() const { return table_ != nullptr; }
+    /// The scene file, as messages name it.
+    [[nodiscard]] std::string_view file() const { return file_; }
 
     /// The value of a key; null if absent.
     [[nodiscard]] const toml::node* find(std::string_view key);
