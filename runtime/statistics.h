@@ -30,7 +30,7 @@ struct StatisticsSample {
 
 class Statistics {
   public:
-    static constexpr int kInFlightMax = 4;  ///< samples asked for and not yet collected
+    static constexpr int kInFlightMax = 16;  ///< samples asked for and not yet collected
 
     /// For systems of this capacity. Needs a current context, as every call does.
     /// Errors: kUsage (0 or above ParticleSystem::kCapacityMax), kUnsupported, kFailure.
