@@ -49,7 +49,7 @@ Result<void> StatisticsLog::request(const ParticleSystem& particles, std::uint64
             return done;
         }
     }
-    Entry entry{particles.time(), particles.counts()};
+    Entry entry{particles.time(), particles.counts(), timer_->times()};
     entry.counts.refused += refused;
     const StageScope scope(timer_, Stage::kStatistics);
     if (!statistics_.request(particles, step)) {
@@ -100,9 +100,8 @@ Result<void> StatisticsLog::write(const StatisticsSample& sample) {
     json["collisions"] = sample.collisions;
     json["energy"] = sample.energy;
     json["max_speed"] = static_cast<double>(sample.max_speed);
-    const StageTimes times = timer_->times();
-    json["ms"] = stageJson(times, last_times_);
-    last_times_ = times;
+    json["ms"] = stageJson(entry.times, last_times_);
+    last_times_ = entry.times;
     const std::string line = json.dump() + "\n";
     if (std::fputs(line.c_str(), file_.get()) < 0 || std::fflush(file_.get()) != 0) {
         return writeError(path_);

@@ -39,6 +39,7 @@ class StatisticsLog {
     struct Entry {  // what the CPU knew when the sample was asked for
         double time = 0.0;
         ParticleCounts counts;
+        StageTimes times;
     };
 
     StatisticsLog(Statistics statistics, GpuTimer& timer)
