@@ -49,7 +49,7 @@ Result<void> StatisticsLog::request(const ParticleSystem& particles, std::uint64
             return done;
         }
     }
-    Entry entry{particles.time(), particles.counts(), timer_->times()};
+    Entry entry{step, particles.time(), particles.counts(), timer_->times()};
     entry.counts.refused += refused;
     const StageScope scope(timer_, Stage::kStatistics);
     if (!statistics_.request(particles, step)) {
@@ -86,6 +86,9 @@ Result<void> StatisticsLog::waitForOne() {
 }
 
 Result<void> StatisticsLog::write(const StatisticsSample& sample) {
+    while (entries_.front().step != sample.tag) {  // the GPU has lost a sample
+        entries_.pop_front();
+    }
     const Entry entry = entries_.front();
     entries_.pop_front();
     Json json;

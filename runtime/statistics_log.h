@@ -37,6 +37,7 @@ class StatisticsLog {
         void operator()(std::FILE* file) const;
     };
     struct Entry {  // what the CPU knew when the sample was asked for
+        std::uint64_t step = 0;
         double time = 0.0;
         ParticleCounts counts;
         StageTimes times;

@@ -246,8 +246,10 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::create(const fs::path& path, c
         return fail(ErrorCode::kUsage,
                     quotedPath(path) + " is no name for a video; let it end in .mp4, .mkv, .mov or .webm");
     }
-    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
     std::error_code error;
+    // What a link points to is replaced, and not the link.
+    const fs::path followed = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : path;
+    const fs::path folder = followed.has_parent_path() ? followed.parent_path() : fs::path(".");
     if (!fs::is_directory(folder, error)) {
         return fail(ErrorCode::kIo, "cannot write " + quotedPath(path) + ": there is no folder " +
                                         quotedPath(folder) + "; make it, or choose another place");
@@ -256,7 +258,7 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::create(const fs::path& path, c
         return fail(ErrorCode::kIo, "cannot write " + quotedPath(path) + ": it is a folder; name a file");
     }
     auto impl = std::make_unique<Impl>();
-    impl->target = path;
+    impl->target = followed;
     impl->frame_bytes = std::size_t{3} * options.width * options.height;
     impl->errors = std::tmpfile();
     if (impl->errors == nullptr) {

@@ -94,6 +94,18 @@ TEST_F(Video, AFrameMayBeLargerThanThePipe) {
     EXPECT_EQ(std::stol(read("out/a.mkv")), 2'100'000);
 }
 
+TEST_F(Video, WhatALinkPointsToIsReplaced) {
+    ffmpegIs("cat > \"$out\"\n");
+    std::ofstream(base_ / "real.mp4") << "older";
+    fs::create_symlink("../real.mp4", base_ / "out/a.mp4");
+    auto writer = create();
+    ASSERT_TRUE(writer);
+    ASSERT_TRUE((*writer)->add(std::vector<std::uint8_t>(45)));
+    ASSERT_TRUE((*writer)->finish());
+    EXPECT_TRUE(fs::is_symlink(base_ / "out/a.mp4"));
+    EXPECT_EQ(read("real.mp4"), std::string(45, '\0'));
+}
+
 // An ffmpeg that ends early closes the pipe: an error with its words, no signal, the older video as it was.
 TEST_F(Video, AnFfmpegThatFailsLeavesTheOlderVideo) {
     std::ofstream(base_ / "out/a.mp4") << "precious";
