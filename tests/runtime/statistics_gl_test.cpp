@@ -140,12 +140,13 @@ TEST_P(StatisticsGlTest, CollisionsAreExactBeyondAFloat) {
     EXPECT_EQ(gpu.energy, 0.0);
 }
 
-// Texels beyond the extent hold leftovers of the dead: they must not count.
+// Texels beyond the extent hold leftovers of the dead, and the ladder's those of times when more rows were in
+// use: neither must count.
 TEST_P(StatisticsGlTest, LeftoversDoNotCount) {
-    ParticleSystem particles = makeParticles(4096);
-    Statistics statistics = makeStatistics(4096);
+    ParticleSystem particles = makeParticles(40'000);
+    Statistics statistics = makeStatistics(40'000);
     std::vector<Birth> births(10, {glm::vec3(0.0F), {1.0F, 0.0F, 0.0F}, 100.0F, 0});
-    births.resize(3000, {glm::vec3(0.0F), {1.0F, 0.0F, 0.0F}, 0.02F, 0});
+    births.resize(30'000, {glm::vec3(0.0F), {1.0F, 0.0F, 0.0F}, 0.02F, 0});
     particles.spawn(births);
     for (int step = 0; step < 5; ++step) {
         particles.step(kDt);
