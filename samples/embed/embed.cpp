@@ -11,6 +11,8 @@
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 // [embed]
@@ -22,7 +24,12 @@
 /// Relief reports errors as values; this program prefers exceptions.
 template <class T>
 T need(relief::Result<T> result) {
-    return result ? std::move(*result) : throw std::runtime_error(result.error().message);
+    if (!result) {
+        throw std::runtime_error(result.error().message);
+    }
+    if constexpr (!std::is_void_v<T>) {
+        return std::move(*result);
+    }
 }
 
 /// Snow on a baked body. Every call needs your context to be current, and leaves its state as it was.
@@ -35,9 +42,7 @@ class Snow {
           body_picture(need(relief::ColliderRenderer::create(view()))),
           snow_picture(need(relief::ParticleRenderer::create(view()))) {
         const relief::ColliderInstance instance{&textures};
-        if (const auto set = particles.setColliders({&instance, 1}); !set) {
-            throw std::runtime_error(set.error().message);
-        }
+        need(particles.setColliders({&instance, 1}));
         particles.setForces({.gravity = {0.0F, -3.0F * size(), 0.0F}, .drag = 2.5F});
         particles.setCollision({.restitution = 0.0F, .friction = 1.0F});
         camera.target = body.bounds.center();
@@ -52,7 +57,7 @@ class Snow {
         particles.step(seconds);
     }
     void draw(const relief::RenderTarget& target) {  // your framebuffer, with colour and depth
-        need(body_picture.draw(camera, {}, target).map([] { return true; }));
+        need(body_picture.draw(camera, {}, target));
         snow_picture.draw(particles, camera, {.diameter = 0.01F * size()}, target);
     }
     [[nodiscard]] float size() const { return body.bounds.longestSide(); }
