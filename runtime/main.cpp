@@ -13,6 +13,7 @@
 #include "formats/file_io.h"
 #include "runtime/player.h"
 #include "runtime/report.h"
+#include "runtime/scene_check.h"
 #include "runtime/suggestion.h"
 
 namespace {
@@ -31,9 +32,9 @@ constexpr std::string_view kHelpFoot =
     "Exit codes: 0 done, 1 usage, 2 file or I/O, 3 invalid input, 4 failure, 5 unsupported here, 6 above a "
     "limit.\n";
 
-constexpr std::array<std::string_view, 11> kOptions{"--steps", "--frames",  "--size", "--seed",
-                                                    "--dump",  "--json",    "--api",  "-q",
-                                                    "--quiet", "--version", "--help"};
+constexpr std::array<std::string_view, 16> kOptions{
+    "--steps",       "--frames", "--size", "--seed", "--dump", "--dump-frames", "--video",   "--stats",
+    "--stats-every", "--check",  "--json", "--api",  "-q",     "--quiet",       "--version", "--help"};
 
 int report(ErrorCode code, const std::string& message) {
     std::fprintf(stderr, "relief-sim: error: %s\n", message.c_str());
@@ -66,7 +67,12 @@ struct CommandLine {
     std::string size;
     std::string seed;
     std::string dump;
+    std::string dump_frames;
+    std::string video;
+    std::string stats;
+    std::string stats_every;
     std::string api = "gl";
+    bool check = false;
     bool json = false;
     bool quiet = false;
 };
@@ -76,7 +82,14 @@ std::string toOptions(const CommandLine& line, relief::PlayerOptions& options) {
     options.input = line.input;
     options.frames = line.frames;
     options.dump = line.dump;
+    options.dump_frames = line.dump_frames;
+    options.video = line.video;
+    options.stats = line.stats;
     options.count_collisions = line.json;
+    options.time_stages = line.json;
+    if (line.check && !(line.frames + line.dump + line.dump_frames + line.video + line.stats).empty()) {
+        return "--check plays nothing and writes nothing; remove it, or the outputs";
+    }
     if (!line.steps.empty()) {
         std::uint32_t steps = 0;
         if (!parseNumber(line.steps, steps) || steps > 10'000'000) {
@@ -98,8 +111,8 @@ std::string toOptions(const CommandLine& line, relief::PlayerOptions& options) {
             return "--size " + quotedWord(line.size) +
                    " is not a size; write it as 960x720, each side at least 1";
         }
-        if (line.frames.empty()) {
-            return "--size does nothing without --frames; add --frames DIR";
+        if (line.frames.empty() && line.video.empty()) {
+            return "--size does nothing without --frames or --video; add --frames DIR";
         }
         options.width = width;
         options.height = height;
@@ -109,8 +122,23 @@ std::string toOptions(const CommandLine& line, relief::PlayerOptions& options) {
     } else if (line.api != "gl") {
         return "--api " + quotedWord(line.api) + " is unknown; choose gl or gles";
     }
+    if (!line.stats_every.empty()) {
+        std::uint32_t every = 0;
+        if (!parseNumber(line.stats_every, every) || every < 1 || every > 10'000'000) {
+            return "--stats-every " + quotedWord(line.stats_every) +
+                   " is not a whole number from 1 to 10000000";
+        }
+        if (line.stats.empty()) {
+            return "--stats-every does nothing without --stats; add --stats OUT.jsonl";
+        }
+        options.stats_every = every;
+    }
     if (line.json && line.dump == "-") {
         return "--json and --dump - both write standard output; dump to a file";
+    }
+    if (line.stats == "-" && (line.json || line.dump == "-")) {
+        return std::string("--stats - and ") + (line.json ? "--json" : "--dump -") +
+               " both write standard output; write the statistics to a file";
     }
     return {};
 }
@@ -135,6 +163,20 @@ void showProgress(std::uint32_t step, std::uint32_t steps) {
                  step >= steps ? "\n" : "");
 }
 
+/// --check: 0, or the code of the first mistake. With --json the object comes in either case.
+int check(const CommandLine& line, const relief::PlayerOptions& options) {
+    const auto checked = relief::checkScene(options);
+    if (line.json || (checked && !line.quiet)) {
+        const std::string text = !line.json ? relief::checkText(*checked)
+                                 : checked  ? relief::checkJson(*checked)
+                                            : relief::checkJson(checked.error());
+        if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
+            return report(ErrorCode::kIo, "cannot write the result to standard output");
+        }
+    }
+    return checked ? 0 : report(checked.error().code, checked.error().message);
+}
+
 int run(int argc, char** argv) {
     CLI::App app{std::string(kHelpHead)};
     CommandLine line;
@@ -155,9 +197,24 @@ int run(int argc, char** argv) {
     app.add_option("--seed", line.seed, "Seed of the births, instead of the scene's")->type_name("S");
     app.add_option("--dump", line.dump, "Write the final particles as PLY; - for standard output")
         ->type_name("OUT.ply");
+    app.add_option("--dump-frames", line.dump_frames,
+                   "Write particles_0000.ply and so on into this folder, made if missing, as often as frames")
+        ->type_name("DIR");
+    app.add_option(
+           "--video", line.video,
+           "Write the frames as a video (.mp4, .mkv, .mov or .webm) in the scene's time; needs ffmpeg")
+        ->type_name("OUT.mp4");
+    app.add_option("--stats", line.stats,
+                   "Write statistics while playing, a line of JSON each; - for standard output")
+        ->type_name("OUT.jsonl");
+    app.add_option("--stats-every", line.stats_every,
+                   "Steps from line to line of --stats, instead of the scene's render.every")
+        ->type_name("N");
+    app.add_flag("--check", line.check,
+                 "Only check the scene and what it names, without a GPU: one line, or the first mistake");
     app.add_option("--api", line.api, "gl for OpenGL 3.3 (default), gles for OpenGL ES 3.0")
         ->type_name("gl|gles");
-    app.add_flag("--json", line.json, "Print the report as JSON");
+    app.add_flag("--json", line.json, "Print the report, or what --check finds, as JSON");
     app.add_flag("-q,--quiet", line.quiet,
                  "No progress and no summary; errors still, and what --json asks for");
     try {
@@ -184,6 +241,9 @@ int run(int argc, char** argv) {
     if (const std::string wrong = toOptions(line, options); !wrong.empty()) {
         return report(ErrorCode::kUsage, wrong);
     }
+    if (line.check) {
+        return check(line, options);
+    }
     if (!line.quiet && isatty(STDERR_FILENO) != 0) {
         options.progress = showProgress;
     }
@@ -192,8 +252,8 @@ int run(int argc, char** argv) {
         return report(played.error().code, played.error().message);
     }
     if (line.json || !line.quiet) {
-        // The dump may have standard output to itself.
-        const bool to_stderr = !line.json && line.dump == "-";
+        // The dump or the statistics may have standard output to themselves.
+        const bool to_stderr = !line.json && (line.dump == "-" || line.stats == "-");
         const std::string text = line.json ? relief::reportJson(*played) : relief::reportText(*played);
         if (std::fputs(text.c_str(), to_stderr ? stderr : stdout) < 0 || std::fflush(stdout) != 0) {
             return report(ErrorCode::kIo, "cannot write the report to standard output");

@@ -8,13 +8,15 @@
 #include <system_error>
 #include <vector>
 
-#include "formats/container.h"
 #include "formats/file_io.h"
 #include "runtime/collider_renderer.h"
 #include "runtime/frame.h"
 #include "runtime/particle_renderer.h"
 #include "runtime/ply.h"
 #include "runtime/png.h"
+#include "runtime/scene_check.h"
+#include "runtime/statistics_log.h"
+#include "runtime/video.h"
 
 namespace relief {
 namespace {
@@ -26,45 +28,14 @@ using Clock = std::chrono::steady_clock;
 // driver would be handed a whole run at once.
 constexpr std::uint32_t kStepsAtOnce = 16;
 
-std::string lowerCaseExtension(const fs::path& path) {
-    std::string extension = path.extension().native();
-    for (char& c : extension) {
-        c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    }
-    return extension;
-}
-
-Result<Scene> openScene(const fs::path& input) {
-    const std::string extension = lowerCaseExtension(input);
-    if (extension == ".toml") {
-        return loadScene(input);
-    }
-    if (extension == ".relief") {
-        Scene scene;
-        scene.collider = input;
-        return scene;
-    }
-    return fail(ErrorCode::kUsage,
-                quotedPath(input) + " is neither a scene nor a collider; name a .toml or a .relief file");
-}
-
-Result<Collider> openCollider(const Scene& scene) {
-    auto collider = loadCollider(scene.collider);
-    if (!collider && !scene.collider_origin.empty()) {
-        return fail(collider.error().code,
-                    scene.collider_origin + ": collider.file: " + collider.error().message);
-    }
-    return collider;
-}
-
 /// Makes the folder, and sees early that it can be written: a run may take long.
-Result<void> prepareFolder(const fs::path& folder) {
+Result<void> prepareFolder(const fs::path& folder, const char* option) {
     std::error_code error;
     fs::create_directories(folder, error);
     if (error || !fs::is_directory(folder, error)) {
         return fail(ErrorCode::kIo, "cannot make the folder " + quotedPath(folder) + " for frames: " +
                                         (error ? error.message() : "a file of that name is in the way") +
-                                        "; choose another with --frames");
+                                        "; choose another with " + option);
     }
     return {};
 }
@@ -117,12 +88,13 @@ class Picture {
         return picture;
     }
 
-    Result<std::vector<std::byte>> draw(const ParticleSystem& particles) {
+    /// 3 · width · height bytes sRGB, the top row first.
+    Result<std::vector<std::uint8_t>> draw(const ParticleSystem& particles) {
         if (auto drawn = collider_.draw(camera_, collider_style_, frame_.target()); !drawn) {
             return forward(drawn);
         }
         particles_.draw(particles, camera_, particle_style_, frame_.target());
-        return encodePng(frame_.read(), frame_.width(), frame_.height());
+        return frame_.read();
     }
 
   private:
@@ -137,10 +109,108 @@ class Picture {
     ParticleStyle particle_style_;
 };
 
-fs::path framePath(const fs::path& folder, std::uint32_t number) {
-    std::array<char, 32> name{};
-    std::snprintf(name.data(), name.size(), "frame_%04u.png", number);
+/// "frame_", 7, ".png" -> folder/frame_0007.png
+fs::path numberedPath(const fs::path& folder, const char* head, std::uint32_t number, const char* ending) {
+    std::array<char, 48> name{};
+    std::snprintf(name.data(), name.size(), "%s%04u%s", head, number, ending);
     return folder / name.data();
+}
+
+/// What is made while the run goes on; each only where it is wanted.
+struct Outputs {
+    std::optional<Picture> picture;
+    std::unique_ptr<VideoWriter> video;
+    std::optional<GpuTimer> timer;
+    std::optional<StatisticsLog> log;
+
+    [[nodiscard]] StageTimer* stages() { return timer ? &*timer : nullptr; }
+};
+
+/// The rate at which a video plays in the scene's time, as far as eyes and players go along.
+double videoRate(const Scene& scene) {
+    return std::clamp(1.0 / (static_cast<double>(scene.dt) * scene.render.every), 1.0, 120.0);
+}
+
+Result<void> openOutputs(const PlayerOptions& options, const Scene& scene, const Collider& collider,
+                         const ColliderTextures& textures, Outputs& outputs) {
+    if (!options.frames.empty() || !options.video.empty()) {
+        auto made = Picture::create(scene, collider, textures);
+        if (!made) {
+            return forward(made);
+        }
+        outputs.picture.emplace(std::move(*made));
+    }
+    if (!options.video.empty()) {
+        auto video =
+            VideoWriter::create(options.video, {scene.render.width, scene.render.height, videoRate(scene)});
+        if (!video) {
+            return forward(video);
+        }
+        outputs.video = std::move(*video);
+    }
+    if (options.time_stages || !options.stats.empty()) {
+        outputs.timer.emplace();
+    }
+    if (!options.stats.empty()) {
+        auto log = StatisticsLog::create(options.stats, scene.capacity, *outputs.timer);
+        if (!log) {
+            return forward(log);
+        }
+        outputs.log.emplace(std::move(*log));
+    }
+    for (const auto& [folder, option] :
+         {std::pair(options.frames, "--frames"), {options.dump_frames, "--dump-frames"}}) {
+        if (folder.empty()) {
+            continue;
+        }
+        if (auto done = prepareFolder(folder, option); !done) {
+            return done;
+        }
+    }
+    return {};
+}
+
+/// A frame of every kind that is wanted, all of the same step.
+Result<void> writeFrame(const PlayerOptions& options, const ParticleSystem& particles, Outputs& outputs,
+                        PlayerReport& report) {
+    if (outputs.picture) {
+        Result<std::vector<std::uint8_t>> rgb;
+        {
+            const StageScope scope(outputs.stages(), Stage::kDraw);
+            rgb = outputs.picture->draw(particles);
+        }
+        if (!rgb) {
+            return forward(rgb);
+        }
+        if (!options.frames.empty()) {
+            const auto png = encodePng(*rgb, report.scene.render.width, report.scene.render.height);
+            if (!png) {
+                return forward(png);
+            }
+            const fs::path path = numberedPath(options.frames, "frame_", report.frames_written, ".png");
+            if (auto written = writeFile(path, *png); !written) {
+                return written;
+            }
+        }
+        if (outputs.video) {
+            if (auto added = outputs.video->add(*rgb); !added) {
+                return added;
+            }
+        }
+        ++report.frames_written;
+    }
+    if (!options.dump_frames.empty()) {
+        const auto state = particles.readState();
+        if (!state) {
+            return forward(state);
+        }
+        const fs::path path = numberedPath(options.dump_frames, "particles_", report.dumps_written, ".ply");
+        if (auto written = writeFile(path, encodePly(*state)); !written) {
+            return written;
+        }
+        ++report.dumps_written;
+    }
+    return {};
 }
 
 Result<ParticleSystem> makeParticles(const Scene& scene, const ColliderTextures& textures) {
@@ -183,26 +253,40 @@ double median(std::vector<double> values) {
 }
 
 /// The run itself: steps and, between them, frames.
-Result<void> run(const PlayerOptions& options, ParticleSystem& particles, std::optional<Picture>& picture,
+Result<void> run(const PlayerOptions& options, ParticleSystem& particles, Outputs& outputs,
                  PlayerReport& report) {
     const Scene& scene = report.scene;
+    const bool has_frames = outputs.picture || !options.dump_frames.empty();
+    const std::uint32_t stats_every = options.stats_every.value_or(scene.render.every);
     Emitter emitter(emitterSettings(scene), scene.emitter.seed);
     std::vector<Birth> births;
     std::uint64_t refused = 0;
     Clock::duration spent{};
     std::vector<double> stretches;  // ms per step of each
     std::uint32_t step = 0;
-    while (step < scene.steps || (step == 0 && picture)) {
+    while (step < scene.steps || (step == 0 && has_frames)) {
         const std::uint32_t next_frame =
-            picture ? step + scene.render.every - step % scene.render.every : scene.steps;
+            has_frames ? step + scene.render.every - step % scene.render.every : scene.steps;
         const std::uint32_t end = std::min({scene.steps, next_frame, step + kStepsAtOnce});
         const Clock::time_point begun = Clock::now();
         const std::uint32_t first = step;
-        for (; step < end; ++step) {
-            births.clear();
-            refused += emitter.emit(static_cast<double>(scene.dt), particles.room(), births);
-            particles.spawn(births);
-            particles.step(scene.dt);
+        while (step < end) {
+            {
+                const StageScope scope(outputs.stages(), Stage::kBirths);
+                births.clear();
+                refused += emitter.emit(static_cast<double>(scene.dt), particles.room(), births);
+                particles.spawn(births);
+            }
+            {
+                const StageScope scope(outputs.stages(), Stage::kStep);
+                particles.step(scene.dt);
+            }
+            ++step;
+            if (outputs.log && (step % stats_every == 0 || step == scene.steps)) {
+                if (auto asked = outputs.log->request(particles, step, refused); !asked) {
+                    return asked;
+                }
+            }
         }
         glFinish();
         const Clock::duration stretch = Clock::now() - begun;
@@ -210,18 +294,18 @@ Result<void> run(const PlayerOptions& options, ParticleSystem& particles, std::o
         if (step > first) {
             stretches.push_back(std::chrono::duration<double, std::milli>(stretch).count() / (step - first));
         }
+        if (outputs.log) {
+            if (auto written = outputs.log->poll(); !written) {
+                return written;
+            }
+        }
         if (options.progress) {
             options.progress(step, scene.steps);
         }
-        if (picture && (step % scene.render.every == 0 || step == scene.steps)) {
-            auto png = picture->draw(particles);
-            if (!png) {
-                return forward(png);
-            }
-            if (auto written = writeFile(framePath(options.frames, report.frames_written), *png); !written) {
+        if (has_frames && (step % scene.render.every == 0 || step == scene.steps)) {
+            if (auto written = writeFrame(options, particles, outputs, report); !written) {
                 return written;
             }
-            ++report.frames_written;
         }
         if (scene.steps == 0) {
             break;
@@ -233,7 +317,15 @@ Result<void> run(const PlayerOptions& options, ParticleSystem& particles, std::o
     report.ms_per_step_median = median(std::move(stretches));
     report.counts = particles.counts();
     report.counts.refused += refused;
-    return {};
+    if (outputs.log) {
+        if (auto done = outputs.log->finish(); !done) {
+            return done;
+        }
+    }
+    if (outputs.timer) {
+        report.stage_times = outputs.timer->times();
+    }
+    return outputs.video ? outputs.video->finish() : Result<void>{};
 }
 
 Result<void> readBack(const PlayerOptions& options, const ParticleSystem& particles, PlayerReport& report) {
@@ -256,29 +348,11 @@ Result<void> readBack(const PlayerOptions& options, const ParticleSystem& partic
 
 Result<PlayerReport> play(const PlayerOptions& options) {
     // What can fail cheaply comes first.
-    auto scene = openScene(options.input);
-    if (!scene) {
-        return forward(scene);
+    auto loaded = loadAll(options);
+    if (!loaded) {
+        return forward(loaded);
     }
-    scene->steps = options.steps.value_or(scene->steps);
-    scene->render.width = options.width.value_or(scene->render.width);
-    scene->render.height = options.height.value_or(scene->render.height);
-    scene->emitter.seed = options.seed.value_or(scene->emitter.seed);
-    auto collider = openCollider(*scene);
-    if (!collider) {
-        return forward(collider);
-    }
-    auto complete = withDefaults(std::move(*scene), collider->bounds);
-    if (!complete) {
-        return fail(complete.error().code, quotedPath(options.input) + ": " + complete.error().message);
-    }
-    if (complete->flow) {
-        auto flow = loadFlow(*complete->flow);
-        if (!flow) {
-            return forward(flow);
-        }
-        complete->air.flow = std::make_shared<const FlowField>(std::move(*flow));
-    }
+    const Collider& collider = loaded->collider;
     if (!options.dump.empty()) {
         if (auto done = checkDumpFolder(options.dump); !done) {
             return forward(done);
@@ -290,31 +364,24 @@ Result<PlayerReport> play(const PlayerOptions& options) {
         return forward(context);
     }
     PlayerReport report;
-    report.scene = std::move(*complete);
+    report.scene = std::move(loaded->scene);
     report.device = (*context)->description();
-    auto textures = ColliderTextures::create(*collider);
+    auto textures = ColliderTextures::create(collider);
     if (!textures) {
         return fail(textures.error().code,
                     quotedPath(report.scene.collider) + ": " + textures.error().message);
     }
-    report.collider_maps = collider->maps.size();
+    report.collider_maps = collider.maps.size();
     report.collider_bytes = textures->bytes();
     auto particles = makeParticles(report.scene, *textures);
     if (!particles) {
         return forward(particles);
     }
-    std::optional<Picture> picture;
-    if (!options.frames.empty()) {
-        auto made = Picture::create(report.scene, *collider, *textures);
-        if (!made) {
-            return forward(made);
-        }
-        picture = std::move(*made);
-        if (auto done = prepareFolder(options.frames); !done) {
-            return forward(done);
-        }
+    Outputs outputs;
+    if (auto done = openOutputs(options, report.scene, collider, *textures, outputs); !done) {
+        return forward(done);
     }
-    if (auto done = run(options, *particles, picture, report); !done) {
+    if (auto done = run(options, *particles, outputs, report); !done) {
         return forward(done);
     }
     if (options.count_collisions || !options.dump.empty()) {

@@ -9,6 +9,7 @@
 
 #include "formats/result.h"
 #include "runtime/gl_context.h"
+#include "runtime/gpu_timer.h"
 #include "runtime/scene.h"
 
 namespace relief {
@@ -23,6 +24,12 @@ struct PlayerOptions {
     std::filesystem::path
         frames;                  ///< folder for frame_0000.png and so on, made if missing; empty: no pictures
     std::filesystem::path dump;  ///< PLY of the final particles, "-" for standard output; empty: none
+    std::filesystem::path
+        dump_frames;  ///< folder for particles_0000.ply and so on, as often as frames; empty: none
+    std::filesystem::path video;  ///< of the frames, through ffmpeg (video.h); empty: none
+    std::filesystem::path stats;  ///< lines of JSON (statistics_log.h), "-" for standard output; empty: none
+    std::optional<std::uint32_t> stats_every;  ///< steps from line to line, ≥ 1; nullopt: render.every
+    bool time_stages = false;                  ///< for the report; with stats they are timed anyway
     bool count_collisions =
         false;  ///< reads the state back at the end for the report's collisions and contacts
     GlApi api = GlApi::kGl33Core;
@@ -42,10 +49,12 @@ struct PlayerReport {
     /// The same, as the median over stretches of up to 16 steps: without the first, in which a driver still
     /// compiles, wherever there are three or more. 0 without steps.
     double ms_per_step_median = 0.0;
-    std::uint32_t frames_written = 0;
+    std::optional<StageTimes> stage_times;
+    std::uint32_t frames_written = 0;  ///< pictures, in files or in the video
+    std::uint32_t dumps_written = 0;   ///< of dump_frames
 };
 
-/// Frames are written after every scene.render.every steps and after the last one.
+/// Frames, of every kind, are written after every scene.render.every steps and after the last one.
 /// Errors: those of its parts; a failed frame or dump ends the run.
 [[nodiscard]] Result<PlayerReport> play(const PlayerOptions& options);
 

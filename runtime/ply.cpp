@@ -8,7 +8,7 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t kVertexSize = 36;
+constexpr std::size_t kVertexSize = 40;
 
 void append(std::vector<std::byte>& out, std::uint32_t word) {
     for (int shift = 0; shift < 32; shift += 8) {
@@ -28,7 +28,7 @@ std::vector<std::byte> encodePly(std::span<const ParticleState> particles) {
     for (const char* name : {"x", "y", "z", "vx", "vy", "vz", "age", "lifetime"}) {
         header += std::string("property float ") + name + "\n";
     }
-    header += "property uint id\nend_header\n";
+    header += "property uint id\nproperty uint type\nend_header\n";
 
     std::vector<const ParticleState*> ordered;
     ordered.reserve(particles.size());
@@ -49,6 +49,7 @@ std::vector<std::byte> encodePly(std::span<const ParticleState> particles) {
             append(out, std::bit_cast<std::uint32_t>(value));
         }
         append(out, p->id);
+        append(out, p->type);
     }
     return out;
 }

@@ -9,9 +9,9 @@
 
 namespace relief {
 
-/// Binary little-endian PLY, one vertex a particle in ascending order of id, 36 bytes each: float x y z
+/// Binary little-endian PLY, one vertex a particle in ascending order of id, 40 bytes each: float x y z
 /// (object units), vx vy vz (object units a second), age, lifetime (seconds), uint id (births before its
-/// own).
+/// own), type.
 [[nodiscard]] std::vector<std::byte> encodePly(std::span<const ParticleState> particles);
 
 }  // namespace relief

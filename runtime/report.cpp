@@ -7,6 +7,7 @@
 #include "formats/file_io.h"
 #include "runtime/report_air.h"
 #include "runtime/report_number.h"
+#include "runtime/stage_json.h"
 
 namespace relief {
 namespace {
@@ -86,7 +87,9 @@ std::string reportJson(const PlayerReport& report) {
     json["steps"] = report.scene.steps;
     json["ms_per_step"] = report.ms_per_step;
     json["ms_per_step_median"] = report.ms_per_step_median;
+    json["ms_per_stage"] = report.stage_times ? stageJson(*report.stage_times) : Json();
     json["frames"] = report.frames_written;
+    json["dumps"] = report.dumps_written;
     // A file name that is no UTF-8 must not end the program.
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

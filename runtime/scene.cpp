@@ -10,6 +10,7 @@
 
 #include "formats/file_io.h"
 #include "runtime/camera.h"
+#include "runtime/scene_paths.h"
 #include "runtime/scene_readers.h"
 #include "runtime/scene_table.h"
 
@@ -34,10 +35,11 @@ void readCollider(SceneTable table, const toml::table& root, const fs::path& fol
             "a scene needs collider.file, the .relief file to collide with; bake one with 'relief bake'");
     }
     const toml::node& node = *root.get("collider")->as_table()->get("file");
-    if (file.find('\0') != std::string::npos) {
-        table.failAt(node, "collider.file holds a zero byte");
+    auto inside = resolveInside(folder, file);
+    if (!inside) {
+        table.failAt(node, "collider.file = " + inside.error().message);
     }
-    scene.collider = folder / fs::path(file);
+    scene.collider = std::move(*inside);
     scene.collider_origin = table.place(node.source().begin);
 }
 

@@ -74,7 +74,8 @@ struct Scene {
 };
 
 /// \param text    the file's contents; may be hostile.
-/// \param path    names it in messages and resolves relative paths.
+/// \param path    names it in messages and resolves the paths in it, which may not leave its folder
+///                (scene_paths.h).
 /// Errors: kInvalidInput, one line "file:line:column: what is wrong; the cure".
 [[nodiscard]] Result<Scene> parseScene(std::string_view text, const std::filesystem::path& path);
 

@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <string>
 
+#include "runtime/scene_paths.h"
 #include "runtime/scene_readers.h"
 
 namespace relief {
@@ -150,7 +151,6 @@ void readFlow(SceneTable table, const toml::node* at, const fs::path& folder, Sc
         return;
     }
     FlowFile flow;
-    std::string name;
     std::string_view source;
     constexpr std::array<std::string_view, 3> kSources = {"file", "files", "raw"};  // as in FlowFileKind
     for (std::size_t i = 0; i < kSources.size(); ++i) {
@@ -163,11 +163,12 @@ void readFlow(SceneTable table, const toml::node* at, const fs::path& folder, Sc
             table.failAt(
                 node, table.full(kSources[i]) + " and " + table.full(source) + " are two flows; remove one");
         }
-        if (text.empty() || text.find('\0') != std::string::npos) {
-            table.failAt(node, table.full(kSources[i]) + " names no file");
+        auto inside = resolveInside(folder, text);
+        if (!inside) {
+            table.failAt(node, table.full(kSources[i]) + " = " + inside.error().message);
         }
         source = kSources[i];
-        name = text;
+        flow.path = std::move(*inside);
         flow.kind = static_cast<FlowFileKind>(i);
         flow.origin = table.place(node.source().begin) + ": " + table.full(source) + ": ";
     }
@@ -175,7 +176,6 @@ void readFlow(SceneTable table, const toml::node* at, const fs::path& folder, Sc
         failMissing(table, *at, "file",
                     "name one EXR image by file, numbered ones by files, or a raw volume by raw");
     }
-    flow.path = folder / fs::path(name);
     if (flow.kind == FlowFileKind::kSlices && !hasSliceNumber(flow.path.filename().native())) {
         table.failAt(*table.find("files"),
                      "flow.files needs one number, as in 'flow_%03d.exr', in its file name");

@@ -51,26 +51,29 @@ TEST(Ply, HeaderAndVerticesByHand) {
     particles[0].velocity = {4.0F, 5.0F, 6.0F};
     particles[0].age = 0.25F;
     particles[0].lifetime = 8.0F;
+    particles[0].type = 0x0a0b0c;
     particles[1].id = 3;  // lower: comes first
     const std::vector<std::byte> bytes = encodePly(particles);
     const std::string expected =
         "ply\nformat binary_little_endian 1.0\ncomment particles of relief-sim; object units, seconds\n"
         "element vertex 2\nproperty float x\nproperty float y\nproperty float z\nproperty float vx\n"
         "property float vy\nproperty float vz\nproperty float age\nproperty float lifetime\nproperty uint "
-        "id\n"
+        "id\nproperty uint type\n"
         "end_header\n";
-    ASSERT_EQ(bytes.size(), expected.size() + 2 * 36);
+    ASSERT_EQ(bytes.size(), expected.size() + 2 * 40);
     EXPECT_EQ(std::memcmp(bytes.data(), expected.data(), expected.size()), 0);
     const auto at = [&](std::size_t offset) {
         return std::to_integer<unsigned>(bytes[expected.size() + offset]);
     };
     EXPECT_EQ(at(32), 3U);
     // 1.0F is 3f 80 00 00; the least byte comes first.
-    EXPECT_EQ(at(36), 0U);
-    EXPECT_EQ(at(38), 0x80U);
-    EXPECT_EQ(at(39), 0x3fU);
-    EXPECT_EQ(at(36 + 32), 4U);
-    EXPECT_EQ(at(36 + 35), 1U);
+    EXPECT_EQ(at(40), 0U);
+    EXPECT_EQ(at(42), 0x80U);
+    EXPECT_EQ(at(43), 0x3fU);
+    EXPECT_EQ(at(40 + 32), 4U);
+    EXPECT_EQ(at(40 + 35), 1U);
+    EXPECT_EQ(at(40 + 36), 0x0cU);
+    EXPECT_EQ(at(40 + 38), 0x0aU);
 }
 
 TEST(Ply, NoParticlesAreAFileToo) {

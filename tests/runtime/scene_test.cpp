@@ -309,8 +309,16 @@ TEST(Scene, ColliderIsNeeded) {
 TEST(Scene, PathsResolveAgainstTheScenesFolder) {
     EXPECT_EQ(parseScene(kHead, "scene.toml")->collider, std::filesystem::path("a.relief"));
     EXPECT_EQ(parseScene(kHead, "/x/y/scene.toml")->collider, std::filesystem::path("/x/y/a.relief"));
-    EXPECT_EQ(parseScene("[collider]\nfile = \"/z/a.relief\"\n", "/x/scene.toml")->collider,
-              std::filesystem::path("/z/a.relief"));
+    EXPECT_EQ(parseScene("[collider]\nfile = \"b/../a.relief\"\n", "/x/scene.toml")->collider,
+              std::filesystem::path("/x/b/../a.relief"));
+}
+
+TEST(Scene, PathsDoNotLeaveTheScenesFolder) {
+    expectError("[collider]\nfile = \"/z/a.relief\"\n",
+                "dir/scene.toml:2:8: collider.file = '/z/a.relief' is an", "scene's folder");
+    expectError("[collider]\nfile = \"../a.relief\"\n",
+                "dir/scene.toml:2:8: collider.file = '../a.relief' leads");
+    expectError("[collider]\nfile = \"b/../../dirt/a\"\n", "dir/scene.toml:2:8: ", "leads out");
 }
 
 TEST(Scene, WhatIsNoToml) {

@@ -1,0 +1,139 @@
+#include "runtime/scene_check.h"
+
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "formats/container.h"
+#include "formats/file_io.h"
+#include "runtime/frame.h"
+
+namespace relief {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+std::string lowerCaseExtension(const fs::path& path) {
+    std::string extension = path.extension().native();
+    for (char& c : extension) {
+        c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    }
+    return extension;
+}
+
+Result<Scene> openScene(const fs::path& input) {
+    const std::string extension = lowerCaseExtension(input);
+    if (extension == ".toml") {
+        return loadScene(input);
+    }
+    if (extension == ".relief") {
+        Scene scene;
+        scene.collider = input;
+        return scene;
+    }
+    return fail(ErrorCode::kUsage,
+                quotedPath(input) + " is neither a scene nor a collider; name a .toml or a .relief file");
+}
+
+Result<Collider> openCollider(const Scene& scene) {
+    auto collider = loadCollider(scene.collider);
+    if (!collider && !scene.collider_origin.empty()) {
+        return fail(collider.error().code,
+                    scene.collider_origin + ": collider.file: " + collider.error().message);
+    }
+    return collider;
+}
+
+CheckedFile checkedFile(const fs::path& path, const char* kind) {
+    std::error_code error;  // read a moment ago; a pipe has no size
+    const std::uintmax_t bytes = fs::file_size(path, error);
+    return {path, kind, error ? 0 : static_cast<std::uint64_t>(bytes)};
+}
+
+std::string dump(const Json& json) {
+    // A file name that is no UTF-8 must not end the program.
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+Result<LoadedScene> loadAll(const PlayerOptions& options) {
+    auto scene = openScene(options.input);
+    if (!scene) {
+        return forward(scene);
+    }
+    scene->steps = options.steps.value_or(scene->steps);
+    scene->render.width = options.width.value_or(scene->render.width);
+    scene->render.height = options.height.value_or(scene->render.height);
+    scene->emitter.seed = options.seed.value_or(scene->emitter.seed);
+    auto collider = openCollider(*scene);
+    if (!collider) {
+        return forward(collider);
+    }
+    auto complete = withDefaults(std::move(*scene), collider->bounds);
+    if (!complete) {
+        return fail(complete.error().code, quotedPath(options.input) + ": " + complete.error().message);
+    }
+    if (complete->flow) {
+        auto flow = loadFlow(*complete->flow);
+        if (!flow) {
+            return forward(flow);
+        }
+        complete->air.flow = std::make_shared<const FlowField>(std::move(*flow));
+    }
+    return LoadedScene{std::move(*complete), std::move(*collider)};
+}
+
+Result<CheckReport> checkScene(const PlayerOptions& options) {
+    const auto loaded = loadAll(options);
+    if (!loaded) {
+        return forward(loaded);
+    }
+    const auto& render = loaded->scene.render;
+    if (std::uint64_t{render.width} * render.height > Frame::kPixelsMax) {
+        return fail(ErrorCode::kLimit, quotedPath(options.input) + ": render.size has more than " +
+                                           std::to_string(Frame::kPixelsMax) +
+                                           " pixels in all; choose a smaller one");
+    }
+    CheckReport report;
+    if (options.input != loaded->scene.collider) {
+        report.files.push_back(checkedFile(options.input, "scene"));
+    }
+    report.files.push_back(checkedFile(loaded->scene.collider, "collider"));
+    if (loaded->scene.flow) {
+        report.files.push_back(checkedFile(loaded->scene.flow->path, "flow"));
+    }
+    report.collider_maps = loaded->collider.maps.size();
+    report.steps = loaded->scene.steps;
+    report.capacity = loaded->scene.capacity;
+    return report;
+}
+
+std::string checkText(const CheckReport& report) {
+    std::string text = quotedPath(report.files.front().path) + " is valid: " + std::to_string(report.steps) +
+                       " steps of up to " + std::to_string(report.capacity) + " particles, " +
+                       std::to_string(report.collider_maps) + " maps";
+    for (std::size_t i = 1; i < report.files.size(); ++i) {
+        text += ", " + report.files[i].kind + " " + quotedPath(report.files[i].path);
+    }
+    return text + "\n";
+}
+
+std::string checkJson(const CheckReport& report) {
+    Json json;
+    json["valid"] = true;
+    json["steps"] = report.steps;
+    json["capacity"] = report.capacity;
+    json["maps"] = report.collider_maps;
+    json["files"] = Json::array();
+    for (const CheckedFile& file : report.files) {
+        json["files"].push_back({{"file", file.path.native()}, {"kind", file.kind}, {"bytes", file.bytes}});
+    }
+    return dump(json);
+}
+
+std::string checkJson(const Error& error) {
+    return dump({{"valid", false}, {"code", static_cast<int>(error.code)}, {"error", error.message}});
+}
+
+}  // namespace relief

@@ -1,0 +1,43 @@
+// Sums over 4 x 4 texels, one fragment each: what reduce_state.frag and reduce_sum.frag share.
+//
+//     counts   x particles alive   y collided   z caught   w half the sum of |v|^2
+//     sums     x, y collisions = x + 4096 y, x below 4096   z greatest |v|^2   w 0
+//
+// Counts are whole numbers below 2^24, which floats hold exactly. The collisions of all particles go beyond; in
+// two parts they are exact up to 2^36.
+
+uniform ivec2 u_size;  // of what is summed, texels
+
+layout(location = 0) out vec4 o_counts;
+layout(location = 1) out vec4 o_sums;
+
+struct Sums {
+    vec4 counts;
+    vec4 sums;
+};
+
+// Of one texel, which lies within u_size.
+Sums sumsAt(ivec2 texel);
+
+void main() {
+    ivec2 corner = 4 * ivec2(gl_FragCoord.xy);
+    vec4 counts = vec4(0.0);
+    vec4 sums = vec4(0.0);
+    for (int y = 0; y < 4; ++y) {
+        // A row first, then the rows: fewer roundings in a chain.
+        vec4 row = vec4(0.0);
+        for (int x = 0; x < 4; ++x) {
+            ivec2 texel = corner + ivec2(x, y);
+            if (texel.x < u_size.x && texel.y < u_size.y) {
+                Sums one = sumsAt(texel);
+                row += one.counts;
+                sums.xy += one.sums.xy;
+                sums.z = max(sums.z, one.sums.z);
+            }
+        }
+        counts += row;
+    }
+    float carry = floor(sums.x / 4096.0);
+    o_counts = counts;
+    o_sums = vec4(sums.x - 4096.0 * carry, sums.y + carry, sums.z, 0.0);
+}

@@ -1,0 +1,148 @@
+# relief-sim's checks and what it writes while it plays: dumps, videos, statistics; each read by a reader that
+# shares no code with it.
+. "$(dirname "$0")/lib.sh"
+
+"$relief" bake "$bunny" -o bunny.relief --paper --resolution 64 -q
+cat >scene.toml <<'S'
+[collider]
+file = "bunny.relief"
+[time]
+steps = 25
+[particles]
+capacity = 3000
+[emitter]
+burst = 1000
+lifetime = [0.1, 1.0]
+[render]
+size = [33, 21]
+every = 10
+S
+
+# --check: no GPU, no display, no driver: any attempt at a context fails with 5.
+no_gl=(env LIBGL_DRIVERS_PATH=/nonexistent __EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent/egl.json)
+expect 5 "${no_gl[@]}" "$relief_sim" scene.toml --steps 1
+expect 0 "${no_gl[@]}" "$relief_sim" scene.toml --check
+[ "$(wc -l <stdout)" -eq 1 ] && [ ! -s stderr ] || die "--check does not answer with one line"
+grep -q "^'scene.toml' is valid: 25 steps of up to 3000 particles, .* collider 'bunny.relief'$" stdout ||
+    die "--check says: $(cat stdout)"
+expect 0 "${no_gl[@]}" "$relief_sim" scene.toml --check --json
+json stdout "d['valid'] is True and d['steps'] == 25 and [f['kind'] for f in d['files']] == ['scene', 'collider']"
+json stdout "all(f['bytes'] == __import__('os').path.getsize(f['file']) for f in d['files'])"
+expect 0 "$relief_sim" bunny.relief --check --json
+json stdout "[f['file'] for f in d['files']] == ['bunny.relief']"
+expect 0 "$relief_sim" scene.toml --check -q
+[ ! -s stdout ] || die "--check -q says something"
+
+mkdir sub
+head -c 1000 bunny.relief >truncated.relief
+ln -s "$bunny" sub/link.relief
+check_fails() { # CODE PATTERN SCENE
+    printf '%s\n' "$3" >sub/bad.toml
+    expect_error "$1" "$2" "$relief_sim" sub/bad.toml --check
+    expect "$1" "$relief_sim" sub/bad.toml --check --json
+    json stdout "d['valid'] is False and d['code'] == $1 and len(d['error']) > 10"
+}
+cp truncated.relief sub/
+check_fails 3 'sub/bad\.toml:2:8: collider\.file: .*truncated\.relief' $'[collider]\nfile = "truncated.relief"'
+check_fails 2 'sub/bad\.toml:2:8: .*missing\.relief' $'[collider]\nfile = "missing.relief"'
+check_fails 3 'sub/bad\.toml:2:8: .*leads out' $'[collider]\nfile = "../bunny.relief"'
+check_fails 3 'sub/bad\.toml:2:8: .*leads out' $'[collider]\nfile = "link.relief"'
+check_fails 3 'sub/bad\.toml:2:8: .*absolute' "[collider]"$'\n'"file = \"$PWD/bunny.relief\""
+cp bunny.relief sub/
+check_fails 3 'sub/bad\.toml:4:.*fraction' $'[collider]\nfile = "bunny.relief"\n[collision]\nfraction = 1'
+check_fails 6 'sub/bad\.toml.*67108864' $'[collider]\nfile = "bunny.relief"\n[render]\nsize = [65535, 65535]'
+expect_error 1 '--check' "$relief_sim" scene.toml --check --frames frames
+
+# Dumps of every frame, the final one, the statistics and the report tell the same story.
+expect 0 "$relief_sim" scene.toml --dump-frames dumps --dump final.ply --stats stats.jsonl --stats-every 5 --json
+cp stdout report.json
+cat >read.py <<'P'
+import glob, json, math, struct
+
+def ply(name):
+    data = open(name, 'rb').read()
+    head, body = data.split(b'end_header\n', 1)
+    lines = head.decode().splitlines()
+    assert lines[:2] == ['ply', 'format binary_little_endian 1.0'], lines
+    count = next(int(l.split()[2]) for l in lines if l.startswith('element vertex'))
+    properties = [l.split()[1:] for l in lines if l.startswith('property')]
+    assert properties == [['float', n] for n in ('x', 'y', 'z', 'vx', 'vy', 'vz', 'age', 'lifetime')] + [
+        ['uint', 'id'], ['uint', 'type']], properties
+    record = struct.Struct('<8f2I')
+    assert len(body) == count * record.size
+    names = [p[1] for p in properties]
+    return [dict(zip(names, values)) for values in record.iter_unpack(body)]
+
+report = json.load(open('report.json'))
+lines = [json.loads(line) for line in open('stats.jsonl')]
+files = sorted(glob.glob('dumps/*'))
+assert files == [f'dumps/particles_{i:04}.ply' for i in range(3)], files
+assert report['dumps'] == 3 and report['frames'] == 0
+assert open(files[-1], 'rb').read() == open('final.ply', 'rb').read()
+assert [l['step'] for l in lines] == [5, 10, 15, 20, 25], lines
+dt = report['settings']['time']['dt']
+for line in lines:
+    assert abs(line['time'] - line['step'] * dt) < 1e-6
+    assert line['alive'] == line['born'] - line['died'] > 0
+    assert line['in_contact'] >= line['caught'] >= 0
+    assert line['ms']['step']['cpu'] > 0 and 'sort' not in line['ms'], line['ms']
+for line, file in (lines[1], files[0]), (lines[3], files[1]), (lines[4], files[2]):
+    particles = ply(file)
+    ids = [p['id'] for p in particles]
+    assert ids == sorted(set(ids)) and max(ids) < line['born']
+    assert len(particles) == line['alive']
+    speed2 = [p['vx'] ** 2 + p['vy'] ** 2 + p['vz'] ** 2 for p in particles]
+    energy = 0.5 * math.fsum(speed2)
+    assert abs(line['energy'] - energy) <= 3e-6 * energy, (line['energy'], energy)
+    assert abs(line['max_speed'] ** 2 - max(speed2)) <= 1e-6 * max(speed2)
+    assert all(0 <= p['age'] <= p['lifetime'] <= 1.001 and p['type'] == 0 for p in particles)
+last = lines[-1]
+for key in 'alive', 'born', 'died', 'refused', 'in_contact', 'collisions':
+    assert last[key] == report['particles'][key], key
+assert last['died'] > 0 and report['particles']['collisions'] >= 0
+stages = report['ms_per_stage']
+assert {'births', 'step', 'statistics'} <= set(stages) and all(s['cpu'] >= 0 for s in stages.values()), stages
+P
+python3 read.py
+cp -r dumps first
+"$relief_sim" scene.toml --dump-frames dumps --stats - >again.jsonl 2>text
+diff -r dumps first || die "the same scene gives other dumps"
+[ "$(wc -l <again.jsonl)" -eq 3 ] || die "--stats - does not write every 10 steps and at the end"
+python3 -c "import json; [json.loads(l) for l in open('again.jsonl')]"
+grep -q '25 steps' text || die "the summary is not on stderr beside --stats -"
+
+expect_error 1 '--stats-every' "$relief_sim" scene.toml --stats-every 4
+expect_error 1 '--stats-every' "$relief_sim" scene.toml --stats s --stats-every 0
+expect_error 1 '--stats' "$relief_sim" scene.toml --stats - --json
+expect_error 1 '--dump' "$relief_sim" scene.toml --stats - --dump -
+expect_error 2 'nowhere' "$relief_sim" scene.toml --stats nowhere/s.jsonl
+expect_error 2 '/dev/full' "$relief_sim" scene.toml --stats /dev/full
+expect_error 2 'scene\.toml.*--dump-frames' "$relief_sim" scene.toml --dump-frames scene.toml
+
+# Videos, through an ffmpeg that counts what it is given.
+mkdir bin
+cat >bin/ffmpeg <<'F'
+#!/bin/sh
+for out; do :; done
+printf '%s ' "$@" >"$(dirname "$0")/../arguments"
+wc -c >"${out#file:}"
+F
+chmod +x bin/ffmpeg
+expect 0 env PATH="$PWD/bin:$PATH" "$relief_sim" scene.toml --video film.mp4 --json
+[ "$(cat film.mp4)" -eq $((3 * 33 * 21 * 3)) ] || die "ffmpeg was given $(cat film.mp4) bytes"
+grep -q -- '-f rawvideo -pix_fmt rgb24 -s 33x21 -r 6 -i pipe:0' arguments || die "arguments: $(cat arguments)"
+json stdout "d['frames'] == 3 and 'draw' in d['ms_per_stage']"
+[ -z "$(find . -maxdepth 1 -name '.relief-*')" ] || die "a temporary file is left"
+# The same pixels as the pictures.
+printf '#!/bin/sh\nfor out; do :; done\ncat >"${out#file:}"\n' >bin/ffmpeg
+PATH="$PWD/bin:$PATH" "$relief_sim" scene.toml --video film.mov --frames frames -q
+convert frames/frame_*.png -depth 8 rgb:- | cmp - film.mov || die "the video has other pixels than the pictures"
+
+echo precious >film.mp4
+printf '#!/bin/sh\necho no such encoder >&2\nexit 1\n' >bin/ffmpeg
+expect_error 4 'no such encoder' env PATH="$PWD/bin:$PATH" "$relief_sim" scene.toml --video film.mp4
+rm bin/ffmpeg
+expect_error 5 'ffmpeg.*install' env PATH="$PWD/bin" "$relief_sim" scene.toml --video film.mp4
+expect_error 1 'film\.avi' "$relief_sim" scene.toml --video film.avi
+expect_error 2 'nowhere' "$relief_sim" scene.toml --video nowhere/film.mp4
+[ "$(cat film.mp4)" = precious ] || die "an older video was touched"
