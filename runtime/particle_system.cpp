@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <string>
 
 #include "runtime/pass_state.h"
@@ -186,19 +185,23 @@ Result<void> ParticleSystem::setColliders(std::span<const ColliderInstance> coll
 
 std::size_t ParticleSystem::spawn(std::span<const Birth> births) {
     const float now = clock();
+    const glm::vec3 pull = forces_.gravity + forces_.drag * forces_.wind;
     std::size_t accepted = 0;
     for (const Birth& birth : births) {
         const std::optional<std::uint32_t> index = allocator_.acquire();
         if (!index) {
             break;
         }
-        const float death = now + birth.lifetime;
+        const float born = now - birth.age;
+        const float death = born + birth.lifetime;
+        // What the step does in free flight, for as long as it has lived.
+        const glm::vec3 velocity =
+            (birth.velocity + birth.age * pull) * (1.0F / (1.0F + birth.age * forces_.drag));
         const auto id = static_cast<std::uint32_t>(born_ + accepted);
         ids_[*index] = id;
-        deaths_.push_back({death, *index});
-        std::push_heap(deaths_.begin(), deaths_.end(), std::greater<>());
-        newborn_.push_back({*index, birth.position, birth.velocity,
-                            glm::vec4(now, death, static_cast<float>(birth.type & kIdMask),
+        deaths_.push(death, *index);
+        newborn_.push_back({*index, birth.position + birth.age * velocity, velocity,
+                            glm::vec4(born, death, static_cast<float>(birth.type & kIdMask),
                                       static_cast<float>(id & kIdMask))});
         ++accepted;
     }
@@ -270,22 +273,20 @@ void ParticleSystem::drawStep(float dt, float now) {
 }
 
 void ParticleSystem::freeDead(float now) {
-    while (!deaths_.empty() && now >= deaths_.front().time) {
-        allocator_.release(deaths_.front().index);
-        std::pop_heap(deaths_.begin(), deaths_.end(), std::greater<>());
-        deaths_.pop_back();
-        ++died_;
+    dead_.clear();
+    deaths_.popUntil(now, dead_);
+    for (const std::uint32_t index : dead_) {
+        allocator_.release(index);
     }
+    died_ += dead_.size();
 }
 
 void ParticleSystem::setEpochForward() {
     const double epochs = std::floor((time_ - epoch_) / epoch_seconds_);
     const auto shift = static_cast<float>(epochs * epoch_seconds_);
     epoch_ += static_cast<double>(shift);
-    // The same subtraction of the same floats as in rebase.frag. It keeps the order, so the heap stays one.
-    for (Death& death : deaths_) {
-        death.time -= shift;
-    }
+    // The same subtraction of the same floats as in rebase.frag.
+    deaths_.rebase(shift);
     if (allocator_.extent() == 0) {
         return;
     }

@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
+#include <span>
 #include <system_error>
 #include <vector>
 
@@ -157,20 +158,6 @@ Result<ParticleSystem> makeParticles(const Scene& scene, const ColliderTextures&
     return particles;
 }
 
-EmitterSettings emitterSettings(const Scene& scene) {
-    EmitterSettings settings;
-    settings.box_min = *scene.emitter.box_min;
-    settings.box_max = *scene.emitter.box_max;
-    settings.rate = *scene.emitter.rate;
-    settings.duration = scene.emitter.duration.value_or(settings.duration);
-    settings.burst = scene.emitter.burst;
-    settings.velocity = *scene.emitter.velocity;
-    settings.velocity_spread = *scene.emitter.velocity_spread;
-    settings.lifetime_min = scene.emitter.lifetime_min;
-    settings.lifetime_max = scene.emitter.lifetime_max;
-    return settings;
-}
-
 /// The lower of the two middle ones where their number is even; 0 of none.
 double median(std::vector<double> values) {
     if (values.empty()) {
@@ -182,10 +169,9 @@ double median(std::vector<double> values) {
 }
 
 /// The run itself: steps and, between them, frames.
-Result<void> run(const PlayerOptions& options, ParticleSystem& particles, std::optional<Picture>& picture,
-                 PlayerReport& report) {
+Result<void> run(const PlayerOptions& options, std::span<Emitter> emitters, ParticleSystem& particles,
+                 std::optional<Picture>& picture, PlayerReport& report) {
     const Scene& scene = report.scene;
-    Emitter emitter(emitterSettings(scene), scene.emitter.seed);
     std::vector<Birth> births;
     std::uint64_t refused = 0;
     Clock::duration spent{};
@@ -199,7 +185,7 @@ Result<void> run(const PlayerOptions& options, ParticleSystem& particles, std::o
         const std::uint32_t first = step;
         for (; step < end; ++step) {
             births.clear();
-            refused += emitter.emit(static_cast<double>(scene.dt), particles.room(), births);
+            refused += emitAll(emitters, static_cast<double>(scene.dt), particles.room(), births);
             particles.spawn(births);
             particles.step(scene.dt);
         }
@@ -262,7 +248,9 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     scene->steps = options.steps.value_or(scene->steps);
     scene->render.width = options.width.value_or(scene->render.width);
     scene->render.height = options.height.value_or(scene->render.height);
-    scene->emitter.seed = options.seed.value_or(scene->emitter.seed);
+    for (SceneEmitter& emitter : scene->emitters) {
+        emitter.seed = options.seed.value_or(emitter.seed);
+    }
     auto collider = openCollider(*scene);
     if (!collider) {
         return forward(collider);
@@ -270,6 +258,10 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     auto complete = withDefaults(std::move(*scene), collider->bounds);
     if (!complete) {
         return fail(complete.error().code, quotedPath(options.input) + ": " + complete.error().message);
+    }
+    auto emitters = makeEmitters(complete->emitters);
+    if (!emitters) {
+        return forward(emitters);
     }
     if (!options.dump.empty()) {
         if (auto done = checkDumpFolder(options.dump); !done) {
@@ -306,7 +298,7 @@ Result<PlayerReport> play(const PlayerOptions& options) {
             return forward(done);
         }
     }
-    if (auto done = run(options, *particles, picture, report); !done) {
+    if (auto done = run(options, *emitters, *particles, picture, report); !done) {
         return forward(done);
     }
     if (options.count_collisions || !options.dump.empty()) {
