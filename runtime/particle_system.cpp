@@ -200,9 +200,13 @@ std::size_t ParticleSystem::spawn(std::span<const Birth> births) {
         const auto id = static_cast<std::uint32_t>(born_ + accepted);
         ids_[*index] = id;
         deaths_.push(death, *index);
-        newborn_.push_back({*index, birth.position + birth.age * velocity, velocity,
-                            glm::vec4(born, death, static_cast<float>(birth.type & kIdMask),
-                                      static_cast<float>(id & kIdMask))});
+        // Member by member: a vertex that is put together first is copied before its parts have arrived.
+        BirthVertex& vertex = newborn_.emplace_back();
+        vertex.index = *index;
+        vertex.position = birth.position + birth.age * velocity;
+        vertex.velocity = velocity;
+        vertex.birth = glm::vec4(born, death, static_cast<float>(birth.type & kIdMask),
+                                 static_cast<float>(id & kIdMask));
         ++accepted;
     }
     born_ += accepted;

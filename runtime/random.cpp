@@ -6,6 +6,9 @@
 namespace relief {
 namespace {
 
+constexpr double kArtanh[] = {1.0 / 19.0, 1.0 / 17.0, 1.0 / 15.0, 1.0 / 13.0, 1.0 / 11.0,
+                              1.0 / 9.0,  1.0 / 7.0,  1.0 / 5.0,  1.0 / 3.0,  1.0};
+
 /// ln x for a normal x > 0: the exponent, and the series of 2 artanh z for the mantissa, |z| < 0.172.
 double logarithm(double x) {
     const auto bits = std::bit_cast<std::uint64_t>(x);
@@ -18,8 +21,8 @@ double logarithm(double x) {
     const double z = (mantissa - 1.0) / (mantissa + 1.0);
     const double z2 = z * z;
     double sum = 0.0;
-    for (int n = 19; n >= 1; n -= 2) {
-        sum = sum * z2 + 1.0 / n;
+    for (const double coefficient : kArtanh) {
+        sum = sum * z2 + coefficient;
     }
     return 2.0 * z * sum + exponent * 0.6931471805599453;
 }
