@@ -214,6 +214,25 @@ TEST(SceneEmitter, DefaultsOfSeveral) {
     EXPECT_NE(none.error().message.find("used up by the others"), std::string::npos);
 }
 
+// Read or refused, whatever the bytes; the sanitizers watch.
+TEST(SceneEmitter, EveryPrefixAndEveryFlippedByteIsSurvived) {
+    const std::string text = kTwo +
+                             "shape = \"disc\"\ncenter = [0, 0, 0]\nradius = 1\ncone = 9\n"
+                             "speed = { mean = 1, deviation = 1 }\ntype = 3\n[[emitter]]\npoints = \"p\"\n"
+                             "speed = [1, 2]\nburst = 4\nburst_every = 0.5\nspread = true\n";
+    ASSERT_TRUE(parse(text)) << parse(text).error().message;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto cut = parse(text.substr(0, i));
+        EXPECT_TRUE(cut || cut.error().code == ErrorCode::kInvalidInput);
+        for (const unsigned flip : {1U, 0x20U, 0x80U, 0xffU}) {
+            std::string changed = text;
+            changed[i] = static_cast<char>(static_cast<unsigned char>(changed[i]) ^ flip);
+            const auto scene = parse(changed);
+            EXPECT_TRUE(scene || scene.error().code == ErrorCode::kInvalidInput);
+        }
+    }
+}
+
 TEST(SceneEmitter, MadeEmittersGiveBirth) {
     const std::string folder = testing::TempDir();
     std::ofstream(folder + "relief_emitter_points.csv") << "1,2,3\n";
