@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <string>
 
 #include "runtime/pass_state.h"
@@ -205,14 +204,22 @@ std::size_t ParticleSystem::spawn(std::span<const Birth> births) {
         if (!index) {
             break;
         }
-        const float death = now + birth.lifetime;
+        const float born = now - birth.age;
+        const float death = born + birth.lifetime;
+        // What the step does in free flight, for as long as it has lived.
+        const float drag = dragRate(forces_, types_[std::min<std::size_t>(birth.type, types_.size() - 1)]);
+        const glm::vec3 velocity = (birth.velocity + birth.age * (forces_.gravity + drag * forces_.wind)) *
+                                   (1.0F / (1.0F + birth.age * drag));
         const auto id = static_cast<std::uint32_t>(born_ + accepted);
         ids_[*index] = id;
-        deaths_.push_back({death, *index});
-        std::push_heap(deaths_.begin(), deaths_.end(), std::greater<>());
-        newborn_.push_back({*index, birth.position, birth.velocity,
-                            glm::vec4(now, death, static_cast<float>(birth.type & kIdMask),
-                                      static_cast<float>(id & kIdMask))});
+        deaths_.push(death, *index);
+        // Member by member: a vertex that is put together first is copied before its parts have arrived.
+        BirthVertex& vertex = newborn_.emplace_back();
+        vertex.index = *index;
+        vertex.position = birth.position + birth.age * velocity;
+        vertex.velocity = velocity;
+        vertex.birth = glm::vec4(born, death, static_cast<float>(birth.type & kIdMask),
+                                 static_cast<float>(id & kIdMask));
         ++accepted;
     }
     born_ += accepted;
@@ -276,22 +283,20 @@ void ParticleSystem::drawStep(float dt, float now) {
 }
 
 void ParticleSystem::freeDead(float now) {
-    while (!deaths_.empty() && now >= deaths_.front().time) {
-        allocator_.release(deaths_.front().index);
-        std::pop_heap(deaths_.begin(), deaths_.end(), std::greater<>());
-        deaths_.pop_back();
-        ++died_;
+    dead_.clear();
+    deaths_.popUntil(now, dead_);
+    for (const std::uint32_t index : dead_) {
+        allocator_.release(index);
     }
+    died_ += dead_.size();
 }
 
 void ParticleSystem::setEpochForward() {
     const double epochs = std::floor((time_ - epoch_) / epoch_seconds_);
     const auto shift = static_cast<float>(epochs * epoch_seconds_);
     epoch_ += static_cast<double>(shift);
-    // The same subtraction of the same floats as in rebase.frag. It keeps the order, so the heap stays one.
-    for (Death& death : deaths_) {
-        death.time -= shift;
-    }
+    // The same subtraction of the same floats as in rebase.frag.
+    deaths_.rebase(shift);
     if (allocator_.extent() == 0) {
         return;
     }

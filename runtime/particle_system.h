@@ -24,6 +24,8 @@
 #include <vector>
 
 #include "formats/result.h"
+#include "runtime/collider_textures.h"
+#include "runtime/death_queue.h"
 #include "runtime/emitter.h"
 #include "runtime/gl_object.h"
 #include "runtime/index_allocator.h"
@@ -120,8 +122,9 @@ class ParticleSystem {
     /// A floor: everything below this height is solid, in union with the collider. nullopt: none.
     void setGround(std::optional<float> height) { ground_ = height; }
 
-    /// Gives birth at the start of the next step. Texels without a particle are taken in ascending order.
-    /// \return how many found a place; the rest are refused and counted.
+    /// Gives birth at the start of the next step; what has an age then has moved freely, under the forces,
+    /// since its own birth. Texels without a particle are taken in ascending order. \return how many found a
+    /// place; the rest are refused and counted.
     std::size_t spawn(std::span<const Birth> births);
 
     /// Moves everything by `dt` seconds, > 0. Restores the GL state that it touches (runtime/README.md).
@@ -152,11 +155,6 @@ class ParticleSystem {
     [[nodiscard]] Result<RawState> readRaw() const;
 
   private:
-    struct Death {
-        float time = 0.0F;
-        std::uint32_t index = 0;
-        friend bool operator>(const Death& a, const Death& b) { return a.time > b.time; }
-    };
     /// A vertex of the births' draw.
     struct BirthVertex {
         std::uint32_t index;
@@ -164,7 +162,7 @@ class ParticleSystem {
         glm::vec3 velocity;
         glm::vec4 birth;
     };
-    explicit ParticleSystem(std::uint32_t capacity) : allocator_(capacity) {}
+    explicit ParticleSystem(std::uint32_t capacity) : allocator_(capacity), deaths_(capacity) {}
     [[nodiscard]] Result<void> createTextures();
     [[nodiscard]] Result<void> createPrograms();
     [[nodiscard]] Result<void> remakeStep(const ColliderTextures* collider);
@@ -176,7 +174,8 @@ class ParticleSystem {
     void freeDead(float now);
 
     IndexAllocator allocator_;
-    std::vector<Death> deaths_;         // a heap, the earliest in front
+    DeathQueue deaths_;
+    std::vector<std::uint32_t> dead_;   // of the last step, kept for its memory
     std::vector<std::uint32_t> ids_;    // of each index
     std::vector<BirthVertex> newborn_;  // since the last step
     std::uint64_t born_ = 0;

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <span>
 #include <system_error>
 #include <vector>
 
@@ -228,20 +229,6 @@ Result<ParticleSystem> makeParticles(const Scene& scene, const ColliderTextures&
     return particles;
 }
 
-EmitterSettings emitterSettings(const Scene& scene) {
-    EmitterSettings settings;
-    settings.box_min = *scene.emitter.box_min;
-    settings.box_max = *scene.emitter.box_max;
-    settings.rate = *scene.emitter.rate;
-    settings.duration = scene.emitter.duration.value_or(settings.duration);
-    settings.burst = scene.emitter.burst;
-    settings.velocity = *scene.emitter.velocity;
-    settings.velocity_spread = *scene.emitter.velocity_spread;
-    settings.lifetime_min = scene.emitter.lifetime_min;
-    settings.lifetime_max = scene.emitter.lifetime_max;
-    return settings;
-}
-
 /// The lower of the two middle ones where their number is even; 0 of none.
 double median(std::vector<double> values) {
     if (values.empty()) {
@@ -253,12 +240,11 @@ double median(std::vector<double> values) {
 }
 
 /// The run itself: steps and, between them, frames.
-Result<void> run(const PlayerOptions& options, ParticleSystem& particles, Outputs& outputs,
-                 PlayerReport& report) {
+Result<void> run(const PlayerOptions& options, std::span<Emitter> emitters, ParticleSystem& particles,
+                 Outputs& outputs, PlayerReport& report) {
     const Scene& scene = report.scene;
     const bool has_frames = outputs.picture || !options.dump_frames.empty();
     const std::uint32_t stats_every = options.stats_every.value_or(scene.render.every);
-    Emitter emitter(emitterSettings(scene), scene.emitter.seed);
     std::vector<Birth> births;
     std::uint64_t refused = 0;
     Clock::duration spent{};
@@ -274,7 +260,7 @@ Result<void> run(const PlayerOptions& options, ParticleSystem& particles, Output
             {
                 const StageScope scope(outputs.stages(), Stage::kBirths);
                 births.clear();
-                refused += emitter.emit(static_cast<double>(scene.dt), particles.room(), births);
+                refused += emitAll(emitters, static_cast<double>(scene.dt), particles.room(), births);
                 particles.spawn(births);
             }
             {
@@ -353,6 +339,10 @@ Result<PlayerReport> play(const PlayerOptions& options) {
         return forward(loaded);
     }
     const Collider& collider = loaded->collider;
+    auto emitters = makeEmitters(loaded->scene.emitters);
+    if (!emitters) {
+        return forward(emitters);
+    }
     if (!options.dump.empty()) {
         if (auto done = checkDumpFolder(options.dump); !done) {
             return forward(done);
@@ -381,7 +371,7 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     if (auto done = openOutputs(options, report.scene, collider, *textures, outputs); !done) {
         return forward(done);
     }
-    if (auto done = run(options, *particles, outputs, report); !done) {
+    if (auto done = run(options, *emitters, *particles, outputs, report); !done) {
         return forward(done);
     }
     if (options.count_collisions || !options.dump.empty()) {

@@ -33,21 +33,68 @@ Json triple(const glm::vec3& v) {
 
 namespace {
 
+void addPlace(const SceneEmitter& emitter, Json& json) {
+    static constexpr const char* kShapes[] = {"box", "sphere", "shell", "disc", "points"};
+    json["shape"] = kShapes[static_cast<std::size_t>(emitter.shape)];
+    switch (emitter.shape) {
+        case EmitterShape::kBox:
+            json["box_min"] = triple(*emitter.box_min);
+            json["box_max"] = triple(*emitter.box_max);
+            return;
+        case EmitterShape::kPoints:
+            json["points"] = emitter.points.native();
+            return;
+        case EmitterShape::kDisc:
+            json["normal"] = triple(emitter.normal);
+            [[fallthrough]];
+        case EmitterShape::kSphere:
+        case EmitterShape::kShell:
+            json["center"] = triple(emitter.center);
+            json["radius"] = shortest(emitter.radius);
+            return;
+    }
+}
+
+Json emitterSettings(const SceneEmitter& emitter) {
+    Json json;
+    addPlace(emitter, json);
+    json["start"] = emitter.start;
+    json["rate"] = *emitter.rate;
+    json["duration"] = emitter.duration ? Json(*emitter.duration) : Json();
+    json["burst"] = emitter.burst;
+    if (emitter.burst_every > 0.0) {
+        json["burst_every"] = emitter.burst_every;
+    }
+    if (emitter.aimed) {
+        json["direction"] = emitter.direction ? triple(*emitter.direction) : Json();
+        json["cone"] = shortest(emitter.cone);
+        json["speed"] = {shortest(*emitter.speed_min), shortest(*emitter.speed_max)};
+        if (emitter.speed_deviation > 0.0F) {
+            json["speed"] = {{"mean", shortest(*emitter.speed_min)},
+                             {"deviation", shortest(emitter.speed_deviation)}};
+        }
+    } else {
+        json["velocity"] = triple(*emitter.velocity);
+    }
+    json["velocity_spread"] = triple(*emitter.velocity_spread);
+    json["lifetime"] = {shortest(emitter.lifetime_min), shortest(emitter.lifetime_max)};
+    json["type"] = emitter.type;
+    json["seed"] = emitter.seed;
+    json["spread"] = emitter.spread;
+    return json;
+}
+
 Json settings(const Scene& scene) {
     Json json;
     json["collider"]["file"] = scene.collider.native();
     json["time"] = {{"dt", shortest(scene.dt)}, {"steps", scene.steps}};
     json["particles"] = {{"capacity", scene.capacity}};
-    json["emitter"] = {
-        {"box_min", triple(*scene.emitter.box_min)},
-        {"box_max", triple(*scene.emitter.box_max)},
-        {"rate", *scene.emitter.rate},
-        {"duration", scene.emitter.duration ? Json(*scene.emitter.duration) : Json()},
-        {"burst", scene.emitter.burst},
-        {"velocity", triple(*scene.emitter.velocity)},
-        {"velocity_spread", triple(*scene.emitter.velocity_spread)},
-        {"lifetime", {shortest(scene.emitter.lifetime_min), shortest(scene.emitter.lifetime_max)}},
-        {"seed", scene.emitter.seed}};
+    for (const SceneEmitter& emitter : scene.emitters) {
+        json["emitter"].push_back(emitterSettings(emitter));
+    }
+    if (scene.emitters.size() == 1) {
+        json["emitter"] = emitterSettings(scene.emitters.front());
+    }
     json["forces"] = {{"gravity", triple(*scene.forces.gravity)},
                       {"wind", triple(scene.forces.wind)},
                       {"drag", shortest(scene.forces.drag)}};

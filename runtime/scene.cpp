@@ -43,74 +43,6 @@ void readCollider(SceneTable table, const toml::table& root, const fs::path& fol
     scene.collider_origin = table.place(node.source().begin);
 }
 
-void readEmitter(SceneTable table, Scene& scene) {
-    auto& emitter = scene.emitter;
-    const SceneRange length = symmetric(kLengthMax);
-    const bool low = table.vector("box_min", length, emitter.box_min);
-    const bool high = table.vector("box_max", length, emitter.box_max);
-    if (low != high) {
-        const std::string_view given = low ? "box_min" : "box_max";
-        table.failAt(*table.find(given),
-                     table.full(given) + " needs " + table.full(low ? "box_max" : "box_min") + " beside it");
-    }
-    for (int i = 0; low && i < 3; ++i) {
-        if ((*emitter.box_min)[i] > (*emitter.box_max)[i]) {
-            table.failAt(*table.find("box_min"), "emitter.box_min lies above emitter.box_max on the " +
-                                                     std::string(1, "xyz"[i]) + " axis; exchange them");
-        }
-    }
-    glm::vec3 point{0.0F};
-    if (table.vector("point", length, point)) {
-        if (low) {
-            table.failAt(*table.find("point"),
-                         "emitter.point and emitter.box_min are two places; remove one");
-        }
-        emitter.box_min = point;
-        emitter.box_max = point;
-    }
-    double rate = 0.0;
-    if (table.number("rate", {0.0, kRateMax}, rate)) {
-        emitter.rate = rate;
-    }
-    double duration = 0.0;
-    if (table.number("duration", {0.0, kSecondsMax, false}, duration)) {
-        emitter.duration = duration;
-        if (emitter.rate == 0.0) {
-            table.failUseless("duration", "while emitter.rate is 0; raise the rate or remove it");
-        }
-    }
-    const bool burst = table.integer("burst", {0.0, ParticleSystem::kCapacityMax}, emitter.burst);
-    if (emitter.rate == 0.0 && emitter.burst == 0) {
-        table.failAt(*table.find(burst ? "burst" : "rate"),
-                     "emitter.rate = 0 without emitter.burst gives birth to nothing; raise one of them");
-    }
-    if (burst && emitter.burst > scene.capacity) {
-        table.failAt(*table.find("burst"), "emitter.burst = " + std::to_string(emitter.burst) +
-                                               " is more than particles.capacity = " +
-                                               std::to_string(scene.capacity) + "; raise the capacity");
-    }
-    table.vector("velocity", symmetric(kSpeedMax), emitter.velocity);
-    table.vector("velocity_spread", {0.0, kSpeedMax}, emitter.velocity_spread);
-
-    const SceneRange seconds{0.0, kSecondsMax, false};
-    if (const toml::node* node = table.find("lifetime"); node != nullptr) {
-        const toml::array* both = node->as_array();
-        if (both == nullptr ? !node->is_number() : both->size() != 2) {
-            table.wrongType(*node, "lifetime", "a number of seconds, or two [least, most]");
-        }
-        const double least = table.numberOf(both == nullptr ? *node : *both->get(0), "lifetime", seconds);
-        const double most = table.numberOf(both == nullptr ? *node : *both->get(1), "lifetime", seconds);
-        if (least > most) {
-            table.failAt(*node, "emitter.lifetime has its least above its most; exchange them");
-        }
-        // A lifetime below the smallest float would be none.
-        emitter.lifetime_min = std::max(static_cast<float>(least), std::numeric_limits<float>::min());
-        emitter.lifetime_max = std::max(static_cast<float>(most), std::numeric_limits<float>::min());
-    }
-    table.integer("seed", {0.0, 9007199254740992.0}, emitter.seed);
-    table.finish();
-}
-
 void readForces(SceneTable table, Scene& scene) {
     auto& forces = scene.forces;
     table.vector("gravity", symmetric(kAccelerationMax), forces.gravity);
@@ -201,7 +133,7 @@ Scene readScene(const toml::table& root, const fs::path& path, std::string_view 
     SceneTable collider = top.sub("collider");
     SceneTable time = top.sub("time");
     SceneTable particles = top.sub("particles");
-    SceneTable emitter = top.sub("emitter");
+    static_cast<void>(top.find("emitter"));
     SceneTable forces = top.sub("forces");
     SceneTable collision = top.sub("collision");
     SceneTable ground = top.sub("ground");
@@ -216,7 +148,7 @@ Scene readScene(const toml::table& root, const fs::path& path, std::string_view 
     time.finish();
     particles.integer("capacity", {1.0, ParticleSystem::kCapacityMax}, scene.capacity);
     particles.finish();
-    readEmitter(emitter, scene);
+    scene.emitters = readEmitters(top, file, path.parent_path(), scene.capacity);
     readForces(forces, scene);
     readAir(top, path.parent_path(), scene);
     readCollision(collision, scene);
@@ -232,7 +164,12 @@ Result<Scene> parseScene(std::string_view text, const fs::path& path) {
     const std::string file = oneLine(path.native());
     try {
         const toml::table root = toml::parse(text, file);
-        return readScene(root, path, file);
+        Scene scene = readScene(root, path, file);
+        // No table names types yet: a name is unknown.
+        if (auto done = resolveEmitterTypes(scene.emitters, {}); !done) {
+            return forward(done);
+        }
+        return scene;
     } catch (const toml::parse_error& error) {
         const toml::source_position& at = error.source().begin;
         return fail(ErrorCode::kInvalidInput, file + ":" + std::to_string(at.line) + ":" +
@@ -266,24 +203,9 @@ Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
     const glm::vec3 center = bounds.center();
     const float away = std::max({std::abs(center.x), std::abs(center.y), std::abs(center.z)});
     const float scale = std::max({bounds.longestSide(), 1e-3F * away, 1e-6F});
-    auto& emitter = scene.emitter;
-    if (!emitter.box_min) {
-        const float aside = 1.45F * scale;
-        emitter.box_min = glm::vec3(center.x - aside, bounds.max.y + 0.15F * scale, center.z - aside);
-        emitter.box_max = glm::vec3(center.x + aside, bounds.max.y + 0.75F * scale, center.z + aside);
-    }
-    if (!emitter.rate) {
-        // The capacity is just used up at the end of the run, and never before.
-        const double run = static_cast<double>(scene.dt) * scene.steps;
-        const double seconds = std::min(run, emitter.duration.value_or(run));
-        const double room = static_cast<double>(scene.capacity) - std::min(emitter.burst, scene.capacity);
-        emitter.rate = seconds > 0.0 ? std::min(room / seconds, kRateMax) : 0.0;
-    }
-    if (!emitter.velocity) {
-        emitter.velocity = glm::vec3(0.0F, -0.8F * scale, 0.0F);
-    }
-    if (!emitter.velocity_spread) {
-        emitter.velocity_spread = glm::vec3(0.12F * scale, 0.1F * scale, 0.12F * scale);
+    const double run = static_cast<double>(scene.dt) * scene.steps;
+    if (auto done = completeEmitters(scene.emitters, bounds, scale, run, scene.capacity); !done) {
+        return forward(done);
     }
     if (!scene.forces.gravity) {
         scene.forces.gravity = glm::vec3(0.0F, -3.0F * scale, 0.0F);

@@ -7,12 +7,14 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "formats/collider.h"
 #include "formats/result.h"
 #include "runtime/air.h"
 #include "runtime/flow_file.h"
 #include "runtime/particle_system.h"
+#include "runtime/scene_emitter.h"
 
 namespace relief {
 
@@ -26,18 +28,7 @@ struct Scene {
     std::uint32_t steps = 300;
     std::uint32_t capacity = 65536;
 
-    struct {
-        std::optional<glm::vec3> box_min;  ///< a point if equal to box_max; given both or neither
-        std::optional<glm::vec3> box_max;
-        std::optional<double> rate;      ///< births a second
-        std::optional<double> duration;  ///< seconds of births; nullopt: to the end
-        std::uint32_t burst = 0;
-        std::optional<glm::vec3> velocity;
-        std::optional<glm::vec3> velocity_spread;
-        float lifetime_min = 30.0F;  ///< seconds
-        float lifetime_max = 30.0F;
-        std::uint64_t seed = 1;
-    } emitter;
+    std::vector<SceneEmitter> emitters{SceneEmitter{}};  ///< at least one
 
     struct {
         std::optional<glm::vec3> gravity;

@@ -65,7 +65,9 @@ Result<LoadedScene> loadAll(const PlayerOptions& options) {
     scene->steps = options.steps.value_or(scene->steps);
     scene->render.width = options.width.value_or(scene->render.width);
     scene->render.height = options.height.value_or(scene->render.height);
-    scene->emitter.seed = options.seed.value_or(scene->emitter.seed);
+    for (SceneEmitter& emitter : scene->emitters) {
+        emitter.seed = options.seed.value_or(emitter.seed);
+    }
     auto collider = openCollider(*scene);
     if (!collider) {
         return forward(collider);
@@ -94,6 +96,9 @@ Result<CheckReport> checkScene(const PlayerOptions& options) {
         return fail(ErrorCode::kLimit, quotedPath(options.input) + ": render.size has more than " +
                                            std::to_string(Frame::kPixelsMax) +
                                            " pixels in all; choose a smaller one");
+    }
+    if (const auto emitters = makeEmitters(loaded->scene.emitters); !emitters) {
+        return forward(emitters);
     }
     CheckReport report;
     if (options.input != loaded->scene.collider) {

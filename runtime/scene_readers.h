@@ -2,8 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
+#include <vector>
 
 #include "runtime/scene.h"
+#include "runtime/scene_emitter.h"
 #include "runtime/scene_table.h"
 
 namespace relief {
@@ -16,5 +19,10 @@ void nameAirTables(SceneTable& top);
 void readAir(SceneTable& top, const std::filesystem::path& folder, Scene& scene);
 /// forces.viscosity; `forces` is the table of that name.
 void readViscosity(SceneTable& forces, Scene& scene);
+/// [emitter], or [[emitter]] as often as wanted; one emitter with every default where there is neither.
+/// \param folder  of the scene. \param capacity  of the particles.
+[[nodiscard]] std::vector<SceneEmitter> readEmitters(SceneTable& top, std::string_view file,
+                                                     const std::filesystem::path& folder,
+                                                     std::uint32_t capacity);
 
 }  // namespace relief

@@ -49,12 +49,12 @@ TEST(Scene, DefaultsAreThoseOfTheReadme) {
     EXPECT_EQ(scene.dt, 1.0F / 60.0F);
     EXPECT_EQ(scene.steps, 300U);
     EXPECT_EQ(scene.capacity, 65536U);
-    EXPECT_FALSE(scene.emitter.box_min);
-    EXPECT_FALSE(scene.emitter.rate);
-    EXPECT_EQ(scene.emitter.burst, 0U);
-    EXPECT_EQ(scene.emitter.lifetime_min, 30.0F);
-    EXPECT_EQ(scene.emitter.lifetime_max, 30.0F);
-    EXPECT_EQ(scene.emitter.seed, 1U);
+    EXPECT_FALSE(scene.emitters[0].box_min);
+    EXPECT_FALSE(scene.emitters[0].rate);
+    EXPECT_EQ(scene.emitters[0].burst, 0U);
+    EXPECT_EQ(scene.emitters[0].lifetime_min, 30.0F);
+    EXPECT_EQ(scene.emitters[0].lifetime_max, 30.0F);
+    EXPECT_EQ(scene.emitters[0].seed, 1U);
     EXPECT_EQ(scene.forces.wind, glm::vec3(0.0F));
     EXPECT_EQ(scene.forces.drag, 2.5F);
     EXPECT_EQ(scene.collision.restitution, 0.0F);
@@ -80,17 +80,17 @@ TEST(Scene, DefaultsFromTheBounds) {
     const auto scene = withDefaults(good(""), unitBounds());
     ASSERT_TRUE(scene);
     // The longest side is 2: births start above the box, the floor is its lower end.
-    EXPECT_GT(scene->emitter.box_min->y, 1.0F);
+    EXPECT_GT(scene->emitters[0].box_min->y, 1.0F);
     EXPECT_EQ(*scene->forces.gravity, glm::vec3(0.0F, -6.0F, 0.0F));
     EXPECT_EQ(*scene->ground.height, 0.0F);
     EXPECT_FLOAT_EQ(*scene->render.point_size, 0.013F);
     // The whole capacity is born by the end.
-    EXPECT_NEAR(*scene->emitter.rate * 5.0, 65536.0, 1e-2);
+    EXPECT_NEAR(*scene->emitters[0].rate * 5.0, 65536.0, 1e-2);
     EXPECT_GT(scene->camera.eye->z, 2.0F);
     // Within the time that there is for births.
     const auto brief = withDefaults(good("[emitter]\nduration = 2\n"), unitBounds());
     ASSERT_TRUE(brief);
-    EXPECT_NEAR(*brief->emitter.rate * 2.0, 65536.0, 1e-6);
+    EXPECT_NEAR(*brief->emitters[0].rate * 2.0, 65536.0, 1e-6);
 }
 
 TEST(Scene, GivenValuesStand) {
@@ -101,11 +101,11 @@ TEST(Scene, GivenValuesStand) {
         "[render]\npoint_size = 0.5\n");
     const auto scene = withDefaults(given, unitBounds());
     ASSERT_TRUE(scene);
-    EXPECT_EQ(*scene->emitter.box_min, glm::vec3(1, 2, 3));
-    EXPECT_EQ(*scene->emitter.box_max, glm::vec3(1, 2, 3));
-    EXPECT_EQ(*scene->emitter.rate, 5.0);
-    EXPECT_EQ(*scene->emitter.velocity, glm::vec3(0.0F));
-    EXPECT_EQ(*scene->emitter.velocity_spread, glm::vec3(0, 1, 0));
+    EXPECT_EQ(*scene->emitters[0].box_min, glm::vec3(1, 2, 3));
+    EXPECT_EQ(*scene->emitters[0].box_max, glm::vec3(1, 2, 3));
+    EXPECT_EQ(*scene->emitters[0].rate, 5.0);
+    EXPECT_EQ(*scene->emitters[0].velocity, glm::vec3(0.0F));
+    EXPECT_EQ(*scene->emitters[0].velocity_spread, glm::vec3(0, 1, 0));
     EXPECT_EQ(*scene->forces.gravity, glm::vec3(0, -9.81F, 0));
     EXPECT_EQ(*scene->ground.height, -4.0F);
     EXPECT_EQ(*scene->camera.eye, glm::vec3(1.0F));
@@ -227,8 +227,8 @@ INSTANTIATE_TEST_SUITE_P(Keys, SceneVector,
 
 TEST(Scene, BoxNeedsBothEndsInOrder) {
     const Scene scene = good("[emitter]\nbox_min = [0, 1, 2]\nbox_max = [0, 3, 4]\n");
-    EXPECT_EQ(*scene.emitter.box_min, glm::vec3(0, 1, 2));
-    EXPECT_EQ(*scene.emitter.box_max, glm::vec3(0, 3, 4));
+    EXPECT_EQ(*scene.emitters[0].box_min, glm::vec3(0, 1, 2));
+    EXPECT_EQ(*scene.emitters[0].box_max, glm::vec3(0, 3, 4));
     expectError(kHead + "[emitter]\nbox_min = [0, 1, 2]\n", "dir/scene.toml:4:11: ", "needs emitter.box_max");
     expectError(kHead + "[emitter]\nbox_max = [0, 1, 2]\n", "dir/scene.toml:4:11: ", "needs emitter.box_min");
     expectError(kHead + "[emitter]\nbox_min = [0, 3, 2]\nbox_max = [0, 1, 2]\n",
@@ -238,13 +238,13 @@ TEST(Scene, BoxNeedsBothEndsInOrder) {
 }
 
 TEST(Scene, LifetimeIsOneNumberOrTwo) {
-    EXPECT_EQ(good("[emitter]\nlifetime = 4\n").emitter.lifetime_max, 4.0F);
+    EXPECT_EQ(good("[emitter]\nlifetime = 4\n").emitters[0].lifetime_max, 4.0F);
     const Scene scene = good("[emitter]\nlifetime = [2, 4.5]\n");
-    EXPECT_EQ(scene.emitter.lifetime_min, 2.0F);
-    EXPECT_EQ(scene.emitter.lifetime_max, 4.5F);
+    EXPECT_EQ(scene.emitters[0].lifetime_min, 2.0F);
+    EXPECT_EQ(scene.emitters[0].lifetime_max, 4.5F);
     expectError(kHead + "[emitter]\nlifetime = [5, 4]\n", "dir/scene.toml:4:12: ", "exchange");
     expectError(kHead + "[emitter]\nlifetime = [5]\n", "dir/scene.toml:4:12: ", "two");
-    EXPECT_GT(good("[emitter]\nlifetime = 1e-60\n").emitter.lifetime_min, 0.0F);
+    EXPECT_GT(good("[emitter]\nlifetime = 1e-60\n").emitters[0].lifetime_min, 0.0F);
 }
 
 TEST(Scene, SizeAndSwitches) {
