@@ -7,12 +7,23 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "formats/collider.h"
 #include "formats/result.h"
+#include "runtime/camera_path.h"
+#include "runtime/particle_renderer.h"
 #include "runtime/particle_system.h"
 
 namespace relief {
+
+/// A [[camera.key]]; what it leaves open is [camera]'s.
+struct SceneCameraKey {
+    double time = 0.0;  ///< seconds
+    glm::vec3 eye{0.0F};
+    std::optional<glm::vec3> target;
+    std::optional<float> fov;  ///< degrees
+};
 
 /// What a scene file says. Where a default depends on the collider's size the value is optional, and
 /// withDefaults() fills it.
@@ -53,7 +64,9 @@ struct Scene {
     struct {
         std::optional<glm::vec3> eye;
         std::optional<glm::vec3> target;
-        float fov = 30.0F;  ///< degrees
+        float fov = 30.0F;                 ///< degrees
+        std::vector<SceneCameraKey> keys;  ///< times rising; empty: the camera stands still
+        CameraCurve curve = CameraCurve::kSmooth;
     } camera;
 
     struct {
@@ -64,6 +77,16 @@ struct Scene {
         float opacity = 0.95F;
         glm::vec3 background{0.62F, 0.69F, 0.76F};  ///< sRGB
         std::uint32_t every = 10;                   ///< steps from frame to frame
+        Sprite sprite = Sprite::kPoint;
+        Blend blend = Blend::kAlpha;
+        float soft = 0.0F;            ///< object units
+        std::filesystem::path atlas;  ///< resolved; empty: none
+        std::string atlas_origin;     ///< as collider_origin
+        std::uint32_t atlas_columns = 1;
+        std::uint32_t atlas_rows = 1;
+        std::filesystem::path mesh;  ///< resolved; empty: the collider is drawn from its maps
+        std::string mesh_origin;
+        std::vector<ParticleLook> looks;  ///< of [[type]], in their order
     } render;
 };
 
