@@ -35,8 +35,8 @@ struct ParticleStyle {
     float opacity = 0.95F;                ///< 0…1
     float fade_in = 0.2F;  ///< seconds after birth, and before death, over which opacity rises and falls
     float fade_out = 0.5F;
-    std::vector<ParticleLook> looks{};  ///< of type 0, 1, …, kLooksMax at most; what they leave open is above.
-                                      ///< A type beyond the last has the last one's
+    std::vector<ParticleLook> looks{};  ///< of type 0, 1, …, kLooksMax at most; what they leave open is
+                                        ///< above. A type beyond the last has the last one's
     Sprite sprite = Sprite::kPoint;
     Blend blend = Blend::kAlpha;
     float soft = 0.0F;  ///< object units, ≥ 0: a sprite fades out so far before what lies behind it

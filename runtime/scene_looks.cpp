@@ -25,7 +25,7 @@ void readTrack(SceneTable& table, std::string_view key, const SceneRange& range,
     const toml::array* list = node->as_array();
     std::vector<double> values(parts);
     if (list == nullptr || list->empty() || !list->get(0)->is_array()) {
-        if (parts == 1 ? list != nullptr : (list == nullptr || list->size() != parts)) {
+        if (parts == 1 ? !node->is_number() : (list == nullptr || list->size() != parts)) {
             table.wrongType(*node, key, wanted);
         }
         for (std::size_t i = 0; i < parts; ++i) {

@@ -20,6 +20,7 @@ uniform mat4 u_projection;
 uniform float u_pixels_per_unit;  // pixels of a unit length at view distance 1
 uniform vec2 u_pixels;            // least and largest sprite
 uniform vec2 u_target;            // pixels
+uniform vec2 u_depth;             // window depth of view distance t: x + y / t
 #ifdef RELIEF_LIT
 uniform highp sampler2D u_light;
 #endif
@@ -76,11 +77,12 @@ void main() {
     vec4 birth = texelFetch(u_birth, texel, 0);
     Look look = lookOf(birth, u_now);
     // The depth is that of the grain's front, so that grains on a surface are not half sunk into it; the place
-    // on the picture that of its centre.
+    // on the picture that of its centre. A large sprite's front does not pass the near plane before its centre does.
     vec4 in_view = u_view * vec4(position.xyz, 1.0);
     gl_Position = u_projection * in_view;
     float distance = max(-in_view.z, 1e-6);
-    float nearer = max(1.0 - 0.5 * look.size / distance, 0.05);
+    float near = -u_depth.y / u_depth.x;
+    float nearer = max(1.0 - 0.5 * look.size / distance, clamp(1.01 * near / distance, 0.05, 1.0));
     vec4 front = u_projection * vec4(in_view.xyz * nearer, 1.0);
     gl_Position.z = front.z / front.w * gl_Position.w;
     v_front = nearer * distance;
