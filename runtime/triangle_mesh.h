@@ -23,6 +23,6 @@ struct TriangleMesh {
 /// The same triangles with normals: each corner has the mean of the triangles round its vertex, weighted by
 /// their angles there, but of those alone that lie within `crease` of its own triangle. Vertices on a crease
 /// are doubled. \param mesh    as checkMesh wants it; its normals are replaced. \param crease  radians.
-[[nodiscard]] TriangleMesh withNormals(const TriangleMesh& mesh, float crease = 0.7F);
+[[nodiscard]] TriangleMesh withNormals(const TriangleMesh& mesh, float crease = 1.0F);
 
 }  // namespace relief
