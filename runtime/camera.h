@@ -27,6 +27,11 @@ struct Camera {
     [[nodiscard]] glm::mat4 projection(float aspect) const {
         return glm::perspective(glm::radians(fov), aspect, near_plane, far_plane);
     }
+    /// glm::perspective's window depth of the view distance t is x + y / t.
+    [[nodiscard]] glm::vec2 depthOfDistance() const {
+        const float depth = far_plane - near_plane;
+        return {far_plane / depth, -far_plane * near_plane / depth};
+    }
     friend bool operator==(const Camera&, const Camera&) = default;
 };
 

@@ -12,7 +12,9 @@ namespace {
 constexpr ColliderTextures::Binding kColliderBinding{0, 0};
 constexpr int kColorUnit = 0;
 constexpr int kDepthUnit = 1;
-constexpr int kCoarseUnit = 3;  // after the collider's three
+constexpr int kCoarseUnit = 3;  // after the collider's three; with a mesh:
+constexpr int kMeshNormalUnit = 3;
+constexpr int kMeshDepthUnit = 4;
 
 // Every kCoarseStride-th pixel of a row or column is traced first; collider_view.frag says why.
 constexpr GLsizei kCoarseStride = 4;
@@ -40,15 +42,13 @@ void setViewUniforms(const GlProgram& program, const Camera& camera, const Colli
                      GLsizei width, GLsizei height) {
     const float tangent = camera.tanHalfFov();
     const float aspect = static_cast<float>(width) / static_cast<float>(height);
-    const float near = camera.near_plane;
-    const float far = camera.far_plane;
+    const glm::vec2 depth = camera.depthOfDistance();
     glUseProgram(program.name());
     setVector(program, "u_eye", camera.eye);
     setVector(program, "u_forward", camera.forward());
     setVector(program, "u_right", tangent * aspect * camera.right());
     setVector(program, "u_up", tangent * camera.up());
-    // glm::perspective's depth, ½ + ½ z/w, as a function of the view distance.
-    glUniform2f(uniformLocation(program, "u_depth"), far / (far - near), -far * near / (far - near));
+    glUniform2f(uniformLocation(program, "u_depth"), depth.x, depth.y);
     glUniform1i(uniformLocation(program, "u_has_ground"), style.ground ? 1 : 0);
     glUniform1f(uniformLocation(program, "u_ground"), style.ground.value_or(0.0F));
     setVector(program, "u_background", linearColor(style.background));
@@ -69,9 +69,10 @@ void drawInBands(GLsizei width, GLsizei height) {
 
 }  // namespace
 
-Result<ColliderRenderer> ColliderRenderer::create(const ColliderView& view) {
+Result<ColliderRenderer> ColliderRenderer::create(const ColliderView& view, const ColliderMesh* mesh) {
     const PassState state;
-    auto trace = makeProgram("quad.vert", "collider_view.frag", view.textures->defines());
+    const std::string mesh_define = mesh != nullptr ? "#define RELIEF_MESH 1\n" : "";
+    auto trace = makeProgram("quad.vert", "collider_view.frag", mesh_define + view.textures->defines());
     auto coarse = makeProgram("quad.vert", "collider_view.frag",
                               "#define RELIEF_COARSE 1\n" + view.textures->defines());
     auto copy = makeProgram("quad.vert", "copy_view.frag");
@@ -80,6 +81,7 @@ Result<ColliderRenderer> ColliderRenderer::create(const ColliderView& view) {
     }
     ColliderRenderer renderer;
     renderer.view_ = view;
+    renderer.mesh_ = mesh;
     renderer.trace_program_ = std::move(*trace);
     renderer.coarse_program_ = std::move(*coarse);
     renderer.copy_program_ = std::move(*copy);
@@ -94,6 +96,8 @@ Result<ColliderRenderer> ColliderRenderer::create(const ColliderView& view) {
     }
     glUseProgram(renderer.trace_program_.name());
     glUniform1i(uniformLocation(renderer.trace_program_, "u_coarse"), kCoarseUnit);
+    glUniform1i(uniformLocation(renderer.trace_program_, "u_mesh_normal"), kMeshNormalUnit);
+    glUniform1i(uniformLocation(renderer.trace_program_, "u_mesh_depth"), kMeshDepthUnit);
     glUseProgram(renderer.copy_program_.name());
     glUniform1i(uniformLocation(renderer.copy_program_, "u_color"), kColorUnit);
     glUniform1i(uniformLocation(renderer.copy_program_, "u_depth_texture"), kDepthUnit);
@@ -141,32 +145,57 @@ Result<void> ColliderRenderer::trace(const Camera& camera, const ColliderStyle& 
     depth_ = makeTexture2D(GL_DEPTH_COMPONENT32F, width, height, GL_DEPTH_COMPONENT, GL_FLOAT);
     const std::array<GLuint, 1> colors{color_.name()};
     auto framebuffer = makeFramebuffer(colors, depth_.name());
-    const GLsizei coarse_width = (width + kCoarseStride - 1) / kCoarseStride;
-    const GLsizei coarse_height = (height + kCoarseStride - 1) / kCoarseStride;
-    const GlTexture coarse = makeTexture2D(GL_R32F, coarse_width, coarse_height, GL_RED, GL_FLOAT);
-    const std::array<GLuint, 1> coarse_colors{coarse.name()};
-    auto coarse_target = makeFramebuffer(coarse_colors);
-    if (!framebuffer || !coarse_target) {
-        return forward(!framebuffer ? framebuffer : coarse_target);
+    if (!framebuffer) {
+        return forward(framebuffer);
     }
-
     setViewUniforms(coarse_program_, camera, style, width, height);
     setViewUniforms(trace_program_, camera, style, width, height);
     view_.textures->bind(kColliderBinding);
 
     glBindVertexArray(no_attributes_.name());
-    glBindFramebuffer(GL_FRAMEBUFFER, coarse_target->name());
-    glUseProgram(coarse_program_.name());
-    drawInBands(coarse_width, coarse_height);
+
+    // What the second pass samples: the mesh's picture, or the coarse pass.
+    ColliderMesh::View of_mesh;
+    GlTexture coarse;
+    if (mesh_ != nullptr) {
+        auto seen = mesh_->view(camera, width, height);
+        if (!seen) {
+            return forward(seen);
+        }
+        of_mesh = std::move(*seen);
+        glActiveTexture(GL_TEXTURE0 + kMeshNormalUnit);
+        glBindTexture(GL_TEXTURE_2D, of_mesh.normal.name());
+        glActiveTexture(GL_TEXTURE0 + kMeshDepthUnit);
+        glBindTexture(GL_TEXTURE_2D, of_mesh.depth.name());
+    } else {
+        if (auto done = traceCoarse(width, height, coarse); !done) {
+            return done;
+        }
+        glActiveTexture(GL_TEXTURE0 + kCoarseUnit);
+        glBindTexture(GL_TEXTURE_2D, coarse.name());
+    }
 
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer->name());
     glUseProgram(trace_program_.name());
-    glActiveTexture(GL_TEXTURE0 + kCoarseUnit);
-    glBindTexture(GL_TEXTURE_2D, coarse.name());
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_ALWAYS);
     glDepthMask(GL_TRUE);
     drawInBands(width, height);
+    return {};
+}
+
+Result<void> ColliderRenderer::traceCoarse(GLsizei width, GLsizei height, GlTexture& coarse) {
+    const GLsizei coarse_width = (width + kCoarseStride - 1) / kCoarseStride;
+    const GLsizei coarse_height = (height + kCoarseStride - 1) / kCoarseStride;
+    coarse = makeTexture2D(GL_R32F, coarse_width, coarse_height, GL_RED, GL_FLOAT);
+    const std::array<GLuint, 1> colors{coarse.name()};
+    const auto target = makeFramebuffer(colors);
+    if (!target) {
+        return forward(target);
+    }
+    glBindFramebuffer(GL_FRAMEBUFFER, target->name());
+    glUseProgram(coarse_program_.name());
+    drawInBands(coarse_width, coarse_height);
     return {};
 }
 

@@ -1,6 +1,6 @@
-// Draws a collider from its own depth maps, on a floor before a background: no mesh is needed. Rays through
-// the combined field cost much and collider and camera stand still, so the picture is kept and drawn again
-// from a texture until camera, size or style change.
+// Draws a collider on a floor before a background: from its mesh, or from its own depth maps if there is
+// none. Rays through the combined field cost much and collider and camera mostly stand still, so the picture
+// is kept and drawn again from a texture until camera, size or style change.
 //
 //     bytes on the GPU = 12 · width · height   (RGBA16F and 32-bit depth)
 #pragma once
@@ -9,6 +9,7 @@
 
 #include "formats/result.h"
 #include "runtime/camera.h"
+#include "runtime/collider_mesh.h"
 #include "runtime/collider_view.h"
 #include "runtime/gl_object.h"
 #include "runtime/render_target.h"
@@ -25,17 +26,24 @@ struct ColliderStyle {
 class ColliderRenderer {
   public:
     /// Needs a current context, as draw() does.
+    /// \param mesh  what the collider was baked from; it must outlive this. Null: the depth maps are drawn.
     /// Errors: kFailure (the driver's compiler).
-    [[nodiscard]] static Result<ColliderRenderer> create(const ColliderView& view);
+    [[nodiscard]] static Result<ColliderRenderer> create(const ColliderView& view,
+                                                         const ColliderMesh* mesh = nullptr);
 
     /// Fills the target's colour, in linear light, and its depth.
     /// Errors: kUnsupported, kLimit (the target's size).
     [[nodiscard]] Result<void> draw(const Camera& camera, const ColliderStyle& style,
                                     const RenderTarget& target);
 
+    /// The window depth of what draw() drew last, of that target's size and not attached to it; empty before.
+    [[nodiscard]] const GlTexture& depth() const { return depth_; }
+
   private:
     [[nodiscard]] Result<void> trace(const Camera& camera, const ColliderStyle& style, GLsizei width,
                                      GLsizei height);
+    /// Follows every fourth ray of every fourth row into `coarse`, which it makes.
+    [[nodiscard]] Result<void> traceCoarse(GLsizei width, GLsizei height, GlTexture& coarse);
 
     struct Drawn {
         Camera camera;
@@ -46,6 +54,7 @@ class ColliderRenderer {
     };
 
     ColliderView view_;
+    const ColliderMesh* mesh_ = nullptr;
     GlProgram coarse_program_;
     GlProgram trace_program_;
     GlProgram copy_program_;

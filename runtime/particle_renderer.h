@@ -1,16 +1,33 @@
-// Draws the particles of a ParticleSystem as soft round point sprites, straight from its state textures.
+// Draws the particles of a ParticleSystem as sprites that face the viewer, straight from its state textures.
 #pragma once
 
+#include <cstdint>
+#include <glm/glm.hpp>
 #include <optional>
+#include <vector>
 
 #include "formats/result.h"
 #include "runtime/camera.h"
 #include "runtime/collider_view.h"
 #include "runtime/gl_object.h"
+#include "runtime/particle_light.h"
+#include "runtime/particle_look.h"
 #include "runtime/particle_system.h"
 #include "runtime/render_target.h"
+#include "runtime/sprite_atlas.h"
 
 namespace relief {
+
+enum class Sprite : std::uint8_t {
+    kPoint,  ///< one vertex, but no larger than the GL's points, and cut off where its centre leaves the
+             ///< picture
+    kQuad,   ///< six vertices, of any size
+};
+
+enum class Blend : std::uint8_t {
+    kAlpha,     ///< over what is there: right where the farther is drawn first
+    kAdditive,  ///< added to what is there, in whatever order
+};
 
 struct ParticleStyle {
     float diameter = 0.01F;               ///< object units
@@ -18,6 +35,12 @@ struct ParticleStyle {
     float opacity = 0.95F;                ///< 0…1
     float fade_in = 0.2F;  ///< seconds after birth, and before death, over which opacity rises and falls
     float fade_out = 0.5F;
+    std::vector<ParticleLook> looks{};  ///< of type 0, 1, …, kLooksMax at most; what they leave open is
+                                        ///< above. A type beyond the last has the last one's
+    Sprite sprite = Sprite::kPoint;
+    Blend blend = Blend::kAlpha;
+    float soft = 0.0F;  ///< object units, ≥ 0: a sprite fades out so far before what lies behind it
+    const SpriteAtlas* atlas = nullptr;  ///< for the cells of looks; null: every particle is a round grain
 };
 
 class ParticleRenderer {
@@ -27,14 +50,30 @@ class ParticleRenderer {
     [[nodiscard]] static Result<ParticleRenderer> create(const std::optional<ColliderView>& collider);
 
     /// Draws over what the target shows, in linear light, hidden where its depth is nearer; depth stays as it
-    /// is. Particles are not sorted.
-    void draw(const ParticleSystem& particles, const Camera& camera, const ParticleStyle& style,
-              const RenderTarget& target) const;
+    /// is. Nothing is read back, nothing waits for the GPU.
+    /// \param order   null: in the order of their texels. Else the red component of texel (i mod width,
+    ///                i / width), width being the texture's, is the index of the i-th particle to draw, as a
+    ///                float; extent() of them are drawn. What lies outside 0…extent() − 1 is left out.
+    /// \param behind  what style.soft compares with: window depths of a picture by the same camera and of the
+    ///                target's size, not attached to the target, such as ColliderRenderer::depth(). Null:
+    ///                style.soft has no effect.
+    /// Errors: kUsage (looks, see packLooks; soft), kUnsupported.
+    Result<void> draw(const ParticleSystem& particles, const Camera& camera, const ParticleStyle& style,
+                      const RenderTarget& target, const GlTexture* order = nullptr,
+                      const GlTexture* behind = nullptr);
 
   private:
-    std::optional<ColliderView> collider_;
-    GlProgram program_;
+    [[nodiscard]] Result<void> uploadLooks(const ParticleStyle& style);
+    void setUniforms(const GlProgram& program, const ParticleSystem& particles, const Camera& camera,
+                     const ParticleStyle& style, const RenderTarget& target) const;
+
+    std::optional<ParticleLight> light_;
+    GlProgram point_program_;
+    GlProgram quad_program_;
     GlVertexArray no_attributes_;
+    GlTexture nothing_;  // stands for a texture that a draw does without
+    GlTexture looks_;
+    std::vector<glm::vec4> packed_;  // what looks_ holds
 };
 
 }  // namespace relief

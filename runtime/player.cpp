@@ -16,6 +16,7 @@
 #include "runtime/ply.h"
 #include "runtime/png.h"
 #include "runtime/scene_check.h"
+#include "runtime/scene_pictures.h"
 #include "runtime/statistics_log.h"
 #include "runtime/video.h"
 
@@ -66,7 +67,15 @@ class Picture {
         if (!frame) {
             return forward(frame);
         }
-        auto collider_renderer = ColliderRenderer::create(view);
+        auto atlas = loadAtlas(scene);
+        if (!atlas) {
+            return forward(atlas);
+        }
+        auto mesh = loadColliderMesh(scene, collider.bounds);
+        if (!mesh) {
+            return forward(mesh);
+        }
+        auto collider_renderer = ColliderRenderer::create(view, mesh->get());
         if (!collider_renderer) {
             return forward(collider_renderer);
         }
@@ -75,26 +84,29 @@ class Picture {
             return forward(particle_renderer);
         }
         Picture picture{std::move(*frame), std::move(*collider_renderer), std::move(*particle_renderer)};
-        picture.camera_.eye = *scene.camera.eye;
-        picture.camera_.target = *scene.camera.target;
-        picture.camera_.fov = scene.camera.fov;
-        setClipPlanes(picture.camera_, collider.bounds);
+        picture.scene_ = &scene;
+        picture.bounds_ = collider.bounds;
         if (scene.ground.enabled) {
             picture.collider_style_.ground = scene.ground.height;
         }
         picture.collider_style_.background = scene.render.background;
-        picture.particle_style_.diameter = *scene.render.point_size;
-        picture.particle_style_.color = scene.render.color;
-        picture.particle_style_.opacity = scene.render.opacity;
+        picture.particle_style_ = particleStyle(scene, atlas->get());
+        picture.atlas_ = std::move(*atlas);
+        picture.mesh_ = std::move(*mesh);
         return picture;
     }
 
     /// 3 · width · height bytes sRGB, the top row first.
     Result<std::vector<std::uint8_t>> draw(const ParticleSystem& particles) {
-        if (auto drawn = collider_.draw(camera_, collider_style_, frame_.target()); !drawn) {
+        const Camera camera = sceneCamera(*scene_, bounds_, particles.time());
+        if (auto drawn = collider_.draw(camera, collider_style_, frame_.target()); !drawn) {
             return forward(drawn);
         }
-        particles_.draw(particles, camera_, particle_style_, frame_.target());
+        if (auto drawn = particles_.draw(particles, camera, particle_style_, frame_.target(), nullptr,
+                                         &collider_.depth());
+            !drawn) {
+            return forward(drawn);
+        }
         return frame_.read();
     }
 
@@ -102,10 +114,13 @@ class Picture {
     Picture(Frame frame, ColliderRenderer collider, ParticleRenderer particles)
         : frame_(std::move(frame)), collider_(std::move(collider)), particles_(std::move(particles)) {}
 
+    const Scene* scene_ = nullptr;  // outlives the picture
+    Bounds bounds_;
+    std::unique_ptr<SpriteAtlas> atlas_;
+    std::unique_ptr<ColliderMesh> mesh_;
     Frame frame_;
     ColliderRenderer collider_;
     ParticleRenderer particles_;
-    Camera camera_;
     ColliderStyle collider_style_;
     ParticleStyle particle_style_;
 };

@@ -84,6 +84,75 @@ Json emitterSettings(const SceneEmitter& emitter) {
     return json;
 }
 
+template <class T, class Value>
+Json overAge(const AgeTrack<T>& track, const Value& value) {
+    Json keys = Json::array();
+    for (const AgeKey<T>& key : track) {
+        Json one = Json::array({shortest(key.age)});
+        for (const Json& number : value(key.value)) {
+            one.push_back(number);
+        }
+        keys.push_back(one);
+    }
+    return keys;
+}
+
+/// A look as its [[type]]; what it leaves open is left out, for it is [render]'s.
+Json lookJson(const ParticleLook& look) {
+    const auto number = [](float value) { return Json::array({shortest(value)}); };
+    Json json = Json::object();
+    const auto add = [&](const char* key, const AgeTrack<float>& track) {
+        if (!track.empty()) {
+            json[key] = overAge(track, number);
+        }
+    };
+    add("size", look.size);
+    if (!look.color.empty()) {
+        json["color"] = overAge(look.color, triple);
+    }
+    add("opacity", look.opacity);
+    add("rotation", look.rotation);
+    json["turn"] = shortest(look.turn);
+    json["spin"] = shortest(look.spin);
+    if (look.cell_first) {
+        json["cell"] = {*look.cell_first, look.cell_last};
+    }
+    json["lit"] = look.lit;
+    if (look.fade_in && look.fade_out) {
+        json["fade"] = {shortest(*look.fade_in), shortest(*look.fade_out)};
+    }
+    return json;
+}
+
+void addPictures(const Scene& scene, Json& json) {
+    Json& render = json["render"];
+    render["sprite"] = scene.render.sprite == Sprite::kQuad ? "quad" : "point";
+    render["blend"] = scene.render.blend == Blend::kAdditive ? "additive" : "alpha";
+    render["soft"] = shortest(scene.render.soft);
+    if (!scene.render.atlas.empty()) {
+        render["atlas"] = scene.render.atlas.native();
+        render["atlas_cells"] = {scene.render.atlas_columns, scene.render.atlas_rows};
+    }
+    if (!scene.render.mesh.empty()) {
+        render["mesh"] = scene.render.mesh.native();
+    }
+    for (const ParticleLook& look : scene.render.looks) {
+        json["type"].push_back(lookJson(look));
+    }
+    if (scene.camera.keys.empty()) {
+        return;
+    }
+    Json& camera = json["camera"];
+    camera.erase("eye");  // each key has its own
+    camera["path"] = scene.camera.curve == CameraCurve::kSmooth ? "smooth" : "linear";
+    for (const SceneCameraKey& key : scene.camera.keys) {
+        camera["key"].push_back({{"time", key.time},
+                                 {"eye", triple(key.eye)},
+                                 {"target", triple(key.target.value_or(*scene.camera.target))},
+                                 {"fov", shortest(key.fov.value_or(scene.camera.fov))}});
+    }
+}
+
 Json settings(const Scene& scene) {
     Json json;
     json["collider"]["file"] = scene.collider.native();
@@ -115,6 +184,7 @@ Json settings(const Scene& scene) {
                       {"background", triple(scene.render.background)},
                       {"every", scene.render.every}};
     addAirSettings(scene, json);
+    addPictures(scene, json);
     return json;
 }
 

@@ -92,11 +92,12 @@ std::string_view cameraProblem(const glm::vec3& eye, const glm::vec3& target) {
     return {};
 }
 
-void readCamera(SceneTable table, Scene& scene) {
+void readCamera(SceneTable table, std::string_view file, Scene& scene) {
     auto& camera = scene.camera;
     const bool eye = table.vector("eye", symmetric(kLengthMax), camera.eye);
     const bool target = table.vector("target", symmetric(kLengthMax), camera.target);
     table.number("fov", {1.0, 170.0}, camera.fov);
+    readCameraPath(table, file, scene);
     table.finish();
     if (eye && target) {
         if (const std::string_view problem = cameraProblem(*camera.eye, *camera.target); !problem.empty()) {
@@ -105,7 +106,7 @@ void readCamera(SceneTable table, Scene& scene) {
     }
 }
 
-void readRender(SceneTable table, Scene& scene) {
+void readRender(SceneTable table, const fs::path& folder, Scene& scene) {
     auto& render = scene.render;
     if (const toml::node* node = table.find("size"); node != nullptr) {
         const toml::array* both = node->as_array();
@@ -124,6 +125,7 @@ void readRender(SceneTable table, Scene& scene) {
     table.vector("background", {0.0, 1.0}, render.background);
     table.integer("every", {1.0, kStepsMax}, render.every);
     readSort(table, scene);
+    readSprites(table, folder, scene);
     table.finish();
 }
 
@@ -140,6 +142,7 @@ Scene readScene(const toml::table& root, const fs::path& path, std::string_view 
     SceneTable camera = top.sub("camera");
     SceneTable render = top.sub("render");
     nameAirTables(top);
+    static_cast<void>(top.find("type"));  // an array: readTypes
     top.finish();
 
     readCollider(collider, root, path.parent_path(), scene);
@@ -153,8 +156,9 @@ Scene readScene(const toml::table& root, const fs::path& path, std::string_view 
     readAir(top, path.parent_path(), scene);
     readCollision(collision, scene);
     readGround(ground, scene);
-    readCamera(camera, scene);
-    readRender(render, scene);
+    readCamera(camera, file, scene);
+    readRender(render, path.parent_path(), scene);
+    readTypes(top, file, scene);
     return scene;
 }
 

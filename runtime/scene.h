@@ -12,11 +12,21 @@
 #include "formats/collider.h"
 #include "formats/result.h"
 #include "runtime/air.h"
+#include "runtime/camera_path.h"
 #include "runtime/flow_file.h"
+#include "runtime/particle_renderer.h"
 #include "runtime/particle_system.h"
 #include "runtime/scene_emitter.h"
 
 namespace relief {
+
+/// A [[camera.key]]; what it leaves open is [camera]'s.
+struct SceneCameraKey {
+    double time = 0.0;  ///< seconds
+    glm::vec3 eye{0.0F};
+    std::optional<glm::vec3> target;
+    std::optional<float> fov;  ///< degrees
+};
 
 /// What a scene file says. Where a default depends on the collider's size the value is optional, and
 /// withDefaults() fills it.
@@ -49,7 +59,9 @@ struct Scene {
     struct {
         std::optional<glm::vec3> eye;
         std::optional<glm::vec3> target;
-        float fov = 30.0F;  ///< degrees
+        float fov = 30.0F;                 ///< degrees
+        std::vector<SceneCameraKey> keys;  ///< times rising; empty: the camera stands still
+        CameraCurve curve = CameraCurve::kSmooth;
     } camera;
 
     struct {
@@ -61,6 +73,16 @@ struct Scene {
         glm::vec3 background{0.62F, 0.69F, 0.76F};  ///< sRGB
         std::uint32_t every = 10;                   ///< steps from frame to frame
         std::uint32_t sort_frames = 0;  ///< that a depth sort is spread over, 2…200; 0: unsorted
+        Sprite sprite = Sprite::kPoint;
+        Blend blend = Blend::kAlpha;
+        float soft = 0.0F;            ///< object units
+        std::filesystem::path atlas;  ///< resolved; empty: none
+        std::string atlas_origin;     ///< as collider_origin
+        std::uint32_t atlas_columns = 1;
+        std::uint32_t atlas_rows = 1;
+        std::filesystem::path mesh;  ///< resolved; empty: the collider is drawn from its maps
+        std::string mesh_origin;
+        std::vector<ParticleLook> looks;  ///< of [[type]], in their order
     } render;
 };
 

@@ -7,6 +7,9 @@
 // Two passes. With RELIEF_COARSE every fourth pixel of every fourth row is followed through the whole box and only
 // the distance kept; the second pass then starts a little before the nearest of the nine distances around it, and
 // follows no ray where all nine missed.
+//
+// With RELIEF_MESH the collider's mesh has been drawn before and says where it is and which way it faces; the field
+// still casts the shadows.
 //!include collider.glsl
 //!include light.glsl
 
@@ -24,8 +27,12 @@ uniform vec3 u_background;  // linear
 uniform vec3 u_clay;        // linear
 uniform int u_normals;      // averaged for shading: 1, 7 or 13
 
-#ifdef RELIEF_COARSE
+#if defined(RELIEF_COARSE)
 layout(location = 0) out float o_distance;  // along forward; -1: missed
+#elif defined(RELIEF_MESH)
+uniform highp sampler2D u_mesh_normal;      // as ColliderMesh::View
+uniform highp sampler2D u_mesh_depth;
+layout(location = 0) out vec4 o_color;
 #else
 uniform highp sampler2D u_coarse;           // the first pass
 layout(location = 0) out vec4 o_color;
@@ -85,6 +92,21 @@ void main() {
 
 #else
 
+#ifdef RELIEF_MESH
+
+// The mesh at this pixel, if it lies before the floor.
+float meshHit(float t_floor) {
+    float depth = texelFetch(u_mesh_depth, ivec2(gl_FragCoord.xy), 0).r;
+    float t = u_depth.y / (depth - u_depth.x);
+    return depth < 1.0 && (t_floor <= 0.0 || t < t_floor) ? t : -1.0;
+}
+vec3 meshNormal(vec3 to_eye) {
+    vec3 n = texelFetch(u_mesh_normal, ivec2(gl_FragCoord.xy), 0).xyz;
+    return dot(n, n) > 1e-6 ? normalize(n) : to_eye;
+}
+
+#else
+
 // The first hit with the help of the coarse pass.
 float guidedHit(vec3 d, vec2 span) {
     ivec2 size = textureSize(u_coarse, 0);
@@ -137,6 +159,8 @@ vec3 smoothNormal(vec3 p, vec3 to_eye) {
     return normalize(sum);
 }
 
+#endif
+
 void main() {
     vec3 d = rayDirection();
     uint seed = uint(gl_FragCoord.x) * 1973u + uint(gl_FragCoord.y) * 9277u + 26699u;
@@ -146,8 +170,12 @@ void main() {
     vec3 color = u_background * mix(1.16, 0.70, smoothstep(0.0, 1.0, v_uv.y));
 
     float t_floor = floorDistance(d);
+#ifdef RELIEF_MESH
+    float t = meshHit(t_floor);
+#else
     vec2 span = raySpan(d, t_floor);
     float t = span.x < span.y ? guidedHit(d, span) : -1.0;
+#endif
     bool on_collider = t > 0.0;
     bool on_floor = !on_collider && t_floor > 0.0;
     float at = on_collider ? t : t_floor;
@@ -160,7 +188,11 @@ void main() {
         vec3 n = vec3(0.0, 1.0, 0.0);
         vec3 start = p + (0.75 * u_texel) * n;
         if (on_collider) {
+#ifdef RELIEF_MESH
+            n = meshNormal(to_eye);
+#else
             n = smoothNormal(p, to_eye);
+#endif
             start = p + (1.5 * u_texel) * n + (0.5 * u_texel) * to_eye;
         }
         float sun;

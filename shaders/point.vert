@@ -1,67 +1,114 @@
-// Particles as point sprites: vertex i fetches particle i from the state textures, nothing is read back.
-// With RELIEF_LIT the collider shades them; else they lie in the open.
-#ifdef RELIEF_LIT
-//!include collider.glsl
-//!include light.glsl
-#endif
+// Particles as sprites that face the viewer: vertex i fetches its particle from the state textures, nothing is read
+// back. A particle is one point or, with RELIEF_QUADS, two triangles of six vertices:
+//
+//     5───4 2      A quad turns in the picture's plane; a point stays upright and its fragments turn. Both
+//     │  ╱ ╱│      cover the same pixels of a sprite that does not turn.
+//     3 0───1
+//
+// With RELIEF_LIT the collider shades the particles, as particle_light.frag says; else they lie in the open.
+//!include look.glsl
 
 uniform highp sampler2D u_position;
 uniform highp sampler2D u_birth;
+uniform highp sampler2D u_order;  // the index of the i-th sprite, row by row
+uniform bool u_ordered;
 uniform int u_width;
+uniform int u_extent;
 uniform float u_now;
 uniform mat4 u_view;
 uniform mat4 u_projection;
 uniform float u_pixels_per_unit;  // pixels of a unit length at view distance 1
-uniform float u_diameter;         // object units
 uniform vec2 u_pixels;            // least and largest sprite
-uniform vec2 u_fade;              // seconds of fading in after birth and out before death
-uniform float u_opacity;
+uniform vec2 u_target;            // pixels
+uniform vec2 u_depth;             // window depth of view distance t: x + y / t
+#ifdef RELIEF_LIT
+uniform highp sampler2D u_light;
+#endif
 
 flat out vec3 v_sun;   // what a grain receives from the sun, and from above and below
 flat out vec3 v_above;
 flat out vec3 v_below;
+flat out vec3 v_color;
 flat out float v_alpha;
 flat out float v_pixels;
+flat out float v_lit;
+flat out float v_cell;
+flat out float v_front;  // view distance of the grain's front
+flat out vec2 v_turn;    // cosine and sine of its rotation
+#ifdef RELIEF_QUADS
+out vec2 v_corner;       // in the sprite's own frame, -1…1, y upwards
+#endif
+
+void nothing() {  // beyond the far plane
+    gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+    v_sun = v_above = v_below = v_color = vec3(0.0);
+    v_alpha = v_lit = 0.0;
+    v_pixels = v_front = 1.0;
+    v_cell = -1.0;
+    v_turn = vec2(1.0, 0.0);
+#ifdef RELIEF_QUADS
+    v_corner = vec2(0.0);
+#else
+    gl_PointSize = 1.0;
+#endif
+}
 
 void main() {
-    ivec2 texel = ivec2(gl_VertexID % u_width, gl_VertexID / u_width);
-    vec4 position = texelFetch(u_position, texel, 0);
-    vec4 birth = texelFetch(u_birth, texel, 0);
-    if (position.w < 0.0) {  // dead: beyond the far plane
-        gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
-        gl_PointSize = 1.0;
-        v_alpha = 0.0;
-        v_pixels = 1.0;
-        v_sun = v_above = v_below = vec3(0.0);
+#ifdef RELIEF_QUADS
+    int index = gl_VertexID / 6;
+    int corner = gl_VertexID - 6 * index;
+#else
+    int index = gl_VertexID;
+#endif
+    if (u_ordered) {
+        int width = textureSize(u_order, 0).x;
+        index = int(floor(texelFetch(u_order, ivec2(index % width, index / width), 0).x + 0.5));
+    }
+    if (index < 0 || index >= u_extent) {
+        nothing();
         return;
     }
+    ivec2 texel = ivec2(index % u_width, index / u_width);
+    vec4 position = texelFetch(u_position, texel, 0);
+    if (position.w < 0.0) {  // dead
+        nothing();
+        return;
+    }
+    vec4 birth = texelFetch(u_birth, texel, 0);
+    Look look = lookOf(birth, u_now);
     // The depth is that of the grain's front, so that grains on a surface are not half sunk into it; the place
-    // on the picture that of its centre.
+    // on the picture that of its centre. A large sprite's front does not pass the near plane before its centre does.
     vec4 in_view = u_view * vec4(position.xyz, 1.0);
     gl_Position = u_projection * in_view;
     float distance = max(-in_view.z, 1e-6);
-    vec4 front = u_projection * vec4(in_view.xyz * max(1.0 - 0.5 * u_diameter / distance, 0.05), 1.0);
+    float near = -u_depth.y / u_depth.x;
+    float nearer = max(1.0 - 0.5 * look.size / distance, clamp(1.01 * near / distance, 0.05, 1.0));
+    vec4 front = u_projection * vec4(in_view.xyz * nearer, 1.0);
     gl_Position.z = front.z / front.w * gl_Position.w;
+    v_front = nearer * distance;
 
     // Below the least size a sprite keeps its light by losing opacity instead.
-    float wanted = u_diameter * u_pixels_per_unit / distance;
+    float wanted = look.size * u_pixels_per_unit / distance;
     v_pixels = clamp(wanted, u_pixels.x, u_pixels.y);
-    gl_PointSize = v_pixels;
     float cover = min(wanted / v_pixels, 1.0);
-    float age = u_now - birth.x;
-    float left = birth.y - u_now;
-    float fade = clamp(age / max(u_fade.x, 1e-6), 0.0, 1.0) * clamp(left / max(u_fade.y, 1e-6), 0.0, 1.0);
-    v_alpha = u_opacity * fade * cover * cover;
+    v_alpha = look.opacity * cover * cover;
+    v_turn = vec2(cos(look.rotation), sin(look.rotation));
+    v_color = look.color;
+    v_cell = look.cell;
+    v_lit = look.lit;
+#ifdef RELIEF_QUADS
+    v_corner = vec2(corner == 1 || corner == 2 || corner == 4 ? 1.0 : -1.0, corner == 2 || corner >= 4 ? 1.0 : -1.0);
+    vec2 turned = vec2(v_turn.x * v_corner.x - v_turn.y * v_corner.y, v_turn.y * v_corner.x + v_turn.x * v_corner.y);
+    gl_Position.xy += turned * (v_pixels / u_target) * gl_Position.w;
+#else
+    gl_PointSize = v_pixels;
+#endif
 
 #ifdef RELIEF_LIT
-    uint seed = uint(gl_VertexID) * 9781u + 6271u;
-    noise(seed);
-    vec3 up = vec3(0.0, 1.0, 0.0);
-    vec3 start = position.xyz + (1.5 * u_texel + 0.25 * u_diameter) * up;
-    float sun;
-    receive(start, up, seed, sun, v_above);
-    v_sun = SUN_COLOR * sun;
-    v_below = FLOOR_COLOR;
+    vec4 light = texelFetch(u_light, texel, 0);
+    v_sun = vec3(1.02, 0.97, 0.88) * light.x;
+    v_above = light.yzw;
+    v_below = vec3(0.25, 0.26, 0.28);
 #else
     v_sun = vec3(1.02, 0.97, 0.88);
     v_above = vec3(0.40, 0.46, 0.56);

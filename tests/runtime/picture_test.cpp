@@ -44,6 +44,33 @@ TEST(Png, RefusesSizesThatDoNotFit) {
     EXPECT_TRUE(encodePng(rgb, 2, 2));
 }
 
+TEST(Png, ReadsBackWhatWasWritten) {
+    std::vector<std::uint8_t> rgb(3 * 5 * 3);
+    for (std::size_t i = 0; i < rgb.size(); ++i) {
+        rgb[i] = static_cast<std::uint8_t>(5 * i);
+    }
+    const std::vector<std::byte> bytes = *encodePng(rgb, 5, 3);
+    const auto picture = decodePng(bytes, "'a.png'");
+    ASSERT_TRUE(picture) << picture.error().message;
+    EXPECT_EQ(picture->width, 5U);
+    EXPECT_EQ(picture->height, 3U);
+    ASSERT_EQ(picture->rgba.size(), 4U * 5 * 3);
+    for (std::size_t i = 0; i < rgb.size(); ++i) {
+        EXPECT_EQ(picture->rgba[4 * (i / 3) + i % 3], rgb[i]);
+        EXPECT_EQ(picture->rgba[4 * (i / 3) + 3], 255U);
+    }
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+        if (const auto cut = decodePng(std::span(bytes).first(i), "'a.png'"); !cut) {
+            EXPECT_EQ(cut.error().code, ErrorCode::kInvalidInput);
+            EXPECT_NE(cut.error().message.find("'a.png'"), std::string::npos);
+        } else {
+            EXPECT_GT(i, bytes.size() - 13) << "only the end mark may be missing";
+        }
+    }
+    const std::vector<std::uint8_t> row(std::size_t{3} * (kPngReadSideMax + 1));
+    EXPECT_EQ(decodePng(*encodePng(row, kPngReadSideMax + 1, 1), "'a.png'").error().code, ErrorCode::kLimit);
+}
+
 TEST(Ply, HeaderAndVerticesByHand) {
     std::vector<ParticleState> particles(2);
     particles[0].id = 0x01020304;

@@ -417,9 +417,35 @@ TEST_P(RendererGlTest, TheCallersStateIsKeptAndDoesNoHarm) {
         check("ColliderRenderer::draw");
         points->draw(*particles, camera_, ParticleStyle{.diameter = 0.1F}, frame->target());
         check("ParticleRenderer::draw");
+        const std::vector<std::uint8_t> rgba(16, 200);
+        const auto atlas = SpriteAtlas::create(rgba, 2, 2, 2, 1);
+        check("SpriteAtlas::create");
+        ParticleStyle quads;
+        quads.diameter = 0.3F;
+        quads.sprite = Sprite::kQuad;
+        quads.blend = Blend::kAdditive;
+        quads.soft = 0.1F;
+        quads.atlas = &*atlas;
+        quads.looks.resize(1);
+        quads.looks[0].cell_first = 0;
+        EXPECT_TRUE(points->draw(*particles, camera_, quads, frame->target(), nullptr, &renderer->depth()));
+        check("ParticleRenderer::draw, quads");
+        const auto mesh = ColliderMesh::create(
+            {{{-0.5F, 0.5F, 0.5F}, {-0.2F, 0.5F, 0.5F}, {-0.3F, 0.9F, 0.5F}}, {}, {0, 1, 2}});
+        check("ColliderMesh::create");
+        camera_.eye.x += 1.0F;
+        auto with_mesh = ColliderRenderer::create(view(), &*mesh);
+        check("ColliderRenderer::create, mesh");
+        auto other = Frame::create(kWidth, kHeight);
+        EXPECT_TRUE(with_mesh->draw(camera_, style_, other->target()));
+        camera_.eye.x -= 1.0F;
+        check("ColliderRenderer::draw, mesh");
         const std::vector<std::uint8_t> rgb = frame->read();
         check("Frame::read");
-        return std::pair(raw->position, rgb);
+        std::vector<std::uint8_t> both = rgb;
+        const std::vector<std::uint8_t> mesh_rgb = other->read();
+        both.insert(both.end(), mesh_rgb.begin(), mesh_rgb.end());
+        return std::pair(raw->position, both);
     };
     const auto plain = run([](const char*) {});
     // … a hostile one gives as well, and keeps.

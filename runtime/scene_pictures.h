@@ -1,0 +1,32 @@
+// What a scene's pictures need besides the scene: files that it names, and where its camera is.
+#pragma once
+
+#include <memory>
+
+#include "formats/result.h"
+#include "runtime/camera.h"
+#include "runtime/collider_mesh.h"
+#include "runtime/particle_renderer.h"
+#include "runtime/scene.h"
+#include "runtime/sprite_atlas.h"
+
+namespace relief {
+
+/// render.atlas on the GPU; null if the scene has none.
+/// Errors: those of reading it, with the place in the scene.
+[[nodiscard]] Result<std::unique_ptr<SpriteAtlas>> loadAtlas(const Scene& scene);
+
+/// render.mesh on the GPU; null if the scene has none.
+/// \param bounds  of the collider, which the mesh must meet.
+/// Errors: those of reading it, with the place in the scene; kInvalidInput (it lies elsewhere).
+[[nodiscard]] Result<std::unique_ptr<ColliderMesh>> loadColliderMesh(const Scene& scene,
+                                                                     const Bounds& bounds);
+
+/// \param scene  complete (withDefaults).
+/// \param atlas  may be null; must outlive the style.
+[[nodiscard]] ParticleStyle particleStyle(const Scene& scene, const SpriteAtlas* atlas);
+
+/// Where the camera of a complete scene is after so many seconds.
+[[nodiscard]] Camera sceneCamera(const Scene& scene, const Bounds& bounds, double seconds);
+
+}  // namespace relief

@@ -1,0 +1,51 @@
+// What a particle looks like at its age: the key-frames of its type, from the texture that runtime/particle_look.h
+// describes.
+uniform highp sampler2D u_looks;  // a row for each type
+
+struct Look {
+    float size;      // diameter, object units
+    float opacity;   // fading included
+    float rotation;  // radians, anticlockwise
+    vec3 color;      // linear
+    float cell;      // of the atlas; -1: a round grain
+    float lit;       // 1: the light falls on it, 0: it shines
+};
+
+// Uniform in [-1, 1), different for every particle and salt.
+float particleRandom(float id, uint salt) {
+    uint seed = (uint(id) * 2u + salt) * 747796405u + 2891336453u;
+    uint word = ((seed >> ((seed >> 28) + 4u)) ^ seed) * 277803737u;
+    return float(((word >> 22) ^ word) >> 8) / 8388608.0 - 1.0;
+}
+
+// `birth` is the particle's texel: time of birth, time of death, type, id.
+Look lookOf(vec4 birth, float now) {
+    int row = clamp(int(birth.z + 0.5), 0, textureSize(u_looks, 0).y - 1);
+    vec4 cells = texelFetch(u_looks, ivec2(0, row), 0);
+    vec4 light = texelFetch(u_looks, ivec2(1, row), 0);
+    float age = now - birth.x;
+    float left = birth.y - now;
+    float part = clamp(age / max(birth.y - birth.x, 1e-6), 0.0, 1.0);
+
+    int count = int(light.w);
+    int low = 0;
+    while (low + 1 < count && texelFetch(u_looks, ivec2(4 + 2 * low, row), 0).x <= part) {
+        ++low;
+    }
+    int high = min(low + 1, count - 1);
+    vec4 before = texelFetch(u_looks, ivec2(2 + 2 * low, row), 0);
+    vec4 after = texelFetch(u_looks, ivec2(2 + 2 * high, row), 0);
+    float share = high > low ? clamp((part - before.x) / (after.x - before.x), 0.0, 1.0) : 0.0;
+    vec4 values = mix(before, after, share);
+
+    Look look;
+    look.size = values.y;
+    float fade = clamp(age / max(light.y, 1e-6), 0.0, 1.0) * clamp(left / max(light.z, 1e-6), 0.0, 1.0);
+    look.opacity = values.z * fade;
+    look.rotation = values.w + cells.x * particleRandom(birth.w, 0u) + cells.y * particleRandom(birth.w, 1u) * age;
+    look.color = mix(texelFetch(u_looks, ivec2(3 + 2 * low, row), 0).rgb,
+                     texelFetch(u_looks, ivec2(3 + 2 * high, row), 0).rgb, share);
+    look.cell = cells.z < 0.0 ? -1.0 : cells.z + min(floor(part * cells.w), cells.w - 1.0);
+    look.lit = light.x;
+    return look;
+}
