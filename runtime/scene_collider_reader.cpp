@@ -83,7 +83,7 @@ SceneCollider readCollider(SceneTable table, const toml::source_position& at, st
 std::vector<SceneCollider> readColliders(SceneTable& top, std::string_view file,
                                          const std::filesystem::path& folder) {
     const toml::node* node = top.find("collider");
-    if (node == nullptr || node->is_table()) {
+    if (node == nullptr || !node->is_array()) {
         const toml::source_position at = node == nullptr ? toml::source_position{1, 1} : node->source().begin;
         return {readCollider(top.sub("collider"), at, file, folder)};
     }

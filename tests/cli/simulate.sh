@@ -1,8 +1,12 @@
 # relief-sim from outside: its dependencies, its outputs, its repeatability.
 . "$(dirname "$0")/lib.sh"
 
-for library in assimp embree CGAL gmp mpfr OpenEXR IlmImf tbb; do
+# The player reads flows as EXR images; what embeds the runtime needs nothing but GL and the formats.
+for library in assimp embree CGAL gmp mpfr tbb; do
     ! ldd "$relief_sim" | grep -qi "$library" || die "relief-sim needs $library"
+done
+for library in assimp embree CGAL gmp mpfr tbb OpenEXR IlmImf png json; do
+    ! ldd "$RELIEF_BIN/relief-embed-sample" | grep -qi "$library" || die "the runtime needs $library"
 done
 
 "$relief" bake "$bunny" -o bunny.relief --budget 200kB -q

@@ -28,9 +28,9 @@ class GlTest : public testing::TestWithParam<GlApi> {
         if (context_) {
             EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
         }
-        context_.reset();
     }
 
+    // Outlives the members of a fixture, which give their GL names back.
     std::unique_ptr<GlContext> context_;
 };
 
