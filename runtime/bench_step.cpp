@@ -1,0 +1,335 @@
+// What a step costs: relief-bench-step COLLIDER.relief [--large] prints JSON. Nothing here is a test:
+// machines are shared and noisy.
+//
+// A block is kBenchSteps steps between two glFinish. Before each all particles are born anew, so that blocks
+// are alike; births and the first step are not timed. Blocks of all variants take turns, and a ratio is the
+// median of the ratios within each turn: other work on the machine meets both sides of it. `call_ms` is how
+// long the calls took of that: where it is nearly the whole, the GPU waited for the CPU.
+//
+// `copy` is a draw that only copies the two state textures: it reads and writes 32 bytes a particle; a step
+// reads the 16 of the birth texture besides.
+//
+// Sizes suit llvmpipe where that is the renderer, unless --large asks for a GPU's.
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/container.h"
+#include "runtime/bench_variants.h"
+#include "runtime/camera.h"
+#include "runtime/collider_view.h"
+#include "runtime/gl_context.h"
+#include "runtime/particle_renderer.h"
+#include "runtime/random.h"
+#include "runtime/statistics.h"
+
+namespace {
+
+using relief::BenchScene;
+using relief::BenchSystem;
+using relief::BenchVariant;
+using relief::GlFramebuffer;
+using relief::GlTexture;
+using relief::Result;
+using Clock = std::chrono::steady_clock;
+using Json = nlohmann::ordered_json;
+
+constexpr GLsizei kPictureWidth = 1280;
+constexpr GLsizei kPictureHeight = 720;
+
+struct Sizes {
+    std::uint32_t particles;  // of the step
+    int rounds;               // blocks of each variant
+    std::vector<std::uint32_t> frames;
+    int frame_rounds;
+};
+
+Sizes sizesFor(bool software, bool large) {
+    const std::vector<std::uint32_t> all{1U << 16, 1U << 18, 1U << 20, 1U << 22};
+    if (software && !large) {
+        return {1U << 18, 5, {1U << 16, 1U << 18}, 3};
+    }
+    return software ? Sizes{1U << 20, 5, all, 3} : Sizes{1U << 20, 11, all, 7};
+}
+
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// Milliseconds of each block, a step of it.
+struct Times {
+    std::vector<double> all;
+    std::vector<double> calls;
+
+    void measure(const std::function<void()>& step) {
+        const auto per_step = [](Clock::duration time) {
+            return std::chrono::duration<double, std::milli>(time).count() / relief::kBenchSteps;
+        };
+        glFinish();
+        const Clock::time_point begun = Clock::now();
+        for (int i = 0; i < relief::kBenchSteps; ++i) {
+            step();
+        }
+        calls.push_back(per_step(Clock::now() - begun));
+        glFinish();
+        all.push_back(per_step(Clock::now() - begun));
+    }
+};
+
+Json ratio(const Times& times, const Times& base) {
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < times.all.size(); ++i) {
+        ratios.push_back(times.all[i] / base.all[i]);
+    }
+    return {{"median", median(ratios)},
+            {"least", *std::min_element(ratios.begin(), ratios.end())},
+            {"most", *std::max_element(ratios.begin(), ratios.end())}};
+}
+
+/// The bare copy of two state textures.
+class Copy {
+  public:
+    static Result<Copy> create(std::uint32_t particles) {
+        Copy copy;
+        copy.rows_ = static_cast<GLsizei>(particles / relief::ParticleSystem::kStateWidth);
+        relief::Pcg32 random(1);
+        std::vector<float> texels(std::size_t{4} * particles);  // that no driver can compress
+        std::generate(texels.begin(), texels.end(), [&] { return random.uniform(); });
+        for (std::size_t i = 0; i < 2; ++i) {
+            for (GlTexture& texture : copy.state_[i]) {
+                texture =
+                    relief::makeTexture2D(GL_RGBA32F, kWidth, copy.rows_, GL_RGBA, GL_FLOAT, texels.data());
+            }
+            auto target = relief::makeFramebuffer(
+                std::array<GLuint, 2>{copy.state_[i][0].name(), copy.state_[i][1].name()});
+            if (!target) {
+                return forward(target);
+            }
+            copy.target_[i] = std::move(*target);
+        }
+        auto program = relief::makeProgram("quad.vert", "copy_state.frag");
+        if (!program) {
+            return forward(program);
+        }
+        copy.program_ = std::move(*program);
+        copy.array_ = relief::makeVertexArray();
+        glUseProgram(copy.program_.name());
+        glUniform1i(relief::uniformLocation(copy.program_, "u_velocity"), 1);
+        glUseProgram(0);
+        return copy;
+    }
+    void step() {
+        const std::size_t next = 1 - current_;
+        glBindFramebuffer(GL_FRAMEBUFFER, target_[next].name());
+        for (std::size_t i = 0; i < 2; ++i) {
+            glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(i));
+            glBindTexture(GL_TEXTURE_2D, state_[current_][i].name());
+        }
+        glUseProgram(program_.name());
+        glViewport(0, 0, kWidth, rows_);
+        glBindVertexArray(array_.name());
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+        current_ = next;
+    }
+
+  private:
+    static constexpr auto kWidth = static_cast<GLsizei>(relief::ParticleSystem::kStateWidth);
+
+    GLsizei rows_ = 0;
+    std::size_t current_ = 0;
+    std::array<std::array<GlTexture, 2>, 2> state_;  // position and velocity
+    std::array<GlFramebuffer, 2> target_;
+    relief::GlProgram program_;
+    relief::GlVertexArray array_;
+};
+
+/// Who touches at the end of a block.
+Json touching(relief::Statistics& statistics, const BenchSystem& system) {
+    statistics.request(*system.particles, 0);
+    const auto sample = statistics.wait();
+    if (!sample || !*sample) {
+        return nullptr;
+    }
+    const double steps = static_cast<double>((*sample)->alive) * (1 + relief::kBenchSteps);
+    return {{"alive", (*sample)->alive},
+            {"in_contact", (*sample)->in_contact},
+            {"caught", (*sample)->caught},
+            {"contacts_a_step", static_cast<double>((*sample)->collisions) / steps}};
+}
+
+Result<void> benchSteps(const BenchScene& scene, const Sizes& sizes, Json& json) {
+    const std::vector<BenchVariant> variants = relief::benchVariants();
+    std::vector<Result<BenchSystem>> systems;
+    for (const BenchVariant& variant : variants) {
+        systems.push_back(variant.make(scene));
+        if (!systems.back() && systems.back().error().code != relief::ErrorCode::kUnsupported) {
+            return forward(systems.back());
+        }
+    }
+    auto copy = Copy::create(sizes.particles);
+    if (!copy) {
+        return forward(copy);
+    }
+    auto statistics = relief::Statistics::create(sizes.particles);
+    if (!statistics) {
+        return forward(statistics);
+    }
+    Times copied;
+    std::vector<Times> times(variants.size());
+    std::vector<Json> touch(variants.size());
+    copy->step();
+    for (int round = 0; round < sizes.rounds; ++round) {
+        copied.measure([&] { copy->step(); });
+        for (std::size_t i = 0; i < variants.size(); ++i) {
+            if (!systems[i]) {
+                continue;
+            }
+            systems[i]->begin(scene);
+            times[i].measure([&] { systems[i]->step(); });
+            if (round == 0) {
+                touch[i] = touching(*statistics, *systems[i]);
+            }
+            systems[i]->end();
+        }
+    }
+    const auto timesOf = [&](std::string_view name) -> const Times& {
+        const auto it = std::find_if(variants.begin(), variants.end(),
+                                     [&](const BenchVariant& variant) { return variant.name == name; });
+        return times[static_cast<std::size_t>(it - variants.begin())];
+    };
+    json["steps"] = {
+        {"particles", sizes.particles}, {"block", relief::kBenchSteps}, {"blocks", sizes.rounds}};
+    json["copy"] = {{"ms", median(copied.all)},
+                    {"call_ms", median(copied.calls)},
+                    {"step_over_copy", ratio(timesOf("no_collider"), copied)}};
+    for (std::size_t i = 0; i < variants.size(); ++i) {
+        Json one{{"name", variants[i].name}, {"what", variants[i].what}};
+        if (systems[i]) {
+            one["ms"] = median(times[i].all);
+            one["call_ms"] = median(times[i].calls);
+            one["over_collider"] = ratio(times[i], timesOf("collider"));
+            one["touching"] = touch[i];
+        } else {
+            one["skipped"] = systems[i].error().message;
+        }
+        json["variants"].push_back(std::move(one));
+    }
+    return {};
+}
+
+/// A step alone, a step and a picture of points, a step and one of quads.
+Result<void> benchFrames(const relief::Collider& collider, std::uint32_t particles, int rounds, Json& json) {
+    const BenchScene scene = relief::makeBenchScene(collider, particles);
+    auto system = relief::makeColliderSystem(scene);
+    if (!system) {
+        return forward(system);
+    }
+    auto renderer = relief::ParticleRenderer::create(
+        relief::ColliderView{system->textures.get(), collider.bounds, relief::finestTexel(collider)});
+    if (!renderer) {
+        return forward(renderer);
+    }
+    const GlTexture color =
+        relief::makeTexture2D(GL_RGBA16F, kPictureWidth, kPictureHeight, GL_RGBA, GL_HALF_FLOAT);
+    const GlTexture depth = relief::makeTexture2D(GL_DEPTH_COMPONENT32F, kPictureWidth, kPictureHeight,
+                                                  GL_DEPTH_COMPONENT, GL_FLOAT);
+    const auto framebuffer = relief::makeFramebuffer(std::array<GLuint, 1>{color.name()}, depth.name());
+    if (!framebuffer) {
+        return forward(framebuffer);
+    }
+    const relief::RenderTarget target{framebuffer->name(), kPictureWidth, kPictureHeight};
+    relief::Camera camera;
+    camera.target = collider.bounds.center();
+    camera.eye = relief::defaultEye(camera.target, 0.5F * glm::length(collider.bounds.size()), camera.fov);
+    relief::setClipPlanes(camera, collider.bounds);
+    // As relief-sim draws unless told otherwise, but nobody fades: they live too short.
+    relief::ParticleStyle style{.diameter = 0.0065F * scene.side, .fade_in = 0.0F, .fade_out = 0.0F};
+
+    Result<void> drawn;
+    const auto frame = [&](relief::Sprite sprite) {
+        system->step();
+        glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        style.sprite = sprite;
+        if (auto done = renderer->draw(*system->particles, camera, style, target); !done) {
+            drawn = done;
+        }
+    };
+    Times step;
+    Times points;
+    Times quads;
+    const auto block = [&](Times& times, const std::function<void()>& work) {
+        system->begin(scene);
+        times.measure(work);
+        system->end();
+    };
+    for (int round = -1; round < rounds; ++round) {
+        if (round == 0) {  // the one before was for the driver, which compiles
+            step = points = quads = {};
+        }
+        block(step, [&] { system->step(); });
+        block(points, [&] { frame(relief::Sprite::kPoint); });
+        block(quads, [&] { frame(relief::Sprite::kQuad); });
+    }
+    if (!drawn) {
+        return drawn;
+    }
+    json["frames"].push_back({{"particles", particles},
+                              {"picture", {kPictureWidth, kPictureHeight}},
+                              {"step_ms", median(step.all)},
+                              {"points_ms", median(points.all)},  // the step included
+                              {"quads_ms", median(quads.all)}});
+    return {};
+}
+
+int failure(const relief::Error& error) {
+    std::fprintf(stderr, "relief-bench-step: error: %s\n", error.message.c_str());
+    return static_cast<int>(error.code);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const bool large = argc == 3 && std::string_view(argv[2]) == "--large";
+    if (argc != 2 && !large) {
+        return failure({relief::ErrorCode::kUsage, "usage: relief-bench-step COLLIDER.relief [--large]"});
+    }
+    const auto collider = relief::loadCollider(argv[1]);
+    if (!collider) {
+        return failure(collider.error());
+    }
+    const auto context = relief::GlContext::create(relief::GlApi::kGl33Core);
+    if (!context) {
+        return failure(context.error());
+    }
+    const std::string renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    const bool software =
+        renderer.find("llvmpipe") != std::string::npos || renderer.find("softpipe") != std::string::npos;
+    const Sizes sizes = sizesFor(software, large);
+    Json json;
+    json["device"] = (*context)->description();
+    json["renderer"] = renderer;
+    json["software"] = software;
+    json["collider"] = {{"maps", collider->maps.size()}};
+    if (const auto done = benchSteps(relief::makeBenchScene(*collider, sizes.particles), sizes, json);
+        !done) {
+        return failure(done.error());
+    }
+    for (const std::uint32_t particles : sizes.frames) {
+        if (const auto done = benchFrames(*collider, particles, sizes.frame_rounds, json); !done) {
+            return failure(done.error());
+        }
+    }
+    json["glError"] = glGetError();
+    std::puts(json.dump(2).c_str());
+    return 0;
+}
