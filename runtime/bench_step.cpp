@@ -1,10 +1,10 @@
 // What a step costs: relief-bench-step COLLIDER.relief [--large] prints JSON. Nothing here is a test:
 // machines are shared and noisy.
 //
-// A block is kBenchSteps steps between two glFinish. Before each all particles are born anew, so that blocks
+// A block is some steps between two glFinish. Before each all particles are born anew, so that blocks
 // are alike; births and the first step are not timed. Blocks of all variants take turns, and a ratio is the
 // median of the ratios within each turn: other work on the machine meets both sides of it. `call_ms` is how
-// long the calls took of that: where it is nearly the whole, the GPU waited for the CPU.
+// long the calls took of that: where it is nearly the whole, a GPU waited for the CPU (which llvmpipe is).
 //
 // `copy` is a draw that only copies the two state textures: it reads and writes 32 bytes a particle; a step
 // reads the 16 of the birth texture besides.
@@ -28,7 +28,6 @@
 #include "runtime/gl_context.h"
 #include "runtime/particle_renderer.h"
 #include "runtime/random.h"
-#include "runtime/statistics.h"
 
 namespace {
 
@@ -45,18 +44,20 @@ constexpr GLsizei kPictureWidth = 1280;
 constexpr GLsizei kPictureHeight = 720;
 
 struct Sizes {
-    std::uint32_t particles;  // of the step
-    int rounds;               // blocks of each variant
-    std::vector<std::uint32_t> frames;
+    std::uint32_t particles;            // of the step
+    int steps;                          // of a block, kBenchStepsMost at most
+    int rounds;                         // blocks of each variant
+    std::vector<std::uint32_t> frames;  // particles
+    int frame_steps;
     int frame_rounds;
 };
 
 Sizes sizesFor(bool software, bool large) {
     const std::vector<std::uint32_t> all{1U << 16, 1U << 18, 1U << 20, 1U << 22};
-    if (software && !large) {
-        return {1U << 18, 5, {1U << 16, 1U << 18}, 3};
+    if (software) {
+        return large ? Sizes{1U << 20, 4, 5, all, 1, 3} : Sizes{1U << 17, 8, 5, {1U << 16, 1U << 18}, 2, 3};
     }
-    return software ? Sizes{1U << 20, 5, all, 3} : Sizes{1U << 20, 11, all, 7};
+    return {1U << 20, relief::kBenchStepsMost, 11, all, relief::kBenchStepsMost, 7};
 }
 
 double median(std::vector<double> values) {
@@ -70,13 +71,13 @@ struct Times {
     std::vector<double> all;
     std::vector<double> calls;
 
-    void measure(const std::function<void()>& step) {
-        const auto per_step = [](Clock::duration time) {
-            return std::chrono::duration<double, std::milli>(time).count() / relief::kBenchSteps;
+    void measure(int steps, const std::function<void()>& step) {
+        const auto per_step = [steps](Clock::duration time) {
+            return std::chrono::duration<double, std::milli>(time).count() / steps;
         };
         glFinish();
         const Clock::time_point begun = Clock::now();
-        for (int i = 0; i < relief::kBenchSteps; ++i) {
+        for (int i = 0; i < steps; ++i) {
             step();
         }
         calls.push_back(per_step(Clock::now() - begun));
@@ -153,17 +154,24 @@ class Copy {
 };
 
 /// Who touches at the end of a block.
-Json touching(relief::Statistics& statistics, const BenchSystem& system) {
-    statistics.request(*system.particles, 0);
-    const auto sample = statistics.wait();
-    if (!sample || !*sample) {
+Json touching(const BenchSystem& system, int steps_taken) {
+    const auto state = system.particles->readState();
+    if (!state || state->empty()) {
         return nullptr;
     }
-    const double steps = static_cast<double>((*sample)->alive) * (1 + relief::kBenchSteps);
-    return {{"alive", (*sample)->alive},
-            {"in_contact", (*sample)->in_contact},
-            {"caught", (*sample)->caught},
-            {"contacts_a_step", static_cast<double>((*sample)->collisions) / steps}};
+    std::uint64_t in_contact = 0;
+    std::uint64_t caught = 0;
+    std::uint64_t collisions = 0;
+    for (const relief::ParticleState& particle : *state) {
+        in_contact += particle.contact != relief::Contact::kNone ? 1 : 0;
+        caught += particle.contact == relief::Contact::kCaught ? 1 : 0;
+        collisions += particle.collisions;
+    }
+    const double steps = static_cast<double>(state->size()) * steps_taken;
+    return {{"alive", state->size()},
+            {"in_contact", in_contact},
+            {"caught", caught},
+            {"contacts_a_step", static_cast<double>(collisions) / steps}};
 }
 
 Result<void> benchSteps(const BenchScene& scene, const Sizes& sizes, Json& json) {
@@ -179,24 +187,20 @@ Result<void> benchSteps(const BenchScene& scene, const Sizes& sizes, Json& json)
     if (!copy) {
         return forward(copy);
     }
-    auto statistics = relief::Statistics::create(sizes.particles);
-    if (!statistics) {
-        return forward(statistics);
-    }
     Times copied;
     std::vector<Times> times(variants.size());
     std::vector<Json> touch(variants.size());
     copy->step();
     for (int round = 0; round < sizes.rounds; ++round) {
-        copied.measure([&] { copy->step(); });
+        copied.measure(sizes.steps, [&] { copy->step(); });
         for (std::size_t i = 0; i < variants.size(); ++i) {
             if (!systems[i]) {
                 continue;
             }
             systems[i]->begin(scene);
-            times[i].measure([&] { systems[i]->step(); });
+            times[i].measure(sizes.steps, [&] { systems[i]->step(); });
             if (round == 0) {
-                touch[i] = touching(*statistics, *systems[i]);
+                touch[i] = touching(*systems[i], sizes.steps + 1);
             }
             systems[i]->end();
         }
@@ -206,8 +210,7 @@ Result<void> benchSteps(const BenchScene& scene, const Sizes& sizes, Json& json)
                                      [&](const BenchVariant& variant) { return variant.name == name; });
         return times[static_cast<std::size_t>(it - variants.begin())];
     };
-    json["steps"] = {
-        {"particles", sizes.particles}, {"block", relief::kBenchSteps}, {"blocks", sizes.rounds}};
+    json["steps"] = {{"particles", sizes.particles}, {"block", sizes.steps}, {"blocks", sizes.rounds}};
     json["copy"] = {{"ms", median(copied.all)},
                     {"call_ms", median(copied.calls)},
                     {"step_over_copy", ratio(timesOf("no_collider"), copied)}};
@@ -227,7 +230,8 @@ Result<void> benchSteps(const BenchScene& scene, const Sizes& sizes, Json& json)
 }
 
 /// A step alone, a step and a picture of points, a step and one of quads.
-Result<void> benchFrames(const relief::Collider& collider, std::uint32_t particles, int rounds, Json& json) {
+Result<void> benchFrames(const relief::Collider& collider, std::uint32_t particles, const Sizes& sizes,
+                         Json& json) {
     const BenchScene scene = relief::makeBenchScene(collider, particles);
     auto system = relief::makeColliderSystem(scene);
     if (!system) {
@@ -269,10 +273,10 @@ Result<void> benchFrames(const relief::Collider& collider, std::uint32_t particl
     Times quads;
     const auto block = [&](Times& times, const std::function<void()>& work) {
         system->begin(scene);
-        times.measure(work);
+        times.measure(sizes.frame_steps, work);
         system->end();
     };
-    for (int round = -1; round < rounds; ++round) {
+    for (int round = -1; round < sizes.frame_rounds; ++round) {
         if (round == 0) {  // the one before was for the driver, which compiles
             step = points = quads = {};
         }
@@ -325,11 +329,13 @@ int main(int argc, char** argv) {
         return failure(done.error());
     }
     for (const std::uint32_t particles : sizes.frames) {
-        if (const auto done = benchFrames(*collider, particles, sizes.frame_rounds, json); !done) {
+        if (const auto done = benchFrames(*collider, particles, sizes, json); !done) {
             return failure(done.error());
         }
     }
-    json["glError"] = glGetError();
+    if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
+        return failure({relief::ErrorCode::kFailure, "the GL reports error " + std::to_string(error)});
+    }
     std::puts(json.dump(2).c_str());
     return 0;
 }

@@ -15,9 +15,10 @@
 namespace relief {
 
 inline constexpr float kBenchDt = 1.0F / 60.0F;
-inline constexpr int kBenchSteps = 16;  ///< of a block
+inline constexpr int kBenchStepsMost = 16;  ///< of a block
 /// Seconds: longer than a block and the step before it, so that nobody dies within.
 inline constexpr float kBenchLifetime = 0.5F;
+static_assert(kBenchLifetime > kBenchDt * (kBenchStepsMost + 2));
 /// Seconds of a step that nobody survives.
 inline constexpr float kBenchEnd = 1.0F;
 
