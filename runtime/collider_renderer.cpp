@@ -108,7 +108,7 @@ Result<ColliderRenderer> ColliderRenderer::create(const ColliderView& view, cons
 Result<void> ColliderRenderer::draw(const Camera& camera, const ColliderStyle& style,
                                     const RenderTarget& target) {
     const PassState state;
-    const Drawn wanted{camera, style, target.width, target.height};
+    const Drawn wanted{camera, style, target.width, target.height, view_.textures->revision()};
     if (drawn_ != wanted) {
         drawn_.reset();
         if (auto done = trace(camera, style, target.width, target.height); !done) {

@@ -50,6 +50,7 @@ class ColliderRenderer {
         ColliderStyle style;
         GLsizei width = 0;
         GLsizei height = 0;
+        std::uint64_t revision = 0;  // of the poses
         friend bool operator==(const Drawn&, const Drawn&) = default;
     };
 

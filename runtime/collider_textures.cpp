@@ -174,6 +174,7 @@ void ColliderTextures::setPoses(std::span<const Pose> poses) {
         BlockBody& body = bodies_[i];
         std::copy(std::begin(body.row), std::end(body.row), std::begin(body.before));
         writeRows(poses[i], body.row);
+        revision_ += std::equal(std::begin(body.row), std::end(body.row), std::begin(body.before)) ? 0 : 1;
     }
     if (!bodies_.empty()) {
         const PassState state;

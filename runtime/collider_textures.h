@@ -61,6 +61,8 @@ class ColliderTextures {
 
     /// 0 for one collider in its own space.
     [[nodiscard]] std::size_t bodyCount() const { return bodies_.size(); }
+    /// Changes with every pose that does.
+    [[nodiscard]] std::uint64_t revision() const { return revision_; }
     [[nodiscard]] int mapCount() const { return map_count_; }
     [[nodiscard]] std::size_t bytes() const { return bytes_; }
     /// "#define RELIEF_MAP_CAPACITY n\n" for makeProgram: the length of the block's array.
@@ -80,6 +82,7 @@ class ColliderTextures {
                                                          std::vector<BlockBody> bodies);
 
     std::vector<BlockBody> bodies_;
+    std::uint64_t revision_ = 0;
     GlTexture float_maps_;
     GlTexture fixed_maps_;
     GlTexture front_back_maps_;

@@ -54,6 +54,8 @@ Result<ParticleRenderer> ParticleRenderer::create(const std::optional<ColliderVi
     renderer.no_attributes_ = makeVertexArray();
     const std::array<GLubyte, 4> zero{};
     renderer.nothing_ = makeTexture2D(GL_RGBA8, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, zero.data());
+    constexpr std::array<std::uint32_t, 2> kNoRank{};
+    renderer.no_order_ = makeTexture2D(GL_RG32UI, 1, 1, GL_RG_INTEGER, GL_UNSIGNED_INT, kNoRank.data());
     return renderer;
 }
 
@@ -106,7 +108,7 @@ void ParticleRenderer::setUniforms(const GlProgram& program, const ParticleSyste
 
 Result<void> ParticleRenderer::draw(const ParticleSystem& particles, const Camera& camera,
                                     const ParticleStyle& style, const RenderTarget& target,
-                                    const GlTexture* order, const GlTexture* behind) {
+                                    const ParticleOrder& order, const GlTexture* behind) {
     if (!(style.soft >= 0.0F && style.soft < 1e30F)) {
         return fail(ErrorCode::kUsage, "the soft edge of particles is a distance, 0 or more");
     }
@@ -125,7 +127,7 @@ Result<void> ParticleRenderer::draw(const ParticleSystem& particles, const Camer
     const bool quads = style.sprite == Sprite::kQuad;
     const GlProgram& program = quads ? quad_program_ : point_program_;
     setUniforms(program, particles, camera, style, target);
-    glUniform1i(uniformLocation(program, "u_ordered"), order != nullptr ? 1 : 0);
+    glUniform1i(uniformLocation(program, "u_ordered"), order.texture != nullptr ? 1 : 0);
     glUniform1f(uniformLocation(program, "u_soft"), behind != nullptr ? style.soft : 0.0F);
     const std::array<const GlTexture*, kSamplers.size()> textures{
         &particles.positions(),
@@ -133,7 +135,7 @@ Result<void> ParticleRenderer::draw(const ParticleSystem& particles, const Camer
         &looks_,
         light_ ? &light_->texture() : &nothing_,
         style.atlas != nullptr ? &style.atlas->texture() : &nothing_,
-        order != nullptr ? order : &nothing_,
+        order.texture != nullptr ? order.texture : &no_order_,
         behind != nullptr ? behind : &nothing_};
     for (std::size_t unit = 0; unit < textures.size(); ++unit) {
         glActiveTexture(static_cast<GLenum>(GL_TEXTURE0 + unit));
@@ -148,7 +150,7 @@ Result<void> ParticleRenderer::draw(const ParticleSystem& particles, const Camer
     glDepthFunc(GL_LEQUAL);
     glDepthMask(GL_FALSE);
     glBindVertexArray(no_attributes_.name());
-    const auto count = static_cast<GLsizei>(particles.extent());
+    const auto count = static_cast<GLsizei>(order.texture != nullptr ? order.count : particles.extent());
     if (quads) {
         glDrawArrays(GL_TRIANGLES, 0, kQuadVertices * count);
     } else {

@@ -43,6 +43,14 @@ struct ParticleStyle {
     const SpriteAtlas* atlas = nullptr;  ///< for the cells of looks; null: every particle is a round grain
 };
 
+/// Ranks, as DepthSorter has them: RG32UI, texel (i mod width, i / width), width being the texture's, holds
+/// the index of the i-th particle to draw in x, and 0 in y where there is none. Indices beyond extent() are
+/// left out.
+struct ParticleOrder {
+    const GlTexture* texture = nullptr;
+    std::uint32_t count = 0;  ///< ranks
+};
+
 class ParticleRenderer {
   public:
     /// \param collider  shades the particles; nullopt: they lie in the open.
@@ -51,15 +59,13 @@ class ParticleRenderer {
 
     /// Draws over what the target shows, in linear light, hidden where its depth is nearer; depth stays as it
     /// is. Nothing is read back, nothing waits for the GPU.
-    /// \param order   null: in the order of their texels. Else the red component of texel (i mod width,
-    ///                i / width), width being the texture's, is the index of the i-th particle to draw, as a
-    ///                float; extent() of them are drawn. What lies outside 0…extent() − 1 is left out.
+    /// \param order   in which they are drawn; without a texture that of their texels.
     /// \param behind  what style.soft compares with: window depths of a picture by the same camera and of the
     ///                target's size, not attached to the target, such as ColliderRenderer::depth(). Null:
     ///                style.soft has no effect.
     /// Errors: kUsage (looks, see packLooks; soft), kUnsupported.
     Result<void> draw(const ParticleSystem& particles, const Camera& camera, const ParticleStyle& style,
-                      const RenderTarget& target, const GlTexture* order = nullptr,
+                      const RenderTarget& target, const ParticleOrder& order = {},
                       const GlTexture* behind = nullptr);
 
   private:
@@ -71,6 +77,7 @@ class ParticleRenderer {
     GlProgram point_program_;
     GlProgram quad_program_;
     GlVertexArray no_attributes_;
+    GlTexture no_order_;
     GlTexture nothing_;  // stands for a texture that a draw does without
     GlTexture looks_;
     std::vector<glm::vec4> packed_;  // what looks_ holds

@@ -140,7 +140,11 @@ Result<void> ParticleSystem::createPrograms() {
 Result<void> ParticleSystem::remakeStep(const ColliderTextures* collider) {
     const bool radius =
         std::any_of(types_.begin(), types_.end(), [](const ParticleType& t) { return t.radius > 0.0F; });
-    const StepFeatures features{collider, verlet(), sweep_ > 0.0F, radius && collider != nullptr,
+    const StepFeatures features{collider,
+                                air_.get(),
+                                verlet(),
+                                sweep_ > 0.0F,
+                                radius && collider != nullptr,
                                 static_cast<int>(types_.size())};
     auto made = StepPass::create(features);
     if (!made) {
@@ -194,6 +198,17 @@ Result<void> ParticleSystem::setColliders(std::span<const ColliderInstance> coll
     }
     const PassState state;
     return remakeStep(colliders.empty() ? nullptr : colliders.front().textures);
+}
+
+Result<void> ParticleSystem::setAir(const AirSettings& air) {
+    const PassState state;
+    auto block = AirBlock::create(air);
+    if (!block) {
+        return forward(block);
+    }
+    air_settings_ = air;
+    air_ = block->defines().empty() ? nullptr : std::make_unique<AirBlock>(std::move(*block));
+    return remakeStep(step_.features().collider);
 }
 
 std::size_t ParticleSystem::spawn(std::span<const Birth> births) {
@@ -274,7 +289,12 @@ void ParticleSystem::drawStep(float dt, float now) {
     useTexture(StepPass::kPositionUnit, position_[current_]);
     useTexture(StepPass::kVelocityUnit, verlet() ? position_[(current_ + 2) % 3] : velocity_[current_]);
     useTexture(StepPass::kBirthUnit, birth_);
-    step_.use({now, dt, dt_before_, ground_.value_or(kNoGround), sweep_, forces_, types_});
+    Forces forces = forces_;
+    if (air_) {
+        forces.wind = glm::vec3(0.0F);  // its own is among the rest
+    }
+    step_.use({now, dt, dt_before_, ground_.value_or(kNoGround), sweep_, airTime(air_settings_, time_),
+               forces, types_});
     dt_before_ = dt;
     // Rows beyond the extent keep what they held in either buffer. That is sound: an index beyond it is only
     // reached again through a birth, which overwrites it, and an index below it has been stepped ever since.
@@ -342,16 +362,15 @@ Result<RawState> ParticleSystem::readRaw() const {
         floats.resize(std::size_t{4} * drawn_extent_);
         return {};
     };
-    const GlTexture& second = verlet() ? position_[(current_ + 2) % 3] : velocities();
     for (auto done :
-         {read(positions(), raw.position), read(second, raw.velocity), read(births(), raw.birth)}) {
+         {read(positions(), raw.position), read(secondState(), raw.velocity), read(births(), raw.birth)}) {
         if (!done) {
             return forward(done);
         }
     }
     // What the shader would take: step.glsl.
     for (std::size_t i = 0; verlet() && i < raw.position.size(); i += 4) {
-        const float rate = dt_before_ > 0.0F ? 1.0F / dt_before_ : 0.0F;
+        const float rate = rateBefore();
         for (std::size_t k = i; k < i + 3; ++k) {
             raw.velocity[k] = (raw.position[k] - raw.velocity[k]) * rate;
         }

@@ -19,11 +19,13 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "formats/result.h"
+#include "runtime/air_block.h"
 #include "runtime/collider_textures.h"
 #include "runtime/death_queue.h"
 #include "runtime/emitter.h"
@@ -119,6 +121,10 @@ class ParticleSystem {
     /// StepPass::kSweepPieces of them in a step is slowed down. 0: only both ends are tested, as in the
     /// paper. Errors: kUsage, kFailure (the driver's compiler).
     [[nodiscard]] Result<void> setSweep(float length);
+    /// Moving air and fields. Its wind takes the place of Forces::wind; its viscosity is not used: Forces has
+    /// its own.
+    /// Errors: those of AirBlock::create, kFailure (the driver's compiler).
+    [[nodiscard]] Result<void> setAir(const AirSettings& air);
     /// A floor: everything below this height is solid, in union with the collider. nullopt: none.
     void setGround(std::optional<float> height) { ground_ = height; }
 
@@ -140,8 +146,14 @@ class ParticleSystem {
     // For renderers: particle i < extent() lies at texel (i mod width, i / width). Births since the last step
     // are not in the textures yet.
     [[nodiscard]] const GlTexture& positions() const { return position_[current_]; }
-    /// Euler alone: with Verlet there are none.
-    [[nodiscard]] const GlTexture& velocities() const { return velocity_[current_]; }
+    /// Euler: the velocities. Verlet: the positions before.
+    [[nodiscard]] const GlTexture& secondState() const {
+        return verlet() ? position_[(current_ + 2) % 3] : velocity_[current_];
+    }
+    /// Verlet: 1 / seconds of the last step, to make velocities of the two positions. Euler: 0.
+    [[nodiscard]] float rateBefore() const {
+        return verlet() && dt_before_ > 0.0F ? 1.0F / dt_before_ : 0.0F;
+    }
     [[nodiscard]] const GlTexture& births() const { return birth_; }
     [[nodiscard]] std::uint32_t textureWidth() const { return width_; }
     [[nodiscard]] std::uint32_t extent() const { return drawn_extent_; }
@@ -189,6 +201,8 @@ class ParticleSystem {
     Forces forces_;
     std::vector<ParticleType> types_{ParticleType{}};
     float sweep_ = 0.0F;
+    AirSettings air_settings_;
+    std::unique_ptr<AirBlock> air_;  // at one place: StepPass points to it
     std::optional<float> ground_;
     float dt_before_ = 0.0F;  // of the last step; 0 before the first
 

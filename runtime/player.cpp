@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <span>
 #include <system_error>
@@ -11,6 +12,7 @@
 
 #include "formats/file_io.h"
 #include "runtime/collider_renderer.h"
+#include "runtime/depth_sort.h"
 #include "runtime/frame.h"
 #include "runtime/particle_renderer.h"
 #include "runtime/ply.h"
@@ -60,9 +62,13 @@ Result<void> checkDumpFolder(const fs::path& dump) {
 /// Everything that draws, made only where frames are wanted.
 class Picture {
   public:
-    static Result<Picture> create(const Scene& scene, const Collider& collider,
+    static Result<Picture> create(const Scene& scene, const LoadedScene& loaded,
                                   const ColliderTextures& textures) {
-        const ColliderView view{&textures, collider.bounds, finestTexel(collider)};
+        float texel = std::numeric_limits<float>::max();
+        for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
+            texel = std::min(texel, scene.colliders[i].pose.scale * finestTexel(loaded.colliders[i]));
+        }
+        const ColliderView view{&textures, loaded.bounds, texel};
         auto frame = Frame::create(scene.render.width, scene.render.height);
         if (!frame) {
             return forward(frame);
@@ -71,7 +77,7 @@ class Picture {
         if (!atlas) {
             return forward(atlas);
         }
-        auto mesh = loadColliderMesh(scene, collider.bounds);
+        auto mesh = loadColliderMesh(scene, loaded.bounds);
         if (!mesh) {
             return forward(mesh);
         }
@@ -85,7 +91,14 @@ class Picture {
         }
         Picture picture{std::move(*frame), std::move(*collider_renderer), std::move(*particle_renderer)};
         picture.scene_ = &scene;
-        picture.bounds_ = collider.bounds;
+        if (scene.render.sort_frames > 0) {
+            auto sorter = DepthSorter::create(scene.capacity);
+            if (!sorter) {
+                return forward(sorter);
+            }
+            picture.sorter_.emplace(std::move(*sorter));
+        }
+        picture.bounds_ = loaded.bounds;
         if (scene.ground.enabled) {
             picture.collider_style_.ground = scene.ground.height;
         }
@@ -97,12 +110,20 @@ class Picture {
     }
 
     /// 3 · width · height bytes sRGB, the top row first.
-    Result<std::vector<std::uint8_t>> draw(const ParticleSystem& particles) {
+    Result<std::vector<std::uint8_t>> draw(const ParticleSystem& particles, StageTimer* stages) {
         const Camera camera = sceneCamera(*scene_, bounds_, particles.time());
+        ParticleOrder order;
+        if (sorter_) {
+            const StageScope scope(stages, Stage::kSort);
+            sorter_->update(particles.positions(), particles.textureWidth(), particles.extent(), camera.eye,
+                            DepthSorter::passesPerFrame(particles.extent(), scene_->render.sort_frames));
+            order = {&sorter_->order(), sorter_->count()};
+        }
+        const StageScope scope(stages, Stage::kDraw);
         if (auto drawn = collider_.draw(camera, collider_style_, frame_.target()); !drawn) {
             return forward(drawn);
         }
-        if (auto drawn = particles_.draw(particles, camera, particle_style_, frame_.target(), nullptr,
+        if (auto drawn = particles_.draw(particles, camera, particle_style_, frame_.target(), order,
                                          &collider_.depth());
             !drawn) {
             return forward(drawn);
@@ -123,6 +144,7 @@ class Picture {
     ParticleRenderer particles_;
     ColliderStyle collider_style_;
     ParticleStyle particle_style_;
+    std::optional<DepthSorter> sorter_;
 };
 
 /// "frame_", 7, ".png" -> folder/frame_0007.png
@@ -147,10 +169,10 @@ double videoRate(const Scene& scene) {
     return std::clamp(1.0 / (static_cast<double>(scene.dt) * scene.render.every), 1.0, 120.0);
 }
 
-Result<void> openOutputs(const PlayerOptions& options, const Scene& scene, const Collider& collider,
+Result<void> openOutputs(const PlayerOptions& options, const Scene& scene, const LoadedScene& loaded,
                          const ColliderTextures& textures, Outputs& outputs) {
     if (!options.frames.empty() || !options.video.empty()) {
-        auto made = Picture::create(scene, collider, textures);
+        auto made = Picture::create(scene, loaded, textures);
         if (!made) {
             return forward(made);
         }
@@ -190,11 +212,7 @@ Result<void> openOutputs(const PlayerOptions& options, const Scene& scene, const
 Result<void> writeFrame(const PlayerOptions& options, const ParticleSystem& particles, Outputs& outputs,
                         PlayerReport& report) {
     if (outputs.picture) {
-        Result<std::vector<std::uint8_t>> rgb;
-        {
-            const StageScope scope(outputs.stages(), Stage::kDraw);
-            rgb = outputs.picture->draw(particles);
-        }
+        const auto rgb = outputs.picture->draw(particles, outputs.stages());
         if (!rgb) {
             return forward(rgb);
         }
@@ -230,7 +248,7 @@ Result<void> writeFrame(const PlayerOptions& options, const ParticleSystem& part
 }
 
 Result<ParticleSystem> makeParticles(const Scene& scene, const ColliderTextures& textures) {
-    auto particles = ParticleSystem::create({.capacity = scene.capacity});
+    auto particles = ParticleSystem::create({.capacity = scene.capacity, .integrator = scene.integrator});
     if (!particles) {
         return particles;
     }
@@ -238,8 +256,23 @@ Result<ParticleSystem> makeParticles(const Scene& scene, const ColliderTextures&
     if (auto done = particles->setColliders(colliders); !done) {
         return forward(done);
     }
-    particles->setForces({*scene.forces.gravity, scene.forces.wind, scene.forces.drag});
+    particles->setForces({*scene.forces.gravity, scene.forces.wind,
+                          scene.air.viscosity ? 0.0F : scene.forces.drag,
+                          scene.air.viscosity.value_or(0.0F)});
     particles->setCollision(scene.collision);
+    if (!scene.types.empty()) {
+        if (auto done = particles->setTypes(scene.types); !done) {
+            return forward(done);
+        }
+    }
+    if (scene.sweep > 0.0F) {
+        if (auto done = particles->setSweep(scene.sweep); !done) {
+            return forward(done);
+        }
+    }
+    if (auto done = particles->setAir(scene.air); !done) {
+        return forward(done);
+    }
     particles->setGround(scene.ground.enabled ? scene.ground.height : std::nullopt);
     return particles;
 }
@@ -254,12 +287,35 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
+std::vector<Pose> posesAt(const Scene& scene, double time) {
+    std::vector<Pose> poses;
+    for (const SceneCollider& collider : scene.colliders) {
+        poses.push_back(poseAt(collider, time));
+    }
+    return poses;
+}
+
+/// The colliders on the GPU: a single one without a pose in its own space, others in the world.
+Result<ColliderTextures> makeTextures(const Scene& scene, std::span<const Collider> colliders) {
+    if (colliders.size() == 1 && !scene.colliders.front().posed) {
+        return ColliderTextures::create(colliders.front());
+    }
+    std::vector<ColliderBody> bodies;
+    for (std::size_t i = 0; i < colliders.size(); ++i) {
+        const SceneCollider& from = scene.colliders[i];
+        bodies.push_back({&colliders[i], poseAt(from, 0.0), from.restitution, from.friction});
+    }
+    return ColliderTextures::create(bodies);
+}
+
 /// The run itself: steps and, between them, frames.
-Result<void> run(const PlayerOptions& options, std::span<Emitter> emitters, ParticleSystem& particles,
-                 Outputs& outputs, PlayerReport& report) {
+Result<void> run(const PlayerOptions& options, std::span<Emitter> emitters, ColliderTextures& textures,
+                 ParticleSystem& particles, Outputs& outputs, PlayerReport& report) {
     const Scene& scene = report.scene;
     const bool has_frames = outputs.picture || !options.dump_frames.empty();
     const std::uint32_t stats_every = options.stats_every.value_or(scene.render.every);
+    const bool moves = std::any_of(scene.colliders.begin(), scene.colliders.end(),
+                                   [](const SceneCollider& c) { return !c.keys.empty(); });
     std::vector<Birth> births;
     std::uint64_t refused = 0;
     Clock::duration spent{};
@@ -280,6 +336,9 @@ Result<void> run(const PlayerOptions& options, std::span<Emitter> emitters, Part
             }
             {
                 const StageScope scope(outputs.stages(), Stage::kStep);
+                if (moves) {
+                    textures.setPoses(posesAt(scene, particles.time() + static_cast<double>(scene.dt)));
+                }
                 particles.step(scene.dt);
             }
             ++step;
@@ -353,7 +412,6 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     if (!loaded) {
         return forward(loaded);
     }
-    const Collider& collider = loaded->collider;
     auto emitters = makeEmitters(loaded->scene.emitters);
     if (!emitters) {
         return forward(emitters);
@@ -369,24 +427,24 @@ Result<PlayerReport> play(const PlayerOptions& options) {
         return forward(context);
     }
     PlayerReport report;
-    report.scene = std::move(loaded->scene);
+    report.scene = loaded->scene;
     report.device = (*context)->description();
-    auto textures = ColliderTextures::create(collider);
+    auto textures = makeTextures(report.scene, loaded->colliders);
     if (!textures) {
         return fail(textures.error().code,
-                    quotedPath(report.scene.collider) + ": " + textures.error().message);
+                    quotedPath(report.scene.colliders.front().path) + ": " + textures.error().message);
     }
-    report.collider_maps = collider.maps.size();
+    report.collider_maps = static_cast<std::size_t>(textures->mapCount());
     report.collider_bytes = textures->bytes();
     auto particles = makeParticles(report.scene, *textures);
     if (!particles) {
         return forward(particles);
     }
     Outputs outputs;
-    if (auto done = openOutputs(options, report.scene, collider, *textures, outputs); !done) {
+    if (auto done = openOutputs(options, report.scene, *loaded, *textures, outputs); !done) {
         return forward(done);
     }
-    if (auto done = run(options, *emitters, *particles, outputs, report); !done) {
+    if (auto done = run(options, *emitters, *textures, *particles, outputs, report); !done) {
         return forward(done);
     }
     if (options.count_collisions || !options.dump.empty()) {

@@ -124,6 +124,17 @@ Json lookJson(const ParticleLook& look) {
     return json;
 }
 
+Json physicsSettings(const ParticleType& type) {
+    static constexpr const char* kOnCollision[] = {"bounce", "stop", "slide", "die"};
+    return {{"mass", shortest(type.mass)},
+            {"radius", shortest(type.radius)},
+            {"restitution", shortest(type.restitution)},
+            {"friction", shortest(type.friction)},
+            {"friction_threshold", shortest(type.friction_threshold)},
+            {"on_collision", kOnCollision[static_cast<std::size_t>(type.on_collision)]},
+            {"lifetime_loss", shortest(type.lifetime_loss)}};
+}
+
 void addPictures(const Scene& scene, Json& json) {
     Json& render = json["render"];
     render["sprite"] = scene.render.sprite == Sprite::kQuad ? "quad" : "point";
@@ -136,8 +147,13 @@ void addPictures(const Scene& scene, Json& json) {
     if (!scene.render.mesh.empty()) {
         render["mesh"] = scene.render.mesh.native();
     }
-    for (const ParticleLook& look : scene.render.looks) {
-        json["type"].push_back(lookJson(look));
+    for (std::size_t i = 0; i < scene.render.looks.size(); ++i) {
+        Json one = lookJson(scene.render.looks[i]);
+        if (!scene.type_names[i].empty()) {
+            one["name"] = scene.type_names[i];
+        }
+        one.update(physicsSettings(scene.types[i]));
+        json["type"].push_back(one);
     }
     if (scene.camera.keys.empty()) {
         return;
@@ -153,10 +169,41 @@ void addPictures(const Scene& scene, Json& json) {
     }
 }
 
+void addPose(const Pose& pose, Json& json) {
+    json["position"] = triple(pose.position);
+    const glm::vec3 axis = glm::axis(pose.rotation);
+    json["axis"] = triple(axis);
+    json["angle"] = shortest(glm::degrees(glm::angle(pose.rotation)));
+}
+
+Json colliderSettings(const SceneCollider& collider) {
+    Json json{{"file", collider.path.native()}};
+    if (!collider.posed) {
+        return json;
+    }
+    addPose(collider.pose, json);
+    json["scale"] = shortest(collider.pose.scale);
+    json["restitution"] = shortest(collider.restitution);
+    json["friction"] = shortest(collider.friction);
+    for (const SceneColliderKey& key : collider.keys) {
+        Json one{{"time", key.time}};
+        addPose(key.pose, one);
+        json["key"].push_back(one);
+    }
+    return json;
+}
+
 Json settings(const Scene& scene) {
     Json json;
-    json["collider"]["file"] = scene.collider.native();
-    json["time"] = {{"dt", shortest(scene.dt)}, {"steps", scene.steps}};
+    for (const SceneCollider& collider : scene.colliders) {
+        json["collider"].push_back(colliderSettings(collider));
+    }
+    if (scene.colliders.size() == 1) {
+        json["collider"] = colliderSettings(scene.colliders.front());
+    }
+    json["time"] = {{"dt", shortest(scene.dt)},
+                    {"steps", scene.steps},
+                    {"integrator", scene.integrator == Integrator::kVerlet ? "verlet" : "euler"}};
     json["particles"] = {{"capacity", scene.capacity}};
     for (const SceneEmitter& emitter : scene.emitters) {
         json["emitter"].push_back(emitterSettings(emitter));
@@ -169,7 +216,8 @@ Json settings(const Scene& scene) {
                       {"drag", shortest(scene.forces.drag)}};
     json["collision"] = {{"restitution", shortest(scene.collision.restitution)},
                          {"friction", shortest(scene.collision.friction)},
-                         {"friction_threshold", shortest(scene.collision.friction_threshold)}};
+                         {"friction_threshold", shortest(scene.collision.friction_threshold)},
+                         {"sweep", shortest(scene.sweep)}};
     json["ground"]["enabled"] = scene.ground.enabled;
     if (scene.ground.enabled) {
         json["ground"]["height"] = shortest(*scene.ground.height);
@@ -182,7 +230,8 @@ Json settings(const Scene& scene) {
                       {"color", triple(scene.render.color)},
                       {"opacity", shortest(scene.render.opacity)},
                       {"background", triple(scene.render.background)},
-                      {"every", scene.render.every}};
+                      {"every", scene.render.every},
+                      {"sort_frames", scene.render.sort_frames}};
     addAirSettings(scene, json);
     addPictures(scene, json);
     return json;

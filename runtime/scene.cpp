@@ -24,25 +24,6 @@ constexpr std::uint64_t kSceneBytesMax = std::uint64_t{1} << 20;
 constexpr double kStepsMax = 1e7;
 constexpr double kPixelsMax = 65535;
 
-void readCollider(SceneTable table, const toml::table& root, const fs::path& folder, Scene& scene) {
-    std::string file;
-    const bool found = table.text("file", file);
-    table.finish();
-    if (!found || file.empty()) {
-        table.failAt(
-            root.get("collider") == nullptr ? toml::source_position{1, 1}
-                                            : root.get("collider")->source().begin,
-            "a scene needs collider.file, the .relief file to collide with; bake one with 'relief bake'");
-    }
-    const toml::node& node = *root.get("collider")->as_table()->get("file");
-    auto inside = resolveInside(folder, file);
-    if (!inside) {
-        table.failAt(node, "collider.file = " + inside.error().message);
-    }
-    scene.collider = std::move(*inside);
-    scene.collider_origin = table.place(node.source().begin);
-}
-
 void readForces(SceneTable table, Scene& scene) {
     auto& forces = scene.forces;
     table.vector("gravity", symmetric(kAccelerationMax), forces.gravity);
@@ -60,6 +41,7 @@ void readCollision(SceneTable table, Scene& scene) {
     table.number("restitution", {0.0, 1.0}, collision.restitution);
     table.number("friction", {0.0, 1.0}, collision.friction);
     table.number("friction_threshold", {0.0, kSpeedMax}, collision.friction_threshold);
+    table.number("sweep", {0.0, kLengthMax}, scene.sweep);
     table.finish();
     if (collision.friction_threshold > 0.0F && collision.friction == 0.0F) {
         table.failUseless("friction_threshold",
@@ -132,7 +114,7 @@ void readRender(SceneTable table, const fs::path& folder, Scene& scene) {
 Scene readScene(const toml::table& root, const fs::path& path, std::string_view file) {
     Scene scene;
     SceneTable top(&root, "", file);
-    SceneTable collider = top.sub("collider");
+    static_cast<void>(top.find("collider"));  // a table or an array: readColliders
     SceneTable time = top.sub("time");
     SceneTable particles = top.sub("particles");
     static_cast<void>(top.find("emitter"));
@@ -145,9 +127,10 @@ Scene readScene(const toml::table& root, const fs::path& path, std::string_view 
     static_cast<void>(top.find("type"));  // an array: readTypes
     top.finish();
 
-    readCollider(collider, root, path.parent_path(), scene);
+    scene.colliders = readColliders(top, file, path.parent_path());
     time.number("dt", {1e-6, 1.0}, scene.dt);
     time.integer("steps", {0.0, kStepsMax}, scene.steps);
+    time.word("integrator", {"euler", "verlet"}, scene.integrator);
     time.finish();
     particles.integer("capacity", {1.0, ParticleSystem::kCapacityMax}, scene.capacity);
     particles.finish();
@@ -169,8 +152,7 @@ Result<Scene> parseScene(std::string_view text, const fs::path& path) {
     try {
         const toml::table root = toml::parse(text, file);
         Scene scene = readScene(root, path, file);
-        // No table names types yet: a name is unknown.
-        if (auto done = resolveEmitterTypes(scene.emitters, {}); !done) {
+        if (auto done = resolveEmitterTypes(scene.emitters, scene.type_names); !done) {
             return forward(done);
         }
         return scene;

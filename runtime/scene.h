@@ -16,6 +16,7 @@
 #include "runtime/flow_file.h"
 #include "runtime/particle_renderer.h"
 #include "runtime/particle_system.h"
+#include "runtime/scene_collider.h"
 #include "runtime/scene_emitter.h"
 
 namespace relief {
@@ -31,12 +32,12 @@ struct SceneCameraKey {
 /// What a scene file says. Where a default depends on the collider's size the value is optional, and
 /// withDefaults() fills it.
 struct Scene {
-    std::filesystem::path collider;  ///< resolved against the scene's folder
-    std::string collider_origin;  ///< "scene.toml:3:8" of that key, for messages; empty without a scene file
+    std::vector<SceneCollider> colliders;  ///< at least one
 
     float dt = 1.0F / 60.0F;  ///< seconds
     std::uint32_t steps = 300;
     std::uint32_t capacity = 65536;
+    Integrator integrator = Integrator::kEuler;
 
     std::vector<SceneEmitter> emitters{SceneEmitter{}};  ///< at least one
 
@@ -50,6 +51,9 @@ struct Scene {
     std::optional<FlowFile> flow;  ///< box in object units
 
     Collision collision{0.0F, 1.0F, 0.0F};
+    float sweep = 0.0F;               ///< as ParticleSystem::setSweep
+    std::vector<ParticleType> types;  ///< of [[type]], in their order; empty: one that [collision] describes
+    std::vector<std::string> type_names;  ///< as many; "" where a type has none
 
     struct {
         bool enabled = true;

@@ -28,18 +28,18 @@ Result<Scene> openScene(const fs::path& input) {
     }
     if (extension == ".relief") {
         Scene scene;
-        scene.collider = input;
+        scene.colliders.resize(1);
+        scene.colliders.front().path = input;
         return scene;
     }
     return fail(ErrorCode::kUsage,
                 quotedPath(input) + " is neither a scene nor a collider; name a .toml or a .relief file");
 }
 
-Result<Collider> openCollider(const Scene& scene) {
-    auto collider = loadCollider(scene.collider);
-    if (!collider && !scene.collider_origin.empty()) {
-        return fail(collider.error().code,
-                    scene.collider_origin + ": collider.file: " + collider.error().message);
+Result<Collider> openCollider(const SceneCollider& from) {
+    auto collider = loadCollider(from.path);
+    if (!collider && !from.origin.empty()) {
+        return fail(collider.error().code, from.origin + ": collider.file: " + collider.error().message);
     }
     return collider;
 }
@@ -68,11 +68,22 @@ Result<LoadedScene> loadAll(const PlayerOptions& options) {
     for (SceneEmitter& emitter : scene->emitters) {
         emitter.seed = options.seed.value_or(emitter.seed);
     }
-    auto collider = openCollider(*scene);
-    if (!collider) {
-        return forward(collider);
+    LoadedScene loaded;
+    for (const SceneCollider& from : scene->colliders) {
+        auto collider = openCollider(from);
+        if (!collider) {
+            return forward(collider);
+        }
+        const bool posed = from.posed || scene->colliders.size() > 1;
+        const Bounds bounds = posed ? worldBounds(from, collider->bounds) : collider->bounds;
+        if (loaded.colliders.empty()) {
+            loaded.bounds = bounds;
+        }
+        loaded.bounds.min = glm::min(loaded.bounds.min, bounds.min);
+        loaded.bounds.max = glm::max(loaded.bounds.max, bounds.max);
+        loaded.colliders.push_back(std::move(*collider));
     }
-    auto complete = withDefaults(std::move(*scene), collider->bounds);
+    auto complete = withDefaults(std::move(*scene), loaded.bounds);
     if (!complete) {
         return fail(complete.error().code, quotedPath(options.input) + ": " + complete.error().message);
     }
@@ -83,7 +94,8 @@ Result<LoadedScene> loadAll(const PlayerOptions& options) {
         }
         complete->air.flow = std::make_shared<const FlowField>(std::move(*flow));
     }
-    return LoadedScene{std::move(*complete), std::move(*collider)};
+    loaded.scene = std::move(*complete);
+    return loaded;
 }
 
 Result<CheckReport> checkScene(const PlayerOptions& options) {
@@ -101,14 +113,16 @@ Result<CheckReport> checkScene(const PlayerOptions& options) {
         return forward(emitters);
     }
     CheckReport report;
-    if (options.input != loaded->scene.collider) {
+    if (options.input != loaded->scene.colliders.front().path) {
         report.files.push_back(checkedFile(options.input, "scene"));
     }
-    report.files.push_back(checkedFile(loaded->scene.collider, "collider"));
+    for (std::size_t i = 0; i < loaded->colliders.size(); ++i) {
+        report.files.push_back(checkedFile(loaded->scene.colliders[i].path, "collider"));
+        report.collider_maps += loaded->colliders[i].maps.size();
+    }
     if (loaded->scene.flow) {
         report.files.push_back(checkedFile(loaded->scene.flow->path, "flow"));
     }
-    report.collider_maps = loaded->collider.maps.size();
     report.steps = loaded->scene.steps;
     report.capacity = loaded->scene.capacity;
     return report;

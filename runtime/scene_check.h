@@ -15,8 +15,9 @@ namespace relief {
 
 /// A scene and what it names, read and complete.
 struct LoadedScene {
-    Scene scene;  ///< overridden by the options, every default filled in
-    Collider collider;
+    Scene scene;                      ///< overridden by the options, every default filled in
+    std::vector<Collider> colliders;  ///< those of the scene, in its order
+    Bounds bounds;                    ///< of what they occupy in the course of time, in the particles' space
 };
 
 /// Reads options.input, a scene or a collider, and the files that it names. Needs no context.

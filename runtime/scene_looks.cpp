@@ -152,7 +152,23 @@ void readTypes(SceneTable& top, std::string_view file, Scene& scene) {
         SceneTable table(one, "type", file);
         ParticleLook look;
         readLook(table, cells, look);
+        ParticleType type;
+        type.restitution = scene.collision.restitution;
+        type.friction = scene.collision.friction;
+        type.friction_threshold = scene.collision.friction_threshold;
+        readPhysics(table, type);
+        std::string name;
+        if (table.text("name", name)) {
+            const bool taken =
+                std::find(scene.type_names.begin(), scene.type_names.end(), name) != scene.type_names.end();
+            if (name.empty() || taken) {
+                table.failAt(*table.find("name"),
+                             "type.name is " + std::string(taken ? "taken; choose another" : "empty"));
+            }
+        }
         table.finish();
+        scene.types.push_back(type);
+        scene.type_names.push_back(std::move(name));
         cell = cell || look.cell_first.has_value();
         scene.render.looks.push_back(std::move(look));
     }

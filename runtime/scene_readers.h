@@ -25,12 +25,22 @@ void readViscosity(SceneTable& forces, Scene& scene);
 [[nodiscard]] std::vector<SceneEmitter> readEmitters(SceneTable& top, std::string_view file,
                                                      const std::filesystem::path& folder,
                                                      std::uint32_t capacity);
+// scene_collider_reader.cpp
+
+/// [collider], or [[collider]] as often as wanted.
+/// \param folder  of the scene.
+[[nodiscard]] std::vector<SceneCollider> readColliders(SceneTable& top, std::string_view file,
+                                                       const std::filesystem::path& folder);
+/// What a [[type]] says of its motion: mass, radius, restitution, friction, friction_threshold, on_collision,
+/// lifetime_loss. Leaves finish() to the caller. \param type  holds the defaults.
+void readPhysics(SceneTable& table, ParticleType& type);
+
 // scene_looks.cpp
 
 /// What a [[type]] says of its look: size, color, opacity, rotation, turn, spin, cell, lit, fade. Leaves
 /// finish() to the caller. \param cells  of the atlas; 0: there is none.
 void readLook(SceneTable& table, std::uint32_t cells, ParticleLook& look);
-/// [[type]]. After [render].
+/// [[type]]. After [render] and [collision].
 void readTypes(SceneTable& top, std::string_view file, Scene& scene);
 /// What [render] says of sprites and of the collider's mesh.
 void readSprites(SceneTable& render, const std::filesystem::path& folder, Scene& scene);

@@ -101,7 +101,8 @@ bool Statistics::request(const ParticleSystem& particles, std::uint64_t tag) {
     glUniform1i(state_extent_, static_cast<GLint>(particles.extent()));
     glUniform2i(state_size_, static_cast<GLint>(width), static_cast<GLint>(height));
     useTexture(kCountsUnit, particles.positions());
-    useTexture(kSumsUnit, particles.velocities());
+    useTexture(kSumsUnit, particles.secondState());
+    glUniform1f(glGetUniformLocation(state_program_.name(), "u_rate_before"), particles.rateBefore());
     glBindVertexArray(no_attributes_.name());
     // Only the rows that hold particles: with few of them the single texel is reached early.
     for (std::size_t i = 0;; ++i) {

@@ -20,6 +20,9 @@ Result<StepPass> StepPass::create(const StepFeatures& features) {
     defineIf(features.verlet, "RELIEF_VERLET");
     defineIf(features.sweep, "RELIEF_SWEEP " + std::to_string(kSweepPieces));
     defineIf(features.radius, "RELIEF_RADIUS");
+    if (features.air != nullptr) {
+        defines += features.air->defines();
+    }
     auto program = features.collider != nullptr
                        ? makeProgram("quad.vert", "step.frag", defines + features.collider->defines())
                        : makeProgram("quad.vert", "step_free.frag", defines);
@@ -38,6 +41,7 @@ Result<StepPass> StepPass::create(const StepFeatures& features) {
     pass.still_ = at("u_still");
     pass.ground_ = at("u_ground");
     pass.sweep_ = at("u_sweep");
+    pass.air_time_ = at("u_air_time");
     pass.types_ = at("u_types");
     glUseProgram(pass.program_.name());
     glUniform1i(at("u_position"), kPositionUnit);
@@ -46,6 +50,9 @@ Result<StepPass> StepPass::create(const StepFeatures& features) {
     if (features.collider != nullptr) {
         features.collider->attach(pass.program_, kColliderBinding);
     }
+    if (features.air != nullptr) {
+        features.air->attach(pass.program_, kAirBinding);
+    }
     return pass;
 }
 
@@ -53,6 +60,9 @@ void StepPass::use(const Values& values) const {
     glUseProgram(program_.name());
     if (features_.collider != nullptr) {
         features_.collider->bind(kColliderBinding);
+    }
+    if (features_.air != nullptr) {
+        features_.air->bind(kAirBinding);
     }
     const Forces& forces = values.forces;
     glUniform1f(now_, values.now);
@@ -63,6 +73,7 @@ void StepPass::use(const Values& values) const {
     glUniform1f(still_, 1e-3F * values.dt * glm::length(forces.gravity));
     glUniform1f(ground_, values.ground);
     glUniform1f(sweep_, values.sweep);
+    glUniform1f(air_time_, values.air_time);
     std::array<float, 8 * kParticleTypesMax> types{};
     for (std::size_t i = 0; i < values.types.size(); ++i) {
         const ParticleType& type = values.types[i];

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "formats/result.h"
+#include "runtime/air_block.h"
 #include "runtime/collider_textures.h"
 #include "runtime/gl_object.h"
 #include "runtime/particle_type.h"
@@ -24,6 +25,7 @@ struct Forces {
 /// What the program is made for. A change of any of these needs another one.
 struct StepFeatures {
     const ColliderTextures* collider = nullptr;  ///< null: nothing solid but the floor
+    const AirBlock* air = nullptr;               ///< null: still, but for the wind of Forces
     bool verlet = false;
     bool sweep = false;
     bool radius = false;  ///< some type has a radius
@@ -41,6 +43,7 @@ class StepPass {
     static constexpr int kVelocityUnit = 1;  ///< with verlet: the position before
     static constexpr int kBirthUnit = 2;
     static constexpr ColliderTextures::Binding kColliderBinding{3, 0};
+    static constexpr AirBlock::Binding kAirBinding{6, 1};
 
     struct Values {
         float now = 0.0F;  ///< seconds on the GPU's clock, at the end of the step
@@ -48,6 +51,7 @@ class StepPass {
         float dt_before = 0.0F;  ///< verlet alone
         float ground = 0.0F;
         float sweep = 0.0F;
+        float air_time = 0.0F;  ///< as airTime() gives it
         Forces forces;
         std::span<const ParticleType> types;
     };
@@ -64,7 +68,7 @@ class StepPass {
     StepFeatures features_;
     GlProgram program_;
     GLint now_ = -1, dt_ = -1, rate_before_ = -1, gravity_ = -1, wind_ = -1, still_ = -1, ground_ = -1,
-          sweep_ = -1, types_ = -1;
+          sweep_ = -1, air_time_ = -1, types_ = -1;
 };
 
 }  // namespace relief

@@ -10,7 +10,7 @@
 
 uniform highp sampler2D u_position;
 uniform highp sampler2D u_birth;
-uniform highp sampler2D u_order;  // the index of the i-th sprite, row by row
+uniform highp usampler2D u_order;  // row by row: the index of the i-th sprite; 0 where there is none
 uniform bool u_ordered;
 uniform int u_width;
 uniform int u_extent;
@@ -62,7 +62,8 @@ void main() {
 #endif
     if (u_ordered) {
         int width = textureSize(u_order, 0).x;
-        index = int(floor(texelFetch(u_order, ivec2(index % width, index / width), 0).x + 0.5));
+        uvec4 rank = texelFetch(u_order, ivec2(index % width, index / width), 0);
+        index = rank.y != 0u ? int(min(rank.x, 2147483647u)) : -1;
     }
     if (index < 0 || index >= u_extent) {
         nothing();

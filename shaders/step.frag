@@ -1,5 +1,6 @@
 // A step among the floor and colliders.
 //!include collider.glsl
+//!include air.glsl
 //!include step.glsl
 
 #if RELIEF_BODIES == 0

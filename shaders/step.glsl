@@ -28,6 +28,9 @@ uniform float u_dt;       // seconds
 uniform vec3 u_gravity;   // world units a second squared
 uniform vec3 u_wind;      // velocity of the air, world units a second
 uniform float u_still;    // at or below this speed what is in contact rests: a thousandth of what gravity gives in a step
+#if defined(RELIEF_HAS_AIR)
+uniform float u_air_time; // seconds, as airTime() gives them
+#endif
 uniform float u_ground;   // height of the floor; far below everything if there is none
 #if defined(RELIEF_SWEEP)
 uniform float u_sweep;    // the longest way between two tests, world units
@@ -142,9 +145,9 @@ void main() {
     vec3 v_begin = v;
     vec3 acceleration = u_gravity;
     vec3 air = u_wind;
-#if defined(RELIEF_AIR)
-    acceleration += fieldAcceleration(p, v, u_now);
-    air += airVelocity(p, u_now);
+#if defined(RELIEF_HAS_AIR)
+    acceleration += fieldAcceleration(p, v, u_air_time);
+    air += airVelocity(p, u_air_time);
 #endif
     v = (v + u_dt * (acceleration + type_b.x * air)) * (1.0 / (1.0 + u_dt * type_b.x));
 

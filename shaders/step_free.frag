@@ -1,4 +1,5 @@
 // A step with nothing solid but the floor.
+//!include air.glsl
 //!include step.glsl
 
 Solid solid(vec3 p, float radius) {

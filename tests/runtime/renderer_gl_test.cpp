@@ -428,7 +428,7 @@ TEST_P(RendererGlTest, TheCallersStateIsKeptAndDoesNoHarm) {
         quads.atlas = &*atlas;
         quads.looks.resize(1);
         quads.looks[0].cell_first = 0;
-        EXPECT_TRUE(points->draw(*particles, camera_, quads, frame->target(), nullptr, &renderer->depth()));
+        EXPECT_TRUE(points->draw(*particles, camera_, quads, frame->target(), {}, &renderer->depth()));
         check("ParticleRenderer::draw, quads");
         const auto mesh = ColliderMesh::create(
             {{{-0.5F, 0.5F, 0.5F}, {-0.2F, 0.5F, 0.5F}, {-0.3F, 0.9F, 0.5F}}, {}, {0, 1, 2}});

@@ -84,8 +84,8 @@ TEST(SceneEmitter, ShapesSayWhatTheyNeedAndWhatDoesNothing) {
     expectError("shape = \"disc\"\ncenter = [0, 0, 0]\nradius = 1\nnormal = [0, 0, 0]\n",
                 "7:10: ", "points nowhere");
     expectError("shape = \"sphere\"\ncenter = [0, 0, 0]\nradius = -1\n", "6:10: ", "out of range");
-    expectError("points = \"\"\n", "4:10: ", "name a file");
-    expectError("points = \"a\\u0000\"\n", "4:10: ", "name a file");
+    expectError("points = \"\"\n", "4:10: ", "names no file");
+    expectError("points = \"a\\u0000\"\n", "4:10: ", "zero byte");
     expectError("points = [1]\n", "4:10: ", "a string");
 }
 

@@ -78,7 +78,7 @@ TEST(SceneLooks, Mistakes) {
     expectError("[render]\nsprite = \"quads\"\n", "4:10", "did you mean 'quad'?");
     expectError("[render]\nblend = \"over\"\n", "4:9", "choose one of");
     expectError("[render]\nsoft = -1\n", "4:8", "out of range");
-    expectError("[render]\nmesh = \"\"\n", "4:8", "render.mesh is empty");
+    expectError("[render]\nmesh = \"\"\n", "4:8", "names no file");
     expectError("[render]\natlas = 3\n", "4:9", "must be a string");
     expectError("[render]\natlas_cells = [1, 1]\n", "4:15", "does nothing without render.atlas");
     expectError("[render]\natlas = \"a.png\"\natlas_cells = [0, 1]\n[[type]]\ncell = 0\n", "5:16",

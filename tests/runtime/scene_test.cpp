@@ -44,8 +44,8 @@ Bounds unitBounds() {
 
 TEST(Scene, DefaultsAreThoseOfTheReadme) {
     const Scene scene = good("");
-    EXPECT_EQ(scene.collider, std::filesystem::path("dir/a.relief"));
-    EXPECT_EQ(scene.collider_origin, "dir/scene.toml:2:8");
+    EXPECT_EQ(scene.colliders.at(0).path, std::filesystem::path("dir/a.relief"));
+    EXPECT_EQ(scene.colliders.at(0).origin, "dir/scene.toml:2:8");
     EXPECT_EQ(scene.dt, 1.0F / 60.0F);
     EXPECT_EQ(scene.steps, 300U);
     EXPECT_EQ(scene.capacity, 65536U);
@@ -307,9 +307,10 @@ TEST(Scene, ColliderIsNeeded) {
 }
 
 TEST(Scene, PathsResolveAgainstTheScenesFolder) {
-    EXPECT_EQ(parseScene(kHead, "scene.toml")->collider, std::filesystem::path("a.relief"));
-    EXPECT_EQ(parseScene(kHead, "/x/y/scene.toml")->collider, std::filesystem::path("/x/y/a.relief"));
-    EXPECT_EQ(parseScene("[collider]\nfile = \"b/../a.relief\"\n", "/x/scene.toml")->collider,
+    EXPECT_EQ(parseScene(kHead, "scene.toml")->colliders.at(0).path, std::filesystem::path("a.relief"));
+    EXPECT_EQ(parseScene(kHead, "/x/y/scene.toml")->colliders.at(0).path,
+              std::filesystem::path("/x/y/a.relief"));
+    EXPECT_EQ(parseScene("[collider]\nfile = \"b/../a.relief\"\n", "/x/scene.toml")->colliders.at(0).path,
               std::filesystem::path("/x/b/../a.relief"));
 }
 
@@ -370,7 +371,7 @@ TEST(Scene, MissingAndOversizedFiles) {
 TEST(Scene, TheSampleIsGoodAndSetsWhatItSays) {
     const auto scene = loadScene(RELIEF_SOURCE_DIR "/samples/bunny_in_the_snow.toml");
     ASSERT_TRUE(scene) << scene.error().message;
-    EXPECT_EQ(scene->collider.filename(), "bunny.relief");
+    EXPECT_EQ(scene->colliders.at(0).path.filename(), "bunny.relief");
     EXPECT_EQ(scene->steps, 300U);
 }
 

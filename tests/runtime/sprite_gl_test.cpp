@@ -75,6 +75,7 @@ class SpriteGlTest : public GlTest {
         return out;
     }
     void draw(const GlTexture* order = nullptr, const GlTexture* behind = nullptr) {
+        const ParticleOrder ranks{order, order_count_};
         glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
         const std::array<GLfloat, 4> black{};
         const GLfloat far = 1.0F;
@@ -82,7 +83,7 @@ class SpriteGlTest : public GlTest {
         glClearBufferfv(GL_DEPTH, 0, &far);
         glBindFramebuffer(GL_FRAMEBUFFER, 0);
         const auto drawn =
-            renderer_->draw(*particles_, camera_, style_, {framebuffer_.name(), kSide, kSide}, order, behind);
+            renderer_->draw(*particles_, camera_, style_, {framebuffer_.name(), kSide, kSide}, ranks, behind);
         ASSERT_TRUE(drawn) << drawn.error().message;
         auto pixels = readTextureFloats(color_, kSide, kSide);
         ASSERT_TRUE(pixels) << pixels.error().message;
@@ -93,15 +94,19 @@ class SpriteGlTest : public GlTest {
         const std::size_t at = 4 * (static_cast<std::size_t>(y) * kSide + static_cast<std::size_t>(x));
         return {pixels_[at], pixels_[at + 1], pixels_[at + 2], pixels_[at + 3]};
     }
-    [[nodiscard]] static GlTexture orderTexture(std::vector<float> order) {
-        std::vector<float> texels;
-        for (const float index : order) {
-            texels.insert(texels.end(), {index, 7.0F, 7.0F, 7.0F});
+    /// Of as many ranks as will be drawn; below 0: nothing there.
+    [[nodiscard]] GlTexture orderTexture(const std::vector<int>& order) {
+        std::vector<std::uint32_t> texels;
+        for (const int index : order) {
+            texels.push_back(static_cast<std::uint32_t>(std::max(index, 0)));
+            texels.push_back(index < 0 ? 0U : 7U);
         }
+        order_count_ = static_cast<std::uint32_t>(order.size());
         // Two in a row, so that rows are taken as well.
-        return makeTexture2D(GL_RGBA32F, 2, static_cast<GLsizei>(order.size() / 2), GL_RGBA, GL_FLOAT,
-                             texels.data());
+        return makeTexture2D(GL_RG32UI, 2, static_cast<GLsizei>(order.size() / 2), GL_RG_INTEGER,
+                             GL_UNSIGNED_INT, texels.data());
     }
+    std::uint32_t order_count_ = 0;
     /// Two cells of 2 × 2: grey, and
     ///     red  green
     ///     blue clear
@@ -264,12 +269,12 @@ TEST_P(SpriteGlTest, AdditiveSumsInAnyOrder) {
     style_.blend = Blend::kAdditive;
     float sum = 0.0F;
     std::vector<std::uint32_t> types;
-    std::vector<float> reversed;
+    std::vector<int> reversed;
     for (std::uint32_t i = 0; i < 8; ++i) {
         const float opacity = static_cast<float>(i + 1) / 64.0F;
         style_.looks.push_back(look(glm::vec3(1.0F), opacity, 0.5F + 0.1F * static_cast<float>(i)));
         types.push_back(i);
-        reversed.push_back(static_cast<float>(7 - i));
+        reversed.push_back(7 - static_cast<int>(i));
         sum += opacity;
     }
     spawn(types, 1.0F);
