@@ -100,18 +100,6 @@ std::function<Result<void>(ParticleSystem&, const BenchScene&)> sweepOf(float sh
     };
 }
 
-// LEAD: the air's variants run as soon as ParticleSystem has a setAir that takes AirSettings and returns a
-// Result<void>; until then makeAir says kUnsupported and the JSON has its message. Once it is there, call it
-// plainly and drop this template.
-template <class System>
-Result<void> applyAir(System& particles, const AirSettings& air) {
-    if constexpr (requires { Result<void>(particles.setAir(air)); }) {
-        return particles.setAir(air);
-    } else {
-        return fail(ErrorCode::kUnsupported, "not measured: particle systems do not take air yet");
-    }
-}
-
 /// A swirl on 32³ nodes.
 AirSettings flowAir(const BenchScene& scene) {
     constexpr std::uint32_t kNodes = 32;
@@ -152,9 +140,8 @@ AirSettings attractorAir(const BenchScene& scene) {
 
 std::function<Result<void>(ParticleSystem&, const BenchScene&)> airOf(
     AirSettings (*make)(const BenchScene&)) {
-    return [make](ParticleSystem& particles, const BenchScene& scene) {
-        return applyAir(particles, make(scene));
-    };
+    return
+        [make](ParticleSystem& particles, const BenchScene& scene) { return particles.setAir(make(scene)); };
 }
 
 /// The collider, and `set` on top.
