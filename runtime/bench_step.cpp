@@ -3,13 +3,17 @@
 //
 // A block is some steps between two glFinish. Before each all particles are born anew, so that blocks
 // are alike; births and the first step are not timed. Blocks of all variants take turns, and a ratio is the
-// median of the ratios within each turn: other work on the machine meets both sides of it. `call_ms` is how
-// long the calls took of that: where it is nearly the whole, a GPU waited for the CPU (which llvmpipe is).
+// median of the ratios within each turn: other work on the machine meets both sides of it. With llvmpipe
+// ratios are of the process's CPU time, which that other work hardly changes; else of the time by the clock
+// on the wall. `call_ms` is how long the calls took of that: where it is nearly the whole, a GPU waited for
+// the CPU (which llvmpipe is).
 //
 // `copy` is a draw that only copies the two state textures: it reads and writes 32 bytes a particle; a step
 // reads the 16 of the birth texture besides.
 //
 // Sizes suit llvmpipe where that is the renderer, unless --large asks for a GPU's.
+#include <time.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -44,6 +48,7 @@ constexpr GLsizei kPictureWidth = 1280;
 constexpr GLsizei kPictureHeight = 720;
 
 struct Sizes {
+    bool software;
     std::uint32_t particles;            // of the step
     int steps;                          // of a block, kBenchStepsMost at most
     int rounds;                         // blocks of each variant
@@ -55,9 +60,10 @@ struct Sizes {
 Sizes sizesFor(bool software, bool large) {
     const std::vector<std::uint32_t> all{1U << 16, 1U << 18, 1U << 20, 1U << 22};
     if (software) {
-        return large ? Sizes{1U << 20, 4, 5, all, 1, 3} : Sizes{1U << 17, 8, 5, {1U << 16, 1U << 18}, 2, 3};
+        return large ? Sizes{true, 1U << 20, 4, 5, all, 1, 3}
+                     : Sizes{true, 1U << 17, 4, 5, {1U << 16, 1U << 18}, 1, 3};
     }
-    return {1U << 20, relief::kBenchStepsMost, 11, all, relief::kBenchStepsMost, 7};
+    return {false, 1U << 20, relief::kBenchStepsMost, 11, all, relief::kBenchStepsMost, 7};
 }
 
 double median(std::vector<double> values) {
@@ -66,16 +72,24 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
+double cpuMilliseconds() {
+    timespec t{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
+}
+
 /// Milliseconds of each block, a step of it.
 struct Times {
     std::vector<double> all;
     std::vector<double> calls;
+    std::vector<double> cpu;  // of all threads
 
     void measure(int steps, const std::function<void()>& step) {
         const auto per_step = [steps](Clock::duration time) {
             return std::chrono::duration<double, std::milli>(time).count() / steps;
         };
         glFinish();
+        const double cpu_begun = cpuMilliseconds();
         const Clock::time_point begun = Clock::now();
         for (int i = 0; i < steps; ++i) {
             step();
@@ -83,13 +97,16 @@ struct Times {
         calls.push_back(per_step(Clock::now() - begun));
         glFinish();
         all.push_back(per_step(Clock::now() - begun));
+        cpu.push_back((cpuMilliseconds() - cpu_begun) / steps);
     }
 };
 
-Json ratio(const Times& times, const Times& base) {
+Json ratio(const Times& times, const Times& base, bool software) {
+    const std::vector<double>& above = software ? times.cpu : times.all;
+    const std::vector<double>& below = software ? base.cpu : base.all;
     std::vector<double> ratios;
-    for (std::size_t i = 0; i < times.all.size(); ++i) {
-        ratios.push_back(times.all[i] / base.all[i]);
+    for (std::size_t i = 0; i < above.size(); ++i) {
+        ratios.push_back(above[i] / below[i]);
     }
     return {{"median", median(ratios)},
             {"least", *std::min_element(ratios.begin(), ratios.end())},
@@ -212,13 +229,15 @@ Result<void> benchSteps(const BenchScene& scene, const Sizes& sizes, Json& json)
     json["steps"] = {{"particles", sizes.particles}, {"block", sizes.steps}, {"blocks", sizes.rounds}};
     json["copy"] = {{"ms", median(copied.all)},
                     {"call_ms", median(copied.calls)},
-                    {"step_over_copy", ratio(timesOf("no_collider"), copied)}};
+                    {"cpu_ms", median(copied.cpu)},
+                    {"step_over_copy", ratio(timesOf("no_collider"), copied, sizes.software)}};
     for (std::size_t i = 0; i < variants.size(); ++i) {
         json["variants"].push_back({{"name", variants[i].name},
                                     {"what", variants[i].what},
                                     {"ms", median(times[i].all)},
                                     {"call_ms", median(times[i].calls)},
-                                    {"over_collider", ratio(times[i], timesOf("collider"))},
+                                    {"cpu_ms", median(times[i].cpu)},
+                                    {"over_collider", ratio(times[i], timesOf("collider"), sizes.software)},
                                     {"touching", touch[i]}});
     }
     return {};
@@ -318,6 +337,7 @@ int main(int argc, char** argv) {
     json["device"] = (*context)->description();
     json["renderer"] = renderer;
     json["software"] = software;
+    json["ratios_of"] = software ? "CPU time" : "wall clock";
     json["collider"] = {{"maps", collider->maps.size()}};
     if (const auto done = benchSteps(relief::makeBenchScene(*collider, sizes.particles), sizes, json);
         !done) {
