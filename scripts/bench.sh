@@ -67,7 +67,7 @@ def near(name, steps):
     data = open(f'{work}/end.ply', 'rb').read()
     data = data[data.index(b'end_header\n') + 11:]
     with open(f'{work}/points.csv', 'w') as out:
-        out.writelines('%.9g,%.9g,%.9g\n' % p[:3] for p in struct.iter_unpack('<8fI', data))
+        out.writelines('%.9g,%.9g,%.9g\n' % p[:3] for p in struct.iter_unpack('<8f2I', data))
     subprocess.run([f'{bin}/relief', 'query', f'{work}/planned.relief', '--points', f'{work}/points.csv',
                     '-o', f'{work}/field.csv'], check=True)
     with open(f'{work}/field.csv') as file:
