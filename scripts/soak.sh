@@ -2,7 +2,7 @@
 # Long runs, for a night and not for CI: scripts/soak.sh [sweep|rest]… (both). Ends with 0 if all hold.
 #
 #   sweep   a million particles take a thousand swept steps in a closed hollow box, and none gets out; without the
-#           sweep most do. In OpenGL 3.3 and in OpenGL ES 3.0. Hours on llvmpipe.
+#           sweep most do. In OpenGL 3.3 and in OpenGL ES 3.0. An hour or so on llvmpipe.
 #   rest    snow falls on the bunny: after it has come to rest, no bit of a position changes from step 5,000 to step
 #           100,000 (RELIEF_SOAK_SETTLED and RELIEF_SOAK_STEPS say others).
 set -euo pipefail
