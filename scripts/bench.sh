@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
 # Prints the ratios that Relief promises, each from one run on this machine: scripts/bench.sh [MESH]
 # Nothing here is a test: machines are shared and noisy. Medians; run it twice before you believe a change.
+# RELIEF_BENCH_LARGE=1 takes the sizes meant for a GPU (a million particles and more) where there is none.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/setup.sh
 mesh=${1:-/usr/share/glmark2/models/bunny.obj}
-bin=$(scripts/build.sh release relief relief-sim relief-bench-raycast)
+bin=$(scripts/build.sh release relief relief-sim relief-bench-raycast relief-bench-step relief-bench-sort \
+    relief-bench-births)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -65,7 +67,7 @@ def near(name, steps):
     data = open(f'{work}/end.ply', 'rb').read()
     data = data[data.index(b'end_header\n') + 11:]
     with open(f'{work}/points.csv', 'w') as out:
-        out.writelines('%.9g,%.9g,%.9g\n' % p[:3] for p in struct.iter_unpack('<8fI', data))
+        out.writelines('%.9g,%.9g,%.9g\n' % p[:3] for p in struct.iter_unpack('<8f2I', data))
     subprocess.run([f'{bin}/relief', 'query', f'{work}/planned.relief', '--points', f'{work}/points.csv',
                     '-o', f'{work}/field.csv'], check=True)
     with open(f'{work}/field.csv') as file:
@@ -85,4 +87,43 @@ for name, reports in runs.items():
           f"{100 * near(name, STEPS):.0f} % at last; {particles['collisions'] / COUNT / STEPS:.2f} contacts a step")
 print(f"planned / paper                                    {step['planned'] / step['paper']:.2f}   "
       f"(at most 2 on llvmpipe, 1 on a GPU)")
+P
+
+# The runtime: what a step costs, feature by feature; pictures; the depth sort; births.
+large=${RELIEF_BENCH_LARGE:-0}
+[ "$large" = 1 ] && large_option=--large || large_option=
+"$bin/relief-bench-step" "$work/planned.relief" $large_option >"$work/step.json"
+"$bin/relief-bench-sort" >"$work/sort.json"
+capacities=(16667)
+if [ "$large" != 1 ] && grep -q '"software": true' "$work/step.json"; then
+    capacities+=(65536 262144)
+fi
+"$bin/relief-bench-births" "${capacities[@]}" >"$work/births.json"
+python3 - "$work" <<'P'
+import json, sys
+work = sys.argv[1]
+step, sort, births = (json.load(open(f'{work}/{name}.json')) for name in ('step', 'sort', 'births'))
+
+steps, copy = step['steps'], step['copy']
+print(f"\nstep of {steps['particles']} particles, medians of {steps['blocks']} blocks of {steps['block']} in turns, "
+      f"on {step['renderer']}; ratios of {step['ratios_of']}")
+ratio = copy['step_over_copy']
+print(f"  {'bare copy':20s} {copy['ms']:8.3f} ms")
+for v in step['variants']:
+    r, t = v['over_collider'], v['touching']
+    print(f"  {v['name']:20s} {v['ms']:8.3f} ms, {r['median']:5.2f} of collider ({r['least']:.2f} to {r['most']:.2f}); "
+          f"{100 * t['in_contact'] / t['alive']:3.0f} % touch, {t['contacts_a_step']:.2f} contacts a step: {v['what']}")
+print(f"step without collider / bare copy                  {ratio['median']:.2f}   "
+      f"({ratio['least']:.2f} to {ratio['most']:.2f})")
+for f in step['frames']:
+    size = 'x'.join(map(str, f['picture']))
+    print(f"frame of {f['particles']:7d} particles, {size}: step {f['step_ms']:.2f} ms, "
+          f"with points {f['points_ms']:.2f} ms, with quads {f['quads_ms']:.2f} ms")
+for s in sort['sorts']:
+    print(f"sort of {s['particles']:8d} particles: {s['passes_per_ms']:.3f} passes/ms, "
+          f"{s['frame_ms_over_30']:.2f} ms a frame over 30 frames")
+for c in births['capacities']:
+    b = c['births_per_ms']
+    print(f"births, capacity {c['capacity']:8d}: {b['emit']:.0f} sampled, {b['spawn']:.0f} placed, "
+          f"{b['draw']:.0f} drawn per ms; {c['bookkeeping']['ns_per_death']:.0f} ns a death")
 P
