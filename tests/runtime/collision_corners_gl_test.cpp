@@ -136,6 +136,35 @@ TEST_P(CollisionCornersGlTest, AMovingWallPushesWhatIsSwept) {
     }
 }
 
+// What stopped on a body that is taken away stays where it is.
+TEST_P(CollisionCornersGlTest, WhatStoppedOnABodyThatIsGoneStays) {
+    const Collider box = boxCollider();
+    make({.capacity = 4});
+    std::vector<ColliderBody> bodies;
+    for (int i = 0; i < 8; ++i) {
+        bodies.push_back(
+            {&box, {{static_cast<float>(i), 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F, 0.0F}, 1.0F}, 1.0F, 0.0F});
+    }
+    collideWith(ColliderTextures::create(bodies));
+    ParticleType type;
+    type.on_collision = OnCollision::kStop;
+    setType(type);
+    spawnOne({{7.1F, 0.25F, 0.0F}, {0.0F, -1.0F, 0.0F}, 100.0F, 0});
+    for (int step = 0; step < 10; ++step) {
+        particles_->step(kDt);
+    }
+    const ParticleState stopped = state().at(0);
+    ASSERT_EQ(stopped.contact, Contact::kStopped);
+    ASSERT_GT(stopped.position.x, 7.0F);
+    const auto old = std::move(textures_);
+    collideWith(ColliderTextures::create(std::span(bodies).first(2)));
+    for (int step = 0; step < 10; ++step) {
+        particles_->step(kDt);
+    }
+    EXPECT_LT(glm::length(state().at(0).position - stopped.position), 1e-5F);
+    EXPECT_EQ(state().at(0).velocity, glm::vec3(0.0F));
+}
+
 // Births, deaths of all kinds and a clock that is set back, in rows that come and go: both integrators keep
 // the same particles at the same places.
 TEST_P(CollisionCornersGlTest, VerletKeepsTheBooksOfEuler) {
