@@ -165,6 +165,27 @@ TEST_P(CollisionCornersGlTest, WhatStoppedOnABodyThatIsGoneStays) {
     EXPECT_EQ(state().at(0).velocity, glm::vec3(0.0F));
 }
 
+// The age of a birth counts in the air that the step has, whose wind takes the place of the forces' own.
+TEST_P(CollisionCornersGlTest, WhatHasAnAgeHasMovedInTheAirsWind) {
+    for (const bool with_air : {false, true}) {
+        make({.capacity = 4});
+        particles_->setForces(
+            {{}, with_air ? glm::vec3(0.0F, 9.0F, 0.0F) : glm::vec3(2.0F, 0.0F, 0.0F), 3.0F});
+        if (with_air) {
+            AirSettings air;
+            air.wind = {2.0F, 0.0F, 0.0F};
+            ASSERT_TRUE(particles_->setAir(air));
+        }
+        spawnOne({{}, {}, 100.0F, 0, 0.25F});
+        particles_->step(0.25F);
+        // v' = (v + t k w) / (1 + t k) for the age, then for the step.
+        const float first = 0.25F * 3.0F * 2.0F / 1.75F;
+        const ParticleState particle = state().at(0);
+        EXPECT_NEAR(particle.velocity.x, (first + 1.5F) / 1.75F, 1e-5F) << with_air;
+        EXPECT_NEAR(particle.velocity.y, 0.0F, 1e-6F) << with_air;
+    }
+}
+
 // Births, deaths of all kinds and a clock that is set back, in rows that come and go: both integrators keep
 // the same particles at the same places.
 TEST_P(CollisionCornersGlTest, VerletKeepsTheBooksOfEuler) {
