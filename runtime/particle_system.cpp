@@ -206,13 +206,19 @@ Result<void> ParticleSystem::setAir(const AirSettings& air) {
     if (!block) {
         return forward(block);
     }
-    air_settings_ = air;
+    std::unique_ptr<AirBlock> old = std::move(air_);
     air_ = block->defines().empty() ? nullptr : std::make_unique<AirBlock>(std::move(*block));
-    return remakeStep(step_.features().collider);
+    if (auto done = remakeStep(step_.features().collider); !done) {
+        air_ = std::move(old);  // the step that there is points to it
+        return done;
+    }
+    air_settings_ = air;
+    return {};
 }
 
 std::size_t ParticleSystem::spawn(std::span<const Birth> births) {
     const float now = clock();
+    const glm::vec3 wind = air_ ? air_settings_.wind : forces_.wind;
     std::size_t accepted = 0;
     for (const Birth& birth : births) {
         const std::optional<std::uint32_t> index = allocator_.acquire();
@@ -223,7 +229,7 @@ std::size_t ParticleSystem::spawn(std::span<const Birth> births) {
         const float death = born + birth.lifetime;
         // What the step does in free flight, for as long as it has lived.
         const float drag = dragRate(forces_, types_[std::min<std::size_t>(birth.type, types_.size() - 1)]);
-        const glm::vec3 velocity = (birth.velocity + birth.age * (forces_.gravity + drag * forces_.wind)) *
+        const glm::vec3 velocity = (birth.velocity + birth.age * (forces_.gravity + drag * wind)) *
                                    (1.0F / (1.0F + birth.age * drag));
         const auto id = static_cast<std::uint32_t>(born_ + accepted);
         ids_[*index] = id;

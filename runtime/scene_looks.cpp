@@ -188,7 +188,15 @@ void readSprites(SceneTable& render, const std::filesystem::path& folder, Scene&
     if (readPair(render, "atlas_cells", out.atlas_columns, out.atlas_rows) && !atlas) {
         render.failUseless("atlas_cells", "without render.atlas; name a PNG there, or remove it");
     }
-    readPath(render, "mesh", folder, out.mesh, out.mesh_origin);
+    if (readPath(render, "mesh", folder, out.mesh, out.mesh_origin)) {
+        // A mesh is drawn in its own space, and there is one.
+        const SceneCollider& first = scene.colliders.front();
+        if (scene.colliders.size() > 1 || !first.keys.empty() || !(first.pose == Pose{})) {
+            throw SceneError{out.mesh_origin +
+                             ": render.mesh is drawn where it was baked, and for a single collider; remove "
+                             "the mesh, or the collider's position, angle, scale and keys"};
+        }
+    }
 }
 
 }  // namespace relief

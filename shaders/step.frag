@@ -54,7 +54,8 @@ vec3 pointBefore(int body, vec3 p) {
 }
 
 vec3 pointNow(int body, vec3 p) {
-    return reliefWorldNow(body, reliefBodyBefore(body, p));
+    // What stopped on a body of colliders that are no longer set stays where it is.
+    return body < RELIEF_BODIES ? reliefWorldNow(body, reliefBodyBefore(body, p)) : p;
 }
 
 vec2 bodyResponse(int body) {

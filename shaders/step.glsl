@@ -98,6 +98,26 @@ void finish(vec3 p, vec3 v, float collisions, float contact) {
 #endif
 }
 
+#if defined(RELIEF_SWEEP) && defined(RELIEF_VERLET)
+// The velocity of Verlet is the way of the last step, so after a reaction the whole way must be gone, and tested: from
+// p, where the surface has carried the particle, with the velocity relative to it, up to the first piece that would
+// end inside. What is not free yet may first come out.
+vec3 sweptWay(vec3 p, vec3 v, bool free, float radius) {
+    float pieces = clamp(ceil(u_dt * length(v) / u_sweep), 1.0, float(RELIEF_SWEEP));
+    vec3 reached = p;
+    for (int i = 1; i <= RELIEF_SWEEP && float(i) <= pieces; ++i) {
+        vec3 q = p + (float(i) / pieces * u_dt) * v;
+        bool inside = solidOrGround(q, radius).distance < 0.0;
+        if (inside && free) {
+            break;
+        }
+        free = free || !inside;
+        reached = q;
+    }
+    return reached;
+}
+#endif
+
 // Dead, and out of sight.
 void finishDead() {
     o_position = vec4(0.0, -1e30, 0.0, -1.0);
@@ -188,12 +208,18 @@ void main() {
         vec3 carried = surfaceVelocity(next, p_next);
         vec3 relative = v - carried;
         float vn = dot(relative, n);
+#if defined(RELIEF_SWEEP)
+        // All pieces are tested against the end of the step: what met a moving body in its first has yet to be
+        // carried for the rest of it.
+        vec3 carried_to = first_piece ? p + u_dt * carried : from;
+        from += first_piece ? ((1.0 - share) * u_dt) * carried : vec3(0.0);
+#endif
         if (first_piece && caught(p, type_a.x, next)) {
             contact = 2.0;
             if (vn < 0.0) {
                 v -= (2.0 * vn) * n;
             }
-            p_next = p + (share * u_dt) * v;
+            p_next = from + (share * u_dt) * v;
         } else {
             if (type_b.y == RELIEF_DIE) {
                 finishDead();
@@ -222,10 +248,15 @@ void main() {
 #if defined(RELIEF_SWEEP)
             // What was outside stays outside, whatever lies beside.
             if (solidOrGround(p_next, type_a.x).distance < 0.0) {
-                p_next = from;
+                p_next = carried_to;
             }
 #endif
         }
+#if defined(RELIEF_SWEEP) && defined(RELIEF_VERLET)
+        if (contact < 3.0) {
+            p_next = sweptWay(p + u_dt * carried, v - carried, contact == 1.0, type_a.x);
+        }
+#endif
         collisions += 1.0;
     }
     finish(p_next, v, collisions, contact);

@@ -79,6 +79,11 @@ TEST(SceneLooks, Mistakes) {
     expectError("[render]\nblend = \"over\"\n", "4:9", "choose one of");
     expectError("[render]\nsoft = -1\n", "4:8", "out of range");
     expectError("[render]\nmesh = \"\"\n", "4:8", "names no file");
+    for (const char* pose : {"scale = 2\n", "angle = 90\n", "position = [0, 1, 0]\n"}) {
+        expectError(pose + std::string("[render]\nmesh = \"m.obj\"\n"), "5:8", "where it was baked");
+    }
+    expectError("[[collider.key]]\ntime = 0\n[[collider.key]]\ntime = 1\n[render]\nmesh = \"m.obj\"\n", "8:8",
+                "where it was baked");
     expectError("[render]\natlas = 3\n", "4:9", "must be a string");
     expectError("[render]\natlas_cells = [1, 1]\n", "4:15", "does nothing without render.atlas");
     expectError("[render]\natlas = \"a.png\"\natlas_cells = [0, 1]\n[[type]]\ncell = 0\n", "5:16",

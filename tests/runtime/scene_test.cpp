@@ -304,6 +304,7 @@ TEST(Scene, ColliderIsNeeded) {
     expectError("[collider]\nfile = \"a\\u0000b\"\n", "dir/scene.toml:2:8: ", "zero byte");
     expectError("collider = 3\n", "dir/scene.toml:1:12: collider must be a table");
     expectError("collider = []\n", "dir/scene.toml:1:12: a scene needs a [collider]");
+    expectError("[[collider]]\nfile = \"a\"\n[[collider]]\n", "dir/scene.toml:3:1: ", "collider.file");
 }
 
 TEST(Scene, PathsResolveAgainstTheScenesFolder) {
