@@ -388,6 +388,35 @@ TEST_P(CollisionCornersGlTest, WhatStoppedOnTheLastBodyGoesWithIt) {
     }
 }
 
+// New numbers alone need no new program, for compilers take their time.
+TEST_P(CollisionCornersGlTest, NumbersDoNotCompile) {
+    const auto programs = [] {
+        std::vector<GLuint> names;
+        for (GLuint name = 1; name < 1000; ++name) {
+            if (glIsProgram(name) == GL_TRUE) {
+                names.push_back(name);
+            }
+        }
+        return names;
+    };
+    make({.capacity = 4});
+    particles_->setGround(0.0F);
+    std::vector<ParticleType> types(2);
+    ASSERT_TRUE(particles_->setTypes(types));
+    ASSERT_TRUE(particles_->setSweep(0.1F));
+    const std::vector<GLuint> before = programs();
+    types[0].restitution = 1.0F;
+    ASSERT_TRUE(particles_->setTypes(types));
+    ASSERT_TRUE(particles_->setSweep(0.01F));
+    EXPECT_EQ(programs(), before);
+    ASSERT_TRUE(particles_->setSweep(0.0F));
+    EXPECT_NE(programs(), before);
+    // And yet they count.
+    spawnOne({{0.0F, 0.01F, 0.0F}, {0.0F, -1.0F, 0.0F}, 100.0F, 0});
+    particles_->step(kDt);
+    EXPECT_EQ(state().at(0).velocity.y, 1.0F);
+}
+
 // Verlet's bounces end, too.
 TEST_P(CollisionCornersGlTest, VerletComesToRest) {
     const Collider box = analytic::frontBackCollider(analytic::box({-2.0, -0.5, -2.0}, {2.0, 0.0, 2.0}), 64);
