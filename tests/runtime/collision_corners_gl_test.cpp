@@ -417,6 +417,48 @@ TEST_P(CollisionCornersGlTest, NumbersDoNotCompile) {
     EXPECT_EQ(state().at(0).velocity.y, 1.0F);
 }
 
+// A ball that flies at a box touches its faces, edges and corners with its own surface: beyond an edge of the
+// maps' volumes no map sees anything, and yet the edge is there.
+TEST_P(CollisionCornersGlTest, BallsTouchEdgesAndCorners) {
+    constexpr float kRadius = 0.1F;
+    const Collider box = boxCollider();
+    make({.capacity = 4000});
+    collideWith(ColliderTextures::create(box));
+    ParticleType type;
+    type.radius = kRadius;
+    type.restitution = 1.0F;
+    setType(type);
+    Pcg32 random(4);
+    const auto within = [&](const glm::vec3& reach) {
+        const float x = random.between(-reach.x, reach.x);
+        const float y = random.between(-reach.y, reach.y);
+        return glm::vec3(x, y, random.between(-reach.z, reach.z));
+    };
+    const glm::vec3 half(0.4F, 0.2F, 0.3F);
+    std::vector<Birth> births;
+    for (int i = 0; i < 4000; ++i) {
+        const glm::vec3 from = 0.9F * glm::normalize(within(glm::vec3(1.0F)));
+        births.push_back({from, within(half) - from, 100.0F, 0});
+    }
+    particles_->spawn(births);
+    std::vector<float> nearest(4000, 1e9F);
+    for (int step = 0; step < 80; ++step) {
+        particles_->step(kDt);
+        for (const ParticleState& particle : state()) {
+            const glm::vec3 beyond = glm::max(glm::abs(particle.position) - half, glm::vec3(0.0F));
+            nearest[particle.index] = std::min(nearest[particle.index], glm::length(beyond));
+        }
+    }
+    int met = 0;
+    int sunk = 0;
+    for (const float gap : nearest) {
+        met += gap < 1.2F * kRadius ? 1 : 0;
+        sunk += gap < 0.7F * kRadius ? 1 : 0;
+    }
+    EXPECT_GT(met, 3900);
+    EXPECT_LE(sunk, 4) << "a texel's rim may hide one";
+}
+
 // Verlet's bounces end, too.
 TEST_P(CollisionCornersGlTest, VerletComesToRest) {
     const Collider box = analytic::frontBackCollider(analytic::box({-2.0, -0.5, -2.0}, {2.0, 0.0, 2.0}), 64);
