@@ -137,21 +137,33 @@ Result<void> ParticleSystem::createPrograms() {
     return remakeStep(nullptr);
 }
 
-Result<void> ParticleSystem::remakeStep(const ColliderTextures* collider) {
+StepFeatures ParticleSystem::featuresFor(const ColliderTextures* collider) const {
     const bool radius =
         std::any_of(types_.begin(), types_.end(), [](const ParticleType& t) { return t.radius > 0.0F; });
-    const StepFeatures features{collider,
-                                air_.get(),
-                                verlet(),
-                                sweep_ > 0.0F,
-                                radius && collider != nullptr,
-                                static_cast<int>(types_.size())};
-    auto made = StepPass::create(features);
+    return {collider,
+            air_.get(),
+            verlet(),
+            sweep_ > 0.0F,
+            radius && collider != nullptr,
+            static_cast<int>(types_.size())};
+}
+
+Result<void> ParticleSystem::remakeStep(const ColliderTextures* collider) {
+    auto made = StepPass::create(featuresFor(collider));
     if (!made) {
         return forward(made);
     }
     step_ = std::move(*made);
     return {};
+}
+
+Result<void> ParticleSystem::remakeStepIfNeeded() {
+    const ColliderTextures* collider = step_.features().collider;
+    if (featuresFor(collider) == step_.features()) {
+        return {};
+    }
+    const PassState state;
+    return remakeStep(collider);
 }
 
 void ParticleSystem::setCollision(const Collision& collision) {
@@ -177,8 +189,7 @@ Result<void> ParticleSystem::setTypes(std::span<const ParticleType> types) {
         }
     }
     types_.assign(types.begin(), types.end());
-    const PassState state;
-    return remakeStep(step_.features().collider);
+    return remakeStepIfNeeded();
 }
 
 Result<void> ParticleSystem::setSweep(float length) {
@@ -186,8 +197,7 @@ Result<void> ParticleSystem::setSweep(float length) {
         return fail(ErrorCode::kUsage, "the length of a sweep must be at least 0");
     }
     sweep_ = length;
-    const PassState state;
-    return remakeStep(step_.features().collider);
+    return remakeStepIfNeeded();
 }
 
 Result<void> ParticleSystem::setColliders(std::span<const ColliderInstance> colliders) {

@@ -112,7 +112,8 @@ class ParticleSystem {
     void setForces(const Forces& forces) { forces_ = forces; }
     /// One type of particles, without radius, that bounces.
     void setCollision(const Collision& collision);
-    /// The types of particles: Birth::type is an index here, and the last one for what lies beyond.
+    /// The types of particles: Birth::type is an index here, and the last one for what lies beyond. Compiles
+    /// the step where their number changes, or the first gets a radius.
     /// Errors: kUsage (none or more than kParticleTypesMax; a mass that is not above 0, a negative radius, a
     /// share outside 0…1), kFailure (the driver's compiler).
     [[nodiscard]] Result<void> setTypes(std::span<const ParticleType> types);
@@ -177,7 +178,10 @@ class ParticleSystem {
     explicit ParticleSystem(std::uint32_t capacity) : allocator_(capacity), deaths_(capacity) {}
     [[nodiscard]] Result<void> createTextures();
     [[nodiscard]] Result<void> createPrograms();
+    [[nodiscard]] StepFeatures featuresFor(const ColliderTextures* collider) const;
     [[nodiscard]] Result<void> remakeStep(const ColliderTextures* collider);
+    /// After a change of anything but the collider and the air, which may be other ones at the same place.
+    [[nodiscard]] Result<void> remakeStepIfNeeded();
     [[nodiscard]] bool verlet() const { return integrator_ == Integrator::kVerlet; }
     [[nodiscard]] float clockOf(double time) const { return static_cast<float>(time - epoch_); }
     void setEpochForward();

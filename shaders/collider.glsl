@@ -389,6 +389,20 @@ ReliefField reliefSolidOf(int first, int end, vec3 p) {
     return best;
 }
 
+// From p to the nearest point of what map i looks at; zero where p is in it. Beyond an edge of the volume, where no
+// map may see anything, it is the way to what lies nearest there.
+vec3 reliefToVolume(int i, vec3 p) {
+    vec3 in_map = vec3(reliefRow(u_relief_maps[i].row[0], p), reliefRow(u_relief_maps[i].row[1], p),
+                       reliefRow(u_relief_maps[i].row[2], p));
+    vec3 low = vec3(-1.0);
+    vec3 high = vec3(1.0);
+    if (!reliefIsCube(u_relief_maps[i].info)) {  // its rim has nothing
+        low = vec3(u_relief_maps[i].column[1].w, u_relief_maps[i].column[2].w, 0.0);
+        high = 1.0 - low;
+    }
+    return reliefFromMap(i, clamp(in_map, low, high) - in_map);
+}
+
 // Where a ball touches whose centre is outside: each map that sees a surface near says which way it lies, and the
 // point of the ball there is asked for. The deepest such point decides, with a distance below 0; else the result is
 // RELIEF_FAR_OUTSIDE.
@@ -398,10 +412,14 @@ ReliefField reliefTouch(int first, int end, vec3 center, float radius) {
         ReliefField near = ReliefField(RELIEF_FAR_INSIDE, vec3(0.0), -1);
         reliefVote(near, i, center);
         // A projected distance may be some times the distance.
-        if (near.distance >= 0.0 && near.distance < 4.0 * radius) {
-            ReliefField touched = reliefSolidOf(first, end, center - radius * near.normal);
+        bool seen = near.distance >= 0.0 && near.distance < 4.0 * radius;
+        vec3 way = reliefToVolume(i, center);
+        float apart = reliefLength(way);
+        if (seen || (apart > 0.0 && apart < radius)) {
+            vec3 normal = seen ? near.normal : -way / apart;
+            ReliefField touched = reliefSolidOf(first, end, center - radius * normal);
             if (reliefInside(touched) && touched.distance < best.distance) {
-                best = touched;
+                best = ReliefField(touched.distance, seen ? touched.normal : normal, touched.map);
             }
         }
     }

@@ -8,6 +8,7 @@
 
 #include "runtime/emitter.h"
 #include "runtime/particle_system.h"
+#include "runtime/statistics.h"
 #include "tests/runtime/analytic_collider.h"
 #include "tests/runtime/gl_test.h"
 
@@ -18,6 +19,11 @@ constexpr float kDt = 1.0F / 60.0F;
 
 class CollisionCornersGlTest : public GlTest {
   protected:
+    void TearDown() override {  // what the GL holds goes before its context
+        particles_.reset();
+        textures_.reset();
+        GlTest::TearDown();
+    }
     void make(const ParticleSystemOptions& options) {
         auto made = ParticleSystem::create(options);
         ASSERT_TRUE(made) << made.error().message;
@@ -322,6 +328,135 @@ TEST_P(CollisionCornersGlTest, BlocksAndVolumesOfTheCallerStayBound) {
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, 0);
     glBindBufferBase(GL_UNIFORM_BUFFER, 1, 0);
     glDeleteTextures(1, &volume);
+}
+
+// The last of the most bodies there may be, scaled and on its way: the number of the body comes through the
+// texture of either integrator, and through the statistics.
+TEST_P(CollisionCornersGlTest, WhatStoppedOnTheLastBodyGoesWithIt) {
+    const Collider box = boxCollider();
+    for (const Integrator integrator : {Integrator::kEuler, Integrator::kVerlet}) {
+        make({.capacity = 40, .integrator = integrator});
+        const auto poseAt = [](float t) {
+            return Pose{{20.0F + t, 0.5F * t, 0.0F},
+                        glm::angleAxis(1.5F * t, glm::normalize(glm::vec3(0.3F, 1.0F, 0.2F))),
+                        1.7F};
+        };
+        std::vector<ColliderBody> bodies(ColliderTextures::kBodiesMax, ColliderBody{&box, {}, 1.0F, 0.0F});
+        std::vector<Pose> poses(bodies.size());
+        poses.back() = bodies.back().pose = poseAt(0.0F);
+        collideWith(ColliderTextures::create(bodies));
+        ParticleType type;
+        type.on_collision = OnCollision::kStop;
+        type.radius = 0.05F;
+        setType(type);
+        std::vector<Birth> births;
+        for (int i = 0; i < 40; ++i) {
+            births.push_back(
+                {{19.6F + 0.02F * static_cast<float>(i), 0.45F, 0.1F}, {0.0F, -1.0F, 0.0F}, 100.0F, 0});
+        }
+        particles_->spawn(births);
+        const auto stepTo = [&](float t) {
+            poses.back() = poseAt(t);
+            textures_->setPoses(poses);
+            particles_->step(kDt);
+        };
+        for (int step = 0; step < 20; ++step) {
+            stepTo(0.0F);
+        }
+        const std::vector<ParticleState> before = state();
+        for (int step = 1; step <= 60; ++step) {
+            stepTo(static_cast<float>(step) * kDt);
+        }
+        const std::vector<ParticleState> after = state();
+        ASSERT_EQ(after.size(), 40U);
+        for (std::size_t i = 0; i < after.size(); ++i) {
+            ASSERT_EQ(after[i].contact, Contact::kStopped);
+            ASSERT_EQ(after[i].collisions, 1U);
+            ASSERT_LT(glm::length(toObject(poses.back(), after[i].position) -
+                                  toObject(poseAt(0.0F), before[i].position)),
+                      1e-4F);
+        }
+        auto statistics = Statistics::create(40);
+        ASSERT_TRUE(statistics);
+        ASSERT_TRUE(statistics->request(*particles_, 0));
+        const auto sample = statistics->wait();
+        ASSERT_TRUE(sample && *sample);
+        EXPECT_EQ((*sample)->alive, 40U);
+        EXPECT_EQ((*sample)->in_contact, 40U);
+        EXPECT_EQ((*sample)->caught, 0U);
+        EXPECT_EQ((*sample)->collisions, 40U);
+    }
+}
+
+// New numbers alone need no new program, for compilers take their time.
+TEST_P(CollisionCornersGlTest, NumbersDoNotCompile) {
+    const auto programs = [] {
+        std::vector<GLuint> names;
+        for (GLuint name = 1; name < 1000; ++name) {
+            if (glIsProgram(name) == GL_TRUE) {
+                names.push_back(name);
+            }
+        }
+        return names;
+    };
+    make({.capacity = 4});
+    particles_->setGround(0.0F);
+    std::vector<ParticleType> types(2);
+    ASSERT_TRUE(particles_->setTypes(types));
+    ASSERT_TRUE(particles_->setSweep(0.1F));
+    const std::vector<GLuint> before = programs();
+    types[0].restitution = 1.0F;
+    ASSERT_TRUE(particles_->setTypes(types));
+    ASSERT_TRUE(particles_->setSweep(0.01F));
+    EXPECT_EQ(programs(), before);
+    ASSERT_TRUE(particles_->setSweep(0.0F));
+    EXPECT_NE(programs(), before);
+    // And yet they count.
+    spawnOne({{0.0F, 0.01F, 0.0F}, {0.0F, -1.0F, 0.0F}, 100.0F, 0});
+    particles_->step(kDt);
+    EXPECT_EQ(state().at(0).velocity.y, 1.0F);
+}
+
+// A ball that flies at a box touches its faces, edges and corners with its own surface: beyond an edge of the
+// maps' volumes no map sees anything, and yet the edge is there.
+TEST_P(CollisionCornersGlTest, BallsTouchEdgesAndCorners) {
+    constexpr float kRadius = 0.1F;
+    const Collider box = boxCollider();
+    make({.capacity = 4000});
+    collideWith(ColliderTextures::create(box));
+    ParticleType type;
+    type.radius = kRadius;
+    type.restitution = 1.0F;
+    setType(type);
+    Pcg32 random(4);
+    const auto within = [&](const glm::vec3& reach) {
+        const float x = random.between(-reach.x, reach.x);
+        const float y = random.between(-reach.y, reach.y);
+        return glm::vec3(x, y, random.between(-reach.z, reach.z));
+    };
+    const glm::vec3 half(0.4F, 0.2F, 0.3F);
+    std::vector<Birth> births;
+    for (int i = 0; i < 4000; ++i) {
+        const glm::vec3 from = 0.9F * glm::normalize(within(glm::vec3(1.0F)));
+        births.push_back({from, within(half) - from, 100.0F, 0});
+    }
+    particles_->spawn(births);
+    std::vector<float> nearest(4000, 1e9F);
+    for (int step = 0; step < 80; ++step) {
+        particles_->step(kDt);
+        for (const ParticleState& particle : state()) {
+            const glm::vec3 beyond = glm::max(glm::abs(particle.position) - half, glm::vec3(0.0F));
+            nearest[particle.index] = std::min(nearest[particle.index], glm::length(beyond));
+        }
+    }
+    int met = 0;
+    int sunk = 0;
+    for (const float gap : nearest) {
+        met += gap < 1.2F * kRadius ? 1 : 0;
+        sunk += gap < 0.7F * kRadius ? 1 : 0;
+    }
+    EXPECT_GT(met, 3900);
+    EXPECT_LE(sunk, 4) << "a texel's rim may hide one";
 }
 
 // Verlet's bounces end, too.

@@ -20,6 +20,11 @@ constexpr float kDt = 1.0F / 60.0F;
 
 class CollisionGlTest : public GlTest {
   protected:
+    void TearDown() override {  // what the GL holds goes before its context
+        particles_.reset();
+        textures_.reset();
+        GlTest::TearDown();
+    }
     void make(const ParticleSystemOptions& options) {
         auto made = ParticleSystem::create(options);
         ASSERT_TRUE(made) << made.error().message;
