@@ -302,8 +302,7 @@ TEST(Scene, ColliderIsNeeded) {
     expectError("[collider]\nfile = \"\"\n", "dir/scene.toml:1:1: ", "collider.file");
     expectError("[collider]\nfile = 3\n", "dir/scene.toml:2:8: collider.file must be a string");
     expectError("[collider]\nfile = \"a\\u0000b\"\n", "dir/scene.toml:2:8: ", "zero byte");
-    expectError("collider = 3\n", "dir/scene.toml:1:12: collider must be a table");
-    expectError("[[collider]]\nfile = \"a\"\n", "dir/scene.toml:1:1: collider must be a table");
+    expectError("collider = 3\n", "dir/scene.toml:1:12: collider must be tables");
 }
 
 TEST(Scene, PathsResolveAgainstTheScenesFolder) {
