@@ -43,7 +43,8 @@ for name in "${names[@]}"; do
     rain)
         mesh terrain.obj
         mesh streak.png
-        bake "$out/terrain.obj" -o "$out/terrain.relief" --map fixed8:dir=-y,size=512x512
+        # Solid down to the end of the map's box: y = -1.5, well below the valleys.
+        bake "$out/terrain.obj" -o "$out/terrain.relief" --map fixed8:dir=-y,size=512x512,box=-4/-1.5/-4/4/1.5/4
         ;;
     esac
     cp "samples/$name.toml" "$out/"
