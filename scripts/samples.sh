@@ -29,6 +29,9 @@ for name in "${names[@]}"; do
     case $name in
     bunny_in_the_snow)
         bake "$models/bunny.obj" -o "$out/bunny.relief" --prefer inside
+        for axis in x y z; do
+            "$bin/relief" slice "$out/bunny.relief" --axis $axis --at center --size 480 -o "$out/slice_$axis.png"
+        done
         ;;
     fountain)
         mesh basin.obj

@@ -114,14 +114,14 @@ assert min(away) > -0.02, min(away)
 assert sum(abs(d) < 0.04 for d in away) > 20
 P
 
-# Rain: nothing below the terrain; long drops die there, so that they alone are never slow; water lies lower than rain
-# would by chance.
+# Rain: nothing is below the terrain by more than half a texel's diagonal (0.022) on a slope of 2; long drops die there,
+# so that none is ever slow; water lies lower than rain would by chance.
 python3 - <<'P'
 import meshes, particles
 drops = list(particles.read('rain.ply'))
 deep = min(p[1] - meshes.height(p[0], p[2]) for p, _, _ in drops if abs(p[0]) < 3.9 and abs(p[2]) < 3.9)
 print('rain: deepest', deep)
-assert deep > -0.03, deep
+assert deep > -0.045, deep
 assert min(-v[1] for _, v, t in drops if t == 0) > 3.0
 water = [p for p, v, t in drops if t == 2 and abs(p[0]) < 3.9 and abs(p[2]) < 3.9 and
          p[1] - meshes.height(p[0], p[2]) < 0.05]
