@@ -1,4 +1,5 @@
 // [collider], or [[collider]] as often as wanted; and what [[type]] says of how particles move.
+#include <algorithm>
 #include <cmath>
 
 #include "runtime/scene_array.h"
@@ -23,10 +24,13 @@ bool readPlace(SceneTable& table, Pose& pose) {
     if (has_axis && !has_angle) {
         table.failUseless("axis", "without " + table.full("angle") + "; give the angle too, in degrees");
     }
-    if (has_axis && !(glm::length(axis) > 0.0F)) {
+    // Scaled first: the square of a short axis would vanish.
+    const float largest = std::max({std::abs(axis.x), std::abs(axis.y), std::abs(axis.z)});
+    if (!(largest > 0.0F)) {
         table.failAt(*table.find("axis"), table.full("axis") + " is no direction; choose one that is not 0");
     }
     if (has_angle) {
+        axis /= largest;
         pose.rotation = glm::normalize(glm::angleAxis(glm::radians(degrees), glm::normalize(axis)));
     }
     return found || has_angle;

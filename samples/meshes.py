@@ -1,0 +1,123 @@
+#!/usr/bin/env python3
+"""Makes what the samples need, from formulas: meshes.py torus|basin|terrain OUT.obj, meshes.py streak OUT.png
+
+The same arguments give the same bytes. Needs nothing but Python itself.
+"""
+import math
+import struct
+import sys
+import zlib
+
+
+def revolve(profile, sides):
+    """A closed solid of revolution about y. profile: (radius, height), anticlockwise seen with y upwards."""
+    vertices, faces = [], []
+    for radius, height in profile:
+        for side in range(sides):
+            angle = 2 * math.pi * side / sides
+            vertices.append((radius * math.cos(angle), height, -radius * math.sin(angle)))
+    count = len(profile)
+    for i in range(count):
+        for side in range(sides):
+            a = i * sides + side
+            b = i * sides + (side + 1) % sides
+            c = (i + 1) % count * sides + (side + 1) % sides
+            d = (i + 1) % count * sides + side
+            faces += [(a, b, c), (a, c, d)]
+    return vertices, faces
+
+
+def torus(ring=1.0, tube=0.26, sides=96, cuts=48):
+    """Round the y axis."""
+    angles = [2 * math.pi * i / cuts for i in range(cuts)]
+    return revolve([(ring + tube * math.cos(a), tube * math.sin(a)) for a in angles], sides)
+
+
+def basin(sides=96):
+    """A round wall that holds a fountain's water, 1.44 to 1.72 from the middle at its top; its foot at y = 0. No part
+    hangs over another, so that one map from above holds it."""
+    return revolve([(1.90, 0.0), (1.88, 0.05), (1.80, 0.07), (1.74, 0.26), (1.72, 0.30), (1.68, 0.32), (1.48, 0.32),
+                    (1.44, 0.30), (1.42, 0.26), (1.36, 0.0)], sides)
+
+
+def lattice(x, z):
+    """A number of -1 to 1 that belongs to the point (x, z) of the integer lattice."""
+    h = (x * 374761393 + z * 668265263) & 0xFFFFFFFF
+    h = (h ^ (h >> 13)) * 1274126177 & 0xFFFFFFFF
+    return ((h ^ (h >> 16)) & 0xFFFF) / 32767.5 - 1.0
+
+
+def smooth_noise(x, z):
+    """Value noise: the lattice's numbers, with a quintic fade between them."""
+    i, k = math.floor(x), math.floor(z)
+    u, v = x - i, z - k
+    u = u * u * u * (u * (6 * u - 15) + 10)
+    v = v * v * v * (v * (6 * v - 15) + 10)
+    near = lattice(i, k) * (1 - u) + lattice(i + 1, k) * u
+    far = lattice(i, k + 1) * (1 - u) + lattice(i + 1, k + 1) * u
+    return near * (1 - v) + far * v
+
+
+def height(x, z):
+    """Ridges: octaves of 1 - |noise|, each weighted by the one before, so that heights are rough and valleys smooth."""
+    total, weight, size = 0.0, 1.0, 0.55
+    for octave in range(6):
+        ridge = 1.0 - abs(smooth_noise(size * x + 17.3 * octave + 3.1, size * z - 9.7 * octave + 5.2))
+        total += weight * ridge * ridge * 0.5 ** octave
+        weight = min(1.0, weight * ridge * 1.3)
+        size *= 2.0
+    # High behind the middle, low at the rim.
+    massif = math.exp(-((x + 0.3) ** 2 + (z + 0.9) ** 2) / 5.0)
+    return 0.2 * total + 0.8 * (total - 0.55) * massif
+
+
+def terrain(half=4.0, cells=256):
+    """A height field over [-half, half]², open below."""
+    vertices, faces = [], []
+    for k in range(cells + 1):
+        for i in range(cells + 1):
+            x, z = (2.0 * i / cells - 1.0) * half, (2.0 * k / cells - 1.0) * half
+            vertices.append((x, height(x, z), z))
+    for k in range(cells):
+        for i in range(cells):
+            a = k * (cells + 1) + i
+            b, c, d = a + 1, a + cells + 1, a + cells + 2
+            faces += [(a, c, b), (b, c, d)]
+    return vertices, faces
+
+
+def streak(side=64):
+    """A PNG with a thin upright line that fades towards its ends: a drop as an eye sees it."""
+    rows = b""
+    for y in range(side):
+        along = math.sin(math.pi * (y + 0.5) / side) ** 2
+        rows += b"\0"
+        for x in range(side):
+            across = (x + 0.5 - side / 2) / 1.1
+            rows += bytes((255, 255, 255, round(255 * along * math.exp(-across * across))))
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", side, side, 8, 6, 0, 0, 0)) +
+            chunk(b"IDAT", zlib.compress(rows, 9)) + chunk(b"IEND", b""))
+
+
+def main():
+    shapes = {"torus": torus, "basin": basin, "terrain": terrain}
+    if len(sys.argv) != 3 or sys.argv[1] not in [*shapes, "streak"]:
+        sys.exit("usage: meshes.py torus|basin|terrain OUT.obj, or meshes.py streak OUT.png")
+    if sys.argv[1] == "streak":
+        with open(sys.argv[2], "wb") as out:
+            out.write(streak())
+        return
+    vertices, faces = shapes[sys.argv[1]]()
+    with open(sys.argv[2], "w", encoding="ascii") as out:
+        for vertex in vertices:
+            out.write("v %.6f %.6f %.6f\n" % vertex)
+        for face in faces:
+            out.write("f %d %d %d\n" % tuple(i + 1 for i in face))
+
+
+if __name__ == "__main__":
+    main()

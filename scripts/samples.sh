@@ -1,0 +1,58 @@
+#!/usr/bin/env bash
+# Bakes and plays samples without a window: scripts/samples.sh [NAME…], all of them by default. Leaves frames and a
+# picture of six of them, contact_sheet.png and .jpg, in out/samples/NAME. Needs no GPU; with one it is done sooner.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+all=(bunny_in_the_snow fountain linked_tori rain)
+names=("$@")
+[ ${#names[@]} -gt 0 ] || names=("${all[@]}")
+for name in "${names[@]}"; do
+    [[ " ${all[*]} " == *" $name "* ]] || {
+        echo "samples.sh: there is no sample '$name'; choose of: ${all[*]}" >&2
+        exit 1
+    }
+done
+
+scripts/setup.sh
+bin=$(scripts/build.sh release relief relief-sim)
+models=/usr/share/glmark2/models
+
+# mesh NAME: out/samples/…/NAME, by samples/meshes.py.
+mesh() { python3 samples/meshes.py "${1%.*}" "$out/$1"; }
+bake() { "$bin/relief" bake "$@"; }
+
+for name in "${names[@]}"; do
+    out=out/samples/$name
+    mkdir -p "$out"
+    rm -rf "$out/frames"
+    case $name in
+    bunny_in_the_snow)
+        bake "$models/bunny.obj" -o "$out/bunny.relief" --prefer inside
+        for axis in x y z; do
+            "$bin/relief" slice "$out/bunny.relief" --axis $axis --at center --size 480 -o "$out/slice_$axis.png"
+        done
+        ;;
+    fountain)
+        mesh basin.obj
+        bake "$models/horse.3ds" -o "$out/horse.relief" --budget 500kB
+        bake "$out/basin.obj" -o "$out/basin.relief" --map front-back:dir=-y,size=400x400
+        ;;
+    linked_tori)
+        mesh torus.obj
+        cp samples/linked_tori.csv "$out/"
+        bake "$out/torus.obj" -o "$out/torus.relief" --budget 200kB
+        ;;
+    rain)
+        mesh terrain.obj
+        mesh streak.png
+        # Solid down to the end of the map's box: y = -1.5, well below the valleys.
+        bake "$out/terrain.obj" -o "$out/terrain.relief" --map fixed8:dir=-y,size=512x512,box=-4/-1.5/-4/4/1.5/4
+        ;;
+    esac
+    cp "samples/$name.toml" "$out/"
+    "$bin/relief-sim" "$out/$name.toml" --frames "$out/frames"
+    scripts/contact_sheet.sh "$out"
+    convert "$out/contact_sheet.png" -resize 1200x -define jpeg:extent=150kB "$out/contact_sheet.jpg"
+    echo "Look at $out/contact_sheet.png"
+done

@@ -1,0 +1,133 @@
+# The samples' own scenes with a fortieth of their particles: every scene is valid, something is seen, and particles
+# are where bodies let them be, by the formulas that the bodies were made from.
+. "$(dirname "$0")/lib.sh"
+
+samples=$RELIEF_SOURCE/samples
+models_glmark2=/usr/share/glmark2/models
+mesh() { python3 "$samples/meshes.py" "${1%.*}" "$1"; }
+
+mesh basin.obj
+mesh torus.obj
+mesh terrain.obj
+mesh streak.png
+cp "$samples/linked_tori.csv" .
+"$relief" bake "$bunny" -o bunny.relief --prefer inside --budget 300kB --quality fast -q
+"$relief" bake $models_glmark2/horse.3ds -o horse.relief --budget 200kB --quality fast -q
+"$relief" bake basin.obj -o basin.relief --map front-back:dir=-y,size=200x200 -q
+"$relief" bake torus.obj -o torus.relief --budget 200kB -q
+"$relief" bake terrain.obj -o terrain.relief --map fixed8:dir=-y,size=256x256,box=-4/-1.5/-4/4/1.5/4 --quality fast -q
+
+# Meshes are the same bytes each time, and wrong words are refused.
+mesh torus.obj
+python3 "$samples/meshes.py" torus again.obj
+cmp torus.obj again.obj || die "meshes.py makes another torus each time"
+! python3 "$samples/meshes.py" cube cube.obj 2>/dev/null || die "meshes.py makes what it does not know"
+
+# Every scene there is passes, so that none is forgotten.
+for scene in "$samples"/*.toml; do
+    name=$(basename "$scene" .toml)
+    cp "$scene" .
+    expect 0 "$relief_sim" "$name.toml" --check
+    # rate = 36000.0 -> 900
+    python3 - "$name.toml" <<'P'
+import re, sys
+path = sys.argv[1]
+text = open(path).read()
+text = re.sub(r'(?m)^rate = ([0-9.]+)', lambda m: 'rate = %g' % (float(m[1]) / 40), text)
+text = re.sub(r'(?m)^every = .*', 'every = 100000', text)
+open(path, 'w').write(text)
+P
+done
+
+# play NAME STEPS: NAME.json, NAME.ply and a frame.
+play() {
+    expect 0 "$relief_sim" "$1.toml" --steps "$2" --size 320x240 --frames "frames_$1" --dump "$1.ply" --json
+    cp stdout "$1.json"
+    json "$1.json" "d['steps'] == $2 and d['particles']['refused'] == 0 and d['particles']['in_contact'] > 0"
+    json "$1.json" "d['particles']['born'] == d['particles']['alive'] + d['particles']['died']"
+    local colors
+    colors=$(identify -format '%k' "frames_$1/frame_0000.png")
+    [ "$colors" -gt 200 ] || die "a frame of $1 has $colors colours: it shows nothing"
+}
+play bunny_in_the_snow 300
+play fountain 150
+play linked_tori 180
+play rain 300
+
+cat >particles.py <<'P'
+import struct
+
+def read(name):
+    """Of each particle: x y z, velocity, type."""
+    head, body = open(name, 'rb').read().split(b'end_header\n', 1)
+    names = [l.split()[2] for l in head.decode().splitlines() if l.startswith('property')]
+    record = struct.Struct('<' + ''.join('I' if n in ('id', 'type') else 'f' for n in names))
+    for values in record.iter_unpack(body):
+        p = dict(zip(names, values))
+        yield (p['x'], p['y'], p['z']), (p['vx'], p['vy'], p['vz']), p['type']
+P
+export PYTHONPATH=$work:$samples
+
+# Snow: born for 4 of 5 seconds, none dies; most lies still, on the bunny too, and none below the floor.
+json bunny_in_the_snow.json "d['particles']['died'] == 0"
+python3 - <<'P'
+import particles
+flakes = list(particles.read('bunny_in_the_snow.ply'))
+floor = -0.991233
+assert 6400 <= len(flakes) <= 6600, len(flakes)
+lying = [p for p, v, _ in flakes if v == (0, 0, 0)]
+assert len(lying) > 0.9 * len(flakes), len(lying)
+on_bunny = sum(p[1] > floor + 0.3 and abs(p[0]) < 1.05 and abs(p[2]) < 0.8 for p in lying)
+assert on_bunny > 0.15 * len(flakes), on_bunny
+# A type stops its radius above the floor, and within a step's way (speed 2.4, 1/60 s) of there.
+for radius, kind in ((0.0, 0), (0.012, 1), (0.026, 2)):
+    lowest = min(p[1] for p, v, t in flakes if t == kind and v == (0, 0, 0)) - floor
+    assert radius - 1e-4 <= lowest <= radius + 0.04, (kind, lowest)
+P
+
+# Fountain: jets rise to their height (0.3 + 2.8² / 2 g), and no water gets below the floor.
+python3 - <<'P'
+import particles
+drops = list(particles.read('fountain.ply'))
+assert len(drops) > 2000, len(drops)
+assert 1.1 < max(p[1] for p, _, _ in drops) < 1.5, max(p[1] for p, _, _ in drops)
+assert min(p[1] for p, _, _ in drops) > -1e-3, min(p[1] for p, _, _ in drops)
+held = sum(p[0] ** 2 + p[2] ** 2 < 1.44 ** 2 for p, _, _ in drops)
+assert held > 0.85 * len(drops), (held, len(drops))
+P
+
+# Tori, at 3 s, where the second one turns round: outside both, by the distance to a torus.
+python3 - <<'P'
+import math, particles
+
+def distance(p, center, degrees):
+    x, y, z = (a - b for a, b in zip(p, center))
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    y, z = c * y + s * z, c * z - s * y  # turned back about x
+    return math.hypot(math.hypot(x, z) - 1.0, y) - 0.26
+
+smoke = [p for p, _, _ in particles.read('linked_tori.ply')]
+assert len(smoke) > 2000, len(smoke)
+away = [min(distance(p, (-0.5, 0, 0), 90), distance(p, (0.62, 0, 0), 30)) for p in smoke]
+print('tori: deepest', min(away), 'inside', sum(d < 0 for d in away), 'touching', sum(abs(d) < 0.04 for d in away))
+assert min(away) > -0.02, min(away)
+assert sum(abs(d) < 0.04 for d in away) > 20
+P
+
+# Rain: nothing is below the terrain by more than half a texel's diagonal (0.022) on a slope of 2; long drops die there,
+# so that none is ever slow; water lies lower than rain would by chance.
+python3 - <<'P'
+import meshes, particles
+drops = list(particles.read('rain.ply'))
+deep = min(p[1] - meshes.height(p[0], p[2]) for p, _, _ in drops if abs(p[0]) < 3.9 and abs(p[2]) < 3.9)
+print('rain: deepest', deep)
+assert deep > -0.045, deep
+assert min(-v[1] for _, v, t in drops if t == 0) > 3.0
+water = [p for p, v, t in drops if t == 2 and abs(p[0]) < 3.9 and abs(p[2]) < 3.9 and
+         p[1] - meshes.height(p[0], p[2]) < 0.05]
+assert len(water) > 500, len(water)
+heights = sorted(meshes.height(-4 + 8 * i / 100, -4 + 7.6 * k / 100) for i in range(101) for k in range(101))
+mean = sum(p[1] for p in water) / len(water)
+print('rain: water at', mean, 'terrain at', sum(heights) / len(heights))
+assert mean < sum(heights) / len(heights) - 0.03
+P
