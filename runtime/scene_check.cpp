@@ -6,6 +6,7 @@
 #include "formats/container.h"
 #include "formats/file_io.h"
 #include "runtime/frame.h"
+#include "runtime/scene_pictures.h"
 
 namespace relief {
 namespace {
@@ -112,6 +113,9 @@ Result<CheckReport> checkScene(const PlayerOptions& options) {
     if (const auto emitters = makeEmitters(loaded->scene.emitters); !emitters) {
         return forward(emitters);
     }
+    if (auto done = checkPictures(loaded->scene, loaded->bounds); !done) {
+        return forward(done);
+    }
     CheckReport report;
     if (options.input != loaded->scene.colliders.front().path) {
         report.files.push_back(checkedFile(options.input, "scene"));
@@ -122,6 +126,12 @@ Result<CheckReport> checkScene(const PlayerOptions& options) {
     }
     if (loaded->scene.flow) {
         report.files.push_back(checkedFile(loaded->scene.flow->path, "flow"));
+    }
+    for (const auto& [path, kind] :
+         {std::pair(loaded->scene.render.atlas, "atlas"), {loaded->scene.render.mesh, "mesh"}}) {
+        if (!path.empty()) {
+            report.files.push_back(checkedFile(path, kind));
+        }
     }
     report.steps = loaded->scene.steps;
     report.capacity = loaded->scene.capacity;

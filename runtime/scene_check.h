@@ -26,7 +26,7 @@ struct LoadedScene {
 
 struct CheckedFile {
     std::filesystem::path path;
-    std::string kind;         ///< "scene", "collider" or "flow"
+    std::string kind;         ///< "scene", "collider", "flow", "atlas" or "mesh"
     std::uint64_t bytes = 0;  ///< on disk
 };
 

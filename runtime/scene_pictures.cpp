@@ -16,38 +16,22 @@ tl::unexpected<Error> failAt(const std::string& origin, const char* key, const E
     return fail(error.code, origin + ": " + key + ": " + error.message);
 }
 
-}  // namespace
-
-Result<std::unique_ptr<SpriteAtlas>> loadAtlas(const Scene& scene) {
+Result<RgbaPicture> readAtlas(const Scene& scene) {
     const auto& render = scene.render;
-    if (render.atlas.empty()) {
-        return nullptr;
-    }
     const auto bytes = readFile(render.atlas, kAtlasBytesMax);
     if (!bytes) {
         return failAt(render.atlas_origin, "render.atlas", bytes.error());
     }
-    const auto picture = decodePng(*bytes, quotedPath(render.atlas));
+    auto picture = decodePng(*bytes, quotedPath(render.atlas));
     if (!picture) {
         return failAt(render.atlas_origin, "render.atlas", picture.error());
     }
-    auto atlas = SpriteAtlas::create(picture->rgba, picture->width, picture->height, render.atlas_columns,
-                                     render.atlas_rows);
-    if (!atlas) {
-        // The picture does not suit the scene: not the caller's mistake but the file's.
-        const ErrorCode code =
-            atlas.error().code == ErrorCode::kUsage ? ErrorCode::kInvalidInput : atlas.error().code;
-        return failAt(render.atlas_origin, "render.atlas", {code, atlas.error().message});
-    }
-    return std::make_unique<SpriteAtlas>(std::move(*atlas));
+    return picture;
 }
 
-Result<std::unique_ptr<ColliderMesh>> loadColliderMesh(const Scene& scene, const Bounds& bounds) {
+Result<TriangleMesh> readMesh(const Scene& scene, const Bounds& bounds) {
     const auto& render = scene.render;
-    if (render.mesh.empty()) {
-        return nullptr;
-    }
-    const auto mesh = loadMesh(render.mesh);
+    auto mesh = loadMesh(render.mesh);
     if (!mesh) {
         return failAt(render.mesh_origin, "render.mesh", mesh.error());
     }
@@ -65,6 +49,54 @@ Result<std::unique_ptr<ColliderMesh>> loadColliderMesh(const Scene& scene, const
             {ErrorCode::kInvalidInput,
              quotedPath(render.mesh) +
                  " does not lie where the collider lies; name the mesh that the collider was baked from"});
+    }
+    return mesh;
+}
+
+}  // namespace
+
+Result<void> checkPictures(const Scene& scene, const Bounds& bounds) {
+    if (!scene.render.atlas.empty()) {
+        if (const auto atlas = readAtlas(scene); !atlas) {
+            return forward(atlas);
+        }
+    }
+    if (!scene.render.mesh.empty()) {
+        if (const auto mesh = readMesh(scene, bounds); !mesh) {
+            return forward(mesh);
+        }
+    }
+    return {};
+}
+
+Result<std::unique_ptr<SpriteAtlas>> loadAtlas(const Scene& scene) {
+    const auto& render = scene.render;
+    if (render.atlas.empty()) {
+        return nullptr;
+    }
+    const auto picture = readAtlas(scene);
+    if (!picture) {
+        return forward(picture);
+    }
+    auto atlas = SpriteAtlas::create(picture->rgba, picture->width, picture->height, render.atlas_columns,
+                                     render.atlas_rows);
+    if (!atlas) {
+        // The picture does not suit the scene: not the caller's mistake but the file's.
+        const ErrorCode code =
+            atlas.error().code == ErrorCode::kUsage ? ErrorCode::kInvalidInput : atlas.error().code;
+        return failAt(render.atlas_origin, "render.atlas", {code, atlas.error().message});
+    }
+    return std::make_unique<SpriteAtlas>(std::move(*atlas));
+}
+
+Result<std::unique_ptr<ColliderMesh>> loadColliderMesh(const Scene& scene, const Bounds& bounds) {
+    const auto& render = scene.render;
+    if (render.mesh.empty()) {
+        return nullptr;
+    }
+    const auto mesh = readMesh(scene, bounds);
+    if (!mesh) {
+        return forward(mesh);
     }
     auto drawn = ColliderMesh::create(*mesh);
     if (!drawn) {

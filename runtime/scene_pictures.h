@@ -12,6 +12,10 @@
 
 namespace relief {
 
+/// Reads what the pictures of a complete scene need, and needs no GPU.
+/// Errors: those of loadAtlas and loadColliderMesh but for a GPU's limits.
+[[nodiscard]] Result<void> checkPictures(const Scene& scene, const Bounds& bounds);
+
 /// render.atlas on the GPU; null if the scene has none.
 /// Errors: those of reading it, with the place in the scene.
 [[nodiscard]] Result<std::unique_ptr<SpriteAtlas>> loadAtlas(const Scene& scene);

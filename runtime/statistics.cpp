@@ -74,6 +74,7 @@ Result<Statistics> Statistics::create(std::uint32_t capacity) {
     glUniform1i(uniformLocation(statistics.state_program_, "u_position"), kCountsUnit);
     glUniform1i(uniformLocation(statistics.state_program_, "u_velocity"), kSumsUnit);
     statistics.state_size_ = uniformLocation(statistics.state_program_, "u_size");
+    statistics.state_rate_ = uniformLocation(statistics.state_program_, "u_rate_before");
     statistics.state_extent_ = uniformLocation(statistics.state_program_, "u_extent");
     statistics.sum_program_ = std::move(*sum_program);
     glUseProgram(statistics.sum_program_.name());
@@ -102,7 +103,7 @@ bool Statistics::request(const ParticleSystem& particles, std::uint64_t tag) {
     glUniform2i(state_size_, static_cast<GLint>(width), static_cast<GLint>(height));
     useTexture(kCountsUnit, particles.positions());
     useTexture(kSumsUnit, particles.secondState());
-    glUniform1f(glGetUniformLocation(state_program_.name(), "u_rate_before"), particles.rateBefore());
+    glUniform1f(state_rate_, particles.rateBefore());
     glBindVertexArray(no_attributes_.name());
     // Only the rows that hold particles: with few of them the single texel is reached early.
     for (std::size_t i = 0;; ++i) {

@@ -75,6 +75,7 @@ class Statistics {
     GlProgram state_program_;
     GlProgram sum_program_;
     GLint state_size_ = -1;
+    GLint state_rate_ = -1;
     GLint state_extent_ = -1;
     GLint sum_size_ = -1;
 };

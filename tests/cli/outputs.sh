@@ -50,6 +50,8 @@ check_fails 3 'sub/bad\.toml:2:8: .*leads out' $'[collider]\nfile = "link.relief
 check_fails 3 'sub/bad\.toml:2:8: .*absolute' "[collider]"$'\n'"file = \"$PWD/bunny.relief\""
 cp bunny.relief sub/
 check_fails 3 'sub/bad\.toml:4:.*fraction' $'[collider]\nfile = "bunny.relief"\n[collision]\nfraction = 1'
+check_fails 2 'sub/bad\.toml:4:.*render\.mesh: .*missing\.obj' $'[collider]\nfile = "bunny.relief"\n[render]\nmesh = "missing.obj"'
+check_fails 3 'sub/bad\.toml:4:.*render\.atlas: .*bunny\.relief' $'[collider]\nfile = "bunny.relief"\n[render]\natlas = "bunny.relief"\n[[type]]\ncell = 0'
 check_fails 6 'sub/bad\.toml.*67108864' $'[collider]\nfile = "bunny.relief"\n[render]\nsize = [65535, 65535]'
 expect_error 1 '--check' "$relief_sim" scene.toml --check --frames frames
 
