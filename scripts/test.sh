@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds everything and runs every test: the release build, then the same tests under
-# the address and undefined-behaviour sanitizers. Needs no GPU.
+# Installs what is missing, builds everything and runs every test: the release build, then the same tests, but
+# for those labelled slow, under the address and undefined-behaviour sanitizers. Needs no GPU.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 jobs=$(nproc)
