@@ -460,16 +460,16 @@ Result<void> runBake(const BakeCommand& command) {
         if (!mesh) {
             return forward(mesh);
         }
-        if (mesh->closed_holes > 0) {
-            spdlog::info("{}: closed {} hole{} with {} triangles for baking: the mesh is nearly closed",
-                         mesh->name, mesh->closed_holes, mesh->closed_holes == 1 ? "" : "s",
-                         mesh->cap_triangles);
-        }
     }
     std::optional<PlanReport> plan;
     Result<Baked> baked = makeCollider(command, imported ? *imported : *mesh, *mesh, *settings, plan, times);
     if (!baked) {
         return forward(baked);
+    }
+    // Not before: a bake that fails has one line to say.
+    if (mesh->closed_holes > 0) {
+        spdlog::info("{}: closed {} hole{} with {} triangles for baking: the mesh is nearly closed",
+                     mesh->name, mesh->closed_holes, mesh->closed_holes == 1 ? "" : "s", mesh->cap_triangles);
     }
     for (const std::string& warning : baked->report.warnings) {
         spdlog::warn(warning);

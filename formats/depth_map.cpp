@@ -33,8 +33,8 @@ float planeVote(const DepthMap& map, const Surface& surface, const glm::vec3& fr
     float offset = surface.depth * along;
     if (std::abs(along) < kStandingCosine * length) {
         const float depth_max = map.projection() == Projection::kCube ? kCubeDepthMax : 1.0F;
-        offset = (surface.depth * (2.0F / depth_max) - 1.0F) *
-                 standingRange(map.projection(), map.object_per_map, map.width, map.height);
+        const float range = standingRange(map.projection(), map.object_per_map, map.width, map.height);
+        offset = surface.depth * (range * (2.0F / depth_max)) - range;
     }
     return dot(surface.normal, from) - offset;
 }
@@ -62,8 +62,8 @@ std::optional<Vote> voteOrthographic(const DepthMap& map, const glm::vec3& p) {
     }
 
     // From the texel's centre.
-    const float across_x = (x - (static_cast<float>(column) + 0.5F)) / static_cast<float>(map.width);
-    const float across_y = (y - (static_cast<float>(row) + 0.5F)) / static_cast<float>(map.height);
+    const float across_x = (x - (static_cast<float>(column) + 0.5F)) * (1.0F / static_cast<float>(map.width));
+    const float across_y = (y - (static_cast<float>(row) + 0.5F)) * (1.0F / static_cast<float>(map.height));
     const bool planes = map.decode == Decode::kPlane;
     const glm::vec3 from = planes ? fromMap(map, {across_x, across_y, p.z}) : glm::vec3(0.0F);
     const glm::vec3 ray = planes ? fromMap(map, {0.0F, 0.0F, 1.0F}) : glm::vec3(0.0F);

@@ -140,16 +140,22 @@ bool reliefReplaces(float vote, float best) {
 
 // Equation 3: indices 0…254 in each direction to the octahedron, to the sphere.
 vec3 reliefNormal(vec2 index) {
-    vec2 st = min(index, vec2(254.0)) * (1.0 / 127.0) - 1.0;
+    vec2 st = (min(index, vec2(254.0)) - 127.0) / 127.0;
     vec3 v = vec3(st, 1.0 - abs(st.x) - abs(st.y));
-    float fold = max(-v.z, 0.0);  // |t| - (1 - |s|) of the lower half
-    v.x += st.x < 0.0 ? fold : -fold;
-    v.y += st.y < 0.0 ? fold : -fold;
-    return v * inversesqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+    if (v.z < 0.0) {
+        v.x = (st.x < 0.0 ? -1.0 : 1.0) * (1.0 - abs(st.y));
+        v.y = (st.y < 0.0 ? -1.0 : 1.0) * (1.0 - abs(st.x));
+    }
+    return v / sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
 }
 
 float reliefRow(vec4 r, vec3 p) {
     return r.x * p.x + (r.y * p.y + (r.z * p.z + r.w));
+}
+
+// In the order of the CPU's twin: what dot() adds first is the driver's choice.
+float reliefDot(vec3 a, vec3 b) {
+    return a.x * b.x + (a.y * b.y + a.z * b.z);
 }
 
 float reliefLength(vec3 v) {
@@ -208,12 +214,12 @@ vec3 reliefFromMap(int i, vec3 q) {
 // from: P − O, with O where the ray of the texel's centre has depth 0; ray: its direction, for a unit of depth;
 // standing: its length times RELIEF_STANDING_COSINE; depth: from 0 to depth_max.
 float reliefPlane(int i, vec3 normal, float depth, float depth_max, vec3 from, vec3 ray, float standing) {
-    float along = dot(normal, ray);
+    float along = reliefDot(normal, ray);
     float range = u_relief_maps[i].column[0].w;
     bool stands = abs(along) < standing;
     float slope = stands ? range * (2.0 / depth_max) : along;
     float base = stands ? range : 0.0;
-    return dot(normal, from) - (depth * slope - base);
+    return reliefDot(normal, from) - (depth * slope - base);
 }
 
 void reliefAdd(inout ReliefField best, float distance, vec3 normal, int map) {

@@ -25,13 +25,12 @@ expect() {
     }
 }
 
-# expect_error CODE PATTERN COMMAND…: as expect; and there is exactly one line on stderr but for what was told
-# before (info), it starts with the program's name, matches PATTERN (extended, any case), and nothing is on stdout.
+# expect_error CODE PATTERN COMMAND…: as expect; and there is exactly one line on stderr, it starts with the
+# program's name, matches PATTERN (extended, any case), and nothing is on stdout.
 expect_error() {
     local code=$1 pattern=$2
     shift 2
     expect "$code" "$@"
-    sed -i '/^relief: info: /d' "$work/stderr"
     [ "$(wc -l <"$work/stderr")" -eq 1 ] || {
         cat "$work/stderr" >&2
         die "not one line of error: $*"
