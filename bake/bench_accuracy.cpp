@@ -116,9 +116,7 @@ Result<Baked> bakeOurs(const TriangleMesh& open_mesh, std::uint64_t bytes) {
         return forward(plan);
     }
     BakeOptions options;
-    for (const PlannedMap& map : plan->maps) {
-        options.maps.push_back(map.spec);
-    }
+    options.maps = specsOf(*plan);
     return bake(mesh, options);
 }
 

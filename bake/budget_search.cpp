@@ -73,10 +73,7 @@ class Search {
             return forward(plan);
         }
         BakeOptions bake_options = options_.bake;
-        bake_options.maps.clear();
-        for (const PlannedMap& map : plan->maps) {
-            bake_options.maps.push_back(map.spec);
-        }
+        bake_options.maps = specsOf(*plan);
         Result<Baked> baked = bake(query_.mesh(), bake_options);
         if (!baked) {
             return forward(baked);

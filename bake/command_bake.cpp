@@ -309,9 +309,7 @@ Result<PlanReport> planMaps(const MeshQuery& query, Settings& settings) {
         return forward(plan);
     }
     report.plan = std::move(*plan);
-    for (const PlannedMap& map : report.plan.maps) {
-        settings.bake.maps.push_back(map.spec);
-    }
+    settings.bake.maps = specsOf(report.plan);
     return report;
 }
 

@@ -457,6 +457,14 @@ class Planner {
 
 }  // namespace
 
+std::vector<MapSpec> specsOf(const Plan& plan) {
+    std::vector<MapSpec> specs;
+    for (const PlannedMap& map : plan.maps) {
+        specs.push_back(map.spec);
+    }
+    return specs;
+}
+
 Result<Plan> planViews(const TriangleMesh& mesh, const MeshQuery& query, const PlanOptions& options) {
     if (options.budget_bytes < kPlanBudgetMin) {
         return fail(ErrorCode::kUsage, "a budget of " + std::to_string(options.budget_bytes) +

@@ -47,6 +47,9 @@ struct Plan {
     std::uint64_t bytes = 0;      ///< of all texels
 };
 
+/// What bake() takes of a plan.
+[[nodiscard]] std::vector<MapSpec> specsOf(const Plan& plan);
+
 /// The same mesh and options give the same plan, for any number of threads.
 /// Errors: kUsage (a budget below kPlanBudgetMin or too small for the maps), kFailure (no free space beside
 /// the surface), those of makeView.

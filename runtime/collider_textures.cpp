@@ -127,7 +127,7 @@ void writeRows(const Pose& pose, glm::vec4 (&rows)[3]) {
     }
 }
 
-GLint limit(GLenum what) {
+GLint integer(GLenum what) {
     GLint value = 0;
     glGetIntegerv(what, &value);
     return value;
@@ -177,10 +177,12 @@ void ColliderTextures::setPoses(std::span<const Pose> poses) {
         revision_ += std::equal(std::begin(body.row), std::end(body.row), std::begin(body.before)) ? 0 : 1;
     }
     if (!bodies_.empty()) {
-        const PassState state;
+        // Before every step: the whole of PassState would cost more than what is done here.
+        const GLint bound = integer(GL_UNIFORM_BUFFER_BINDING);
         glBindBuffer(GL_UNIFORM_BUFFER, block_.name());
         glBufferSubData(GL_UNIFORM_BUFFER, static_cast<GLintptr>(kBlockHead),
                         static_cast<GLsizeiptr>(bodies_.size() * sizeof(BlockBody)), bodies_.data());
+        glBindBuffer(GL_UNIFORM_BUFFER, static_cast<GLuint>(bound));
     }
 }
 
@@ -190,7 +192,7 @@ Result<ColliderTextures> ColliderTextures::upload(std::span<const DepthMap* cons
         return fail(ErrorCode::kUnsupported, "a collider without maps has nothing to collide with");
     }
     const std::size_t head = kBlockHead + bodies.size() * sizeof(BlockBody);
-    const auto block_max = static_cast<std::size_t>(limit(GL_MAX_UNIFORM_BLOCK_SIZE));
+    const auto block_max = static_cast<std::size_t>(integer(GL_MAX_UNIFORM_BLOCK_SIZE));
     const std::size_t map_max = (block_max - head) / sizeof(BlockMap);
     if (maps.size() > map_max) {
         return fail(ErrorCode::kLimit, "the collider has " + std::to_string(maps.size()) +
@@ -206,7 +208,7 @@ Result<ColliderTextures> ColliderTextures::upload(std::span<const DepthMap* cons
         used += std::size_t{map->width} * map->height * map->faceCount();
     }
     std::array<Wrapped, 3> wrapped;
-    const GLint size_max = limit(GL_MAX_TEXTURE_SIZE);
+    const GLint size_max = integer(GL_MAX_TEXTURE_SIZE);
     for (std::size_t i = 0; i < texels.size(); ++i) {
         wrapped[i] = wrappedFor(texels[i]);
         if (wrapped[i].width() > size_max) {

@@ -1,15 +1,13 @@
 #include "runtime/step_pass.h"
 
 #include <array>
-#include <numbers>
 #include <string>
 
 namespace relief {
 
 float dragRate(const Forces& forces, const ParticleType& type) {
-    constexpr float kSphere = 6.0F * std::numbers::pi_v<float>;
-    const float force = forces.viscosity > 0.0F ? kSphere * forces.viscosity * type.radius : forces.drag;
-    return force / type.mass;
+    return forces.viscosity > 0.0F ? stokesRate(forces.viscosity, type.radius, type.mass)
+                                   : forces.drag / type.mass;
 }
 
 Result<StepPass> StepPass::create(const StepFeatures& features) {

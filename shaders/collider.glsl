@@ -386,10 +386,10 @@ void reliefVote(inout ReliefField best, int i, vec3 p) {
     }
 }
 
-// The maps [first, end) alone, by the rule of reliefSolid.
-ReliefField reliefSolidOf(int first, int end, vec3 p) {
+// The maps [first, end) alone, as reliefSolid or, with `whole`, reliefEvaluate.
+ReliefField reliefMaps(int first, int end, vec3 p, bool whole) {
     ReliefField best = ReliefField(RELIEF_FAR_INSIDE, vec3(0.0), -1);
-    for (int i = first; i < end && best.distance < 0.0; ++i) {
+    for (int i = first; i < end && (whole || best.distance < 0.0); ++i) {
         reliefVote(best, i, p);
     }
     return best;
@@ -423,7 +423,7 @@ ReliefField reliefTouch(int first, int end, vec3 center, float radius) {
         float apart = reliefLength(way);
         if (seen || (apart > 0.0 && apart < radius)) {
             vec3 normal = seen ? near.normal : -way / apart;
-            ReliefField touched = reliefSolidOf(first, end, center - radius * normal);
+            ReliefField touched = reliefMaps(first, end, center - radius * normal, false);
             if (reliefInside(touched) && touched.distance < best.distance) {
                 best = ReliefField(touched.distance, seen ? touched.normal : normal, touched.map);
             }
@@ -436,11 +436,7 @@ ReliefField reliefTouch(int first, int end, vec3 center, float radius) {
 
 // Of all maps, in the object space that they share.
 ReliefField reliefEvaluate(vec3 p) {
-    ReliefField best = ReliefField(RELIEF_FAR_INSIDE, vec3(0.0), -1);
-    for (int i = 0; i < u_relief_count.x; ++i) {
-        reliefVote(best, i, p);
-    }
-    return best;
+    return reliefMaps(0, u_relief_count.x, p, true);
 }
 
 #define RELIEF_VOTE_OF(n) \
@@ -519,10 +515,7 @@ vec3 reliefWorldNormal(int body, vec3 n) {
 ReliefField reliefBodyField(int body, vec3 q, float radius, bool whole) {
     int first = u_relief_bodies[body].maps.x;
     int end = first + u_relief_bodies[body].maps.y;
-    ReliefField best = ReliefField(RELIEF_FAR_INSIDE, vec3(0.0), -1);
-    for (int i = first; i < end && (whole || best.distance < 0.0); ++i) {
-        reliefVote(best, i, q);
-    }
+    ReliefField best = reliefMaps(first, end, q, whole);
 #if defined(RELIEF_RADIUS)
     if (radius > 0.0 && !reliefInside(best)) {
         return reliefTouch(first, end, q, radius / u_relief_bodies[body].response.x);

@@ -25,18 +25,6 @@ bool insideBefore(vec3 p, float radius, Solid s) {
     return reliefSolidAt(p, s.map);
 }
 
-vec3 pointBefore(int body, vec3 p) {
-    return p;
-}
-
-vec3 pointNow(int body, vec3 p) {
-    return p;
-}
-
-vec2 bodyResponse(int body) {
-    return vec2(1.0);
-}
-
 #else
 
 Solid solid(vec3 p, float radius) {

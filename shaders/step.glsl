@@ -64,11 +64,25 @@ struct Solid {
 Solid solid(vec3 p, float radius);
 // Whether p, where the step began, was inside the body of s at that time.
 bool insideBefore(vec3 p, float radius, Solid s);
-// Where a point of a body was at the beginning of the step, and where one of then is at its end.
+// Where a point of a body was at the beginning of the step, and where one of then is at its end; and restitution and
+// 1 - friction of a body, factors of the particle's own. Without poses nothing moves.
+#if RELIEF_BODIES == 0
+vec3 pointBefore(int body, vec3 p) {
+    return p;
+}
+
+vec3 pointNow(int body, vec3 p) {
+    return p;
+}
+
+vec2 bodyResponse(int body) {
+    return vec2(1.0);
+}
+#else
 vec3 pointBefore(int body, vec3 p);
 vec3 pointNow(int body, vec3 p);
-// Restitution and 1 - friction of a body, factors of the particle's own.
 vec2 bodyResponse(int body);
+#endif
 
 // Union with the floor y < u_ground. Inside both, the deeper one decides.
 Solid solidOrGround(vec3 p, float radius) {

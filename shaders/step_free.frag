@@ -1,4 +1,5 @@
 // A step with nothing solid but the floor.
+#define RELIEF_BODIES 0
 //!include air.glsl
 //!include step.glsl
 
@@ -8,16 +9,4 @@ Solid solid(vec3 p, float radius) {
 
 bool insideBefore(vec3 p, float radius, Solid s) {
     return false;
-}
-
-vec3 pointBefore(int body, vec3 p) {
-    return p;
-}
-
-vec3 pointNow(int body, vec3 p) {
-    return p;
-}
-
-vec2 bodyResponse(int body) {
-    return vec2(1.0);
 }

@@ -112,9 +112,7 @@ TEST(OrientedBox, PlannedViewsLookAlongTheWallsOfATurnedPart) {
         const Result<Plan> plan = planViews(mesh, *query, options);
         ASSERT_TRUE(plan) << plan.error().message;
         BakeOptions bake_options;
-        for (const PlannedMap& map : plan->maps) {
-            bake_options.maps.push_back(map.spec);
-        }
+        bake_options.maps = specsOf(*plan);
         if (oriented_box) {
             // The first view, which serves most, looks along a wall and is turned with the others.
             const MapSpec& first = plan->maps.front().spec;

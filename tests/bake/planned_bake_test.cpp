@@ -38,9 +38,7 @@ Collider bakePlan(const TriangleMesh& mesh, const Plan& plan, unsigned threads =
     BakeOptions options;
     options.threads = threads;
     options.quality = quality;
-    for (const PlannedMap& map : plan.maps) {
-        options.maps.push_back(map.spec);
-    }
+    options.maps = specsOf(plan);
     Result<Baked> baked = bake(mesh, options);
     EXPECT_TRUE(baked) << baked.error().message;
     return baked ? std::move(baked->collider) : Collider{};

@@ -35,9 +35,7 @@ Collider bakePlanned(const TriangleMesh& mesh, const MeshQuery& query, Quality q
     BakeOptions options;
     options.quality = quality;
     options.prefer = prefer;
-    for (const PlannedMap& map : plan->maps) {
-        options.maps.push_back(map.spec);
-    }
+    options.maps = specsOf(*plan);
     Result<Baked> baked = bake(mesh, options);
     EXPECT_TRUE(baked);
     return baked ? std::move(baked->collider) : Collider{};

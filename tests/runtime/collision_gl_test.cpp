@@ -9,43 +9,13 @@
 
 #include "runtime/emitter.h"
 #include "runtime/particle_system.h"
-#include "tests/runtime/analytic_collider.h"
-#include "tests/runtime/gl_test.h"
+#include "tests/runtime/collision_test.h"
 #include "tests/runtime/reference_step.h"
 
 namespace relief {
 namespace {
 
-constexpr float kDt = 1.0F / 60.0F;
-
-class CollisionGlTest : public GlTest {
-  protected:
-    void TearDown() override {  // what the GL holds goes before its context
-        particles_.reset();
-        textures_.reset();
-        GlTest::TearDown();
-    }
-    void make(const ParticleSystemOptions& options) {
-        auto made = ParticleSystem::create(options);
-        ASSERT_TRUE(made) << made.error().message;
-        particles_ = std::make_unique<ParticleSystem>(std::move(*made));
-    }
-    void collideWith(Result<ColliderTextures> textures) {
-        ASSERT_TRUE(textures) << textures.error().message;
-        textures_ = std::make_unique<ColliderTextures>(std::move(*textures));
-        const std::array<ColliderInstance, 1> instances{ColliderInstance{textures_.get()}};
-        ASSERT_TRUE(particles_->setColliders(instances));
-    }
-    void setType(const ParticleType& type) { ASSERT_TRUE(particles_->setTypes(std::span(&type, 1))); }
-    [[nodiscard]] std::vector<ParticleState> state() const {
-        auto read = particles_->readState();
-        EXPECT_TRUE(read);
-        return read.value_or(std::vector<ParticleState>{});
-    }
-
-    std::unique_ptr<ColliderTextures> textures_;
-    std::unique_ptr<ParticleSystem> particles_;
-};
+class CollisionGlTest : public CollisionTest {};
 
 glm::vec3 randomIn(Pcg32& random, const glm::vec3& low, const glm::vec3& high) {
     const float x = random.between(low.x, high.x);
@@ -59,10 +29,6 @@ glm::quat turn(const glm::vec3& axis, float angle) {
 
 Collider ballCollider() {
     return analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, 0.5), 128);
-}
-
-Collider boxCollider() {
-    return analytic::frontBackCollider(analytic::box({-0.4, -0.2, -0.3}, {0.4, 0.2, 0.3}), 96);
 }
 
 /// Three bodies on their ways at time t.

@@ -6,6 +6,7 @@
 
 #include "runtime/report.h"
 #include "runtime/scene.h"
+#include "tests/runtime/scene_error.h"
 
 namespace relief {
 namespace {
@@ -24,13 +25,7 @@ Scene good(const std::string& more) {
 
 /// `more` starts at line 3.
 void expectError(const std::string& more, const std::string& place, const std::string& part) {
-    const auto scene = parse(more);
-    ASSERT_FALSE(scene) << more;
-    const std::string& message = scene.error().message;
-    EXPECT_EQ(scene.error().code, ErrorCode::kInvalidInput);
-    EXPECT_TRUE(message.starts_with("dir/scene.toml:" + place + ": ")) << more << "\n" << message;
-    EXPECT_NE(message.find(part), std::string::npos) << more << "\n" << message;
-    EXPECT_EQ(message.find('\n'), std::string::npos);
+    expectSceneError(kHead + more, "dir/scene.toml:" + place + ": ", part);
 }
 
 const std::string kBox = "box_min = [0, 0, 0]\nbox_max = [1, 2, 3]\n";

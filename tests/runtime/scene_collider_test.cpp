@@ -9,6 +9,7 @@
 #include <string>
 
 #include "runtime/scene.h"
+#include "tests/runtime/scene_error.h"
 
 namespace relief {
 namespace {
@@ -28,13 +29,7 @@ Scene good(const std::string& text) {
 }
 
 void expectErrorOf(const std::string& text, const std::string& place, const std::string& part) {
-    const auto scene = parse(text);
-    ASSERT_FALSE(scene) << text;
-    const std::string& message = scene.error().message;
-    EXPECT_EQ(scene.error().code, ErrorCode::kInvalidInput);
-    EXPECT_TRUE(message.starts_with("dir/scene.toml:" + place + ": ")) << text << "\n" << message;
-    EXPECT_NE(message.find(part), std::string::npos) << text << "\n" << message;
-    EXPECT_EQ(message.find('\n'), std::string::npos);
+    expectSceneError(text, "dir/scene.toml:" + place + ": ", part);
 }
 
 /// The lines after the head start at line 3.

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "runtime/scene.h"
+#include "tests/runtime/scene_error.h"
 
 namespace relief {
 namespace {
@@ -26,13 +27,7 @@ SceneEmitter good(const std::string& keys) {
 }
 
 void expectError(const std::string& keys, const std::string& start, const std::string& part = "") {
-    const auto scene = parse(kHead + keys);
-    ASSERT_FALSE(scene) << keys;
-    EXPECT_EQ(scene.error().code, ErrorCode::kInvalidInput);
-    EXPECT_TRUE(scene.error().message.starts_with("dir/scene.toml:" + start)) << keys << "\n"
-                                                                              << scene.error().message;
-    EXPECT_NE(scene.error().message.find(part), std::string::npos) << keys << "\n" << scene.error().message;
-    EXPECT_EQ(scene.error().message.find('\n'), std::string::npos);
+    expectSceneError(kHead + keys, "dir/scene.toml:" + start, part);
 }
 
 Bounds unitBounds() {

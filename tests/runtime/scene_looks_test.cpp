@@ -5,6 +5,7 @@
 
 #include "runtime/scene.h"
 #include "runtime/scene_pictures.h"
+#include "tests/runtime/scene_error.h"
 
 namespace relief {
 namespace {
@@ -19,12 +20,7 @@ Scene good(const std::string& more) {
 
 /// The lines after the head start at line 3.
 void expectError(const std::string& more, const std::string& place, const std::string& part) {
-    const auto scene = parseScene(kHead + more, "dir/scene.toml");
-    ASSERT_FALSE(scene) << more;
-    EXPECT_EQ(scene.error().code, ErrorCode::kInvalidInput);
-    EXPECT_TRUE(scene.error().message.starts_with("dir/scene.toml:" + place + ": ")) << scene.error().message;
-    EXPECT_NE(scene.error().message.find(part), std::string::npos) << scene.error().message;
-    EXPECT_EQ(scene.error().message.find('\n'), std::string::npos);
+    expectSceneError(kHead + more, "dir/scene.toml:" + place + ": ", part);
 }
 
 TEST(SceneLooks, NothingGivenIsAsBefore) {

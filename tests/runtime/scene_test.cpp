@@ -9,6 +9,7 @@
 #include <string>
 
 #include "runtime/suggestion.h"
+#include "tests/runtime/scene_error.h"
 
 namespace relief {
 namespace {
@@ -27,12 +28,7 @@ Scene good(const std::string& more) {
 }
 
 void expectError(const std::string& text, const std::string& start, const std::string& part = "") {
-    const auto scene = parse(text);
-    ASSERT_FALSE(scene) << text;
-    EXPECT_EQ(scene.error().code, ErrorCode::kInvalidInput);
-    EXPECT_TRUE(scene.error().message.starts_with(start)) << text << "\n" << scene.error().message;
-    EXPECT_NE(scene.error().message.find(part), std::string::npos) << text << "\n" << scene.error().message;
-    EXPECT_EQ(scene.error().message.find('\n'), std::string::npos);
+    expectSceneError(text, start, part);
 }
 
 Bounds unitBounds() {
