@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds one preset of CMakePresets.json: scripts/build.sh release|debug|sanitize [TARGET]…
+# Builds one preset of CMakePresets.json: scripts/build.sh release|debug|sanitize|fuzz [TARGET]…
 # Prints the folder of the executables.
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# Looks for trouble with libFuzzer, under the sanitizers: scripts/fuzz.sh [SECONDS [TARGET…]], 60 seconds a target and
+# all of tests/fuzz by default. What it finds lies in out/fuzz/: mend it, and put the input into tests/fuzz/corpus/.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+seconds=${1:-60}
+targets=("${@:2}")
+scripts/setup.sh
+dpkg-query -W -f '${db:Status-Status}' clang 2>/dev/null | grep -qx installed || {
+    echo "fuzz.sh: clang is missing; apt-get install clang" >&2
+    exit 1
+}
+if [ ${#targets[@]} -eq 0 ]; then
+    for source in tests/fuzz/fuzz_*.cpp; do
+        name=$(basename "$source" .cpp)
+        targets+=("${name#fuzz_}")
+    done
+fi
+bin=$(scripts/build.sh fuzz "${targets[@]/#/relief_fuzz_}")
+
+failed=0
+for target in "${targets[@]}"; do
+    found=out/fuzz/$target
+    mkdir -p "$found/corpus"
+    options=(-max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 -artifact_prefix="$found/")
+    [ ! -f "tests/fuzz/$target.dict" ] || options+=(-dict="tests/fuzz/$target.dict")
+    status=0
+    ASAN_OPTIONS=allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1 \
+        "$bin/relief_fuzz_$target" "${options[@]}" "$found/corpus" "tests/fuzz/corpus/$target" 2>"$found/log" || status=$?
+    runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$found/log")
+    edges=$(grep -o 'cov: [0-9]*' "$found/log" | tail -1 | cut -d' ' -f2)
+    echo "fuzz: $target: ${runs:-?} inputs in $seconds s, ${edges:-?} edges, exit code $status"
+    [ "$status" = 0 ] || {
+        tail -25 "$found/log" >&2
+        failed=1
+    }
+done
+exit $failed

@@ -1,0 +1,50 @@
+// Containers: whatever the bytes, a collider that can be written again or an error.
+#include <span>
+#include <string>
+#include <vector>
+
+#include "formats/collider.h"
+#include "formats/container.h"
+#include "tests/fuzz/target.h"
+
+namespace {
+
+/// Texels that one input may take: the reader's limits are for machines, this one is for speed.
+constexpr relief::ContainerLimits kLimits{16, std::uint64_t{1} << 22};
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const auto given = std::as_bytes(std::span(data, size));
+    const std::vector<std::byte> bytes(given.begin(), given.end());
+    const auto info = relief::readContainerInfo(bytes, kLimits);
+    const auto collider = relief::readContainer(bytes, kLimits);
+    if (!collider) {
+        mustHold(!collider.error().message.empty(), "an error has words");
+        mustHold(collider.error().message.find('\n') == std::string::npos, "an error is one line");
+        return 0;
+    }
+    mustHold(info.has_value(), "what can be read has a header and metadata");
+    mustHold(info->payloads.size() == collider->maps.size(), "one payload a map");
+
+    const auto written = relief::writeContainer(*collider);
+    mustHold(written.has_value(), "what was read can be written");
+    const auto again = relief::readContainer(*written, kLimits);
+    mustHold(again.has_value(), "what was written can be read");
+    const auto written_again = relief::writeContainer(*again);
+    mustHold(written_again.has_value() && *written_again == *written,
+             "the same collider gives the same bytes");
+
+    // Votes about, in and far outside of the box, and where floats end.
+    const glm::vec3 center = collider->bounds.center();
+    const glm::vec3 sides = collider->bounds.size();
+    for (int i = 0; i < 64; ++i) {
+        const glm::vec3 at(static_cast<float>(i % 4), static_cast<float>(i / 4 % 4),
+                           static_cast<float>(i / 16));
+        static_cast<void>(relief::evaluate(*collider, center + sides * (at * 0.5F - 0.75F)));
+    }
+    for (const float far : {1e30F, -3e38F, 0.0F}) {
+        static_cast<void>(relief::evaluate(*collider, glm::vec3(far, 1.0F, -far)));
+    }
+    return 0;
+}

@@ -1,0 +1,29 @@
+// Lists of points, of an emitter (PLY or text) and of `relief query`.
+#include <cmath>
+#include <string_view>
+
+#include "bake/points_csv.h"
+#include "runtime/point_list.h"
+#include "tests/fuzz/target.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const auto bytes = std::as_bytes(std::span(data, size));
+    if (const auto list = relief::parsePointList(bytes, "points.ply")) {
+        mustHold(!list->positions.empty(), "a list has points");
+        mustHold(list->normals.empty() || list->normals.size() == list->positions.size(), "a normal a point");
+        for (const glm::vec3& p : list->positions) {
+            for (int k = 0; k < 3; ++k) {
+                mustHold(std::abs(p[k]) <= static_cast<float>(relief::kPointCoordinateMax), "in range");
+            }
+        }
+    } else {
+        mustHold(list.error().message.starts_with("points.ply"), "an error names the file");
+        mustHold(list.error().message.find('\n') == std::string::npos, "an error is one line");
+    }
+    const std::string_view text(reinterpret_cast<const char*>(data), size);
+    if (const auto points = relief::parsePoints(text, "points.csv"); !points) {
+        mustHold(points.error().message.starts_with("points.csv"), "an error names the file");
+        mustHold(points.error().message.find('\n') == std::string::npos, "an error is one line");
+    }
+    return 0;
+}

@@ -1,0 +1,21 @@
+// Scene files: a scene or one line that names file, line and column.
+#include <string_view>
+
+#include "runtime/scene.h"
+#include "tests/fuzz/target.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string_view text(reinterpret_cast<const char*>(data), size);
+    auto scene = relief::parseScene(text, "/scenes/scene.toml");
+    if (!scene) {
+        const std::string& message = scene.error().message;
+        mustHold(message.find("scene.toml") != std::string::npos, "an error names the file");
+        mustHold(message.find('\n') == std::string::npos, "an error is one line");
+        return 0;
+    }
+    mustHold(!scene->colliders.empty(), "a scene has a collider");
+    mustHold(!scene->emitters.empty(), "a scene has an emitter");
+    const auto whole = relief::withDefaults(*std::move(scene), {{-1.0F, -2.0F, -3.0F}, {1.0F, 2.0F, 3.0F}});
+    mustHold(whole.has_value() || !whole.error().message.empty(), "an error has words");
+    return 0;
+}
