@@ -6,16 +6,17 @@
 // at the texel's centre, because rasterisers move vertices to a grid of 1/256 pixel. Of surfaces on one ray
 // LESS keeps the nearest, GREATER the farthest; front-back maps are drawn twice into one target.
 //
-// Maps whose decode is Plane hold, in each texel, the plane of the triangle that its centre's ray meets: moved
-// outwards to the next depth code, standing along the ray where it is steep, and facing the viewer where no
-// plane can be stored. What the ray caster does with the rays next to a texel (silhouettes found between
-// texels' centres) is not done here.
+// Maps whose decode is Plane hold, in each texel, the plane of the triangle that its centre's ray meets:
+// moved outwards to the next depth code, standing along the ray where it is steep, and facing the viewer
+// where no plane can be stored. What the ray caster does with the rays next to a texel (silhouettes found
+// between texels' centres) is not done here.
 #pragma once
 
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <map>
 #include <span>
+#include <string>
 
 #include "formats/depth_map.h"
 #include "formats/result.h"
@@ -78,9 +79,9 @@ class DepthMapTarget {
     [[nodiscard]] std::uint32_t height() const { return height_; }
     [[nodiscard]] GLuint texels() const { return texels_.name(); }
     /// How far the surface has moved between the mesh's previous and its present positions, object units. Of
-    /// end e (0: the surface of maps that keep one, and the front; 1: the back) x is component e of texture 0,
-    /// y component 2 + e of it, z component e of texture 1. 0 where the texel is empty.
-    /// \param i  0 or 1; name 0 in a target without motion.
+    /// end e (0: the surface of maps that keep one, and the front; 1: the back) x is component e of texture
+    /// 0, y component 2 + e of it, z component e of texture 1. 0 where the texel is empty. \param i  0 or 1;
+    /// name 0 in a target without motion.
     [[nodiscard]] GLuint motion(int i) const { return motion_[i].name(); }
     /// All attachments; to read from, and to draw to by the renderer.
     [[nodiscard]] GLuint framebuffer() const { return framebuffer_.name(); }
@@ -105,9 +106,9 @@ class DepthMapRenderer {
   public:
     [[nodiscard]] static Result<DepthMapRenderer> create();
 
-    /// Renders a whole map into a target of the same format, faces stacked from row 0 on; writes every texel of
-    /// it. The first map of a kind compiles its program.
-    /// Errors: kUsage (a frame that is not right, a target of another format or too small), kFailure.
+    /// Renders a whole map into a target of the same format, faces stacked from row 0 on; writes every texel
+    /// of it. The first map of a kind compiles its program. Errors: kUsage (a frame that is not right, a
+    /// target of another format or too small), kFailure.
     [[nodiscard]] Result<void> render(GpuMesh& mesh, const DepthMapFrame& frame,
                                       const DepthMapTarget& target);
     /// Renders a part of a map to (x, y) of the target: for maps that are larger than a texture.
@@ -117,11 +118,14 @@ class DepthMapRenderer {
   private:
     struct Program {
         GlProgram program;
-        GLint end, row, center, shift, window, to_object, limits, flags, plane;
+        GLint shift, center, row, object, window, residual, origin, scale, width;
+        GLint far, starts_free, inside_out, ray, range, good_enough;
     };
     [[nodiscard]] Result<const Program*> programFor(const DepthMapFrame& frame, bool motion);
+    static void setUniforms(const Program& program, const GpuMesh& mesh, const DepthMapFrame& frame,
+                            const TexelWindow& window, std::uint32_t x, std::uint32_t y);
 
-    std::map<int, Program> programs_;  // by what they were compiled for
+    std::map<std::string, Program> programs_;  // by their defines
 };
 
 }  // namespace relief

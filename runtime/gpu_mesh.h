@@ -43,9 +43,9 @@ class GpuMesh {
     /// Errors: kUsage (another number), kInvalidInput (not finite); the mesh then stays as it was.
     [[nodiscard]] Result<void> setPositions(std::span<const glm::vec3> positions);
     /// The same from a buffer of the GPU: tightly packed triples of floats from `offset` bytes on, a multiple
-    /// of 4. Copied by the GPU when its time comes; nothing waits, and nobody looks whether they are finite: a
-    /// triangle with a corner that is not is not drawn, or anywhere.
-    /// Errors: kUsage (0, no buffer, an offset that is no multiple of 4, a buffer that is too short).
+    /// of 4. Copied by the GPU when its time comes; nothing waits, and nobody looks whether they are finite:
+    /// a triangle with a corner that is not is not drawn, or anywhere. Errors: kUsage (0, no buffer, an
+    /// offset that is no multiple of 4, a buffer that is too short).
     [[nodiscard]] Result<void> setPositions(GLuint buffer, std::size_t offset = 0);
     /// With keep_previous: forgets the motion, as if the vertices had always been where they are (after a
     /// jump, or when they have come to rest).
@@ -67,9 +67,9 @@ class GpuMesh {
     /// RGBA32UI: the vertices of triangle i, its own corner last; w is 0.
     [[nodiscard]] GLuint corners() const { return corners_.name(); }
     /// RGBA32UI: of triangle i the unit normal's bits as floats by the right-hand rule (0: no area), and in w
-    /// its packed index (normal_index.h) plus 65536 times that of the opposite normal. Made anew, by one draw,
-    /// if the positions have changed since the last call, which leaves GL state changed: call it inside a
-    /// PassState.
+    /// its packed index (normal_index.h) plus 65536 times that of the opposite normal. Made anew, by one
+    /// draw, if the positions have changed since the last call, which leaves GL state changed: call it inside
+    /// a PassState.
     [[nodiscard]] GLuint planes();
     [[nodiscard]] int triangleShift() const { return triangle_shift_; }
     /// Draws all triangles with the current program; attribute 0 is the slot's vertex, an unsigned integer.
