@@ -596,6 +596,21 @@ vec3 reliefBodyMotion(int body, int map, vec3 q, vec3 normal) {
     return reliefMotion(map, q, in_body);
 }
 
+// What rests on a live body goes with the surface that is nearest. Of each map alone: where one sees nothing near a
+// silhouette, another one does.
+vec3 reliefNearestMotion(int body, vec3 q) {
+    ReliefField nearest = ReliefField(RELIEF_FAR_OUTSIDE, vec3(0.0), -1);
+    int first = u_relief_bodies[body].maps.x;
+    for (int i = first; i < first + u_relief_bodies[body].maps.y; ++i) {
+        ReliefField one = ReliefField(RELIEF_FAR_INSIDE, vec3(0.0), -1);
+        reliefVote(one, i, q);
+        if (one.map >= 0 && abs(one.distance) < abs(nearest.distance)) {
+            nearest = one;
+        }
+    }
+    return nearest.map >= 0 ? reliefMotion(nearest.map, q, nearest.normal) : vec3(0.0);
+}
+
 #endif
 
 #endif

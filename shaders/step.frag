@@ -60,10 +60,7 @@ vec3 pointNow(int body, vec3 p) {
     }
     vec3 q = reliefBodyBefore(body, p);
     if (u_relief_bodies[body].maps.z != 0) {
-        // What rests there goes with the surface that is nearest.
-        ReliefField field = reliefBodyField(body, q, 0.0, true);
-        bool known = field.map >= 0 && field.distance < RELIEF_FAR_OUTSIDE;
-        q += known ? reliefMotion(field.map, q, field.normal) : vec3(0.0);
+        q += reliefNearestMotion(body, q);
     }
     return reliefWorldNow(body, q);
 }
