@@ -14,6 +14,7 @@
 #include "bake/fitted_map.h"
 #include "bake/inside.h"
 #include "bake/mesh_query.h"
+#include "bake/rasterize.h"
 #include "bake/raycast.h"
 #include "bake/refine.h"
 #include "bake/view.h"
@@ -89,7 +90,9 @@ std::string effectiveOptions(const std::vector<Job>& jobs, const BakeOptions& op
         text.append(text.empty() ? "" : " ").append("--map ").append(toString(job.spec));
         has_planes = has_planes || job.spec.decode == Decode::kPlane;
     }
-    if (has_planes) {
+    if (options.rasterize) {
+        text.append(" --backend raster");
+    } else if (has_planes) {
         text.append(" --quality ").append(qualityName(options.quality));
         if (options.prefer != Prefer::kNeither) {
             text.append(" --prefer ").append(preferName(options.prefer));
@@ -240,17 +243,39 @@ class MapBaker {
     const NormalTable& normals_;
 };
 
-Result<Baked> bakeOnThisArena(const TriangleMesh& mesh, const BakeOptions& options) {
-    const Result<std::vector<Job>> jobs = planJobs(mesh, options);
-    if (!jobs) {
-        return forward(jobs);
+/// Bakes all maps on the GPU. \param stripeDone  called with the number of texels finished.
+template <class StripeDone>
+Result<void> rasterizeMaps(const TriangleMesh& mesh, const std::vector<Job>& jobs, Baked& baked,
+                           const StripeDone& stripeDone) {
+    BakeReport& report = baked.report;
+    std::optional<Result<Rasterizer>> rasterizer;
+    {
+        const Stopwatch watch(report.build_ms);
+        rasterizer.emplace(Rasterizer::create(mesh));
     }
-    std::uint64_t texels = 0;
-    for (const Job& job : *jobs) {
-        texels += job.texels();
+    if (!*rasterizer) {
+        return forward(*rasterizer);
     }
+    const Stopwatch watch(report.raster_ms);
+    for (const Job& job : jobs) {
+        MapReport map_report{job.spec, 0, job.texels()};
+        Result<DepthMap> map =
+            (*rasterizer)->bake(job.view, job.spec.decode, map_report.covered, [&](std::uint32_t rows) {
+                stripeDone(std::uint64_t{rows} * job.view.width);
+            });
+        if (!map) {
+            return forward(map);
+        }
+        baked.collider.maps.push_back(std::move(*map));
+        report.maps.push_back(std::move(map_report));
+    }
+    return {};
+}
 
-    Baked baked;
+/// Bakes all maps by rays.
+template <class StripeDone>
+Result<void> raycastMaps(const TriangleMesh& mesh, const std::vector<Job>& jobs, const BakeOptions& options,
+                         std::uint64_t texels, Baked& baked, const StripeDone& stripeDone) {
     BakeReport& report = baked.report;
     std::optional<Result<RayScene>> scene;
     {
@@ -265,18 +290,9 @@ Result<Baked> bakeOnThisArena(const TriangleMesh& mesh, const BakeOptions& optio
         const Stopwatch watch(report.encode_ms);
         normals.emplace(mesh, (*scene)->winding(), texels);
     }
-
-    std::uint64_t done = 0;
-    const auto stripeDone = [&](std::uint64_t stripe) {
-        done += stripe;
-        if (options.progress) {
-            options.progress(static_cast<double>(done) / static_cast<double>(texels));
-        }
-    };
     MapBaker baker(mesh, **scene, *normals);
     std::optional<TriangleNormals> unit_normals;
-    std::uint64_t all_covered = 0;
-    for (const Job& job : *jobs) {
+    for (const Job& job : jobs) {
         MapReport map_report{job.spec, 0, job.texels()};
         if (job.spec.decode == Decode::kPlane) {
             const Stopwatch watch(report.fit_ms);
@@ -289,8 +305,41 @@ Result<Baked> bakeOnThisArena(const TriangleMesh& mesh, const BakeOptions& optio
         } else {
             baked.collider.maps.push_back(baker.bake(job.view, report, map_report.covered, stripeDone));
         }
-        all_covered += map_report.covered;
         report.maps.push_back(std::move(map_report));
+    }
+    return {};
+}
+
+Result<Baked> bakeOnThisArena(const TriangleMesh& mesh, const BakeOptions& options) {
+    const Result<std::vector<Job>> jobs = planJobs(mesh, options);
+    if (!jobs) {
+        return forward(jobs);
+    }
+    std::uint64_t texels = 0;
+    bool has_planes = false;
+    for (const Job& job : *jobs) {
+        texels += job.texels();
+        has_planes = has_planes || job.spec.decode == Decode::kPlane;
+    }
+
+    Baked baked;
+    BakeReport& report = baked.report;
+    std::uint64_t done = 0;
+    const auto stripeDone = [&](std::uint64_t stripe) {
+        done += stripe;
+        if (options.progress) {
+            options.progress(static_cast<double>(done) / static_cast<double>(texels));
+        }
+    };
+    if (const Result<void> all = options.rasterize
+                                     ? rasterizeMaps(mesh, *jobs, baked, stripeDone)
+                                     : raycastMaps(mesh, *jobs, options, texels, baked, stripeDone);
+        !all) {
+        return forward(all);
+    }
+    std::uint64_t all_covered = 0;
+    for (const MapReport& map : report.maps) {
+        all_covered += map.covered;
     }
     if (all_covered == 0) {
         return fail(
@@ -298,7 +347,8 @@ Result<Baked> bakeOnThisArena(const TriangleMesh& mesh, const BakeOptions& optio
             mesh.name +
                 ": no map sees a surface of the mesh; raise the maps' sizes, or change their dir or box");
     }
-    if (unit_normals && (options.quality != Quality::kFast || options.prefer != Prefer::kNeither)) {
+    const bool refine = options.quality != Quality::kFast || options.prefer != Prefer::kNeither;
+    if (has_planes && refine && !options.rasterize) {
         const Stopwatch watch(report.refine_ms);
         const Result<MeshQuery> query = MeshQuery::build(mesh);
         if (!query) {
@@ -330,7 +380,8 @@ const char* qualityName(Quality quality) {
 }
 
 Result<Baked> bake(const TriangleMesh& mesh, const BakeOptions& options) {
-    if (options.threads == 0) {
+    // A GL context is one thread's: no arena that could run it on another.
+    if (options.threads == 0 || options.rasterize) {
         return bakeOnThisArena(mesh, options);
     }
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, options.threads);

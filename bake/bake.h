@@ -26,6 +26,9 @@ struct BakeOptions {
     Quality quality = Quality::kNormal;
     Prefer prefer = Prefer::kNeither;
     unsigned threads = 0;  ///< 0: all cores. Never changes the result.
+    /// On the GPU (rasterize.h) instead of by rays: needs a current context, and quality and prefer have no
+    /// effect. Not the same bytes on every machine.
+    bool rasterize = false;
     /// Called now and then, from the calling thread, with the share of the work done, in [0, 1].
     std::function<void(double)> progress;
 };
@@ -41,6 +44,7 @@ struct BakeReport {
     double trace_ms = 0.0;   ///< rays
     double encode_ms = 0.0;  ///< normals and texels
     double fit_ms = 0.0;     ///< rays and planes of the maps whose decode is plane
+    double raster_ms = 0.0;  ///< maps of the GPU, read back
     double refine_ms = 0.0;  ///< texels of those maps chosen anew, knowing the other maps
     std::vector<MapReport> maps;
     std::vector<std::string> warnings;  ///< what is probably not meant; one line each
@@ -52,7 +56,7 @@ struct Baked {
 };
 
 /// Errors: kUsage and kLimit (a spec, the resolution, too many maps or texels), kFailure (Embree; no ray of
-/// any map meets the mesh).
+/// any map meets the mesh); with rasterize those of rasterize.h too.
 [[nodiscard]] Result<Baked> bake(const TriangleMesh& mesh, const BakeOptions& options);
 
 }  // namespace relief

@@ -94,6 +94,12 @@ std::string bakeText(const BakeSummary& summary, const std::string& output, std:
                   times.search_ms > 0.0 ? "search" : "plan",
                   times.search_ms > 0.0 ? times.search_ms : times.plan_ms);
     text += line;
+    if (baked.report.raster_ms > 0.0) {
+        std::snprintf(line, sizeof(line), "upload %.0f, drawing %.0f, writing %.0f\n", baked.report.build_ms,
+                      baked.report.raster_ms, times.write_ms);
+        return text + line + (output == "-" ? "standard output" : quotedPath(output)) + ": " +
+               bytesText(file_size) + "\n";
+    }
     std::snprintf(line, sizeof(line),
                   "%stree %.0f, rays %.0f, texels %.0f, planes %.0f, refining %.0f%s writing %.0f\n",
                   times.search_ms > 0.0 ? "its last bake: " : "", baked.report.build_ms,
@@ -116,11 +122,11 @@ Json jsonBake(const BakeSummary& summary, const ContainerInfo& info, const Json&
     json["closed_holes"] = summary.mesh.closed_holes;
     json["cap_triangles"] = summary.mesh.cap_triangles;
     json["dropped_triangles"] = summary.mesh.dropped_triangles;
-    json["times_ms"] = {{"import", times.import_ms}, {"plan", times.plan_ms},
-                        {"search", times.search_ms}, {"build", report.build_ms},
-                        {"trace", report.trace_ms},  {"encode", report.encode_ms},
-                        {"fit", report.fit_ms},      {"refine", report.refine_ms},
-                        {"write", times.write_ms},   {"total", times.total_ms}};
+    json["times_ms"] = {
+        {"import", times.import_ms}, {"plan", times.plan_ms},      {"search", times.search_ms},
+        {"build", report.build_ms},  {"trace", report.trace_ms},   {"encode", report.encode_ms},
+        {"fit", report.fit_ms},      {"raster", report.raster_ms}, {"refine", report.refine_ms},
+        {"write", times.write_ms},   {"total", times.total_ms}};
     json["warnings"] = report.warnings;
     return json;
 }

@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 
+#include "bake/backend.h"
 #include "bake/bake.h"
 #include "bake/bake_report.h"
 #include "bake/budget_search.h"
@@ -52,6 +53,7 @@ struct BakeCommand {
     std::string threads;
     std::string compress = "0";
     std::string holes = "close";
+    BackendOptions backend;
     bool json = false;
 };
 
@@ -64,6 +66,7 @@ struct Settings {
     std::optional<std::uint64_t> budget;  ///< bytes of texels
     std::optional<double> max_error;      ///< percent
     ContainerWriteOptions write;
+    std::optional<Quality> plan_quality;  ///< of the plan file
 };
 
 class Stopwatch {
@@ -287,6 +290,7 @@ Result<void> readPlanFile(const BakeCommand& command, Settings& settings) {
     }
     if (command.quality.empty()) {
         settings.bake.quality = plan->quality;
+        settings.plan_quality = plan->quality;
     }
     if (command.prefer.empty()) {
         settings.bake.prefer = plan->prefer;
@@ -393,7 +397,8 @@ Result<void> writePlanFile(const std::string& path, const PlanReport& plan, cons
     return writeFile(path, std::as_bytes(std::span(text)));
 }
 
-nlohmann::ordered_json jsonSettings(const BakeCommand& command, const Settings& settings, const Baked& baked,
+nlohmann::ordered_json jsonSettings(const BakeCommand& command, const Settings& settings,
+                                    const Backend& backend, const Baked& baked,
                                     const std::optional<PlanReport>& plan) {
     using Json = nlohmann::ordered_json;
     Json specs = Json::array();
@@ -409,6 +414,9 @@ nlohmann::ordered_json jsonSettings(const BakeCommand& command, const Settings& 
             {"budget", plan ? Json(plan->budget) : Json(nullptr)},
             {"quality", qualityName(settings.bake.quality)},
             {"prefer", preferName(settings.bake.prefer)},
+            {"backend", backend.raster ? "raster" : "raycast"},
+            {"backend_reason", backend.reason.empty() ? Json(nullptr) : Json(backend.reason)},
+            {"device", backend.raster ? Json(backend.device) : Json(nullptr)},
             {"threads", settings.bake.threads == 0 ? tbb::info::default_concurrency()
                                                    : static_cast<int>(settings.bake.threads)},
             {"compress", settings.write.compression_level},
@@ -429,6 +437,17 @@ Result<void> runBake(const BakeCommand& command) {
         if (const Result<void> read = readPlanFile(command, *settings); !read) {
             return read;
         }
+    }
+    const Result<Backend> backend =
+        chooseBackend(command.backend, {settings->source == Source::kPlanner,
+                                        !command.quality.empty() || settings->plan_quality.has_value(),
+                                        settings->bake.quality, settings->bake.prefer});
+    if (!backend) {
+        return forward(backend);
+    }
+    settings->bake.rasterize = backend->raster;
+    if (backend->raster) {
+        settings->bake.quality = Quality::kFast;
     }
     // Planning and measuring keep to --threads too.
     std::optional<tbb::global_control> control;
@@ -469,6 +488,9 @@ Result<void> runBake(const BakeCommand& command) {
         spdlog::info("{}: closed {} hole{} with {} triangles for baking: the mesh is nearly closed",
                      mesh->name, mesh->closed_holes, mesh->closed_holes == 1 ? "" : "s", mesh->cap_triangles);
     }
+    if (!backend->reason.empty()) {
+        spdlog::info("backend {}: {}", backend->raster ? "raster" : "raycast", backend->reason);
+    }
     for (const std::string& warning : baked->report.warnings) {
         spdlog::warn(warning);
     }
@@ -499,7 +521,8 @@ Result<void> runBake(const BakeCommand& command) {
         if (!info) {
             return forward(info);
         }
-        return printOut(dump(jsonBake(summary, *info, jsonSettings(command, *settings, *baked, plan))));
+        return printOut(
+            dump(jsonBake(summary, *info, jsonSettings(command, *settings, *backend, *baked, plan))));
     }
     if (!command.common.quiet) {
         std::fputs(bakeText(summary, command.output, bytes->size()).c_str(), stderr);
@@ -585,6 +608,7 @@ void addBake(CLI::App& app, Action& action) {
     verb.add_option("--holes", command->holes,
                     "Of a nearly closed mesh: close (bake it as a solid, default) or keep")
         ->option_text("WORD");
+    addBackendOptions(verb, command->backend);
     verb.add_flag("--json", command->json, "Print a report as JSON to standard output");
     verb.callback([command, &action] { action = [command] { return runBake(*command); }; });
 }

@@ -44,6 +44,7 @@ Result<ColliderMesh> ColliderMesh::create(const TriangleMesh& mesh) {
     }
     ColliderMesh out;
     out.program_ = std::move(*program);
+    out.vertex_bytes_ = static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex));
     out.corners_ = static_cast<GLsizei>(full.triangles.size());
     out.vertices_ = makeBuffer();
     out.triangles_ = makeBuffer();
@@ -59,6 +60,17 @@ Result<ColliderMesh> ColliderMesh::create(const TriangleMesh& mesh) {
                  static_cast<GLsizeiptr>(full.triangles.size() * sizeof(full.triangles[0])),
                  full.triangles.data(), GL_STATIC_DRAW);
     return out;
+}
+
+void ColliderMesh::setVertices(const GlBuffer& buffer) {
+    GLint bound[2] = {};
+    glGetIntegerv(GL_COPY_READ_BUFFER_BINDING, &bound[0]);
+    glGetIntegerv(GL_COPY_WRITE_BUFFER_BINDING, &bound[1]);
+    glBindBuffer(GL_COPY_READ_BUFFER, buffer.name());
+    glBindBuffer(GL_COPY_WRITE_BUFFER, vertices_.name());
+    glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, vertex_bytes_);
+    glBindBuffer(GL_COPY_READ_BUFFER, static_cast<GLuint>(bound[0]));
+    glBindBuffer(GL_COPY_WRITE_BUFFER, static_cast<GLuint>(bound[1]));
 }
 
 Result<ColliderMesh::View> ColliderMesh::view(const Camera& camera, GLsizei width, GLsizei height) const {

@@ -18,6 +18,10 @@ class ColliderMesh {
     /// Errors: kInvalidInput (checkMesh), kFailure (the driver's compiler).
     [[nodiscard]] static Result<ColliderMesh> create(const TriangleMesh& mesh);
 
+    /// Moves the vertices: copies 24 bytes a vertex, position and normal as floats, from the beginning of a
+    /// buffer of the GPU (deform_pass.h). As many as the mesh was created with, which then has normals.
+    void setVertices(const GlBuffer& buffer);
+
     /// What a camera sees of it, pixel by pixel.
     struct View {
         GlTexture normal;  ///< RGBA16F, object space, towards the viewer
@@ -33,6 +37,7 @@ class ColliderMesh {
     GlVertexArray array_;
     GlProgram program_;
     GLsizei corners_ = 0;
+    GLsizeiptr vertex_bytes_ = 0;
 };
 
 }  // namespace relief

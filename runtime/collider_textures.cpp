@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "runtime/pass_state.h"
+#include "runtime/texel_layout.h"
 
 namespace relief {
 namespace {
@@ -26,6 +27,8 @@ constexpr std::array<Layout, 3> kLayouts = {{
     {"u_relief_front_back", GL_RGBA16UI, GL_RGBA_INTEGER, GL_UNSIGNED_SHORT, 8},
 }};
 
+constexpr std::size_t kFloatLayout = 0;
+
 std::size_t layoutOf(MapFormat format) {
     switch (format) {
         case MapFormat::kFloat32:
@@ -38,26 +41,6 @@ std::size_t layoutOf(MapFormat format) {
             return 1;
     }
     return 1;
-}
-
-/// A texture whose texels are counted row by row.
-struct Wrapped {
-    int log2_width = 0;
-    std::size_t texels = 0;
-
-    [[nodiscard]] GLint width() const { return GLint{1} << log2_width; }
-    [[nodiscard]] std::size_t height() const {
-        return (texels + (std::size_t{1} << log2_width) - 1) >> log2_width;
-    }
-};
-
-/// The narrowest that is no higher than wide.
-Wrapped wrappedFor(std::size_t texels) {
-    Wrapped wrapped{0, texels};
-    while (wrapped.height() > static_cast<std::size_t>(wrapped.width())) {
-        ++wrapped.log2_width;
-    }
-    return wrapped;
 }
 
 /// One element of the shader's ReliefMap array, std140.
@@ -77,7 +60,8 @@ std::int32_t flagsOf(const DepthMap& map) {
            (map.empty_is_outside ? 4 : 0) | (map.decode == Decode::kPlane ? 8 : 0);
 }
 
-BlockMap blockMap(const DepthMap& map, std::size_t first_texel) {
+/// \param pitch  texels from a row to the next: the map's width, or that of the texture it is a rectangle of.
+BlockMap blockMap(const DepthMap& map, std::size_t first_texel, GLint pitch, std::size_t motion) {
     BlockMap block{};
     std::copy(std::begin(map.object_to_map.row), std::end(map.object_to_map.row), std::begin(block.row));
     const float last[3] = {standingRange(map.projection(), map.object_per_map, map.width, map.height),
@@ -90,15 +74,16 @@ BlockMap blockMap(const DepthMap& map, std::size_t first_texel) {
     block.object_per_map = glm::vec4(map.object_per_map, kStandingCosine * map.object_per_map.z);
     const auto width = static_cast<std::int32_t>(map.width);
     const auto height = static_cast<std::int32_t>(map.height);
-    const std::int32_t place[4] = {static_cast<std::int32_t>(first_texel), width, width * height, width};
-    const std::int32_t info[4] = {height, static_cast<std::int32_t>(map.format), flagsOf(map), 0};
+    const std::int32_t place[4] = {static_cast<std::int32_t>(first_texel), pitch, pitch * height, width};
+    const std::int32_t info[4] = {height, static_cast<std::int32_t>(map.format), flagsOf(map),
+                                  static_cast<std::int32_t>(motion)};
     std::memcpy(block.place, place, sizeof(place));
     std::memcpy(block.info, info, sizeof(info));
     return block;
 }
 
 /// Uploads texels that follow each other, from index `first` on; the texture is bound.
-void uploadTexels(const Layout& layout, const Wrapped& wrapped, std::size_t first,
+void uploadTexels(const Layout& layout, const TexelLayout& wrapped, std::size_t first,
                   std::span<const std::byte> bytes) {
     const auto width = static_cast<std::size_t>(wrapped.width());
     std::size_t left = bytes.size() / layout.texel_size;
@@ -115,6 +100,17 @@ void uploadTexels(const Layout& layout, const Wrapped& wrapped, std::size_t firs
         left -= columns * rows;
         from += columns * rows * layout.texel_size;
     }
+}
+
+/// A live map before its first update: nothing on any ray. The texture is bound.
+void uploadEmpty(const Layout& layout, const DepthMap& map, const TexelRectangle& at) {
+    const auto texels = static_cast<std::size_t>(at.width) * static_cast<std::size_t>(at.height);
+    std::vector<std::byte> bytes(texels * layout.texel_size);
+    for (std::size_t i = 0; i < texels; ++i) {
+        encodeTexel(map.format, {}, std::span(bytes).subspan(i * layout.texel_size, layout.texel_size));
+    }
+    glTexSubImage2D(GL_TEXTURE_2D, 0, at.x, at.y, at.width, at.height, layout.format, layout.type,
+                    bytes.data());
 }
 
 /// World to object space.
@@ -136,9 +132,9 @@ GLint integer(GLenum what) {
 }  // namespace
 
 Result<ColliderTextures> ColliderTextures::create(const Collider& collider) {
-    std::vector<const DepthMap*> maps;
+    std::vector<PlacedMap> maps;
     for (const DepthMap& map : collider.maps) {
-        maps.push_back(&map);
+        maps.push_back({&map, false});
     }
     return upload(maps, {});
 }
@@ -148,7 +144,7 @@ Result<ColliderTextures> ColliderTextures::create(std::span<const ColliderBody> 
         return fail(ErrorCode::kLimit, std::to_string(bodies.size()) + " colliders are more than " +
                                            std::to_string(kBodiesMax) + "; bake some of them into one");
     }
-    std::vector<const DepthMap*> maps;
+    std::vector<PlacedMap> maps;
     std::vector<BlockBody> blocks;
     for (const ColliderBody& body : bodies) {
         if (!(body.pose.scale > 0.0F)) {
@@ -156,7 +152,7 @@ Result<ColliderTextures> ColliderTextures::create(std::span<const ColliderBody> 
         }
         const auto first = static_cast<std::int32_t>(maps.size());
         for (const DepthMap& map : body.collider->maps) {
-            maps.push_back(&map);
+            maps.push_back({&map, body.live});
         }
         BlockBody block{};
         writeRows(body.pose, block.row);
@@ -164,6 +160,7 @@ Result<ColliderTextures> ColliderTextures::create(std::span<const ColliderBody> 
         block.response = glm::vec4(body.pose.scale, body.restitution, 1.0F - body.friction, 0.0F);
         block.maps[0] = first;
         block.maps[1] = static_cast<std::int32_t>(maps.size()) - first;
+        block.maps[2] = body.live ? 1 : 0;
         blocks.push_back(block);
     }
     return upload(maps, std::move(blocks));
@@ -186,7 +183,7 @@ void ColliderTextures::setPoses(std::span<const Pose> poses) {
     }
 }
 
-Result<ColliderTextures> ColliderTextures::upload(std::span<const DepthMap* const> maps,
+Result<ColliderTextures> ColliderTextures::upload(std::span<const PlacedMap> maps,
                                                   std::vector<BlockBody> bodies) {
     if (maps.empty()) {
         return fail(ErrorCode::kUnsupported, "a collider without maps has nothing to collide with");
@@ -200,57 +197,91 @@ Result<ColliderTextures> ColliderTextures::upload(std::span<const DepthMap* cons
                                            "; bake it with fewer");
     }
 
-    std::array<std::size_t, 3> texels{};
-    std::vector<std::size_t> first_texel;
-    for (const DepthMap* map : maps) {
-        std::size_t& used = texels[layoutOf(map->format)];
-        first_texel.push_back(used);
-        used += std::size_t{map->width} * map->height * map->faceCount();
+    std::array<TexelLayout, 3> layouts;
+    for (const auto& [map, live] : maps) {
+        TexelLayout& layout = layouts[layoutOf(map->format)];
+        if (live) {
+            const auto width = static_cast<GLint>(map->width);
+            const auto height = static_cast<GLint>(map->height);
+            layout.addRectangle(width, height * static_cast<GLint>(map->faceCount()));
+            // Of the front and of the back, or of the faces.
+            layouts[kFloatLayout].addRectangle(
+                width, height * static_cast<GLint>(isFrontBack(map->format) ? 2 : map->faceCount()));
+        } else {
+            layout.addPacked(std::size_t{map->width} * map->height * map->faceCount());
+        }
     }
-    std::array<Wrapped, 3> wrapped;
     const GLint size_max = integer(GL_MAX_TEXTURE_SIZE);
-    for (std::size_t i = 0; i < texels.size(); ++i) {
-        wrapped[i] = wrappedFor(texels[i]);
-        if (wrapped[i].width() > size_max) {
-            return fail(ErrorCode::kLimit, "the collider's maps have " + std::to_string(texels[i]) +
+    for (TexelLayout& layout : layouts) {
+        if (!layout.finish(size_max)) {
+            return fail(ErrorCode::kLimit, "the collider's maps have " + std::to_string(layout.texels()) +
                                                " texels of one layout, this GL takes " +
                                                std::to_string(size_max) + "x" + std::to_string(size_max) +
                                                " in a texture; bake it with fewer bytes");
         }
     }
 
+    ColliderTextures result;
     std::vector<BlockMap> blocks;
-    for (std::size_t m = 0; m < maps.size(); ++m) {
-        blocks.push_back(blockMap(*maps[m], first_texel[m]));
+    std::vector<std::size_t> first_texel;  // of those with texels
+    std::array<std::size_t, 3> packed{};
+    std::array<std::size_t, 3> rectangle{};
+    for (const auto& [map, live] : maps) {
+        const std::size_t i = layoutOf(map->format);
+        LivePlace place{.layout = i};
+        if (live) {
+            const TexelRectangle at = layouts[i].rectangle(rectangle[i]++);
+            const TexelRectangle motion = layouts[kFloatLayout].rectangle(rectangle[kFloatLayout]++);
+            place = {i, at.x, at.y, motion.x, motion.y};
+            blocks.push_back(blockMap(*map, layouts[i].index(at), layouts[i].width(),
+                                      layouts[kFloatLayout].index(motion)));
+            first_texel.push_back(0);
+        } else {
+            first_texel.push_back(packed[i]);
+            blocks.push_back(blockMap(*map, packed[i], static_cast<GLint>(map->width), 0));
+            packed[i] += std::size_t{map->width} * map->height * map->faceCount();
+        }
+        result.live_places_.push_back(place);
     }
 
     const PassState state;                 // row lengths and skips among it: texels are tightly packed
     while (glGetError() != GL_NO_ERROR) {  // of the caller, not ours
     }
-    ColliderTextures result;
     const std::array<GlTexture*, 3> textures = {&result.float_maps_, &result.fixed_maps_,
                                                 &result.front_back_maps_};
     glActiveTexture(GL_TEXTURE0);
     for (std::size_t i = 0; i < textures.size(); ++i) {
         const Layout& layout = kLayouts[i];
-        const auto height = static_cast<GLsizei>(wrapped[i].height());
+        const GLsizei height = layouts[i].height();
         // A layout that no map uses still gets one texel, for a sampler must have something bound.
-        *textures[i] = makeTexture2D(layout.internal_format, wrapped[i].width(), std::max(height, 1),
+        *textures[i] = makeTexture2D(layout.internal_format, layouts[i].width(), std::max(height, 1),
                                      layout.format, layout.type, nullptr);
-        result.bytes_ += layout.texel_size * static_cast<std::size_t>(wrapped[i].width()) *
+        result.bytes_ += layout.texel_size * static_cast<std::size_t>(layouts[i].width()) *
                          static_cast<std::size_t>(height);
     }
     for (std::size_t m = 0; m < maps.size(); ++m) {
-        const DepthMap& map = *maps[m];
-        const std::size_t i = layoutOf(map.format);
+        const DepthMap& map = *maps[m].map;
+        const LivePlace& place = result.live_places_[m];
+        const std::size_t i = place.layout;
         glBindTexture(GL_TEXTURE_2D, textures[i]->name());
-        uploadTexels(kLayouts[i], wrapped[i], first_texel[m], map.texels);
+        if (!maps[m].live) {
+            uploadTexels(kLayouts[i], layouts[i], first_texel[m], map.texels);
+            continue;
+        }
+        const auto width = static_cast<GLsizei>(map.width);
+        const auto height = static_cast<GLsizei>(map.height * map.faceCount());
+        uploadEmpty(kLayouts[i], map, {place.x, place.y, width, height});
+        const GLsizei motion_height = isFrontBack(map.format) ? 2 * height : height;
+        const std::vector<float> still(std::size_t{4} * map.width * static_cast<std::size_t>(motion_height));
+        glBindTexture(GL_TEXTURE_2D, result.float_maps_.name());
+        glTexSubImage2D(GL_TEXTURE_2D, 0, place.motion_x, place.motion_y, width, motion_height, GL_RGBA,
+                        GL_FLOAT, still.data());
     }
 
     result.block_ = makeBuffer();
     std::vector<std::byte> bytes(head + blocks.size() * sizeof(BlockMap));
-    const std::int32_t counts[4] = {static_cast<std::int32_t>(blocks.size()), wrapped[0].log2_width,
-                                    wrapped[1].log2_width, wrapped[2].log2_width};
+    const std::int32_t counts[4] = {static_cast<std::int32_t>(blocks.size()), layouts[0].log2Width(),
+                                    layouts[1].log2Width(), layouts[2].log2Width()};
     static_assert(sizeof(counts) == kBlockHead);
     std::memcpy(bytes.data(), counts, sizeof(counts));
     if (!bodies.empty()) {
@@ -268,17 +299,20 @@ Result<ColliderTextures> ColliderTextures::upload(std::span<const DepthMap* cons
     }
     result.map_count_ = static_cast<int>(blocks.size());
     result.defines_ = "#define RELIEF_MAP_CAPACITY " + std::to_string(blocks.size()) + "\n";
+    if (std::any_of(maps.begin(), maps.end(), [](const PlacedMap& map) { return map.live; })) {
+        result.defines_ += "#define RELIEF_LIVE 1\n";
+    }
     if (!bodies.empty()) {
         result.defines_ += "#define RELIEF_BODIES " + std::to_string(bodies.size()) + "\n";
     }
     std::int32_t all = ~0;
-    for (const DepthMap* map : maps) {
-        all &= flagsOf(*map);
+    for (const PlacedMap& one : maps) {
+        all &= flagsOf(*one.map);
     }
     result.defines_ += "#define RELIEF_ALL " + std::to_string(all) + "\n";
     // What no map needs is left out of the shader: a GL may run every branch for every map.
     const auto defineIf = [&](const char* name, auto&& needed) {
-        if (std::any_of(maps.begin(), maps.end(), [&](const DepthMap* map) { return needed(*map); })) {
+        if (std::any_of(maps.begin(), maps.end(), [&](const PlacedMap& one) { return needed(*one.map); })) {
             result.defines_ += std::string("#define RELIEF_HAS_") + name + "\n";
         }
     };
@@ -290,6 +324,24 @@ Result<ColliderTextures> ColliderTextures::upload(std::span<const DepthMap* cons
     defineIf("PROJECTED", [](const DepthMap& map) { return map.decode == Decode::kProjected; });
     result.bodies_ = std::move(bodies);
     return result;
+}
+
+const GlTexture& ColliderTextures::textureOf(std::size_t layout) const {
+    return layout == kFloatLayout ? float_maps_ : (layout == 1 ? fixed_maps_ : front_back_maps_);
+}
+
+std::vector<LiveSlot> ColliderTextures::liveSlots(std::size_t body) const {
+    std::vector<LiveSlot> slots;
+    if (body >= bodies_.size() || bodies_[body].maps[2] == 0) {
+        return slots;
+    }
+    const auto first = static_cast<std::size_t>(bodies_[body].maps[0]);
+    for (std::size_t m = first; m < first + static_cast<std::size_t>(bodies_[body].maps[1]); ++m) {
+        const LivePlace& place = live_places_[m];
+        slots.push_back(
+            {&textureOf(place.layout), place.x, place.y, &float_maps_, place.motion_x, place.motion_y});
+    }
+    return slots;
 }
 
 void ColliderTextures::attach(const GlProgram& program, const Binding& binding) const {

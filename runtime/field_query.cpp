@@ -19,14 +19,24 @@ Result<FieldQuery> FieldQuery::create(const Collider& collider) {
     if (!textures) {
         return forward(textures);
     }
+    auto own = std::make_unique<ColliderTextures>(std::move(*textures));
+    auto query = create(*own);
+    if (query) {
+        query->own_ = std::move(own);
+    }
+    return query;
+}
+
+Result<FieldQuery> FieldQuery::create(const ColliderTextures& textures) {
     const PassState state;
-    FieldQuery query(std::move(*textures));
-    Result<GlProgram> program = makeProgram("quad.vert", "query.frag", query.textures_.defines());
+    FieldQuery query;
+    query.textures_ = &textures;
+    Result<GlProgram> program = makeProgram("quad.vert", "query.frag", textures.defines());
     if (!program) {
         return forward(program);
     }
     query.program_ = std::move(*program);
-    query.textures_.attach(query.program_, kBinding);
+    textures.attach(query.program_, kBinding);
     glUniform1i(uniformLocation(query.program_, "u_points"), 0);
     query.no_attributes_ = makeVertexArray();
     return query;
@@ -58,7 +68,7 @@ Result<std::vector<FieldSample>> FieldQuery::evaluate(std::span<const glm::vec3>
         glUseProgram(program_.name());
         glActiveTexture(GL_TEXTURE0);
         glBindTexture(GL_TEXTURE_2D, input.name());
-        textures_.bind(kBinding);
+        textures_->bind(kBinding);
         glBindVertexArray(no_attributes_.name());
         glDrawArrays(GL_TRIANGLES, 0, 3);
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -19,13 +20,18 @@ class FieldQuery {
     /// Errors: those of ColliderTextures::create, makeProgram and makeFramebuffer.
     [[nodiscard]] static Result<FieldQuery> create(const Collider& collider);
 
+    /// The same of textures that there are: of one collider, or of bodies in their world, some of which may
+    /// be live. They must outlive this. Errors: those of makeProgram and makeFramebuffer.
+    [[nodiscard]] static Result<FieldQuery> create(const ColliderTextures& textures);
+
     /// One sample a point, in order. Blocks until the GPU is done.
     [[nodiscard]] Result<std::vector<FieldSample>> evaluate(std::span<const glm::vec3> points) const;
 
   private:
-    explicit FieldQuery(ColliderTextures textures) : textures_(std::move(textures)) {}
+    FieldQuery() = default;
 
-    ColliderTextures textures_;
+    std::unique_ptr<ColliderTextures> own_;  // null: the caller's
+    const ColliderTextures* textures_ = nullptr;
     GlProgram program_;
     GlVertexArray no_attributes_;
 };

@@ -54,7 +54,8 @@ std::string infoLog(GLuint name, bool is_program) {
     return log;
 }
 
-Result<GLuint> compile(GLenum stage, std::string_view file, std::string_view defines) {
+Result<GLuint> compile(GLenum stage, std::string_view file, std::string_view defines,
+                       std::string_view appended = {}) {
     std::vector<std::string> included;
     const Result<std::string> body = resolveIncludes(file, included);
     if (!body) {
@@ -68,6 +69,11 @@ Result<GLuint> compile(GLenum stage, std::string_view file, std::string_view def
         "precision highp usampler2D;\nprecision highp sampler3D;\n";
     source += "#line 1\n";
     source += *body;
+    if (!appended.empty()) {
+        source += "\n#line 1\n";
+        source += appended;
+        source += "\n";
+    }
 
     const GLuint shader = glCreateShader(stage);
     const char* text = source.c_str();
@@ -148,8 +154,12 @@ Result<GlFramebuffer> makeFramebuffer(std::span<const GLuint> color_textures, GL
     return framebuffer;
 }
 
-Result<GlProgram> makeProgram(std::string_view vertex, std::string_view fragment, std::string_view defines) {
-    const Result<GLuint> vertex_shader = compile(GL_VERTEX_SHADER, vertex, defines);
+namespace {
+
+/// \param outputs  of the vertex shader that transform feedback writes, interleaved; empty: none.
+Result<GlProgram> compileAndLink(std::string_view vertex, std::string_view fragment, std::string_view defines,
+                                 std::span<const char* const> outputs, std::string_view appended) {
+    const Result<GLuint> vertex_shader = compile(GL_VERTEX_SHADER, vertex, defines, appended);
     if (!vertex_shader) {
         return forward(vertex_shader);
     }
@@ -161,6 +171,10 @@ Result<GlProgram> makeProgram(std::string_view vertex, std::string_view fragment
     GlProgram program(glCreateProgram());
     glAttachShader(program.name(), *vertex_shader);
     glAttachShader(program.name(), *fragment_shader);
+    if (!outputs.empty()) {
+        glTransformFeedbackVaryings(program.name(), static_cast<GLsizei>(outputs.size()), outputs.data(),
+                                    GL_INTERLEAVED_ATTRIBS);
+    }
     glLinkProgram(program.name());
     glDeleteShader(*vertex_shader);
     glDeleteShader(*fragment_shader);
@@ -171,6 +185,17 @@ Result<GlProgram> makeProgram(std::string_view vertex, std::string_view fragment
                                              " does not link: " + infoLog(program.name(), true));
     }
     return program;
+}
+
+}  // namespace
+
+Result<GlProgram> makeProgram(std::string_view vertex, std::string_view fragment, std::string_view defines) {
+    return compileAndLink(vertex, fragment, defines, {}, {});
+}
+
+Result<GlProgram> makeFeedbackProgram(std::string_view vertex, std::span<const char* const> outputs,
+                                      std::string_view defines, std::string_view appended) {
+    return compileAndLink(vertex, "nothing.frag", defines, outputs, appended);
 }
 
 GLint uniformLocation(const GlProgram& program, const char* name) {

@@ -92,6 +92,14 @@ using GlRenderbuffer = GlName<gl_detail::deleteRenderbuffer>;
 [[nodiscard]] Result<GlProgram> makeProgram(std::string_view vertex, std::string_view fragment,
                                             std::string_view defines = {});
 
+/// A program of a vertex shader alone, whose outputs transform feedback writes, interleaved in their order.
+/// \param appended  GLSL of the caller's that is put behind the vertex shader; the log's lines count from its
+///                  beginning. Errors: those of makeProgram.
+[[nodiscard]] Result<GlProgram> makeFeedbackProgram(std::string_view vertex,
+                                                    std::span<const char* const> outputs,
+                                                    std::string_view defines = {},
+                                                    std::string_view appended = {});
+
 /// Location of a uniform; −1 where the program does not use it, which the GL's setters ignore.
 [[nodiscard]] GLint uniformLocation(const GlProgram& program, const char* name);
 

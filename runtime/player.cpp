@@ -14,6 +14,7 @@
 #include "runtime/collider_renderer.h"
 #include "runtime/depth_sort.h"
 #include "runtime/frame.h"
+#include "runtime/live_bodies.h"
 #include "runtime/particle_renderer.h"
 #include "runtime/ply.h"
 #include "runtime/png.h"
@@ -77,11 +78,19 @@ class Picture {
         if (!atlas) {
             return forward(atlas);
         }
-        auto mesh = loadColliderMesh(scene, loaded.bounds);
+        std::optional<LivePicture> live;
+        if (!scene.render.mesh.empty() && loaded.live.front()) {
+            auto made = LivePicture::create(*loaded.live.front());
+            if (!made) {
+                return forward(made);
+            }
+            live.emplace(std::move(*made));
+        }
+        auto mesh = live ? Result<std::unique_ptr<ColliderMesh>>{} : loadColliderMesh(scene, loaded.bounds);
         if (!mesh) {
             return forward(mesh);
         }
-        auto collider_renderer = ColliderRenderer::create(view, mesh->get());
+        auto collider_renderer = ColliderRenderer::create(view, live ? &live->mesh() : mesh->get());
         if (!collider_renderer) {
             return forward(collider_renderer);
         }
@@ -106,6 +115,7 @@ class Picture {
         picture.particle_style_ = particleStyle(scene, atlas->get());
         picture.atlas_ = std::move(*atlas);
         picture.mesh_ = std::move(*mesh);
+        picture.live_ = std::move(live);
         return picture;
     }
 
@@ -120,6 +130,9 @@ class Picture {
             order = {&sorter_->order(), sorter_->count()};
         }
         const StageScope scope(stages, Stage::kDraw);
+        if (live_) {
+            live_->show(particles.time());
+        }
         if (auto drawn = collider_.draw(camera, collider_style_, frame_.target()); !drawn) {
             return forward(drawn);
         }
@@ -139,6 +152,7 @@ class Picture {
     Bounds bounds_;
     std::unique_ptr<SpriteAtlas> atlas_;
     std::unique_ptr<ColliderMesh> mesh_;
+    std::optional<LivePicture> live_;  // instead
     Frame frame_;
     ColliderRenderer collider_;
     ParticleRenderer particles_;
@@ -297,20 +311,21 @@ std::vector<Pose> posesAt(const Scene& scene, double time) {
 
 /// The colliders on the GPU: a single one without a pose in its own space, others in the world.
 Result<ColliderTextures> makeTextures(const Scene& scene, std::span<const Collider> colliders) {
-    if (colliders.size() == 1 && !scene.colliders.front().posed) {
+    if (colliders.size() == 1 && !scene.colliders.front().posed && !scene.colliders.front().live) {
         return ColliderTextures::create(colliders.front());
     }
     std::vector<ColliderBody> bodies;
     for (std::size_t i = 0; i < colliders.size(); ++i) {
         const SceneCollider& from = scene.colliders[i];
-        bodies.push_back({&colliders[i], poseAt(from, 0.0), from.restitution, from.friction});
+        bodies.push_back(
+            {&colliders[i], poseAt(from, 0.0), from.restitution, from.friction, from.live.has_value()});
     }
     return ColliderTextures::create(bodies);
 }
 
 /// The run itself: steps and, between them, frames.
 Result<void> run(const PlayerOptions& options, std::span<Emitter> emitters, ColliderTextures& textures,
-                 ParticleSystem& particles, Outputs& outputs, PlayerReport& report) {
+                 LiveBodies& live, ParticleSystem& particles, Outputs& outputs, PlayerReport& report) {
     const Scene& scene = report.scene;
     const bool has_frames = outputs.picture || !options.dump_frames.empty();
     const std::uint32_t stats_every = options.stats_every.value_or(scene.render.every);
@@ -336,8 +351,12 @@ Result<void> run(const PlayerOptions& options, std::span<Emitter> emitters, Coll
             }
             {
                 const StageScope scope(outputs.stages(), Stage::kStep);
+                const double end_time = particles.time() + static_cast<double>(scene.dt);
                 if (moves) {
-                    textures.setPoses(posesAt(scene, particles.time() + static_cast<double>(scene.dt)));
+                    textures.setPoses(posesAt(scene, end_time));
+                }
+                if (auto shown = live.show(end_time, textures); !shown) {
+                    return shown;
                 }
                 particles.step(scene.dt);
             }
@@ -436,6 +455,13 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     }
     report.collider_maps = static_cast<std::size_t>(textures->mapCount());
     report.collider_bytes = textures->bytes();
+    auto live = LiveBodies::create(*loaded);
+    if (!live) {
+        return forward(live);
+    }
+    if (auto shown = live->show(0.0, *textures); !shown) {
+        return forward(shown);
+    }
     auto particles = makeParticles(report.scene, *textures);
     if (!particles) {
         return forward(particles);
@@ -444,7 +470,7 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     if (auto done = openOutputs(options, report.scene, *loaded, *textures, outputs); !done) {
         return forward(done);
     }
-    if (auto done = run(options, *emitters, *textures, *particles, outputs, report); !done) {
+    if (auto done = run(options, *emitters, *textures, *live, *particles, outputs, report); !done) {
         return forward(done);
     }
     if (options.count_collisions || !options.dump.empty()) {

@@ -177,7 +177,16 @@ void addPose(const Pose& pose, Json& json) {
 }
 
 Json colliderSettings(const SceneCollider& collider) {
-    Json json{{"file", collider.path.native()}};
+    Json json{{collider.live ? "mesh" : "file", collider.path.native()}};
+    if (collider.live) {
+        const Deformation& d = collider.live->deformation;
+        constexpr const char* kKinds[] = {"bend", "twist", "wobble"};
+        const float amplitude = d.kind == DeformKind::kWobble ? d.amplitude : glm::degrees(d.amplitude);
+        json["deform"] = {{"kind", kKinds[static_cast<int>(d.kind)]},
+                          {"amplitude", shortest(amplitude)},
+                          {"frequency", shortest(d.frequency)}};
+        json["resolution"] = collider.live->resolution;
+    }
     if (!collider.posed) {
         return json;
     }

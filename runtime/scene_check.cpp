@@ -71,7 +71,15 @@ Result<LoadedScene> loadAll(const PlayerOptions& options) {
     }
     LoadedScene loaded;
     for (const SceneCollider& from : scene->colliders) {
-        auto collider = openCollider(from);
+        loaded.live.emplace_back();
+        if (from.live) {
+            auto mesh = loadLiveMesh(from);
+            if (!mesh) {
+                return forward(mesh);
+            }
+            loaded.live.back() = std::move(*mesh);
+        }
+        auto collider = from.live ? Result<Collider>(loaded.live.back()->frames) : openCollider(from);
         if (!collider) {
             return forward(collider);
         }
@@ -121,7 +129,8 @@ Result<CheckReport> checkScene(const PlayerOptions& options) {
         report.files.push_back(checkedFile(options.input, "scene"));
     }
     for (std::size_t i = 0; i < loaded->colliders.size(); ++i) {
-        report.files.push_back(checkedFile(loaded->scene.colliders[i].path, "collider"));
+        const SceneCollider& from = loaded->scene.colliders[i];
+        report.files.push_back(checkedFile(from.path, from.live ? "mesh" : "collider"));
         report.collider_maps += loaded->colliders[i].maps.size();
     }
     if (loaded->scene.flow) {

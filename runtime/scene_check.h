@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,9 @@ namespace relief {
 struct LoadedScene {
     Scene scene;                      ///< overridden by the options, every default filled in
     std::vector<Collider> colliders;  ///< those of the scene, in its order
-    Bounds bounds;                    ///< of what they occupy in the course of time, in the particles' space
+    /// As many: the meshes of those that deform, whose colliders have maps without texels.
+    std::vector<std::optional<LiveMesh>> live;
+    Bounds bounds;  ///< of what they occupy in the course of time, in the particles' space
 };
 
 /// Reads options.input, a scene or a collider, and the files that it names. Needs no context.

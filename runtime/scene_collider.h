@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "formats/collider.h"
 #include "runtime/pose.h"
+#include "runtime/scene_live.h"
 
 namespace relief {
 
@@ -25,6 +27,7 @@ struct SceneCollider {
     Pose pose;
     float restitution = 1.0F;            ///< factor of the particles' own
     float friction = 0.0F;               ///< on top of the particles' own
+    std::optional<SceneLive> live;       ///< deforms: `path` is a mesh, not a container
     std::vector<SceneColliderKey> keys;  ///< by rising time; empty: at rest at `pose`
 };
 

@@ -57,9 +57,9 @@ void readKeys(SceneTable& table, std::string_view file, SceneCollider& collider)
     }
 }
 
-SceneCollider readCollider(SceneTable table, const toml::source_position& at, std::string_view file,
-                           const std::filesystem::path& folder) {
-    SceneCollider collider;
+/// collider.file
+void readFileName(SceneTable& table, const toml::source_position& at, const std::filesystem::path& folder,
+                  SceneCollider& collider) {
     std::string name;
     if (!table.text("file", name) || name.empty()) {
         table.failAt(
@@ -72,6 +72,14 @@ SceneCollider readCollider(SceneTable table, const toml::source_position& at, st
     }
     collider.path = std::move(*inside);
     collider.origin = table.place(node.source().begin);
+}
+
+SceneCollider readCollider(SceneTable table, const toml::source_position& at, std::string_view file,
+                           const std::filesystem::path& folder) {
+    SceneCollider collider;
+    if (!readLive(table, file, folder, collider)) {
+        readFileName(table, at, folder, collider);
+    }
     collider.posed = readPlace(table, collider.pose);
     collider.posed |= table.number("scale", {kScaleMin, kScaleMax}, collider.pose.scale);
     collider.posed |= table.number("restitution", {0.0, 1.0}, collider.restitution);

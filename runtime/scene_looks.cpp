@@ -196,6 +196,10 @@ void readSprites(SceneTable& render, const std::filesystem::path& folder, Scene&
                              ": render.mesh is drawn where it was baked, and for a single collider; remove "
                              "the mesh, or the collider's position, angle, scale and keys"};
         }
+        if (first.live && out.mesh != first.path) {
+            throw SceneError{out.mesh_origin +
+                             ": render.mesh is another mesh than the one that deforms; name collider.mesh"};
+        }
     }
 }
 

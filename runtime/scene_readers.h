@@ -31,6 +31,15 @@ void readViscosity(SceneTable& forces, Scene& scene);
 /// \param folder  of the scene.
 [[nodiscard]] std::vector<SceneCollider> readColliders(SceneTable& top, std::string_view file,
                                                        const std::filesystem::path& folder);
+// scene_live_reader.cpp
+
+/// collider.mesh, collider.deform and collider.resolution: sets path, origin and live. Leaves finish() to the
+/// caller. \return whether the collider deforms; else it needs a file.
+[[nodiscard]] bool readLive(SceneTable& table, std::string_view file, const std::filesystem::path& folder,
+                            SceneCollider& collider);
+
+// scene_collider_reader.cpp
+
 /// What a [[type]] says of its motion: mass, radius, restitution, friction, friction_threshold, on_collision,
 /// lifetime_loss. Leaves finish() to the caller. \param type  holds the defaults.
 void readPhysics(SceneTable& table, ParticleType& type);

@@ -24,7 +24,8 @@ struct ReliefMap {
     vec4 object_per_map;   // xyz; z is z_scale of an orthographic map, xyz the paper's s of a cube; w: the
                            // largest product of an orthographic ray and the normal of a plane along it
     ivec4 place;           // index of texel (0,0) of face 0; from row to row; from face to face; width
-    ivec4 info;            // height; format; flags: the sum of RELIEF_KEEPS_FARTHEST…
+    ivec4 info;            // height; format; flags: the sum of RELIEF_KEEPS_FARTHEST…; of a live map the index of the
+                           // texel (0,0) of its motion, in u_relief_float, whose rows are as wide as that texture
 };
 
 // Colliders with a pose of their own; 0: one collider, in its own object space.
@@ -32,12 +33,17 @@ struct ReliefMap {
 #define RELIEF_BODIES 0
 #endif
 
+// Whether some body is live: its maps are drawn anew before each step, with the motion of the surface beside them.
+#if !defined(RELIEF_LIVE)
+#define RELIEF_LIVE 0
+#endif
+
 #if RELIEF_BODIES > 0
 struct ReliefBody {
     vec4 row[3];     // world to object space at the end of the step: a rotation, divided by scale
     vec4 before[3];  // the same at its beginning
     vec4 response;   // scale (world units of an object unit); restitution; 1 - friction
-    ivec4 maps;      // the first map; how many
+    ivec4 maps;      // the first map; how many; 1 if they are live
 };
 #endif
 
@@ -549,5 +555,62 @@ ReliefField reliefEvaluate(vec3 p) {
     int body;
     return reliefUnion(p, 0.0, true, body);
 }
+
+#if RELIEF_LIVE
+
+// The way that the surface of map i at a point p of object space has gone since the update before, in object units. Of
+// two ends it is the one whose normal is more like `normal`. Zero where the map has no surface.
+vec3 reliefMotion(int i, vec3 p, vec3 normal) {
+    vec3 in_map = vec3(reliefRow(u_relief_maps[i].row[0], p), reliefRow(u_relief_maps[i].row[1], p),
+                       reliefRow(u_relief_maps[i].row[2], p));
+    ivec4 place = u_relief_maps[i].place;
+    ivec4 info = u_relief_maps[i].info;
+    ivec2 at;
+    if (reliefIsCube(info)) {
+        float radius = reliefLength(in_map);
+        vec3 st_face = reliefCubeCoordinates(radius > 0.0 ? in_map / radius : vec3(1.0, 0.0, 0.0));
+        at = min(ivec2(st_face.xy * float(place.w)), ivec2(place.w - 1));
+        at.y += int(st_face.z) * place.w;
+    } else {
+        at = ivec2(clamp(in_map.xy * vec2(float(place.w), float(info.x)), vec2(0.0), vec2(place.w - 1, info.x - 1)));
+        if (reliefIsFrontBack(info)) {
+            uvec4 words = texelFetch(u_relief_front_back,
+                                     reliefTexel(place.x + at.y * place.y + at.x, u_relief_count.w), 0);
+            float front = reliefDot(normal, reliefPackedNormal(words.r));
+            float back = reliefDot(normal, reliefPackedNormal(words.g));
+            at.y += words.b == 0u || (words.a != 0u && back > front) ? info.x : 0;
+        }
+    }
+    int texel = info.w + (at.y << u_relief_count.y) + at.x;
+    return texelFetch(u_relief_float, reliefTexel(texel, u_relief_count.y), 0).xyz;
+}
+
+// The same of a body; zero of one that is not live. q: object space at the end of the step; normal: in the world.
+vec3 reliefBodyMotion(int body, int map, vec3 q, vec3 normal) {
+    if (u_relief_bodies[body].maps.z == 0 || map < 0) {
+        return vec3(0.0);
+    }
+    vec3 in_body = u_relief_bodies[body].response.x *
+                   reliefToObject(vec4(u_relief_bodies[body].row[0].xyz, 0.0), vec4(u_relief_bodies[body].row[1].xyz, 0.0),
+                                  vec4(u_relief_bodies[body].row[2].xyz, 0.0), normal);
+    return reliefMotion(map, q, in_body);
+}
+
+// What rests on a live body goes with the surface that is nearest. Of each map alone: where one sees nothing near a
+// silhouette, another one does.
+vec3 reliefNearestMotion(int body, vec3 q) {
+    ReliefField nearest = ReliefField(RELIEF_FAR_OUTSIDE, vec3(0.0), -1);
+    int first = u_relief_bodies[body].maps.x;
+    for (int i = first; i < first + u_relief_bodies[body].maps.y; ++i) {
+        ReliefField one = ReliefField(RELIEF_FAR_INSIDE, vec3(0.0), -1);
+        reliefVote(one, i, q);
+        if (one.map >= 0 && abs(one.distance) < abs(nearest.distance)) {
+            nearest = one;
+        }
+    }
+    return nearest.map >= 0 ? reliefMotion(nearest.map, q, nearest.normal) : vec3(0.0);
+}
+
+#endif
 
 #endif

@@ -58,7 +58,16 @@ struct Solid {
     vec3 normal;
     int map;
     int body;
+#if RELIEF_LIVE
+    vec3 motion;  // where inside a live body: the way of its surface in this step, in its object space; or zero
+#endif
 };
+
+#if RELIEF_LIVE
+#define RELIEF_SOLID(distance, normal, map, body, motion) Solid(distance, normal, map, body, motion)
+#else
+#define RELIEF_SOLID(distance, normal, map, body, motion) Solid(distance, normal, map, body)
+#endif
 
 // Of everything but the floor, at the end of the step; what a ball about p touches.
 Solid solid(vec3 p, float radius);
@@ -79,7 +88,11 @@ vec2 bodyResponse(int body) {
     return vec2(1.0);
 }
 #else
+#if RELIEF_LIVE
+vec3 pointBefore(Solid s, vec3 p);
+#else
 vec3 pointBefore(int body, vec3 p);
+#endif
 vec3 pointNow(int body, vec3 p);
 vec2 bodyResponse(int body);
 #endif
@@ -89,7 +102,7 @@ Solid solidOrGround(vec3 p, float radius) {
     Solid body = solid(p, radius);
     float above = p.y - radius - u_ground;
     if (above < body.distance) {
-        return Solid(above, vec3(0.0, 1.0, 0.0), -1, -1);
+        return RELIEF_SOLID(above, vec3(0.0, 1.0, 0.0), -1, -1, vec3(0.0));
     }
     return body;
 }
@@ -99,7 +112,11 @@ bool caught(vec3 p, float radius, Solid s) {
 }
 
 vec3 surfaceVelocity(Solid s, vec3 p) {
+#if RELIEF_LIVE
+    return s.body < 0 ? vec3(0.0) : (p - pointBefore(s, p)) / u_dt;
+#else
     return s.body < 0 ? vec3(0.0) : (p - pointBefore(s.body, p)) / u_dt;
+#endif
 }
 
 void finish(vec3 p, vec3 v, float collisions, float contact) {

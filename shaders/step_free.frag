@@ -1,5 +1,6 @@
 // A step with nothing solid but the floor.
 #define RELIEF_BODIES 0
+#define RELIEF_LIVE 0
 //!include air.glsl
 //!include step.glsl
 
