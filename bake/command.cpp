@@ -158,6 +158,7 @@ Result<void> runCommandLine(int argc, char** argv) {
     Action action;
     addBake(app, action);
     addCheck(app, action);
+    addDiff(app, action);
     addInfo(app, action);
     addQuery(app, action);
     addSlice(app, action);
