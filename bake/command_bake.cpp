@@ -16,6 +16,7 @@
 #include "bake/budget_search.h"
 #include "bake/byte_count.h"
 #include "bake/command.h"
+#include "bake/gl_options.h"
 #include "bake/hole_caps.h"
 #include "bake/mesh_import.h"
 #include "bake/mesh_query.h"
@@ -52,6 +53,7 @@ struct BakeCommand {
     std::string threads;
     std::string compress = "0";
     std::string holes = "close";
+    GlOptions gl;
     bool json = false;
 };
 
@@ -422,6 +424,9 @@ Result<void> runBake(const BakeCommand& command) {
     if (!settings) {
         return forward(settings);
     }
+    if (const Result<void> idle = refuseGlOptions(command.gl, "a map that a GPU draws"); !idle) {
+        return idle;
+    }
     if (const Result<void> ready = preflight(command); !ready) {
         return ready;
     }
@@ -585,6 +590,7 @@ void addBake(CLI::App& app, Action& action) {
     verb.add_option("--holes", command->holes,
                     "Of a nearly closed mesh: close (bake it as a solid, default) or keep")
         ->option_text("WORD");
+    addGlOptions(verb, command->gl);
     verb.add_flag("--json", command->json, "Print a report as JSON to standard output");
     verb.callback([command, &action] { action = [command] { return runBake(*command); }; });
 }
