@@ -9,6 +9,7 @@
 #include <sstream>
 #include <vector>
 
+#include "bake/gl_options.h"
 #include "bake/text.h"
 #include "formats/file_io.h"
 
@@ -158,6 +159,7 @@ Result<void> runCommandLine(int argc, char** argv) {
     Action action;
     addBake(app, action);
     addCheck(app, action);
+    addDiff(app, action);
     addInfo(app, action);
     addQuery(app, action);
     addSlice(app, action);
@@ -169,6 +171,8 @@ Result<void> runCommandLine(int argc, char** argv) {
         return printOut(called.empty() ? app.help() : called.front()->help("relief"));
     } catch (const CLI::CallForVersion& version) {
         return printOut(std::string(version.what()) + "\n");
+    } catch (const ListDevices& what) {
+        return listDevices(what);
     } catch (const CLI::ParseError& error) {
         return fail(ErrorCode::kUsage, parseErrorMessage(app, error));
     }

@@ -17,6 +17,7 @@
 #include "bake/budget_search.h"
 #include "bake/byte_count.h"
 #include "bake/command.h"
+#include "bake/gl_options.h"
 #include "bake/hole_caps.h"
 #include "bake/mesh_import.h"
 #include "bake/mesh_query.h"
@@ -54,6 +55,7 @@ struct BakeCommand {
     std::string compress = "0";
     std::string holes = "close";
     BackendOptions backend;
+    GlOptions gl;
     bool json = false;
 };
 
@@ -430,6 +432,9 @@ Result<void> runBake(const BakeCommand& command) {
     if (!settings) {
         return forward(settings);
     }
+    if (const Result<void> idle = refuseGlOptions(command.gl, "a map that a GPU draws"); !idle) {
+        return idle;
+    }
     if (const Result<void> ready = preflight(command); !ready) {
         return ready;
     }
@@ -609,6 +614,7 @@ void addBake(CLI::App& app, Action& action) {
                     "Of a nearly closed mesh: close (bake it as a solid, default) or keep")
         ->option_text("WORD");
     addBackendOptions(verb, command->backend);
+    addGlOptions(verb, command->gl);
     verb.add_flag("--json", command->json, "Print a report as JSON to standard output");
     verb.callback([command, &action] { action = [command] { return runBake(*command); }; });
 }

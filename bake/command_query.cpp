@@ -2,16 +2,20 @@
 #include <spdlog/spdlog.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+
 #include "bake/command.h"
+#include "bake/gl_options.h"
 #include "bake/points_csv.h"
 #include "bake/preflight.h"
 #include "formats/container.h"
 #include "formats/file_io.h"
 #include "runtime/field_query.h"
-#include "runtime/gl_context.h"
 
 namespace relief {
 namespace {
+
+constexpr std::size_t kPointsAtOnce = std::size_t{1} << 20;  // between two feedings of the watchdog
 
 struct QueryCommand {
     CommonOptions common;
@@ -19,6 +23,7 @@ struct QueryCommand {
     std::string points;
     std::string output;
     bool gpu = false;
+    GlOptions gl;
 };
 
 std::vector<FieldSample> evaluateOnCpu(const Collider& collider, std::span<const glm::vec3> points) {
@@ -28,21 +33,42 @@ std::vector<FieldSample> evaluateOnCpu(const Collider& collider, std::span<const
     return samples;
 }
 
-Result<std::vector<FieldSample>> evaluateOnGpu(const Collider& collider, std::span<const glm::vec3> points) {
-    const Result<std::unique_ptr<GlContext>> context = GlContext::create();
-    if (!context) {
-        return forward(context);
+Result<std::vector<FieldSample>> evaluateOnGpu(const Collider& collider, std::span<const glm::vec3> points,
+                                               const GlOptions& options) {
+    const Result<WatchedContext> gl = openGl(options);
+    if (!gl) {
+        return forward(gl);
     }
-    spdlog::debug("{}", (*context)->description());
+    spdlog::debug("{}", gl->context->description());
+    gl->watchdog->feed("uploading the collider");
     const Result<FieldQuery> query = FieldQuery::create(collider);
     if (!query) {
         return forward(query);
     }
-    return query->evaluate(points);
+    std::vector<FieldSample> samples;
+    samples.reserve(points.size());
+    for (std::size_t first = 0; first < points.size(); first += kPointsAtOnce) {
+        const std::span<const glm::vec3> some =
+            points.subspan(first, std::min(kPointsAtOnce, points.size() - first));
+        gl->watchdog->feed("points " + std::to_string(first + 1) + " to " +
+                           std::to_string(first + some.size()));
+        const Result<std::vector<FieldSample>> evaluated = query->evaluate(some);
+        if (!evaluated) {
+            return forward(evaluated);
+        }
+        samples.insert(samples.end(), evaluated->begin(), evaluated->end());
+    }
+    gl->watchdog->rest();
+    return samples;
 }
 
 Result<void> runQuery(const QueryCommand& command) {
     startLogging(command.common);
+    if (!command.gpu) {
+        if (const Result<void> idle = refuseGlOptions(command.gl, "--gpu"); !idle) {
+            return idle;
+        }
+    }
     if (command.file == "-" && command.points == "-") {
         return fail(ErrorCode::kUsage,
                     "FILE and --points cannot both be standard input; give one of them a file");
@@ -69,7 +95,7 @@ Result<void> runQuery(const QueryCommand& command) {
         return forward(points);
     }
     const Result<std::vector<FieldSample>> samples =
-        command.gpu ? evaluateOnGpu(*collider, *points) : evaluateOnCpu(*collider, *points);
+        command.gpu ? evaluateOnGpu(*collider, *points, command.gl) : evaluateOnCpu(*collider, *points);
     if (!samples) {
         return forward(samples);
     }
@@ -98,6 +124,7 @@ void addQuery(CLI::App& app, Action& action) {
         ->required();
     verb.add_flag("--gpu", command->gpu,
                   "Evaluate with the simulation's shader (OpenGL 3.3; llvmpipe will do)");
+    addGlOptions(verb, command->gl);
     verb.callback([command, &action] { action = [command] { return runQuery(*command); }; });
 }
 

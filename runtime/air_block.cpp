@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <iterator>
 
+#include "runtime/gl_fault.h"
 #include "runtime/pass_state.h"
 
 namespace relief {
@@ -98,9 +99,8 @@ Result<AirBlock> AirBlock::create(const AirSettings& air) {
         }
     }
 
-    const PassState state;                 // texels are tightly packed
-    while (glGetError() != GL_NO_ERROR) {  // of the caller, not ours
-    }
+    const PassState state;  // texels are tightly packed
+    forgetGlErrors();
     if (air.flow) {
         const FlowField& flow = *air.flow;
         GLint side_max = 0;
@@ -121,10 +121,9 @@ Result<AirBlock> AirBlock::create(const AirSettings& air) {
     result.block_ = makeBuffer();
     glBindBuffer(GL_UNIFORM_BUFFER, result.block_.name());
     glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_DYNAMIC_DRAW);
-    if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
-        return fail(error == GL_OUT_OF_MEMORY ? ErrorCode::kLimit : ErrorCode::kFailure,
-                    "uploading the flow's " + std::to_string(result.bytes_) + " bytes failed (GL error " +
-                        std::to_string(error) + ")");
+    if (auto done = checkAllocated("the flow's " + std::to_string(result.bytes_) + " bytes", "resample it");
+        !done) {
+        return forward(done);
     }
     return result;
 }

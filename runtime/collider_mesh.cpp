@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "runtime/gl_fault.h"
 #include "runtime/pass_state.h"
 
 namespace relief {
@@ -42,6 +43,7 @@ Result<ColliderMesh> ColliderMesh::create(const TriangleMesh& mesh) {
     if (!program) {
         return forward(program);
     }
+    forgetGlErrors();
     ColliderMesh out;
     out.program_ = std::move(*program);
     out.vertex_bytes_ = static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex));
@@ -59,6 +61,9 @@ Result<ColliderMesh> ColliderMesh::create(const TriangleMesh& mesh) {
     glBufferData(GL_ELEMENT_ARRAY_BUFFER,
                  static_cast<GLsizeiptr>(full.triangles.size() * sizeof(full.triangles[0])),
                  full.triangles.data(), GL_STATIC_DRAW);
+    if (auto done = checkAllocated("the collider's mesh", "choose a smaller one"); !done) {
+        return forward(done);
+    }
     return out;
 }
 
@@ -75,9 +80,18 @@ void ColliderMesh::setVertices(const GlBuffer& buffer) {
 
 Result<ColliderMesh::View> ColliderMesh::view(const Camera& camera, GLsizei width, GLsizei height) const {
     const PassState state;
+    if (auto fits = checkTextureSize(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height),
+                                     "the mesh's picture's pixels", "choose a smaller size");
+        !fits) {
+        return forward(fits);
+    }
+    forgetGlErrors();
     View view;
     view.normal = makeTexture2D(GL_RGBA16F, width, height, GL_RGBA, GL_HALF_FLOAT);
     view.depth = makeTexture2D(GL_DEPTH_COMPONENT32F, width, height, GL_DEPTH_COMPONENT, GL_FLOAT);
+    if (auto done = checkAllocated("the mesh's picture", "choose a smaller size"); !done) {
+        return forward(done);
+    }
     const std::array<GLuint, 1> colors{view.normal.name()};
     const auto framebuffer = makeFramebuffer(colors, view.depth.name());
     if (!framebuffer) {

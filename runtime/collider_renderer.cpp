@@ -4,6 +4,7 @@
 #include <array>
 #include <string>
 
+#include "runtime/gl_fault.h"
 #include "runtime/pass_state.h"
 
 namespace relief {
@@ -33,6 +34,8 @@ constexpr LightRays kLightRays{.sun = 2, .sky = 6, .sun_steps = 32, .sky_steps =
 
 // Rows drawn at a time: a driver may take a draw of seconds for a hang.
 constexpr GLsizei kBandRows = 64;
+
+constexpr const char* kSmallerPicture = "choose a smaller size";
 
 void setVector(const GlProgram& program, const char* name, const glm::vec3& v) {
     glUniform3f(uniformLocation(program, name), v.x, v.y, v.z);
@@ -141,8 +144,12 @@ Result<void> ColliderRenderer::trace(const Camera& camera, const ColliderStyle& 
                                            std::to_string(height) + " pixels is larger than this GL takes (" +
                                            std::to_string(side_max) + " along a side)");
     }
+    forgetGlErrors();
     color_ = makeTexture2D(GL_RGBA16F, width, height, GL_RGBA, GL_HALF_FLOAT);
     depth_ = makeTexture2D(GL_DEPTH_COMPONENT32F, width, height, GL_DEPTH_COMPONENT, GL_FLOAT);
+    if (auto done = checkAllocated("the collider's picture", kSmallerPicture); !done) {
+        return done;
+    }
     const std::array<GLuint, 1> colors{color_.name()};
     auto framebuffer = makeFramebuffer(colors, depth_.name());
     if (!framebuffer) {
@@ -187,7 +194,11 @@ Result<void> ColliderRenderer::trace(const Camera& camera, const ColliderStyle& 
 Result<void> ColliderRenderer::traceCoarse(GLsizei width, GLsizei height, GlTexture& coarse) {
     const GLsizei coarse_width = (width + kCoarseStride - 1) / kCoarseStride;
     const GLsizei coarse_height = (height + kCoarseStride - 1) / kCoarseStride;
+    forgetGlErrors();
     coarse = makeTexture2D(GL_R32F, coarse_width, coarse_height, GL_RED, GL_FLOAT);
+    if (auto done = checkAllocated("the collider's coarse picture", kSmallerPicture); !done) {
+        return done;
+    }
     const std::array<GLuint, 1> colors{coarse.name()};
     const auto target = makeFramebuffer(colors);
     if (!target) {

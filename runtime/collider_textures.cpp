@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/gl_fault.h"
 #include "runtime/pass_state.h"
 #include "runtime/texel_layout.h"
 
@@ -244,9 +245,8 @@ Result<ColliderTextures> ColliderTextures::upload(std::span<const PlacedMap> map
         result.live_places_.push_back(place);
     }
 
-    const PassState state;                 // row lengths and skips among it: texels are tightly packed
-    while (glGetError() != GL_NO_ERROR) {  // of the caller, not ours
-    }
+    const PassState state;  // row lengths and skips among it: texels are tightly packed
+    forgetGlErrors();
     const std::array<GlTexture*, 3> textures = {&result.float_maps_, &result.fixed_maps_,
                                                 &result.front_back_maps_};
     glActiveTexture(GL_TEXTURE0);
@@ -292,10 +292,10 @@ Result<ColliderTextures> ColliderTextures::upload(std::span<const PlacedMap> map
     glBufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(bytes.size()), bytes.data(),
                  bodies.empty() ? GL_STATIC_DRAW : GL_DYNAMIC_DRAW);
 
-    if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
-        return fail(error == GL_OUT_OF_MEMORY ? ErrorCode::kLimit : ErrorCode::kFailure,
-                    "uploading the collider's " + std::to_string(result.bytes_) +
-                        " bytes of maps failed (GL error " + std::to_string(error) + ")");
+    if (auto done = checkAllocated("the collider's " + std::to_string(result.bytes_) + " bytes of maps",
+                                   "bake it with fewer");
+        !done) {
+        return forward(done);
     }
     result.map_count_ = static_cast<int>(blocks.size());
     result.defines_ = "#define RELIEF_MAP_CAPACITY " + std::to_string(blocks.size()) + "\n";

@@ -5,6 +5,7 @@
 #include <bit>
 #include <string>
 
+#include "runtime/gl_fault.h"
 #include "runtime/pass_state.h"
 
 namespace relief {
@@ -52,9 +53,15 @@ Result<DepthSorter> DepthSorter::create(std::uint32_t capacity) {
 
 Result<void> DepthSorter::createTextures() {
     const std::uint32_t rows = std::max(regionFor(capacity_) / kWidth, 1U);
+    forgetGlErrors();
     for (int i = 0; i < 2; ++i) {
         order_[i] = makeTexture2D(GL_RG32UI, static_cast<GLsizei>(kWidth), static_cast<GLsizei>(rows),
                                   GL_RG_INTEGER, GL_UNSIGNED_INT);
+        if (auto done = checkAllocated("sorting " + std::to_string(capacity_) + " particles",
+                                       "choose a smaller capacity");
+            !done) {
+            return done;
+        }
         const std::array<GLuint, 1> textures{order_[i].name()};
         auto target = makeFramebuffer(textures);
         if (!target) {

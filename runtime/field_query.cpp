@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "runtime/gl_fault.h"
 #include "runtime/pass_state.h"
 
 namespace relief {
@@ -44,6 +45,11 @@ Result<FieldQuery> FieldQuery::create(const ColliderTextures& textures) {
 
 Result<std::vector<FieldSample>> FieldQuery::evaluate(std::span<const glm::vec3> points) const {
     const PassState state;
+    if (auto done = checkTextureSize(kWidth, std::min(kBatch, points.size()) / kWidth,
+                                     "the points of a query", "this GL is too small for it");
+        !done) {
+        return forward(done);
+    }
     std::vector<FieldSample> samples;
     samples.reserve(points.size());
     for (std::size_t first = 0; first < points.size(); first += kBatch) {
@@ -55,9 +61,15 @@ Result<std::vector<FieldSample>> FieldQuery::evaluate(std::span<const glm::vec3>
             std::copy_n(&batch[i].x, 3, &texels[4 * i]);
         }
 
+        forgetGlErrors();
         const GlTexture input = makeTexture2D(GL_RGBA32F, kWidth, height, GL_RGBA, GL_FLOAT, texels.data());
         const GlTexture normal_distance = makeTexture2D(GL_RGBA32F, kWidth, height, GL_RGBA, GL_FLOAT);
         const GlTexture map = makeTexture2D(GL_RGBA32F, kWidth, height, GL_RGBA, GL_FLOAT);
+        if (auto done = checkAllocated("a query of " + std::to_string(batch.size()) + " points",
+                                       "close what else is on the GPU");
+            !done) {
+            return forward(done);
+        }
         const std::array<GLuint, 2> targets = {normal_distance.name(), map.name()};
         const Result<GlFramebuffer> framebuffer = makeFramebuffer(targets);
         if (!framebuffer) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <string>
 
+#include "runtime/gl_fault.h"
 #include "runtime/pass_state.h"
 
 namespace relief {
@@ -31,17 +32,15 @@ Result<Frame> Frame::create(std::uint32_t width, std::uint32_t height) {
     frame.factor_ = 2 * std::max(width, height) <= limit && pixels <= kSmoothPixelsMax ? 2 : 1;
 
     const PassState state;
-    while (glGetError() != GL_NO_ERROR) {  // of the caller, not ours
-    }
+    forgetGlErrors();
     const RenderTarget large = frame.target();
     frame.color_ = makeTexture2D(GL_RGBA16F, large.width, large.height, GL_RGBA, GL_HALF_FLOAT);
     frame.depth_ =
         makeTexture2D(GL_DEPTH_COMPONENT32F, large.width, large.height, GL_DEPTH_COMPONENT, GL_FLOAT);
     frame.finished_ = makeTexture2D(GL_RGBA8, static_cast<GLsizei>(width), static_cast<GLsizei>(height),
                                     GL_RGBA, GL_UNSIGNED_BYTE);
-    if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
-        return fail(error == GL_OUT_OF_MEMORY ? ErrorCode::kLimit : ErrorCode::kFailure,
-                    "a picture of " + size + " pixels finds no room on the GPU; choose a smaller size");
+    if (auto done = checkAllocated("a picture of " + size + " pixels", "choose a smaller size"); !done) {
+        return forward(done);
     }
     const std::array<GLuint, 1> color{frame.color_.name()};
     const std::array<GLuint, 1> finished{frame.finished_.name()};

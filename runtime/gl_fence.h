@@ -22,6 +22,7 @@ class GlFence {
     void insert() {
         remove();
         sync_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+        state_ = GL_TIMEOUT_EXPIRED;
     }
     void remove() {
         if (sync_ != nullptr) {
@@ -34,12 +35,15 @@ class GlFence {
         if (sync_ == nullptr) {
             return false;
         }
-        const GLenum state = glClientWaitSync(sync_, GL_SYNC_FLUSH_COMMANDS_BIT, nanoseconds);
-        return state == GL_ALREADY_SIGNALED || state == GL_CONDITION_SATISFIED;
+        state_ = glClientWaitSync(sync_, GL_SYNC_FLUSH_COMMANDS_BIT, nanoseconds);
+        return state_ == GL_ALREADY_SIGNALED || state_ == GL_CONDITION_SATISFIED;
     }
+    /// Whether there is nothing to wait for: never inserted, or the GL reported an error to passed().
+    [[nodiscard]] bool failed() const { return sync_ == nullptr || state_ == GL_WAIT_FAILED; }
 
   private:
     GLsync sync_ = nullptr;
+    mutable GLenum state_ = GL_TIMEOUT_EXPIRED;  // as the last passed() was told
 };
 
 }  // namespace relief

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 
+#include "runtime/gl_fault.h"
 #include "shaders/shader_sources.h"
 
 namespace relief {
@@ -220,9 +221,13 @@ Result<std::vector<float>> readTextureFloats(const GlTexture& texture, GLsizei w
         glPixelStorei(GL_PACK_ALIGNMENT, 4);
         glReadPixels(0, 0, width, height, GL_RGBA, GL_FLOAT, values.data());
     }
+    const Result<void> alive = checkGpu("reading a texture back");
     glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(bound));
     if (!complete) {
         return fail(ErrorCode::kUnsupported, "this GL does not read float textures back");
+    }
+    if (!alive) {
+        return forward(alive);
     }
     return values;
 }

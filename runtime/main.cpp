@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "formats/file_io.h"
+#include "runtime/gpu_tool.h"
 #include "runtime/player.h"
 #include "runtime/report.h"
 #include "runtime/scene_check.h"
@@ -32,9 +33,11 @@ constexpr std::string_view kHelpFoot =
     "Exit codes: 0 done, 1 usage, 2 file or I/O, 3 invalid input, 4 failure, 5 unsupported here, 6 above a "
     "limit.\n";
 
-constexpr std::array<std::string_view, 16> kOptions{
-    "--steps",       "--frames", "--size", "--seed", "--dump", "--dump-frames", "--video",   "--stats",
-    "--stats-every", "--check",  "--json", "--api",  "-q",     "--quiet",       "--version", "--help"};
+constexpr std::array<std::string_view, 19> kOptions{
+    "--steps",      "--frames", "--size",        "--seed",  "--dump",   "--dump-frames",
+    "--video",      "--stats",  "--stats-every", "--check", "--json",   "--api",
+    "-q",           "--quiet",  "--version",     "--help",  "--device", "--list-devices",
+    "--gpu-timeout"};
 
 int report(ErrorCode code, const std::string& message) {
     std::fprintf(stderr, "relief-sim: error: %s\n", message.c_str());
@@ -72,6 +75,9 @@ struct CommandLine {
     std::string stats;
     std::string stats_every;
     std::string api = "gl";
+    std::string device;
+    std::string gpu_timeout;
+    bool list_devices = false;
     bool check = false;
     bool json = false;
     bool quiet = false;
@@ -121,6 +127,17 @@ std::string toOptions(const CommandLine& line, relief::PlayerOptions& options) {
         options.api = relief::GlApi::kGles30;
     } else if (line.api != "gl") {
         return "--api " + quotedWord(line.api) + " is unknown; choose gl or gles";
+    }
+    if (!line.device.empty()) {
+        const auto device = relief::parseDevice(line.device);
+        if (!device) {
+            return device.error().message;
+        }
+        options.device = *device;
+    }
+    if (line.check && !(line.device + line.gpu_timeout).empty()) {
+        return std::string(line.device.empty() ? "--gpu-timeout" : "--device") +
+               " does nothing with --check, which needs no GPU; leave it out";
     }
     if (!line.stats_every.empty()) {
         std::uint32_t every = 0;
@@ -177,6 +194,23 @@ int check(const CommandLine& line, const relief::PlayerOptions& options) {
     return checked ? 0 : report(checked.error().code, checked.error().message);
 }
 
+/// --list-devices.
+int listDevices(const CommandLine& line) {
+    if (line.api != "gl" && line.api != "gles") {
+        return report(ErrorCode::kUsage, "--api " + quotedWord(line.api) + " is unknown; choose gl or gles");
+    }
+    const auto devices =
+        relief::listGlDevices(line.api == "gles" ? relief::GlApi::kGles30 : relief::GlApi::kGl33Core);
+    if (!devices) {
+        return report(devices.error().code, devices.error().message);
+    }
+    const std::string text = line.json ? relief::devicesJson(*devices) : relief::devicesText(*devices);
+    if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
+        return report(ErrorCode::kIo, "cannot write the devices to standard output");
+    }
+    return 0;
+}
+
 int run(int argc, char** argv) {
     CLI::App app{std::string(kHelpHead)};
     CommandLine line;
@@ -214,6 +248,9 @@ int run(int argc, char** argv) {
                  "Only check the scene and what it names, without a GPU: one line, or the first mistake");
     app.add_option("--api", line.api, "gl for OpenGL 3.3 (default), gles for OpenGL ES 3.0")
         ->type_name("gl|gles");
+    app.add_option("--device", line.device, relief::kDeviceHelp)->type_name("N");
+    app.add_flag("--list-devices", line.list_devices, relief::kListDevicesHelp);
+    app.add_option("--gpu-timeout", line.gpu_timeout, relief::kGpuTimeoutHelp)->type_name("SECONDS");
     app.add_flag("--json", line.json, "Print the report, or what --check finds, as JSON");
     app.add_flag("-q,--quiet", line.quiet,
                  "No progress and no summary; errors still, and what --json asks for");
@@ -226,6 +263,9 @@ int run(int argc, char** argv) {
     }
     if (app.remaining_size() > 0) {
         return report(ErrorCode::kUsage, unknownOption(app));
+    }
+    if (line.list_devices) {
+        return listDevices(line);
     }
     if (line.input.empty()) {
         return report(ErrorCode::kUsage,
@@ -247,6 +287,17 @@ int run(int argc, char** argv) {
     if (!line.quiet && isatty(STDERR_FILENO) != 0) {
         options.progress = showProgress;
     }
+    std::chrono::milliseconds limit = relief::defaultGpuTimeout(false);
+    if (!line.gpu_timeout.empty()) {
+        const auto given = relief::parseGpuTimeout(line.gpu_timeout);
+        if (!given) {
+            return report(given.error().code, given.error().message);
+        }
+        limit = *given;
+    }
+    relief::Watchdog watchdog(limit, relief::endProcess("relief-sim"));
+    options.watchdog = &watchdog;
+    options.default_timeout = line.gpu_timeout.empty();
     const auto played = relief::play(options);
     if (!played) {
         return report(played.error().code, played.error().message);

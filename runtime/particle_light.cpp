@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "runtime/gl_fault.h"
 #include "runtime/pass_state.h"
 
 namespace relief {
@@ -46,7 +47,18 @@ Result<void> ParticleLight::update(const ParticleSystem& particles, const GlText
         target_ = GlFramebuffer();
         width_ = width;
         height_ = std::max(rows, (capacity + width - 1) / width);
+        const std::string what = "the light of " + std::to_string(capacity) + " particles";
+        constexpr const char* kCure = "choose a smaller capacity";
+        if (auto fits = checkTextureSize(static_cast<std::uint64_t>(width_),
+                                         static_cast<std::uint64_t>(height_), what, kCure);
+            !fits) {
+            return fits;
+        }
+        forgetGlErrors();
         light_ = makeTexture2D(GL_RGBA32F, width_, height_, GL_RGBA, GL_FLOAT);
+        if (auto done = checkAllocated(what, kCure); !done) {
+            return done;
+        }
         const std::array<GLuint, 1> colors{light_.name()};
         auto target = makeFramebuffer(colors);
         if (!target) {

@@ -5,6 +5,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <string>
 
+#include "runtime/gl_fault.h"
 #include "runtime/pass_state.h"
 
 namespace relief {
@@ -52,10 +53,14 @@ Result<ParticleRenderer> ParticleRenderer::create(const std::optional<ColliderVi
     renderer.point_program_ = std::move(*points);
     renderer.quad_program_ = std::move(*quads);
     renderer.no_attributes_ = makeVertexArray();
+    forgetGlErrors();
     const std::array<GLubyte, 4> zero{};
     renderer.nothing_ = makeTexture2D(GL_RGBA8, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, zero.data());
     constexpr std::array<std::uint32_t, 2> kNoRank{};
     renderer.no_order_ = makeTexture2D(GL_RG32UI, 1, 1, GL_RG_INTEGER, GL_UNSIGNED_INT, kNoRank.data());
+    if (auto done = checkAllocated("the renderer of the particles", "close what else is on the GPU"); !done) {
+        return forward(done);
+    }
     return renderer;
 }
 
@@ -66,10 +71,15 @@ Result<void> ParticleRenderer::uploadLooks(const ParticleStyle& style) {
         return forward(packed);
     }
     if (!looks_ || *packed != packed_) {
+        forgetGlErrors();
         packed_ = std::move(*packed);
         looks_ = makeTexture2D(GL_RGBA32F, static_cast<GLsizei>(kLookTexels),
                                static_cast<GLsizei>(packed_.size() / kLookTexels), GL_RGBA, GL_FLOAT,
                                packed_.data());
+        if (auto done = checkAllocated("the looks of the particles", "choose fewer types"); !done) {
+            looks_ = {};
+            return done;
+        }
     }
     return {};
 }

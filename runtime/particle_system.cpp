@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <string>
 
+#include "runtime/gl_fault.h"
 #include "runtime/pass_state.h"
 
 namespace relief {
@@ -56,12 +57,11 @@ Result<ParticleSystem> ParticleSystem::create(const ParticleSystemOptions& optio
     system.height_ = (options.capacity + system.width_ - 1) / system.width_;
     system.ids_.resize(options.capacity);
 
-    GLint side_max = 0;
-    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side_max);
-    if (system.height_ > static_cast<std::uint32_t>(side_max)) {
-        return fail(ErrorCode::kLimit, std::to_string(options.capacity) + " particles need a texture of " +
-                                           std::to_string(system.height_) + " rows; this GL takes at most " +
-                                           std::to_string(side_max));
+    if (auto fits =
+            checkTextureSize(system.width_, system.height_, std::to_string(options.capacity) + " particles",
+                             "choose a smaller capacity");
+        !fits) {
+        return forward(fits);
     }
     const PassState state;
     if (auto done = system.createTextures(); !done) {
@@ -74,6 +74,7 @@ Result<ParticleSystem> ParticleSystem::create(const ParticleSystemOptions& optio
 }
 
 Result<void> ParticleSystem::createTextures() {
+    forgetGlErrors();
     birth_ = makeStateTexture(width_, height_);
     no_attributes_ = makeVertexArray();
     const int buffers = verlet() ? 3 : 2;
@@ -82,6 +83,11 @@ Result<void> ParticleSystem::createTextures() {
         if (!verlet()) {
             velocity_[i] = makeStateTexture(width_, height_);
         }
+    }
+    if (auto done = checkAllocated("the state of " + std::to_string(ids_.size()) + " particles",
+                                   "choose a smaller capacity");
+        !done) {
+        return done;
     }
     for (int i = 0; i < buffers; ++i) {
         // Verlet reads the two positions before, and a birth writes both.

@@ -14,6 +14,8 @@
 #include "runtime/collider_renderer.h"
 #include "runtime/depth_sort.h"
 #include "runtime/frame.h"
+#include "runtime/gl_fault.h"
+#include "runtime/gpu_tool.h"
 #include "runtime/live_bodies.h"
 #include "runtime/particle_renderer.h"
 #include "runtime/ply.h"
@@ -32,6 +34,20 @@ using Clock = std::chrono::steady_clock;
 // Steps between two calls of PlayerOptions::progress, and between two waits for the GPU: without them a
 // driver would be handed a whole run at once.
 constexpr std::uint32_t kStepsAtOnce = 16;
+// A stretch of steps that takes longer is halved: progress moves, and no watchdog takes it for a hang.
+constexpr std::chrono::seconds kStretchMax{4};
+
+/// Tells the watchdog, if there is one, what the GPU is about to do; and the other way round.
+void feed(const PlayerOptions& options, const std::string& what) {
+    if (options.watchdog != nullptr) {
+        options.watchdog->feed(what);
+    }
+}
+void rest(const PlayerOptions& options) {
+    if (options.watchdog != nullptr) {
+        options.watchdog->rest();
+    }
+}
 
 /// Makes the folder, and sees early that it can be written: a run may take long.
 Result<void> prepareFolder(const fs::path& folder, const char* option) {
@@ -141,7 +157,11 @@ class Picture {
             !drawn) {
             return forward(drawn);
         }
-        return frame_.read();
+        std::vector<std::uint8_t> rgb = frame_.read();
+        if (auto alive = checkGpu("drawing a picture"); !alive) {
+            return forward(alive);
+        }
+        return rgb;
     }
 
   private:
@@ -186,7 +206,9 @@ double videoRate(const Scene& scene) {
 Result<void> openOutputs(const PlayerOptions& options, const Scene& scene, const LoadedScene& loaded,
                          const ColliderTextures& textures, Outputs& outputs) {
     if (!options.frames.empty() || !options.video.empty()) {
+        feed(options, "the shaders of pictures");
         auto made = Picture::create(scene, loaded, textures);
+        rest(options);
         if (!made) {
             return forward(made);
         }
@@ -199,6 +221,9 @@ Result<void> openOutputs(const PlayerOptions& options, const Scene& scene, const
             return forward(video);
         }
         outputs.video = std::move(*video);
+        if (options.watchdog != nullptr) {
+            options.watchdog->setCleanUp([writer = outputs.video.get()] { writer->abandon(); });
+        }
     }
     if (options.time_stages || !options.stats.empty()) {
         outputs.timer.emplace();
@@ -226,7 +251,9 @@ Result<void> openOutputs(const PlayerOptions& options, const Scene& scene, const
 Result<void> writeFrame(const PlayerOptions& options, const ParticleSystem& particles, Outputs& outputs,
                         PlayerReport& report) {
     if (outputs.picture) {
+        feed(options, "picture " + std::to_string(report.frames_written));
         const auto rgb = outputs.picture->draw(particles, outputs.stages());
+        rest(options);
         if (!rgb) {
             return forward(rgb);
         }
@@ -248,7 +275,9 @@ Result<void> writeFrame(const PlayerOptions& options, const ParticleSystem& part
         ++report.frames_written;
     }
     if (!options.dump_frames.empty()) {
+        feed(options, "reading particles back");
         const auto state = particles.readState();
+        rest(options);
         if (!state) {
             return forward(state);
         }
@@ -323,6 +352,23 @@ Result<ColliderTextures> makeTextures(const Scene& scene, std::span<const Collid
     return ColliderTextures::create(bodies);
 }
 
+/// What the watchdog would clean up does not outlive the run.
+class WithoutCleanUp {
+  public:
+    explicit WithoutCleanUp(Watchdog* watchdog) : watchdog_(watchdog) {}
+    WithoutCleanUp(const WithoutCleanUp&) = delete;
+    WithoutCleanUp& operator=(const WithoutCleanUp&) = delete;
+    ~WithoutCleanUp() {
+        if (watchdog_ != nullptr) {
+            watchdog_->rest();
+            watchdog_->setCleanUp({});
+        }
+    }
+
+  private:
+    Watchdog* watchdog_;
+};
+
 /// The run itself: steps and, between them, frames.
 Result<void> run(const PlayerOptions& options, std::span<Emitter> emitters, ColliderTextures& textures,
                  LiveBodies& live, ParticleSystem& particles, Outputs& outputs, PlayerReport& report) {
@@ -336,12 +382,15 @@ Result<void> run(const PlayerOptions& options, std::span<Emitter> emitters, Coll
     Clock::duration spent{};
     std::vector<double> stretches;  // ms per step of each
     std::uint32_t step = 0;
+    std::uint32_t at_once = kStepsAtOnce;
     while (step < scene.steps || (step == 0 && has_frames)) {
         const std::uint32_t next_frame =
             has_frames ? step + scene.render.every - step % scene.render.every : scene.steps;
-        const std::uint32_t end = std::min({scene.steps, next_frame, step + kStepsAtOnce});
+        const std::uint32_t end = std::min({scene.steps, next_frame, step + at_once});
         const Clock::time_point begun = Clock::now();
         const std::uint32_t first = step;
+        const std::string steps = "steps " + std::to_string(first + 1) + " to " + std::to_string(end);
+        feed(options, steps);
         while (step < end) {
             {
                 const StageScope scope(outputs.stages(), Stage::kBirths);
@@ -367,8 +416,14 @@ Result<void> run(const PlayerOptions& options, std::span<Emitter> emitters, Coll
                 }
             }
         }
-        glFinish();
+        if (auto done = waitForGpu(steps); !done) {
+            return done;
+        }
+        rest(options);
         const Clock::duration stretch = Clock::now() - begun;
+        if (stretch > kStretchMax) {
+            at_once = std::max(at_once / 2, 1U);
+        }
         spent += stretch;
         if (step > first) {
             stretches.push_back(std::chrono::duration<double, std::milli>(stretch).count() / (step - first));
@@ -397,9 +452,11 @@ Result<void> run(const PlayerOptions& options, std::span<Emitter> emitters, Coll
     report.counts = particles.counts();
     report.counts.refused += refused;
     if (outputs.log) {
+        feed(options, "the statistics");
         if (auto done = outputs.log->finish(); !done) {
             return done;
         }
+        rest(options);
     }
     if (outputs.timer) {
         report.stage_times = outputs.timer->times();
@@ -408,7 +465,9 @@ Result<void> run(const PlayerOptions& options, std::span<Emitter> emitters, Coll
 }
 
 Result<void> readBack(const PlayerOptions& options, const ParticleSystem& particles, PlayerReport& report) {
+    feed(options, "reading particles back");
     const auto state = particles.readState();
+    rest(options);
     if (!state) {
         return forward(state);
     }
@@ -441,13 +500,19 @@ Result<PlayerReport> play(const PlayerOptions& options) {
         }
     }
 
-    auto context = GlContext::create(options.api);
+    feed(options, "making a context");
+    auto context = GlContext::create({options.api, GlPlatform::kAny, options.device});
+    rest(options);
     if (!context) {
         return forward(context);
+    }
+    if (options.watchdog != nullptr && options.default_timeout) {
+        options.watchdog->setLimit(defaultGpuTimeout((*context)->software()));
     }
     PlayerReport report;
     report.scene = loaded->scene;
     report.device = (*context)->description();
+    feed(options, "uploading the collider");
     auto textures = makeTextures(report.scene, loaded->colliders);
     if (!textures) {
         return fail(textures.error().code,
@@ -455,6 +520,7 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     }
     report.collider_maps = static_cast<std::size_t>(textures->mapCount());
     report.collider_bytes = textures->bytes();
+    feed(options, "the shaders of colliders");
     auto live = LiveBodies::create(*loaded);
     if (!live) {
         return forward(live);
@@ -462,11 +528,14 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     if (auto shown = live->show(0.0, *textures); !shown) {
         return forward(shown);
     }
+    feed(options, "the shaders of particles");
     auto particles = makeParticles(report.scene, *textures);
     if (!particles) {
         return forward(particles);
     }
+    rest(options);
     Outputs outputs;
+    const WithoutCleanUp at_end(options.watchdog);  // before the video goes
     if (auto done = openOutputs(options, report.scene, *loaded, *textures, outputs); !done) {
         return forward(done);
     }

@@ -11,6 +11,7 @@
 #include "runtime/gl_context.h"
 #include "runtime/gpu_timer.h"
 #include "runtime/scene.h"
+#include "runtime/watchdog.h"
 
 namespace relief {
 
@@ -33,6 +34,9 @@ struct PlayerOptions {
     bool count_collisions =
         false;  ///< reads the state back at the end for the report's collisions and contacts
     GlApi api = GlApi::kGl33Core;
+    std::optional<std::size_t> device;  ///< as of GlContextOptions
+    Watchdog* watchdog = nullptr;       ///< fed while the GPU works; or null
+    bool default_timeout = false;       ///< its limit becomes that of the context, defaultGpuTimeout
     std::function<void(std::uint32_t step, std::uint32_t steps)> progress;  ///< now and then; may be empty
 };
 

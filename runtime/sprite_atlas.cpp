@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runtime/collider_view.h"
+#include "runtime/gl_fault.h"
 #include "runtime/pass_state.h"
 
 namespace relief {
@@ -60,6 +61,7 @@ Result<SpriteAtlas> SpriteAtlas::create(std::span<const std::uint8_t> rgba, std:
                                            " cells of whole pixels; choose numbers that divide its sides");
     }
     const PassState state;
+    forgetGlErrors();
     SpriteAtlas atlas;
     atlas.columns_ = static_cast<int>(columns);
     atlas.rows_ = static_cast<int>(rows);
@@ -79,6 +81,9 @@ Result<SpriteAtlas> SpriteAtlas::create(std::span<const std::uint8_t> rgba, std:
         ++atlas.last_level_;
         glTexImage2D(GL_TEXTURE_2D, atlas.last_level_, GL_RGBA16F, static_cast<GLsizei>(width),
                      static_cast<GLsizei>(height), 0, GL_RGBA, GL_FLOAT, level.data());
+    }
+    if (auto done = checkAllocated("an atlas of " + size + " pixels", "choose a smaller one"); !done) {
+        return forward(done);
     }
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, atlas.last_level_);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <string>
 
+#include "runtime/gl_fault.h"
 #include "runtime/pass_state.h"
 
 namespace relief {
@@ -36,6 +37,7 @@ Result<Statistics> Statistics::create(std::uint32_t capacity) {
                                            std::to_string(ParticleSystem::kCapacityMax));
     }
     const PassState state;
+    forgetGlErrors();
     Statistics statistics;
     statistics.capacity_ = capacity;
     std::uint32_t width = std::min(capacity, ParticleSystem::kStateWidth);
@@ -48,6 +50,11 @@ Result<Statistics> Statistics::create(std::uint32_t capacity) {
                                  GL_RGBA, GL_FLOAT);
         };
         Level level{make(), make(), {}};
+        if (auto done = checkAllocated("the statistics of " + std::to_string(capacity) + " particles",
+                                       "choose a smaller capacity");
+            !done) {
+            return forward(done);
+        }
         const std::array<GLuint, 2> textures{level.counts.name(), level.sums.name()};
         auto target = makeFramebuffer(textures);
         if (!target) {
@@ -61,6 +68,9 @@ Result<Statistics> Statistics::create(std::uint32_t capacity) {
         slot.buffer = makeBuffer();
         glBindBuffer(GL_PIXEL_PACK_BUFFER, slot.buffer.name());
         glBufferData(GL_PIXEL_PACK_BUFFER, 2 * kTexelBytes, nullptr, GL_STREAM_READ);
+    }
+    if (auto done = checkAllocated("the statistics' buffers", "choose a smaller capacity"); !done) {
+        return forward(done);
     }
     statistics.no_attributes_ = makeVertexArray();
 
@@ -143,9 +153,15 @@ Result<std::optional<StatisticsSample>> Statistics::wait() {
     }
     const Slot& slot = slots_[static_cast<std::size_t>(oldest_)];
     if (!slot.empty && !slot.fence.passed(kPatience)) {
+        if (auto alive = checkGpu("making statistics"); !alive) {
+            return forward(alive);
+        }
         return fail(ErrorCode::kFailure, "the GPU has not finished its statistics within ten seconds");
     }
     auto sample = collect();
+    if (auto alive = checkGpu("making statistics"); !alive) {
+        return forward(alive);
+    }
     if (!sample) {
         return fail(ErrorCode::kFailure, "the GPU's statistics cannot be read");
     }

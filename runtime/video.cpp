@@ -297,6 +297,15 @@ Result<void> VideoWriter::add(std::span<const std::uint8_t> rgb) {
     return {};
 }
 
+void VideoWriter::abandon() {
+    if (impl_->process > 0) {
+        ::kill(impl_->process, SIGKILL);  // it would take the pipe's end for the video's
+        impl_->wait();
+    }
+    impl_->removeTemporary();
+    impl_->temporary.clear();
+}
+
 Result<void> VideoWriter::finish() {
     if (impl_->process < 0) {
         return fail(ErrorCode::kUsage, "a video is finished once");

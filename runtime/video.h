@@ -39,6 +39,10 @@ class VideoWriter {
     /// Errors: kFailure (with ffmpeg's words), kIo.
     [[nodiscard]] Result<void> finish();
 
+    /// Ends ffmpeg at once and removes what it has written: for a process that is about to end without
+    /// destructors, from any thread while no other member runs. The writer is of no use any more.
+    void abandon();
+
   private:
     VideoWriter() = default;
     struct Impl;

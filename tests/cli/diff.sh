@@ -1,0 +1,83 @@
+# relief diff: identical, equal, different and damaged files; limits, JSON and exit codes.
+. "$(dirname "$0")/lib.sh"
+
+bake() { "$relief" bake "$bunny" -o "$1" -q --paper --resolution "${@:2}"; }
+bake a.relief 48
+bake again.relief 48
+expect 0 "$relief" diff a.relief again.relief
+grep -q "'a.relief' and 'again.relief' are identical" stdout || die "said: $(cat stdout)"
+expect 0 "$relief" diff a.relief again.relief --json
+json stdout 'd["identical"] and d["same_collider"] and d["within_limits"] and d["total"]["coverage_percent"] == 0'
+json stdout 'list(d) == ["a", "b", "identical", "same_collider", "within_limits", "limits", "structure", "provenance", "maps", "total"]'
+json stdout 'list(d["maps"][0]["front"]) == ["ends", "both", "only_a", "only_b", "coverage_percent", "beyond", "beyond_percent", "depth", "normal_degrees"]'
+json stdout '[m["depth_unit"] for m in d["maps"]] == ["ulp"] * 3 + ["1/65534"] and d["maps"][3]["back"] is None'
+json stdout 'd["total"]["ends"] == 3 * 2 * 48 * 48 + 6 * 48 * 48 and d["total"]["both"] > 1000'
+
+# Compressed: other bytes, the same collider. Other options: said, and a difference only where asked for.
+bake packed.relief 48 --compress 19
+expect 0 "$relief" diff a.relief packed.relief
+grep -q 'the same collider, stored differently' stdout || die "said: $(cat stdout)"
+(cat "$bunny" && echo '# touched') >touched.obj
+"$relief" bake touched.obj -o touched.relief -q --paper --resolution 48
+expect 0 "$relief" diff a.relief touched.relief
+grep -q 'mesh_hash' stdout || die "the other mesh is not named: $(cat stdout)"
+expect 7 "$relief" diff a.relief touched.relief --strict-metadata
+grep -q 'strict-metadata' stderr || die "no reason given: $(cat stderr)"
+
+# A moved vertex: texels differ by something; limits above it let it pass, and the other way round it is the same.
+awk '/^v / && !done { $2 += 0.02; done = 1 } { print }' "$bunny" >moved.obj
+"$relief" bake moved.obj -o moved.relief -q --paper --resolution 48
+expect 7 "$relief" diff a.relief moved.relief --json
+cp stdout there.json
+[ "$(wc -l <stderr)" -eq 1 ] && grep -qE '^relief: error: .*differ: ' stderr || die "no reason given: $(cat stderr)"
+expect 7 "$relief" diff moved.relief a.relief --json
+cp stdout back.json
+python3 - <<'P' || die "diff(A, B) is no mirror of diff(B, A)"
+import json, sys
+there, back = (json.load(open(name)) for name in ('there.json', 'back.json'))
+def mirrored(d):
+    if isinstance(d, list):
+        return [mirrored(x) for x in d]
+    if not isinstance(d, dict):
+        return d
+    swap = {'a': 'b', 'b': 'a', 'only_a': 'only_b', 'only_b': 'only_a'}
+    return {swap.get(k, k): mirrored(v) for k, v in d.items()}
+sys.exit(0 if mirrored(there) == back and there['total']['depth']['differing'] > 0 else 1)
+P
+expect 0 "$relief" diff a.relief moved.relief --max-coverage 100 --max-texels 100
+grep -q 'within the limits' stdout || die "said: $(cat stdout)"
+expect 0 "$relief" diff a.relief moved.relief --max-coverage 100% --max-depth 70000 --max-normal 180
+expect 7 "$relief" diff a.relief moved.relief --max-coverage 100 --max-depth 70000
+expect 7 "$relief" diff a.relief moved.relief --max-coverage 100 --max-normal 180
+
+# What cannot be compared is said, and is a difference whatever the limits.
+bake larger.relief 50
+expect 7 "$relief" diff a.relief larger.relief --max-coverage 100 --max-texels 100
+grep -q 'map 0: size: 48x48 and 50x50' stdout || die "said: $(cat stdout)"
+grep -q 'map 0: texels of another format or size cannot be compared' stdout || die "said: $(cat stdout)"
+"$relief" bake "$bunny" -o one.relief -q --map fixed8:size=48
+expect 7 "$relief" diff a.relief one.relief --json
+json stdout 'd["structure"][0] == {"what": "maps", "a": "4", "b": "1"} and not d["maps"][0]["compared"]'
+json stdout 'd["maps"][0]["texels"] is None and d["maps"][0]["front"] is None'
+
+# One of the two from standard input.
+"$relief" diff - again.relief <a.relief >said || die "standard input as A"
+grep -q "standard input and 'again.relief' are identical" said || die "said: $(cat said)"
+"$relief" diff a.relief - <again.relief >said || die "standard input as B"
+[ -z "$("$relief" diff a.relief again.relief -q)" ] || die "-q says something"
+
+# Files that lie, and words that are wrong.
+head -c 1000 a.relief >truncated.relief
+cp a.relief altered.relief
+printf '\x55' | dd of=altered.relief bs=1 seek=1700 conv=notrunc status=none
+for file in truncated altered; do
+    expect_error 3 "$file\.relief" "$relief" diff a.relief $file.relief
+    expect_error 3 "$file\.relief" "$relief" diff $file.relief a.relief
+done
+expect_error 2 'missing\.relief' "$relief" diff a.relief missing.relief
+expect_error 1 'standard input' "$relief" diff - -
+expect_error 1 'max-depth' "$relief" diff a.relief a.relief --max-depth -1
+expect_error 1 'max-normal' "$relief" diff a.relief a.relief --max-normal nan
+expect_error 1 'max-coverage' "$relief" diff a.relief a.relief --max-coverage few
+expect_error 1 'B' "$relief" diff a.relief
+expect_error 2 '/dev/full|standard output' sh -c "'$relief' diff a.relief moved.relief >/dev/full"
