@@ -17,7 +17,7 @@
 #include "bake/byte_count.h"
 #include "bake/command.h"
 #include "bake/hole_caps.h"
-#include "bake/mesh_import.h"
+#include "bake/import_options.h"
 #include "bake/mesh_query.h"
 #include "bake/plan_file.h"
 #include "bake/preflight.h"
@@ -52,6 +52,7 @@ struct BakeCommand {
     std::string threads;
     std::string compress = "0";
     std::string holes = "close";
+    ImportArguments import;
     bool json = false;
 };
 
@@ -422,8 +423,10 @@ Result<void> runBake(const BakeCommand& command) {
     if (!settings) {
         return forward(settings);
     }
-    if (const Result<void> ready = preflight(command); !ready) {
-        return ready;
+    for (const Result<void>& ready : {checkImportArguments(command.import), preflight(command)}) {
+        if (!ready) {
+            return ready;
+        }
     }
     if (settings->source == Source::kPlanFile) {
         if (const Result<void> read = readPlanFile(command, *settings); !read) {
@@ -438,7 +441,7 @@ Result<void> runBake(const BakeCommand& command) {
 
     BakeTimes times;
     const Stopwatch import_watch;
-    Result<TriangleMesh> mesh = importMesh(command.mesh);
+    Result<TriangleMesh> mesh = loadMesh(command.mesh, command.import);
     times.import_ms = import_watch.ms();
     if (!mesh) {
         return forward(mesh);
@@ -469,13 +472,16 @@ Result<void> runBake(const BakeCommand& command) {
         spdlog::info("{}: closed {} hole{} with {} triangles for baking: the mesh is nearly closed",
                      mesh->name, mesh->closed_holes, mesh->closed_holes == 1 ? "" : "s", mesh->cap_triangles);
     }
-    for (const std::string& warning : baked->report.warnings) {
+    std::vector<std::string>& warnings = baked->report.warnings;
+    warnings.insert(warnings.begin(), mesh->warnings.begin(), mesh->warnings.end());
+    for (const std::string& warning : warnings) {
         spdlog::warn(warning);
     }
 
     if (command.holes == "keep") {
         baked->collider.provenance.options += " --holes keep";
     }
+    baked->collider.provenance.options += importProvenance(command.import);
     const Stopwatch write_watch;
     const Result<std::vector<std::byte>> bytes = writeContainer(baked->collider, settings->write);
     if (!bytes) {
@@ -522,7 +528,7 @@ void addBake(CLI::App& app, Action& action) {
         "relief bake bunny.obj -o bunny.relief --max-error 1%\n"
         "relief bake rock.glb -o rock.relief --map cube:size=256 --map fixed8:dir=-y,size=512x256\n"
         "relief bake hall.fbx -o hall.relief --map cube:center=0/2/0,compare=less --json");
-    verb.add_option("MESH", command->mesh, "The mesh, in any format that assimp reads")
+    verb.add_option("MESH", command->mesh, "The mesh: OBJ, STL, PLY, OFF, glTF, FBX, COLLADA, 3DS and more")
         ->type_name("")
         ->required();
     verb.add_option("-o,--output", command->output, "The collider to write; - for standard output")
@@ -585,6 +591,7 @@ void addBake(CLI::App& app, Action& action) {
     verb.add_option("--holes", command->holes,
                     "Of a nearly closed mesh: close (bake it as a solid, default) or keep")
         ->option_text("WORD");
+    addImportOptions(verb, command->import);
     verb.add_flag("--json", command->json, "Print a report as JSON to standard output");
     verb.callback([command, &action] { action = [command] { return runBake(*command); }; });
 }
