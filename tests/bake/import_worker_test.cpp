@@ -5,7 +5,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
@@ -302,6 +304,51 @@ TEST(ImportWorker, LeavesNoDescriptorsAndNoChildren) {
     std::ifstream(children) >> list;
     EXPECT_EQ(list, "");
     EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 2);
+}
+
+TEST(ImportWorker, EveryModelOfThePackageIsReadOrRefused) {
+    // Every seventh, and all invalid ones; scripts/soak.sh import takes all. Nothing may crash the worker.
+    const bool all = std::getenv("RELIEF_SOAK") != nullptr;
+    std::vector<fs::path> files;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator("/usr/share/assimp/models")) {
+        if (entry.is_regular_file()) {
+            files.push_back(entry.path());
+        }
+    }
+    std::sort(files.begin(), files.end());
+    ASSERT_GT(files.size(), 400U) << "the package assimp-testmodels is not there";
+    std::size_t tried = 0;
+    std::size_t read = 0;
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        const bool invalid = files[i].parent_path().filename() == "invalid";
+#ifdef __SANITIZE_ADDRESS__
+        // The address sanitizer ends a process that asks for too much.
+        if (files[i].filename() == "OutOfMemory.off") {
+            continue;
+        }
+#endif
+        if (!all && !invalid && i % 7 != 0) {
+            continue;
+        }
+        const Result<TriangleMesh> mesh = loadMesh(files[i], {}, {2'000'000'000, 60});
+        ++tried;
+        if (mesh) {
+            ++read;
+            continue;
+        }
+        const Error& error = mesh.error();
+        const bool clean = error.code == ErrorCode::kInvalidInput || error.code == ErrorCode::kUnsupported ||
+                           error.code == ErrorCode::kLimit;
+        EXPECT_TRUE(clean) << error.message;
+        EXPECT_EQ(error.message.find("crashed"), std::string::npos) << error.message;
+        EXPECT_EQ(error.message.find("exit code"), std::string::npos) << error.message;
+        EXPECT_EQ(error.message.find('\n'), std::string::npos) << error.message;
+        EXPECT_NE(error.message.find(';'), std::string::npos) << "no cure: " << error.message;
+    }
+    RecordProperty("tried", static_cast<int>(tried));
+    RecordProperty("read", static_cast<int>(read));
+    EXPECT_GT(tried, all ? 400U : 60U);
+    EXPECT_GT(4 * read, tried) << "hardly any is read";
 }
 
 TEST(ImportWorker, LimitsMustBeLimits) {
