@@ -1,10 +1,7 @@
 #include "bake/backend.h"
 
-#include <epoxy/gl.h>
-
 #include <algorithm>
 #include <array>
-#include <cctype>
 
 #include "bake/text.h"
 #include "formats/file_io.h"
@@ -41,17 +38,8 @@ void addBackendOptions(CLI::App& verb, BackendOptions& options) {
         ->option_text("WORD");
 }
 
-bool isSoftwareRenderer(const std::string& renderer) {
-    std::string lower = renderer;
-    std::transform(lower.begin(), lower.end(), lower.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    constexpr std::array<std::string_view, 6> kNames = {"llvmpipe",    "softpipe", "swrast",
-                                                        "swiftshader", "software", "lavapipe"};
-    return std::any_of(kNames.begin(), kNames.end(),
-                       [&](std::string_view name) { return lower.find(name) != std::string::npos; });
-}
-
-Result<Backend> chooseBackend(const BackendOptions& options, const BackendRequest& request) {
+Result<Backend> chooseBackend(const BackendOptions& options, const GlOptions& gl,
+                              const BackendRequest& request) {
     const auto word = std::find(kBackends.begin(), kBackends.end(), options.backend);
     if (word == kBackends.end()) {
         return fail(ErrorCode::kUsage, "--backend is '" + cleanUtf8(options.backend) +
@@ -60,6 +48,9 @@ Result<Backend> chooseBackend(const BackendOptions& options, const BackendReques
     }
     Backend backend;
     if (*word == "raycast") {
+        if (const Result<void> idle = refuseGlOptions(gl, "--backend raster or auto"); !idle) {
+            return forward(idle);
+        }
         return backend;
     }
     const bool automatic = *word == "auto";
@@ -71,24 +62,29 @@ Result<Backend> chooseBackend(const BackendOptions& options, const BackendReques
         backend.reason = problem.substr(0, problem.find(';'));
         return backend;
     }
-    Result<std::unique_ptr<GlContext>> context = GlContext::create();
-    if (!context) {
-        if (!automatic) {
-            return fail(context.error().code,
-                        "--backend raster: " + context.error().message + "; or bake with --backend raycast");
+    Result<WatchedContext> opened = openGl(gl);
+    if (!opened) {
+        // A device that does not exist is a mistake, whoever bakes.
+        if (opened.error().code == ErrorCode::kUsage) {
+            return forward(opened);
         }
-        backend.reason = context.error().message;
+        if (!automatic) {
+            return fail(opened.error().code,
+                        "--backend raster: " + opened.error().message + "; or bake with --backend raycast");
+        }
+        backend.reason = opened.error().message;
         return backend;
     }
-    const auto* const renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-    if (automatic && isSoftwareRenderer(renderer == nullptr ? "" : renderer)) {
-        backend.reason = "the OpenGL runs on the CPU: " + (*context)->description();
+    const GlContext& context = *opened->context;
+    if (automatic && context.software()) {
+        backend.reason = "the OpenGL runs on the CPU: " + context.description();
         return backend;
     }
     backend.raster = true;
-    backend.device = (*context)->description();
+    backend.device = context.description();
     backend.reason = automatic ? "the OpenGL is a GPU's: " + backend.device : "";
-    backend.context = std::move(*context);
+    backend.gl = std::move(*opened);
+    backend.gl.watchdog->feed("drawing the maps");
     return backend;
 }
 

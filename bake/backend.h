@@ -2,13 +2,12 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <memory>
 #include <string>
 
 #include "bake/bake.h"
+#include "bake/gl_options.h"
 #include "bake/prefer.h"
 #include "formats/result.h"
-#include "runtime/gl_context.h"
 
 namespace relief {
 
@@ -27,17 +26,15 @@ struct BackendRequest {
 
 struct Backend {
     bool raster = false;
-    std::string device;                  ///< of raster: GlContext::description()
-    std::string reason;                  ///< of auto: why this one; else empty
-    std::unique_ptr<GlContext> context;  ///< of raster: current; keep it until the bake is done
+    std::string device;  ///< of raster: GlContext::description()
+    std::string reason;  ///< of auto: why this one; else empty
+    WatchedContext gl;   ///< of raster: current, and the watchdog fed; keep it until the bake is done
 };
 
 /// Opens a GL only if it is asked for one.
-/// Errors: kUsage (no such word; raster for what it cannot do; the message says what to leave out),
-/// kUnsupported (raster without a GL).
-[[nodiscard]] Result<Backend> chooseBackend(const BackendOptions& options, const BackendRequest& request);
-
-/// Whether a GL_RENDERER is a program that runs on the CPU, by the names of those there are.
-[[nodiscard]] bool isSoftwareRenderer(const std::string& renderer);
+/// Errors: kUsage (no such word; a GL option where no GL is asked for; raster for what it cannot do; the
+/// message says what to leave out), kUnsupported (raster without a GL).
+[[nodiscard]] Result<Backend> chooseBackend(const BackendOptions& options, const GlOptions& gl,
+                                            const BackendRequest& request);
 
 }  // namespace relief

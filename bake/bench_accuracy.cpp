@@ -497,7 +497,7 @@ Result<void> run(const Arguments& arguments) {
     Json mesh_reports = Json::array();
     for (const std::string& path : *paths) {
         const Stopwatch watch;
-        const Result<TriangleMesh> mesh = importMesh(path);
+        const Result<TriangleMesh> mesh = loadMesh(path);
         if (!mesh) {
             return forward(mesh);
         }

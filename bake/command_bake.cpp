@@ -19,7 +19,7 @@
 #include "bake/command.h"
 #include "bake/gl_options.h"
 #include "bake/hole_caps.h"
-#include "bake/mesh_import.h"
+#include "bake/import_options.h"
 #include "bake/mesh_query.h"
 #include "bake/plan_file.h"
 #include "bake/preflight.h"
@@ -56,6 +56,7 @@ struct BakeCommand {
     std::string holes = "close";
     BackendOptions backend;
     GlOptions gl;
+    ImportArguments import;
     bool json = false;
 };
 
@@ -432,21 +433,20 @@ Result<void> runBake(const BakeCommand& command) {
     if (!settings) {
         return forward(settings);
     }
-    if (const Result<void> idle = refuseGlOptions(command.gl, "a map that a GPU draws"); !idle) {
-        return idle;
-    }
-    if (const Result<void> ready = preflight(command); !ready) {
-        return ready;
+    for (const Result<void>& ready : {checkImportArguments(command.import), preflight(command)}) {
+        if (!ready) {
+            return ready;
+        }
     }
     if (settings->source == Source::kPlanFile) {
         if (const Result<void> read = readPlanFile(command, *settings); !read) {
             return read;
         }
     }
-    const Result<Backend> backend =
-        chooseBackend(command.backend, {settings->source == Source::kPlanner,
-                                        !command.quality.empty() || settings->plan_quality.has_value(),
-                                        settings->bake.quality, settings->bake.prefer});
+    const Result<Backend> backend = chooseBackend(
+        command.backend, command.gl,
+        {settings->source == Source::kPlanner, !command.quality.empty() || settings->plan_quality.has_value(),
+         settings->bake.quality, settings->bake.prefer});
     if (!backend) {
         return forward(backend);
     }
@@ -462,7 +462,7 @@ Result<void> runBake(const BakeCommand& command) {
 
     BakeTimes times;
     const Stopwatch import_watch;
-    Result<TriangleMesh> mesh = importMesh(command.mesh);
+    Result<TriangleMesh> mesh = loadMesh(command.mesh, command.import);
     times.import_ms = import_watch.ms();
     if (!mesh) {
         return forward(mesh);
@@ -485,6 +485,9 @@ Result<void> runBake(const BakeCommand& command) {
     }
     std::optional<PlanReport> plan;
     Result<Baked> baked = makeCollider(command, imported ? *imported : *mesh, *mesh, *settings, plan, times);
+    if (backend->raster) {
+        backend->gl.watchdog->rest();
+    }
     if (!baked) {
         return forward(baked);
     }
@@ -493,16 +496,16 @@ Result<void> runBake(const BakeCommand& command) {
         spdlog::info("{}: closed {} hole{} with {} triangles for baking: the mesh is nearly closed",
                      mesh->name, mesh->closed_holes, mesh->closed_holes == 1 ? "" : "s", mesh->cap_triangles);
     }
-    if (!backend->reason.empty()) {
-        spdlog::info("backend {}: {}", backend->raster ? "raster" : "raycast", backend->reason);
-    }
-    for (const std::string& warning : baked->report.warnings) {
+    std::vector<std::string>& warnings = baked->report.warnings;
+    warnings.insert(warnings.begin(), mesh->warnings.begin(), mesh->warnings.end());
+    for (const std::string& warning : warnings) {
         spdlog::warn(warning);
     }
 
     if (command.holes == "keep") {
         baked->collider.provenance.options += " --holes keep";
     }
+    baked->collider.provenance.options += importProvenance(command.import);
     const Stopwatch write_watch;
     const Result<std::vector<std::byte>> bytes = writeContainer(baked->collider, settings->write);
     if (!bytes) {
@@ -550,7 +553,7 @@ void addBake(CLI::App& app, Action& action) {
         "relief bake bunny.obj -o bunny.relief --max-error 1%\n"
         "relief bake rock.glb -o rock.relief --map cube:size=256 --map fixed8:dir=-y,size=512x256\n"
         "relief bake hall.fbx -o hall.relief --map cube:center=0/2/0,compare=less --json");
-    verb.add_option("MESH", command->mesh, "The mesh, in any format that assimp reads")
+    verb.add_option("MESH", command->mesh, "The mesh: OBJ, STL, PLY, OFF, glTF, FBX, COLLADA, 3DS and more")
         ->type_name("")
         ->required();
     verb.add_option("-o,--output", command->output, "The collider to write; - for standard output")
@@ -615,6 +618,7 @@ void addBake(CLI::App& app, Action& action) {
         ->option_text("WORD");
     addBackendOptions(verb, command->backend);
     addGlOptions(verb, command->gl);
+    addImportOptions(verb, command->import);
     verb.add_flag("--json", command->json, "Print a report as JSON to standard output");
     verb.callback([command, &action] { action = [command] { return runBake(*command); }; });
 }

@@ -8,7 +8,7 @@
 #include "bake/accuracy_page.h"
 #include "bake/accuracy_report.h"
 #include "bake/command.h"
-#include "bake/mesh_import.h"
+#include "bake/import_options.h"
 #include "bake/preflight.h"
 #include "bake/report.h"
 #include "bake/text.h"
@@ -30,6 +30,7 @@ struct CheckCommand {
     std::string seed = "1";
     std::string max_error;
     std::string html;
+    ImportArguments import;
     bool json = false;
 };
 
@@ -96,6 +97,9 @@ Result<void> runCheck(const CheckCommand& command) {
     if (!settings) {
         return forward(settings);
     }
+    if (const Result<void> known = checkImportArguments(command.import); !known) {
+        return known;
+    }
     if (!command.html.empty()) {
         if (command.html == "-") {
             return fail(ErrorCode::kUsage, "--html cannot be standard output, where the report goes");
@@ -112,7 +116,7 @@ Result<void> runCheck(const CheckCommand& command) {
     if (!collider) {
         return forward(collider);
     }
-    const Result<TriangleMesh> mesh = importMesh(command.mesh);
+    const Result<TriangleMesh> mesh = loadMesh(command.mesh, command.import);
     if (!mesh) {
         return forward(mesh);
     }
@@ -120,7 +124,7 @@ Result<void> runCheck(const CheckCommand& command) {
         return same;
     }
     const bool same_file = collider->provenance.mesh_hash == mesh->content_hash;
-    std::vector<std::string> warnings;
+    std::vector<std::string> warnings = mesh->warnings;
     if (!same_file) {
         warnings.push_back(
             mesh->name + " is not the file that the collider was baked from (" +
@@ -215,6 +219,7 @@ void addCheck(CLI::App& app, Action& action) {
     verb.add_option("--html", command->html,
                     "Also write a page to look at: numbers, error on the surface, slices and maps")
         ->option_text("OUT");
+    addImportOptions(verb, command->import);
     verb.add_flag("--json", command->json, "Print JSON");
     verb.callback([command, &action] { action = [command] { return runCheck(*command); }; });
 }

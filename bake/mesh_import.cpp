@@ -1,6 +1,8 @@
 #include "bake/mesh_import.h"
 
+#include <assimp/BaseImporter.h>
 #include <assimp/config.h>
+#include <assimp/importerdesc.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <pthread.h>
@@ -10,16 +12,20 @@
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <cctype>
+#include <cmath>
 #include <cstring>
+#include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "bake/import_files.h"
+#include "bake/import_gltf.h"
+#include "bake/import_source.h"
 #include "bake/text.h"
 #include "formats/file_io.h"
-#include "formats/hash.h"
-#include "formats/validate.h"
 
 namespace relief {
 namespace {
@@ -30,7 +36,8 @@ namespace fs = std::filesystem;
 /// of it takes memory.
 constexpr std::size_t kStackBytes = std::size_t{1} << 30;
 constexpr std::size_t kStackBytesMin = std::size_t{8} << 20;
-constexpr std::string_view kSomeExtensions = "obj, stl, ply, off, gltf, glb, fbx, dae, 3ds, blend, 3mf";
+/// Of a transform's determinant, over the product of its columns' lengths: below, it has no volume.
+constexpr double kFlat = 1e-9;
 
 std::string oneLine(std::string_view text) {
     std::string line(trimmed(text));
@@ -81,38 +88,31 @@ class MemoryStream final : public Assimp::IOStream {
     std::size_t at_ = 0;
 };
 
-/// The mesh file from memory, whatever it refers to (glTF buffers, material libraries) from disk, and nothing
-/// that is not a regular file: a mesh must not be able to hang the baker on a pipe or a device.
+/// The mesh file from memory, whatever it refers to (glTF buffers, material libraries) as ImportFiles allows.
 class ReadOnlyFiles final : public Assimp::IOSystem {
   public:
-    ReadOnlyFiles(std::string main_path, std::span<const std::byte> main_bytes)
-        : main_path_(std::move(main_path)), main_bytes_(main_bytes) {}
+    explicit ReadOnlyFiles(ImportFiles& files) : files_(files) {}
 
-    bool Exists(const char* path) const override { return path == main_path_ || isRegular(path); }
+    bool Exists(const char* path) const override { return path != nullptr && files_.exists(path); }
     [[nodiscard]] char getOsSeparator() const override { return '/'; }
     Assimp::IOStream* Open(const char* path, const char* mode) override {
-        if (mode != nullptr && std::strpbrk(mode, "wa+") != nullptr) {
+        if (path == nullptr || (mode != nullptr && std::strpbrk(mode, "wa+") != nullptr)) {
             return nullptr;
         }
-        if (path == main_path_) {
-            return new MemoryStream(main_bytes_);
+        if (files_.isMesh(path)) {
+            return new MemoryStream(files_.meshBytes());
         }
-        if (!isRegular(path)) {
-            return nullptr;
-        }
-        Result<std::vector<std::byte>> bytes = readFile(path);
+        std::optional<std::vector<std::byte>> bytes = files_.open(path);
         return bytes ? new MemoryStream(std::move(*bytes)) : nullptr;
     }
     void Close(Assimp::IOStream* stream) override { delete stream; }
+    // assimp's own would touch the disk.
+    bool CreateDirectory(const std::string& /*path*/) override { return false; }
+    bool ChangeDirectory(const std::string& /*path*/) override { return false; }
+    bool DeleteFile(const std::string& /*file*/) override { return false; }
 
   private:
-    static bool isRegular(const char* path) {
-        std::error_code error;
-        return path != nullptr && fs::is_regular_file(path, error);
-    }
-
-    std::string main_path_;
-    std::span<const std::byte> main_bytes_;
+    ImportFiles& files_;
 };
 
 // --- the scene's nodes, flattened ---
@@ -123,12 +123,17 @@ struct Transform {
     glm::dvec3 offset{0.0};
 
     [[nodiscard]] glm::dvec3 apply(const glm::dvec3& p) const { return linear * p + offset; }
-    [[nodiscard]] bool mirrors() const {
+    [[nodiscard]] double determinant() const {
         const glm::dmat3& m = linear;
         return m[0][0] * (m[1][1] * m[2][2] - m[2][1] * m[1][2]) -
-                   m[1][0] * (m[0][1] * m[2][2] - m[2][1] * m[0][2]) +
-                   m[2][0] * (m[0][1] * m[1][2] - m[1][1] * m[0][2]) <
-               0.0;
+               m[1][0] * (m[0][1] * m[2][2] - m[2][1] * m[0][2]) +
+               m[2][0] * (m[0][1] * m[1][2] - m[1][1] * m[0][2]);
+    }
+    [[nodiscard]] bool mirrors() const { return determinant() < 0.0; }
+    /// A scale of 0 along some direction.
+    [[nodiscard]] bool flattens() const {
+        const double lengths = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
+        return std::abs(determinant()) <= kFlat * lengths;
     }
 };
 
@@ -143,12 +148,12 @@ Transform operator*(const Transform& outer, const aiMatrix4x4& inner) {
 /// Calls visit(mesh, transform) for every use of a mesh, parents before children. No recursion.
 /// \return false as soon as visit does.
 template <class Visit>
-bool forEachUse(const aiScene& scene, const Visit& visit) {
+bool forEachUse(const aiScene& scene, const Transform& root, const Visit& visit) {
     struct Pending {
         const aiNode* node;
         Transform parent;
     };
-    std::vector<Pending> pending{{scene.mRootNode, {}}};
+    std::vector<Pending> pending{{scene.mRootNode, root}};
     while (!pending.empty()) {
         const Pending next = pending.back();
         pending.pop_back();
@@ -170,7 +175,7 @@ bool forEachUse(const aiScene& scene, const Visit& visit) {
     return true;
 }
 
-bool appendMesh(const aiMesh& source, const Transform& transform, TriangleMesh& mesh) {
+void appendMesh(const aiMesh& source, const Transform& transform, TriangleMesh& mesh) {
     const auto base = static_cast<std::uint32_t>(mesh.positions.size());
     for (unsigned i = 0; i < source.mNumVertices; ++i) {
         const aiVector3D& v = source.mVertices[i];
@@ -185,73 +190,218 @@ bool appendMesh(const aiMesh& source, const Transform& transform, TriangleMesh& 
         const std::uint32_t a = face.mIndices[0];
         const std::uint32_t b = face.mIndices[mirrors ? 2 : 1];
         const std::uint32_t c = face.mIndices[mirrors ? 1 : 2];
-        if (std::max({a, b, c}) >= source.mNumVertices) {
-            return false;
-        }
         mesh.triangles.emplace_back(base + a, base + b, base + c);
+    }
+}
+
+/// Before anything walks over the faces: some readers of assimp keep whatever index the file holds.
+bool indicesExist(const aiScene& scene) {
+    for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+        const aiMesh& mesh = *scene.mMeshes[m];
+        for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+            const aiFace& face = mesh.mFaces[f];
+            for (unsigned i = 0; i < face.mNumIndices; ++i) {
+                if (face.mIndices[i] >= mesh.mNumVertices) {
+                    return false;
+                }
+            }
+        }
     }
     return true;
 }
 
-Result<TriangleMesh> flatten(const aiScene& scene, TriangleMesh mesh) {
+/// What the scene holds that a rigid surface is not.
+void warnOfScene(const aiScene& scene, std::vector<std::string>& warnings) {
+    bool skinned = false;
+    bool morphed = false;
+    for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+        skinned = skinned || scene.mMeshes[m]->HasBones();
+        morphed = morphed || scene.mMeshes[m]->mNumAnimMeshes > 0;
+    }
+    for (const auto& [holds, warning] :
+         {std::pair{skinned, "it is skinned; baked as it is modelled, without its skeleton"},
+          std::pair{morphed, "it is morphed; baked as it is modelled, without its targets"}}) {
+        if (holds && std::find(warnings.begin(), warnings.end(), warning) == warnings.end()) {
+            warnings.emplace_back(warning);
+        }
+    }
+}
+
+Result<TriangleMesh> flatten(const aiScene& scene, const Transform& root, const std::string& shown,
+                             TriangleMesh mesh) {
     // Counted before anything is allocated: a small file can name one mesh very often.
     std::uint64_t faces = 0;
     std::uint64_t vertices = 0;
-    const bool fits = forEachUse(scene, [&](const aiMesh& source, const Transform& /*transform*/) {
+    std::uint64_t flat = 0;
+    const bool fits = forEachUse(scene, root, [&](const aiMesh& source, const Transform& transform) {
         faces += source.mNumFaces;
         vertices += source.mNumVertices;
+        flat += transform.flattens() ? 1 : 0;
         return faces <= kTriangleMax && vertices <= 3 * kTriangleMax;
     });
     if (!fits) {
-        return fail(ErrorCode::kLimit, mesh.name + ": more than " + std::to_string(kTriangleMax) +
+        return fail(ErrorCode::kLimit, shown + ": more than " + std::to_string(kTriangleMax) +
                                            " triangles, instances counted one by one; simplify the mesh");
     }
     mesh.positions.reserve(vertices);
     mesh.triangles.reserve(faces);
-    const bool valid = forEachUse(scene, [&](const aiMesh& source, const Transform& transform) {
-        return appendMesh(source, transform, mesh);
+    forEachUse(scene, root, [&](const aiMesh& source, const Transform& transform) {
+        appendMesh(source, transform, mesh);
+        return true;
     });
-    if (!valid) {
-        return fail(ErrorCode::kInvalidInput,
-                    mesh.name + ": a face uses a vertex that does not exist; export the mesh again");
-    }
     if (mesh.triangles.empty()) {
         return fail(ErrorCode::kInvalidInput,
-                    mesh.name + ": no triangles; export the surface as polygons, not as points or lines");
+                    shown + ": no triangles; export the surface as polygons, not as points or lines");
     }
-    return finishMesh(std::move(mesh));
+    if (flat > 0) {
+        mesh.warnings.push_back(std::to_string(flat) +
+                                " of its parts are scaled to nothing in some direction, and hold no volume");
+    }
+    return mesh;
 }
 
-Result<TriangleMesh> importWithAssimp(const fs::path& path, std::span<const std::byte> bytes,
-                                      TriangleMesh mesh) {
+// --- units and axes ---
+
+template <class T>
+std::optional<T> metadata(const aiScene& scene, const char* key) {
+    T value{};
+    if (scene.mMetaData == nullptr || !scene.mMetaData->Get(key, value)) {
+        return std::nullopt;
+    }
+    return value;
+}
+
+/// FBX says its unit in centimetres, and its axes by number and sign; assimp applies neither.
+SourceFrame fbxFrame(const aiScene& scene) {
+    SourceFrame frame{0.01, UpAxis::kPlusY, false, false};
+    double factor = 1.0;
+    if (const auto wide = metadata<double>(scene, "UnitScaleFactor")) {
+        factor = *wide;
+    } else if (const auto narrow = metadata<float>(scene, "UnitScaleFactor")) {
+        factor = double{*narrow};
+    }
+    if (std::isfinite(factor) && factor > 0.0) {
+        frame.metres = 0.01 * factor;
+    }
+    const int axis = metadata<std::int32_t>(scene, "UpAxis").value_or(1);
+    const int sign = metadata<std::int32_t>(scene, "UpAxisSign").value_or(1);
+    if (axis >= 0 && axis <= 2) {
+        frame.up = static_cast<UpAxis>(2 * axis + (sign < 0 ? 1 : 0));
+    }
+    return frame;
+}
+
+SourceFrame frameOf(const ImportJob& job, const aiScene& scene) {
+    if (job.extension == "gltf" || job.extension == "glb") {
+        return {1.0, UpAxis::kPlusY, false, false};
+    }
+    if (job.extension == "fbx") {
+        return fbxFrame(scene);
+    }
+    if (job.extension == "dae") {
+        return colladaFrame({reinterpret_cast<const char*>(job.bytes.data()), job.bytes.size()});
+    }
+    if (job.extension == "3ds") {
+        return {std::nullopt, UpAxis::kPlusZ, false, true};  // assimp has turned it
+    }
+    return {};
+}
+
+// --- the importer ---
+
+/// Leaves only the readers that claim the extension: which one reads a file does not depend on its contents.
+void keepReadersOf(const std::string& extension, Assimp::Importer& importer) {
+    std::vector<Assimp::BaseImporter*> others;
+    for (std::size_t i = 0; i < importer.GetImporterCount(); ++i) {
+        const std::string_view claimed = importer.GetImporterInfo(i)->mFileExtensions;
+        const std::vector<std::string_view> extensions = split(claimed, ' ');
+        if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end()) {
+            others.push_back(importer.GetImporter(i));
+        }
+    }
+    for (Assimp::BaseImporter* other : others) {
+        importer.UnregisterLoader(other);
+        delete other;
+    }
+}
+
+/// The error of a file that assimp does not read, with the files that it was not given.
+tl::unexpected<Error> unreadable(const ImportJob& job, const std::string& words, const ImportFiles& files) {
+    std::string text = "cannot read the mesh " + job.shown + ": " +
+                       (words.empty() ? "its contents are not what its extension says" : words);
+    for (const std::string& refused : files.refused()) {
+        text += "; it refers to " + refused;
+    }
+    return fail(ErrorCode::kInvalidInput, text + "; repair the file or export it again");
+}
+
+Result<TriangleMesh> importWithAssimp(const ImportJob& job) {
+    TriangleMesh mesh;
+    if (job.extension == "gltf" || job.extension == "glb") {
+        Result<std::vector<std::string>> warnings = checkGltf(job.bytes, job.shown);
+        if (!warnings) {
+            return forward(warnings);
+        }
+        mesh.warnings = std::move(*warnings);
+    }
+    ImportFiles files(job.folder, job.file_name, job.bytes);
     Assimp::Importer importer;
-    importer.SetIOHandler(new ReadOnlyFiles(path.string(), bytes));  // owned by the importer
+    keepReadersOf(job.extension, importer);
+    importer.SetIOHandler(new ReadOnlyFiles(files));  // owned by the importer
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     // Without it, files that hold bones alone get a made-up mesh.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
-    const aiScene* scene = importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_SortByPType);
-    if (scene == nullptr || scene->mRootNode == nullptr) {
-        const std::string words = oneLine(importer.GetErrorString());
-        return fail(ErrorCode::kInvalidInput,
-                    "cannot read the mesh " + quotedPath(path) + ": " +
-                        (words.empty() ? "its contents are not what its extension says" : words) +
-                        "; repair the file or export it again");
+    const aiScene* scene = importer.ReadFile(job.file_name, 0);
+    if (scene != nullptr && !indicesExist(*scene)) {
+        return unreadable(job, "a face uses a vertex that does not exist", files);
     }
-    return flatten(*scene, std::move(mesh));
+    if (scene != nullptr) {
+        scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType);
+    }
+    if (scene == nullptr || scene->mRootNode == nullptr) {
+        if (const std::exception_ptr& thrown = importer.GetException(); thrown != nullptr) {
+            try {
+                std::rethrow_exception(thrown);
+            } catch (const std::bad_array_new_length&) {
+                // A size that is no size: the file is wrong.
+            } catch (const std::bad_alloc&) {
+                throw;
+            } catch (...) {
+                // Its words follow.
+            }
+        }
+        const std::string words = oneLine(importer.GetErrorString());
+        // What it says once points and lines are removed.
+        return unreadable(
+            job, words.starts_with("No meshes remaining") ? "no triangles, but points or lines" : words,
+            files);
+    }
+    warnOfScene(*scene, mesh.warnings);
+    const FrameChange change = changeOf(frameOf(job, *scene), job.options.unit, job.options.up);
+    mesh.unit = change.unit;
+    mesh.warnings.insert(mesh.warnings.end(), change.warnings.begin(), change.warnings.end());
+    for (const std::string& refused : files.refused()) {
+        mesh.warnings.push_back("left out " + refused);
+    }
+    for (const ImportedFile& file : files.read()) {
+        mesh.dependencies.push_back(file.path);
+        mesh.dependency_hashes.push_back(file.hash);
+    }
+    Transform root;
+    root.linear = change.scale * change.turn;
+    return flatten(*scene, root, job.shown, std::move(mesh));
 }
 
 // --- a thread with a deep stack ---
 
 struct Import {
-    const fs::path& path;
-    std::span<const std::byte> bytes;
-    TriangleMesh mesh;
+    const ImportJob& job;
     std::optional<Result<TriangleMesh>> result;
 
     void run() {
-        const std::string where = "cannot read the mesh " + quotedPath(path) + ": ";
+        const std::string where = "cannot read the mesh " + job.shown + ": ";
         try {
-            result.emplace(importWithAssimp(path, bytes, std::move(mesh)));
+            result.emplace(importWithAssimp(job));
         } catch (const std::bad_alloc&) {
             result.emplace(fail(ErrorCode::kLimit, where + "out of memory; simplify it"));
         } catch (const std::exception& e) {
@@ -282,40 +432,25 @@ bool runOnDeepStack(Import& import) {
     return false;
 }
 
-std::string lowerCase(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-}
-
 }  // namespace
 
-Result<TriangleMesh> importMesh(const fs::path& path) {
-    const Result<std::vector<std::byte>> bytes = readFile(path);
-    if (!bytes) {
-        return forward(bytes);
-    }
-    const std::string extension = lowerCase(path.extension().string());
-    if (extension.empty() || !Assimp::Importer().IsExtensionSupported(extension)) {
-        return fail(ErrorCode::kUnsupported,
-                    quotedPath(path) + ": no mesh format has the extension '" + cleanUtf8(extension) +
-                        "'; use one of " + std::string(kSomeExtensions) + " or another that assimp reads");
-    }
-    if (bytes->empty()) {
-        return fail(ErrorCode::kInvalidInput,
-                    quotedPath(path) + ": the file is empty; export the mesh again");
-    }
-    TriangleMesh mesh;
-    mesh.name = cleanUtf8(path.filename().string(), kMeshNameMax);
-    mesh.content_hash = xxh3_128Hex(*bytes);
-    mesh.unit = extension == ".gltf" || extension == ".glb" ? "m" : "";
-
-    Import import{path, *bytes, std::move(mesh), std::nullopt};
+Result<TriangleMesh> importRaw(const ImportJob& job) {
+    Import import{job, std::nullopt};
     if (!runOnDeepStack(import)) {
         return fail(ErrorCode::kFailure,
-                    quotedPath(path) + ": no thread could be started to read it; free some memory");
+                    job.shown + ": no thread could be started to read it; free some memory");
     }
     return std::move(*import.result);
+}
+
+Result<TriangleMesh> importMesh(const fs::path& path, const ImportOptions& options) {
+    const Result<ImportSource> source = ImportSource::open(path);
+    if (!source) {
+        return forward(source);
+    }
+    Result<TriangleMesh> raw = importRaw({quotedPath(path), path.filename().string(), source->extension(),
+                                          source->bytes(), source->folder(), options});
+    return raw ? source->finish(std::move(*raw)) : raw;
 }
 
 }  // namespace relief

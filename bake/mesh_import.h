@@ -1,19 +1,50 @@
-// Mesh files of every format that assimp reads, as one TriangleMesh. The only file that knows assimp.
+// Mesh files of every format of importFormats(), as one TriangleMesh: in a process of its own (loadMesh),
+// which is what every tool does, or in this one (importMesh), for files that one trusts.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <string>
 
+#include "bake/import_units.h"
 #include "bake/mesh.h"
 #include "formats/result.h"
 
 namespace relief {
 
-/// Reads a mesh file. The transforms of its nodes are applied, a mesh used n times is there n times, polygons
-/// are triangulated, points and lines are left out, and where a transform mirrors, the winding is turned.
-/// Materials, cameras, animation and skinning are not looked at. Files that the mesh refers to are read only
-/// if they are regular files.
-/// Errors, each naming the file: kIo (missing, a folder, not readable), kUnsupported (no format of this
-/// extension), kInvalidInput (assimp's words, or no triangles, or as finishMesh), kLimit.
-[[nodiscard]] Result<TriangleMesh> importMesh(const std::filesystem::path& path);
+struct ImportOptions {
+    /// Of the source's lengths: a word of lengthUnits(); the mesh is then in metres. "": what the file says,
+    /// and where it says nothing, lengths stay as they are and the mesh's unit is "".
+    std::string unit;
+    /// The source's axis that points upwards; the mesh is turned so that this becomes +Y. None: what the file
+    /// says, and where it says nothing, axes stay as they are.
+    std::optional<UpAxis> up;
+};
+
+struct ImportLimits {
+    std::uint64_t memory = 4'000'000'000;  ///< bytes that the importer may take beside its code and the file
+    std::uint32_t seconds = 60;            ///< of processor time, and of wall time; at least 1
+};
+
+/// Reads a mesh file in a worker process (the program relief-import beside this one, or in ../libexec/relief)
+/// with limits of memory and time, without rights to write any file or to read one that is not below the
+/// mesh's folder. Whatever the worker says is checked like a file from a stranger. Blocks; leaves no process
+/// and no file behind. What the mesh means is as in importMesh. Errors, each naming the file: as importMesh;
+/// and kInvalidInput (the importer crashed), kLimit (memory or time is used up), kFailure (the worker could
+/// not be started, or was killed by somebody else).
+[[nodiscard]] Result<TriangleMesh> loadMesh(const std::filesystem::path& path,
+                                            const ImportOptions& options = {},
+                                            const ImportLimits& limits = {});
+
+/// Reads a mesh file in this process: a hostile file may crash it. In the library Relief::import.
+/// The transforms of its nodes are applied, a mesh used n times is there n times, polygons are triangulated,
+/// points and lines are left out, and where a transform mirrors, the winding is turned. Materials, cameras
+/// and animation are not looked at; skinned and morphed meshes come in the pose they were modelled in, with a
+/// warning. Only files below the mesh's folder are read, and only regular ones (import_files.h). Errors, each
+/// naming the file: kIo (missing, a folder, not readable), kUnsupported (a format, or a part of it, that is
+/// not read), kInvalidInput (not what the format says, no triangles, or as finishMesh), kLimit.
+[[nodiscard]] Result<TriangleMesh> importMesh(const std::filesystem::path& path,
+                                              const ImportOptions& options = {});
 
 }  // namespace relief

@@ -1,16 +1,17 @@
 #!/usr/bin/env bash
-# Long runs, for a night and not for CI: scripts/soak.sh [sweep|rest]… (both). Ends with 0 if all hold.
+# Long runs, for a night and not for CI: scripts/soak.sh [sweep|rest|import]… (all). Ends with 0 if all hold.
 #
 #   sweep   a million particles take a thousand swept steps in a closed hollow box, and none gets out; without the
 #           sweep most do. In OpenGL 3.3 and in OpenGL ES 3.0. An hour or so on llvmpipe.
 #   rest    snow falls on the bunny: after it has come to rest, no bit of a position changes from step 5,000 to step
 #           100,000 (RELIEF_SOAK_SETTLED and RELIEF_SOAK_STEPS say others).
+#   import  every file of assimp-testmodels is read or refused, and none crashes the worker.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/setup.sh
 runs=("$@")
-[ ${#runs[@]} -gt 0 ] || runs=(sweep rest)
+[ ${#runs[@]} -gt 0 ] || runs=(sweep rest import)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -67,12 +68,27 @@ sys.exit(0 if before and len(before) == len(after) and moved == 0 else 1)
 P
 }
 
+import() {
+    local bin
+    bin=$(scripts/build.sh release relief_import_test) || return 1
+    RELIEF_SOAK=1 "$bin/relief_import_test" --gtest_filter='*EveryModelOfThePackage*' \
+        --gtest_output="json:$work/import.json" >"$work/import.log" || {
+        cat "$work/import.log" >&2
+        return 1
+    }
+    python3 - "$work/import.json" <<'P'
+import json, sys
+test = json.load(open(sys.argv[1]))['testsuites'][0]['testsuite'][0]
+print(f"import: {test['tried']} files, {test['read']} of them read, the others refused")
+P
+}
+
 failed=0
 for run in "${runs[@]}"; do
     case $run in
-        sweep | rest) "$run" || failed=1 ;;
+        sweep | rest | import) "$run" || failed=1 ;;
         *)
-            echo "soak.sh: unknown run '$run'; choose sweep or rest" >&2
+            echo "soak.sh: unknown run '$run'; choose sweep, rest or import" >&2
             exit 1
             ;;
     esac

@@ -1,0 +1,60 @@
+// The files that a mesh may read: itself, from memory, and regular files below its folder. No other path can
+// be reached, whatever the mesh names: the kernel resolves each beneath the folder (openat2).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace relief {
+
+/// Limit of all files of a mesh together, in bytes.
+inline constexpr std::uint64_t kImportBytesMax = std::uint64_t{4} << 30;
+
+/// A file that was read.
+struct ImportedFile {
+    std::string path;  ///< relative to the folder, without ".."
+    std::string hash;  ///< XXH3-128
+};
+
+class ImportFiles {
+  public:
+    /// \param folder  descriptor of the mesh's folder, borrowed; -1 for none: then only the mesh can be read.
+    /// \param name    the mesh's file name in it.
+    /// \param bytes   the mesh's contents, borrowed.
+    ImportFiles(int folder, std::string name, std::span<const std::byte> bytes)
+        : folder_(folder), name_(std::move(name)), bytes_(bytes), left_(kImportBytesMax - bytes.size()) {}
+
+    [[nodiscard]] bool isMesh(std::string_view path) const;
+    [[nodiscard]] std::span<const std::byte> meshBytes() const { return bytes_; }
+
+    /// \return true for a regular file below the folder; nothing is read.
+    [[nodiscard]] bool exists(std::string_view path);
+
+    /// The contents, recorded in read(); nullopt, recorded in refused(), for whatever is no regular file
+    /// below the folder or exceeds the limit of all files.
+    [[nodiscard]] std::optional<std::vector<std::byte>> open(std::string_view path);
+
+    /// Without the mesh itself; by path, each once.
+    [[nodiscard]] std::vector<ImportedFile> read() const;
+    /// Names that led nowhere, with why; in the order they were asked for, each once, the first few only.
+    [[nodiscard]] const std::vector<std::string>& refused() const { return refused_; }
+
+  private:
+    /// \return a descriptor, or -1 with `why`.
+    int openBeneath(const std::string& path, std::string& why) const;
+    void refuse(std::string_view path, const std::string& why);
+
+    int folder_;
+    std::string name_;
+    std::span<const std::byte> bytes_;
+    std::uint64_t left_;
+    std::vector<ImportedFile> read_;
+    std::vector<std::string> refused_;
+};
+
+}  // namespace relief

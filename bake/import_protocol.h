@@ -1,0 +1,23 @@
+// Between loadMesh and the program relief-import: descriptors, arguments and exit codes.
+//
+//     relief-import PATH UNIT UP MEMORY SECONDS
+//
+// PATH is the mesh's as the user gave it (for messages, its name and extension); UNIT and UP as
+// ImportOptions, "-" for none; MEMORY in bytes. Nothing is read from standard input or written to standard
+// output.
+#pragma once
+
+namespace relief {
+
+inline constexpr int kImportMeshFd = 3;    ///< the mesh file's bytes, sealed, memfd
+inline constexpr int kImportFolderFd = 4;  ///< its folder, O_PATH; /dev/null if there is none
+inline constexpr int kImportResultFd =
+    5;                                    ///< memfd of a size for the largest message; cut to size and sealed
+inline constexpr int kImportAliveFd = 6;  ///< a pipe's writing end: closes as the worker ends
+
+inline constexpr int kImportExitMessage = 0;     ///< the message is there, a mesh or an error
+inline constexpr int kImportExitMemory = 10;     ///< the memory limit is reached
+inline constexpr int kImportExitNoSandbox = 11;  ///< the limits could not be set
+inline constexpr int kImportExitNoMessage = 12;  ///< the message could not be written
+
+}  // namespace relief

@@ -1,0 +1,33 @@
+// A tetrahedron with corners at the origin and at 1, 2 and 3 along x, y and z, as text in several mesh
+// formats: no turn, mirroring or scale leaves its bounds as they are.
+#pragma once
+
+#include <string>
+
+namespace relief::test {
+
+[[nodiscard]] std::string tetrahedronObj();
+[[nodiscard]] std::string tetrahedronPly();
+[[nodiscard]] std::string tetrahedronOff();
+[[nodiscard]] std::string tetrahedronStl();
+[[nodiscard]] std::string tetrahedron3ds();
+/// \param asset  the elements <unit> and <up_axis>, or nothing.
+[[nodiscard]] std::string tetrahedronDae(const std::string& asset);
+/// \param up    0, 1 or 2 for x, y or z. \param sign  1 or -1. \param unit  in centimetres.
+[[nodiscard]] std::string tetrahedronFbx(int up, int sign, const std::string& unit);
+
+/// What a glTF file around the tetrahedron may say otherwise; each is JSON.
+struct GltfParts {
+    std::string nodes = R"({"mesh":0})";
+    std::string roots = "0";
+    std::string primitive = R"("attributes":{"POSITION":0},"indices":1)";
+    std::string position = R"("bufferView":0,"componentType":5126,"count":4,"type":"VEC3")";
+    std::string indices = R"("bufferView":1,"componentType":5123,"count":12,"type":"SCALAR")";
+    std::string more;  ///< members of the document, each followed by a comma
+    std::string uri;   ///< of the buffer; the bytes themselves by default
+};
+[[nodiscard]] std::string tetrahedronGltf(const GltfParts& parts = {});
+/// The 72 bytes of its buffer.
+[[nodiscard]] std::string tetrahedronBuffer();
+
+}  // namespace relief::test

@@ -1,0 +1,109 @@
+# Meshes are read by a worker: its limits, its death, its parent's death; units and axes end up in the container.
+. "$(dirname "$0")/lib.sh"
+export TMPDIR="$work/tmp"
+mkdir "$TMPDIR"
+
+cat >good.stl <<'S'
+solid t
+facet normal 0 0 0 outer loop vertex 0 0 0 vertex 0 2 0 vertex 1 0 0 endloop endfacet
+facet normal 0 0 0 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 0 3 endloop endfacet
+facet normal 0 0 0 outer loop vertex 1 0 0 vertex 0 2 0 vertex 0 0 3 endloop endfacet
+facet normal 0 0 0 outer loop vertex 0 0 0 vertex 0 0 3 vertex 0 2 0 endloop endfacet
+endsolid t
+S
+small=(--map fixed8:size=8 -q)
+
+# Units and axes.
+expect 0 "$relief" bake good.stl -o plain.relief "${small[@]}"
+expect 0 "$relief" info plain.relief --json
+json stdout "d['unit'] == '' and d['bounds']['max'] == [1, 2, 3] and '--u' not in d['provenance']['options']"
+expect 0 "$relief" bake good.stl -o turned.relief "${small[@]}" --unit cm --up +z
+expect 0 "$relief" info turned.relief --json
+json stdout "d['unit'] == 'm' and d['provenance']['options'].endswith(' --unit cm --up +z')"
+json stdout "all(abs(a - b) < 1e-6 for a, b in zip(d['bounds']['min'] + d['bounds']['max'], [0, 0, -.02, .01, .03, 0]))"
+expect 0 "$relief" check turned.relief --mesh good.stl --samples 1000 --unit cm --up +z
+expect_error 3 'bounds' "$relief" check turned.relief --mesh good.stl --samples 1000
+expect_error 1 "unit.*'inch'.*one of m, cm" "$relief" bake good.stl -o x.relief --unit inch
+expect_error 1 "up.*'z'.*\+z" "$relief" bake good.stl -o x.relief --up z
+expect_error 1 'import-memory.*64MB' "$relief" bake good.stl -o x.relief --import-memory 1kB
+expect_error 1 'import-time.*seconds' "$relief" bake good.stl -o x.relief --import-time 0
+
+# Memory: what a header of a few bytes asks for, and what a mesh of honest size takes.
+printf 'ply\nformat ascii 1.0\nelement face 99999999999\nproperty list uchar int i\nend_header\n' >count.ply
+expect_error 6 'count\.ply.*import-memory' "$relief" bake count.ply -o x.relief
+expect_error 6 'OutOfMemory\.off.*import-memory' "$relief" bake "$models/invalid/OutOfMemory.off" -o x.relief
+python3 - <<'P'
+with open('large.obj', 'w') as file:
+    file.writelines(f'v {i % 700} {i // 700} {i % 7}\n' for i in range(490000))
+    file.writelines(f'f {i + 1} {i + 2} {i + 701}\n' for i in range(489000))
+P
+expect_error 6 'large\.obj.*more than 64000000 bytes' "$relief" bake large.obj -o x.relief --import-memory 64MB
+
+# A COLLADA document of nodes that stand for two of the next each: 2⁴⁰ in all, which the importer begins to unfold.
+python3 - <<'P'
+nodes = ''.join(f'<node id="n{i}"><instance_node url="#n{i + 1}"/><instance_node url="#n{i + 1}"/></node>'
+                for i in range(40))
+open('unfold.dae', 'w').write(
+    '<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset/>'
+    f'<library_nodes>{nodes}<node id="n40"/></library_nodes><library_visual_scenes><visual_scene id="s"><node>'
+    '<instance_node url="#n0"/></node></visual_scene></library_visual_scenes>'
+    '<scene><instance_visual_scene url="#s"/></scene></COLLADA>')
+P
+
+# start ARGUMENT…: bakes unfold.dae in the background; sets $parent and its $worker, which is stopped at once.
+start() {
+    "$relief" bake unfold.dae -o x.relief "$@" >"$work/stdout" 2>"$work/stderr" </dev/null &
+    parent=$!
+    worker=
+    for _ in $(seq 500); do
+        worker=$(cat "/proc/$parent/task/$parent/children" 2>/dev/null || true)
+        worker=${worker%% *}
+        [ -z "$worker" ] || [ "$(cat "/proc/$worker/comm" 2>/dev/null)" != relief-import ] || break
+        sleep 0.01
+    done
+    [ -n "$worker" ] || die "no worker was started"
+    kill -STOP "$worker"
+}
+
+# ends CODE PATTERN: how it ended.
+ends() {
+    local code=0
+    wait "$parent" || code=$?
+    [ "$code" -eq "$1" ] || die "exit code $code instead of $1: $(cat "$work/stderr")"
+    [ "$(wc -l <"$work/stderr")" -eq 1 ] || die "not one line of error: $(cat "$work/stderr")"
+    grep -qE "^relief: error: .*unfold\.dae.*$2" "$work/stderr" || die "'$(cat "$work/stderr")' does not match '$2'"
+}
+
+gone() {
+    for _ in $(seq 500); do
+        # A zombie waits for its new parent only.
+        grep -qs '^State:.[^ZX]' "/proc/$1/status" || return 0
+        sleep 0.01
+    done
+    return 1
+}
+
+start --import-time 2
+ends 6 'within 2 s.*import-time'
+gone "$worker" || die "a worker outlived its time"
+
+start
+kill -KILL "$worker"
+ends 4 'SIGKILL'
+
+start
+kill -SEGV "$worker"
+kill -CONT "$worker"
+ends 3 'crashed.*SIGSEGV'
+
+start --import-time 600
+kill -KILL "$parent"
+wait "$parent" || true
+kill -CONT "$worker" 2>/dev/null || true
+gone "$worker" || die "a worker outlived its parent"
+
+# What unfolds without end meets one limit or the other.
+expect_error 6 'unfold\.dae.*import-(time|memory)' "$relief" bake unfold.dae -o x.relief --import-time 2
+
+[ ! -e x.relief ] || die "an output beside an error"
+[ -z "$(ls -A "$TMPDIR")" ] || die "temporary files: $(ls -A "$TMPDIR")"
