@@ -17,6 +17,7 @@
 #include "bake/byte_count.h"
 #include "bake/command.h"
 #include "bake/hole_caps.h"
+#include "bake/mesh_care.h"
 #include "bake/mesh_import.h"
 #include "bake/mesh_query.h"
 #include "bake/plan_file.h"
@@ -52,6 +53,7 @@ struct BakeCommand {
     std::string threads;
     std::string compress = "0";
     std::string holes = "close";
+    MeshCareOptions care;
     bool json = false;
 };
 
@@ -361,7 +363,7 @@ Result<Baked> makeCollider(const BakeCommand& command, const TriangleMesh& impor
         }
         if (settings.max_error) {
             std::optional<Result<MeshQuery>> open;
-            if (mesh.closed_holes > 0) {
+            if (mesh.closed_holes > 0 || !command.care.repair.empty()) {
                 open = MeshQuery::build(imported);
                 if (!*open) {
                     return forward(*open);
@@ -422,8 +424,10 @@ Result<void> runBake(const BakeCommand& command) {
     if (!settings) {
         return forward(settings);
     }
-    if (const Result<void> ready = preflight(command); !ready) {
-        return ready;
+    for (const Result<void>& ready : {checkMeshCare(command.care), preflight(command)}) {
+        if (!ready) {
+            return ready;
+        }
     }
     if (settings->source == Source::kPlanFile) {
         if (const Result<void> read = readPlanFile(command, *settings); !read) {
@@ -450,10 +454,17 @@ Result<void> runBake(const BakeCommand& command) {
     }
 
     std::optional<TriangleMesh> imported;  // only --max-error looks back
+    if (settings->max_error && (command.holes == "close" || !command.care.repair.empty())) {
+        imported = *mesh;
+    }
+    MeshCareOptions care_options = command.care;
+    care_options.report = command.json || !command.common.quiet;
+    Result<CaredMesh> cared = careFor(std::move(*mesh), care_options);
+    if (!cared) {
+        return forward(cared);
+    }
+    mesh = std::move(cared->mesh);
     if (command.holes == "close") {
-        if (settings->max_error) {
-            imported = *mesh;
-        }
         mesh = closeHoles(std::move(*mesh));
         if (!mesh) {
             return forward(mesh);
@@ -476,6 +487,7 @@ Result<void> runBake(const BakeCommand& command) {
     if (command.holes == "keep") {
         baked->collider.provenance.options += " --holes keep";
     }
+    baked->collider.provenance.options += careOptionsText(cared->care);
     const Stopwatch write_watch;
     const Result<std::vector<std::byte>> bytes = writeContainer(baked->collider, settings->write);
     if (!bytes) {
@@ -493,7 +505,7 @@ Result<void> runBake(const BakeCommand& command) {
     times.write_ms = write_watch.ms();
     times.total_ms = total.ms();
 
-    const BakeSummary summary{*mesh, *baked, plan, times};
+    const BakeSummary summary{*mesh, *baked, plan, times, cared->care, command.common.verbose};
     if (command.json) {
         const Result<ContainerInfo> info = readContainerInfo(*bytes);
         if (!info) {
@@ -585,6 +597,7 @@ void addBake(CLI::App& app, Action& action) {
     verb.add_option("--holes", command->holes,
                     "Of a nearly closed mesh: close (bake it as a solid, default) or keep")
         ->option_text("WORD");
+    addMeshCareOptions(verb, command->care);
     verb.add_flag("--json", command->json, "Print a report as JSON to standard output");
     verb.callback([command, &action] { action = [command] { return runBake(*command); }; });
 }
