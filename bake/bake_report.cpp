@@ -72,7 +72,7 @@ std::string bakeText(const BakeSummary& summary, const std::string& output, std:
     if (summary.mesh.dropped_triangles > 0) {
         text += ", " + std::to_string(summary.mesh.dropped_triangles) + " without area dropped";
     }
-    text += "\n";
+    text += "\n" + careText(summary.care, summary.verbose);
     if (summary.plan) {
         text += planLine(*summary.plan, summary.mesh.unit);
     }
@@ -127,6 +127,7 @@ Json jsonBake(const BakeSummary& summary, const ContainerInfo& info, const Json&
         {"build", report.build_ms},  {"trace", report.trace_ms},   {"encode", report.encode_ms},
         {"fit", report.fit_ms},      {"raster", report.raster_ms}, {"refine", report.refine_ms},
         {"write", times.write_ms},   {"total", times.total_ms}};
+    addCareJson(summary.care, json);
     json["warnings"] = report.warnings;
     return json;
 }

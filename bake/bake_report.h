@@ -9,6 +9,7 @@
 #include "bake/bake.h"
 #include "bake/budget_search.h"
 #include "bake/mesh.h"
+#include "bake/mesh_care.h"
 #include "bake/view_planner.h"
 #include "formats/container.h"
 
@@ -36,13 +37,15 @@ struct BakeSummary {
     const Baked& baked;
     const std::optional<PlanReport>& plan;
     const BakeTimes& times;
+    const MeshCare& care;
+    bool verbose = false;
 };
 
 /// For people: a few lines and a table. \param output  as the user names it.
 [[nodiscard]] std::string bakeText(const BakeSummary& summary, const std::string& output,
                                    std::size_t file_size);
 
-/// jsonCollider's object, with coverage, plan, dropped_triangles, times_ms and warnings.
+/// jsonCollider's object, with coverage, plan, dropped_triangles, the mesh's health, times_ms and warnings.
 /// \param settings  put in beside them.
 [[nodiscard]] nlohmann::ordered_json jsonBake(const BakeSummary& summary, const ContainerInfo& info,
                                               const nlohmann::ordered_json& settings);

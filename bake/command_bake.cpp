@@ -20,6 +20,7 @@
 #include "bake/gl_options.h"
 #include "bake/hole_caps.h"
 #include "bake/import_options.h"
+#include "bake/mesh_care.h"
 #include "bake/mesh_query.h"
 #include "bake/plan_file.h"
 #include "bake/preflight.h"
@@ -57,6 +58,7 @@ struct BakeCommand {
     BackendOptions backend;
     GlOptions gl;
     ImportArguments import;
+    MeshCareOptions care;
     bool json = false;
 };
 
@@ -368,7 +370,7 @@ Result<Baked> makeCollider(const BakeCommand& command, const TriangleMesh& impor
         }
         if (settings.max_error) {
             std::optional<Result<MeshQuery>> open;
-            if (mesh.closed_holes > 0) {
+            if (mesh.closed_holes > 0 || !command.care.repair.empty()) {
                 open = MeshQuery::build(imported);
                 if (!*open) {
                     return forward(*open);
@@ -433,7 +435,8 @@ Result<void> runBake(const BakeCommand& command) {
     if (!settings) {
         return forward(settings);
     }
-    for (const Result<void>& ready : {checkImportArguments(command.import), preflight(command)}) {
+    for (const Result<void>& ready :
+         {checkImportArguments(command.import), checkMeshCare(command.care), preflight(command)}) {
         if (!ready) {
             return ready;
         }
@@ -474,10 +477,17 @@ Result<void> runBake(const BakeCommand& command) {
     }
 
     std::optional<TriangleMesh> imported;  // only --max-error looks back
+    if (settings->max_error && (command.holes == "close" || !command.care.repair.empty())) {
+        imported = *mesh;
+    }
+    MeshCareOptions care_options = command.care;
+    care_options.report = command.json || !command.common.quiet;
+    Result<CaredMesh> cared = careFor(std::move(*mesh), care_options);
+    if (!cared) {
+        return forward(cared);
+    }
+    mesh = std::move(cared->mesh);
     if (command.holes == "close") {
-        if (settings->max_error) {
-            imported = *mesh;
-        }
         mesh = closeHoles(std::move(*mesh));
         if (!mesh) {
             return forward(mesh);
@@ -506,6 +516,7 @@ Result<void> runBake(const BakeCommand& command) {
         baked->collider.provenance.options += " --holes keep";
     }
     baked->collider.provenance.options += importProvenance(command.import);
+    baked->collider.provenance.options += careOptionsText(cared->care);
     const Stopwatch write_watch;
     const Result<std::vector<std::byte>> bytes = writeContainer(baked->collider, settings->write);
     if (!bytes) {
@@ -523,7 +534,7 @@ Result<void> runBake(const BakeCommand& command) {
     times.write_ms = write_watch.ms();
     times.total_ms = total.ms();
 
-    const BakeSummary summary{*mesh, *baked, plan, times};
+    const BakeSummary summary{*mesh, *baked, plan, times, cared->care, command.common.verbose};
     if (command.json) {
         const Result<ContainerInfo> info = readContainerInfo(*bytes);
         if (!info) {
@@ -619,6 +630,7 @@ void addBake(CLI::App& app, Action& action) {
     addBackendOptions(verb, command->backend);
     addGlOptions(verb, command->gl);
     addImportOptions(verb, command->import);
+    addMeshCareOptions(verb, command->care);
     verb.add_flag("--json", command->json, "Print a report as JSON to standard output");
     verb.callback([command, &action] { action = [command] { return runBake(*command); }; });
 }

@@ -9,6 +9,7 @@
 #include "bake/accuracy_report.h"
 #include "bake/command.h"
 #include "bake/import_options.h"
+#include "bake/mesh_care.h"
 #include "bake/preflight.h"
 #include "bake/report.h"
 #include "bake/text.h"
@@ -69,7 +70,8 @@ Result<Settings> settingsOf(const CheckCommand& command) {
 }
 
 Result<void> checkSameMesh(const Collider& collider, const TriangleMesh& mesh) {
-    const double tolerance = kBoundsTolerance * static_cast<double>(mesh.bounds.longestSide());
+    const double tolerance = (kBoundsTolerance + repairReach(collider.provenance.options)) *
+                             static_cast<double>(mesh.bounds.longestSide());
     for (int i = 0; i < 3; ++i) {
         // Written so that NaN fails too.
         const bool same =

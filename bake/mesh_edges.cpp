@@ -2,31 +2,16 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <bit>
 #include <functional>
 #include <numeric>
+#include <tuple>
 
 namespace relief {
 namespace {
-
-/// Of each vertex the lowest index of an equal position.
-std::vector<std::uint32_t> weldedVertices(const TriangleMesh& mesh) {
-    std::vector<std::uint32_t> order(mesh.positions.size());
-    std::iota(order.begin(), order.end(), 0U);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
-        const glm::vec3& a = mesh.positions[i];
-        const glm::vec3& b = mesh.positions[j];
-        return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z != b.z ? a.z < b.z : i < j;
-    });
-    std::vector<std::uint32_t> welded(order.size());
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        const bool same = i > 0 && mesh.positions[order[i]] == mesh.positions[order[i - 1]];
-        welded[order[i]] = same ? welded[order[i - 1]] : order[i];
-    }
-    return welded;
-}
 
 /// The last step of SplitMix64 (Steele, Lea, Flood 2014).
 std::uint64_t mixed(std::uint64_t z) {
@@ -44,6 +29,39 @@ std::uint64_t hashOf(const glm::vec3& p) {
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> weldedVertices(const TriangleMesh& mesh) {
+    std::vector<std::uint32_t> order(mesh.positions.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
+        const glm::vec3& a = mesh.positions[i];
+        const glm::vec3& b = mesh.positions[j];
+        return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z != b.z ? a.z < b.z : i < j;
+    });
+    std::vector<std::uint32_t> welded(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const bool same = i > 0 && mesh.positions[order[i]] == mesh.positions[order[i - 1]];
+        welded[order[i]] = same ? welded[order[i - 1]] : order[i];
+    }
+    return welded;
+}
+
+std::vector<EdgeUse> edgeUses(const TriangleMesh& mesh, const std::vector<std::uint32_t>& welded) {
+    std::vector<EdgeUse> uses;
+    uses.reserve(3 * mesh.triangles.size());
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+        const glm::uvec3& t = mesh.triangles[i];
+        for (std::uint8_t side = 0; side < 3; ++side) {
+            const std::uint32_t a = welded[t[side]];
+            const std::uint32_t b = welded[t[(side + 1) % 3]];
+            uses.push_back({std::min(a, b), std::max(a, b), i, side, a > b});
+        }
+    }
+    tbb::parallel_sort(uses, [](const EdgeUse& a, const EdgeUse& b) {
+        return std::tie(a.low, a.high, a.triangle, a.side) < std::tie(b.low, b.high, b.triangle, b.side);
+    });
+    return uses;
+}
 
 bool edgesAreEven(const TriangleMesh& mesh) {
     std::vector<std::uint64_t> hashes(mesh.positions.size());

@@ -17,6 +17,36 @@ struct OddEdge {
     friend bool operator==(const OddEdge&, const OddEdge&) = default;
 };
 
+/// Of each vertex the lowest index of an equal position.
+[[nodiscard]] std::vector<std::uint32_t> weldedVertices(const TriangleMesh& mesh);
+
+/// One side of a triangle, between vertices as welded.
+struct EdgeUse {
+    std::uint32_t low = 0;
+    std::uint32_t high = 0;
+    std::uint32_t triangle = 0;
+    std::uint8_t side = 0;  ///< from corner `side` to the next one
+    bool down = false;      ///< from high to low
+};
+
+/// All sides of all triangles: by edge, then triangle, then side.
+/// \param welded  weldedVertices of the mesh.
+[[nodiscard]] std::vector<EdgeUse> edgeUses(const TriangleMesh& mesh,
+                                            const std::vector<std::uint32_t>& welded);
+
+/// Calls visit(begin, end) for each edge, with the range of its uses.
+template <class Visit>
+void forEachEdge(const std::vector<EdgeUse>& uses, const Visit& visit) {
+    for (std::size_t begin = 0; begin < uses.size();) {
+        std::size_t end = begin + 1;
+        while (end < uses.size() && uses[end].low == uses[begin].low && uses[end].high == uses[begin].high) {
+            ++end;
+        }
+        visit(begin, end);
+        begin = end;
+    }
+}
+
 /// In ascending order of the lower and then of the higher vertex. None: any ray from a point meets the
 /// surface as often, modulo 2, as any other.
 [[nodiscard]] std::vector<OddEdge> oddEdges(const TriangleMesh& mesh);

@@ -10,6 +10,7 @@
 #include <limits>
 #include <vector>
 
+#include "bake/mesh_edges.h"
 #include "bake/triangle_plane.h"
 
 namespace relief {
@@ -23,8 +24,26 @@ constexpr float kEdgeWidth = 1e-4F;
 constexpr float kTieDepth = 1e-5F;
 /// Below this cosine between a triangle's normal and the ray, its plane is a poor guide outside the triangle.
 constexpr double kGrazing = 1e-3;
+/// A ray this much deeper, in map depth, than those beside it may have slipped through.
+constexpr float kDepthJump = 0.08F;
+/// How far beside a ray that may have slipped through others look, and how near to it a triangle must come to
+/// count as met. Embree's units: the mesh is one to two long. Floats there are 6e-8 apart.
+constexpr double kBeside = 0x1p-17;
+constexpr double kTouching = 1e-6;
+constexpr int kBesideRays = 8;
 constexpr std::size_t kPlaneDepths = 256;
 constexpr std::uint32_t kNone = 0xffffffff;
+
+/// Sines and cosines of the places round a ray where lookAgain looks: the first two on either side, none
+/// along an edge of a grid.
+constexpr std::array<std::array<double, 2>, kBesideRays> kBesideDirections = {{{0.1951, 0.9808},
+                                                                               {-0.2588, -0.9659},
+                                                                               {0.9877, -0.1564},
+                                                                               {0.6018, -0.7986},
+                                                                               {0.8090, 0.5878},
+                                                                               {-0.7660, -0.6428},
+                                                                               {-0.9945, 0.1045},
+                                                                               {-0.6428, 0.7660}}};
 
 struct DeviceRelease {
     void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
@@ -93,6 +112,7 @@ struct RayScene::Impl {
     glm::dvec3 center{0.0};
     double scale = 1.0;  // a power of two
     double winding = 1.0;
+    bool closed = false;  // no odd edges
 
     [[nodiscard]] glm::vec3 toLocal(const glm::dvec3& p) const { return (p - center) * scale; }
 
@@ -102,7 +122,8 @@ struct RayScene::Impl {
 /// Traces the packets of one row of tiles.
 class RayScene::Impl::Tracer {
   public:
-    Tracer(const Impl& impl, const View& view, RayEnd end) : impl_(impl), view_(view), end_(end) {
+    Tracer(const Impl& impl, const View& view, RayEnd end)
+        : impl_(impl), view_(view), end_(end), inside_out_(impl.winding < 0.0) {
         rtcInitIntersectContext(&context_);
         context_.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
         for (int lane = 0; lane < kLanes; ++lane) {
@@ -127,14 +148,27 @@ class RayScene::Impl::Tracer {
             }
             rtcIntersect16(valid_, impl_.scene.get(), &context_, &packet_);
             prefetchCorners();
+            // What mendPinholes goes by: most tiles need no second look.
+            float low = std::numeric_limits<float>::max();
+            float high = -low;
+            std::uint32_t outer = 0;
             for (std::uint32_t row = 0; row < rows; ++row) {
                 Hit* const out = hits + std::size_t{row} * view_.width + x0;
                 for (std::uint32_t column = 0; column < columns; ++column) {
                     const std::size_t lane = row * kTile + column;
-                    out[column] = packet_.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID
-                                      ? Hit()
-                                      : resolve(face, x0 + column, y0 + row, lane);
+                    if (packet_.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) {
+                        out[column] = Hit();
+                        continue;
+                    }
+                    const Hit hit = resolve(face, x0 + column, y0 + row, lane);
+                    low = std::min(low, hit.depth());
+                    high = std::max(high, hit.depth());
+                    outer += metInside(hit) ? 0U : 1U;
+                    out[column] = hit;
                 }
+            }
+            if (outer != 0 && (outer != rows * columns || high - low >= kDepthJump)) {
+                mendPinholes(face, x0, y0, columns, rows, hits);
             }
         }
     }
@@ -148,8 +182,12 @@ class RayScene::Impl::Tracer {
         if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
             return {};
         }
-        return view_.projection() == Projection::kOrthographic ? orthographicHit(x, y, query.hit.primID)
-                                                               : cubeHit(ray, query.hit.primID);
+        const Hit hit = view_.projection() == Projection::kOrthographic
+                            ? orthographicHit(x, y, query.hit.primID)
+                            : cubeHit(ray, query.hit.primID);
+        // Alone, a ray is doubted only where no ray from free space may get: at the inner side of a closed
+        // mesh.
+        return impl_.closed && metInside(hit) ? lookAgain(face, x, y, hit) : hit;
     }
 
   private:
@@ -266,6 +304,140 @@ class RayScene::Impl::Tracer {
                                                                : cubeHit(view_.ray(face, x, y), triangle);
     }
 
+    // --- pinholes: robust or not, Embree lets some rays that are aimed exactly at a vertex or edge pass ---
+
+    /// The ray met the side that a closed mesh turns inwards.
+    [[nodiscard]] bool metInside(const Hit& hit) const { return hit.fromBehind() != inside_out_; }
+
+    /// Looks again at the rays of a tile that met nothing, an inner side, or something far behind, although
+    /// those beside them met an outer side.
+    void mendPinholes(std::uint32_t face, std::uint32_t x0, std::uint32_t y0, std::uint32_t columns,
+                      std::uint32_t rows, Hit* hits) {
+        const auto at = [&](std::uint32_t column, std::uint32_t row) -> Hit& {
+            return hits[std::size_t{row} * view_.width + x0 + column];
+        };
+        // All are judged by what was traced, not by what was mended before them.
+        std::uint32_t doubtful = 0;
+        for (std::uint32_t row = 0; row < rows; ++row) {
+            for (std::uint32_t column = 0; column < columns; ++column) {
+                const Hit& hit = at(column, row);
+                std::uint32_t beside = 0;
+                std::uint32_t before = 0;
+                const auto compare = [&](const Hit& other) {
+                    ++beside;
+                    const float gap =
+                        end_ == RayEnd::kNear ? hit.depth() - other.depth() : other.depth() - hit.depth();
+                    before += !other.empty() && !metInside(other) &&
+                                      (hit.empty() || metInside(hit) || gap > kDepthJump)
+                                  ? 1U
+                                  : 0U;
+                };
+                if (column > 0) {
+                    compare(at(column - 1, row));
+                }
+                if (column + 1 < columns) {
+                    compare(at(column + 1, row));
+                }
+                if (row > 0) {
+                    compare(at(column, row - 1));
+                }
+                if (row + 1 < rows) {
+                    compare(at(column, row + 1));
+                }
+                if (before > 0 && before >= std::min(beside, 2U)) {
+                    doubtful |= 1U << (row * kTile + column);
+                }
+            }
+        }
+        for (std::uint32_t lane = 0; doubtful != 0; ++lane, doubtful >>= 1U) {
+            if ((doubtful & 1U) != 0) {
+                Hit& hit = at(lane % kTile, lane / kTile);
+                hit = lookAgain(face, x0 + lane % kTile, y0 + lane / kTile, hit);
+            }
+        }
+    }
+
+    /// By rays beside the ray: what they meet before `hit` counts if the ray itself touches it.
+    Hit lookAgain(std::uint32_t face, std::uint32_t x, std::uint32_t y, const Hit& hit) {
+        const TexelRay ray = view_.ray(face, x, y);
+        const Segment segment = segmentOf(ray);
+        const glm::dvec3 direction = segment.direction * impl_.scale;
+        const double length = std::sqrt(dot(direction, direction));
+        const glm::dvec3 unit = direction / length;
+        const glm::dvec3 other = std::abs(unit.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+        glm::dvec3 right = cross(unit, other);
+        right = right / std::sqrt(dot(right, right));
+        const glm::dvec3 up = cross(right, unit);
+
+        // Of what is touched, the nearest, and all that lies as near: where edges meet.
+        std::array<std::uint32_t, kBesideRays> touched{};
+        std::array<float, kBesideRays> where{};
+        std::size_t count = 0;
+        float nearest = std::numeric_limits<float>::max();
+        for (std::size_t i = 0; i < kBesideDirections.size(); ++i) {
+            if (i == 2 && count == 0) {
+                return hit;  // beside a silhouette: as good as all that is doubted
+            }
+            const auto& [sine, cosine] = kBesideDirections[i];
+            RTCIntersectContext context;
+            rtcInitIntersectContext(&context);
+            Segment shifted = segment;
+            shifted.origin += (kBeside / impl_.scale) * (cosine * right + sine * up);
+            RTCRayHit query = queryOf(shifted);
+            rtcIntersect1(impl_.scene.get(), &context, &query);
+            if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID &&
+                touches((segment.origin - impl_.center) * impl_.scale, right, up, query.hit.primID)) {
+                touched[count] = query.hit.primID;
+                where[count++] = query.ray.tfar;
+                nearest = std::min(nearest, query.ray.tfar);
+            }
+        }
+        if (count == 0) {
+            return hit;
+        }
+        // Triangles beside the ray lie a little before or behind where it meets them.
+        const float tie = static_cast<float>(64.0 * kBeside / length);
+        collector_.triangles.clear();
+        for (std::size_t i = 0; i < count; ++i) {
+            if (where[i] <= nearest + tie) {
+                collector_.triangles.push_back(touched[i]);
+            }
+        }
+        const std::uint32_t best = bestFacing(segment, collector_.triangles.front());
+        const Hit found = view_.projection() == Projection::kOrthographic ? orthographicHit(x, y, best)
+                                                                          : cubeHit(ray, best);
+        const bool before = hit.empty() || (end_ == RayEnd::kNear ? found.depth() < hit.depth()
+                                                                  : found.depth() > hit.depth());
+        return before ? found : hit;
+    }
+
+    /// Whether a line through `origin`, square to `right` and `up`, passes a triangle within kTouching.
+    [[nodiscard]] bool touches(const glm::dvec3& origin, const glm::dvec3& right, const glm::dvec3& up,
+                               std::uint32_t triangle) const {
+        const glm::uvec3& t = impl_.mesh->triangles[triangle];
+        double x[3];
+        double y[3];
+        for (int i = 0; i < 3; ++i) {
+            const glm::dvec3 p =
+                (glm::dvec3(impl_.mesh->positions[t[i]]) - impl_.center) * impl_.scale - origin;
+            x[i] = dot(p, right);
+            y[i] = dot(p, up);
+        }
+        int sides = 0;
+        double closest = std::numeric_limits<double>::max();
+        for (int i = 0; i < 3; ++i) {
+            const int j = (i + 1) % 3;
+            const double ex = x[j] - x[i];
+            const double ey = y[j] - y[i];
+            const double side = ex * y[i] - ey * x[i];
+            sides += side > 0.0 ? 1 : side < 0.0 ? -1 : 0;
+            const double square = ex * ex + ey * ey;
+            const double along = square > 0.0 ? std::clamp(-(x[i] * ex + y[i] * ey) / square, 0.0, 1.0) : 0.0;
+            closest = std::min(closest, std::hypot(x[i] + along * ex, y[i] + along * ey));
+        }
+        return std::abs(sides) == 3 || closest <= kTouching;
+    }
+
     [[nodiscard]] RTCRayHit queryOf(const Segment& segment) const {
         const glm::vec3 origin = impl_.toLocal(segment.origin);
         const glm::vec3 direction = segment.direction * impl_.scale;
@@ -294,7 +466,11 @@ class RayScene::Impl::Tracer {
         query.ray.tfar = at + tie;
         rtcIntersect1(impl_.scene.get(), &collector_.context, &query);
 
-        // A front side always beats a back side.
+        return bestFacing(segment, first);
+    }
+
+    /// Of the collected triangles; `first` is one of them. A front side always beats a back side.
+    [[nodiscard]] std::uint32_t bestFacing(const Segment& segment, std::uint32_t first) const {
         std::uint32_t best = first;
         double best_score = -2.0;
         for (const std::uint32_t triangle : collector_.triangles) {
@@ -389,6 +565,7 @@ class RayScene::Impl::Tracer {
     const Impl& impl_;
     const View& view_;
     RayEnd end_;
+    bool inside_out_;
     std::array<PlaneDepth, kPlaneDepths> plane_depths_;
     RTCIntersectContext context_{};
     Collector collector_;
@@ -419,6 +596,7 @@ Result<RayScene> RayScene::build(const TriangleMesh& mesh) {
     auto impl = std::make_unique<Impl>();
     impl->mesh = &mesh;
     impl->winding = orientation(mesh);
+    impl->closed = edgesAreEven(mesh);
     impl->center = 0.5 * glm::dvec3(mesh.bounds.min) + 0.5 * glm::dvec3(mesh.bounds.max);
     impl->scale = std::ldexp(1.0, -std::ilogb(mesh.bounds.longestSide()));
     impl->device.reset(rtcNewDevice(nullptr));
