@@ -11,6 +11,7 @@
 
 #include "bake/text.h"
 #include "formats/file_io.h"
+#include "runtime/cli_model.h"
 
 namespace relief {
 namespace {
@@ -162,6 +163,9 @@ Result<void> runCommandLine(int argc, char** argv) {
     addQuery(app, action);
     addSlice(app, action);
     addExport(app, action);
+    if (const auto dumped = dumpedCommandLine(readProgram(app, "relief", RELIEF_VERSION), argc, argv)) {
+        return printOut(*dumped);
+    }
     try {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {

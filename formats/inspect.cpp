@@ -193,8 +193,8 @@ class Inspector {
             all_placed = all_placed && placed;
             if (placed || payload.offset == alignPayload(end)) {
                 // Of a file that was cut off, the next payload has its place nevertheless.
-                constexpr std::uint64_t kSizeMax = std::uint64_t{1} << 60;
-                end = payload.offset + std::min(payload.stored_size, kSizeMax);
+                constexpr std::uint64_t kFar = std::uint64_t{1} << 60;  // their sum does not wrap
+                end = std::min(payload.offset, kFar) + std::min(payload.stored_size, kFar);
             }
             if (framed && payload.raw_size <= limits_.texel_bytes) {
                 texel_bytes += payload.raw_size;
