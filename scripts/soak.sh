@@ -1,16 +1,17 @@
 #!/usr/bin/env bash
-# Long runs, for a night and not for CI: scripts/soak.sh [sweep|rest]… (both). Ends with 0 if all hold.
+# Long runs, for a night and not for CI: scripts/soak.sh [sweep|rest|package]… (all). Ends with 0 if all hold.
 #
 #   sweep   a million particles take a thousand swept steps in a closed hollow box, and none gets out; without the
 #           sweep most do. In OpenGL 3.3 and in OpenGL ES 3.0. An hour or so on llvmpipe.
 #   rest    snow falls on the bunny: after it has come to rest, no bit of a position changes from step 5,000 to step
 #           100,000 (RELIEF_SOAK_SETTLED and RELIEF_SOAK_STEPS say others).
+#   package a build without the baker, from nothing, installs a runtime that samples/embed builds with.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/setup.sh
 runs=("$@")
-[ ${#runs[@]} -gt 0 ] || runs=(sweep rest)
+[ ${#runs[@]} -gt 0 ] || runs=(sweep rest package)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -29,6 +30,22 @@ for test in tests:
 sys.exit(0 if tests else 'sweep: no such test')
 P
     return "$status"
+}
+
+package() {
+    cmake -G Ninja -S . -B "$work/runtime" -DRELIEF_BUILD_BAKE=OFF -DRELIEF_BUILD_TESTS=OFF \
+        -DRELIEF_BUILD_BENCHMARKS=OFF >"$work/package.log" &&
+        cmake --build "$work/runtime" >>"$work/package.log" &&
+        cmake --install "$work/runtime" --prefix "$work/prefix" >>"$work/package.log" || {
+        tail -20 "$work/package.log" >&2
+        return 1
+    }
+    local modules
+    modules=$(find "$work/prefix" -name pkgconfig)
+    # shellcheck disable=SC2046
+    g++ -std=c++20 samples/embed/embed.cpp -o "$work/embed" \
+        $(PKG_CONFIG_PATH=$modules pkg-config --cflags --libs relief-runtime) &&
+        "$work/prefix/bin/relief-sim" --version >/dev/null && echo "package: a build without the baker installs"
 }
 
 rest() {
@@ -70,9 +87,9 @@ P
 failed=0
 for run in "${runs[@]}"; do
     case $run in
-        sweep | rest) "$run" || failed=1 ;;
+        sweep | rest | package) "$run" || failed=1 ;;
         *)
-            echo "soak.sh: unknown run '$run'; choose sweep or rest" >&2
+            echo "soak.sh: unknown run '$run'; choose sweep, rest or package" >&2
             exit 1
             ;;
     esac
