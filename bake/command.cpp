@@ -12,6 +12,7 @@
 #include "bake/gl_options.h"
 #include "bake/text.h"
 #include "formats/file_io.h"
+#include "runtime/cli_model.h"
 
 namespace relief {
 namespace {
@@ -164,6 +165,9 @@ Result<void> runCommandLine(int argc, char** argv) {
     addQuery(app, action);
     addSlice(app, action);
     addExport(app, action);
+    if (const auto dumped = dumpedCommandLine(readProgram(app, "relief", RELIEF_VERSION), argc, argv)) {
+        return printOut(*dumped);
+    }
     try {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {

@@ -587,10 +587,10 @@ void addBake(CLI::App& app, Action& action) {
         ->allow_extra_args(false);
     verb.add_option("--decode", command->decode,
                     "Of --map that does not say it: plane (default) or projected, the paper's")
-        ->option_text("WORD");
+        ->option_text("plane|projected");
     verb.add_option("--depth", command->depth,
                     "Of --map front-back that does not say it: unorm16 (default) or half, the paper's")
-        ->option_text("WORD");
+        ->option_text("unorm16|half");
     verb.add_flag(
         "--paper", command->paper,
         "Bake the paper's maps instead of planned ones: front-back along -x, -y and -z and a cube,\n"
@@ -614,11 +614,11 @@ void addBake(CLI::App& app, Action& action) {
     verb.add_option("--quality", command->quality,
                     "Of planes: fast (one ray a texel), normal (16 rays, default) or best (36).\n"
                     "With --plan, the file's by default")
-        ->option_text("WORD");
+        ->option_text("fast|normal|best");
     verb.add_option("--prefer", command->prefer,
                     "Where planes must err: inside keeps particles out of walls, outside keeps free\n"
                     "space free, neither (default) errs least")
-        ->option_text("WORD");
+        ->option_text("inside|outside|neither");
     verb.add_option("-j,--threads", command->threads,
                     "Threads to use; default: all cores. The result is the same")
         ->option_text("N");
@@ -626,7 +626,7 @@ void addBake(CLI::App& app, Action& action) {
         ->option_text("LEVEL");
     verb.add_option("--holes", command->holes,
                     "Of a nearly closed mesh: close (bake it as a solid, default) or keep")
-        ->option_text("WORD");
+        ->option_text("close|keep");
     addBackendOptions(verb, command->backend);
     addGlOptions(verb, command->gl);
     addImportOptions(verb, command->import);

@@ -1,4 +1,4 @@
-// relief check: how well a collider keeps to its mesh.
+// relief check: whether a container is sound, and how well a collider keeps to its mesh.
 #include <spdlog/spdlog.h>
 
 #include <cmath>
@@ -7,6 +7,7 @@
 #include "bake/accuracy.h"
 #include "bake/accuracy_page.h"
 #include "bake/accuracy_report.h"
+#include "bake/check_file.h"
 #include "bake/command.h"
 #include "bake/import_options.h"
 #include "bake/mesh_care.h"
@@ -95,6 +96,9 @@ std::string fileName(const std::string& file) {
 
 Result<void> runCheck(const CheckCommand& command) {
     startLogging(command.common);
+    if (command.mesh.empty()) {
+        return checkFile(command.file, command.json);
+    }
     const Result<Settings> settings = settingsOf(command);
     if (!settings) {
         return forward(settings);
@@ -202,25 +206,31 @@ void addCheck(CLI::App& app, Action& action) {
     auto command = std::make_shared<CheckCommand>();
     CLI::App& verb = addVerb(
         app, command->common, "check",
-        "Measures a collider against its mesh\n\nThe share of points on the wrong side, near the "
+        "Checks a container, or measures a collider against its mesh\n\nWithout --mesh: every issue of the "
+        "file by its code (formats/README.md), and what of a damaged file can be trusted.\nWith --mesh: the "
+        "share of points on the wrong side, near the "
         "surface and anywhere in the box, the errors of distance and normal,\nand the share of the "
         "surface that no map sees. Truth is the parity of rays through the mesh, whatever the maps say.",
+        "relief check bunny.relief\n"
         "relief check bunny.relief --mesh bunny.obj\n"
         "relief check bunny.relief --mesh bunny.obj --html bunny.html\n"
         "relief check bunny.relief --mesh bunny.obj --max-error 2 --json");
     verb.add_option("FILE", command->file, "The collider; - for standard input")->type_name("")->required();
-    verb.add_option("--mesh", command->mesh, "The mesh that it was baked from")
-        ->option_text("MESH")
-        ->required();
-    verb.add_option("--samples", command->samples, "Points of each kind; default 200000")->option_text("N");
-    verb.add_option("--seed", command->seed, "Of the points; default 1")->option_text("S");
+    CLI::Option* mesh =
+        verb.add_option("--mesh", command->mesh, "The mesh that it was baked from")->option_text("MESH");
+    verb.add_option("--samples", command->samples, "Points of each kind; default 200000")
+        ->option_text("N")
+        ->needs(mesh);
+    verb.add_option("--seed", command->seed, "Of the points; default 1")->option_text("S")->needs(mesh);
     verb.add_option("--max-error", command->max_error,
                     "Exit with 7 if more than this share of the points near the surface, in percent, is on "
                     "the wrong side")
-        ->option_text("PCT");
+        ->option_text("PCT")
+        ->needs(mesh);
     verb.add_option("--html", command->html,
                     "Also write a page to look at: numbers, error on the surface, slices and maps")
-        ->option_text("OUT");
+        ->option_text("OUT")
+        ->needs(mesh);
     addImportOptions(verb, command->import);
     verb.add_flag("--json", command->json, "Print JSON");
     verb.callback([command, &action] { action = [command] { return runCheck(*command); }; });

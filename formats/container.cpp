@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
-#include <memory>
 #include <string>
 
 #include "collider_generated.h"
 #include "formats/container_header.h"
+#include "formats/container_parts.h"
 #include "formats/file_io.h"
 #include "formats/hash.h"
 #include "formats/validate.h"
@@ -18,17 +18,7 @@
 namespace relief {
 namespace {
 
-constexpr std::uint64_t kPayloadAlignment = 64;
-/// zstd packs at most a block of 128 KiB into four bytes, so a payload that claims more is a lie.
-constexpr std::uint64_t kZstdRatioMax = 32768;
 constexpr int kZstdLevelMax = 19;
-constexpr flatbuffers::uoffset_t kMetadataDepthMax = 4;  // collider, map or provenance
-
-/// One payload in a file, and how to check it.
-struct StoredPayload {
-    PayloadInfo info;
-    std::uint64_t hash = 0;
-};
 
 /// All of a file but its texels.
 struct Description {
@@ -47,10 +37,6 @@ tl::unexpected<Error> invalidMap(std::size_t index, const std::string& message) 
 
 std::string decimal(std::uint64_t value) {
     return std::to_string(value);
-}
-
-std::uint64_t alignUp(std::uint64_t offset) {
-    return (offset + kPayloadAlignment - 1) / kPayloadAlignment * kPayloadAlignment;
 }
 
 // ---- write
@@ -166,7 +152,7 @@ Result<std::vector<std::byte>> writeChecked(const Collider& collider, const Cont
     header.metadata_size = writeMetadata(collider, payloads).size();
     std::uint64_t end = header.metadata_offset + header.metadata_size;
     for (fb::Payload& payload : payloads) {
-        payload = fb::Payload(alignUp(end), payload.stored_size(), payload.raw_size(), payload.xxh3());
+        payload = fb::Payload(alignPayload(end), payload.stored_size(), payload.raw_size(), payload.xxh3());
         end = payload.offset() + payload.stored_size();
     }
     const std::vector<std::byte> metadata = writeMetadata(collider, payloads);
@@ -190,106 +176,41 @@ Result<std::vector<std::byte>> writeChecked(const Collider& collider, const Cont
 // ---- read
 // -----------------------------------------------------------------------------------------------------
 
-glm::vec3 fromFb(const fb::Vec3& v) {
-    return {v.x(), v.y(), v.z()};
-}
-
-glm::vec4 fromFb(const fb::Row& r) {
-    return {r.x(), r.y(), r.z(), r.w()};
-}
-
-/// A map without its texels.
-DepthMap readFrame(const fb::Map& map) {
-    DepthMap frame;
-    frame.format = static_cast<MapFormat>(map.format());
-    frame.compare = static_cast<Compare>(map.compare());
-    frame.decode = static_cast<Decode>(map.decode());
-    frame.width = map.width();
-    frame.height = map.height();
-    const fb::Transform& transform = *map.object_to_map();
-    frame.object_to_map.row[0] = fromFb(transform.row0());
-    frame.object_to_map.row[1] = fromFb(transform.row1());
-    frame.object_to_map.row[2] = fromFb(transform.row2());
-    frame.object_per_map = fromFb(*map.object_per_map());
-    frame.encloses = map.encloses();
-    frame.empty_is_outside = map.empty_is_outside();
-    return frame;
-}
-
-/// What a payload's sizes say of each other. Its place is checkLayout's.
-Result<StoredPayload> readPayloadInfo(const fb::Map& map, const DepthMap& frame) {
-    const fb::Payload& payload = *map.payload();
-    StoredPayload stored{{payload.offset(), payload.stored_size(), payload.raw_size(),
-                          map.compression() == fb::Compression::Zstd},
-                         payload.xxh3()};
-    const PayloadInfo& info = stored.info;
-    if (!info.compressed && map.compression() != fb::Compression::None) {
-        return invalid("its compression " + decimal(static_cast<std::uint64_t>(map.compression())) +
-                       " is unknown");
-    }
-    if (info.raw_size != frame.texelBytes()) {
-        return invalid("its raw_size is " + decimal(info.raw_size) + " where its size and format need " +
-                       decimal(frame.texelBytes()) + " bytes");
-    }
-    if (info.compressed ? info.stored_size >= info.raw_size : info.stored_size != info.raw_size) {
-        return invalid("its stored_size " + decimal(info.stored_size) + " does not go with its raw_size " +
-                       decimal(info.raw_size) + " and its compression");
-    }
-    if (info.compressed && info.raw_size / kZstdRatioMax > info.stored_size) {
-        return invalid("its " + decimal(info.stored_size) + " stored bytes cannot hold the " +
-                       decimal(info.raw_size) + " that they claim");
-    }
-    return stored;
-}
-
-Result<void> readMaps(const fb::Collider& metadata, const ContainerLimits& limits, Description& into) {
-    const auto& maps = *metadata.maps();
-    if (maps.size() == 0) {
+/// Maps whose frames and sizes are in order, within the limits.
+Result<void> readMaps(ParsedMetadata&& parsed, const ContainerLimits& limits, Description& into) {
+    if (parsed.maps.empty()) {
         return invalid("there is no map");
     }
-    if (maps.size() > limits.maps) {
-        return fail(ErrorCode::kLimit,
-                    decimal(maps.size()) + " maps are more than the limit of " + decimal(limits.maps));
-    }
     std::uint64_t texel_bytes = 0;
-    for (flatbuffers::uoffset_t i = 0; i < maps.size(); ++i) {
-        DepthMap frame = readFrame(*maps.Get(i));
-        const Result<StoredPayload> payload =
-            validateFrame(frame).and_then([&] { return readPayloadInfo(*maps.Get(i), frame); });
-        if (!payload) {
-            return tl::unexpected<Error>(inMap(i, payload.error()));
+    for (std::size_t i = 0; i < parsed.maps.size(); ++i) {
+        ParsedMap& map = parsed.maps[i];
+        if (const Result<void> ok =
+                validateFrame(map.frame).and_then([&] { return validatePayloadSizes(map); });
+            !ok) {
+            return tl::unexpected<Error>(inMap(i, ok.error()));
         }
-        texel_bytes += payload->info.raw_size;
+        texel_bytes += map.payload.info.raw_size;
         if (texel_bytes > limits.texel_bytes) {
             return fail(ErrorCode::kLimit, "map " + decimal(i) +
                                                ": with it, the texels take more than the limit of " +
                                                decimal(limits.texel_bytes) + " bytes");
         }
-        into.collider.maps.push_back(std::move(frame));
-        into.payloads.push_back(*payload);
+        into.collider.maps.push_back(std::move(map.frame));
+        into.payloads.push_back(map.payload);
     }
     return {};
 }
 
 Result<void> readMetadata(std::span<const std::byte> bytes, const ContainerLimits& limits,
                           Description& into) {
-    // Accessors need the alignment that the file has, and that `bytes` need not have.
-    const auto aligned = std::make_unique<std::uint64_t[]>(bytes.size() / sizeof(std::uint64_t) + 1);
-    std::memcpy(aligned.get(), bytes.data(), bytes.size());
-    const auto* data = reinterpret_cast<const std::uint8_t*>(aligned.get());
-    flatbuffers::Verifier verifier(data, bytes.size(), kMetadataDepthMax);
-    if (!fb::VerifyColliderBuffer(verifier)) {
-        return invalid("the metadata at byte " + decimal(into.header.metadata_offset) +
-                       " is no FlatBuffers table of a collider");
+    Result<ParsedMetadata> parsed = parseMetadata(bytes, limits.maps);
+    if (!parsed) {
+        return forward(parsed);
     }
-    const fb::Collider& metadata = *fb::GetCollider(data);
-    Collider& collider = into.collider;
-    collider.bounds = {fromFb(*metadata.bounds_min()), fromFb(*metadata.bounds_max())};
-    collider.unit = metadata.unit()->str();
-    const fb::Provenance& from = *metadata.provenance();
-    collider.provenance = {from.mesh_name()->str(), from.mesh_hash()->str(), from.triangles(),
-                           from.tool_version()->str(), from.options()->str()};
-    return validateDescription(collider).and_then([&] { return readMaps(metadata, limits, into); });
+    into.collider = std::move(parsed->collider);
+    return validateDescription(into.collider).and_then([&] {
+        return readMaps(std::move(*parsed), limits, into);
+    });
 }
 
 /// Payloads lie one after the other, each at the next multiple of 64, zeros between, and nothing behind.
@@ -297,7 +218,7 @@ Result<void> checkLayout(std::span<const std::byte> bytes, const Description& de
     std::uint64_t end = description.header.metadata_offset + description.header.metadata_size;
     for (std::size_t i = 0; i < description.payloads.size(); ++i) {
         const PayloadInfo& info = description.payloads[i].info;
-        const std::uint64_t expected = alignUp(end);
+        const std::uint64_t expected = alignPayload(end);
         if (info.offset != expected) {
             return invalidMap(i, "its payload's offset is " + decimal(info.offset) +
                                      " where the layout has " + decimal(expected));
@@ -342,25 +263,6 @@ Result<Description> readDescription(std::span<const std::byte> bytes, const Cont
     return description;
 }
 
-Result<std::vector<std::byte>> unpack(std::span<const std::byte> stored, std::uint64_t raw_size) {
-    if (ZSTD_getFrameContentSize(stored.data(), stored.size()) != raw_size) {
-        return invalid("its payload is no zstd frame that states a content of " + decimal(raw_size) +
-                       " bytes");
-    }
-    if (ZSTD_findFrameCompressedSize(stored.data(), stored.size()) != stored.size()) {
-        return invalid("its payload is not exactly one zstd frame");
-    }
-    std::vector<std::byte> raw(raw_size);
-    const std::size_t size = ZSTD_decompress(raw.data(), raw.size(), stored.data(), stored.size());
-    if (ZSTD_isError(size) != 0) {
-        return invalid(std::string("its payload does not decompress: ") + ZSTD_getErrorName(size));
-    }
-    if (size != raw_size) {
-        return invalid("its payload decompresses to " + decimal(size) + " bytes, not " + decimal(raw_size));
-    }
-    return raw;
-}
-
 Result<void> readTexels(std::span<const std::byte> bytes, const StoredPayload& payload, DepthMap& map) {
     const auto stored = bytes.subspan(payload.info.offset, payload.info.stored_size);
     if (payload.hash != xxh3_64(stored)) {
@@ -368,7 +270,7 @@ Result<void> readTexels(std::span<const std::byte> bytes, const StoredPayload& p
                        " is wrong");
     }
     if (payload.info.compressed) {
-        Result<std::vector<std::byte>> raw = unpack(stored, payload.info.raw_size);
+        Result<std::vector<std::byte>> raw = unpackPayload(stored, payload.info.raw_size);
         if (!raw) {
             return forward(raw);
         }
@@ -436,11 +338,7 @@ Result<ContainerInfo> readContainerInfo(std::span<const std::byte> bytes, const 
 }
 
 Result<Collider> loadCollider(const std::filesystem::path& path, const ContainerLimits& limits) {
-    // The longest file that readContainer could take: payloads are never longer than their texels.
-    const std::uint64_t texel_bytes = std::min(limits.texel_bytes, std::uint64_t{1} << 62);
-    const std::uint64_t size_max =
-        sizeof(ContainerHeader) + kContainerMetadataMax + texel_bytes + limits.maps * kPayloadAlignment;
-    const Result<std::vector<std::byte>> bytes = readFile(path, size_max);
+    const Result<std::vector<std::byte>> bytes = readFile(path, containerSizeMax(limits));
     if (!bytes) {
         return forward(bytes);
     }

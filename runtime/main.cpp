@@ -12,6 +12,7 @@
 
 #include "formats/file_io.h"
 #include "runtime/gpu_tool.h"
+#include "runtime/cli_model.h"
 #include "runtime/player.h"
 #include "runtime/report.h"
 #include "runtime/scene_check.h"
@@ -180,6 +181,16 @@ void showProgress(std::uint32_t step, std::uint32_t steps) {
                  step >= steps ? "\n" : "");
 }
 
+/// For the manual page: the help's head and foot are made for a terminal.
+relief::CliProgram simProgram(const CLI::App& app) {
+    relief::CliProgram program = relief::readProgram(app, "relief-sim", RELIEF_VERSION);
+    program.command.summary = "Plays a scene against a baked collider";
+    program.command.description =
+        "Headless: particles fall, collide and rest. Given a collider alone it lets snow fall on it.";
+    program.command.examples = {"relief-sim bunny_in_the_snow.toml --frames frames --dump snow.ply"};
+    return program;
+}
+
 /// --check: 0, or the code of the first mistake. With --json the object comes in either case.
 int check(const CommandLine& line, const relief::PlayerOptions& options) {
     const auto checked = relief::checkScene(options);
@@ -254,6 +265,11 @@ int run(int argc, char** argv) {
     app.add_flag("--json", line.json, "Print the report, or what --check finds, as JSON");
     app.add_flag("-q,--quiet", line.quiet,
                  "No progress and no summary; errors still, and what --json asks for");
+    if (const auto dumped = relief::dumpedCommandLine(simProgram(app), argc, argv)) {
+        return std::fputs(dumped->c_str(), stdout) < 0 || std::fflush(stdout) != 0
+                   ? report(ErrorCode::kIo, "cannot write to standard output")
+                   : 0;
+    }
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& success) {  // --help, --version

@@ -14,7 +14,8 @@ packages=(
     # runtime: libepoxy, and Mesa's llvmpipe for machines without a GPU
     libegl-dev libepoxy-dev libgl-dev libgles-dev libpng-dev libtomlplusplus-dev libegl1 libegl-mesa0 libgl1-mesa-dri
     # tests, benchmarks and the demo
-    assimp-testmodels glmark2-data imagemagick libbenchmark-dev libcgal-demo libgtest-dev openexr python3
+    assimp-testmodels bsdextrautils fish glmark2-data groff-base imagemagick libbenchmark-dev libcgal-demo libgtest-dev
+    man-db mandoc openexr python3 python3-jsonschema zsh
 )
 
 missing=()

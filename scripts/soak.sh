@@ -1,17 +1,19 @@
 #!/usr/bin/env bash
-# Long runs, for a night and not for CI: scripts/soak.sh [sweep|rest|import]… (all). Ends with 0 if all hold.
+# Long runs, for a night and not for CI: scripts/soak.sh [RUN]…, all of these by default. Ends with 0 if all hold.
 #
 #   sweep   a million particles take a thousand swept steps in a closed hollow box, and none gets out; without the
 #           sweep most do. In OpenGL 3.3 and in OpenGL ES 3.0. An hour or so on llvmpipe.
 #   rest    snow falls on the bunny: after it has come to rest, no bit of a position changes from step 5,000 to step
 #           100,000 (RELIEF_SOAK_SETTLED and RELIEF_SOAK_STEPS say others).
 #   import  every file of assimp-testmodels is read or refused, and none crashes the worker.
+#   package a build without the baker, from nothing, installs a runtime that samples/embed builds with.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/setup.sh
+all_runs=(sweep rest import package)
 runs=("$@")
-[ ${#runs[@]} -gt 0 ] || runs=(sweep rest import)
+[ ${#runs[@]} -gt 0 ] || runs=("${all_runs[@]}")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -30,6 +32,22 @@ for test in tests:
 sys.exit(0 if tests else 'sweep: no such test')
 P
     return "$status"
+}
+
+package() {
+    cmake -G Ninja -S . -B "$work/runtime" -DRELIEF_BUILD_BAKE=OFF -DRELIEF_BUILD_TESTS=OFF \
+        -DRELIEF_BUILD_BENCHMARKS=OFF >"$work/package.log" &&
+        cmake --build "$work/runtime" >>"$work/package.log" &&
+        cmake --install "$work/runtime" --prefix "$work/prefix" >>"$work/package.log" || {
+        tail -20 "$work/package.log" >&2
+        return 1
+    }
+    local modules
+    modules=$(find "$work/prefix" -name pkgconfig)
+    # shellcheck disable=SC2046
+    g++ -std=c++20 samples/embed/embed.cpp -o "$work/embed" \
+        $(PKG_CONFIG_PATH=$modules pkg-config --cflags --libs relief-runtime) &&
+        "$work/prefix/bin/relief-sim" --version >/dev/null && echo "package: a build without the baker installs"
 }
 
 rest() {
@@ -85,12 +103,10 @@ P
 
 failed=0
 for run in "${runs[@]}"; do
-    case $run in
-        sweep | rest | import) "$run" || failed=1 ;;
-        *)
-            echo "soak.sh: unknown run '$run'; choose sweep, rest or import" >&2
-            exit 1
-            ;;
-    esac
+    [[ " ${all_runs[*]} " == *" $run "* ]] || {
+        echo "soak.sh: unknown run '$run'; choose of: ${all_runs[*]}" >&2
+        exit 1
+    }
+    "$run" || failed=1
 done
 exit $failed

@@ -41,4 +41,45 @@ expect_error 6 'limit' "$relief" check b.relief --mesh "$bunny" --samples 999999
 expect_error 1 'html' "$relief" check b.relief --mesh "$bunny" --html -
 expect_error 2 'missing' "$relief" check b.relief --mesh "$bunny" --html missing/page.html
 expect_error 2 'missing.relief' "$relief" check missing.relief --mesh "$bunny"
-expect_error 1 'mesh' "$relief" check b.relief
+for option in '--samples 5' '--seed 5' '--max-error 5' '--html page.html'; do
+    # shellcheck disable=SC2086
+    expect_error 1 '--mesh' "$relief" check b.relief $option
+done
+
+# Alone: what is wrong with the file, every issue by its code, and what is left.
+expect 0 "$relief" check b.relief
+[ ! -s stderr ] && grep -q '^b.relief: sound$' stdout || die "a sound file: $(cat stdout stderr)"
+expect 0 "$relief" check b.relief --json
+json stdout 'd["verdict"] == "sound" and d["issues"] == [] and [m["state"] for m in d["maps"]] == ["sound"] * 4'
+"$relief" check - --json <b.relief | cmp <(sed 's/"b.relief"/"standard input"/' stdout) - || die "standard input differs"
+offset=$("$relief" info b.relief --json | python3 -c 'import json, sys; print(json.load(sys.stdin)["maps"][2]["offset"])')
+cp b.relief damaged.relief
+printf 'DAMAGE' | dd of=damaged.relief bs=1 seek="$offset" conv=notrunc status=none
+expect 3 "$relief" check damaged.relief
+grep -q "^RLF-1407 error: map 2: .*(byte $offset)$" stdout || die "the damage is not named: $(cat stdout)"
+grep -q '^Can be trusted: what describes the maps, and of them 0, 1, 3\.$' stdout || die "what is left: $(cat stdout)"
+[ "$(wc -l <stderr)" -eq 1 ] && grep -q "error: 'damaged.relief' .*RLF-1407" stderr || die "stderr: $(cat stderr)"
+expect 3 "$relief" check damaged.relief --json
+json stdout 'd["errors"] == 2 and [m["state"] for m in d["maps"]] == ["sound", "sound", "damaged", "sound"]'
+head -c $((offset + 100)) b.relief >cut.relief
+expect 3 "$relief" check cut.relief --json
+json stdout '[i["code"] for i in d["issues"]] == ["RLF-1006", "RLF-1404", "RLF-1404"]'
+json stdout '[m["state"] for m in d["maps"]] == ["sound", "sound", "unreadable", "unreadable"]'
+expect 3 "$relief" check "$bunny"
+grep -q '^RLF-1002 fatal' stdout || die "a mesh is no container: $(cat stdout)"
+expect_error 2 'nowhere' "$relief" check nowhere.relief
+cp b.relief later.relief
+printf '\2' | dd of=later.relief bs=1 seek=12 conv=notrunc status=none
+expect 5 "$relief" check later.relief
+
+# What is baked has nothing suspicious, boxes whose faces lie at the end of their maps included.
+tar -xzf /usr/share/doc/libcgal-dev/data.tar.gz data/meshes/P.off data/meshes/cube.off
+for mesh in data/meshes/*.off "$models/OBJ/box.obj"; do
+    for options in '--budget 60kB' '--paper --resolution 32' \
+        '--map float:size=32 --map fixed8:dir=1/2/3,size=32,compare=greater --map cube:size=16'; do
+        # shellcheck disable=SC2086
+        "$relief" bake "$mesh" -o other.relief -q $options 2>/dev/null
+        expect 0 "$relief" check other.relief
+        ! grep RLF stdout || die "$mesh $options is suspicious"
+    done
+done

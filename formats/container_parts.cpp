@@ -1,0 +1,136 @@
+#include "formats/container_parts.h"
+
+#include <flatbuffers/flatbuffers.h>
+#include <zstd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <string>
+
+#include "collider_generated.h"
+#include "formats/container_header.h"
+
+namespace relief {
+namespace {
+
+/// zstd packs at most a block of 128 KiB into four bytes, so a payload that claims more is a lie.
+constexpr std::uint64_t kZstdRatioMax = 32768;
+constexpr flatbuffers::uoffset_t kMetadataDepthMax = 4;  // collider, map or provenance
+
+tl::unexpected<Error> invalid(std::string message) {
+    return fail(ErrorCode::kInvalidInput, std::move(message));
+}
+
+std::string decimal(std::uint64_t value) {
+    return std::to_string(value);
+}
+
+glm::vec3 fromFb(const fb::Vec3& v) {
+    return {v.x(), v.y(), v.z()};
+}
+
+glm::vec4 fromFb(const fb::Row& r) {
+    return {r.x(), r.y(), r.z(), r.w()};
+}
+
+/// A map without its texels.
+DepthMap readFrame(const fb::Map& map) {
+    DepthMap frame;
+    frame.format = static_cast<MapFormat>(map.format());
+    frame.compare = static_cast<Compare>(map.compare());
+    frame.decode = static_cast<Decode>(map.decode());
+    frame.width = map.width();
+    frame.height = map.height();
+    const fb::Transform& transform = *map.object_to_map();
+    frame.object_to_map.row[0] = fromFb(transform.row0());
+    frame.object_to_map.row[1] = fromFb(transform.row1());
+    frame.object_to_map.row[2] = fromFb(transform.row2());
+    frame.object_per_map = fromFb(*map.object_per_map());
+    frame.encloses = map.encloses();
+    frame.empty_is_outside = map.empty_is_outside();
+    return frame;
+}
+
+}  // namespace
+
+std::uint64_t containerSizeMax(const ContainerLimits& limits) {
+    const std::uint64_t texel_bytes = std::min(limits.texel_bytes, std::uint64_t{1} << 62);
+    return sizeof(ContainerHeader) + kContainerMetadataMax + texel_bytes + limits.maps * kPayloadAlignment;
+}
+
+Result<ParsedMetadata> parseMetadata(std::span<const std::byte> bytes, std::uint32_t maps_max) {
+    // Accessors need the alignment that the file has, and that `bytes` need not have.
+    const auto aligned = std::make_unique<std::uint64_t[]>(bytes.size() / sizeof(std::uint64_t) + 1);
+    std::memcpy(aligned.get(), bytes.data(), bytes.size());
+    const auto* data = reinterpret_cast<const std::uint8_t*>(aligned.get());
+    flatbuffers::Verifier verifier(data, bytes.size(), kMetadataDepthMax);
+    if (!fb::VerifyColliderBuffer(verifier)) {
+        return invalid("the metadata at byte " + decimal(sizeof(ContainerHeader)) +
+                       " is no FlatBuffers table of a collider");
+    }
+    const fb::Collider& metadata = *fb::GetCollider(data);
+    ParsedMetadata parsed;
+    Collider& collider = parsed.collider;
+    collider.bounds = {fromFb(*metadata.bounds_min()), fromFb(*metadata.bounds_max())};
+    collider.unit = metadata.unit()->str();
+    const fb::Provenance& from = *metadata.provenance();
+    collider.provenance = {from.mesh_name()->str(), from.mesh_hash()->str(), from.triangles(),
+                           from.tool_version()->str(), from.options()->str()};
+    const auto& maps = *metadata.maps();
+    if (maps.size() > maps_max) {
+        return fail(ErrorCode::kLimit,
+                    decimal(maps.size()) + " maps are more than the limit of " + decimal(maps_max));
+    }
+    for (flatbuffers::uoffset_t i = 0; i < maps.size(); ++i) {
+        const fb::Map& map = *maps.Get(i);
+        const fb::Payload& payload = *map.payload();
+        const bool zstd = map.compression() == fb::Compression::Zstd;
+        parsed.maps.push_back(
+            {readFrame(map),
+             {{payload.offset(), payload.stored_size(), payload.raw_size(), zstd}, payload.xxh3()},
+             static_cast<std::uint8_t>(map.compression())});
+    }
+    return parsed;
+}
+
+Result<void> validatePayloadSizes(const ParsedMap& map) {
+    const PayloadInfo& info = map.payload.info;
+    if (!info.compressed && map.compression != static_cast<std::uint8_t>(fb::Compression::None)) {
+        return invalid("its compression " + decimal(map.compression) + " is unknown");
+    }
+    if (info.raw_size != map.frame.texelBytes()) {
+        return invalid("its raw_size is " + decimal(info.raw_size) + " where its size and format need " +
+                       decimal(map.frame.texelBytes()) + " bytes");
+    }
+    if (info.compressed ? info.stored_size >= info.raw_size : info.stored_size != info.raw_size) {
+        return invalid("its stored_size " + decimal(info.stored_size) + " does not go with its raw_size " +
+                       decimal(info.raw_size) + " and its compression");
+    }
+    if (info.compressed && info.raw_size / kZstdRatioMax > info.stored_size) {
+        return invalid("its " + decimal(info.stored_size) + " stored bytes cannot hold the " +
+                       decimal(info.raw_size) + " that they claim");
+    }
+    return {};
+}
+
+Result<std::vector<std::byte>> unpackPayload(std::span<const std::byte> stored, std::uint64_t raw_size) {
+    if (ZSTD_getFrameContentSize(stored.data(), stored.size()) != raw_size) {
+        return invalid("its payload is no zstd frame that states a content of " + decimal(raw_size) +
+                       " bytes");
+    }
+    if (ZSTD_findFrameCompressedSize(stored.data(), stored.size()) != stored.size()) {
+        return invalid("its payload is not exactly one zstd frame");
+    }
+    std::vector<std::byte> raw(raw_size);
+    const std::size_t size = ZSTD_decompress(raw.data(), raw.size(), stored.data(), stored.size());
+    if (ZSTD_isError(size) != 0) {
+        return invalid(std::string("its payload does not decompress: ") + ZSTD_getErrorName(size));
+    }
+    if (size != raw_size) {
+        return invalid("its payload decompresses to " + decimal(size) + " bytes, not " + decimal(raw_size));
+    }
+    return raw;
+}
+
+}  // namespace relief

@@ -1,0 +1,61 @@
+// The steps of reading a container, each for itself and before anything is believed: container.cpp takes
+// them in order and stops at the first that fails, inspect.cpp goes on to say what is left of a damaged file.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "formats/collider.h"
+#include "formats/container.h"
+#include "formats/result.h"
+
+namespace relief {
+
+inline constexpr std::uint64_t kPayloadAlignment = 64;  ///< bytes
+
+/// The offset of a payload behind something that ends at `end`.
+[[nodiscard]] constexpr std::uint64_t alignPayload(std::uint64_t end) {
+    return (end + kPayloadAlignment - 1) / kPayloadAlignment * kPayloadAlignment;
+}
+
+/// The longest file that readContainer could take: payloads are never longer than their texels.
+[[nodiscard]] std::uint64_t containerSizeMax(const ContainerLimits& limits);
+
+/// One payload in a file, and how to check it.
+struct StoredPayload {
+    PayloadInfo info;
+    std::uint64_t hash = 0;
+};
+
+/// A map as the metadata has it; no value has been checked.
+struct ParsedMap {
+    DepthMap frame;  ///< no texels; its enums may be out of range
+    StoredPayload payload;
+    std::uint8_t compression =
+        0;  ///< fb::Compression, perhaps unknown; info.compressed is true for zstd alone
+};
+
+/// Metadata that is a table of a collider; no value has been checked.
+struct ParsedMetadata {
+    Collider collider;  ///< without maps
+    std::vector<ParsedMap> maps;
+};
+
+/// \param bytes  the metadata, at any alignment.
+/// Errors: kInvalidInput (the FlatBuffers verifier refuses it), kLimit (more than `maps_max` maps).
+/// Throws std::bad_alloc.
+[[nodiscard]] Result<ParsedMetadata> parseMetadata(std::span<const std::byte> bytes, std::uint32_t maps_max);
+
+/// What a payload's sizes and its frame, which is valid, say of each other; not its place.
+/// Errors: kInvalidInput, without the map's index.
+[[nodiscard]] Result<void> validatePayloadSizes(const ParsedMap& map);
+
+/// The texels of a zstd payload.
+/// \param raw_size  by validatePayloadSizes: this much memory is taken.
+/// Errors: kInvalidInput, without the map's index. Throws std::bad_alloc.
+[[nodiscard]] Result<std::vector<std::byte>> unpackPayload(std::span<const std::byte> stored,
+                                                           std::uint64_t raw_size);
+
+}  // namespace relief

@@ -1,0 +1,74 @@
+# Colliders as part of a build: CMake, Make and Ninja bake again exactly what changed.
+#
+#   relief_add_colliders(<target> RECIPE <recipe.toml> [OUTPUT_DIR <dir>])
+#   relief_add_colliders(<target> MESHES <mesh>… [OPTIONS <option>…] [OUTPUT_DIR <dir>])
+#
+# Adds a target that is built by default. RECIPE: all that `relief bake --recipe` lists, by one command. MESHES: <dir>/<name
+# of the mesh>.relief by one command a mesh, with these options of `relief bake`; the target's property
+# RELIEF_COLLIDERS lists them. <dir> is the current binary directory if not given. Materials, buffers and whatever else
+# a mesh refers to are watched too, and so is `relief` itself.
+
+function(relief_add_colliders target)
+    cmake_parse_arguments(PARSE_ARGV 1 arg "" "RECIPE;OUTPUT_DIR" "MESHES;OPTIONS")
+    if(arg_UNPARSED_ARGUMENTS OR arg_KEYWORDS_MISSING_VALUES)
+        message(FATAL_ERROR "relief_add_colliders(${target}): do not understand "
+                            "'${arg_UNPARSED_ARGUMENTS}${arg_KEYWORDS_MISSING_VALUES}'")
+    endif()
+    if((arg_RECIPE AND (arg_MESHES OR arg_OPTIONS)) OR NOT (arg_RECIPE OR arg_MESHES))
+        message(FATAL_ERROR "relief_add_colliders(${target}): give RECIPE, or MESHES and perhaps OPTIONS")
+    endif()
+    if(NOT TARGET Relief::relief)
+        message(FATAL_ERROR "relief_add_colliders(${target}): the tool `relief` is not installed; "
+                            "find_package(Relief REQUIRED COMPONENTS bake) says so at once")
+    endif()
+    set(folder ${CMAKE_CURRENT_BINARY_DIR})
+    if(arg_OUTPUT_DIR)
+        get_filename_component(folder ${arg_OUTPUT_DIR} ABSOLUTE BASE_DIR ${CMAKE_CURRENT_BINARY_DIR})
+    endif()
+    file(MAKE_DIRECTORY ${folder})
+
+    if(arg_RECIPE)
+        get_filename_component(recipe ${arg_RECIPE} ABSOLUTE)
+        set(stamp ${CMAKE_CURRENT_BINARY_DIR}/${target}.stamp)
+        add_custom_command(
+            OUTPUT ${stamp}
+            COMMAND Relief::relief bake --recipe ${recipe} -o ${folder} --stamp ${stamp} --depfile ${stamp}.d -q
+            DEPENDS ${recipe} Relief::relief
+            DEPFILE ${stamp}.d
+            COMMENT "Baking the colliders of ${arg_RECIPE}"
+            VERBATIM)
+        add_custom_target(${target} ALL DEPENDS ${stamp})
+        return()
+    endif()
+
+    # An older tool writes no depfiles: it is baked again when the mesh itself changes.
+    get_target_property(tool Relief::relief LOCATION)
+    execute_process(COMMAND ${tool} bake --help OUTPUT_VARIABLE help)
+    string(FIND "${help}" "--depfile" depfiles)
+
+    set(outputs)
+    foreach(given IN LISTS arg_MESHES)
+        get_filename_component(mesh ${given} ABSOLUTE)
+        get_filename_component(name ${mesh} NAME_WLE)
+        set(output ${folder}/${name}.relief)
+        if(output IN_LIST outputs)
+            message(FATAL_ERROR "relief_add_colliders(${target}): two meshes would be baked to ${output}")
+        endif()
+        list(APPEND outputs ${output})
+        set(depfile_option)
+        set(depfile)
+        if(depfiles GREATER -1)
+            set(depfile_option --depfile ${output}.d)
+            set(depfile DEPFILE ${output}.d)
+        endif()
+        add_custom_command(
+            OUTPUT ${output}
+            COMMAND Relief::relief bake ${mesh} -o ${output} ${depfile_option} -q ${arg_OPTIONS}
+            DEPENDS ${mesh} Relief::relief
+            ${depfile}
+            COMMENT "Baking ${name}.relief"
+            VERBATIM)
+    endforeach()
+    add_custom_target(${target} ALL DEPENDS ${outputs})
+    set_property(TARGET ${target} PROPERTY RELIEF_COLLIDERS ${outputs})
+endfunction()

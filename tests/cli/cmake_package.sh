@@ -1,0 +1,128 @@
+# The installed tree from outside: the README's CMake project builds, runs, and bakes again exactly what changed; the
+# sample of embedding builds by pkg-config alone; a build without the baker installs the runtime.
+. "$(dirname "$0")/lib.sh"
+build="$RELIEF_BIN/.."
+prefix="$work/a prefix"
+cmake --install "$build" --prefix "$prefix" >log || die "cannot install: $(tail log)"
+export CMAKE_PREFIX_PATH=$prefix
+
+for file in bin/relief bin/relief-sim share/man/man1/relief.1 share/man/man1/relief-bake.1 share/man/man1/relief-sim.1 \
+    share/bash-completion/completions/relief share/zsh/site-functions/_relief-sim \
+    share/fish/vendor_completions.d/relief.fish share/doc/relief/README.md share/doc/relief/formats/README.md \
+    share/relief/samples/embed/embed.cpp share/relief/samples/rain.toml include/relief/runtime/particle_system.h; do
+    [ -s "$prefix/$file" ] || die "$file is not installed"
+done
+! grep -rIlF "$RELIEF_SOURCE" "$prefix" --include='*.cmake' --include='*.pc' --include='*.h' --include='*.1' ||
+    die "the installed tree knows where it was built"
+
+# Every header includes nothing that is not installed, or that is the player's.
+(cd "$prefix/include/relief" && grep -rhoE '#include "[^"]+"' . | sort -u | sed 's/.*"\(.*\)"/\1/') >includes
+while read -r header; do
+    [ -f "$prefix/include/relief/$header" ] || die "a header includes $header, which is not installed"
+done <includes
+! grep -rlE '#include <(nlohmann|toml|CLI|png|Imf|flatbuffers|zstd)' "$prefix/include/relief" || die "headers of third parties"
+
+# The README's project.
+mkdir consumer
+between() { sed -n "/<!-- $1 -->/,/^\`\`\`\$/p" "$RELIEF_SOURCE/README.md" | sed '1,2d;$d'; }
+between install:cmake >consumer/CMakeLists.txt
+between install:cpp >consumer/main.cpp
+[ -s consumer/CMakeLists.txt ] && [ -s consumer/main.cpp ] || die "the README shows no project"
+cp "$bunny" consumer/bunny.obj
+cat >consumer/box.obj <<'O'
+mtllib box.mtl
+v 0 0 0
+v 1 0 0
+v 0 1 0
+v 0 0 1
+usemtl red
+f 1 3 2
+f 1 2 4
+f 2 3 4
+f 3 1 4
+O
+echo 'newmtl red' >consumer/box.mtl
+cmake -G Ninja -S consumer -B out >log 2>&1 || die "does not configure: $(tail -20 log)"
+cmake --build out >log 2>&1 || die "does not build: $(tail -20 log)"
+expect 0 out/snowfall out/bunny.relief
+grep -qE '^[0-9]+ maps, [0-9]+ bytes on the GPU$' stdout || die "the program says: $(cat stdout)"
+expect 0 "$relief" check out/box.relief
+
+no_work() { cmake --build out | grep -q 'no work to do' || die "$1, and there is work to do"; }
+# bakes FILES TOUCHED…: touching them bakes exactly FILES again.
+bakes() {
+    local wanted=$1
+    shift
+    sleep 0.01
+    touch "$@"
+    cmake --build out >log 2>&1 || die "does not build again: $(tail log)"
+    local got
+    got=$(grep -oE 'Baking [^ ]+' log | sort | tr '\n' ' ' || true)
+    [ "$got" = "$wanted" ] || die "touching $* gives '$got' instead of '$wanted': $(cat log)"
+    no_work "$* was touched and baked"
+}
+no_work "all is built"
+bakes 'Baking box.relief ' consumer/box.obj
+bakes 'Baking bunny.relief ' consumer/bunny.obj
+if "$relief" bake --help | grep -q -- --depfile; then
+    bakes 'Baking box.relief ' consumer/box.mtl
+fi
+
+# Mistakes are named when the project is configured.
+refused() { # PATTERN LINES
+    mkdir -p wrong
+    printf 'cmake_minimum_required(VERSION 3.25)\nproject(wrong LANGUAGES CXX)\n%s\n' "$2" >wrong/CMakeLists.txt
+    ! cmake -G Ninja -S wrong -B wrong/out >log 2>&1 || die "is not refused: $2"
+    tr -s ' \n' ' ' <log | grep -qE "$1" || die "'$(cat log)' does not match '$1'"
+    rm -r wrong
+}
+refused 'no component nonsense' 'find_package(Relief REQUIRED COMPONENTS nonsense)'
+refused 'give RECIPE, or MESHES' $'find_package(Relief REQUIRED)\nrelief_add_colliders(c)'
+refused 'two meshes would be baked' $'find_package(Relief REQUIRED)\nrelief_add_colliders(c MESHES a.obj b/a.obj)'
+refused '0\.9' 'find_package(Relief 0.9 REQUIRED)'
+
+# Recipes, once `relief bake` knows them.
+if "$relief" bake --help | grep -q -- --recipe; then
+    mkdir recipe
+    cp consumer/box.* recipe/
+    printf '[[asset]]\nmesh = "*.obj"\noutput = "{stem}.relief"\n[asset.options]\nbudget = "20kB"\n' >recipe/recipe.toml
+    printf '%s\n' 'cmake_minimum_required(VERSION 3.25)' 'project(recipe LANGUAGES CXX)' \
+        'find_package(Relief REQUIRED COMPONENTS bake)' \
+        'relief_add_colliders(colliders RECIPE recipe.toml OUTPUT_DIR baked)' >recipe/CMakeLists.txt
+    cmake -G Ninja -S recipe -B recipe/out >log 2>&1 || die "does not configure: $(tail -20 log)"
+    cmake --build recipe/out >log 2>&1 || die "does not build: $(tail -20 log)"
+    expect 0 "$relief" check recipe/out/baked/box.relief
+    cmake --build recipe/out | grep -q 'no work to do' || die "the recipe is baked twice"
+    sleep 0.01
+    echo '# touched' >>recipe/box.mtl
+    cmake --build recipe/out >log 2>&1
+    grep -q 'Baking the colliders' log || die "a material of a recipe is not watched"
+    cmake --build recipe/out | grep -q 'no work to do' || die "the recipe is baked twice"
+fi
+
+# pkg-config alone.
+export PKG_CONFIG_PATH="$prefix/lib/pkgconfig:$prefix/lib64/pkgconfig:$(echo "$prefix"/lib/*/pkgconfig)"
+pkg-config --exists --print-errors relief-runtime || die "pkg-config does not find relief-runtime"
+eval "g++ -std=c++20 $(pkg-config --cflags relief-runtime)" \
+    '"$prefix/share/relief/samples/embed/embed.cpp" -o embed' "$(pkg-config --libs relief-runtime)" ||
+    die "samples/embed does not build by pkg-config"
+expect 0 ./embed out/bunny.relief
+grep -q 'GL state as it was' stdout || die "samples/embed says: $(cat stdout)"
+
+# Without the baker. What both builds compile alike stands in for a second compile (scripts/soak.sh package does it).
+cmake -G Ninja -S "$RELIEF_SOURCE" -B runtime_only -DRELIEF_BUILD_BAKE=OFF -DRELIEF_BUILD_TESTS=OFF \
+    -DRELIEF_BUILD_BENCHMARKS=OFF >log 2>&1 || die "does not configure without the baker: $(tail -20 log)"
+for file in formats/librelief_formats.a shaders/librelief_shaders.a runtime/librelief_runtime.a bin/relief-sim \
+    install/pages/relief-sim; do
+    mkdir -p "runtime_only/$(dirname $file)"
+    cp -r "$build/$file" runtime_only/$file
+done
+cmake --install runtime_only --prefix "$work/runtime" >log || die "cannot install without the baker: $(tail log)"
+[ -x runtime/bin/relief-sim ] && [ ! -e runtime/bin/relief ] && [ -f runtime/share/man/man1/relief-sim.1 ] ||
+    die "installed without the baker: $(ls runtime/*)"
+export CMAKE_PREFIX_PATH=$work/runtime
+refused 'no component bake' 'find_package(Relief REQUIRED COMPONENTS runtime bake)'
+refused 'tool .relief. is not installed' $'find_package(Relief REQUIRED)\nrelief_add_colliders(c MESHES a.obj)'
+sed -i -e 's/ COMPONENTS.*)/ COMPONENTS runtime sim)/' -e '/^relief_add_colliders/,$d' consumer/CMakeLists.txt
+cmake -G Ninja -S consumer -B out2 >log 2>&1 && cmake --build out2 >>log 2>&1 || die "no runtime alone: $(tail log)"
+expect 0 out2/snowfall out/bunny.relief
