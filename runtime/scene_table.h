@@ -10,11 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#define TOML_HEADER_ONLY 1
-// toml++ asserts that a key starts as a key must, just before it checks the same and reports the error: a
-// file must not be able to end a debug build.
-#define TOML_ASSERT(expression) static_cast<void>(0)
-#include <toml++/toml.h>
+#include "runtime/toml.h"
 
 namespace relief {
 
