@@ -498,8 +498,22 @@ TEST_P(RendererGlTest, DepthMapsAreTheSameUnderOddState) {
     const std::vector<std::byte> plain = run([](const char*) {});
     EXPECT_NE(plain, std::vector<std::byte>(plain.size())) << "nothing was drawn";
     const OddState odd;
+    glDepthRangef(0.75F, 0.25F);
+    if (!isGles()) {
+        glProvokingVertex(GL_FIRST_VERTEX_CONVENTION);
+        glEnable(GL_DEPTH_CLAMP);
+    }
     const auto before = glState();
     EXPECT_TRUE(run([&](const char* call) { EXPECT_EQ(glState(), before) << "after " << call; }) == plain);
+    std::array<GLfloat, 2> range{};
+    glGetFloatv(GL_DEPTH_RANGE, range.data());
+    EXPECT_EQ(range, (std::array<GLfloat, 2>{0.75F, 0.25F}));
+    if (!isGles()) {
+        GLint provoking = 0;
+        glGetIntegerv(GL_PROVOKING_VERTEX, &provoking);
+        EXPECT_EQ(provoking, static_cast<GLint>(GL_FIRST_VERTEX_CONVENTION));
+        EXPECT_EQ(glIsEnabled(GL_DEPTH_CLAMP), GL_TRUE);
+    }
 }
 
 }  // namespace
