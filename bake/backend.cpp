@@ -82,7 +82,7 @@ Result<Backend> chooseBackend(const BackendOptions& options, const GlOptions& gl
     }
     backend.raster = true;
     backend.device = context.description();
-    backend.reason = automatic ? "the OpenGL is a GPU's: " + backend.device : "";
+    backend.reason = automatic ? "planes of quality fast; the OpenGL is a GPU's: " + backend.device : "";
     backend.gl = std::move(*opened);
     backend.gl.watchdog->feed("drawing the maps");
     return backend;

@@ -204,6 +204,38 @@ void setVector(GLint location, const glm::dvec3& v) {
     glUniform3f(location, static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
 }
 
+/// What PassState leaves alone because no other pass depends on it: the depth range, and on desktop GL the
+/// provoking vertex and depth clamping.
+class DrawState {
+  public:
+    DrawState() {
+        glGetFloatv(GL_DEPTH_RANGE, range_);
+        glDepthRangef(0.0F, 1.0F);
+        if (!isGles()) {
+            glGetIntegerv(GL_PROVOKING_VERTEX, &provoking_);
+            glProvokingVertex(GL_LAST_VERTEX_CONVENTION);
+            clamp_ = glIsEnabled(GL_DEPTH_CLAMP);
+            glDisable(GL_DEPTH_CLAMP);
+        }
+    }
+    ~DrawState() {
+        glDepthRangef(range_[0], range_[1]);
+        if (!isGles()) {
+            glProvokingVertex(static_cast<GLenum>(provoking_));
+            if (clamp_ == GL_TRUE) {
+                glEnable(GL_DEPTH_CLAMP);
+            }
+        }
+    }
+    DrawState(const DrawState&) = delete;
+    DrawState& operator=(const DrawState&) = delete;
+
+  private:
+    GLfloat range_[2] = {0.0F, 1.0F};
+    GLint provoking_ = 0;
+    GLboolean clamp_ = GL_FALSE;
+};
+
 void clearTexels(const DepthMapTarget& target) {
     if (isFrontBack(target.format())) {
         const GLuint nothing[4] = {0, 0, 0, 0};
@@ -436,6 +468,7 @@ Result<void> DepthMapRenderer::render(GpuMesh& mesh, const DepthMapFrame& frame,
                     "exact depth maps have no motion; take a target without, or leave exact out");
     }
     const PassState state;
+    const DrawState draw_state;
     const Result<const Program*> program = programFor(frame, motion);
     if (!program) {
         return forward(program);

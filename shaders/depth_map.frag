@@ -234,7 +234,8 @@ void main() {
     vec3 n = uintBitsToFloat(texelFetch(u_planes, ivec2(i & ((1 << u_shift.y) - 1), i >> u_shift.y), 0).xyz);
     n = behind ? -n : n;
 #endif
-    o_texel = vec4(n + 0.0, depth);
+    // No -0; compilers leave out an addition of 0.
+    o_texel = vec4(n.x == 0.0 ? 0.0 : n.x, n.y == 0.0 ? 0.0 : n.y, n.z == 0.0 ? 0.0 : n.z, depth);
 #else
 #ifdef RELIEF_PLANE
     uint code = 1u + stored.code;

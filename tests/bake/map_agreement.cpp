@@ -12,6 +12,9 @@
 namespace relief::test {
 namespace {
 
+/// A unit, and what float maps of planes add: a step of their codes is 1/65534.
+constexpr double kUnit = 1.001;
+
 /// The depth of a texel's end as a number of units.
 double unitsOf(MapFormat format, std::span<const std::byte> texel, int end) {
     const auto word = [&](std::size_t i) {
@@ -104,7 +107,7 @@ Agreement compareMaps(const DepthMap& a, const DepthMap& b, double degrees) {
                     ++agreement.both;
                     const double units =
                         std::abs(unitsOf(a.format, bytes_a, end) - unitsOf(b.format, bytes_b, end));
-                    if (units > 1.0) {
+                    if (units > kUnit) {
                         agreement.depths.push_back({face, x, y, end, units});
                     }
                     const double turned = degreesBetween(of_a->normal, of_b->normal);
