@@ -35,7 +35,7 @@ SceneLive good(const std::string& deform) {
 
 TEST(SceneLive, Bend) {
     const SceneLive live = good(
-        "deform = { kind = \"bend\", amplitude = 90, frequency = 0.5, phase = 180, axis = [0, 0, -2],\n"
+        "deform = { kind = \"bend\", amplitude = 90, frequency = 0.5, phase = 180, axis = [0, 0, -2], "
         "along = [3, 0, 0.1], center = [1, 2, 3], range = [-1, 4] }\nresolution = 100\n");
     EXPECT_EQ(live.resolution, 100U);
     const Deformation& d = live.deformation;
@@ -70,8 +70,8 @@ TEST(SceneLive, Mistakes) {
     expectError("deform = { kind = \"melt\", amplitude = 40, frequency = 1 }\n", "3:19", "melt");
     expectError("deform = { kind = \"twist\", frequency = 1 }\n", "3:10", "needs an amplitude");
     expectError("deform = { kind = \"twist\", amplitude = 40 }\n", "3:10", "needs a frequency");
-    expectError("deform = { kind = \"twist\", amplitude = 400, frequency = 1 }\n", "3:39", "amplitude");
-    expectError("deform = { kind = \"twist\", amplitude = 40, frequency = -1 }\n", "3:55", "frequency");
+    expectError("deform = { kind = \"twist\", amplitude = 400, frequency = 1 }\n", "3:40", "amplitude");
+    expectError("deform = { kind = \"twist\", amplitude = 40, frequency = -1 }\n", "3:56", "frequency");
     expectError(twist + ", axis = [0, 0, 0] }\n", "3:66", "no direction");
     expectError(twist + ", along = [1, 0, 0] }\n", "3:67", "does nothing for a twist");
     expectError(twist + ", range = [1, 1] }\n", "3:67", "does not rise");
@@ -79,11 +79,11 @@ TEST(SceneLive, Mistakes) {
     expectError(twist + ", sped = 1 }\n", "3:59", "sped");
     expectError(twist + " }\nresolution = 8\n", "4:14", "16");
     expectError("deform = { kind = \"bend\", amplitude = 40, frequency = 1 }\n", "3:10", "along");
-    expectError("deform = { kind = \"bend\", amplitude = 40, frequency = 1, along = [0, 1, 0] }\n", "3:65",
+    expectError("deform = { kind = \"bend\", amplitude = 40, frequency = 1, along = [0, 1, 0] }\n", "3:66",
                 "along collider.deform.axis");
-    expectError("deform = { kind = \"wobble\", amplitude = 1, frequency = 1, axis = [0, 1, 0] }\n", "3:65",
+    expectError("deform = { kind = \"wobble\", amplitude = 1, frequency = 1, axis = [0, 1, 0] }\n", "3:66",
                 "does nothing for a wobble");
-    expectError("deform = { kind = \"wobble\", amplitude = 1, frequency = 1, wavelength = 0 }\n", "3:71",
+    expectError("deform = { kind = \"wobble\", amplitude = 1, frequency = 1, wavelength = 0 }\n", "3:72",
                 "wavelength");
     expectError(twist + " }\n[render]\nmesh = \"b.obj\"\n", "5:8", "name collider.mesh");
     expectSceneError("[collider]\nmesh = \"../a.obj\"\n" + twist + " }\n",
