@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-all=(bunny_in_the_snow fountain linked_tori rain)
+all=(bunny_in_the_snow fountain linked_tori rain wobbling_torus)
 names=("$@")
 [ ${#names[@]} -gt 0 ] || names=("${all[@]}")
 for name in "${names[@]}"; do
@@ -42,6 +42,9 @@ for name in "${names[@]}"; do
         mesh torus.obj
         cp samples/linked_tori.csv "$out/"
         bake "$out/torus.obj" -o "$out/torus.relief" --budget 200kB
+        ;;
+    wobbling_torus)
+        mesh torus.obj
         ;;
     rain)
         mesh terrain.obj

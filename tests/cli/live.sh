@@ -1,0 +1,62 @@
+# Scenes whose collider deforms: relief-sim plays one without any baked file, and refuses what makes no sense in a line.
+. "$(dirname "$0")/lib.sh"
+
+python3 "$RELIEF_SOURCE/samples/meshes.py" torus torus.obj
+scene() { # KEYS… of [collider]
+    {
+        echo '[collider]'
+        printf '%s\n' "$@"
+        cat <<'T'
+[time]
+steps = 30
+[particles]
+capacity = 2000
+[emitter]
+box_min = [-1.2, 0.4, -1.2]
+box_max = [1.2, 0.5, 1.2]
+rate = 0.0
+burst = 2000
+lifetime = 100.0
+[ground]
+height = -1.0
+T
+    } >scene.toml
+}
+twist='deform = { kind = "twist", axis = [1, 0, 0], amplitude = 60, frequency = 1 }'
+bend='deform = { kind = "bend", axis = [0, 0, 1], along = [1, 0, 0], amplitude = 60, frequency = 1 }'
+wobble='deform = { kind = "wobble", amplitude = 0.1, frequency = 2 }'
+
+# Each kind moves the mesh in a way of its own, so that the particles end elsewhere; the same scene ends the same.
+for kind in twist bend wobble; do
+    scene 'mesh = "torus.obj"' "${!kind}" 'resolution = 64'
+    expect 0 "$relief_sim" scene.toml --check
+    [[ $(cat stdout) == *"3 maps"* && $(cat stdout) == *"torus.obj"* ]] || die "--check does not tell of the mesh"
+    expect 0 "$relief_sim" scene.toml --dump $kind.ply --json
+    cp stdout report.json
+    json report.json "d['settings']['collider']['deform']['kind'] == '$kind'"
+    json report.json "d['particles']['alive'] == 2000 and d['particles']['in_contact'] > 0"
+done
+! cmp -s twist.ply bend.ply || die "a twist and a bend do the same"
+! cmp -s twist.ply wobble.ply || die "a twist and a wobble do the same"
+"$relief_sim" scene.toml --dump again.ply -q
+cmp wobble.ply again.ply || die "the same scene ends in another way"
+"$relief_sim" scene.toml --dump es.ply --api gles -q || die "not in OpenGL ES"
+
+# The picture shows the mesh as it is deformed, and is another one some steps later.
+printf '[render]\nmesh = "torus.obj"\nsize = [160, 120]\nevery = 15\n' >>scene.toml
+expect 0 "$relief_sim" scene.toml --frames frames --steps 30
+[ "$(identify -format '%k' frames/frame_0001.png)" -gt 100 ] || die "a frame shows nothing"
+! cmp -s frames/frame_0000.png frames/frame_0001.png || die "two frames are the same"
+
+# One line, which names the place.
+scene 'mesh = "torus.obj"' 'deform = { kind = "melt", amplitude = 1, frequency = 1 }'
+expect 3 "$relief_sim" scene.toml
+[[ $(cat stderr) == *"scene.toml:3:"*melt* ]] || die "a wrong kind is not named"
+scene 'mesh = "none.obj"' "$twist"
+expect 2 "$relief_sim" scene.toml --check
+[[ $(cat stderr) == *"scene.toml:2:"*"collider.mesh"*none.obj* ]] || die "a missing mesh is not named"
+scene 'mesh = "torus.obj"'
+expect 3 "$relief_sim" scene.toml --check
+echo "no mesh" >broken.obj
+scene 'mesh = "broken.obj"' "$twist"
+expect 3 "$relief_sim" scene.toml
