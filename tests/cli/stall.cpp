@@ -1,5 +1,5 @@
-// Preloaded into an executable: a GPU that never finishes. libepoxy's entry points are pointers, replaced here
-// before the first call.
+// Preloaded into an executable: a GPU that never finishes. libepoxy's entry points are pointers, replaced
+// here before the first call.
 #include <epoxy/gl.h>
 #include <unistd.h>
 
