@@ -52,6 +52,7 @@ std::string infoLog(GLuint name, bool is_program) {
     while (!log.empty() && (log.back() == '\0' || log.back() == '\n')) {
         log.pop_back();
     }
+    std::replace(log.begin(), log.end(), '\n', ' ');  // a message is one line
     return log;
 }
 

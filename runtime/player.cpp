@@ -419,6 +419,10 @@ Result<void> run(const PlayerOptions& options, std::span<Emitter> emitters, Coll
         if (auto done = waitForGpu(steps); !done) {
             return done;
         }
+        // A step has no result of its own: births that found no room would be missing in silence.
+        if (auto done = checkAllocated(steps, "choose a smaller capacity"); !done) {
+            return done;
+        }
         rest(options);
         const Clock::duration stretch = Clock::now() - begun;
         if (stretch > kStretchMax) {
