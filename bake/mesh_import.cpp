@@ -159,6 +159,12 @@ class LoggedErrors {
                 return;
             }
             const std::string line = oneLine(message);
+            // Of what is not looked at here anyway.
+            for (const char* other : {"aterial", "exture", "nimation", "angent", "inormal"}) {
+                if (line.find(other) != std::string::npos) {
+                    return;
+                }
+            }
             if (std::find(errors->begin(), errors->end(), line) == errors->end()) {
                 errors->push_back(line);
             }
