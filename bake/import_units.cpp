@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 
 #include "bake/text.h"
@@ -36,19 +35,6 @@ std::string_view between(std::string_view text, std::string_view begin, std::str
     text.remove_prefix(from + begin.size());
     const std::size_t to = text.find(end);
     return to == std::string_view::npos ? std::string_view{} : text.substr(0, to);
-}
-
-std::optional<double> attributeNumber(std::string_view tag, std::string_view name) {
-    for (const char quote : {'"', '\''}) {
-        const std::string begin = std::string(name) + "=" + quote;
-        const std::string_view text = trimmed(between(tag, begin, std::string_view(&quote, 1)));
-        double value = 0.0;
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        if (error == std::errc() && end == text.data() + text.size() && std::isfinite(value) && value > 0.0) {
-            return value;
-        }
-    }
-    return std::nullopt;
 }
 
 std::string number(double value) {
@@ -134,20 +120,12 @@ FrameChange changeOf(const SourceFrame& source, std::string_view unit, std::opti
     return change;
 }
 
-SourceFrame colladaFrame(std::string_view document) {
-    SourceFrame frame{1.0, UpAxis::kPlusY, true, true};
-    const std::string_view asset = between(document, "<asset>", "</asset>");
-    // An attribute stands between spaces: "xmeter" is another.
-    if (const auto metres = attributeNumber(between(asset, "<unit", ">"), " meter")) {
-        frame.metres = *metres;
-    }
-    const std::string_view up = trimmed(between(asset, "<up_axis>", "</up_axis>"));
-    if (up == "X_UP") {
-        frame.up = UpAxis::kPlusX;
-    } else if (up == "Z_UP") {
-        frame.up = UpAxis::kPlusZ;
-    }
-    return frame;
+UpAxis colladaUp(std::string_view document) {
+    std::string_view up = between(between(document, "<asset>", "</asset>"), "<up_axis>", "</up_axis>");
+    constexpr std::string_view kSpace = " \t\r\n";
+    up.remove_prefix(std::min(up.find_first_not_of(kSpace), up.size()));
+    up = up.substr(0, up.find_first_of(kSpace));
+    return up == "X_UP" ? UpAxis::kPlusX : up == "Z_UP" ? UpAxis::kPlusZ : UpAxis::kPlusY;
 }
 
 }  // namespace relief

@@ -51,7 +51,7 @@ struct FrameChange {
 [[nodiscard]] FrameChange changeOf(const SourceFrame& source, std::string_view unit,
                                    std::optional<UpAxis> up);
 
-/// Unit and up axis of a COLLADA document's first <asset>; metres and +Y where it says none, as COLLADA does.
-[[nodiscard]] SourceFrame colladaFrame(std::string_view document);
+/// The up axis of a COLLADA document's first <asset>; +y where it says none, as COLLADA does.
+[[nodiscard]] UpAxis colladaUp(std::string_view document);
 
 }  // namespace relief

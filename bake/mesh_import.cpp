@@ -8,6 +8,7 @@
 #include <pthread.h>
 
 #include <algorithm>
+#include <assimp/DefaultLogger.hpp>
 #include <assimp/IOStream.hpp>
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
@@ -114,6 +115,67 @@ class ReadOnlyFiles final : public Assimp::IOSystem {
   private:
     ImportFiles& files_;
 };
+
+// --- what assimp logs ---
+
+/// The errors that assimp logs, while this lives, from this thread: where a reader of it mends a file, such
+/// as an index out of range, that is all it says.
+class LoggedErrors {
+  public:
+    LoggedErrors() {
+        static const bool kInstalled = [] {
+            Assimp::DefaultLogger::set(new Listener);  // kept by assimp for the life of the process
+            return true;
+        }();
+        static_cast<void>(kInstalled);
+        errors_of_thread = &errors_;
+    }
+    LoggedErrors(const LoggedErrors&) = delete;
+    LoggedErrors& operator=(const LoggedErrors&) = delete;
+    ~LoggedErrors() { errors_of_thread = nullptr; }
+
+    /// The first few, each once.
+    [[nodiscard]] const std::vector<std::string>& errors() const { return errors_; }
+    [[nodiscard]] bool say(std::string_view words) const {
+        return std::any_of(errors_.begin(), errors_.end(),
+                           [&](const std::string& error) { return error.find(words) != std::string::npos; });
+    }
+
+  private:
+    class Listener final : public Assimp::Logger {
+      public:
+        bool attachStream(Assimp::LogStream* /*stream*/, unsigned /*severity*/) override { return false; }
+        bool detachStream(Assimp::LogStream* /*stream*/, unsigned /*severity*/) override { return false; }
+
+      protected:
+        void OnVerboseDebug(const char* /*message*/) override {}
+        void OnDebug(const char* /*message*/) override {}
+        void OnInfo(const char* /*message*/) override {}
+        void OnWarn(const char* /*message*/) override {}
+        void OnError(const char* message) override {
+            constexpr std::size_t kErrorsMax = 4;
+            std::vector<std::string>* const errors = errors_of_thread;
+            if (errors == nullptr || errors->size() >= kErrorsMax) {
+                return;
+            }
+            const std::string line = oneLine(message);
+            // Of what is not looked at here anyway.
+            for (const char* other : {"aterial", "exture", "nimation", "angent", "inormal"}) {
+                if (line.find(other) != std::string::npos) {
+                    return;
+                }
+            }
+            if (std::find(errors->begin(), errors->end(), line) == errors->end()) {
+                errors->push_back(line);
+            }
+        }
+    };
+
+    static thread_local std::vector<std::string>* errors_of_thread;
+    std::vector<std::string> errors_;
+};
+
+thread_local std::vector<std::string>* LoggedErrors::errors_of_thread = nullptr;
 
 // --- the scene's nodes, flattened ---
 
@@ -299,7 +361,10 @@ SourceFrame frameOf(const ImportJob& job, const aiScene& scene) {
         return fbxFrame(scene);
     }
     if (job.extension == "dae") {
-        return colladaFrame({reinterpret_cast<const char*>(job.bytes.data()), job.bytes.size()});
+        // The root holds nothing but the document's unit.
+        const double metres = double{scene.mRootNode->mTransformation.a1};
+        const std::string_view document(reinterpret_cast<const char*>(job.bytes.data()), job.bytes.size());
+        return {std::isfinite(metres) && metres > 0.0 ? metres : 1.0, colladaUp(document), true, false};
     }
     if (job.extension == "3ds") {
         return {std::nullopt, UpAxis::kPlusZ, false, true};  // assimp has turned it
@@ -351,8 +416,10 @@ Result<TriangleMesh> importWithAssimp(const ImportJob& job) {
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     // Without it, files that hold bones alone get a made-up mesh.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);  // turned here
+    const LoggedErrors logged;
     const aiScene* scene = importer.ReadFile(job.file_name, 0);
-    if (scene != nullptr && !indicesExist(*scene)) {
+    if (scene != nullptr && (!indicesExist(*scene) || logged.say("out of range"))) {
         return unreadable(job, "a face uses a vertex that does not exist", files);
     }
     if (scene != nullptr) {
@@ -380,6 +447,9 @@ Result<TriangleMesh> importWithAssimp(const ImportJob& job) {
     const FrameChange change = changeOf(frameOf(job, *scene), job.options.unit, job.options.up);
     mesh.unit = change.unit;
     mesh.warnings.insert(mesh.warnings.end(), change.warnings.begin(), change.warnings.end());
+    for (const std::string& error : logged.errors()) {
+        mesh.warnings.push_back("its importer says: " + error);
+    }
     for (const std::string& refused : files.refused()) {
         mesh.warnings.push_back("left out " + refused);
     }

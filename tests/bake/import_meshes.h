@@ -23,8 +23,8 @@ struct GltfParts {
     std::string primitive = R"("attributes":{"POSITION":0},"indices":1)";
     std::string position = R"("bufferView":0,"componentType":5126,"count":4,"type":"VEC3")";
     std::string indices = R"("bufferView":1,"componentType":5123,"count":12,"type":"SCALAR")";
-    std::string more;  ///< members of the document, each followed by a comma
-    std::string uri;   ///< of the buffer; the bytes themselves by default
+    std::string more{};  ///< members of the document, each followed by a comma
+    std::string uri{};   ///< of the buffer; the bytes themselves by default
 };
 [[nodiscard]] std::string tetrahedronGltf(const GltfParts& parts = {});
 /// The 72 bytes of its buffer.

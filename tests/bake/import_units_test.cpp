@@ -60,8 +60,8 @@ TEST(ImportUnits, EveryTurnIsARotationThatLiftsItsAxis) {
 
 TEST(ImportUnits, WordsAreMetres) {
     EXPECT_EQ(metresPer("in"), 0.0254);
-    EXPECT_EQ(metresPer("ft"), 12 * 0.0254);
-    EXPECT_EQ(metresPer("yd"), 36 * 0.0254);
+    EXPECT_DOUBLE_EQ(metresPer("ft").value_or(0), 12 * 0.0254);
+    EXPECT_DOUBLE_EQ(metresPer("yd").value_or(0), 36 * 0.0254);
     EXPECT_EQ(metresPer("cm"), 0.01);
     EXPECT_FALSE(metresPer(""));
     EXPECT_FALSE(metresPer("inch"));
@@ -154,11 +154,16 @@ TEST(ImportUnits, AnOptionWinsOverTheFileAndSaysSo) {
 }
 
 TEST(ImportUnits, ColladaHeadersAreReadAsWritten) {
-    EXPECT_EQ(colladaFrame("<asset><unit xmeter=\"3\" meter='0.5'/></asset>").metres, 0.5);
-    EXPECT_EQ(colladaFrame("<asset><unit meter=\"-1\"/></asset>").metres, 1.0);
-    EXPECT_EQ(colladaFrame("<unit meter=\"7\"/>").metres, 1.0) << "not of the document";
-    EXPECT_EQ(colladaFrame("<asset><up_axis> Z_UP\n</up_axis></asset>").up, UpAxis::kPlusZ);
-    EXPECT_EQ(colladaFrame("").up, UpAxis::kPlusY);
+    EXPECT_EQ(colladaUp("<asset><up_axis> Z_UP\n</up_axis></asset>"), UpAxis::kPlusZ);
+    EXPECT_EQ(colladaUp("<asset><up_axis>X_UP</up_axis></asset>"), UpAxis::kPlusX);
+    EXPECT_EQ(colladaUp("<asset></asset><up_axis>Z_UP</up_axis>"), UpAxis::kPlusY) << "not of the document";
+    EXPECT_EQ(colladaUp(""), UpAxis::kPlusY);
+    // As XML allows it.
+    const TemporaryFolder folder;
+    const std::string asset = "<unit name=\"meter\"\n meter = '0.5'/><up_axis>\nZ_UP </up_axis>";
+    const std::filesystem::path path = folder.write("t.dae", tetrahedronDae(asset));
+    expectLiesAt(importMesh(path), {0, 0, -1}, {0.5F, 1.5F, 0}, "m");
+    expectLiesAt(importMesh(path, options("m")), {0, 0, -2}, {1, 3, 0}, "m");
 }
 
 }  // namespace

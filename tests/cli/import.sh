@@ -29,7 +29,7 @@ expect_error 1 'import-memory.*64MB' "$relief" bake good.stl -o x.relief --impor
 expect_error 1 'import-time.*seconds' "$relief" bake good.stl -o x.relief --import-time 0
 
 # Memory: what a header of a few bytes asks for, and what a mesh of honest size takes.
-printf 'ply\nformat ascii 1.0\nelement face 99999999999\nproperty list uchar int i\nend_header\n' >count.ply
+printf 'ply\nformat binary_little_endian 1.0\nelement vertex 99999999999\nproperty float x\nend_header\n' >count.ply
 expect_error 6 'count\.ply.*import-memory' "$relief" bake count.ply -o x.relief
 expect_error 6 'OutOfMemory\.off.*import-memory' "$relief" bake "$models/invalid/OutOfMemory.off" -o x.relief
 python3 - <<'P'
