@@ -30,12 +30,12 @@ struct WrapOptions {
 inline constexpr double kWrapAlphaMin = 0.001;
 inline constexpr double kWrapAlphaMax = 0.5;
 
-/// The surface that shrinks round the mesh, a thirtieth of alpha off it, without passing holes smaller than
-/// alpha: closed, manifold, wound outwards, without intersections, and with the whole mesh inside it.
-/// Portaneri, Rouxel-Labbe, Hemmer, Cohen-Steiner and Alliez, "Alpha wrapping with an offset" (2022). Name,
-/// hash and unit stay; the bounds grow by the offset. Time and triangles grow with the surface over alpha
-/// squared: 2 to 20 s for alpha 0.01. The same bytes each time, on one thread. Errors: kUsage (alpha),
-/// kFailure.
+/// The surface that shrinks round the mesh without passing holes smaller than alpha: closed, manifold, wound
+/// outwards, without intersections, with the whole mesh inside it, and its vertices a thirtieth of alpha off
+/// the mesh. Portaneri, Rouxel-Labbe, Hemmer, Cohen-Steiner and Alliez, "Alpha wrapping with an offset"
+/// (2022). Name, hash and unit stay; the bounds grow by the offset. Time and triangles grow with the surface
+/// over alpha squared: 60,000 triangles and 15 s for a bunny at 0.01. The same bytes each time, on one
+/// thread. Errors: kUsage (alpha), kLimit (out of memory), kFailure.
 [[nodiscard]] Result<TriangleMesh> wrapMesh(const TriangleMesh& mesh, const WrapOptions& options);
 
 /// The mesh wound consistently wherever two triangles share an edge, taken apart where more do: positions of

@@ -344,7 +344,7 @@ class RayScene::Impl::Tracer {
                 if (row + 1 < rows) {
                     compare(at(column, row + 1));
                 }
-                if (before > 0 && before >= std::min(beside, 2U)) {
+                if (before > 0 && before >= std::min(beside, 3U)) {
                     doubtful |= 1U << (row * kTile + column);
                 }
             }
