@@ -9,6 +9,7 @@
 #include <sstream>
 #include <vector>
 
+#include "bake/response_file.h"
 #include "bake/text.h"
 #include "formats/file_io.h"
 
@@ -162,8 +163,14 @@ Result<void> runCommandLine(int argc, char** argv) {
     addQuery(app, action);
     addSlice(app, action);
     addExport(app, action);
+    Result<std::vector<std::string>> arguments =
+        expandArguments(std::vector<std::string>(argv + std::min(argc, 1), argv + argc));
+    if (!arguments) {
+        return forward(arguments);
+    }
+    std::reverse(arguments->begin(), arguments->end());  // as CLI11 takes them
     try {
-        app.parse(argc, argv);
+        app.parse(std::move(*arguments));
     } catch (const CLI::CallForHelp&) {
         const std::vector<CLI::App*> called = app.get_subcommands();
         return printOut(called.empty() ? app.help() : called.front()->help("relief"));
