@@ -89,7 +89,9 @@ ChildProcesses::ChildProcesses() {
 
 ChildProcesses::~ChildProcesses() {
     endAll();
-    readSignals();  // those that were told are not delivered a second time
+    if (asked_ != 0) {
+        readSignals();  // to ask again is to ask once; what nobody was told of is delivered now
+    }
     closeIf(signal_fd_);
     ::sigprocmask(SIG_SETMASK, &mask_before_, nullptr);
 }

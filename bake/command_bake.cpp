@@ -640,8 +640,9 @@ std::shared_ptr<BakeCommand> registerBake(CLI::App& app, Action& action) {
                     "Where planes must err: inside keeps particles out of walls, outside keeps free\n"
                     "space free, neither (default) errs least")
         ->option_text("WORD");
-    verb.add_option("-j,--threads", command->threads,
-                    "Threads to use; default: all cores. The result is the same")
+    verb.add_option(
+            "-j,--threads", command->threads,
+            "Threads to use; default: all cores. The result is the same. With --recipe: assets at once")
         ->option_text("N");
     verb.add_option("--compress", command->compress, "zstd level of the texels, 0 (none, default) to 19")
         ->option_text("LEVEL");
