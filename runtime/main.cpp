@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "formats/file_io.h"
-#include "runtime/gpu_tool.h"
 #include "runtime/cli_model.h"
+#include "runtime/gpu_tool.h"
 #include "runtime/player.h"
 #include "runtime/report.h"
 #include "runtime/scene_check.h"
