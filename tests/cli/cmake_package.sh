@@ -9,7 +9,7 @@ export CMAKE_PREFIX_PATH=$prefix
 for file in bin/relief bin/relief-sim share/man/man1/relief.1 share/man/man1/relief-bake.1 share/man/man1/relief-sim.1 \
     share/bash-completion/completions/relief share/zsh/site-functions/_relief-sim \
     share/fish/vendor_completions.d/relief.fish share/doc/relief/README.md share/doc/relief/formats/README.md \
-    share/relief/samples/embed/embed.cpp share/relief/samples/rain.toml include/relief/runtime/particle_system.h; do
+    share/relief/samples/embed/embed.cpp share/relief/samples/rain.toml share/relief/schemas/bake.schema.json include/relief/runtime/particle_system.h; do
     [ -s "$prefix/$file" ] || die "$file is not installed"
 done
 ! grep -rIlF "$RELIEF_SOURCE" "$prefix" --include='*.cmake' --include='*.pc' --include='*.h' --include='*.1' ||
