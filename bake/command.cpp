@@ -9,6 +9,7 @@
 #include <sstream>
 #include <vector>
 
+#include "bake/response_file.h"
 #include "bake/text.h"
 #include "formats/file_io.h"
 #include "runtime/cli_model.h"
@@ -166,8 +167,14 @@ Result<void> runCommandLine(int argc, char** argv) {
     if (const auto dumped = dumpedCommandLine(readProgram(app, "relief", RELIEF_VERSION), argc, argv)) {
         return printOut(*dumped);
     }
+    Result<std::vector<std::string>> arguments =
+        expandArguments(std::vector<std::string>(argv + std::min(argc, 1), argv + argc));
+    if (!arguments) {
+        return forward(arguments);
+    }
+    std::reverse(arguments->begin(), arguments->end());  // as CLI11 takes them
     try {
-        app.parse(argc, argv);
+        app.parse(std::move(*arguments));
     } catch (const CLI::CallForHelp&) {
         const std::vector<CLI::App*> called = app.get_subcommands();
         return printOut(called.empty() ? app.help() : called.front()->help("relief"));

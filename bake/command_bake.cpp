@@ -16,6 +16,8 @@
 #include "bake/budget_search.h"
 #include "bake/byte_count.h"
 #include "bake/command.h"
+#include "bake/command_recipe.h"
+#include "bake/depfile.h"
 #include "bake/hole_caps.h"
 #include "bake/mesh_import.h"
 #include "bake/mesh_query.h"
@@ -26,6 +28,7 @@
 #include "bake/text.h"
 #include "bake/view_planner.h"
 #include "formats/file_io.h"
+#include "formats/hash.h"
 
 namespace relief {
 namespace {
@@ -52,6 +55,8 @@ struct BakeCommand {
     std::string threads;
     std::string compress = "0";
     std::string holes = "close";
+    std::string depfile;
+    RecipeOptionsOfBake recipe;
     bool json = false;
 };
 
@@ -271,12 +276,37 @@ Result<void> preflight(const BakeCommand& command) {
         checks.push_back(preflightDistinct(command.mesh, command.plan_out));
         checks.push_back(preflightTwoOutputs(command.output, command.plan_out));
     }
+    if (!command.depfile.empty()) {
+        if (command.depfile == "-" || command.output == "-") {
+            return fail(ErrorCode::kUsage, "--depfile needs files, and not standard output; name them");
+        }
+        checks.push_back(preflightFile(command.depfile));
+        for (const std::string* other : {&command.mesh, &command.plan}) {
+            checks.push_back(preflightDistinct(*other, command.depfile));
+        }
+        for (const std::string* other : {&command.output, &command.plan_out}) {
+            checks.push_back(preflightTwoOutputs(*other, command.depfile));
+        }
+    }
     for (const Result<void>& check : checks) {
         if (!check) {
             return check;
         }
     }
     return {};
+}
+
+/// Every file that the collider was made from, the mesh first.
+std::vector<InputFile> inputsOf(const BakeCommand& command, const TriangleMesh& mesh,
+                                const std::string& plan_hash) {
+    std::vector<InputFile> inputs;
+    for (std::size_t i = 0; i < mesh.dependencies.size(); ++i) {
+        inputs.push_back({mesh.dependencies[i], mesh.dependency_hashes[i]});
+    }
+    if (!command.plan.empty()) {
+        inputs.push_back({command.plan, plan_hash});
+    }
+    return inputs;
 }
 
 /// The maps of --plan, and its quality and preference where the command line names none.
@@ -425,7 +455,11 @@ Result<void> runBake(const BakeCommand& command) {
     if (const Result<void> ready = preflight(command); !ready) {
         return ready;
     }
+    std::string plan_hash;
     if (settings->source == Source::kPlanFile) {
+        // Before it is read: should it change meanwhile, the hash is that of neither, or of the older one.
+        const auto plan_bytes = readFile(command.plan);
+        plan_hash = plan_bytes ? xxh3_128Hex(*plan_bytes) : "";
         if (const Result<void> read = readPlanFile(command, *settings); !read) {
             return read;
         }
@@ -490,6 +524,16 @@ Result<void> runBake(const BakeCommand& command) {
             return written;
         }
     }
+    const std::vector<InputFile> inputs = inputsOf(command, *mesh, plan_hash);
+    if (!command.depfile.empty()) {
+        std::vector<std::string> names;
+        for (const InputFile& input : inputs) {
+            names.push_back(input.path);
+        }
+        if (const Result<void> written = writeDepfile(command.depfile, {command.output}, names); !written) {
+            return written;
+        }
+    }
     times.write_ms = write_watch.ms();
     times.total_ms = total.ms();
 
@@ -499,7 +543,11 @@ Result<void> runBake(const BakeCommand& command) {
         if (!info) {
             return forward(info);
         }
-        return printOut(dump(jsonBake(summary, *info, jsonSettings(command, *settings, *baked, plan))));
+        auto report = jsonBake(summary, *info, jsonSettings(command, *settings, *baked, plan));
+        for (const InputFile& input : inputs) {
+            report["inputs"].push_back({{"file", input.path}, {"hash", input.hash}});
+        }
+        return printOut(dump(report));
     }
     if (!command.common.quiet) {
         std::fputs(bakeText(summary, command.output, bytes->size()).c_str(), stderr);
@@ -507,9 +555,26 @@ Result<void> runBake(const BakeCommand& command) {
     return {};
 }
 
-}  // namespace
+/// Adds the verb. \return what its options are read into.
+std::shared_ptr<BakeCommand> registerBake(CLI::App& app, Action& action);
 
-void addBake(CLI::App& app, Action& action) {
+/// Whether the settings that these arguments make can be baked with.
+Result<void> checkArguments(const std::vector<std::string>& arguments) {
+    CLI::App app;
+    Action none;
+    const std::shared_ptr<BakeCommand> command = registerBake(app, none);
+    std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
+    reversed.emplace_back("bake");
+    try {
+        app.parse(std::move(reversed));
+    } catch (const CLI::ParseError& error) {
+        return fail(ErrorCode::kUsage, cleanUtf8(error.what()));
+    }
+    const Result<Settings> settings = settingsOf(*command);
+    return settings ? Result<void>() : forward(settings);
+}
+
+std::shared_ptr<BakeCommand> registerBake(CLI::App& app, Action& action) {
     auto command = std::make_shared<BakeCommand>();
     CLI::App& verb = addVerb(
         app, command->common, "bake",
@@ -521,13 +586,11 @@ void addBake(CLI::App& app, Action& action) {
         "relief bake bunny.obj -o bunny.relief --plan plan.toml\n"
         "relief bake bunny.obj -o bunny.relief --max-error 1%\n"
         "relief bake rock.glb -o rock.relief --map cube:size=256 --map fixed8:dir=-y,size=512x256\n"
-        "relief bake hall.fbx -o hall.relief --map cube:center=0/2/0,compare=less --json");
-    verb.add_option("MESH", command->mesh, "The mesh, in any format that assimp reads")
-        ->type_name("")
-        ->required();
+        "relief bake hall.fbx -o hall.relief --map cube:center=0/2/0,compare=less --json\n"
+        "relief bake --recipe colliders.toml -j 4");
+    verb.add_option("MESH", command->mesh, "The mesh, in any format that assimp reads")->type_name("");
     verb.add_option("-o,--output", command->output, "The collider to write; - for standard output")
-        ->option_text("OUT.relief")
-        ->required();
+        ->option_text("OUT.relief");
     verb.add_option("--map", command->maps,
                     "A map to bake instead of planned ones, once for each: FORMAT[:key=value,...] with\n"
                     "FORMAT   float, fixed8, front-back or cube\n"
@@ -577,8 +640,9 @@ void addBake(CLI::App& app, Action& action) {
                     "Where planes must err: inside keeps particles out of walls, outside keeps free\n"
                     "space free, neither (default) errs least")
         ->option_text("inside|outside|neither");
-    verb.add_option("-j,--threads", command->threads,
-                    "Threads to use; default: all cores. The result is the same")
+    verb.add_option(
+            "-j,--threads", command->threads,
+            "Threads to use; default: all cores. The result is the same. With --recipe: assets at once")
         ->option_text("N");
     verb.add_option("--compress", command->compress, "zstd level of the texels, 0 (none, default) to 19")
         ->option_text("LEVEL");
@@ -586,7 +650,28 @@ void addBake(CLI::App& app, Action& action) {
                     "Of a nearly closed mesh: close (bake it as a solid, default) or keep")
         ->option_text("close|keep");
     verb.add_flag("--json", command->json, "Print a report as JSON to standard output");
-    verb.callback([command, &action] { action = [command] { return runBake(*command); }; });
+    verb.add_option("--depfile", command->depfile,
+                    "Also write which files were read, for Make and Ninja: every input of the output")
+        ->option_text("FILE");
+    addRecipeOptions(verb, command->recipe);
+    verb.callback([command, &verb, &action] {
+        action = [command, &verb]() -> Result<void> {
+            if (!command->recipe.recipe.empty()) {
+                return runRecipeCommand(command->recipe,
+                                        {verb, command->common, command->output, command->threads,
+                                         command->depfile, command->json, checkArguments});
+            }
+            const Result<void> complete = checkOneBake(verb);
+            return complete ? runBake(*command) : complete;
+        };
+    });
+    return command;
+}
+
+}  // namespace
+
+void addBake(CLI::App& app, Action& action) {
+    registerBake(app, action);
 }
 
 }  // namespace relief

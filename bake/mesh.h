@@ -28,6 +28,10 @@ struct TriangleMesh {
     std::uint64_t cap_triangles = 0;
     std::uint64_t closed_holes = 0;
     Bounds bounds;  ///< of positions
+    /// Files that it was read from: first its own, as its path was given, then whatever that refers to,
+    /// sorted.
+    std::vector<std::string> dependencies;
+    std::vector<std::string> dependency_hashes;  ///< XXH3-128 of each file's bytes, in the same order
 
     [[nodiscard]] std::uint64_t sourceTriangles() const { return triangles.size() - cap_triangles; }
 };

@@ -13,6 +13,7 @@
 #include <cstring>
 #include <glm/mat3x3.hpp>
 #include <limits>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -85,8 +86,11 @@ class MemoryStream final : public Assimp::IOStream {
 /// that is not a regular file: a mesh must not be able to hang the baker on a pipe or a device.
 class ReadOnlyFiles final : public Assimp::IOSystem {
   public:
-    ReadOnlyFiles(std::string main_path, std::span<const std::byte> main_bytes)
-        : main_path_(std::move(main_path)), main_bytes_(main_bytes) {}
+    using Read = std::map<std::string, std::string>;
+
+    /// \param read  gets the hashes of the other files, by their paths; outlives this.
+    ReadOnlyFiles(std::string main_path, std::span<const std::byte> main_bytes, Read& read)
+        : main_path_(std::move(main_path)), main_bytes_(main_bytes), read_(read) {}
 
     bool Exists(const char* path) const override { return path == main_path_ || isRegular(path); }
     [[nodiscard]] char getOsSeparator() const override { return '/'; }
@@ -101,7 +105,11 @@ class ReadOnlyFiles final : public Assimp::IOSystem {
             return nullptr;
         }
         Result<std::vector<std::byte>> bytes = readFile(path);
-        return bytes ? new MemoryStream(std::move(*bytes)) : nullptr;
+        if (!bytes) {
+            return nullptr;
+        }
+        read_.insert_or_assign(path, xxh3_128Hex(*bytes));
+        return new MemoryStream(std::move(*bytes));
     }
     void Close(Assimp::IOStream* stream) override { delete stream; }
 
@@ -113,6 +121,7 @@ class ReadOnlyFiles final : public Assimp::IOSystem {
 
     std::string main_path_;
     std::span<const std::byte> main_bytes_;
+    Read& read_;
 };
 
 // --- the scene's nodes, flattened ---
@@ -224,8 +233,9 @@ Result<TriangleMesh> flatten(const aiScene& scene, TriangleMesh mesh) {
 
 Result<TriangleMesh> importWithAssimp(const fs::path& path, std::span<const std::byte> bytes,
                                       TriangleMesh mesh) {
+    ReadOnlyFiles::Read others;
     Assimp::Importer importer;
-    importer.SetIOHandler(new ReadOnlyFiles(path.string(), bytes));  // owned by the importer
+    importer.SetIOHandler(new ReadOnlyFiles(path.string(), bytes, others));  // owned by the importer
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     // Without it, files that hold bones alone get a made-up mesh.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
@@ -236,6 +246,12 @@ Result<TriangleMesh> importWithAssimp(const fs::path& path, std::span<const std:
                     "cannot read the mesh " + quotedPath(path) + ": " +
                         (words.empty() ? "its contents are not what its extension says" : words) +
                         "; repair the file or export it again");
+    }
+    mesh.dependencies = {path.string()};
+    mesh.dependency_hashes = {mesh.content_hash};
+    for (const auto& [file, hash] : others) {
+        mesh.dependencies.push_back(file);
+        mesh.dependency_hashes.push_back(hash);
     }
     return flatten(*scene, std::move(mesh));
 }

@@ -55,19 +55,21 @@ bool liesIn(const fs::path& folder, const fs::path& path) {
 
 }  // namespace
 
-Result<fs::path> resolveInside(const fs::path& folder, std::string_view text) {
+Result<fs::path> resolveInside(const fs::path& folder, std::string_view text, std::string_view owner) {
     const fs::path path(text);
+    const std::string whose(owner);
     const auto refuse = [&](const std::string& why) {
         return fail(ErrorCode::kInvalidInput, quotedPath(path) + " " + why);
     };
     if (text.empty()) {
-        return refuse("names no file; name one in the scene's folder");
+        return refuse("names no file; name one in the " + whose + "'s folder");
     }
     if (text.find('\0') != std::string_view::npos) {
         return refuse("holds a zero byte; remove it");
     }
     if (path.is_absolute()) {
-        return refuse("is an absolute path; put the file into the scene's folder and name it from there");
+        return refuse("is an absolute path; put the file into the " + whose +
+                      "'s folder and name it from there");
     }
     std::error_code error;
     const fs::path root = settled(folder.empty() ? fs::path(".") : folder, error);
@@ -76,7 +78,8 @@ Result<fs::path> resolveInside(const fs::path& folder, std::string_view text) {
         return refuse("cannot be followed: " + error.message() + "; mend the path");
     }
     if (!liesIn(root, target)) {
-        return refuse("leads out of the scene's folder; put the file there, or the scene beside the file");
+        return refuse("leads out of the " + whose + "'s folder; put the file there, or the " + whose +
+                      " beside the file");
     }
     // Alone, "-" would be standard input.
     return text == "-" ? folder / "./-" : folder / path;

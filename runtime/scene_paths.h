@@ -15,7 +15,9 @@ namespace relief {
 /// Errors: kInvalidInput for what is empty, holds a zero byte, is absolute, or leaves the folder by `..` or
 /// by a symbolic link, dangling ones included. The message goes on from the key's name: "'/x' is …; the
 /// cure".
+/// \param owner   whose folder it is, for the message.
 [[nodiscard]] Result<std::filesystem::path> resolveInside(const std::filesystem::path& folder,
-                                                          std::string_view text);
+                                                          std::string_view text,
+                                                          std::string_view owner = "scene");
 
 }  // namespace relief

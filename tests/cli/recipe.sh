@@ -1,0 +1,278 @@
+# Recipes: what is baked and what is not, one bad asset among good ones, the same bytes however many at once,
+# shards, interruptions, and caches that cannot be trusted.
+. "$(dirname "$0")/lib.sh"
+
+# tetrahedron FILE SIZE
+tetrahedron() {
+    printf 'v 0 0 0\nv %s 0 0\nv 0 %s 0\nv 0 0 %s\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n' "$2" "$2" "$2" >"$1"
+}
+mkdir -p in/rocks/deep
+for i in 1 2 3; do tetrahedron "in/rocks/r$i.obj" "$i"; done
+tetrahedron in/rocks/deep/d.obj 5
+tetrahedron in/rocks/skip.obj 6
+tetrahedron in/hill.obj 7
+cat >in/r.toml <<'T'
+version = 1
+[defaults]
+output = "baked/{stem}.relief"
+map = ["cube:size=32"]
+[[asset]]
+mesh = "rocks/**/*.obj"
+exclude = "rocks/skip.obj"
+[[asset]]
+mesh = "hill.obj"
+compress = 3
+T
+cp -r in pristine
+
+# events FILE: the names of the events, in order.
+events() { python3 -c "import json,sys; print(*[json.loads(l)['event'] for l in open(sys.argv[1])])" "$1"; }
+hashes() { (cd "$1" && find . -name '*.relief' | sort | xargs sha256sum); }
+
+# A dry run writes nothing; a run bakes everything; the second does nothing and says so.
+expect 0 "$relief" bake --recipe in/r.toml --dry-run
+grep -q 'baked/d.relief.*rocks/deep/d.obj.*new' stdout || die "the dry run does not say what and why: $(cat stdout)"
+[ ! -e in/baked ] || die "a dry run wrote something"
+expect 0 "$relief" bake --recipe in/r.toml --events events.jsonl --json -j 2
+cp stdout report.json
+json report.json "d['counts']['baked'] == 5 and [a['state'] for a in d['assets']] == ['baked'] * 5"
+json report.json "[a['asset'] for a in d['assets']] == ['baked/%s.relief' % n for n in ('d', 'r1', 'r2', 'r3', 'hill')]"
+json report.json "all(len(a['hash']) == 32 and a['bytes'] > 0 and a['ms'] > 0 for a in d['assets'])"
+grep -q '5 assets: 5 baked;' stderr || die "no summary: $(cat stderr)"
+[ "$(events events.jsonl | tr ' ' '\n' | sort | tr '\n' ' ')" = "$(printf '%s ' done done done done done start \
+    started started started started started summary)" ] ||
+    die "events: $(events events.jsonl)"
+[ "$(ls -A in/baked)" = "$(printf '%s\n' d.relief hill.relief r1.relief r2.relief r3.relief)" ] ||
+    die "files: $(ls -A in/baked)"
+"$relief" bake in/rocks/r1.obj -o alone.relief --map cube:size=32 -q
+cmp alone.relief in/baked/r1.relief || die "a recipe bakes other bytes than its options alone"
+hashes in >first
+expect 0 "$relief" bake --recipe in/r.toml --events -
+[ "$(events stdout)" = "start skipped skipped skipped skipped skipped summary" ] || die "events: $(cat stdout)"
+[ "$(cat stderr)" = "5 assets up to date" ] || die "the second run does not say so: $(cat stderr)"
+touch in/rocks/*.obj in/r.toml
+expect 0 "$relief" bake --recipe in/r.toml -q
+[ ! -s stderr ] || die "-q is not quiet"
+
+# rebakes NAMES…: what a run bakes, and nothing else; all bytes are then as at first, but for an option's change.
+rebakes() {
+    expect 0 "$relief" bake --recipe in/r.toml --json -q
+    json stdout "sorted(a['asset'] for a in d['assets'] if a['state'] == 'baked') == sorted('baked/%s.relief' % n for n in '$*'.split())"
+}
+rebakes ''
+rm in/baked/r2.relief
+rebakes r2
+printf x >>in/baked/r3.relief
+rebakes r3
+hashes in | cmp - first || die "a damaged output was not made good"
+tetrahedron in/rocks/r1.obj 1.5
+rebakes r1
+sed -i 's/compress = 3/compress = 4/' in/r.toml
+rebakes hill
+sed -i 's/size=32/size=16/' in/r.toml
+rebakes d hill r1 r2 r3
+rebakes ''
+
+# A cache that is corrupt, or of somebody else: a warning, and everything again.
+for text in '' '{' '[]' '{"format": "relief-cache", "version": 9, "outputs": {}}'; do
+    printf '%s' "$text" >in/.relief-cache.json
+    expect 0 "$relief" bake --recipe in/r.toml
+    grep -q 'warning: .*\.relief-cache\.json.*baked again' stderr || die "no warning for '$text': $(cat stderr)"
+    grep -q '5 baked' stderr || die "not everything was baked again for '$text': $(cat stderr)"
+done
+rebakes ''
+
+# One asset fails, by a damaged mesh; it is named, its older output stays, the others are done.
+rm -r in && cp -r pristine in
+mkdir in/baked
+echo precious >in/baked/r2.relief
+printf 'v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n' >in/rocks/r2.obj
+expect 3 "$relief" bake --recipe in/r.toml --events e.jsonl -j 2
+grep -q 'error: baked/r2.relief: .*r2\.obj' stderr || die "the failed asset is not named: $(cat stderr)"
+grep -q "error: 1 of 5 assets failed, first 'baked/r2.relief'" stderr || die "no last word: $(cat stderr)"
+[ "$(cat in/baked/r2.relief)" = precious ] || die "an older output was touched"
+grep '"event":"failed"' e.jsonl >failed.json
+json failed.json "d['code'] == 3 and 'r2.obj' in d['error'] and d['asset'] == 'baked/r2.relief'"
+expect 3 "$relief" bake --recipe in/r.toml
+grep -q '4 up to date, 1 failed' stderr || die "the second run: $(cat stderr)"
+cp pristine/rocks/r2.obj in/rocks/
+expect 0 "$relief" bake --recipe in/r.toml
+hashes in | cmp - first || die "mended, it gives other bytes"
+rm -r in && cp -r pristine in
+: >in/rocks/deep/d.obj
+expect 3 "$relief" bake --recipe in/r.toml -j 1 --fail-fast
+grep -q '1 failed, 4 not baked' stderr || die "--fail-fast goes on: $(cat stderr)"
+
+# A bake that takes too long is ended, and its exit code is that of a limit.
+cat >slow.toml <<'T'
+version = 1
+[[asset]]
+mesh = "bunny.obj"
+output = "bunny.relief"
+budget = "16MB"
+quality = "best"
+T
+cp "$bunny" bunny.obj
+expect 6 "$relief" bake --recipe slow.toml --timeout 0.2
+grep -q 'bunny.relief: .*--timeout' stderr || die "the timeout is not told: $(cat stderr)"
+
+# The same bytes one at a time, two at a time, and by four shards at the same time into one folder.
+for at_once in 1 2; do
+    expect 0 "$relief" bake --recipe pristine/r.toml -o "out$at_once" -j $at_once
+    hashes "out$at_once" | cmp - first || die "-j $at_once gives other bytes"
+done
+jobs=()
+for k in 1 2 3 4; do
+    "$relief" bake --recipe pristine/r.toml -o shards --shard $k/4 --events "s$k" -j 1 -q &
+    jobs+=($!)
+done
+for job in "${jobs[@]}"; do wait "$job" || die "a shard failed"; done
+hashes shards | cmp - first || die "four shards give other bytes"
+[ "$(cat s1 s2 s3 s4 | grep -c '"event":"done"')" -eq 5 ] || die "shards overlap"
+expect 0 "$relief" bake --recipe pristine/r.toml -o shards
+[ "$(cat stderr)" = "5 assets up to date" ] || die "the shards' cache is not whole: $(cat stderr)"
+
+# Interrupted: ends by the signal within 2 s, leaves no child and no temporary file; what was done stays done.
+mkdir many && cp bunny.obj many/
+for i in 1 2 3 4; do cp bunny.obj many/b$i.obj; done
+tetrahedron many/a.obj 1
+cat >many/m.toml <<'T'
+version = 1
+[defaults]
+output = "{stem}.relief"
+[[asset]]
+mesh = "a.obj"
+map = "cube:size=32"
+[[asset]]
+mesh = "b?.obj"
+budget = "16MB"
+quality = "best"
+T
+for signal in INT TERM; do
+    python3 - "$relief" $signal <<'P' || die "interrupting by SIG$signal failed"
+import json, os, signal, subprocess, sys, time
+number = getattr(signal, 'SIG' + sys.argv[2])
+signal.signal(signal.SIGINT, signal.default_int_handler)  # bash has background jobs ignore it
+run = subprocess.Popen([sys.argv[1], 'bake', '--recipe', 'many/m.toml', '-j', '2', '--events', '-'],
+                       stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+started = 0
+for line in run.stdout:
+    event = json.loads(line)
+    started += event['event'] == 'started' and event['mesh'].startswith('b')
+    if started == 2:
+        break
+children = open(f'/proc/{run.pid}/task/{run.pid}/children').read().split()
+assert children, 'no child runs'
+time.sleep(0.3)
+begin = time.monotonic()
+run.send_signal(number)
+rest = [json.loads(line) for line in run.stdout]
+code = run.wait()
+took = time.monotonic() - begin
+assert code == -number, code
+assert took < 2, took
+assert rest[-1]['event'] == 'summary' and rest[-1]['signal'] == number, rest
+assert not any(os.path.exists('/proc/' + child) for child in children), 'a child is left'
+P
+    [ -z "$(find many -name '.relief-*.tmp')" ] || die "a temporary file is left"
+    [ -f many/a.relief ] || die "what was done is gone"
+done
+expect 0 "$relief" bake --recipe many/m.toml --dry-run
+grep -q 'a.relief .*up to date' stdout || die "what was done is not known: $(cat stdout)"
+
+# A killed run leaves no child behind.
+python3 - "$relief" <<'P' || die "a killed run leaves a child"
+import os, subprocess, sys, time
+run = subprocess.Popen([sys.argv[1], 'bake', '--recipe', 'many/m.toml', '-q'])
+path = f'/proc/{run.pid}/task/{run.pid}/children'
+while not (children := open(path).read().split()):
+    time.sleep(0.02)
+time.sleep(0.1)
+run.kill()
+run.wait()
+def alive(child):
+    try:
+        return open(f'/proc/{child}/stat').read().split()[2] != 'Z'
+    except OSError:
+        return False
+for _ in range(100):
+    if not any(map(alive, children)):
+        sys.exit(0)
+    time.sleep(0.05)
+sys.exit(1)
+P
+
+# What is wrong in a recipe is told at its place, before anything is baked.
+recipe_fails() {
+    local code=$1 pattern=$2
+    printf 'version = 1\n%s\n' "$3" >pristine/wrong.toml
+    expect_error "$code" "$pattern" "$relief" bake --recipe pristine/wrong.toml -o wrong_out
+    [ ! -e wrong_out ] || die "something was written for a wrong recipe"
+}
+asset=$'[[asset]]\nmesh = "hill.obj"\noutput = "h.relief"'
+recipe_fails 3 "wrong\.toml:5:1: unknown key 'budgte'; did you mean 'budget'" "$asset"$'\nbudgte = 1'
+recipe_fails 3 "wrong\.toml:5:11: --quality is 'bets' but must be .*did you mean 'best'" "$asset"$'\nquality = "bets"'
+recipe_fails 3 'wrong\.toml:5:7: --map and --paper' "$asset"$'\nmap = "float"\npaper = true'
+recipe_fails 3 "wrong\.toml:7:10: 'hill.obj' and 'rocks/r1.obj' would both" \
+    "$asset"$'\n[[asset]]\nmesh = "rocks/r1.obj"\noutput = "h.relief"'
+recipe_fails 3 "wrong\.toml:3:8: mesh 'none/\*' matches no file" $'[[asset]]\nmesh = "none/*"\noutput = "{stem}.relief"'
+recipe_fails 3 'leads out' $'[[asset]]\nmesh = "hill.obj"\noutput = "../h.relief"'
+expect_error 2 'none\.toml' "$relief" bake --recipe none.toml
+expect_error 1 'MESH and --recipe' "$relief" bake bunny.obj --recipe pristine/r.toml
+expect_error 1 'under \[defaults\]' "$relief" bake --recipe pristine/r.toml --budget 1MB
+expect_error 1 'shard.*K/N' "$relief" bake --recipe pristine/r.toml --shard 5/4
+expect_error 1 'shard.*recipe' "$relief" bake bunny.obj -o b.relief --shard 1/4
+expect_error 1 'MESH is required' "$relief" bake
+expect_error 1 'output is required' "$relief" bake bunny.obj
+expect_error 1 'is the input' "$relief" bake --recipe pristine/r.toml --events pristine/r.toml
+expect_error 2 'nowhere' "$relief" bake --recipe pristine/r.toml --stamp nowhere/stamp
+
+# A reader of events that goes away does not end the run; but it is told.
+rm -r out1
+python3 - "$relief" <<'P' || die "without a reader of its events a run does not end with 2"
+import os, subprocess, sys
+reader, writer = os.pipe()
+os.close(reader)
+run = subprocess.run([sys.argv[1], 'bake', '--recipe', 'pristine/r.toml', '-o', 'out1', '--events', '-'],
+                     stdout=writer, stderr=subprocess.PIPE, text=True)
+assert run.returncode == 2 and 'cannot write events' in run.stderr, run
+P
+hashes out1 | cmp - first || die "not everything was baked behind a closed pipe"
+
+# The example of the page, and the sample, are recipes.
+python3 - "$RELIEF_SOURCE/bake/recipes.md" >example.toml <<'P'
+import re, sys
+print(re.search(r'```toml\n(.*?)```', open(sys.argv[1]).read(), re.S)[1])
+P
+mkdir -p rocks/test halls plans
+tetrahedron rocks/a.obj 1
+tetrahedron rocks/b.obj 2
+tetrahedron rocks/test/c.obj 3
+tetrahedron halls/entrance.obj 4
+"$relief" bake halls/entrance.obj -o entrance.relief --budget 20kB --plan-out plans/entrance.toml -q
+rm entrance.relief
+expect 0 "$relief" bake --recipe example.toml -j 2
+[ "$(cd baked && find . -name '*.relief' | sort | tr '\n' ' ')" = "./halls/entrance.relief ./rocks/a.relief ./rocks/b.relief " ] ||
+    die "the example bakes $(find baked -name '*.relief')"
+
+mkdir -p sample/meshes/rocks
+cp "$RELIEF_SOURCE/samples/recipe/colliders.toml" sample/
+cp rocks/a.obj sample/meshes/rocks/
+cp rocks/b.obj sample/meshes/rocks/b_lod1.obj
+expect 0 "$relief" bake --recipe sample/colliders.toml
+[ "$(find sample -name '*.relief')" = sample/colliders/meshes/rocks/a.relief ] ||
+    die "the sample bakes $(find sample -name '*.relief')"
+
+# Response files, for any verb.
+printf -- "--map cube:size=16 # small\n'--map' \"fixed8:dir=-y,size=16\"\n@more.txt\n" >args.txt
+echo '-o response.relief' >more.txt
+expect 0 "$relief" bake bunny.obj @args.txt -q
+expect 0 "$relief" bake bunny.obj -o plain.relief --map cube:size=16 --map fixed8:dir=-y,size=16 -q
+cmp response.relief plain.relief || die "a response file gives other bytes than its options"
+echo '--json' >json.txt
+expect 0 "$relief" info plain.relief @json.txt
+json stdout "len(d['maps']) == 2"
+expect_error 2 'gone\.txt' "$relief" info @gone.txt
+echo '@loop.txt' >loop.txt
+expect_error 6 'loop\.txt' "$relief" info @loop.txt
+expect_error 2 "'@plain.relief'" "$relief" info @@plain.relief
