@@ -41,11 +41,6 @@ function(relief_add_colliders target)
         return()
     endif()
 
-    # An older tool writes no depfiles: it is baked again when the mesh itself changes.
-    get_target_property(tool Relief::relief LOCATION)
-    execute_process(COMMAND ${tool} bake --help OUTPUT_VARIABLE help)
-    string(FIND "${help}" "--depfile" depfiles)
-
     set(outputs)
     foreach(given IN LISTS arg_MESHES)
         get_filename_component(mesh ${given} ABSOLUTE)
@@ -55,17 +50,11 @@ function(relief_add_colliders target)
             message(FATAL_ERROR "relief_add_colliders(${target}): two meshes would be baked to ${output}")
         endif()
         list(APPEND outputs ${output})
-        set(depfile_option)
-        set(depfile)
-        if(depfiles GREATER -1)
-            set(depfile_option --depfile ${output}.d)
-            set(depfile DEPFILE ${output}.d)
-        endif()
         add_custom_command(
             OUTPUT ${output}
-            COMMAND Relief::relief bake ${mesh} -o ${output} ${depfile_option} -q ${arg_OPTIONS}
+            COMMAND Relief::relief bake ${mesh} -o ${output} --depfile ${output}.d -q ${arg_OPTIONS}
             DEPENDS ${mesh} Relief::relief
-            ${depfile}
+            DEPFILE ${output}.d
             COMMENT "Baking ${name}.relief"
             VERBATIM)
     endforeach()

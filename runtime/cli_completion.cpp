@@ -191,8 +191,7 @@ std::string zshCompletion(const CliProgram& program) {
         text += "    " + verbName(program, verb) + ")\n    " + zshArguments(verb) + "\n        ;;\n";
     }
     text += "    esac\n}\n";
-    CliCommand top = program.command;
-    text += zshArguments(top).substr(4) + " \\\n        '1:verb:((";
+    text += zshArguments(program.command).substr(4) + " \\\n        '1:verb:((";
     for (const CliCommand& verb : program.command.verbs) {
         std::string summary;
         for (const char c : verb.summary) {

@@ -9,7 +9,7 @@ export CMAKE_PREFIX_PATH=$prefix
 for file in bin/relief bin/relief-sim share/man/man1/relief.1 share/man/man1/relief-bake.1 share/man/man1/relief-sim.1 \
     share/bash-completion/completions/relief share/zsh/site-functions/_relief-sim \
     share/fish/vendor_completions.d/relief.fish share/doc/relief/README.md share/doc/relief/formats/README.md \
-    share/relief/samples/embed/embed.cpp share/relief/samples/rain.toml include/relief/runtime/particle_system.h; do
+    share/relief/samples/embed/embed.cpp share/relief/samples/rain.toml share/relief/schemas/bake.schema.json include/relief/runtime/particle_system.h; do
     [ -s "$prefix/$file" ] || die "$file is not installed"
 done
 ! grep -rIlF "$RELIEF_SOURCE" "$prefix" --include='*.cmake' --include='*.pc' --include='*.h' --include='*.1' ||
@@ -64,9 +64,7 @@ bakes() {
 no_work "all is built"
 bakes 'Baking box.relief ' consumer/box.obj
 bakes 'Baking bunny.relief ' consumer/bunny.obj
-if "$relief" bake --help | grep -q -- --depfile; then
-    bakes 'Baking box.relief ' consumer/box.mtl
-fi
+bakes 'Baking box.relief ' consumer/box.mtl
 
 # Mistakes are named when the project is configured.
 refused() { # PATTERN LINES
@@ -81,24 +79,22 @@ refused 'give RECIPE, or MESHES' $'find_package(Relief REQUIRED)\nrelief_add_col
 refused 'two meshes would be baked' $'find_package(Relief REQUIRED)\nrelief_add_colliders(c MESHES a.obj b/a.obj)'
 refused '0\.9' 'find_package(Relief 0.9 REQUIRED)'
 
-# Recipes, once `relief bake` knows them.
-if "$relief" bake --help | grep -q -- --recipe; then
-    mkdir recipe
-    cp consumer/box.* recipe/
-    printf '[[asset]]\nmesh = "*.obj"\noutput = "{stem}.relief"\n[asset.options]\nbudget = "20kB"\n' >recipe/recipe.toml
-    printf '%s\n' 'cmake_minimum_required(VERSION 3.25)' 'project(recipe LANGUAGES CXX)' \
-        'find_package(Relief REQUIRED COMPONENTS bake)' \
-        'relief_add_colliders(colliders RECIPE recipe.toml OUTPUT_DIR baked)' >recipe/CMakeLists.txt
-    cmake -G Ninja -S recipe -B recipe/out >log 2>&1 || die "does not configure: $(tail -20 log)"
-    cmake --build recipe/out >log 2>&1 || die "does not build: $(tail -20 log)"
-    expect 0 "$relief" check recipe/out/baked/box.relief
-    cmake --build recipe/out | grep -q 'no work to do' || die "the recipe is baked twice"
-    sleep 0.01
-    echo '# touched' >>recipe/box.mtl
-    cmake --build recipe/out >log 2>&1
-    grep -q 'Baking the colliders' log || die "a material of a recipe is not watched"
-    cmake --build recipe/out | grep -q 'no work to do' || die "the recipe is baked twice"
-fi
+# Recipes.
+mkdir recipe
+cp consumer/box.* recipe/
+printf '[[asset]]\nmesh = "*.obj"\noutput = "{stem}.relief"\n[asset.options]\nbudget = "20kB"\n' >recipe/recipe.toml
+printf '%s\n' 'cmake_minimum_required(VERSION 3.25)' 'project(recipe LANGUAGES CXX)' \
+    'find_package(Relief REQUIRED COMPONENTS bake)' \
+    'relief_add_colliders(colliders RECIPE recipe.toml OUTPUT_DIR baked)' >recipe/CMakeLists.txt
+cmake -G Ninja -S recipe -B recipe/out >log 2>&1 || die "does not configure: $(tail -20 log)"
+cmake --build recipe/out >log 2>&1 || die "does not build: $(tail -20 log)"
+expect 0 "$relief" check recipe/out/baked/box.relief
+cmake --build recipe/out | grep -q 'no work to do' || die "the recipe is baked twice"
+sleep 0.01
+echo '# touched' >>recipe/box.mtl
+cmake --build recipe/out >log 2>&1
+grep -q 'Baking the colliders' log || die "a material of a recipe is not watched"
+cmake --build recipe/out | grep -q 'no work to do' || die "the recipe is baked twice"
 
 # pkg-config alone.
 export PKG_CONFIG_PATH="$prefix/lib/pkgconfig:$prefix/lib64/pkgconfig:$(echo "$prefix"/lib/*/pkgconfig)"

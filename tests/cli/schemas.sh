@@ -1,0 +1,191 @@
+# The JSON Schemas of formats/schemas: valid themselves, closed, with a description of everything; real outputs of each verb
+# keep to them, and documents with something more, less or else do not.
+. "$(dirname "$0")/lib.sh"
+
+cat >validate.py <<'P'
+import copy, json, pathlib, sys
+from jsonschema import Draft202012Validator
+
+folder = pathlib.Path(sys.argv[1])
+schemas = {path.name.removesuffix('.schema.json'): json.load(open(path)) for path in folder.glob('*.schema.json')}
+
+def closed(schema, path):
+    """Every object is closed, every property described."""
+    if isinstance(schema, list):
+        for i, one in enumerate(schema):
+            closed(one, f'{path}/{i}')
+    elif isinstance(schema, dict):
+        if schema.get('type') == 'object' or isinstance(schema.get('properties'), dict):
+            assert schema.get('additionalProperties') is False, f'{path} is open'
+            for name, one in schema['properties'].items():
+                assert one.get('description'), f'{path}/{name} has no description'
+            assert set(schema['required']) <= set(schema['properties']), path
+        for name, one in schema.items():
+            closed(one, f'{path}/{name}')
+
+for name, schema in schemas.items():
+    Draft202012Validator.check_schema(schema)
+    closed(schema, name)
+
+def places(document, path=()):
+    yield path, document
+    for key, value in (document.items() if isinstance(document, dict) else
+                       enumerate(document) if isinstance(document, list) else ()):
+        yield from places(value, path + (key,))
+
+def with_change(document, path, change):
+    document = copy.deepcopy(document)
+    at = document
+    for key in path:
+        at = at[key]
+    change(at)
+    return document
+
+used = set()
+for entry in sys.argv[2:]:
+    name, file = entry.split(':')
+    used.add(name)
+    validator = Draft202012Validator(schemas[name])
+    documents = [json.loads(line) for line in open(file)] if file.endswith('.jsonl') else [json.load(open(file))]
+    assert documents, file
+    for document in documents:
+        errors = list(validator.iter_errors(document))
+        assert not errors, f'{file} by {name}: {errors[0].json_path}: {errors[0].message[:300]}'
+    document = documents[0]
+    mutations = 0
+    for path, value in places(document):
+        if isinstance(value, dict):
+            changes = [lambda at: at.update(unknown_key=1)]
+            if value:
+                key = next(iter(value))
+                changes.append(lambda at, key=key: at.update({key: {'nested': [None]}}))
+            for change in changes:
+                mutations += 1
+                assert not validator.is_valid(with_change(document, path, change)), f'{file} changed at {path}'
+    for key in document:
+        mutations += 1
+        assert not validator.is_valid(with_change(document, (), lambda at: at.pop(key))), f'{file} without {key}'
+    assert mutations > 4, file
+
+# diff's documents are there where the verb is.
+missing = set(schemas) - used - ({'diff'} if 'diff:diff.json' not in sys.argv else set())
+assert not missing, f'no output is held against {missing}'
+P
+
+"$relief" bake "$models/OBJ/box.obj" -o b.relief --budget 20kB --json --plan-out plan.toml >bake.json 2>stderr
+"$relief" bake "$models/OBJ/box.obj" -o c.relief --max-error 20 --budget 60kB --json >search.json 2>stderr
+"$relief" bake "$models/OBJ/box.obj" -o c.relief --plan plan.toml --json >plan.json 2>stderr
+"$relief" bake "$models/OBJ/box.obj" -o p.relief --paper --resolution 16 --compress 3 --json >paper.json 2>stderr
+outputs=(bake:bake.json bake:search.json bake:plan.json bake:paper.json)
+"$relief" info b.relief --json >info.json
+"$relief" info p.relief --json >paper_info.json
+outputs+=(info:info.json info:paper_info.json)
+"$relief" check b.relief --mesh "$models/OBJ/box.obj" --samples 500 --json >check.json
+expect 7 "$relief" check p.relief --mesh "$models/OBJ/box.obj" --samples 500 --max-error 0 --json
+cp stdout failed.json
+outputs+=(check:check.json check:failed.json)
+"$relief" check b.relief --json >sound.json
+cp p.relief damaged.relief
+printf 'DAMAGE' | dd of=damaged.relief bs=1 seek=1000 conv=notrunc status=none
+head -c 100 b.relief >short.relief
+expect 3 "$relief" check damaged.relief --json
+cp stdout damaged.json
+expect 3 "$relief" check short.relief --json
+cp stdout short.json
+expect 3 "$relief" check plan.toml --json
+cp stdout none.json
+outputs+=(check-file:sound.json check-file:damaged.json check-file:short.json check-file:none.json)
+if "$relief" --dump-cli json | grep -q '"name": "diff"'; then
+    expect 7 "$relief" diff b.relief p.relief --json
+    cp stdout diff.json
+    outputs+=(diff:diff.json)
+fi
+
+# A scene with everything in it.
+python3 -c "import struct; open('flow.raw', 'wb').write(struct.pack('<24f', *range(24)))"
+echo '0,1,0' >points.csv
+cat >scene.toml <<'T'
+[[collider]]
+file = "b.relief"
+[[collider]]
+file = "p.relief"
+[[collider.key]]
+time = 0
+position = [0, 0, 0]
+[[collider.key]]
+time = 1
+position = [1, 0, 0]
+axis = [0, 1, 0]
+angle = 90
+[particles]
+capacity = 500
+[[emitter]]
+shape = "disc"
+center = [0, 1, 0]
+radius = 0.5
+cone = 10
+speed = [1, 2]
+burst = 10
+rate = 10
+burst_every = 0.1
+[[emitter]]
+shape = "points"
+points = "points.csv"
+type = 1
+rate = 10
+[[emitter]]
+box_min = [-1, 1, -1]
+box_max = [1, 2, 1]
+duration = 2
+rate = 100
+[forces]
+viscosity = 0.1
+[flow]
+raw = "flow.raw"
+size = [2, 2, 2]
+components = 3
+box_min = [-1, -1, -1]
+box_max = [1, 1, 1]
+[curl_noise]
+amplitude = 0.1
+scale = 1
+[[attractor]]
+position = [0, 0, 0]
+strength = 1
+radius = 1
+reach = 5
+[[vortex]]
+center = [0, 0, 0]
+axis = [0, 1, 0]
+strength = 1
+radius = 1
+[[type]]
+name = "flake"
+size = [[0, 0.01], [1, 0.02]]
+color = [[0, 1, 1, 1], [1, 0, 0, 1]]
+opacity = [[0, 1], [1, 0]]
+on_collision = "die"
+[[type]]
+mass = 2
+[camera]
+target = [0, 0, 0]
+[[camera.key]]
+time = 0
+eye = [0, 1, 5]
+[[camera.key]]
+time = 1
+eye = [5, 1, 0]
+[render]
+size = [32, 24]
+every = 2
+sprite = "quad"
+T
+"$relief_sim" scene.toml --steps 4 --frames frames --stats stats.jsonl --json >sim.json
+"$relief_sim" b.relief --steps 2 --json >alone.json
+"$relief_sim" scene.toml --check --json >valid.json
+echo nonsense >bad.toml
+expect 3 "$relief_sim" bad.toml --check --json
+cp stdout invalid.json
+outputs+=(sim-report:sim.json sim-report:alone.json sim-stats:stats.jsonl sim-check:valid.json sim-check:invalid.json)
+
+python3 validate.py "$RELIEF_SOURCE/formats/schemas" "${outputs[@]}" || die "schemas and outputs differ"
