@@ -14,6 +14,8 @@ packages=(
     # runtime: libepoxy, and Mesa's llvmpipe for machines without a GPU
     libegl-dev libepoxy-dev libgl-dev libgles-dev libpng-dev libtomlplusplus-dev libegl1 libegl-mesa0 libgl1-mesa-dri
     # tests, benchmarks and the demo
+    # the same bytes, all or nothing: another compiler, other processors, system calls that fail
+    clang qemu-user-static strace
     assimp-testmodels glmark2-data imagemagick libbenchmark-dev libcgal-demo libgtest-dev openexr python3
 )
 

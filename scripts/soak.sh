@@ -1,16 +1,18 @@
 #!/usr/bin/env bash
-# Long runs, for a night and not for CI: scripts/soak.sh [sweep|rest]… (both). Ends with 0 if all hold.
+# Long runs, for a night and not for CI: scripts/soak.sh [sweep|rest|bytes|outputs]… (all). Ends with 0 if all hold.
 #
 #   sweep   a million particles take a thousand swept steps in a closed hollow box, and none gets out; without the
 #           sweep most do. In OpenGL 3.3 and in OpenGL ES 3.0. An hour or so on llvmpipe.
 #   rest    snow falls on the bunny: after it has come to rest, no bit of a position changes from step 5,000 to step
 #           100,000 (RELIEF_SOAK_SETTLED and RELIEF_SOAK_STEPS say others).
+#   bytes   204 bakes of ten meshes under all that must not matter give one hash each (scripts/determinism.sh)
+#   outputs 20 rounds of kills, errors, signals and eight writers leave no torn file (scripts/all_or_nothing.sh)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/setup.sh
 runs=("$@")
-[ ${#runs[@]} -gt 0 ] || runs=(sweep rest)
+[ ${#runs[@]} -gt 0 ] || runs=(sweep rest bytes outputs)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -67,12 +69,16 @@ sys.exit(0 if before and len(before) == len(after) and moved == 0 else 1)
 P
 }
 
+bytes() { scripts/determinism.sh; }
+
+outputs() { scripts/all_or_nothing.sh; }
+
 failed=0
 for run in "${runs[@]}"; do
     case $run in
-        sweep | rest) "$run" || failed=1 ;;
+        sweep | rest | bytes | outputs) "$run" || failed=1 ;;
         *)
-            echo "soak.sh: unknown run '$run'; choose sweep or rest" >&2
+            echo "soak.sh: unknown run '$run'; choose sweep, rest, bytes or outputs" >&2
             exit 1
             ;;
     esac
