@@ -12,6 +12,8 @@
 #include <limits>
 #include <vector>
 
+#include "bake/portable_math.h"
+
 namespace relief {
 namespace {
 
@@ -100,7 +102,7 @@ void measureNormals(const std::vector<SurfacePoint>& points, const Field& field,
             const glm::dvec3 a = glm::normalize(glm::dvec3(value->normal));
             const glm::dvec3 b = points[i].normal;
             // Exact for small angles, where acos of the cosine is not.
-            angles[i] = kDegrees * std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+            angles[i] = kDegrees * portable::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
         }
     });
     const auto counted = static_cast<std::uint64_t>(

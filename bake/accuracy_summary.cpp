@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "bake/byte_count.h"
+#include "bake/portable_math.h"
 #include "bake/text.h"
 
 namespace relief {
@@ -83,9 +84,9 @@ std::optional<double> geometricMean(std::span<const double> values) {
     }
     double sum = 0.0;
     for (const double value : values) {
-        sum += std::log(value);
+        sum += portable::log(value);
     }
-    return std::exp(sum / static_cast<double>(values.size()));
+    return portable::exp(sum / static_cast<double>(values.size()));
 }
 
 double wrongRatio(double percent, double volume_percent, std::uint32_t samples) {

@@ -7,6 +7,8 @@
 #include <chrono>
 #include <functional>
 
+#include "bake/embree_config.h"
+
 namespace relief {
 
 struct BareLoop::Impl {
@@ -16,7 +18,7 @@ struct BareLoop::Impl {
 
 BareLoop::BareLoop(const TriangleMesh& mesh) : impl_(std::make_unique<Impl>()) {
     const auto start = std::chrono::steady_clock::now();
-    impl_->device = rtcNewDevice(nullptr);
+    impl_->device = rtcNewDevice(kEmbreeConfig);
     impl_->scene = rtcNewScene(impl_->device);
     RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertices = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(

@@ -3,19 +3,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bake/portable_math.h"
+
 namespace relief {
 namespace {
 
 double toSrgb(double linear) {
     const double c = std::clamp(linear, 0.0, 1.0);
-    return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055;
+    return c <= 0.0031308 ? 12.92 * c : 1.055 * portable::pow(c, 1.0 / 2.4) - 0.055;
 }
 
 }  // namespace
 
 Color fromOklch(double lightness, double chroma, double hue) {
-    const double a = chroma * std::cos(hue * 3.14159265358979323846 / 180.0);
-    const double b = chroma * std::sin(hue * 3.14159265358979323846 / 180.0);
+    const double a = chroma * portable::cos(hue * 3.14159265358979323846 / 180.0);
+    const double b = chroma * portable::sin(hue * 3.14159265358979323846 / 180.0);
     const auto cube = [](double v) { return v * v * v; };
     const double l = cube(lightness + 0.3963377774 * a + 0.2158037573 * b);
     const double m = cube(lightness - 0.1055613458 * a - 0.0638541728 * b);

@@ -5,8 +5,10 @@
 #include <new>
 
 #include "bake/command.h"
+#include "formats/ending_signals.h"
 
 int main(int argc, char** argv) {
+    relief::endCleanlyOnSignals();
     // Fewer, larger steps of the heap: assimp allocates much in little pieces, and gives it all back.
     mallopt(M_TOP_PAD, 16 << 20);
     try {

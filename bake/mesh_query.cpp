@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "bake/embree_config.h"
 #include "bake/inside.h"
 #include "bake/mesh_edges.h"
 #include "bake/triangle_plane.h"
@@ -119,6 +120,26 @@ glm::dvec3 closestOnTriangle(const glm::dvec3& p, const glm::dvec3& a, const glm
     return a + (vb / sum) * ab + (vc / sum) * ac;
 }
 
+/// How far along a ray the plane of a triangle lies that it meets; held between the triangle's corners, for
+/// planes that are seen edge-on. Embree's own distance has a quotient in it that differs from processor to
+/// processor.
+double depthAt(const TriangleMesh& mesh, std::uint32_t triangle, const glm::dvec3& origin,
+               const glm::dvec3& direction) {
+    const TrianglePlane plane = planeOf(mesh, triangle);
+    const double depth = dot(plane.normal, plane.point - origin) / dot(plane.normal, direction);
+    const glm::uvec3& t = mesh.triangles[triangle];
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (const std::uint32_t corner : {t.x, t.y, t.z}) {
+        const double at =
+            dot(glm::dvec3(mesh.positions[corner]) - origin, direction) / dot(direction, direction);
+        low = std::min(low, at);
+        high = std::max(high, at);
+    }
+    // Written so that NaN is the nearest corner's.
+    return std::max(0.0, depth >= low ? std::min(depth, high) : low);
+}
+
 }  // namespace
 
 struct MeshQuery::Impl {
@@ -145,11 +166,11 @@ struct MeshQuery::Impl {
 
         /// \return true if the triangle is closer than the best so far.
         bool add(std::uint32_t index) {
-            const TriangleMesh& mesh = *impl->mesh;
-            const glm::uvec3& t = mesh.triangles[index];
+            const std::vector<glm::vec3>& positions = impl->mesh->positions;
+            const glm::uvec3& t = impl->mesh->triangles[index];
             const glm::dvec3 closest =
-                closestOnTriangle(p, impl->toLocal(mesh.positions[t.x]), impl->toLocal(mesh.positions[t.y]),
-                                  impl->toLocal(mesh.positions[t.z]));
+                closestOnTriangle(p, impl->toLocal(positions[t.x]), impl->toLocal(positions[t.y]),
+                                  impl->toLocal(positions[t.z]));
             const glm::dvec3 offset = closest - p;
             const double squared = dot(offset, offset);
             // Of equals the lowest index: the order of the visits must not matter.
@@ -192,7 +213,7 @@ Result<MeshQuery> MeshQuery::build(const TriangleMesh& mesh) {
     impl->center = 0.5 * glm::dvec3(mesh.bounds.min) + 0.5 * glm::dvec3(mesh.bounds.max);
     impl->scale = std::ldexp(1.0, -std::ilogb(mesh.bounds.longestSide()));
     impl->watertight = oddEdges(mesh).empty();
-    impl->device.reset(rtcNewDevice(nullptr));
+    impl->device.reset(rtcNewDevice(kEmbreeConfig));
     if (!impl->device) {
         return embreeError(rtcGetDeviceError(nullptr), mesh.name);
     }
@@ -298,7 +319,7 @@ std::optional<FirstHit> MeshQuery::firstHit(const glm::dvec3& origin, const glm:
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
         return std::nullopt;
     }
-    return FirstHit{static_cast<double>(query.ray.tfar), query.hit.primID};
+    return FirstHit{depthAt(*impl_->mesh, query.hit.primID, origin, direction), query.hit.primID};
 }
 
 }  // namespace relief

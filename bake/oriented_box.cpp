@@ -1,3 +1,8 @@
+// CGAL turns boxes by libm's functions, whose bits vary with the processor, and its search would end
+// elsewhere. In this file their names are those of portable_math.h; before anything else, as a name is given
+// where it is first met.
+#include "bake/portable_libm.h"
+
 #include "bake/oriented_box.h"
 
 #include <tbb/parallel_for.h>

@@ -8,8 +8,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
+#include "bake/embree_config.h"
 #include "bake/mesh_edges.h"
 #include "bake/triangle_plane.h"
 
@@ -599,7 +601,7 @@ Result<RayScene> RayScene::build(const TriangleMesh& mesh) {
     impl->closed = edgesAreEven(mesh);
     impl->center = 0.5 * glm::dvec3(mesh.bounds.min) + 0.5 * glm::dvec3(mesh.bounds.max);
     impl->scale = std::ldexp(1.0, -std::ilogb(mesh.bounds.longestSide()));
-    impl->device.reset(rtcNewDevice(nullptr));
+    impl->device.reset(rtcNewDevice(kEmbreeConfig));
     if (!impl->device) {
         return embreeError(rtcGetDeviceError(nullptr), mesh.name);
     }
@@ -656,6 +658,7 @@ void RayScene::traceRows(const View& view, RayEnd end, const RowRange& rows, std
 }
 
 struct RayProbe::Impl {
+    explicit Impl(RayScene::Impl::Tracer started) : tracer(std::move(started)) {}
     RayScene::Impl::Tracer tracer;
 };
 

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "bake/color.h"
+#include "bake/portable_math.h"
 #include "bake/text.h"
 
 namespace relief {
@@ -47,9 +48,22 @@ cairo_status_t append(void* png, const unsigned char* data, unsigned length) {
 
 // --- numbers ---
 
+double log10(double value) {
+    constexpr double kLogTen = 2.302585092994046;
+    return portable::log(value) / kLogTen;
+}
+
+double powerOfTen(int exponent) {
+    double power = 1.0;
+    for (int i = 0; i < std::abs(exponent); ++i) {
+        power *= 10.0;
+    }
+    return exponent < 0 ? 1.0 / power : power;
+}
+
 /// 1, 2 or 5 times a power of ten, at least `value`.
 double niceAbove(double value) {
-    const double power = std::pow(10.0, std::floor(std::log10(value)));
+    const double power = powerOfTen(static_cast<int>(std::floor(log10(value))));
     for (const double factor : {1.0, 2.0, 5.0}) {
         if (factor * power >= value * (1.0 - 1e-9)) {
             return factor * power;
@@ -68,7 +82,7 @@ std::string tickText(double value, double step) {
     if (magnitude >= 1e5 || step < 1e-5) {
         std::snprintf(text, sizeof(text), "%.3g", magnitude);
     } else {
-        const int digits = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
+        const int digits = std::max(0, static_cast<int>(std::ceil(-log10(step) - 1e-9)));
         std::snprintf(text, sizeof(text), "%.*f", digits, magnitude);
     }
     return (value < 0.0 ? "\xe2\x88\x92" : "") + std::string(text);  // a true minus sign

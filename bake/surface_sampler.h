@@ -32,7 +32,8 @@ class Random {
     }
     glm::dvec3 direction() {
         for (;;) {
-            const glm::dvec3 v(2.0 * uniform() - 1.0, 2.0 * uniform() - 1.0, 2.0 * uniform() - 1.0);
+            // In braces: the arguments of a call are evaluated in an order that the compiler chooses.
+            const glm::dvec3 v{2.0 * uniform() - 1.0, 2.0 * uniform() - 1.0, 2.0 * uniform() - 1.0};
             const double square = v.x * v.x + (v.y * v.y + v.z * v.z);
             if (square <= 1.0 && square > 1e-4) {
                 return v / std::sqrt(square);

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "bake/portable_math.h"
 #include "bake/triangle_plane.h"
 
 namespace relief {
@@ -26,10 +27,10 @@ class Random {
     glm::dvec3 gaussian() {
         double values[4];
         for (int i = 0; i < 4; i += 2) {
-            const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
+            const double radius = std::sqrt(-2.0 * portable::log(1.0 - uniform()));
             const double angle = 2.0 * 3.14159265358979323846 * uniform();
-            values[i] = radius * std::cos(angle);
-            values[i + 1] = radius * std::sin(angle);
+            values[i] = radius * portable::cos(angle);
+            values[i + 1] = radius * portable::sin(angle);
         }
         return {values[0], values[1], values[2]};
     }

@@ -98,9 +98,14 @@ std::vector<std::byte> writeMetadata(const Collider& collider, std::span<const f
         maps.push_back(addMap(builder, collider.maps[i], payloads[i]));
     }
     const Provenance& from = collider.provenance;
-    const auto provenance = fb::CreateProvenance(
-        builder, builder.CreateString(from.mesh_name), builder.CreateString(from.mesh_hash), from.triangles,
-        builder.CreateString(from.tool_version), builder.CreateString(from.options));
+    // One by one: a compiler chooses in which order it evaluates the arguments of a call, and each string is
+    // written as it is made.
+    const auto options = builder.CreateString(from.options);
+    const auto tool_version = builder.CreateString(from.tool_version);
+    const auto mesh_hash = builder.CreateString(from.mesh_hash);
+    const auto mesh_name = builder.CreateString(from.mesh_name);
+    const auto provenance =
+        fb::CreateProvenance(builder, mesh_name, mesh_hash, from.triangles, tool_version, options);
     const fb::Vec3 bounds_min = toFb(collider.bounds.min);
     const fb::Vec3 bounds_max = toFb(collider.bounds.max);
     const auto unit = builder.CreateString(collider.unit);

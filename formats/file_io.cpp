@@ -1,18 +1,19 @@
 #include "formats/file_io.h"
 
-#include <fcntl.h>
-#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <exception>
 #include <optional>
+#include <string_view>
 #include <system_error>
-#include <utility>
+
+#include "formats/descriptor.h"
+#include "formats/temporary_file.h"
 
 namespace relief {
 namespace {
@@ -21,36 +22,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kChunk = std::size_t{1} << 20;  // bytes a system call, for streams
 constexpr int kLinksMax = 40;                         // as Linux follows
-constexpr int kTemporaryNamesTried = 100;
-
-/// Owns a file descriptor.
-class Descriptor {
-  public:
-    explicit Descriptor(int fd = -1) : fd_(fd) {}
-    Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-    Descriptor& operator=(Descriptor&& other) noexcept {
-        std::swap(fd_, other.fd_);
-        return *this;
-    }
-    ~Descriptor() {
-        if (fd_ >= 0) {
-            ::close(fd_);
-        }
-    }
-
-    [[nodiscard]] int get() const { return fd_; }
-    [[nodiscard]] explicit operator bool() const { return fd_ >= 0; }
-
-    /// Some file systems report a failed write only here.
-    /// \return 0 or an errno. EINTR is no error: Linux has released the descriptor all the same.
-    [[nodiscard]] int close() {
-        const int result = ::close(std::exchange(fd_, -1));
-        return result == 0 || errno == EINTR ? 0 : errno;
-    }
-
-  private:
-    int fd_;
-};
 
 /// What a person can do about an errno.
 const char* cure(int code) {
@@ -100,14 +71,6 @@ int checkPath(const fs::path& path) {
     return path.native().find('\0') == std::string::npos ? 0 : EINVAL;
 }
 
-int openRetry(const char* path, int flags, mode_t mode = 0) {
-    int fd = -1;
-    do {
-        fd = ::open(path, flags | O_CLOEXEC | O_NOCTTY, mode);
-    } while (fd < 0 && errno == EINTR);
-    return fd;
-}
-
 /// Reads until the end.
 /// \param expected  bytes that are probably there, at most size_max.
 Result<std::vector<std::byte>> readAll(int fd, const std::string& name, std::uint64_t expected,
@@ -146,30 +109,6 @@ Result<std::vector<std::byte>> readAll(int fd, const std::string& name, std::uin
     }
 }
 
-/// \return 0 or an errno.
-int writeAll(int fd, std::span<const std::byte> bytes) {
-    while (!bytes.empty()) {
-        const ssize_t written = ::write(fd, bytes.data(), std::min(bytes.size(), std::size_t{1} << 30));
-        if (written < 0) {
-            if (errno == EINTR) {
-                continue;
-            }
-            return errno;
-        }
-        bytes = bytes.subspan(static_cast<std::size_t>(written));
-    }
-    return 0;
-}
-
-/// \return 0 or an errno. A file system that knows no fsync is no error.
-int sync(int fd) {
-    int result = 0;
-    do {
-        result = ::fsync(fd);
-    } while (result != 0 && errno == EINTR);
-    return result == 0 || errno == EINVAL || errno == EOPNOTSUPP || errno == ENOSYS ? 0 : errno;
-}
-
 /// Where a path leads when its last part is a symbolic link, one that leads to nothing included.
 /// \return 0 or an errno.
 int followLinks(fs::path& path) {
@@ -184,65 +123,28 @@ int followLinks(fs::path& path) {
     return ELOOP;
 }
 
-/// A temporary file beside the file that it will replace. Removed unless it has been renamed.
-class TemporaryFile {
-  public:
-    TemporaryFile() = default;
-    TemporaryFile(const TemporaryFile&) = delete;
-    TemporaryFile& operator=(const TemporaryFile&) = delete;
-    ~TemporaryFile() {
-        if (!name_.empty()) {
-            ::unlink(name_.c_str());
-        }
+/// The number in /dev/fd/N and its like; nullopt: some other path. Opened by its name a file would be written
+/// from its begin on, whatever the shell has appended to it before; or replaced, and the shell's left behind.
+std::optional<int> descriptorOf(const fs::path& path) {
+    if (path == "/dev/stdout") {
+        return STDOUT_FILENO;
     }
-
-    /// \return 0 or an errno, as of all members.
-    [[nodiscard]] int create(const fs::path& folder, mode_t mode) {
-        static std::atomic<unsigned> counter = 0;
-        for (int i = 0; i < kTemporaryNamesTried; ++i) {
-            unsigned random = 0;  // stays 0 where the system has none to give: O_EXCL alone keeps this safe
-            [[maybe_unused]] const ssize_t got = ::getrandom(&random, sizeof(random), GRND_NONBLOCK);
-            char text[64];
-            std::snprintf(text, sizeof(text), ".relief-%ld-%u-%08x.tmp", static_cast<long>(::getpid()),
-                          counter.fetch_add(1), random);
-            const fs::path name = folder / text;
-            file_ = Descriptor(openRetry(name.c_str(), O_WRONLY | O_CREAT | O_EXCL, mode));
-            if (file_) {
-                name_ = name;
-                return 0;
-            }
-            if (errno != EEXIST) {
-                return errno;
+    if (path == "/dev/stderr") {
+        return STDERR_FILENO;
+    }
+    for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
+        const std::string_view name = path.native();
+        if (name.starts_with(folder)) {
+            int number = 0;
+            const auto [end, error] =
+                std::from_chars(name.data() + folder.size(), name.data() + name.size(), number);
+            if (error == std::errc() && end == name.data() + name.size()) {
+                return number;
             }
         }
-        return EEXIST;
     }
-
-    [[nodiscard]] int fill(std::span<const std::byte> bytes, std::optional<mode_t> mode) {
-        if (const int code = writeAll(file_.get(), bytes)) {
-            return code;
-        }
-        if (mode && ::fchmod(file_.get(), *mode) != 0) {
-            return errno;
-        }
-        if (const int code = sync(file_.get())) {
-            return code;
-        }
-        return file_.close();
-    }
-
-    [[nodiscard]] int renameTo(const fs::path& target) {
-        if (::rename(name_.c_str(), target.c_str()) != 0) {
-            return errno;
-        }
-        name_.clear();
-        return 0;
-    }
-
-  private:
-    fs::path name_;
-    Descriptor file_;
-};
+    return std::nullopt;
+}
 
 Result<void> writeInPlace(const fs::path& path, std::span<const std::byte> bytes) {
     Descriptor file(openRetry(path.c_str(), O_WRONLY));
@@ -278,7 +180,7 @@ Result<void> replaceFile(const fs::path& target, const std::string& name, std::s
     }
     // A folder that may be written but not read cannot be synced: the file is whole all the same.
     if (const Descriptor opened(openRetry(folder.c_str(), O_RDONLY | O_DIRECTORY)); opened) {
-        if (const int sync_code = sync(opened.get())) {
+        if (const int sync_code = syncToDisk(opened.get())) {
             return ioError("make sure that the disk holds (though it is in place)", name, sync_code);
         }
     }
@@ -322,6 +224,12 @@ Result<void> writeFile(const fs::path& path, std::span<const std::byte> bytes) {
     const std::string name = quotedPath(path);
     if (const int code = checkPath(path)) {
         return ioError("write", name, code);
+    }
+    if (const std::optional<int> number = descriptorOf(path)) {
+        if (const int code = writeAll(*number, bytes)) {
+            return ioError("write", name, code);
+        }
+        return {};
     }
     struct stat status {};
     std::optional<mode_t> older_mode;

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/ending_signals.h"
 #include "formats/file_io.h"
 #include "runtime/cli_model.h"
 #include "runtime/gpu_tool.h"
@@ -332,6 +333,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    relief::endCleanlyOnSignals();
     try {
         return run(argc, argv);
     } catch (const std::bad_alloc&) {

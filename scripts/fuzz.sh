@@ -6,11 +6,7 @@ cd "$(dirname "$0")/.."
 
 seconds=${1:-60}
 targets=("${@:2}")
-scripts/setup.sh
-dpkg-query -W -f '${db:Status-Status}' clang 2>/dev/null | grep -qx installed || {
-    echo "fuzz.sh: clang is missing; apt-get install clang" >&2
-    exit 1
-}
+scripts/setup.sh clang
 if [ ${#targets[@]} -eq 0 ]; then
     for source in tests/fuzz/fuzz_*.cpp; do
         name=$(basename "$source" .cpp)

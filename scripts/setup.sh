@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what Relief builds and runs with, from Debian 12's own packages. Does nothing, and needs no network,
-# when all are there already. The other scripts call it.
+# when all are there already. The other scripts call it: scripts/setup.sh [PACKAGE]…, with what they need besides.
 set -euo pipefail
 
 packages=(
@@ -15,7 +15,8 @@ packages=(
     libegl-dev libepoxy-dev libgl-dev libgles-dev libpng-dev libtomlplusplus-dev libegl1 libegl-mesa0 libgl1-mesa-dri
     # tests, benchmarks and the demo
     assimp-testmodels bsdextrautils fish glmark2-data groff-base imagemagick libbenchmark-dev libcgal-demo libgtest-dev
-    man-db mandoc openexr python3 python3-jsonschema zsh
+    make man-db mandoc openexr python3 python3-jsonschema qemu-user-static strace zsh
+    "$@"
 )
 
 missing=()

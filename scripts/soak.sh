@@ -7,11 +7,14 @@
 #           100,000 (RELIEF_SOAK_SETTLED and RELIEF_SOAK_STEPS say others).
 #   import  every file of assimp-testmodels is read or refused, and none crashes the worker.
 #   package a build without the baker, from nothing, installs a runtime that samples/embed builds with.
+#   bytes   204 bakes of ten meshes under all that must not matter give one hash each (scripts/determinism.sh)
+#   fuzz    libFuzzer looks at containers, scenes, plans, recipes, points and import messages, ten minutes each (scripts/fuzz.sh)
+#   outputs 20 rounds of kills, errors, signals and eight writers leave no torn file (scripts/all_or_nothing.sh)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/setup.sh
-all_runs=(sweep rest import package)
+all_runs=(sweep rest import package bytes outputs fuzz)
 runs=("$@")
 [ ${#runs[@]} -gt 0 ] || runs=("${all_runs[@]}")
 work=$(mktemp -d)
@@ -100,6 +103,12 @@ test = json.load(open(sys.argv[1]))['testsuites'][0]['testsuite'][0]
 print(f"import: {test['tried']} files, {test['read']} of them read, the others refused")
 P
 }
+
+bytes() { scripts/determinism.sh; }
+
+outputs() { scripts/all_or_nothing.sh; }
+
+fuzz() { scripts/fuzz.sh 600; }
 
 failed=0
 for run in "${runs[@]}"; do
