@@ -116,6 +116,29 @@ cp "$bunny" bunny.obj
 expect 6 "$relief" bake --recipe slow.toml --timeout 0.2
 grep -q 'bunny.relief: .*--timeout' stderr || die "the timeout is not told: $(cat stderr)"
 
+# One that crashes takes nothing with it: the other is done, and no temporary file is left.
+tetrahedron small.obj 1
+printf '%s\n' '[[asset]]' 'mesh = "small.obj"' 'output = "small.relief"' 'map = "cube:size=16"' >>slow.toml
+python3 - "$relief" <<'P' || die "a crash is not told as one"
+import json, os, signal, subprocess, sys
+run = subprocess.Popen([sys.argv[1], 'bake', '--recipe', 'slow.toml', '-j', '1', '--events', '-'],
+                       stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+while json.loads(run.stdout.readline())['event'] != 'started':
+    pass
+# The event comes before the process.
+while not (children := open(f'/proc/{run.pid}/task/{run.pid}/children').read().split()):
+    pass
+child = int(children[0])
+open(f'.relief-{child}-0-00000000.tmp', 'w').close()  # as if it had been writing
+os.kill(child, signal.SIGSEGV)
+events = [json.loads(line) for line in run.stdout]
+failed = [e for e in events if e['event'] == 'failed']
+assert run.wait() == 4, run.returncode
+assert len(failed) == 1 and failed[0]['code'] == 4 and 'signal 11' in failed[0]['error'], events
+assert [e['asset'] for e in events if e['event'] == 'done'] == ['small.relief'], events
+assert not os.path.exists(f'.relief-{child}-0-00000000.tmp'), 'a temporary file is left'
+P
+
 # The same bytes one at a time, two at a time, and by four shards at the same time into one folder.
 for at_once in 1 2; do
     expect 0 "$relief" bake --recipe pristine/r.toml -o "out$at_once" -j $at_once
@@ -161,9 +184,9 @@ for line in run.stdout:
     started += event['event'] == 'started' and event['mesh'].startswith('b')
     if started == 2:
         break
+time.sleep(0.3)
 children = open(f'/proc/{run.pid}/task/{run.pid}/children').read().split()
 assert children, 'no child runs'
-time.sleep(0.3)
 begin = time.monotonic()
 run.send_signal(number)
 rest = [json.loads(line) for line in run.stdout]
