@@ -87,7 +87,7 @@ Result<Backend> chooseBackend(const BackendOptions& options, const BackendReques
     }
     backend.raster = true;
     backend.device = (*context)->description();
-    backend.reason = automatic ? "the OpenGL is a GPU's: " + backend.device : "";
+    backend.reason = automatic ? "planes of quality fast; the OpenGL is a GPU's: " + backend.device : "";
     backend.context = std::move(*context);
     return backend;
 }

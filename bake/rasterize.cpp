@@ -47,6 +47,7 @@ DepthMapFrame frameOf(const View& view, Decode decode, const TriangleMesh& mesh,
     frame.encloses = view.encloses;
     std::copy(std::begin(view.starts_free), std::end(view.starts_free), std::begin(frame.starts_free));
     frame.inside_out = winding < 0.0;
+    frame.exact = true;
     // A hundredth of a texel, as the ray caster has it.
     const auto length = [&](int k) { return std::sqrt(dot(view.axis[k], view.axis[k])); };
     const double unit =

@@ -186,6 +186,9 @@ std::string definesOf(const DepthMapFrame& frame, bool motion) {
     if (frame.decode == Decode::kPlane) {
         define("RELIEF_PLANE");
     }
+    if (frame.exact) {
+        define("RELIEF_EXACT");
+    }
     if (motion) {
         define("RELIEF_MOTION");
     }
@@ -200,6 +203,38 @@ void useTexture(GLint unit, GLuint texture) {
 void setVector(GLint location, const glm::dvec3& v) {
     glUniform3f(location, static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
 }
+
+/// What PassState leaves alone because no other pass depends on it: the depth range, and on desktop GL the
+/// provoking vertex and depth clamping.
+class DrawState {
+  public:
+    DrawState() {
+        glGetFloatv(GL_DEPTH_RANGE, range_);
+        glDepthRangef(0.0F, 1.0F);
+        if (!isGles()) {
+            glGetIntegerv(GL_PROVOKING_VERTEX, &provoking_);
+            glProvokingVertex(GL_LAST_VERTEX_CONVENTION);
+            clamp_ = glIsEnabled(GL_DEPTH_CLAMP);
+            glDisable(GL_DEPTH_CLAMP);
+        }
+    }
+    ~DrawState() {
+        glDepthRangef(range_[0], range_[1]);
+        if (!isGles()) {
+            glProvokingVertex(static_cast<GLenum>(provoking_));
+            if (clamp_ == GL_TRUE) {
+                glEnable(GL_DEPTH_CLAMP);
+            }
+        }
+    }
+    DrawState(const DrawState&) = delete;
+    DrawState& operator=(const DrawState&) = delete;
+
+  private:
+    GLfloat range_[2] = {0.0F, 1.0F};
+    GLint provoking_ = 0;
+    GLboolean clamp_ = GL_FALSE;
+};
 
 void clearTexels(const DepthMapTarget& target) {
     if (isFrontBack(target.format())) {
@@ -329,7 +364,8 @@ Result<const DepthMapRenderer::Program*> DepthMapRenderer::programFor(const Dept
     if (found != programs_.end()) {
         return &found->second;
     }
-    auto made = makeProgram("depth_map.vert", "depth_map.frag", defines);
+    auto made =
+        makeProgram(frame.exact ? "depth_map_exact.vert" : "depth_map.vert", "depth_map.frag", defines);
     if (!made) {
         return forward(made);
     }
@@ -351,6 +387,8 @@ Result<const DepthMapRenderer::Program*> DepthMapRenderer::programFor(const Dept
     program.ray = at("u_ray");
     program.range = at("u_range");
     program.good_enough = at("u_good_enough");
+    program.corner = at("u_corner");
+    program.reach = at("u_reach");
     glUseProgram(program.program.name());
     glUniform1i(at("u_positions"), kPositionUnit);
     glUniform1i(at("u_planes"), kPlaneUnit);
@@ -398,6 +436,10 @@ void DepthMapRenderer::setUniforms(const Program& program, const GpuMesh& mesh, 
     setVector(program.ray, glm::normalize(frame.axis[2]));
     glUniform1f(program.range, standingRange(isCube(frame) ? Projection::kCube : Projection::kOrthographic,
                                              scale, frame.width, frame.height));
+    glUniform2f(program.corner, static_cast<float>(x), static_cast<float>(y));
+    GLint subpixel_bits = 4;  // the least there may be
+    glGetIntegerv(GL_SUBPIXEL_BITS, &subpixel_bits);
+    glUniform1f(program.reach, std::ldexp(2.0F, -std::clamp(subpixel_bits, 4, 8)));
     glUniform1f(program.good_enough, static_cast<float>(frame.good_enough));
 }
 
@@ -420,8 +462,13 @@ Result<void> DepthMapRenderer::render(GpuMesh& mesh, const DepthMapFrame& frame,
     if (auto good = checkWindow(frame, window, target, x, y); !good) {
         return good;
     }
-    const PassState state;
     const bool motion = target.motion(0) != 0;
+    if (motion && frame.exact) {
+        return fail(ErrorCode::kUsage,
+                    "exact depth maps have no motion; take a target without, or leave exact out");
+    }
+    const PassState state;
+    const DrawState draw_state;
     const Result<const Program*> program = programFor(frame, motion);
     if (!program) {
         return forward(program);
@@ -465,7 +512,11 @@ Result<void> DepthMapRenderer::render(GpuMesh& mesh, const DepthMapFrame& frame,
             // The front in the first and third channel, the back in the others.
             glColorMask(!far, far, !far, far);
         }
-        mesh.draw();
+        if (frame.exact) {
+            mesh.drawApart();
+        } else {
+            mesh.draw();
+        }
     }
     return {};
 }

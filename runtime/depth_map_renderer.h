@@ -3,8 +3,9 @@
 // last place of the depth.
 //
 // The rasteriser only says which triangle a texel's ray meets; the depth is that of the triangle's own plane
-// at the texel's centre, because rasterisers move vertices to a grid of 1/256 pixel. Of surfaces on one ray
-// LESS keeps the nearest, GREATER the farthest; front-back maps are drawn twice into one target.
+// at the texel's centre, because rasterisers move vertices to a grid of 1/256 pixel (see DepthMapFrame::exact
+// for what that grid still decides). Of surfaces on one ray LESS keeps the nearest, GREATER the farthest;
+// front-back maps are drawn twice into one target.
 //
 // Maps whose decode is Plane hold, in each texel, the plane of the triangle that its centre's ray meets:
 // moved outwards to the next depth code, standing along the ray where it is steep, and facing the viewer
@@ -43,6 +44,11 @@ struct DepthMapFrame {
     /// its inner side leaves the texel empty.
     bool starts_free[2] = {true, true};
     bool inside_out = false;  ///< the triangles are clockwise seen from outside
+    /// Decides by the triangles themselves which texels' centres they hold, and which is the nearest, to
+    /// float precision: for baking. Otherwise texels whose centre lies within 1/256 of a texel of an edge may
+    /// take the triangle beside it, or what lies behind a silhouette. Takes three vertices a triangle and a
+    /// test a fragment more; not with motion.
+    bool exact = false;
     /// Plane alone: a standing plane that leaves no more free space behind it than this is kept, in units of
     /// map depth.
     double good_enough = 0.0;
@@ -119,7 +125,7 @@ class DepthMapRenderer {
     struct Program {
         GlProgram program;
         GLint shift, center, row, object, window, residual, origin, scale, width;
-        GLint far, starts_free, inside_out, ray, range, good_enough;
+        GLint far, starts_free, inside_out, ray, range, good_enough, corner, reach;
     };
     [[nodiscard]] Result<const Program*> programFor(const DepthMapFrame& frame, bool motion);
     static void setUniforms(const Program& program, const GpuMesh& mesh, const DepthMapFrame& frame,

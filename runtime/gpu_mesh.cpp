@@ -301,4 +301,9 @@ void GpuMesh::draw() const {
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * triangle_count_), GL_UNSIGNED_INT, nullptr);
 }
 
+void GpuMesh::drawApart() const {
+    glBindVertexArray(no_attributes_.name());
+    glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(3 * triangle_count_));
+}
+
 }  // namespace relief

@@ -75,6 +75,9 @@ class GpuMesh {
     /// Draws all triangles with the current program; attribute 0 is the slot's vertex, an unsigned integer.
     /// Binds a vertex array.
     void draw() const;
+    /// Draws them without attributes: vertex 3·i + j is corner j of triangle i, its own last. Binds a vertex
+    /// array.
+    void drawApart() const;
 
   private:
     [[nodiscard]] Result<void> createTextures(std::span<const glm::uvec3> triangles);

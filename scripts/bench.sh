@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 scripts/setup.sh
 mesh=${1:-/usr/share/glmark2/models/bunny.obj}
 bin=$(scripts/build.sh release relief relief-sim relief-bench-raycast relief-bench-step relief-bench-sort \
-    relief-bench-births)
+    relief-bench-births relief-bench-depth-maps)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -127,3 +127,19 @@ for c in births['capacities']:
     print(f"births, capacity {c['capacity']:8d}: {b['emit']:.0f} sampled, {b['spawn']:.0f} placed, "
           f"{b['draw']:.0f} drawn per ms; {c['bookkeeping']['ns_per_death']:.0f} ns a death")
 P
+
+# Depth maps from a mesh on the GPU, over a bare draw of the same triangles. OBJ and PLY alone.
+case $mesh in
+*.obj | *.ply)
+    "$bin/relief-bench-depth-maps" "$mesh" >"$work/depth_maps.json"
+    python3 - "$work" <<'P'
+import json, sys
+bench = json.load(open(f'{sys.argv[1]}/depth_maps.json'))
+print(f"\nmaps of {bench['size']}² from {bench['triangles']} triangles, on {bench['device']}; milliseconds of the GPU (wall)")
+for s in bench['sets']:
+    print(f"  {s['maps']:24s} {s['decode']:9s} {s['gpu_ms']:8.3f} ({s['wall_ms']:.3f}), bare draw {s['bare_gpu_ms']:.3f} "
+          f"({s['bare_wall_ms']:.3f}): {s['gpu_ratio']:.2f} ({s['wall_ratio']:.2f}; at most 1.3 on a GPU); "
+          f"with planes {s['with_planes_gpu_ms']:.3f}, exact {s['exact_gpu_ms']:.3f}")
+P
+    ;;
+esac

@@ -3,7 +3,7 @@
 //
 // Defined by DepthMapRenderer: RELIEF_FLOAT, RELIEF_BYTES or RELIEF_WORDS (with RELIEF_HALF or without), the
 // texel; RELIEF_CUBE; RELIEF_PLANE, decode; RELIEF_BOUNDED, a cube whose volume does not hold the mesh;
-// RELIEF_MOTION.
+// RELIEF_MOTION; RELIEF_EXACT, for depth_map_exact.vert.
 //!include normal_index.glsl
 uniform highp sampler2D u_positions;
 uniform highp usampler2D u_corners;
@@ -22,6 +22,13 @@ uniform bool u_inside_out;
 uniform vec3 u_ray;           // orthographic: along growing depth, unit length
 uniform float u_range;        // of standing planes, object units
 uniform float u_good_enough;  // see DepthMapFrame
+#ifdef RELIEF_EXACT
+uniform vec2 u_window;  // texels of the window
+uniform vec2 u_corner;  // of gl_FragCoord: where it starts
+flat in vec3 v_a;
+flat in vec3 v_b;
+flat in vec3 v_c;
+#endif
 
 flat in vec4 v_at;
 flat in vec2 v_slope;
@@ -144,6 +151,22 @@ uint outwardHalf(float depth, bool outwards_is_less) {
 }
 #endif
 
+#ifdef RELIEF_EXACT
+// Whether the triangle's projection holds the texel's centre, its edges included. Corners count from the centre,
+// so that a shared edge gives both its triangles the same numbers; the slack is what their products may be
+// rounded by: rather both hold it than neither.
+bool holdsCentre() {
+    vec2 centre = 2.0 * (gl_FragCoord.xy - u_corner) / u_window - 1.0;
+    vec2 a = v_a.xy - v_a.z * centre;
+    vec2 b = v_b.xy - v_b.z * centre;
+    vec2 c = v_c.xy - v_c.z * centre;
+    vec3 side = vec3(b.x * c.y - b.y * c.x, c.x * a.y - c.y * a.x, a.x * b.y - a.y * b.x);
+    vec3 slack = 4.8e-7 * vec3(length(c - b), length(a - c), length(b - a));
+    float turn = dot(side, vec3(v_a.z, v_b.z, v_c.z));
+    return turn >= 0.0 ? all(greaterThanEqual(side, -slack)) : all(lessThanEqual(side, slack));
+}
+#endif
+
 void writeEmpty() {
 #ifdef RELIEF_FLOAT
     o_texel = vec4(0.0, 0.0, 0.0, -1.0);
@@ -159,6 +182,11 @@ void writeEmpty() {
 }
 
 void main() {
+#ifdef RELIEF_EXACT
+    if (!holdsCentre()) {
+        discard;
+    }
+#endif
     vec3 ray = texelRay();
 #ifdef RELIEF_CUBE
     float along = dot(v_at.xyz, ray);
@@ -178,8 +206,13 @@ void main() {
         discard;
     }
 #endif
+#if defined(RELIEF_EXACT) && !defined(RELIEF_CUBE)
+    if (depth < -RELIEF_SLACK || depth > 1.0 + RELIEF_SLACK) {
+        discard;  // outside of the volume
+    }
+#endif
     depth = clamp(depth, 0.0, kDepthMax);
-#ifdef RELIEF_CUBE
+#if defined(RELIEF_CUBE) || defined(RELIEF_EXACT)
     gl_FragDepth = depth / kDepthMax;
 #endif
     bool behind = u_far ? cosine < 0.0 : cosine > 0.0;
@@ -201,7 +234,8 @@ void main() {
     vec3 n = uintBitsToFloat(texelFetch(u_planes, ivec2(i & ((1 << u_shift.y) - 1), i >> u_shift.y), 0).xyz);
     n = behind ? -n : n;
 #endif
-    o_texel = vec4(n + 0.0, depth);
+    // No -0; compilers leave out an addition of 0.
+    o_texel = vec4(n.x == 0.0 ? 0.0 : n.x, n.y == 0.0 ? 0.0 : n.y, n.z == 0.0 ? 0.0 : n.z, depth);
 #else
 #ifdef RELIEF_PLANE
     uint code = 1u + stored.code;

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "runtime/collider_renderer.h"
+#include "runtime/depth_map_renderer.h"
 #include "runtime/frame.h"
 #include "runtime/particle_renderer.h"
 #include "runtime/particle_system.h"
@@ -469,6 +470,50 @@ TEST_P(RendererGlTest, AColliderUploadsTheSameUnderOddState) {
     ASSERT_TRUE(renderer) << renderer.error().message;
     ASSERT_TRUE(renderer->draw(camera_, style_, frame_->target()));
     EXPECT_EQ(frame_->read(), plain);
+}
+
+TEST_P(RendererGlTest, DepthMapsAreTheSameUnderOddState) {
+    const std::array<glm::vec3, 4> corners{
+        {{0.1F, 0.1F, 0.2F}, {0.9F, 0.1F, 0.4F}, {0.1F, 0.9F, 0.6F}, {0.8F, 0.8F, 0.1F}}};
+    const std::array<glm::uvec3, 2> triangles{{{0, 1, 2}, {0, 2, 3}}};
+    const auto run = [&](const std::function<void(const char*)>& check) {
+        auto mesh = GpuMesh::create(corners, triangles, {.keep_previous = true});
+        check("GpuMesh::create");
+        EXPECT_TRUE(mesh->setPositions(corners));
+        check("GpuMesh::setPositions");
+        auto renderer = DepthMapRenderer::create();
+        DepthMapFrame frame;
+        frame.format = MapFormat::kFrontBackFixed;
+        frame.compare = Compare::kBoth;
+        frame.width = frame.height = 16;
+        const auto target = DepthMapTarget::create(frame, true);
+        check("DepthMapTarget::create");
+        EXPECT_TRUE(renderer->render(*mesh, frame, *target));
+        check("DepthMapRenderer::render");
+        std::vector<std::byte> texels(std::size_t{16} * 16 * 8);
+        EXPECT_TRUE(target->read(0, 0, 16, 16, texels));
+        check("DepthMapTarget::read");
+        return texels;
+    };
+    const std::vector<std::byte> plain = run([](const char*) {});
+    EXPECT_NE(plain, std::vector<std::byte>(plain.size())) << "nothing was drawn";
+    const OddState odd;
+    glDepthRangef(0.75F, 0.25F);
+    if (!isGles()) {
+        glProvokingVertex(GL_FIRST_VERTEX_CONVENTION);
+        glEnable(GL_DEPTH_CLAMP);
+    }
+    const auto before = glState();
+    EXPECT_TRUE(run([&](const char* call) { EXPECT_EQ(glState(), before) << "after " << call; }) == plain);
+    std::array<GLfloat, 2> range{};
+    glGetFloatv(GL_DEPTH_RANGE, range.data());
+    EXPECT_EQ(range, (std::array<GLfloat, 2>{0.75F, 0.25F}));
+    if (!isGles()) {
+        GLint provoking = 0;
+        glGetIntegerv(GL_PROVOKING_VERTEX, &provoking);
+        EXPECT_EQ(provoking, static_cast<GLint>(GL_FIRST_VERTEX_CONVENTION));
+        EXPECT_EQ(glIsEnabled(GL_DEPTH_CLAMP), GL_TRUE);
+    }
 }
 
 }  // namespace
