@@ -50,13 +50,11 @@ expect 0 "$relief_sim" scene.toml --frames frames --steps 30
 
 # One line, which names the place.
 scene 'mesh = "torus.obj"' 'deform = { kind = "melt", amplitude = 1, frequency = 1 }'
-expect 3 "$relief_sim" scene.toml
-[[ $(cat stderr) == *"scene.toml:3:"*melt* ]] || die "a wrong kind is not named"
+expect_error 3 'scene.toml:3:19: .*melt' "$relief_sim" scene.toml
 scene 'mesh = "none.obj"' "$twist"
-expect 2 "$relief_sim" scene.toml --check
-[[ $(cat stderr) == *"scene.toml:2:"*"collider.mesh"*none.obj* ]] || die "a missing mesh is not named"
+expect_error 2 'scene.toml:2:8: collider.mesh: .*none.obj' "$relief_sim" scene.toml --check
 scene 'mesh = "torus.obj"'
-expect 3 "$relief_sim" scene.toml --check
+expect_error 3 'scene.toml:2:8: .*needs collider.deform' "$relief_sim" scene.toml --check
 echo "no mesh" >broken.obj
 scene 'mesh = "broken.obj"' "$twist"
-expect 3 "$relief_sim" scene.toml
+expect_error 3 'collider.mesh: .*broken.obj' "$relief_sim" scene.toml

