@@ -30,9 +30,9 @@ constexpr double kTimeoutDefault = 3600.0;  // seconds
 constexpr double kTimeoutMax = 1e7;
 
 /// What speaks of a whole run, and not of what an asset is: no keys of a recipe.
-constexpr std::array<std::string_view, 16> kOfTheRun = {
-    "help",   "quiet",  "verbose", "output", "threads", "json",      "depfile",    "plan-out",
-    "recipe", "events", "shard",   "stamp",  "timeout", "fail-fast", "keep-going", "dry-run"};
+constexpr std::array<std::string_view, 17> kOfTheRun = {
+    "list-devices", "help",   "quiet", "verbose", "output",  "threads",   "json",       "depfile", "plan-out",
+    "recipe",       "events", "shard", "stamp",   "timeout", "fail-fast", "keep-going", "dry-run"};
 
 std::vector<RecipeKey> recipeKeys(const CLI::App& verb) {
     std::vector<RecipeKey> keys;
