@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <string>
-#include <vector>
 
 #include "runtime/pass_state.h"
 
@@ -24,33 +22,8 @@ constexpr GLint kPlaneUnit = 1;
 constexpr GLint kCornerUnit = 2;
 constexpr GLint kPreviousUnit = 3;
 
-struct TexelLayout {
-    GLenum internal_format;
-    GLenum format;
-    GLenum type;  // of read and upload
-};
-
-TexelLayout layoutOf(MapFormat format) {
-    switch (format) {
-        case MapFormat::kFloat32:
-            return {GL_RGBA32F, GL_RGBA, GL_FLOAT};
-        case MapFormat::kFrontBackHalf:
-        case MapFormat::kFrontBackFixed:
-            // Two-byte integers are not among what OpenGL ES 3.0 must read back.
-            return {GL_RGBA16UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT};
-        case MapFormat::kFixed8:
-        case MapFormat::kCube8:
-            break;
-    }
-    return {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE};
-}
-
 bool isCube(const DepthMapFrame& frame) {
     return frame.format == MapFormat::kCube8;
-}
-
-std::uint32_t faceCount(const DepthMapFrame& frame) {
-    return isCube(frame) ? 6 : 1;
 }
 
 /// Axes sc, tc and ma of each face of a cube, in map space (formats/README.md).
@@ -107,36 +80,6 @@ std::array<Row, 3> rowsOf(const DepthMapFrame& frame, const TexelWindow& window)
         return zoom * across + (zoom * (1.0 - 2.0 * first / frame.width) - 1.0) * on_face[2];
     };
     return {clip(on_face[0], window.x, window.width), clip(on_face[1], window.y, window.height), on_face[2]};
-}
-
-Result<void> checkFrame(const DepthMapFrame& frame) {
-    const std::uint32_t least = isCube(frame) ? 1 : kMapSizeMin;
-    if (std::min(frame.width, frame.height) < least || std::max(frame.width, frame.height) > kMapSizeMax ||
-        (isCube(frame) && frame.width != frame.height)) {
-        return fail(ErrorCode::kUsage,
-                    "a depth map of " + std::to_string(frame.width) + " x " + std::to_string(frame.height) +
-                        " texels cannot be rendered; take " + std::to_string(least) + " to " +
-                        std::to_string(kMapSizeMax) + " along a side, a cube as wide as high");
-    }
-    if ((frame.compare == Compare::kBoth) != isFrontBack(frame.format)) {
-        return fail(ErrorCode::kUsage, std::string("a depth map of format ") + mapFormatName(frame.format) +
-                                           " cannot keep " + compareName(frame.compare) +
-                                           "; front-back maps, and only those, keep both surfaces");
-    }
-    for (int k = 0; k < 3; ++k) {
-        const Row row = mapRow(frame, k);
-        const glm::vec3 direction(row.direction);
-        const double length = glm::length(frame.axis[k]);
-        if (!(std::isfinite(direction.x) && std::isfinite(direction.y) && std::isfinite(direction.z)) ||
-            !std::isfinite(static_cast<float>(row.offset)) || !(static_cast<float>(length) > 0.0F) ||
-            !std::isfinite(static_cast<float>(length))) {
-            return fail(
-                ErrorCode::kUsage,
-                "a depth map has an axis " + std::to_string(k) +
-                    " that floats cannot hold; its axes must have a length, and its origin be finite");
-        }
-    }
-    return {};
 }
 
 Result<void> checkWindow(const DepthMapFrame& frame, const TexelWindow& window, const DepthMapTarget& target,
@@ -252,106 +195,6 @@ void clearTexels(const DepthMapTarget& target) {
 }
 
 }  // namespace
-
-DepthMapFrame frameOf(const DepthMap& map) {
-    DepthMapFrame frame;
-    frame.format = map.format;
-    frame.compare = map.compare;
-    frame.decode = map.decode;
-    frame.width = map.width;
-    frame.height = map.height;
-    // The rows are orthogonal, so that the columns of the inverse are the rows over their squared lengths.
-    for (int k = 0; k < 3; ++k) {
-        const glm::vec4& row = map.object_to_map.row[k];
-        const glm::dvec3 direction(row.x, row.y, row.z);
-        frame.axis[k] = direction / glm::dot(direction, direction);
-        frame.origin -= double(row.w) * frame.axis[k];
-    }
-    frame.encloses = map.encloses;
-    frame.starts_free[0] = isCube(frame) || map.encloses;
-    frame.starts_free[1] = map.encloses;
-    return frame;
-}
-
-Result<DepthMapTarget> DepthMapTarget::create(MapFormat format, std::uint32_t width, std::uint32_t height,
-                                              bool motion) {
-    GLint side = 0;
-    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side);
-    GLint viewport[2] = {};
-    glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport);
-    const auto most = static_cast<std::uint32_t>(std::min({side, viewport[0], viewport[1]}));
-    if (width == 0 || height == 0 || std::max(width, height) > most) {
-        return fail(ErrorCode::kLimit, "depth maps of " + std::to_string(width) + " x " +
-                                           std::to_string(height) +
-                                           " texels cannot be rendered at once; this GL takes 1 to " +
-                                           std::to_string(most) + " along a side");
-    }
-    if (isGles() && (motion || format == MapFormat::kFloat32) &&
-        !epoxy_has_gl_extension("GL_EXT_color_buffer_float")) {
-        return fail(ErrorCode::kUnsupported,
-                    "GL_EXT_color_buffer_float is missing, float depth maps and motion cannot be rendered; "
-                    "take another format, or OpenGL 3.3");
-    }
-    const PassState state;
-    DepthMapTarget target;
-    target.format_ = format;
-    target.width_ = width;
-    target.height_ = height;
-    const TexelLayout layout = layoutOf(format);
-    const auto w = static_cast<GLsizei>(width);
-    const auto h = static_cast<GLsizei>(height);
-    // Integers of two bytes are allocated as such, whatever they are read back as.
-    target.texels_ = makeTexture2D(layout.internal_format, w, h, layout.format,
-                                   isFrontBack(format) ? GL_UNSIGNED_SHORT : layout.type);
-    target.depth_ = makeTexture2D(GL_DEPTH_COMPONENT32F, w, h, GL_DEPTH_COMPONENT, GL_FLOAT);
-    std::vector<GLuint> colors = {target.texels_.name()};
-    for (int i = 0; motion && i < 2; ++i) {
-        target.motion_[i] = makeTexture2D(GL_RGBA32F, w, h, GL_RGBA, GL_FLOAT);
-        colors.push_back(target.motion_[i].name());
-    }
-    auto framebuffer = makeFramebuffer(colors, target.depth_.name());
-    if (!framebuffer) {
-        return forward(framebuffer);
-    }
-    target.framebuffer_ = std::move(*framebuffer);
-    return target;
-}
-
-Result<DepthMapTarget> DepthMapTarget::create(const DepthMapFrame& frame, bool motion) {
-    if (auto good = checkFrame(frame); !good) {
-        return forward(good);
-    }
-    return create(frame.format, frame.width, frame.height * faceCount(frame), motion);
-}
-
-Result<void> DepthMapTarget::read(std::uint32_t x, std::uint32_t y, std::uint32_t width, std::uint32_t height,
-                                  std::span<std::byte> bytes) const {
-    const std::size_t texels = std::size_t{width} * height;
-    if (x > width_ || width > width_ - x || y > height_ || height > height_ - y ||
-        bytes.size() != texels * texelSize(format_)) {
-        return fail(ErrorCode::kUsage,
-                    "texels to read lie outside of the target, or their room has another size");
-    }
-    const PassState state;
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.name());
-    glReadBuffer(GL_COLOR_ATTACHMENT0);
-    const TexelLayout layout = layoutOf(format_);
-    const auto readTo = [&](void* to) {
-        glReadPixels(static_cast<GLint>(x), static_cast<GLint>(y), static_cast<GLsizei>(width),
-                     static_cast<GLsizei>(height), layout.format, layout.type, to);
-    };
-    if (!isFrontBack(format_)) {
-        readTo(bytes.data());
-        return {};
-    }
-    std::vector<std::uint32_t> words(4 * texels);
-    readTo(words.data());
-    for (std::size_t i = 0; i < words.size(); ++i) {
-        const auto word = static_cast<std::uint16_t>(words[i]);
-        std::memcpy(&bytes[2 * i], &word, sizeof(word));
-    }
-    return {};
-}
 
 Result<DepthMapRenderer> DepthMapRenderer::create() {
     return DepthMapRenderer();
