@@ -45,7 +45,8 @@ bool sendMessage(const Result<TriangleMesh>& raw) {
         return false;
     }
     // Not by write: no file may be written any more. The pages are the memfd's.
-    void* const pages = ::mmap(nullptr, message.size, PROT_READ | PROT_WRITE, MAP_SHARED, kImportResultFd, 0);
+    void* const pages =
+        ::mmap(nullptr, message.size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_POPULATE, kImportResultFd, 0);
     if (pages == MAP_FAILED) {
         return false;
     }
@@ -75,7 +76,7 @@ int work(char** arguments) {
         return kImportExitNoSandbox;
     }
     const std::uint64_t size = fileSize(kImportMeshFd);
-    void* const pages = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, kImportMeshFd, 0);
+    void* const pages = ::mmap(nullptr, size, PROT_READ, MAP_SHARED | MAP_POPULATE, kImportMeshFd, 0);
     const int folder = isFolder(kImportFolderFd) ? kImportFolderFd : -1;
     if (pages == MAP_FAILED ||
         !enterSandbox({memory + kMemoryBeside, static_cast<std::uint32_t>(seconds)}, folder) || orphaned()) {

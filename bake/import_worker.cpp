@@ -67,7 +67,8 @@ class Mapping {
   public:
     Mapping(int file, std::size_t size, int protection)
         : size_(size),
-          pages_(size == 0 ? MAP_FAILED : ::mmap(nullptr, size, protection, MAP_SHARED, file, 0)) {}
+          pages_(size == 0 ? MAP_FAILED
+                           : ::mmap(nullptr, size, protection, MAP_SHARED | MAP_POPULATE, file, 0)) {}
     Mapping(const Mapping&) = delete;
     Mapping& operator=(const Mapping&) = delete;
     ~Mapping() {
