@@ -78,7 +78,7 @@ struct Box {
     glm::dvec3 min, max;
 };
 
-Box boxOf(const TriangleMesh& mesh) {
+Box boxOf(const PictureMesh& mesh) {
     Box box{glm::dvec3(mesh.positions[0]), glm::dvec3(mesh.positions[0])};
     for (const glm::vec3& p : mesh.positions) {
         box.min = glm::min(box.min, glm::dvec3(p));
@@ -110,7 +110,7 @@ DepthMapFrame frameFor(const Box& box, MapFormat format, Compare compare, Decode
 /// The bare draw: the mesh's triangles over plain positions.
 class BareMesh {
   public:
-    static Result<BareMesh> create(const TriangleMesh& mesh) {
+    static Result<BareMesh> create(const PictureMesh& mesh) {
         BareMesh bare;
         for (int words = 0; words < 2; ++words) {
             auto program =
@@ -244,7 +244,7 @@ double ratio(double ours, double bare) {
     return bare > 0.0 ? ours / bare : 0.0;
 }
 
-Result<Json> benchSet(const MapSet& set, Decode decode, const TriangleMesh& mesh, const BareMesh& bare,
+Result<Json> benchSet(const MapSet& set, Decode decode, const PictureMesh& mesh, const BareMesh& bare,
                       GpuMesh& gpu_mesh, DepthMapRenderer& renderer) {
     const Box box = boxOf(mesh);
     std::vector<DepthMapFrame> frames;

@@ -25,15 +25,15 @@ void setAttribute(GLuint location, std::size_t offset) {
 
 }  // namespace
 
-Result<ColliderMesh> ColliderMesh::create(const TriangleMesh& mesh) {
+Result<ColliderMesh> ColliderMesh::create(const PictureMesh& mesh) {
     if (auto good = checkMesh(mesh); !good) {
         return forward(good);
     }
     if (mesh.triangles.size() > static_cast<std::size_t>(std::numeric_limits<GLsizei>::max())) {
         return fail(ErrorCode::kInvalidInput, "a mesh of more triangles than one draw takes");
     }
-    const TriangleMesh made = mesh.normals.empty() ? withNormals(mesh) : TriangleMesh{};
-    const TriangleMesh& full = mesh.normals.empty() ? made : mesh;
+    const PictureMesh made = mesh.normals.empty() ? withNormals(mesh) : PictureMesh{};
+    const PictureMesh& full = mesh.normals.empty() ? made : mesh;
     std::vector<Vertex> vertices(full.positions.size());
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         vertices[i] = {full.positions[i], full.normals[i]};

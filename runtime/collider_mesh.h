@@ -7,7 +7,7 @@
 #include "formats/result.h"
 #include "runtime/camera.h"
 #include "runtime/gl_object.h"
-#include "runtime/triangle_mesh.h"
+#include "runtime/picture_mesh.h"
 
 namespace relief {
 
@@ -16,7 +16,7 @@ class ColliderMesh {
     /// Needs a current context; restores what it touches.
     /// \param mesh  in the collider's object space; without normals they are made, see withNormals.
     /// Errors: kInvalidInput (checkMesh), kFailure (the driver's compiler).
-    [[nodiscard]] static Result<ColliderMesh> create(const TriangleMesh& mesh);
+    [[nodiscard]] static Result<ColliderMesh> create(const PictureMesh& mesh);
 
     /// Moves the vertices: copies 24 bytes a vertex, position and normal as floats, from the beginning of a
     /// buffer of the GPU (deform_pass.h). As many as the mesh was created with, which then has normals.

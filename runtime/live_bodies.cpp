@@ -47,8 +47,8 @@ Result<void> LiveBodies::show(double time, ColliderTextures& textures) {
 Result<LivePicture> LivePicture::create(const LiveMesh& live) {
     // Doubled vertices would come apart along a crease where each goes along its own normal.
     const bool smooth = live.deformation.kind == DeformKind::kWobble;
-    const TriangleMesh creased = smooth ? TriangleMesh{} : withNormals(live.mesh);
-    const TriangleMesh& drawn = smooth ? live.mesh : creased;
+    const PictureMesh creased = smooth ? PictureMesh{} : withNormals(live.mesh);
+    const PictureMesh& drawn = smooth ? live.mesh : creased;
     auto mesh = ColliderMesh::create(drawn);
     if (!mesh) {
         return forward(mesh);

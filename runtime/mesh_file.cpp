@@ -6,7 +6,7 @@
 
 namespace relief {
 
-bool addPolygon(std::span<const std::uint32_t> corners, TriangleMesh& mesh) {
+bool addPolygon(std::span<const std::uint32_t> corners, PictureMesh& mesh) {
     if (mesh.triangles.size() / 3 + corners.size() > kMeshTrianglesMax + 2) {
         return false;
     }
@@ -16,7 +16,7 @@ bool addPolygon(std::span<const std::uint32_t> corners, TriangleMesh& mesh) {
     return true;
 }
 
-Result<TriangleMesh> loadMesh(const std::filesystem::path& path) {
+Result<PictureMesh> loadMesh(const std::filesystem::path& path) {
     std::string extension = path.extension().native();
     for (char& c : extension) {
         c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "formats/result.h"
-#include "runtime/triangle_mesh.h"
+#include "runtime/picture_mesh.h"
 
 namespace relief {
 
@@ -20,16 +20,16 @@ inline constexpr std::size_t kMeshTrianglesMax = 40'000'000;
 /// By the file's extension, in either case: .obj or .ply. The mesh passes checkMesh; it has no normals.
 /// Errors: kUnsupported (another extension), kIo, kInvalidInput with the file and, where there are lines, the
 /// line, kLimit (the numbers above).
-[[nodiscard]] Result<TriangleMesh> loadMesh(const std::filesystem::path& path);
+[[nodiscard]] Result<PictureMesh> loadMesh(const std::filesystem::path& path);
 
 /// \param name  stands for the file in messages.
 /// Errors: kInvalidInput, kLimit, as above.
-[[nodiscard]] Result<TriangleMesh> parseObj(std::string_view text, std::string_view name);
+[[nodiscard]] Result<PictureMesh> parseObj(std::string_view text, std::string_view name);
 /// ASCII and binary of either byte order; elements and properties other than those needed are skipped.
 /// Errors: kInvalidInput, kLimit, as above.
-[[nodiscard]] Result<TriangleMesh> parsePlyMesh(std::span<const std::byte> bytes, std::string_view name);
+[[nodiscard]] Result<PictureMesh> parsePlyMesh(std::span<const std::byte> bytes, std::string_view name);
 
 /// For both parsers: a polygon as a fan round its first corner. False if that is more than kMeshTrianglesMax.
-[[nodiscard]] bool addPolygon(std::span<const std::uint32_t> corners, TriangleMesh& mesh);
+[[nodiscard]] bool addPolygon(std::span<const std::uint32_t> corners, PictureMesh& mesh);
 
 }  // namespace relief

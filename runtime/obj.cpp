@@ -43,7 +43,7 @@ class ObjReader {
   public:
     explicit ObjReader(std::string_view name) : name_(name) {}
 
-    Result<TriangleMesh> read(std::string_view text) {
+    Result<PictureMesh> read(std::string_view text) {
         while (!text.empty()) {
             ++line_;
             const std::size_t end = std::min(text.find('\n'), text.size());
@@ -113,12 +113,12 @@ class ObjReader {
     std::string_view name_;
     std::size_t line_ = 0;
     std::vector<std::uint32_t> corners_;
-    TriangleMesh mesh_;
+    PictureMesh mesh_;
 };
 
 }  // namespace
 
-Result<TriangleMesh> parseObj(std::string_view text, std::string_view name) {
+Result<PictureMesh> parseObj(std::string_view text, std::string_view name) {
     return ObjReader(name).read(text);
 }
 

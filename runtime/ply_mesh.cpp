@@ -219,7 +219,7 @@ Header readHeader(std::string_view& data) {
     return header;
 }
 
-void readVertices(const Element& element, Numbers& numbers, TriangleMesh& mesh) {
+void readVertices(const Element& element, Numbers& numbers, PictureMesh& mesh) {
     if (element.count > kMeshVerticesMax) {
         wrong("it has more than " + std::to_string(kMeshVerticesMax) + " vertices; simplify the mesh",
               ErrorCode::kLimit);
@@ -251,7 +251,7 @@ void readVertices(const Element& element, Numbers& numbers, TriangleMesh& mesh) 
 }
 
 /// Any other element, and the faces: lists of the right name become polygons.
-void readLists(const Element& element, Numbers& numbers, bool faces, TriangleMesh& mesh) {
+void readLists(const Element& element, Numbers& numbers, bool faces, PictureMesh& mesh) {
     if (element.properties.empty()) {
         return;
     }
@@ -290,12 +290,12 @@ void readLists(const Element& element, Numbers& numbers, bool faces, TriangleMes
 
 }  // namespace
 
-Result<TriangleMesh> parsePlyMesh(std::span<const std::byte> bytes, std::string_view name) {
+Result<PictureMesh> parsePlyMesh(std::span<const std::byte> bytes, std::string_view name) {
     std::string_view data(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     try {
         const Header header = readHeader(data);
         Numbers numbers(data, header.encoding);
-        TriangleMesh mesh;
+        PictureMesh mesh;
         for (const Element& element : header.elements) {
             if (element.name == "vertex" && mesh.positions.empty()) {
                 readVertices(element, numbers, mesh);

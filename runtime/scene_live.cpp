@@ -18,7 +18,7 @@ tl::unexpected<Error> failAt(const SceneCollider& from, const Error& error) {
 }
 
 /// What the scene leaves open.
-void complete(const SceneLive& live, const TriangleMesh& mesh, const Bounds& box, Deformation& d) {
+void complete(const SceneLive& live, const PictureMesh& mesh, const Bounds& box, Deformation& d) {
     if (!live.has_center) {
         d.center = box.center();
     }

@@ -9,7 +9,7 @@
 #include "formats/collider.h"
 #include "formats/result.h"
 #include "runtime/deformation.h"
-#include "runtime/triangle_mesh.h"
+#include "runtime/picture_mesh.h"
 
 namespace relief {
 
@@ -27,7 +27,7 @@ struct SceneLive {
 /// The mesh of a live collider, ready to deform.
 struct LiveMesh {
     /// One normal a vertex, so that a wobble tears nothing.
-    TriangleMesh mesh;
+    PictureMesh mesh;
     Deformation deformation;  ///< complete
     Collider frames;          ///< bounds of the whole motion, and three maps without texels
 };

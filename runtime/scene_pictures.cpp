@@ -29,7 +29,7 @@ Result<RgbaPicture> readAtlas(const Scene& scene) {
     return picture;
 }
 
-Result<TriangleMesh> readMesh(const Scene& scene, const Bounds& bounds) {
+Result<PictureMesh> readMesh(const Scene& scene, const Bounds& bounds) {
     const auto& render = scene.render;
     auto mesh = loadMesh(render.mesh);
     if (!mesh) {

@@ -22,8 +22,8 @@ constexpr double kPi = 3.14159265358979;
 constexpr float kRadius = 0.5F;
 constexpr float kDistance = 3.0F;
 
-TriangleMesh sphereMesh(std::uint32_t around, std::uint32_t rings) {
-    TriangleMesh mesh;
+PictureMesh sphereMesh(std::uint32_t around, std::uint32_t rings) {
+    PictureMesh mesh;
     for (std::uint32_t j = 0; j <= rings; ++j) {
         for (std::uint32_t i = 0; i < around; ++i) {
             const double a = 2.0 * kPi * i / around;
@@ -178,7 +178,7 @@ TEST_P(ColliderMeshGlTest, TheFloorHidesWhatLiesBelowIt) {
 }
 
 TEST_P(ColliderMeshGlTest, HostileMeshesAreRefused) {
-    TriangleMesh mesh = sphereMesh(8, 4);
+    PictureMesh mesh = sphereMesh(8, 4);
     EXPECT_TRUE(ColliderMesh::create(mesh));
     mesh.triangles.push_back(0);
     EXPECT_EQ(ColliderMesh::create(mesh).error().code, ErrorCode::kInvalidInput);

@@ -111,8 +111,8 @@ Collider sphereCollider() {
     return analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, 0.5), 32);
 }
 
-TriangleMesh tetrahedron() {
-    TriangleMesh mesh;
+PictureMesh tetrahedron() {
+    PictureMesh mesh;
     mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     mesh.triangles = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
     return mesh;

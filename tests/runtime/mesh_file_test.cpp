@@ -15,11 +15,11 @@ namespace {
 
 using Triangles = std::vector<std::uint32_t>;
 
-Result<TriangleMesh> ply(const std::string& text) {
+Result<PictureMesh> ply(const std::string& text) {
     return parsePlyMesh(std::as_bytes(std::span(text)), "'a.ply'");
 }
 
-void expectError(const Result<TriangleMesh>& mesh, const std::string& part,
+void expectError(const Result<PictureMesh>& mesh, const std::string& part,
                  ErrorCode code = ErrorCode::kInvalidInput) {
     ASSERT_FALSE(mesh) << part;
     EXPECT_EQ(mesh.error().code, code);
@@ -172,7 +172,7 @@ TEST(MeshFile, ByExtension) {
 // A cube's corners have three normals each, a flat square's one, and a gentle roof's ridge the mean of both
 // sides.
 TEST(MeshNormals, CreasesAreKeptAndCurvesAreSmoothed) {
-    TriangleMesh cube;
+    PictureMesh cube;
     for (int i = 0; i < 8; ++i) {
         cube.positions.emplace_back(i & 1, i >> 1 & 1, i >> 2);
     }
@@ -180,7 +180,7 @@ TEST(MeshNormals, CreasesAreKeptAndCurvesAreSmoothed) {
          {Triangles{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}) {
         ASSERT_TRUE(addPolygon(q, cube));
     }
-    const TriangleMesh sharp = withNormals(cube);
+    const PictureMesh sharp = withNormals(cube);
     EXPECT_EQ(sharp.positions.size(), 24U);
     for (std::size_t t = 0; t < sharp.triangles.size(); t += 3) {
         const glm::vec3 a = sharp.positions[sharp.triangles[t]];
@@ -191,17 +191,17 @@ TEST(MeshNormals, CreasesAreKeptAndCurvesAreSmoothed) {
             EXPECT_EQ(sharp.positions[sharp.triangles[t + i]], cube.positions[cube.triangles[t + i]]);
         }
     }
-    TriangleMesh roof;
+    PictureMesh roof;
     roof.positions = {{0, 0.2F, 0}, {0, 0.2F, 1}, {1, 0, 0}, {1, 0, 1}, {-1, 0, 0}, {-1, 0, 1}};
     roof.triangles = {0, 1, 2, 1, 3, 2, 0, 4, 1, 1, 4, 5};
-    const TriangleMesh smooth = withNormals(roof);
+    const PictureMesh smooth = withNormals(roof);
     EXPECT_EQ(smooth.positions.size(), 6U);
     EXPECT_NEAR(smooth.normals[smooth.triangles[1]].y, 1.0F, 1e-3F);
     EXPECT_EQ(withNormals(roof, 0.1F).positions.size(), 8U);
 }
 
 TEST(MeshNormals, TrianglesWithoutAreaHaveNone) {
-    TriangleMesh flat;
+    PictureMesh flat;
     flat.positions = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {0, 0, 0}};
     flat.triangles = {0, 1, 2, 0, 3, 0};
     for (const glm::vec3& n : withNormals(flat).normals) {

@@ -1,4 +1,4 @@
-#include "runtime/triangle_mesh.h"
+#include "runtime/picture_mesh.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +24,7 @@ struct Corner {
     float angle;
 };
 
-std::vector<Corner> cornersOf(const TriangleMesh& mesh) {
+std::vector<Corner> cornersOf(const PictureMesh& mesh) {
     std::vector<Corner> corners(mesh.triangles.size());
     for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
         glm::vec3 p[3];
@@ -47,7 +47,7 @@ struct Fans {
     std::vector<std::uint32_t> list;
 };
 
-Fans fansOf(const TriangleMesh& mesh) {
+Fans fansOf(const PictureMesh& mesh) {
     Fans fans;
     fans.begin.assign(mesh.positions.size() + 1, 0);
     for (const std::uint32_t v : mesh.triangles) {
@@ -66,7 +66,7 @@ Fans fansOf(const TriangleMesh& mesh) {
 
 }  // namespace
 
-Result<void> checkMesh(const TriangleMesh& mesh) {
+Result<void> checkMesh(const PictureMesh& mesh) {
     if (mesh.triangles.empty() || mesh.triangles.size() % 3 != 0) {
         return fail(ErrorCode::kInvalidInput, "a mesh without whole triangles shows nothing");
     }
@@ -89,11 +89,11 @@ Result<void> checkMesh(const TriangleMesh& mesh) {
     return {};
 }
 
-TriangleMesh withNormals(const TriangleMesh& mesh, float crease) {
+PictureMesh withNormals(const PictureMesh& mesh, float crease) {
     const float cosine = std::cos(crease);
     const std::vector<Corner> corners = cornersOf(mesh);
     const Fans fans = fansOf(mesh);
-    TriangleMesh out;
+    PictureMesh out;
     out.triangles.resize(mesh.triangles.size());
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
         const std::span<const std::uint32_t> fan(&fans.list[0] + fans.begin[v],
