@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 }  // namespace
 
-Json shortest(float value) {
+Json shortestJson(float value) {
     char text[32];
     for (int digits = 6; digits <= 9; ++digits) {
         std::snprintf(text, sizeof(text), "%.*g", digits, static_cast<double>(value));
@@ -28,7 +28,7 @@ Json shortest(float value) {
 }
 
 Json triple(const glm::vec3& v) {
-    return Json::array({shortest(v.x), shortest(v.y), shortest(v.z)});
+    return Json::array({shortestJson(v.x), shortestJson(v.y), shortestJson(v.z)});
 }
 
 namespace {
@@ -50,7 +50,7 @@ void addPlace(const SceneEmitter& emitter, Json& json) {
         case EmitterShape::kSphere:
         case EmitterShape::kShell:
             json["center"] = triple(emitter.center);
-            json["radius"] = shortest(emitter.radius);
+            json["radius"] = shortestJson(emitter.radius);
             return;
     }
 }
@@ -67,17 +67,17 @@ Json emitterSettings(const SceneEmitter& emitter) {
     }
     if (emitter.aimed) {
         json["direction"] = emitter.direction ? triple(*emitter.direction) : Json();
-        json["cone"] = shortest(emitter.cone);
-        json["speed"] = {shortest(*emitter.speed_min), shortest(*emitter.speed_max)};
+        json["cone"] = shortestJson(emitter.cone);
+        json["speed"] = {shortestJson(*emitter.speed_min), shortestJson(*emitter.speed_max)};
         if (emitter.speed_deviation > 0.0F) {
-            json["speed"] = {{"mean", shortest(*emitter.speed_min)},
-                             {"deviation", shortest(emitter.speed_deviation)}};
+            json["speed"] = {{"mean", shortestJson(*emitter.speed_min)},
+                             {"deviation", shortestJson(emitter.speed_deviation)}};
         }
     } else {
         json["velocity"] = triple(*emitter.velocity);
     }
     json["velocity_spread"] = triple(*emitter.velocity_spread);
-    json["lifetime"] = {shortest(emitter.lifetime_min), shortest(emitter.lifetime_max)};
+    json["lifetime"] = {shortestJson(emitter.lifetime_min), shortestJson(emitter.lifetime_max)};
     json["type"] = emitter.type;
     json["seed"] = emitter.seed;
     json["spread"] = emitter.spread;
@@ -88,7 +88,7 @@ template <class T, class Value>
 Json overAge(const AgeTrack<T>& track, const Value& value) {
     Json keys = Json::array();
     for (const AgeKey<T>& key : track) {
-        Json one = Json::array({shortest(key.age)});
+        Json one = Json::array({shortestJson(key.age)});
         for (const Json& number : value(key.value)) {
             one.push_back(number);
         }
@@ -99,7 +99,7 @@ Json overAge(const AgeTrack<T>& track, const Value& value) {
 
 /// A look as its [[type]]; what it leaves open is left out, for it is [render]'s.
 Json lookJson(const ParticleLook& look) {
-    const auto number = [](float value) { return Json::array({shortest(value)}); };
+    const auto number = [](float value) { return Json::array({shortestJson(value)}); };
     Json json = Json::object();
     const auto add = [&](const char* key, const AgeTrack<float>& track) {
         if (!track.empty()) {
@@ -112,34 +112,34 @@ Json lookJson(const ParticleLook& look) {
     }
     add("opacity", look.opacity);
     add("rotation", look.rotation);
-    json["turn"] = shortest(look.turn);
-    json["spin"] = shortest(look.spin);
+    json["turn"] = shortestJson(look.turn);
+    json["spin"] = shortestJson(look.spin);
     if (look.cell_first) {
         json["cell"] = {*look.cell_first, look.cell_last};
     }
     json["lit"] = look.lit;
     if (look.fade_in && look.fade_out) {
-        json["fade"] = {shortest(*look.fade_in), shortest(*look.fade_out)};
+        json["fade"] = {shortestJson(*look.fade_in), shortestJson(*look.fade_out)};
     }
     return json;
 }
 
 Json physicsSettings(const ParticleType& type) {
     static constexpr const char* kOnCollision[] = {"bounce", "stop", "slide", "die"};
-    return {{"mass", shortest(type.mass)},
-            {"radius", shortest(type.radius)},
-            {"restitution", shortest(type.restitution)},
-            {"friction", shortest(type.friction)},
-            {"friction_threshold", shortest(type.friction_threshold)},
+    return {{"mass", shortestJson(type.mass)},
+            {"radius", shortestJson(type.radius)},
+            {"restitution", shortestJson(type.restitution)},
+            {"friction", shortestJson(type.friction)},
+            {"friction_threshold", shortestJson(type.friction_threshold)},
             {"on_collision", kOnCollision[static_cast<std::size_t>(type.on_collision)]},
-            {"lifetime_loss", shortest(type.lifetime_loss)}};
+            {"lifetime_loss", shortestJson(type.lifetime_loss)}};
 }
 
 void addPictures(const Scene& scene, Json& json) {
     Json& render = json["render"];
     render["sprite"] = scene.render.sprite == Sprite::kQuad ? "quad" : "point";
     render["blend"] = scene.render.blend == Blend::kAdditive ? "additive" : "alpha";
-    render["soft"] = shortest(scene.render.soft);
+    render["soft"] = shortestJson(scene.render.soft);
     if (!scene.render.atlas.empty()) {
         render["atlas"] = scene.render.atlas.native();
         render["atlas_cells"] = {scene.render.atlas_columns, scene.render.atlas_rows};
@@ -165,7 +165,7 @@ void addPictures(const Scene& scene, Json& json) {
         camera["key"].push_back({{"time", key.time},
                                  {"eye", triple(key.eye)},
                                  {"target", triple(key.target.value_or(*scene.camera.target))},
-                                 {"fov", shortest(key.fov.value_or(scene.camera.fov))}});
+                                 {"fov", shortestJson(key.fov.value_or(scene.camera.fov))}});
     }
 }
 
@@ -173,7 +173,7 @@ void addPose(const Pose& pose, Json& json) {
     json["position"] = triple(pose.position);
     const glm::vec3 axis = glm::axis(pose.rotation);
     json["axis"] = triple(axis);
-    json["angle"] = shortest(glm::degrees(glm::angle(pose.rotation)));
+    json["angle"] = shortestJson(glm::degrees(glm::angle(pose.rotation)));
 }
 
 Json colliderSettings(const SceneCollider& collider) {
@@ -183,17 +183,17 @@ Json colliderSettings(const SceneCollider& collider) {
         constexpr const char* kKinds[] = {"bend", "twist", "wobble"};
         const float amplitude = d.kind == DeformKind::kWobble ? d.amplitude : glm::degrees(d.amplitude);
         json["deform"] = {{"kind", kKinds[static_cast<int>(d.kind)]},
-                          {"amplitude", shortest(amplitude)},
-                          {"frequency", shortest(d.frequency)}};
+                          {"amplitude", shortestJson(amplitude)},
+                          {"frequency", shortestJson(d.frequency)}};
         json["resolution"] = collider.live->resolution;
     }
     if (!collider.posed) {
         return json;
     }
     addPose(collider.pose, json);
-    json["scale"] = shortest(collider.pose.scale);
-    json["restitution"] = shortest(collider.restitution);
-    json["friction"] = shortest(collider.friction);
+    json["scale"] = shortestJson(collider.pose.scale);
+    json["restitution"] = shortestJson(collider.restitution);
+    json["friction"] = shortestJson(collider.friction);
     for (const SceneColliderKey& key : collider.keys) {
         Json one{{"time", key.time}};
         addPose(key.pose, one);
@@ -210,7 +210,7 @@ Json settings(const Scene& scene) {
     if (scene.colliders.size() == 1) {
         json["collider"] = colliderSettings(scene.colliders.front());
     }
-    json["time"] = {{"dt", shortest(scene.dt)},
+    json["time"] = {{"dt", shortestJson(scene.dt)},
                     {"steps", scene.steps},
                     {"integrator", scene.integrator == Integrator::kVerlet ? "verlet" : "euler"}};
     json["particles"] = {{"capacity", scene.capacity}};
@@ -222,22 +222,22 @@ Json settings(const Scene& scene) {
     }
     json["forces"] = {{"gravity", triple(*scene.forces.gravity)},
                       {"wind", triple(scene.forces.wind)},
-                      {"drag", shortest(scene.forces.drag)}};
-    json["collision"] = {{"restitution", shortest(scene.collision.restitution)},
-                         {"friction", shortest(scene.collision.friction)},
-                         {"friction_threshold", shortest(scene.collision.friction_threshold)},
-                         {"sweep", shortest(scene.sweep)}};
+                      {"drag", shortestJson(scene.forces.drag)}};
+    json["collision"] = {{"restitution", shortestJson(scene.collision.restitution)},
+                         {"friction", shortestJson(scene.collision.friction)},
+                         {"friction_threshold", shortestJson(scene.collision.friction_threshold)},
+                         {"sweep", shortestJson(scene.sweep)}};
     json["ground"]["enabled"] = scene.ground.enabled;
     if (scene.ground.enabled) {
-        json["ground"]["height"] = shortest(*scene.ground.height);
+        json["ground"]["height"] = shortestJson(*scene.ground.height);
     }
     json["camera"] = {{"eye", triple(*scene.camera.eye)},
                       {"target", triple(*scene.camera.target)},
-                      {"fov", shortest(scene.camera.fov)}};
+                      {"fov", shortestJson(scene.camera.fov)}};
     json["render"] = {{"size", {scene.render.width, scene.render.height}},
-                      {"point_size", shortest(*scene.render.point_size)},
+                      {"point_size", shortestJson(*scene.render.point_size)},
                       {"color", triple(scene.render.color)},
-                      {"opacity", shortest(scene.render.opacity)},
+                      {"opacity", shortestJson(scene.render.opacity)},
                       {"background", triple(scene.render.background)},
                       {"every", scene.render.every},
                       {"sort_frames", scene.render.sort_frames}};

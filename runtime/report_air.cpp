@@ -21,7 +21,7 @@ Json flowSettings(const FlowFile& flow) {
     json["box_min"] = triple(flow.box_min);
     json["box_max"] = triple(flow.box_max);
     json["outside"] = flow.outside == FlowOutside::kEdge ? "edge" : "zero";
-    json["gain"] = shortest(flow.gain);
+    json["gain"] = shortestJson(flow.gain);
     return json;
 }
 
@@ -31,33 +31,33 @@ void addAirSettings(const Scene& scene, Json& settings) {
     const AirSettings& air = scene.air;
     if (air.viscosity) {
         settings["forces"].erase("drag");  // the viscosity takes its place
-        settings["forces"]["viscosity"] = shortest(*air.viscosity);
+        settings["forces"]["viscosity"] = shortestJson(*air.viscosity);
     }
     for (const Attractor& one : air.attractors) {
         Json json = {{"position", triple(one.position)},
-                     {"strength", shortest(one.strength)},
-                     {"radius", shortest(one.radius)},
+                     {"strength", shortestJson(one.strength)},
+                     {"radius", shortestJson(one.radius)},
                      {"falloff", one.falloff}};
         if (one.reach < std::numeric_limits<float>::max()) {
-            json["reach"] = shortest(one.reach);
+            json["reach"] = shortestJson(one.reach);
         }
         settings["attractor"].push_back(std::move(json));
     }
     for (const Vortex& one : air.vortices) {
         settings["vortex"].push_back({{"center", triple(one.center)},
                                       {"axis", triple(one.axis)},
-                                      {"strength", shortest(one.strength)},
-                                      {"radius", shortest(one.radius)},
+                                      {"strength", shortestJson(one.strength)},
+                                      {"radius", shortestJson(one.radius)},
                                       {"falloff", one.falloff}});
     }
     if (scene.flow) {
         settings["flow"] = flowSettings(*scene.flow);
     }
     if (air.curl_noise) {
-        settings["curl_noise"] = {{"amplitude", shortest(air.curl_noise->amplitude)},
-                                  {"scale", shortest(air.curl_noise->scale)},
+        settings["curl_noise"] = {{"amplitude", shortestJson(air.curl_noise->amplitude)},
+                                  {"scale", shortestJson(air.curl_noise->scale)},
                                   {"octaves", air.curl_noise->octaves},
-                                  {"drift", shortest(air.curl_noise->drift)},
+                                  {"drift", shortestJson(air.curl_noise->drift)},
                                   {"seed", air.curl_noise->seed}};
     }
 }

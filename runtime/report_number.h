@@ -7,7 +7,7 @@
 namespace relief {
 
 /// A float as the shortest decimal that reads back as it, rather than as the double beside it.
-[[nodiscard]] nlohmann::ordered_json shortest(float value);
+[[nodiscard]] nlohmann::ordered_json shortestJson(float value);
 [[nodiscard]] nlohmann::ordered_json triple(const glm::vec3& v);
 
 }  // namespace relief
