@@ -584,6 +584,11 @@ Result<void> runBake(const BakeCommand& command) {
         if (!info) {
             return forward(info);
         }
+        auto report = jsonBake(summary, *info, jsonSettings(command, *settings, *backend, *baked, plan));
+        for (const InputFile& input : inputs) {
+            report["inputs"].push_back({{"file", input.path}, {"hash", input.hash}});
+        }
+        return printOut(dump(report));
     }
     if (!command.common.quiet) {
         std::fputs(bakeText(summary, command.output, bytes->size()).c_str(), stderr);
