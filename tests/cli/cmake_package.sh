@@ -82,7 +82,7 @@ refused '0\.9' 'find_package(Relief 0.9 REQUIRED)'
 # Recipes.
 mkdir recipe
 cp consumer/box.* recipe/
-printf '[[asset]]\nmesh = "*.obj"\noutput = "{stem}.relief"\n[asset.options]\nbudget = "20kB"\n' >recipe/recipe.toml
+printf 'version = 1\n[[asset]]\nmesh = "*.obj"\noutput = "{stem}.relief"\nbudget = "20kB"\n' >recipe/recipe.toml
 printf '%s\n' 'cmake_minimum_required(VERSION 3.25)' 'project(recipe LANGUAGES CXX)' \
     'find_package(Relief REQUIRED COMPONENTS bake)' \
     'relief_add_colliders(colliders RECIPE recipe.toml OUTPUT_DIR baked)' >recipe/CMakeLists.txt

@@ -76,7 +76,20 @@ P
 "$relief" bake "$models/OBJ/box.obj" -o c.relief --max-error 20 --budget 60kB --json >search.json 2>stderr
 "$relief" bake "$models/OBJ/box.obj" -o c.relief --plan plan.toml --json >plan.json 2>stderr
 "$relief" bake "$models/OBJ/box.obj" -o p.relief --paper --resolution 16 --compress 3 --json >paper.json 2>stderr
-outputs=(bake:bake.json bake:search.json bake:plan.json bake:paper.json)
+mkdir recipe
+cp "$models/OBJ/box.obj" recipe/
+echo nonsense >recipe/zbad.obj
+printf 'version = 1\n[[asset]]\nmesh = "*.obj"\noutput = "{stem}.relief"\npaper = true\nresolution = 8\n' >recipe/recipe.toml
+expect 3 "$relief" bake --recipe recipe/recipe.toml --events events.jsonl --json
+cp stdout recipe.json
+expect 3 "$relief" bake --recipe recipe/recipe.toml --events again.jsonl -j 1 --json
+cp stdout again.json
+touch -d '+1 day' recipe/box.obj
+echo '# changed' >>recipe/box.obj
+expect 0 "$relief" bake --recipe recipe/recipe.toml --dry-run --json
+cp stdout dry.json
+outputs=(recipe-events:events.jsonl recipe-events:again.jsonl recipe:recipe.json recipe:again.json recipe:dry.json)
+outputs+=(bake:bake.json bake:search.json bake:plan.json bake:paper.json)
 "$relief" info b.relief --json >info.json
 "$relief" info p.relief --json >paper_info.json
 outputs+=(info:info.json info:paper_info.json)
