@@ -82,7 +82,7 @@ class LiveCollider {
     std::vector<DepthMapTarget> targets_;
     GlProgram motion_program_;
     GLint motion_end_ = -1, motion_origin_ = -1;
-    GlFramebuffer motion_target_;
+    GlFramebuffer texel_target_, motion_target_;
     GlVertexArray no_attributes_;
     bool shown_ = false;   // by a first update
     bool moved_ = false;   // since the last update
