@@ -14,6 +14,7 @@
 #include "bake/preflight.h"
 #include "bake/report.h"
 #include "bake/text.h"
+#include "bake/winding.h"
 #include "formats/container.h"
 #include "formats/file_io.h"
 
@@ -122,10 +123,16 @@ Result<void> runCheck(const CheckCommand& command) {
     if (!collider) {
         return forward(collider);
     }
-    const Result<TriangleMesh> mesh = loadMesh(command.mesh, command.import);
-    if (!mesh) {
-        return forward(mesh);
+    const Result<TriangleMesh> imported = loadMesh(command.mesh, command.import);
+    if (!imported) {
+        return forward(imported);
     }
+    // As baked: where solids overlap, their winding decides what is inside.
+    const Result<Winding> winding = windOutwards(*imported);
+    if (!winding) {
+        return forward(winding);
+    }
+    const TriangleMesh* const mesh = &winding->mesh;
     if (const Result<void> same = checkSameMesh(*collider, *mesh); !same) {
         return same;
     }

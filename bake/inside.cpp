@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "bake/mesh_edges.h"
 #include "bake/triangle_plane.h"
 
 namespace relief {
@@ -12,24 +13,29 @@ namespace {
 
 constexpr std::size_t kDirections = kParityDirections.size();
 
-using Crossings = std::array<std::uint64_t, kDirections>;
+struct Crossings {
+    std::array<std::uint64_t, kDirections> count{};
+    std::array<std::int64_t, kDirections> winding{};
+};
 
 /// Moeller and Trumbore (1997): whether the ray from the origin of the corners' space crosses the triangle.
-bool crosses(const glm::dvec3& a, const glm::dvec3& edge1, const glm::dvec3& edge2,
-             const glm::dvec3& direction) {
+/// \return 0: it does not; else the direction in which, 1 or -1.
+int crosses(const glm::dvec3& a, const glm::dvec3& edge1, const glm::dvec3& edge2,
+            const glm::dvec3& direction) {
     const glm::dvec3 p = cross(direction, edge2);
     const double determinant = dot(edge1, p);
     if (determinant == 0.0) {
-        return false;
+        return 0;
     }
     const glm::dvec3 from_corner = -a;
     const double u = dot(from_corner, p) / determinant;
     if (u < 0.0 || u > 1.0) {
-        return false;
+        return 0;
     }
     const glm::dvec3 q = cross(from_corner, edge1);
     const double v = dot(direction, q) / determinant;
-    return v >= 0.0 && u + v <= 1.0 && dot(edge2, q) / determinant > 0.0;
+    const bool met = v >= 0.0 && u + v <= 1.0 && dot(edge2, q) / determinant > 0.0;
+    return !met ? 0 : determinant > 0.0 ? 1 : -1;
 }
 
 }  // namespace
@@ -43,21 +49,28 @@ bool insideByParity(const TriangleMesh& mesh, const glm::vec3& point) {
             const glm::dvec3 edge1 = glm::dvec3(mesh.positions[t.y]) - origin - a;
             const glm::dvec3 edge2 = glm::dvec3(mesh.positions[t.z]) - origin - a;
             for (std::size_t d = 0; d < kDirections; ++d) {
-                crossings[d] += crosses(a, edge1, edge2, kParityDirections[d]) ? 1 : 0;
+                const int way = crosses(a, edge1, edge2, kParityDirections[d]);
+                crossings.count[d] += way != 0 ? 1 : 0;
+                crossings.winding[d] += way;
             }
         }
         return crossings;
     };
     const auto sum = [](Crossings a, const Crossings& b) {
         for (std::size_t d = 0; d < kDirections; ++d) {
-            a[d] += b[d];
+            a.count[d] += b.count[d];
+            a.winding[d] += b.winding[d];
         }
         return a;
     };
     const Crossings crossings = tbb::parallel_reduce(
         tbb::blocked_range<std::size_t>(0, mesh.triangles.size(), 4096), Crossings{}, count, sum);
-    return std::count_if(crossings.begin(), crossings.end(), [](std::uint64_t n) { return n % 2 == 1; }) >
-           static_cast<std::ptrdiff_t>(kDirections / 2);
+    const bool shells = isSeveralShells(mesh);
+    std::size_t votes = 0;
+    for (std::size_t d = 0; d < kDirections; ++d) {
+        votes += shells ? crossings.winding[d] != 0 : crossings.count[d] % 2 == 1;
+    }
+    return votes > kDirections / 2;
 }
 
 }  // namespace relief

@@ -79,6 +79,33 @@ bool edgesAreEven(const TriangleMesh& mesh) {
                                 std::uint64_t{0}, sum, std::bit_xor<>()) == 0;
 }
 
+bool isSeveralShells(const TriangleMesh& mesh) {
+    const std::vector<EdgeUse> uses = edgeUses(mesh, weldedVertices(mesh));
+    std::vector<std::uint32_t> group(mesh.triangles.size());
+    std::iota(group.begin(), group.end(), 0U);
+    const auto find = [&](std::uint32_t i) {
+        while (group[i] != i) {
+            group[i] = group[group[i]];
+            i = group[i];
+        }
+        return i;
+    };
+    std::size_t groups = group.size();
+    bool balanced = true;
+    forEachEdge(uses, [&](std::size_t begin, std::size_t end) {
+        std::size_t down = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+            down += uses[i].down ? 1U : 0U;
+            const std::uint32_t a = find(uses[begin].triangle);
+            const std::uint32_t b = find(uses[i].triangle);
+            groups -= a != b ? 1U : 0U;
+            group[std::max(a, b)] = std::min(a, b);
+        }
+        balanced = balanced && 2 * down == end - begin;
+    });
+    return balanced && groups > 1;
+}
+
 std::vector<OddEdge> oddEdges(const TriangleMesh& mesh) {
     const std::vector<std::uint32_t> welded = weldedVertices(mesh);
     // Lower vertex, higher vertex, and whether the triangle runs from the higher to the lower one: 31, 32 and

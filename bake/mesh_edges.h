@@ -51,6 +51,11 @@ void forEachEdge(const std::vector<EdgeUse>& uses, const Visit& visit) {
 /// surface as often, modulo 2, as any other.
 [[nodiscard]] std::vector<OddEdge> oddEdges(const TriangleMesh& mesh);
 
+/// Several closed surfaces, each wound consistently: every edge runs as often one way as the other, and the
+/// triangles fall into groups that share no edge. Such surfaces may overlap; how often they wind round a
+/// point, not the parity of a ray's crossings, says then whether it lies in one of them.
+[[nodiscard]] bool isSeveralShells(const TriangleMesh& mesh);
+
 /// Whether there is no odd edge, without sorting: by a sum of 64-bit hashes of the edges. Wrong for one open
 /// mesh in 2⁶⁴, which then seems closed.
 [[nodiscard]] bool edgesAreEven(const TriangleMesh& mesh);

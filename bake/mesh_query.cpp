@@ -40,6 +40,7 @@ tl::unexpected<Error> embreeError(RTCError error, const std::string& what) {
 struct CrossingCounter {
     RTCIntersectContext context{};
     unsigned count = 0;
+    int winding = 0;  ///< crossings one way less those the other way
 
     CrossingCounter() {
         rtcInitIntersectContext(&context);
@@ -52,6 +53,13 @@ struct CrossingCounter {
         for (unsigned i = 0; i < args->N; ++i) {
             if (args->valid[i] != 0) {
                 ++self->count;
+                const double along = static_cast<double>(RTCHitN_Ng_x(args->hit, args->N, i)) *
+                                         RTCRayN_dir_x(args->ray, args->N, i) +
+                                     static_cast<double>(RTCHitN_Ng_y(args->hit, args->N, i)) *
+                                         RTCRayN_dir_y(args->ray, args->N, i) +
+                                     static_cast<double>(RTCHitN_Ng_z(args->hit, args->N, i)) *
+                                         RTCRayN_dir_z(args->ray, args->N, i);
+                self->winding += along < 0.0 ? -1 : 1;
                 args->valid[i] = 0;
             }
         }
@@ -150,8 +158,16 @@ struct MeshQuery::Impl {
     glm::dvec3 center{0.0};
     double scale = 1.0;  // a power of two
     bool watertight = false;
+    bool shells = false;  // isSeveralShells
 
     [[nodiscard]] glm::dvec3 toLocal(const glm::dvec3& p) const { return (p - center) * scale; }
+
+    [[nodiscard]] CrossingCounter count(const glm::vec3& p, const glm::dvec3& direction) const {
+        CrossingCounter counter;
+        RTCRayHit query = rayHit(toLocal(p), direction, std::numeric_limits<float>::infinity());
+        rtcIntersect1(scene.get(), &counter.context, &query);
+        return counter;
+    }
 
     /// One search for the closest point; local space.
     struct Search {
@@ -213,6 +229,7 @@ Result<MeshQuery> MeshQuery::build(const TriangleMesh& mesh) {
     impl->center = 0.5 * glm::dvec3(mesh.bounds.min) + 0.5 * glm::dvec3(mesh.bounds.max);
     impl->scale = std::ldexp(1.0, -std::ilogb(mesh.bounds.longestSide()));
     impl->watertight = oddEdges(mesh).empty();
+    impl->shells = impl->watertight && isSeveralShells(mesh);
     impl->device.reset(rtcNewDevice(kEmbreeConfig));
     if (!impl->device) {
         return embreeError(rtcGetDeviceError(nullptr), mesh.name);
@@ -262,7 +279,9 @@ bool MeshQuery::inside(const glm::vec3& p) const {
     constexpr std::size_t kMajority = kParityDirections.size() / 2 + 1;
     std::size_t votes[2] = {0, 0};
     for (const glm::dvec3& direction : kParityDirections) {
-        if (++votes[crossings(p, direction) % 2] == kMajority) {
+        const CrossingCounter counter = impl_->count(p, direction);
+        const bool inside = impl_->shells ? counter.winding != 0 : counter.count % 2 == 1;
+        if (++votes[inside ? 1 : 0] == kMajority) {
             break;
         }
     }
@@ -270,10 +289,7 @@ bool MeshQuery::inside(const glm::vec3& p) const {
 }
 
 unsigned MeshQuery::crossings(const glm::vec3& p, const glm::dvec3& direction) const {
-    CrossingCounter counter;
-    RTCRayHit query = rayHit(impl_->toLocal(p), direction, std::numeric_limits<float>::infinity());
-    rtcIntersect1(impl_->scene.get(), &counter.context, &query);
-    return counter.count;
+    return impl_->count(p, direction).count;
 }
 
 ClosestPoint MeshQuery::closest(const glm::vec3& p, std::optional<std::uint32_t> hint) const {

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "bake/inside.h"
 #include "bake/mesh_edges.h"
 #include "bake/mesh_query.h"
 #include "bake/triangle_plane.h"
@@ -147,7 +148,16 @@ class Winder {
         glm::dvec3 normal = normalOf(triangle);
         normal *=
             kSurfaceStep * static_cast<double>(mesh_.bounds.longestSide()) / std::sqrt(dot(normal, normal));
-        return {query.inside(on + normal), query.inside(on - normal)};
+        return {isInside(on + normal, query), isInside(on - normal, query)};
+    }
+
+    /// By parity alone: the winding is what is looked for.
+    [[nodiscard]] static bool isInside(const glm::vec3& p, const MeshQuery& query) {
+        std::size_t odd = 0;
+        for (const glm::dvec3& direction : kParityDirections) {
+            odd += query.crossings(p, direction) % 2;
+        }
+        return odd > kParityDirections.size() / 2;
     }
 
     [[nodiscard]] bool looksInwards(const Patch& patch, const MeshQuery& query) const {

@@ -17,7 +17,7 @@ struct Winding {
 /// Turns triangles until those that share an edge run along it in opposite directions, and each patch of them
 /// looks outwards. A patch hangs together by edges of two triangles. One that is closed looks out of its
 /// volume, or into the hollow, if all of it lies inside an odd number of others. An open one looks where rays
-/// (MeshQuery::inside) find the outside behind most of it. Where neither is clear, on sheets, it keeps what
+/// (by parity) find the outside behind most of it. Where neither is clear, on sheets, it keeps what
 /// most of its triangles say.
 ///
 /// A mesh of one patch that is wound consistently stays as it is, inside out or not: orientation() tells.

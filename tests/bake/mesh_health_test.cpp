@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "bake/inside.h"
 #include "bake/mesh_import.h"
 #include "bake/mesh_query.h"
 #include "bake/mesh_repair.h"
@@ -231,6 +232,30 @@ TEST(Winding, OneSidedStripsBakeTheSameField) {
         differ += a.inside() != b.inside() || std::abs(a.distance - b.distance) > 1e-4F ? 1 : 0;
     }
     EXPECT_EQ(differ, 0);
+}
+
+TEST(Winding, WhereSolidsOverlapIsInside) {
+    const TriangleMesh crossing = joined(unitBox({0, 0, 0}), unitBox({0.4, 0.3, 0.2}));
+    const TriangleMesh hollow = joined(makeBoxMesh({0, 0, 0}, {2, 2, 2}), reversed(unitBox({0, 0, 0})));
+    const TriangleMesh island = joined(hollow, makeBoxMesh({0, 0, 0}, {0.2, 0.2, 0.2}));
+    const auto insideAt = [](const TriangleMesh& mesh, const glm::vec3& p) {
+        const Result<Winding> winding = windOutwards(withRandomFlips(mesh, 11));
+        const Result<MeshQuery> query = MeshQuery::build(winding->mesh);
+        EXPECT_EQ(query->inside(p), insideByParity(winding->mesh, p));
+        return query->inside(p);
+    };
+    EXPECT_TRUE(insideAt(crossing, {0.2F, 0.1F, 0.1F})) << "in both";
+    EXPECT_TRUE(insideAt(crossing, {-0.4F, 0.1F, 0.1F}));
+    EXPECT_FALSE(insideAt(crossing, {-0.4F, 0.7F, 0.1F}));
+    EXPECT_FALSE(insideAt(hollow, {0.1F, 0.1F, 0.1F}));
+    EXPECT_TRUE(insideAt(island, {0.1F, 0.1F, 0.1F}));
+    EXPECT_FALSE(insideAt(island, {0.3F, 0.3F, 0.3F}));
+    EXPECT_TRUE(insideAt(island, {1.0F, 1.0F, 1.0F}));
+    const Collider collider = bakedOutwards(crossing);
+    for (int i = 0; i < 1000; ++i) {
+        const glm::vec3 p(-0.08F + 0.0005F * static_cast<float>(i), 0.1F, 0.05F);  // through both
+        EXPECT_TRUE(evaluate(collider, p).inside()) << p.x;
+    }
 }
 
 // --- repair ---
