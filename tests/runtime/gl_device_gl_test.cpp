@@ -81,14 +81,14 @@ TEST_P(GlDeviceTest, EachListedDeviceCanBeOpenedByItsNumber) {
     ASSERT_TRUE(devices) << devices.error().message;
     EXPECT_EQ(eglGetCurrentContext(), before) << "the caller's context stays current";
     EXPECT_NE(before, EGL_NO_CONTEXT);
-    bool software = false;
+    std::size_t opened = 0;
     for (std::size_t i = 0; i < devices->size(); ++i) {
         const GlDevice& device = (*devices)[i];
         EXPECT_EQ(device.index, i);
         if (!device.problem.empty()) {
             continue;
         }
-        software = software || device.software;
+        ++opened;
         const auto context =
             GlContext::create({.api = GetParam(), .platform = GlPlatform::kAny, .device = i});
         ASSERT_TRUE(context) << context.error().message;
@@ -98,7 +98,7 @@ TEST_P(GlDeviceTest, EachListedDeviceCanBeOpenedByItsNumber) {
         EXPECT_NE((*context)->description().find(device.version), std::string::npos);
         EXPECT_TRUE(!(*context)->software() || device.software);
     }
-    EXPECT_TRUE(software) << "Mesa's llvmpipe is a device";
+    EXPECT_GT(opened, 0U) << "Mesa's llvmpipe, at least, is a device";
     const auto beyond =
         GlContext::create({.api = GetParam(), .platform = GlPlatform::kAny, .device = devices->size()});
     ASSERT_FALSE(beyond);
