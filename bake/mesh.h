@@ -28,6 +28,8 @@ struct TriangleMesh {
     std::uint64_t cap_triangles = 0;
     std::uint64_t closed_holes = 0;
     Bounds bounds;  ///< of positions
+    /// windOutwards (winding.h) has seen to it: hollows are wound against the surface about them.
+    bool wound_outwards = false;
 
     [[nodiscard]] std::uint64_t sourceTriangles() const { return triangles.size() - cap_triangles; }
 };
