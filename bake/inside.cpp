@@ -65,7 +65,7 @@ bool insideByParity(const TriangleMesh& mesh, const glm::vec3& point) {
     };
     const Crossings crossings = tbb::parallel_reduce(
         tbb::blocked_range<std::size_t>(0, mesh.triangles.size(), 4096), Crossings{}, count, sum);
-    const bool shells = isSeveralShells(mesh);
+    const bool shells = mesh.wound_outwards && isSeveralShells(mesh);
     std::size_t votes = 0;
     for (std::size_t d = 0; d < kDirections; ++d) {
         votes += shells ? crossings.winding[d] != 0 : crossings.count[d] % 2 == 1;

@@ -18,9 +18,9 @@ inline constexpr std::array<glm::dvec3, 7> kParityDirections = {{{0.5773, 0.6137
                                                                  {-0.6131, 0.7717, -0.1693}}};
 
 /// The majority over seven fixed directions, none of them special to any model, of the parity of the number
-/// of surfaces that a ray from `point` crosses, or, as MeshQuery::inside, of whether shells wind round it.
-/// The winding of the triangles does not matter otherwise, and a few holes do not either. Cost: all
-/// triangles, in double precision, on all cores.
+/// of surfaces that a ray from `point` crosses; of a mesh that windOutwards has seen to, as
+/// MeshQuery::inside, of whether its shells wind round the point. The winding of other meshes does not
+/// matter, and a few holes do not either. Cost: all triangles, in double precision, on all cores.
 [[nodiscard]] bool insideByParity(const TriangleMesh& mesh, const glm::vec3& point);
 
 }  // namespace relief

@@ -40,9 +40,9 @@ class MeshQuery {
 
     /// The majority over the directions of inside.h of the parity of the number of surfaces that a ray from
     /// `p` crosses. One traversal a ray counts them all. The winding of the triangles does not matter; where
-    /// the mesh is open, most directions still pass its holes by. Of several closed surfaces that are each
-    /// wound consistently (isSeveralShells, what windOutwards makes) the winding number decides: where two
-    /// solids overlap is inside.
+    /// the mesh is open, most directions still pass its holes by. Once windOutwards (winding.h) has seen to
+    /// the mesh, and it is of several closed surfaces, the winding number decides: where two solids overlap
+    /// is inside.
     [[nodiscard]] bool inside(const glm::vec3& p) const;
 
     /// How many triangles a ray from `p` meets.

@@ -199,6 +199,7 @@ Result<Winding> windOutwards(TriangleMesh mesh) {
         return forward(turned);
     }
     winding.turned = *turned;
+    winding.mesh.wound_outwards = true;
     return winding;
 }
 
