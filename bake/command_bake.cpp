@@ -540,6 +540,9 @@ Result<void> runBake(const BakeCommand& command) {
         spdlog::info("{}: closed {} hole{} with {} triangles for baking: the mesh is nearly closed",
                      mesh->name, mesh->closed_holes, mesh->closed_holes == 1 ? "" : "s", mesh->cap_triangles);
     }
+    if (!backend->reason.empty()) {
+        spdlog::info("backend {}: {}", backend->raster ? "raster" : "raycast", backend->reason);
+    }
     std::vector<std::string>& warnings = baked->report.warnings;
     warnings.insert(warnings.begin(), mesh->warnings.begin(), mesh->warnings.end());
     for (const std::string& warning : warnings) {

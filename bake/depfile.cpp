@@ -1,8 +1,8 @@
 #include "bake/depfile.h"
 
 #include <algorithm>
+#include <set>
 #include <span>
-#include <unordered_set>
 
 #include "formats/file_io.h"
 
@@ -60,7 +60,7 @@ Result<std::string> depfileText(const std::vector<std::string>& targets,
     }
     text += ":";
     std::string empty_rules;
-    std::unordered_set<std::string> seen;
+    std::set<std::string> seen;
     for (const std::string& input : inputs) {
         if (!seen.insert(input).second) {
             continue;

@@ -4,6 +4,7 @@
 #include <signal.h>
 #include <spawn.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -84,12 +85,24 @@ class Mapping {
     void* pages_;
 };
 
+/// Empty where it cannot be had; errno then says why.
 File memoryFile(std::uint64_t size) {
     File file(::memfd_create("relief-import", MFD_CLOEXEC | MFD_ALLOW_SEALING));
     if (file && ::ftruncate(file.get(), static_cast<off_t>(size)) != 0) {
+        const int number = errno;
         file.close();
+        errno = number;
+        return file;
     }
     return file.raised();
+}
+
+/// Memory counts as a file, of which this process may have been allowed little.
+std::uint64_t largestFile(std::uint64_t wanted) {
+    rlimit limit{};
+    return ::getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY
+               ? std::min<std::uint64_t>(wanted, limit.rlim_cur)
+               : wanted;
 }
 
 /// The mesh's bytes where the worker can read, and not change, them.
@@ -252,12 +265,15 @@ class Import {
                                                   " is not beside this one; install it again");
         }
         File mesh = sharedBytes(source.bytes());
+        if (!mesh) {
+            return notStarted(errno);
+        }
         source.dropBytes();
         const File folder(source.folder() >= 0 ? ::fcntl(source.folder(), F_DUPFD_CLOEXEC, kFirstFreeFd)
                                                : ::open("/dev/null", O_RDONLY | O_CLOEXEC));
-        const File result = memoryFile(limits_.memory);
+        const File result = memoryFile(largestFile(limits_.memory));
         std::array<int, 2> pipe = {-1, -1};
-        if (!mesh || !folder || !result || ::pipe2(pipe.data(), O_CLOEXEC) != 0) {
+        if (!folder || !result || ::pipe2(pipe.data(), O_CLOEXEC) != 0) {
             return notStarted(errno);
         }
         const File alive(pipe[0]);
@@ -315,7 +331,7 @@ class Import {
             case kImportExitNoMessage:
                 return error(ErrorCode::kLimit,
                              "the mesh is too large to be handed over; simplify it, or raise "
-                             "--import-memory");
+                             "--import-memory and this process's file size limit (ulimit -f)");
             default:
                 return error(ErrorCode::kInvalidInput, "the importer ended with exit code " +
                                                            std::to_string(code) +

@@ -435,7 +435,9 @@ class RayScene::Impl::Tracer {
             sides += side > 0.0 ? 1 : side < 0.0 ? -1 : 0;
             const double square = ex * ex + ey * ey;
             const double along = square > 0.0 ? std::clamp(-(x[i] * ex + y[i] * ey) / square, 0.0, 1.0) : 0.0;
-            closest = std::min(closest, std::hypot(x[i] + along * ex, y[i] + along * ey));
+            const double dx = x[i] + along * ex;
+            const double dy = y[i] + along * ey;
+            closest = std::min(closest, std::sqrt(dx * dx + dy * dy));
         }
         return std::abs(sides) == 3 || closest <= kTouching;
     }

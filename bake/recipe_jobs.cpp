@@ -8,8 +8,6 @@
 #include <set>
 #include <span>
 #include <system_error>
-#include <unordered_map>
-#include <unordered_set>
 
 #include "bake/glob.h"
 #include "bake/text.h"
@@ -137,7 +135,7 @@ class Expander {
             excluded.push_back(std::move(*pattern));
         }
         std::vector<std::string> meshes;
-        std::unordered_set<std::string> seen;
+        std::set<std::string> seen;
         for (const std::string& text : asset.meshes) {
             const Result<GlobPattern> pattern = GlobPattern::parse(text);
             if (!pattern) {
@@ -249,7 +247,7 @@ class Expander {
     fs::path output_folder_;
     RecipeJobs result_;
     std::vector<RecipePlace> places_;  // of the jobs' outputs
-    std::unordered_map<std::string, std::size_t> by_output_;
+    std::map<std::string, std::size_t> by_output_;
     std::vector<Input> inputs_;
 };
 
