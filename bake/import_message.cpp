@@ -80,13 +80,16 @@ ImportMessage makeImportMessage(const Result<TriangleMesh>& raw) {
 void writeImportMessage(const ImportMessage& message, const Result<TriangleMesh>& raw,
                         std::span<std::byte> target) {
     std::memcpy(target.data(), message.head.data(), message.head.size());
-    if (raw && !raw->positions.empty()) {
-        std::byte* const arrays = target.data() + message.head.size();
-        const std::size_t positions = 12 * raw->positions.size();
+    if (!raw) {
+        return;
+    }
+    std::byte* const arrays = target.data() + message.head.size();
+    const std::size_t positions = 12 * raw->positions.size();
+    if (positions != 0) {
         std::memcpy(arrays, raw->positions.data(), positions);
-        if (!raw->triangles.empty()) {
-            std::memcpy(arrays + positions, raw->triangles.data(), 12 * raw->triangles.size());
-        }
+    }
+    if (!raw->triangles.empty()) {
+        std::memcpy(arrays + positions, raw->triangles.data(), 12 * raw->triangles.size());
     }
 }
 

@@ -6,6 +6,7 @@
 #   rest    snow falls on the bunny: after it has come to rest, no bit of a position changes from step 5,000 to step
 #           100,000 (RELIEF_SOAK_SETTLED and RELIEF_SOAK_STEPS say others).
 #   import  every file of assimp-testmodels is read or refused, and none crashes the worker.
+#   mutants 2,000 broken mesh files and every file of assimp-testmodels are baked soundly or refused (scripts/mutants.sh)
 #   package a build without the baker, from nothing, installs a runtime that samples/embed builds with.
 #   bytes   204 bakes of ten meshes under all that must not matter give one hash each (scripts/determinism.sh)
 #   fuzz    libFuzzer looks at containers, scenes, plans, recipes, points and import messages, ten minutes each (scripts/fuzz.sh)
@@ -14,7 +15,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/setup.sh
-all_runs=(sweep rest import package bytes outputs fuzz)
+all_runs=(sweep rest import mutants package bytes outputs fuzz)
 runs=("$@")
 [ ${#runs[@]} -gt 0 ] || runs=("${all_runs[@]}")
 work=$(mktemp -d)
@@ -105,6 +106,8 @@ P
 }
 
 bytes() { scripts/determinism.sh; }
+
+mutants() { scripts/mutants.sh 2000; }
 
 outputs() { scripts/all_or_nothing.sh; }
 

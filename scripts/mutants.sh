@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# Gives relief broken meshes (tests/cli/mutants.sh), and every file of assimp-testmodels, and prints what came of them:
+# scripts/mutants.sh [COUNT] [--page], 2000 by default; with --page into bake/trust.md too.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+count=2000
+page=
+for argument in "$@"; do
+    case $argument in
+        --page) page=1 ;;
+        *[!0-9]* | '')
+            echo "mutants.sh: '$argument' is no number of mutants; use [COUNT] [--page]" >&2
+            exit 1
+            ;;
+        *) count=$argument ;;
+    esac
+done
+counts=$(mktemp)
+trap 'rm -f "$counts"' EXIT
+RELIEF_BIN=$(scripts/build.sh release relief)
+export RELIEF_BIN RELIEF_SOURCE=$PWD RELIEF_MUTANTS=$count RELIEF_MUTANTS_PAGE=$counts
+export RELIEF_MUTANTS_MODELS=/usr/share/assimp/models
+status=0
+bash tests/cli/mutants.sh || status=$?
+if [ -n "$page" ] && [ -s "$counts" ]; then
+    python3 - "$counts" "$count" <<'P'
+import sys
+page = open('bake/trust.md').read()
+begin, end = '<!-- mutants -->\n', '<!-- /mutants -->'
+head, rest = page.split(begin)
+body = f'Written by `scripts/mutants.sh {sys.argv[2]} --page`.\n\n' + open(sys.argv[1]).read()
+open('bake/trust.md', 'w').write(head + begin + body + end + rest.split(end, 1)[1])
+P
+fi
+exit $status

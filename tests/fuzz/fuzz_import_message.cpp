@@ -1,0 +1,111 @@
+// What the import worker answers: whatever its bytes, a mesh that the baker may walk through or one line that
+// names the mesh file.
+#include <stdlib.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bake/import_message.h"
+#include "bake/import_source.h"
+#include "tests/fuzz/target.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using relief::ImportSource;
+using relief::Result;
+using relief::TriangleMesh;
+
+constexpr double kCoordinateMax = 1e15;  // finishMesh's
+constexpr std::size_t kErrorBytesMax = 5000;
+
+/// A mesh file that the messages pretend to be of; gone again as soon as it is read.
+ImportSource openSource() {
+    std::string pattern = (fs::temp_directory_path() / "relief-fuzz-XXXXXX").string();
+    mustHold(::mkdtemp(pattern.data()) != nullptr, "a folder can be made");
+    const fs::path path = fs::path(pattern) / "m.obj";
+    std::ofstream(path) << "v 0 0 0\n";
+    Result<ImportSource> source = ImportSource::open(path);
+    fs::remove_all(pattern);
+    mustHold(source.has_value(), "a file can be read");
+    return std::move(*source);
+}
+
+std::vector<std::byte> bytesOf(const Result<TriangleMesh>& raw) {
+    const relief::ImportMessage message = relief::makeImportMessage(raw);
+    std::vector<std::byte> bytes(message.size);
+    relief::writeImportMessage(message, raw, bytes);
+    return bytes;
+}
+
+template <class T>
+bool sameBytes(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+bool isLine(const std::string& text) {
+    return text.find_first_of(std::string_view("\n\r\x1b\0", 4)) == std::string::npos;
+}
+
+void mustBeMesh(const TriangleMesh& mesh) {
+    mustHold(!mesh.triangles.empty(), "a mesh has a triangle");
+    std::vector<bool> used(mesh.positions.size(), false);
+    for (const glm::uvec3& triangle : mesh.triangles) {
+        for (int k = 0; k < 3; ++k) {
+            mustHold(triangle[k] < mesh.positions.size(), "indices are in range");
+            used[triangle[k]] = true;
+        }
+    }
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        mustHold(used[i], "every position is used");
+        for (int k = 0; k < 3; ++k) {
+            const float x = mesh.positions[i][k];
+            mustHold(std::isfinite(x) && std::abs(x) <= kCoordinateMax, "coordinates are numbers");
+            mustHold(x >= mesh.bounds.min[k] && x <= mesh.bounds.max[k], "and within the bounds");
+        }
+    }
+    mustHold(mesh.unit.empty() || mesh.unit == "m", "the unit is known");
+    mustHold(mesh.name == "m.obj", "the name is the file's, not the worker's");
+    mustHold(mesh.dependencies.size() == mesh.dependency_hashes.size(), "a hash a file");
+    const std::string folder = fs::path(mesh.dependencies.at(0)).parent_path().string() + "/";
+    for (std::size_t i = 0; i < mesh.dependencies.size(); ++i) {
+        const fs::path normal = fs::path(mesh.dependencies[i]).lexically_normal();
+        mustHold(normal.string().starts_with(folder), "files are below the mesh's folder");
+        mustHold(mesh.dependency_hashes[i].size() == 32, "a hash has 128 bits");
+    }
+    for (const std::string& warning : mesh.warnings) {
+        mustHold(warning.starts_with("m.obj: ") && isLine(warning),
+                 "a warning is a line that names the mesh");
+    }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    static const ImportSource kSource = openSource();
+    const auto given = std::as_bytes(std::span(data, size));
+    const std::vector<std::byte> bytes(given.begin(), given.end());  // aligned to 16, as operator new has it
+    Result<TriangleMesh> raw = relief::readImportMessage(bytes);
+    if (!raw) {
+        mustHold(isLine(raw.error().message), "an error is one line");
+        mustHold(raw.error().message.size() <= kErrorBytesMax, "and not a long one");
+        return 0;
+    }
+    const Result<TriangleMesh> again = relief::readImportMessage(bytesOf(raw));
+    mustHold(again.has_value(), "what was read can be sent");
+    mustHold(sameBytes(again->positions, raw->positions) && sameBytes(again->triangles, raw->triangles),
+             "and arrives as it was");
+    const Result<TriangleMesh> mesh = kSource.finish(std::move(*raw));
+    if (!mesh) {
+        mustHold(mesh.error().message.find("m.obj") != std::string::npos, "an error names the file");
+        mustHold(isLine(mesh.error().message), "an error is one line");
+        return 0;
+    }
+    mustBeMesh(*mesh);
+    return 0;
+}

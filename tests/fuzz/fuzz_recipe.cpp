@@ -1,0 +1,98 @@
+// Recipes: assets whose options an ordinary bake could be given, or one line that names file, line and
+// column.
+#include "bake/recipe.h"
+
+#include <cctype>
+#include <string_view>
+
+#include "tests/fuzz/target.h"
+
+namespace {
+
+using relief::RecipeAsset;
+using relief::RecipeKey;
+
+const std::vector<RecipeKey>& keys() {
+    using Kind = RecipeKey::Kind;
+    static const std::vector<RecipeKey> kKeys = {{"map", Kind::kList},         {"paper", Kind::kFlag},
+                                                 {"strict", Kind::kFlag},      {"plan", Kind::kValue},
+                                                 {"budget", Kind::kValue},     {"max-error", Kind::kValue},
+                                                 {"resolution", Kind::kValue}, {"decode", Kind::kValue},
+                                                 {"prefer", Kind::kValue},     {"compress", Kind::kValue}};
+    return kKeys;
+}
+
+/// \return what follows a number and a colon. Ends the process if they are not there.
+std::string_view afterNumber(std::string_view text) {
+    std::size_t digits = 0;
+    while (digits < text.size() && std::isdigit(static_cast<unsigned char>(text[digits])) != 0) {
+        ++digits;
+    }
+    mustHold(digits > 0 && digits < text.size() && text[digits] == ':', "a place is a line and a column");
+    return text.substr(digits + 1);
+}
+
+void mustBePlace(std::string_view place) {
+    constexpr std::string_view kFile = "r.toml:";
+    mustHold(place.starts_with(kFile), "a place names the file");
+    place = afterNumber(place.substr(kFile.size()));
+    mustHold(!place.empty() && place.find_first_not_of("0123456789") == std::string_view::npos,
+             "a place ends with the column");
+}
+
+void mustBeText(const std::string& text) {
+    mustHold(!text.empty() && text.find('\0') == std::string::npos, "no value is empty or holds a zero byte");
+}
+
+void mustBeAsset(const RecipeAsset& asset) {
+    mustHold(!asset.meshes.empty() && asset.meshes.size() <= relief::kRecipePatternsMax,
+             "an asset has a mesh, and not too many");
+    mustHold(asset.exclude.size() <= relief::kRecipePatternsMax, "nor too many exceptions");
+    for (const std::vector<std::string>* texts : {&asset.meshes, &asset.exclude}) {
+        for (const std::string& text : *texts) {
+            mustBeText(text);
+        }
+    }
+    mustBeText(asset.output);
+    mustBePlace(asset.place);
+    mustBePlace(asset.mesh_place);
+    mustBePlace(asset.output_place);
+    for (const auto& [name, value] : asset.options) {
+        mustBePlace(value.place);
+        for (const RecipeKey& key : keys()) {
+            mustHold(key.name != name || key.kind != RecipeKey::Kind::kValue || value.values.size() == 1,
+                     "a value is one");
+        }
+    }
+    // The words of a command line: an option each, whatever the value.
+    for (const std::string& argument : relief::recipeArguments(asset.options)) {
+        bool known = false;
+        for (const RecipeKey& key : keys()) {
+            const std::string option = "--" + key.name;
+            known = known || argument == option || argument.starts_with(option + "=");
+        }
+        mustHold(known && argument.find('\0') == std::string::npos,
+                 "an argument is an option that was offered");
+    }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string_view text(reinterpret_cast<const char*>(data), size);
+    const auto assets = relief::parseRecipe(text, keys(), "r.toml");
+    if (!assets) {
+        const std::string_view message = assets.error().message;
+        constexpr std::string_view kFile = "r.toml:";
+        mustHold(message.starts_with(kFile), "an error names the file");
+        mustHold(afterNumber(afterNumber(message.substr(kFile.size()))).starts_with(" "),
+                 "and the place in it");
+        mustHold(message.find_first_of("\n\r\x1b") == std::string_view::npos, "an error is one line");
+        return 0;
+    }
+    mustHold(!assets->empty() && assets->size() <= relief::kRecipeTablesMax, "a recipe has assets");
+    for (const RecipeAsset& asset : *assets) {
+        mustBeAsset(asset);
+    }
+    return 0;
+}
