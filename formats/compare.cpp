@@ -123,8 +123,8 @@ double degreesBetween(const glm::vec3& a, const glm::vec3& b) {
     }
     const glm::dvec3 u(a);
     const glm::dvec3 v(b);
-    return std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v)) * 180.0 /
-           std::numbers::pi;  // libm: for a report
+    const double angle = std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v));  // libm: for a report
+    return angle * 180.0 / std::numbers::pi;
 }
 
 /// Amounts above 0; how many are 0 follows from `EndDifference::both`. Floats: half the memory, and their
