@@ -36,7 +36,7 @@ bool lowerLimit(__rlimit_resource resource, std::uint64_t soft, std::uint64_t ha
 }
 
 /// Address space of this process, in bytes; 0 if it cannot be read.
-std::uint64_t addressSpace() {
+[[maybe_unused]] std::uint64_t addressSpace() {  // not asked for under the sanitizers
     std::ifstream file("/proc/self/statm");
     std::uint64_t pages = 0;
     file >> pages;
