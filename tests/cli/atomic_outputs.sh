@@ -248,11 +248,13 @@ for i in range(16 * rounds):
     assert code == 0 or took < 2.0, f'{took:.1f} s after signal {number}'
     left = [name for name in os.listdir('out') if name.startswith('.relief-')]
     assert not left, left
-    try:
-        os.killpg(child.pid, 0)
-        raise AssertionError('a child lives on')
-    except ProcessLookupError:
-        pass
+    while True:  # the kernel ends the importer when its parent is gone, in its own time
+        try:
+            os.killpg(child.pid, 0)
+        except ProcessLookupError:
+            break
+        assert time.monotonic() - sent < 2.0, 'a child lives on'
+        time.sleep(0.01)
     assert open('out/a.relief', 'rb').read() in (old, new), 'torn'
 assert ended >= 4 * rounds, f'only {ended} signals came in time'
 print(16 * rounds)
