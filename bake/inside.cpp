@@ -65,12 +65,16 @@ bool insideByParity(const TriangleMesh& mesh, const glm::vec3& point) {
     };
     const Crossings crossings = tbb::parallel_reduce(
         tbb::blocked_range<std::size_t>(0, mesh.triangles.size(), 4096), Crossings{}, count, sum);
-    const bool shells = mesh.wound_outwards && isSeveralShells(mesh);
-    std::size_t votes = 0;
+    std::size_t by_parity = 0;
+    std::size_t by_winding = 0;
     for (std::size_t d = 0; d < kDirections; ++d) {
-        votes += shells ? crossings.winding[d] != 0 : crossings.count[d] % 2 == 1;
+        by_parity += crossings.count[d] % 2;
+        by_winding += crossings.winding[d] != 0 ? 1 : 0;
     }
-    return votes > kDirections / 2;
+    const bool odd = by_parity > kDirections / 2;
+    const bool wound = by_winding > kDirections / 2;
+    // Only where they disagree does it matter whose word counts, which takes longer to find out.
+    return odd == wound || !mesh.wound_outwards || !isSeveralShells(edgesOf(mesh)) ? odd : wound;
 }
 
 }  // namespace relief

@@ -177,8 +177,9 @@ Result<CaredMesh> careFor(TriangleMesh mesh, const MeshCareOptions& options) {
     }
     CaredMesh cared;
     MeshCare& care = cared.care;
+    MeshEdges edges = edgesOf(mesh);
     if (options.report || options.strict || options.check_intersections || *repair) {
-        Result<MeshHealth> health = inspectMesh(mesh, {options.check_intersections});
+        Result<MeshHealth> health = inspectMesh(mesh, edges, {options.check_intersections});
         if (!health) {
             return forward(health);
         }
@@ -196,8 +197,9 @@ Result<CaredMesh> careFor(TriangleMesh mesh, const MeshCareOptions& options) {
             return forward(other);
         }
         mesh = std::move(*other);
+        edges = edgesOf(mesh);
     }
-    Result<Winding> winding = windOutwards(std::move(mesh));
+    Result<Winding> winding = windOutwards(std::move(mesh), edges);
     if (!winding) {
         return forward(winding);
     }

@@ -46,8 +46,10 @@ std::vector<std::uint32_t> weldedVertices(const TriangleMesh& mesh) {
     return welded;
 }
 
-std::vector<EdgeUse> edgeUses(const TriangleMesh& mesh, const std::vector<std::uint32_t>& welded) {
-    std::vector<EdgeUse> uses;
+MeshEdges edgesOf(const TriangleMesh& mesh) {
+    MeshEdges edges{weldedVertices(mesh), {}};
+    const std::vector<std::uint32_t>& welded = edges.welded;
+    std::vector<EdgeUse>& uses = edges.uses;
     uses.reserve(3 * mesh.triangles.size());
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
         const glm::uvec3& t = mesh.triangles[i];
@@ -60,7 +62,7 @@ std::vector<EdgeUse> edgeUses(const TriangleMesh& mesh, const std::vector<std::u
     tbb::parallel_sort(uses, [](const EdgeUse& a, const EdgeUse& b) {
         return std::tie(a.low, a.high, a.triangle, a.side) < std::tie(b.low, b.high, b.triangle, b.side);
     });
-    return uses;
+    return edges;
 }
 
 bool edgesAreEven(const TriangleMesh& mesh) {
@@ -79,63 +81,38 @@ bool edgesAreEven(const TriangleMesh& mesh) {
                                 std::uint64_t{0}, sum, std::bit_xor<>()) == 0;
 }
 
-bool isSeveralShells(const TriangleMesh& mesh) {
-    const std::vector<EdgeUse> uses = edgeUses(mesh, weldedVertices(mesh));
-    std::vector<std::uint32_t> group(mesh.triangles.size());
-    std::iota(group.begin(), group.end(), 0U);
-    const auto find = [&](std::uint32_t i) {
-        while (group[i] != i) {
-            group[i] = group[group[i]];
-            i = group[i];
-        }
-        return i;
-    };
-    std::size_t groups = group.size();
+bool isSeveralShells(const MeshEdges& edges) {
+    DisjointSets triangles(edges.uses.size() / 3);
+    std::size_t groups = edges.uses.size() / 3;
     bool balanced = true;
-    forEachEdge(uses, [&](std::size_t begin, std::size_t end) {
+    forEachEdge(edges.uses, [&](std::size_t begin, std::size_t end) {
         std::size_t down = 0;
         for (std::size_t i = begin; i < end; ++i) {
-            down += uses[i].down ? 1U : 0U;
-            const std::uint32_t a = find(uses[begin].triangle);
-            const std::uint32_t b = find(uses[i].triangle);
-            groups -= a != b ? 1U : 0U;
-            group[std::max(a, b)] = std::min(a, b);
+            down += edges.uses[i].down ? 1U : 0U;
+            groups -= triangles.join(edges.uses[begin].triangle, edges.uses[i].triangle) ? 1U : 0U;
         }
         balanced = balanced && 2 * down == end - begin;
     });
     return balanced && groups > 1;
 }
 
-std::vector<OddEdge> oddEdges(const TriangleMesh& mesh) {
-    const std::vector<std::uint32_t> welded = weldedVertices(mesh);
-    // Lower vertex, higher vertex, and whether the triangle runs from the higher to the lower one: 31, 32 and
-    // 1 bit. Lower vertices fit, as a mesh of 2³¹ vertices is beyond kTriangleMax.
-    static_assert(3 * kTriangleMax < std::uint64_t{1} << 31);
-    std::vector<std::uint64_t> edges;
-    edges.reserve(3 * mesh.triangles.size());
-    for (const glm::uvec3& t : mesh.triangles) {
-        for (int i = 0; i < 3; ++i) {
-            const std::uint64_t a = welded[t[i]];
-            const std::uint64_t b = welded[t[(i + 1) % 3]];
-            edges.push_back(std::min(a, b) << 33 | std::max(a, b) << 1 | (a > b ? 1U : 0U));
-        }
-    }
-    std::sort(edges.begin(), edges.end());
+std::vector<OddEdge> oddEdges(const MeshEdges& edges) {
     std::vector<OddEdge> odd;
-    for (std::size_t i = 0; i < edges.size();) {
-        const std::uint64_t edge = edges[i] >> 1;
-        std::size_t up = 0;
-        std::size_t down = 0;
-        for (; i < edges.size() && edges[i] >> 1 == edge; ++i) {
-            ++((edges[i] & 1U) == 0 ? up : down);
+    forEachEdge(edges.uses, [&](std::size_t begin, std::size_t end) {
+        const auto first = edges.uses.begin() + static_cast<std::ptrdiff_t>(begin);
+        const std::size_t count = end - begin;
+        const auto down = static_cast<std::size_t>(std::count_if(
+            first, first + static_cast<std::ptrdiff_t>(count), [](const EdgeUse& use) { return use.down; }));
+        if (count % 2 == 1) {
+            odd.push_back(2 * down < count ? OddEdge{first->low, first->high}
+                                           : OddEdge{first->high, first->low});
         }
-        if ((up + down) % 2 == 1) {
-            const auto low = static_cast<std::uint32_t>(edge >> 32);
-            const auto high = static_cast<std::uint32_t>(edge);
-            odd.push_back(up > down ? OddEdge{low, high} : OddEdge{high, low});
-        }
-    }
+    });
     return odd;
+}
+
+std::vector<OddEdge> oddEdges(const TriangleMesh& mesh) {
+    return oddEdges(edgesOf(mesh));
 }
 
 }  // namespace relief

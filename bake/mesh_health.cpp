@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -16,30 +15,6 @@
 
 namespace relief {
 namespace {
-
-/// Sets of numbers that are joined one by one.
-class DisjointSets {
-  public:
-    explicit DisjointSets(std::size_t count) : parent_(count) {
-        std::iota(parent_.begin(), parent_.end(), 0U);
-    }
-    [[nodiscard]] std::uint32_t find(std::uint32_t i) {
-        while (parent_[i] != i) {
-            parent_[i] = parent_[parent_[i]];
-            i = parent_[i];
-        }
-        return i;
-    }
-    /// The lower root stays: the result does not depend on the order.
-    void join(std::uint32_t a, std::uint32_t b) {
-        a = find(a);
-        b = find(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-  private:
-    std::vector<std::uint32_t> parent_;
-};
 
 /// Of vertices and triangles the lowest that shows a fault.
 struct First {
@@ -55,13 +30,13 @@ struct First {
 
 class Inspection {
   public:
-    explicit Inspection(const TriangleMesh& mesh)
+    Inspection(const TriangleMesh& mesh, const MeshEdges& edges)
         : mesh_(mesh),
-          welded_(weldedVertices(mesh)),
+          welded_(edges.welded),
           component_of_(mesh.triangles.size()),
           // Three corners a triangle: those that share an edge at their vertex are joined.
           corners_(3 * mesh.triangles.size()),
-          uses_(edgeUses(mesh, welded_)) {}
+          uses_(edges.uses) {}
 
     void run() {
         forEachEdge(uses_, [&](std::size_t begin, std::size_t end) { visitEdge(begin, end); });
@@ -187,10 +162,10 @@ class Inspection {
     }
 
     const TriangleMesh& mesh_;
-    std::vector<std::uint32_t> welded_;
+    const std::vector<std::uint32_t>& welded_;
     DisjointSets component_of_;
     DisjointSets corners_;
-    std::vector<EdgeUse> uses_;
+    const std::vector<EdgeUse>& uses_;
     std::vector<std::uint32_t> odd_;  // triangles with an odd edge
     First boundary_;
     First nonmanifold_;
@@ -208,8 +183,13 @@ std::string counted(std::uint64_t count, const std::string& one, const std::stri
 }  // namespace
 
 Result<MeshHealth> inspectMesh(const TriangleMesh& mesh, const MeshHealthOptions& options) {
+    return inspectMesh(mesh, edgesOf(mesh), options);
+}
+
+Result<MeshHealth> inspectMesh(const TriangleMesh& mesh, const MeshEdges& edges,
+                               const MeshHealthOptions& options) {
     MeshHealth health;
-    Inspection inspection(mesh);
+    Inspection inspection(mesh, edges);
     inspection.run();
     inspection.write(health);
     if (options.intersections) {

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "bake/mesh.h"
+#include "bake/mesh_edges.h"
 #include "formats/result.h"
 
 namespace relief {
@@ -52,6 +53,9 @@ struct MeshHealthOptions {
 /// The same for any number of threads.
 /// Errors: those of selfIntersections (mesh_repair.h); none without options.intersections.
 [[nodiscard]] Result<MeshHealth> inspectMesh(const TriangleMesh& mesh, const MeshHealthOptions& options = {});
+/// \param edges  edgesOf(mesh)
+[[nodiscard]] Result<MeshHealth> inspectMesh(const TriangleMesh& mesh, const MeshEdges& edges,
+                                             const MeshHealthOptions& options);
 
 /// "closed" or "12 boundary edges, 3 non-manifold vertices, inside out": what keeps it from being a solid.
 [[nodiscard]] std::string faultsText(const MeshHealth& health);

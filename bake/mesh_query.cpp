@@ -228,8 +228,9 @@ Result<MeshQuery> MeshQuery::build(const TriangleMesh& mesh) {
     impl->mesh = &mesh;
     impl->center = 0.5 * glm::dvec3(mesh.bounds.min) + 0.5 * glm::dvec3(mesh.bounds.max);
     impl->scale = std::ldexp(1.0, -std::ilogb(mesh.bounds.longestSide()));
-    impl->watertight = oddEdges(mesh).empty();
-    impl->shells = impl->watertight && mesh.wound_outwards && isSeveralShells(mesh);
+    const MeshEdges edges = edgesOf(mesh);
+    impl->watertight = oddEdges(edges).empty();
+    impl->shells = impl->watertight && mesh.wound_outwards && isSeveralShells(edges);
     impl->device.reset(rtcNewDevice(kEmbreeConfig));
     if (!impl->device) {
         return embreeError(rtcGetDeviceError(nullptr), mesh.name);

@@ -4,9 +4,8 @@
 #include <array>
 #include <exception>
 
-#include "runtime/toml.h"
-
 #include "bake/text.h"
+#include "bake/toml_keys.h"
 #include "formats/container.h"
 #include "formats/file_io.h"
 
@@ -18,20 +17,6 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kPlanBytesMax = std::uint64_t{1} << 20;
 constexpr std::int64_t kVersion = 1;
 constexpr std::array<std::string_view, 4> kTopKeys = {"version", "quality", "prefer", "map"};
-
-/// The keys of a table in the order of the file, so that the first mistake is the one reported.
-std::vector<const toml::key*> keysInOrder(const toml::table& table) {
-    std::vector<const toml::key*> keys;
-    for (const auto& [key, node] : table) {
-        keys.push_back(&key);
-    }
-    std::sort(keys.begin(), keys.end(), [](const toml::key* a, const toml::key* b) {
-        const toml::source_position& p = a->source().begin;
-        const toml::source_position& q = b->source().begin;
-        return p.line != q.line ? p.line < q.line : p.column < q.column;
-    });
-    return keys;
-}
 
 class Reader {
   public:

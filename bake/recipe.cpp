@@ -5,9 +5,8 @@
 #include <charconv>
 #include <exception>
 
-#include "runtime/toml.h"
-
 #include "bake/text.h"
+#include "bake/toml_keys.h"
 #include "formats/file_io.h"
 
 namespace relief {
@@ -23,20 +22,6 @@ constexpr std::array<std::string_view, 8> kMapChoice = {"map",       "paper",  "
                                                         "max-error", "decode", "depth", "resolution"};
 /// Those of kMapChoice that choose, rather than refine the choice.
 constexpr std::size_t kChoosers = 5;
-
-/// The keys of a table in the order of the file, so that the first mistake is the one reported.
-std::vector<const toml::key*> keysInOrder(const toml::table& table) {
-    std::vector<const toml::key*> keys;
-    for (const auto& [key, node] : table) {
-        keys.push_back(&key);
-    }
-    std::sort(keys.begin(), keys.end(), [](const toml::key* a, const toml::key* b) {
-        const toml::source_position& p = a->source().begin;
-        const toml::source_position& q = b->source().begin;
-        return p.line != q.line ? p.line < q.line : p.column < q.column;
-    });
-    return keys;
-}
 
 /// The shortest number that reads back as the same.
 std::string numberText(double value) {

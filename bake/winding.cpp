@@ -38,7 +38,8 @@ struct Patch {
 
 class Winder {
   public:
-    explicit Winder(TriangleMesh& mesh) : mesh_(mesh), turn_(mesh.triangles.size(), 0) {}
+    Winder(TriangleMesh& mesh, const MeshEdges& edges)
+        : mesh_(mesh), edges_(edges), turn_(mesh.triangles.size(), 0) {}
 
     Result<std::uint64_t> run() {
         findNeighbours();
@@ -74,7 +75,7 @@ class Winder {
   private:
     void findNeighbours() {
         neighbours_.resize(3 * mesh_.triangles.size());
-        const std::vector<EdgeUse> uses = edgeUses(mesh_, weldedVertices(mesh_));
+        const std::vector<EdgeUse>& uses = edges_.uses;
         forEachEdge(uses, [&](std::size_t begin, std::size_t end) {
             if (end - begin == 2) {
                 const EdgeUse& a = uses[begin];
@@ -184,6 +185,7 @@ class Winder {
     }
 
     TriangleMesh& mesh_;
+    const MeshEdges& edges_;
     std::vector<std::uint8_t> turn_;  // 1: against the order of the file
     std::vector<Neighbour> neighbours_;
     std::vector<Patch> patches_;
@@ -192,9 +194,14 @@ class Winder {
 }  // namespace
 
 Result<Winding> windOutwards(TriangleMesh mesh) {
+    const MeshEdges edges = edgesOf(mesh);
+    return windOutwards(std::move(mesh), edges);
+}
+
+Result<Winding> windOutwards(TriangleMesh mesh, const MeshEdges& edges) {
     Winding winding;
     winding.mesh = std::move(mesh);
-    const Result<std::uint64_t> turned = Winder(winding.mesh).run();
+    const Result<std::uint64_t> turned = Winder(winding.mesh, edges).run();
     if (!turned) {
         return forward(turned);
     }

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "bake/mesh.h"
+#include "bake/mesh_edges.h"
 #include "formats/result.h"
 
 namespace relief {
@@ -24,5 +25,7 @@ struct Winding {
 /// The same for any number of threads.
 /// Errors: those of MeshQuery::build.
 [[nodiscard]] Result<Winding> windOutwards(TriangleMesh mesh);
+/// \param edges  edgesOf(mesh)
+[[nodiscard]] Result<Winding> windOutwards(TriangleMesh mesh, const MeshEdges& edges);
 
 }  // namespace relief
