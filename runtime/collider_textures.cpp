@@ -9,6 +9,7 @@
 
 #include "runtime/gl_fault.h"
 #include "runtime/pass_state.h"
+#include "runtime/shader_texels.h"
 #include "runtime/texel_layout.h"
 
 namespace relief {
@@ -64,13 +65,16 @@ std::int32_t flagsOf(const DepthMap& map) {
 /// \param pitch  texels from a row to the next: the map's width, or that of the texture it is a rectangle of.
 BlockMap blockMap(const DepthMap& map, std::size_t first_texel, GLint pitch, std::size_t motion) {
     BlockMap block{};
-    std::copy(std::begin(map.object_to_map.row), std::end(map.object_to_map.row), std::begin(block.row));
-    const float last[3] = {standingRange(map.projection(), map.object_per_map, map.width, map.height),
-                           1.0F / static_cast<float>(map.width), 1.0F / static_cast<float>(map.height)};
+    const bool cube = map.projection() == Projection::kCube;
+    const glm::vec3 size = cube ? glm::vec3(1.0F) : glm::vec3(map.width, map.height, 1.0F);
+    const float range = standingRange(map.projection(), map.object_per_map, map.width, map.height);
+    const float last[3] = {range * (2.0F / (cube ? kCubeDepthMax : 1.0F)), static_cast<float>(map.width - 1),
+                           static_cast<float>(map.height - 1)};
     for (int i = 0; i < 3; ++i) {
         // The rows are orthogonal and as long as the inverse of object_per_map.
         const glm::vec3 row(map.object_to_map.row[i]);
-        block.column[i] = glm::vec4(row * map.object_per_map[i] * map.object_per_map[i], last[i]);
+        block.row[i] = map.object_to_map.row[i] * size[i];
+        block.column[i] = glm::vec4(row * map.object_per_map[i] * map.object_per_map[i] / size[i], last[i]);
     }
     block.object_per_map = glm::vec4(map.object_per_map, kStandingCosine * map.object_per_map.z);
     const auto width = static_cast<std::int32_t>(map.width);
@@ -265,7 +269,7 @@ Result<ColliderTextures> ColliderTextures::upload(std::span<const PlacedMap> map
         const std::size_t i = place.layout;
         glBindTexture(GL_TEXTURE_2D, textures[i]->name());
         if (!maps[m].live) {
-            uploadTexels(kLayouts[i], layouts[i], first_texel[m], map.texels);
+            uploadTexels(kLayouts[i], layouts[i], first_texel[m], shaderTexels(map));
             continue;
         }
         const auto width = static_cast<GLsizei>(map.width);
@@ -320,6 +324,9 @@ Result<ColliderTextures> ColliderTextures::upload(std::span<const PlacedMap> map
     defineIf("FIXED", [](const DepthMap& map) { return map.format == MapFormat::kFixed8; });
     defineIf("CUBE", [](const DepthMap& map) { return map.format == MapFormat::kCube8; });
     defineIf("FRONT_BACK", [](const DepthMap& map) { return isFrontBack(map.format); });
+    defineIf("FRONT_BACK_HALF", [](const DepthMap& map) { return map.format == MapFormat::kFrontBackHalf; });
+    defineIf("FRONT_BACK_FIXED",
+             [](const DepthMap& map) { return map.format == MapFormat::kFrontBackFixed; });
     defineIf("PLANE", [](const DepthMap& map) { return map.decode == Decode::kPlane; });
     defineIf("PROJECTED", [](const DepthMap& map) { return map.decode == Decode::kProjected; });
     result.bodies_ = std::move(bodies);

@@ -18,9 +18,10 @@
 // no such S: its texel holds how far it is from the ray.
 
 struct ReliefMap {
-    vec4 row[3];           // object_to_map; rows are orthogonal
-    vec4 column[3];        // xyz: an axis of map space in object units, so that they undo the rows; w: the
-                           // largest offset of a standing plane; 1 / width; 1 / height
+    vec4 row[3];           // object space to map space, whose rows are orthogonal. Of an orthographic map x and y are
+                           // in texels here
+    vec4 column[3];        // xyz: an axis of map space in object units, so that they undo the rows; w: how far a
+                           // unit of depth moves a standing plane; width - 1; height - 1
     vec4 object_per_map;   // xyz; z is z_scale of an orthographic map, xyz the paper's s of a cube; w: the
                            // largest product of an orthographic ray and the normal of a plane along it
     ivec4 place;           // index of texel (0,0) of face 0; from row to row; from face to face; width
@@ -76,6 +77,10 @@ const float RELIEF_FAR_INSIDE = -3.4028235e38;
 const float RELIEF_FAR_OUTSIDE = 1e30;
 const float RELIEF_CUBE_DEPTH_MAX = 1.7320509;
 const float RELIEF_STANDING_COSINE = 0.03125;
+
+// Whether a texel of planes may hold a front without a back or the other way round. ColliderTextures gives the empty end
+// of a stored one the plane of the other, which changes no vote; the maps of live bodies are as they are drawn.
+#define RELIEF_HALF_EMPTY (RELIEF_LIVE == 1)
 
 // What the maps of this collider are, as constants where they are all alike: a GL may otherwise run the branches
 // of all formats for every map. ColliderTextures defines RELIEF_HAS_… for what it holds.
@@ -144,15 +149,23 @@ bool reliefReplaces(float vote, float best) {
     return (best < 0.0 && vote > best) || (vote >= 0.0 && vote < best);
 }
 
-// Equation 3: indices 0…254 in each direction to the octahedron, to the sphere.
-vec3 reliefNormal(vec2 index) {
-    vec2 st = (min(index, vec2(254.0)) - 127.0) / 127.0;
-    vec3 v = vec3(st, 1.0 - abs(st.x) - abs(st.y));
-    if (v.z < 0.0) {
-        v.x = (st.x < 0.0 ? -1.0 : 1.0) * (1.0 - abs(st.y));
-        v.y = (st.y < 0.0 ? -1.0 : 1.0) * (1.0 - abs(st.x));
-    }
-    return v / sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+// Equation 3: indices 0…254 in each direction to the octahedron, of which the sphere's point is reliefUnit(). In steps
+// of the index, so that all of it is exact. ColliderTextures leaves no index 255.
+vec3 reliefOctahedron(vec2 index) {
+    vec2 st = index - 127.0;
+    float z = 127.0 - abs(st.x) - abs(st.y);
+    // Below the equator both come back by as much as they are beyond it.
+    uint beyond = floatBitsToUint(max(-z, 0.0));
+    return vec3(st.x - uintBitsToFloat(beyond | (floatBitsToUint(st.x) & 0x80000000u)),
+                st.y - uintBitsToFloat(beyond | (floatBitsToUint(st.y) & 0x80000000u)), z);
+}
+
+vec3 reliefOctahedron(uint code) {
+    return reliefOctahedron(vec2(float(code >> 8), float(code & 255u)));
+}
+
+vec3 reliefUnit(vec3 v) {
+    return v * inversesqrt(v.x * v.x + v.y * v.y + v.z * v.z);
 }
 
 float reliefRow(vec4 r, vec3 p) {
@@ -196,18 +209,14 @@ vec3 reliefCubeCoordinates(vec3 d) {
 vec3 reliefCubeDirection(vec3 st_face) {
     vec2 c = 2.0 * st_face.xy - 1.0;
     int face = int(st_face.z);
-    if (face == 0) {
-        return vec3(1.0, -c.y, -c.x);
-    } else if (face == 1) {
-        return vec3(-1.0, -c.y, c.x);
-    } else if (face == 2) {
-        return vec3(c.x, 1.0, c.y);
-    } else if (face == 3) {
-        return vec3(c.x, -1.0, -c.y);
-    } else if (face == 4) {
-        return vec3(c.x, -c.y, 1.0);
+    float way = (face & 1) == 0 ? 1.0 : -1.0;
+    vec3 d = vec3(way * c.x, -c.y, way);
+    if (face < 2) {
+        d = vec3(way, -c.y, -way * c.x);
+    } else if (face < 4) {
+        d = vec3(c.x, way, way * c.y);
     }
-    return vec3(-c.x, -c.y, -1.0);
+    return d;
 }
 
 // From map space to object space, directions alone.
@@ -217,21 +226,13 @@ vec3 reliefFromMap(int i, vec3 q) {
 }
 
 // The vote of a plane: n·(P − S), or n·(P − O) less the stored offset where the plane stands along the ray.
-// from: P − O, with O where the ray of the texel's centre has depth 0; ray: its direction, for a unit of depth;
-// standing: its length times RELIEF_STANDING_COSINE; depth: from 0 to depth_max.
-float reliefPlane(int i, vec3 normal, float depth, float depth_max, vec3 from, vec3 ray, float standing) {
-    float along = reliefDot(normal, ray);
-    float range = u_relief_maps[i].column[0].w;
-    bool stands = abs(along) < standing;
-    float slope = stands ? range * (2.0 / depth_max) : along;
-    float base = stands ? range : 0.0;
-    return reliefDot(normal, from) - (depth * slope - base);
-}
-
-void reliefAdd(inout ReliefField best, float distance, vec3 normal, int map) {
-    if (reliefReplaces(distance, best.distance)) {
-        best = ReliefField(distance, normal, map);
-    }
+// along_normal: n, of any length; from: P − O, with O where the ray of the texel's centre has depth 0; ray: its
+// direction, for a unit of depth; standing: its length times RELIEF_STANDING_COSINE; depth: from 0 to 2 half_depth.
+float reliefPlane(int i, vec3 along_normal, float depth, float half_depth, vec3 from, vec3 ray, float standing) {
+    float per_length = inversesqrt(reliefDot(along_normal, along_normal));
+    float along = per_length * reliefDot(along_normal, ray);
+    float offset = abs(along) < standing ? u_relief_maps[i].column[0].w * (depth - half_depth) : depth * along;
+    return per_length * reliefDot(along_normal, from) - offset;
 }
 
 // A half-float depth: a positive normal half, whose exponent's bias is moved from 15 to 127. By hand, since
@@ -241,164 +242,214 @@ float reliefHalf(uint bits) {
 }
 
 float reliefFrontBackDepth(int format, uint code) {
-    return format == RELIEF_FRONT_BACK_HALF ? reliefHalf(code) : (float(code) - 1.0) * (1.0 / 65534.0);
-}
-
-vec3 reliefPackedNormal(uint packed_normal) {
-    return reliefNormal(vec2(float(packed_normal >> 8), float(packed_normal & 255u)));
+#if !defined(RELIEF_HAS_FRONT_BACK_FIXED)
+    return reliefHalf(code);
+#else
+    float fixed_point = (float(code) - 1.0) * (1.0 / 65534.0);
+#if defined(RELIEF_HAS_FRONT_BACK_HALF)
+    return format == RELIEF_FRONT_BACK_HALF ? reliefHalf(code) : fixed_point;
+#else
+    return fixed_point;
+#endif
+#endif
 }
 
 ivec2 reliefTexel(int index, int log2_width) {
     return ivec2(index & ((1 << log2_width) - 1), index >> log2_width);
 }
 
-// R,G: normal; B,A: 16-bit fixed-point depth, 0 where empty.
-bool reliefFixedTexel(int index, float depth_max, out float depth, out vec3 normal) {
+// R,G: normal; B,A: 16-bit fixed-point depth, 0 where empty. Of the normal the indices.
+bool reliefFixedTexel(int index, float depth_max, out float depth, out vec2 normal) {
     vec4 bytes = floor(texelFetch(u_relief_fixed, reliefTexel(index, u_relief_count.z), 0) * 255.0 + 0.5);
     float code = bytes.b * 256.0 + bytes.a;
     depth = (code - 1.0) * (depth_max / 65534.0);
-    normal = reliefNormal(bytes.rg);
+    normal = bytes.rg;
     return code > 0.0;
 }
 
-void reliefVoteOrthographic(inout ReliefField best, int i, vec3 p, ivec4 place, ivec4 info) {
+// A normal as a texel holds it: of all that are fetched only the deciding one is ever made a vector.
+#if defined(RELIEF_HAS_FLOAT)
+#define RELIEF_CODE vec3
+const vec3 RELIEF_NO_CODE = vec3(0.0);
+vec3 reliefCode(uint code) {
+    return reliefUnit(reliefOctahedron(code));
+}
+vec3 reliefCode(vec2 index) {
+    return reliefUnit(reliefOctahedron(index));
+}
+vec3 reliefDecode(vec3 code) {
+    return code;
+}
+#else
+#define RELIEF_CODE uint
+const uint RELIEF_NO_CODE = 0u;
+uint reliefCode(uint code) {
+    return code;
+}
+uint reliefCode(vec2 index) {
+    return (uint(index.x) << 8) | uint(index.y);
+}
+vec3 reliefDecode(uint code) {
+    return reliefUnit(reliefOctahedron(code));
+}
+#endif
+
+// What one map says: RELIEF_FAR_INSIDE where it abstains, which never wins.
+struct ReliefVote {
+    float distance;
+    RELIEF_CODE normal;
+};
+
+float reliefEmpty(ivec4 info) {
+    return reliefHas(info, RELIEF_EMPTY_IS_OUTSIDE) ? RELIEF_FAR_OUTSIDE : RELIEF_FAR_INSIDE;
+}
+
+// Of the functions that every particle runs through none returns early: a GL may make a loop of each.
+
+// Without `whole` any distance that is not below 0 stands for all of them.
+ReliefVote reliefVoteOrthographic(int i, vec3 p, ivec4 place, ivec4 info, bool whole) {
     bool encloses = reliefHas(info, RELIEF_ENCLOSES);
-    vec2 size = vec2(float(place.w), float(info.x));
-    vec2 inverse_size = vec2(u_relief_maps[i].column[1].w, u_relief_maps[i].column[2].w);
-    vec2 at = p.xy * size;
-    bool in_window = at.x >= 1.0 && at.y >= 1.0 && at.x < size.x - 1.0 && at.y < size.y - 1.0;
+    ReliefVote vote = ReliefVote(encloses ? RELIEF_FAR_OUTSIDE : RELIEF_FAR_INSIDE, RELIEF_NO_CODE);
+    bool in_window = p.x >= 1.0 && p.y >= 1.0 && p.x < u_relief_maps[i].column[1].w && p.y < u_relief_maps[i].column[2].w;
     bool in_depth = p.z >= 0.0 && p.z <= 1.0;
-    if (!in_window || !(in_depth || encloses)) {
-        if (encloses) {
-            reliefAdd(best, RELIEF_FAR_OUTSIDE, vec3(0.0), i);
-        }
-        return;
-    }
-    int texel = place.x + int(at.y) * place.y + int(at.x);
-
-    // One texel holds one surface or, front-back, two: the nearer in front, the farther in back.
-    bool plane = reliefIsPlane(info);
-    // From the ray of the texel's centre.
-    vec3 from = reliefFromMap(i, vec3((at - (floor(at) + 0.5)) * inverse_size, p.z));
-    vec3 ray = u_relief_maps[i].column[2].xyz;
-    float standing = u_relief_maps[i].object_per_map.w;
-    float scale = u_relief_maps[i].object_per_map.z;
-    bool found;
-    float depth;
-    vec3 normal;
-    float vote;
-    if (reliefIsFrontBack(info)) {
-        uvec4 words = texelFetch(u_relief_front_back, reliefTexel(texel, u_relief_count.w), 0);
-        found = words.b != 0u || words.a != 0u;
-        float front = reliefFrontBackDepth(info.y, words.b);
-        float back = reliefFrontBackDepth(info.y, words.a);
-        vec3 back_normal = vec3(0.0);
-        if (plane) {
-            normal = reliefPackedNormal(words.r);
-            back_normal = reliefPackedNormal(words.g);
-            front = reliefPlane(i, normal, front, 1.0, from, ray, standing);
-            back = reliefPlane(i, back_normal, back, 1.0, from, ray, standing);
+    // Before and behind the volume only the distance, or whether the map abstains, is asked of the texel.
+    bool sees_beyond = encloses && (whole || !reliefHas(info, RELIEF_EMPTY_IS_OUTSIDE));
+    if (in_window && (in_depth || sees_beyond)) {
+        ivec2 at = ivec2(p.xy);
+        int texel = place.x + at.y * place.y + at.x;
+        // One texel holds one surface or, front-back, two: the nearer in front, the farther in back.
+        bool plane = reliefIsPlane(info);
+        // From the ray of the texel's centre.
+        vec3 from = reliefFromMap(i, vec3(p.xy - (vec2(at) + 0.5), p.z));
+        vec3 ray = u_relief_maps[i].column[2].xyz;
+        float standing = u_relief_maps[i].object_per_map.w;
+        float scale = u_relief_maps[i].object_per_map.z;
+        bool found;
+        if (reliefIsFrontBack(info)) {
+            uvec4 words = texelFetch(u_relief_front_back, reliefTexel(texel, u_relief_count.w), 0);
+            found = words.b != 0u || words.a != 0u && (!plane || RELIEF_HALF_EMPTY);
+            float front = reliefFrontBackDepth(info.y, words.b);
+            float back = reliefFrontBackDepth(info.y, words.a);
+            if (plane) {
+                front = reliefPlane(i, reliefOctahedron(words.r), front, 0.5, from, ray, standing);
+                back = reliefPlane(i, reliefOctahedron(words.g), back, 0.5, from, ray, standing);
+            } else {
+                front = scale * (front - p.z);
+                back = scale * (p.z - back);
+            }
+            if (!plane || RELIEF_HALF_EMPTY) {
+                front = words.b != 0u ? front : RELIEF_FAR_INSIDE;
+                back = words.a != 0u ? back : RELIEF_FAR_INSIDE;
+            }
+            bool take_back = whole ? reliefReplaces(back, front) : back > front;
+            vote = ReliefVote(take_back ? back : front, reliefCode(take_back ? words.g : words.r));
         } else {
-            front = scale * (front - p.z);
-            back = scale * (p.z - back);
+            float depth;
+            vec3 along_normal;
+            if (reliefIsFloat(info)) {
+                vec4 values = texelFetch(u_relief_float, reliefTexel(texel, u_relief_count.y), 0);
+                depth = values.a;
+                found = depth >= 0.0;
+                along_normal = values.rgb;
+#if defined(RELIEF_HAS_FLOAT)
+                vote.normal = values.rgb;
+#endif
+            } else {
+                vec2 index;
+                found = reliefFixedTexel(texel, 1.0, depth, index);
+                along_normal = reliefOctahedron(index);
+                vote.normal = reliefCode(index);
+            }
+            if (plane) {
+                vote.distance = reliefPlane(i, along_normal, depth, 0.5, from, ray, standing);
+            } else {
+                vote.distance = scale * ((info.z & RELIEF_KEEPS_FARTHEST) != 0 ? p.z - depth : depth - p.z);
+            }
         }
-        front = words.b != 0u ? front : RELIEF_FAR_INSIDE;
-        back = words.a != 0u ? back : RELIEF_FAR_INSIDE;
-        bool take_back = reliefReplaces(back, front);
-        vote = take_back ? back : front;
-        if (plane) {
-            normal = take_back ? back_normal : normal;
-        } else {  // only the normal that is needed
-            normal = reliefPackedNormal(take_back ? words.g : words.r);
+        if (sees_beyond && !in_depth && !(vote.distance >= 0.0)) {  // nothing of the collider remains there
+            vote.distance = RELIEF_FAR_OUTSIDE;
         }
-    } else {
-        if (reliefIsFloat(info)) {
-            vec4 values = texelFetch(u_relief_float, reliefTexel(texel, u_relief_count.y), 0);
-            normal = values.rgb;
-            depth = values.a;
-            found = depth >= 0.0;
-        } else {
-            found = reliefFixedTexel(texel, 1.0, depth, normal);
-        }
-        if (plane) {
-            vote = reliefPlane(i, normal, depth, 1.0, from, ray, standing);
-        } else {
-            vote = scale * ((info.z & RELIEF_KEEPS_FARTHEST) != 0 ? p.z - depth : depth - p.z);
-        }
+        vote.distance = found ? vote.distance : reliefEmpty(info);
     }
-    if (!found) {
-        if (reliefHas(info, RELIEF_EMPTY_IS_OUTSIDE)) {
-            reliefAdd(best, RELIEF_FAR_OUTSIDE, vec3(0.0), i);
-        }
-        return;
-    }
-    if (!in_depth && !(vote >= 0.0)) {  // past the far end of the volume nothing of the collider remains
-        vote = RELIEF_FAR_OUTSIDE;
-        normal = vec3(0.0);
-    }
-    reliefAdd(best, vote, normal, i);
+    return vote;
 }
 
-void reliefVoteCube(inout ReliefField best, int i, vec3 p, ivec4 place, ivec4 info) {
+ReliefVote reliefVoteCube(int i, vec3 p, ivec4 place, ivec4 info) {
+    bool encloses = reliefHas(info, RELIEF_ENCLOSES);
+    ReliefVote vote = ReliefVote(encloses ? RELIEF_FAR_OUTSIDE : RELIEF_FAR_INSIDE, RELIEF_NO_CODE);
     bool in_volume = all(lessThanEqual(abs(p), vec3(1.0)));
-    if (!in_volume && !reliefHas(info, RELIEF_ENCLOSES)) {
-        return;
-    }
-    if (!all(lessThanEqual(abs(p), vec3(1e15)))) {  // the squares below must not overflow
-        reliefAdd(best, RELIEF_FAR_OUTSIDE, vec3(0.0), i);
-        return;
-    }
-    float radius = reliefLength(p);
-    vec3 direction = radius > 0.0 ? p / radius : vec3(1.0, 0.0, 0.0);
-    vec3 st_face = reliefCubeCoordinates(direction);
-    ivec2 at = min(ivec2(st_face.xy * float(place.w)), ivec2(place.w - 1));
-    float depth;
-    vec3 normal;
-    int texel = place.x + int(st_face.z) * place.z + at.y * place.y + at.x;
-    if (!reliefFixedTexel(texel, RELIEF_CUBE_DEPTH_MAX, depth, normal)) {
-        if (reliefHas(info, RELIEF_EMPTY_IS_OUTSIDE)) {
-            reliefAdd(best, RELIEF_FAR_OUTSIDE, vec3(0.0), i);
+    // The squares below must not overflow.
+    if (in_volume || (encloses && all(lessThanEqual(abs(p), vec3(1e15))))) {
+        float radius = reliefLength(p);
+        vec3 direction = radius > 0.0 ? p / radius : vec3(1.0, 0.0, 0.0);
+        vec3 st_face = reliefCubeCoordinates(direction);
+        ivec2 at = min(ivec2(st_face.xy * float(place.w)), ivec2(place.w - 1));
+        float depth;
+        vec2 index;
+        int texel = place.x + int(st_face.z) * place.z + at.y * place.y + at.x;
+        bool found = reliefFixedTexel(texel, RELIEF_CUBE_DEPTH_MAX, depth, index);
+        vote.normal = reliefCode(index);
+        if (reliefIsPlane(info)) {
+            vec3 ray = reliefUnit(reliefCubeDirection(vec3((vec2(at) + 0.5) / float(place.w), st_face.z)));
+            float standing = RELIEF_STANDING_COSINE * reliefLength(u_relief_maps[i].object_per_map.xyz * ray);
+            vote.distance = reliefPlane(i, reliefOctahedron(index), depth, 0.5 * RELIEF_CUBE_DEPTH_MAX, reliefFromMap(i, p),
+                                        reliefFromMap(i, ray), standing);
+        } else {
+            float ahead = (info.z & RELIEF_KEEPS_FARTHEST) != 0 ? radius - depth : depth - radius;
+            vote.distance = ahead * reliefLength(u_relief_maps[i].object_per_map.xyz * direction);
         }
-        return;
+        if (!in_volume && !(vote.distance >= 0.0)) {
+            vote.distance = RELIEF_FAR_OUTSIDE;
+        }
+        vote.distance = found ? vote.distance : reliefEmpty(info);
     }
-    float vote;
-    if (reliefIsPlane(info)) {
-        vec3 center = reliefCubeDirection(vec3((vec2(at) + 0.5) / float(place.w), st_face.z));
-        vec3 ray = center / reliefLength(center);
-        float standing = RELIEF_STANDING_COSINE * reliefLength(u_relief_maps[i].object_per_map.xyz * ray);
-        vote = reliefPlane(i, normal, depth, RELIEF_CUBE_DEPTH_MAX, reliefFromMap(i, p), reliefFromMap(i, ray), standing);
-    } else {
-        float ahead = (info.z & RELIEF_KEEPS_FARTHEST) != 0 ? radius - depth : depth - radius;
-        vote = ahead * reliefLength(u_relief_maps[i].object_per_map.xyz * direction);
-    }
-    if (!in_volume && !(vote >= 0.0)) {
-        vote = RELIEF_FAR_OUTSIDE;
-        normal = vec3(0.0);
-    }
-    reliefAdd(best, vote, normal, i);
+    return vote;
 }
 
-void reliefVote(inout ReliefField best, int i, vec3 p) {
+ReliefVote reliefVote(int i, vec3 p, bool whole) {
     vec4 row0 = u_relief_maps[i].row[0];
     vec4 row1 = u_relief_maps[i].row[1];
     vec4 row2 = u_relief_maps[i].row[2];
     vec3 in_map = vec3(reliefRow(row0, p), reliefRow(row1, p), reliefRow(row2, p));
     ivec4 place = u_relief_maps[i].place;
     ivec4 info = u_relief_maps[i].info;
+    ReliefVote vote;
     if (reliefIsCube(info)) {
-        reliefVoteCube(best, i, in_map, place, info);
+        vote = reliefVoteCube(i, in_map, place, info);
     } else {
-        reliefVoteOrthographic(best, i, in_map, place, info);
+        vote = reliefVoteOrthographic(i, in_map, place, info, whole);
     }
+    return vote;
+}
+
+// The votes so far: of none the map is -1.
+struct ReliefBest {
+    float distance;
+    RELIEF_CODE normal;
+    int map;
+};
+const ReliefBest RELIEF_NO_VOTE = ReliefBest(RELIEF_FAR_INSIDE, RELIEF_NO_CODE, -1);
+
+void reliefJoin(inout ReliefBest best, int i, vec3 p, bool whole) {
+    ReliefVote vote = reliefVote(i, p, whole);
+    // Without `whole` a vote is asked for only as long as the best one is below 0.
+    if (whole ? reliefReplaces(vote.distance, best.distance) : vote.distance > best.distance) {
+        best = ReliefBest(vote.distance, vote.normal, i);
+    }
+}
+
+ReliefField reliefFieldOf(ReliefBest best) {
+    bool known = best.map >= 0 && best.distance < RELIEF_FAR_OUTSIDE;
+    return ReliefField(best.distance, known ? reliefDecode(best.normal) : vec3(0.0), best.map);
 }
 
 // The maps [first, end) alone, as reliefSolid or, with `whole`, reliefEvaluate.
 ReliefField reliefMaps(int first, int end, vec3 p, bool whole) {
-    ReliefField best = ReliefField(RELIEF_FAR_INSIDE, vec3(0.0), -1);
+    ReliefBest best = RELIEF_NO_VOTE;
     for (int i = first; i < end && (whole || best.distance < 0.0); ++i) {
-        reliefVote(best, i, p);
+        reliefJoin(best, i, p, whole);
     }
-    return best;
+    return reliefFieldOf(best);
 }
 
 // From p to the nearest point of what map i looks at; zero where p is in it. Beyond an edge of the volume, where no
@@ -409,8 +460,8 @@ vec3 reliefToVolume(int i, vec3 p) {
     vec3 low = vec3(-1.0);
     vec3 high = vec3(1.0);
     if (!reliefIsCube(u_relief_maps[i].info)) {  // its rim has nothing
-        low = vec3(u_relief_maps[i].column[1].w, u_relief_maps[i].column[2].w, 0.0);
-        high = 1.0 - low;
+        low = vec3(1.0, 1.0, 0.0);
+        high = vec3(u_relief_maps[i].column[1].w, u_relief_maps[i].column[2].w, 1.0);
     }
     return reliefFromMap(i, clamp(in_map, low, high) - in_map);
 }
@@ -421,8 +472,7 @@ vec3 reliefToVolume(int i, vec3 p) {
 ReliefField reliefTouch(int first, int end, vec3 center, float radius) {
     ReliefField best = ReliefField(RELIEF_FAR_OUTSIDE, vec3(0.0), -1);
     for (int i = first; i < end; ++i) {
-        ReliefField near = ReliefField(RELIEF_FAR_INSIDE, vec3(0.0), -1);
-        reliefVote(near, i, center);
+        ReliefField near = reliefMaps(i, i + 1, center, true);
         // A projected distance may be some times the distance.
         bool seen = near.distance >= 0.0 && near.distance < 4.0 * radius;
         vec3 way = reliefToVolume(i, center);
@@ -447,7 +497,7 @@ ReliefField reliefEvaluate(vec3 p) {
 
 #define RELIEF_VOTE_OF(n) \
     if (n < RELIEF_MAP_CAPACITY && best.distance < 0.0) { \
-        reliefVote(best, min(n, RELIEF_MAP_CAPACITY - 1), p); \
+        reliefJoin(best, min(n, RELIEF_MAP_CAPACITY - 1), p, false); \
     }
 
 // What a step of a simulation needs: the same as reliefEvaluate where P is inside; where it is not, the first map
@@ -455,7 +505,7 @@ ReliefField reliefEvaluate(vec3 p) {
 // never turns a vote ≥ 0 into one below.) The first maps are named by constants, so that GPUs need not index the
 // block for them.
 ReliefField reliefSolid(vec3 p) {
-    ReliefField best = ReliefField(RELIEF_FAR_INSIDE, vec3(0.0), -1);
+    ReliefBest best = RELIEF_NO_VOTE;
     RELIEF_VOTE_OF(0)
     RELIEF_VOTE_OF(1)
     RELIEF_VOTE_OF(2)
@@ -464,23 +514,28 @@ ReliefField reliefSolid(vec3 p) {
     RELIEF_VOTE_OF(5)
     RELIEF_VOTE_OF(6)
     RELIEF_VOTE_OF(7)
+#if RELIEF_MAP_CAPACITY > 8
     for (int i = 8; i < u_relief_count.x && best.distance < 0.0; ++i) {
-        reliefVote(best, i, p);
+        reliefJoin(best, i, p, false);
     }
-    return best;
+#endif
+    return ReliefField(best.distance, best.distance < 0.0 ? reliefDecode(best.normal) : vec3(0.0), best.map);
 }
 
-// reliefInside(reliefSolid(p)), by asking map `first` before the others, if it is one: the map that decides what is
-// inside nearby knows most often that p is outside.
+// reliefInside(reliefSolid(p)), by asking map `first` before the others: the map that decides what is inside nearby knows
+// most often that p is outside. Of two maps neither saves the other, and constants are cheaper.
 bool reliefSolidAt(vec3 p, int first) {
-    ReliefField best = ReliefField(RELIEF_FAR_INSIDE, vec3(0.0), -1);
-    if (first >= 0) {
-        reliefVote(best, first, p);
+#if RELIEF_MAP_CAPACITY <= 2
+    return reliefInside(reliefSolid(p));
+#else
+    float best = RELIEF_FAR_INSIDE;
+    int i = first;
+    for (int k = 0; k < u_relief_count.x && best < 0.0; ++k) {
+        best = max(best, reliefVote(i, p, false).distance);
+        i = k < first ? k : k + 1;
     }
-    for (int i = 0; i < u_relief_count.x && best.distance < 0.0; ++i) {
-        reliefVote(best, i, p);
-    }
-    return reliefInside(best);
+    return best < 0.0 && best > RELIEF_FAR_INSIDE;
+#endif
 }
 
 #else
@@ -572,12 +627,12 @@ vec3 reliefMotion(int i, vec3 p, vec3 normal) {
         at = min(ivec2(st_face.xy * float(place.w)), ivec2(place.w - 1));
         at.y += int(st_face.z) * place.w;
     } else {
-        at = ivec2(clamp(in_map.xy * vec2(float(place.w), float(info.x)), vec2(0.0), vec2(place.w - 1, info.x - 1)));
+        at = ivec2(clamp(in_map.xy, vec2(0.0), vec2(place.w - 1, info.x - 1)));
         if (reliefIsFrontBack(info)) {
             uvec4 words = texelFetch(u_relief_front_back,
                                      reliefTexel(place.x + at.y * place.y + at.x, u_relief_count.w), 0);
-            float front = reliefDot(normal, reliefPackedNormal(words.r));
-            float back = reliefDot(normal, reliefPackedNormal(words.g));
+            float front = reliefDot(normal, reliefUnit(reliefOctahedron(words.r)));
+            float back = reliefDot(normal, reliefUnit(reliefOctahedron(words.g)));
             at.y += words.b == 0u || (words.a != 0u && back > front) ? info.x : 0;
         }
     }
@@ -602,8 +657,7 @@ vec3 reliefNearestMotion(int body, vec3 q) {
     ReliefField nearest = ReliefField(RELIEF_FAR_OUTSIDE, vec3(0.0), -1);
     int first = u_relief_bodies[body].maps.x;
     for (int i = first; i < first + u_relief_bodies[body].maps.y; ++i) {
-        ReliefField one = ReliefField(RELIEF_FAR_INSIDE, vec3(0.0), -1);
-        reliefVote(one, i, q);
+        ReliefField one = reliefMaps(i, i + 1, q, true);
         if (one.map >= 0 && abs(one.distance) < abs(nearest.distance)) {
             nearest = one;
         }

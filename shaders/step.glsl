@@ -99,12 +99,12 @@ vec2 bodyResponse(int body);
 
 // Union with the floor y < u_ground. Inside both, the deeper one decides.
 Solid solidOrGround(vec3 p, float radius) {
-    Solid body = solid(p, radius);
+    Solid deepest = solid(p, radius);
     float above = p.y - radius - u_ground;
-    if (above < body.distance) {
-        return RELIEF_SOLID(above, vec3(0.0, 1.0, 0.0), -1, -1, vec3(0.0));
+    if (above < deepest.distance) {
+        deepest = RELIEF_SOLID(above, vec3(0.0, 1.0, 0.0), -1, -1, vec3(0.0));
     }
-    return body;
+    return deepest;
 }
 
 bool caught(vec3 p, float radius, Solid s) {
@@ -157,40 +157,17 @@ void finishDead() {
 #endif
 }
 
-void main() {
-    ivec2 texel = ivec2(gl_FragCoord.xy);
-    vec4 position = texelFetch(u_position, texel, 0);
-    vec4 birth = texelFetch(u_birth, texel, 0);
-    vec3 p = position.xyz;
-#if defined(RELIEF_VERLET)
-    vec3 v = (p - texelFetch(u_position_before, texel, 0).xyz) * u_rate_before;
-    float collisions = floor(position.w);
-    float contact = (position.w - collisions) * 16.0;
-#else
-    vec4 velocity = texelFetch(u_velocity, texel, 0);
-    vec3 v = velocity.xyz;
-    float collisions = position.w;
-    float contact = velocity.w;
-#endif
-    int type = RELIEF_TYPES == 1 ? 0 : clamp(int(birth.z), 0, RELIEF_TYPES - 1);
-    vec4 type_a = u_types[2 * type];      // radius, restitution, 1 - friction, threshold
-    vec4 type_b = u_types[2 * type + 1];  // drag, behaviour, loss
-
-    // A comparison alone, of numbers that the CPU made: both agree on the step. (A loss of life only the GPU knows;
-    // the CPU then frees the index at the time that it was born with.)
-    if (position.w < 0.0 || u_now >= birth.y || (type_b.z > 0.0 && u_now >= birth.y - type_b.z * collisions)) {
-        finishDead();
-        return;
+// At rest for good, on something that may move.
+void rest(vec3 p, float collisions, float contact) {
+    int body = int(contact) - 4;
+    vec3 carried = p;
+    if (body >= 0) {
+        carried = pointNow(body, p);
     }
+    finish(carried, (carried - p) / u_dt, collisions, contact);
+}
 
-    // At rest for good, on something that may move.
-    if (contact >= 3.0) {
-        int body = int(contact) - 4;
-        vec3 carried = body < 0 ? p : pointNow(body, p);
-        finish(carried, (carried - p) / u_dt, collisions, contact);
-        return;
-    }
-
+void move(vec3 p, vec3 v, float collisions, float contact, vec4 type_a, vec4 type_b) {
     // Forces. Drag is integrated implicitly, v' = v + dt (g + k (w - v')): it approaches the wind for any dt,
     // while the explicit form overshoots for dt k > 1 and grows without bound for dt k > 2.
     vec3 v_begin = v;
@@ -233,6 +210,7 @@ void main() {
     Solid next = solidOrGround(p_next, type_a.x);
     const bool first_piece = true;
 #endif
+    bool dies = false;
     contact = 0.0;
     if (next.distance < 0.0) {
         vec3 n = next.normal;
@@ -252,10 +230,7 @@ void main() {
             }
             p_next = from + (share * u_dt) * v;
         } else {
-            if (type_b.y == RELIEF_DIE) {
-                finishDead();
-                return;
-            }
+            dies = type_b.y == RELIEF_DIE;
             vec2 response = vec2(type_a.y, type_a.z) * (next.body < 0 ? vec2(1.0) : bodyResponse(next.body));
             contact = 1.0;
             vec3 along = relative - vn * n;
@@ -290,5 +265,39 @@ void main() {
 #endif
         collisions += 1.0;
     }
-    finish(p_next, v, collisions, contact);
+    if (dies) {
+        finishDead();
+    } else {
+        finish(p_next, v, collisions, contact);
+    }
+}
+
+void main() {
+    ivec2 texel = ivec2(gl_FragCoord.xy);
+    vec4 position = texelFetch(u_position, texel, 0);
+    vec4 birth = texelFetch(u_birth, texel, 0);
+    vec3 p = position.xyz;
+#if defined(RELIEF_VERLET)
+    vec3 v = (p - texelFetch(u_position_before, texel, 0).xyz) * u_rate_before;
+    float collisions = floor(position.w);
+    float contact = (position.w - collisions) * 16.0;
+#else
+    vec4 velocity = texelFetch(u_velocity, texel, 0);
+    vec3 v = velocity.xyz;
+    float collisions = position.w;
+    float contact = velocity.w;
+#endif
+    int type = RELIEF_TYPES == 1 ? 0 : clamp(int(birth.z), 0, RELIEF_TYPES - 1);
+    vec4 type_a = u_types[2 * type];      // radius, restitution, 1 - friction, threshold
+    vec4 type_b = u_types[2 * type + 1];  // drag, behaviour, loss
+
+    // A comparison alone, of numbers that the CPU made: both agree on the step. (A loss of life only the GPU knows;
+    // the CPU then frees the index at the time that it was born with.)
+    if (position.w < 0.0 || u_now >= birth.y || (type_b.z > 0.0 && u_now >= birth.y - type_b.z * collisions)) {
+        finishDead();
+    } else if (contact >= 3.0) {
+        rest(p, collisions, contact);
+    } else {
+        move(p, v, collisions, contact, type_a, type_b);
+    }
 }

@@ -13,6 +13,7 @@
 #include <cstring>
 #include <glm/geometric.hpp>
 #include <random>
+#include <span>
 
 #include "tests/runtime/gl_test.h"
 
@@ -60,8 +61,16 @@ DepthMap randomMap(MapFormat format, Compare compare, std::uint32_t width, std::
                     if (isFrontBack(format) && unit(random) < 0.9F) {
                         texel.back = Surface{unit(random), direction()};
                     }
+                    if (texel.back && unit(random) < 0.1F) {
+                        texel.front.reset();
+                    }
                 }
-                encodeTexel(format, texel, map.texelAt(face, i, j));
+                const std::span<std::byte> bytes = map.texelAt(face, i, j);
+                encodeTexel(format, texel, bytes);
+                // What no baker writes: an index that reads as 254.
+                if (texel.front && format != MapFormat::kFloat32 && unit(random) < 0.1F) {
+                    bytes[unit(random) < 0.5F ? 0 : 1] = std::byte{255};
+                }
             }
         }
     }

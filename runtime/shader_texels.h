@@ -1,0 +1,19 @@
+// Texels of a stored map as shaders/collider.glsl wants them.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "formats/depth_map.h"
+
+namespace relief {
+
+/// The map's texels, where they let the shader skip a test that every particle would pay for. No vote
+/// changes:
+///
+/// - a normal index 255, which reads as 254, is 254;
+/// - in a front-back map of planes, an end that is empty beside one that is not has the other's plane: two
+///   equal votes are one.
+[[nodiscard]] std::vector<std::byte> shaderTexels(const DepthMap& map);
+
+}  // namespace relief
