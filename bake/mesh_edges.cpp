@@ -1,13 +1,14 @@
 #include "bake/mesh_edges.h"
 
 #include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <bit>
 #include <functional>
 #include <numeric>
+#include <random>
 #include <tuple>
 
 namespace relief {
@@ -21,53 +22,83 @@ std::uint64_t mixed(std::uint64_t z) {
     return z ^ (z >> 31);
 }
 
-/// The same for equal positions.
-std::uint64_t hashOf(const glm::vec3& p) {
+/// The same for equal positions and salts.
+std::uint64_t hashOf(const glm::vec3& p, std::uint64_t salt = 0) {
     // −0 equals 0, and plus 0 is the same bits.
     const auto bits = [](float value) { return std::uint64_t{std::bit_cast<std::uint32_t>(value + 0.0F)}; };
-    return mixed(mixed(bits(p.x) << 32 | bits(p.y)) + bits(p.z));
+    return mixed(mixed((bits(p.x) << 32 | bits(p.y)) ^ salt) + bits(p.z));
 }
 
 }  // namespace
 
 std::vector<std::uint32_t> weldedVertices(const TriangleMesh& mesh) {
-    std::vector<std::uint32_t> order(mesh.positions.size());
-    std::iota(order.begin(), order.end(), 0U);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
-        const glm::vec3& a = mesh.positions[i];
-        const glm::vec3& b = mesh.positions[j];
-        return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z != b.z ? a.z < b.z : i < j;
+    const std::size_t count = mesh.positions.size();
+    // Linear probing at most half full, of indices + 1. A vertex meets the lower ones alone, so that the
+    // first of equal ones is found whatever the hashes are: they may be random, and no file can make them
+    // collide.
+    std::random_device device;
+    const std::uint64_t salt = std::uint64_t{device()} << 32 | device();
+    std::vector<std::uint32_t> slots(std::bit_ceil(2 * count + 1), 0);
+    const std::size_t mask = slots.size() - 1;
+    std::vector<std::uint32_t> welded(count);
+    std::vector<std::size_t> wanted(count);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            wanted[i] = hashOf(mesh.positions[i], salt) & mask;
+        }
     });
-    std::vector<std::uint32_t> welded(order.size());
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        const bool same = i > 0 && mesh.positions[order[i]] == mesh.positions[order[i - 1]];
-        welded[order[i]] = same ? welded[order[i - 1]] : order[i];
+    constexpr std::uint32_t kAhead = 16;  // vertices that the walk through the slots is announced to memory
+    for (std::uint32_t i = 0; i < count; ++i) {
+        if (i + kAhead < count) {
+            __builtin_prefetch(&slots[wanted[i + kAhead]], 1);
+        }
+        std::size_t slot = wanted[i];
+        while (slots[slot] != 0 && mesh.positions[slots[slot] - 1] != mesh.positions[i]) {
+            slot = (slot + 1) & mask;
+        }
+        if (slots[slot] == 0) {
+            slots[slot] = i + 1;
+        }
+        welded[i] = slots[slot] - 1;
     }
     return welded;
 }
 
 MeshEdges edgesOf(const TriangleMesh& mesh) {
-    MeshEdges edges{weldedVertices(mesh), {}};
+    MeshEdges edges{weldedVertices(mesh), std::vector<EdgeUse>(3 * mesh.triangles.size())};
     const std::vector<std::uint32_t>& welded = edges.welded;
     std::vector<EdgeUse>& uses = edges.uses;
-    uses.reserve(3 * mesh.triangles.size());
-    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-        const glm::uvec3& t = mesh.triangles[i];
-        for (std::uint8_t side = 0; side < 3; ++side) {
-            const std::uint32_t a = welded[t[side]];
-            const std::uint32_t b = welded[t[(side + 1) % 3]];
-            uses.push_back({std::min(a, b), std::max(a, b), i, side, a > b});
+    const auto forEachSide = [&](auto&& visit) {
+        for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+            const glm::uvec3& t = mesh.triangles[i];
+            for (std::uint8_t side = 0; side < 3; ++side) {
+                const std::uint32_t a = welded[t[side]];
+                const std::uint32_t b = welded[t[(side + 1) % 3]];
+                visit(EdgeUse{std::min(a, b), std::max(a, b), i, side, a > b});
+            }
         }
-    }
-    tbb::parallel_sort(uses, [](const EdgeUse& a, const EdgeUse& b) {
-        return std::tie(a.low, a.high, a.triangle, a.side) < std::tie(b.low, b.high, b.triangle, b.side);
+    };
+    // Into a bucket for each lower vertex, where few are left to sort.
+    std::vector<std::uint32_t> first(mesh.positions.size() + 1, 0);
+    forEachSide([&](const EdgeUse& use) { ++first[use.low + 1]; });
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+    forEachSide([&](const EdgeUse& use) { uses[next[use.low]++] = use; });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, next.size(), 1024), [&](const auto& range) {
+        for (std::size_t v = range.begin(); v != range.end(); ++v) {
+            std::sort(uses.begin() + first[v], uses.begin() + first[v + 1],
+                      [](const EdgeUse& a, const EdgeUse& b) {
+                          return std::tie(a.high, a.triangle, a.side) < std::tie(b.high, b.triangle, b.side);
+                      });
+        }
     });
     return edges;
 }
 
 bool edgesAreEven(const TriangleMesh& mesh) {
     std::vector<std::uint64_t> hashes(mesh.positions.size());
-    std::transform(mesh.positions.begin(), mesh.positions.end(), hashes.begin(), hashOf);
+    std::transform(mesh.positions.begin(), mesh.positions.end(), hashes.begin(),
+                   [](const glm::vec3& p) { return hashOf(p); });
     // Equal edges cancel out in pairs.
     const auto sum = [&](const tbb::blocked_range<std::size_t>& range, std::uint64_t odd) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {

@@ -55,7 +55,9 @@ class Winder {
             return forward(query);
         }
         tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t i) {
-            const Patch& patch = patches_[i];
+            Patch& patch = patches_[i];
+            // Breadth first is no order to spread samples over.
+            std::sort(patch.triangles.begin(), patch.triangles.end());
             if (looksInwards(patch, *query)) {
                 for (const std::uint32_t triangle : patch.triangles) {
                     turn_[triangle] ^= 1U;
@@ -118,8 +120,6 @@ class Winder {
                 }
                 patch.turned = patch.triangles.size() - patch.turned;
             }
-            // Breadth first is no order to spread samples over.
-            std::sort(patch.triangles.begin(), patch.triangles.end());
             patches_.push_back(std::move(patch));
         }
     }
