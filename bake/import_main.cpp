@@ -92,7 +92,8 @@ int work(char** arguments) {
                                                 extension,
                                                 {static_cast<const std::byte*>(pages), size},
                                                 folder,
-                                                options});
+                                                options,
+                                                true});
     return sendMessage(raw) ? kImportExitMessage : kImportExitNoMessage;
 }
 

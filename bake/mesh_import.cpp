@@ -410,7 +410,8 @@ Result<TriangleMesh> importWithAssimp(const ImportJob& job) {
         mesh.warnings = std::move(*warnings);
     }
     ImportFiles files(job.folder, job.file_name, job.bytes);
-    Assimp::Importer importer;
+    auto owned = std::make_unique<Assimp::Importer>();
+    Assimp::Importer& importer = *owned;
     keepReadersOf(job.extension, importer);
     importer.SetIOHandler(new ReadOnlyFiles(files));  // owned by the importer
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
@@ -459,7 +460,11 @@ Result<TriangleMesh> importWithAssimp(const ImportJob& job) {
     }
     Transform root;
     root.linear = change.scale * change.turn;
-    return flatten(*scene, root, job.shown, std::move(mesh));
+    Result<TriangleMesh> flat = flatten(*scene, root, job.shown, std::move(mesh));
+    if (job.process_ends) {
+        (void)owned.release();
+    }
+    return flat;
 }
 
 // --- a thread with a deep stack ---
@@ -519,7 +524,7 @@ Result<TriangleMesh> importMesh(const fs::path& path, const ImportOptions& optio
         return forward(source);
     }
     Result<TriangleMesh> raw = importRaw({quotedPath(path), path.filename().string(), source->extension(),
-                                          source->bytes(), source->folder(), options});
+                                          source->bytes(), source->folder(), options, false});
     return raw ? source->finish(std::move(*raw)) : raw;
 }
 
