@@ -99,7 +99,10 @@ class LiveColliderGlTest : public CollisionTest {
                   const ColliderBody& like = {}) {
         auto frames = liveFrames(box, resolution);
         ASSERT_TRUE(frames) << frames.error().message;
-        auto live = LiveCollider::create(mesh.positions, mesh.triangles, std::move(*frames));
+        makeLive(mesh, std::move(*frames), like);
+    }
+    void makeLive(const Mesh& mesh, Collider frames, const ColliderBody& like = {}) {
+        auto live = LiveCollider::create(mesh.positions, mesh.triangles, std::move(frames));
         ASSERT_TRUE(live) << live.error().message;
         live_.emplace(std::move(*live));
         ColliderBody body = like;
@@ -132,6 +135,36 @@ class LiveColliderGlTest : public CollisionTest {
 };
 RELIEF_INSTANTIATE_GL_TESTS(LiveColliderGlTest);
 
+/// Maps of one format that enclose a cube about the origin and together see a convex mesh from all sides.
+Collider framesOf(MapFormat format, Decode decode, float half, std::uint32_t resolution) {
+    Collider frames = *liveFrames(cube(half), resolution);
+    if (format == MapFormat::kCube8) {
+        DepthMap map;
+        map.compare = Compare::kGreater;
+        map.width = map.height = resolution;
+        for (int i = 0; i < 3; ++i) {
+            map.object_to_map.row[i][i] = 1.0F / half;
+            map.object_per_map[i] = half;
+        }
+        frames.maps = {map};
+    } else if (!isFrontBack(format)) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            frames.maps[i].compare = Compare::kLess;
+            frames.maps.push_back(frames.maps[i]);
+            frames.maps.back().compare = Compare::kGreater;
+        }
+    }
+    for (DepthMap& map : frames.maps) {
+        map.format = format;
+        map.decode = decode;
+    }
+    return frames;
+}
+
+constexpr MapFormat kFormats[] = {MapFormat::kFloat32, MapFormat::kFixed8, MapFormat::kFrontBackHalf,
+                                  MapFormat::kFrontBackFixed, MapFormat::kCube8};
+constexpr Decode kDecodes[] = {Decode::kProjected, Decode::kPlane};
+
 std::vector<glm::vec3> randomPoints(std::size_t count, float half) {
     std::mt19937 random(5);
     std::uniform_real_distribution<float> in(-half, half);
@@ -143,41 +176,72 @@ std::vector<glm::vec3> randomPoints(std::size_t count, float half) {
 }
 
 // What the shader reads from the rectangles is what the CPU says of the same maps rendered one by one and
-// read back.
-TEST_P(LiveColliderGlTest, IsTheSameAsAStaticBakeOfTheMesh) {
+// read back; and it is a sphere.
+TEST_P(LiveColliderGlTest, MapsOfEveryFormatAreThoseOfAStaticBakeOfTheMesh) {
     const Mesh mesh = sphere(0.5F, 64, 32);
-    makeLive(mesh, cube(0.6F), 96);
-    update();
-    Collider baked = live_->frames();
     auto gpu_mesh = GpuMesh::create(mesh.positions, mesh.triangles);
     auto renderer = DepthMapRenderer::create();
     ASSERT_TRUE(gpu_mesh && renderer);
-    for (DepthMap& map : baked.maps) {
-        const DepthMapFrame frame = frameOf(map);
-        const auto target = DepthMapTarget::create(frame);
-        ASSERT_TRUE(target && renderer->render(*gpu_mesh, frame, *target));
-        map.texels.resize(map.texelBytes());
-        ASSERT_TRUE(target->read(0, 0, map.width, map.height, map.texels));
-    }
     const std::vector<glm::vec3> points = randomPoints(20'000, 0.7F);
-    const std::vector<FieldSample> live = field(points);
-    std::size_t inside = 0;
-    std::size_t other = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const FieldSample cpu = evaluate(baked, points[i]);
-        const bool same =
-            cpu.inside() == live[i].inside() &&
-            (cpu.distance >= 1e29F || std::abs(cpu.distance - live[i].distance) < 1.2F / 65534.0F);
-        other += same ? 0 : 1;
-        inside += live[i].inside() ? 1 : 0;
-        // And it is a sphere: to a texel's sagitta, where no silhouette is near.
-        const float truth = glm::length(points[i]) - 0.5F;
-        if (std::abs(truth) > 0.02F) {
-            EXPECT_EQ(live[i].inside(), truth < 0.0F) << i << " " << truth;
+    for (const MapFormat format : kFormats) {
+        for (const Decode decode : kDecodes) {
+            SCOPED_TRACE(std::string(mapFormatName(format)) + " " + depthEncodingName(format) + " " +
+                         decodeName(decode));
+            makeLive(mesh, framesOf(format, decode, 0.6F, 96));
+            update();
+            Collider baked = live_->frames();
+            for (DepthMap& map : baked.maps) {
+                const DepthMapFrame frame = frameOf(map);
+                const auto target = DepthMapTarget::create(frame);
+                ASSERT_TRUE(target && renderer->render(*gpu_mesh, frame, *target));
+                map.texels.resize(map.texelBytes());
+                ASSERT_TRUE(target->read(0, 0, map.width, map.height * map.faceCount(), map.texels));
+            }
+            const std::vector<FieldSample> live = field(points);
+            std::size_t inside = 0;
+            std::size_t other = 0;
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                const FieldSample cpu = evaluate(baked, points[i]);
+                const bool same =
+                    cpu.inside() == live[i].inside() &&
+                    (cpu.distance >= 1e29F || std::abs(cpu.distance - live[i].distance) < 1.2F / 65534.0F);
+                other += same ? 0 : 1;
+                inside += live[i].inside() ? 1 : 0;
+                // To a texel's sagitta, where no silhouette is near.
+                const float truth = glm::length(points[i]) - 0.5F;
+                if (std::abs(truth) > 0.02F) {
+                    EXPECT_EQ(live[i].inside(), truth < 0.0F) << i << " " << truth;
+                }
+            }
+            EXPECT_LE(other, 20U);  // on the border of two texels the CPU may take the other
+            EXPECT_GT(inside, 2000U);
         }
     }
-    EXPECT_LE(other, 20U);  // on the border of two texels the CPU may take the other
-    EXPECT_GT(inside, 2000U);
+}
+
+// The motion beside the texels of every format: a plate that rises with speed w sends off what it meets
+// with 1.5 w.
+TEST_P(LiveColliderGlTest, MapsOfEveryFormatThrow) {
+    const Mesh plate = gridBox({0.4F, 0.05F, 0.4F}, 1);
+    constexpr float kRise = 0.01F;  // a step
+    for (const MapFormat format : kFormats) {
+        for (const Decode decode : kDecodes) {
+            SCOPED_TRACE(std::string(mapFormatName(format)) + " " + depthEncodingName(format) + " " +
+                         decodeName(decode));
+            makeLive(plate, framesOf(format, decode, 0.6F, 128));
+            update();
+            ParticleType type;
+            type.restitution = 0.5F;
+            particlesOf({.capacity = 16}, type);
+            spawnOne({{0.1F, 0.055F, -0.07F}, glm::vec3(0.0F), 100.0F, 0});
+            ASSERT_TRUE(live_->setPositions(moved(plate, {0.0F, kRise, 0.0F})));
+            update();
+            particles_->step(kDt);
+            const ParticleState after = state().at(0);
+            EXPECT_EQ(after.contact, Contact::kCollided);
+            EXPECT_NEAR(after.velocity.y, 1.5F * kRise / kDt, 0.01F * kRise / kDt);
+        }
+    }
 }
 
 // Closed form: a plate that rises with speed w meets a particle at rest, which leaves with (1 + e) w.
