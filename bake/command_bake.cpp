@@ -3,17 +3,15 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
-#include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <span>
 
-#include "bake/backend.h"
 #include "bake/bake.h"
 #include "bake/bake_report.h"
+#include "bake/bake_settings.h"
 #include "bake/budget_search.h"
 #include "bake/byte_count.h"
 #include "bake/command.h"
@@ -25,7 +23,6 @@
 #include "bake/mesh_care.h"
 #include "bake/mesh_query.h"
 #include "bake/plan_file.h"
-#include "bake/preflight.h"
 #include "bake/progress.h"
 #include "bake/report.h"
 #include "bake/text.h"
@@ -36,48 +33,7 @@
 namespace relief {
 namespace {
 
-constexpr std::uint64_t kThreadsMax = 1024;
-constexpr std::uint64_t kCompressionMax = 19;
 constexpr std::uint64_t kBudgetDefault = 1'000'000;  // bytes
-
-struct BakeCommand {
-    CommonOptions common;
-    std::string mesh;
-    std::string output;
-    std::vector<std::string> maps;
-    bool paper = false;
-    std::string plan;
-    std::string plan_out;
-    std::string budget;
-    std::string max_error;
-    std::string decode;
-    std::string depth;
-    std::string resolution;
-    std::string quality;
-    std::string prefer;
-    std::string threads;
-    std::string compress = "0";
-    std::string holes = "close";
-    BackendOptions backend;
-    GlOptions gl;
-    ImportArguments import;
-    MeshCareOptions care;
-    std::string depfile;
-    RecipeOptionsOfBake recipe;
-    bool json = false;
-};
-
-/// Who chooses the maps.
-enum class Source : std::uint8_t { kPlanner, kMaps, kPaper, kPlanFile };
-
-struct Settings {
-    Source source = Source::kPlanner;
-    BakeOptions bake;
-    std::optional<std::uint64_t> budget;  ///< bytes of texels
-    std::optional<double> max_error;      ///< percent
-    ContainerWriteOptions write;
-    std::optional<Quality> plan_quality;  ///< of the plan file
-};
 
 class Stopwatch {
   public:
@@ -88,221 +44,6 @@ class Stopwatch {
   private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
-
-/// One of some words, or the error that lists them. \return its index.
-Result<std::size_t> wordOf(const std::string& option, const std::string& value,
-                           std::span<const std::string_view> words) {
-    const auto found = std::find(words.begin(), words.end(), value);
-    if (found == words.end()) {
-        return fail(ErrorCode::kUsage, option + " is '" + cleanUtf8(value) + "' but must be one of " +
-                                           listed(words) + didYouMean(value, words));
-    }
-    return static_cast<std::size_t>(found - words.begin());
-}
-
-/// What --decode and --depth make of maps that do not say it themselves.
-Result<MapSpecDefaults> mapDefaults(const BakeCommand& command) {
-    constexpr std::array<std::string_view, 2> kDecodes = {"projected", "plane"};
-    constexpr std::array<std::string_view, 2> kDepths = {"half", "unorm16"};
-    MapSpecDefaults defaults;
-    if (!command.decode.empty()) {
-        const Result<std::size_t> decode = wordOf("--decode", command.decode, kDecodes);
-        if (!decode) {
-            return forward(decode);
-        }
-        defaults.decode = *decode == 0 ? Decode::kProjected : Decode::kPlane;
-    }
-    if (!command.depth.empty()) {
-        const Result<std::size_t> depth = wordOf("--depth", command.depth, kDepths);
-        if (!depth) {
-            return forward(depth);
-        }
-        defaults.front_back = *depth == 0 ? MapFormat::kFrontBackHalf : MapFormat::kFrontBackFixed;
-    }
-    if (command.maps.empty() && !(command.decode.empty() && command.depth.empty())) {
-        return fail(ErrorCode::kUsage, std::string(command.decode.empty() ? "--depth" : "--decode") +
-                                           " does nothing without --map; leave it out");
-    }
-    return defaults;
-}
-
-/// Who chooses the maps; one alone may.
-Result<Source> sourceOf(const BakeCommand& command) {
-    const char* planning = !command.budget.empty() ? "--budget" : "--max-error";
-    struct Way {
-        const char* name;
-        bool given;
-        Source source;
-    };
-    const std::array<Way, 4> ways = {
-        {{"--map", !command.maps.empty(), Source::kMaps},
-         {"--paper", command.paper, Source::kPaper},
-         {"--plan", !command.plan.empty(), Source::kPlanFile},
-         {planning, !command.budget.empty() || !command.max_error.empty(), Source::kPlanner}}};
-    const Way* chosen = nullptr;
-    for (const Way& way : ways) {
-        if (!way.given) {
-            continue;
-        }
-        if (chosen != nullptr) {
-            return fail(ErrorCode::kUsage, std::string(chosen->name) + " and " + way.name +
-                                               " are two ways to choose the maps; leave one out");
-        }
-        chosen = &way;
-    }
-    return chosen == nullptr ? Source::kPlanner : chosen->source;
-}
-
-Result<void> readPlanSettings(const BakeCommand& command, Settings& settings) {
-    if (!command.budget.empty()) {
-        settings.budget = parseByteCount(command.budget);
-        if (!settings.budget) {
-            return fail(ErrorCode::kUsage, "--budget is '" + cleanUtf8(command.budget) +
-                                               "' but must be a number of bytes, such as 1MB or 512KiB");
-        }
-    }
-    if (!command.max_error.empty()) {
-        const Result<float> percent = parsePercent(command.max_error, "--max-error");
-        if (!percent) {
-            return forward(percent);
-        }
-        settings.max_error = double{*percent};
-    }
-    if (!command.plan_out.empty()) {
-        if (settings.source != Source::kPlanner) {
-            return fail(ErrorCode::kUsage,
-                        "--plan-out writes what was planned, but the maps were named; leave it out");
-        }
-        if (command.plan_out == "-") {
-            return fail(ErrorCode::kUsage, "--plan-out cannot be standard output; name a file");
-        }
-    }
-    if (!command.quality.empty()) {
-        constexpr std::array<std::string_view, 3> kQualities = {"fast", "normal", "best"};
-        const Result<std::size_t> quality = wordOf("--quality", command.quality, kQualities);
-        if (!quality) {
-            return forward(quality);
-        }
-        settings.bake.quality = static_cast<Quality>(*quality);
-    }
-    if (!command.prefer.empty()) {
-        constexpr std::array<std::string_view, 3> kPreferences = {"neither", "inside", "outside"};
-        const Result<std::size_t> prefer = wordOf("--prefer", command.prefer, kPreferences);
-        if (!prefer) {
-            return forward(prefer);
-        }
-        settings.bake.prefer = static_cast<Prefer>(*prefer);
-    }
-    return {};
-}
-
-Result<void> readMapSettings(const BakeCommand& command, Settings& settings) {
-    const Result<MapSpecDefaults> defaults = mapDefaults(command);
-    if (!defaults) {
-        return forward(defaults);
-    }
-    for (const std::string& text : command.maps) {
-        const Result<MapSpec> spec = parseMapSpec(text, *defaults);
-        if (!spec) {
-            return forward(spec);
-        }
-        settings.bake.maps.push_back(*spec);
-    }
-    if (settings.source == Source::kPaper) {
-        settings.bake.maps = paperMapSpecs();
-    }
-    if (command.resolution.empty()) {
-        return {};
-    }
-    if (settings.source != Source::kMaps && settings.source != Source::kPaper) {
-        return fail(
-            ErrorCode::kUsage,
-            "--resolution does nothing where maps are planned, each of the size that it needs; leave it "
-            "out, set --budget, or choose --map or --paper");
-    }
-    const Result<std::uint64_t> resolution = parseCount(command.resolution, "--resolution");
-    if (!resolution) {
-        return forward(resolution);
-    }
-    const Result<std::uint32_t> texels = checkMapSize(*resolution, MapFormat::kFrontBackHalf, "--resolution");
-    if (!texels) {
-        return forward(texels);
-    }
-    settings.bake.resolution = *texels;
-    return {};
-}
-
-Result<Settings> settingsOf(const BakeCommand& command) {
-    Settings settings;
-    const Result<Source> source = sourceOf(command);
-    if (!source) {
-        return forward(source);
-    }
-    settings.source = *source;
-    for (const auto& read : {readPlanSettings, readMapSettings}) {
-        if (const Result<void> done = read(command, settings); !done) {
-            return forward(done);
-        }
-    }
-    if (command.holes != "close" && command.holes != "keep") {
-        return fail(ErrorCode::kUsage,
-                    "--holes is '" + cleanUtf8(command.holes) + "' but must be close or keep");
-    }
-    if (!command.threads.empty()) {
-        const Result<std::uint64_t> threads = parseCount(command.threads, "--threads");
-        if (!threads) {
-            return forward(threads);
-        }
-        if (*threads < 1 || *threads > kThreadsMax) {
-            return fail(ErrorCode::kUsage, "--threads must be 1 to " + std::to_string(kThreadsMax));
-        }
-        settings.bake.threads = static_cast<unsigned>(*threads);
-    }
-    const Result<std::uint64_t> level = parseCount(command.compress, "--compress");
-    if (!level) {
-        return forward(level);
-    }
-    if (*level > kCompressionMax) {
-        return fail(ErrorCode::kUsage,
-                    "--compress must be 0 (none) to " + std::to_string(kCompressionMax) + " (smallest)");
-    }
-    settings.write.compression_level = static_cast<int>(*level);
-    if (command.json && command.output == "-") {
-        return fail(ErrorCode::kUsage, "--json and -o - both want standard output; give -o a file");
-    }
-    return settings;
-}
-
-Result<void> preflight(const BakeCommand& command) {
-    std::vector<Result<void>> checks = {preflightFile(command.output),
-                                        preflightDistinct(command.mesh, command.output)};
-    if (!command.plan.empty()) {
-        checks.push_back(preflightDistinct(command.plan, command.output));
-    }
-    if (!command.plan_out.empty()) {
-        checks.push_back(preflightFile(command.plan_out));
-        checks.push_back(preflightDistinct(command.mesh, command.plan_out));
-        checks.push_back(preflightTwoOutputs(command.output, command.plan_out));
-    }
-    if (!command.depfile.empty()) {
-        if (command.depfile == "-" || command.output == "-") {
-            return fail(ErrorCode::kUsage, "--depfile needs files, and not standard output; name them");
-        }
-        checks.push_back(preflightFile(command.depfile));
-        for (const std::string* other : {&command.mesh, &command.plan}) {
-            checks.push_back(preflightDistinct(*other, command.depfile));
-        }
-        for (const std::string* other : {&command.output, &command.plan_out}) {
-            checks.push_back(preflightTwoOutputs(*other, command.depfile));
-        }
-    }
-    for (const Result<void>& check : checks) {
-        if (!check) {
-            return check;
-        }
-    }
-    return {};
-}
 
 /// Every file that the collider was made from, the mesh first.
 std::vector<InputFile> inputsOf(const BakeCommand& command, const TriangleMesh& mesh,
@@ -318,7 +59,7 @@ std::vector<InputFile> inputsOf(const BakeCommand& command, const TriangleMesh& 
 }
 
 /// The maps of --plan, and its quality and preference where the command line names none.
-Result<void> readPlanFile(const BakeCommand& command, Settings& settings) {
+Result<void> readPlanFile(const BakeCommand& command, BakeSettings& settings) {
     const Result<PlanFile> plan = loadPlan(command.plan);
     if (!plan) {
         return forward(plan);
@@ -337,7 +78,7 @@ Result<void> readPlanFile(const BakeCommand& command, Settings& settings) {
 }
 
 /// Chooses the maps for the budget.
-Result<PlanReport> planMaps(const MeshQuery& query, Settings& settings) {
+Result<PlanReport> planMaps(const MeshQuery& query, BakeSettings& settings) {
     PlanReport report;
     report.budget = settings.budget.value_or(kBudgetDefault);
     PlanOptions options;
@@ -353,7 +94,7 @@ Result<PlanReport> planMaps(const MeshQuery& query, Settings& settings) {
 }
 
 /// Bakes at the least budget that keeps --max-error.
-Result<Baked> searchBudget(const MeshQuery& query, const MeshQuery& truth, const Settings& settings,
+Result<Baked> searchBudget(const MeshQuery& query, const MeshQuery& truth, const BakeSettings& settings,
                            std::optional<PlanReport>& report) {
     BudgetSearchOptions options;
     options.max_error_percent = *settings.max_error;
@@ -374,11 +115,11 @@ Result<Baked> searchBudget(const MeshQuery& query, const MeshQuery& truth, const
     return std::move(found->baked);
 }
 
-Result<Baked> bakeMaps(const BakeCommand& command, const TriangleMesh& mesh, Settings& settings) {
+Result<Baked> bakeMaps(const BakeCommand& command, const TriangleMesh& mesh, BakeSettings& settings) {
     ProgressBar bar("baking " + mesh.name, !command.common.quiet);
     settings.bake.progress = [&bar](double share) { bar.set(share); };
     Result<Baked> baked = bake(mesh, settings.bake);
-    if (!baked && settings.source == Source::kPlanFile) {
+    if (!baked && settings.source == MapSource::kPlanFile) {
         // What no single map shows: too many texels, a volume that floats cannot hold, maps that see nothing.
         const ErrorCode code = baked.error().code;
         return fail(code == ErrorCode::kUsage ? ErrorCode::kInvalidInput : code,
@@ -391,8 +132,8 @@ Result<Baked> bakeMaps(const BakeCommand& command, const TriangleMesh& mesh, Set
 /// \param imported  the mesh as it came, whose points --max-error is about.
 /// \param mesh      the same, its holes closed where it is nearly closed.
 Result<Baked> makeCollider(const BakeCommand& command, const TriangleMesh& imported, const TriangleMesh& mesh,
-                           Settings& settings, std::optional<PlanReport>& plan, BakeTimes& times) {
-    if (settings.source == Source::kPlanner) {
+                           BakeSettings& settings, std::optional<PlanReport>& plan, BakeTimes& times) {
+    if (settings.source == MapSource::kPlanner) {
         const Stopwatch watch;
         const Result<MeshQuery> query = MeshQuery::build(mesh);
         if (!query) {
@@ -432,7 +173,7 @@ Result<void> writePlanFile(const std::string& path, const PlanReport& plan, cons
     return writeFile(path, std::as_bytes(std::span(text)));
 }
 
-nlohmann::ordered_json jsonSettings(const BakeCommand& command, const Settings& settings,
+nlohmann::ordered_json jsonSettings(const BakeCommand& command, const BakeSettings& settings,
                                     const Backend& backend, const Baked& baked,
                                     const std::optional<PlanReport>& plan) {
     using Json = nlohmann::ordered_json;
@@ -440,7 +181,7 @@ nlohmann::ordered_json jsonSettings(const BakeCommand& command, const Settings& 
     for (const MapReport& map : baked.report.maps) {
         specs.push_back(toString(map.spec));
     }
-    const bool sized = settings.source == Source::kMaps || settings.source == Source::kPaper;
+    const bool sized = settings.source == MapSource::kMaps || settings.source == MapSource::kPaper;
     return {{"mesh", command.mesh},
             {"output", command.output},
             {"plan_file", command.plan.empty() ? Json(nullptr) : Json(command.plan)},
@@ -461,7 +202,7 @@ nlohmann::ordered_json jsonSettings(const BakeCommand& command, const Settings& 
 Result<void> runBake(const BakeCommand& command) {
     startLogging(command.common);
     const Stopwatch total;
-    Result<Settings> settings = settingsOf(command);
+    Result<BakeSettings> settings = settingsOf(command);
     if (!settings) {
         return forward(settings);
     }
@@ -472,7 +213,7 @@ Result<void> runBake(const BakeCommand& command) {
         }
     }
     std::string plan_hash;
-    if (settings->source == Source::kPlanFile) {
+    if (settings->source == MapSource::kPlanFile) {
         // Before it is read: should it change meanwhile, the hash is that of neither, or of the older one.
         const auto plan_bytes = readFile(command.plan);
         plan_hash = plan_bytes ? xxh3_128Hex(*plan_bytes) : "";
@@ -480,10 +221,11 @@ Result<void> runBake(const BakeCommand& command) {
             return read;
         }
     }
-    const Result<Backend> backend = chooseBackend(
-        command.backend, command.gl,
-        {settings->source == Source::kPlanner, !command.quality.empty() || settings->plan_quality.has_value(),
-         settings->bake.quality, settings->bake.prefer});
+    const Result<Backend> backend =
+        chooseBackend(command.backend, command.gl,
+                      {settings->source == MapSource::kPlanner,
+                       !command.quality.empty() || settings->plan_quality.has_value(), settings->bake.quality,
+                       settings->bake.prefer});
     if (!backend) {
         return forward(backend);
     }
@@ -614,7 +356,7 @@ Result<void> checkArguments(const std::vector<std::string>& arguments) {
     } catch (const CLI::ParseError& error) {
         return fail(ErrorCode::kUsage, cleanUtf8(error.what()));
     }
-    const Result<Settings> settings = settingsOf(*command);
+    const Result<BakeSettings> settings = settingsOf(*command);
     return settings ? Result<void>() : forward(settings);
 }
 
