@@ -5,36 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
+#include <utility>
 
-#include "bake/embree_config.h"
+#include "bake/embree_mesh.h"
 #include "bake/inside.h"
 #include "bake/mesh_edges.h"
 #include "bake/triangle_plane.h"
 
 namespace relief {
 namespace {
-
-struct DeviceRelease {
-    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-};
-struct SceneRelease {
-    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-};
-struct GeometryRelease {
-    void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
-};
-using Device = std::unique_ptr<RTCDeviceTy, DeviceRelease>;
-using Scene = std::unique_ptr<RTCSceneTy, SceneRelease>;
-using Geometry = std::unique_ptr<RTCGeometryTy, GeometryRelease>;
-
-tl::unexpected<Error> embreeError(RTCError error, const std::string& what) {
-    if (error == RTC_ERROR_OUT_OF_MEMORY) {
-        return fail(ErrorCode::kLimit, what + ": the ray tracer is out of memory; simplify the mesh");
-    }
-    const ErrorCode code = error == RTC_ERROR_UNSUPPORTED_CPU ? ErrorCode::kUnsupported : ErrorCode::kFailure;
-    return fail(code, what + ": the ray tracer failed with error " + std::to_string(static_cast<int>(error)));
-}
 
 /// Counts the surfaces on a ray, and lets it pass through them.
 struct CrossingCounter {
@@ -152,20 +131,14 @@ double depthAt(const TriangleMesh& mesh, std::uint32_t triangle, const glm::dvec
 
 struct MeshQuery::Impl {
     const TriangleMesh* mesh = nullptr;
-    Device device;
-    Scene scene;
-    /// Embree sees (p − center) · scale: floats are finest there, and no product of coordinates can overflow.
-    glm::dvec3 center{0.0};
-    double scale = 1.0;  // a power of two
+    EmbreeMesh tree;
     bool watertight = false;
     bool shells = false;  // isSeveralShells
 
-    [[nodiscard]] glm::dvec3 toLocal(const glm::dvec3& p) const { return (p - center) * scale; }
-
     [[nodiscard]] CrossingCounter count(const glm::vec3& p, const glm::dvec3& direction) const {
         CrossingCounter counter;
-        RTCRayHit query = rayHit(toLocal(p), direction, std::numeric_limits<float>::infinity());
-        rtcIntersect1(scene.get(), &counter.context, &query);
+        RTCRayHit query = rayHit(tree.toLocal(p), direction, std::numeric_limits<float>::infinity());
+        rtcIntersect1(tree.scene.get(), &counter.context, &query);
         return counter;
     }
 
@@ -185,8 +158,8 @@ struct MeshQuery::Impl {
             const std::vector<glm::vec3>& positions = impl->mesh->positions;
             const glm::uvec3& t = impl->mesh->triangles[index];
             const glm::dvec3 closest =
-                closestOnTriangle(p, impl->toLocal(positions[t.x]), impl->toLocal(positions[t.y]),
-                                  impl->toLocal(positions[t.z]));
+                closestOnTriangle(p, impl->tree.toLocal(positions[t.x]), impl->tree.toLocal(positions[t.y]),
+                                  impl->tree.toLocal(positions[t.z]));
             const glm::dvec3 offset = closest - p;
             const double squared = dot(offset, offset);
             // Of equals the lowest index: the order of the visits must not matter.
@@ -226,45 +199,14 @@ bool MeshQuery::watertight() const {
 Result<MeshQuery> MeshQuery::build(const TriangleMesh& mesh) {
     auto impl = std::make_unique<Impl>();
     impl->mesh = &mesh;
-    impl->center = 0.5 * glm::dvec3(mesh.bounds.min) + 0.5 * glm::dvec3(mesh.bounds.max);
-    impl->scale = std::ldexp(1.0, -std::ilogb(mesh.bounds.longestSide()));
     const MeshEdges edges = edgesOf(mesh);
     impl->watertight = oddEdges(edges).empty();
     impl->shells = impl->watertight && mesh.wound_outwards && isSeveralShells(edges);
-    impl->device.reset(rtcNewDevice(kEmbreeConfig));
-    if (!impl->device) {
-        return embreeError(rtcGetDeviceError(nullptr), mesh.name);
+    Result<EmbreeMesh> tree = EmbreeMesh::build(mesh);
+    if (!tree) {
+        return forward(tree);
     }
-    RTCDevice device = impl->device.get();
-    impl->scene.reset(rtcNewScene(device));
-    const Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
-    if (!impl->scene || !geometry) {
-        return embreeError(rtcGetDeviceError(device), mesh.name);
-    }
-    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0,
-                                                                 RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
-                                                                 mesh.positions.size()));
-    if (vertices == nullptr) {
-        return embreeError(rtcGetDeviceError(device), mesh.name);
-    }
-    for (const glm::vec3& p : mesh.positions) {
-        const glm::vec3 local = impl->toLocal(p);
-        *vertices++ = local.x;
-        *vertices++ = local.y;
-        *vertices++ = local.z;
-    }
-    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                               mesh.triangles.data(), 0, sizeof(glm::uvec3), mesh.triangles.size());
-    rtcCommitGeometry(geometry.get());
-    rtcAttachGeometry(impl->scene.get(), geometry.get());
-    // Medium quality never splits a triangle: each is met at most once a ray, so that crossings can be
-    // counted.
-    rtcSetSceneFlags(impl->scene.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
-    rtcSetSceneBuildQuality(impl->scene.get(), RTC_BUILD_QUALITY_MEDIUM);
-    rtcCommitScene(impl->scene.get());
-    if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE) {
-        return embreeError(error, mesh.name);
-    }
+    impl->tree = std::move(*tree);
     return MeshQuery(std::move(impl));
 }
 
@@ -294,7 +236,7 @@ unsigned MeshQuery::crossings(const glm::vec3& p, const glm::dvec3& direction) c
 }
 
 ClosestPoint MeshQuery::closest(const glm::vec3& p, std::optional<std::uint32_t> hint) const {
-    const glm::dvec3 local = impl_->toLocal(p);
+    const glm::dvec3 local = impl_->tree.toLocal(p);
     const double size = std::max({std::abs(local.x), std::abs(local.y), std::abs(local.z)});
     Impl::Search search{impl_.get(), local, static_cast<float>(2e-6 * (1.0 + size))};
     if (hint) {
@@ -308,9 +250,9 @@ ClosestPoint MeshQuery::closest(const glm::vec3& p, std::optional<std::uint32_t>
     query.y = at.y;
     query.z = at.z;
     query.radius = search.radius();
-    rtcPointQuery(impl_->scene.get(), &query, &context, Impl::Search::visit, &search);
-    return {std::sqrt(search.best_squared) / impl_->scale, search.triangle,
-            search.point / impl_->scale + impl_->center};
+    rtcPointQuery(impl_->tree.scene.get(), &query, &context, Impl::Search::visit, &search);
+    return {std::sqrt(search.best_squared) / impl_->tree.scale, search.triangle,
+            search.point / impl_->tree.scale + impl_->tree.center};
 }
 
 double MeshQuery::signedDistance(const glm::vec3& p) const {
@@ -322,17 +264,17 @@ bool MeshQuery::segmentIsFree(const glm::dvec3& from, const glm::dvec3& to) cons
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRay ray{};
-    setRay(ray, impl_->toLocal(from), (to - from) * impl_->scale, 1.0F);
-    rtcOccluded1(impl_->scene.get(), &context, &ray);
+    setRay(ray, impl_->tree.toLocal(from), (to - from) * impl_->tree.scale, 1.0F);
+    rtcOccluded1(impl_->tree.scene.get(), &context, &ray);
     return ray.tfar >= 0.0F;
 }
 
 std::optional<FirstHit> MeshQuery::firstHit(const glm::dvec3& origin, const glm::dvec3& direction) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    RTCRayHit query =
-        rayHit(impl_->toLocal(origin), direction * impl_->scale, std::numeric_limits<float>::infinity());
-    rtcIntersect1(impl_->scene.get(), &context, &query);
+    RTCRayHit query = rayHit(impl_->tree.toLocal(origin), direction * impl_->tree.scale,
+                             std::numeric_limits<float>::infinity());
+    rtcIntersect1(impl_->tree.scene.get(), &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
         return std::nullopt;
     }

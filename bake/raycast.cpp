@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "bake/embree_config.h"
+#include "bake/embree_mesh.h"
 #include "bake/mesh_edges.h"
 #include "bake/triangle_plane.h"
 
@@ -47,46 +47,6 @@ constexpr std::array<std::array<double, 2>, kBesideRays> kBesideDirections = {{{
                                                                                {-0.9945, 0.1045},
                                                                                {-0.6428, 0.7660}}};
 
-struct DeviceRelease {
-    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-};
-struct SceneRelease {
-    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-};
-struct GeometryRelease {
-    void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
-};
-using Device = std::unique_ptr<RTCDeviceTy, DeviceRelease>;
-using Scene = std::unique_ptr<RTCSceneTy, SceneRelease>;
-using Geometry = std::unique_ptr<RTCGeometryTy, GeometryRelease>;
-
-const char* errorWords(RTCError error) {
-    switch (error) {
-        case RTC_ERROR_NONE:
-            return "no error";
-        case RTC_ERROR_INVALID_ARGUMENT:
-            return "invalid argument";
-        case RTC_ERROR_INVALID_OPERATION:
-            return "invalid operation";
-        case RTC_ERROR_OUT_OF_MEMORY:
-            return "out of memory";
-        case RTC_ERROR_UNSUPPORTED_CPU:
-            return "this processor is not supported";
-        case RTC_ERROR_CANCELLED:
-            return "cancelled";
-        default:
-            return "unknown error";
-    }
-}
-
-tl::unexpected<Error> embreeError(RTCError error, const std::string& what) {
-    if (error == RTC_ERROR_OUT_OF_MEMORY) {
-        return fail(ErrorCode::kLimit, what + ": the ray tracer is out of memory; simplify the mesh");
-    }
-    const ErrorCode code = error == RTC_ERROR_UNSUPPORTED_CPU ? ErrorCode::kUnsupported : ErrorCode::kFailure;
-    return fail(code, what + ": the ray tracer reports: " + errorWords(error));
-}
-
 /// Collects the triangles that one ray meets, and lets it pass through them.
 struct Collector {
     RTCIntersectContext context{};
@@ -108,15 +68,9 @@ struct Collector {
 
 struct RayScene::Impl {
     const TriangleMesh* mesh = nullptr;
-    Device device;
-    Scene scene;
-    /// Embree sees (p − center) · scale: floats are finest there, and no product of coordinates can overflow.
-    glm::dvec3 center{0.0};
-    double scale = 1.0;  // a power of two
+    EmbreeMesh tree;
     double winding = 1.0;
     bool closed = false;  // no odd edges
-
-    [[nodiscard]] glm::vec3 toLocal(const glm::dvec3& p) const { return (p - center) * scale; }
 
     class Tracer;
 };
@@ -148,7 +102,7 @@ class RayScene::Impl::Tracer {
             } else {
                 setCubeRays(face, x0, y0);
             }
-            rtcIntersect16(valid_, impl_.scene.get(), &context_, &packet_);
+            rtcIntersect16(valid_, impl_.tree.scene.get(), &context_, &packet_);
             prefetchCorners();
             // What mendPinholes goes by: most tiles need no second look.
             float low = std::numeric_limits<float>::max();
@@ -180,7 +134,7 @@ class RayScene::Impl::Tracer {
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
         RTCRayHit query = queryOf(segmentOf(ray));
-        rtcIntersect1(impl_.scene.get(), &context, &query);
+        rtcIntersect1(impl_.tree.scene.get(), &context, &query);
         if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
             return {};
         }
@@ -250,10 +204,10 @@ class RayScene::Impl::Tracer {
         column_step_ = view_.axis[0] / static_cast<double>(view_.width);
         row_step_ = view_.axis[1] / static_cast<double>(view_.height);
         const Segment segment = segmentOf(first_ray_);
-        local_origin_ = (segment.origin - impl_.center) * impl_.scale;
-        local_column_step_ = column_step_ * impl_.scale;
-        local_row_step_ = row_step_ * impl_.scale;
-        const glm::vec3 direction = segment.direction * impl_.scale;
+        local_origin_ = (segment.origin - impl_.tree.center) * impl_.tree.scale;
+        local_column_step_ = column_step_ * impl_.tree.scale;
+        local_row_step_ = row_step_ * impl_.tree.scale;
+        const glm::vec3 direction = segment.direction * impl_.tree.scale;
         for (int lane = 0; lane < kLanes; ++lane) {
             const glm::vec3 offset = static_cast<double>(columnOf(lane)) * local_column_step_ +
                                      static_cast<double>(rowOf(lane)) * local_row_step_;
@@ -282,8 +236,8 @@ class RayScene::Impl::Tracer {
     void setCubeRays(std::uint32_t face, std::uint32_t x0, std::uint32_t y0) {
         for (int lane = 0; lane < kLanes; ++lane) {
             const Segment segment = segmentOf(view_.ray(face, x0 + columnOf(lane), y0 + rowOf(lane)));
-            const glm::vec3 origin = impl_.toLocal(segment.origin);
-            const glm::vec3 direction = segment.direction * impl_.scale;
+            const glm::vec3 origin = impl_.tree.toLocal(segment.origin);
+            const glm::vec3 direction = segment.direction * impl_.tree.scale;
             packet_.ray.org_x[lane] = origin.x;
             packet_.ray.org_y[lane] = origin.y;
             packet_.ray.org_z[lane] = origin.z;
@@ -363,7 +317,7 @@ class RayScene::Impl::Tracer {
     Hit lookAgain(std::uint32_t face, std::uint32_t x, std::uint32_t y, const Hit& hit) {
         const TexelRay ray = view_.ray(face, x, y);
         const Segment segment = segmentOf(ray);
-        const glm::dvec3 direction = segment.direction * impl_.scale;
+        const glm::dvec3 direction = segment.direction * impl_.tree.scale;
         const double length = std::sqrt(dot(direction, direction));
         const glm::dvec3 unit = direction / length;
         const glm::dvec3 other = std::abs(unit.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
@@ -384,11 +338,12 @@ class RayScene::Impl::Tracer {
             RTCIntersectContext context;
             rtcInitIntersectContext(&context);
             Segment shifted = segment;
-            shifted.origin += (kBeside / impl_.scale) * (cosine * right + sine * up);
+            shifted.origin += (kBeside / impl_.tree.scale) * (cosine * right + sine * up);
             RTCRayHit query = queryOf(shifted);
-            rtcIntersect1(impl_.scene.get(), &context, &query);
+            rtcIntersect1(impl_.tree.scene.get(), &context, &query);
             if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID &&
-                touches((segment.origin - impl_.center) * impl_.scale, right, up, query.hit.primID)) {
+                touches((segment.origin - impl_.tree.center) * impl_.tree.scale, right, up,
+                        query.hit.primID)) {
                 touched[count] = query.hit.primID;
                 where[count++] = query.ray.tfar;
                 nearest = std::min(nearest, query.ray.tfar);
@@ -421,7 +376,7 @@ class RayScene::Impl::Tracer {
         double y[3];
         for (int i = 0; i < 3; ++i) {
             const glm::dvec3 p =
-                (glm::dvec3(impl_.mesh->positions[t[i]]) - impl_.center) * impl_.scale - origin;
+                (glm::dvec3(impl_.mesh->positions[t[i]]) - impl_.tree.center) * impl_.tree.scale - origin;
             x[i] = dot(p, right);
             y[i] = dot(p, up);
         }
@@ -443,8 +398,8 @@ class RayScene::Impl::Tracer {
     }
 
     [[nodiscard]] RTCRayHit queryOf(const Segment& segment) const {
-        const glm::vec3 origin = impl_.toLocal(segment.origin);
-        const glm::vec3 direction = segment.direction * impl_.scale;
+        const glm::vec3 origin = impl_.tree.toLocal(segment.origin);
+        const glm::vec3 direction = segment.direction * impl_.tree.scale;
         RTCRayHit query{};
         query.ray.org_x = origin.x;
         query.ray.org_y = origin.y;
@@ -468,7 +423,7 @@ class RayScene::Impl::Tracer {
         RTCRayHit query = queryOf(segment);
         query.ray.tnear = std::max(0.0F, at - tie);
         query.ray.tfar = at + tie;
-        rtcIntersect1(impl_.scene.get(), &collector_.context, &query);
+        rtcIntersect1(impl_.tree.scene.get(), &collector_.context, &query);
 
         return bestFacing(segment, first);
     }
@@ -601,40 +556,11 @@ Result<RayScene> RayScene::build(const TriangleMesh& mesh) {
     impl->mesh = &mesh;
     impl->winding = orientation(mesh);
     impl->closed = edgesAreEven(mesh);
-    impl->center = 0.5 * glm::dvec3(mesh.bounds.min) + 0.5 * glm::dvec3(mesh.bounds.max);
-    impl->scale = std::ldexp(1.0, -std::ilogb(mesh.bounds.longestSide()));
-    impl->device.reset(rtcNewDevice(kEmbreeConfig));
-    if (!impl->device) {
-        return embreeError(rtcGetDeviceError(nullptr), mesh.name);
+    Result<EmbreeMesh> tree = EmbreeMesh::build(mesh);
+    if (!tree) {
+        return forward(tree);
     }
-    RTCDevice device = impl->device.get();
-    impl->scene.reset(rtcNewScene(device));
-    const Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
-    if (!impl->scene || !geometry) {
-        return embreeError(rtcGetDeviceError(device), mesh.name);
-    }
-    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0,
-                                                                 RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
-                                                                 mesh.positions.size()));
-    if (vertices == nullptr) {
-        return embreeError(rtcGetDeviceError(device), mesh.name);
-    }
-    for (const glm::vec3& p : mesh.positions) {
-        const glm::vec3 local = impl->toLocal(p);
-        *vertices++ = local.x;
-        *vertices++ = local.y;
-        *vertices++ = local.z;
-    }
-    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                               mesh.triangles.data(), 0, sizeof(glm::uvec3), mesh.triangles.size());
-    rtcCommitGeometry(geometry.get());
-    rtcAttachGeometry(impl->scene.get(), geometry.get());
-    rtcSetSceneFlags(impl->scene.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
-    rtcSetSceneBuildQuality(impl->scene.get(), RTC_BUILD_QUALITY_MEDIUM);
-    rtcCommitScene(impl->scene.get());
-    if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE) {
-        return embreeError(error, mesh.name);
-    }
+    impl->tree = std::move(*tree);
     return RayScene(std::move(impl));
 }
 
