@@ -92,8 +92,7 @@ int work(char** arguments) {
                                                 extension,
                                                 {static_cast<const std::byte*>(pages), size},
                                                 folder,
-                                                options,
-                                                true});
+                                                options});
     return sendMessage(raw) ? kImportExitMessage : kImportExitNoMessage;
 }
 

@@ -59,7 +59,6 @@ struct ImportJob {
     std::span<const std::byte> bytes;
     int folder = -1;  ///< descriptor; or -1
     ImportOptions options;
-    bool process_ends = false;  ///< right after: what assimp holds is left to that
 };
 
 /// Reads the mesh. \return what ImportSource::finish wants. Errors: as importMesh. In Relief::import.

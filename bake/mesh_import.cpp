@@ -410,8 +410,7 @@ Result<TriangleMesh> importWithAssimp(const ImportJob& job) {
         mesh.warnings = std::move(*warnings);
     }
     ImportFiles files(job.folder, job.file_name, job.bytes);
-    auto owned = std::make_unique<Assimp::Importer>();
-    Assimp::Importer& importer = *owned;
+    Assimp::Importer importer;
     keepReadersOf(job.extension, importer);
     importer.SetIOHandler(new ReadOnlyFiles(files));  // owned by the importer
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
@@ -460,11 +459,7 @@ Result<TriangleMesh> importWithAssimp(const ImportJob& job) {
     }
     Transform root;
     root.linear = change.scale * change.turn;
-    Result<TriangleMesh> flat = flatten(*scene, root, job.shown, std::move(mesh));
-    if (job.process_ends) {
-        (void)owned.release();
-    }
-    return flat;
+    return flatten(*scene, root, job.shown, std::move(mesh));
 }
 
 // --- a thread with a deep stack ---
@@ -524,7 +519,7 @@ Result<TriangleMesh> importMesh(const fs::path& path, const ImportOptions& optio
         return forward(source);
     }
     Result<TriangleMesh> raw = importRaw({quotedPath(path), path.filename().string(), source->extension(),
-                                          source->bytes(), source->folder(), options, false});
+                                          source->bytes(), source->folder(), options});
     return raw ? source->finish(std::move(*raw)) : raw;
 }
 
