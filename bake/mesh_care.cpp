@@ -192,6 +192,7 @@ Result<CaredMesh> careFor(TriangleMesh mesh, const MeshCareOptions& options) {
     }
     if (*repair) {
         care.repair = (*repair)->text();
+        edges = {};
         Result<TriangleMesh> other = repaired(mesh, **repair, care);
         if (!other) {
             return forward(other);
@@ -199,7 +200,7 @@ Result<CaredMesh> careFor(TriangleMesh mesh, const MeshCareOptions& options) {
         mesh = std::move(*other);
         edges = edgesOf(mesh);
     }
-    Result<Winding> winding = windOutwards(std::move(mesh), edges);
+    Result<Winding> winding = windOutwards(std::move(mesh), std::move(edges));
     if (!winding) {
         return forward(winding);
     }

@@ -3,16 +3,21 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <bit>
 #include <functional>
 #include <numeric>
-#include <random>
+#include <span>
 #include <tuple>
+
+#include "formats/hash.h"
 
 namespace relief {
 namespace {
+
+constexpr std::ptrdiff_t kLargeBucket = 1 << 16;
 
 /// The last step of SplitMix64 (Steele, Lea, Flood 2014).
 std::uint64_t mixed(std::uint64_t z) {
@@ -31,20 +36,22 @@ std::uint64_t hashOf(const glm::vec3& p, std::uint64_t salt = 0) {
 
 }  // namespace
 
+// Corners and their edges are counted by 32-bit numbers, and so are twice as many slots, rounded up.
+static_assert(6 * kTriangleMax < std::uint64_t{1} << 30);
+
 std::vector<std::uint32_t> weldedVertices(const TriangleMesh& mesh) {
     const std::size_t count = mesh.positions.size();
     // Linear probing at most half full, of indices + 1. A vertex meets the lower ones alone, so that the
-    // first of equal ones is found whatever the hashes are: they may be random, and no file can make them
-    // collide.
-    std::random_device device;
-    const std::uint64_t salt = std::uint64_t{device()} << 32 | device();
+    // first of equal ones is found whatever the hashes are. Those depend on all positions: no file is easily
+    // made to have them collide.
+    const std::uint64_t salt = xxh3_64(std::as_bytes(std::span(mesh.positions)));
     std::vector<std::uint32_t> slots(std::bit_ceil(2 * count + 1), 0);
     const std::size_t mask = slots.size() - 1;
     std::vector<std::uint32_t> welded(count);
-    std::vector<std::size_t> wanted(count);
+    std::vector<std::uint32_t> wanted(count);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            wanted[i] = hashOf(mesh.positions[i], salt) & mask;
+            wanted[i] = static_cast<std::uint32_t>(hashOf(mesh.positions[i], salt) & mask);
         }
     });
     constexpr std::uint32_t kAhead = 16;  // vertices that the walk through the slots is announced to memory
@@ -86,10 +93,16 @@ MeshEdges edgesOf(const TriangleMesh& mesh) {
     forEachSide([&](const EdgeUse& use) { uses[next[use.low]++] = use; });
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, next.size(), 1024), [&](const auto& range) {
         for (std::size_t v = range.begin(); v != range.end(); ++v) {
-            std::sort(uses.begin() + first[v], uses.begin() + first[v + 1],
-                      [](const EdgeUse& a, const EdgeUse& b) {
-                          return std::tie(a.high, a.triangle, a.side) < std::tie(b.high, b.triangle, b.side);
-                      });
+            const auto begin = uses.begin() + first[v];
+            const auto end = uses.begin() + first[v + 1];
+            const auto less = [](const EdgeUse& a, const EdgeUse& b) {
+                return std::tie(a.high, a.triangle, a.side) < std::tie(b.high, b.triangle, b.side);
+            };
+            if (end - begin > kLargeBucket) {  // the hub of a fan
+                tbb::parallel_sort(begin, end, less);
+            } else {
+                std::sort(begin, end, less);
+            }
         }
     });
     return edges;

@@ -199,9 +199,11 @@ bool MeshQuery::watertight() const {
 Result<MeshQuery> MeshQuery::build(const TriangleMesh& mesh) {
     auto impl = std::make_unique<Impl>();
     impl->mesh = &mesh;
-    const MeshEdges edges = edgesOf(mesh);
-    impl->watertight = oddEdges(edges).empty();
-    impl->shells = impl->watertight && mesh.wound_outwards && isSeveralShells(edges);
+    {
+        const MeshEdges edges = edgesOf(mesh);
+        impl->watertight = oddEdges(edges).empty();
+        impl->shells = impl->watertight && mesh.wound_outwards && isSeveralShells(edges);
+    }
     Result<EmbreeMesh> tree = EmbreeMesh::build(mesh);
     if (!tree) {
         return forward(tree);

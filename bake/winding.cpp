@@ -38,11 +38,12 @@ struct Patch {
 
 class Winder {
   public:
-    Winder(TriangleMesh& mesh, const MeshEdges& edges)
-        : mesh_(mesh), edges_(edges), turn_(mesh.triangles.size(), 0) {}
+    Winder(TriangleMesh& mesh, MeshEdges edges)
+        : mesh_(mesh), edges_(std::move(edges)), turn_(mesh.triangles.size(), 0) {}
 
     Result<std::uint64_t> run() {
         findNeighbours();
+        edges_ = {};
         findPatches();
         const bool consistent = std::all_of(patches_.begin(), patches_.end(),
                                             [](const Patch& patch) { return patch.turned == 0; });
@@ -185,7 +186,7 @@ class Winder {
     }
 
     TriangleMesh& mesh_;
-    const MeshEdges& edges_;
+    MeshEdges edges_;
     std::vector<std::uint8_t> turn_;  // 1: against the order of the file
     std::vector<Neighbour> neighbours_;
     std::vector<Patch> patches_;
@@ -194,14 +195,14 @@ class Winder {
 }  // namespace
 
 Result<Winding> windOutwards(TriangleMesh mesh) {
-    const MeshEdges edges = edgesOf(mesh);
-    return windOutwards(std::move(mesh), edges);
+    MeshEdges edges = edgesOf(mesh);
+    return windOutwards(std::move(mesh), std::move(edges));
 }
 
-Result<Winding> windOutwards(TriangleMesh mesh, const MeshEdges& edges) {
+Result<Winding> windOutwards(TriangleMesh mesh, MeshEdges edges) {
     Winding winding;
     winding.mesh = std::move(mesh);
-    const Result<std::uint64_t> turned = Winder(winding.mesh, edges).run();
+    const Result<std::uint64_t> turned = Winder(winding.mesh, std::move(edges)).run();
     if (!turned) {
         return forward(turned);
     }

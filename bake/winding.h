@@ -25,7 +25,7 @@ struct Winding {
 /// The same for any number of threads.
 /// Errors: those of MeshQuery::build.
 [[nodiscard]] Result<Winding> windOutwards(TriangleMesh mesh);
-/// \param edges  edgesOf(mesh)
-[[nodiscard]] Result<Winding> windOutwards(TriangleMesh mesh, const MeshEdges& edges);
+/// \param edges  edgesOf(mesh); freed as soon as it can be, for it takes more memory than the mesh.
+[[nodiscard]] Result<Winding> windOutwards(TriangleMesh mesh, MeshEdges edges);
 
 }  // namespace relief

@@ -43,7 +43,7 @@ enum class Decode : std::uint8_t { kProjected = 0, kPlane = 1 };
 [[nodiscard]] const char* decodeName(Decode decode);  ///< "projected" or "plane"
 
 /// An affine map as three rows: result i = dot(row[i].xyz, p) + row[i].w, evaluated as
-/// x·p.x + (y·p.y + (z·p.z + w)), in the CPU's and in the shader's code alike.
+/// x·p.x + (y·p.y + (z·p.z + w)); the shader does the same with rows that give texels.
 struct Affine {
     glm::vec4 row[3] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
 

@@ -269,7 +269,11 @@ Result<ColliderTextures> ColliderTextures::upload(std::span<const PlacedMap> map
         const std::size_t i = place.layout;
         glBindTexture(GL_TEXTURE_2D, textures[i]->name());
         if (!maps[m].live) {
-            uploadTexels(kLayouts[i], layouts[i], first_texel[m], shaderTexels(map));
+            if (map.format == MapFormat::kFloat32) {
+                uploadTexels(kLayouts[i], layouts[i], first_texel[m], map.texels);
+            } else {
+                uploadTexels(kLayouts[i], layouts[i], first_texel[m], shaderTexels(map));
+            }
             continue;
         }
         const auto width = static_cast<GLsizei>(map.width);

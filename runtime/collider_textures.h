@@ -2,8 +2,9 @@
 // its own object space, or several bodies with poses in a world.
 //
 // Maps of one texel layout share a 2-D texture: RGBA32F for float, RGBA8 for fixed8 and cube, RGBA16UI for
-// front-back of either depth. Their texels follow each other as they do in the container, wrapped at the
-// texture's width, so that the textures take the maps' bytes and, each, less than a row more:
+// front-back of either depth. Their texels, as shaderTexels() makes them, follow each other as they do in the
+// container, wrapped at the texture's width, so that the textures take the maps' bytes and, each, less than a
+// row more:
 //
 //     bytes on the GPU < Σ texel bytes + Σ over the textures: width · texel size
 //

@@ -226,13 +226,17 @@ vec3 reliefFromMap(int i, vec3 q) {
 }
 
 // The vote of a plane: n·(P − S), or n·(P − O) less the stored offset where the plane stands along the ray.
-// along_normal: n, of any length; from: P − O, with O where the ray of the texel's centre has depth 0; ray: its
+// along_normal: n times 1 / per_length; from: P − O, with O where the ray of the texel's centre has depth 0; ray: its
 // direction, for a unit of depth; standing: its length times RELIEF_STANDING_COSINE; depth: from 0 to 2 half_depth.
-float reliefPlane(int i, vec3 along_normal, float depth, float half_depth, vec3 from, vec3 ray, float standing) {
-    float per_length = inversesqrt(reliefDot(along_normal, along_normal));
+float reliefPlane(int i, vec3 along_normal, float per_length, float depth, float half_depth, vec3 from, vec3 ray, float standing) {
     float along = per_length * reliefDot(along_normal, ray);
     float offset = abs(along) < standing ? u_relief_maps[i].column[0].w * (depth - half_depth) : depth * along;
     return per_length * reliefDot(along_normal, from) - offset;
+}
+
+float reliefOctahedralPlane(int i, vec3 along_normal, float depth, float half_depth, vec3 from, vec3 ray, float standing) {
+    float per_length = inversesqrt(reliefDot(along_normal, along_normal));
+    return reliefPlane(i, along_normal, per_length, depth, half_depth, from, ray, standing);
 }
 
 // A half-float depth: a positive normal half, whose exponent's bias is moved from 15 to 127. By hand, since
@@ -331,8 +335,8 @@ ReliefVote reliefVoteOrthographic(int i, vec3 p, ivec4 place, ivec4 info, bool w
             float front = reliefFrontBackDepth(info.y, words.b);
             float back = reliefFrontBackDepth(info.y, words.a);
             if (plane) {
-                front = reliefPlane(i, reliefOctahedron(words.r), front, 0.5, from, ray, standing);
-                back = reliefPlane(i, reliefOctahedron(words.g), back, 0.5, from, ray, standing);
+                front = reliefOctahedralPlane(i, reliefOctahedron(words.r), front, 0.5, from, ray, standing);
+                back = reliefOctahedralPlane(i, reliefOctahedron(words.g), back, 0.5, from, ray, standing);
             } else {
                 front = scale * (front - p.z);
                 back = scale * (p.z - back);
@@ -346,6 +350,7 @@ ReliefVote reliefVoteOrthographic(int i, vec3 p, ivec4 place, ivec4 info, bool w
         } else {
             float depth;
             vec3 along_normal;
+            float per_length = 1.0;  // a float map's normals count as they are
             if (reliefIsFloat(info)) {
                 vec4 values = texelFetch(u_relief_float, reliefTexel(texel, u_relief_count.y), 0);
                 depth = values.a;
@@ -358,10 +363,11 @@ ReliefVote reliefVoteOrthographic(int i, vec3 p, ivec4 place, ivec4 info, bool w
                 vec2 index;
                 found = reliefFixedTexel(texel, 1.0, depth, index);
                 along_normal = reliefOctahedron(index);
+                per_length = inversesqrt(reliefDot(along_normal, along_normal));
                 vote.normal = reliefCode(index);
             }
             if (plane) {
-                vote.distance = reliefPlane(i, along_normal, depth, 0.5, from, ray, standing);
+                vote.distance = reliefPlane(i, along_normal, per_length, depth, 0.5, from, ray, standing);
             } else {
                 vote.distance = scale * ((info.z & RELIEF_KEEPS_FARTHEST) != 0 ? p.z - depth : depth - p.z);
             }
@@ -392,7 +398,7 @@ ReliefVote reliefVoteCube(int i, vec3 p, ivec4 place, ivec4 info) {
         if (reliefIsPlane(info)) {
             vec3 ray = reliefUnit(reliefCubeDirection(vec3((vec2(at) + 0.5) / float(place.w), st_face.z)));
             float standing = RELIEF_STANDING_COSINE * reliefLength(u_relief_maps[i].object_per_map.xyz * ray);
-            vote.distance = reliefPlane(i, reliefOctahedron(index), depth, 0.5 * RELIEF_CUBE_DEPTH_MAX, reliefFromMap(i, p),
+            vote.distance = reliefOctahedralPlane(i, reliefOctahedron(index), depth, 0.5 * RELIEF_CUBE_DEPTH_MAX, reliefFromMap(i, p),
                                         reliefFromMap(i, ray), standing);
         } else {
             float ahead = (info.z & RELIEF_KEEPS_FARTHEST) != 0 ? radius - depth : depth - radius;
@@ -519,7 +525,8 @@ ReliefField reliefSolid(vec3 p) {
         reliefJoin(best, i, p, false);
     }
 #endif
-    return ReliefField(best.distance, best.distance < 0.0 ? reliefDecode(best.normal) : vec3(0.0), best.map);
+    bool inside = best.map >= 0 && best.distance < 0.0;
+    return ReliefField(best.distance, inside ? reliefDecode(best.normal) : vec3(0.0), best.map);
 }
 
 // reliefInside(reliefSolid(p)), by asking map `first` before the others: the map that decides what is inside nearby knows

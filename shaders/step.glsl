@@ -167,7 +167,7 @@ void rest(vec3 p, float collisions, float contact) {
     finish(carried, (carried - p) / u_dt, collisions, contact);
 }
 
-void move(vec3 p, vec3 v, float collisions, float contact, vec4 type_a, vec4 type_b) {
+void move(vec3 p, vec3 v, float collisions, vec4 type_a, vec4 type_b) {
     // Forces. Drag is integrated implicitly, v' = v + dt (g + k (w - v')): it approaches the wind for any dt,
     // while the explicit form overshoots for dt k > 1 and grows without bound for dt k > 2.
     vec3 v_begin = v;
@@ -211,7 +211,7 @@ void move(vec3 p, vec3 v, float collisions, float contact, vec4 type_a, vec4 typ
     const bool first_piece = true;
 #endif
     bool dies = false;
-    contact = 0.0;
+    float contact = 0.0;
     if (next.distance < 0.0) {
         vec3 n = next.normal;
         vec3 carried = surfaceVelocity(next, p_next);
@@ -298,6 +298,6 @@ void main() {
     } else if (contact >= 3.0) {
         rest(p, collisions, contact);
     } else {
-        move(p, v, collisions, contact, type_a, type_b);
+        move(p, v, collisions, type_a, type_b);
     }
 }

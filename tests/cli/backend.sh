@@ -8,7 +8,7 @@ expect 0 "$relief" bake "$bunny" -o raster.relief --json --backend raster "${map
 mv stdout raster.json
 json raster.json "d['settings']['backend'] == 'raster' and d['settings']['device'] and d['times_ms']['raster'] > 0"
 json raster.json "d['settings']['quality'] == 'fast' and d['times_ms']['trace'] == 0"
-"$relief" info raster.relief | grep -q -- '--backend raster' || die "the container does not say who baked it"
+"$relief" info raster.relief | matches -- '--backend raster' || die "the container does not say who baked it"
 cmp -s rays.relief raster.relief && die "both bakes are the same to the byte: the GPU was not asked"
 # As right as the ray caster's with one ray a texel, on the bunny's own points.
 for name in rays raster; do

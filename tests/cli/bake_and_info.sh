@@ -83,10 +83,10 @@ expect 0 "$relief" bake box.obj -o t1.relief --paper --resolution 32 -q
 # Help leads with an example, for every verb; versions are printed.
 for verb in bake info query slice export; do
     expect 0 "$relief" $verb --help
-    head -8 stdout | grep -q "relief $verb " || die "help of $verb does not lead with an example"
+    head -8 stdout | matches "relief $verb " || die "help of $verb does not lead with an example"
 done
 expect 0 "$relief" --help
 expect 0 "$relief" --version
 grep -qE '[0-9]+\.[0-9]+\.[0-9]+' stdout || die "no version"
 expect 0 "$relief_sim" --help
-head -8 stdout | grep -q 'relief-sim ' || die "help of relief-sim does not lead with an example"
+head -8 stdout | matches 'relief-sim ' || die "help of relief-sim does not lead with an example"

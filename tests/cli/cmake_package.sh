@@ -48,7 +48,7 @@ expect 0 out/snowfall out/bunny.relief
 grep -qE '^[0-9]+ maps, [0-9]+ bytes on the GPU$' stdout || die "the program says: $(cat stdout)"
 expect 0 "$relief" check out/box.relief
 
-no_work() { cmake --build out | grep -q 'no work to do' || die "$1, and there is work to do"; }
+no_work() { cmake --build out | matches 'no work to do' || die "$1, and there is work to do"; }
 # bakes FILES TOUCHED…: touching them bakes exactly FILES again.
 bakes() {
     local wanted=$1
@@ -71,7 +71,7 @@ refused() { # PATTERN LINES
     mkdir -p wrong
     printf 'cmake_minimum_required(VERSION 3.25)\nproject(wrong LANGUAGES CXX)\n%s\n' "$2" >wrong/CMakeLists.txt
     ! cmake -G Ninja -S wrong -B wrong/out >log 2>&1 || die "is not refused: $2"
-    tr -s ' \n' ' ' <log | grep -qE "$1" || die "'$(cat log)' does not match '$1'"
+    tr -s ' \n' ' ' <log | matches -E "$1" || die "'$(cat log)' does not match '$1'"
     rm -r wrong
 }
 refused 'no component nonsense' 'find_package(Relief REQUIRED COMPONENTS nonsense)'
@@ -89,12 +89,12 @@ printf '%s\n' 'cmake_minimum_required(VERSION 3.25)' 'project(recipe LANGUAGES C
 cmake -G Ninja -S recipe -B recipe/out >log 2>&1 || die "does not configure: $(tail -20 log)"
 cmake --build recipe/out >log 2>&1 || die "does not build: $(tail -20 log)"
 expect 0 "$relief" check recipe/out/baked/box.relief
-cmake --build recipe/out | grep -q 'no work to do' || die "the recipe is baked twice"
+cmake --build recipe/out | matches 'no work to do' || die "the recipe is baked twice"
 sleep 0.01
 echo '# touched' >>recipe/box.mtl
 cmake --build recipe/out >log 2>&1
 grep -q 'Baking the colliders' log || die "a material of a recipe is not watched"
-cmake --build recipe/out | grep -q 'no work to do' || die "the recipe is baked twice"
+cmake --build recipe/out | matches 'no work to do' || die "the recipe is baked twice"
 
 # pkg-config alone.
 export PKG_CONFIG_PATH="$prefix/lib/pkgconfig:$prefix/lib64/pkgconfig:$(echo "$prefix"/lib/*/pkgconfig)"

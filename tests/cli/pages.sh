@@ -10,7 +10,7 @@ for tool in relief relief-sim; do
         "$program" --dump-cli $shell >$tool.$shell
         "$program" --dump-cli $shell | cmp - $tool.$shell || die "$tool.$shell is not the same twice"
     done
-    ! "$program" --help | grep -q dump-cli || die "--dump-cli is in the help"
+    ! "$program" --help | matches dump-cli || die "--dump-cli is in the help"
 done
 expect 1 "$relief" --dump-cli nonsense
 mapfile -t verbs < <(python3 -c 'import json; [print(v["name"]) for v in json.load(open("relief.json"))["verbs"]]')
@@ -47,9 +47,9 @@ for page in *.1; do
     done
     # Pages have no date: the same sources give the same bytes.
     ! mandoc -Tlint -Wwarning "$page" | grep -v 'missing date' || die "mandoc finds fault with $page"
-    man -l "$page" | grep -qE '^EXIT STATUS' || die "$page has no exit status"
+    man -l "$page" | matches -E '^EXIT STATUS' || die "$page has no exit status"
 done
-man -l relief-bake.1 | col -b | grep -q 'relief bake bunny.obj -o bunny.relief$' || die "no example in relief-bake(1)"
+man -l relief-bake.1 | col -b | matches 'relief bake bunny.obj -o bunny.relief$' || die "no example in relief-bake(1)"
 
 # bash.
 bash -n relief.bash && bash -n relief-sim.bash || die "bash does not parse its completion"
@@ -91,7 +91,7 @@ export HOME=$work
 for tool in relief relief-sim; do
     fish --no-execute $tool.fish || die "fish does not parse $tool.fish"
     zsh -n $tool.zsh || die "zsh does not parse $tool.zsh"
-    head -1 $tool.zsh | grep -qx "#compdef $tool" || die "$tool.zsh does not say what it completes"
+    head -1 $tool.zsh | matches -x "#compdef $tool" || die "$tool.zsh does not say what it completes"
 done
 fish_completes() { # FILE EXPECTED LINE
     local got

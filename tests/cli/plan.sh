@@ -33,7 +33,7 @@ expect 0 "$relief" bake "$mesh" -o p.relief --budget 60kB --prefer inside --plan
 grep -q 'prefer = "inside"' p.toml || die "the plan does not name its preference"
 expect 0 "$relief" bake "$mesh" -o p2.relief --plan p.toml -q
 cmp p.relief p2.relief || die "the plan's file bakes other bytes than the plan, with a preference"
-"$relief" info p.relief --json | grep -q -- '--prefer inside' || die "the provenance does not name the preference"
+"$relief" info p.relief --json | matches -- '--prefer inside' || die "the provenance does not name the preference"
 expect 1 "$relief" bake "$mesh" -o p.relief --prefer sideways
 expect 0 "$relief" bake "$mesh" -o q3.relief --plan q.toml --quality fast -q
 ! cmp -s q.relief q3.relief || die "--quality does not go before the plan's"

@@ -108,7 +108,7 @@ cp stdout short.json
 expect 3 "$relief" check plan.toml --json
 cp stdout none.json
 outputs+=(check-file:sound.json check-file:damaged.json check-file:short.json check-file:none.json)
-if "$relief" --dump-cli json | grep -q '"name": "diff"'; then
+if "$relief" --dump-cli json | matches '"name": "diff"'; then
     expect 7 "$relief" diff b.relief p.relief --json
     cp stdout diff.json
     outputs+=(diff:diff.json)

@@ -3,10 +3,10 @@
 
 # The player reads flows as EXR images; what embeds the runtime needs nothing but GL and the formats.
 for library in assimp embree CGAL gmp mpfr tbb; do
-    ! ldd "$relief_sim" | grep -qi "$library" || die "relief-sim needs $library"
+    ! ldd "$relief_sim" | matches -i "$library" || die "relief-sim needs $library"
 done
 for library in assimp embree CGAL gmp mpfr tbb OpenEXR IlmImf png json; do
-    ! ldd "$RELIEF_BIN/relief-embed-sample" | grep -qi "$library" || die "the runtime needs $library"
+    ! ldd "$RELIEF_BIN/relief-embed-sample" | matches -i "$library" || die "the runtime needs $library"
 done
 
 "$relief" bake "$bunny" -o bunny.relief --budget 200kB -q

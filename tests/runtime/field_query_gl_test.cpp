@@ -1,11 +1,12 @@
 // shaders/collider.glsl against formats/collider.cpp, point by point. The maps are random bytes in random
 // frames: the two must agree on whatever lies in a texture, not only on what a baker writes.
 //
-// Tolerance. Both sides do the same float operations in the same order, but a GL may fuse or reorder them
-// and its square roots and divisions may be off by some units in the last place. So distances may differ by
-// kRelative of the distance's own scale (that of the map's volume), and normals by kNormal. A point closer
-// than kBorder texels to a texel's edge may fall to the neighbour: it counts as agreeing if it agrees with
-// the CPU's answer at one of the surrounding points kBorder texels away, and such points are counted.
+// Tolerance. Both sides evaluate the same formulas in floats, but not in the same order (the shader's rows
+// are in texels, and it divides by a normal's length last), and a GL may fuse or reorder operations and be
+// off by some units in the last place in its square roots and divisions. So distances may differ by kRelative
+// of the distance's own scale (that of the map's volume), and normals by kNormal. A point closer than kBorder
+// texels to a texel's edge may fall to the neighbour: it counts as agreeing if it agrees with the CPU's
+// answer at one of the surrounding points kBorder texels away, and such points are counted.
 #include "runtime/field_query.h"
 
 #include <array>
@@ -66,6 +67,10 @@ DepthMap randomMap(MapFormat format, Compare compare, std::uint32_t width, std::
                     }
                 }
                 const std::span<std::byte> bytes = map.texelAt(face, i, j);
+                if (texel.front && format == MapFormat::kFloat32) {
+                    // As far from length 1 as a reader lets pass: it counts as it is.
+                    texel.front->normal *= 1.0F + 1.8e-3F * (unit(random) - 0.5F);
+                }
                 encodeTexel(format, texel, bytes);
                 // What no baker writes: an index that reads as 254.
                 if (texel.front && format != MapFormat::kFloat32 && unit(random) < 0.1F) {
