@@ -1,11 +1,11 @@
-// `relief`: the offline tool. Verbs are in command_<verb>.cpp; exit codes are those of formats/result.h.
+// `relief`: the offline tool. Verbs are in command_<verb>.cpp; exit codes are those of formats/base/result.h.
 #include <malloc.h>
 
 #include <exception>
 #include <new>
 
-#include "bake/command.h"
-#include "formats/ending_signals.h"
+#include "bake/cli/command_line.h"
+#include "formats/base/ending_signals.h"
 
 int main(int argc, char** argv) {
     relief::endCleanlyOnSignals();

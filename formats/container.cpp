@@ -9,10 +9,10 @@
 #include <string>
 
 #include "collider_generated.h"
+#include "formats/base/file_io.h"
+#include "formats/base/hash.h"
 #include "formats/container_header.h"
 #include "formats/container_parts.h"
-#include "formats/file_io.h"
-#include "formats/hash.h"
 #include "formats/validate.h"
 
 namespace relief {

@@ -8,13 +8,11 @@
 #include <span>
 #include <vector>
 
+#include "formats/base/result.h"
 #include "formats/collider.h"
-#include "formats/result.h"
+#include "formats/container_limits.h"
 
 namespace relief {
-
-inline constexpr std::uint16_t kContainerMajor = 1;
-inline constexpr std::uint16_t kContainerMinor = 0;
 
 struct ContainerWriteOptions {
     /// zstd level of the payloads, 1…19; 0 stores them as they are, ready to be mapped and uploaded. A
@@ -26,11 +24,6 @@ struct ContainerWriteOptions {
 /// Errors: kInvalidInput (an invariant of validate.h is broken), kLimit, kUsage (compression level).
 [[nodiscard]] Result<std::vector<std::byte>> writeContainer(const Collider& collider,
                                                             const ContainerWriteOptions& options = {});
-
-struct ContainerLimits {
-    std::uint32_t maps = 1024;
-    std::uint64_t texel_bytes = std::uint64_t{2} << 30;  ///< of all maps together, uncompressed
-};
 
 /// Reads untrusted bytes: whatever they are, the answer is a collider that keeps every invariant of
 /// validate.h, or an error that says what is wrong and where. Nothing is allocated before its size has been
@@ -46,13 +39,6 @@ struct ContainerLimits {
 [[nodiscard]] Result<void> saveCollider(const std::filesystem::path& path, const Collider& collider,
                                         const ContainerWriteOptions& options = {});
 
-/// How each payload lies in a file; for `relief info`.
-struct PayloadInfo {
-    std::uint64_t offset = 0;
-    std::uint64_t stored_size = 0;
-    std::uint64_t raw_size = 0;
-    bool compressed = false;
-};
 struct ContainerInfo {
     std::uint16_t major = 0;
     std::uint16_t minor = 0;

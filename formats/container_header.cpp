@@ -5,7 +5,7 @@
 #include <cstring>
 #include <string>
 
-#include "formats/hash.h"
+#include "formats/base/hash.h"
 
 namespace relief {
 namespace {

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <span>
 
-#include "formats/container.h"
-#include "formats/result.h"
+#include "formats/base/result.h"
+#include "formats/container_limits.h"
 
 namespace relief {
 

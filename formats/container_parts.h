@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "formats/base/result.h"
 #include "formats/collider.h"
-#include "formats/container.h"
-#include "formats/result.h"
+#include "formats/container_limits.h"
 
 namespace relief {
 

@@ -4,14 +4,20 @@
 #include <cstring>
 #include <exception>
 
+#include "formats/base/hash.h"
+#include "formats/container.h"
 #include "formats/container_header.h"
 #include "formats/container_parts.h"
-#include "formats/hash.h"
 #include "formats/inspect_texels.h"
 #include "formats/validate.h"
 
 namespace relief {
 namespace {
+
+bool isLimit(IssueCode code) {
+    return code == IssueCode::kMetadataLimit || code == IssueCode::kMapLimit ||
+           code == IssueCode::kMapSizeLimit || code == IssueCode::kTexelLimit;
+}
 
 constexpr double kOutsideVolumeShare = 0.01;      // of the other maps' surface points
 constexpr std::size_t kComparedPoints = 1 << 16;  // of all maps together
@@ -388,6 +394,27 @@ Result<Inspection> inspectContainer(std::span<const std::byte> bytes, const Cont
     } catch (const std::exception&) {
         return fail(ErrorCode::kLimit, "the collider does not fit into memory");
     }
+}
+
+std::size_t Inspection::count(Severity severity) const {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(issues, [&](const Issue& issue) { return issue.severity() == severity; }));
+}
+
+bool Inspection::damaged() const {
+    return std::ranges::any_of(issues,
+                               [](const Issue& issue) { return issue.severity() != Severity::kWarning; });
+}
+
+ErrorCode Inspection::errorCode() const {
+    bool limits_alone = true;
+    for (const Issue& issue : issues) {
+        if (issue.code == IssueCode::kMajorVersion) {
+            return ErrorCode::kUnsupported;
+        }
+        limits_alone = limits_alone && (issue.severity() == Severity::kWarning || isLimit(issue.code));
+    }
+    return limits_alone ? ErrorCode::kLimit : ErrorCode::kInvalidInput;
 }
 
 }  // namespace relief

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "formats/collider.h"
-#include "formats/inspect.h"
+#include "formats/issue.h"
 
 namespace relief {
 

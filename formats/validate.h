@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "formats/base/result.h"
 #include "formats/collider.h"
-#include "formats/result.h"
 
 namespace relief {
 

@@ -10,14 +10,14 @@
 #include <string_view>
 #include <vector>
 
-#include "formats/ending_signals.h"
-#include "formats/file_io.h"
-#include "runtime/cli_model.h"
-#include "runtime/gpu_tool.h"
-#include "runtime/player.h"
-#include "runtime/report.h"
-#include "runtime/scene_check.h"
-#include "runtime/suggestion.h"
+#include "formats/base/ending_signals.h"
+#include "formats/base/file_io.h"
+#include "formats/base/text.h"
+#include "runtime/player/player.h"
+#include "runtime/player/report.h"
+#include "runtime/player/scene_check.h"
+#include "runtime/tool/cli_model.h"
+#include "runtime/tool/gpu_tool.h"
 
 namespace {
 
@@ -103,14 +103,14 @@ std::string toOptions(const CommandLine& line, relief::PlayerOptions& options) {
         if (!parseNumber(line.steps, steps) || steps > 10'000'000) {
             return "--steps " + quotedWord(line.steps) + " is not a whole number from 0 to 10000000";
         }
-        options.steps = steps;
+        options.overrides.steps = steps;
     }
     if (!line.seed.empty()) {
         std::uint64_t seed = 0;
         if (!parseNumber(line.seed, seed) || seed > 9007199254740992U) {
             return "--seed " + quotedWord(line.seed) + " is not a whole number from 0 to 9007199254740992";
         }
-        options.seed = seed;
+        options.overrides.seed = seed;
     }
     if (!line.size.empty()) {
         std::uint32_t width = 0;
@@ -122,8 +122,8 @@ std::string toOptions(const CommandLine& line, relief::PlayerOptions& options) {
         if (line.frames.empty() && line.video.empty()) {
             return "--size does nothing without --frames or --video; add --frames DIR";
         }
-        options.width = width;
-        options.height = height;
+        options.overrides.width = width;
+        options.overrides.height = height;
     }
     if (line.api == "gles") {
         options.api = relief::GlApi::kGles30;
@@ -167,7 +167,7 @@ std::string unknownOption(const CLI::App& app) {
     for (const std::string& word : app.remaining()) {
         if (word.size() > 1 && word.front() == '-') {
             const std::string name = word.substr(0, word.find('='));
-            const std::string hint = relief::suggestion(name, kOptions);
+            const std::string hint = relief::didYouMean(name, kOptions);
             return "unknown option " + quotedWord(name) + (hint.empty() ? "; see relief-sim --help" : hint);
         }
     }

@@ -6,7 +6,7 @@
 #
 #   scripts/accuracy.sh                  the table
 #   scripts/accuracy.sh --markdown       the same as Markdown
-#   scripts/accuracy.sh --page           writes it to bake/accuracy.md, whose figures the README cites
+#   scripts/accuracy.sh --page           writes it to bake/measure/accuracy.md, whose figures the README cites
 #   scripts/accuracy.sh --cross-check    compares the volume with OpenVDB's mesh2ls, on the bunny
 #
 # The cross-check samples the level set that Debian's vdb_tool (libopenvdb-tools) makes of the bunny at 128
@@ -17,7 +17,7 @@
 #     its lookup at 4 MB           mean 0.017, 99 % below 0.14, largest 0.9; 568 other signs
 #
 # Other signs are found within 0.29 voxels of the surface alone. The differences are the level set's (why was not
-# looked into): CGAL gives the bunny our distances to nine digits, and our signs (tests/bake/truth_oracle_test.cpp).
+# looked into): CGAL gives the bunny our distances to nine digits, and our signs (tests/bake/oracle/truth_oracle_test.cpp).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -88,7 +88,7 @@ if [ "${1:-}" = --page ]; then
         echo
         "$bin/relief-accuracy" "${meshes[@]}" --markdown "$@"
     } >"$folder/accuracy.md"
-    mv "$folder/accuracy.md" bake/accuracy.md
+    mv "$folder/accuracy.md" bake/measure/accuracy.md
     exit 0
 fi
 "$bin/relief-accuracy" "${meshes[@]}" "$@"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Kills, fails and races relief's writing (tests/cli/atomic_outputs.sh), for as many rounds as RELIEF_ATOMIC_ROUNDS says
-# (20), and prints what was counted; with --page into bake/trust.md too.
+# (20), and prints what was counted; with --page into bake/measure/trust.md too.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -12,10 +12,10 @@ bash tests/cli/atomic_outputs.sh
 if [ "${1:-}" = --page ]; then
     python3 - "$counts" <<'P'
 import sys
-page = open('bake/trust.md').read()
+page = open('bake/measure/trust.md').read()
 begin, end = '<!-- all or nothing -->\n', '<!-- /all or nothing -->'
 head, rest = page.split(begin)
 body = 'Written by `scripts/all_or_nothing.sh --page`.\n\n' + open(sys.argv[1]).read()
-open('bake/trust.md', 'w').write(head + begin + body + end + rest.split(end, 1)[1])
+open('bake/measure/trust.md', 'w').write(head + begin + body + end + rest.split(end, 1)[1])
 P
 fi

@@ -5,7 +5,7 @@
 #   (nothing)   204 bakes: ten meshes, the paper's maps and planned ones; threads, locale, time zone, folder, umask,
 #               GCC -O2, GCC -O0 and Clang, glibc without FMA and AVX2, and two other processors by QEMU
 #   --quick     two meshes in six cells, with the executables in RELIEF_BIN alone
-#   --page      the full run, and its table into bake/trust.md
+#   --page      the full run, and its table into bake/measure/trust.md
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -160,9 +160,9 @@ print('\n'.join(lines + ['', summary]))
 if sys.argv[2] == '--page':
     body = '\n'.join(['Written by `scripts/determinism.sh --page`; “planned” is `--budget 100kB`, “paper” is `--paper --resolution 128`.',
                       '', summary, '', 'Surroundings: ' + '; '.join(cells) + '.', ''] + lines)
-    page = open('bake/trust.md').read()
+    page = open('bake/measure/trust.md').read()
     begin, end = '<!-- determinism -->\n', '<!-- /determinism -->'
     head, rest = page.split(begin)
-    open('bake/trust.md', 'w').write(head + begin + body + '\n' + end + rest.split(end, 1)[1])
+    open('bake/measure/trust.md', 'w').write(head + begin + body + '\n' + end + rest.split(end, 1)[1])
 P
 [ "$failed" = 0 ] || exit 7

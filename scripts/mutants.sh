@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Gives relief broken meshes (tests/cli/mutants.sh), and every file of assimp-testmodels, and prints what came of them:
-# scripts/mutants.sh [COUNT] [--page], 2000 by default; with --page into bake/trust.md too.
+# scripts/mutants.sh [COUNT] [--page], 2000 by default; with --page into bake/measure/trust.md too.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -26,11 +26,11 @@ bash tests/cli/mutants.sh || status=$?
 if [ -n "$page" ] && [ -s "$counts" ]; then
     python3 - "$counts" "$count" <<'P'
 import sys
-page = open('bake/trust.md').read()
+page = open('bake/measure/trust.md').read()
 begin, end = '<!-- mutants -->\n', '<!-- /mutants -->'
 head, rest = page.split(begin)
 body = f'Written by `scripts/mutants.sh {sys.argv[2]} --page`.\n\n' + open(sys.argv[1]).read()
-open('bake/trust.md', 'w').write(head + begin + body + end + rest.split(end, 1)[1])
+open('bake/measure/trust.md', 'w').write(head + begin + body + end + rest.split(end, 1)[1])
 P
 fi
 exit $status

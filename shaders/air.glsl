@@ -1,5 +1,5 @@
-// What pushes a particle besides collision and gravity. The C++ twin is runtime/air.cpp, which is the reference
-// of the tests; runtime/air_block.h says what the defines are. Where a scene has none of it, nothing of it is
+// What pushes a particle besides collision and gravity. The C++ twin is runtime/air/air.cpp, which is the reference
+// of the tests; runtime/air/air_block.h says what the defines are. Where a scene has none of it, nothing of it is
 // compiled and the functions return 0.
 //
 //     airVelocity        wind + flow + curl noise: acts through drag     object units a second
@@ -51,7 +51,7 @@ vec3 reliefFlow(vec3 p) {
 }
 #endif
 
-// The air at p. t: seconds, as airTime() of runtime/air.h gives them.
+// The air at p. t: seconds, as airTime() of runtime/air/air.h gives them.
 vec3 airVelocity(vec3 p, float t) {
     vec3 velocity = vec3(0.0);
 #ifdef RELIEF_HAS_AIR

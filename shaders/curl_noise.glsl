@@ -1,4 +1,4 @@
-// Turbulence without divergence: the C++ twin is runtime/curl_noise.cpp, which says how it works. Casts
+// Turbulence without divergence: the C++ twin is runtime/air/curl_noise.cpp, which says how it works. Casts
 // between int and uint keep the bits; uint arithmetic wraps at 2^32.
 
 // Beyond, floats no longer resolve a cell.

@@ -1,4 +1,4 @@
-// Deforms the vertices of a mesh at rest, for transform feedback; nothing is rasterised. runtime/deformation.cpp is
+// Deforms the vertices of a mesh at rest, for transform feedback; nothing is rasterised. runtime/collider/deformation.cpp is
 // the same in C++, its header in words. With RELIEF_DEFORM_CUSTOM the caller's reliefDeform() follows this file.
 layout(location = 0) in vec3 a_position;  // object space, at rest
 layout(location = 1) in vec3 a_normal;    // of length 1, or zero

@@ -51,7 +51,7 @@ const float kDepthMax = 1.7320509;
 const float kDepthMax = 1.0;
 #endif
 const float kCodes = 65534.0;
-const float kGrazing = 1e-3;           // as in bake/raycast.cpp
+const float kGrazing = 1e-3;           // as in bake/texels/raycast.cpp
 const float kStandingCosine = 1.0 / 32.0;  // formats/depth_map.h
 const float kStandingMargin = 1e-4;
 
@@ -108,7 +108,7 @@ struct Stored {
 };
 
 #ifdef RELIEF_PLANE
-// The plane through the surface point on the centre's ray as decode=plane stores it (bake/plane_fit.cpp with
+// The plane through the surface point on the centre's ray as decode=plane stores it (bake/texels/plane_fit.cpp with
 // one ray a texel): pushed towards the viewer to the next code; standing where it is steep; facing the viewer
 // where neither can be stored.
 Stored storedPlane(uint normal, vec3 ray, float depth) {

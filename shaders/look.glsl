@@ -1,4 +1,4 @@
-// What a particle looks like at its age: the key-frames of its type, from the texture that runtime/particle_look.h
+// What a particle looks like at its age: the key-frames of its type, from the texture that runtime/picture/particle_look.h
 // describes.
 uniform highp sampler2D u_looks;  // a row for each type
 

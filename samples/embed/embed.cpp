@@ -17,9 +17,9 @@
 
 // [embed]
 #include "formats/container.h"
-#include "runtime/collider_renderer.h"
-#include "runtime/particle_renderer.h"
-#include "runtime/particle_system.h"
+#include "runtime/particles/particle_system.h"
+#include "runtime/picture/collider_renderer.h"
+#include "runtime/picture/particle_renderer.h"
 
 /// Relief reports errors as values; this program prefers exceptions.
 template <class T>

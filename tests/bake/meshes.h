@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "bake/bake.h"
-#include "bake/mesh.h"
+#include "bake/mesh/mesh.h"
+#include "bake/pipeline/bake.h"
 
 namespace relief::test {
 

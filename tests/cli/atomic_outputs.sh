@@ -1,6 +1,6 @@
 # A file that relief writes is the older one or the new one, whole: after SIGKILL at any system call of the writing,
 # after any error there, on a full disk, with many writers at once, and after signals at any time.
-#   RELIEF_ATOMIC_PAGE=FILE  also writes what was counted, for bake/trust.md
+#   RELIEF_ATOMIC_PAGE=FILE  also writes what was counted, for bake/measure/trust.md
 #   RELIEF_ATOMIC_ROUNDS=N   rounds of writers and of signals (1)
 . "$(dirname "$0")/lib.sh"
 rounds=${RELIEF_ATOMIC_ROUNDS:-1}

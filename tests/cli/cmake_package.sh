@@ -9,7 +9,7 @@ export CMAKE_PREFIX_PATH=$prefix
 for file in bin/relief bin/relief-sim share/man/man1/relief.1 share/man/man1/relief-bake.1 share/man/man1/relief-sim.1 \
     share/bash-completion/completions/relief share/zsh/site-functions/_relief-sim \
     share/fish/vendor_completions.d/relief.fish share/doc/relief/README.md share/doc/relief/formats/README.md \
-    share/relief/samples/embed/embed.cpp share/relief/samples/rain.toml share/relief/schemas/bake.schema.json include/relief/runtime/particle_system.h; do
+    share/relief/samples/embed/embed.cpp share/relief/samples/rain.toml share/relief/schemas/bake.schema.json include/relief/runtime/particles/particle_system.h; do
     [ -s "$prefix/$file" ] || die "$file is not installed"
 done
 ! grep -rIlF "$RELIEF_SOURCE" "$prefix" --include='*.cmake' --include='*.pc' --include='*.h' --include='*.1' ||
@@ -108,7 +108,7 @@ grep -q 'GL state as it was' stdout || die "samples/embed says: $(cat stdout)"
 # Without the baker. What both builds compile alike stands in for a second compile (scripts/soak.sh package does it).
 cmake -G Ninja -S "$RELIEF_SOURCE" -B runtime_only -DRELIEF_BUILD_BAKE=OFF -DRELIEF_BUILD_TESTS=OFF \
     -DRELIEF_BUILD_BENCHMARKS=OFF >log 2>&1 || die "does not configure without the baker: $(tail -20 log)"
-for file in formats/librelief_formats.a shaders/librelief_shaders.a runtime/librelief_runtime.a bin/relief-sim \
+for file in formats/librelief_formats.a runtime/librelief_runtime.a bin/relief-sim \
     install/pages/relief-sim; do
     mkdir -p "runtime_only/$(dirname $file)"
     cp -r "$build/$file" runtime_only/$file

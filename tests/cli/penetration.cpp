@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "bake/mesh_import.h"
+#include "bake/import/mesh_import.h"
 
 namespace {
 

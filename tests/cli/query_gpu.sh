@@ -2,7 +2,7 @@
 # own shader against the C++ that defines it.
 #
 # Tolerance: distance within 1e-5 of the box's longest side and normal within 1e-5 on all points but one in 10,000;
-# those may lie on a texel's edge and have fallen to the neighbour (tests/runtime/field_query_gl_test.cpp looks
+# those may lie on a texel's edge and have fallen to the neighbour (tests/runtime/collider/field_query_gl_test.cpp looks
 # at such points one by one). On llvmpipe no point differs.
 . "$(dirname "$0")/lib.sh"
 

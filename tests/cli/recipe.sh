@@ -263,7 +263,7 @@ P
 hashes out1 | cmp - first || die "not everything was baked behind a closed pipe"
 
 # The example of the page, and the sample, are recipes.
-python3 - "$RELIEF_SOURCE/bake/recipes.md" >example.toml <<'P'
+python3 - "$RELIEF_SOURCE/bake/recipe/README.md" >example.toml <<'P'
 import re, sys
 print(re.search(r'```toml\n(.*?)```', open(sys.argv[1]).read(), re.S)[1])
 P

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "collider_generated.h"
+#include "formats/base/hash.h"
 #include "formats/container.h"
 #include "formats/container_header.h"
-#include "formats/hash.h"
 #include "formats/validate.h"
 #include "tests/formats/sample_colliders.h"
 

@@ -12,8 +12,8 @@
 #include <limits>
 #include <string>
 
+#include "formats/base/file_io.h"
 #include "formats/container_header.h"
-#include "formats/file_io.h"
 #include "formats/validate.h"
 #include "tests/formats/analytic_shapes.h"
 #include "tests/formats/sample_colliders.h"

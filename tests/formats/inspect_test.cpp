@@ -10,9 +10,10 @@
 #include <regex>
 #include <set>
 
+#include "formats/base/file_io.h"
+#include "formats/base/hash.h"
+#include "formats/container.h"
 #include "formats/container_header.h"
-#include "formats/file_io.h"
-#include "formats/hash.h"
 #include "tests/formats/analytic_shapes.h"
 #include "tests/formats/sample_colliders.h"
 

@@ -7,8 +7,8 @@
 #include <sstream>
 #include <string>
 
+#include "formats/base/file_io.h"
 #include "formats/container.h"
-#include "formats/file_io.h"
 #include "formats/validate.h"
 #include "tests/formats/sample_colliders.h"
 

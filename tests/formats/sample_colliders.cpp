@@ -2,8 +2,8 @@
 
 #include <cstring>
 
+#include "formats/base/hash.h"
 #include "formats/container_header.h"
-#include "formats/hash.h"
 #include "tests/formats/analytic_shapes.h"
 
 namespace relief::test {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "bake/import_message.h"
-#include "bake/import_source.h"
+#include "bake/import/import_message.h"
+#include "bake/import/import_source.h"
 #include "tests/fuzz/target.h"
 
 namespace {

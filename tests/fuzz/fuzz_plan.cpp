@@ -1,7 +1,7 @@
 // Plan files: a plan that its text gives again, or one line that names file, line and column.
 #include <string_view>
 
-#include "bake/plan_file.h"
+#include "bake/plan/plan_file.h"
 #include "tests/fuzz/target.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

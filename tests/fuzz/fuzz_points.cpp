@@ -2,8 +2,8 @@
 #include <cmath>
 #include <string_view>
 
-#include "bake/points_csv.h"
-#include "runtime/point_list.h"
+#include "bake/report/points_csv.h"
+#include "runtime/particles/point_list.h"
 #include "tests/fuzz/target.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,6 +1,6 @@
 // Recipes: assets whose options an ordinary bake could be given, or one line that names file, line and
 // column.
-#include "bake/recipe.h"
+#include "bake/recipe/recipe.h"
 
 #include <cctype>
 #include <string_view>

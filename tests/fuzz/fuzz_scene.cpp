@@ -1,7 +1,8 @@
 // Scene files: a scene or one line that names file, line and column.
 #include <string_view>
 
-#include "runtime/scene.h"
+#include "runtime/scene/scene.h"
+#include "runtime/scene/scene_parser.h"
 #include "tests/fuzz/target.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

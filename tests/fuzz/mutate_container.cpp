@@ -4,8 +4,8 @@
 #include <span>
 
 #include "collider_generated.h"
+#include "formats/base/hash.h"
 #include "formats/container_header.h"
-#include "formats/hash.h"
 
 namespace {
 

@@ -1,0 +1,91 @@
+#include "bake/cli/backend.h"
+
+#include <algorithm>
+#include <array>
+
+#include "formats/base/file_io.h"
+#include "formats/base/text.h"
+
+namespace relief {
+namespace {
+
+constexpr std::array<std::string_view, 3> kBackends = {"raycast", "raster", "auto"};
+
+/// What keeps the GPU from it, and the cure; empty if nothing does.
+std::string obstacle(const BackendRequest& request) {
+    if (request.planned) {
+        return "planning the maps casts rays; name them by --map, --paper or --plan";
+    }
+    if (request.quality_given && request.quality != Quality::kFast) {
+        return std::string("--quality ") + qualityName(request.quality) +
+               " fits planes to more rays than one a texel; take --quality fast";
+    }
+    if (request.prefer != Prefer::kNeither) {
+        return std::string("--prefer ") + preferName(request.prefer) +
+               " chooses among planes that rays were fitted to; leave --prefer out";
+    }
+    return {};
+}
+
+}  // namespace
+
+void addBackendOptions(CLI::App& verb, BackendOptions& options) {
+    verb.add_option(
+            "--backend", options.backend,
+            "Who bakes maps that are named: raycast (on the CPU, default), raster (on the GPU, texels'\n"
+            "centres alone: implies --quality fast), or auto: raster where the options allow it and\n"
+            "the OpenGL is a GPU's. Only raycast gives the same bytes on every machine")
+        ->option_text("WORD");
+}
+
+Result<Backend> chooseBackend(const BackendOptions& options, const GlOptions& gl,
+                              const BackendRequest& request) {
+    const auto word = std::find(kBackends.begin(), kBackends.end(), options.backend);
+    if (word == kBackends.end()) {
+        return fail(ErrorCode::kUsage, "--backend is '" + cleanUtf8(options.backend) +
+                                           "' but must be one of " + listed(kBackends) +
+                                           didYouMean(options.backend, kBackends));
+    }
+    Backend backend;
+    if (*word == "raycast") {
+        if (const Result<void> idle = refuseGlOptions(gl, "--backend raster or auto"); !idle) {
+            return forward(idle);
+        }
+        return backend;
+    }
+    const bool automatic = *word == "auto";
+    const std::string problem = obstacle(request);
+    if (!problem.empty()) {
+        if (!automatic) {
+            return fail(ErrorCode::kUsage, "--backend raster: " + problem + ", or leave --backend out");
+        }
+        backend.reason = problem.substr(0, problem.find(';'));
+        return backend;
+    }
+    Result<WatchedContext> opened = openGl(gl);
+    if (!opened) {
+        // A device that does not exist is a mistake, whoever bakes.
+        if (opened.error().code == ErrorCode::kUsage) {
+            return forward(opened);
+        }
+        if (!automatic) {
+            return fail(opened.error().code,
+                        "--backend raster: " + opened.error().message + "; or bake with --backend raycast");
+        }
+        backend.reason = opened.error().message;
+        return backend;
+    }
+    const GlContext& context = *opened->context;
+    if (automatic && context.software()) {
+        backend.reason = "the OpenGL runs on the CPU: " + context.description();
+        return backend;
+    }
+    backend.raster = true;
+    backend.device = context.description();
+    backend.reason = automatic ? "planes of quality fast; the OpenGL is a GPU's: " + backend.device : "";
+    backend.gl = std::move(*opened);
+    backend.gl.watchdog->feed("drawing the maps");
+    return backend;
+}
+
+}  // namespace relief

@@ -1,0 +1,41 @@
+#include "bake/cli/check_file.h"
+
+#include <filesystem>
+
+#include "bake/cli/command.h"
+#include "bake/report/inspect_report.h"
+#include "bake/report/report.h"
+#include "formats/base/file_io.h"
+#include "formats/base/text.h"
+#include "formats/container_parts.h"
+
+namespace relief {
+
+Result<void> checkFile(const std::string& file, bool json) {
+    const Result<std::vector<std::byte>> bytes = readFile(file, containerSizeMax({}));
+    if (!bytes) {
+        return forward(bytes);
+    }
+    const std::string quoted = file == "-" ? "standard input" : quotedPath(file);
+    const Result<Inspection> inspection = inspectContainer(*bytes);
+    if (!inspection) {
+        return fail(inspection.error().code, quoted + ": " + inspection.error().message);
+    }
+    const std::string name =
+        file == "-" ? "standard input" : cleanUtf8(std::filesystem::path(file).filename().string());
+    const Result<void> printed =
+        printOut(json ? dump(jsonInspection(*inspection, name)) : inspectionText(*inspection, name));
+    if (!printed || !inspection->damaged()) {
+        return printed;
+    }
+    for (const Issue& issue : inspection->issues) {
+        if (issue.severity() != Severity::kWarning) {
+            const std::string map = issue.map >= 0 ? "map " + std::to_string(issue.map) + ": " : "";
+            return fail(inspection->errorCode(), quoted + " cannot be used: " + issue.id() + ", " + map +
+                                                     issue.message + "; copy it again, or bake it again");
+        }
+    }
+    return {};
+}
+
+}  // namespace relief

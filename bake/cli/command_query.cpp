@@ -1,0 +1,131 @@
+// relief query: the field at points, by the CPU or by the simulation's own shader.
+#include <spdlog/spdlog.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "bake/cli/command.h"
+#include "bake/cli/gl_options.h"
+#include "bake/cli/preflight.h"
+#include "bake/report/points_csv.h"
+#include "formats/base/file_io.h"
+#include "formats/container.h"
+#include "runtime/collider/field_query.h"
+
+namespace relief {
+namespace {
+
+constexpr std::size_t kPointsAtOnce = std::size_t{1} << 20;  // between two feedings of the watchdog
+
+struct QueryCommand {
+    CommonOptions common;
+    std::string file;
+    std::string points;
+    std::string output;
+    bool gpu = false;
+    GlOptions gl;
+};
+
+std::vector<FieldSample> evaluateOnCpu(const Collider& collider, std::span<const glm::vec3> points) {
+    std::vector<FieldSample> samples(points.size());
+    tbb::parallel_for(std::size_t{0}, points.size(),
+                      [&](std::size_t i) { samples[i] = evaluate(collider, points[i]); });
+    return samples;
+}
+
+Result<std::vector<FieldSample>> evaluateOnGpu(const Collider& collider, std::span<const glm::vec3> points,
+                                               const GlOptions& options) {
+    const Result<WatchedContext> gl = openGl(options);
+    if (!gl) {
+        return forward(gl);
+    }
+    spdlog::debug("{}", gl->context->description());
+    gl->watchdog->feed("uploading the collider");
+    const Result<FieldQuery> query = FieldQuery::create(collider);
+    if (!query) {
+        return forward(query);
+    }
+    std::vector<FieldSample> samples;
+    samples.reserve(points.size());
+    for (std::size_t first = 0; first < points.size(); first += kPointsAtOnce) {
+        const std::span<const glm::vec3> some =
+            points.subspan(first, std::min(kPointsAtOnce, points.size() - first));
+        gl->watchdog->feed("points " + std::to_string(first + 1) + " to " +
+                           std::to_string(first + some.size()));
+        const Result<std::vector<FieldSample>> evaluated = query->evaluate(some);
+        if (!evaluated) {
+            return forward(evaluated);
+        }
+        samples.insert(samples.end(), evaluated->begin(), evaluated->end());
+    }
+    gl->watchdog->rest();
+    return samples;
+}
+
+Result<void> runQuery(const QueryCommand& command) {
+    startLogging(command.common);
+    if (!command.gpu) {
+        if (const Result<void> idle = refuseGlOptions(command.gl, "--gpu"); !idle) {
+            return idle;
+        }
+    }
+    if (command.file == "-" && command.points == "-") {
+        return fail(ErrorCode::kUsage,
+                    "FILE and --points cannot both be standard input; give one of them a file");
+    }
+    for (const Result<void>& ready :
+         {preflightFile(command.output), preflightDistinct(command.file, command.output),
+          preflightDistinct(command.points, command.output)}) {
+        if (!ready) {
+            return ready;
+        }
+    }
+    const Result<Collider> collider = loadCollider(command.file);
+    if (!collider) {
+        return forward(collider);
+    }
+    const Result<std::vector<std::byte>> text = readFile(command.points);
+    if (!text) {
+        return forward(text);
+    }
+    const Result<std::vector<glm::vec3>> points =
+        parsePoints({reinterpret_cast<const char*>(text->data()), text->size()},
+                    command.points == "-" ? "standard input" : command.points);
+    if (!points) {
+        return forward(points);
+    }
+    const Result<std::vector<FieldSample>> samples =
+        command.gpu ? evaluateOnGpu(*collider, *points, command.gl) : evaluateOnCpu(*collider, *points);
+    if (!samples) {
+        return forward(samples);
+    }
+    const std::string csv = formatSamples(*points, *samples);
+    return writeFile(command.output, std::as_bytes(std::span(csv)));
+}
+
+}  // namespace
+
+void addQuery(CLI::App& app, Action& action) {
+    auto command = std::make_shared<QueryCommand>();
+    CLI::App& verb =
+        addVerb(app, command->common, "query",
+                "Evaluates the field at points\n\nA line of the output is x,y,z,f,nx,ny,nz,map: signed "
+                "distance, normal, deciding map. f is "
+                "negative inside,\ninf where a point is outside and no more is known, and empty where no map "
+                "votes",
+                "relief query bunny.relief --points in.csv -o out.csv\n"
+                "echo 0,0.1,0 | relief query bunny.relief --points - -o - --gpu");
+    verb.add_option("FILE", command->file, "The collider; - for standard input")->type_name("")->required();
+    verb.add_option("--points", command->points, "Lines x,y,z in object space; - for standard input")
+        ->option_text("IN.csv")
+        ->required();
+    verb.add_option("-o,--output", command->output, "The samples; - for standard output")
+        ->option_text("OUT.csv")
+        ->required();
+    verb.add_flag("--gpu", command->gpu,
+                  "Evaluate with the simulation's shader (OpenGL 3.3; llvmpipe will do)");
+    addGlOptions(verb, command->gl);
+    verb.callback([command, &action] { action = [command] { return runQuery(*command); }; });
+}
+
+}  // namespace relief

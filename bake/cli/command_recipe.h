@@ -1,0 +1,45 @@
+// relief bake --recipe: the options, and what they do.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "bake/cli/command.h"
+
+namespace relief {
+
+struct RecipeOptionsOfBake {
+    std::string recipe;
+    std::string events;
+    std::string shard;
+    std::string stamp;
+    std::string timeout;
+    bool fail_fast = false;
+    bool keep_going = false;
+    bool dry_run = false;
+};
+
+/// What --recipe shares with a bake of one mesh, and who checks the options of an asset.
+struct RecipeCall {
+    const CLI::App& verb;  ///< parsed
+    const CommonOptions& common;
+    const std::string& output;   ///< a folder; empty: the recipe's
+    const std::string& threads;  ///< -j
+    const std::string& depfile;
+    bool json;
+    /// Whether `relief bake MESH -o OUT` would take these arguments.
+    std::function<Result<void>(const std::vector<std::string>&)> check;
+};
+
+void addRecipeOptions(CLI::App& verb, RecipeOptionsOfBake& options);
+
+/// Errors: kUsage for an option of `relief bake` that is not given where MESH and -o are needed.
+[[nodiscard]] Result<void> checkOneBake(const CLI::App& verb);
+
+/// Bakes what the recipe asks for. Ends the program by the signal that interrupted it.
+/// Errors: those of the first asset in the recipe's order that failed; kUsage, kIo.
+[[nodiscard]] Result<void> runRecipeCommand(const RecipeOptionsOfBake& options, const RecipeCall& call);
+
+}  // namespace relief

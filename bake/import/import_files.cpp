@@ -1,0 +1,134 @@
+#include "bake/import/import_files.h"
+
+#include <fcntl.h>
+#include <linux/openat2.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "formats/base/hash.h"
+#include "formats/base/text.h"
+
+namespace relief {
+namespace {
+
+constexpr std::size_t kRefusedMax = 4;  // as many as a message can name
+constexpr std::size_t kRefusedPathMax = 200;
+
+/// As the folder's file systems spell it: "a\b" and "./a/b" are "a/b".
+std::string relativePath(std::string_view path) {
+    std::string text(path);
+    std::replace(text.begin(), text.end(), '\\', '/');
+    while (text.starts_with("./")) {
+        text.erase(0, 2);
+    }
+    return text;
+}
+
+bool hasParent(std::string_view path) {
+    const std::vector<std::string_view> parts = split(path, '/');
+    return std::find(parts.begin(), parts.end(), "..") != parts.end();
+}
+
+}  // namespace
+
+bool ImportFiles::isMesh(std::string_view path) const {
+    return path == name_ || relativePath(path) == name_;
+}
+
+int ImportFiles::openBeneath(const std::string& path, std::string& why) const {
+    if (path.empty() || path.starts_with('/') || hasParent(path) || path.find('\0') != std::string::npos) {
+        why = "not below the mesh's folder";
+        return -1;
+    }
+    if (folder_ < 0) {
+        why = "the mesh's folder is unknown";
+        return -1;
+    }
+    open_how how{};
+    // Not blocking: a pipe without writer must not hang the importer.
+    how.flags = O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK;
+    how.resolve = RESOLVE_BENEATH | RESOLVE_NO_MAGICLINKS;
+    const long opened = ::syscall(SYS_openat2, folder_, path.c_str(), &how, sizeof(how));
+    if (opened < 0) {
+        why = errno == EXDEV ? "not below the mesh's folder" : std::strerror(errno);
+        return -1;
+    }
+    const int file = static_cast<int>(opened);
+    struct stat status {};
+    if (::fstat(file, &status) != 0 || !S_ISREG(status.st_mode)) {
+        ::close(file);
+        why = "not a regular file";
+        return -1;
+    }
+    return file;
+}
+
+void ImportFiles::refuse(std::string_view path, const std::string& why) {
+    const std::string line = "'" + cleanUtf8(path, kRefusedPathMax) + "' (" + why + ")";
+    if (refused_.size() < kRefusedMax &&
+        std::find(refused_.begin(), refused_.end(), line) == refused_.end()) {
+        refused_.push_back(line);
+    }
+}
+
+bool ImportFiles::exists(std::string_view path) {
+    if (isMesh(path)) {
+        return true;
+    }
+    std::string why;
+    const int file = openBeneath(relativePath(path), why);
+    if (file >= 0) {
+        ::close(file);
+    }
+    return file >= 0;
+}
+
+std::optional<std::vector<std::byte>> ImportFiles::open(std::string_view path) {
+    const std::string name = relativePath(path);
+    std::string why;
+    const int file = openBeneath(name, why);
+    if (file < 0) {
+        refuse(path, why);
+        return std::nullopt;
+    }
+    struct stat status {};
+    if (::fstat(file, &status) != 0 || static_cast<std::uint64_t>(status.st_size) > left_) {
+        ::close(file);
+        refuse(path, "all files together exceed " + std::to_string(kImportBytesMax) + " bytes");
+        return std::nullopt;
+    }
+    std::vector<std::byte> bytes(static_cast<std::size_t>(status.st_size));
+    std::size_t size = 0;
+    while (size < bytes.size()) {
+        const ssize_t got = ::read(file, bytes.data() + size, bytes.size() - size);
+        if (got < 0 && errno == EINTR) {
+            continue;
+        }
+        if (got <= 0) {
+            break;
+        }
+        size += static_cast<std::size_t>(got);
+    }
+    ::close(file);
+    bytes.resize(size);
+    left_ -= size;
+    read_.push_back({name, xxh3_128Hex(bytes)});
+    return bytes;
+}
+
+std::vector<ImportedFile> ImportFiles::read() const {
+    std::vector<ImportedFile> files = read_;
+    std::stable_sort(files.begin(), files.end(),
+                     [](const ImportedFile& a, const ImportedFile& b) { return a.path < b.path; });
+    files.erase(std::unique(files.begin(), files.end(),
+                            [](const ImportedFile& a, const ImportedFile& b) { return a.path == b.path; }),
+                files.end());
+    return files;
+}
+
+}  // namespace relief

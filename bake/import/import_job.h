@@ -1,0 +1,43 @@
+// What an importer is asked for, and the importer itself.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "bake/import/import_units.h"
+#include "bake/mesh/mesh.h"
+#include "formats/base/result.h"
+
+namespace relief {
+
+struct ImportOptions {
+    /// Of the source's lengths: a word of lengthUnits(); the mesh is then in metres. "": what the file says,
+    /// and where it says nothing, lengths stay as they are and the mesh's unit is "".
+    std::string unit;
+    /// The source's axis that points upwards; the mesh is turned so that this becomes +Y. None: what the file
+    /// says, and where it says nothing, axes stay as they are.
+    std::optional<UpAxis> up;
+};
+
+struct ImportLimits {
+    std::uint64_t memory = 4'000'000'000;  ///< bytes that the importer may take beside its code and the file
+    std::uint32_t seconds = 60;            ///< of processor time, and of wall time; at least 1
+};
+
+/// What an importer is given.
+struct ImportJob {
+    std::string shown;      ///< the path for messages: quotedPath
+    std::string file_name;  ///< of the mesh, in its folder
+    std::string extension;  ///< lower case, without dot
+    std::span<const std::byte> bytes;
+    int folder = -1;  ///< descriptor; or -1
+    ImportOptions options;
+};
+
+/// Reads the mesh. \return what ImportSource::finish wants. Errors: as importMesh. In Relief::import.
+[[nodiscard]] Result<TriangleMesh> importRaw(const ImportJob& job);
+
+}  // namespace relief

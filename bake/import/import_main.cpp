@@ -1,0 +1,117 @@
+// `relief-import`: reads one mesh file for its parent (import_protocol.h), with limits and without rights, so
+// that a hostile file can end nothing but this process. Started by loadMesh; of no use by itself.
+#include <fcntl.h>
+#include <malloc.h>
+#include <poll.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <new>
+
+#include "bake/import/import_job.h"
+#include "bake/import/import_message.h"
+#include "bake/import/import_protocol.h"
+#include "bake/import/import_sandbox.h"
+#include "bake/import/import_source.h"
+#include "formats/base/file_io.h"
+#include "formats/base/text.h"
+
+namespace relief {
+namespace {
+
+/// The stack that importRaw reserves, and little things.
+constexpr std::uint64_t kMemoryBeside = (std::uint64_t{1} << 30) + (std::uint64_t{64} << 20);
+
+std::uint64_t fileSize(int file) {
+    struct stat status {};
+    return ::fstat(file, &status) == 0 ? static_cast<std::uint64_t>(status.st_size) : 0;
+}
+
+bool isFolder(int file) {
+    struct stat status {};
+    return ::fstat(file, &status) == 0 && S_ISDIR(status.st_mode);
+}
+
+/// The parent went before its death could be noticed.
+bool orphaned() {
+    pollfd alive{kImportAliveFd, 0, 0};
+    return ::poll(&alive, 1, 0) > 0 && (alive.revents & POLLERR) != 0;
+}
+
+bool sendMessage(const Result<TriangleMesh>& raw) {
+    const ImportMessage message = makeImportMessage(raw);
+    if (message.size > fileSize(kImportResultFd)) {
+        return false;
+    }
+    // Not by write: no file may be written any more. The pages are the memfd's.
+    void* const pages =
+        ::mmap(nullptr, message.size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_POPULATE, kImportResultFd, 0);
+    if (pages == MAP_FAILED) {
+        return false;
+    }
+    writeImportMessage(message, raw, {static_cast<std::byte*>(pages), message.size});
+    return ::munmap(pages, message.size) == 0 &&
+           ::ftruncate(kImportResultFd, static_cast<off_t>(message.size)) == 0 &&
+           ::fcntl(kImportResultFd, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL) ==
+               0;
+}
+
+int work(char** arguments) {
+    const std::filesystem::path path = arguments[1];
+    ImportOptions options;
+    if (std::string_view(arguments[2]) != "-") {
+        options.unit = arguments[2];
+    }
+    if (std::string_view(arguments[3]) != "-") {
+        const Result<UpAxis> up = parseUpAxis(arguments[3]);
+        if (!up) {
+            return kImportExitNoSandbox;
+        }
+        options.up = *up;
+    }
+    const std::uint64_t memory = parseUnsigned(arguments[4]).value_or(0);
+    const std::uint64_t seconds = parseUnsigned(arguments[5]).value_or(0);
+    if (memory == 0 || seconds == 0 || seconds > UINT32_MAX) {
+        return kImportExitNoSandbox;
+    }
+    const std::uint64_t size = fileSize(kImportMeshFd);
+    void* const pages = ::mmap(nullptr, size, PROT_READ, MAP_SHARED | MAP_POPULATE, kImportMeshFd, 0);
+    const int folder = isFolder(kImportFolderFd) ? kImportFolderFd : -1;
+    if (pages == MAP_FAILED ||
+        !enterSandbox({memory + kMemoryBeside, static_cast<std::uint32_t>(seconds)}, folder) || orphaned()) {
+        return kImportExitNoSandbox;
+    }
+    std::set_new_handler([] { ::_exit(kImportExitMemory); });
+    std::string extension = path.extension().string().substr(1);
+    for (char& c : extension) {
+        c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    }
+    const Result<TriangleMesh> raw = importRaw({quotedPath(path),
+                                                path.filename().string(),
+                                                extension,
+                                                {static_cast<const std::byte*>(pages), size},
+                                                folder,
+                                                options});
+    return sendMessage(raw) ? kImportExitMessage : kImportExitNoMessage;
+}
+
+}  // namespace
+}  // namespace relief
+
+int main(int argc, char** argv) {
+    if (argc != 6) {
+        return relief::kImportExitNoSandbox;
+    }
+    // assimp allocates much in little pieces: fewer, larger steps of one heap, that the limit is exact for.
+    mallopt(M_ARENA_MAX, 1);
+    mallopt(M_TOP_PAD, 16 << 20);
+    int code = relief::kImportExitNoMessage;
+    try {
+        code = relief::work(argv);
+    } catch (...) {
+        code = relief::kImportExitMemory;
+    }
+    ::_exit(code);  // nothing is worth cleaning up
+}

@@ -1,0 +1,120 @@
+#include "bake/import/import_source.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <utility>
+
+#include "formats/base/file_io.h"
+#include "formats/base/hash.h"
+#include "formats/base/text.h"
+#include "formats/validate.h"
+
+namespace relief {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What imports the package's test models rightly or refuses them clearly; the first are what a message names.
+constexpr std::array<std::string_view, 23> kFormats = {
+    "obj", "stl", "ply", "off", "gltf", "glb", "fbx",  "dae", "3ds", "blend", "3mf", "x",
+    "lwo", "ac",  "ase", "b3d", "dxf",  "lxo", "ms3d", "nff", "raw", "smd",   "amf"};
+constexpr std::size_t kNamedFormats = 11;
+
+std::string lowerCase(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
+bool isHash(const std::string& text) {
+    return text.size() == 32 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+}  // namespace
+
+std::span<const std::string_view> importFormats() {
+    return kFormats;
+}
+
+ImportSource::ImportSource(fs::path path, std::string extension, std::vector<std::byte> bytes)
+    : path_(std::move(path)),
+      extension_(std::move(extension)),
+      bytes_(std::move(bytes)),
+      hash_(xxh3_128Hex(bytes_)) {
+    const fs::path parent = path_.parent_path();
+    folder_ = ::open(parent.empty() ? "." : parent.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
+}
+
+ImportSource::ImportSource(ImportSource&& other) noexcept
+    : path_(std::move(other.path_)),
+      extension_(std::move(other.extension_)),
+      bytes_(std::move(other.bytes_)),
+      hash_(std::move(other.hash_)),
+      folder_(std::exchange(other.folder_, -1)) {}
+
+ImportSource::~ImportSource() {
+    if (folder_ >= 0) {
+        ::close(folder_);
+    }
+}
+
+Result<ImportSource> ImportSource::open(const fs::path& path) {
+    Result<std::vector<std::byte>> bytes = readFile(path);
+    if (!bytes) {
+        return forward(bytes);
+    }
+    const std::string extension = lowerCase(path.extension().string());
+    if (extension.empty() || std::find(kFormats.begin(), kFormats.end(),
+                                       std::string_view(extension).substr(1)) == kFormats.end()) {
+        return fail(ErrorCode::kUnsupported, quotedPath(path) + ": no mesh format has the extension '" +
+                                                 cleanUtf8(extension) + "'; use one of " +
+                                                 listed(std::span(kFormats).first(kNamedFormats)));
+    }
+    if (bytes->empty()) {
+        return fail(ErrorCode::kInvalidInput,
+                    quotedPath(path) + ": the file is empty; export the mesh again");
+    }
+    return ImportSource(path, extension.substr(1), std::move(*bytes));
+}
+
+Result<TriangleMesh> ImportSource::finish(TriangleMesh raw) const {
+    const auto lies = [this](const char* what) {
+        return fail(ErrorCode::kInvalidInput,
+                    quotedPath(path_) + ": the importer answers with " + what + "; export the mesh again");
+    };
+    if (!(raw.unit.empty() || raw.unit == "m") || raw.dependencies.size() != raw.dependency_hashes.size()) {
+        return lies("a unit or a list of files that cannot be");
+    }
+    const std::string name = cleanUtf8(path_.filename().string(), kMeshNameMax);
+    std::vector<std::pair<std::string, std::string>> files;  // path, hash
+    for (std::size_t i = 0; i < raw.dependencies.size(); ++i) {
+        const std::string& file = raw.dependencies[i];
+        const fs::path relative(file);
+        const bool beneath = !file.empty() && relative.is_relative() &&
+                             std::find(relative.begin(), relative.end(), "..") == relative.end() &&
+                             file.find('\0') == std::string::npos;
+        if (!beneath || !isHash(raw.dependency_hashes[i])) {
+            return lies("a file that is not below the mesh's folder, or without its hash");
+        }
+        files.emplace_back((path_.parent_path() / relative).string(), raw.dependency_hashes[i]);
+    }
+    std::sort(files.begin(), files.end());
+    raw.dependencies = {path_.string()};
+    raw.dependency_hashes = {hash_};
+    for (auto& [file, hash] : files) {
+        raw.dependencies.push_back(std::move(file));
+        raw.dependency_hashes.push_back(std::move(hash));
+    }
+    for (std::string& warning : raw.warnings) {
+        warning = name + ": " + cleanUtf8(warning);
+    }
+    raw.name = name;
+    raw.content_hash = hash_;
+    return finishMesh(std::move(raw));
+}
+
+}  // namespace relief

@@ -1,0 +1,53 @@
+// The steps of an import before and after the importer itself: the same for an import in this process and for
+// one in a worker.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bake/mesh/mesh.h"
+#include "formats/base/result.h"
+
+namespace relief {
+
+/// Extensions of the formats that are read, lower case, without dot.
+[[nodiscard]] std::span<const std::string_view> importFormats();
+
+/// A mesh file, read but not understood.
+class ImportSource {
+  public:
+    /// Errors: kUnsupported (extension), kInvalidInput (empty), and those of readFile.
+    [[nodiscard]] static Result<ImportSource> open(const std::filesystem::path& path);
+    ImportSource(ImportSource&& other) noexcept;
+    ImportSource& operator=(ImportSource&&) = delete;
+    ~ImportSource();
+
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+    [[nodiscard]] const std::string& extension() const { return extension_; }  ///< lower case, without dot
+    [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
+    [[nodiscard]] int folder() const { return folder_; }  ///< descriptor, O_PATH; -1 if it cannot be opened
+    /// Frees bytes().
+    void dropBytes() { bytes_ = {}; }
+
+    /// Completes what an importer made of it: the name, the hash, whole paths, and the invariants of
+    /// TriangleMesh. \param raw  positions, triangles, unit, warnings; dependencies and their hashes relative
+    /// to the folder, and
+    ///             without the mesh file itself. May be hostile.
+    /// Errors: as finishMesh; kInvalidInput.
+    [[nodiscard]] Result<TriangleMesh> finish(TriangleMesh raw) const;
+
+  private:
+    ImportSource(std::filesystem::path path, std::string extension, std::vector<std::byte> bytes);
+
+    std::filesystem::path path_;
+    std::string extension_;
+    std::vector<std::byte> bytes_;
+    std::string hash_;
+    int folder_ = -1;
+};
+
+}  // namespace relief

@@ -1,0 +1,68 @@
+// How well a field keeps to a mesh: the same code measures colliders and their rivals.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <glm/vec3.hpp>
+#include <optional>
+
+#include "bake/measure/truth.h"
+#include "bake/mesh/mesh_query.h"
+#include "formats/collider.h"
+
+namespace relief {
+
+/// What a field says of a point.
+struct FieldValue {
+    float distance = 0.0F;   ///< object units, negative inside; kFarOutside: outside, and no more is known
+    glm::vec3 normal{0.0F};  ///< unit length, outwards; zero where it is not known
+};
+
+/// A field to be measured. Called from many threads. nullopt: it does not say; particles then fly on, so that
+/// this counts as outside.
+using Field = std::function<std::optional<FieldValue>(const glm::vec3&)>;
+
+/// \param collider  borrowed.
+[[nodiscard]] Field fieldOf(const Collider& collider);
+
+/// Shares of points on the wrong side, in percent of all points of their kind.
+struct WrongShare {
+    double false_inside = 0.0;   ///< outside in truth
+    double false_outside = 0.0;  ///< inside in truth
+    [[nodiscard]] double total() const { return false_inside + false_outside; }
+};
+
+struct FieldAccuracy {
+    WrongShare near;     ///< points near the surface
+    WrongShare uniform;  ///< points in the box
+    /// |f − true signed distance| of the points near the surface for which the field has a distance. Object
+    /// units; the 99th percentile by nearest rank.
+    double distance_mean = 0.0;
+    double distance_p99 = 0.0;
+    double far_percent = 0.0;      ///< of the points near the surface: outside without a distance
+    double unknown_percent = 0.0;  ///< of the points near the surface: the field does not say
+    /// Angle between the field's normal and the surface's, at surface points that are not buried and where
+    /// the field has a normal. Degrees.
+    double normal_mean = 0.0;
+    double normal_p99 = 0.0;
+    double no_normal_percent = 0.0;  ///< of the surface points that are not buried
+    double seconds = 0.0;            ///< for evaluating the field at all points, on all cores
+};
+
+/// The same for any number of threads, but for `seconds`.
+[[nodiscard]] FieldAccuracy measureField(const TruthSamples& samples, const Field& field);
+
+struct ColliderAccuracy {
+    FieldAccuracy field;
+    /// Share of the surface's area, buried surface left out, that no map sees: neither end that a map keeps
+    /// has, in the map's volume, a free line of sight to the front of the surface, kSurfaceStep above it.
+    /// Percent.
+    double unseen_percent = 0.0;
+    double buried_percent = 0.0;  ///< share of all surface area
+    std::uint64_t gpu_bytes = 0;
+};
+
+[[nodiscard]] ColliderAccuracy measureCollider(const TruthSamples& samples, const MeshQuery& query,
+                                               const Collider& collider);
+
+}  // namespace relief

@@ -1,0 +1,80 @@
+#include "bake/mesh/embree_mesh.h"
+
+#include <cmath>
+#include <string>
+
+#include "bake/mesh/embree_config.h"
+
+namespace relief {
+namespace {
+
+const char* errorWords(RTCError error) {
+    switch (error) {
+        case RTC_ERROR_NONE:
+            return "no error";
+        case RTC_ERROR_INVALID_ARGUMENT:
+            return "invalid argument";
+        case RTC_ERROR_INVALID_OPERATION:
+            return "invalid operation";
+        case RTC_ERROR_OUT_OF_MEMORY:
+            return "out of memory";
+        case RTC_ERROR_UNSUPPORTED_CPU:
+            return "this processor is not supported";
+        case RTC_ERROR_CANCELLED:
+            return "cancelled";
+        default:
+            return "unknown error";
+    }
+}
+
+tl::unexpected<Error> embreeError(RTCError error, const std::string& what) {
+    if (error == RTC_ERROR_OUT_OF_MEMORY) {
+        return fail(ErrorCode::kLimit, what + ": the ray tracer is out of memory; simplify the mesh");
+    }
+    const ErrorCode code = error == RTC_ERROR_UNSUPPORTED_CPU ? ErrorCode::kUnsupported : ErrorCode::kFailure;
+    return fail(code, what + ": the ray tracer reports: " + errorWords(error));
+}
+
+}  // namespace
+
+Result<EmbreeMesh> EmbreeMesh::build(const TriangleMesh& mesh) {
+    EmbreeMesh tree;
+    tree.center = 0.5 * glm::dvec3(mesh.bounds.min) + 0.5 * glm::dvec3(mesh.bounds.max);
+    tree.scale = std::ldexp(1.0, -std::ilogb(mesh.bounds.longestSide()));
+    tree.device.reset(rtcNewDevice(kEmbreeConfig));
+    if (!tree.device) {
+        return embreeError(rtcGetDeviceError(nullptr), mesh.name);
+    }
+    RTCDevice device = tree.device.get();
+    tree.scene.reset(rtcNewScene(device));
+    const std::unique_ptr<RTCGeometryTy, Release> geometry(
+        rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
+    if (!tree.scene || !geometry) {
+        return embreeError(rtcGetDeviceError(device), mesh.name);
+    }
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0,
+                                                                 RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
+                                                                 mesh.positions.size()));
+    if (vertices == nullptr) {
+        return embreeError(rtcGetDeviceError(device), mesh.name);
+    }
+    for (const glm::vec3& p : mesh.positions) {
+        const glm::vec3 local = tree.toLocal(p);
+        *vertices++ = local.x;
+        *vertices++ = local.y;
+        *vertices++ = local.z;
+    }
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                               mesh.triangles.data(), 0, sizeof(glm::uvec3), mesh.triangles.size());
+    rtcCommitGeometry(geometry.get());
+    rtcAttachGeometry(tree.scene.get(), geometry.get());
+    rtcSetSceneFlags(tree.scene.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+    rtcSetSceneBuildQuality(tree.scene.get(), RTC_BUILD_QUALITY_MEDIUM);
+    rtcCommitScene(tree.scene.get());
+    if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE) {
+        return embreeError(error, mesh.name);
+    }
+    return tree;
+}
+
+}  // namespace relief

@@ -1,0 +1,92 @@
+#include "bake/mesh/mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace relief {
+namespace {
+
+// Object units. Squares of map coordinates and the scales of a map stay within a float's range.
+constexpr float kCoordinateMax = 1e15F;
+constexpr float kSizeMin = 1e-15F;
+
+/// \return true if the corners span an area that a float normal can be computed from.
+bool hasArea(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+    const double ux = double{b.x} - a.x;
+    const double uy = double{b.y} - a.y;
+    const double uz = double{b.z} - a.z;
+    const double vx = double{c.x} - a.x;
+    const double vy = double{c.y} - a.y;
+    const double vz = double{c.z} - a.z;
+    const double nx = uy * vz - uz * vy;
+    const double ny = uz * vx - ux * vz;
+    const double nz = ux * vy - uy * vx;
+    return nx != 0.0 || ny != 0.0 || nz != 0.0;
+}
+
+}  // namespace
+
+Result<TriangleMesh> finishMesh(TriangleMesh mesh) {
+    if (mesh.triangles.size() > kTriangleMax) {
+        return fail(ErrorCode::kLimit, mesh.name + ": " + std::to_string(mesh.triangles.size()) +
+                                           " triangles are more than the limit of " +
+                                           std::to_string(kTriangleMax) + "; simplify the mesh");
+    }
+    std::size_t kept = 0;
+    for (const glm::uvec3& t : mesh.triangles) {
+        if (std::max({t.x, t.y, t.z}) >= mesh.positions.size()) {
+            return fail(ErrorCode::kInvalidInput,
+                        mesh.name + ": a triangle uses vertex " + std::to_string(std::max({t.x, t.y, t.z})) +
+                            " but there are " + std::to_string(mesh.positions.size()) + "; export it again");
+        }
+        for (const std::uint32_t i : {t.x, t.y, t.z}) {
+            const glm::vec3& p = mesh.positions[i];
+            // Written so that NaN fails too.
+            if (!(std::abs(p.x) <= kCoordinateMax && std::abs(p.y) <= kCoordinateMax &&
+                  std::abs(p.z) <= kCoordinateMax)) {
+                return fail(ErrorCode::kInvalidInput,
+                            mesh.name + ": vertex " + std::to_string(i) +
+                                " has a coordinate that is not a number or beyond 1e15; repair the mesh");
+            }
+        }
+        if (hasArea(mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z])) {
+            mesh.triangles[kept++] = t;
+        }
+    }
+    mesh.dropped_triangles += mesh.triangles.size() - kept;
+    mesh.triangles.resize(kept);
+    if (kept == 0) {
+        return fail(
+            ErrorCode::kInvalidInput,
+            mesh.name + ": no triangle has an area; export the surface as polygons, not as points or lines");
+    }
+
+    constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint32_t> new_index(mesh.positions.size(), kUnused);
+    for (const glm::uvec3& t : mesh.triangles) {
+        new_index[t.x] = new_index[t.y] = new_index[t.z] = 0;
+    }
+    std::uint32_t used = 0;
+    mesh.bounds = {};
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        if (new_index[i] != kUnused) {
+            mesh.bounds.add(mesh.positions[i]);
+            mesh.positions[used] = mesh.positions[i];
+            new_index[i] = used++;
+        }
+    }
+    if (used != mesh.positions.size()) {
+        mesh.positions.resize(used);
+        for (glm::uvec3& t : mesh.triangles) {
+            t = {new_index[t.x], new_index[t.y], new_index[t.z]};
+        }
+    }
+    if (mesh.bounds.longestSide() < kSizeMin) {
+        return fail(ErrorCode::kInvalidInput,
+                    mesh.name + ": the mesh is smaller than 1e-15 units; scale it up");
+    }
+    return mesh;
+}
+
+}  // namespace relief

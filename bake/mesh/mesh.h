@@ -1,0 +1,48 @@
+// Triangles in object space: what every importer makes and what the baker bakes.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "formats/base/result.h"
+#include "formats/collider.h"
+
+namespace relief {
+
+/// Limit of a mesh, instances counted one by one.
+inline constexpr std::uint64_t kTriangleMax = 100'000'000;
+
+/// After finishMesh: at least one triangle, every index valid, every position finite and used by a triangle,
+/// no triangle without area.
+struct TriangleMesh {
+    std::string name;                   ///< file name without its folder; valid UTF-8
+    std::string content_hash;           ///< XXH3-128 of the file's bytes
+    std::string unit;                   ///< of lengths: "m", or "" where the source does not say
+    std::vector<glm::vec3> positions;   ///< object space
+    std::vector<glm::uvec3> triangles;  ///< counter-clockwise seen from outside, if the source keeps to that
+    std::uint64_t dropped_triangles = 0;  ///< without area, left out
+    /// The last of `triangles` are not the source's: they close this many holes (hole_caps.h).
+    std::uint64_t cap_triangles = 0;
+    std::uint64_t closed_holes = 0;
+    Bounds bounds;  ///< of positions
+    /// Files that it was read from: first its own, as its path was given, then whatever that refers to,
+    /// sorted.
+    std::vector<std::string> dependencies;
+    std::vector<std::string> dependency_hashes;  ///< XXH3-128 of each file's bytes, in the same order
+    std::vector<std::string> warnings;           ///< what its importer has to say; one line each
+    /// windOutwards (winding.h) has seen to it: hollows are wound against the surface about them.
+    bool wound_outwards = false;
+
+    [[nodiscard]] std::uint64_t sourceTriangles() const { return triangles.size() - cap_triangles; }
+};
+
+/// Turns raw positions and triangles into a mesh that keeps the invariants above: drops triangles without
+/// area and positions without triangle, computes the bounds.
+/// Errors, naming mesh.name: kInvalidInput (index out of range, coordinate that is not finite or beyond 1e15,
+/// no triangle with an area), kLimit (kTriangleMax).
+[[nodiscard]] Result<TriangleMesh> finishMesh(TriangleMesh mesh);
+
+}  // namespace relief

@@ -1,0 +1,286 @@
+#include "bake/mesh/mesh_query.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "bake/mesh/embree_mesh.h"
+#include "bake/mesh/inside.h"
+#include "bake/mesh/mesh_edges.h"
+#include "bake/mesh/triangle_plane.h"
+
+namespace relief {
+namespace {
+
+/// Counts the surfaces on a ray, and lets it pass through them.
+struct CrossingCounter {
+    RTCIntersectContext context{};
+    unsigned count = 0;
+    int winding = 0;  ///< crossings one way less those the other way
+
+    CrossingCounter() {
+        rtcInitIntersectContext(&context);
+        context.filter = filter;
+    }
+
+    static void filter(const RTCFilterFunctionNArguments* args) {
+        // RTCIntersectContext is the first member: Embree hands back the pointer it was given.
+        auto* self = reinterpret_cast<CrossingCounter*>(args->context);
+        for (unsigned i = 0; i < args->N; ++i) {
+            if (args->valid[i] != 0) {
+                ++self->count;
+                const double along = static_cast<double>(RTCHitN_Ng_x(args->hit, args->N, i)) *
+                                         RTCRayN_dir_x(args->ray, args->N, i) +
+                                     static_cast<double>(RTCHitN_Ng_y(args->hit, args->N, i)) *
+                                         RTCRayN_dir_y(args->ray, args->N, i) +
+                                     static_cast<double>(RTCHitN_Ng_z(args->hit, args->N, i)) *
+                                         RTCRayN_dir_z(args->ray, args->N, i);
+                self->winding += along < 0.0 ? -1 : 1;
+                args->valid[i] = 0;
+            }
+        }
+    }
+};
+
+template <class Ray>
+void setRay(Ray& ray, const glm::vec3& origin, const glm::vec3& direction, float end) {
+    ray.org_x = origin.x;
+    ray.org_y = origin.y;
+    ray.org_z = origin.z;
+    ray.dir_x = direction.x;
+    ray.dir_y = direction.y;
+    ray.dir_z = direction.z;
+    ray.tnear = 0.0F;
+    ray.tfar = end;
+    ray.time = 0.0F;
+    ray.mask = 0xffffffff;
+    ray.flags = 0;
+}
+
+RTCRayHit rayHit(const glm::vec3& origin, const glm::vec3& direction, float end) {
+    RTCRayHit query{};
+    setRay(query.ray, origin, direction, end);
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    return query;
+}
+
+/// The point of a triangle closest to p. Ericson, "Real-Time Collision Detection" (2005), section 5.1.5.
+glm::dvec3 closestOnTriangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
+                             const glm::dvec3& c) {
+    const glm::dvec3 ab = b - a;
+    const glm::dvec3 ac = c - a;
+    const glm::dvec3 ap = p - a;
+    const double d1 = dot(ab, ap);
+    const double d2 = dot(ac, ap);
+    if (d1 <= 0.0 && d2 <= 0.0) {
+        return a;
+    }
+    const glm::dvec3 bp = p - b;
+    const double d3 = dot(ab, bp);
+    const double d4 = dot(ac, bp);
+    if (d3 >= 0.0 && d4 <= d3) {
+        return b;
+    }
+    const double vc = d1 * d4 - d3 * d2;
+    if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) {
+        return a + (d1 / (d1 - d3)) * ab;
+    }
+    const glm::dvec3 cp = p - c;
+    const double d5 = dot(ab, cp);
+    const double d6 = dot(ac, cp);
+    if (d6 >= 0.0 && d5 <= d6) {
+        return c;
+    }
+    const double vb = d5 * d2 - d1 * d6;
+    if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) {
+        return a + (d2 / (d2 - d6)) * ac;
+    }
+    const double va = d3 * d6 - d5 * d4;
+    if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) {
+        return b + ((d4 - d3) / ((d4 - d3) + (d5 - d6))) * (c - b);
+    }
+    const double sum = va + vb + vc;
+    return a + (vb / sum) * ab + (vc / sum) * ac;
+}
+
+/// How far along a ray the plane of a triangle lies that it meets; held between the triangle's corners, for
+/// planes that are seen edge-on. Embree's own distance has a quotient in it that differs from processor to
+/// processor.
+double depthAt(const TriangleMesh& mesh, std::uint32_t triangle, const glm::dvec3& origin,
+               const glm::dvec3& direction) {
+    const TrianglePlane plane = planeOf(mesh, triangle);
+    const double depth = dot(plane.normal, plane.point - origin) / dot(plane.normal, direction);
+    const glm::uvec3& t = mesh.triangles[triangle];
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (const std::uint32_t corner : {t.x, t.y, t.z}) {
+        const double at =
+            dot(glm::dvec3(mesh.positions[corner]) - origin, direction) / dot(direction, direction);
+        low = std::min(low, at);
+        high = std::max(high, at);
+    }
+    // Written so that NaN is the nearest corner's.
+    return std::max(0.0, depth >= low ? std::min(depth, high) : low);
+}
+
+}  // namespace
+
+struct MeshQuery::Impl {
+    const TriangleMesh* mesh = nullptr;
+    EmbreeMesh tree;
+    bool watertight = false;
+    bool shells = false;  // isSeveralShells
+
+    [[nodiscard]] CrossingCounter count(const glm::vec3& p, const glm::dvec3& direction) const {
+        CrossingCounter counter;
+        RTCRayHit query = rayHit(tree.toLocal(p), direction, std::numeric_limits<float>::infinity());
+        rtcIntersect1(tree.scene.get(), &counter.context, &query);
+        return counter;
+    }
+
+    /// One search for the closest point; local space.
+    struct Search {
+        const Impl* impl;
+        glm::dvec3 p;
+        float slack;  // added to the search radius: Embree's boxes and the query are floats
+        double best_squared = std::numeric_limits<double>::infinity();
+        std::uint32_t triangle = RTC_INVALID_GEOMETRY_ID;
+        glm::dvec3 point{0.0};
+
+        [[nodiscard]] float radius() const { return static_cast<float>(std::sqrt(best_squared)) + slack; }
+
+        /// \return true if the triangle is closer than the best so far.
+        bool add(std::uint32_t index) {
+            const std::vector<glm::vec3>& positions = impl->mesh->positions;
+            const glm::uvec3& t = impl->mesh->triangles[index];
+            const glm::dvec3 closest =
+                closestOnTriangle(p, impl->tree.toLocal(positions[t.x]), impl->tree.toLocal(positions[t.y]),
+                                  impl->tree.toLocal(positions[t.z]));
+            const glm::dvec3 offset = closest - p;
+            const double squared = dot(offset, offset);
+            // Of equals the lowest index: the order of the visits must not matter.
+            if (squared < best_squared || (squared == best_squared && index < triangle)) {
+                best_squared = squared;
+                triangle = index;
+                point = closest;
+                return true;
+            }
+            return false;
+        }
+
+        static bool visit(RTCPointQueryFunctionArguments* args) {
+            auto* self = static_cast<Search*>(args->userPtr);
+            if (!self->add(args->primID)) {
+                return false;
+            }
+            args->query->radius = self->radius();
+            return true;
+        }
+    };
+};
+
+MeshQuery::MeshQuery(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+MeshQuery::MeshQuery(MeshQuery&&) noexcept = default;
+MeshQuery& MeshQuery::operator=(MeshQuery&&) noexcept = default;
+MeshQuery::~MeshQuery() = default;
+
+const TriangleMesh& MeshQuery::mesh() const {
+    return *impl_->mesh;
+}
+
+bool MeshQuery::watertight() const {
+    return impl_->watertight;
+}
+
+Result<MeshQuery> MeshQuery::build(const TriangleMesh& mesh) {
+    auto impl = std::make_unique<Impl>();
+    impl->mesh = &mesh;
+    {
+        const MeshEdges edges = edgesOf(mesh);
+        impl->watertight = oddEdges(edges).empty();
+        impl->shells = impl->watertight && mesh.wound_outwards && isSeveralShells(edges);
+    }
+    Result<EmbreeMesh> tree = EmbreeMesh::build(mesh);
+    if (!tree) {
+        return forward(tree);
+    }
+    impl->tree = std::move(*tree);
+    return MeshQuery(std::move(impl));
+}
+
+bool MeshQuery::inside(const glm::vec3& p) const {
+    const glm::vec3& low = impl_->mesh->bounds.min;
+    const glm::vec3& high = impl_->mesh->bounds.max;
+    for (int i = 0; i < 3; ++i) {
+        // Written so that NaN is outside.
+        if (!(p[i] >= low[i] && p[i] <= high[i])) {
+            return false;
+        }
+    }
+    constexpr std::size_t kMajority = kParityDirections.size() / 2 + 1;
+    std::size_t votes[2] = {0, 0};
+    for (const glm::dvec3& direction : kParityDirections) {
+        const CrossingCounter counter = impl_->count(p, direction);
+        const bool inside = impl_->shells ? counter.winding != 0 : counter.count % 2 == 1;
+        if (++votes[inside ? 1 : 0] == kMajority) {
+            break;
+        }
+    }
+    return votes[1] >= kMajority;
+}
+
+unsigned MeshQuery::crossings(const glm::vec3& p, const glm::dvec3& direction) const {
+    return impl_->count(p, direction).count;
+}
+
+ClosestPoint MeshQuery::closest(const glm::vec3& p, std::optional<std::uint32_t> hint) const {
+    const glm::dvec3 local = impl_->tree.toLocal(p);
+    const double size = std::max({std::abs(local.x), std::abs(local.y), std::abs(local.z)});
+    Impl::Search search{impl_.get(), local, static_cast<float>(2e-6 * (1.0 + size))};
+    if (hint) {
+        search.add(*hint);
+    }
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    RTCPointQuery query{};
+    const glm::vec3 at = local;
+    query.x = at.x;
+    query.y = at.y;
+    query.z = at.z;
+    query.radius = search.radius();
+    rtcPointQuery(impl_->tree.scene.get(), &query, &context, Impl::Search::visit, &search);
+    return {std::sqrt(search.best_squared) / impl_->tree.scale, search.triangle,
+            search.point / impl_->tree.scale + impl_->tree.center};
+}
+
+double MeshQuery::signedDistance(const glm::vec3& p) const {
+    const double distance = closest(p).distance;
+    return inside(p) ? -distance : distance;
+}
+
+bool MeshQuery::segmentIsFree(const glm::dvec3& from, const glm::dvec3& to) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRay ray{};
+    setRay(ray, impl_->tree.toLocal(from), (to - from) * impl_->tree.scale, 1.0F);
+    rtcOccluded1(impl_->tree.scene.get(), &context, &ray);
+    return ray.tfar >= 0.0F;
+}
+
+std::optional<FirstHit> MeshQuery::firstHit(const glm::dvec3& origin, const glm::dvec3& direction) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRayHit query = rayHit(impl_->tree.toLocal(origin), direction * impl_->tree.scale,
+                             std::numeric_limits<float>::infinity());
+    rtcIntersect1(impl_->tree.scene.get(), &context, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
+        return std::nullopt;
+    }
+    return FirstHit{depthAt(*impl_->mesh, query.hit.primID, origin, direction), query.hit.primID};
+}
+
+}  // namespace relief

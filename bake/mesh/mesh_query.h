@@ -1,0 +1,76 @@
+// Questions to a mesh that need no map: is a point inside, how far is the surface, what does a ray meet. This
+// is the truth that colliders are measured against. By Embree.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+
+#include "bake/mesh/mesh.h"
+#include "formats/base/result.h"
+
+namespace relief {
+
+/// The surface point next to another point.
+struct ClosestPoint {
+    double distance = 0.0;  ///< object units, not negative
+    std::uint32_t triangle = 0;
+    glm::dvec3 point{0.0};  ///< object space, on the triangle
+};
+
+/// What a ray meets first.
+struct FirstHit {
+    double along = 0.0;  ///< in units of the ray's direction
+    std::uint32_t triangle = 0;
+};
+
+/// A mesh in an acceleration structure of its own. All questions may be asked from any thread, and their
+/// answers depend neither on the number of threads nor on the order of the questions.
+class MeshQuery {
+  public:
+    /// \param mesh  borrowed; must outlive the query.
+    /// Errors: kFailure with Embree's words; kUnsupported; kLimit when out of memory.
+    [[nodiscard]] static Result<MeshQuery> build(const TriangleMesh& mesh);
+    MeshQuery(MeshQuery&&) noexcept;
+    MeshQuery& operator=(MeshQuery&&) noexcept;
+    ~MeshQuery();
+
+    [[nodiscard]] const TriangleMesh& mesh() const;
+
+    /// The majority over the directions of inside.h of the parity of the number of surfaces that a ray from
+    /// `p` crosses. One traversal a ray counts them all. The winding of the triangles does not matter; where
+    /// the mesh is open, most directions still pass its holes by. Once windOutwards (winding.h) has seen to
+    /// the mesh, and it is of several closed surfaces, the winding number decides: where two solids overlap
+    /// is inside.
+    [[nodiscard]] bool inside(const glm::vec3& p) const;
+
+    /// How many triangles a ray from `p` meets.
+    /// \param direction  of any length but 0.
+    [[nodiscard]] unsigned crossings(const glm::vec3& p, const glm::dvec3& direction) const;
+
+    /// Every edge belongs to an even number of triangles, where equal positions are one: inside() is then the
+    /// same at both ends of any segment that meets no surface.
+    [[nodiscard]] bool watertight() const;
+
+    /// The lowest index of equally close triangles.
+    /// \param hint  a triangle that is probably near: saves time, and does not change the distance.
+    [[nodiscard]] ClosestPoint closest(const glm::vec3& p, std::optional<std::uint32_t> hint = {}) const;
+
+    /// The distance to the surface, negative where p is inside. Object units.
+    [[nodiscard]] double signedDistance(const glm::vec3& p) const;
+
+    /// No triangle meets the open segment between two points.
+    [[nodiscard]] bool segmentIsFree(const glm::dvec3& from, const glm::dvec3& to) const;
+
+    /// \param direction  of any length but 0.
+    [[nodiscard]] std::optional<FirstHit> firstHit(const glm::dvec3& origin,
+                                                   const glm::dvec3& direction) const;
+
+  private:
+    struct Impl;
+    explicit MeshQuery(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace relief

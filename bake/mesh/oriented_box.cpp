@@ -1,0 +1,168 @@
+// CGAL turns boxes by libm's functions, whose bits vary with the processor, and its search would end
+// elsewhere. In this file their names are those of portable_math.h; before anything else, as a name is given
+// where it is first met.
+#include "formats/base/portable_libm.h"
+
+#include "bake/mesh/oriented_box.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <glm/geometric.hpp>
+
+// What CGAL would assert is checked here beforehand, or after it; its own assertions would print.
+#ifndef CGAL_NDEBUG
+#define CGAL_NDEBUG 1
+#endif
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/optimal_bounding_box.h>
+
+namespace relief {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+/// Of the points, in units of their longest side: below it they count as a plane.
+constexpr double kThicknessMin = 1e-5;
+/// Far above the rounding of single-precision vertices, far below what a texel can tell.
+constexpr double kRounding = 1e-6;
+
+/// Directions of the octahedron's lattice: spread over the sphere, and the same bits everywhere.
+std::vector<glm::dvec3> fixedDirections() {
+    constexpr int kLattice = 6;
+    std::vector<glm::dvec3> directions;
+    for (int j = -kLattice; j <= kLattice; ++j) {
+        for (int i = -kLattice; i <= kLattice; ++i) {
+            const int k = kLattice - std::abs(i) - std::abs(j);
+            if (k >= 0) {
+                directions.emplace_back(i, j, k);
+            }
+            if (k > 0) {
+                directions.emplace_back(i, j, -k);
+            }
+        }
+    }
+    return directions;
+}
+
+/// Centred and scaled to a longest side of 1. Empty: the points are (nearly) one, or not finite.
+std::vector<glm::dvec3> normalizedPoints(std::span<const glm::dvec3> points) {
+    if (points.empty()) {
+        return {};
+    }
+    glm::dvec3 low = points.front();
+    glm::dvec3 high = points.front();
+    for (const glm::dvec3& p : points) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    const glm::dvec3 size = high - low;
+    const double side = std::max({size.x, size.y, size.z});
+    if (!(side > 0.0) || !std::isfinite(side)) {
+        return {};
+    }
+    std::vector<glm::dvec3> scaled;
+    for (const glm::dvec3& p : points) {
+        scaled.push_back((p - 0.5 * (low + high)) / side);
+    }
+    return scaled;
+}
+
+/// Whether the points span a volume: from one point to the farthest, to the farthest from their line, to the
+/// farthest from their plane.
+bool haveVolume(const std::vector<glm::dvec3>& points) {
+    const auto farthest = [&](const auto& distance) {
+        return *std::max_element(points.begin(), points.end(), [&](const glm::dvec3& a, const glm::dvec3& b) {
+            return distance(a) < distance(b);
+        });
+    };
+    const glm::dvec3 origin = points.front();
+    const glm::dvec3 line = farthest([&](const glm::dvec3& p) { return glm::length(p - origin); }) - origin;
+    const auto fromLine = [&](const glm::dvec3& p) { return glm::length(glm::cross(p - origin, line)); };
+    const glm::dvec3 normal = glm::cross(farthest(fromLine) - origin, line);
+    const double size = glm::length(normal);
+    if (!(size > kThicknessMin * glm::length(line))) {
+        return false;
+    }
+    const auto fromPlane = [&](const glm::dvec3& p) { return std::abs(glm::dot(p - origin, normal)) / size; };
+    return fromPlane(farthest(fromPlane)) > kThicknessMin;
+}
+
+double extent(const std::vector<glm::dvec3>& points, const glm::dvec3& axis) {
+    const auto [low, high] = std::minmax_element(
+        points.begin(), points.end(),
+        [&](const glm::dvec3& a, const glm::dvec3& b) { return glm::dot(a, axis) < glm::dot(b, axis); });
+    return glm::dot(*high - *low, axis);
+}
+
+}  // namespace
+
+std::vector<glm::dvec3> extremeVertices(const TriangleMesh& mesh) {
+    const std::vector<glm::dvec3> directions = fixedDirections();
+    std::vector<std::size_t> farthest(directions.size(), 0);
+    tbb::parallel_for(std::size_t{0}, directions.size(), [&](std::size_t d) {
+        double best = glm::dot(glm::dvec3(mesh.positions[0]), directions[d]);
+        for (std::size_t i = 1; i < mesh.positions.size(); ++i) {
+            const double along = glm::dot(glm::dvec3(mesh.positions[i]), directions[d]);
+            if (along > best) {
+                best = along;
+                farthest[d] = i;
+            }
+        }
+    });
+    std::sort(farthest.begin(), farthest.end());
+    farthest.erase(std::unique(farthest.begin(), farthest.end()), farthest.end());
+    std::vector<glm::dvec3> points;
+    for (const std::size_t i : farthest) {
+        points.emplace_back(mesh.positions[i]);
+    }
+    return points;
+}
+
+std::optional<std::array<glm::dvec3, 3>> orientedBoxAxes(std::span<const glm::dvec3> points) {
+    const std::vector<glm::dvec3> scaled = normalizedPoints(points);
+    if (scaled.size() < 4 || !haveVolume(scaled)) {
+        return std::nullopt;
+    }
+    std::vector<Kernel::Point_3> input;
+    for (const glm::dvec3& p : scaled) {
+        input.emplace_back(p.x, p.y, p.z);
+    }
+    Kernel::Aff_transformation_3 to_box;
+    try {
+        CGAL::oriented_bounding_box(input, to_box, CGAL::parameters::use_convex_hull(true).random_seed(1U));
+    } catch (const std::exception&) {
+        return std::nullopt;
+    }
+    std::array<glm::dvec3, 3> axes;
+    for (int i = 0; i < 3; ++i) {
+        glm::dvec3& axis = axes[static_cast<std::size_t>(i)];
+        for (int k = 0; k < 3; ++k) {
+            const double component = to_box.m(i, k);
+            axis[k] = std::abs(component) < kRounding ? 0.0 : component;
+        }
+        // One of the two opposite axes: the one whose largest component is positive.
+        const glm::dvec3 size = glm::abs(axis);
+        const int largest = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        axis *= axis[largest] < 0.0 ? -1.0 : 1.0;
+        axis /= glm::length(axis);
+    }
+    std::stable_sort(axes.begin(), axes.end(), [&](const glm::dvec3& a, const glm::dvec3& b) {
+        return extent(scaled, a) > extent(scaled, b);
+    });
+    if (glm::dot(glm::cross(axes[0], axes[1]), axes[2]) < 0.0) {
+        axes[2] = -axes[2];
+    }
+    // Written so that NaN fails too.
+    for (std::size_t i = 0; i < 3; ++i) {
+        if (!(std::abs(glm::dot(axes[i], axes[(i + 1) % 3])) < 1e-5)) {
+            return std::nullopt;
+        }
+        axes[i] += 0.0;  // no −0
+    }
+    return axes;
+}
+
+}  // namespace relief

@@ -1,0 +1,26 @@
+// The box of (nearly) the least volume round a mesh, turned as it likes. Its axes are those that many parts
+// are built along, however they lie in their file. By CGAL's oriented_bounding_box (Chang, Gorissen and
+// Melchior 2011).
+#pragma once
+
+#include <array>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "bake/mesh/mesh.h"
+
+namespace relief {
+
+/// The vertices that lie farthest along 146 fixed directions, each once, in the order of their indices: few,
+/// whatever the mesh, and among them the corners of all that has flat sides. Object space.
+[[nodiscard]] std::vector<glm::dvec3> extremeVertices(const TriangleMesh& mesh);
+
+/// The axes of the box round these points: right-handed, of unit length to rounding, the longest side's
+/// first. Components that differ from 0 by rounding alone are 0. nullopt: the points lie (nearly) in a plane,
+/// where no box has the least volume, or CGAL gave up. The same points give the same bits: its random numbers
+/// start from a fixed seed, and it runs on one thread.
+[[nodiscard]] std::optional<std::array<glm::dvec3, 3>> orientedBoxAxes(std::span<const glm::dvec3> points);
+
+}  // namespace relief

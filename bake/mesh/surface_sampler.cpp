@@ -1,0 +1,89 @@
+#include "bake/mesh/surface_sampler.h"
+
+#include <tbb/parallel_for.h>
+
+#include "bake/mesh/triangle_plane.h"
+
+namespace relief {
+namespace {
+
+/// Points that are asked for by rays before a mesh's winding is trusted.
+constexpr std::size_t kTrials = 512;
+/// Points per task.
+constexpr std::size_t kBlock = 1024;
+
+struct NearDraw {
+    SurfaceDraw surface;
+    double offset;  ///< along the normal
+    [[nodiscard]] glm::dvec3 position() const { return surface.position + offset * surface.normal; }
+};
+
+}  // namespace
+
+SurfaceSampler::SurfaceSampler(const TriangleMesh& mesh)
+    : mesh_(mesh), area_before_(mesh.triangles.size() + 1, 0.0) {
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        const glm::dvec3 n = planeOf(mesh, static_cast<std::uint32_t>(i)).normal;
+        area_before_[i + 1] = area_before_[i] + std::sqrt(dot(n, n));
+    }
+}
+
+SurfaceDraw SurfaceSampler::draw(double at, MersenneRandom& random) const {
+    const auto above =
+        std::upper_bound(area_before_.begin() + 1, area_before_.end() - 1, at * area_before_.back());
+    const auto triangle = static_cast<std::uint32_t>(above - area_before_.begin() - 1);
+    const double root = std::sqrt(random.uniform());
+    const double along = random.uniform();
+    const glm::uvec3& t = mesh_.triangles[triangle];
+    const glm::dvec3 normal = planeOf(mesh_, triangle).normal;
+    return {(1.0 - root) * glm::dvec3(mesh_.positions[t.x]) +
+                root * (1.0 - along) * glm::dvec3(mesh_.positions[t.y]) +
+                root * along * glm::dvec3(mesh_.positions[t.z]),
+            normal / std::sqrt(dot(normal, normal))};
+}
+
+std::vector<LabelledPoint> drawNearSurface(const TriangleMesh& mesh, const MeshQuery& query,
+                                           std::size_t count, double sigma, std::uint64_t seed) {
+    const SurfaceSampler sampler(mesh);
+    const double winding = orientation(mesh);
+    const double clear = 1e-5 * mesh.bounds.longestSide();  // of the surface itself, for rays
+    const auto draw = [&](std::size_t i, std::size_t of, MersenneRandom& random) {
+        const double at = (static_cast<double>(i) + random.uniform()) / static_cast<double>(of);
+        SurfaceDraw surface = sampler.draw(at, random);
+        surface.normal *= winding;
+        return NearDraw{surface, sigma * random.normal()};
+    };
+    // Beside a surface that no other cuts off, the side says it; elsewhere rays do.
+    const auto insideByWinding = [&](const NearDraw& near) {
+        const double sign = near.offset < 0.0 ? -1.0 : 1.0;
+        const glm::dvec3 start = near.surface.position + sign * clear * near.surface.normal;
+        return std::abs(near.offset) <= clear || query.segmentIsFree(start, near.position())
+                   ? near.offset < 0.0
+                   : query.inside(glm::vec3(near.position()));
+    };
+    bool trusted = query.watertight();
+    MersenneRandom trial(seed);
+    for (std::size_t i = 0; trusted && i < kTrials; ++i) {
+        const NearDraw near = draw(i, kTrials, trial);
+        trusted = std::abs(near.offset) <= clear ||
+                  insideByWinding(near) == query.inside(glm::vec3(near.position()));
+    }
+    if (!trusted) {
+        count /= 4;
+    }
+    std::vector<LabelledPoint> points(count);
+    tbb::parallel_for(std::size_t{0}, (count + kBlock - 1) / kBlock, [&](std::size_t block) {
+        MersenneRandom random(seed * 0x9e3779b97f4a7c15ULL + block);
+        for (std::size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i) {
+            const NearDraw near = draw(i, count, random);
+            const glm::vec3 position(near.position());
+            const bool inside = trusted ? insideByWinding(near) : query.inside(position);
+            // Without trust in the winding the normal points to the free side of its own surface.
+            const bool turned = !trusted && inside != (near.offset < 0.0);
+            points[i] = {position, glm::vec3(turned ? -near.surface.normal : near.surface.normal), inside};
+        }
+    });
+    return points;
+}
+
+}  // namespace relief

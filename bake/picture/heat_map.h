@@ -1,0 +1,25 @@
+// Pictures of a mesh, coloured by what a field says on its surface, where a perfect field says 0.
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include "bake/measure/accuracy.h"
+#include "bake/mesh/mesh_query.h"
+#include "bake/picture/color.h"
+
+namespace relief {
+
+struct HeatMapOptions {
+    glm::dvec3 direction{-1.0, -0.6, -1.0};  ///< in which the picture looks; object space, not along ±y
+    std::uint32_t size = 400;                ///< pixels along both sides
+    double range = 1.0;                      ///< object units: the distance of the strongest colour
+};
+
+inline constexpr Color kHeatFarColor{0.62, 0.13, 0.42};      ///< outside without a distance
+inline constexpr Color kHeatUnknownColor{0.35, 0.35, 0.37};  ///< the field does not say
+
+/// An orthographic picture, the mesh's box in the middle, y upwards, four rays a pixel; distanceColor() of
+/// f / range, shaded by the triangles' normals.
+[[nodiscard]] RgbImage drawHeatMap(const MeshQuery& query, const Field& field, const HeatMapOptions& options);
+
+}  // namespace relief

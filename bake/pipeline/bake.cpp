@@ -1,0 +1,382 @@
+#include "bake/pipeline/bake.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+#include <glm/common.hpp>
+#include <optional>
+
+#include "bake/mesh/inside.h"
+#include "bake/mesh/mesh_query.h"
+#include "bake/plan/view.h"
+#include "bake/texels/encode.h"
+#include "bake/texels/fitted_map.h"
+#include "bake/texels/rasterize.h"
+#include "bake/texels/raycast.h"
+#include "bake/texels/refine.h"
+#include "formats/container.h"
+
+namespace relief {
+namespace {
+
+/// Texels between two calls of the progress function.
+constexpr std::uint64_t kStripeTexels = std::uint64_t{1} << 20;
+/// Texels that one task traces and then encodes: few, so that their hits stay in the cache and cost no fresh
+/// pages (a first touch of 12 MB takes 8 ms).
+constexpr std::uint64_t kBlockTexels = std::uint64_t{1} << 13;
+
+class Stopwatch {
+  public:
+    explicit Stopwatch(double& total_ms) : total_ms_(total_ms) {}
+    Stopwatch(const Stopwatch&) = delete;
+    Stopwatch& operator=(const Stopwatch&) = delete;
+    ~Stopwatch() {
+        total_ms_ +=
+            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+  private:
+    double& total_ms_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+struct Job {
+    MapSpec spec;  // complete
+    View view;
+    bool compare_was_given;
+
+    [[nodiscard]] std::uint64_t texels() const {
+        return std::uint64_t{view.faceCount()} * view.width * view.height;
+    }
+};
+
+Result<std::vector<Job>> planJobs(const TriangleMesh& mesh, const BakeOptions& options) {
+    const std::vector<MapSpec> specs = options.maps.empty() ? paperMapSpecs() : options.maps;
+    const ContainerLimits limits;
+    if (specs.size() > limits.maps) {
+        return fail(ErrorCode::kLimit, std::to_string(specs.size()) + " maps are more than the limit of " +
+                                           std::to_string(limits.maps) + "; bake fewer");
+    }
+    std::vector<Job> jobs;
+    std::uint64_t bytes = 0;
+    for (const MapSpec& spec : specs) {
+        const Result<MapSpec> complete = completeSpec(spec, mesh, options.resolution);
+        if (!complete) {
+            return forward(complete);
+        }
+        const Result<View> view = makeView(*complete, mesh);
+        if (!view) {
+            return forward(view);
+        }
+        jobs.push_back({*complete, *view, spec.compare.has_value()});
+        bytes += jobs.back().texels() * texelSize(view->format);
+    }
+    if (bytes > limits.texel_bytes) {
+        return fail(ErrorCode::kLimit,
+                    "the maps' texels take " + std::to_string(bytes) + " bytes, more than the limit of " +
+                        std::to_string(limits.texel_bytes) + "; lower --resolution or the maps' sizes");
+    }
+    return jobs;
+}
+
+std::string effectiveOptions(const std::vector<Job>& jobs, const BakeOptions& options) {
+    std::string text;
+    bool has_planes = false;
+    for (const Job& job : jobs) {
+        text.append(text.empty() ? "" : " ").append("--map ").append(toString(job.spec));
+        has_planes = has_planes || job.spec.decode == Decode::kPlane;
+    }
+    if (options.rasterize) {
+        text.append(" --backend raster");
+    } else if (has_planes) {
+        text.append(" --quality ").append(qualityName(options.quality));
+        if (options.prefer != Prefer::kNeither) {
+            text.append(" --prefer ").append(preferName(options.prefer));
+        }
+    }
+    return text;
+}
+
+void warnAbout(const TriangleMesh& mesh, const std::vector<Job>& jobs, BakeReport& report) {
+    const glm::vec3 far_corner = glm::max(glm::abs(mesh.bounds.min), glm::abs(mesh.bounds.max));
+    const float farthest = std::max({far_corner.x, far_corner.y, far_corner.z});
+    if (mesh.bounds.longestSide() < 1e-3F * farthest) {
+        report.warnings.push_back(mesh.name +
+                                  " lies more than 1000 times its size away from the origin, where floats "
+                                  "are coarse; move it to the origin");
+    }
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        const View& view = jobs[i].view;
+        if (view.projection() == Projection::kCube && jobs[i].compare_was_given &&
+            view.compare == Compare::kLess && insideByParity(mesh, view.origin)) {
+            report.warnings.push_back(
+                "map " + std::to_string(i) + " (" + toString(jobs[i].spec) +
+                ") compares less but its centre seems to lie inside the mesh; move center, or "
+                "use compare=greater");
+        }
+        if (report.maps[i].covered == 0) {
+            report.warnings.push_back(
+                "map " + std::to_string(i) + " (" + toString(jobs[i].spec) +
+                ") is empty: its rays meet no outer side of the mesh; change its dir, box or size");
+        }
+    }
+}
+
+FittedMapOptions fitOptions(const TriangleMesh& mesh, const View& view, const BakeOptions& bake) {
+    const Quality quality = bake.quality;
+    const double side = mesh.bounds.longestSide();
+    FittedMapOptions options;
+    options.samples = quality == Quality::kFast ? 1 : quality == Quality::kNormal ? 4 : 6;
+    options.refinements = quality == Quality::kFast ? 0 : 3;
+    options.reach = 0.02 * side;
+    // A hundredth of a texel: far below what any texel can resolve.
+    options.good_enough = 0.01 * side / std::max(view.width, view.height);
+    options.cautious = bake.prefer == Prefer::kInside;
+    options.let_back = bake.prefer == Prefer::kOutside ? 0.4 : 0.0;
+    return options;
+}
+
+RefineOptions refineOptions(const BakeOptions& bake) {
+    RefineOptions options;
+    switch (bake.prefer) {
+        case Prefer::kNeither:
+            break;
+        case Prefer::kInside:
+            options.false_outside = 8.0;
+            break;
+        case Prefer::kOutside:
+            options.false_inside = 2.0;
+            options.false_outside = 1.0;
+            break;
+    }
+    if (bake.quality == Quality::kBest) {
+        options.sweeps = 2;
+        options.points_per_texel *= 3.0;
+    }
+    return options;
+}
+
+/// Bakes maps of surfaces at the texels' centres.
+class MapBaker {
+  public:
+    MapBaker(const TriangleMesh& mesh, const RayScene& scene, const NormalTable& normals)
+        : mesh_(mesh), scene_(scene), normals_(normals) {}
+
+    /// \param stripeDone  called with the number of texels finished.
+    template <class StripeDone>
+    DepthMap bake(const View& view, BakeReport& report, std::uint64_t& covered,
+                  const StripeDone& stripeDone) {
+        DepthMap map = view.emptyMap();
+        const auto rows_of = [&](std::uint64_t texels) {
+            return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(texels / view.width, 4, view.height));
+        };
+        const std::uint32_t stripe_rows = rows_of(kStripeTexels);
+        for (std::uint32_t face = 0; face < view.faceCount(); ++face) {
+            for (std::uint32_t y = 0; y < view.height; y += stripe_rows) {
+                const RowRange stripe{face, y, std::min(y + stripe_rows, view.height)};
+                covered += bakeStripe(view, stripe, rows_of(kBlockTexels), report, map);
+                stripeDone(std::uint64_t{stripe.end - stripe.begin} * view.width);
+            }
+        }
+        return map;
+    }
+
+  private:
+    /// What a thread keeps from one block of rows to the next.
+    struct Worker {
+        std::vector<Hit> hits[2];
+        std::uint64_t covered = 0;
+        double trace_ms = 0.0;
+        double encode_ms = 0.0;
+    };
+
+    std::uint64_t bakeStripe(const View& view, const RowRange& stripe, std::uint32_t block_rows,
+                             BakeReport& report, DepthMap& map) {
+        double stripe_ms = 0.0;
+        tbb::enumerable_thread_specific<Worker> workers;
+        {
+            const Stopwatch watch(stripe_ms);
+            const std::uint32_t blocks = (stripe.end - stripe.begin + block_rows - 1) / block_rows;
+            tbb::parallel_for(std::uint32_t{0}, blocks, [&](std::uint32_t block) {
+                const std::uint32_t begin = stripe.begin + block * block_rows;
+                const RowRange rows{stripe.face, begin, std::min(begin + block_rows, stripe.end)};
+                Worker& worker = workers.local();
+                {
+                    const Stopwatch watch_trace(worker.trace_ms);
+                    trace(view, RayEnd::kNear, rows, worker);
+                    trace(view, RayEnd::kFar, rows, worker);
+                }
+                const Stopwatch watch_encode(worker.encode_ms);
+                worker.covered += encodeRows(mesh_, scene_.winding(), normals_, view, rows, worker.hits[0],
+                                             worker.hits[1], map);
+            });
+        }
+        Worker all;
+        for (const Worker& worker : workers) {
+            all.covered += worker.covered;
+            all.trace_ms += worker.trace_ms;
+            all.encode_ms += worker.encode_ms;
+        }
+        // The threads' times, scaled to the time that passed.
+        const double share = stripe_ms / std::max(all.trace_ms + all.encode_ms, 1e-9);
+        report.trace_ms += share * all.trace_ms;
+        report.encode_ms += share * all.encode_ms;
+        return all.covered;
+    }
+
+    void trace(const View& view, RayEnd end, const RowRange& rows, Worker& worker) const {
+        std::vector<Hit>& hits = worker.hits[static_cast<std::size_t>(end)];
+        if (!view.keeps(end)) {
+            hits.clear();
+            return;
+        }
+        hits.resize(std::size_t{rows.end - rows.begin} * view.width);
+        scene_.traceRows(view, end, rows, hits);
+    }
+
+    const TriangleMesh& mesh_;
+    const RayScene& scene_;
+    const NormalTable& normals_;
+};
+
+/// Bakes all maps on the GPU. \param stripeDone  called with the number of texels finished.
+template <class StripeDone>
+Result<void> rasterizeMaps(const TriangleMesh& mesh, const std::vector<Job>& jobs, Baked& baked,
+                           const StripeDone& stripeDone) {
+    BakeReport& report = baked.report;
+    std::optional<Result<Rasterizer>> rasterizer;
+    {
+        const Stopwatch watch(report.build_ms);
+        rasterizer.emplace(Rasterizer::create(mesh));
+    }
+    if (!*rasterizer) {
+        return forward(*rasterizer);
+    }
+    const Stopwatch watch(report.raster_ms);
+    for (const Job& job : jobs) {
+        MapReport map_report{job.spec, 0, job.texels()};
+        Result<DepthMap> map =
+            (*rasterizer)->bake(job.view, job.spec.decode, map_report.covered, [&](std::uint32_t rows) {
+                stripeDone(std::uint64_t{rows} * job.view.width);
+            });
+        if (!map) {
+            return forward(map);
+        }
+        baked.collider.maps.push_back(std::move(*map));
+        report.maps.push_back(std::move(map_report));
+    }
+    return {};
+}
+
+/// Bakes all maps by rays.
+template <class StripeDone>
+Result<void> raycastMaps(const TriangleMesh& mesh, const std::vector<Job>& jobs, const BakeOptions& options,
+                         std::uint64_t texels, Baked& baked, const StripeDone& stripeDone) {
+    BakeReport& report = baked.report;
+    std::optional<Result<RayScene>> scene;
+    {
+        const Stopwatch watch(report.build_ms);
+        scene.emplace(RayScene::build(mesh));
+    }
+    if (!*scene) {
+        return forward(*scene);
+    }
+    std::optional<NormalTable> normals;
+    {
+        const Stopwatch watch(report.encode_ms);
+        normals.emplace(mesh, (*scene)->winding(), texels);
+    }
+    MapBaker baker(mesh, **scene, *normals);
+    std::optional<TriangleNormals> unit_normals;
+    for (const Job& job : jobs) {
+        MapReport map_report{job.spec, 0, job.texels()};
+        if (job.spec.decode == Decode::kPlane) {
+            const Stopwatch watch(report.fit_ms);
+            if (!unit_normals) {
+                unit_normals.emplace(mesh);
+            }
+            baked.collider.maps.push_back(bakeFittedMap(
+                **scene, *unit_normals, job.view, fitOptions(mesh, job.view, options), map_report.covered,
+                [&](std::uint32_t rows) { stripeDone(std::uint64_t{rows} * job.view.width); }));
+        } else {
+            baked.collider.maps.push_back(baker.bake(job.view, report, map_report.covered, stripeDone));
+        }
+        report.maps.push_back(std::move(map_report));
+    }
+    return {};
+}
+
+Result<Baked> bakeOnThisArena(const TriangleMesh& mesh, const BakeOptions& options) {
+    const Result<std::vector<Job>> jobs = planJobs(mesh, options);
+    if (!jobs) {
+        return forward(jobs);
+    }
+    std::uint64_t texels = 0;
+    bool has_planes = false;
+    for (const Job& job : *jobs) {
+        texels += job.texels();
+        has_planes = has_planes || job.spec.decode == Decode::kPlane;
+    }
+
+    Baked baked;
+    BakeReport& report = baked.report;
+    std::uint64_t done = 0;
+    const auto stripeDone = [&](std::uint64_t stripe) {
+        done += stripe;
+        if (options.progress) {
+            options.progress(static_cast<double>(done) / static_cast<double>(texels));
+        }
+    };
+    if (const Result<void> all = options.rasterize
+                                     ? rasterizeMaps(mesh, *jobs, baked, stripeDone)
+                                     : raycastMaps(mesh, *jobs, options, texels, baked, stripeDone);
+        !all) {
+        return forward(all);
+    }
+    std::uint64_t all_covered = 0;
+    for (const MapReport& map : report.maps) {
+        all_covered += map.covered;
+    }
+    if (all_covered == 0) {
+        return fail(
+            ErrorCode::kFailure,
+            mesh.name +
+                ": no map sees a surface of the mesh; raise the maps' sizes, or change their dir or box");
+    }
+    const bool refine = options.quality != Quality::kFast || options.prefer != Prefer::kNeither;
+    if (has_planes && refine && !options.rasterize) {
+        const Stopwatch watch(report.refine_ms);
+        const Result<MeshQuery> query = MeshQuery::build(mesh);
+        if (!query) {
+            return forward(query);
+        }
+        refineTexels(baked.collider, mesh, *query, refineOptions(options));
+    }
+    warnAbout(mesh, *jobs, report);
+
+    baked.collider.bounds = mesh.bounds;
+    baked.collider.unit = mesh.unit;
+    baked.collider.provenance = {mesh.name, mesh.content_hash, mesh.sourceTriangles(),
+                                 "relief " RELIEF_VERSION, effectiveOptions(*jobs, options)};
+    return baked;
+}
+
+}  // namespace
+
+Result<Baked> bake(const TriangleMesh& mesh, const BakeOptions& options) {
+    // A GL context is one thread's: no arena that could run it on another.
+    if (options.threads == 0 || options.rasterize) {
+        return bakeOnThisArena(mesh, options);
+    }
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, options.threads);
+    tbb::task_arena arena(static_cast<int>(options.threads));
+    std::optional<Result<Baked>> result;
+    arena.execute([&] { result.emplace(bakeOnThisArena(mesh, options)); });
+    return std::move(*result);
+}
+
+}  // namespace relief

@@ -1,0 +1,56 @@
+// The pipeline: mesh -> views -> samples -> texels -> collider.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "bake/mesh/mesh.h"
+#include "bake/plan/map_spec.h"
+#include "bake/plan/prefer.h"
+#include "formats/base/result.h"
+#include "formats/collider.h"
+
+namespace relief {
+
+struct BakeOptions {
+    std::vector<MapSpec> maps;       ///< empty: paperMapSpecs()
+    std::uint32_t resolution = 512;  ///< texels along a side, for maps whose spec names no size
+    Quality quality = Quality::kNormal;
+    Prefer prefer = Prefer::kNeither;
+    unsigned threads = 0;  ///< 0: all cores. Never changes the result.
+    /// On the GPU (rasterize.h) instead of by rays: needs a current context, and quality and prefer have no
+    /// effect. Not the same bytes on every machine.
+    bool rasterize = false;
+    /// Called now and then, from the calling thread, with the share of the work done, in [0, 1].
+    std::function<void(double)> progress;
+};
+
+struct MapReport {
+    MapSpec spec;               ///< complete
+    std::uint64_t covered = 0;  ///< texels with a surface
+    std::uint64_t texels = 0;
+};
+
+struct BakeReport {
+    double build_ms = 0.0;   ///< acceleration structure
+    double trace_ms = 0.0;   ///< rays
+    double encode_ms = 0.0;  ///< normals and texels
+    double fit_ms = 0.0;     ///< rays and planes of the maps whose decode is plane
+    double raster_ms = 0.0;  ///< maps of the GPU, read back
+    double refine_ms = 0.0;  ///< texels of those maps chosen anew, knowing the other maps
+    std::vector<MapReport> maps;
+    std::vector<std::string> warnings;  ///< what is probably not meant; one line each
+};
+
+struct Baked {
+    Collider collider;
+    BakeReport report;
+};
+
+/// Errors: kUsage and kLimit (a spec, the resolution, too many maps or texels), kFailure (Embree; no ray of
+/// any map meets the mesh); with rasterize those of rasterize.h too.
+[[nodiscard]] Result<Baked> bake(const TriangleMesh& mesh, const BakeOptions& options);
+
+}  // namespace relief

@@ -1,0 +1,119 @@
+#include "bake/pipeline/budget_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+namespace relief {
+namespace {
+
+constexpr std::uint64_t kGrowth = 4;
+constexpr int kBisections = 4;
+
+std::string megabytes(std::uint64_t bytes) {
+    char text[32];
+    std::snprintf(text, sizeof(text), "%.3g MB", static_cast<double>(bytes) / 1e6);
+    return text;
+}
+
+std::string percentText(double percent) {
+    char text[32];
+    std::snprintf(text, sizeof(text), "%.3g %%", percent);
+    return text;
+}
+
+class Search {
+  public:
+    Search(const MeshQuery& query, const MeshQuery& truth, const BudgetSearchOptions& options)
+        : query_(query), options_(options), truth_(sampleTruth(truth, options.accuracy)) {}
+
+    Result<BudgetSearchResult> run() {
+        const std::uint64_t most = options_.budget_max;
+        std::uint64_t failed = 0;
+        for (std::uint64_t budget = std::min(options_.budget_min, most);;
+             budget = std::min(budget * kGrowth, most)) {
+            const Result<bool> kept = keeps(budget);
+            // Too few bytes for the maps that the mesh needs: no answer yet.
+            const bool too_few = !kept && kept.error().code == ErrorCode::kUsage && budget < most;
+            if (!kept && !too_few) {
+                return forward(kept);
+            }
+            if (kept && *kept) {
+                break;
+            }
+            if (budget == most) {
+                return notReached();
+            }
+            failed = budget;
+        }
+        for (int i = 0; i < kBisections && failed > 0; ++i) {
+            const auto middle = static_cast<std::uint64_t>(
+                std::sqrt(static_cast<double>(failed) * static_cast<double>(best_->chosen.budget)));
+            const Result<bool> kept = keeps(middle);
+            if (!kept && kept.error().code != ErrorCode::kUsage) {
+                return forward(kept);
+            }
+            if (!kept || !*kept) {
+                failed = middle;
+            }
+        }
+        best_->tries = std::move(tries_);
+        return std::move(*best_);
+    }
+
+  private:
+    /// Bakes with this budget; what keeps the promise is kept as the best so far.
+    Result<bool> keeps(std::uint64_t budget) {
+        PlanOptions plan_options;
+        plan_options.budget_bytes = budget;
+        plan_options.prefer = options_.bake.prefer;
+        Result<Plan> plan = planViews(query_.mesh(), query_, plan_options);
+        if (!plan) {
+            return forward(plan);
+        }
+        BakeOptions bake_options = options_.bake;
+        bake_options.maps = specsOf(*plan);
+        Result<Baked> baked = bake(query_.mesh(), bake_options);
+        if (!baked) {
+            return forward(baked);
+        }
+        const double wrong = measureField(truth_, fieldOf(baked->collider)).near.total();
+        const BudgetTry made{budget, plan->bytes, wrong};
+        tries_.push_back(made);
+        if (options_.tried) {
+            options_.tried(made);
+        }
+        if (!(wrong <= options_.max_error_percent)) {
+            return false;
+        }
+        best_ = BudgetSearchResult{std::move(*plan), std::move(*baked), made, {}};
+        return true;
+    }
+
+    [[nodiscard]] tl::unexpected<Error> notReached() const {
+        const auto best = std::min_element(
+            tries_.begin(), tries_.end(),
+            [](const BudgetTry& a, const BudgetTry& b) { return a.wrong_percent < b.wrong_percent; });
+        return fail(ErrorCode::kDifference,
+                    query_.mesh().name + ": --max-error " + percentText(options_.max_error_percent) +
+                        " is not reached within " + megabytes(options_.budget_max) + "; the best is " +
+                        percentText(best->wrong_percent) + " with " + megabytes(best->bytes) + " (" +
+                        std::to_string(best->bytes) + " bytes); raise --max-error or --budget");
+    }
+
+    const MeshQuery& query_;
+    const BudgetSearchOptions& options_;
+    TruthSamples truth_;
+    std::vector<BudgetTry> tries_;
+    std::optional<BudgetSearchResult> best_;
+};
+
+}  // namespace
+
+Result<BudgetSearchResult> bakeForError(const MeshQuery& query, const MeshQuery& truth,
+                                        const BudgetSearchOptions& options) {
+    return Search(query, truth, options).run();
+}
+
+}  // namespace relief

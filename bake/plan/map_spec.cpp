@@ -1,0 +1,358 @@
+#include "bake/plan/map_spec.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "formats/base/text.h"
+
+namespace relief {
+namespace {
+
+constexpr std::array<std::string_view, 4> kFormatWords = {"float", "fixed8", "front-back", "cube"};
+constexpr std::array<std::string_view, 8> kKeys = {"dir",    "up",  "size",  "compare",
+                                                   "center", "box", "depth", "decode"};
+constexpr std::array<std::string_view, 2> kCompareWords = {"less", "greater"};
+constexpr std::array<std::string_view, 2> kDepthWords = {"half", "unorm16"};
+constexpr std::array<std::string_view, 2> kDecodeWords = {"projected", "plane"};
+
+/// Of the angle between up and dir: below it, rounding would turn the image.
+constexpr double kUpSineMin = 1e-4;
+
+struct AxisWord {
+    std::string_view word;
+    glm::vec3 direction;
+};
+constexpr std::array<AxisWord, 9> kAxisWords = {{{"+x", {1, 0, 0}},
+                                                 {"-x", {-1, 0, 0}},
+                                                 {"+y", {0, 1, 0}},
+                                                 {"-y", {0, -1, 0}},
+                                                 {"+z", {0, 0, 1}},
+                                                 {"-z", {0, 0, -1}},
+                                                 {"x", {1, 0, 0}},
+                                                 {"y", {0, 1, 0}},
+                                                 {"z", {0, 0, 1}}}};
+
+tl::unexpected<Error> usage(const std::string& message) {
+    return fail(ErrorCode::kUsage, message);
+}
+
+tl::unexpected<Error> badValue(std::string_view key, std::string_view value, const std::string& wanted) {
+    return usage(std::string(key) + " is '" + cleanUtf8(value) + "' but must be " + wanted);
+}
+
+template <std::size_t N>
+std::optional<std::array<float, N>> parseNumbers(std::string_view value) {
+    const std::vector<std::string_view> parts = split(value, '/');
+    if (parts.size() != N) {
+        return std::nullopt;
+    }
+    std::array<float, N> numbers{};
+    for (std::size_t i = 0; i < N; ++i) {
+        const std::optional<float> number = parseFloat(parts[i]);
+        if (!number) {
+            return std::nullopt;
+        }
+        numbers[i] = *number + 0.0F;  // −0 becomes 0, so that one setting has one text
+    }
+    return numbers;
+}
+
+Result<glm::vec3> parseDirection(std::string_view key, std::string_view value) {
+    for (const AxisWord& axis : kAxisWords) {
+        if (axis.word == value) {
+            return axis.direction;
+        }
+    }
+    const std::optional<std::array<float, 3>> numbers = parseNumbers<3>(value);
+    if (!numbers || *numbers == std::array<float, 3>{}) {
+        return badValue(key, value, "+x, -x, +y, -y, +z, -z or a vector a/b/c that is not 0/0/0");
+    }
+    return glm::vec3((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+}
+
+std::string directionText(const glm::vec3& direction) {
+    for (const AxisWord& axis : kAxisWords) {
+        if (axis.direction == direction) {
+            return std::string(axis.word);
+        }
+    }
+    return shortest(direction);
+}
+
+}  // namespace
+
+MapSpecBuilder::MapSpecBuilder(const MapSpecDefaults& defaults) : defaults_(defaults) {
+    spec_.format = defaults.front_back;
+    spec_.decode = defaults.decode;
+}
+
+Result<void> MapSpecBuilder::setFormat(std::string_view word) {
+    const auto* found = std::find(kFormatWords.begin(), kFormatWords.end(), word);
+    if (found == kFormatWords.end()) {
+        const std::string guess = didYouMean(word, kFormatWords);
+        return usage("unknown format '" + cleanUtf8(word) + "'" +
+                     (guess.empty() ? "; use one of " + listed(kFormatWords) : guess));
+    }
+    spec_.format = static_cast<MapFormat>(found - kFormatWords.begin());
+    if (isFrontBack(spec_.format)) {
+        spec_.format = defaults_.front_back;
+    }
+    return {};
+}
+
+bool MapSpecBuilder::knows(std::string_view key) {
+    return std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end();
+}
+
+Result<void> MapSpecBuilder::set(std::string_view key, std::string_view value) {
+    const auto* found = std::find(kKeys.begin(), kKeys.end(), key);
+    if (found == kKeys.end()) {
+        const std::string guess = didYouMean(key, kKeys);
+        return usage("unknown key '" + cleanUtf8(key) + "'" +
+                     (guess.empty() ? "; use one of " + listed(kKeys) : guess));
+    }
+    bool& seen = seen_.at(static_cast<std::size_t>(found - kKeys.begin()));
+    if (seen) {
+        return usage(std::string(key) + " is given twice; keep one");
+    }
+    seen = true;
+    if (key == "dir") {
+        return setDirection(value);
+    }
+    if (key == "up") {
+        return setUp(value);
+    }
+    if (key == "size") {
+        return setSize(value);
+    }
+    if (key == "compare") {
+        return setCompare(value);
+    }
+    if (key == "depth") {
+        return setDepth(value);
+    }
+    if (key == "decode") {
+        return setDecode(value);
+    }
+    return key == "center" ? setCenter(value) : setBox(value);
+}
+
+Result<MapSpec> MapSpecBuilder::finish() const {
+    if (isCube() && spec_.center && spec_.box) {
+        return usage("a cube with a box is centred on the box; leave out center or box");
+    }
+    if (const Result<void> up = checkUp(spec_); !up) {
+        return forward(up);
+    }
+    return spec_;
+}
+
+Result<void> MapSpecBuilder::setDirection(std::string_view value) {
+    if (isCube()) {
+        return usage("dir does nothing for a cube, which looks all round; leave it out");
+    }
+    const Result<glm::vec3> direction = parseDirection("dir", value);
+    if (!direction) {
+        return forward(direction);
+    }
+    spec_.direction = *direction;
+    return {};
+}
+
+Result<void> MapSpecBuilder::setUp(std::string_view value) {
+    if (isCube()) {
+        return usage("up does nothing for a cube, whose faces lie along the axes; leave it out");
+    }
+    const Result<glm::vec3> up = parseDirection("up", value);
+    if (!up) {
+        return forward(up);
+    }
+    spec_.up = *up;
+    return {};
+}
+
+Result<void> MapSpecBuilder::setDepth(std::string_view value) {
+    if (!isFrontBack(spec_.format)) {
+        return usage("depth does nothing but for front-back; leave it out");
+    }
+    if (value != "half" && value != "unorm16") {
+        return badValue("depth", value, "half or unorm16" + didYouMean(value, kDepthWords));
+    }
+    spec_.format = value == "half" ? MapFormat::kFrontBackHalf : MapFormat::kFrontBackFixed;
+    return {};
+}
+
+Result<void> MapSpecBuilder::setDecode(std::string_view value) {
+    if (value != "projected" && value != "plane") {
+        return badValue("decode", value, "projected or plane" + didYouMean(value, kDecodeWords));
+    }
+    spec_.decode = value == "plane" ? Decode::kPlane : Decode::kProjected;
+    return {};
+}
+
+Result<void> MapSpecBuilder::setSize(std::string_view value) {
+    const std::vector<std::string_view> parts = split(value, 'x');
+    const std::optional<std::uint64_t> width = parseUnsigned(parts.front());
+    const std::optional<std::uint64_t> height = parseUnsigned(parts.back());
+    if (parts.size() > 2 || !width || !height || (isCube() && *width != *height)) {
+        return badValue("size", value, isCube() ? "N, as a cube's faces are square" : "N or WxH");
+    }
+    const Result<std::uint32_t> w = checkMapSize(*width, spec_.format, "size");
+    const Result<std::uint32_t> h = checkMapSize(*height, spec_.format, "size");
+    if (!w || !h) {
+        return w ? forward(h) : forward(w);
+    }
+    spec_.width = *w;
+    spec_.height = *h;
+    return {};
+}
+
+Result<void> MapSpecBuilder::setCompare(std::string_view value) {
+    if (isFrontBack(spec_.format)) {
+        return usage("compare does nothing for front-back, which keeps both surfaces; leave it out");
+    }
+    if (value != "less" && value != "greater") {
+        return badValue("compare", value, "less or greater" + didYouMean(value, kCompareWords));
+    }
+    spec_.compare = value == "less" ? Compare::kLess : Compare::kGreater;
+    return {};
+}
+
+Result<void> MapSpecBuilder::setCenter(std::string_view value) {
+    if (!isCube()) {
+        return usage("center does nothing but for a cube; use box to move an orthographic map");
+    }
+    const std::optional<std::array<float, 3>> numbers = parseNumbers<3>(value);
+    if (!numbers) {
+        return badValue("center", value, "three numbers a/b/c");
+    }
+    spec_.center = glm::vec3((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+    return {};
+}
+
+Result<void> MapSpecBuilder::setBox(std::string_view value) {
+    if (value == "tight") {
+        return {};
+    }
+    const std::optional<std::array<float, 6>> n = parseNumbers<6>(value);
+    if (!n) {
+        return badValue("box", value, "tight or two corners x0/y0/z0/x1/y1/z1");
+    }
+    Bounds box;
+    box.min = {(*n)[0], (*n)[1], (*n)[2]};
+    box.max = {(*n)[3], (*n)[4], (*n)[5]};
+    if (!(box.min.x < box.max.x && box.min.y < box.max.y && box.min.z < box.max.z)) {
+        return badValue("box", value, "two corners x0/y0/z0/x1/y1/z1 with x0 < x1, y0 < y1 and z0 < z1");
+    }
+    spec_.box = box;
+    return {};
+}
+
+Result<void> checkUp(const MapSpec& spec) {
+    if (!spec.up) {
+        return {};
+    }
+    // In double, and by the largest components first: squares of floats could overflow or vanish.
+    const auto unit = [](const glm::vec3& v) {
+        const float largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+        return glm::normalize(glm::dvec3(v) / static_cast<double>(largest));
+    };
+    if (!(glm::length(glm::cross(unit(spec.direction), unit(*spec.up))) > kUpSineMin)) {
+        return usage("up is parallel to dir, and so no side of the image; turn one of them");
+    }
+    return {};
+}
+
+Result<MapSpec> parseMapSpec(std::string_view text, const MapSpecDefaults& defaults) {
+    const auto read = [&]() -> Result<MapSpec> {
+        MapSpecBuilder builder(defaults);
+        const std::size_t colon = text.find(':');
+        if (const Result<void> format = builder.setFormat(text.substr(0, colon)); !format) {
+            return forward(format);
+        }
+        if (colon == std::string_view::npos) {
+            return builder.finish();
+        }
+        for (const std::string_view pair : split(text.substr(colon + 1), ',')) {
+            const std::size_t equals = pair.find('=');
+            const std::string_view key = pair.substr(0, equals);
+            if (equals == std::string_view::npos && MapSpecBuilder::knows(key)) {
+                return usage(std::string(key) + " has no value; write " + std::string(key) + "=…");
+            }
+            const std::string_view value = equals == std::string_view::npos ? "" : pair.substr(equals + 1);
+            if (const Result<void> set = builder.set(key, value); !set) {
+                return forward(set);
+            }
+        }
+        return builder.finish();
+    };
+    const Result<MapSpec> spec = read();
+    if (!spec) {
+        return fail(spec.error().code, "--map '" + cleanUtf8(text) + "': " + spec.error().message);
+    }
+    return spec;
+}
+
+std::string toString(const MapSpec& spec) {
+    const bool cube = spec.format == MapFormat::kCube8;
+    std::string text = mapFormatName(spec.format);
+    char separator = ':';
+    const auto add = [&](const char* key, const std::string& value) {
+        text.append(1, separator).append(key).append("=").append(value);
+        separator = ',';
+    };
+    if (!cube) {
+        add("dir", directionText(spec.direction));
+        if (spec.up) {
+            add("up", directionText(*spec.up));
+        }
+    }
+    if (spec.width != 0) {
+        add("size", cube ? std::to_string(spec.width)
+                         : std::to_string(spec.width) + "x" + std::to_string(spec.height));
+    }
+    if (spec.compare && !isFrontBack(spec.format)) {
+        add("compare", compareName(*spec.compare));
+    }
+    if (spec.center) {
+        add("center", shortest(*spec.center));
+    }
+    if (isFrontBack(spec.format)) {
+        add("depth", depthEncodingName(spec.format));
+    }
+    add("decode", decodeName(spec.decode));
+    add("box", spec.box ? shortest(spec.box->min) + '/' + shortest(spec.box->max) : "tight");
+    return text;
+}
+
+std::vector<MapSpec> paperMapSpecs() {
+    std::vector<MapSpec> specs(4);
+    for (MapSpec& spec : specs) {
+        spec.format = kPaperDefaults.front_back;
+        spec.decode = kPaperDefaults.decode;
+    }
+    specs[0].direction = {-1.0F, 0.0F, 0.0F};
+    specs[1].direction = {0.0F, -1.0F, 0.0F};
+    specs[2].direction = {0.0F, 0.0F, -1.0F};
+    specs[3].format = MapFormat::kCube8;
+    return specs;
+}
+
+Result<std::uint32_t> checkMapSize(std::uint64_t texels, MapFormat format, const std::string& what) {
+    const std::uint32_t smallest = format == MapFormat::kCube8 ? 1 : kMapSizeMin;
+    if (texels < smallest) {
+        return fail(ErrorCode::kUsage, what + " is " + std::to_string(texels) +
+                                           " texels but must be at least " + std::to_string(smallest));
+    }
+    if (texels > kMapSizeMax) {
+        const bool overflow = texels == std::numeric_limits<std::uint64_t>::max();
+        return fail(ErrorCode::kLimit, what + " is " + (overflow ? "far too many" : std::to_string(texels)) +
+                                           " texels; the limit is " + std::to_string(kMapSizeMax));
+    }
+    return static_cast<std::uint32_t>(texels);
+}
+
+}  // namespace relief

@@ -1,0 +1,118 @@
+// What the user asks of one map: `FORMAT[:key=value,...]`, the argument of `relief bake --map`, and the keys
+// of a [[map]] of a plan file (plan_file.h).
+//
+//     float                                     512² floats, seen along −z, nearest surface
+//     fixed8:dir=-y,size=1024x512               from above, 1024 texels wide
+//     front-back:dir=1/1/1,box=-1/-1/-1/1/1/1   both surfaces along a diagonal, of a part of the object
+//     cube:center=0/0.1/0,compare=less          all round a point in free space
+//
+// clang-format off
+//     key      value               formats             meaning
+//     dir      +x -x … -z, a/b/c   all but cube        the direction in which the view looks; -y looks down
+//     up       +x -x … -z, a/b/c   all but cube        the direction that points upwards in the image, as far as
+//                                                      it is square to dir; without it, view.h's rule
+//     size     N or WxH            all (cube: N)       texels, border included; a cube's along a face's edge
+//     compare  less, greater       all but front-back  keep the nearest or the farthest surface along the ray
+//     center   a/b/c               cube                where the rays of a cube start, object space
+//     depth    unorm16, half       front-back          16-bit fixed point, or the paper's half floats
+//     decode   plane, projected    all                 the distance to a plane that was fitted to the texel's
+//                                                      footprint, or the paper's: along the ray to a flat texel
+//     box      tight, or           all                 the part of object space that the map speaks for;
+//              x0/y0/z0/x1/y1/z1                       a cube with a box is centred on it
+// clang-format on
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/base/result.h"
+#include "formats/collider.h"
+#include "formats/depth_map.h"
+
+namespace relief {
+
+struct MapSpec {
+    MapFormat format = MapFormat::kFrontBackFixed;
+    /// kPlane: texels hold supporting planes (plane_fit.h); kProjected: the surface at their centre.
+    Decode decode = Decode::kPlane;
+    /// The view's direction in object space, of any length but 0; not for cubes.
+    glm::vec3 direction{0.0F, 0.0F, -1.0F};
+    /// Upwards in the image, in object space, of any length but 0; its part along `direction` does not count.
+    /// Not for cubes. nullopt: the rule of view.h.
+    std::optional<glm::vec3> up;
+    /// Texels; 0 stands for the default resolution of the bake.
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    /// Not for front-back. nullopt: less; for a cube, greater if its centre lies inside the mesh.
+    std::optional<Compare> compare;
+    /// Cubes only. nullopt: the middle of the box.
+    std::optional<glm::vec3> center;
+    /// Object space. nullopt: tight, round the whole mesh.
+    std::optional<Bounds> box;
+
+    friend bool operator==(const MapSpec&, const MapSpec&) = default;
+};
+
+/// What a text that does not say it stands for.
+struct MapSpecDefaults {
+    Decode decode = Decode::kPlane;
+    MapFormat front_back = MapFormat::kFrontBackFixed;  ///< or kFrontBackHalf
+};
+
+/// The texels of the paper.
+inline constexpr MapSpecDefaults kPaperDefaults{Decode::kProjected, MapFormat::kFrontBackHalf};
+
+/// Errors: kUsage (unknown or repeated key, value, a key that does nothing for this format, or up along dir),
+/// kLimit (size above kMapSizeMax). Messages quote `text` and say what would be right.
+[[nodiscard]] Result<MapSpec> parseMapSpec(std::string_view text, const MapSpecDefaults& defaults = {});
+
+/// Builds a spec from one key after another: of a --map, or of a plan file. Errors: those of parseMapSpec,
+/// but messages say only what is wrong: the caller puts before them where it is.
+class MapSpecBuilder {
+  public:
+    explicit MapSpecBuilder(const MapSpecDefaults& defaults = {});
+
+    /// Call it first: which keys do something depends on the format.
+    [[nodiscard]] Result<void> setFormat(std::string_view word);
+    [[nodiscard]] Result<void> set(std::string_view key, std::string_view value);
+    [[nodiscard]] static bool knows(std::string_view key);
+    /// Checks what no key can tell alone.
+    [[nodiscard]] Result<MapSpec> finish() const;
+
+  private:
+    [[nodiscard]] bool isCube() const { return spec_.format == MapFormat::kCube8; }
+    Result<void> setDepth(std::string_view value);
+    Result<void> setDecode(std::string_view value);
+    Result<void> setDirection(std::string_view value);
+    Result<void> setUp(std::string_view value);
+    Result<void> setSize(std::string_view value);
+    Result<void> setCompare(std::string_view value);
+    Result<void> setCenter(std::string_view value);
+    Result<void> setBox(std::string_view value);
+
+    MapSpecDefaults defaults_;
+    MapSpec spec_;
+    std::array<bool, 8> seen_{};  // by key
+};
+
+/// Errors: kUsage if up is (nearly) parallel to the direction, and so is no side of the image.
+[[nodiscard]] Result<void> checkUp(const MapSpec& spec);
+
+/// The canonical text, with every setting that has an effect: parseMapSpec(toString(s)) == s if s has a size.
+[[nodiscard]] std::string toString(const MapSpec& spec);
+
+/// The paper's set, of the paper's texels: three orthogonal front-back maps and one cube, without sizes.
+[[nodiscard]] std::vector<MapSpec> paperMapSpecs();
+
+/// Checks a number of texels along a side, of a --resolution or a size.
+/// \param what  names the option in the message.
+/// Errors: kUsage (too small), kLimit.
+[[nodiscard]] Result<std::uint32_t> checkMapSize(std::uint64_t texels, MapFormat format,
+                                                 const std::string& what);
+
+}  // namespace relief

@@ -1,0 +1,20 @@
+// What a bake of planes is told beside its maps: which mistake is worse, and how much work to spend.
+#pragma once
+
+#include <cstdint>
+
+namespace relief {
+
+/// Which of the two mistakes is worse, in maps whose decode is plane. kInside: doubtful space is solid, so
+/// that no particle enters a wall. kOutside: doubtful space is free, so that no free volume is lost.
+enum class Prefer : std::uint8_t { kNeither, kInside, kOutside };
+
+[[nodiscard]] const char* preferName(Prefer prefer);  ///< "neither", "inside" or "outside"
+
+/// How much work goes into the texels of maps whose decode is plane: rays along each side of a texel's
+/// footprint, and rounds of search among neighbouring normals.
+enum class Quality : std::uint8_t { kFast, kNormal, kBest };
+
+[[nodiscard]] const char* qualityName(Quality quality);  ///< "fast", "normal" or "best"
+
+}  // namespace relief

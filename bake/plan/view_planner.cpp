@@ -1,0 +1,483 @@
+#include "bake/plan/view_planner.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <limits>
+#include <optional>
+#include <random>
+
+#include "bake/mesh/oriented_box.h"
+#include "bake/mesh/surface_sampler.h"
+#include "bake/mesh/triangle_plane.h"
+#include "bake/plan/view.h"
+
+namespace relief {
+namespace {
+
+constexpr std::size_t kPoints = 12'000;
+/// Spread of the points off the surface, in units of the longest side: where particles are looked up.
+constexpr double kSpread = 0.005;
+/// Cosine of incidence from which on a point is served in full.
+constexpr double kFullCosine = 0.7;
+/// How well a point is served that a view sees from both sides: it is off a silhouette, through which a
+/// standing plane passes (plane_fit.h).
+constexpr float kSilhouette = 0.9F;
+/// An outer view must raise the mean service by this much,
+constexpr double kOuterGain = 0.004;
+/// and by this much once the mean service is kEnoughService: every map more costs each step of a simulation,
+/// and takes bytes from the others.
+constexpr double kOuterGainLater = 0.03;
+constexpr double kEnoughService = 0.96;
+/// Points served less than this are looked at from within.
+constexpr double kUnserved = 0.25;
+constexpr std::size_t kCavityMapsMax = 32;
+constexpr int kCavityCandidates = 100;
+/// Cubes reach this far at most, in units of the longest side.
+constexpr double kCavityReach = 0.3;
+/// Texels of a cube across the mean width of its volume: its faces are nearer to the centre than to the
+/// corners.
+constexpr double kCubeDensity = 0.775;
+
+double length(const glm::dvec3& v) {
+    return std::sqrt(dot(v, v));
+}
+
+/// A point of free space near the surface.
+struct PlanPoint {
+    glm::dvec3 position;
+    glm::dvec3 normal;  ///< of the surface, towards the point
+};
+
+std::vector<PlanPoint> drawPoints(const TriangleMesh& mesh, const MeshQuery& query, std::uint64_t seed) {
+    const SurfaceSampler sampler(mesh);
+    struct Draw {
+        PlanPoint point;
+        bool free = false;
+    };
+    std::vector<Draw> draws(kPoints);
+    const double side = mesh.bounds.longestSide();
+    tbb::parallel_for(std::size_t{0}, kPoints, [&](std::size_t i) {
+        MersenneRandom random(seed * 0x9e3779b97f4a7c15ULL + i);
+        // Stratified over the area.
+        const double at = (static_cast<double>(i) + random.uniform()) / static_cast<double>(kPoints);
+        const auto [surface, normal] = sampler.draw(at, random);
+        const double offset = side * std::max(5e-5, kSpread * std::abs(random.normal()));
+        // Winding is not trusted: the free side is the one that is not inside; of two free sides, the front.
+        for (const double sign : {1.0, -1.0}) {
+            const glm::dvec3 position = surface + sign * offset * normal;
+            if (!query.inside(glm::vec3(position))) {
+                draws[i] = {{position, sign * normal}, true};
+                return;
+            }
+        }
+    });
+    std::vector<PlanPoint> points;
+    for (const Draw& draw : draws) {
+        if (draw.free) {
+            points.push_back(draw.point);
+        }
+    }
+    return points;
+}
+
+/// How well a point is served by a view that sees it under this cosine.
+float service(double cosine) {
+    return static_cast<float>(std::min(1.0, 0.3 + 0.7 * std::max(cosine, 0.05) / kFullCosine));
+}
+
+/// A direction to look along, and how its image is turned; nullopt: by the rule of view.h.
+struct Candidate {
+    glm::dvec3 direction;
+    std::optional<glm::dvec3> up;
+};
+
+/// Directions of the octahedron's lattice, one of each opposite pair, and the diagonals of the box.
+std::vector<glm::dvec3> outerDirections(const Bounds& bounds) {
+    std::vector<glm::dvec3> directions = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const glm::dvec3 size = bounds.size();
+    for (const double y : {-1.0, 1.0}) {
+        for (const double z : {-1.0, 1.0}) {
+            directions.emplace_back(size.x, y * size.y, z * size.z);
+        }
+    }
+    constexpr int kLattice = 4;
+    for (int j = -kLattice; j <= kLattice; ++j) {
+        for (int i = -kLattice; i <= kLattice; ++i) {
+            const int k = kLattice - std::abs(i) - std::abs(j);
+            const bool opposite_comes = k == 0 && (j < 0 || (j == 0 && i < 0));
+            const bool axis = (i == 0) + (j == 0) + (k == 0) == 2;
+            if (k >= 0 && !opposite_comes && !axis) {
+                directions.emplace_back(i, j, k);
+            }
+        }
+    }
+    const double least = 1e-6 * length(size);
+    std::erase_if(directions, [&](const glm::dvec3& d) { return !(length(d) > std::min(least, 0.5)); });
+    for (glm::dvec3& direction : directions) {
+        direction /= length(direction);
+    }
+    return directions;
+}
+
+/// Area of the rectangle round the points as a view with this frame shows them.
+double rectangleArea(const std::vector<glm::dvec3>& points, const glm::dvec3& direction,
+                     const glm::dvec3& up) {
+    const glm::dvec3 right = cross(direction, up) / length(cross(direction, up));
+    const glm::dvec3 upwards = cross(right, direction);
+    glm::dvec2 low(std::numeric_limits<double>::max());
+    glm::dvec2 high(std::numeric_limits<double>::lowest());
+    for (const glm::dvec3& p : points) {
+        const glm::dvec2 at(dot(p, right), dot(p, upwards));
+        low = glm::min(low, at);
+        high = glm::max(high, at);
+    }
+    return (high.x - low.x) * (high.y - low.y);
+}
+
+/// The outer directions and the axes of the oriented box, each turned by the axis of that box that makes its
+/// rectangle clearly smaller than the rule of view.h does.
+std::vector<Candidate> outerCandidates(const TriangleMesh& mesh, bool oriented_box) {
+    std::vector<Candidate> candidates;
+    for (const glm::dvec3& direction : outerDirections(mesh.bounds)) {
+        candidates.push_back({direction, std::nullopt});
+    }
+    if (!oriented_box) {
+        return candidates;
+    }
+    const std::vector<glm::dvec3> corners = extremeVertices(mesh);
+    const std::optional<std::array<glm::dvec3, 3>> axes = orientedBoxAxes(corners);
+    if (!axes) {
+        return candidates;
+    }
+    for (const glm::dvec3& axis : *axes) {
+        const bool known = std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& candidate) {
+            return std::abs(dot(candidate.direction, axis)) > 1.0 - 1e-9;
+        });
+        if (!known) {
+            candidates.push_back({axis, std::nullopt});
+        }
+    }
+    for (Candidate& candidate : candidates) {
+        double least = 0.99 * rectangleArea(corners, candidate.direction, defaultUp(candidate.direction));
+        for (const glm::dvec3& axis : *axes) {
+            if (std::abs(dot(candidate.direction, axis)) > 0.9) {
+                continue;
+            }
+            const double area = rectangleArea(corners, candidate.direction, axis);
+            if (area < least) {
+                least = 0.999999 * area;  // of equals, as of opposite faces of a cube, the first
+                candidate.up = axis;
+            }
+        }
+    }
+    return candidates;
+}
+
+std::string text(const char* format, double a, double b = 0.0, double c = 0.0, double d = 0.0) {
+    char buffer[160];
+    std::snprintf(buffer, sizeof(buffer), format, a, b, c, d);
+    return buffer;
+}
+
+class Planner {
+  public:
+    Planner(const TriangleMesh& mesh, const MeshQuery& query, const PlanOptions& options)
+        : mesh_(mesh),
+          query_(query),
+          options_(options),
+          side_(mesh.bounds.longestSide()),
+          points_(drawPoints(mesh, query, options.seed)),
+          served_(points_.size(), 0.0F) {}
+
+    Result<Plan> run() {
+        if (const Result<void> ok = addOuterViews(); !ok) {
+            return forward(ok);
+        }
+        addCavityCubes();
+        return finish();
+    }
+
+  private:
+    struct OuterView {
+        MapSpec spec;
+        double width = 0.0;  ///< object units
+        double height = 0.0;
+        std::vector<float> service;
+    };
+
+    /// Bytes of a chosen map for texels of side 1.
+    struct Chosen {
+        PlannedMap map;
+        double width = 0.0;  ///< in object units; of a cube the mean width of its volume
+        double height = 0.0;
+        double area = 0.0;  ///< bytes · texel side²
+    };
+
+    Result<void> addOuterViews() {
+        std::vector<OuterView> views;
+        for (const Candidate& candidate : outerCandidates(mesh_, options_.oriented_box)) {
+            OuterView view;
+            view.spec.format = MapFormat::kFrontBackFixed;
+            view.spec.decode = Decode::kPlane;
+            view.spec.direction = glm::vec3(candidate.direction) + 0.0F;  // no −0, for the reason
+            if (candidate.up) {
+                view.spec.up = glm::vec3(*candidate.up);
+            }
+            view.spec.width = view.spec.height = 64;  // any: the extents do not depend on it
+            const Result<View> frame = makeView(view.spec, mesh_);
+            if (!frame) {
+                return forward(frame);
+            }
+            // The inner 62 of 64 texels cover the mesh.
+            view.width = length(frame->axis[0]) * 62.0 / 64.0;
+            view.height = length(frame->axis[1]) * 62.0 / 64.0;
+            views.push_back(std::move(view));
+        }
+        tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
+            const glm::dvec3 along(views[v].spec.direction);
+            views[v].service.resize(points_.size());
+            for (std::size_t i = 0; i < points_.size(); ++i) {
+                float best = 0.0F;
+                int free = 0;
+                for (const double sign : {1.0, -1.0}) {
+                    const float value = service(sign * dot(points_[i].normal, along));
+                    if (!query_.firstHit(points_[i].position, sign * along)) {
+                        best = std::max(best, value);
+                        ++free;
+                    }
+                }
+
+                views[v].service[i] = free == 2 ? std::max(best, kSilhouette) : best;
+            }
+        });
+        const auto count = static_cast<double>(points_.size());
+        double served = 0.0;
+        for (;;) {
+            const OuterView* best = nullptr;
+            double best_score = 0.0;
+            double best_gain = 0.0;
+            for (const OuterView& view : views) {
+                double gain = 0.0;
+                for (std::size_t i = 0; i < points_.size(); ++i) {
+                    gain += std::max(0.0F, view.service[i] - served_[i]);
+                }
+                const double score = gain / (view.width * view.height);
+                if (score > best_score) {
+                    best = &view;
+                    best_score = score;
+                    best_gain = gain;
+                }
+            }
+            const bool enough = served >= kEnoughService * count && options_.prefer != Prefer::kOutside;
+            const double least = enough ? kOuterGainLater : kOuterGain;
+            const bool worthwhile = best_gain >= least * count;
+            if (best == nullptr || (!worthwhile && !chosen_.empty())) {
+                return {};
+            }
+            served += best_gain;
+            std::size_t sees = 0;
+            for (std::size_t i = 0; i < points_.size(); ++i) {
+                served_[i] = std::max(served_[i], best->service[i]);
+                sees += best->service[i] > 0.0F ? 1U : 0U;
+            }
+            Chosen chosen;
+            chosen.map.spec = best->spec;
+            chosen.map.serves = best_gain / count;
+            const glm::vec3& d = best->spec.direction;
+            chosen.map.reason = text("both sides along (%.3g, %.3g, %.3g)", d.x, d.y, d.z) +
+                                text(" see %.1f %% of the surface; service +%.1f %%",
+                                     100.0 * static_cast<double>(sees) / count, 100.0 * best_gain / count);
+            chosen.width = best->width;
+            chosen.height = best->height;
+            chosen.area = 8.0 * best->width * best->height;
+            area_ += chosen.area;
+            outer_area_ = area_;
+            chosen_.push_back(std::move(chosen));
+        }
+    }
+
+    struct Cavity {
+        glm::dvec3 center{0.0};
+        glm::dvec3 half{0.0};  ///< of the volume
+        std::vector<std::pair<std::size_t, float>> service;
+        double gain = 0.0;
+        double area = 0.0;
+    };
+
+    void addCavityCubes() {
+        const double total = static_cast<double>(points_.size());
+        int idle_rounds = 0;
+        for (std::uint64_t round = 0; chosen_.size() < kCavityMapsMax && idle_rounds < 4; ++round) {
+            std::vector<std::size_t> unserved;
+            for (std::size_t i = 0; i < points_.size(); ++i) {
+                if (served_[i] < kUnserved) {
+                    unserved.push_back(i);
+                }
+            }
+            if (static_cast<double>(unserved.size()) < 0.0005 * total) {
+                return;
+            }
+            std::vector<Cavity> candidates(kCavityCandidates);
+            tbb::parallel_for(0, kCavityCandidates, [&](int k) {
+                candidates[static_cast<std::size_t>(k)] =
+                    lookFromWithin(unserved, options_.seed * 1'000'003 + round * kCavityCandidates +
+                                                 static_cast<std::uint64_t>(k));
+            });
+            const Cavity* best = nullptr;
+            double best_score = 0.0;
+            for (const Cavity& candidate : candidates) {
+                const double score = candidate.gain / (candidate.area + 0.002 * outer_area_);
+                if (score > best_score) {
+                    best = &candidate;
+                    best_score = score;
+                }
+            }
+            // Its bytes are taken from all other maps, whose texels grow: it must be worth that.
+            if (best == nullptr || best->gain / total < 0.02 * best->area / area_) {
+                ++idle_rounds;
+                continue;
+            }
+            take(*best, total);
+        }
+    }
+
+    void take(const Cavity& cavity, double total) {
+        for (const auto& [i, value] : cavity.service) {
+            served_[i] = std::max(served_[i], value);
+        }
+        Chosen chosen;
+        chosen.map.spec.format = MapFormat::kCube8;
+        chosen.map.spec.decode = Decode::kPlane;
+        chosen.map.spec.compare = Compare::kLess;
+        chosen.map.spec.box =
+            Bounds{glm::vec3(cavity.center - cavity.half), glm::vec3(cavity.center + cavity.half)};
+        chosen.map.serves = cavity.gain / total;
+        chosen.map.reason = text("a cavity round (%.4g, %.4g, %.4g): service +%.2f %%", cavity.center.x,
+                                 cavity.center.y, cavity.center.z, 100.0 * cavity.gain / total);
+        chosen.width = chosen.height = cubeWidth(cavity.half);
+        chosen.area = cavity.area;
+        area_ += chosen.area;
+        chosen_.push_back(std::move(chosen));
+    }
+
+    static double cubeWidth(const glm::dvec3& half) {
+        return 2.0 * kCubeDensity * std::max({half.x, half.y, half.z});
+    }
+
+    /// A cube in free space near some point that is not served, and what it would serve.
+    [[nodiscard]] Cavity lookFromWithin(const std::vector<std::size_t>& unserved, std::uint64_t seed) const {
+        MersenneRandom random(seed);
+        Cavity cavity;
+        const glm::dvec3 from = points_[unserved[random.below(unserved.size())]].position;
+        const glm::dvec3 direction = random.direction();
+        double free_length = kCavityReach * side_;
+        if (const auto hit = query_.firstHit(from, direction); hit && hit->along < free_length) {
+            free_length = hit->along;
+        }
+        cavity.center = from + (0.2 + 0.6 * random.uniform()) * free_length * direction;
+        for (const std::size_t i : unserved) {
+            const glm::dvec3 offset = points_[i].position - cavity.center;
+            const double distance = length(offset);
+            if (distance > kCavityReach * side_ || !(distance > 0.0) ||
+                !query_.segmentIsFree(cavity.center, points_[i].position)) {
+                continue;
+            }
+            const float value = service(-dot(points_[i].normal, offset) / distance);
+            cavity.service.emplace_back(i, value);
+            cavity.gain += std::max(0.0F, value - served_[i]);
+            for (int axis = 0; axis < 3; ++axis) {
+                cavity.half[axis] = std::max(cavity.half[axis], std::abs(offset[axis]));
+            }
+        }
+        cavity.half = 1.1 * cavity.half + glm::dvec3(1e-3 * side_);
+        const double width = cubeWidth(cavity.half);
+        cavity.area = 24.0 * width * width;
+        return cavity;
+    }
+
+    Result<Plan> finish() {
+        Plan plan;
+        const double budget = static_cast<double>(options_.budget_bytes);
+        // The border of orthographic maps takes bytes too: shrink until all fit.
+        for (double texel = std::sqrt(area_ / budget);; texel *= 1.002) {
+            plan = {};
+            plan.texel = texel;
+            bool smallest = true;
+            for (const Chosen& chosen : chosen_) {
+                PlannedMap map = chosen.map;
+                const bool cube = map.spec.format == MapFormat::kCube8;
+                const auto texels = [&](double extent) {
+                    const double count = extent / texel + (cube ? 0.0 : 2.0);
+                    return static_cast<std::uint32_t>(
+                        std::clamp(count, cube ? 2.0 : 3.0, double{kMapSizeMax}));
+                };
+                map.spec.width = texels(chosen.width);
+                map.spec.height = cube ? map.spec.width : texels(chosen.height);
+                smallest = smallest && map.spec.width <= 3 && map.spec.height <= 3;
+                plan.bytes += std::uint64_t{map.spec.width} * map.spec.height * (cube ? 24U : 8U);
+                plan.maps.push_back(std::move(map));
+            }
+            if (plan.bytes <= options_.budget_bytes) {
+                break;
+            }
+            if (smallest) {
+                return fail(ErrorCode::kUsage, "a budget of " + std::to_string(options_.budget_bytes) +
+                                                   " bytes is too small for the " +
+                                                   std::to_string(chosen_.size()) + " maps that " +
+                                                   mesh_.name + " needs; raise --budget");
+            }
+        }
+        std::size_t unseen = 0;
+        for (const float value : served_) {
+            unseen += value <= 0.0F ? 1U : 0U;
+        }
+        plan.unseen_percent = points_.empty()
+                                  ? 100.0
+                                  : 100.0 * static_cast<double>(unseen) / static_cast<double>(points_.size());
+        return plan;
+    }
+
+    const TriangleMesh& mesh_;
+    const MeshQuery& query_;
+    const PlanOptions& options_;
+    double side_;
+    std::vector<PlanPoint> points_;
+    std::vector<float> served_;  // of each point, 0…1
+    std::vector<Chosen> chosen_;
+    double area_ = 0.0;
+    double outer_area_ = 0.0;
+};
+
+}  // namespace
+
+std::vector<MapSpec> specsOf(const Plan& plan) {
+    std::vector<MapSpec> specs;
+    for (const PlannedMap& map : plan.maps) {
+        specs.push_back(map.spec);
+    }
+    return specs;
+}
+
+Result<Plan> planViews(const TriangleMesh& mesh, const MeshQuery& query, const PlanOptions& options) {
+    if (options.budget_bytes < kPlanBudgetMin) {
+        return fail(ErrorCode::kUsage, "a budget of " + std::to_string(options.budget_bytes) +
+                                           " bytes is below the least of " + std::to_string(kPlanBudgetMin));
+    }
+    Result<Plan> plan = Planner(mesh, query, options).run();
+    if (plan && plan->maps.empty()) {
+        return fail(ErrorCode::kFailure,
+                    mesh.name +
+                        ": no free space was found beside the surface, so that no view can "
+                        "be planned; name the maps by --map");
+    }
+    return plan;
+}
+
+}  // namespace relief

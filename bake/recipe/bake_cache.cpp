@@ -1,0 +1,221 @@
+#include "bake/recipe/bake_cache.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <system_error>
+
+#include "formats/base/file_io.h"
+#include "formats/base/hash.h"
+#include "formats/base/text.h"
+
+namespace relief {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::uint64_t kCacheBytesMax = std::uint64_t{256} << 20;
+constexpr const char* kFormat = "relief-cache";
+constexpr int kVersion = 1;
+
+/// Holds the lock of a folder. Without one where the file system knows none.
+class FolderLock {
+  public:
+    explicit FolderLock(const fs::path& folder)
+        : fd_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+        while (fd_ >= 0 && ::flock(fd_, LOCK_EX) != 0 && errno == EINTR) {
+        }
+    }
+    FolderLock(const FolderLock&) = delete;
+    FolderLock& operator=(const FolderLock&) = delete;
+    ~FolderLock() {
+        if (fd_ >= 0) {
+            ::close(fd_);
+        }
+    }
+
+  private:
+    int fd_;
+};
+
+const std::string* textOf(const Json& object, const char* key) {
+    const auto found = object.find(key);
+    return found == object.end() ? nullptr : found->get_ptr<const std::string*>();
+}
+
+std::optional<BakeCacheEntry> entryOf(const Json& json) {
+    BakeCacheEntry entry;
+    if (!json.is_object()) {
+        return std::nullopt;
+    }
+    const std::string* tool = textOf(json, "tool");
+    const std::string* hash = textOf(json, "output_hash");
+    const auto bytes = json.find("output_bytes");
+    const auto options = json.find("options");
+    const auto inputs = json.find("inputs");
+    if (tool == nullptr || hash == nullptr || bytes == json.end() || !bytes->is_number_unsigned() ||
+        options == json.end() || !options->is_array() || inputs == json.end() || !inputs->is_array()) {
+        return std::nullopt;
+    }
+    entry.tool = *tool;
+    entry.output_hash = *hash;
+    entry.output_bytes = bytes->get<std::uint64_t>();
+    for (const Json& option : *options) {
+        if (!option.is_string()) {
+            return std::nullopt;
+        }
+        entry.options.push_back(option.get<std::string>());
+    }
+    for (const Json& input : *inputs) {
+        const std::string* file = input.is_object() ? textOf(input, "file") : nullptr;
+        const std::string* content = input.is_object() ? textOf(input, "hash") : nullptr;
+        if (file == nullptr || content == nullptr) {
+            return std::nullopt;
+        }
+        entry.inputs.push_back({*file, *content});
+    }
+    // An entry without inputs would hold for ever.
+    return entry.inputs.empty() ? std::nullopt : std::optional(entry);
+}
+
+}  // namespace
+
+Result<std::string> toolIdentity() {
+    const fs::path self = "/proc/self/exe";
+    const auto bytes = readFile(self);
+    if (!bytes) {
+        return forward(bytes);
+    }
+    std::string identity = std::string("relief ") + RELIEF_VERSION + " " + xxh3_128Hex(*bytes);
+    // The program that reads meshes for it, where that lies beside it.
+    std::error_code error;
+    const fs::path importer = fs::read_symlink(self, error).parent_path() / "relief-import";
+    if (const std::optional<std::string> hash = hashOfFile(importer); hash) {
+        identity += " " + *hash;
+    }
+    return identity;
+}
+
+std::optional<std::string> hashOfFile(const fs::path& path) {
+    std::error_code error;
+    if (!fs::is_regular_file(path, error)) {
+        return std::nullopt;
+    }
+    const auto bytes = readFile(path);
+    return bytes ? std::optional(xxh3_128Hex(*bytes)) : std::nullopt;
+}
+
+Result<BakeCacheEntries> parseBakeCache(std::string_view text) {
+    const auto invalid = [] {
+        return fail(ErrorCode::kInvalidInput, "its contents are not those of a cache");
+    };
+    const Json json = Json::parse(text, nullptr, false);
+    if (json.is_discarded() || !json.is_object()) {
+        return invalid();
+    }
+    const std::string* format = textOf(json, "format");
+    const auto version = json.find("version");
+    const auto outputs = json.find("outputs");
+    if (format == nullptr || *format != kFormat || version == json.end() || *version != kVersion ||
+        outputs == json.end() || !outputs->is_object()) {
+        return invalid();
+    }
+    BakeCacheEntries entries;
+    for (const auto& [name, value] : outputs->items()) {
+        std::optional<BakeCacheEntry> entry = entryOf(value);
+        if (!entry) {
+            return invalid();
+        }
+        entries.insert_or_assign(name, std::move(*entry));
+    }
+    return entries;
+}
+
+std::string bakeCacheText(const BakeCacheEntries& entries) {
+    Json outputs = Json::object();
+    for (const auto& [name, entry] : entries) {
+        Json inputs = Json::array();
+        for (const InputFile& input : entry.inputs) {
+            inputs.push_back({{"file", cleanUtf8(input.path)}, {"hash", input.hash}});
+        }
+        outputs[cleanUtf8(name)] = {{"tool", entry.tool},
+                                    {"options", entry.options},
+                                    {"inputs", std::move(inputs)},
+                                    {"output_hash", entry.output_hash},
+                                    {"output_bytes", entry.output_bytes}};
+    }
+    const Json json = {{"format", kFormat}, {"version", kVersion}, {"outputs", std::move(outputs)}};
+    return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Result<BakeCacheEntries> loadBakeCache(const fs::path& output_folder) {
+    const fs::path path = output_folder / kBakeCacheName;
+    std::error_code error;
+    if (!fs::exists(fs::symlink_status(path, error))) {
+        return BakeCacheEntries{};
+    }
+    if (!fs::is_regular_file(path, error)) {
+        return fail(ErrorCode::kInvalidInput, quotedPath(path) + ": it is not a regular file");
+    }
+    const auto bytes = readFile(path, kCacheBytesMax);
+    if (!bytes) {
+        return forward(bytes);
+    }
+    Result<BakeCacheEntries> entries =
+        parseBakeCache({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+    if (!entries) {
+        return fail(entries.error().code, quotedPath(path) + ": " + entries.error().message);
+    }
+    return entries;
+}
+
+Result<void> updateBakeCache(const fs::path& output_folder, const BakeCacheEntries& entries) {
+    const FolderLock lock(output_folder);
+    // What cannot be read is replaced.
+    BakeCacheEntries all = loadBakeCache(output_folder).value_or(BakeCacheEntries{});
+    for (const auto& [name, entry] : entries) {
+        all.insert_or_assign(name, entry);
+    }
+    std::erase_if(all, [&](const auto& named) {
+        std::error_code error;
+        return !fs::exists(output_folder / named.first, error);
+    });
+    const std::string text = bakeCacheText(all);
+    return writeFile(output_folder / kBakeCacheName, std::as_bytes(std::span(text)));
+}
+
+std::optional<std::string> staleness(const RecipeJob& job, const BakeCacheEntry* entry,
+                                     const std::string& tool, const fs::path& recipe_folder) {
+    std::error_code error;
+    if (!fs::exists(job.output_path, error)) {
+        return entry == nullptr ? "new" : "the output is gone";
+    }
+    if (entry == nullptr) {
+        return "nothing is known of the output";
+    }
+    if (entry->tool != tool) {
+        return "made by another version of relief";
+    }
+    if (entry->options != job.options) {
+        return "the options changed";
+    }
+    if (entry->inputs.front().path != job.mesh) {
+        return "the mesh is another";
+    }
+    for (const InputFile& input : entry->inputs) {
+        if (hashOfFile(recipe_folder / input.path) != input.hash) {
+            return quotedPath(input.path) + " changed";
+        }
+    }
+    if (hashOfFile(job.output_path) != entry->output_hash) {
+        return "the output changed";
+    }
+    return std::nullopt;
+}
+
+}  // namespace relief

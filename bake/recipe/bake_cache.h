@@ -1,0 +1,62 @@
+// What each output of a recipe was made from, so that what is up to date is not baked again.
+//
+// An entry says: these inputs, of these contents, with these options and this program, gave this output, of
+// this content. Baking is deterministic, so an entry that holds for the files as they are now proves that the
+// output is right, whoever wrote it, and one that does not only costs a bake. Contents are always hashed;
+// times are never looked at.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bake/recipe/depfile.h"
+#include "bake/recipe/recipe_jobs.h"
+#include "formats/base/result.h"
+
+namespace relief {
+
+struct BakeCacheEntry {
+    std::string tool;                  ///< toolIdentity()
+    std::vector<std::string> options;  ///< RecipeJob::options
+    std::vector<InputFile> inputs;     ///< from the recipe's folder; the mesh first
+    std::string output_hash;           ///< XXH3-128
+    std::uint64_t output_bytes = 0;
+
+    bool operator==(const BakeCacheEntry&) const = default;
+};
+
+/// By the output's name.
+using BakeCacheEntries = std::map<std::string, BakeCacheEntry>;
+
+/// "relief 0.1.0 HASH": another build is another tool. Errors: kIo.
+[[nodiscard]] Result<std::string> toolIdentity();
+
+/// XXH3-128 of a regular file's bytes; nullopt for anything else, or what cannot be read.
+[[nodiscard]] std::optional<std::string> hashOfFile(const std::filesystem::path& path);
+
+/// The entries of a cache file's text. Errors: kInvalidInput: no cache file of this version.
+[[nodiscard]] Result<BakeCacheEntries> parseBakeCache(std::string_view text);
+[[nodiscard]] std::string bakeCacheText(const BakeCacheEntries& entries);
+
+/// The cache file in an output folder; none is no error.
+/// Errors: kInvalidInput, kIo, kLimit: name the file; everything is to be baked again.
+[[nodiscard]] Result<BakeCacheEntries> loadBakeCache(const std::filesystem::path& output_folder);
+
+/// Puts entries into the cache file, beside those that others have put there meanwhile; entries of outputs
+/// that are gone are left out. Safe against any number of processes at once: the folder is locked (flock)
+/// meanwhile. Where it cannot be locked, entries may get lost, which costs a bake and is never wrong. Errors:
+/// kIo.
+[[nodiscard]] Result<void> updateBakeCache(const std::filesystem::path& output_folder,
+                                           const BakeCacheEntries& entries);
+
+/// Why a job has to be done, in a few words; nullopt if its output is up to date.
+/// \param entry  null if there is none.
+/// \param recipe_folder  where the names of inputs start.
+[[nodiscard]] std::optional<std::string> staleness(const RecipeJob& job, const BakeCacheEntry* entry,
+                                                   const std::string& tool,
+                                                   const std::filesystem::path& recipe_folder);
+
+}  // namespace relief

@@ -1,0 +1,75 @@
+// Programs run beside this one, several at once: each in a process group of its own, with nothing of ours but
+// what it is given, so that whatever happens to it happens to it alone.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "formats/base/result.h"
+
+namespace relief {
+
+/// How a child ended.
+struct ChildEnd {
+    std::size_t tag = 0;     ///< as given to start()
+    pid_t pid = 0;           ///< that it had
+    int exit_code = 0;       ///< valid if signal is 0
+    int signal = 0;          ///< that ended it
+    bool timed_out = false;  ///< it was ended for taking longer than its time
+    double ms = 0.0;         ///< from its start
+    std::string out;         ///< its standard output, at most kChildOutputMax of it
+    std::string err;         ///< its standard error: the end of it, at most kChildErrorMax
+};
+
+inline constexpr std::size_t kChildOutputMax = std::size_t{64} << 20;
+inline constexpr std::size_t kChildErrorMax = std::size_t{64} << 10;
+
+/// Signals that ask this process to end (INT, TERM, HUP) are held back while one of these lives, and told by
+/// wait(); those that are ignored stay ignored. Use one at a time, and from one thread.
+class ChildProcesses {
+  public:
+    ChildProcesses();
+    ChildProcesses(const ChildProcesses&) = delete;
+    ChildProcesses& operator=(const ChildProcesses&) = delete;
+    /// Ends what still runs, as endAll().
+    ~ChildProcesses();
+
+    /// Runs this same program again. Its standard input is empty; should this process die, it is ended too;
+    /// and where memory runs out, the system ends it before others. \param arguments  without the program's
+    /// name. \param seconds_max  of wall time; 0: any. Errors: kFailure: no process, or no pipe.
+    [[nodiscard]] Result<void> startSelf(const std::vector<std::string>& arguments, double seconds_max,
+                                         std::size_t tag);
+
+    [[nodiscard]] std::size_t running() const;
+
+    /// Waits until a child has ended, a signal asks to end, or for a while.
+    /// \return the children that have ended.
+    [[nodiscard]] std::vector<ChildEnd> wait(std::chrono::milliseconds at_most);
+
+    /// The signal that asked this process to end, 0 if none did. Looks without waiting.
+    [[nodiscard]] int askedToEnd();
+
+    /// Ends all children and theirs: politely, and after a second by force. \return how they ended.
+    std::vector<ChildEnd> endAll();
+
+    /// After everything is cleaned up: ends this process by the signal that asked for it.
+    [[noreturn]] static void endBySignal(int signal);
+
+  private:
+    struct Child;
+
+    void readSignals();
+    void collect(std::vector<ChildEnd>& ended);
+
+    std::vector<Child> children_;
+    int signal_fd_ = -1;
+    int asked_ = 0;
+    sigset_t mask_before_{};
+};
+
+}  // namespace relief

@@ -1,0 +1,89 @@
+#include "bake/recipe/depfile.h"
+
+#include <algorithm>
+#include <set>
+#include <span>
+
+#include "formats/base/file_io.h"
+
+namespace relief {
+namespace {
+
+constexpr std::string_view kEscaped = " #$:";
+
+/// A name that both programs read back as it is. They differ in what backslashes before an escaped character
+/// mean, and neither has an escape for a few others.
+Result<std::string> escaped(const std::string& name, bool target) {
+    const auto refuse = [&](const std::string& what) {
+        return fail(ErrorCode::kUnsupported, quotedPath(name) + " cannot stand in a depfile: " + what +
+                                                 " means something else to Make or Ninja; rename the file");
+    };
+    if (name.empty()) {
+        return refuse("an empty name");
+    }
+    std::string text;
+    for (std::size_t i = 0; i < name.size(); ++i) {
+        const char c = name[i];
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte < 0x20 || byte == 0x7f) {
+            return refuse("a control character");
+        }
+        if (c == ';' || c == '=' || (target && c == '%')) {
+            return refuse(std::string("'") + c + "'");
+        }
+        if (c == '\\' && (i + 1 == name.size() || kEscaped.find(name[i + 1]) != std::string_view::npos)) {
+            return refuse("a backslash there");
+        }
+        if (c == '$') {
+            text += "$$";
+        } else if (kEscaped.find(c) != std::string_view::npos) {
+            text += '\\';
+            text += c;
+        } else {
+            text += c;
+        }
+    }
+    return text;
+}
+
+}  // namespace
+
+Result<std::string> depfileText(const std::vector<std::string>& targets,
+                                const std::vector<std::string>& inputs) {
+    std::string text;
+    for (const std::string& target : targets) {
+        const Result<std::string> name = escaped(target, true);
+        if (!name) {
+            return forward(name);
+        }
+        text += (text.empty() ? "" : " ") + *name;
+    }
+    text += ":";
+    std::string empty_rules;
+    std::set<std::string> seen;
+    for (const std::string& input : inputs) {
+        if (!seen.insert(input).second) {
+            continue;
+        }
+        const Result<std::string> name = escaped(input, false);
+        if (!name) {
+            return forward(name);
+        }
+        text += " \\\n  " + *name;
+        if (seen.size() > 1) {
+            empty_rules += *name + ":\n";
+        }
+    }
+    return text + "\n" + empty_rules;
+}
+
+Result<void> writeDepfile(const std::filesystem::path& path, const std::vector<std::string>& targets,
+                          const std::vector<std::string>& inputs) {
+    const Result<std::string> text = depfileText(targets, inputs);
+    if (!text) {
+        return forward(text);
+    }
+    return writeFile(path, std::as_bytes(std::span(*text)));
+}
+
+}  // namespace relief

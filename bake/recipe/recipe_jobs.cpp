@@ -1,0 +1,276 @@
+#include "bake/recipe/recipe_jobs.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+#include <span>
+#include <system_error>
+
+#include "bake/recipe/glob.h"
+#include "formats/base/file_io.h"
+#include "formats/base/hash.h"
+#include "formats/base/text.h"
+#include "formats/config/confined_path.h"
+
+namespace relief {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kExtension = ".relief";
+/// Options whose value is a file to be read.
+constexpr std::array<std::string_view, 1> kFileOptions = {"plan"};
+
+using FileId = std::pair<dev_t, ino_t>;
+
+tl::unexpected<Error> at(const RecipePlace& place, const std::string& message,
+                         ErrorCode code = ErrorCode::kInvalidInput) {
+    return fail(code, place + ": " + message);
+}
+
+/// "x" -> "'x'", on one line.
+std::string inQuotes(const std::string& text) {
+    return "'" + cleanUtf8(text, 400) + "'";
+}
+
+class Expander {
+  public:
+    Expander(fs::path folder, fs::path output_folder)
+        : folder_(std::move(folder)), output_folder_(std::move(output_folder)) {}
+
+    Result<void> add(const RecipeAsset& asset) {
+        Result<std::vector<std::string>> meshes = meshesOf(asset);
+        if (!meshes) {
+            return forward(meshes);
+        }
+        RecipeOptions opened = asset.options;
+        for (const std::string_view name : kFileOptions) {
+            const auto found = opened.find(std::string(name));
+            if (found == opened.end()) {
+                continue;
+            }
+            for (std::string& value : found->second.values) {
+                const Result<fs::path> path = resolveInside(folder_, value, "recipe");
+                if (!path) {
+                    return at(found->second.place, found->first + " " + path.error().message);
+                }
+                inputs_.push_back({*path, found->second.place});
+                value = path->string();
+            }
+        }
+        const std::vector<std::string> arguments = recipeArguments(opened);
+        const std::vector<std::string> options = recipeArguments(asset.options);
+        for (const std::string& mesh : *meshes) {
+            if (result_.jobs.size() == kRecipeJobsMax) {
+                return at(asset.place,
+                          "more than " + std::to_string(kRecipeJobsMax) + " meshes; use several recipes",
+                          ErrorCode::kLimit);
+            }
+            if (const Result<void> done = addJob(asset, mesh, arguments, options); !done) {
+                return done;
+            }
+        }
+        return {};
+    }
+
+    /// Once all are known: no output may be an input.
+    Result<RecipeJobs> finish(const fs::path& recipe) {
+        if (recipe != "-") {
+            inputs_.push_back({recipe, ""});
+        }
+        std::map<FileId, const Input*> ids;
+        struct stat status {};
+        for (const Input& input : inputs_) {
+            if (::stat(input.path.c_str(), &status) == 0) {
+                ids.emplace(FileId(status.st_dev, status.st_ino), &input);
+            }
+        }
+        std::map<FileId, const RecipeJob*> outputs;
+        for (std::size_t i = 0; i < result_.jobs.size(); ++i) {
+            const RecipeJob& job = result_.jobs[i];
+            if (::stat(job.output_path.c_str(), &status) != 0) {
+                continue;
+            }
+            const FileId id(status.st_dev, status.st_ino);
+            if (const auto input = ids.find(id); input != ids.end()) {
+                return at(places_[i], "the output " + inQuotes(job.output) + " is the input " +
+                                          quotedPath(input->second->path) + "; name another file");
+            }
+            // Different names of one file, by links.
+            if (const auto [other, fresh] = outputs.emplace(id, &job); !fresh) {
+                return collision(i, *other->second);
+            }
+        }
+        std::sort(result_.folders.begin(), result_.folders.end());
+        result_.folders.erase(std::unique(result_.folders.begin(), result_.folders.end()),
+                              result_.folders.end());
+        return std::move(result_);
+    }
+
+  private:
+    struct Input {
+        fs::path path;
+        RecipePlace place;
+    };
+
+    [[nodiscard]] tl::unexpected<Error> collision(std::size_t index, const RecipeJob& other) const {
+        const RecipeJob& job = result_.jobs[index];
+        return at(places_[index], inQuotes(other.mesh) + " and " + inQuotes(job.mesh) +
+                                      " would both be baked into " + inQuotes(job.output) +
+                                      "; tell them apart by {stem}, {name} or {dir}");
+    }
+
+    /// The files of all patterns, each once, without the excluded ones.
+    Result<std::vector<std::string>> meshesOf(const RecipeAsset& asset) {
+        std::vector<GlobPattern> excluded;
+        for (const std::string& text : asset.exclude) {
+            Result<GlobPattern> pattern = GlobPattern::parse(text);
+            if (!pattern) {
+                return at(asset.place, "exclude " + inQuotes(text) + " " + pattern.error().message,
+                          pattern.error().code);
+            }
+            excluded.push_back(std::move(*pattern));
+        }
+        std::vector<std::string> meshes;
+        std::set<std::string> seen;
+        for (const std::string& text : asset.meshes) {
+            const Result<GlobPattern> pattern = GlobPattern::parse(text);
+            if (!pattern) {
+                return at(asset.mesh_place, "mesh " + inQuotes(text) + " " + pattern.error().message,
+                          pattern.error().code);
+            }
+            const Result<GlobResult> found = globFiles(folder_, *pattern);
+            if (!found) {
+                return at(asset.mesh_place, "mesh " + inQuotes(text) + ": " + found.error().message,
+                          found.error().code);
+            }
+            if (found->files.empty() && !asset.optional) {
+                return at(asset.mesh_place, "mesh " + inQuotes(text) + " matches no file in " +
+                                                quotedPath(folder_) + "; mend it, or set optional = true");
+            }
+            for (const std::string& file : found->files) {
+                const bool out = std::any_of(excluded.begin(), excluded.end(),
+                                             [&](const GlobPattern& e) { return e.matches(file); });
+                if (!out && seen.insert(file).second) {
+                    meshes.push_back(file);
+                }
+            }
+            if (pattern->wild()) {
+                for (const std::string& folder : found->folders) {
+                    result_.folders.push_back(folder.empty() ? folder_ : folder_ / folder);
+                }
+            }
+        }
+        return meshes;
+    }
+
+    Result<void> addJob(const RecipeAsset& asset, const std::string& mesh,
+                        const std::vector<std::string>& arguments, const std::vector<std::string>& options) {
+        RecipeJob job;
+        job.mesh = mesh;
+        const Result<fs::path> path = resolveInside(folder_, mesh, "recipe");
+        if (!path) {
+            return at(asset.mesh_place, "mesh " + path.error().message);
+        }
+        job.mesh_path = *path;
+        Result<std::string> output = outputOf(asset, mesh);
+        if (!output) {
+            return forward(output);
+        }
+        job.output = std::move(*output);
+        if (!resolveInside(output_folder_, job.output)) {
+            return at(asset.output_place, "the output " + inQuotes(job.output) +
+                                              " leads out of the output folder " +
+                                              quotedPath(output_folder_) + "; name a file in it");
+        }
+        job.output_path = output_folder_ / job.output;
+        job.arguments = arguments;
+        job.options = options;
+        inputs_.push_back({job.mesh_path, asset.mesh_place});
+        // Where it really is: two names can lead to one place, by linked folders.
+        std::error_code error;
+        const fs::path real = fs::weakly_canonical(fs::absolute(job.output_path, error), error);
+        const auto [other, fresh] =
+            by_output_.emplace(error ? job.output : real.string(), result_.jobs.size());
+        result_.jobs.push_back(std::move(job));
+        places_.push_back(asset.output_place);
+        if (!fresh) {
+            return collision(result_.jobs.size() - 1, result_.jobs[other->second]);
+        }
+        return {};
+    }
+
+    /// The output's name for a mesh, in its shortest form.
+    static Result<std::string> outputOf(const RecipeAsset& asset, const std::string& mesh) {
+        const fs::path path(mesh);
+        std::string name;
+        for (std::size_t i = 0; i < asset.output.size(); ++i) {
+            const char c = asset.output[i];
+            if (c == '}') {
+                return at(asset.output_place, "output has a } without {; use {stem}, {name} or {dir}");
+            }
+            if (c != '{') {
+                name += c;
+                continue;
+            }
+            const std::size_t end = asset.output.find('}', i);
+            const std::string word =
+                asset.output.substr(i + 1, end == std::string::npos ? std::string::npos : end - i - 1);
+            if (word == "stem") {
+                name += path.stem().string();
+            } else if (word == "name") {
+                name += path.filename().string();
+            } else if (word == "dir") {
+                name += path.has_parent_path() ? path.parent_path().string() : ".";
+            } else {
+                return at(asset.output_place,
+                          "output has {" + cleanUtf8(word, 80) + "}, but known are {stem}, {name} and {dir}");
+            }
+            i = end;
+        }
+        if (name.find('\0') != std::string::npos || fs::path(name).is_absolute()) {
+            return at(asset.output_place, "the output " + inQuotes(name) +
+                                              " must be a relative path; choose the folder by --output");
+        }
+        name = fs::path(name).lexically_normal().string();
+        if (!name.ends_with(kExtension) || fs::path(name).filename() == kExtension) {
+            return at(asset.output_place,
+                      "the output " + inQuotes(name) + " must end in .relief: a recipe writes nothing else");
+        }
+        return name;
+    }
+
+    fs::path folder_;
+    fs::path output_folder_;
+    RecipeJobs result_;
+    std::vector<RecipePlace> places_;  // of the jobs' outputs
+    std::map<std::string, std::size_t> by_output_;
+    std::vector<Input> inputs_;
+};
+
+}  // namespace
+
+fs::path recipeFolder(const fs::path& recipe) {
+    return recipe == "-" || !recipe.has_parent_path() ? fs::path(".") : recipe.parent_path();
+}
+
+Result<RecipeJobs> recipeJobs(const std::vector<RecipeAsset>& assets, const fs::path& recipe,
+                              const fs::path& output_folder) {
+    const fs::path folder = recipeFolder(recipe);
+    Expander expander(folder, output_folder.empty() ? folder : output_folder);
+    for (const RecipeAsset& asset : assets) {
+        if (const Result<void> done = expander.add(asset); !done) {
+            return forward(done);
+        }
+    }
+    return expander.finish(recipe);
+}
+
+bool inShard(const std::string& output, const Shard& shard) {
+    return xxh3_64(std::as_bytes(std::span(output))) % shard.count == shard.index - 1;
+}
+
+}  // namespace relief

@@ -1,0 +1,56 @@
+// What a recipe asks for, file by file: patterns matched, names made, and nothing that would overwrite a file
+// of another kind.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bake/recipe/recipe.h"
+#include "formats/base/result.h"
+
+namespace relief {
+
+inline constexpr std::size_t kRecipeJobsMax = 100'000;
+/// Beside the outputs: what each was made from.
+inline constexpr const char* kBakeCacheName = ".relief-cache.json";
+
+/// One mesh to be baked into one collider.
+struct RecipeJob {
+    std::string mesh;                    ///< from the recipe's folder
+    std::filesystem::path mesh_path;     ///< ready to be opened
+    std::string output;                  ///< from the output folder, without `.` and `..`
+    std::filesystem::path output_path;   ///< ready to be written; its folder may be missing
+    std::vector<std::string> arguments;  ///< of `relief bake`, files as they can be opened; sorted
+    std::vector<std::string>
+        options;  ///< the same, files from the recipe's folder: what the output depends on
+};
+
+struct RecipeJobs {
+    std::vector<RecipeJob> jobs;                 ///< in the order of the recipe
+    std::vector<std::filesystem::path> folders;  ///< that patterns looked through; each once
+};
+
+/// \param recipe         its folder is what meshes are named from and may not lie outside of; "-": the
+/// current one. \param output_folder  need not exist; empty for the recipe's folder. Errors, at a place of
+/// the recipe: kInvalidInput (a pattern that matches nothing, a file outside of the recipe's folder, an
+/// output outside of the output folder, without .relief at its end, or the same as another output or as an
+/// input), kLimit (kRecipeJobsMax), those of globFiles.
+[[nodiscard]] Result<RecipeJobs> recipeJobs(const std::vector<RecipeAsset>& assets,
+                                            const std::filesystem::path& recipe,
+                                            const std::filesystem::path& output_folder);
+
+/// The folder of a recipe: never empty.
+[[nodiscard]] std::filesystem::path recipeFolder(const std::filesystem::path& recipe);
+
+/// One of several runs that share a recipe.
+struct Shard {
+    std::uint64_t index = 1;  ///< 1 to count
+    std::uint64_t count = 1;
+};
+
+/// Whether an output is this shard's: of every output exactly one of `count` shards says so, and it depends
+/// on the output's name alone (XXH3-64 modulo count).
+[[nodiscard]] bool inShard(const std::string& output, const Shard& shard);
+
+}  // namespace relief

@@ -1,0 +1,252 @@
+#include "bake/recipe/recipe_run.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "bake/recipe/child_process.h"
+#include "formats/base/file_io.h"
+#include "formats/base/text.h"
+
+namespace relief {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+/// How often the cache file is written while assets are baked: what a killed run has to do again.
+constexpr auto kCacheInterval = std::chrono::seconds(2);
+constexpr std::string_view kErrorStart = "relief: error: ";
+constexpr std::string_view kWarningStart = "relief: warning: ";
+
+/// What a child that was killed left of the file that it wrote (formats/base/file_io.cpp names it).
+void removeTemporaries(const fs::path& folder, pid_t pid) {
+    const std::string start = ".relief-" + std::to_string(pid) + "-";
+    std::error_code error;
+    std::vector<fs::path> left;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+        const std::string name = entry->path().filename().string();
+        if (name.starts_with(start) && name.ends_with(".tmp")) {
+            left.push_back(entry->path());
+        }
+    }
+    for (const fs::path& path : left) {
+        ::unlink(path.c_str());
+    }
+}
+
+class Runner {
+  public:
+    Runner(const RecipeRun& run, std::string tool) : run_(run), tool_(std::move(tool)) {}
+
+    Result<RecipeResult> go(std::vector<RecipeJob> jobs) {
+        findStale(std::move(jobs));
+        if (!run_.dry_run) {
+            bakeStale();
+        }
+        result_.signal = children_.askedToEnd();
+        if (result_.signal != 0) {
+            for (const ChildEnd& end : children_.endAll()) {
+                take(end);
+            }
+        }
+        for (AssetResult& asset : result_.assets) {
+            if (asset.state == AssetState::kStale && !(run_.dry_run && result_.signal == 0)) {
+                asset.state = AssetState::kCancelled;
+                tell(run_.ended, asset);
+            }
+        }
+        if (!fresh_.empty()) {
+            if (const Result<void> written = updateBakeCache(run_.output_folder, fresh_); !written) {
+                return forward(written);
+            }
+        }
+        return std::move(result_);
+    }
+
+  private:
+    template <class Function, class Argument>
+    static void tell(const Function& function, const Argument& argument) {
+        if (function) {
+            function(argument);
+        }
+    }
+
+    void findStale(std::vector<RecipeJob> jobs) {
+        Result<BakeCacheEntries> cache = loadBakeCache(run_.output_folder);
+        if (!cache) {
+            tell(run_.warn, cache.error().message + "; everything is baked again");
+            cache = BakeCacheEntries{};
+        }
+        const fs::path folder = recipeFolder(run_.recipe);
+        for (RecipeJob& job : jobs) {
+            AssetResult asset;
+            asset.job = std::move(job);
+            const auto entry = cache->find(asset.job.output);
+            const bool known = entry != cache->end();
+            const std::optional<std::string> reason =
+                children_.askedToEnd() != 0
+                    ? "not looked at"
+                    : staleness(asset.job, known ? &entry->second : nullptr, tool_, folder);
+            if (!reason) {
+                asset.state = AssetState::kUpToDate;
+                asset.hash = entry->second.output_hash;
+                asset.bytes = entry->second.output_bytes;
+                asset.inputs = entry->second.inputs;
+                tell(run_.ended, asset);
+            } else {
+                asset.reason = *reason;
+            }
+            result_.assets.push_back(std::move(asset));
+        }
+    }
+
+    void bakeStale() {
+        std::size_t next = 0;
+        Clock::time_point cached = Clock::now();
+        while (children_.askedToEnd() == 0) {
+            while (!stop_ && children_.running() < run_.at_once) {
+                while (next < result_.assets.size() && result_.assets[next].state != AssetState::kStale) {
+                    ++next;
+                }
+                if (next == result_.assets.size()) {
+                    break;
+                }
+                start(next++);
+            }
+            if (children_.running() == 0) {
+                return;
+            }
+            for (const ChildEnd& end : children_.wait(std::chrono::seconds(1))) {
+                take(end);
+            }
+            if (!fresh_.empty() && Clock::now() - cached > kCacheInterval) {
+                // Should it fail, the last time says so.
+                if (updateBakeCache(run_.output_folder, fresh_)) {
+                    fresh_.clear();
+                }
+                cached = Clock::now();
+            }
+        }
+    }
+
+    void start(std::size_t index) {
+        AssetResult& asset = result_.assets[index];
+        tell(run_.started, asset);
+        std::error_code error;
+        fs::create_directories(asset.job.output_path.parent_path(), error);
+        if (error) {
+            failAsset(asset,
+                      {ErrorCode::kIo, "cannot make the folder of " + quotedPath(asset.job.output_path) +
+                                           ": " + error.message() + "; choose another output"});
+            return;
+        }
+        std::vector<std::string> arguments = {"bake", asset.job.mesh_path.string(),
+                                              "--output=" + asset.job.output_path.string(), "--json",
+                                              "--threads=" + std::to_string(run_.threads)};
+        arguments.insert(arguments.end(), asset.job.arguments.begin(), asset.job.arguments.end());
+        if (const Result<void> started = children_.startSelf(arguments, run_.seconds_max, index); !started) {
+            failAsset(asset, started.error());
+        }
+    }
+
+    void failAsset(AssetResult& asset, Error error) {
+        asset.state = AssetState::kFailed;
+        asset.error = std::move(error);
+        stop_ = stop_ || run_.fail_fast;
+        tell(run_.ended, asset);
+    }
+
+    void take(const ChildEnd& end) {
+        AssetResult& asset = result_.assets[end.tag];
+        asset.ms = end.ms;
+        std::string message;
+        for (const std::string_view line : split(end.err, '\n')) {
+            if (line.starts_with(kErrorStart)) {
+                message = cleanUtf8(line.substr(kErrorStart.size()));
+            } else if (line.starts_with(kWarningStart)) {
+                asset.warnings.push_back(cleanUtf8(line.substr(kWarningStart.size())));
+            }
+        }
+        if (end.signal != 0) {
+            removeTemporaries(asset.job.output_path.parent_path(), end.pid);
+            if (end.timed_out) {
+                failAsset(asset, {ErrorCode::kLimit,
+                                  "it took longer than --timeout allows and was ended; allow more, or "
+                                  "simplify the mesh"});
+            } else if (children_.askedToEnd() == 0) {
+                failAsset(asset, {ErrorCode::kFailure,
+                                  "its bake was ended by signal " + std::to_string(end.signal) + " (" +
+                                      ::strsignal(end.signal) + "); repair or simplify the mesh"});
+            }
+            return;  // cancelled otherwise
+        }
+        if (end.exit_code != 0) {
+            const bool known = end.exit_code <= static_cast<int>(ErrorCode::kDifference);
+            if (!known && children_.askedToEnd() != 0) {
+                return;
+            }
+            failAsset(asset, {known ? static_cast<ErrorCode>(end.exit_code) : ErrorCode::kFailure,
+                              message.empty() ? "its bake ended with " + std::to_string(end.exit_code) +
+                                                    " and no message; bake it alone to see more"
+                                              : message});
+            return;
+        }
+        succeed(asset, end.out);
+    }
+
+    void succeed(AssetResult& asset, const std::string& report) {
+        // What was read is known to the child alone: the file may be another by now.
+        const fs::path folder = recipeFolder(run_.recipe);
+        const auto json = nlohmann::json::parse(report, nullptr, false);
+        if (json.is_object() && json.contains("inputs") && json["inputs"].is_array()) {
+            for (const auto& input : json["inputs"]) {
+                if (!input.is_object() || !input.contains("file") || !input["file"].is_string() ||
+                    !input.contains("hash") || !input["hash"].is_string()) {
+                    continue;
+                }
+                const fs::path path = input["file"].get<std::string>();
+                const fs::path inside = path.lexically_normal().lexically_relative(folder.lexically_normal());
+                asset.inputs.push_back(
+                    {inside.empty() ? path.string() : inside.string(), input["hash"].get<std::string>()});
+            }
+        }
+        const std::optional<std::string> hash = hashOfFile(asset.job.output_path);
+        std::error_code error;
+        const std::uintmax_t bytes = fs::file_size(asset.job.output_path, error);
+        if (asset.inputs.empty() || !hash || error) {
+            failAsset(asset, {ErrorCode::kFailure,
+                              "its bake left no report or no output; bake it alone to see more"});
+            return;
+        }
+        asset.inputs.front().path = asset.job.mesh;
+        asset.state = AssetState::kBaked;
+        asset.hash = *hash;
+        asset.bytes = bytes;
+        fresh_[asset.job.output] = {tool_, asset.job.options, asset.inputs, asset.hash, asset.bytes};
+        tell(run_.ended, asset);
+    }
+
+    const RecipeRun& run_;
+    std::string tool_;
+    ChildProcesses children_;
+    RecipeResult result_;
+    BakeCacheEntries fresh_;  ///< not yet in the cache file
+    bool stop_ = false;
+};
+
+}  // namespace
+
+Result<RecipeResult> runRecipe(std::vector<RecipeJob> jobs, const RecipeRun& run) {
+    Result<std::string> tool = toolIdentity();
+    if (!tool) {
+        return forward(tool);
+    }
+    return Runner(run, std::move(*tool)).go(std::move(jobs));
+}
+
+}  // namespace relief

@@ -1,0 +1,59 @@
+// Bakes what a recipe asks for and is not up to date: each asset by a process of its own, so that one that
+// crashes, hangs or takes all memory takes nothing else with it.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "bake/recipe/bake_cache.h"
+#include "bake/recipe/recipe_jobs.h"
+#include "formats/base/result.h"
+
+namespace relief {
+
+enum class AssetState : std::uint8_t {
+    kStale,      ///< to be baked
+    kUpToDate,   ///< nothing was to be done
+    kBaked,      ///< its output is new
+    kFailed,     ///< its output is as it was
+    kCancelled,  ///< not begun, or not finished, as the run ended before
+};
+
+struct AssetResult {
+    RecipeJob job;
+    AssetState state = AssetState::kStale;
+    std::string reason;                 ///< why it was to be baked; "" if up to date
+    double ms = 0.0;                    ///< baking it took
+    std::string hash;                   ///< XXH3-128 of the output; baked or up to date
+    std::uint64_t bytes = 0;            ///< of the output; baked or up to date
+    Error error;                        ///< failed
+    std::vector<std::string> warnings;  ///< of its baking
+    std::vector<InputFile> inputs;      ///< from the recipe's folder, the mesh first; known as the hash is
+};
+
+struct RecipeRun {
+    std::filesystem::path recipe;
+    std::filesystem::path output_folder;  ///< exists, unless dry_run
+    unsigned at_once = 1;                 ///< at least 1
+    unsigned threads = 1;                 ///< of each bake; results do not depend on either
+    double seconds_max = 0.0;             ///< for one asset; 0: any
+    bool fail_fast = false;               ///< begin none after one has failed
+    bool dry_run = false;                 ///< only find out what is to be done
+    // Called between the work; may be empty.
+    std::function<void(const AssetResult&)> started;
+    std::function<void(const AssetResult&)> ended;  ///< up to date, baked, failed or cancelled
+    std::function<void(const std::string&)> warn;
+};
+
+struct RecipeResult {
+    std::vector<AssetResult> assets;  ///< in the order of the recipe
+    int signal = 0;                   ///< that ended the run early; its children are gone
+};
+
+/// Errors: kIo: the program itself cannot be read, or the cache file not written. What fails of single assets
+/// is in their results.
+[[nodiscard]] Result<RecipeResult> runRecipe(std::vector<RecipeJob> jobs, const RecipeRun& run);
+
+}  // namespace relief

@@ -1,0 +1,342 @@
+#include "bake/repair/hole_caps.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <optional>
+#include <tuple>
+#include <vector>
+
+#include "bake/mesh/inside.h"
+#include "bake/mesh/mesh_edges.h"
+#include "bake/mesh/surface_sampler.h"
+#include "bake/mesh/triangle_plane.h"
+
+namespace relief {
+namespace {
+
+constexpr std::size_t kProbes = 512;
+/// Least Enclosure of a nearly closed mesh. Half a sphere has an agreement of 0.8, a cube without lid 0.9, a
+/// head cut off at its neck 0.88.
+constexpr double kOneSided = 0.9;
+constexpr double kAgreement = 0.85;
+/// Points whose side the caps may change, over the points that are inside.
+constexpr double kTurnedMax = 0.05;
+
+/// A point, and the share of the rays from it that cross the surface an odd number of times.
+struct Vote {
+    glm::vec3 position{0.0F};
+    double odd = 0.0;
+
+    [[nodiscard]] bool inside() const { return odd > 0.5; }
+    /// More than three quarters of the rays say the same.
+    [[nodiscard]] bool clear() const { return std::abs(odd - 0.5) > 0.25; }
+};
+
+Vote voteAt(const MeshQuery& query, const glm::vec3& position) {
+    unsigned odd = 0;
+    // Opposite directions in pairs, so that no half space outvotes the other: one side of a terrain would be
+    // inside.
+    for (const glm::dvec3& direction : kParityDirections) {
+        odd += query.crossings(position, direction) % 2;
+        odd += query.crossings(position, -direction) % 2;
+    }
+    return {position, odd / (2.0 * static_cast<double>(kParityDirections.size()))};
+}
+
+/// The i-th point of Roberts's sequence in the unit cube (2018, "The unreasonable effectiveness of
+/// quasirandom sequences").
+glm::dvec3 spread(std::size_t i) {
+    const glm::dvec3 steps(0.8191725133961645, 0.6710436067037893, 0.5497004779019703);
+    return glm::fract(0.5 + steps * static_cast<double>(i));
+}
+
+/// The votes on both sides of points of the surface.
+std::vector<std::array<Vote, 2>> voteAtSurface(const MeshQuery& query) {
+    const TriangleMesh& mesh = query.mesh();
+    std::vector<double> area_up_to;
+    area_up_to.reserve(mesh.triangles.size());
+    double sum = 0.0;
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+        const glm::dvec3 normal = planeOf(mesh, i).normal;
+        sum += std::sqrt(dot(normal, normal));
+        area_up_to.push_back(sum);
+    }
+    std::vector<std::array<Vote, 2>> votes(kProbes);
+    const double step = kSurfaceStep * static_cast<double>(mesh.bounds.longestSide());
+    tbb::parallel_for(std::size_t{0}, kProbes, [&](std::size_t i) {
+        const double at = (static_cast<double>(i) + 0.5) / static_cast<double>(kProbes) * sum;
+        const auto found = std::upper_bound(area_up_to.begin(), area_up_to.end() - 1, at);
+        const auto triangle = static_cast<std::uint32_t>(found - area_up_to.begin());
+        glm::dvec3 weight = spread(i);
+        if (weight.x + weight.y > 1.0) {
+            weight = 1.0 - weight;
+        }
+        const glm::uvec3& t = mesh.triangles[triangle];
+        const glm::dvec3 a = mesh.positions[t.x];
+        const glm::dvec3 on = a + weight.x * (glm::dvec3(mesh.positions[t.y]) - a) +
+                              weight.y * (glm::dvec3(mesh.positions[t.z]) - a);
+        glm::dvec3 normal = planeOf(mesh, triangle).normal;
+        normal *= step / std::sqrt(dot(normal, normal));
+        votes[i] = {voteAt(query, on + normal), voteAt(query, on - normal)};
+    });
+    return votes;
+}
+
+std::vector<Vote> voteInBox(const MeshQuery& query) {
+    const Bounds& bounds = query.mesh().bounds;
+    std::vector<Vote> votes(kProbes);
+    tbb::parallel_for(std::size_t{0}, kProbes, [&](std::size_t i) {
+        votes[i] = voteAt(query, glm::dvec3(bounds.min) + spread(i) * glm::dvec3(bounds.size()));
+    });
+    return votes;
+}
+
+Enclosure enclosureOf(const std::vector<std::array<Vote, 2>>& votes) {
+    std::size_t one_sided = 0;
+    double agreement = 0.0;
+    for (const auto& [front, back] : votes) {
+        one_sided += front.inside() != back.inside() ? 1U : 0U;
+        for (const Vote& vote : {front, back}) {
+            agreement += std::max(vote.odd, 1.0 - vote.odd);
+        }
+    }
+    const auto count = static_cast<double>(votes.size());
+    return {static_cast<double>(one_sided) / count, agreement / (2.0 * count)};
+}
+
+// --- loops ---
+
+/// One step of a walk along the border of a hole.
+struct Step {
+    std::uint32_t from = 0;
+    std::uint32_t to = 0;
+    std::uint32_t edge = 0;
+    bool against = false;  ///< the edge's triangle runs the same way, and a cap's triangle the other
+};
+
+using Loop = std::vector<Step>;
+
+/// Every odd edge in one loop. Every vertex has an even number of odd edges, so that a walk that takes each
+/// once ends where it began; it is cut wherever it comes to a vertex again. Of several ways on it takes one
+/// against the triangles' direction, to the lowest vertex.
+std::vector<Loop> loopsOf(const std::vector<OddEdge>& edges) {
+    std::vector<Step> steps;  // of all vertices, best first
+    steps.reserve(2 * edges.size());
+    for (std::uint32_t i = 0; i < edges.size(); ++i) {
+        steps.push_back({edges[i].to, edges[i].from, i, false});
+        steps.push_back({edges[i].from, edges[i].to, i, true});
+    }
+    std::sort(steps.begin(), steps.end(), [](const Step& a, const Step& b) {
+        return std::tuple(a.from, a.against, a.to) < std::tuple(b.from, b.against, b.to);
+    });
+    // Of each vertex with odd edges, by rank: its first step that is not known to be taken, its end.
+    std::vector<std::uint32_t> vertices;
+    std::vector<std::size_t> next;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        if (i == 0 || steps[i].from != steps[i - 1].from) {
+            vertices.push_back(steps[i].from);
+            next.push_back(i);
+        }
+    }
+    const std::vector<std::size_t> first = next;
+    const auto rankOf = [&](std::uint32_t vertex) {
+        return static_cast<std::size_t>(std::lower_bound(vertices.begin(), vertices.end(), vertex) -
+                                        vertices.begin());
+    };
+    std::vector<bool> taken(edges.size(), false);
+    const auto take = [&](std::size_t rank) -> const Step* {
+        const std::size_t end = rank + 1 < first.size() ? first[rank + 1] : steps.size();
+        while (next[rank] < end && taken[steps[next[rank]].edge]) {
+            ++next[rank];
+        }
+        if (next[rank] == end) {
+            return nullptr;
+        }
+        taken[steps[next[rank]].edge] = true;
+        return &steps[next[rank]];
+    };
+    constexpr auto kNotOnPath = static_cast<std::size_t>(-1);
+    std::vector<std::size_t> place(vertices.size(), kNotOnPath);  // number of steps before it on the path
+    std::vector<Loop> loops;
+    for (std::size_t start = 0; start < vertices.size(); ++start) {
+        Loop path;
+        place[start] = 0;
+        std::size_t at = start;
+        while (const Step* step = take(at)) {
+            path.push_back(*step);
+            at = rankOf(step->to);
+            if (place[at] == kNotOnPath) {
+                place[at] = path.size();
+                continue;
+            }
+            const auto begin = path.begin() + static_cast<std::ptrdiff_t>(place[at]);
+            loops.emplace_back(begin, path.end());
+            for (auto inner = begin + 1; inner < path.end(); ++inner) {
+                place[rankOf(inner->from)] = kNotOnPath;
+            }
+            path.erase(begin, path.end());
+        }
+        place[start] = kNotOnPath;
+    }
+    return loops;
+}
+
+// --- caps ---
+
+bool hasArea(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    return cross(b - a, c - a) != glm::dvec3(0.0);
+}
+
+/// Closes one hole after the other at the end of a mesh.
+class Capper {
+  public:
+    explicit Capper(TriangleMesh& mesh) : mesh_(mesh) {}
+
+    /// A hole none of whose fans has an area everywhere stays open: triangles without area would break the
+    /// mesh's promise, and leaving them out the parity of the edges.
+    void close(const Loop& loop) {
+        const std::size_t before = mesh_.triangles.size();
+        if (loop.size() == 3 && hasArea(at(loop[0].from), at(loop[1].from), at(loop[2].from))) {
+            const auto against =
+                std::count_if(loop.begin(), loop.end(), [](const Step& s) { return s.against; });
+            const glm::uvec3 t(loop[0].from, loop[1].from, loop[2].from);
+            mesh_.triangles.push_back(against > 1 ? glm::uvec3(t.x, t.z, t.y) : t);
+        } else if (const std::optional<glm::vec3> apex = apexOf(loop)) {
+            const auto index = static_cast<std::uint32_t>(mesh_.positions.size());
+            mesh_.positions.push_back(*apex);
+            for (const Step& step : loop) {
+                mesh_.triangles.push_back(step.against ? glm::uvec3(step.to, step.from, index)
+                                                       : glm::uvec3(step.from, step.to, index));
+            }
+        }
+        const std::size_t added = mesh_.triangles.size() - before;
+        mesh_.cap_triangles += added;
+        mesh_.closed_holes += added > 0 ? 1U : 0U;
+    }
+
+  private:
+    [[nodiscard]] glm::dvec3 at(std::uint32_t vertex) const { return mesh_.positions[vertex]; }
+
+    /// The centroid of the loop. Where it lies in line with an edge, a point next to it, and at last farther
+    /// off.
+    [[nodiscard]] std::optional<glm::vec3> apexOf(const Loop& loop) const {
+        const glm::dvec3 origin = at(loop.front().from);
+        glm::dvec3 moment(0.0);
+        glm::dvec3 normal(0.0);  // Newell's: twice the area of the loop
+        double around = 0.0;
+        double extent = 0.0;
+        for (const Step& step : loop) {
+            const glm::dvec3 a = at(step.from) - origin;
+            const glm::dvec3 b = at(step.to) - origin;
+            const double length = std::sqrt(dot(b - a, b - a));
+            moment += 0.5 * length * (a + b);
+            around += length;
+            normal += cross(a, b);
+            extent = std::max(extent, std::sqrt(dot(a, a)));
+        }
+        const glm::dvec3 centroid = origin + moment / around;
+        if (const std::optional<glm::vec3> apex = usable(loop, centroid)) {
+            return apex;
+        }
+        const double size = std::sqrt(dot(normal, normal));
+        const glm::dvec3 directions[] = {
+            size > 0.0 ? normal / size : glm::dvec3(1, 1, 1), {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+        // From a few steps of a float on: what the move adds to the surface must not be seen.
+        const glm::dvec3 far = glm::max(glm::abs(mesh_.bounds.min), glm::abs(mesh_.bounds.max));
+        for (double step = 0x1p-21 * std::max({far.x, far.y, far.z}); step < extent; step *= 4.0) {
+            for (const glm::dvec3& direction : directions) {
+                for (const double sign : {1.0, -1.0}) {
+                    if (const auto apex = usable(loop, centroid + sign * step * direction)) {
+                        return apex;
+                    }
+                }
+            }
+        }
+        return std::nullopt;
+    }
+
+    /// \return the point as the mesh can hold it, if each triangle of its fan has an area.
+    [[nodiscard]] std::optional<glm::vec3> usable(const Loop& loop, const glm::dvec3& point) const {
+        // Rounded, it might leave the box.
+        const glm::vec3 apex = glm::clamp(glm::vec3(point), mesh_.bounds.min, mesh_.bounds.max);
+        const bool good = std::all_of(loop.begin(), loop.end(), [&](const Step& step) {
+            return hasArea(at(step.from), at(step.to), apex);
+        });
+        return good ? std::optional(apex) : std::nullopt;
+    }
+
+    TriangleMesh& mesh_;
+};
+
+/// Clear votes that the closed mesh contradicts, over the clear votes for inside.
+double turnedShare(const std::vector<Vote>& votes, const MeshQuery& closed) {
+    std::size_t inside = 0;
+    std::size_t turned = 0;
+    for (const Vote& vote : votes) {
+        if (vote.clear()) {
+            inside += vote.inside() ? 1U : 0U;
+            turned += vote.inside() != closed.inside(vote.position) ? 1U : 0U;
+        }
+    }
+    return static_cast<double>(turned) / static_cast<double>(std::max<std::size_t>(inside, 1));
+}
+
+/// \param edges  the mesh's, not empty.
+Result<TriangleMesh> closeOpenMesh(const TriangleMesh& mesh, const MeshQuery& query,
+                                   const std::vector<OddEdge>& edges) {
+    const std::vector<std::array<Vote, 2>> votes = voteAtSurface(query);
+    const Enclosure enclosure = enclosureOf(votes);
+    if (enclosure.one_sided < kOneSided || enclosure.agreement < kAgreement ||
+        mesh.triangles.size() + edges.size() > kTriangleMax) {
+        return mesh;
+    }
+    TriangleMesh closed = mesh;
+    Capper capper(closed);
+    for (const Loop& loop : loopsOf(edges)) {
+        capper.close(loop);
+    }
+    const Result<MeshQuery> closed_query = MeshQuery::build(closed);
+    if (!closed_query) {
+        return forward(closed_query);
+    }
+    // On the surface and off it: the caps of patches whose seams do not meet cross the inside.
+    std::vector<Vote> sides;
+    for (const auto& [front, back] : votes) {
+        sides.insert(sides.end(), {front, back});
+    }
+    if (turnedShare(sides, *closed_query) > kTurnedMax ||
+        turnedShare(voteInBox(query), *closed_query) > kTurnedMax) {
+        return mesh;
+    }
+    return closed;
+}
+
+}  // namespace
+
+Enclosure measureEnclosure(const MeshQuery& query) {
+    return enclosureOf(voteAtSurface(query));
+}
+
+Result<TriangleMesh> closeHoles(const TriangleMesh& mesh, const MeshQuery& query) {
+    if (query.watertight()) {
+        return mesh;
+    }
+    return closeOpenMesh(mesh, query, oddEdges(mesh));
+}
+
+Result<TriangleMesh> closeHoles(TriangleMesh mesh) {
+    if (edgesAreEven(mesh)) {
+        return mesh;
+    }
+    const Result<MeshQuery> query = MeshQuery::build(mesh);
+    if (!query) {
+        return forward(query);
+    }
+    return closeHoles(mesh, *query);
+}
+
+}  // namespace relief

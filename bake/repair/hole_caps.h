@@ -1,0 +1,39 @@
+// Nearly closed meshes are solids with holes: a scan without its bottom, a model whose exporter lost a
+// triangle. Views look through such a hole at the inner side of the surface and would declare the inside
+// free.
+#pragma once
+
+#include "bake/mesh/mesh.h"
+#include "bake/mesh/mesh_query.h"
+#include "formats/base/result.h"
+
+namespace relief {
+
+/// How well a mesh encloses its inside: by the parity of the crossings of rays from both sides of 512 points,
+/// evenly spread over the surface. The rays go in opposite pairs.
+struct Enclosure {
+    /// Share of the points whose inside, by the majority of the rays, is on exactly one side; 0 to 1.
+    double one_sided = 0.0;
+    /// Mean share of the rays that agree with the majority; 0.5 for a sheet, 1 for a closed mesh, in between
+    /// 1 less the share of the directions that lead out by a hole.
+    double agreement = 0.0;
+};
+
+[[nodiscard]] Enclosure measureEnclosure(const MeshQuery& query);
+
+/// The mesh with fans of triangles over its holes, wound as their neighbours, at the end of its triangles,
+/// and counted in cap_triangles and closed_holes. MeshQuery::watertight is then true, unless a hole is too
+/// small for a fan of floats. Name, hash and bounds stay. A hole is a loop of odd edges (mesh_edges.h) that
+/// comes to no vertex twice.
+///
+/// The mesh comes back as it is if it is closed, if it is not nearly closed (terrains, sheets, bowls without
+/// thickness up to half a sphere: about one ray in seven may lead out by a hole), or if the caps would turn
+/// parts of the inside to the outside or back (patches whose seams do not meet).
+/// \param query  of the mesh.
+/// Errors: those of MeshQuery::build.
+[[nodiscard]] Result<TriangleMesh> closeHoles(const TriangleMesh& mesh, const MeshQuery& query);
+
+/// The same, and cheap for a closed mesh: only one that is open is put into a query.
+[[nodiscard]] Result<TriangleMesh> closeHoles(TriangleMesh mesh);
+
+}  // namespace relief

@@ -1,0 +1,170 @@
+#include "bake/repair/mesh_care.h"
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "bake/mesh/triangle_plane.h"
+#include "bake/repair/mesh_repair.h"
+#include "bake/repair/winding.h"
+#include "formats/base/text.h"
+
+namespace relief {
+namespace {
+
+constexpr std::array<std::string_view, 3> kMethods = {"wrap", "orient", "holes"};
+constexpr std::string_view kWrapOption = "--repair wrap=";
+
+enum class Method : std::uint8_t { kWrap, kOrient, kHoles };
+
+struct Repair {
+    Method method = Method::kWrap;
+    float alpha = 0.01F;
+
+    [[nodiscard]] std::string text() const {
+        const std::string name(kMethods[static_cast<std::size_t>(method)]);
+        return method == Method::kWrap ? name + "=" + shortest(alpha) : name;
+    }
+};
+
+/// nullopt: none is asked for.
+Result<std::optional<Repair>> parseRepair(const std::string& text) {
+    if (text.empty()) {
+        return std::nullopt;
+    }
+    const std::size_t equals = text.find('=');
+    const std::string word = text.substr(0, equals);
+    const auto found = std::find(kMethods.begin(), kMethods.end(), word);
+    if (found == kMethods.end()) {
+        return fail(ErrorCode::kUsage, "--repair is '" + cleanUtf8(text) + "' but must be one of " +
+                                           listed(kMethods) + didYouMean(word, kMethods));
+    }
+    Repair repair;
+    repair.method = static_cast<Method>(found - kMethods.begin());
+    if (equals == std::string::npos) {
+        return repair;
+    }
+    const std::optional<float> alpha = parseFloat(std::string_view(text).substr(equals + 1));
+    if (repair.method != Method::kWrap) {
+        return fail(ErrorCode::kUsage, "--repair " + word + " takes no value; leave out '" +
+                                           cleanUtf8(text.substr(equals)) + "'");
+    }
+    if (!alpha || !(*alpha >= float(kWrapAlphaMin) && *alpha <= float(kWrapAlphaMax))) {
+        return fail(ErrorCode::kUsage,
+                    "--repair is '" + cleanUtf8(text) + "' but alpha must be a number from " +
+                        shortest(float(kWrapAlphaMin)) + " to " + shortest(float(kWrapAlphaMax)) +
+                        ", in units of the mesh's longest side");
+    }
+    repair.alpha = *alpha;
+    return repair;
+}
+
+Result<TriangleMesh> repaired(const TriangleMesh& mesh, const Repair& repair, MeshCare& care) {
+    switch (repair.method) {
+        case Method::kWrap:
+            return wrapMesh(mesh, {double{repair.alpha}});
+        case Method::kOrient:
+            return orientMesh(mesh);
+        case Method::kHoles: {
+            Result<HoleFill> fill = fillHoles(mesh);
+            if (!fill) {
+                return forward(fill);
+            }
+            care.filled_holes = fill->filled;
+            care.holes_left = fill->left;
+            return std::move(fill->mesh);
+        }
+    }
+    return mesh;
+}
+
+void turnInsideOut(TriangleMesh& mesh) {
+    for (glm::uvec3& t : mesh.triangles) {
+        std::swap(t.y, t.z);
+    }
+}
+
+}  // namespace
+
+Result<void> checkMeshCare(const MeshCareOptions& options) {
+    const Result<std::optional<Repair>> repair = parseRepair(options.repair);
+    return repair ? Result<void>() : forward(repair);
+}
+
+Result<CaredMesh> careFor(TriangleMesh mesh, const MeshCareOptions& options) {
+    const Result<std::optional<Repair>> repair = parseRepair(options.repair);
+    if (!repair) {
+        return forward(repair);
+    }
+    CaredMesh cared;
+    MeshCare& care = cared.care;
+    MeshEdges edges = edgesOf(mesh);
+    if (options.report || options.strict || options.check_intersections || *repair) {
+        Result<MeshHealth> health = inspectMesh(mesh, edges, {options.check_intersections});
+        if (!health) {
+            return forward(health);
+        }
+        care.health = std::move(*health);
+    }
+    if (options.strict && !*repair) {
+        if (const Result<void> solid = requireSolid(*care.health, mesh.name); !solid) {
+            return forward(solid);
+        }
+    }
+    if (*repair) {
+        care.repair = (*repair)->text();
+        edges = {};
+        Result<TriangleMesh> other = repaired(mesh, **repair, care);
+        if (!other) {
+            return forward(other);
+        }
+        mesh = std::move(*other);
+        edges = edgesOf(mesh);
+    }
+    Result<Winding> winding = windOutwards(std::move(mesh), std::move(edges));
+    if (!winding) {
+        return forward(winding);
+    }
+    cared.mesh = std::move(winding->mesh);
+    care.turned = winding->turned;
+    if (!*repair) {
+        return cared;
+    }
+    if (orientation(cared.mesh) < 0.0) {
+        turnInsideOut(cared.mesh);
+    }
+    Result<MeshHealth> after = inspectMesh(cared.mesh, {options.check_intersections});
+    if (!after) {
+        return forward(after);
+    }
+    care.repaired = std::move(*after);
+    if ((*repair)->method == Method::kWrap && !care.repaired->isSolid()) {
+        return fail(ErrorCode::kFailure,
+                    cared.mesh.name + ": wrapping it left " + faultsText(*care.repaired) +
+                        "; move the mesh to the origin, or try another --repair wrap=ALPHA");
+    }
+    if (options.strict) {
+        if (const Result<void> solid = requireSolid(*care.repaired, cared.mesh.name); !solid) {
+            return forward(solid);
+        }
+    }
+    return cared;
+}
+
+std::string careOptionsText(const MeshCare& care) {
+    return care.repair.empty() ? "" : " --repair " + care.repair;
+}
+
+double repairReach(const std::string& container_options) {
+    const std::size_t at = container_options.find(kWrapOption);
+    if (at == std::string::npos) {
+        return 0.0;
+    }
+    std::string_view alpha = std::string_view(container_options).substr(at + kWrapOption.size());
+    alpha = alpha.substr(0, alpha.find(' '));
+    // Any container may say anything here.
+    const std::optional<float> value = parseFloat(alpha);
+    return value && *value > 0.0F && *value <= float(kWrapAlphaMax) ? double{*value} / 30.0 : 0.0;
+}
+
+}  // namespace relief

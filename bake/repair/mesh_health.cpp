@@ -1,0 +1,239 @@
+#include "bake/repair/mesh_health.h"
+
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <array>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "bake/mesh/mesh_edges.h"
+#include "bake/mesh/triangle_plane.h"
+#include "bake/repair/mesh_repair.h"
+#include "formats/base/text.h"
+
+namespace relief {
+namespace {
+
+/// Of vertices and triangles the lowest that shows a fault.
+struct First {
+    std::uint64_t count = 0;
+    glm::vec3 at{0.0F};
+
+    void add(const glm::dvec3& where) {
+        if (count++ == 0) {
+            at = where;
+        }
+    }
+};
+
+class Inspection {
+  public:
+    Inspection(const TriangleMesh& mesh, const MeshEdges& edges)
+        : mesh_(mesh),
+          welded_(edges.welded),
+          component_of_(mesh.triangles.size()),
+          // Three corners a triangle: those that share an edge at their vertex are joined.
+          corners_(3 * mesh.triangles.size()),
+          uses_(edges.uses) {}
+
+    void run() {
+        forEachEdge(uses_, [&](std::size_t begin, std::size_t end) { visitEdge(begin, end); });
+        countComponents();
+        countVertices();
+        countDuplicates();
+    }
+
+    void write(MeshHealth& health) const {
+        health.triangles = mesh_.sourceTriangles();
+        health.degenerate_triangles = mesh_.dropped_triangles;
+        health.duplicate_triangles = duplicates_.count;
+        health.boundary_edges = boundary_.count;
+        health.nonmanifold_edges = nonmanifold_.count;
+        health.inconsistent_edges = inconsistent_.count;
+        health.nonmanifold_vertices = vertices_.count;
+        health.components = components_;
+        health.closed_components = closed_components_;
+        health.closed = closed_components_ == components_;
+        health.inside_out = orientation(mesh_) < 0.0;
+        for (const auto& [what, first] :
+             {std::pair{"a boundary edge", &boundary_},
+              std::pair{"an edge of three or more triangles", &nonmanifold_},
+              std::pair{"an edge that two triangles run along in the same direction", &inconsistent_},
+              std::pair{"a duplicate triangle", &duplicates_},
+              std::pair{"a vertex where surfaces only touch", &vertices_}}) {
+            if (first->count > 0) {
+                health.first_fault = MeshFault{what, first->at};
+                return;
+            }
+        }
+        if (health.inside_out) {
+            health.first_fault = MeshFault{"a triangle that is clockwise seen from outside", middle(0)};
+        }
+    }
+
+    [[nodiscard]] glm::dvec3 middle(std::uint32_t triangle) const {
+        const glm::uvec3& t = mesh_.triangles[triangle];
+        return (glm::dvec3(mesh_.positions[t.x]) + glm::dvec3(mesh_.positions[t.y]) +
+                glm::dvec3(mesh_.positions[t.z])) /
+               3.0;
+    }
+
+  private:
+    /// All uses of one edge.
+    void visitEdge(std::size_t begin, std::size_t end) {
+        const EdgeUse& first = uses_[begin];
+        const std::size_t count = end - begin;
+        const glm::dvec3 at =
+            0.5 * (glm::dvec3(mesh_.positions[first.low]) + glm::dvec3(mesh_.positions[first.high]));
+        if (count == 1) {
+            boundary_.add(at);
+        } else if (count > 2) {
+            nonmanifold_.add(at);
+        } else if (first.down == uses_[begin + 1].down) {
+            inconsistent_.add(at);
+        }
+        for (std::size_t i = begin + 1; i < end; ++i) {
+            component_of_.join(first.triangle, uses_[i].triangle);
+            corners_.join(cornerAt(first, first.low), cornerAt(uses_[i], first.low));
+            corners_.join(cornerAt(first, first.high), cornerAt(uses_[i], first.high));
+        }
+        if (count % 2 == 1) {
+            odd_.push_back(first.triangle);
+        }
+    }
+
+    /// The corner of an edge's triangle at one of the edge's vertices.
+    static std::uint32_t cornerAt(const EdgeUse& use, std::uint32_t vertex) {
+        const bool starts_here = vertex == (use.down ? use.high : use.low);
+        return 3 * use.triangle + (use.side + (starts_here ? 0U : 1U)) % 3;
+    }
+
+    void countComponents() {
+        std::vector<bool> open(mesh_.triangles.size(), false);
+        for (const std::uint32_t triangle : odd_) {
+            open[component_of_.find(triangle)] = true;
+        }
+        for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i) {
+            if (component_of_.find(i) == i) {
+                ++components_;
+                closed_components_ += open[i] ? 0U : 1U;
+            }
+        }
+    }
+
+    void countVertices() {
+        std::vector<std::uint8_t> fans(mesh_.positions.size(), 0);
+        for (std::uint32_t i = 0; i < 3 * mesh_.triangles.size(); ++i) {
+            if (corners_.find(i) == i) {
+                std::uint8_t& fan = fans[welded_[mesh_.triangles[i / 3][static_cast<int>(i % 3)]]];
+                fan = static_cast<std::uint8_t>(std::min(fan + 1, 2));
+            }
+        }
+        for (std::size_t i = 0; i < fans.size(); ++i) {
+            if (fans[i] > 1) {
+                vertices_.add(mesh_.positions[i]);
+            }
+        }
+    }
+
+    void countDuplicates() {
+        struct Corners {
+            std::array<std::uint32_t, 3> sorted;
+            std::uint32_t triangle;
+        };
+        std::vector<Corners> all;
+        all.reserve(mesh_.triangles.size());
+        for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i) {
+            const glm::uvec3& t = mesh_.triangles[i];
+            std::array<std::uint32_t, 3> sorted = {welded_[t.x], welded_[t.y], welded_[t.z]};
+            std::sort(sorted.begin(), sorted.end());
+            all.push_back({sorted, i});
+        }
+        tbb::parallel_sort(all, [](const Corners& a, const Corners& b) {
+            return std::tie(a.sorted, a.triangle) < std::tie(b.sorted, b.triangle);
+        });
+        for (std::size_t i = 1; i < all.size(); ++i) {
+            if (all[i].sorted == all[i - 1].sorted) {
+                duplicates_.add(middle(all[i].triangle));
+            }
+        }
+    }
+
+    const TriangleMesh& mesh_;
+    const std::vector<std::uint32_t>& welded_;
+    DisjointSets component_of_;
+    DisjointSets corners_;
+    const std::vector<EdgeUse>& uses_;
+    std::vector<std::uint32_t> odd_;  // triangles with an odd edge
+    First boundary_;
+    First nonmanifold_;
+    First inconsistent_;
+    First vertices_;
+    First duplicates_;
+    std::uint64_t components_ = 0;
+    std::uint64_t closed_components_ = 0;
+};
+
+std::string counted(std::uint64_t count, const std::string& one, const std::string& many) {
+    return std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
+}  // namespace
+
+Result<MeshHealth> inspectMesh(const TriangleMesh& mesh, const MeshHealthOptions& options) {
+    return inspectMesh(mesh, edgesOf(mesh), options);
+}
+
+Result<MeshHealth> inspectMesh(const TriangleMesh& mesh, const MeshEdges& edges,
+                               const MeshHealthOptions& options) {
+    MeshHealth health;
+    Inspection inspection(mesh, edges);
+    inspection.run();
+    inspection.write(health);
+    if (options.intersections) {
+        const Result<SelfIntersections> found = selfIntersections(mesh);
+        if (!found) {
+            return forward(found);
+        }
+        health.self_intersections = found->pairs;
+        if (found->pairs > 0 && !health.first_fault) {
+            health.first_fault =
+                MeshFault{"a triangle that another one cuts", inspection.middle(found->first_triangle)};
+        }
+    }
+    return health;
+}
+
+std::string faultsText(const MeshHealth& health) {
+    std::string text;
+    const auto add = [&](std::uint64_t count, const std::string& one, const std::string& many) {
+        if (count > 0) {
+            text += (text.empty() ? "" : ", ") + counted(count, one, many);
+        }
+    };
+    add(health.boundary_edges, "boundary edge", "boundary edges");
+    add(health.nonmanifold_edges, "non-manifold edge", "non-manifold edges");
+    add(health.inconsistent_edges, "edge wound inconsistently", "edges wound inconsistently");
+    add(health.duplicate_triangles, "duplicate triangle", "duplicate triangles");
+    add(health.nonmanifold_vertices, "non-manifold vertex", "non-manifold vertices");
+    add(health.self_intersections.value_or(0), "pair of triangles that intersect",
+        "pairs of triangles that intersect");
+    if (health.inside_out) {
+        text += text.empty() ? "inside out" : ", inside out";
+    }
+    return text;
+}
+
+Result<void> requireSolid(const MeshHealth& health, const std::string& mesh_name) {
+    if (health.isSolid()) {
+        return {};
+    }
+    return fail(ErrorCode::kInvalidInput, mesh_name + ": not a closed solid: " + faultsText(health) +
+                                              "; the first is " + health.first_fault->what + " at " +
+                                              shortest(health.first_fault->at) +
+                                              "; repair the mesh, try --repair, or leave out --strict");
+}
+
+}  // namespace relief

@@ -1,0 +1,232 @@
+#include "bake/report/recipe_report.h"
+
+#include <fcntl.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <system_error>
+
+#include "bake/report/report.h"
+#include "formats/base/file_io.h"
+#include "formats/base/text.h"
+
+namespace relief {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* stateName(AssetState state) {
+    switch (state) {
+        case AssetState::kStale:
+            return "stale";
+        case AssetState::kUpToDate:
+            return "up to date";
+        case AssetState::kBaked:
+            return "baked";
+        case AssetState::kFailed:
+            return "failed";
+        case AssetState::kCancelled:
+            return "cancelled";
+    }
+    return "unknown";
+}
+
+std::string seconds(double ms) {
+    char text[32];
+    std::snprintf(text, sizeof(text), "%.1f s", ms / 1000.0);
+    return text;
+}
+
+/// Whether lines can be drawn again where standard error goes.
+bool canRedraw() {
+    const char* terminal = std::getenv("TERM");
+    return ::isatty(STDERR_FILENO) == 1 && terminal != nullptr && std::strcmp(terminal, "dumb") != 0;
+}
+
+}  // namespace
+
+RecipeCounts countAssets(const std::vector<AssetResult>& assets) {
+    RecipeCounts counts;
+    for (const AssetResult& asset : assets) {
+        switch (asset.state) {
+            case AssetState::kStale:
+                ++counts.stale;
+                break;
+            case AssetState::kUpToDate:
+                ++counts.up_to_date;
+                break;
+            case AssetState::kBaked:
+                ++counts.baked;
+                break;
+            case AssetState::kFailed:
+                ++counts.failed;
+                break;
+            case AssetState::kCancelled:
+                ++counts.cancelled;
+                break;
+        }
+        counts.bytes += asset.bytes;
+    }
+    return counts;
+}
+
+std::string recipeSummary(const RecipeCounts& counts, double ms) {
+    const std::string assets = std::to_string(counts.all()) + (counts.all() == 1 ? " asset" : " assets");
+    if (counts.up_to_date == counts.all()) {
+        return assets + " up to date";
+    }
+    std::string text;
+    const auto add = [&](std::size_t count, const char* words) {
+        if (count > 0) {
+            text += (text.empty() ? ": " : ", ") + std::to_string(count) + " " + words;
+        }
+    };
+    add(counts.stale, "to bake");
+    add(counts.baked, "baked");
+    add(counts.up_to_date, "up to date");
+    add(counts.failed, "failed");
+    add(counts.cancelled, "not baked");
+    return assets + text + "; " + bytesText(counts.bytes) + "; " + seconds(ms);
+}
+
+Json jsonAsset(const AssetResult& asset) {
+    Json json = {{"asset", asset.job.output}, {"mesh", asset.job.mesh}, {"state", stateName(asset.state)}};
+    if (!asset.reason.empty()) {
+        json["reason"] = asset.reason;
+    }
+    if (asset.state == AssetState::kBaked || asset.state == AssetState::kFailed) {
+        json["ms"] = asset.ms;
+    }
+    if (!asset.hash.empty()) {
+        Json inputs = Json::array();
+        for (const InputFile& input : asset.inputs) {
+            inputs.push_back({{"file", input.path}, {"hash", input.hash}});
+        }
+        json["bytes"] = asset.bytes;
+        json["hash"] = asset.hash;
+        json["inputs"] = std::move(inputs);
+    }
+    if (asset.state == AssetState::kFailed) {
+        json["code"] = static_cast<int>(asset.error.code);
+        json["error"] = asset.error.message;
+    }
+    if (!asset.warnings.empty()) {
+        json["warnings"] = asset.warnings;
+    }
+    return json;
+}
+
+Json jsonCounts(const RecipeCounts& counts) {
+    return {{"assets", counts.all()},  {"stale", counts.stale},
+            {"baked", counts.baked},   {"up_to_date", counts.up_to_date},
+            {"failed", counts.failed}, {"cancelled", counts.cancelled},
+            {"bytes", counts.bytes}};
+}
+
+// --- events ---
+
+RecipeEvents::~RecipeEvents() {
+    if (fd_ > STDERR_FILENO) {
+        ::close(fd_);
+    }
+}
+
+Result<void> RecipeEvents::open(const std::string& path) {
+    // A reader that goes away must not take the bakes with it.
+    std::signal(SIGPIPE, SIG_IGN);
+    path_ = path;
+    fd_ = path == "-" ? STDOUT_FILENO
+                      : ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOCTTY, 0666);
+    if (fd_ < 0) {
+        return fail(ErrorCode::kIo, "cannot write " + quotedPath(path) + ": " +
+                                        std::system_category().message(errno) +
+                                        "; give --events another file");
+    }
+    return {};
+}
+
+void RecipeEvents::write(const Json& event) {
+    if (fd_ < 0 || error_ != 0) {
+        return;
+    }
+    const std::string line = event.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+    for (std::size_t at = 0; at < line.size();) {
+        const ssize_t written = ::write(fd_, line.data() + at, line.size() - at);
+        if (written < 0 && errno != EINTR) {
+            error_ = errno;
+            return;
+        }
+        at += static_cast<std::size_t>(std::max<ssize_t>(written, 0));
+    }
+}
+
+Result<void> RecipeEvents::finish() const {
+    if (error_ != 0) {
+        return fail(ErrorCode::kIo,
+                    "cannot write events to " + (path_ == "-" ? "standard output" : quotedPath(path_)) +
+                        ": " + std::system_category().message(error_) + "; what was baked is in place");
+    }
+    return {};
+}
+
+// --- the display ---
+
+RecipeDisplay::RecipeDisplay(std::size_t assets, bool wanted)
+    : assets_(assets), wanted_(wanted), terminal_(wanted && canRedraw()) {}
+
+RecipeDisplay::~RecipeDisplay() {
+    wipe();
+}
+
+void RecipeDisplay::started(const AssetResult& asset) {
+    running_.push_back(cleanUtf8(asset.job.output));
+    draw();
+}
+
+void RecipeDisplay::ended(const AssetResult& asset) {
+    const std::string name = cleanUtf8(asset.job.output);
+    if (const auto found = std::find(running_.begin(), running_.end(), name); found != running_.end()) {
+        running_.erase(found);
+    }
+    ++done_;
+    failed_ += asset.state == AssetState::kFailed ? 1 : 0;
+    if (wanted_ && !terminal_ && asset.state == AssetState::kBaked) {
+        std::fprintf(stderr, "%s: baked, %s, %s\n", name.c_str(), bytesText(asset.bytes).c_str(),
+                     seconds(asset.ms).c_str());
+    }
+    draw();
+}
+
+void RecipeDisplay::wipe() {
+    if (drawn_) {
+        std::fputs("\r\033[K", stderr);
+        drawn_ = false;
+    }
+}
+
+void RecipeDisplay::draw() {
+    if (!terminal_) {
+        return;
+    }
+    std::string line = "[" + std::to_string(done_) + "/" + std::to_string(assets_) + "]";
+    if (failed_ > 0) {
+        line += " " + std::to_string(failed_) + " failed";
+    }
+    for (std::size_t i = 0; i < running_.size(); ++i) {
+        line += (i == 0 ? " baking " : ", ") + running_[i];
+    }
+    winsize size{};
+    const std::size_t columns =
+        ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col - 1U : 79U;
+    std::fprintf(stderr, "\r%s\033[K", cleanUtf8(line, columns).c_str());
+    std::fflush(stderr);
+    drawn_ = true;
+}
+
+}  // namespace relief

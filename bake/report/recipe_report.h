@@ -1,0 +1,80 @@
+// What a run of a recipe says: events for machines while it runs, a display for people, and both at its end.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bake/recipe/recipe_run.h"
+
+namespace relief {
+
+struct RecipeCounts {
+    std::size_t stale = 0;
+    std::size_t up_to_date = 0;
+    std::size_t baked = 0;
+    std::size_t failed = 0;
+    std::size_t cancelled = 0;
+    std::uint64_t bytes = 0;  ///< of the outputs that are up to date now
+
+    [[nodiscard]] std::size_t all() const { return stale + up_to_date + baked + failed + cancelled; }
+};
+[[nodiscard]] RecipeCounts countAssets(const std::vector<AssetResult>& assets);
+
+/// "12 assets: 3 baked, 8 up to date, 1 failed; 1.2 MB; 4.5 s", or "12 assets up to date".
+[[nodiscard]] std::string recipeSummary(const RecipeCounts& counts, double ms);
+
+/// asset, mesh, state, reason, ms, bytes, hash, inputs, warnings, code and error: those that apply.
+[[nodiscard]] nlohmann::ordered_json jsonAsset(const AssetResult& asset);
+[[nodiscard]] nlohmann::ordered_json jsonCounts(const RecipeCounts& counts);
+
+/// Lines of JSON, each written as it happens.
+class RecipeEvents {
+  public:
+    RecipeEvents() = default;
+    RecipeEvents(const RecipeEvents&) = delete;
+    RecipeEvents& operator=(const RecipeEvents&) = delete;
+    ~RecipeEvents();
+
+    /// \param path  empties the file; "-": standard output. Errors: kIo.
+    [[nodiscard]] Result<void> open(const std::string& path);
+    /// Does nothing if open() was not called. What cannot be written is told by finish().
+    void write(const nlohmann::ordered_json& event);
+    /// Errors: kIo: an event could not be written.
+    [[nodiscard]] Result<void> finish() const;
+
+  private:
+    std::string path_;
+    int fd_ = -1;
+    int error_ = 0;
+};
+
+/// On a terminal one line that is drawn again, elsewhere a line for each asset that was baked; on standard
+/// error.
+class RecipeDisplay {
+  public:
+    /// \param wanted  false: draws nothing.
+    RecipeDisplay(std::size_t assets, bool wanted);
+    RecipeDisplay(const RecipeDisplay&) = delete;
+    RecipeDisplay& operator=(const RecipeDisplay&) = delete;
+    ~RecipeDisplay();
+
+    void started(const AssetResult& asset);
+    void ended(const AssetResult& asset);
+    /// Wipes the line, so that something else can be written.
+    void wipe();
+
+  private:
+    void draw();
+
+    std::size_t assets_;
+    bool wanted_;
+    bool terminal_;
+    bool drawn_ = false;
+    std::size_t done_ = 0;
+    std::size_t failed_ = 0;
+    std::vector<std::string> running_;
+};
+
+}  // namespace relief

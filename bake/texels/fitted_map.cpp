@@ -1,0 +1,342 @@
+#include "bake/texels/fitted_map.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "bake/mesh/triangle_plane.h"
+#include "bake/texels/plane_fit.h"
+
+namespace relief {
+namespace {
+
+/// Rays traced before their texels are fitted: bounds the memory for hits to 64 MiB whatever a map's size.
+constexpr std::uint64_t kStripeRays = std::uint64_t{1} << 22;
+constexpr double kDepthCodes = 65534.0;
+/// Parts of the way between two rays of a footprint to which the edge of a surface is found; odd.
+constexpr std::uint32_t kEdgeParts = 63;
+
+/// Looks at one end of a view from where its rays start: u grows away from the viewer.
+class EndView {
+  public:
+    EndView(const View& view, RayEnd end)
+        : far_(end == RayEnd::kFar),
+          u_max_(view.projection() == Projection::kCube ? double{kCubeDepthMax} : 1.0) {}
+
+    [[nodiscard]] double uMax() const { return u_max_; }
+    [[nodiscard]] FootprintRay fromViewer(const TexelRay& ray) const {
+        return far_ ? FootprintRay{ray.origin + u_max_ * ray.direction, -ray.direction, -1.0, glm::dvec3(0.0)}
+                    : FootprintRay{ray.origin, ray.direction, -1.0, glm::dvec3(0.0)};
+    }
+    [[nodiscard]] double uOf(double depth) const { return far_ ? u_max_ - depth : depth; }
+    /// Map depth of a fitted plane. Exact in double: both count in the same 65534 parts.
+    [[nodiscard]] double depthOf(const FittedPlane& plane) const {
+        const double code = plane.code;
+        return (far_ && !plane.stands ? kDepthCodes - code : code) / kDepthCodes * u_max_;
+    }
+    /// Towards the viewer in map depth.
+    [[nodiscard]] bool outwardsIsLess() const { return !far_; }
+
+  private:
+    bool far_;
+    double u_max_;
+};
+
+/// The ring of texels that stays empty (depth_map.h).
+bool isBorder(const View& view, std::uint32_t x, std::uint32_t y) {
+    return view.projection() == Projection::kOrthographic &&
+           (x == 0 || y == 0 || x + 1 == view.width || y + 1 == view.height);
+}
+
+/// A half-float depth on the viewer's side of `depth`.
+float outwardHalf(double depth, bool outwards_is_less) {
+    const std::uint16_t nearest = encodeHalfDepth(static_cast<float>(depth));
+    const double decoded = decodeHalfDepth(nearest);
+    if (outwards_is_less && decoded > depth) {
+        return decodeHalfDepth(std::max<std::uint16_t>(nearest - 1, encodeHalfDepth(0.0F)));
+    }
+    if (!outwards_is_less && decoded < depth) {
+        return decodeHalfDepth(std::min<std::uint16_t>(nearest + 1, encodeHalfDepth(1.0F)));
+    }
+    return static_cast<float>(decoded);
+}
+
+/// Fits the texels of one end, from the hits of a view with `samples` times as many texels each way.
+class EndFitter {
+  public:
+    EndFitter(const RayScene& scene, const TriangleNormals& normals, const View& view, const View& fine,
+              const View& finest, RayEnd end, const FittedMapOptions& options)
+        : normals_(normals),
+          finest_(finest),
+          probe_(scene, finest, end),
+          probe_other_(scene, finest, end == RayEnd::kNear ? RayEnd::kFar : RayEnd::kNear),
+          view_(view),
+          fine_(fine),
+          end_(view, end),
+          samples_(options.samples),
+          inside_out_(scene.winding() < 0.0),
+          starts_free_(view.starts_free[static_cast<std::size_t>(end)]),
+          other_starts_free_(view.projection() == Projection::kOrthographic &&
+                             view.starts_free[end == RayEnd::kNear ? 1 : 0]) {
+        // One unit of u in object units: the length of the depth axis, or of a cube's mean half side.
+        const auto length = [](const glm::dvec3& v) { return std::sqrt(dot(v, v)); };
+        const double unit = view.projection() == Projection::kCube
+                                ? (length(view.axis[0]) + length(view.axis[1]) + length(view.axis[2])) / 3.0
+                                : length(view.axis[2]);
+        fit_.u_max = end_.uMax();
+        fit_.range = standingRange(view.projection(), view.object_per_map, view.width, view.height);
+        fit_.reach = options.reach / unit;
+        fit_.pixel_cost = options.good_enough / unit;
+        fit_.refinements = options.refinements;
+        fit_.let_back = options.let_back;
+        fit_.cautious = options.cautious;
+        rays_.resize(std::size_t{samples_} * samples_);
+    }
+
+    /// \param hits        of this end in the fine view, from row `first_row` of the face on, the rows next to
+    ///                    the texel's included
+    /// \param other_hits  of the other end; may be empty
+    std::optional<Surface> fit(std::uint32_t face, std::uint32_t x, std::uint32_t y, std::uint32_t first_row,
+                               std::span<const Hit> hits, std::span<const Hit> other_hits) {
+        const Footprint here{face, x, y, first_row, hits, other_hits};
+        if (!seesAnything(here)) {
+            return std::nullopt;
+        }
+        for (std::uint32_t j = 0; j < samples_; ++j) {
+            const std::uint32_t row = y * samples_ + j;
+            for (std::uint32_t i = 0; i < samples_; ++i) {
+                const std::uint32_t column = x * samples_ + i;
+                const Hit& hit = hits[std::size_t{row - first_row} * fine_.width + column];
+                if (!hit.empty() && startsInside(hit)) {
+                    return std::nullopt;  // the ray starts inside: what lies before this surface is not free
+                }
+                const std::size_t at = std::size_t{row - first_row} * fine_.width + column;
+                rays_[std::size_t{j} * samples_ + i] = footprintRay(
+                    fine_.ray(face, column, row), hit, other_hits.empty() ? Hit() : other_hits[at]);
+            }
+        }
+        findEdge(here);
+        lookAround(here);
+        const TexelRay centre = view_.ray(face, x, y);
+        const std::optional<FittedPlane> plane =
+            fitSupportingPlane(rays_, around_, edge_, end_.fromViewer(centre), centre.origin, fit_);
+        if (!plane) {
+            return std::nullopt;
+        }
+        const double depth = end_.depthOf(*plane);
+        return Surface{view_.format == MapFormat::kFrontBackHalf
+                           ? outwardHalf(depth, end_.outwardsIsLess() && !plane->stands)
+                           : static_cast<float>(depth),
+                       glm::vec3(plane->normal)};
+    }
+
+  private:
+    [[nodiscard]] FootprintRay footprintRay(const TexelRay& along, const Hit& hit, const Hit& other) const {
+        FootprintRay ray = end_.fromViewer(along);
+        if (!hit.empty()) {
+            ray.u = end_.uOf(hit.depth());
+            ray.u_last =
+                other.empty() || !other_starts_free_ ? end_.uMax() : std::max(ray.u, end_.uOf(other.depth()));
+            const glm::dvec3& normal = normals_[hit.triangle()];
+            ray.normal = hit.fromBehind() ? -normal : normal;
+        }
+        return ray;
+    }
+
+    /// The ray of a hit started in the solid.
+    [[nodiscard]] bool startsInside(const Hit& hit) const {
+        return !starts_free_ && hit.fromBehind() != inside_out_;
+    }
+
+    /// A texel, and the hits of the fine view from row `first_row` of its face on.
+    struct Footprint {
+        std::uint32_t face;
+        std::uint32_t x;
+        std::uint32_t y;
+        std::uint32_t first_row;
+        std::span<const Hit> hits;
+        std::span<const Hit> other_hits;
+    };
+
+    [[nodiscard]] std::size_t indexOf(const Footprint& here, std::uint32_t column, std::uint32_t row) const {
+        return std::size_t{row - here.first_row} * fine_.width + column;
+    }
+
+    /// Calls visit(column, row) for the rays of a footprint and of the ring about it, as far as they are on
+    /// its face.
+    template <class Visit>
+    void forEachAround(const Footprint& here, const Visit& visit) const {
+        const auto bounds = [&](std::uint32_t texel, std::uint32_t size) {
+            const std::uint32_t first = texel * samples_;
+            return std::pair{first - (first > 0 ? 1U : 0U), std::min(first + samples_ + 1, size)};
+        };
+        const auto [row_begin, row_end] = bounds(here.y, fine_.height);
+        const auto [column_begin, column_end] = bounds(here.x, fine_.width);
+        for (std::uint32_t row = row_begin; row < row_end; ++row) {
+            for (std::uint32_t column = column_begin; column < column_end; ++column) {
+                visit(column, row);
+            }
+        }
+    }
+
+    [[nodiscard]] bool isOwn(const Footprint& here, std::uint32_t column, std::uint32_t row) const {
+        return row / samples_ == here.y && column / samples_ == here.x;
+    }
+
+    [[nodiscard]] bool seesAnything(const Footprint& here) const {
+        bool any = false;
+        forEachAround(here, [&](std::uint32_t column, std::uint32_t row) {
+            any = any || !here.hits[indexOf(here, column, row)].empty();
+        });
+        return any;
+    }
+
+    void lookAround(const Footprint& here) {
+        around_.clear();
+        forEachAround(here, [&](std::uint32_t column, std::uint32_t row) {
+            const std::size_t at = indexOf(here, column, row);
+            const Hit& hit = here.hits[at];
+            if (!isOwn(here, column, row) && !hit.empty() && !startsInside(hit)) {
+                around_.push_back(footprintRay(fine_.ray(here.face, column, row), hit,
+                                               here.other_hits.empty() ? Hit() : here.other_hits[at]));
+            }
+        });
+    }
+
+    /// Where the edges of surfaces run through the texel: between neighbours of which one meets a surface and
+    /// the other does not, the last ray that does. One of the neighbours may be of the ring about the texel:
+    /// a wall an eighth of a texel away from its border is as much of a wall.
+    void findEdge(const Footprint& here) {
+        edge_.clear();
+        forEachAround(here, [&](std::uint32_t column, std::uint32_t row) {
+            for (const auto& [right, up] : {std::pair{1U, 0U}, std::pair{0U, 1U}}) {
+                const bool on_face = column + right < fine_.width && row + up < fine_.height;
+                if (on_face && (isOwn(here, column, row) || isOwn(here, column + right, row + up))) {
+                    findEdgeBetween(here, column, row, right, up);
+                }
+            }
+        });
+    }
+
+    void findEdgeBetween(const Footprint& here, std::uint32_t column, std::uint32_t row, std::uint32_t right,
+                         std::uint32_t up) {
+        const bool meets = !here.hits[indexOf(here, column, row)].empty();
+        if (meets == !here.hits[indexOf(here, column + right, row + up)].empty()) {
+            return;
+        }
+        // In the finest grid, whose odd count of parts has a texel at the centre of each sample's.
+        std::uint32_t on[2] = {column * kEdgeParts + kEdgeParts / 2, row * kEdgeParts + kEdgeParts / 2};
+        std::uint32_t off[2] = {on[0] + right * kEdgeParts, on[1] + up * kEdgeParts};
+        if (!meets) {
+            std::swap(on, off);
+        }
+        Hit last = probe_.trace(here.face, on[0], on[1]);
+        if (last.empty() || startsInside(last)) {
+            return;
+        }
+        while (on[0] + 1 < off[0] || off[0] + 1 < on[0] || on[1] + 1 < off[1] || off[1] + 1 < on[1]) {
+            const std::uint32_t middle[2] = {(on[0] + off[0]) / 2, (on[1] + off[1]) / 2};
+            const Hit hit = probe_.trace(here.face, middle[0], middle[1]);
+            std::copy_n(middle, 2, hit.empty() ? off : on);
+            last = hit.empty() ? last : hit;
+        }
+        if (isOwn(here, on[0] / kEdgeParts, on[1] / kEdgeParts)) {
+            const Hit other = other_starts_free_ ? probe_other_.trace(here.face, on[0], on[1]) : Hit();
+            edge_.push_back(footprintRay(finest_.ray(here.face, on[0], on[1]), last, other));
+        }
+    }
+
+    const TriangleNormals& normals_;
+    const View& finest_;
+    RayProbe probe_;
+    RayProbe probe_other_;
+    const View& view_;
+    const View& fine_;
+    EndView end_;
+    std::uint32_t samples_;
+    bool inside_out_;
+    bool starts_free_;
+    bool other_starts_free_;
+    PlaneFitOptions fit_;
+    std::vector<FootprintRay> rays_;
+    std::vector<FootprintRay> around_;
+    std::vector<FootprintRay> edge_;
+};
+
+}  // namespace
+
+TriangleNormals::TriangleNormals(const TriangleMesh& mesh) : normals_(mesh.triangles.size()) {
+    tbb::parallel_for(std::size_t{0}, normals_.size(), [&](std::size_t i) {
+        const glm::dvec3 n = planeOf(mesh, static_cast<std::uint32_t>(i)).normal;
+        normals_[i] = n / std::sqrt(dot(n, n));
+    });
+}
+
+DepthMap bakeFittedMap(const RayScene& scene, const TriangleNormals& normals, const View& view,
+                       const FittedMapOptions& options, std::uint64_t& covered,
+                       const std::function<void(std::uint32_t)>& rowsDone) {
+    View fine = view;
+    fine.width *= options.samples;
+    fine.height *= options.samples;
+
+    View finest = fine;
+    finest.width *= kEdgeParts;
+    finest.height *= kEdgeParts;
+
+    DepthMap map = view.emptyMap();
+    map.decode = Decode::kPlane;
+    const auto stripe_rows = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(
+        kStripeRays / (std::uint64_t{fine.width} * options.samples), 1, view.height));
+    std::array<std::vector<Hit>, 2> hits;
+    covered = 0;
+    for (std::uint32_t face = 0; face < view.faceCount(); ++face) {
+        for (std::uint32_t y = 0; y < view.height; y += stripe_rows) {
+            const std::uint32_t y_end = std::min(y + stripe_rows, view.height);
+            // One more row on either side, for the rings about the texels.
+            const RowRange rows{face, y * options.samples - (y > 0 ? 1 : 0),
+                                std::min(y_end * options.samples + 1, fine.height)};
+            for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
+                if (view.keeps(end)) {
+                    std::vector<Hit>& end_hits = hits[static_cast<std::size_t>(end)];
+                    end_hits.resize(std::size_t{rows.end - rows.begin} * fine.width);
+                    scene.trace(fine, end, rows, end_hits);
+                }
+            }
+            const auto fitRows = [&](const tbb::blocked_range<std::uint32_t>& block, std::uint64_t count) {
+                EndFitter near_fitter(scene, normals, view, fine, finest, RayEnd::kNear, options);
+                EndFitter far_fitter(scene, normals, view, fine, finest, RayEnd::kFar, options);
+                for (std::uint32_t row = block.begin(); row != block.end(); ++row) {
+                    for (std::uint32_t x = 0; x < view.width; ++x) {
+                        Texel texel;
+                        if (isBorder(view, x, row)) {
+                            encodeTexel(map.format, texel, map.texelAt(face, x, row));
+                            continue;
+                        }
+                        if (view.keeps(RayEnd::kNear)) {
+                            texel.front = near_fitter.fit(face, x, row, rows.begin, hits[0], hits[1]);
+                        }
+                        if (view.keeps(RayEnd::kFar)) {
+                            texel.back = far_fitter.fit(face, x, row, rows.begin, hits[1], hits[0]);
+                        }
+                        if (view.compare == Compare::kGreater) {
+                            texel.front.swap(texel.back);  // a map of one surface holds it as its front
+                        }
+                        encodeTexel(map.format, texel, map.texelAt(face, x, row));
+                        count += texel.front || texel.back ? 1U : 0U;
+                    }
+                }
+                return count;
+            };
+            covered += tbb::parallel_reduce(tbb::blocked_range<std::uint32_t>(y, y_end), std::uint64_t{0},
+                                            fitRows, std::plus<>());
+            rowsDone(y_end - y);
+        }
+    }
+    return map;
+}
+
+}  // namespace relief

@@ -1,0 +1,302 @@
+#include "bake/texels/plane_fit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "bake/mesh/triangle_plane.h"
+#include "formats/plane.h"
+
+namespace relief {
+namespace {
+
+constexpr double kDepthCodes = 65534.0;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Below this cosine a plane cuts off what lies between the outermost ray that meets a surface and the
+/// surface's edge: the edge itself has to support it. Others pass over it, and lose more by that than they
+/// gain.
+constexpr double kSteepCosine = 0.35;
+/// Planes steeper than this cut deep: a surface that stands out of the footprint's rays, in the rim of the
+/// texel, would leave a pit in the solid. The rays about the footprint have to lie behind them too.
+constexpr double kDeepCosine = 0.1;
+/// Planes between this and kPlaneGrazingMin are not stored: a reader's rounding could take them for the other
+/// kind.
+constexpr double kStandingMax = double{kStandingCosine} - 1e-4;
+
+std::uint16_t codeOf(const glm::dvec3& normal) {
+    return packNormal(encodeNormal(glm::vec3(normal)));
+}
+
+/// The search for one texel's plane.
+class PlaneSearch {
+  public:
+    PlaneSearch(std::span<const FootprintRay> rays, std::span<const FootprintRay> around,
+                std::span<const FootprintRay> edge, const FootprintRay& centre, const glm::dvec3& zero_depth,
+                const PlaneFitOptions& options)
+        : rays_(rays),
+          around_(around),
+          edge_(edge),
+          centre_(centre),
+          from_zero_(centre.origin - zero_depth),
+          options_(options),
+          direction_length_(std::sqrt(dot(centre.direction, centre.direction))) {}
+
+    std::optional<FittedPlane> run() {
+        glm::dvec3 sum(0.0);
+        for (const FootprintRay& ray : rays_) {
+            if (ray.u >= 0.0) {
+                sum += ray.normal;
+                ++hits_;
+            }
+        }
+        if (hits_ == 0 && edge_.empty()) {
+            return std::nullopt;
+        }
+        good_enough_ = options_.pixel_cost * static_cast<double>(rays_.size());
+        const glm::dvec3 facing = -centre_.direction / direction_length_;
+        if (hits_ == 0) {  // a surface enters the footprint between its rays
+            tryStanding();
+            refine();
+            return best_cost_ < kInfinity ? std::optional(best_) : std::nullopt;
+        }
+        // The mean first: on a smooth surface nothing else is needed.
+        const double sum_length = std::sqrt(dot(sum, sum));
+        tryCode(codeOf(sum_length > 1e-6 ? sum / sum_length : facing));
+        for (const FootprintRay& ray : rays_) {
+            if (ray.u >= 0.0 && best_cost_ > good_enough_) {
+                tryCode(codeOf(ray.normal));
+            }
+        }
+        if (best_cost_ > good_enough_) {
+            tryCode(codeOf(facing));
+        }
+        if (best_cost_ > good_enough_ && !edge_.empty() && hits_ < static_cast<int>(rays_.size())) {
+            tryStanding();
+        }
+        refine();
+        if (best_cost_ == kInfinity) {
+            takeFacing(facing);
+        }
+        return best_;
+    }
+
+  private:
+    void refine() {
+        for (int step = 1 << options_.refinements >> 1; step > 0 && best_cost_ > good_enough_; step /= 2) {
+            tryNeighbours(step);
+        }
+    }
+
+    void tryNeighbours(int step) {
+        const NormalIndex from = best_.index;
+        for (int dt = -step; dt <= step; dt += step) {
+            for (int ds = -step; ds <= step; ds += step) {
+                const int s = from.s + ds;
+                const int t = from.t + dt;
+                if (s >= 0 && s <= 254 && t >= 0 && t <= 254) {
+                    tryCode(packNormal({static_cast<std::uint8_t>(s), static_cast<std::uint8_t>(t)}));
+                }
+            }
+        }
+    }
+
+    void tryCode(std::uint16_t code) {
+        const std::size_t seen_end = std::min(tried_count_, tried_.size());
+        for (std::size_t i = 0; i < seen_end; ++i) {
+            if (tried_[i] == code) {
+                return;
+            }
+        }
+        tried_[tried_count_++ % tried_.size()] = code;
+
+        const glm::dvec3& normal = decodedNormals()[code];
+        const double along = dot(normal, centre_.direction);
+        const double cosine = along / direction_length_;
+        const bool stands = std::abs(cosine) < kStandingMax;
+        if (!stands && !(cosine <= -kPlaneGrazingMin)) {
+            return;
+        }
+        // Pushed until no sampled surface point lies in front.
+        double offset = supportOf(rays_, normal);
+        if (cosine > -kSteepCosine) {
+            offset = std::max(offset, supportOf(edge_, normal));
+        }
+        if (options_.cautious || cosine > -kDeepCosine) {
+            offset = std::max(offset, supportOf(around_, normal));
+        }
+        if (options_.let_back > 0.0 && !stands) {
+            const double spread = offset - lowestOf(rays_, normal);
+            offset -= spread < 0.25 * options_.range ? options_.let_back * spread : 0.0;
+        }
+        const double from_zero = dot(normal, from_zero_);
+        const double scaled =
+            stands ? std::ceil(((offset + from_zero) / options_.range + 1.0) * 0.5 * kDepthCodes)
+                   : std::floor(offset / along / options_.u_max * kDepthCodes);
+        if (!(scaled >= 0.0 && scaled <= kDepthCodes)) {
+            return;
+        }
+        const double stored = stands ? (2.0 * scaled / kDepthCodes - 1.0) * options_.range - from_zero
+                                     : scaled / kDepthCodes * options_.u_max * along;
+        double cost = 0.0;
+        for (const FootprintRay& ray : rays_) {
+            cost += freeSpaceBehind(ray, normal, stored);
+            cost += options_.let_back > 0.0 ? solidInFront(ray, normal, stored) : 0.0;
+            if (cost >= best_cost_) {
+                return;
+            }
+        }
+        best_cost_ = cost;
+        best_ = {normal, unpackNormal(code), stands, static_cast<std::uint16_t>(scaled)};
+    }
+
+    [[nodiscard]] double lowestOf(std::span<const FootprintRay> rays, const glm::dvec3& normal) const {
+        double offset = kInfinity;
+        for (const FootprintRay& ray : rays) {
+            if (ray.u >= 0.0) {
+                offset = std::min(
+                    offset, dot(normal, ray.origin - centre_.origin) + ray.u * dot(normal, ray.direction));
+            }
+        }
+        return offset;
+    }
+
+    /// A plane that leans away from the viewer must not cut what lies behind the surface that the ray meets.
+    [[nodiscard]] double supportOf(std::span<const FootprintRay> rays, const glm::dvec3& normal) const {
+        double offset = -kInfinity;
+        for (const FootprintRay& ray : rays) {
+            if (ray.u >= 0.0) {
+                const double along = dot(normal, ray.direction);
+                offset = std::max(offset, dot(normal, ray.origin - centre_.origin) +
+                                              (along > 0.0 ? ray.u_last : ray.u) * along);
+            }
+        }
+        return offset;
+    }
+
+    /// The wall between the rays that meet a surface and those that pass by it, seen edge-on.
+    void tryStanding() {
+        const glm::dvec3 unit = centre_.direction / direction_length_;
+        const auto at = [&](const FootprintRay& ray, double u) {
+            const glm::dvec3 p = ray.origin + u * ray.direction - centre_.origin;
+            return p - dot(p, unit) * unit;
+        };
+        double u = 0.0;
+        for (const FootprintRay& ray : edge_) {
+            u += ray.u / static_cast<double>(edge_.size());
+        }
+        glm::dvec3 met(0.0);
+        glm::dvec3 passed(0.0);
+        for (const FootprintRay& ray : hits_ > 0 ? rays_ : edge_) {
+            if (ray.u >= 0.0) {
+                met += at(ray, u) /
+                       static_cast<double>(hits_ > 0 ? static_cast<std::size_t>(hits_) : edge_.size());
+            }
+        }
+        for (const FootprintRay& ray : rays_) {
+            if (ray.u < 0.0) {
+                passed += at(ray, u) / static_cast<double>(static_cast<int>(rays_.size()) - hits_);
+            }
+        }
+        const glm::dvec3 towards = passed - met;
+        tryAcross(towards);
+        // Along the edge: the two of its points that are farthest apart.
+        double longest = 0.0;
+        glm::dvec3 along(0.0);
+        for (std::size_t i = 0; i < edge_.size(); ++i) {
+            for (std::size_t j = 0; j < i; ++j) {
+                const glm::dvec3 d = at(edge_[i], u) - at(edge_[j], u);
+                if (dot(d, d) > longest) {
+                    longest = dot(d, d);
+                    along = d;
+                }
+            }
+        }
+        const glm::dvec3 normal = cross(along, unit);
+        tryAcross(dot(normal, towards) < 0.0 ? -normal : normal);
+    }
+
+    void tryAcross(const glm::dvec3& direction) {
+        const double length = std::sqrt(dot(direction, direction));
+        if (length > 0.0) {
+            tryCode(codeOf(direction / length));
+        }
+    }
+
+    /// Length of the part of a ray that is free but behind the plane, at most `reach`.
+    [[nodiscard]] double freeSpaceBehind(const FootprintRay& ray, const glm::dvec3& normal,
+                                         double offset) const {
+        const double along = dot(normal, ray.direction);
+        const double start = dot(normal, ray.origin - centre_.origin);
+        const double end = ray.u >= 0.0 ? ray.u : options_.u_max;  // of the free part
+        if (along < 0.0) {                                         // the plane is met from its free side
+            return std::clamp(end - std::max(0.0, (offset - start) / along), 0.0, options_.reach);
+        }
+        if (start > offset) {
+            return 0.0;
+        }
+        return std::min({options_.reach, end, along > 0.0 ? (offset - start) / along : kInfinity});
+    }
+
+    /// Length of the part of a ray that is solid but in front of the plane.
+    [[nodiscard]] double solidInFront(const FootprintRay& ray, const glm::dvec3& normal,
+                                      double offset) const {
+        const double along = dot(normal, ray.direction);
+        if (ray.u < 0.0 || !(along < 0.0)) {
+            return 0.0;
+        }
+        const double at_plane = (offset - dot(normal, ray.origin - centre_.origin)) / along;
+        return std::clamp(at_plane - ray.u, 0.0, options_.reach);
+    }
+
+    /// The last resort, where every plane leaves the depth range: facing the viewer, at the nearest sample.
+    void takeFacing(const glm::dvec3& facing) {
+        double nearest = kInfinity;
+        for (const FootprintRay& ray : rays_) {
+            if (ray.u >= 0.0) {
+                const glm::dvec3 offset = ray.origin + ray.u * ray.direction - centre_.origin;
+                nearest = std::min(nearest,
+                                   dot(offset, centre_.direction) / (direction_length_ * direction_length_));
+            }
+        }
+        const double scaled = std::floor(std::clamp(nearest / options_.u_max, 0.0, 1.0) * kDepthCodes);
+        const std::uint16_t code = codeOf(facing);
+        best_ = {decodedNormals()[code], unpackNormal(code), false, static_cast<std::uint16_t>(scaled)};
+    }
+
+    std::span<const FootprintRay> rays_;
+    std::span<const FootprintRay> around_;
+    std::span<const FootprintRay> edge_;
+    const FootprintRay& centre_;
+    glm::dvec3 from_zero_;
+    const PlaneFitOptions& options_;
+    double direction_length_;
+    int hits_ = 0;
+    double good_enough_ = 0.0;
+    double best_cost_ = kInfinity;
+    FittedPlane best_;
+    std::array<std::uint16_t, 48> tried_{};
+    std::size_t tried_count_ = 0;
+};
+
+}  // namespace
+
+const std::array<glm::dvec3, 65536>& decodedNormals() {
+    static const auto* const table = [] {
+        auto* t = new std::array<glm::dvec3, 65536>;
+        for (std::size_t code = 0; code < t->size(); ++code) {
+            (*t)[code] = glm::dvec3(decodeNormal(unpackNormal(static_cast<std::uint16_t>(code))));
+        }
+        return t;
+    }();
+    return *table;
+}
+
+std::optional<FittedPlane> fitSupportingPlane(std::span<const FootprintRay> rays,
+                                              std::span<const FootprintRay> around,
+                                              std::span<const FootprintRay> edge, const FootprintRay& centre,
+                                              const glm::dvec3& zero_depth, const PlaneFitOptions& options) {
+    return PlaneSearch(rays, around, edge, centre, zero_depth, options).run();
+}
+
+}  // namespace relief

@@ -1,0 +1,46 @@
+// A view and a mesh make a map on the GPU: the other way to what raycast.h and encode.h do together, one ray
+// through the centre of each texel.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "bake/mesh/mesh.h"
+#include "bake/plan/view.h"
+#include "formats/base/result.h"
+#include "formats/depth_map.h"
+#include "runtime/depth_maps/depth_map_renderer.h"
+#include "runtime/depth_maps/gpu_mesh.h"
+
+namespace relief {
+
+/// What the renderer needs to know of a view. \param winding  orientation() of the mesh.
+[[nodiscard]] DepthMapFrame frameOf(const View& view, Decode decode, const TriangleMesh& mesh,
+                                    double winding);
+
+/// A mesh on the GPU. Made once, rendered for any number of views, all on one thread.
+class Rasterizer {
+  public:
+    /// Needs a current context (gl_context.h), which must outlive it.
+    /// \param mesh  borrowed; must outlive it.
+    /// Errors: those of GpuMesh::create, with the mesh's name.
+    [[nodiscard]] static Result<Rasterizer> create(const TriangleMesh& mesh);
+
+    /// Renders one map, tile by tile: a map may be larger than the GL's textures.
+    /// \param covered   receives the number of texels with a surface.
+    /// \param rowsDone  called now and then with the number of rows that are finished, of all faces together.
+    /// Errors: those of DepthMapTarget and DepthMapRenderer.
+    [[nodiscard]] Result<DepthMap> bake(const View& view, Decode decode, std::uint64_t& covered,
+                                        const std::function<void(std::uint32_t)>& rowsDone);
+
+  private:
+    Rasterizer(const TriangleMesh& mesh, double winding, GpuMesh gpu_mesh, DepthMapRenderer renderer)
+        : mesh_(&mesh), winding_(winding), gpu_mesh_(std::move(gpu_mesh)), renderer_(std::move(renderer)) {}
+
+    const TriangleMesh* mesh_;
+    double winding_;
+    GpuMesh gpu_mesh_;
+    DepthMapRenderer renderer_;
+};
+
+}  // namespace relief

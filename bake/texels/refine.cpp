@@ -1,0 +1,476 @@
+#include "bake/texels/refine.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "bake/mesh/surface_sampler.h"
+#include "bake/mesh/triangle_plane.h"
+#include "bake/texels/plane_fit.h"
+#include "formats/plane.h"
+
+namespace relief {
+namespace {
+
+constexpr double kDepthCodes = 65534.0;
+/// Points: a change must be worth as many of them; with few points a texel, less is noise.
+constexpr double kMargin = 3.0;
+/// Planes steeper than this reach deep into the solid, where no points are drawn; only the fit, which has
+/// seen the last surfaces too, may choose them.
+constexpr double kSteepest = 0.2;
+constexpr std::size_t kNormalsTried = 12;
+constexpr std::uint16_t kSettledVotes = 4;
+constexpr std::int32_t kAbstains = -1;
+constexpr std::int32_t kOutside = -2;
+
+/// One end of a texel as it is stored.
+struct Code {
+    std::uint16_t normal = 0;
+    std::uint16_t depth = 0;  ///< 0: empty
+    friend bool operator==(const Code&, const Code&) = default;
+};
+
+/// A texel's ray in object space, in double.
+struct Ray {
+    glm::dvec3 origin;
+    glm::dvec3 direction;
+    double length;
+};
+
+/// The votes of a map's texels, end by end.
+class TexelVotes {
+  public:
+    explicit TexelVotes(DepthMap& map)
+        : map_(map), depth_max_(map.projection() == Projection::kCube ? double{kCubeDepthMax} : 1.0) {
+        range_ = standingRange(map.projection(), map.object_per_map, map.width, map.height);
+        const TexelRay first = texelRay(map, 0, 0, 0);
+        if (map.projection() == Projection::kOrthographic) {
+            first_ = first;
+            column_step_ = texelRay(map, 0, 1, 0).origin - first.origin;
+            row_step_ = texelRay(map, 0, 0, 1).origin - first.origin;
+        }
+    }
+
+    [[nodiscard]] bool changeable() const {
+        return map_.decode == Decode::kPlane && std::string_view(depthEncodingName(map_.format)) == "unorm16";
+    }
+    [[nodiscard]] int ends() const { return isFrontBack(map_.format) ? 2 : 1; }
+    [[nodiscard]] std::size_t texels() const {
+        return std::size_t{map_.faceCount()} * map_.width * map_.height;
+    }
+
+    /// The index of the texel that votes for p, kAbstains or kOutside; as vote() of depth_map.h.
+    [[nodiscard]] std::int32_t locate(const glm::vec3& p) const {
+        const glm::vec3 q = map_.object_to_map.apply(p);
+        const auto width = static_cast<float>(map_.width);
+        const std::int32_t beyond = map_.encloses ? kOutside : kAbstains;
+        if (map_.projection() == Projection::kOrthographic) {
+            const float x = q.x * width;
+            const float y = q.y * static_cast<float>(map_.height);
+            if (!(x >= 1.0F && y >= 1.0F && x < width - 1.0F && y < static_cast<float>(map_.height) - 1.0F &&
+                  q.z >= 0.0F && q.z <= 1.0F)) {
+                return beyond;
+            }
+            return static_cast<std::int32_t>(y) * static_cast<std::int32_t>(map_.width) +
+                   static_cast<std::int32_t>(x);
+        }
+        if (!(std::max({std::abs(q.x), std::abs(q.y), std::abs(q.z)}) <= 1.0F)) {
+            return beyond;
+        }
+        const float radius = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z);
+        const CubeCoordinates at = cubeCoordinates(radius > 0.0F ? q / radius : glm::vec3(1.0F, 0.0F, 0.0F));
+        const auto x = std::min(static_cast<std::uint32_t>(at.s * width), map_.width - 1);
+        const auto y = std::min(static_cast<std::uint32_t>(at.t * width), map_.width - 1);
+        return static_cast<std::int32_t>((at.face * map_.width + y) * map_.width + x);
+    }
+
+    [[nodiscard]] Ray ray(std::size_t texel) const {
+        const auto x = static_cast<std::uint32_t>(texel % map_.width);
+        const auto row = static_cast<std::uint32_t>(texel / map_.width);
+        TexelRay ray = first_;
+        if (map_.projection() == Projection::kOrthographic) {
+            ray.origin += static_cast<double>(x) * column_step_ + static_cast<double>(row) * row_step_;
+        } else {
+            ray = texelRay(map_, row / map_.width, x, row % map_.width);
+        }
+        return {ray.origin, ray.direction, std::sqrt(dot(ray.direction, ray.direction))};
+    }
+
+    [[nodiscard]] Code code(std::size_t texel, int end) const {
+        const std::byte* bytes = map_.texels.data() + texel * texelSize(map_.format);
+        if (isFrontBack(map_.format)) {
+            std::uint16_t words[4];
+            std::memcpy(words, bytes, sizeof(words));
+            return {words[end], words[2 + end]};
+        }
+        const auto byte = [&](int i) { return std::to_integer<unsigned>(bytes[i]); };
+        return {static_cast<std::uint16_t>(byte(0) << 8U | byte(1)),
+                static_cast<std::uint16_t>(byte(2) << 8U | byte(3))};
+    }
+
+    void setCode(std::size_t texel, int end, const Code& code) {
+        std::byte* bytes = map_.texels.data() + texel * texelSize(map_.format);
+        if (isFrontBack(map_.format)) {
+            std::memcpy(bytes + 2 * end, &code.normal, 2);
+            std::memcpy(bytes + 4 + 2 * end, &code.depth, 2);
+            return;
+        }
+        bytes[0] = static_cast<std::byte>(code.normal >> 8);
+        bytes[1] = static_cast<std::byte>(code.normal & 0xff);
+        bytes[2] = static_cast<std::byte>(code.depth >> 8);
+        bytes[3] = static_cast<std::byte>(code.depth & 0xff);
+    }
+
+    [[nodiscard]] bool stands(const glm::dvec3& normal, const Ray& ray) const {
+        return std::abs(dot(normal, ray.direction)) < double{kStandingCosine} * ray.length;
+    }
+
+    /// n·(P − O) of the points on a plane.
+    [[nodiscard]] double offsetOf(const Code& code, const glm::dvec3& normal, const Ray& ray) const {
+        const double depth = (code.depth - 1) / kDepthCodes;
+        return stands(normal, ray) ? (2.0 * depth - 1.0) * range_
+                                   : depth * depth_max_ * dot(normal, ray.direction);
+    }
+
+    /// The nearest code of an offset; depth 0 if there is none.
+    [[nodiscard]] Code codeOf(std::uint16_t normal_code, const glm::dvec3& normal, double offset,
+                              const Ray& ray) const {
+        const double unit = stands(normal, ray) ? 0.5 * (offset / range_ + 1.0)
+                                                : offset / dot(normal, ray.direction) / depth_max_;
+        const double scaled = std::floor(unit * kDepthCodes + 0.5);
+        if (!(scaled >= 0.0 && scaled <= kDepthCodes)) {
+            return {};
+        }
+        return {normal_code, static_cast<std::uint16_t>(1 + static_cast<int>(scaled))};
+    }
+
+    [[nodiscard]] bool sawOutside(const Code& code, const Ray& ray, const glm::dvec3& p) const {
+        if (code.depth == 0) {
+            return map_.empty_is_outside && ends() == 1;
+        }
+        const glm::dvec3& normal = decodedNormals()[code.normal];
+        return dot(normal, p - ray.origin) - offsetOf(code, normal, ray) >= 0.0;
+    }
+
+    /// Both ends of a texel are empty, and that means outside.
+    [[nodiscard]] bool emptyIsOutside(std::size_t texel) const {
+        return map_.empty_is_outside && code(texel, 0).depth == 0 &&
+               (ends() == 1 || code(texel, 1).depth == 0);
+    }
+
+    /// The normal looks towards the viewer of this end, or stands; and is no steeper than it may be.
+    [[nodiscard]] bool allowed(const glm::dvec3& normal, const Ray& ray, int end, double steepest) const {
+        const bool sees_far = map_.compare == Compare::kGreater || end == 1;
+        const double cosine = dot(normal, ray.direction) / ray.length * (sees_far ? 1.0 : -1.0);
+        const bool in_gap = std::abs(std::abs(cosine) - double{kStandingCosine}) < 1e-4;
+        return std::abs(cosine) >= steepest && !in_gap && (cosine > 0.0 || stands(normal, ray));
+    }
+
+    [[nodiscard]] const DepthMap& map() const { return map_; }
+
+  private:
+    DepthMap& map_;
+    double depth_max_;
+    double range_ = 0.0;
+    TexelRay first_{};
+    glm::dvec3 column_step_{0.0};
+    glm::dvec3 row_step_{0.0};
+};
+
+/// The points of one texel that it decides.
+struct Decided {
+    glm::dvec3 from_ray;  ///< P − O
+    glm::vec3 normal;
+    bool inside;
+};
+
+/// The search for one end's plane among the points it decides.
+class PlaneChoice {
+  public:
+    PlaneChoice(const TexelVotes& votes, const RefineOptions& options)
+        : votes_(votes),
+          options_(options),
+          margin_(kMargin * std::max(options.false_inside, 0.5 * options.false_outside)) {}
+
+    std::vector<Decided> points;
+
+    Code best(const Code& current, const Ray& ray, int end) {
+        ray_ = &ray;
+        end_ = end;
+        best_ = current;
+        const glm::dvec3& normal = decodedNormals()[current.normal];
+        best_cost_ = costOf(normal, votes_.offsetOf(current, normal, ray)) - margin_;
+        if (best_cost_ < 0.0) {
+            return current;
+        }
+        steepest_ = std::min(kSteepest, std::abs(dot(normal, ray.direction)) / ray.length) - 1e-9;
+        tried_count_ = 0;
+        tryCode(current.normal);
+        glm::vec3 sum(0.0F);
+        for (const Decided& point : points) {
+            sum += point.normal;
+        }
+        const float length = std::sqrt(sum.x * sum.x + sum.y * sum.y + sum.z * sum.z);
+        if (length > 0.0F) {
+            tryCode(packNormal(encodeNormal(sum / length)));
+        }
+        const std::size_t count = std::min(points.size(), kNormalsTried);
+        for (std::size_t i = 0; i < count; ++i) {
+            tryCode(packNormal(encodeNormal(points[i * points.size() / count].normal)));
+        }
+        for (int step = 4; step > 0 && best_cost_ > 0.0; step /= 2) {
+            const NormalIndex from = unpackNormal(best_.normal);
+            for (int dt = -step; dt <= step; dt += step) {
+                for (int ds = -step; ds <= step; ds += step) {
+                    const int s = from.s + ds;
+                    const int t = from.t + dt;
+                    if (s >= 0 && s <= 254 && t >= 0 && t <= 254) {
+                        tryCode(packNormal({static_cast<std::uint8_t>(s), static_cast<std::uint8_t>(t)}));
+                    }
+                }
+            }
+        }
+        return best_;
+    }
+
+  private:
+    [[nodiscard]] double priceOf(bool inside) const {
+        return inside ? options_.false_outside : options_.false_inside;
+    }
+
+    [[nodiscard]] double costOf(const glm::dvec3& normal, double offset) const {
+        double cost = 0.0;
+        for (const Decided& point : points) {
+            const bool outside = dot(normal, point.from_ray) >= offset;
+            cost += outside == point.inside ? priceOf(point.inside) : 0.0;
+        }
+        return cost;
+    }
+
+    /// The best offset for a normal lies between two neighbours of the points' projections on it.
+    void tryCode(std::uint16_t code) {
+        const auto tried_end = tried_.begin() + static_cast<std::ptrdiff_t>(tried_count_);
+        if (tried_count_ == tried_.size() || std::find(tried_.begin(), tried_end, code) != tried_end) {
+            return;
+        }
+        tried_[tried_count_++] = code;
+        const glm::dvec3& normal = decodedNormals()[code];
+        if (!votes_.allowed(normal, *ray_, end_, steepest_)) {
+            return;
+        }
+        along_.clear();
+        double cost = 0.0;
+        for (const Decided& point : points) {
+            along_.emplace_back(dot(normal, point.from_ray), point.inside);
+            cost += point.inside ? priceOf(true) : 0.0;
+        }
+        std::sort(along_.begin(), along_.end());
+        // All outside at first; then one point after the other comes behind the plane.
+        double least = best_cost_;
+        double offset = 0.0;
+        for (std::size_t i = 0; i < along_.size(); ++i) {
+            cost += along_[i].second ? -priceOf(true) : priceOf(false);
+            if (cost < least && i + 1 < along_.size()) {
+                least = cost;
+                offset = 0.5 * (along_[i].first + along_[i + 1].first);
+            }
+        }
+        if (!(least < best_cost_)) {
+            return;
+        }
+        const Code quantised = votes_.codeOf(code, normal, offset, *ray_);
+        if (quantised.depth == 0) {
+            return;
+        }
+        const double real = costOf(normal, votes_.offsetOf(quantised, normal, *ray_));
+        if (real < best_cost_) {
+            best_cost_ = real;
+            best_ = quantised;
+        }
+    }
+
+    const TexelVotes& votes_;
+    const RefineOptions& options_;
+    double margin_;
+    const Ray* ray_ = nullptr;
+    int end_ = 0;
+    double steepest_ = 0.0;
+    Code best_;
+    double best_cost_ = 0.0;
+    std::array<std::uint16_t, 48> tried_{};
+    std::size_t tried_count_ = 0;
+    std::vector<std::pair<double, bool>> along_;
+};
+
+class Refinement {
+  public:
+    Refinement(Collider& collider, std::vector<LabelledPoint> points, const RefineOptions& options)
+        : options_(options), points_(std::move(points)), outside_votes_(points_.size(), 0) {
+        for (DepthMap& map : collider.maps) {
+            maps_.emplace_back(map);
+        }
+    }
+
+    void run() {
+        for (const TexelVotes& map : maps_) {
+            countVotes(map);
+        }
+        dropSettled();
+        for (int sweep = 0; sweep < options_.sweeps; ++sweep) {
+            for (TexelVotes& map : maps_) {
+                if (map.changeable()) {
+                    refine(map);
+                }
+            }
+        }
+    }
+
+  private:
+    void locateAll(const TexelVotes& map) {
+        texel_of_.resize(points_.size());
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points_.size(), 4096), [&](const auto& range) {
+            for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                texel_of_[i] = map.locate(points_[i].position);
+            }
+        });
+    }
+
+    void countVotes(const TexelVotes& map) {
+        locateAll(map);
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points_.size(), 4096), [&](const auto& range) {
+            for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                const std::int32_t texel = texel_of_[i];
+                if (settled(i)) {
+                    continue;
+                }
+                if (!map.changeable()) {
+                    const std::optional<Vote> v = vote(map.map(), points_[i].position);
+                    if (v && v->distance >= 0.0F) {
+                        ++outside_votes_[i];
+                    }
+                } else if (texel == kOutside) {
+                    ++outside_votes_[i];
+                } else if (texel >= 0) {
+                    const auto at = static_cast<std::size_t>(texel);
+                    if (map.emptyIsOutside(at)) {
+                        ++outside_votes_[i];
+                        continue;
+                    }
+                    const Ray ray = map.ray(at);
+                    for (int end = 0; end < map.ends(); ++end) {
+                        const Code code = map.code(at, end);
+                        if (code.depth != 0 && map.sawOutside(code, ray, points_[i].position)) {
+                            ++outside_votes_[i];
+                        }
+                    }
+                }
+            }
+        });
+    }
+
+    /// Free points that many ends see need no texel to be chosen for them.
+    [[nodiscard]] bool settled(std::size_t i) const {
+        return !points_[i].inside && outside_votes_[i] >= kSettledVotes;
+    }
+    void dropSettled() {
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < points_.size(); ++i) {
+            if (!settled(i)) {
+                points_[kept] = points_[i];
+                outside_votes_[kept] = outside_votes_[i];
+                ++kept;
+            }
+        }
+        points_.resize(kept);
+        outside_votes_.resize(kept);
+    }
+
+    void refine(TexelVotes& map) {
+        locateAll(map);
+        // Points by texel.
+        std::vector<std::uint32_t> first(map.texels() + 1, 0);
+        for (const std::int32_t texel : texel_of_) {
+            if (texel >= 0) {
+                ++first[static_cast<std::size_t>(texel) + 1];
+            }
+        }
+        for (std::size_t i = 1; i < first.size(); ++i) {
+            first[i] += first[i - 1];
+        }
+        std::vector<std::uint32_t> members(first.back());
+        std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+        for (std::size_t i = 0; i < texel_of_.size(); ++i) {
+            if (texel_of_[i] >= 0) {
+                members[next[static_cast<std::size_t>(texel_of_[i])]++] = static_cast<std::uint32_t>(i);
+            }
+        }
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, map.texels(), 256), [&](const auto& range) {
+            PlaneChoice choice(map, options_);
+            for (std::size_t texel = range.begin(); texel != range.end(); ++texel) {
+                const std::span<const std::uint32_t> here(members.data() + first[texel],
+                                                          first[texel + 1] - first[texel]);
+                if (static_cast<double>(here.size()) > kMargin) {
+                    refineTexel(map, texel, here, choice);
+                }
+            }
+        });
+    }
+
+    void refineTexel(TexelVotes& map, std::size_t texel, std::span<const std::uint32_t> members,
+                     PlaneChoice& choice) {
+        const Ray ray = map.ray(texel);
+        for (int end = 0; end < map.ends(); ++end) {
+            const Code current = map.code(texel, end);
+            if (current.depth == 0) {
+                continue;
+            }
+            choice.points.clear();
+            for (const std::uint32_t i : members) {
+                const int own = map.sawOutside(current, ray, points_[i].position) ? 1 : 0;
+                if (outside_votes_[i] == own) {
+                    choice.points.push_back(
+                        {glm::dvec3(points_[i].position) - ray.origin, points_[i].normal, points_[i].inside});
+                }
+            }
+            const Code best = choice.best(current, ray, end);
+            if (best == current) {
+                continue;
+            }
+            map.setCode(texel, end, best);
+            for (const std::uint32_t i : members) {
+                const int before = map.sawOutside(current, ray, points_[i].position) ? 1 : 0;
+                const int after = map.sawOutside(best, ray, points_[i].position) ? 1 : 0;
+                outside_votes_[i] = static_cast<std::uint16_t>(outside_votes_[i] + after - before);
+            }
+        }
+    }
+
+    const RefineOptions& options_;
+    std::vector<LabelledPoint> points_;
+    std::vector<std::uint16_t> outside_votes_;  // a point's: how many ends of maps see it outside
+    std::vector<std::int32_t> texel_of_;        // a point's, in the map at hand
+    std::vector<TexelVotes> maps_;
+};
+
+}  // namespace
+
+void refineTexels(Collider& collider, const TriangleMesh& mesh, const MeshQuery& query,
+                  const RefineOptions& options) {
+    double ends = 0.0;
+    for (const DepthMap& map : collider.maps) {
+        ends += static_cast<double>(map.texelBytes()) / 4.0;
+    }
+    const auto count = static_cast<std::size_t>(std::clamp(ends * options.points_per_texel,
+                                                           static_cast<double>(kRefinePointsMin),
+                                                           static_cast<double>(kRefinePointsMax)));
+    const double sigma = options.sigma_share * mesh.bounds.longestSide();
+    Refinement(collider, drawNearSurface(mesh, query, count, sigma, options.seed), options).run();
+}
+
+}  // namespace relief

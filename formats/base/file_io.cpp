@@ -1,0 +1,269 @@
+#include "formats/base/file_io.h"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <exception>
+#include <optional>
+#include <string_view>
+#include <system_error>
+
+#include "formats/base/descriptor.h"
+#include "formats/base/temporary_file.h"
+
+namespace relief {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kChunk = std::size_t{1} << 20;  // bytes a system call, for streams
+constexpr int kLinksMax = 40;                         // as Linux follows
+
+/// What a person can do about an errno.
+const char* cure(int code) {
+    switch (code) {
+        case ENOENT:
+            return "check the path; a folder is not created for you";
+        case ENOTDIR:
+            return "a part of the path is no folder; check the path";
+        case EISDIR:
+            return "name a file, not a folder";
+        case EACCES:
+        case EPERM:
+            return "check the permissions of the file and of its folder";
+        case EROFS:
+            return "choose a folder that can be written";
+        case ENOSPC:
+        case EDQUOT:
+        case EFBIG:
+            return "free some space, raise the limit, or write elsewhere";
+        case ENAMETOOLONG:
+            return "choose a shorter name";
+        case ELOOP:
+            return "the symbolic links lead in a circle; mend them";
+        case EMFILE:
+        case ENFILE:
+            return "close other files, or raise the limit (ulimit -n)";
+        case EPIPE:
+            return "the program that reads the output has ended";
+        case EINVAL:
+            return "check the path";
+        default:
+            return "check the disk, or choose another place";
+    }
+}
+
+tl::unexpected<Error> ioError(const char* action, const std::string& name, int code) {
+    return fail(ErrorCode::kIo, std::string("cannot ") + action + " " + name + ": " +
+                                    std::system_category().message(code) + "; " + cure(code));
+}
+
+/// A path that the system would cut short or take for something else.
+/// \return 0 or an errno.
+int checkPath(const fs::path& path) {
+    if (path.empty()) {
+        return ENOENT;
+    }
+    return path.native().find('\0') == std::string::npos ? 0 : EINVAL;
+}
+
+/// Reads until the end.
+/// \param expected  bytes that are probably there, at most size_max.
+Result<std::vector<std::byte>> readAll(int fd, const std::string& name, std::uint64_t expected,
+                                       std::uint64_t size_max) {
+    std::vector<std::byte> bytes;
+    std::size_t used = 0;
+    // One byte more than expected or allowed, so that the end is seen without growing.
+    std::uint64_t room = expected + 1;
+    while (true) {
+        if (used == bytes.size()) {
+            try {
+                bytes.resize(static_cast<std::size_t>(room));
+            } catch (const std::exception&) {
+                return fail(ErrorCode::kLimit,
+                            "cannot read " + name + ": it does not fit into memory; use a smaller file");
+            }
+            const std::uint64_t more = std::max<std::uint64_t>(room, kChunk);
+            room += std::min(more, size_max < room ? 1 : size_max + 1 - room);
+        }
+        const ssize_t got = ::read(fd, bytes.data() + used, bytes.size() - used);
+        if (got < 0) {
+            if (errno == EINTR) {
+                continue;
+            }
+            return ioError("read", name, errno);
+        }
+        if (got == 0) {
+            bytes.resize(used);
+            return bytes;
+        }
+        used += static_cast<std::size_t>(got);
+        if (used > size_max) {
+            return fail(ErrorCode::kLimit, "cannot read " + name + ": it is longer than the limit of " +
+                                               std::to_string(size_max) + " bytes; use a smaller file");
+        }
+    }
+}
+
+/// Where a path leads when its last part is a symbolic link, one that leads to nothing included.
+/// \return 0 or an errno.
+int followLinks(fs::path& path) {
+    for (int i = 0; i < kLinksMax; ++i) {
+        std::error_code error;
+        const fs::path target = fs::read_symlink(path, error);
+        if (error) {
+            return 0;  // no link: an error of any other kind comes back when the file is written
+        }
+        path = path.parent_path() / target;  // an absolute target replaces the left side
+    }
+    return ELOOP;
+}
+
+/// The number in /dev/fd/N and its like; nullopt: some other path. Opened by its name a file would be written
+/// from its begin on, whatever the shell has appended to it before; or replaced, and the shell's left behind.
+std::optional<int> descriptorOf(const fs::path& path) {
+    if (path == "/dev/stdout") {
+        return STDOUT_FILENO;
+    }
+    if (path == "/dev/stderr") {
+        return STDERR_FILENO;
+    }
+    for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
+        const std::string_view name = path.native();
+        if (name.starts_with(folder)) {
+            int number = 0;
+            const auto [end, error] =
+                std::from_chars(name.data() + folder.size(), name.data() + name.size(), number);
+            if (error == std::errc() && end == name.data() + name.size()) {
+                return number;
+            }
+        }
+    }
+    return std::nullopt;
+}
+
+Result<void> writeInPlace(const fs::path& path, std::span<const std::byte> bytes) {
+    Descriptor file(openRetry(path.c_str(), O_WRONLY));
+    if (!file) {
+        return ioError("write", quotedPath(path), errno);
+    }
+    int code = writeAll(file.get(), bytes);
+    if (code == 0) {
+        code = file.close();
+    }
+    if (code != 0) {
+        return ioError("write", quotedPath(path), code);
+    }
+    return {};
+}
+
+/// \param older_mode  permission bits of the file that is replaced, if there is one.
+Result<void> replaceFile(const fs::path& target, const std::string& name, std::span<const std::byte> bytes,
+                         std::optional<mode_t> older_mode) {
+    const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+    // Private until it has the older file's permissions: nobody reads what they could not read before.
+    const mode_t first_mode = older_mode ? 0600 : 0666;
+    TemporaryFile temporary;
+    int code = temporary.create(folder, first_mode);
+    if (code == 0) {
+        code = temporary.fill(bytes, older_mode);
+    }
+    if (code == 0) {
+        code = temporary.renameTo(target);
+    }
+    if (code != 0) {
+        return ioError("write", name, code);
+    }
+    // A folder that may be written but not read cannot be synced: the file is whole all the same.
+    if (const Descriptor opened(openRetry(folder.c_str(), O_RDONLY | O_DIRECTORY)); opened) {
+        if (const int sync_code = syncToDisk(opened.get())) {
+            return ioError("make sure that the disk holds (though it is in place)", name, sync_code);
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> readFile(const fs::path& path, std::uint64_t size_max) {
+    if (path == "-") {
+        return readAll(STDIN_FILENO, "standard input", 0, size_max);
+    }
+    const std::string name = quotedPath(path);
+    if (const int code = checkPath(path)) {
+        return ioError("read", name, code);
+    }
+    const Descriptor file(openRetry(path.c_str(), O_RDONLY));
+    struct stat status {};
+    if (!file || ::fstat(file.get(), &status) != 0) {
+        return ioError("read", name, errno);
+    }
+    if (S_ISDIR(status.st_mode)) {
+        return ioError("read", name, EISDIR);
+    }
+    const std::uint64_t size = S_ISREG(status.st_mode) ? static_cast<std::uint64_t>(status.st_size) : 0;
+    if (size > size_max) {
+        return fail(ErrorCode::kLimit, "cannot read " + name + ": its " + std::to_string(size) +
+                                           " bytes are more than the limit of " + std::to_string(size_max) +
+                                           "; use a smaller file");
+    }
+    return readAll(file.get(), name, size, size_max);
+}
+
+Result<void> writeFile(const fs::path& path, std::span<const std::byte> bytes) {
+    if (path == "-") {
+        if (const int code = writeAll(STDOUT_FILENO, bytes)) {
+            return ioError("write", "standard output", code);
+        }
+        return {};
+    }
+    const std::string name = quotedPath(path);
+    if (const int code = checkPath(path)) {
+        return ioError("write", name, code);
+    }
+    if (const std::optional<int> number = descriptorOf(path)) {
+        if (const int code = writeAll(*number, bytes)) {
+            return ioError("write", name, code);
+        }
+        return {};
+    }
+    struct stat status {};
+    std::optional<mode_t> older_mode;
+    if (::stat(path.c_str(), &status) == 0) {
+        if (S_ISDIR(status.st_mode)) {
+            return ioError("write", name, EISDIR);
+        }
+        if (!S_ISREG(status.st_mode)) {
+            return writeInPlace(path, bytes);
+        }
+        older_mode = status.st_mode & 0777;
+    } else if (errno != ENOENT) {
+        return ioError("write", name, errno);
+    }
+    fs::path target = path;
+    if (const int code = followLinks(target)) {
+        return ioError("write", name, code);
+    }
+    return replaceFile(target, name, bytes, older_mode);
+}
+
+std::string quotedPath(const fs::path& path) {
+    std::string text = "'";
+    for (const char c : path.native()) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte < 0x20 || byte == 0x7f) {
+            char escaped[5];
+            std::snprintf(escaped, sizeof(escaped), "\\x%02x", static_cast<unsigned>(byte));
+            text += escaped;
+        } else {
+            text += c;
+        }
+    }
+    return text + "'";
+}
+
+}  // namespace relief

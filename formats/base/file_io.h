@@ -1,0 +1,34 @@
+// Whole files in and out. The only file of formats/ that touches a file system.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "formats/base/result.h"
+
+namespace relief {
+
+/// Reads a whole file; "-" reads standard input. Pipes and devices are read to their end.
+/// \param size_max  refuse (kLimit) anything longer: a regular file before any of it is read, a stream after
+///                  size_max + 1 bytes.
+/// Errors: kIo (with the system's words), kLimit.
+[[nodiscard]] Result<std::vector<std::byte>> readFile(const std::filesystem::path& path,
+                                                      std::uint64_t size_max = std::uint64_t{4} << 30);
+
+/// Replaces a file, all or nothing: writes a temporary file in the same folder (temporary_file.h), fsync,
+/// rename, fsync of the folder. On any error before the rename the older file stays as it was and no
+/// temporary file is left; should only the last fsync fail, the message says that the new file is in place. A
+/// new file has the permissions that the umask leaves; an older file's permission bits are kept, its owner,
+/// ACLs and other names (hard links) are not. Where the path is a symbolic link, what it points to is
+/// replaced and not the link. "-" writes standard output; /dev/stdout, /dev/fd/N and a path that exists and
+/// is no regular file (a pipe, /dev/full) are written in place. Errors: kIo, with the system's words.
+[[nodiscard]] Result<void> writeFile(const std::filesystem::path& path, std::span<const std::byte> bytes);
+
+/// A path for a message: in single quotes, control characters as \xNN so that the message stays one line.
+[[nodiscard]] std::string quotedPath(const std::filesystem::path& path);
+
+}  // namespace relief

@@ -1,0 +1,168 @@
+#include "formats/base/text.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace relief {
+namespace {
+
+/// Edits (insert, delete, change, swap neighbours) that turn one word into the other.
+std::size_t editDistance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> before_previous(b.size() + 1);
+    std::vector<std::size_t> previous(b.size() + 1);
+    std::vector<std::size_t> current(b.size() + 1);
+    std::iota(previous.begin(), previous.end(), std::size_t{0});
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        current[0] = i;
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t change = previous[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+            current[j] = std::min({previous[j] + 1, current[j - 1] + 1, change});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+                current[j] = std::min(current[j], before_previous[j - 2] + 1);
+            }
+        }
+        std::swap(before_previous, previous);
+        std::swap(previous, current);
+    }
+    return previous[b.size()];
+}
+
+/// Length of the well-formed UTF-8 sequence at the start of `bytes`, 0 if there is none.
+std::size_t utf8Length(std::string_view bytes) {
+    const auto at = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
+    const unsigned first = at(0);
+    const std::size_t length = first < 0x80                    ? 1
+                               : first >= 0xc2 && first < 0xe0 ? 2
+                               : first >= 0xe0 && first < 0xf0 ? 3
+                               : first >= 0xf0 && first < 0xf5 ? 4
+                                                               : 0;
+    if (length == 0 || length > bytes.size()) {
+        return 0;
+    }
+    for (std::size_t i = 1; i < length; ++i) {
+        if ((at(i) & 0xc0U) != 0x80) {
+            return 0;
+        }
+    }
+    // Overlong forms, surrogates, and what lies above U+10FFFF.
+    if ((first == 0xe0 && at(1) < 0xa0) || (first == 0xed && at(1) >= 0xa0) ||
+        (first == 0xf0 && at(1) < 0x90) || (first == 0xf4 && at(1) >= 0x90)) {
+        return 0;
+    }
+    return length;
+}
+
+}  // namespace
+
+void appendShortest(std::string& out, float value) {
+    char text[32];
+    const auto end = std::to_chars(text, text + sizeof(text), value);
+    out.append(text, end.ptr);
+}
+
+std::string shortest(float value) {
+    std::string text;
+    appendShortest(text, value);
+    return text;
+}
+
+std::string shortest(const glm::vec3& value) {
+    return shortest(value.x) + '/' + shortest(value.y) + '/' + shortest(value.z);
+}
+
+std::optional<float> parseFloat(std::string_view text) {
+    if (text.starts_with('+') && text.size() > 1 && text[1] != '-') {
+        text.remove_prefix(1);
+    }
+    float value = 0.0F;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) {
+        return std::nullopt;
+    }
+    return value;
+}
+
+std::optional<std::uint64_t> parseUnsigned(std::string_view text) {
+    if (text.empty() || !std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; })) {
+        return std::nullopt;
+    }
+    std::uint64_t value = 0;
+    if (std::from_chars(text.data(), text.data() + text.size(), value).ec != std::errc{}) {
+        return std::numeric_limits<std::uint64_t>::max();
+    }
+    return value;
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+    std::vector<std::string_view> parts;
+    while (true) {
+        const std::size_t at = text.find(separator);
+        parts.push_back(text.substr(0, at));
+        if (at == std::string_view::npos) {
+            return parts;
+        }
+        text.remove_prefix(at + 1);
+    }
+}
+
+std::string_view trimmed(std::string_view text) {
+    const std::size_t first = text.find_first_not_of(" \t\r");
+    if (first == std::string_view::npos) {
+        return {};
+    }
+    return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::string_view nearest(std::string_view word, std::span<const std::string_view> known) {
+    std::string_view best;
+    std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
+    if (word.size() > 64) {
+        return {};
+    }
+    for (const std::string_view candidate : known) {
+        // A whole word that was only cut short counts as near.
+        const bool prefix = word.size() >= 2 && candidate.starts_with(word);
+        const std::size_t distance = prefix ? 1 : editDistance(word, candidate);
+        if (distance < best_distance) {
+            best = candidate;
+            best_distance = distance;
+        }
+    }
+    return best;
+}
+
+std::string didYouMean(std::string_view word, std::span<const std::string_view> known) {
+    const std::string_view best = nearest(word, known);
+    return best.empty() ? std::string() : "; did you mean '" + std::string(best) + "'?";
+}
+
+std::string listed(std::span<const std::string_view> words) {
+    std::string text;
+    for (const std::string_view word : words) {
+        text.append(text.empty() ? "" : ", ").append(word);
+    }
+    return text;
+}
+
+std::string cleanUtf8(std::string_view bytes, std::size_t size_max) {
+    std::string text;
+    while (!bytes.empty()) {
+        const std::size_t length = utf8Length(bytes);
+        const auto first = static_cast<unsigned char>(bytes[0]);
+        const bool upper_control =
+            length == 2 && first == 0xc2 && static_cast<unsigned char>(bytes[1]) < 0xa0;
+        const bool bad = length == 0 || first < 0x20 || first == 0x7f || upper_control;
+        const std::string_view character = bad ? std::string_view("\xef\xbf\xbd") : bytes.substr(0, length);
+        if (text.size() + character.size() > size_max) {
+            break;
+        }
+        text += character;
+        bytes.remove_prefix(length == 0 ? 1 : length);
+    }
+    return text;
+}
+
+}  // namespace relief

@@ -1,0 +1,23 @@
+// Where the paths that a scene file names lead: inside the scene's folder, and nowhere else, so that a scene
+// from elsewhere cannot have files read that are none of its own.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "formats/base/result.h"
+
+namespace relief {
+
+/// A path of a scene file, ready to be opened: `folder` / `text`. That something lies there is not checked.
+/// \param folder  of the scene file; empty for the current one.
+/// \param text    as the file has it; may be hostile.
+/// Errors: kInvalidInput for what is empty, holds a zero byte, is absolute, or leaves the folder by `..` or
+/// by a symbolic link, dangling ones included. The message goes on from the key's name: "'/x' is …; the
+/// cure".
+/// \param owner   whose folder it is, for the message.
+[[nodiscard]] Result<std::filesystem::path> resolveInside(const std::filesystem::path& folder,
+                                                          std::string_view text,
+                                                          std::string_view owner = "scene");
+
+}  // namespace relief

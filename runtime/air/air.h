@@ -1,0 +1,75 @@
+// What pushes a particle besides collision and gravity: moving air, which acts through drag, and fields,
+// which accelerate. Plain settings, and on the CPU what shaders/air.glsl computes on the GPU; air_block.h
+// puts the settings there.
+#pragma once
+
+#include <array>
+#include <glm/vec3.hpp>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "formats/base/result.h"
+#include "runtime/air/curl_noise.h"
+#include "runtime/air/flow_field.h"
+
+namespace relief {
+
+/// Pulls towards a point, all particles alike. `strength` is the acceleration at distance `radius`, its
+/// greatest: inside it falls off linearly to 0 at the point, outside as (radius / distance)^falloff. With
+/// falloff 2 it is the gravity of a ball of even density.
+struct Attractor {
+    glm::vec3 position{0.0F};                         ///< object units
+    float strength = 0.0F;                            ///< object units a second squared; below 0 it repels
+    float radius = 1.0F;                              ///< object units, > 0
+    int falloff = 2;                                  ///< 0, 1 or 2
+    float reach = std::numeric_limits<float>::max();  ///< object units, > 0; nothing beyond
+};
+
+/// Drives round a straight line, right-handed about `axis`; along and across it, it does nothing. The
+/// strength goes with the distance from the line as an attractor's does with that from the point.
+struct Vortex {
+    glm::vec3 center{0.0F};            ///< a point on the line, object units
+    glm::vec3 axis{0.0F, 1.0F, 0.0F};  ///< the line's direction, of any length but 0
+    float strength = 0.0F;             ///< object units a second squared; below 0 it turns the other way
+    float radius = 1.0F;               ///< object units, > 0
+    int falloff = 1;                   ///< 0, 1 or 2
+};
+
+struct AirSettings {
+    static constexpr std::size_t kAttractorsMax = 8;
+    static constexpr std::size_t kVorticesMax = 8;
+
+    glm::vec3 wind{0.0F};                   ///< object units a second, everywhere
+    std::shared_ptr<const FlowField> flow;  ///< may be null; shared, for it may be large
+    std::optional<CurlNoise> curl_noise;
+    std::vector<Attractor> attractors;  ///< kAttractorsMax at most
+    std::vector<Vortex> vortices;       ///< kVorticesMax at most
+    /// Dynamic viscosity, object mass units / (object length units · s), ≥ 0: drag by Stokes' law, other for
+    /// every size and mass of particle. Without it drag is one rate for all.
+    std::optional<float> viscosity;
+};
+
+/// Errors: kUsage (a number out of the range given above, too many), those of checkFlow.
+[[nodiscard]] Result<void> checkAir(const AirSettings& air);
+
+/// Wind, flow and noise together at point p, object units a second.
+/// \param t  seconds, as airTime() gives them.
+[[nodiscard]] glm::vec3 airVelocity(const AirSettings& air, const glm::vec3& p, float t);
+
+/// What attractors and vortices do to a particle at p, object units a second squared. `v` and `t` are for
+/// fields to come: none yet depends on them.
+[[nodiscard]] glm::vec3 fieldAcceleration(const AirSettings& air, const glm::vec3& p, const glm::vec3& v,
+                                          float t);
+
+/// The time to hand to the functions above and to the shader, from seconds since the start. Count them
+/// in a double, and not by a particle system's own clock, which is set back now and then.
+[[nodiscard]] float airTime(const AirSettings& air, double seconds);
+
+/// k = 6π · viscosity · radius / mass, 1/s: the rate of Stokes drag, for
+/// v' = (v + dt (a + k air)) / (1 + dt k).
+/// \param mass  > 0
+[[nodiscard]] float stokesRate(float viscosity, float radius, float mass);
+
+}  // namespace relief

@@ -1,0 +1,110 @@
+#include "runtime/air/flow_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <string>
+
+namespace relief {
+namespace {
+
+std::string sizeText(const std::array<std::uint64_t, 3>& size) {
+    return std::to_string(size[0]) + "x" + std::to_string(size[1]) + "x" + std::to_string(size[2]);
+}
+
+bool finite(const glm::vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+}  // namespace
+
+Result<void> checkFlowSize(const std::array<std::uint64_t, 3>& size) {
+    std::uint64_t nodes = 1;
+    for (const std::uint64_t side : size) {
+        if (side == 0) {
+            return fail(ErrorCode::kInvalidInput, "a flow of " + sizeText(size) + " nodes is empty");
+        }
+        if (side > FlowField::kSideMax) {
+            return fail(ErrorCode::kLimit, "a flow of " + sizeText(size) + " nodes has more than " +
+                                               std::to_string(FlowField::kSideMax) +
+                                               " along an axis; resample it");
+        }
+        nodes *= side;
+    }
+    if (nodes > FlowField::kNodesMax) {
+        return fail(ErrorCode::kLimit, "a flow of " + sizeText(size) + " nodes takes " +
+                                           std::to_string(nodes * FlowField::kNodeBytes) +
+                                           " bytes, more than " + std::to_string(FlowField::kBytesMax) +
+                                           "; resample it, to 256x256x256 for example");
+    }
+    return {};
+}
+
+Result<void> checkFlow(const FlowField& flow) {
+    const std::array<std::uint64_t, 3> size{flow.size[0], flow.size[1], flow.size[2]};
+    if (auto sized = checkFlowSize(size); !sized) {
+        return sized;
+    }
+    if (flow.nodes.size() != size[0] * size[1] * size[2]) {
+        return fail(ErrorCode::kInvalidInput, "a flow of " + sizeText(size) + " nodes comes with " +
+                                                  std::to_string(flow.nodes.size()) + " velocities");
+    }
+    if (!finite(flow.box_min) || !finite(flow.box_max) || !finite(flow.box_max - flow.box_min) ||
+        !std::isfinite(flow.gain)) {
+        return fail(ErrorCode::kInvalidInput, "a flow's box and gain must be finite");
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(flow.box_min[axis] < flow.box_max[axis]) || !std::isfinite(flowNodesPerUnit(flow)[axis])) {
+            return fail(ErrorCode::kInvalidInput,
+                        "a flow's box is empty on the " + std::string(1, "xyz"[axis]) + " axis");
+        }
+    }
+    const auto bad = std::find_if_not(flow.nodes.begin(), flow.nodes.end(), finite);
+    if (bad != flow.nodes.end()) {
+        const auto index = static_cast<std::size_t>(bad - flow.nodes.begin());
+        return fail(ErrorCode::kInvalidInput, "the velocity at node " + std::to_string(index % size[0]) +
+                                                  ", " + std::to_string(index / size[0] % size[1]) + ", " +
+                                                  std::to_string(index / (size[0] * size[1])) +
+                                                  " is not finite");
+    }
+    return {};
+}
+
+glm::vec3 flowNodesPerUnit(const FlowField& flow) {
+    glm::vec3 scale;
+    for (int axis = 0; axis < 3; ++axis) {
+        scale[axis] = static_cast<float>(flow.size[static_cast<std::size_t>(axis)] - 1) /
+                      (flow.box_max[axis] - flow.box_min[axis]);
+    }
+    return scale;
+}
+
+glm::vec3 flowVelocity(const FlowField& flow, const glm::vec3& p) {
+    const glm::vec3 scale = flowNodesPerUnit(flow);
+    std::array<std::size_t, 3> low{};
+    std::array<std::size_t, 3> high{};
+    glm::vec3 f;
+    for (int axis = 0; axis < 3; ++axis) {
+        const bool within = p[axis] >= flow.box_min[axis] && p[axis] <= flow.box_max[axis];
+        if (flow.outside == FlowOutside::kZero && !within) {
+            return glm::vec3(0.0F);
+        }
+        const auto a = static_cast<std::size_t>(axis);
+        const auto last = static_cast<float>(flow.size[a] - 1);
+        const float u = (p[axis] - flow.box_min[axis]) * scale[axis];
+        const float in = u > 0.0F ? std::min(u, last) : 0.0F;  // 0 for NaN too
+        // The last node has no neighbour beyond: there the cell before it is taken, at its far end.
+        low[a] =
+            std::min(static_cast<std::size_t>(in), static_cast<std::size_t>(std::max(flow.size[a], 2U)) - 2);
+        high[a] = std::min(low[a] + 1, static_cast<std::size_t>(flow.size[a]) - 1);
+        f[axis] = in - static_cast<float>(low[a]);
+    }
+    const auto row = [&](std::size_t y, std::size_t z) {
+        const glm::vec3* first = &flow.nodes[(z * flow.size[1] + y) * flow.size[0]];
+        return glm::mix(first[low[0]], first[high[0]], f.x);
+    };
+    const auto slice = [&](std::size_t z) { return glm::mix(row(low[1], z), row(high[1], z), f.y); };
+    return flow.gain * glm::mix(slice(low[2]), slice(high[2]), f.z);
+}
+
+}  // namespace relief

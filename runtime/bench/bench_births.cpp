@@ -1,0 +1,221 @@
+// What a birth costs: relief-bench-births [BIRTHS_PER_STEP [CAPACITY…]] prints JSON. Nothing here is a test:
+// machines are shared and noisy.
+//
+// Each capacity is run in its steady state, where every step so many die as are born (a quarter of it at
+// most): what a long run pays, and not what an empty system pays. `emit` samples; `spawn` takes indices and
+// files the deaths; `free_and_upload` is what births and deaths add to the call of a step: indices given
+// back, and the births handed to the driver; `draw` is what they add to a step until it is finished: the
+// GPU's work, and the CPU's where that plays the GPU. All but `draw` is CPU time of the one
+// thread. `bookkeeping` is indices and deaths alone, without GL.
+#include <time.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "runtime/gl/gl_context.h"
+#include "runtime/particles/death_queue.h"
+#include "runtime/particles/particle_system.h"
+
+namespace {
+
+using relief::Birth;
+using relief::Emitter;
+using relief::EmitterSettings;
+using relief::EmitterShape;
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+/// Time that this thread has computed: others on the machine do not count.
+struct Cpu {
+    using duration = std::chrono::nanoseconds;
+    using time_point = std::chrono::time_point<Cpu>;
+    using rep = duration::rep;
+    using period = duration::period;
+    static constexpr bool is_steady = true;
+    static time_point now() {
+        timespec t{};
+        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+        return time_point(duration(std::chrono::seconds(t.tv_sec)) + duration(t.tv_nsec));
+    }
+};
+
+constexpr float kDt = 1.0F / 60.0F;
+
+template <class C>
+double msSince(std::chrono::time_point<C> begun) {
+    return std::chrono::duration<double, std::milli>(C::now() - begun).count();
+}
+
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// A fountain: the dearest shape and law of speed.
+EmitterSettings fountain(double rate) {
+    EmitterSettings settings;
+    settings.shape = EmitterShape::kSphere;
+    settings.radius = 1.0F;
+    settings.rate = rate;
+    settings.aim = relief::EmitterAim{glm::vec3(0.0F, 1.0F, 0.0F), 20.0F, 3.0F, 3.0F, 0.5F};
+    return settings;
+}
+
+/// Births per ms of sampling alone.
+double emitRate(const EmitterSettings& settings, std::size_t births_per_step) {
+    Emitter emitter(settings, 1);
+    std::vector<Birth> births;
+    std::vector<double> times;
+    for (int step = 0; step < 60; ++step) {
+        births.clear();
+        const Cpu::time_point begun = Cpu::now();
+        emitter.emit(1.0 / 60.0, births_per_step, births);
+        times.push_back(msSince(begun));
+    }
+    return static_cast<double>(births_per_step) / median(times);
+}
+
+struct Cost {
+    std::vector<double> emit, spawn, step, drawn;
+};
+
+Json benchCapacity(std::uint32_t capacity, std::uint32_t per_step) {
+    per_step = std::min(per_step, capacity / 4);
+    EmitterSettings settings = fountain(60.0 * per_step);
+    // The mean life that keeps nine of ten places taken, spread so that indices come back in disorder.
+    const float life = 0.9F * static_cast<float>(capacity) / (60.0F * static_cast<float>(per_step));
+    settings.lifetime_min = 0.5F * life;
+    settings.lifetime_max = 1.5F * life;
+    auto particles = relief::ParticleSystem::create({.capacity = capacity});
+    if (!particles) {
+        return {{"capacity", capacity}, {"error", particles.error().message}};
+    }
+    Emitter emitter(settings, 1);
+    std::vector<Birth> births;
+    // As far as the steady state the CPU alone goes: in steps long enough to pass 1.5 lives in 32 of them.
+    const double skip = 1.5 * static_cast<double>(life) / 32.0;
+    for (int i = 0; i < 32; ++i) {
+        births.clear();
+        emitter.emit(skip, particles->room(), births);
+        particles->spawn(births);
+        particles->step(static_cast<float>(skip));
+    }
+    glFinish();
+    Cost cost;
+    for (int i = 0; i < 24; ++i) {
+        births.clear();
+        Cpu::time_point begun = Cpu::now();
+        emitter.emit(static_cast<double>(kDt), particles->room(), births);
+        cost.emit.push_back(msSince(begun));
+        begun = Cpu::now();
+        particles->spawn(births);
+        cost.spawn.push_back(msSince(begun));
+        const Clock::time_point step_begun = Clock::now();
+        begun = Cpu::now();
+        particles->step(kDt);
+        cost.step.push_back(msSince(begun));
+        glFinish();
+        cost.drawn.push_back(msSince(step_begun));
+    }
+    // The same steps without births: the difference is the births' own.
+    std::vector<double> step_without;
+    std::vector<double> drawn_without;
+    for (int i = 0; i < 12; ++i) {
+        const Clock::time_point step_begun = Clock::now();
+        const Cpu::time_point begun = Cpu::now();
+        particles->step(1e-6F);
+        step_without.push_back(msSince(begun));
+        glFinish();
+        drawn_without.push_back(msSince(step_begun));
+    }
+    Json json;
+    json["capacity"] = capacity;
+    json["births_per_step"] = per_step;
+    json["alive"] = particles->counts().alive;
+    json["ms_per_step"] = {{"emit", median(cost.emit)},
+                           {"spawn", median(cost.spawn)},
+                           {"free_and_upload", median(cost.step) - median(step_without)},
+                           {"draw", median(cost.drawn) - median(drawn_without)}};
+    json["births_per_ms"] = {{"emit", per_step / median(cost.emit)},
+                             {"spawn", per_step / median(cost.spawn)},
+                             {"draw", per_step / std::max(median(cost.drawn) - median(drawn_without), 1e-6)}};
+    json["worst_ms"] = {{"emit", *std::max_element(cost.emit.begin(), cost.emit.end())},
+                        {"spawn", *std::max_element(cost.spawn.begin(), cost.spawn.end())}};
+    return json;
+}
+
+/// The bookkeeping of deaths alone, in its steady state: ns for a death pushed and popped.
+Json benchDeaths(std::uint32_t capacity, std::uint32_t per_step) {
+    per_step = std::min(per_step, capacity / 4);
+    const float life = 0.9F * static_cast<float>(capacity) / (60.0F * static_cast<float>(per_step));
+    relief::IndexAllocator allocator(capacity);
+    relief::DeathQueue queue(capacity);
+    relief::Pcg32 random(1);
+    std::vector<std::uint32_t> dead;
+    std::vector<double> push;
+    std::vector<double> pop;
+    const int warm_up = static_cast<int>(90.0F * life) + 1;
+    for (int step = 0; step < warm_up + 60; ++step) {
+        const float now = static_cast<float>(step) * kDt;
+        Cpu::time_point begun = Cpu::now();
+        for (std::uint32_t i = 0; i < per_step; ++i) {
+            if (const auto index = allocator.acquire(); index) {
+                queue.push(now + random.between(0.5F * life, 1.5F * life), *index);
+            }
+        }
+        const double pushed = msSince(begun);
+        begun = Cpu::now();
+        dead.clear();
+        queue.popUntil(now + kDt, dead);
+        for (const std::uint32_t index : dead) {
+            allocator.release(index);
+        }
+        if (step >= warm_up) {
+            push.push_back(pushed);
+            pop.push_back(msSince(begun));
+        }
+    }
+    const double all = 1e6 / per_step;
+    return {{"ns_per_birth", all * median(push)},
+            {"ns_per_death", all * median(pop)},
+            {"worst_ms_per_step", *std::max_element(pop.begin(), pop.end())}};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const auto number = [&](int i) { return static_cast<std::uint32_t>(std::strtoul(argv[i], nullptr, 10)); };
+    const std::uint32_t per_step = std::max(argc > 1 ? number(1) : 16667U, 1U);
+    std::vector<std::uint32_t> capacities;
+    for (int i = 2; i < argc; ++i) {
+        capacities.push_back(std::max(number(i), 4U));
+    }
+    if (capacities.empty()) {
+        capacities = {1U << 16, 1U << 18, 1U << 20, 1U << 22};
+    }
+    auto context = relief::GlContext::create(relief::GlApi::kGl33Core);
+    if (!context) {
+        std::fprintf(stderr, "relief-bench-births: error: %s\n", context.error().message.c_str());
+        return static_cast<int>(context.error().code);
+    }
+    Json json;
+    json["device"] = (*context)->description();
+    EmitterSettings box = fountain(60.0 * per_step);
+    box.shape = EmitterShape::kBox;
+    box.aim.reset();
+    json["emit_births_per_ms"] = {{"box", emitRate(box, per_step)},
+                                  {"fountain", emitRate(fountain(60.0 * per_step), per_step)}};
+    for (const std::uint32_t capacity : capacities) {
+        Json one = benchCapacity(capacity, per_step);
+        one["bookkeeping"] = benchDeaths(capacity, per_step);
+        json["capacities"].push_back(std::move(one));
+    }
+    std::puts(json.dump(2).c_str());
+    return 0;
+}

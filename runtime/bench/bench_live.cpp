@@ -1,0 +1,174 @@
+// What a collider that deforms costs: relief-bench-live MESH [PARTICLES] prints JSON. Nothing here is a test.
+//
+// A twist moves the mesh; its three front-back maps of 256² are rendered before each step. Each part is timed
+// alone, as some runs of it between two glFinish, by the clock on the wall; parts take turns.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "runtime/bench/bench_variants.h"
+#include "runtime/collider/deform_pass.h"
+#include "runtime/collider/live_collider.h"
+#include "runtime/files/mesh_file.h"
+#include "runtime/gl/gl_context.h"
+#include "runtime/picture/picture_mesh.h"
+
+namespace relief {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Json = nlohmann::ordered_json;
+
+constexpr int kRuns = 16;
+constexpr int kRounds = 9;
+
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+struct Part {
+    std::string name;
+    std::function<Result<void>()> run;
+    std::vector<double> ms;
+};
+
+Result<void> measure(std::vector<Part>& parts) {
+    for (int round = -1; round < kRounds; ++round) {  // the first for the driver, which compiles
+        for (Part& part : parts) {
+            glFinish();
+            const Clock::time_point begun = Clock::now();
+            for (int i = 0; i < kRuns; ++i) {
+                if (auto done = part.run(); !done) {
+                    return done;
+                }
+            }
+            glFinish();
+            const double ms = std::chrono::duration<double, std::milli>(Clock::now() - begun).count();
+            if (round >= 0) {
+                part.ms.push_back(ms / kRuns);
+            }
+        }
+    }
+    return {};
+}
+
+Result<Json> bench(const std::string& path, std::uint32_t count) {
+    auto file = loadMesh(path);
+    auto context = GlContext::create({});
+    if (!file || !context) {
+        return file ? forward(context) : forward(file);
+    }
+    const PictureMesh mesh = withNormals(*file, 4.0F);
+    std::vector<glm::uvec3> triangles;
+    for (std::size_t i = 0; i + 2 < mesh.triangles.size(); i += 3) {
+        triangles.emplace_back(mesh.triangles[i], mesh.triangles[i + 1], mesh.triangles[i + 2]);
+    }
+    Bounds bounds{mesh.positions.front(), mesh.positions.front()};
+    for (const glm::vec3& p : mesh.positions) {
+        bounds = {glm::min(bounds.min, p), glm::max(bounds.max, p)};
+    }
+    Deformation twist;
+    twist.amplitude = 0.3F;
+    twist.center = bounds.center();
+    twist.range_low = bounds.min.y - twist.center.y;
+    twist.range_high = bounds.max.y - twist.center.y;
+    auto frames = liveFrames(deformedBounds(twist, mesh.positions));
+    if (!frames) {
+        return forward(frames);
+    }
+    auto live = LiveCollider::create(mesh.positions, triangles, *frames);
+    auto pass = DeformPass::create(twist, mesh.positions, mesh.normals);
+    auto gpu_mesh = GpuMesh::create(mesh.positions, triangles, {.keep_previous = true});
+    if (!live || !pass || !gpu_mesh) {
+        return !live ? forward(live) : !pass ? forward(pass) : forward(gpu_mesh);
+    }
+    ColliderBody body;
+    body.collider = &live->frames();
+    body.live = true;
+    auto textures = ColliderTextures::create({&body, 1});
+    auto particles = ParticleSystem::create({.capacity = count});
+    if (!textures || !particles) {
+        return !textures ? forward(textures) : forward(particles);
+    }
+    const ColliderInstance instance{&*textures};
+    if (auto set = particles->setColliders({&instance, 1}); !set) {
+        return forward(set);
+    }
+    BenchScene scene = makeBenchScene(live->frames(), count);
+    for (Birth& birth : scene.births) {
+        birth.lifetime = 1e6F;
+    }
+    particles->setForces(scene.forces);
+    particles->spawn(scene.births);
+
+    double time = 0.0;
+    const auto deform = [&]() -> Result<void> {
+        pass->run(time += kBenchDt);
+        return {};
+    };
+    std::vector<Part> parts{{"deform", deform, {}},
+                            {"positions", [&] { return gpu_mesh->setPositions(pass->buffer().name()); }, {}},
+                            {"update",
+                             [&]() -> Result<void> {
+                                 if (auto moved = live->setPositions(pass->buffer().name()); !moved) {
+                                     return moved;
+                                 }
+                                 return live->update(*textures, 0);
+                             },
+                             {}},
+                            {"step",
+                             [&]() -> Result<void> {
+                                 particles->step(kBenchDt);
+                                 return {};
+                             },
+                             {}},
+                            {"all", {}, {}}};
+    parts.back().run = [&]() -> Result<void> {
+        for (const std::size_t i : {0, 2, 3}) {
+            if (auto done = parts[i].run(); !done) {
+                return done;
+            }
+        }
+        return {};
+    };
+    if (auto measured = measure(parts); !measured) {
+        return forward(measured);
+    }
+    Json json{{"device", (*context)->description()},
+              {"triangles", triangles.size()},
+              {"vertices", mesh.positions.size()},
+              {"particles", count}};
+    for (const Part& part : parts) {
+        json["ms"][part.name] = median(part.ms);
+    }
+    return json;
+}
+
+}  // namespace
+}  // namespace relief
+
+int main(int argc, char** argv) {
+    if (argc != 2 && argc != 3) {
+        std::fputs("usage: relief-bench-live MESH (.obj or .ply) [PARTICLES]\n", stderr);
+        return 1;
+    }
+    const long count = argc == 3 ? std::strtol(argv[2], nullptr, 10) : 1L << 18;
+    if (count < 1 || count > 1L << 24) {
+        std::fputs("relief-bench-live: error: PARTICLES must be from 1 to 16777216\n", stderr);
+        return 1;
+    }
+    const auto json = relief::bench(argv[1], static_cast<std::uint32_t>(count));
+    if (!json) {
+        std::fprintf(stderr, "relief-bench-live: error: %s\n", json.error().message.c_str());
+        return static_cast<int>(json.error().code);
+    }
+    std::puts(json->dump(2).c_str());
+    return 0;
+}

@@ -1,0 +1,356 @@
+// What a step costs: relief-bench-step COLLIDER.relief [--large] prints JSON. Nothing here is a test:
+// machines are shared and noisy.
+//
+// A block is some steps between two glFinish. Before each all particles are born anew, so that blocks
+// are alike; births and the first step are not timed. Blocks of all variants take turns, and a ratio is the
+// median of the ratios within each turn: other work on the machine meets both sides of it. With llvmpipe
+// ratios are of the process's CPU time, which that other work hardly changes; else of the time by the clock
+// on the wall. `call_ms` is how long the calls took of that: where it is nearly the whole, a GPU waited for
+// the CPU (which llvmpipe is).
+//
+// `copy` is a draw that only copies the two state textures: it reads and writes 32 bytes a particle; a step
+// reads the 16 of the birth texture besides.
+//
+// Sizes suit llvmpipe where that is the renderer, unless --large asks for a GPU's.
+#include <time.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/container.h"
+#include "runtime/bench/bench_variants.h"
+#include "runtime/gl/gl_context.h"
+#include "runtime/particles/random.h"
+#include "runtime/picture/camera.h"
+#include "runtime/picture/collider_view.h"
+#include "runtime/picture/particle_renderer.h"
+
+namespace {
+
+using relief::BenchScene;
+using relief::BenchSystem;
+using relief::BenchVariant;
+using relief::GlFramebuffer;
+using relief::GlTexture;
+using relief::Result;
+using Clock = std::chrono::steady_clock;
+using Json = nlohmann::ordered_json;
+
+constexpr GLsizei kPictureWidth = 1280;
+constexpr GLsizei kPictureHeight = 720;
+
+struct Sizes {
+    bool software;
+    std::uint32_t particles;            // of the step
+    int steps;                          // of a block, kBenchStepsMost at most
+    int rounds;                         // blocks of each variant
+    std::vector<std::uint32_t> frames;  // particles
+    int frame_steps;
+    int frame_rounds;
+};
+
+Sizes sizesFor(bool software, bool large) {
+    const std::vector<std::uint32_t> all{1U << 16, 1U << 18, 1U << 20, 1U << 22};
+    if (software) {
+        return large ? Sizes{true, 1U << 20, 4, 5, all, 1, 3}
+                     : Sizes{true, 1U << 17, 4, 5, {1U << 16, 1U << 18}, 1, 3};
+    }
+    return {false, 1U << 20, relief::kBenchStepsMost, 11, all, relief::kBenchStepsMost, 7};
+}
+
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+double cpuMilliseconds() {
+    timespec t{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
+}
+
+/// Milliseconds of each block, a step of it.
+struct Times {
+    std::vector<double> all;
+    std::vector<double> calls;
+    std::vector<double> cpu;  // of all threads
+
+    void measure(int steps, const std::function<void()>& step) {
+        const auto per_step = [steps](Clock::duration time) {
+            return std::chrono::duration<double, std::milli>(time).count() / steps;
+        };
+        glFinish();
+        const double cpu_begun = cpuMilliseconds();
+        const Clock::time_point begun = Clock::now();
+        for (int i = 0; i < steps; ++i) {
+            step();
+        }
+        calls.push_back(per_step(Clock::now() - begun));
+        glFinish();
+        all.push_back(per_step(Clock::now() - begun));
+        cpu.push_back((cpuMilliseconds() - cpu_begun) / steps);
+    }
+};
+
+Json ratio(const Times& times, const Times& base, bool software) {
+    const std::vector<double>& above = software ? times.cpu : times.all;
+    const std::vector<double>& below = software ? base.cpu : base.all;
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < above.size(); ++i) {
+        ratios.push_back(above[i] / below[i]);
+    }
+    return {{"median", median(ratios)},
+            {"least", *std::min_element(ratios.begin(), ratios.end())},
+            {"most", *std::max_element(ratios.begin(), ratios.end())}};
+}
+
+/// The bare copy of two state textures.
+class Copy {
+  public:
+    static Result<Copy> create(std::uint32_t particles) {
+        Copy copy;
+        copy.rows_ = static_cast<GLsizei>(particles / relief::ParticleSystem::kStateWidth);
+        relief::Pcg32 random(1);
+        std::vector<float> texels(std::size_t{4} * particles);  // that no driver can compress
+        std::generate(texels.begin(), texels.end(), [&] { return random.uniform(); });
+        for (std::size_t i = 0; i < 2; ++i) {
+            for (GlTexture& texture : copy.state_[i]) {
+                texture =
+                    relief::makeTexture2D(GL_RGBA32F, kWidth, copy.rows_, GL_RGBA, GL_FLOAT, texels.data());
+            }
+            auto target = relief::makeFramebuffer(
+                std::array<GLuint, 2>{copy.state_[i][0].name(), copy.state_[i][1].name()});
+            if (!target) {
+                return forward(target);
+            }
+            copy.target_[i] = std::move(*target);
+        }
+        auto program = relief::makeProgram("quad.vert", "copy_state.frag");
+        if (!program) {
+            return forward(program);
+        }
+        copy.program_ = std::move(*program);
+        copy.array_ = relief::makeVertexArray();
+        glUseProgram(copy.program_.name());
+        glUniform1i(relief::uniformLocation(copy.program_, "u_velocity"), 1);
+        glUseProgram(0);
+        return copy;
+    }
+    void step() {
+        const std::size_t next = 1 - current_;
+        glBindFramebuffer(GL_FRAMEBUFFER, target_[next].name());
+        for (std::size_t i = 0; i < 2; ++i) {
+            glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(i));
+            glBindTexture(GL_TEXTURE_2D, state_[current_][i].name());
+        }
+        glUseProgram(program_.name());
+        glViewport(0, 0, kWidth, rows_);
+        glBindVertexArray(array_.name());
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+        current_ = next;
+    }
+
+  private:
+    static constexpr auto kWidth = static_cast<GLsizei>(relief::ParticleSystem::kStateWidth);
+
+    GLsizei rows_ = 0;
+    std::size_t current_ = 0;
+    std::array<std::array<GlTexture, 2>, 2> state_;  // position and velocity
+    std::array<GlFramebuffer, 2> target_;
+    relief::GlProgram program_;
+    relief::GlVertexArray array_;
+};
+
+/// Who touches at the end of a block.
+Json touching(const BenchSystem& system, int steps_taken) {
+    const auto state = system.particles->readState();
+    if (!state || state->empty()) {
+        return nullptr;
+    }
+    std::uint64_t in_contact = 0;
+    std::uint64_t caught = 0;
+    std::uint64_t collisions = 0;
+    for (const relief::ParticleState& particle : *state) {
+        in_contact += particle.contact != relief::Contact::kNone ? 1 : 0;
+        caught += particle.contact == relief::Contact::kCaught ? 1 : 0;
+        collisions += particle.collisions;
+    }
+    const double steps = static_cast<double>(state->size()) * steps_taken;
+    return {{"alive", state->size()},
+            {"in_contact", in_contact},
+            {"caught", caught},
+            {"contacts_a_step", static_cast<double>(collisions) / steps}};
+}
+
+Result<void> benchSteps(const BenchScene& scene, const Sizes& sizes, Json& json) {
+    const std::vector<BenchVariant> variants = relief::benchVariants();
+    std::vector<BenchSystem> systems;
+    for (const BenchVariant& variant : variants) {
+        auto made = variant.make(scene);
+        if (!made) {
+            return forward(made);
+        }
+        systems.push_back(std::move(*made));
+    }
+    auto copy = Copy::create(sizes.particles);
+    if (!copy) {
+        return forward(copy);
+    }
+    Times copied;
+    std::vector<Times> times(variants.size());
+    std::vector<Json> touch(variants.size());
+    copy->step();  // the driver compiles
+    for (int round = 0; round < sizes.rounds; ++round) {
+        copied.measure(sizes.steps, [&] { copy->step(); });
+        glUseProgram(0);  // whoever saves the state of the GL shall find nothing that goes with the copy
+        for (std::size_t i = 0; i < variants.size(); ++i) {
+            systems[i].begin(scene);
+            times[i].measure(sizes.steps, [&] { systems[i].step(); });
+            if (round == 0) {
+                touch[i] = touching(systems[i], sizes.steps + 1);
+            }
+            systems[i].end();
+        }
+    }
+    const auto timesOf = [&](std::string_view name) -> const Times& {
+        const auto it = std::find_if(variants.begin(), variants.end(),
+                                     [&](const BenchVariant& variant) { return variant.name == name; });
+        return times[static_cast<std::size_t>(it - variants.begin())];
+    };
+    json["steps"] = {{"particles", sizes.particles}, {"block", sizes.steps}, {"blocks", sizes.rounds}};
+    json["copy"] = {{"ms", median(copied.all)},
+                    {"call_ms", median(copied.calls)},
+                    {"cpu_ms", median(copied.cpu)},
+                    {"step_over_copy", ratio(timesOf("no_collider"), copied, sizes.software)}};
+    for (std::size_t i = 0; i < variants.size(); ++i) {
+        json["variants"].push_back({{"name", variants[i].name},
+                                    {"what", variants[i].what},
+                                    {"ms", median(times[i].all)},
+                                    {"call_ms", median(times[i].calls)},
+                                    {"cpu_ms", median(times[i].cpu)},
+                                    {"over_collider", ratio(times[i], timesOf("collider"), sizes.software)},
+                                    {"touching", touch[i]}});
+    }
+    return {};
+}
+
+/// A step alone, a step and a picture of points, a step and one of quads.
+Result<void> benchFrames(const relief::Collider& collider, std::uint32_t particles, const Sizes& sizes,
+                         Json& json) {
+    const BenchScene scene = relief::makeBenchScene(collider, particles);
+    auto system = relief::makeColliderSystem(scene);
+    if (!system) {
+        return forward(system);
+    }
+    auto renderer = relief::ParticleRenderer::create(
+        relief::ColliderView{system->textures.get(), collider.bounds, relief::finestTexel(collider)});
+    if (!renderer) {
+        return forward(renderer);
+    }
+    const GlTexture color =
+        relief::makeTexture2D(GL_RGBA16F, kPictureWidth, kPictureHeight, GL_RGBA, GL_HALF_FLOAT);
+    const GlTexture depth = relief::makeTexture2D(GL_DEPTH_COMPONENT32F, kPictureWidth, kPictureHeight,
+                                                  GL_DEPTH_COMPONENT, GL_FLOAT);
+    const auto framebuffer = relief::makeFramebuffer(std::array<GLuint, 1>{color.name()}, depth.name());
+    if (!framebuffer) {
+        return forward(framebuffer);
+    }
+    const relief::RenderTarget target{framebuffer->name(), kPictureWidth, kPictureHeight};
+    relief::Camera camera;
+    camera.target = collider.bounds.center();
+    camera.eye = relief::defaultEye(camera.target, 0.5F * glm::length(collider.bounds.size()), camera.fov);
+    relief::setClipPlanes(camera, collider.bounds);
+    // As relief-sim draws unless told otherwise, but nobody fades: they live too short.
+    relief::ParticleStyle style{.diameter = 0.0065F * scene.side, .fade_in = 0.0F, .fade_out = 0.0F};
+
+    Result<void> drawn;
+    const auto frame = [&](relief::Sprite sprite) {
+        system->step();
+        glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        style.sprite = sprite;
+        if (auto done = renderer->draw(*system->particles, camera, style, target); !done) {
+            drawn = done;
+        }
+    };
+    Times step;
+    Times points;
+    Times quads;
+    const auto block = [&](Times& times, const std::function<void()>& work) {
+        system->begin(scene);
+        times.measure(sizes.frame_steps, work);
+        system->end();
+    };
+    for (int round = -1; round < sizes.frame_rounds; ++round) {
+        if (round == 0) {  // the one before was for the driver, which compiles
+            step = points = quads = {};
+        }
+        block(step, [&] { system->step(); });
+        block(points, [&] { frame(relief::Sprite::kPoint); });
+        block(quads, [&] { frame(relief::Sprite::kQuad); });
+    }
+    if (!drawn) {
+        return drawn;
+    }
+    json["frames"].push_back({{"particles", particles},
+                              {"picture", {kPictureWidth, kPictureHeight}},
+                              {"step_ms", median(step.all)},
+                              {"points_ms", median(points.all)},  // the step included
+                              {"quads_ms", median(quads.all)}});
+    return {};
+}
+
+int failure(const relief::Error& error) {
+    std::fprintf(stderr, "relief-bench-step: error: %s\n", error.message.c_str());
+    return static_cast<int>(error.code);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const bool large = argc == 3 && std::string_view(argv[2]) == "--large";
+    if (argc != 2 && !large) {
+        return failure({relief::ErrorCode::kUsage, "usage: relief-bench-step COLLIDER.relief [--large]"});
+    }
+    const auto collider = relief::loadCollider(argv[1]);
+    if (!collider) {
+        return failure(collider.error());
+    }
+    const auto context = relief::GlContext::create(relief::GlApi::kGl33Core);
+    if (!context) {
+        return failure(context.error());
+    }
+    const std::string renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    const bool software =
+        renderer.find("llvmpipe") != std::string::npos || renderer.find("softpipe") != std::string::npos;
+    const Sizes sizes = sizesFor(software, large);
+    Json json;
+    json["device"] = (*context)->description();
+    json["renderer"] = renderer;
+    json["software"] = software;
+    json["ratios_of"] = software ? "CPU time" : "wall clock";
+    json["collider"] = {{"maps", collider->maps.size()}};
+    if (const auto done = benchSteps(relief::makeBenchScene(*collider, sizes.particles), sizes, json);
+        !done) {
+        return failure(done.error());
+    }
+    for (const std::uint32_t particles : sizes.frames) {
+        if (const auto done = benchFrames(*collider, particles, sizes, json); !done) {
+            return failure(done.error());
+        }
+    }
+    if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
+        return failure({relief::ErrorCode::kFailure, "the GL reports error " + std::to_string(error)});
+    }
+    std::puts(json.dump(2).c_str());
+    return 0;
+}

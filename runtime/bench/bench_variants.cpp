@@ -1,0 +1,249 @@
+#include "runtime/bench/bench_variants.h"
+
+#include <array>
+#include <glm/gtc/quaternion.hpp>
+#include <utility>
+
+#include "runtime/air/air.h"
+#include "runtime/particles/emitter.h"
+
+namespace relief {
+
+namespace {
+
+constexpr Collision kSnow{.restitution = 0.0F, .friction = 1.0F};
+
+enum class Solids : std::uint8_t { kNone, kCollider, kOneBody, kFourBodies };
+
+std::vector<Pose> posesOf(const BenchScene& scene, Solids solids) {
+    if (solids == Solids::kOneBody) {
+        return {Pose{}};
+    }
+    // Half as large, in every other corner of the box.
+    std::vector<Pose> poses;
+    const glm::vec3 center = scene.collider.bounds.center();
+    const glm::vec3 quarter = 0.25F * scene.collider.bounds.size();
+    for (const glm::vec3& corner :
+         {glm::vec3(1, 1, 1), glm::vec3(1, -1, -1), glm::vec3(-1, 1, -1), glm::vec3(-1, -1, 1)}) {
+        poses.push_back(Pose{0.5F * center + corner * quarter, {1.0F, 0.0F, 0.0F, 0.0F}, 0.5F});
+    }
+    return poses;
+}
+
+Result<ColliderTextures> makeTextures(const BenchScene& scene, Solids solids) {
+    if (solids == Solids::kCollider) {
+        return ColliderTextures::create(scene.collider);
+    }
+    std::vector<ColliderBody> bodies;
+    for (const Pose& pose : posesOf(scene, solids)) {
+        bodies.push_back({&scene.collider, pose, 1.0F, 0.0F});
+    }
+    return ColliderTextures::create(bodies);
+}
+
+Result<BenchSystem> makeSystem(const BenchScene& scene, Solids solids, Integrator integrator) {
+    auto particles = ParticleSystem::create(
+        {.capacity = static_cast<std::uint32_t>(scene.births.size()), .integrator = integrator});
+    if (!particles) {
+        return forward(particles);
+    }
+    BenchSystem system;
+    system.particles = std::make_unique<ParticleSystem>(std::move(*particles));
+    system.particles->setForces(scene.forces);
+    system.particles->setCollision(kSnow);
+    if (solids == Solids::kNone) {
+        return system;
+    }
+    auto textures = makeTextures(scene, solids);
+    if (!textures) {
+        return forward(textures);
+    }
+    system.textures = std::make_unique<ColliderTextures>(std::move(*textures));
+    const ColliderInstance instance{system.textures.get()};
+    if (const auto set = system.particles->setColliders({&instance, 1}); !set) {
+        return forward(set);
+    }
+    return system;
+}
+
+ParticleType snowType() {
+    ParticleType type;
+    type.restitution = kSnow.restitution;
+    type.friction = kSnow.friction;
+    return type;
+}
+
+Result<void> setSixteenTypes(ParticleSystem& particles, const BenchScene& /*scene*/) {
+    std::vector<ParticleType> types(kParticleTypesMax, snowType());
+    for (std::size_t i = 0; i < types.size(); ++i) {
+        const float share = static_cast<float>(i) / static_cast<float>(types.size());
+        types[i].mass = 1.0F + share;
+        types[i].restitution = 0.1F * share;
+    }
+    return particles.setTypes(types);
+}
+
+Result<void> setRadius(ParticleSystem& particles, const BenchScene& scene) {
+    ParticleType type = snowType();
+    type.radius = 0.005F * scene.side;
+    return particles.setTypes({&type, 1});
+}
+
+Result<void> setGround(ParticleSystem& particles, const BenchScene& scene) {
+    particles.setGround(scene.collider.bounds.min.y + 0.1F * scene.side);
+    return {};
+}
+
+std::function<Result<void>(ParticleSystem&, const BenchScene&)> sweepOf(float share) {
+    return [share](ParticleSystem& particles, const BenchScene& scene) {
+        return particles.setSweep(share * scene.side);
+    };
+}
+
+/// A swirl on 32³ nodes.
+AirSettings flowAir(const BenchScene& scene) {
+    constexpr std::uint32_t kNodes = 32;
+    FlowField flow;
+    flow.size = {kNodes, kNodes, kNodes};
+    flow.box_min = scene.collider.bounds.min;
+    flow.box_max = scene.collider.bounds.max;
+    for (std::uint32_t i = 0; i < kNodes * kNodes * kNodes; ++i) {
+        const auto x = static_cast<float>(i % kNodes) / kNodes - 0.5F;
+        const auto z = static_cast<float>(i / (kNodes * kNodes)) / kNodes - 0.5F;
+        flow.nodes.push_back(0.25F * scene.side * glm::vec3(-z, 0.0F, x));
+    }
+    AirSettings air;
+    air.wind = scene.forces.wind;
+    air.flow = std::make_shared<const FlowField>(std::move(flow));
+    return air;
+}
+
+AirSettings curlAir(const BenchScene& scene) {
+    AirSettings air;
+    air.wind = scene.forces.wind;
+    air.curl_noise = CurlNoise{.amplitude = 0.25F * scene.side,
+                               .scale = 0.2F * scene.side,
+                               .octaves = 2,
+                               .drift = 0.1F * scene.side};
+    return air;
+}
+
+AirSettings attractorAir(const BenchScene& scene) {
+    AirSettings air;
+    air.wind = scene.forces.wind;
+    for (const Pose& pose : posesOf(scene, Solids::kFourBodies)) {
+        air.attractors.push_back(
+            {.position = pose.position, .strength = 0.5F * scene.side, .radius = 0.1F * scene.side});
+    }
+    return air;
+}
+
+std::function<Result<void>(ParticleSystem&, const BenchScene&)> airOf(
+    AirSettings (*make)(const BenchScene&)) {
+    return
+        [make](ParticleSystem& particles, const BenchScene& scene) { return particles.setAir(make(scene)); };
+}
+
+/// The collider, and `set` on top.
+BenchVariant feature(std::string name, std::string what,
+                     std::function<Result<void>(ParticleSystem&, const BenchScene&)> set) {
+    const auto make = [set = std::move(set)](const BenchScene& scene) -> Result<BenchSystem> {
+        auto system = makeColliderSystem(scene);
+        if (system) {
+            if (const auto done = set(*system->particles, scene); !done) {
+                return forward(done);
+            }
+        }
+        return system;
+    };
+    return {std::move(name), std::move(what), make};
+}
+
+BenchVariant with(std::string name, std::string what, Solids solids,
+                  Integrator integrator = Integrator::kEuler) {
+    return {std::move(name), std::move(what),
+            [solids, integrator](const BenchScene& scene) { return makeSystem(scene, solids, integrator); }};
+}
+
+/// Bodies that turn by a tenth of a degree each step: what new poses cost.
+BenchVariant turning(std::string name, std::string what, Solids solids) {
+    const auto make = [solids](const BenchScene& scene) -> Result<BenchSystem> {
+        auto system = makeSystem(scene, solids, Integrator::kEuler);
+        if (system) {
+            system->before_step = [textures = system->textures.get(), poses = posesOf(scene, solids),
+                                   step = 0]() mutable {
+                // To and fro, so that every block sees the same poses, all but a degree.
+                const float degrees =
+                    0.1F * static_cast<float>(++step / 16 % 2 == 0 ? step % 16 : 16 - step % 16);
+                for (Pose& pose : poses) {
+                    pose.rotation = glm::angleAxis(glm::radians(degrees), glm::vec3(0.0F, 1.0F, 0.0F));
+                }
+                textures->setPoses(poses);
+            };
+        }
+        return system;
+    };
+    return {std::move(name), std::move(what), make};
+}
+
+}  // namespace
+
+BenchScene makeBenchScene(Collider collider, std::uint32_t particles) {
+    BenchScene scene;
+    scene.collider = std::move(collider);
+    const Bounds& bounds = scene.collider.bounds;
+    const float side = scene.side = bounds.longestSide();
+    scene.forces = {
+        .gravity = {0.0F, -3.0F * side, 0.0F}, .wind = {0.125F * side, 0.0F, 0.05F * side}, .drag = 2.5F};
+    EmitterSettings settings;
+    settings.box_min = bounds.min;
+    settings.box_max = bounds.max;
+    settings.burst = particles;
+    settings.velocity = {0.0F, -0.8F * side, 0.0F};
+    settings.velocity_spread = glm::vec3(0.12F, 0.1F, 0.12F) * side;
+    settings.lifetime_min = settings.lifetime_max = kBenchLifetime;
+    Emitter emitter(settings, 1);
+    emitter.emit(1.0, particles, scene.births);
+    for (std::size_t i = 0; i < scene.births.size(); ++i) {
+        scene.births[i].type = static_cast<std::uint32_t>(i % kParticleTypesMax);
+    }
+    return scene;
+}
+
+void BenchSystem::step() {
+    if (before_step) {
+        before_step();
+    }
+    particles->step(kBenchDt);
+}
+
+void BenchSystem::begin(const BenchScene& scene) {
+    particles->spawn(scene.births);
+    step();
+}
+
+Result<BenchSystem> makeColliderSystem(const BenchScene& scene) {
+    return makeSystem(scene, Solids::kCollider, Integrator::kEuler);
+}
+
+std::vector<BenchVariant> benchVariants() {
+    return {
+        with("no_collider", "nothing solid at all", Solids::kNone),
+        with("collider", "one type, no radius, no ground, Euler", Solids::kCollider),
+        feature("types_16", "16 types in turn", setSixteenTypes),
+        feature("radius", "of half a percent of the longest side", setRadius),
+        feature("sweep", "in pieces of 1 % of the longest side", sweepOf(0.01F)),
+        feature("sweep_fine", "in pieces of 0.25 % of the longest side", sweepOf(0.0025F)),
+        with("verlet", "Verlet instead of Euler", Solids::kCollider, Integrator::kVerlet),
+        with("one_body", "the collider as a body with a pose", Solids::kOneBody),
+        turning("one_body_turning", "the same with a new pose each step", Solids::kOneBody),
+        with("four_bodies", "four of half the size", Solids::kFourBodies),
+        turning("four_bodies_turning", "the same with new poses each step", Solids::kFourBodies),
+        feature("ground", "a floor a tenth of the longest side up", setGround),
+        feature("flow", "a flow field of 32 x 32 x 32 nodes", airOf(flowAir)),
+        feature("curl_noise", "two octaves of curl noise", airOf(curlAir)),
+        feature("attractors", "four attractors", airOf(attractorAir)),
+    };
+}
+
+}  // namespace relief

@@ -1,0 +1,61 @@
+// What relief-bench-step compares: one scene, and particle systems that differ in a single feature each.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "formats/base/result.h"
+#include "formats/collider.h"
+#include "runtime/collider/collider_textures.h"
+#include "runtime/particles/particle_system.h"
+
+namespace relief {
+
+inline constexpr float kBenchDt = 1.0F / 60.0F;
+inline constexpr int kBenchStepsMost = 16;  ///< of a block
+/// Seconds: longer than a block and the step before it, so that nobody dies within.
+inline constexpr float kBenchLifetime = 0.5F;
+static_assert(kBenchLifetime > kBenchDt * (kBenchStepsMost + 2));
+/// Seconds of a step that nobody survives.
+inline constexpr float kBenchEnd = 1.0F;
+
+/// Snow as in samples/, but born all through the collider's box at once: from the first step on there is
+/// something to collide with. Types 0…15 in turn; a system with a single type takes them all for that one.
+struct BenchScene {
+    Collider collider;
+    float side = 1.0F;  ///< longest of the bounds, object units
+    Forces forces;
+    std::vector<Birth> births;
+};
+
+[[nodiscard]] BenchScene makeBenchScene(Collider collider, std::uint32_t particles);
+
+/// A particle system with what it collides with.
+struct BenchSystem {
+    std::unique_ptr<ColliderTextures> textures;  // stays where it is: the particles point at it
+    std::unique_ptr<ParticleSystem> particles;
+    std::function<void()> before_step;  // may be empty
+
+    void step();
+    /// Everybody born, and a first step, for which the driver compiles.
+    void begin(const BenchScene& scene);
+    void end() { particles->step(kBenchEnd); }
+};
+
+struct BenchVariant {
+    std::string name;
+    std::string what;  ///< one line for a person
+    std::function<Result<BenchSystem>(const BenchScene&)> make;
+};
+
+/// "no_collider", "collider" (what the others are compared with), and the features one by one. Systems take
+/// the scene's number of particles.
+[[nodiscard]] std::vector<BenchVariant> benchVariants();
+
+/// The system of "collider".
+[[nodiscard]] Result<BenchSystem> makeColliderSystem(const BenchScene& scene);
+
+}  // namespace relief

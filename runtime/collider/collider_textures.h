@@ -1,0 +1,131 @@
+// Colliders on the GPU: three textures and a uniform block, read by shaders/collider.glsl. One collider in
+// its own object space, or several bodies with poses in a world.
+//
+// Maps of one texel layout share a 2-D texture: RGBA32F for float, RGBA8 for fixed8 and cube, RGBA16UI for
+// front-back of either depth. Their texels, as shaderTexels() makes them, follow each other as they do in the
+// container, wrapped at the texture's width, so that the textures take the maps' bytes and, each, less than a
+// row more:
+//
+//     bytes on the GPU < Σ texel bytes + Σ over the textures: width · texel size
+//
+// The width is the least power of two that makes the texture no higher than wide.
+//
+// The maps of a live body (live_collider.h) have no texels yet: each gets a rectangle of its texture to be
+// drawn to, below what is packed, and one of the float texture, of RGBA32F, for how the surface in each of
+// its texels moves: a rectangle for the front and one above it for the back, or six for a cube's faces.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "formats/base/result.h"
+#include "formats/collider.h"
+#include "runtime/collider/pose.h"
+#include "runtime/gl/gl_object.h"
+
+namespace relief {
+
+/// A collider with a place in the world.
+struct ColliderBody {
+    const Collider* collider = nullptr;  ///< for create() alone
+    Pose pose;
+    float restitution = 1.0F;  ///< factor of the particle's own, 0…1
+    float friction =
+        0.0F;  ///< ν, 0…1: what is left of the tangential speed is (1 − ν) of the particle's share
+    bool live = false;  ///< the collider's maps say where they look; their texels are drawn later
+};
+
+/// Where the texels of a live map are.
+struct LiveSlot {
+    const GlTexture* texels = nullptr;  ///< the texture of its layout
+    GLint x = 0;                        ///< of its texel (0, 0)
+    GLint y = 0;
+    const GlTexture* motion = nullptr;  ///< the float texture
+    GLint motion_x = 0;
+    GLint motion_y = 0;
+};
+
+class ColliderTextures {
+  public:
+    static constexpr std::size_t kBodiesMax = 8;
+    /// Texture units and the uniform block binding that bind() uses: `first_unit`, + 1, + 2.
+    struct Binding {
+        int first_unit = 0;
+        int uniform_block = 0;
+    };
+
+    /// Uploads a collider. Needs a current context.
+    /// Errors: kLimit (the texels or the number of maps above what this GL takes; the message has both
+    /// numbers), kUnsupported (no maps).
+    [[nodiscard]] static Result<ColliderTextures> create(const Collider& collider);
+    /// Uploads up to kBodiesMax of them, which share a world. The maps of those that are live are empty at
+    /// first. Errors: those above, kLimit (more bodies), kUsage (a scale that is not above 0).
+    [[nodiscard]] static Result<ColliderTextures> create(std::span<const ColliderBody> bodies);
+
+    /// The poses at the end of the next step; those of the call before become those at its beginning. Call it
+    /// before each step while anything moves, and once more when it has stopped. Needs as many as there are
+    /// bodies. Scales may not change.
+    void setPoses(std::span<const Pose> poses);
+
+    /// Of the maps of a live body, in their order; none of another. The textures are this object's: ask again
+    /// after it has been moved.
+    [[nodiscard]] std::vector<LiveSlot> liveSlots(std::size_t body) const;
+    /// Says that the texels of a live body have changed.
+    void noteLiveUpdate() { ++revision_; }
+
+    /// Connects a program that includes collider.glsl: samplers, block binding. Once after linking; leaves
+    /// the program current.
+    void attach(const GlProgram& program, const Binding& binding) const;
+    /// Binds textures and block for the next draw.
+    void bind(const Binding& binding) const;
+
+    /// 0 for one collider in its own space.
+    [[nodiscard]] std::size_t bodyCount() const { return bodies_.size(); }
+    /// Changes with every pose that does, and with every update of a live body.
+    [[nodiscard]] std::uint64_t revision() const { return revision_; }
+    [[nodiscard]] int mapCount() const { return map_count_; }
+    [[nodiscard]] std::size_t bytes() const { return bytes_; }
+    /// "#define RELIEF_MAP_CAPACITY n\n" for makeProgram: the length of the block's array.
+    [[nodiscard]] const std::string& defines() const { return defines_; }
+
+  private:
+    /// A body's share of the block, std140.
+    struct BlockBody {
+        glm::vec4 row[3];
+        glm::vec4 before[3];
+        glm::vec4 response;
+        std::int32_t maps[4];
+    };
+    static_assert(sizeof(BlockBody) == 128);
+
+    /// A map of the block, and where its body wants it.
+    struct PlacedMap {
+        const DepthMap* map = nullptr;
+        bool live = false;
+    };
+    [[nodiscard]] static Result<ColliderTextures> upload(std::span<const PlacedMap> maps,
+                                                         std::vector<BlockBody> bodies);
+    [[nodiscard]] const GlTexture& textureOf(std::size_t layout) const;
+
+    /// Of each map: the layout, and where its texels and its motion begin; of live ones alone.
+    struct LivePlace {
+        std::size_t layout = 0;
+        GLint x = 0, y = 0, motion_x = 0, motion_y = 0;
+    };
+    std::vector<LivePlace> live_places_;
+
+    std::vector<BlockBody> bodies_;
+    std::uint64_t revision_ = 0;
+    GlTexture float_maps_;
+    GlTexture fixed_maps_;
+    GlTexture front_back_maps_;
+    GlBuffer block_;
+    int map_count_ = 0;
+    std::size_t bytes_ = 0;
+    std::string defines_;
+};
+
+}  // namespace relief

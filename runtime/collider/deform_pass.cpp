@@ -1,0 +1,183 @@
+#include "runtime/collider/deform_pass.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <glm/glm.hpp>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "runtime/gl/pass_state.h"
+
+namespace relief {
+namespace {
+
+// Differences that normals are made of reach this share of the mesh's box: wide enough for floats, and narrow
+// enough to see a curvature.
+constexpr float kInch = 1e-3F;
+
+struct RestVertex {
+    glm::vec3 position;
+    glm::vec3 normal;
+};
+
+/// The bindings of transform feedback, which PassState leaves alone.
+class FeedbackState {
+  public:
+    FeedbackState() {
+        glGetIntegerv(GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, &generic_);
+        glGetIntegeri_v(GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, 0, &first_);
+        glGetInteger64i_v(GL_TRANSFORM_FEEDBACK_BUFFER_START, 0, &offset_);
+        glGetInteger64i_v(GL_TRANSFORM_FEEDBACK_BUFFER_SIZE, 0, &size_);
+    }
+    ~FeedbackState() {
+        const auto first = static_cast<GLuint>(first_);
+        if (size_ > 0) {
+            glBindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, first, static_cast<GLintptr>(offset_),
+                              static_cast<GLsizeiptr>(size_));
+        } else {
+            glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, first);
+        }
+        glBindBuffer(GL_TRANSFORM_FEEDBACK_BUFFER, static_cast<GLuint>(generic_));
+    }
+    FeedbackState(const FeedbackState&) = delete;
+    FeedbackState& operator=(const FeedbackState&) = delete;
+
+  private:
+    GLint generic_ = 0;
+    GLint first_ = 0;
+    GLint64 offset_ = 0;
+    GLint64 size_ = 0;
+};
+
+void setVector(const GlProgram& program, const char* name, const glm::vec3& v) {
+    glUniform3f(uniformLocation(program, name), v.x, v.y, v.z);
+}
+
+}  // namespace
+
+Result<DeformPass> DeformPass::create(const Deformation& deformation, std::span<const glm::vec3> positions,
+                                      std::span<const glm::vec3> normals, Output output) {
+    if (auto good = checkDeformation(deformation); !good) {
+        return forward(good);
+    }
+    if (deformation.kind == DeformKind::kWobble && normals.empty()) {
+        return fail(ErrorCode::kUsage, "a wobble goes along the normals of the mesh; give them");
+    }
+    auto pass = make({}, {}, positions, normals, output);
+    if (pass) {
+        pass->deformation_ = deformation;
+    }
+    return pass;
+}
+
+Result<DeformPass> DeformPass::create(const std::string& glsl, std::span<const glm::vec3> positions,
+                                      std::span<const glm::vec3> normals, Output output) {
+    auto pass = make("#define RELIEF_DEFORM_CUSTOM 1\n", glsl, positions, normals, output);
+    if (pass) {
+        pass->custom_ = true;
+    }
+    return pass;
+}
+
+Result<DeformPass> DeformPass::make(const std::string& defines, const std::string& glsl,
+                                    std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
+                                    Output output) {
+    if (positions.empty() || positions.size() > std::numeric_limits<std::int32_t>::max()) {
+        return fail(ErrorCode::kUsage, "a deformation needs 1 to 2^31 - 1 vertices");
+    }
+    const bool wants_normals = output == Output::kPositionsAndNormals;
+    if (normals.size() != positions.size() && (wants_normals || !normals.empty())) {
+        return fail(ErrorCode::kUsage, std::to_string(positions.size()) + " vertices to deform have " +
+                                           std::to_string(normals.size()) + " normals; give as many");
+    }
+    std::vector<RestVertex> rest(positions.size());
+    Bounds bounds;
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+        rest[i] = {positions[i], normals.empty() ? glm::vec3(0.0F) : normals[i]};
+        bounds.add(positions[i]);
+    }
+
+    const PassState state;
+    constexpr std::array<const char*, 2> kOutputs{"v_position", "v_normal"};
+    auto program =
+        makeFeedbackProgram("deform.vert", std::span(kOutputs).first(wants_normals ? 2 : 1),
+                            (wants_normals ? "#define RELIEF_DEFORM_NORMALS 1\n" : "") + defines, glsl);
+    if (!program) {
+        return forward(program);
+    }
+    DeformPass pass;
+    pass.what_ = output;
+    pass.vertices_ = static_cast<GLsizei>(positions.size());
+    pass.inch_ = std::max(kInch * bounds.longestSide(), std::numeric_limits<float>::min());
+    pass.program_ = std::move(*program);
+    pass.rest_ = makeBuffer();
+    pass.output_ = makeBuffer();
+    pass.array_ = makeVertexArray();
+    pass.pixel_ = makeTexture2D(GL_RGBA8, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE);
+    const std::array<GLuint, 1> colors{pass.pixel_.name()};
+    auto target = makeFramebuffer(colors);
+    if (!target) {
+        return forward(target);
+    }
+    pass.target_ = std::move(*target);
+    glBindVertexArray(pass.array_.name());
+    glBindBuffer(GL_ARRAY_BUFFER, pass.output_.name());
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(pass.bytes()), nullptr, GL_DYNAMIC_COPY);
+    glBindBuffer(GL_ARRAY_BUFFER, pass.rest_.name());
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(rest.size() * sizeof(RestVertex)), rest.data(),
+                 GL_STATIC_DRAW);
+    for (const auto& [location, offset] :
+         {std::pair(0U, offsetof(RestVertex, position)), {1U, offsetof(RestVertex, normal)}}) {
+        glEnableVertexAttribArray(location);
+        glVertexAttribPointer(location, 3, GL_FLOAT, GL_FALSE, sizeof(RestVertex),
+                              reinterpret_cast<const void*>(offset));
+    }
+    return pass;
+}
+
+std::size_t DeformPass::bytes() const {
+    return static_cast<std::size_t>(vertices_) * (what_ == Output::kPositions ? 12 : 24);
+}
+
+void DeformPass::run(double time, const Pose& pose) {
+    const PassState state;
+    const FeedbackState feedback;
+    glUseProgram(program_.name());
+    const auto at = [&](const char* name) { return uniformLocation(program_, name); };
+    const glm::mat3 turn = glm::mat3_cast(pose.rotation);
+    std::array<glm::vec4, 3> rows;
+    for (int i = 0; i < 3; ++i) {
+        rows[static_cast<std::size_t>(i)] =
+            glm::vec4(pose.scale * glm::vec3(turn[0][i], turn[1][i], turn[2][i]), pose.position[i]);
+    }
+    glUniform4fv(at("u_row"), 3, &rows[0].x);
+    glUniform1f(at("u_time"), static_cast<float>(time));
+    glUniform1f(at("u_inch"), inch_);
+    if (!custom_) {
+        const DeformMoment moment = momentOf(deformation_, time);
+        glUniform1i(at("u_kind"), static_cast<GLint>(deformation_.kind));
+        glUniform1f(at("u_angle"), moment.angle);
+        setVector(program_, "u_phases", moment.phases);
+        glUniform1f(at("u_amplitude"), deformation_.amplitude);
+        glUniform1f(at("u_number"), 2.0F * std::numbers::pi_v<float> / deformation_.wavelength);
+        setVector(program_, "u_center", deformation_.center);
+        setVector(program_, "u_axis", deformation_.axis);
+        setVector(program_, "u_along", deformation_.along);
+        glUniform2f(at("u_range"), deformation_.range_low, deformation_.range_high);
+    }
+    glBindVertexArray(array_.name());
+    glBindFramebuffer(GL_FRAMEBUFFER, target_.name());
+    glEnable(GL_RASTERIZER_DISCARD);
+    glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, output_.name());
+    glBeginTransformFeedback(GL_POINTS);
+    glDrawArrays(GL_POINTS, 0, vertices_);
+    glEndTransformFeedback();
+    // Bound for feedback it could not be read from.
+    glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
+    glDisable(GL_RASTERIZER_DISCARD);
+}
+
+}  // namespace relief

@@ -1,0 +1,100 @@
+#include "runtime/collider/field_query.h"
+
+#include <algorithm>
+#include <array>
+
+#include "runtime/gl/gl_fault.h"
+#include "runtime/gl/pass_state.h"
+
+namespace relief {
+namespace {
+
+constexpr GLsizei kWidth = 1024;
+constexpr std::size_t kBatch = std::size_t{kWidth} * 1024;  // points evaluated with one draw
+constexpr ColliderTextures::Binding kBinding{1, 0};         // unit 0 holds the points
+
+}  // namespace
+
+Result<FieldQuery> FieldQuery::create(const Collider& collider) {
+    Result<ColliderTextures> textures = ColliderTextures::create(collider);
+    if (!textures) {
+        return forward(textures);
+    }
+    auto own = std::make_unique<ColliderTextures>(std::move(*textures));
+    auto query = create(*own);
+    if (query) {
+        query->own_ = std::move(own);
+    }
+    return query;
+}
+
+Result<FieldQuery> FieldQuery::create(const ColliderTextures& textures) {
+    const PassState state;
+    FieldQuery query;
+    query.textures_ = &textures;
+    Result<GlProgram> program = makeProgram("quad.vert", "query.frag", textures.defines());
+    if (!program) {
+        return forward(program);
+    }
+    query.program_ = std::move(*program);
+    textures.attach(query.program_, kBinding);
+    glUniform1i(uniformLocation(query.program_, "u_points"), 0);
+    query.no_attributes_ = makeVertexArray();
+    return query;
+}
+
+Result<std::vector<FieldSample>> FieldQuery::evaluate(std::span<const glm::vec3> points) const {
+    const PassState state;
+    if (auto done = checkTextureSize(kWidth, std::min(kBatch, points.size()) / kWidth,
+                                     "the points of a query", "this GL is too small for it");
+        !done) {
+        return forward(done);
+    }
+    std::vector<FieldSample> samples;
+    samples.reserve(points.size());
+    for (std::size_t first = 0; first < points.size(); first += kBatch) {
+        const std::span<const glm::vec3> batch =
+            points.subspan(first, std::min(kBatch, points.size() - first));
+        const auto height = static_cast<GLsizei>((batch.size() + kWidth - 1) / kWidth);
+        std::vector<float> texels(std::size_t{4} * kWidth * static_cast<std::size_t>(height), 0.0F);
+        for (std::size_t i = 0; i < batch.size(); ++i) {
+            std::copy_n(&batch[i].x, 3, &texels[4 * i]);
+        }
+
+        forgetGlErrors();
+        const GlTexture input = makeTexture2D(GL_RGBA32F, kWidth, height, GL_RGBA, GL_FLOAT, texels.data());
+        const GlTexture normal_distance = makeTexture2D(GL_RGBA32F, kWidth, height, GL_RGBA, GL_FLOAT);
+        const GlTexture map = makeTexture2D(GL_RGBA32F, kWidth, height, GL_RGBA, GL_FLOAT);
+        if (auto done = checkAllocated("a query of " + std::to_string(batch.size()) + " points",
+                                       "close what else is on the GPU");
+            !done) {
+            return forward(done);
+        }
+        const std::array<GLuint, 2> targets = {normal_distance.name(), map.name()};
+        const Result<GlFramebuffer> framebuffer = makeFramebuffer(targets);
+        if (!framebuffer) {
+            return forward(framebuffer);
+        }
+        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer->name());
+        glViewport(0, 0, kWidth, height);
+        glUseProgram(program_.name());
+        glActiveTexture(GL_TEXTURE0);
+        glBindTexture(GL_TEXTURE_2D, input.name());
+        textures_->bind(kBinding);
+        glBindVertexArray(no_attributes_.name());
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+
+        const Result<std::vector<float>> fields = readTextureFloats(normal_distance, kWidth, height);
+        const Result<std::vector<float>> maps = readTextureFloats(map, kWidth, height);
+        if (!fields || !maps) {
+            return forward(!fields ? fields : maps);
+        }
+        for (std::size_t i = 0; i < batch.size(); ++i) {
+            const float* field = &(*fields)[4 * i];
+            samples.push_back({field[3], {field[0], field[1], field[2]}, static_cast<int>((*maps)[4 * i])});
+        }
+    }
+    return samples;
+}
+
+}  // namespace relief

@@ -1,0 +1,39 @@
+// Evaluates a collider at many points on the GPU, with the very shader code that the simulation runs:
+// `relief query --gpu`, and the proof that shaders/collider.glsl is formats/collider.cpp.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "formats/base/result.h"
+#include "formats/collider.h"
+#include "runtime/collider/collider_textures.h"
+#include "runtime/gl/gl_object.h"
+
+namespace relief {
+
+class FieldQuery {
+  public:
+    /// Needs a current context, of any GlApi; uploads the collider.
+    /// Errors: those of ColliderTextures::create, makeProgram and makeFramebuffer.
+    [[nodiscard]] static Result<FieldQuery> create(const Collider& collider);
+
+    /// The same of textures that there are: of one collider, or of bodies in their world, some of which may
+    /// be live. They must outlive this. Errors: those of makeProgram and makeFramebuffer.
+    [[nodiscard]] static Result<FieldQuery> create(const ColliderTextures& textures);
+
+    /// One sample a point, in order. Blocks until the GPU is done.
+    [[nodiscard]] Result<std::vector<FieldSample>> evaluate(std::span<const glm::vec3> points) const;
+
+  private:
+    FieldQuery() = default;
+
+    std::unique_ptr<ColliderTextures> own_;  // null: the caller's
+    const ColliderTextures* textures_ = nullptr;
+    GlProgram program_;
+    GlVertexArray no_attributes_;
+};
+
+}  // namespace relief

@@ -1,0 +1,259 @@
+#include "runtime/collider/live_collider.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <string>
+
+#include "runtime/gl/pass_state.h"
+
+namespace relief {
+namespace {
+
+constexpr int kMotionXyUnit = 0;
+constexpr int kMotionZUnit = 1;
+
+// As tight boxes have it that are baked: a little free space, and a least thickness, in longest sides.
+constexpr float kPadding = 1e-4F;
+constexpr float kThinnest = 1e-2F;
+
+/// Whether a vertex is where the map looks.
+bool holds(const DepthMap& map, const glm::vec3& p) {
+    const glm::vec3 q = map.object_to_map.apply(p);
+    if (map.projection() == Projection::kCube) {
+        return std::max({std::abs(q.x), std::abs(q.y), std::abs(q.z)}) <= 1.0F;
+    }
+    const glm::vec3 rim(1.0F / static_cast<float>(map.width), 1.0F / static_cast<float>(map.height), 0.0F);
+    // A texel's rounding.
+    constexpr float kSlack = 1e-5F;
+    for (int i = 0; i < 3; ++i) {
+        if (!(q[i] >= rim[i] - kSlack && q[i] <= 1.0F - rim[i] + kSlack)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool sameTarget(const DepthMap& a, const DepthMap& b) {
+    return a.format == b.format && a.width == b.width && a.height == b.height;
+}
+
+}  // namespace
+
+Result<Collider> liveFrames(const Bounds& box, std::uint32_t resolution) {
+    if (resolution < kMapSizeMin || resolution > kMapSizeMax) {
+        return fail(ErrorCode::kUsage, "live maps of " + std::to_string(resolution) +
+                                           " texels along a side are not possible; choose " +
+                                           std::to_string(kMapSizeMin) + " to " +
+                                           std::to_string(kMapSizeMax));
+    }
+    for (int i = 0; i < 3; ++i) {
+        if (!std::isfinite(box.min[i]) || !std::isfinite(box.max[i]) || !(box.min[i] <= box.max[i]) ||
+            !std::isfinite(box.size()[i])) {
+            return fail(ErrorCode::kUsage, "the box of live maps is empty or not finite");
+        }
+    }
+    const float longest = box.longestSide();
+    if (!(longest > 0.0F)) {
+        return fail(ErrorCode::kUsage, "the box of live maps is a point");
+    }
+    const glm::vec3 middle = box.center();
+    const glm::vec3 half =
+        glm::max(0.5F * box.size() + kPadding * longest, glm::vec3(0.5F * kThinnest * longest));
+    // To the right, upwards and away, as a person sees it who looks along the last.
+    const glm::vec3 x(1, 0, 0);
+    const glm::vec3 y(0, 1, 0);
+    const glm::vec3 z(0, 0, 1);
+    const glm::vec3 frames[3][3] = {{z, y, x}, {x, -z, -y}, {x, y, -z}};
+    const float inner = 1.0F - 2.0F / static_cast<float>(resolution);  // without the rim
+    Collider collider;
+    collider.bounds = box;
+    for (const auto& axes : frames) {
+        DepthMap map;
+        map.format = MapFormat::kFrontBackFixed;
+        map.compare = Compare::kBoth;
+        map.decode = Decode::kPlane;
+        map.width = resolution;
+        map.height = resolution;
+        for (int i = 0; i < 3; ++i) {
+            const float side = 2.0F * glm::dot(glm::abs(axes[i]), half) / (i < 2 ? inner : 1.0F);
+            const glm::vec3 row = axes[i] / side;
+            map.object_to_map.row[i] = glm::vec4(row, 0.5F - glm::dot(row, middle));
+            map.object_per_map[i] = side;
+        }
+        collider.maps.push_back(std::move(map));
+    }
+    return collider;
+}
+
+Result<LiveCollider> LiveCollider::create(std::span<const glm::vec3> positions,
+                                          std::span<const glm::uvec3> triangles, Collider frames) {
+    if (frames.maps.empty()) {
+        return fail(ErrorCode::kUsage, "a live collider needs maps; liveFrames() makes some");
+    }
+    auto mesh = GpuMesh::create(positions, triangles, {.keep_previous = true});
+    if (!mesh) {
+        return forward(mesh);
+    }
+    auto renderer = DepthMapRenderer::create();
+    if (!renderer) {
+        return forward(renderer);
+    }
+    for (DepthMap& map : frames.maps) {
+        map.texels.clear();
+    }
+    LiveCollider live(std::move(*mesh), std::move(*renderer), std::move(frames));
+    if (auto done = live.createTargets(); !done) {
+        return forward(done);
+    }
+    const PassState state;
+    auto program = makeProgram("quad.vert", "live_motion.frag");
+    if (!program) {
+        return forward(program);
+    }
+    live.motion_program_ = std::move(*program);
+    glUseProgram(live.motion_program_.name());
+    glUniform1i(uniformLocation(live.motion_program_, "u_motion_xy"), kMotionXyUnit);
+    glUniform1i(uniformLocation(live.motion_program_, "u_motion_z"), kMotionZUnit);
+    live.motion_end_ = uniformLocation(live.motion_program_, "u_end");
+    live.motion_origin_ = uniformLocation(live.motion_program_, "u_origin");
+    live.motion_target_ = makeFramebuffer();
+    live.texel_target_ = makeFramebuffer();
+    live.no_attributes_ = makeVertexArray();
+    return live;
+}
+
+Result<void> LiveCollider::createTargets() {
+    for (std::size_t m = 0; m < frames_.maps.size(); ++m) {
+        const DepthMap& map = frames_.maps[m];
+        views_.push_back(frameOf(map));
+        std::size_t same = 0;
+        while (same < m && !sameTarget(frames_.maps[same], map)) {
+            ++same;
+        }
+        if (same < m) {
+            target_of_.push_back(target_of_[same]);
+            continue;
+        }
+        auto target = DepthMapTarget::create(views_.back(), true);
+        if (!target) {
+            return forward(target);
+        }
+        target_of_.push_back(targets_.size());
+        targets_.push_back(std::move(*target));
+    }
+    return {};
+}
+
+Result<void> LiveCollider::refuseSecondChange() const {
+    if (shown_ && moved_) {
+        return fail(ErrorCode::kUsage,
+                    "a live collider's positions were set twice between two updates, and half of "
+                    "its motion would be lost; call update(), or settle() after a jump");
+    }
+    return {};
+}
+
+Result<void> LiveCollider::setPositions(std::span<const glm::vec3> positions) {
+    if (auto once = refuseSecondChange(); !once) {
+        return once;
+    }
+    for (const DepthMap& map : frames_.maps) {
+        for (std::size_t i = 0; map.encloses && i < positions.size(); ++i) {
+            const glm::vec3& p = positions[i];
+            if (std::isfinite(p.x + p.y + p.z) && !holds(map, p)) {
+                return fail(ErrorCode::kUsage,
+                            "vertex " + std::to_string(i) +
+                                " leaves the box of the live collider's maps; choose a larger one");
+            }
+        }
+    }
+    if (auto done = mesh_.setPositions(positions); !done) {
+        return done;
+    }
+    moved_ = true;
+    return {};
+}
+
+Result<void> LiveCollider::setPositions(GLuint buffer, std::size_t offset) {
+    if (auto once = refuseSecondChange(); !once) {
+        return once;
+    }
+    if (auto done = mesh_.setPositions(buffer, offset); !done) {
+        return done;
+    }
+    moved_ = true;
+    return {};
+}
+
+void LiveCollider::settle() {
+    mesh_.settle();
+    // What is where it was no longer moves, but must be shown where it is.
+    shown_ = shown_ && !moved_;
+}
+
+Result<void> LiveCollider::update(ColliderTextures& textures, std::size_t body) {
+    const std::vector<LiveSlot> slots = textures.liveSlots(body);
+    if (slots.size() != frames_.maps.size()) {
+        return fail(ErrorCode::kUsage, "body " + std::to_string(body) +
+                                           " was not created as a live one with this collider's maps");
+    }
+    if (shown_ && !moved_ && !moving_) {
+        return {};
+    }
+    if (!shown_ || !moved_) {
+        mesh_.settle();
+    }
+    const PassState state;
+    for (std::size_t m = 0; m < slots.size(); ++m) {
+        const DepthMapTarget& target = targets_[target_of_[m]];
+        if (auto done = renderer_.render(mesh_, views_[m], target); !done) {
+            return done;
+        }
+        copyTexels(target, frames_.maps[m], slots[m]);
+        copyMotion(target, frames_.maps[m], slots[m]);
+    }
+    moving_ = shown_ && moved_;
+    shown_ = true;
+    moved_ = false;
+    textures.noteLiveUpdate();
+    return {};
+}
+
+void LiveCollider::copyTexels(const DepthMapTarget& target, const DepthMap& map, const LiveSlot& slot) const {
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, target.framebuffer());
+    glReadBuffer(GL_COLOR_ATTACHMENT0);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, texel_target_.name());
+    glFramebufferTexture2D(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, slot.texels->name(), 0);
+    // Not glCopyTexSubImage2D: an H200's driver took integers by way of the CPU, 13 ms a map.
+    const auto width = static_cast<GLint>(map.width);
+    const auto height = static_cast<GLint>(map.height * map.faceCount());
+    glBlitFramebuffer(0, 0, width, height, slot.x, slot.y, slot.x + width, slot.y + height,
+                      GL_COLOR_BUFFER_BIT, GL_NEAREST);
+}
+
+void LiveCollider::copyMotion(const DepthMapTarget& target, const DepthMap& map, const LiveSlot& slot) const {
+    glBindFramebuffer(GL_FRAMEBUFFER, motion_target_.name());
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, slot.motion->name(), 0);
+    glActiveTexture(GL_TEXTURE0 + kMotionXyUnit);
+    glBindTexture(GL_TEXTURE_2D, target.motion(0));
+    glActiveTexture(GL_TEXTURE0 + kMotionZUnit);
+    glBindTexture(GL_TEXTURE_2D, target.motion(1));
+    glUseProgram(motion_program_.name());
+    glBindVertexArray(no_attributes_.name());
+    const auto width = static_cast<GLsizei>(map.width);
+    const auto height = static_cast<GLsizei>(map.height * map.faceCount());
+    glEnable(GL_SCISSOR_TEST);
+    for (int end = 0; end < (isFrontBack(map.format) ? 2 : 1); ++end) {
+        const GLint y = slot.motion_y + end * height;
+        glUniform1i(motion_end_, end);
+        glUniform2i(motion_origin_, slot.motion_x, y);
+        glViewport(slot.motion_x, y, width, height);
+        glScissor(slot.motion_x, y, width, height);
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+    }
+    glDisable(GL_SCISSOR_TEST);
+}
+
+}  // namespace relief

@@ -1,0 +1,92 @@
+// A collider that deforms: a mesh whose vertices move, and its depth maps, which the GPU renders anew before
+// the particles move (Kolb, Latta and Rezk-Salama 2004, section 5). Beside each texel it keeps how far the
+// surface there has gone since the update before: the velocity that a particle is met with.
+//
+//     LiveCollider live = *LiveCollider::create(positions, triangles, *liveFrames(box));
+//     ColliderBody body{.collider = &live.frames(), .live = true};
+//     ColliderTextures textures = *ColliderTextures::create({&body, 1});   // static bodies may stand beside
+//     it each step:  live.setPositions(…);  live.update(textures, 0);  particles.step(dt);
+//
+//     bytes on the GPU = those of GpuMesh and of ColliderTextures, and a target for each size and format of
+//     maps:
+//                        44 to 56 a texel
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "formats/base/result.h"
+#include "formats/collider.h"
+#include "runtime/collider/collider_textures.h"
+#include "runtime/depth_maps/depth_map_renderer.h"
+#include "runtime/depth_maps/gpu_mesh.h"
+#include "runtime/gl/gl_object.h"
+
+namespace relief {
+
+/// Three front-back maps of planes along the axes, without texels, which enclose `box`.
+/// \param box         object units: what the mesh never leaves, whatever it does.
+/// \param resolution  texels along a side, kMapSizeMin…kMapSizeMax.
+/// Errors: kUsage (an empty box or one that is not finite, a resolution out of range).
+[[nodiscard]] Result<Collider> liveFrames(const Bounds& box, std::uint32_t resolution = 256);
+
+class LiveCollider {
+  public:
+    /// Needs a current context, as every call does; every call restores the GL state that it touches, and
+    /// none waits. \param positions, triangles  as GpuMesh::create wants them: the mesh before its first
+    /// change. \param frames  what maps to render: format, compare, decode, size and place of each; texels
+    /// are not looked at.
+    ///                A map's box must hold the mesh at all times: what leaves it is cut off, and where the
+    ///                map says that it encloses everything, it says of what is cut off that it is free.
+    /// Errors: those of GpuMesh, DepthMapTarget and DepthMapRenderer; kUsage (no map).
+    [[nodiscard]] static Result<LiveCollider> create(std::span<const glm::vec3> positions,
+                                                     std::span<const glm::uvec3> triangles, Collider frames);
+
+    /// Moves the vertices; update() shows it. Once between two updates, for the motion is that of one change.
+    /// \param positions  object units, finite, as many as at first.
+    /// Errors: kUsage (called twice; another number; a vertex outside of a map that encloses everything),
+    /// kInvalidInput (not finite). Nothing then changes.
+    [[nodiscard]] Result<void> setPositions(std::span<const glm::vec3> positions);
+    /// The same from a buffer of the GPU: tightly packed triples of floats from `offset` bytes on; copied by
+    /// the GPU when its time comes. Nobody looks at the numbers. Errors: kUsage (called twice;
+    /// GpuMesh::setPositions).
+    [[nodiscard]] Result<void> setPositions(GLuint buffer, std::size_t offset = 0);
+    /// The last change was a jump, as if the vertices had always been there: the next update() has no motion.
+    void settle();
+
+    /// Renders the maps and the motion into their places. Call it before every step of the particles: each
+    /// takes the motion since the update before as that of its own time. Costs nothing while the mesh rests.
+    /// \param body  of `textures`, created from frames() with `live`.
+    /// Errors: kUsage (a body that is not live or has other maps), kFailure.
+    [[nodiscard]] Result<void> update(ColliderTextures& textures, std::size_t body);
+
+    /// Bounds, and maps without texels.
+    [[nodiscard]] const Collider& frames() const { return frames_; }
+    [[nodiscard]] const GpuMesh& mesh() const { return mesh_; }
+
+  private:
+    LiveCollider(GpuMesh mesh, DepthMapRenderer renderer, Collider frames)
+        : mesh_(std::move(mesh)), renderer_(std::move(renderer)), frames_(std::move(frames)) {}
+    [[nodiscard]] Result<void> createTargets();
+    [[nodiscard]] Result<void> refuseSecondChange() const;
+    void copyTexels(const DepthMapTarget& target, const DepthMap& map, const LiveSlot& slot) const;
+    void copyMotion(const DepthMapTarget& target, const DepthMap& map, const LiveSlot& slot) const;
+
+    GpuMesh mesh_;
+    DepthMapRenderer renderer_;
+    Collider frames_;
+    std::vector<DepthMapFrame> views_;  // of the maps
+    std::vector<std::size_t> target_of_;
+    std::vector<DepthMapTarget> targets_;
+    GlProgram motion_program_;
+    GLint motion_end_ = -1, motion_origin_ = -1;
+    GlFramebuffer texel_target_, motion_target_;
+    GlVertexArray no_attributes_;
+    bool shown_ = false;   // by a first update
+    bool moved_ = false;   // since the last update
+    bool moving_ = false;  // the motion shown is not zero
+};
+
+}  // namespace relief

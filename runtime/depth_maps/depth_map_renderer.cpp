@@ -1,0 +1,367 @@
+#include "runtime/depth_maps/depth_map_renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+#include <string>
+
+#include "runtime/gl/pass_state.h"
+
+namespace relief {
+namespace {
+
+/// Surfaces this much of the depth range outside the volume are drawn, and their depth clamped: one in a face
+/// of the volume is met in spite of rounding. As kDepthSlack of bake/plan/view.h.
+constexpr const char* kSlack = "#define RELIEF_SLACK 1e-6\n";
+
+constexpr GLint kPositionUnit = 0;
+constexpr GLint kPlaneUnit = 1;
+constexpr GLint kCornerUnit = 2;
+constexpr GLint kPreviousUnit = 3;
+
+bool isCube(const DepthMapFrame& frame) {
+    return frame.format == MapFormat::kCube8;
+}
+
+/// Axes sc, tc and ma of each face of a cube, in map space (formats/README.md).
+constexpr double kFaceAxes[6][3][3] = {
+    {{0, 0, -1}, {0, -1, 0}, {1, 0, 0}}, {{0, 0, 1}, {0, -1, 0}, {-1, 0, 0}},
+    {{1, 0, 0}, {0, 0, 1}, {0, 1, 0}},   {{1, 0, 0}, {0, 0, -1}, {0, -1, 0}},
+    {{1, 0, 0}, {0, -1, 0}, {0, 0, 1}},  {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}},
+};
+
+glm::dvec3 faceAxis(std::uint32_t face, int axis) {
+    const double* const a = kFaceAxes[face][axis];
+    return {a[0], a[1], a[2]};
+}
+
+/// A row of an affine map of object space, in double.
+struct Row {
+    glm::dvec3 direction{0.0};
+    double offset = 0.0;
+
+    [[nodiscard]] glm::vec4 from(const glm::dvec3& center) const {
+        return {glm::vec3(direction), static_cast<float>(glm::dot(direction, center) + offset)};
+    }
+};
+Row operator*(double factor, const Row& row) {
+    return {factor * row.direction, factor * row.offset};
+}
+Row operator+(const Row& a, const Row& b) {
+    return {a.direction + b.direction, a.offset + b.offset};
+}
+
+/// Coordinate k of map space.
+Row mapRow(const DepthMapFrame& frame, int k) {
+    const glm::dvec3 direction = frame.axis[k] / glm::dot(frame.axis[k], frame.axis[k]);
+    return {direction, -glm::dot(direction, frame.origin)};
+}
+
+/// What depth_map.vert takes a point of object space to.
+std::array<Row, 3> rowsOf(const DepthMapFrame& frame, const TexelWindow& window) {
+    if (!isCube(frame)) {
+        return {double(frame.width) * mapRow(frame, 0) + Row{{}, -double(window.x)},
+                double(frame.height) * mapRow(frame, 1) + Row{{}, -double(window.y)}, mapRow(frame, 2)};
+    }
+    std::array<Row, 3> on_face;
+    for (int axis = 0; axis < 3; ++axis) {
+        const glm::dvec3 along = faceAxis(window.face, axis);
+        Row& row = on_face[static_cast<std::size_t>(axis)];
+        for (int k = 0; k < 3; ++k) {
+            row = row + along[k] * mapRow(frame, k);
+        }
+    }
+    // The face is ±ma wide: its window becomes ±w.
+    const auto clip = [&](const Row& across, std::uint32_t first, std::uint32_t size) {
+        const double zoom = double(frame.width) / size;
+        return zoom * across + (zoom * (1.0 - 2.0 * first / frame.width) - 1.0) * on_face[2];
+    };
+    return {clip(on_face[0], window.x, window.width), clip(on_face[1], window.y, window.height), on_face[2]};
+}
+
+Result<void> checkWindow(const DepthMapFrame& frame, const TexelWindow& window, const DepthMapTarget& target,
+                         std::uint32_t x, std::uint32_t y) {
+    const auto inside = [](std::uint32_t first, std::uint32_t size, std::uint32_t room) {
+        return size > 0 && first <= room && size <= room - first;
+    };
+    if (window.face >= faceCount(frame) || !inside(window.x, window.width, frame.width) ||
+        !inside(window.y, window.height, frame.height)) {
+        return fail(ErrorCode::kUsage, "a window of a depth map lies outside of it; make it smaller");
+    }
+    if (target.format() != frame.format || !inside(x, window.width, target.width()) ||
+        !inside(y, window.height, target.height())) {
+        return fail(ErrorCode::kUsage,
+                    "a depth map's window of " + std::to_string(window.width) + " x " +
+                        std::to_string(window.height) +
+                        " texels does not fit its target; create one of its format and size");
+    }
+    return {};
+}
+
+/// What a program is compiled for.
+std::string definesOf(const DepthMapFrame& frame, bool motion) {
+    std::string defines = kSlack;
+    const auto define = [&](const char* name) { defines.append("#define ").append(name).append(" 1\n"); };
+    switch (frame.format) {
+        case MapFormat::kFloat32:
+            define("RELIEF_FLOAT");
+            break;
+        case MapFormat::kFrontBackHalf:
+            define("RELIEF_HALF");
+            [[fallthrough]];
+        case MapFormat::kFrontBackFixed:
+            define("RELIEF_WORDS");
+            break;
+        case MapFormat::kFixed8:
+        case MapFormat::kCube8:
+            define("RELIEF_BYTES");
+            break;
+    }
+    if (isCube(frame)) {
+        define("RELIEF_CUBE");
+        if (!frame.encloses) {
+            define("RELIEF_BOUNDED");
+        }
+    }
+    if (frame.decode == Decode::kPlane) {
+        define("RELIEF_PLANE");
+    }
+    if (frame.exact) {
+        define("RELIEF_EXACT");
+    }
+    if (motion) {
+        define("RELIEF_MOTION");
+    }
+    return defines;
+}
+
+void useTexture(GLint unit, GLuint texture) {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    glBindTexture(GL_TEXTURE_2D, texture);
+}
+
+void setVector(GLint location, const glm::dvec3& v) {
+    glUniform3f(location, static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
+}
+
+/// What PassState leaves alone because no other pass depends on it: the depth range, and on desktop GL the
+/// provoking vertex and depth clamping.
+class DrawState {
+  public:
+    DrawState() {
+        glGetFloatv(GL_DEPTH_RANGE, range_);
+        glDepthRangef(0.0F, 1.0F);
+        if (!isGles()) {
+            glGetIntegerv(GL_PROVOKING_VERTEX, &provoking_);
+            glProvokingVertex(GL_LAST_VERTEX_CONVENTION);
+            clamp_ = glIsEnabled(GL_DEPTH_CLAMP);
+            glDisable(GL_DEPTH_CLAMP);
+        }
+    }
+    ~DrawState() {
+        glDepthRangef(range_[0], range_[1]);
+        if (!isGles()) {
+            glProvokingVertex(static_cast<GLenum>(provoking_));
+            if (clamp_ == GL_TRUE) {
+                glEnable(GL_DEPTH_CLAMP);
+            }
+        }
+    }
+    DrawState(const DrawState&) = delete;
+    DrawState& operator=(const DrawState&) = delete;
+
+  private:
+    GLfloat range_[2] = {0.0F, 1.0F};
+    GLint provoking_ = 0;
+    GLboolean clamp_ = GL_FALSE;
+};
+
+void clearTexels(const DepthMapTarget& target) {
+    if (isFrontBack(target.format())) {
+        const GLuint nothing[4] = {0, 0, 0, 0};
+        glClearBufferuiv(GL_COLOR, 0, nothing);
+    } else {
+        const GLfloat nothing[4] = {0.0F, 0.0F, 0.0F, target.format() == MapFormat::kFloat32 ? -1.0F : 0.0F};
+        glClearBufferfv(GL_COLOR, 0, nothing);
+    }
+    if (target.motion(0) != 0) {
+        const GLfloat still[4] = {0.0F, 0.0F, 0.0F, 0.0F};
+        glClearBufferfv(GL_COLOR, 1, still);
+        glClearBufferfv(GL_COLOR, 2, still);
+    }
+}
+
+}  // namespace
+
+Result<DepthMapRenderer> DepthMapRenderer::create() {
+    return DepthMapRenderer();
+}
+
+Result<const DepthMapRenderer::Program*> DepthMapRenderer::programFor(const DepthMapFrame& frame,
+                                                                      bool motion) {
+    const std::string defines = definesOf(frame, motion);
+    const auto found = programs_.find(defines);
+    if (found != programs_.end()) {
+        return &found->second;
+    }
+    auto made =
+        makeProgram(frame.exact ? "depth_map_exact.vert" : "depth_map.vert", "depth_map.frag", defines);
+    if (!made) {
+        return forward(made);
+    }
+    Program program;
+    program.program = std::move(*made);
+    const auto at = [&](const char* name) { return uniformLocation(program.program, name); };
+    program.shift = at("u_shift");
+    program.center = at("u_center");
+    program.row = at("u_row");
+    program.object = at("u_object");
+    program.window = at("u_window");
+    program.residual = at("u_residual");
+    program.origin = at("u_origin");
+    program.scale = at("u_scale");
+    program.width = at("u_width");
+    program.far = at("u_far");
+    program.starts_free = at("u_starts_free");
+    program.inside_out = at("u_inside_out");
+    program.ray = at("u_ray");
+    program.range = at("u_range");
+    program.good_enough = at("u_good_enough");
+    program.corner = at("u_corner");
+    program.reach = at("u_reach");
+    glUseProgram(program.program.name());
+    glUniform1i(at("u_positions"), kPositionUnit);
+    glUniform1i(at("u_planes"), kPlaneUnit);
+    glUniform1i(at("u_corners"), kCornerUnit);
+    glUniform1i(at("u_previous"), kPreviousUnit);
+    return &programs_.emplace(defines, std::move(program)).first->second;
+}
+
+void DepthMapRenderer::setUniforms(const Program& program, const GpuMesh& mesh, const DepthMapFrame& frame,
+                                   const TexelWindow& window, std::uint32_t x, std::uint32_t y) {
+    glUniform2i(program.shift, mesh.vertexShift(), mesh.triangleShift());
+    // The middle of an orthographic volume, or a cube's, as a float: points are told from it exactly.
+    glm::dvec3 middle = frame.origin;
+    if (!isCube(frame)) {
+        middle += 0.5 * (frame.axis[0] + frame.axis[1] + frame.axis[2]);
+    }
+    const glm::vec3 center(middle);
+    glUniform3f(program.center, center.x, center.y, center.z);
+    setVector(program.residual, glm::dvec3(center) - frame.origin);
+    const std::array<Row, 3> rows = rowsOf(frame, window);
+    std::array<glm::vec4, 3> row;
+    std::transform(rows.begin(), rows.end(), row.begin(),
+                   [&](const Row& r) { return r.from(glm::dvec3(center)); });
+    glUniform4fv(program.row, 3, &row[0].x);
+
+    std::array<glm::vec3, 3> object;
+    if (isCube(frame)) {
+        for (int axis = 0; axis < 3; ++axis) {
+            object[static_cast<std::size_t>(axis)] = glm::vec3(faceAxis(window.face, axis));
+        }
+    } else {
+        object = {glm::vec3(frame.axis[0] / double(frame.width)),
+                  glm::vec3(frame.axis[1] / double(frame.height)), glm::vec3(frame.axis[2])};
+    }
+    glUniformMatrix3fv(program.object, 1, GL_FALSE, &object[0].x);
+    glUniform2f(program.window, static_cast<float>(window.width), static_cast<float>(window.height));
+    // Cube: texels count from the face's first one, which may lie outside the target.
+    const double left = isCube(frame) ? double(x) - window.x : double(x);
+    const double below = isCube(frame) ? double(y) - window.y : double(y);
+    glUniform2f(program.origin, static_cast<float>(left), static_cast<float>(below));
+    const glm::vec3 scale(glm::length(frame.axis[0]), glm::length(frame.axis[1]), glm::length(frame.axis[2]));
+    glUniform3f(program.scale, scale.x, scale.y, scale.z);
+    glUniform1f(program.width, static_cast<float>(frame.width));
+    glUniform1i(program.inside_out, frame.inside_out ? 1 : 0);
+    setVector(program.ray, glm::normalize(frame.axis[2]));
+    glUniform1f(program.range, standingRange(isCube(frame) ? Projection::kCube : Projection::kOrthographic,
+                                             scale, frame.width, frame.height));
+    glUniform2f(program.corner, static_cast<float>(x), static_cast<float>(y));
+    GLint subpixel_bits = 4;  // the least there may be
+    glGetIntegerv(GL_SUBPIXEL_BITS, &subpixel_bits);
+    glUniform1f(program.reach, std::ldexp(2.0F, -std::clamp(subpixel_bits, 4, 8)));
+    glUniform1f(program.good_enough, static_cast<float>(frame.good_enough));
+}
+
+Result<void> DepthMapRenderer::render(GpuMesh& mesh, const DepthMapFrame& frame,
+                                      const DepthMapTarget& target) {
+    for (std::uint32_t face = 0; face < faceCount(frame); ++face) {
+        const TexelWindow window{face, 0, 0, frame.width, frame.height};
+        if (auto done = render(mesh, frame, window, target, 0, face * frame.height); !done) {
+            return done;
+        }
+    }
+    return {};
+}
+
+Result<void> DepthMapRenderer::render(GpuMesh& mesh, const DepthMapFrame& frame, const TexelWindow& window,
+                                      const DepthMapTarget& target, std::uint32_t x, std::uint32_t y) {
+    if (auto good = checkFrame(frame); !good) {
+        return good;
+    }
+    if (auto good = checkWindow(frame, window, target, x, y); !good) {
+        return good;
+    }
+    const bool motion = target.motion(0) != 0;
+    if (motion && frame.exact) {
+        return fail(ErrorCode::kUsage,
+                    "exact depth maps have no motion; take a target without, or leave exact out");
+    }
+    const PassState state;
+    const DrawState draw_state;
+    const Result<const Program*> program = programFor(frame, motion);
+    if (!program) {
+        return forward(program);
+    }
+    const GLuint planes = mesh.planes();
+    useTexture(kPositionUnit, mesh.positions());
+    useTexture(kPlaneUnit, planes);
+    useTexture(kCornerUnit, mesh.corners());
+    if (motion) {
+        useTexture(kPreviousUnit, mesh.previousPositions());
+    }
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer());
+    glViewport(static_cast<GLint>(x), static_cast<GLint>(y), static_cast<GLsizei>(window.width),
+               static_cast<GLsizei>(window.height));
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(static_cast<GLint>(x), static_cast<GLint>(y), static_cast<GLsizei>(window.width),
+              static_cast<GLsizei>(window.height));
+    clearTexels(target);
+    if (!isCube(frame) && frame.decode == Decode::kPlane) {
+        // Planes leave the border empty.
+        const std::uint32_t left = std::max(window.x, 1U);
+        const std::uint32_t below = std::max(window.y, 1U);
+        const std::uint32_t right = std::max(std::min(window.x + window.width, frame.width - 1), left);
+        const std::uint32_t above = std::max(std::min(window.y + window.height, frame.height - 1), below);
+        glScissor(static_cast<GLint>(x + (left - window.x)), static_cast<GLint>(y + (below - window.y)),
+                  static_cast<GLsizei>(right - left), static_cast<GLsizei>(above - below));
+    }
+    glUseProgram((*program)->program.name());
+    setUniforms(**program, mesh, frame, window, x, y);
+    glEnable(GL_DEPTH_TEST);
+    for (const bool far : {false, true}) {
+        if (frame.compare == (far ? Compare::kLess : Compare::kGreater)) {
+            continue;
+        }
+        glUniform1i((*program)->far, far ? 1 : 0);
+        glUniform1i((*program)->starts_free, frame.starts_free[far ? 1 : 0] ? 1 : 0);
+        const GLfloat farthest = far ? 0.0F : 1.0F;
+        glClearBufferfv(GL_DEPTH, 0, &farthest);
+        glDepthFunc(far ? GL_GREATER : GL_LESS);
+        if (frame.compare == Compare::kBoth) {
+            // The front in the first and third channel, the back in the others.
+            glColorMask(!far, far, !far, far);
+        }
+        if (frame.exact) {
+            mesh.drawApart();
+        } else {
+            mesh.draw();
+        }
+    }
+    return {};
+}
+
+}  // namespace relief

@@ -1,0 +1,309 @@
+#include "runtime/depth_maps/gpu_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "runtime/gl/pass_state.h"
+
+namespace relief {
+namespace {
+
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr GLuint kVertexAttribute = 0;
+
+/// The least power of two that makes a texture of so many texels no higher than wide.
+int shiftFor(std::uint32_t count) {
+    int shift = 0;
+    while ((std::uint64_t{1} << (2 * shift)) < count) {
+        ++shift;
+    }
+    return shift;
+}
+
+GLsizei rowsFor(std::uint32_t count, int shift) {
+    return static_cast<GLsizei>((count + (1U << shift) - 1) >> shift);
+}
+
+Result<void> checkFinite(std::span<const glm::vec3> positions) {
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        const glm::vec3& p = positions[i];
+        if (!(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z))) {
+            return fail(ErrorCode::kInvalidInput, "position " + std::to_string(i) +
+                                                      " of a mesh is not finite; repair the mesh or the "
+                                                      "program that moves it");
+        }
+    }
+    return {};
+}
+
+struct Slots {
+    std::vector<std::uint32_t> vertex;   // of each slot
+    std::vector<glm::uvec3> corners;     // vertices of each triangle, its own last
+    std::vector<std::uint32_t> indices;  // slots, three a triangle
+};
+
+/// Gives each triangle a corner of its own, a vertex that no triangle had before it wherever it has one.
+Slots assignSlots(std::uint32_t vertices, std::span<const glm::uvec3> triangles) {
+    Slots slots;
+    slots.corners.reserve(triangles.size());
+    slots.vertex.reserve(triangles.size() + vertices);
+    std::vector<std::uint32_t> slot_of(vertices, kNone);
+    for (const glm::uvec3& t : triangles) {
+        const std::array<std::uint32_t, 3> corner = {t.x, t.y, t.z};
+        std::size_t own = 2;
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (slot_of[corner[i]] == kNone) {
+                own = i;
+                break;
+            }
+        }
+        const auto slot = static_cast<std::uint32_t>(slots.vertex.size());
+        slots.vertex.push_back(corner[own]);
+        slot_of[corner[own]] = slot_of[corner[own]] == kNone ? slot : slot_of[corner[own]];
+        slots.corners.emplace_back(corner[(own + 1) % 3], corner[(own + 2) % 3], corner[own]);
+    }
+    slots.indices.reserve(3 * triangles.size());
+    const auto slotOf = [&](std::uint32_t vertex) {
+        if (slot_of[vertex] == kNone) {
+            slot_of[vertex] = static_cast<std::uint32_t>(slots.vertex.size());
+            slots.vertex.push_back(vertex);
+        }
+        return slot_of[vertex];
+    };
+    for (std::size_t i = 0; i < slots.corners.size(); ++i) {
+        slots.indices.push_back(slotOf(slots.corners[i].x));
+        slots.indices.push_back(slotOf(slots.corners[i].y));
+        slots.indices.push_back(static_cast<std::uint32_t>(i));
+    }
+    return slots;
+}
+
+tl::unexpected<Error> tooLarge(const std::string& what, std::uint64_t count, std::uint64_t most) {
+    return fail(ErrorCode::kLimit, "a mesh of " + std::to_string(count) + " " + what +
+                                       " is more than this GL takes, " + std::to_string(most) +
+                                       "; simplify the mesh");
+}
+
+/// So many vertices and triangles have room in this GL's textures and draws.
+Result<void> checkSize(std::size_t vertices, std::size_t triangles) {
+    GLint side = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side);
+    GLint64 index_max = 0;
+    glGetInteger64v(GL_MAX_ELEMENT_INDEX, &index_max);
+    // 3 indices of each triangle are one draw's, counted by a GLsizei.
+    const auto draw_max = static_cast<std::uint64_t>(std::numeric_limits<GLsizei>::max() / 3);
+    const std::uint64_t texels = std::uint64_t{std::bit_floor(static_cast<std::uint32_t>(side))} *
+                                 std::bit_floor(static_cast<std::uint32_t>(side));
+    const std::uint64_t most = std::min(texels, draw_max);
+    if (vertices > most) {
+        return tooLarge("vertices", vertices, most);
+    }
+    if (triangles > most) {
+        return tooLarge("triangles", triangles, most);
+    }
+    // Slots are counted when they are known; this bounds the memory for finding out.
+    if (index_max > 0 && triangles > static_cast<std::uint64_t>(index_max)) {
+        return tooLarge("triangles", triangles, static_cast<std::uint64_t>(index_max));
+    }
+    return {};
+}
+
+void useTexture(GLenum unit, GLuint texture) {
+    glActiveTexture(GL_TEXTURE0 + unit);
+    glBindTexture(GL_TEXTURE_2D, texture);
+}
+
+}  // namespace
+
+Result<GpuMesh> GpuMesh::create(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
+                                const GpuMeshOptions& options) {
+    if (triangles.empty() || positions.empty()) {
+        return fail(ErrorCode::kInvalidInput, "a mesh without triangles cannot be drawn; give it some");
+    }
+    if (auto fits = checkSize(positions.size(), triangles.size()); !fits) {
+        return forward(fits);
+    }
+    if (auto finite = checkFinite(positions); !finite) {
+        return forward(finite);
+    }
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        const glm::uvec3& t = triangles[i];
+        if (std::max({t.x, t.y, t.z}) >= positions.size()) {
+            return fail(ErrorCode::kInvalidInput, "triangle " + std::to_string(i) + " of a mesh has vertex " +
+                                                      std::to_string(std::max({t.x, t.y, t.z})) +
+                                                      " but there are " + std::to_string(positions.size()) +
+                                                      "; repair the mesh");
+        }
+    }
+    GpuMesh mesh;
+    mesh.vertex_count_ = static_cast<std::uint32_t>(positions.size());
+    mesh.triangle_count_ = static_cast<std::uint32_t>(triangles.size());
+    mesh.keep_previous_ = options.keep_previous;
+    const PassState state;
+    if (auto made = mesh.createTextures(triangles); !made) {
+        return forward(made);
+    }
+    mesh.upload(positions.data());
+    mesh.revision_ = 1;
+    return mesh;
+}
+
+Result<void> GpuMesh::createTextures(std::span<const glm::uvec3> triangles) {
+    Slots slots = assignSlots(vertex_count_, triangles);
+    slot_count_ = static_cast<std::uint32_t>(slots.vertex.size());
+    GLint64 index_max = 0;
+    glGetInteger64v(GL_MAX_ELEMENT_INDEX, &index_max);
+    if (index_max > 0 && slot_count_ > static_cast<std::uint64_t>(index_max)) {
+        return tooLarge("corners", slot_count_, static_cast<std::uint64_t>(index_max));
+    }
+    vertex_shift_ = shiftFor(vertex_count_);
+    triangle_shift_ = shiftFor(triangle_count_);
+    for (int i = 0; i < (keep_previous_ ? 2 : 1); ++i) {
+        positions_[i] = makeTexture2D(GL_RGB32F, 1 << vertex_shift_, rowsFor(vertex_count_, vertex_shift_),
+                                      GL_RGB, GL_FLOAT);
+    }
+    const GLsizei rows = rowsFor(triangle_count_, triangle_shift_);
+    std::vector<std::uint32_t> texels(std::size_t{4} * static_cast<std::size_t>(rows) << triangle_shift_, 0U);
+    for (std::size_t i = 0; i < slots.corners.size(); ++i) {
+        std::copy_n(&slots.corners[i].x, 3, &texels[4 * i]);
+    }
+    corners_ = makeTexture2D(GL_RGBA32UI, 1 << triangle_shift_, rows, GL_RGBA_INTEGER, GL_UNSIGNED_INT,
+                             texels.data());
+    planes_ = makeTexture2D(GL_RGBA32UI, 1 << triangle_shift_, rows, GL_RGBA_INTEGER, GL_UNSIGNED_INT);
+    const std::array<GLuint, 1> planes{planes_.name()};
+    auto target = makeFramebuffer(planes);
+    if (!target) {
+        return forward(target);
+    }
+    planes_target_ = std::move(*target);
+    auto program = makeProgram("quad.vert", "triangle_plane.frag");
+    if (!program) {
+        return forward(program);
+    }
+    planes_program_ = std::move(*program);
+    glUseProgram(planes_program_.name());
+    glUniform1i(uniformLocation(planes_program_, "u_positions"), 0);
+    glUniform1i(uniformLocation(planes_program_, "u_corners"), 1);
+    glUniform1i(uniformLocation(planes_program_, "u_shift"), vertex_shift_);
+    no_attributes_ = makeVertexArray();
+
+    slots_ = makeBuffer();
+    indices_ = makeBuffer();
+    array_ = makeVertexArray();
+    glBindVertexArray(array_.name());
+    glBindBuffer(GL_ARRAY_BUFFER, slots_.name());
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(slots.vertex.size() * sizeof(std::uint32_t)),
+                 slots.vertex.data(), GL_STATIC_DRAW);
+    glEnableVertexAttribArray(kVertexAttribute);
+    glVertexAttribIPointer(kVertexAttribute, 1, GL_UNSIGNED_INT, 0, nullptr);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_.name());
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER,
+                 static_cast<GLsizeiptr>(slots.indices.size() * sizeof(std::uint32_t)), slots.indices.data(),
+                 GL_STATIC_DRAW);
+    return {};
+}
+
+/// Fills the texture of the present positions. \param data  in memory, or, with a pixel unpack buffer bound,
+/// an offset into it.
+void GpuMesh::upload(const void* data) {
+    const std::uint32_t width = 1U << vertex_shift_;
+    const std::uint32_t rows = vertex_count_ >> vertex_shift_;
+    const std::uint32_t rest = vertex_count_ - rows * width;
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_2D, positions_[current_].name());
+    if (rows > 0) {
+        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, static_cast<GLsizei>(width), static_cast<GLsizei>(rows),
+                        GL_RGB, GL_FLOAT, data);
+    }
+    if (rest > 0) {
+        const std::size_t done = std::size_t{rows} * width * sizeof(glm::vec3);
+        // An offset may start at a null pointer: no arithmetic on that.
+        const auto* const from = reinterpret_cast<const void*>(reinterpret_cast<std::uintptr_t>(data) + done);
+        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, static_cast<GLint>(rows), static_cast<GLsizei>(rest), 1, GL_RGB,
+                        GL_FLOAT, from);
+    }
+}
+
+Result<void> GpuMesh::setPositions(std::span<const glm::vec3> positions) {
+    if (positions.size() != vertex_count_) {
+        return fail(ErrorCode::kUsage, std::to_string(positions.size()) + " positions for a mesh of " +
+                                           std::to_string(vertex_count_) +
+                                           " vertices; give as many as at first, or make another mesh");
+    }
+    if (auto finite = checkFinite(positions); !finite) {
+        return finite;
+    }
+    const PassState state;
+    current_ = keep_previous_ ? 1 - current_ : current_;
+    moved_ = keep_previous_;
+    upload(positions.data());
+    ++revision_;
+    return {};
+}
+
+Result<void> GpuMesh::setPositions(GLuint buffer, std::size_t offset) {
+    if (buffer == 0 || glIsBuffer(buffer) != GL_TRUE) {
+        return fail(ErrorCode::kUsage, "positions of a mesh are to come from " + std::to_string(buffer) +
+                                           ", which is no buffer; give one that has been bound");
+    }
+    if (offset % sizeof(float) != 0) {
+        return fail(ErrorCode::kUsage, "positions of a mesh are to start at byte " + std::to_string(offset) +
+                                           " of a buffer; floats start at multiples of 4");
+    }
+    const PassState state;
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer);
+    GLint64 size = 0;
+    glGetBufferParameteri64v(GL_PIXEL_UNPACK_BUFFER, GL_BUFFER_SIZE, &size);
+    const std::uint64_t needed = std::uint64_t{vertex_count_} * sizeof(glm::vec3);
+    const auto room = static_cast<std::uint64_t>(size);
+    if (offset > room || room - offset < needed) {
+        return fail(ErrorCode::kUsage, "positions of a mesh take " + std::to_string(needed) +
+                                           " bytes from byte " + std::to_string(offset) +
+                                           " on, but the buffer has " + std::to_string(size) +
+                                           "; give a larger one");
+    }
+    current_ = keep_previous_ ? 1 - current_ : current_;
+    moved_ = keep_previous_;
+    upload(reinterpret_cast<const void*>(offset));
+    ++revision_;
+    return {};
+}
+
+void GpuMesh::settle() {
+    moved_ = false;
+}
+
+GLuint GpuMesh::previousPositions() const {
+    return moved_ ? positions_[1 - current_].name() : positions();
+}
+
+GLuint GpuMesh::planes() {
+    if (planes_revision_ != revision_) {
+        planes_revision_ = revision_;
+        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, planes_target_.name());
+        glViewport(0, 0, 1 << triangle_shift_, rowsFor(triangle_count_, triangle_shift_));
+        glUseProgram(planes_program_.name());
+        useTexture(0, positions());
+        useTexture(1, corners());
+        glBindVertexArray(no_attributes_.name());
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+    }
+    return planes_.name();
+}
+
+void GpuMesh::draw() const {
+    glBindVertexArray(array_.name());
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * triangle_count_), GL_UNSIGNED_INT, nullptr);
+}
+
+void GpuMesh::drawApart() const {
+    glBindVertexArray(no_attributes_.name());
+    glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(3 * triangle_count_));
+}
+
+}  // namespace relief

@@ -1,0 +1,49 @@
+// Flow fields from files: OpenEXR images and raw volumes. The only file of the player that knows OpenEXR.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <string>
+
+#include "formats/base/result.h"
+#include "runtime/air/flow_field.h"
+
+namespace relief {
+
+enum class FlowFileKind : int {
+    kImage,   ///< one EXR image: a flow in the plane of x and y, the same at every z
+    kSlices,  ///< numbered EXR images, from the lowest z up
+    kRaw,     ///< little-endian 32-bit floats; x fastest, then y, then z
+};
+
+/// What a scene says of a flow.
+///
+/// Images have float or half channels R and G, the velocity along x and y, and may have B, along z; the
+/// bottom row lies at the lowest y, as a viewer shows it.
+struct FlowFile {
+    FlowFileKind kind = FlowFileKind::kImage;
+    std::filesystem::path path;  ///< kSlices: its file name holds one %d, %2d, %02d …, counting from 0 or 1
+    std::string origin;          ///< "scene.toml:3:8: flow.raw: ", put before every message; may be empty
+    std::array<std::uint32_t, 3> size{};  ///< kRaw: nodes along x, y, z
+    std::uint32_t components = 3;         ///< kRaw: floats a node, 3 or 2 (then without any z)
+    glm::vec3 box_min{0.0F};
+    glm::vec3 box_max{1.0F};
+    FlowOutside outside = FlowOutside::kZero;
+    float gain = 1.0F;
+};
+
+/// The largest velocity taken, in either direction: object units a second.
+inline constexpr float kFlowSpeedMax = 1e6F;
+
+/// Whether a file name holds exactly one number for kSlices, of 9 digits at most.
+[[nodiscard]] bool hasSliceNumber(const std::string& name);
+
+/// Reads a flow; the files may be hostile.
+/// Errors, with the file's name: kIo, kInvalidInput (not EXR, channels missing, a wrong length, slices of
+/// different sizes or with a gap, a velocity that is not finite or above kFlowSpeedMax), kLimit (see
+/// FlowField).
+[[nodiscard]] Result<FlowField> loadFlow(const FlowFile& file);
+
+}  // namespace relief

@@ -1,0 +1,125 @@
+// Wavefront OBJ: the statements v and f.
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "runtime/files/mesh_file.h"
+
+namespace relief {
+namespace {
+
+bool isSpace(char c) {
+    return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+}
+
+/// The next word of a line, which it is cut off; empty at the end.
+std::string_view nextWord(std::string_view& line) {
+    std::size_t begin = 0;
+    while (begin < line.size() && isSpace(line[begin])) {
+        ++begin;
+    }
+    std::size_t end = begin;
+    while (end < line.size() && !isSpace(line[end])) {
+        ++end;
+    }
+    const std::string_view word = line.substr(begin, end - begin);
+    line.remove_prefix(end);
+    return word;
+}
+
+bool readNumber(std::string_view word, float& out) {
+    if (word.starts_with('+')) {
+        word.remove_prefix(1);
+    }
+    double value = 0.0;
+    const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    out = static_cast<float>(value);
+    return error == std::errc() && rest == word.data() + word.size() && std::isfinite(out);
+}
+
+class ObjReader {
+  public:
+    explicit ObjReader(std::string_view name) : name_(name) {}
+
+    Result<PictureMesh> read(std::string_view text) {
+        while (!text.empty()) {
+            ++line_;
+            const std::size_t end = std::min(text.find('\n'), text.size());
+            std::string_view line = text.substr(0, end);
+            text.remove_prefix(std::min(end + 1, text.size()));
+            const std::string_view statement = nextWord(line);
+            if (statement == "v" || statement == "f") {
+                auto done = statement == "v" ? readVertex(line) : readFace(line);
+                if (!done) {
+                    return forward(done);
+                }
+            }
+        }
+        if (mesh_.triangles.empty()) {
+            return fail(ErrorCode::kInvalidInput, std::string(name_) + " has no faces");
+        }
+        return std::move(mesh_);
+    }
+
+  private:
+    [[nodiscard]] tl::unexpected<Error> failHere(ErrorCode code, const std::string& message) const {
+        return fail(code, std::string(name_) + ", line " + std::to_string(line_) + ": " + message);
+    }
+
+    Result<void> readVertex(std::string_view line) {
+        if (mesh_.positions.size() == kMeshVerticesMax) {
+            return failHere(ErrorCode::kLimit,
+                            "more than " + std::to_string(kMeshVerticesMax) + " vertices; simplify the mesh");
+        }
+        glm::vec3 p{0.0F};
+        for (int i = 0; i < 3; ++i) {
+            if (!readNumber(nextWord(line), p[i])) {
+                return failHere(ErrorCode::kInvalidInput, "a vertex needs three finite numbers");
+            }
+        }
+        mesh_.positions.push_back(p);
+        return {};
+    }
+
+    // Corners are "7", "7/1", "7//3" or "7/1/3"; below 0 they count back from the last vertex so far.
+    Result<void> readFace(std::string_view line) {
+        corners_.clear();
+        for (std::string_view word = nextWord(line); !word.empty() && !word.starts_with('#');
+             word = nextWord(line)) {
+            const std::string_view digits = word.substr(0, word.find('/'));
+            std::int64_t index = 0;
+            const auto [rest, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
+            const auto count = static_cast<std::int64_t>(mesh_.positions.size());
+            const std::int64_t at = index < 0 ? count + index : index - 1;
+            if (error != std::errc() || rest != digits.data() + digits.size() || at < 0 || at >= count) {
+                return failHere(ErrorCode::kInvalidInput,
+                                "a face names a vertex that is not there; there are " +
+                                    std::to_string(count) + " so far");
+            }
+            corners_.push_back(static_cast<std::uint32_t>(at));
+        }
+        if (corners_.size() < 3) {
+            return failHere(ErrorCode::kInvalidInput, "a face needs three corners");
+        }
+        if (!addPolygon(corners_, mesh_)) {
+            return failHere(ErrorCode::kLimit, "more than " + std::to_string(kMeshTrianglesMax) +
+                                                   " triangles; simplify the mesh");
+        }
+        return {};
+    }
+
+    std::string_view name_;
+    std::size_t line_ = 0;
+    std::vector<std::uint32_t> corners_;
+    PictureMesh mesh_;
+};
+
+}  // namespace
+
+Result<PictureMesh> parseObj(std::string_view text, std::string_view name) {
+    return ObjReader(name).read(text);
+}
+
+}  // namespace relief

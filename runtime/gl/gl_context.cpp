@@ -1,0 +1,248 @@
+#include "runtime/gl/gl_context.h"
+
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+
+#include <cstdio>
+#include <vector>
+
+#include "runtime/gl/gl_display.h"
+
+namespace relief {
+namespace {
+
+std::string eglErrorText() {
+    char text[32];
+    std::snprintf(text, sizeof(text), "EGL error 0x%04x", eglGetError());
+    return text;
+}
+
+std::string glText(GLenum what) {
+    const GLubyte* text = glGetString(what);
+    return text == nullptr ? std::string() : reinterpret_cast<const char*>(text);
+}
+
+/// Whether a context that tells of resets can be asked for, and by which name.
+std::vector<EGLint> resetAttributes(EGLDisplay display, bool es) {
+    if (es) {
+        return epoxy_has_egl_extension(display, "EGL_EXT_create_context_robustness")
+                   ? std::vector<EGLint>{EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT,
+                                         EGL_LOSE_CONTEXT_ON_RESET_EXT}
+                   : std::vector<EGLint>{};
+    }
+    return epoxy_egl_version(display) >= 15 || epoxy_has_egl_extension(display, "EGL_KHR_create_context")
+               ? std::vector<EGLint>{EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_KHR,
+                                     EGL_LOSE_CONTEXT_ON_RESET_KHR}
+               : std::vector<EGLint>{};
+}
+
+EGLContext createContext(EGLDisplay display, EGLConfig config, bool es) {
+    const std::vector<EGLint> reset = resetAttributes(display, es);
+    // A driver may know the attribute and still refuse it.
+    for (const bool with_reset : {true, false}) {
+        std::vector<EGLint> attributes = with_reset ? reset : std::vector<EGLint>{};
+        attributes.insert(attributes.end(),
+                          {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, es ? 0 : 3});
+        if (!es) {
+            attributes.insert(attributes.end(),
+                              {EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT});
+        }
+        attributes.push_back(EGL_NONE);
+        const EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
+        if (context != EGL_NO_CONTEXT) {
+            return context;
+        }
+    }
+    return EGL_NO_CONTEXT;
+}
+
+bool softwareRenderer(const std::string& renderer) {
+    for (const char* name : {"llvmpipe", "softpipe", "swrast", "SwiftShader", "Software Rasterizer"}) {
+        if (renderer.find(name) != std::string::npos) {
+            return true;
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
+struct GlContext::Impl {
+    GlApi api = GlApi::kGl33Core;
+    EGLDisplay display = EGL_NO_DISPLAY;
+    EGLContext context = EGL_NO_CONTEXT;
+    std::string description;
+    bool software = false;
+
+    /// Empty on success, else what failed. Leaves nothing behind on failure.
+    std::string open(EGLDisplay opened) {
+        display = opened;
+        if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) != EGL_TRUE) {
+            display = EGL_NO_DISPLAY;
+            return "not available";
+        }
+        std::string problem = makeCurrent();
+        if (!problem.empty()) {
+            close();
+        }
+        return problem;
+    }
+
+    std::string makeCurrent() {
+        const bool es = api == GlApi::kGles30;
+        const EGLint wanted[] = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE,
+                                 es ? EGL_OPENGL_ES3_BIT : EGL_OPENGL_BIT, EGL_NONE};
+        EGLConfig config = nullptr;
+        EGLint count = 0;
+        if (eglBindAPI(es ? EGL_OPENGL_ES_API : EGL_OPENGL_API) != EGL_TRUE ||
+            eglChooseConfig(display, wanted, &config, 1, &count) != EGL_TRUE) {
+            return eglErrorText();
+        }
+        // A context needs no configuration where nothing is drawn to a surface.
+        context = createContext(display, count > 0 ? config : nullptr, es);
+        if (context == EGL_NO_CONTEXT ||
+            eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) != EGL_TRUE) {
+            return eglErrorText();
+        }
+        if (es && !epoxy_has_gl_extension("GL_EXT_color_buffer_float")) {
+            return "GL_EXT_color_buffer_float is missing, particle state cannot be rendered to";
+        }
+        return {};
+    }
+
+    void close() {
+        if (display == EGL_NO_DISPLAY) {
+            return;
+        }
+        // Another context may have become current since.
+        if (context != EGL_NO_CONTEXT && eglGetCurrentContext() == context) {
+            eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+        }
+        if (context != EGL_NO_CONTEXT) {
+            eglDestroyContext(display, context);
+        }
+        // The display stays open: it is the process's, by EGL's rules, and someone else may be using it.
+        display = EGL_NO_DISPLAY;
+        context = EGL_NO_CONTEXT;
+    }
+
+    void describe(const std::string& where) {
+        const std::string renderer = glText(GL_RENDERER);
+        description =
+            (api == GlApi::kGles30 ? "" : "OpenGL ") + glText(GL_VERSION) + ", " + renderer + ", " + where;
+        software = softwareRenderer(renderer);
+    }
+
+    /// What was tried, in words; or "" once a context is there.
+    std::string openPlatform(GlPlatform platform) {
+        const auto attempt = [&](EGLDisplay opened, const std::string& name) {
+            const std::string problem = open(opened);
+            if (problem.empty()) {
+                describe(name);
+                return problem;
+            }
+            return name + ": " + problem;
+        };
+        switch (platform) {
+            case GlPlatform::kSurfaceless:
+                return attempt(surfacelessDisplay(), "surfaceless");
+            case GlPlatform::kDefault:
+                return attempt(defaultDisplay(), "default");
+            case GlPlatform::kDevice: {
+                std::string tried;
+                const std::vector<EGLDeviceEXT> devices = eglDevices();
+                for (std::size_t i = 0; i < devices.size(); ++i) {
+                    const std::string problem =
+                        attempt(deviceDisplay(devices[i]), "device " + std::to_string(i));
+                    if (problem.empty()) {
+                        return {};
+                    }
+                    tried += (tried.empty() ? "" : "; ") + problem;
+                }
+                return devices.empty() ? "device: not available" : tried;
+            }
+            case GlPlatform::kAny:
+                break;
+        }
+        std::string tried;
+        for (const GlPlatform one : {GlPlatform::kSurfaceless, GlPlatform::kDevice, GlPlatform::kDefault}) {
+            const std::string problem = openPlatform(one);
+            if (problem.empty()) {
+                return {};
+            }
+            tried += (tried.empty() ? "" : "; ") + problem;
+        }
+        return tried;
+    }
+
+    Result<void> openDevice(std::size_t index) {
+        const std::vector<EGLDeviceEXT> devices = eglDevices();
+        const std::string name = "device " + std::to_string(index);
+        if (index >= devices.size()) {
+            return fail(ErrorCode::kUsage,
+                        "there is no " + name + ": EGL has " + std::to_string(devices.size()) +
+                            (devices.empty()       ? "; leave the device out"
+                             : devices.size() == 1 ? ", device 0"
+                                                   : ", 0 to " + std::to_string(devices.size() - 1)) +
+                            (devices.empty() ? "" : "; --list-devices names them"));
+        }
+        const std::string problem = open(deviceDisplay(devices[index]));
+        if (!problem.empty()) {
+            return fail(ErrorCode::kUnsupported, name + " gives no " + apiName() + " context (" + problem +
+                                                     "); choose another, or leave the device out");
+        }
+        describe(name);
+        return {};
+    }
+
+    [[nodiscard]] std::string apiName() const {
+        return api == GlApi::kGles30 ? "OpenGL ES 3.0" : "OpenGL 3.3";
+    }
+};
+
+GlContext::GlContext() : impl_(std::make_unique<Impl>()) {}
+
+GlContext::~GlContext() {
+    impl_->close();
+}
+
+Result<std::unique_ptr<GlContext>> GlContext::create(const GlContextOptions& options) {
+    std::unique_ptr<GlContext> context(new GlContext);
+    Impl& impl = *context->impl_;
+    impl.api = options.api;
+    constexpr const char* kCure =
+        "; install a driver, for example libegl1 with libegl-mesa0 and libgl1-mesa-dri";
+    if (const std::string missing = missingGlLibrary(options.api); !missing.empty()) {
+        return fail(ErrorCode::kUnsupported,
+                    "no " + impl.apiName() + " context: " + missing + " cannot be loaded" + kCure);
+    }
+    if (options.device) {
+        if (const Result<void> opened = impl.openDevice(*options.device); !opened) {
+            return forward(opened);
+        }
+        return context;
+    }
+    if (const std::string tried = impl.openPlatform(options.platform); !tried.empty()) {
+        return fail(ErrorCode::kUnsupported,
+                    "no " + impl.apiName() + " context through EGL (" + tried + ")" + kCure);
+    }
+    return context;
+}
+
+Result<std::unique_ptr<GlContext>> GlContext::create(GlApi api) {
+    return create(GlContextOptions{.api = api, .platform = GlPlatform::kAny, .device = std::nullopt});
+}
+
+GlApi GlContext::api() const {
+    return impl_->api;
+}
+
+const std::string& GlContext::description() const {
+    return impl_->description;
+}
+
+bool GlContext::software() const {
+    return impl_->software;
+}
+
+}  // namespace relief

@@ -1,0 +1,54 @@
+// An OpenGL context without a window, through EGL: for the command-line tools and the tests. A program that
+// has a context of its own does not need this.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "formats/base/result.h"
+#include "runtime/gl/gl_api.h"
+
+namespace relief {
+
+/// Where EGL looks for a GPU.
+enum class GlPlatform {
+    kAny,          ///< the next three in turn, until one gives a context
+    kSurfaceless,  ///< Mesa's, without a display server
+    kDevice,       ///< the first of EGL's devices that gives a context
+    kDefault,      ///< EGL's default display: what EGL_PLATFORM, DISPLAY and WAYLAND_DISPLAY make of it
+};
+
+struct GlContextOptions {
+    GlApi api = GlApi::kGl33Core;
+    GlPlatform platform = GlPlatform::kAny;
+    /// Index into listGlDevices (gl_device.h): this device alone is tried, and `platform` is not looked at.
+    std::optional<std::size_t> device;
+};
+
+class GlContext {
+  public:
+    /// Creates a context of at least this version and makes it current on this thread. Where EGL can, the
+    /// context is one that says when the GPU was reset (gl_fault.h).
+    /// Errors: kUnsupported, saying what was tried; also where a float texture cannot be rendered to, and
+    /// without EGL's library. kUsage: there is no such device; says how many there are.
+    [[nodiscard]] static Result<std::unique_ptr<GlContext>> create(const GlContextOptions& options);
+    [[nodiscard]] static Result<std::unique_ptr<GlContext>> create(GlApi api = GlApi::kGl33Core);
+    ~GlContext();
+    GlContext(const GlContext&) = delete;
+    GlContext& operator=(const GlContext&) = delete;
+
+    [[nodiscard]] GlApi api() const;
+    /// "OpenGL 4.5 (Core Profile) Mesa 22.3.6, llvmpipe (…), surfaceless": for reports.
+    [[nodiscard]] const std::string& description() const;
+    /// Whether the processor draws: slow, but nothing that could hang.
+    [[nodiscard]] bool software() const;
+
+  private:
+    GlContext();
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace relief

@@ -1,0 +1,100 @@
+#include "runtime/gl/gl_fault.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "runtime/gl/gl_fence.h"
+
+namespace relief {
+namespace {
+
+constexpr int kErrorFlagsMax = 64;         // a lost context may report errors without end
+constexpr GLuint64 kAtOnce = 100'000'000;  // nanoseconds of one wait
+
+/// libepoxy ends the process where a GL has no such function under any of its names.
+bool hasResetStatus() {
+    const int version = epoxy_gl_version();
+    if (epoxy_is_desktop_gl()) {
+        return version >= 45 || epoxy_has_gl_extension("GL_KHR_robustness") ||
+               epoxy_has_gl_extension("GL_ARB_robustness");
+    }
+    return version >= 32 || epoxy_has_gl_extension("GL_KHR_robustness") ||
+           epoxy_has_gl_extension("GL_EXT_robustness");
+}
+
+std::string errorText(GLenum error) {
+    std::array<char, 16> text{};
+    std::snprintf(text.data(), text.size(), "0x%04x", error);
+    return text.data();
+}
+
+}  // namespace
+
+Result<void> checkGpu(const std::string& during) {
+    if (!hasResetStatus()) {
+        return {};
+    }
+    const GLenum status = glGetGraphicsResetStatus();
+    if (status == GL_NO_ERROR) {
+        return {};
+    }
+    const char* cause = status == GL_GUILTY_CONTEXT_RESET     ? ", by what Relief had asked of it"
+                        : status == GL_INNOCENT_CONTEXT_RESET ? ", by another program"
+                                                              : "";
+    return fail(ErrorCode::kFailure,
+                "the GPU was reset" + std::string(cause) + " while " + during +
+                    ", and what was on it is lost; run it again, with less at once if it happens again");
+}
+
+void forgetGlErrors() {
+    for (int i = 0; i < kErrorFlagsMax && glGetError() != GL_NO_ERROR; ++i) {
+    }
+}
+
+Result<void> checkAllocated(const std::string& what, const std::string& cure) {
+    const GLenum error = glGetError();
+    if (error == GL_NO_ERROR) {
+        return {};
+    }
+    forgetGlErrors();
+    if (auto alive = checkGpu("making room for " + what); !alive) {
+        return alive;
+    }
+    if (error == GL_OUT_OF_MEMORY) {
+        return fail(ErrorCode::kLimit, what + ": no room on the GPU; " + cure);
+    }
+    return fail(ErrorCode::kFailure,
+                what + ": the GL refuses the textures or buffers (error " + errorText(error) + "); " + cure);
+}
+
+Result<void> checkTextureSize(std::uint64_t width, std::uint64_t height, const std::string& what,
+                              const std::string& cure) {
+    GLint side_max = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side_max);
+    if (std::max(width, height) > static_cast<std::uint64_t>(std::max(side_max, 0))) {
+        return fail(ErrorCode::kLimit, what + " need a texture of " + std::to_string(width) + "x" +
+                                           std::to_string(height) + " texels; this GL takes sides up to " +
+                                           std::to_string(side_max) + "; " + cure);
+    }
+    return {};
+}
+
+Result<void> waitForGpu(const std::string& what) {
+    GlFence fence;
+    fence.insert();
+    while (!fence.passed(kAtOnce)) {
+        if (fence.failed()) {
+            if (auto alive = checkGpu("waiting for " + what); !alive) {
+                return alive;
+            }
+            return fail(ErrorCode::kFailure, "the GL cannot wait for " + what +
+                                                 "; try another driver, or another device with --device");
+        }
+    }
+    return checkGpu("waiting for " + what);
+}
+
+}  // namespace relief

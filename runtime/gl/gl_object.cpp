@@ -1,0 +1,335 @@
+#include "runtime/gl/gl_object.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "runtime/gl/gl_fault.h"
+#include "shaders/shader_sources.h"
+
+namespace relief {
+namespace {
+
+/// Replaces every line `//!include NAME` by the file's text, once a file.
+Result<std::string> resolveIncludes(std::string_view name, std::vector<std::string>& included) {
+    const std::string_view source = shaderSource(name);
+    if (source.empty()) {
+        return fail(ErrorCode::kFailure, "shader '" + std::string(name) + "' is not embedded in this build");
+    }
+    constexpr std::string_view kDirective = "//!include ";
+    std::string text;
+    std::size_t at = 0;
+    while (at < source.size()) {
+        const std::size_t end = std::min(source.find('\n', at), source.size());
+        const std::string_view line = source.substr(at, end - at);
+        at = end + 1;
+        if (!line.starts_with(kDirective)) {
+            text.append(line).push_back('\n');
+            continue;
+        }
+        const std::string child(line.substr(kDirective.size()));
+        bool seen = false;
+        for (const std::string& other : included) {
+            seen = seen || other == child;
+        }
+        if (!seen) {
+            included.push_back(child);
+            Result<std::string> nested = resolveIncludes(child, included);
+            if (!nested) {
+                return nested;
+            }
+            text += *nested;
+        }
+    }
+    return text;
+}
+
+std::string infoLog(GLuint name, bool is_program) {
+    GLint length = 0;
+    (is_program ? glGetProgramiv : glGetShaderiv)(name, GL_INFO_LOG_LENGTH, &length);
+    std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
+    (is_program ? glGetProgramInfoLog : glGetShaderInfoLog)(name, length, nullptr, log.data());
+    while (!log.empty() && (log.back() == '\0' || log.back() == '\n')) {
+        log.pop_back();
+    }
+    std::replace(log.begin(), log.end(), '\n', ' ');  // a message is one line
+    return log;
+}
+
+Result<GLuint> compile(GLenum stage, std::string_view file, std::string_view defines,
+                       std::string_view appended = {}) {
+    std::vector<std::string> included;
+    const Result<std::string> body = resolveIncludes(file, included);
+    if (!body) {
+        return forward(body);
+    }
+    // highp everywhere: state and depth are 32-bit floats, and ES 3.0 requires highp in fragment shaders.
+    std::string source = isGles() ? "#version 300 es\n" : "#version 330 core\n";
+    source += defines;
+    source +=
+        "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n"
+        "precision highp usampler2D;\nprecision highp sampler3D;\n";
+    source += "#line 1\n";
+    source += *body;
+    if (!appended.empty()) {
+        source += "\n#line 1\n";
+        source += appended;
+        source += "\n";
+    }
+
+    const GLuint shader = glCreateShader(stage);
+    const char* text = source.c_str();
+    glShaderSource(shader, 1, &text, nullptr);
+    glCompileShader(shader);
+    GLint compiled = GL_FALSE;
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
+    if (compiled != GL_TRUE) {
+        std::string log = infoLog(shader, false);
+        glDeleteShader(shader);
+        return fail(ErrorCode::kFailure, "shader " + std::string(file) + " does not compile: " + log);
+    }
+    return shader;
+}
+
+GLuint generate(void (*create)(GLsizei, GLuint*)) {
+    GLuint name = 0;
+    create(1, &name);
+    return name;
+}
+
+}  // namespace
+
+// libepoxy's entry points are function pointers behind macros, hence the lambdas.
+GlFramebuffer makeFramebuffer() {
+    return GlFramebuffer(generate([](GLsizei n, GLuint* out) { glGenFramebuffers(n, out); }));
+}
+GlBuffer makeBuffer() {
+    return GlBuffer(generate([](GLsizei n, GLuint* out) { glGenBuffers(n, out); }));
+}
+GlVertexArray makeVertexArray() {
+    return GlVertexArray(generate([](GLsizei n, GLuint* out) { glGenVertexArrays(n, out); }));
+}
+GlRenderbuffer makeRenderbuffer() {
+    return GlRenderbuffer(generate([](GLsizei n, GLuint* out) { glGenRenderbuffers(n, out); }));
+}
+
+GlTexture makeTexture2D(GLenum internal_format, GLsizei width, GLsizei height, GLenum format, GLenum type,
+                        const void* pixels) {
+    GlTexture texture(generate([](GLsizei n, GLuint* out) { glGenTextures(n, out); }));
+    GLint bound = 0;
+    glGetIntegerv(GL_TEXTURE_BINDING_2D, &bound);
+    glBindTexture(GL_TEXTURE_2D, texture.name());
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
+    glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internal_format), width, height, 0, format, type,
+                 pixels);
+    glBindTexture(GL_TEXTURE_2D, static_cast<GLuint>(bound));
+    return texture;
+}
+
+Result<GlFramebuffer> makeFramebuffer(std::span<const GLuint> color_textures, GLuint depth_texture) {
+    GlFramebuffer framebuffer = makeFramebuffer();
+    GLint bound = 0;
+    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &bound);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer.name());
+    std::vector<GLenum> draw_buffers;
+    for (const GLuint texture : color_textures) {
+        const auto attachment = static_cast<GLenum>(GL_COLOR_ATTACHMENT0 + draw_buffers.size());
+        glFramebufferTexture2D(GL_DRAW_FRAMEBUFFER, attachment, GL_TEXTURE_2D, texture, 0);
+        draw_buffers.push_back(attachment);
+    }
+    if (depth_texture != 0) {
+        glFramebufferTexture2D(GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth_texture, 0);
+    }
+    glDrawBuffers(static_cast<GLsizei>(draw_buffers.size()), draw_buffers.data());
+    const GLenum status = glCheckFramebufferStatus(GL_DRAW_FRAMEBUFFER);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<GLuint>(bound));
+    if (status != GL_FRAMEBUFFER_COMPLETE) {
+        char text[96];
+        std::snprintf(text, sizeof(text), "this GL does not render to the textures needed (status 0x%04x)",
+                      status);
+        return fail(ErrorCode::kUnsupported, text);
+    }
+    return framebuffer;
+}
+
+namespace {
+
+/// \param outputs  of the vertex shader that transform feedback writes, interleaved; empty: none.
+Result<GlProgram> compileAndLink(std::string_view vertex, std::string_view fragment, std::string_view defines,
+                                 std::span<const char* const> outputs, std::string_view appended) {
+    const Result<GLuint> vertex_shader = compile(GL_VERTEX_SHADER, vertex, defines, appended);
+    if (!vertex_shader) {
+        return forward(vertex_shader);
+    }
+    const Result<GLuint> fragment_shader = compile(GL_FRAGMENT_SHADER, fragment, defines);
+    if (!fragment_shader) {
+        glDeleteShader(*vertex_shader);
+        return forward(fragment_shader);
+    }
+    GlProgram program(glCreateProgram());
+    glAttachShader(program.name(), *vertex_shader);
+    glAttachShader(program.name(), *fragment_shader);
+    if (!outputs.empty()) {
+        glTransformFeedbackVaryings(program.name(), static_cast<GLsizei>(outputs.size()), outputs.data(),
+                                    GL_INTERLEAVED_ATTRIBS);
+    }
+    glLinkProgram(program.name());
+    glDeleteShader(*vertex_shader);
+    glDeleteShader(*fragment_shader);
+    GLint linked = GL_FALSE;
+    glGetProgramiv(program.name(), GL_LINK_STATUS, &linked);
+    if (linked != GL_TRUE) {
+        return fail(ErrorCode::kFailure, "program " + std::string(vertex) + " + " + std::string(fragment) +
+                                             " does not link: " + infoLog(program.name(), true));
+    }
+    return program;
+}
+
+}  // namespace
+
+Result<GlProgram> makeProgram(std::string_view vertex, std::string_view fragment, std::string_view defines) {
+    return compileAndLink(vertex, fragment, defines, {}, {});
+}
+
+Result<GlProgram> makeFeedbackProgram(std::string_view vertex, std::span<const char* const> outputs,
+                                      std::string_view defines, std::string_view appended) {
+    return compileAndLink(vertex, "nothing.frag", defines, outputs, appended);
+}
+
+GLint uniformLocation(const GlProgram& program, const char* name) {
+    return glGetUniformLocation(program.name(), name);
+}
+
+bool isGles() {
+    return !epoxy_is_desktop_gl();
+}
+
+Result<std::vector<float>> readTextureFloats(const GlTexture& texture, GLsizei width, GLsizei height) {
+    GlFramebuffer framebuffer = makeFramebuffer();
+    GLint bound = 0;
+    glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &bound);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer.name());
+    glFramebufferTexture2D(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture.name(), 0);
+    glReadBuffer(GL_COLOR_ATTACHMENT0);
+    std::vector<float> values(std::size_t{4} * static_cast<std::size_t>(width) *
+                              static_cast<std::size_t>(height));
+    const bool complete = glCheckFramebufferStatus(GL_READ_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+    if (complete) {
+        glPixelStorei(GL_PACK_ALIGNMENT, 4);
+        glReadPixels(0, 0, width, height, GL_RGBA, GL_FLOAT, values.data());
+    }
+    const Result<void> alive = checkGpu("reading a texture back");
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(bound));
+    if (!complete) {
+        return fail(ErrorCode::kUnsupported, "this GL does not read float textures back");
+    }
+    if (!alive) {
+        return forward(alive);
+    }
+    return values;
+}
+
+struct GlStateGuard::Saved {
+    GLint program, vertex_array, array_buffer, uniform_buffer, unpack_buffer, draw_framebuffer,
+        read_framebuffer;
+    std::array<GLint, 4> viewport, scissor;
+    GLint active_texture;
+    std::array<GLint, kUnits> texture_2d;
+    GLboolean blend, depth_test, cull_face, scissor_test;
+    GLint blend_source_rgb, blend_destination_rgb, blend_source_alpha, blend_destination_alpha;
+    GLint blend_equation_rgb, blend_equation_alpha;
+    GLint depth_function;
+    GLboolean depth_mask;
+    std::array<GLboolean, 4> color_mask;
+    std::array<GLfloat, 4> clear_color;
+    GLint unpack_alignment, pack_alignment;
+    GLboolean program_point_size;
+};
+
+GlStateGuard::GlStateGuard() : saved_(std::make_unique<Saved>()) {
+    Saved& s = *saved_;
+    glGetIntegerv(GL_CURRENT_PROGRAM, &s.program);
+    glGetIntegerv(GL_VERTEX_ARRAY_BINDING, &s.vertex_array);
+    glGetIntegerv(GL_ARRAY_BUFFER_BINDING, &s.array_buffer);
+    glGetIntegerv(GL_UNIFORM_BUFFER_BINDING, &s.uniform_buffer);
+    glGetIntegerv(GL_PIXEL_UNPACK_BUFFER_BINDING, &s.unpack_buffer);
+    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &s.draw_framebuffer);
+    glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &s.read_framebuffer);
+    glGetIntegerv(GL_VIEWPORT, s.viewport.data());
+    glGetIntegerv(GL_SCISSOR_BOX, s.scissor.data());
+    glGetIntegerv(GL_ACTIVE_TEXTURE, &s.active_texture);
+    for (std::size_t unit = 0; unit < kUnits; ++unit) {
+        glActiveTexture(static_cast<GLenum>(GL_TEXTURE0 + unit));
+        glGetIntegerv(GL_TEXTURE_BINDING_2D, &s.texture_2d[unit]);
+    }
+    s.blend = glIsEnabled(GL_BLEND);
+    s.depth_test = glIsEnabled(GL_DEPTH_TEST);
+    s.cull_face = glIsEnabled(GL_CULL_FACE);
+    s.scissor_test = glIsEnabled(GL_SCISSOR_TEST);
+    s.program_point_size = isGles() ? GLboolean{GL_FALSE} : glIsEnabled(GL_PROGRAM_POINT_SIZE);
+    glGetIntegerv(GL_BLEND_SRC_RGB, &s.blend_source_rgb);
+    glGetIntegerv(GL_BLEND_DST_RGB, &s.blend_destination_rgb);
+    glGetIntegerv(GL_BLEND_SRC_ALPHA, &s.blend_source_alpha);
+    glGetIntegerv(GL_BLEND_DST_ALPHA, &s.blend_destination_alpha);
+    glGetIntegerv(GL_BLEND_EQUATION_RGB, &s.blend_equation_rgb);
+    glGetIntegerv(GL_BLEND_EQUATION_ALPHA, &s.blend_equation_alpha);
+    glGetIntegerv(GL_DEPTH_FUNC, &s.depth_function);
+    glGetBooleanv(GL_DEPTH_WRITEMASK, &s.depth_mask);
+    glGetBooleanv(GL_COLOR_WRITEMASK, s.color_mask.data());
+    glGetFloatv(GL_COLOR_CLEAR_VALUE, s.clear_color.data());
+    glGetIntegerv(GL_UNPACK_ALIGNMENT, &s.unpack_alignment);
+    glGetIntegerv(GL_PACK_ALIGNMENT, &s.pack_alignment);
+    // What the passes count on.
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    glDisable(GL_BLEND);
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_SCISSOR_TEST);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDepthMask(GL_TRUE);
+}
+
+GlStateGuard::~GlStateGuard() {
+    const Saved& s = *saved_;
+    const auto set = [](GLenum what, GLboolean on) { on != GL_FALSE ? glEnable(what) : glDisable(what); };
+    const auto name = [](GLint value) { return static_cast<GLuint>(value); };
+    const auto word = [](GLint value) { return static_cast<GLenum>(value); };
+    glUseProgram(name(s.program));
+    glBindVertexArray(name(s.vertex_array));
+    glBindBuffer(GL_ARRAY_BUFFER, name(s.array_buffer));
+    glBindBuffer(GL_UNIFORM_BUFFER, name(s.uniform_buffer));
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, name(s.unpack_buffer));
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, name(s.draw_framebuffer));
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, name(s.read_framebuffer));
+    glViewport(s.viewport[0], s.viewport[1], s.viewport[2], s.viewport[3]);
+    glScissor(s.scissor[0], s.scissor[1], s.scissor[2], s.scissor[3]);
+    for (std::size_t unit = 0; unit < kUnits; ++unit) {
+        glActiveTexture(static_cast<GLenum>(GL_TEXTURE0 + unit));
+        glBindTexture(GL_TEXTURE_2D, name(s.texture_2d[unit]));
+    }
+    glActiveTexture(word(s.active_texture));
+    set(GL_BLEND, s.blend);
+    set(GL_DEPTH_TEST, s.depth_test);
+    set(GL_CULL_FACE, s.cull_face);
+    set(GL_SCISSOR_TEST, s.scissor_test);
+    if (!isGles()) {
+        set(GL_PROGRAM_POINT_SIZE, s.program_point_size);
+    }
+    glBlendFuncSeparate(word(s.blend_source_rgb), word(s.blend_destination_rgb), word(s.blend_source_alpha),
+                        word(s.blend_destination_alpha));
+    glBlendEquationSeparate(word(s.blend_equation_rgb), word(s.blend_equation_alpha));
+    glDepthFunc(word(s.depth_function));
+    glDepthMask(s.depth_mask);
+    glColorMask(s.color_mask[0], s.color_mask[1], s.color_mask[2], s.color_mask[3]);
+    glClearColor(s.clear_color[0], s.clear_color[1], s.clear_color[2], s.clear_color[3]);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, s.unpack_alignment);
+    glPixelStorei(GL_PACK_ALIGNMENT, s.pack_alignment);
+}
+
+}  // namespace relief

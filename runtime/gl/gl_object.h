@@ -1,0 +1,131 @@
+// OpenGL names as move-only values. Every constructor needs a current context, and so does every destructor
+// of a non-empty object. Nothing here binds more than it must; what is bound is restored.
+#pragma once
+
+#include <epoxy/gl.h>
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "formats/base/result.h"
+
+namespace relief {
+
+/// Owns one GL name; `Delete` frees it. Name 0 means empty.
+template <void (*Delete)(GLuint)>
+class GlName {
+  public:
+    GlName() = default;
+    explicit GlName(GLuint name) : name_(name) {}
+    GlName(GlName&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
+    GlName& operator=(GlName&& other) noexcept {
+        std::swap(name_, other.name_);
+        return *this;
+    }
+    GlName(const GlName&) = delete;
+    GlName& operator=(const GlName&) = delete;
+    ~GlName() {
+        if (name_ != 0) {
+            Delete(name_);
+        }
+    }
+    [[nodiscard]] GLuint name() const { return name_; }
+    [[nodiscard]] explicit operator bool() const { return name_ != 0; }
+
+  private:
+    GLuint name_ = 0;
+};
+
+namespace gl_detail {
+inline void deleteTexture(GLuint name) {
+    glDeleteTextures(1, &name);
+}
+inline void deleteFramebuffer(GLuint name) {
+    glDeleteFramebuffers(1, &name);
+}
+inline void deleteBuffer(GLuint name) {
+    glDeleteBuffers(1, &name);
+}
+inline void deleteVertexArray(GLuint name) {
+    glDeleteVertexArrays(1, &name);
+}
+inline void deleteProgram(GLuint name) {
+    glDeleteProgram(name);
+}
+inline void deleteRenderbuffer(GLuint name) {
+    glDeleteRenderbuffers(1, &name);
+}
+}  // namespace gl_detail
+
+using GlTexture = GlName<gl_detail::deleteTexture>;
+using GlFramebuffer = GlName<gl_detail::deleteFramebuffer>;
+using GlBuffer = GlName<gl_detail::deleteBuffer>;
+using GlVertexArray = GlName<gl_detail::deleteVertexArray>;
+using GlProgram = GlName<gl_detail::deleteProgram>;
+using GlRenderbuffer = GlName<gl_detail::deleteRenderbuffer>;
+
+[[nodiscard]] GlFramebuffer makeFramebuffer();
+[[nodiscard]] GlBuffer makeBuffer();
+[[nodiscard]] GlVertexArray makeVertexArray();
+[[nodiscard]] GlRenderbuffer makeRenderbuffer();
+
+/// A 2-D texture of one level, nearest filter, clamped to its edge; contents undefined unless given.
+/// \param format, type  of `pixels`, tightly packed rows from y = 0; used for allocation alone if it is null.
+[[nodiscard]] GlTexture makeTexture2D(GLenum internal_format, GLsizei width, GLsizei height, GLenum format,
+                                      GLenum type, const void* pixels = nullptr);
+
+/// A framebuffer with these colour attachments, in order, and an optional depth texture, as draw buffers.
+/// Errors: kUnsupported, with the status, if the GL does not render to that combination.
+[[nodiscard]] Result<GlFramebuffer> makeFramebuffer(std::span<const GLuint> color_textures,
+                                                    GLuint depth_texture = 0);
+
+/// Compiles and links a program from GLSL ES 3.00 subset sources. The version line and precision statements
+/// are put in front by what the current context is: `#version 330 core` or `#version 300 es`.
+/// \param vertex, fragment  file names in shaders/, for example "quad.vert".
+/// \param defines  lines put behind the version line, such as "#define RELIEF_X 1\n".
+/// Errors: kFailure with the driver's log and the file's name.
+[[nodiscard]] Result<GlProgram> makeProgram(std::string_view vertex, std::string_view fragment,
+                                            std::string_view defines = {});
+
+/// A program of a vertex shader alone, whose outputs transform feedback writes, interleaved in their order.
+/// \param appended  GLSL of the caller's that is put behind the vertex shader; the log's lines count from its
+///                  beginning. Errors: those of makeProgram.
+[[nodiscard]] Result<GlProgram> makeFeedbackProgram(std::string_view vertex,
+                                                    std::span<const char* const> outputs,
+                                                    std::string_view defines = {},
+                                                    std::string_view appended = {});
+
+/// Location of a uniform; −1 where the program does not use it, which the GL's setters ignore.
+[[nodiscard]] GLint uniformLocation(const GlProgram& program, const char* name);
+
+/// True if the current context is OpenGL ES.
+[[nodiscard]] bool isGles();
+
+/// Reads a texture (level 0 of a 2-D texture of a float format) back as RGBA floats, 4 · width · height.
+[[nodiscard]] Result<std::vector<float>> readTextureFloats(const GlTexture& texture, GLsizei width,
+                                                           GLsizei height);
+
+/// Saves, on construction, the GL state that Relief's passes touch, sets what they count on (no blending,
+/// tests or masks, tight pixel rows), and restores it on destruction: current program, vertex array,
+/// array/uniform/pixel-unpack buffer, draw and read framebuffer, viewport, scissor, active texture unit and
+/// the 2-D textures of the first `kUnits` units, blend, depth, cull and scissor switches, blend
+/// functions, depth function and mask, colour mask, clear colour, pixel store alignment.
+class GlStateGuard {
+  public:
+    static constexpr int kUnits = 8;
+    GlStateGuard();
+    ~GlStateGuard();
+    GlStateGuard(const GlStateGuard&) = delete;
+    GlStateGuard& operator=(const GlStateGuard&) = delete;
+
+  private:
+    struct Saved;
+    std::unique_ptr<Saved> saved_;
+};
+
+}  // namespace relief

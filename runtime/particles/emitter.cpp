@@ -1,0 +1,262 @@
+#include "runtime/particles/emitter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace relief {
+namespace {
+
+// Births asked for in all stay below this: beyond it a double no longer counts one by one.
+constexpr double kCountMax = 9007199254740992.0;  // 2^53
+
+// Keeps 60 steps of 1/60 s from missing the last birth of a second by rounding.
+constexpr double kEarly = 1e-12;
+
+std::uint64_t wholeCount(double count) {
+    return count > 0.0 ? static_cast<std::uint64_t>(std::min(count, kCountMax)) : 0;  // 0 for NaN
+}
+
+bool isFinite(const glm::vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+const char* problemOfAim(const EmitterSettings& s) {
+    const EmitterAim& aim = *s.aim;
+    if (aim.direction ? unitVector(*aim.direction) == glm::vec3(0.0F) : s.shape == EmitterShape::kBox) {
+        return "aim.direction is needed, and must not be 0";
+    }
+    if (!aim.direction && s.shape == EmitterShape::kPoints && s.points.normals.empty()) {
+        return "aim.direction is needed where points have no normals";
+    }
+    if (!(aim.cone_degrees >= 0.0F && aim.cone_degrees <= 180.0F)) {
+        return "aim.cone_degrees must be 0 to 180";
+    }
+    if (!(aim.speed_min >= 0.0F && aim.speed_min <= aim.speed_max && std::isfinite(aim.speed_max)) ||
+        !(aim.speed_deviation >= 0.0F && std::isfinite(aim.speed_deviation))) {
+        return "aim's speeds must be finite, at least 0 and in order";
+    }
+    return nullptr;
+}
+
+const char* problemOfPlace(const EmitterSettings& s) {
+    switch (s.shape) {
+        case EmitterShape::kBox:
+            return isFinite(s.box_min) && isFinite(s.box_max) && s.box_min.x <= s.box_max.x &&
+                           s.box_min.y <= s.box_max.y && s.box_min.z <= s.box_max.z
+                       ? nullptr
+                       : "box_min must be finite and not above box_max";
+        case EmitterShape::kPoints:
+            if (s.points.positions.empty() || s.points.positions.size() > kPointsMax) {
+                return "points must hold at least one point, and no more than a file may";
+            }
+            return s.points.normals.empty() || s.points.normals.size() == s.points.positions.size()
+                       ? nullptr
+                       : "points must have as many normals as positions, or none";
+        case EmitterShape::kDisc:
+            if (unitVector(s.normal) == glm::vec3(0.0F)) {
+                return "normal must not be 0";
+            }
+            [[fallthrough]];
+        case EmitterShape::kSphere:
+        case EmitterShape::kShell:
+            return isFinite(s.center) && s.radius >= 0.0F && std::isfinite(s.radius)
+                       ? nullptr
+                       : "center and radius must be finite, the radius at least 0";
+    }
+    return "shape is unknown";
+}
+
+const char* problemOf(const EmitterSettings& s) {
+    if (const char* problem = problemOfPlace(s); problem != nullptr) {
+        return problem;
+    }
+    if (!(s.start >= 0.0 && s.rate >= 0.0 && s.duration > 0.0 && s.burst_every >= 0.0)) {
+        return "start, rate and burst_every must be at least 0, duration above 0";
+    }
+    if (!isFinite(s.velocity) || !isFinite(s.velocity_spread) || s.velocity_spread.x < 0.0F ||
+        s.velocity_spread.y < 0.0F || s.velocity_spread.z < 0.0F) {
+        return "velocity must be finite, velocity_spread at least 0";
+    }
+    if (!(s.lifetime_min > 0.0F && s.lifetime_min <= s.lifetime_max)) {
+        return "lifetime_min must be above 0 and not above lifetime_max";
+    }
+    return s.aim ? problemOfAim(s) : nullptr;
+}
+
+}  // namespace
+
+Result<void> Emitter::check(const EmitterSettings& settings) {
+    if (const char* problem = problemOf(settings); problem != nullptr) {
+        return fail(ErrorCode::kUsage, std::string("an emitter's ") + problem);
+    }
+    return {};
+}
+
+Emitter::Emitter(EmitterSettings settings, std::uint64_t seed, std::uint64_t stream)
+    : settings_(std::move(settings)),
+      random_(seed, stream),
+      basis_(basisAbout(unitVector(settings_.normal))) {
+    if (settings_.aim) {
+        opening_ = static_cast<float>(oneMinusCosine(static_cast<double>(settings_.aim->cone_degrees)));
+        aim_basis_ = basisAbout(unitVector(settings_.aim->direction.value_or(glm::vec3(0.0F, 0.0F, 1.0F))));
+    }
+}
+
+double Emitter::steadyBirths(double active) const {
+    const double until = std::min(active, settings_.duration * (1.0 + kEarly));
+    return std::min(settings_.rate * until, kCountMax);
+}
+
+std::uint64_t Emitter::burstsDue(double active) const {
+    if (settings_.burst == 0 || !(active >= 0.0)) {
+        return 0;
+    }
+    const double every = settings_.burst_every;
+    if (!(every > 0.0)) {
+        return 1;
+    }
+    // Burst j is due at j · every, a product that is the same whoever asks.
+    const auto due = [&](double j) { return j * every <= active && j * every < settings_.duration; };
+    double last = std::floor(std::min({active / every, settings_.duration / every, kCountMax}));
+    while (last > 0.0 && !due(last)) {
+        last -= 1.0;
+    }
+    while (last < kCountMax && due(last + 1.0)) {
+        last += 1.0;
+    }
+    return wholeCount(last) + 1;
+}
+
+std::uint64_t Emitter::emit(double dt, std::uint64_t room, std::vector<Birth>& births) {
+    // Summed with its rounding errors (Kahan): a day of steps ends where one long step does.
+    const double more = dt + remainder_;
+    const double sum = elapsed_ + more;
+    remainder_ = std::isfinite(sum) ? more - (sum - elapsed_) : 0.0;
+    elapsed_ = sum;
+    const double active = elapsed_ - settings_.start + kEarly * elapsed_;
+    if (active < 0.0) {
+        return 0;
+    }
+    const std::uint64_t steady_now = wholeCount(steadyBirths(active));
+    const std::uint64_t bursts_now = burstsDue(active);
+    const std::uint64_t steady_due = steady_now - std::min(steady_now, steady_);
+    const std::uint64_t burst_due =
+        wholeCount(static_cast<double>(bursts_now - std::min(bursts_now, bursts_)) *
+                   static_cast<double>(settings_.burst));
+    const std::uint64_t wanted = steady_due + burst_due;
+    const std::uint64_t made = std::min(wanted, room);
+
+    // Births in the order of time. Before burst j come the births by rate up to its moment: a number that
+    // does not depend on where a step ends, and is never above that of this step.
+    const std::size_t first = births.size();
+    if (births.capacity() < first + made) {
+        births.reserve(std::max(first + static_cast<std::size_t>(made), 2 * births.capacity()));
+    }
+    std::uint64_t left = made;
+    std::uint64_t steady = steady_;
+    for (std::uint64_t burst = bursts_; left > 0; ++burst) {
+        const bool last = burst >= bursts_now;
+        const std::uint64_t until =
+            last ? steady_now : wholeCount(steadyBirths(static_cast<double>(burst) * settings_.burst_every));
+        const std::uint64_t by_rate = std::min(left, until - std::min(until, steady));
+        const std::size_t from = births.size();
+        make(by_rate, births);
+        for (std::uint64_t i = 0; settings_.spread && i < by_rate; ++i) {
+            const double moment = settings_.start + static_cast<double>(steady + i + 1) / settings_.rate;
+            births[from + i].age = static_cast<float>(std::clamp(elapsed_ - moment, 0.0, dt));
+        }
+        steady += by_rate;
+        left -= by_rate;
+        if (last) {
+            break;
+        }
+        const std::uint64_t at_once = std::min(left, settings_.burst);
+        make(at_once, births);
+        left -= at_once;
+    }
+    steady_ = std::max(steady_, steady_now);
+    bursts_ = std::max(bursts_, bursts_now);
+    return wanted - made;
+}
+
+void Emitter::make(std::uint64_t count, std::vector<Birth>& births) {
+    for (std::uint64_t i = 0; i < count; ++i) {
+        sample(births.emplace_back());
+    }
+}
+
+// The order of the draws is part of every seeded run: place, velocity, aim, lifetime.
+void Emitter::sample(Birth& birth) {
+    const EmitterSettings& s = settings_;
+    glm::vec3 normal{0.0F};
+    switch (s.shape) {
+        case EmitterShape::kBox:
+            for (int axis = 0; axis < 3; ++axis) {
+                birth.position[axis] = random_.between(s.box_min[axis], s.box_max[axis]);
+            }
+            break;
+        case EmitterShape::kSphere: {
+            const glm::vec3 p = inUnitBall(random_);
+            birth.position = s.center + s.radius * p;
+            normal = p;
+            break;
+        }
+        case EmitterShape::kShell:
+            normal = onUnitSphere(random_);
+            birth.position = s.center + s.radius * normal;
+            break;
+        case EmitterShape::kDisc: {
+            const glm::vec2 p = inUnitDisc(random_);
+            birth.position = s.center + s.radius * (p.x * basis_.x + p.y * basis_.y);
+            normal = basis_.z;
+            break;
+        }
+        case EmitterShape::kPoints: {
+            const std::uint32_t at = random_.below(static_cast<std::uint32_t>(s.points.positions.size()));
+            birth.position = s.points.positions[at];
+            normal = s.points.normals.empty() ? normal : s.points.normals[at];
+            break;
+        }
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        const float spread = s.velocity_spread[axis];
+        birth.velocity[axis] = s.velocity[axis] + random_.between(-spread, spread);
+    }
+    if (s.aim) {
+        birth.velocity += aimed(normal);
+    }
+    birth.lifetime = random_.between(s.lifetime_min, s.lifetime_max);
+    birth.type = s.type;
+}
+
+glm::vec3 Emitter::aimed(const glm::vec3& normal) {
+    const EmitterAim& aim = *settings_.aim;
+    glm::vec3 direction{0.0F, 0.0F, 1.0F};
+    if (opening_ > 0.0F) {
+        direction = inCone(random_, opening_);
+    }
+    direction = (aim.direction ? aim_basis_ : basisAbout(unitVector(normal))).toWorld(direction);
+    float speed = 0.0F;
+    do {
+        speed = aim.speed_min < aim.speed_max ? random_.between(aim.speed_min, aim.speed_max) : aim.speed_min;
+        if (aim.speed_deviation > 0.0F) {
+            speed += aim.speed_deviation * standardNormal(random_);
+        }
+    } while (speed < 0.0F);
+    return speed * direction;
+}
+
+std::uint64_t emitAll(std::span<Emitter> emitters, double dt, std::uint64_t room,
+                      std::vector<Birth>& births) {
+    std::uint64_t refused = 0;
+    for (Emitter& emitter : emitters) {
+        const std::size_t before = births.size();
+        refused += emitter.emit(dt, room, births);
+        room -= births.size() - before;
+    }
+    return refused;
+}
+
+}  // namespace relief

@@ -1,0 +1,444 @@
+#include "runtime/particles/particle_system.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+
+#include "runtime/gl/gl_fault.h"
+#include "runtime/gl/pass_state.h"
+
+namespace relief {
+namespace {
+
+// A dead particle, as step.glsl writes it.
+constexpr std::array<float, 4> kDeadPosition{0.0F, -1e30F, 0.0F, -1.0F};
+constexpr std::array<float, 4> kZero{};
+
+// Below every floor and every particle, and yet finite when a height is subtracted from it.
+constexpr float kNoGround = -1e30F;
+
+constexpr std::uint32_t kIdMask = (1U << 24) - 1;  // what a float counts exactly
+
+void useTexture(int unit, const GlTexture& texture) {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    glBindTexture(GL_TEXTURE_2D, texture.name());
+}
+
+GlTexture makeStateTexture(std::uint32_t width, std::uint32_t height) {
+    return makeTexture2D(GL_RGBA32F, static_cast<GLsizei>(width), static_cast<GLsizei>(height), GL_RGBA,
+                         GL_FLOAT);
+}
+
+/// Draws quad.vert's triangle over the first rows of the bound framebuffer.
+void drawRows(const GlVertexArray& no_attributes, std::uint32_t width, std::uint32_t rows) {
+    glViewport(0, 0, static_cast<GLsizei>(width), static_cast<GLsizei>(rows));
+    glBindVertexArray(no_attributes.name());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+}  // namespace
+
+Result<ParticleSystem> ParticleSystem::create(const ParticleSystemOptions& options) {
+    if (options.capacity == 0 || options.capacity > kCapacityMax) {
+        return fail(ErrorCode::kUsage, "a particle system of " + std::to_string(options.capacity) +
+                                           " particles is not possible; choose 1 to " +
+                                           std::to_string(kCapacityMax));
+    }
+    // The upper end keeps the resolution of the GPU's clock below 8 ms.
+    if (!(options.epoch_seconds > 0.0 && options.epoch_seconds <= 65536.0)) {
+        return fail(ErrorCode::kUsage, "epoch_seconds must be above 0 and at most 65536");
+    }
+    ParticleSystem system(options.capacity);
+    system.epoch_seconds_ = options.epoch_seconds;
+    system.integrator_ = options.integrator;
+    system.width_ = std::min(options.capacity, kStateWidth);
+    system.height_ = (options.capacity + system.width_ - 1) / system.width_;
+    system.ids_.resize(options.capacity);
+
+    if (auto fits =
+            checkTextureSize(system.width_, system.height_, std::to_string(options.capacity) + " particles",
+                             "choose a smaller capacity");
+        !fits) {
+        return forward(fits);
+    }
+    const PassState state;
+    if (auto done = system.createTextures(); !done) {
+        return forward(done);
+    }
+    if (auto done = system.createPrograms(); !done) {
+        return forward(done);
+    }
+    return system;
+}
+
+Result<void> ParticleSystem::createTextures() {
+    forgetGlErrors();
+    birth_ = makeStateTexture(width_, height_);
+    no_attributes_ = makeVertexArray();
+    const int buffers = verlet() ? 3 : 2;
+    for (int i = 0; i < buffers; ++i) {
+        position_[i] = makeStateTexture(width_, height_);
+        if (!verlet()) {
+            velocity_[i] = makeStateTexture(width_, height_);
+        }
+    }
+    if (auto done = checkAllocated("the state of " + std::to_string(ids_.size()) + " particles",
+                                   "choose a smaller capacity");
+        !done) {
+        return done;
+    }
+    for (int i = 0; i < buffers; ++i) {
+        // Verlet reads the two positions before, and a birth writes both.
+        const GlTexture& second = verlet() ? position_[(i + 2) % 3] : velocity_[i];
+        const std::array<GLuint, 3> textures{position_[i].name(), second.name(), birth_.name()};
+        auto step_target = makeFramebuffer(std::span(textures).first(verlet() ? 1 : 2));
+        auto birth_target = makeFramebuffer(textures);
+        if (!step_target || !birth_target) {
+            return forward(!step_target ? step_target : birth_target);
+        }
+        step_target_[i] = std::move(*step_target);
+        birth_target_[i] = std::move(*birth_target);
+    }
+    for (int i = 0; i < buffers; ++i) {
+        glBindFramebuffer(GL_FRAMEBUFFER, birth_target_[i].name());
+        glClearBufferfv(GL_COLOR, 0, kDeadPosition.data());
+        glClearBufferfv(GL_COLOR, 1, verlet() ? kDeadPosition.data() : kZero.data());
+        glClearBufferfv(GL_COLOR, 2, kZero.data());
+    }
+
+    birth_vertices_ = makeBuffer();
+    birth_array_ = makeVertexArray();
+    glBindVertexArray(birth_array_.name());
+    glBindBuffer(GL_ARRAY_BUFFER, birth_vertices_.name());
+    const auto at = [](std::size_t offset) { return reinterpret_cast<const void*>(offset); };
+    constexpr GLsizei kStride = sizeof(BirthVertex);
+    glVertexAttribIPointer(0, 1, GL_UNSIGNED_INT, kStride, at(offsetof(BirthVertex, index)));
+    glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, kStride, at(offsetof(BirthVertex, position)));
+    glVertexAttribPointer(2, 3, GL_FLOAT, GL_FALSE, kStride, at(offsetof(BirthVertex, velocity)));
+    glVertexAttribPointer(3, 4, GL_FLOAT, GL_FALSE, kStride, at(offsetof(BirthVertex, birth)));
+    for (GLuint i = 0; i < 4; ++i) {
+        glEnableVertexAttribArray(i);
+    }
+    return {};
+}
+
+Result<void> ParticleSystem::createPrograms() {
+    auto birth = makeProgram("birth.vert", "birth.frag", verlet() ? "#define RELIEF_VERLET\n" : "");
+    auto rebase = makeProgram("quad.vert", "rebase.frag");
+    if (!birth || !rebase) {
+        return forward(!birth ? birth : rebase);
+    }
+    birth_program_ = std::move(*birth);
+    glUseProgram(birth_program_.name());
+    glUniform2i(uniformLocation(birth_program_, "u_size"), static_cast<GLint>(width_),
+                static_cast<GLint>(height_));
+    birth_dt_ = glGetUniformLocation(birth_program_.name(), "u_dt_before");
+    rebase_program_ = std::move(*rebase);
+    glUseProgram(rebase_program_.name());
+    glUniform1i(uniformLocation(rebase_program_, "u_birth"), StepPass::kBirthUnit);
+    rebase_shift_ = uniformLocation(rebase_program_, "u_shift");
+
+    return remakeStep(nullptr);
+}
+
+StepFeatures ParticleSystem::featuresFor(const ColliderTextures* collider) const {
+    const bool radius =
+        std::any_of(types_.begin(), types_.end(), [](const ParticleType& t) { return t.radius > 0.0F; });
+    return {collider,
+            air_.get(),
+            verlet(),
+            sweep_ > 0.0F,
+            radius && collider != nullptr,
+            static_cast<int>(types_.size())};
+}
+
+Result<void> ParticleSystem::remakeStep(const ColliderTextures* collider) {
+    auto made = StepPass::create(featuresFor(collider));
+    if (!made) {
+        return forward(made);
+    }
+    step_ = std::move(*made);
+    return {};
+}
+
+Result<void> ParticleSystem::remakeStepIfNeeded() {
+    const ColliderTextures* collider = step_.features().collider;
+    if (featuresFor(collider) == step_.features()) {
+        return {};
+    }
+    const PassState state;
+    return remakeStep(collider);
+}
+
+void ParticleSystem::setCollision(const Collision& collision) {
+    ParticleType type;
+    type.restitution = collision.restitution;
+    type.friction = collision.friction;
+    type.friction_threshold = collision.friction_threshold;
+    types_.assign(types_.size(), type);
+}
+
+Result<void> ParticleSystem::setTypes(std::span<const ParticleType> types) {
+    if (types.empty() || types.size() > kParticleTypesMax) {
+        return fail(ErrorCode::kUsage, std::to_string(types.size()) + " types of particles; choose 1 to " +
+                                           std::to_string(kParticleTypesMax));
+    }
+    const auto share = [](float value) { return value >= 0.0F && value <= 1.0F; };
+    for (const ParticleType& type : types) {
+        if (!(type.mass > 0.0F && type.radius >= 0.0F && share(type.restitution) && share(type.friction) &&
+              type.friction_threshold >= 0.0F && type.lifetime_loss >= 0.0F)) {
+            return fail(ErrorCode::kUsage,
+                        "a type of particles needs a mass above 0, a radius, friction threshold and loss of "
+                        "lifetime of at least 0, and restitution and friction from 0 to 1");
+        }
+    }
+    types_.assign(types.begin(), types.end());
+    return remakeStepIfNeeded();
+}
+
+Result<void> ParticleSystem::setSweep(float length) {
+    if (!(length >= 0.0F)) {
+        return fail(ErrorCode::kUsage, "the length of a sweep must be at least 0");
+    }
+    sweep_ = length;
+    return remakeStepIfNeeded();
+}
+
+Result<void> ParticleSystem::setColliders(std::span<const ColliderInstance> colliders) {
+    if (colliders.size() > 1) {
+        return fail(ErrorCode::kUnsupported, "a particle system takes one collider, not " +
+                                                 std::to_string(colliders.size()) +
+                                                 "; bake them into one collider");
+    }
+    const PassState state;
+    return remakeStep(colliders.empty() ? nullptr : colliders.front().textures);
+}
+
+Result<void> ParticleSystem::setAir(const AirSettings& air) {
+    const PassState state;
+    auto block = AirBlock::create(air);
+    if (!block) {
+        return forward(block);
+    }
+    std::unique_ptr<AirBlock> old = std::move(air_);
+    air_ = block->defines().empty() ? nullptr : std::make_unique<AirBlock>(std::move(*block));
+    if (auto done = remakeStep(step_.features().collider); !done) {
+        air_ = std::move(old);  // the step that there is points to it
+        return done;
+    }
+    air_settings_ = air;
+    return {};
+}
+
+std::size_t ParticleSystem::spawn(std::span<const Birth> births) {
+    const float now = clock();
+    const glm::vec3 wind = air_ ? air_settings_.wind : forces_.wind;
+    std::size_t accepted = 0;
+    for (const Birth& birth : births) {
+        const std::optional<std::uint32_t> index = allocator_.acquire();
+        if (!index) {
+            break;
+        }
+        const float born = now - birth.age;
+        const float death = born + birth.lifetime;
+        // What the step does in free flight, for as long as it has lived.
+        const float drag = dragRate(forces_, types_[std::min<std::size_t>(birth.type, types_.size() - 1)]);
+        const glm::vec3 velocity = (birth.velocity + birth.age * (forces_.gravity + drag * wind)) *
+                                   (1.0F / (1.0F + birth.age * drag));
+        const auto id = static_cast<std::uint32_t>(born_ + accepted);
+        ids_[*index] = id;
+        deaths_.push(death, *index);
+        // Member by member: a vertex that is put together first is copied before its parts have arrived.
+        BirthVertex& vertex = newborn_.emplace_back();
+        vertex.index = *index;
+        vertex.position = birth.position + birth.age * velocity;
+        vertex.velocity = velocity;
+        vertex.birth = glm::vec4(born, death, static_cast<float>(birth.type & kIdMask),
+                                 static_cast<float>(id & kIdMask));
+        ++accepted;
+    }
+    born_ += accepted;
+    refused_ += births.size() - accepted;
+    return accepted;
+}
+
+void ParticleSystem::step(float dt) {
+    const PassState state;
+    if (dt_before_ == 0.0F) {
+        dt_before_ = dt;
+    }
+    drawBirths();
+    time_ += static_cast<double>(dt);
+    const float now = clock();
+    drawStep(dt, now);
+    freeDead(now);
+    if (time_ - epoch_ >= epoch_seconds_) {
+        setEpochForward();
+    }
+    drawn_extent_ = allocator_.extent();
+}
+
+float ParticleSystem::clock() const {
+    return clockOf(time_);
+}
+
+void ParticleSystem::drawBirths() {
+    if (newborn_.empty()) {
+        return;
+    }
+    glBindFramebuffer(GL_FRAMEBUFFER, birth_target_[current_].name());
+    glViewport(0, 0, static_cast<GLsizei>(width_), static_cast<GLsizei>(height_));
+    glUseProgram(birth_program_.name());
+    glUniform1f(birth_dt_, dt_before_);
+    glBindVertexArray(birth_array_.name());
+    glBindBuffer(GL_ARRAY_BUFFER, birth_vertices_.name());
+    // A fresh store each time: the driver need not wait until the last one has been drawn.
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(newborn_.size() * sizeof(BirthVertex)),
+                 newborn_.data(), GL_STREAM_DRAW);
+    glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(newborn_.size()));
+    newborn_.clear();
+}
+
+void ParticleSystem::drawStep(float dt, float now) {
+    const std::uint32_t extent = allocator_.extent();
+    if (extent == 0) {
+        return;
+    }
+    const int next = verlet() ? (current_ + 1) % 3 : 1 - current_;
+    glBindFramebuffer(GL_FRAMEBUFFER, step_target_[next].name());
+    useTexture(StepPass::kPositionUnit, position_[current_]);
+    useTexture(StepPass::kVelocityUnit, verlet() ? position_[(current_ + 2) % 3] : velocity_[current_]);
+    useTexture(StepPass::kBirthUnit, birth_);
+    Forces forces = forces_;
+    if (air_) {
+        forces.wind = glm::vec3(0.0F);  // its own is among the rest
+    }
+    step_.use({now, dt, dt_before_, ground_.value_or(kNoGround), sweep_, airTime(air_settings_, time_),
+               forces, types_});
+    dt_before_ = dt;
+    // Rows beyond the extent keep what they held in either buffer. That is sound: an index beyond it is only
+    // reached again through a birth, which overwrites it, and an index below it has been stepped ever since.
+    drawRows(no_attributes_, width_, (extent + width_ - 1) / width_);
+    current_ = next;
+}
+
+void ParticleSystem::freeDead(float now) {
+    dead_.clear();
+    deaths_.popUntil(now, dead_);
+    for (const std::uint32_t index : dead_) {
+        allocator_.release(index);
+    }
+    died_ += dead_.size();
+}
+
+void ParticleSystem::setEpochForward() {
+    const double epochs = std::floor((time_ - epoch_) / epoch_seconds_);
+    const auto shift = static_cast<float>(epochs * epoch_seconds_);
+    epoch_ += static_cast<double>(shift);
+    // The same subtraction of the same floats as in rebase.frag.
+    deaths_.rebase(shift);
+    if (allocator_.extent() == 0) {
+        return;
+    }
+    if (!birth_spare_) {
+        birth_spare_ = makeStateTexture(width_, height_);
+        rebase_target_ = makeFramebuffer();
+    }
+    // By hand, for a step has nobody to report an error to: this is the combination that create() has tried.
+    glBindFramebuffer(GL_FRAMEBUFFER, rebase_target_.name());
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, birth_spare_.name(), 0);
+    glUseProgram(rebase_program_.name());
+    useTexture(StepPass::kBirthUnit, birth_);
+    glUniform1f(rebase_shift_, shift);
+    drawRows(no_attributes_, width_, (allocator_.extent() + width_ - 1) / width_);
+
+    std::swap(birth_, birth_spare_);
+    for (const GlFramebuffer& target : birth_target_) {
+        if (!target) {  // Euler has two
+            continue;
+        }
+        glBindFramebuffer(GL_FRAMEBUFFER, target.name());
+        glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT2, GL_TEXTURE_2D, birth_.name(), 0);
+    }
+}
+
+ParticleCounts ParticleSystem::counts() const {
+    return {born_, died_, refused_, allocator_.liveCount(), allocator_.extent()};
+}
+
+Result<RawState> ParticleSystem::readRaw() const {
+    RawState raw;
+    const std::uint32_t rows = (drawn_extent_ + width_ - 1) / width_;
+    if (rows == 0) {
+        return raw;
+    }
+    const PassState state;
+    const auto read = [&](const GlTexture& texture, std::vector<float>& floats) -> Result<void> {
+        auto all = readTextureFloats(texture, static_cast<GLsizei>(width_), static_cast<GLsizei>(rows));
+        if (!all) {
+            return forward(all);
+        }
+        floats = std::move(*all);
+        floats.resize(std::size_t{4} * drawn_extent_);
+        return {};
+    };
+    for (auto done :
+         {read(positions(), raw.position), read(secondState(), raw.velocity), read(births(), raw.birth)}) {
+        if (!done) {
+            return forward(done);
+        }
+    }
+    // What the shader would take: step.glsl.
+    for (std::size_t i = 0; verlet() && i < raw.position.size(); i += 4) {
+        const float rate = rateBefore();
+        for (std::size_t k = i; k < i + 3; ++k) {
+            raw.velocity[k] = (raw.position[k] - raw.velocity[k]) * rate;
+        }
+        const float collisions = std::floor(raw.position[i + 3]);
+        raw.velocity[i + 3] = 16.0F * (raw.position[i + 3] - collisions);
+        raw.position[i + 3] = collisions;
+    }
+    return raw;
+}
+
+Result<std::vector<ParticleState>> ParticleSystem::readState() const {
+    auto raw = readRaw();
+    if (!raw) {
+        return forward(raw);
+    }
+    std::vector<bool> unborn(drawn_extent_);
+    for (const BirthVertex& vertex : newborn_) {
+        if (vertex.index < drawn_extent_) {
+            unborn[vertex.index] = true;
+        }
+    }
+    const float now = clock();
+    std::vector<ParticleState> particles;
+    particles.reserve(allocator_.liveCount());
+    for (std::uint32_t index = 0; index < drawn_extent_; ++index) {
+        if (!allocator_.isLive(index) || unborn[index]) {
+            continue;
+        }
+        const float* position = &raw->position[std::size_t{4} * index];
+        const float* velocity = &raw->velocity[std::size_t{4} * index];
+        const float* birth = &raw->birth[std::size_t{4} * index];
+        if (position[3] < 0.0F) {  // by a collision, of which the CPU does not know
+            continue;
+        }
+        ParticleState& particle = particles.emplace_back();
+        particle.id = ids_[index];
+        particle.index = index;
+        particle.position = {position[0], position[1], position[2]};
+        particle.velocity = {velocity[0], velocity[1], velocity[2]};
+        particle.age = now - birth[0];
+        particle.lifetime = birth[1] - birth[0];
+        particle.type = static_cast<std::uint32_t>(birth[2]);
+        particle.collisions = static_cast<std::uint32_t>(std::max(position[3], 0.0F));
+        particle.contact = static_cast<Contact>(std::clamp(static_cast<int>(velocity[3]), 0, 3));
+    }
+    return particles;
+}
+
+}  // namespace relief

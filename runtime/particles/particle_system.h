@@ -1,0 +1,234 @@
+// The particle simulation: state in float textures, moved by fragment shaders (paper, section 3). Nothing is
+// read back and nothing waits for the GPU but in readState().
+//
+//     bytes on the GPU = 80 · texels, texels = capacity rounded up to whole rows of kStateWidth:
+//         position  2 × RGBA32F (double-buffered)      xyz, collisions (−1: dead)
+//         velocity  2 × RGBA32F (double-buffered)      xyz, contact of the last step
+//         (with Verlet: a third position instead; 64 · texels in all)
+//         birth     1 × RGBA32F                        time of birth, time of death, type, id mod 2^24
+//     (96 · texels once the clock has been set back for the first time)
+//
+// A step, in this order: births are drawn into the textures as points; one pass over the occupied rows
+// decides deaths, moves and collides (shaders/step.glsl); the CPU frees the indices of the dead.
+//
+// Time. The CPU counts in double. The GPU sees floats relative to an epoch that is set forward whenever
+// epoch_seconds have passed, so that a float resolves half a millisecond even after days. A particle dies at
+// the first step whose end is at or after its time of death; that time is one float, made by the CPU, and
+// both sides compare the same two floats, so they agree on the step.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "formats/base/result.h"
+#include "runtime/air/air_block.h"
+#include "runtime/collider/collider_textures.h"
+#include "runtime/gl/gl_object.h"
+#include "runtime/particles/death_queue.h"
+#include "runtime/particles/emitter.h"
+#include "runtime/particles/index_allocator.h"
+#include "runtime/particles/step_pass.h"
+
+namespace relief {
+
+/// The collision of a particle system with a single type of particles (paper, section 3.3.2).
+struct Collision {
+    float restitution = 0.0F;  ///< as those of ParticleType
+    float friction = 0.0F;
+    float friction_threshold = 0.0F;
+};
+
+/// Colliders among the particles: one in its own object space, or bodies in a world, which the particles then
+/// live in. It must outlive its use by the system.
+struct ColliderInstance {
+    const ColliderTextures* textures = nullptr;
+};
+
+/// How positions follow from velocities; both are of first order, and alike but for rounding.
+enum class Integrator : std::uint8_t {
+    kEuler,   ///< semi-implicit: v' = v + dt a, P' = P + dt v'
+    kVerlet,  ///< P' = P + dt/dt_before (P − P_before) + dt² a: the velocity is the way of the last step
+};
+
+struct ParticleSystemOptions {
+    std::uint32_t capacity = 65536;  ///< particles that may live at once, 1…kCapacityMax
+    Integrator integrator = Integrator::kEuler;
+    double epoch_seconds = 4096.0;  ///< how far the GPU's clock runs before it is set back
+};
+
+struct ParticleCounts {
+    std::uint64_t born = 0;
+    std::uint64_t died = 0;
+    std::uint64_t refused = 0;  ///< births without a free index
+    std::uint32_t alive = 0;
+    std::uint32_t extent = 0;  ///< the largest live index + 1
+};
+
+enum class Contact : std::uint8_t {
+    kNone = 0,
+    kCollided = 1,
+    kCaught = 2,
+    kStopped = 3,  ///< at rest for good (OnCollision::kStop)
+};
+
+/// One live particle, read back.
+struct ParticleState {
+    std::uint32_t id = 0;     ///< births before its own, modulo 2^32
+    std::uint32_t index = 0;  ///< its texel
+    glm::vec3 position{0.0F};
+    glm::vec3 velocity{0.0F};
+    float age = 0.0F;       ///< seconds
+    float lifetime = 0.0F;  ///< seconds
+    std::uint32_t type = 0;
+    std::uint32_t collisions = 0;      ///< steps in contact so far
+    Contact contact = Contact::kNone;  ///< of the last step
+};
+
+/// The state textures as they are (velocities of Verlet worked out), four floats a texel, index after index
+/// up to the extent. (Texels beyond it hold leftovers, which no renderer may draw.)
+struct RawState {
+    std::vector<float> position;
+    std::vector<float> velocity;
+    std::vector<float> birth;
+};
+
+class ParticleSystem {
+  public:
+    static constexpr std::uint32_t kStateWidth = 1024;  ///< texels in a row, fewer if the capacity is
+    static constexpr std::uint32_t kCapacityMax = 1U << 24;
+
+    /// Needs a current context, as every call does that is not const.
+    /// Errors: kUsage (capacity, epoch), kLimit (above what this GL takes), kUnsupported, kFailure.
+    [[nodiscard]] static Result<ParticleSystem> create(const ParticleSystemOptions& options = {});
+
+    /// What the particles collide with from the next step on; compiles the step for it. One instance at most,
+    /// which may hold several bodies.
+    /// Errors: kUnsupported (more than one), kFailure (the driver's compiler).
+    [[nodiscard]] Result<void> setColliders(std::span<const ColliderInstance> colliders);
+    void setForces(const Forces& forces) { forces_ = forces; }
+    /// One type of particles, without radius, that bounces.
+    void setCollision(const Collision& collision);
+    /// The types of particles: Birth::type is an index here, and the last one for what lies beyond. Compiles
+    /// the step where their number changes, or the first gets a radius.
+    /// Errors: kUsage (none or more than kParticleTypesMax; a mass that is not above 0, a negative radius, a
+    /// share outside 0…1), kFailure (the driver's compiler).
+    [[nodiscard]] Result<void> setTypes(std::span<const ParticleType> types);
+    /// Above 0 a step tests its way in pieces no longer than this, world units, and never ends inside what it
+    /// did not begin in: nothing crosses a body at rest that is thicker than this. What moves farther than
+    /// StepPass::kSweepPieces of them in a step is slowed down. 0: only both ends are tested, as in the
+    /// paper. Errors: kUsage, kFailure (the driver's compiler).
+    [[nodiscard]] Result<void> setSweep(float length);
+    /// Moving air and fields. Its wind takes the place of Forces::wind; its viscosity is not used: Forces has
+    /// its own.
+    /// Errors: those of AirBlock::create, kFailure (the driver's compiler).
+    [[nodiscard]] Result<void> setAir(const AirSettings& air);
+    /// A floor: everything below this height is solid, in union with the collider. nullopt: none.
+    void setGround(std::optional<float> height) { ground_ = height; }
+
+    /// Gives birth at the start of the next step; what has an age then has moved freely, under the forces,
+    /// since its own birth. Texels without a particle are taken in ascending order. \return how many found a
+    /// place; the rest are refused and counted.
+    std::size_t spawn(std::span<const Birth> births);
+
+    /// Moves everything by `dt` seconds, > 0. Restores the GL state that it touches (runtime/README.md).
+    void step(float dt);
+
+    [[nodiscard]] std::uint32_t capacity() const { return allocator_.capacity(); }
+    /// Places left for spawn().
+    [[nodiscard]] std::uint32_t room() const { return allocator_.capacity() - allocator_.liveCount(); }
+    [[nodiscard]] ParticleCounts counts() const;
+    [[nodiscard]] double time() const { return time_; }  ///< seconds since the beginning
+    [[nodiscard]] bool isLive(std::uint32_t index) const { return allocator_.isLive(index); }
+
+    // For renderers: particle i < extent() lies at texel (i mod width, i / width). Births since the last step
+    // are not in the textures yet.
+    [[nodiscard]] const GlTexture& positions() const { return position_[current_]; }
+    /// Euler: the velocities. Verlet: the positions before.
+    [[nodiscard]] const GlTexture& secondState() const {
+        return verlet() ? position_[(current_ + 2) % 3] : velocity_[current_];
+    }
+    /// Verlet: 1 / seconds of the last step, to make velocities of the two positions. Euler: 0.
+    [[nodiscard]] float rateBefore() const {
+        return verlet() && dt_before_ > 0.0F ? 1.0F / dt_before_ : 0.0F;
+    }
+    [[nodiscard]] const GlTexture& births() const { return birth_; }
+    [[nodiscard]] std::uint32_t textureWidth() const { return width_; }
+    [[nodiscard]] std::uint32_t extent() const { return drawn_extent_; }
+    [[nodiscard]] float clock() const;  ///< the time that births() counts in
+
+    /// The live particles in ascending order of index, without those born since the last step. Waits for the
+    /// GPU: for dumps and tests.
+    /// Errors: kFailure.
+    [[nodiscard]] Result<std::vector<ParticleState>> readState() const;
+    /// Errors: kFailure.
+    [[nodiscard]] Result<RawState> readRaw() const;
+
+  private:
+    /// A vertex of the births' draw.
+    struct BirthVertex {
+        std::uint32_t index;
+        glm::vec3 position;
+        glm::vec3 velocity;
+        glm::vec4 birth;
+    };
+    explicit ParticleSystem(std::uint32_t capacity) : allocator_(capacity), deaths_(capacity) {}
+    [[nodiscard]] Result<void> createTextures();
+    [[nodiscard]] Result<void> createPrograms();
+    [[nodiscard]] StepFeatures featuresFor(const ColliderTextures* collider) const;
+    [[nodiscard]] Result<void> remakeStep(const ColliderTextures* collider);
+    /// After a change of anything but the collider and the air, which may be other ones at the same place.
+    [[nodiscard]] Result<void> remakeStepIfNeeded();
+    [[nodiscard]] bool verlet() const { return integrator_ == Integrator::kVerlet; }
+    [[nodiscard]] float clockOf(double time) const { return static_cast<float>(time - epoch_); }
+    void setEpochForward();
+    void drawBirths();
+    void drawStep(float dt, float now);
+    void freeDead(float now);
+
+    IndexAllocator allocator_;
+    DeathQueue deaths_;
+    std::vector<std::uint32_t> dead_;   // of the last step, kept for its memory
+    std::vector<std::uint32_t> ids_;    // of each index
+    std::vector<BirthVertex> newborn_;  // since the last step
+    std::uint64_t born_ = 0;
+    std::uint64_t died_ = 0;
+    std::uint64_t refused_ = 0;
+    double time_ = 0.0;
+    double epoch_ = 0.0;
+    double epoch_seconds_ = 0.0;
+
+    Integrator integrator_ = Integrator::kEuler;
+    Forces forces_;
+    std::vector<ParticleType> types_{ParticleType{}};
+    float sweep_ = 0.0F;
+    AirSettings air_settings_;
+    std::unique_ptr<AirBlock> air_;  // at one place: StepPass points to it
+    std::optional<float> ground_;
+    float dt_before_ = 0.0F;  // of the last step; 0 before the first
+
+    std::uint32_t width_ = 0;
+    std::uint32_t height_ = 0;
+    std::uint32_t drawn_extent_ = 0;  // the extent after the last step
+    int current_ = 0;                 // which of the buffers holds the state
+    GlTexture position_[3];           // the third is Verlet's
+    GlTexture velocity_[2];           // Euler's
+    GlTexture birth_;
+    GlTexture birth_spare_;          // made when the clock is first set back
+    GlFramebuffer step_target_[3];   // position and velocity
+    GlFramebuffer birth_target_[3];  // position, velocity or position before, birth
+    GlFramebuffer rebase_target_;    // birth_spare_
+    GlBuffer birth_vertices_;
+    GlVertexArray birth_array_;
+    GlVertexArray no_attributes_;
+    GlProgram birth_program_;
+    GlProgram rebase_program_;
+    GLint rebase_shift_ = -1;
+    GLint birth_dt_ = -1;
+    StepPass step_;
+};
+
+}  // namespace relief

@@ -1,0 +1,112 @@
+#include "runtime/particles/random.h"
+
+#include <bit>
+#include <cmath>
+
+namespace relief {
+namespace {
+
+constexpr double kArtanh[] = {1.0 / 19.0, 1.0 / 17.0, 1.0 / 15.0, 1.0 / 13.0, 1.0 / 11.0,
+                              1.0 / 9.0,  1.0 / 7.0,  1.0 / 5.0,  1.0 / 3.0,  1.0};
+
+/// ln x for a normal x > 0: the exponent, and the series of 2 artanh z for the mantissa, |z| < 0.172.
+double logarithm(double x) {
+    const auto bits = std::bit_cast<std::uint64_t>(x);
+    auto exponent = static_cast<double>(static_cast<std::int64_t>(bits >> 52) - 1023);
+    auto mantissa = std::bit_cast<double>((bits & 0xfffffffffffffU) | 0x3ff0000000000000U);
+    if (mantissa > 1.4142135623730951) {
+        mantissa *= 0.5;
+        exponent += 1.0;
+    }
+    const double z = (mantissa - 1.0) / (mantissa + 1.0);
+    const double z2 = z * z;
+    double sum = 0.0;
+    for (const double coefficient : kArtanh) {
+        sum = sum * z2 + coefficient;
+    }
+    return 2.0 * z * sum + exponent * 0.6931471805599453;
+}
+
+}  // namespace
+
+std::uint32_t Pcg32::below(std::uint32_t count) {
+    std::uint64_t product = std::uint64_t{next()} * count;
+    if (static_cast<std::uint32_t>(product) < count) {
+        // 2^32 mod count: so many products are one too many for an even share.
+        const std::uint32_t excess = (0U - count) % count;
+        while (static_cast<std::uint32_t>(product) < excess) {
+            product = std::uint64_t{next()} * count;
+        }
+    }
+    return static_cast<std::uint32_t>(product >> 32);
+}
+
+glm::vec2 inUnitDisc(Pcg32& random) {
+    glm::vec2 p;
+    do {
+        p.x = random.signedUniform();
+        p.y = random.signedUniform();
+    } while (p.x * p.x + p.y * p.y >= 1.0F);
+    return p;
+}
+
+glm::vec3 inUnitBall(Pcg32& random) {
+    glm::vec3 p;
+    do {
+        p.x = random.signedUniform();
+        p.y = random.signedUniform();
+        p.z = random.signedUniform();
+    } while (p.x * p.x + p.y * p.y + p.z * p.z >= 1.0F);
+    return p;
+}
+
+glm::vec3 onUnitSphere(Pcg32& random) {
+    return inCone(random, 2.0F);
+}
+
+float standardNormal(Pcg32& random) {
+    const glm::vec2 p = inUnitDisc(random);
+    const double x = static_cast<double>(p.x);
+    const double y = static_cast<double>(p.y);
+    const double square = x * x + y * y;
+    return static_cast<float>(x * std::sqrt(-2.0 * logarithm(square) / square));
+}
+
+double oneMinusCosine(double degrees) {
+    // 2 sin²(a/2), with a/2 up to π/2, where the Taylor series to the 21st power is exact to a double.
+    const double half = degrees * (3.14159265358979323846 / 360.0);
+    const double square = half * half;
+    double sum = 1.0;
+    for (int n = 20; n >= 2; n -= 2) {
+        sum = 1.0 - sum * square / (n * (n + 1.0));
+    }
+    const double sine = half * sum;
+    return 2.0 * sine * sine;
+}
+
+glm::vec3 inCone(Pcg32& random, float opening) {
+    // Of a point in the disc the squared radius is uniform and independent of the angle (Marsaglia 1972): the
+    // one gives the height, which is uniform over a cone's solid angle (Archimedes), the other the azimuth.
+    const glm::vec2 p = inUnitDisc(random);
+    const float down = std::min(p.x * p.x + p.y * p.y, 1.0F) * opening;
+    const float aside = std::sqrt(opening * (2.0F - down));
+    return {aside * p.x, aside * p.y, 1.0F - down};
+}
+
+glm::vec3 unitVector(const glm::vec3& v) {
+    const float largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    if (!(largest > 0.0F && std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z))) {
+        return glm::vec3(0.0F);
+    }
+    const glm::vec3 scaled = v / largest;
+    return scaled / std::sqrt(scaled.x * scaled.x + scaled.y * scaled.y + scaled.z * scaled.z);
+}
+
+Basis basisAbout(const glm::vec3& z) {
+    const float sign = std::signbit(z.z) ? -1.0F : 1.0F;
+    const float a = -1.0F / (sign + z.z);
+    const float b = z.x * z.y * a;
+    return {{1.0F + sign * z.x * z.x * a, sign * b, -sign * z.x}, {b, sign + z.y * z.y * a, -z.y}, z};
+}
+
+}  // namespace relief

@@ -1,0 +1,204 @@
+#include "runtime/particles/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <string>
+
+#include "runtime/gl/gl_fault.h"
+#include "runtime/gl/pass_state.h"
+
+namespace relief {
+namespace {
+
+constexpr int kCountsUnit = 0;  // positions in the first pass
+constexpr int kSumsUnit = 1;    // velocities
+
+constexpr GLsizeiptr kTexelBytes = 4 * sizeof(float);
+constexpr GLuint64 kPatience = 10'000'000'000;  // nanoseconds
+
+/// Texels after a pass over so many.
+std::uint32_t reduced(std::uint32_t side) {
+    return (side + 3) / 4;
+}
+
+void useTexture(int unit, const GlTexture& texture) {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    glBindTexture(GL_TEXTURE_2D, texture.name());
+}
+
+}  // namespace
+
+Result<Statistics> Statistics::create(std::uint32_t capacity) {
+    if (capacity == 0 || capacity > ParticleSystem::kCapacityMax) {
+        return fail(ErrorCode::kUsage, "statistics of " + std::to_string(capacity) +
+                                           " particles are not possible; choose 1 to " +
+                                           std::to_string(ParticleSystem::kCapacityMax));
+    }
+    const PassState state;
+    forgetGlErrors();
+    Statistics statistics;
+    statistics.capacity_ = capacity;
+    std::uint32_t width = std::min(capacity, ParticleSystem::kStateWidth);
+    std::uint32_t height = (capacity + width - 1) / width;
+    do {
+        width = reduced(width);
+        height = reduced(height);
+        const auto make = [&] {
+            return makeTexture2D(GL_RGBA32F, static_cast<GLsizei>(width), static_cast<GLsizei>(height),
+                                 GL_RGBA, GL_FLOAT);
+        };
+        Level level{make(), make(), {}};
+        if (auto done = checkAllocated("the statistics of " + std::to_string(capacity) + " particles",
+                                       "choose a smaller capacity");
+            !done) {
+            return forward(done);
+        }
+        const std::array<GLuint, 2> textures{level.counts.name(), level.sums.name()};
+        auto target = makeFramebuffer(textures);
+        if (!target) {
+            return forward(target);
+        }
+        level.target = std::move(*target);
+        statistics.levels_.push_back(std::move(level));
+    } while (width > 1 || height > 1);
+
+    for (Slot& slot : statistics.slots_) {
+        slot.buffer = makeBuffer();
+        glBindBuffer(GL_PIXEL_PACK_BUFFER, slot.buffer.name());
+        glBufferData(GL_PIXEL_PACK_BUFFER, 2 * kTexelBytes, nullptr, GL_STREAM_READ);
+    }
+    if (auto done = checkAllocated("the statistics' buffers", "choose a smaller capacity"); !done) {
+        return forward(done);
+    }
+    statistics.no_attributes_ = makeVertexArray();
+
+    auto state_program = makeProgram("quad.vert", "reduce_state.frag");
+    auto sum_program = makeProgram("quad.vert", "reduce_sum.frag");
+    if (!state_program || !sum_program) {
+        return forward(!state_program ? state_program : sum_program);
+    }
+    statistics.state_program_ = std::move(*state_program);
+    glUseProgram(statistics.state_program_.name());
+    glUniform1i(uniformLocation(statistics.state_program_, "u_position"), kCountsUnit);
+    glUniform1i(uniformLocation(statistics.state_program_, "u_velocity"), kSumsUnit);
+    statistics.state_size_ = uniformLocation(statistics.state_program_, "u_size");
+    statistics.state_rate_ = uniformLocation(statistics.state_program_, "u_rate_before");
+    statistics.state_extent_ = uniformLocation(statistics.state_program_, "u_extent");
+    statistics.sum_program_ = std::move(*sum_program);
+    glUseProgram(statistics.sum_program_.name());
+    glUniform1i(uniformLocation(statistics.sum_program_, "u_counts"), kCountsUnit);
+    glUniform1i(uniformLocation(statistics.sum_program_, "u_sums"), kSumsUnit);
+    statistics.sum_size_ = uniformLocation(statistics.sum_program_, "u_size");
+    return statistics;
+}
+
+bool Statistics::request(const ParticleSystem& particles, std::uint64_t tag) {
+    if (in_flight_ == kInFlightMax || particles.capacity() > capacity_) {
+        return false;
+    }
+    Slot& slot = slots_[static_cast<std::size_t>((oldest_ + in_flight_) % kInFlightMax)];
+    ++in_flight_;
+    slot.tag = tag;
+    slot.empty = particles.extent() == 0;
+    if (slot.empty) {
+        return true;
+    }
+    const PassState state;
+    std::uint32_t width = particles.textureWidth();
+    std::uint32_t height = (particles.extent() + width - 1) / width;
+    glUseProgram(state_program_.name());
+    glUniform1i(state_extent_, static_cast<GLint>(particles.extent()));
+    glUniform2i(state_size_, static_cast<GLint>(width), static_cast<GLint>(height));
+    useTexture(kCountsUnit, particles.positions());
+    useTexture(kSumsUnit, particles.secondState());
+    glUniform1f(state_rate_, particles.rateBefore());
+    glBindVertexArray(no_attributes_.name());
+    // Only the rows that hold particles: with few of them the single texel is reached early.
+    for (std::size_t i = 0;; ++i) {
+        width = reduced(width);
+        height = reduced(height);
+        glBindFramebuffer(GL_FRAMEBUFFER, levels_[i].target.name());
+        glViewport(0, 0, static_cast<GLsizei>(width), static_cast<GLsizei>(height));
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+        if (width == 1 && height == 1) {
+            break;
+        }
+        glUseProgram(sum_program_.name());
+        glUniform2i(sum_size_, static_cast<GLint>(width), static_cast<GLint>(height));
+        useTexture(kCountsUnit, levels_[i].counts);
+        useTexture(kSumsUnit, levels_[i].sums);
+    }
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, slot.buffer.name());
+    for (GLenum i = 0; i < 2; ++i) {
+        glReadBuffer(GL_COLOR_ATTACHMENT0 + i);
+        glReadPixels(0, 0, 1, 1, GL_RGBA, GL_FLOAT, reinterpret_cast<void*>(i * kTexelBytes));
+    }
+    slot.fence.insert();
+    return true;
+}
+
+std::optional<StatisticsSample> Statistics::poll() {
+    if (in_flight_ == 0) {
+        return std::nullopt;
+    }
+    const Slot& slot = slots_[static_cast<std::size_t>(oldest_)];
+    return slot.empty || slot.fence.passed() ? collect() : std::nullopt;
+}
+
+Result<std::optional<StatisticsSample>> Statistics::wait() {
+    if (in_flight_ == 0) {
+        return std::optional<StatisticsSample>();
+    }
+    const Slot& slot = slots_[static_cast<std::size_t>(oldest_)];
+    if (!slot.empty && !slot.fence.passed(kPatience)) {
+        if (auto alive = checkGpu("making statistics"); !alive) {
+            return forward(alive);
+        }
+        return fail(ErrorCode::kFailure, "the GPU has not finished its statistics within ten seconds");
+    }
+    auto sample = collect();
+    if (auto alive = checkGpu("making statistics"); !alive) {
+        return forward(alive);
+    }
+    if (!sample) {
+        return fail(ErrorCode::kFailure, "the GPU's statistics cannot be read");
+    }
+    return sample;
+}
+
+std::optional<StatisticsSample> Statistics::collect() {
+    Slot& slot = slots_[static_cast<std::size_t>(oldest_)];
+    oldest_ = (oldest_ + 1) % kInFlightMax;
+    --in_flight_;
+    StatisticsSample sample;
+    sample.tag = slot.tag;
+    if (slot.empty) {
+        return sample;
+    }
+    slot.fence.remove();
+    GLint bound = 0;
+    glGetIntegerv(GL_PIXEL_PACK_BUFFER_BINDING, &bound);
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, slot.buffer.name());
+    std::array<float, 8> values{};
+    const void* mapped = glMapBufferRange(GL_PIXEL_PACK_BUFFER, 0, 2 * kTexelBytes, GL_MAP_READ_BIT);
+    if (mapped != nullptr) {
+        std::memcpy(values.data(), mapped, sizeof(values));
+    }
+    // False if the memory was lost while it was mapped.
+    const bool whole = mapped != nullptr && glUnmapBuffer(GL_PIXEL_PACK_BUFFER) == GL_TRUE;
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, static_cast<GLuint>(bound));
+    if (!whole) {
+        return std::nullopt;
+    }
+    sample.alive = static_cast<std::uint32_t>(values[0]);
+    sample.in_contact = static_cast<std::uint32_t>(values[1] + values[2]);
+    sample.caught = static_cast<std::uint32_t>(values[2]);
+    sample.energy = static_cast<double>(values[3]);
+    sample.collisions = static_cast<std::uint64_t>(values[4]) + 4096 * static_cast<std::uint64_t>(values[5]);
+    sample.max_speed = std::sqrt(values[6]);
+    return sample;
+}
+
+}  // namespace relief

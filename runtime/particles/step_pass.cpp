@@ -1,0 +1,91 @@
+#include "runtime/particles/step_pass.h"
+
+#include <array>
+#include <string>
+
+namespace relief {
+
+float dragRate(const Forces& forces, const ParticleType& type) {
+    return forces.viscosity > 0.0F ? stokesRate(forces.viscosity, type.radius, type.mass)
+                                   : forces.drag / type.mass;
+}
+
+Result<StepPass> StepPass::create(const StepFeatures& features) {
+    std::string defines = "#define RELIEF_TYPES " + std::to_string(features.types) + "\n";
+    const auto defineIf = [&](bool wanted, const std::string& what) {
+        defines += wanted ? "#define " + what + "\n" : "";
+    };
+    defineIf(features.verlet, "RELIEF_VERLET");
+    defineIf(features.sweep, "RELIEF_SWEEP " + std::to_string(kSweepPieces));
+    defineIf(features.radius, "RELIEF_RADIUS");
+    if (features.air != nullptr) {
+        defines += features.air->defines();
+    }
+    auto program = features.collider != nullptr
+                       ? makeProgram("quad.vert", "step.frag", defines + features.collider->defines())
+                       : makeProgram("quad.vert", "step_free.frag", defines);
+    if (!program) {
+        return forward(program);
+    }
+    StepPass pass;
+    pass.features_ = features;
+    pass.program_ = std::move(*program);
+    const auto at = [&](const char* name) { return glGetUniformLocation(pass.program_.name(), name); };
+    pass.now_ = at("u_now");
+    pass.dt_ = at("u_dt");
+    pass.rate_before_ = at("u_rate_before");
+    pass.gravity_ = at("u_gravity");
+    pass.wind_ = at("u_wind");
+    pass.still_ = at("u_still");
+    pass.ground_ = at("u_ground");
+    pass.sweep_ = at("u_sweep");
+    pass.air_time_ = at("u_air_time");
+    pass.types_ = at("u_types");
+    glUseProgram(pass.program_.name());
+    glUniform1i(at("u_position"), kPositionUnit);
+    glUniform1i(at(features.verlet ? "u_position_before" : "u_velocity"), kVelocityUnit);
+    glUniform1i(at("u_birth"), kBirthUnit);
+    if (features.collider != nullptr) {
+        features.collider->attach(pass.program_, kColliderBinding);
+    }
+    if (features.air != nullptr) {
+        features.air->attach(pass.program_, kAirBinding);
+    }
+    return pass;
+}
+
+void StepPass::use(const Values& values) const {
+    glUseProgram(program_.name());
+    if (features_.collider != nullptr) {
+        features_.collider->bind(kColliderBinding);
+    }
+    if (features_.air != nullptr) {
+        features_.air->bind(kAirBinding);
+    }
+    const Forces& forces = values.forces;
+    glUniform1f(now_, values.now);
+    glUniform1f(dt_, values.dt);
+    glUniform1f(rate_before_, values.dt_before > 0.0F ? 1.0F / values.dt_before : 0.0F);
+    glUniform3f(gravity_, forces.gravity.x, forces.gravity.y, forces.gravity.z);
+    glUniform3f(wind_, forces.wind.x, forces.wind.y, forces.wind.z);
+    glUniform1f(still_, 1e-3F * values.dt * glm::length(forces.gravity));
+    glUniform1f(ground_, values.ground);
+    glUniform1f(sweep_, values.sweep);
+    glUniform1f(air_time_, values.air_time);
+    std::array<float, 8 * kParticleTypesMax> types{};
+    for (std::size_t i = 0; i < values.types.size(); ++i) {
+        const ParticleType& type = values.types[i];
+        const std::array<float, 8> row{type.radius,
+                                       type.restitution,
+                                       1.0F - type.friction,
+                                       type.friction_threshold,
+                                       dragRate(forces, type),
+                                       static_cast<float>(type.on_collision),
+                                       type.lifetime_loss,
+                                       0.0F};
+        std::copy(row.begin(), row.end(), types.begin() + static_cast<std::ptrdiff_t>(8 * i));
+    }
+    glUniform4fv(types_, 2 * features_.types, types.data());
+}
+
+}  // namespace relief

@@ -1,0 +1,74 @@
+// The program of one simulation step, compiled for what a scene uses and no more (shaders/step.glsl).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "formats/base/result.h"
+#include "runtime/air/air_block.h"
+#include "runtime/collider/collider_textures.h"
+#include "runtime/gl/gl_object.h"
+#include "runtime/particles/particle_type.h"
+
+namespace relief {
+
+struct Forces {
+    glm::vec3 gravity{0.0F};  ///< world units a second squared
+    glm::vec3 wind{0.0F};     ///< velocity of the air, world units a second
+    float drag = 0.0F;        ///< a = drag / mass · (wind − v); mass/s, ≥ 0
+    float viscosity = 0.0F;   ///< above 0: Stokes drag 6π · viscosity · radius instead of `drag`
+};
+
+/// How fast a type takes on the velocity of the air, 1/s.
+[[nodiscard]] float dragRate(const Forces& forces, const ParticleType& type);
+
+/// What the program is made for. A change of any of these needs another one.
+struct StepFeatures {
+    const ColliderTextures* collider = nullptr;  ///< null: nothing solid but the floor
+    const AirBlock* air = nullptr;               ///< null: still, but for the wind of Forces
+    bool verlet = false;
+    bool sweep = false;
+    bool radius = false;  ///< some type has a radius
+    int types = 1;
+    friend bool operator==(const StepFeatures&, const StepFeatures&) = default;
+};
+
+class StepPass {
+  public:
+    /// The pieces of way that a swept step is tested at, at most.
+    static constexpr int kSweepPieces = 32;
+
+    // Texture units of the inputs; the collider's follow.
+    static constexpr int kPositionUnit = 0;
+    static constexpr int kVelocityUnit = 1;  ///< with verlet: the position before
+    static constexpr int kBirthUnit = 2;
+    static constexpr ColliderTextures::Binding kColliderBinding{3, 0};
+    static constexpr AirBlock::Binding kAirBinding{6, 1};
+
+    struct Values {
+        float now = 0.0F;  ///< seconds on the GPU's clock, at the end of the step
+        float dt = 0.0F;
+        float dt_before = 0.0F;  ///< verlet alone
+        float ground = 0.0F;
+        float sweep = 0.0F;
+        float air_time = 0.0F;  ///< as airTime() gives it
+        Forces forces;
+        std::span<const ParticleType> types;
+    };
+
+    StepPass() = default;
+    /// Errors: kFailure (the driver's compiler).
+    [[nodiscard]] static Result<StepPass> create(const StepFeatures& features);
+
+    /// Makes the program current and sets its uniforms; binds the collider's textures.
+    void use(const Values& values) const;
+    [[nodiscard]] const StepFeatures& features() const { return features_; }
+
+  private:
+    StepFeatures features_;
+    GlProgram program_;
+    GLint now_ = -1, dt_ = -1, rate_before_ = -1, gravity_ = -1, wind_ = -1, still_ = -1, ground_ = -1,
+          sweep_ = -1, air_time_ = -1, types_ = -1;
+};
+
+}  // namespace relief

@@ -1,0 +1,70 @@
+#include "runtime/picture/camera_path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace relief {
+namespace {
+
+constexpr float kFovMin = 1.0F;
+constexpr float kFovMax = 170.0F;
+// Of the distance to the target: the least way aside for a camera that looks down.
+constexpr float kAsideMin = 1e-3F;
+
+/// Slope of a value at key i, by the straight line between its neighbours.
+template <class T, class Get>
+T slopeAt(std::span<const CameraKey> keys, std::size_t i, Get get) {
+    const CameraKey& before = keys[i == 0 ? 0 : i - 1];
+    const CameraKey& after = keys[std::min(i + 1, keys.size() - 1)];
+    return (get(after) - get(before)) / static_cast<float>(after.time - before.time);
+}
+
+/// The value between keys i and i + 1, at `share` of the time between them.
+template <class T, class Get>
+T between(std::span<const CameraKey> keys, CameraCurve curve, std::size_t i, float share, Get get) {
+    const T from = get(keys[i]);
+    const T to = get(keys[i + 1]);
+    if (curve == CameraCurve::kLinear) {
+        return (1.0F - share) * from + share * to;
+    }
+    const auto seconds = static_cast<float>(keys[i + 1].time - keys[i].time);
+    const T leaving = seconds * slopeAt<T>(keys, i, get);
+    const T arriving = seconds * slopeAt<T>(keys, i + 1, get);
+    const float s = share;
+    const float rest = 1.0F - s;
+    // Hermite's cubic, with the ends exact.
+    return (1.0F + 2.0F * s) * rest * rest * from + s * s * (3.0F - 2.0F * s) * to +
+           s * rest * rest * leaving - s * s * rest * arriving;
+}
+
+}  // namespace
+
+Camera cameraAt(std::span<const CameraKey> keys, CameraCurve curve, double time) {
+    std::size_t i = 0;
+    while (i + 1 < keys.size() && keys[i + 1].time <= time) {
+        ++i;
+    }
+    Camera camera;
+    if (i + 1 == keys.size() || time <= keys.front().time) {
+        const CameraKey& still = i + 1 == keys.size() ? keys.back() : keys.front();
+        camera.eye = still.eye;
+        camera.target = still.target;
+        camera.fov = still.fov;
+    } else {
+        const auto share = static_cast<float>((time - keys[i].time) / (keys[i + 1].time - keys[i].time));
+        camera.eye = between<glm::vec3>(keys, curve, i, share, [](const CameraKey& k) { return k.eye; });
+        camera.target =
+            between<glm::vec3>(keys, curve, i, share, [](const CameraKey& k) { return k.target; });
+        camera.fov = between<float>(keys, curve, i, share, [](const CameraKey& k) { return k.fov; });
+    }
+    camera.fov = std::clamp(camera.fov, kFovMin, kFovMax);
+    const glm::vec3 d = camera.eye - camera.target;
+    const float aside = kAsideMin * std::max(std::abs(d.y), 1e-3F);
+    if (std::hypot(d.x, d.z) < aside) {
+        camera.eye.z = camera.target.z + aside;
+    }
+    return camera;
+}
+
+}  // namespace relief

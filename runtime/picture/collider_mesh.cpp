@@ -1,0 +1,117 @@
+#include "runtime/picture/collider_mesh.h"
+
+#include <array>
+#include <cstddef>
+#include <glm/gtc/type_ptr.hpp>
+#include <limits>
+#include <vector>
+
+#include "runtime/gl/gl_fault.h"
+#include "runtime/gl/pass_state.h"
+
+namespace relief {
+namespace {
+
+struct Vertex {
+    glm::vec3 position;
+    glm::vec3 normal;
+};
+
+void setAttribute(GLuint location, std::size_t offset) {
+    glEnableVertexAttribArray(location);
+    glVertexAttribPointer(location, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex),
+                          reinterpret_cast<const void*>(offset));
+}
+
+}  // namespace
+
+Result<ColliderMesh> ColliderMesh::create(const PictureMesh& mesh) {
+    if (auto good = checkMesh(mesh); !good) {
+        return forward(good);
+    }
+    if (mesh.triangles.size() > static_cast<std::size_t>(std::numeric_limits<GLsizei>::max())) {
+        return fail(ErrorCode::kInvalidInput, "a mesh of more triangles than one draw takes");
+    }
+    const PictureMesh made = mesh.normals.empty() ? withNormals(mesh) : PictureMesh{};
+    const PictureMesh& full = mesh.normals.empty() ? made : mesh;
+    std::vector<Vertex> vertices(full.positions.size());
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        vertices[i] = {full.positions[i], full.normals[i]};
+    }
+    const PassState state;
+    auto program = makeProgram("mesh.vert", "mesh.frag");
+    if (!program) {
+        return forward(program);
+    }
+    forgetGlErrors();
+    ColliderMesh out;
+    out.program_ = std::move(*program);
+    out.vertex_bytes_ = static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex));
+    out.corners_ = static_cast<GLsizei>(full.triangles.size());
+    out.vertices_ = makeBuffer();
+    out.triangles_ = makeBuffer();
+    out.array_ = makeVertexArray();
+    glBindVertexArray(out.array_.name());
+    glBindBuffer(GL_ARRAY_BUFFER, out.vertices_.name());
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)), vertices.data(),
+                 GL_STATIC_DRAW);
+    setAttribute(0, offsetof(Vertex, position));
+    setAttribute(1, offsetof(Vertex, normal));
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, out.triangles_.name());
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER,
+                 static_cast<GLsizeiptr>(full.triangles.size() * sizeof(full.triangles[0])),
+                 full.triangles.data(), GL_STATIC_DRAW);
+    if (auto done = checkAllocated("the collider's mesh", "choose a smaller one"); !done) {
+        return forward(done);
+    }
+    return out;
+}
+
+void ColliderMesh::setVertices(const GlBuffer& buffer) {
+    GLint bound[2] = {};
+    glGetIntegerv(GL_COPY_READ_BUFFER_BINDING, &bound[0]);
+    glGetIntegerv(GL_COPY_WRITE_BUFFER_BINDING, &bound[1]);
+    glBindBuffer(GL_COPY_READ_BUFFER, buffer.name());
+    glBindBuffer(GL_COPY_WRITE_BUFFER, vertices_.name());
+    glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, vertex_bytes_);
+    glBindBuffer(GL_COPY_READ_BUFFER, static_cast<GLuint>(bound[0]));
+    glBindBuffer(GL_COPY_WRITE_BUFFER, static_cast<GLuint>(bound[1]));
+}
+
+Result<ColliderMesh::View> ColliderMesh::view(const Camera& camera, GLsizei width, GLsizei height) const {
+    const PassState state;
+    if (auto fits = checkTextureSize(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height),
+                                     "the mesh's picture's pixels", "choose a smaller size");
+        !fits) {
+        return forward(fits);
+    }
+    forgetGlErrors();
+    View view;
+    view.normal = makeTexture2D(GL_RGBA16F, width, height, GL_RGBA, GL_HALF_FLOAT);
+    view.depth = makeTexture2D(GL_DEPTH_COMPONENT32F, width, height, GL_DEPTH_COMPONENT, GL_FLOAT);
+    if (auto done = checkAllocated("the mesh's picture", "choose a smaller size"); !done) {
+        return forward(done);
+    }
+    const std::array<GLuint, 1> colors{view.normal.name()};
+    const auto framebuffer = makeFramebuffer(colors, view.depth.name());
+    if (!framebuffer) {
+        return forward(framebuffer);
+    }
+    const float aspect = static_cast<float>(width) / static_cast<float>(height);
+    const glm::mat4 clip = camera.projection(aspect) * camera.view();
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer->name());
+    glViewport(0, 0, width, height);
+    const std::array<GLfloat, 4> nothing{};
+    const GLfloat far = 1.0F;
+    glClearBufferfv(GL_COLOR, 0, nothing.data());
+    glClearBufferfv(GL_DEPTH, 0, &far);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LESS);
+    glUseProgram(program_.name());
+    glUniformMatrix4fv(uniformLocation(program_, "u_clip"), 1, GL_FALSE, glm::value_ptr(clip));
+    glBindVertexArray(array_.name());
+    glDrawElements(GL_TRIANGLES, corners_, GL_UNSIGNED_INT, nullptr);
+    return view;
+}
+
+}  // namespace relief

@@ -1,0 +1,213 @@
+#include "runtime/picture/collider_renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "runtime/gl/gl_fault.h"
+#include "runtime/gl/pass_state.h"
+
+namespace relief {
+namespace {
+
+constexpr ColliderTextures::Binding kColliderBinding{0, 0};
+constexpr int kColorUnit = 0;
+constexpr int kDepthUnit = 1;
+constexpr int kCoarseUnit = 3;  // after the collider's three; with a mesh:
+constexpr int kMeshNormalUnit = 3;
+constexpr int kMeshDepthUnit = 4;
+
+// Every kCoarseStride-th pixel of a row or column is traced first; collider_view.frag says why.
+constexpr GLsizei kCoarseStride = 4;
+
+// A ray's step in texels: what is two texels thick is met.
+constexpr float kStepTexels = 1.5F;
+
+// Across the diagonal of a box whose finest texel is 1/2048 of its longest side, with room for the
+// bisections.
+constexpr int kRayStepsMax = 2560;
+constexpr int kBisections = 10;
+constexpr int kNormals = 13;
+
+// For one of the four samples of a pixel.
+constexpr LightRays kLightRays{.sun = 2, .sky = 6, .sun_steps = 32, .sky_steps = 5};
+
+// Rows drawn at a time: a driver may take a draw of seconds for a hang.
+constexpr GLsizei kBandRows = 64;
+
+constexpr const char* kSmallerPicture = "choose a smaller size";
+
+void setVector(const GlProgram& program, const char* name, const glm::vec3& v) {
+    glUniform3f(uniformLocation(program, name), v.x, v.y, v.z);
+}
+
+void setViewUniforms(const GlProgram& program, const Camera& camera, const ColliderStyle& style,
+                     GLsizei width, GLsizei height) {
+    const float tangent = camera.tanHalfFov();
+    const float aspect = static_cast<float>(width) / static_cast<float>(height);
+    const glm::vec2 depth = camera.depthOfDistance();
+    glUseProgram(program.name());
+    setVector(program, "u_eye", camera.eye);
+    setVector(program, "u_forward", camera.forward());
+    setVector(program, "u_right", tangent * aspect * camera.right());
+    setVector(program, "u_up", tangent * camera.up());
+    glUniform2f(uniformLocation(program, "u_depth"), depth.x, depth.y);
+    glUniform1i(uniformLocation(program, "u_has_ground"), style.ground ? 1 : 0);
+    glUniform1f(uniformLocation(program, "u_ground"), style.ground.value_or(0.0F));
+    setVector(program, "u_background", linearColor(style.background));
+    setVector(program, "u_clay", linearColor(style.clay));
+}
+
+/// quad.vert's triangle over the whole of the bound framebuffer; the empty vertex array is bound.
+void drawInBands(GLsizei width, GLsizei height) {
+    glViewport(0, 0, width, height);
+    glEnable(GL_SCISSOR_TEST);
+    for (GLsizei y = 0; y < height; y += kBandRows) {
+        glScissor(0, y, width, std::min(kBandRows, height - y));
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+        glFlush();
+    }
+    glDisable(GL_SCISSOR_TEST);
+}
+
+}  // namespace
+
+Result<ColliderRenderer> ColliderRenderer::create(const ColliderView& view, const ColliderMesh* mesh) {
+    const PassState state;
+    const std::string mesh_define = mesh != nullptr ? "#define RELIEF_MESH 1\n" : "";
+    auto trace = makeProgram("quad.vert", "collider_view.frag", mesh_define + view.textures->defines());
+    auto coarse = makeProgram("quad.vert", "collider_view.frag",
+                              "#define RELIEF_COARSE 1\n" + view.textures->defines());
+    auto copy = makeProgram("quad.vert", "copy_view.frag");
+    if (!trace || !coarse || !copy) {
+        return forward(!trace ? trace : (!coarse ? coarse : copy));
+    }
+    ColliderRenderer renderer;
+    renderer.view_ = view;
+    renderer.mesh_ = mesh;
+    renderer.trace_program_ = std::move(*trace);
+    renderer.coarse_program_ = std::move(*coarse);
+    renderer.copy_program_ = std::move(*copy);
+    renderer.no_attributes_ = makeVertexArray();
+    for (const GlProgram* program : {&renderer.trace_program_, &renderer.coarse_program_}) {
+        view.textures->attach(*program, kColliderBinding);
+        setLightUniforms(*program, view, kLightRays);
+        glUniform1f(uniformLocation(*program, "u_step"), kStepTexels * view.texel);
+        glUniform1i(uniformLocation(*program, "u_steps_max"), kRayStepsMax);
+        glUniform1i(uniformLocation(*program, "u_bisections"), kBisections);
+        glUniform1i(uniformLocation(*program, "u_normals"), kNormals);
+    }
+    glUseProgram(renderer.trace_program_.name());
+    glUniform1i(uniformLocation(renderer.trace_program_, "u_coarse"), kCoarseUnit);
+    glUniform1i(uniformLocation(renderer.trace_program_, "u_mesh_normal"), kMeshNormalUnit);
+    glUniform1i(uniformLocation(renderer.trace_program_, "u_mesh_depth"), kMeshDepthUnit);
+    glUseProgram(renderer.copy_program_.name());
+    glUniform1i(uniformLocation(renderer.copy_program_, "u_color"), kColorUnit);
+    glUniform1i(uniformLocation(renderer.copy_program_, "u_depth_texture"), kDepthUnit);
+    glUniform2i(uniformLocation(renderer.copy_program_, "u_origin"), 0, 0);
+    return renderer;
+}
+
+Result<void> ColliderRenderer::draw(const Camera& camera, const ColliderStyle& style,
+                                    const RenderTarget& target) {
+    const PassState state;
+    const Drawn wanted{camera, style, target.width, target.height, view_.textures->revision()};
+    if (drawn_ != wanted) {
+        drawn_.reset();
+        if (auto done = trace(camera, style, target.width, target.height); !done) {
+            return done;
+        }
+        drawn_ = wanted;
+    }
+    glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
+    glViewport(0, 0, target.width, target.height);
+    glUseProgram(copy_program_.name());
+    glActiveTexture(GL_TEXTURE0 + kColorUnit);
+    glBindTexture(GL_TEXTURE_2D, color_.name());
+    glActiveTexture(GL_TEXTURE0 + kDepthUnit);
+    glBindTexture(GL_TEXTURE_2D, depth_.name());
+    // Depth is written only while its test is on.
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_ALWAYS);
+    glDepthMask(GL_TRUE);
+    glBindVertexArray(no_attributes_.name());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    return {};
+}
+
+Result<void> ColliderRenderer::trace(const Camera& camera, const ColliderStyle& style, GLsizei width,
+                                     GLsizei height) {
+    GLint side_max = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side_max);
+    if (std::max(width, height) > side_max) {
+        return fail(ErrorCode::kLimit, "a picture of " + std::to_string(width) + "x" +
+                                           std::to_string(height) + " pixels is larger than this GL takes (" +
+                                           std::to_string(side_max) + " along a side)");
+    }
+    forgetGlErrors();
+    color_ = makeTexture2D(GL_RGBA16F, width, height, GL_RGBA, GL_HALF_FLOAT);
+    depth_ = makeTexture2D(GL_DEPTH_COMPONENT32F, width, height, GL_DEPTH_COMPONENT, GL_FLOAT);
+    if (auto done = checkAllocated("the collider's picture", kSmallerPicture); !done) {
+        return done;
+    }
+    const std::array<GLuint, 1> colors{color_.name()};
+    auto framebuffer = makeFramebuffer(colors, depth_.name());
+    if (!framebuffer) {
+        return forward(framebuffer);
+    }
+    setViewUniforms(coarse_program_, camera, style, width, height);
+    setViewUniforms(trace_program_, camera, style, width, height);
+    view_.textures->bind(kColliderBinding);
+
+    glBindVertexArray(no_attributes_.name());
+
+    // What the second pass samples: the mesh's picture, or the coarse pass.
+    ColliderMesh::View of_mesh;
+    GlTexture coarse;
+    if (mesh_ != nullptr) {
+        auto seen = mesh_->view(camera, width, height);
+        if (!seen) {
+            return forward(seen);
+        }
+        of_mesh = std::move(*seen);
+        glActiveTexture(GL_TEXTURE0 + kMeshNormalUnit);
+        glBindTexture(GL_TEXTURE_2D, of_mesh.normal.name());
+        glActiveTexture(GL_TEXTURE0 + kMeshDepthUnit);
+        glBindTexture(GL_TEXTURE_2D, of_mesh.depth.name());
+    } else {
+        if (auto done = traceCoarse(width, height, coarse); !done) {
+            return done;
+        }
+        glActiveTexture(GL_TEXTURE0 + kCoarseUnit);
+        glBindTexture(GL_TEXTURE_2D, coarse.name());
+    }
+
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer->name());
+    glUseProgram(trace_program_.name());
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_ALWAYS);
+    glDepthMask(GL_TRUE);
+    drawInBands(width, height);
+    return {};
+}
+
+Result<void> ColliderRenderer::traceCoarse(GLsizei width, GLsizei height, GlTexture& coarse) {
+    const GLsizei coarse_width = (width + kCoarseStride - 1) / kCoarseStride;
+    const GLsizei coarse_height = (height + kCoarseStride - 1) / kCoarseStride;
+    forgetGlErrors();
+    coarse = makeTexture2D(GL_R32F, coarse_width, coarse_height, GL_RED, GL_FLOAT);
+    if (auto done = checkAllocated("the collider's coarse picture", kSmallerPicture); !done) {
+        return done;
+    }
+    const std::array<GLuint, 1> colors{coarse.name()};
+    const auto target = makeFramebuffer(colors);
+    if (!target) {
+        return forward(target);
+    }
+    glBindFramebuffer(GL_FRAMEBUFFER, target->name());
+    glUseProgram(coarse_program_.name());
+    drawInBands(coarse_width, coarse_height);
+    return {};
+}
+
+}  // namespace relief

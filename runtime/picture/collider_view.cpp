@@ -1,0 +1,51 @@
+#include "runtime/picture/collider_view.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace relief {
+
+float finestTexel(const Collider& collider) {
+    const float longest = collider.bounds.longestSide();
+    float finest = longest;
+    for (const DepthMap& map : collider.maps) {
+        const glm::vec3& unit = map.object_per_map;
+        if (map.projection() == Projection::kCube) {
+            // A face spans the volume, of half sides `unit`, at its far end.
+            finest =
+                std::min(finest, 2.0F * std::min({unit.x, unit.y, unit.z}) / static_cast<float>(map.width));
+        } else {
+            finest = std::min(
+                {finest, unit.x / static_cast<float>(map.width), unit.y / static_cast<float>(map.height)});
+        }
+    }
+    return std::max({finest, longest / 2048.0F, 1e-9F});
+}
+
+glm::vec3 sunDirection() {
+    return glm::normalize(glm::vec3(-0.55F, 0.95F, 0.62F));
+}
+
+glm::vec3 linearColor(const glm::vec3& srgb) {
+    glm::vec3 linear;
+    for (int i = 0; i < 3; ++i) {
+        linear[i] = srgb[i] <= 0.04045F ? srgb[i] / 12.92F : std::pow((srgb[i] + 0.055F) / 1.055F, 2.4F);
+    }
+    return linear;
+}
+
+void setLightUniforms(const GlProgram& program, const ColliderView& view, const LightRays& rays) {
+    glUseProgram(program.name());
+    const glm::vec3 low = view.bounds.min - glm::vec3(2.0F * view.texel);
+    const glm::vec3 high = view.bounds.max + glm::vec3(2.0F * view.texel);
+    const glm::vec3 sun = sunDirection();
+    glUniform3f(uniformLocation(program, "u_bounds_min"), low.x, low.y, low.z);
+    glUniform3f(uniformLocation(program, "u_bounds_max"), high.x, high.y, high.z);
+    glUniform1f(uniformLocation(program, "u_scale"), view.bounds.longestSide());
+    glUniform1f(uniformLocation(program, "u_texel"), view.texel);
+    glUniform3f(uniformLocation(program, "u_sun"), sun.x, sun.y, sun.z);
+    glUniform2i(uniformLocation(program, "u_rays"), rays.sun, rays.sky);
+    glUniform2i(uniformLocation(program, "u_ray_steps"), rays.sun_steps, rays.sky_steps);
+}
+
+}  // namespace relief

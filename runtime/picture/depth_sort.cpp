@@ -1,0 +1,181 @@
+#include "runtime/picture/depth_sort.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <string>
+
+#include "runtime/gl/gl_fault.h"
+#include "runtime/gl/pass_state.h"
+
+namespace relief {
+namespace {
+
+constexpr int kOrderUnit = 0;
+constexpr int kPositionUnit = 1;
+
+void useTexture(int unit, const GlTexture& texture) {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    glBindTexture(GL_TEXTURE_2D, texture.name());
+}
+
+std::uint32_t regionFor(std::uint32_t extent) {
+    return extent == 0 ? 0 : std::bit_ceil(extent);
+}
+
+}  // namespace
+
+Result<DepthSorter> DepthSorter::create(std::uint32_t capacity) {
+    if (capacity == 0 || capacity > kCapacityMax) {
+        return fail(ErrorCode::kUsage, "a depth sorter for " + std::to_string(capacity) +
+                                           " particles is not possible; choose 1 to " +
+                                           std::to_string(kCapacityMax));
+    }
+    const std::uint32_t rows = std::max(regionFor(capacity) / kWidth, 1U);
+    GLint side_max = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side_max);
+    if (std::max(rows, kWidth) > static_cast<std::uint32_t>(side_max)) {
+        return fail(ErrorCode::kLimit, "sorting " + std::to_string(capacity) +
+                                           " particles needs a texture of " + std::to_string(kWidth) + " x " +
+                                           std::to_string(rows) + " texels; this GL takes at most " +
+                                           std::to_string(side_max) + " along a side");
+    }
+    const PassState state;
+    DepthSorter sorter(capacity);
+    if (auto done = sorter.createTextures(); !done) {
+        return forward(done);
+    }
+    if (auto done = sorter.createPrograms(); !done) {
+        return forward(done);
+    }
+    return sorter;
+}
+
+Result<void> DepthSorter::createTextures() {
+    const std::uint32_t rows = std::max(regionFor(capacity_) / kWidth, 1U);
+    forgetGlErrors();
+    for (int i = 0; i < 2; ++i) {
+        order_[i] = makeTexture2D(GL_RG32UI, static_cast<GLsizei>(kWidth), static_cast<GLsizei>(rows),
+                                  GL_RG_INTEGER, GL_UNSIGNED_INT);
+        if (auto done = checkAllocated("sorting " + std::to_string(capacity_) + " particles",
+                                       "choose a smaller capacity");
+            !done) {
+            return done;
+        }
+        const std::array<GLuint, 1> textures{order_[i].name()};
+        auto target = makeFramebuffer(textures);
+        if (!target) {
+            return forward(target);
+        }
+        target_[i] = std::move(*target);
+    }
+    no_attributes_ = makeVertexArray();
+    return {};
+}
+
+Result<void> DepthSorter::createPrograms() {
+    const std::string defines = "#define RELIEF_ORDER_WIDTH " + std::to_string(kWidth) + "\n";
+    auto keys = makeProgram("quad.vert", "sort_keys.frag", defines);
+    auto pass = makeProgram("quad.vert", "sort_pass.frag", defines);
+    if (!keys || !pass) {
+        return forward(!keys ? keys : pass);
+    }
+    keys_.program = std::move(*keys);
+    keys_.kept = uniformLocation(keys_.program, "u_kept");
+    keys_.width = uniformLocation(keys_.program, "u_width");
+    keys_.extent = uniformLocation(keys_.program, "u_extent");
+    keys_.eye = uniformLocation(keys_.program, "u_eye");
+    glUseProgram(keys_.program.name());
+    glUniform1i(uniformLocation(keys_.program, "u_order"), kOrderUnit);
+    glUniform1i(uniformLocation(keys_.program, "u_position"), kPositionUnit);
+
+    pass_.program = std::move(*pass);
+    pass_.block = uniformLocation(pass_.program, "u_block");
+    pass_.stride = uniformLocation(pass_.program, "u_stride");
+    glUseProgram(pass_.program.name());
+    glUniform1i(uniformLocation(pass_.program, "u_order"), kOrderUnit);
+    return {};
+}
+
+void DepthSorter::update(const GlTexture& positions, std::uint32_t width, std::uint32_t extent,
+                         const glm::vec3& eye, std::uint32_t passes) {
+    extent = std::min(extent, capacity_);
+    const std::uint32_t kept = count_;
+    if (extent > count_) {
+        count_ = regionFor(extent);
+        restart();
+    }
+    peak_ = std::max(peak_, extent);
+    if (count_ == 0) {
+        return;
+    }
+    const PassState state;
+    glBindVertexArray(no_attributes_.name());
+    glUseProgram(keys_.program.name());
+    useTexture(kPositionUnit, positions);
+    glUniform1i(keys_.kept, static_cast<GLint>(kept));
+    glUniform1i(keys_.width, static_cast<GLint>(width));
+    glUniform1i(keys_.extent, static_cast<GLint>(extent));
+    glUniform3f(keys_.eye, eye.x, eye.y, eye.z);
+    drawNext();
+
+    glUseProgram(pass_.program.name());
+    for (std::uint32_t i = 0; i < passes && count_ > 1; ++i) {
+        drawPass();
+        if (block_ > count_) {
+            endSequence(extent);
+        }
+    }
+    if (count_ == 1) {  // sorted without a pass
+        endSequence(extent);
+    }
+}
+
+void DepthSorter::drawPass() {
+    glUniform1ui(pass_.block, block_);
+    glUniform1ui(pass_.stride, stride_);
+    drawNext();
+    ++passes_done_;
+    stride_ /= 2;
+    if (stride_ == 0) {
+        stride_ = block_;
+        block_ *= 2;
+    }
+}
+
+/// Draws quad.vert's triangle over the sorted region of the other buffer, from this one.
+void DepthSorter::drawNext() {
+    const int next = 1 - current_;
+    glBindFramebuffer(GL_FRAMEBUFFER, target_[next].name());
+    useTexture(kOrderUnit, order_[current_]);
+    // A power of two: part of the first row, or whole rows.
+    glViewport(0, 0, static_cast<GLsizei>(std::min(count_, kWidth)),
+               static_cast<GLsizei>(std::max(count_ / kWidth, 1U)));
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    current_ = next;
+}
+
+void DepthSorter::endSequence(std::uint32_t extent) {
+    // Sound at the end of a whole sequence alone: see the header.
+    count_ = regionFor(peak_);
+    restart();
+    peak_ = extent;
+}
+
+void DepthSorter::restart() {
+    block_ = 2;
+    stride_ = 1;
+    passes_done_ = 0;
+    peak_ = 0;
+}
+
+std::uint32_t DepthSorter::sequencePasses(std::uint32_t extent) {
+    const auto k = extent == 0 ? 0U : static_cast<std::uint32_t>(std::bit_width(extent - 1));
+    return k * (k + 1) / 2;
+}
+
+std::uint32_t DepthSorter::passesPerFrame(std::uint32_t extent, std::uint32_t frames) {
+    return (sequencePasses(extent) + frames - 1) / frames;
+}
+
+}  // namespace relief

@@ -1,0 +1,126 @@
+// The order in which particles are to be drawn so that they blend: farthest from the viewer first. Batcher's
+// odd-even merge sort in fragment passes, spread over as many frames as one likes (paper, section 3.4).
+// Nothing is read back and nothing waits for the GPU.
+//
+//     bytes on the GPU = 16 · texels, texels = capacity rounded up to a power of two (and whole rows of
+//     kWidth):
+//         order  2 × RG32UI (double-buffered)    index of a particle, key
+//
+// What is sorted. The ranks 0…count()−1 of order(), a power of two, hold every index 0…count()−1 once:
+// always, also in the middle of a sequence and while births and deaths change the extent. One pass takes the
+// elements pair by pair and puts each pair in order: the larger key, of equal keys the lower index, to the
+// lower rank. The key grows with the distance to the eye; dead and absent particles have key 0, and so belong
+// to the end. A sequence of sequencePasses() = k(k+1)/2 passes sorts count() = 2^k elements.
+//
+// Frames. Every update() begins by computing all keys afresh, from where the particles and the eye are now,
+// and goes on with the sequence where the last one stopped, from the order that is there.
+//
+// Sortedness. An inversion is a pair of ranks i < j whose elements belong the other way round, by the keys of
+// the last update(). No pass ever raises the number of inversions, and every exchange lowers it: with an
+// inverted pair i < j exchanged, that inversion is gone; ranks outside i…j see the same two elements on the
+// same side as before; and an element between i and j has the one that belongs first now before it and the
+// other behind it, so that each of its two pairs can only have been put right. So stopping a sequence,
+// beginning it anew or changing keys amid it costs time, never order. (Motion of the particles or the eye
+// does raise the number: it changes the keys. In a bitonic sort half the pairs are put the other way round,
+// and it has no such property.)
+//
+// Exactness. If keys and extent do not change, the order is sorted after one whole sequence. If they change,
+// it lags behind by the motion of one to two sequences; newborn particles wait at the end, among the dead
+// whose indices they took, for about as long.
+//
+// The sorted region. When the extent grows beyond count(), the next power of two is taken at once and the
+// sequence begins anew; new ranks start with their own index. When it has fitted into half the region for one
+// whole sequence, the region shrinks at that sequence's end. That loses no index: through the sequence every
+// index from the half on was absent, thus of the least key, and higher than all others, thus after each of
+// them in the order of every pass, however the keys moved. By the 0-1 principle they have all left the half.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+
+#include "formats/base/result.h"
+#include "runtime/gl/gl_object.h"
+
+namespace relief {
+
+class DepthSorter {
+  public:
+    static constexpr std::uint32_t kWidth = 1024;  ///< texels in a row of order()
+    static constexpr std::uint32_t kCapacityMax = 1U << 24;
+
+    /// Needs a current context, as every call does that is not const.
+    /// \param capacity  particles that there may be at once, 1…kCapacityMax: that of the particle system.
+    /// Errors: kUsage (capacity), kLimit (above what this GL takes), kUnsupported, kFailure.
+    [[nodiscard]] static Result<DepthSorter> create(std::uint32_t capacity);
+
+    /// Computes the keys afresh, then makes the next passes of the sequence; after its last pass the next one
+    /// begins. To be called after every step of the particles that is drawn. Restores the GL state that it
+    /// touches.
+    /// \param positions  RGBA32F, particle i at texel (i mod width, i / width): xyz in object space, w < 0
+    /// for
+    ///                   the dead. Not kept.
+    /// \param width      texels in a row of `positions`, > 0.
+    /// \param extent     the particles are those of the indices below it. At most the capacity; what is
+    /// beyond
+    ///                   that is left out.
+    /// \param eye        object space.
+    /// \param passes     any number; 0 refreshes the keys alone. See passesPerFrame().
+    void update(const GlTexture& positions, std::uint32_t width, std::uint32_t extent, const glm::vec3& eye,
+                std::uint32_t passes);
+
+    /// Lets the next update() begin a sequence: with sequencePasses(extent) passes it then sorts exactly. The
+    /// order is kept.
+    void restart();
+
+    /// The particles in drawing order, RG32UI (a usampler2D): rank i < count() at texel (i mod kWidth,
+    /// i / kWidth) holds x: the particle's index, and y: its key as of the last update(), 0 where there is
+    /// nothing to draw. A renderer draws all count() ranks and drops those of key 0: until a sequence has
+    /// ended, live particles may lie at any of them. Valid until the next update() or the sorter's end.
+    [[nodiscard]] const GlTexture& order() const { return order_[current_]; }
+    /// The ranks that hold an order: the least power of two not below the extent, or a larger one for up to
+    /// two sequences after the extent has fallen; 0 before the first particle.
+    [[nodiscard]] std::uint32_t count() const { return count_; }
+    /// Passes that the sequence under way has had, below sequencePasses(count()) unless both are 0.
+    [[nodiscard]] std::uint32_t passesDone() const { return passes_done_; }
+
+    /// The passes of a whole sequence for so many particles: 210 for 2^20.
+    [[nodiscard]] static std::uint32_t sequencePasses(std::uint32_t extent);
+    /// The passes for each update() so that a sequence ends within `frames` of them; `frames` > 0.
+    [[nodiscard]] static std::uint32_t passesPerFrame(std::uint32_t extent, std::uint32_t frames);
+
+  private:
+    struct KeysProgram {
+        GlProgram program;
+        GLint kept = -1;
+        GLint width = -1;
+        GLint extent = -1;
+        GLint eye = -1;
+    };
+    struct PassProgram {
+        GlProgram program;
+        GLint block = -1;
+        GLint stride = -1;
+    };
+
+    explicit DepthSorter(std::uint32_t capacity) : capacity_(capacity) {}
+    [[nodiscard]] Result<void> createTextures();
+    [[nodiscard]] Result<void> createPrograms();
+    void drawPass();
+    void endSequence(std::uint32_t extent);
+    void drawNext();
+
+    std::uint32_t capacity_ = 0;
+    std::uint32_t count_ = 0;
+    std::uint32_t peak_ = 0;  // the largest extent since the sequence began
+    std::uint32_t passes_done_ = 0;
+    std::uint32_t block_ = 2;   // of the next pass
+    std::uint32_t stride_ = 1;  // of the next pass
+    int current_ = 0;           // which of the two buffers holds the order
+    GlTexture order_[2];
+    GlFramebuffer target_[2];
+    GlVertexArray no_attributes_;
+    KeysProgram keys_;
+    PassProgram pass_;
+};
+
+}  // namespace relief

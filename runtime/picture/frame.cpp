@@ -1,0 +1,96 @@
+#include "runtime/picture/frame.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "runtime/gl/gl_fault.h"
+#include "runtime/gl/pass_state.h"
+
+namespace relief {
+
+Result<Frame> Frame::create(std::uint32_t width, std::uint32_t height) {
+    const std::string size = std::to_string(width) + "x" + std::to_string(height);
+    if (width == 0 || height == 0) {
+        return fail(ErrorCode::kUsage,
+                    "a picture of " + size + " pixels has nothing to show; sides start at 1");
+    }
+    GLint side_max = 0;
+    std::array<GLint, 2> viewport_max{};
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side_max);
+    glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport_max.data());
+    const auto limit = static_cast<std::uint32_t>(std::min({side_max, viewport_max[0], viewport_max[1]}));
+    const std::uint64_t pixels = std::uint64_t{width} * height;
+    if (std::max(width, height) > limit || pixels > kPixelsMax) {
+        return fail(ErrorCode::kLimit,
+                    "a picture of " + size + " pixels is too large; this GL takes sides up to " +
+                        std::to_string(limit) + ", Relief " + std::to_string(kPixelsMax) + " pixels in all");
+    }
+    Frame frame;
+    frame.width_ = width;
+    frame.height_ = height;
+    frame.factor_ = 2 * std::max(width, height) <= limit && pixels <= kSmoothPixelsMax ? 2 : 1;
+
+    const PassState state;
+    forgetGlErrors();
+    const RenderTarget large = frame.target();
+    frame.color_ = makeTexture2D(GL_RGBA16F, large.width, large.height, GL_RGBA, GL_HALF_FLOAT);
+    frame.depth_ =
+        makeTexture2D(GL_DEPTH_COMPONENT32F, large.width, large.height, GL_DEPTH_COMPONENT, GL_FLOAT);
+    frame.finished_ = makeTexture2D(GL_RGBA8, static_cast<GLsizei>(width), static_cast<GLsizei>(height),
+                                    GL_RGBA, GL_UNSIGNED_BYTE);
+    if (auto done = checkAllocated("a picture of " + size + " pixels", "choose a smaller size"); !done) {
+        return forward(done);
+    }
+    const std::array<GLuint, 1> color{frame.color_.name()};
+    const std::array<GLuint, 1> finished{frame.finished_.name()};
+    auto large_target = makeFramebuffer(color, frame.depth_.name());
+    auto small_target = makeFramebuffer(finished);
+    auto program = makeProgram("quad.vert", "resolve.frag");
+    if (!large_target || !small_target) {
+        return forward(!large_target ? large_target : small_target);
+    }
+    if (!program) {
+        return forward(program);
+    }
+    frame.large_ = std::move(*large_target);
+    frame.small_ = std::move(*small_target);
+    frame.program_ = std::move(*program);
+    frame.no_attributes_ = makeVertexArray();
+    glUseProgram(frame.program_.name());
+    glUniform1i(uniformLocation(frame.program_, "u_color"), 0);
+    glUniform1i(uniformLocation(frame.program_, "u_factor"), static_cast<GLint>(frame.factor_));
+    return frame;
+}
+
+RenderTarget Frame::target() const {
+    return {large_.name(), static_cast<GLsizei>(width_ * factor_), static_cast<GLsizei>(height_ * factor_)};
+}
+
+std::vector<std::uint8_t> Frame::read() const {
+    const PassState state;
+    const auto width = static_cast<GLsizei>(width_);
+    const auto height = static_cast<GLsizei>(height_);
+    glBindFramebuffer(GL_FRAMEBUFFER, small_.name());
+    glViewport(0, 0, width, height);
+    glUseProgram(program_.name());
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_2D, color_.name());
+    glBindVertexArray(no_attributes_.name());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+
+    // RGBA is the combination that every GL ES reads; rows come from below.
+    std::vector<std::uint8_t> rgba(std::size_t{4} * width_ * height_);
+    glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+    std::vector<std::uint8_t> rgb(std::size_t{3} * width_ * height_);
+    for (std::size_t y = 0; y < height_; ++y) {
+        const std::uint8_t* from = &rgba[(height_ - 1 - y) * 4 * width_];
+        std::uint8_t* to = &rgb[y * 3 * width_];
+        for (std::size_t x = 0; x < width_; ++x) {
+            std::copy_n(from + 4 * x, 3, to + 3 * x);
+        }
+    }
+    return rgb;
+}
+
+}  // namespace relief

@@ -1,0 +1,172 @@
+#include "runtime/picture/particle_renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <glm/gtc/type_ptr.hpp>
+#include <string>
+
+#include "runtime/gl/gl_fault.h"
+#include "runtime/gl/pass_state.h"
+
+namespace relief {
+namespace {
+
+// Sampler k of the program is unit k.
+constexpr std::array<const char*, 7> kSamplers{"u_position", "u_birth", "u_looks", "u_light",
+                                               "u_atlas",    "u_order", "u_behind"};
+
+// A smaller sprite would miss the centres of most pixels.
+constexpr float kPixelsMin = 1.5F;
+
+constexpr GLsizei kQuadVertices = 6;
+
+Result<GlProgram> makeSpriteProgram(const std::string& defines) {
+    auto program = makeProgram("point.vert", "point.frag", defines);
+    if (!program) {
+        return program;
+    }
+    glUseProgram(program->name());
+    for (std::size_t unit = 0; unit < kSamplers.size(); ++unit) {
+        glUniform1i(uniformLocation(*program, kSamplers[unit]), static_cast<GLint>(unit));
+    }
+    return program;
+}
+
+}  // namespace
+
+Result<ParticleRenderer> ParticleRenderer::create(const std::optional<ColliderView>& collider) {
+    const PassState state;
+    ParticleRenderer renderer;
+    if (collider) {
+        auto light = ParticleLight::create(*collider);
+        if (!light) {
+            return forward(light);
+        }
+        renderer.light_ = std::move(*light);
+    }
+    const std::string defines = collider ? "#define RELIEF_LIT 1\n" : "";
+    auto points = makeSpriteProgram(defines);
+    auto quads = makeSpriteProgram("#define RELIEF_QUADS 1\n" + defines);
+    if (!points || !quads) {
+        return forward(!points ? points : quads);
+    }
+    renderer.point_program_ = std::move(*points);
+    renderer.quad_program_ = std::move(*quads);
+    renderer.no_attributes_ = makeVertexArray();
+    forgetGlErrors();
+    const std::array<GLubyte, 4> zero{};
+    renderer.nothing_ = makeTexture2D(GL_RGBA8, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, zero.data());
+    constexpr std::array<std::uint32_t, 2> kNoRank{};
+    renderer.no_order_ = makeTexture2D(GL_RG32UI, 1, 1, GL_RG_INTEGER, GL_UNSIGNED_INT, kNoRank.data());
+    if (auto done = checkAllocated("the renderer of the particles", "close what else is on the GPU"); !done) {
+        return forward(done);
+    }
+    return renderer;
+}
+
+Result<void> ParticleRenderer::uploadLooks(const ParticleStyle& style) {
+    auto packed =
+        packLooks(style.looks, {style.diameter, style.color, style.opacity, style.fade_in, style.fade_out});
+    if (!packed) {
+        return forward(packed);
+    }
+    if (!looks_ || *packed != packed_) {
+        forgetGlErrors();
+        packed_ = std::move(*packed);
+        looks_ = makeTexture2D(GL_RGBA32F, static_cast<GLsizei>(kLookTexels),
+                               static_cast<GLsizei>(packed_.size() / kLookTexels), GL_RGBA, GL_FLOAT,
+                               packed_.data());
+        if (auto done = checkAllocated("the looks of the particles", "choose fewer types"); !done) {
+            looks_ = {};
+            return done;
+        }
+    }
+    return {};
+}
+
+void ParticleRenderer::setUniforms(const GlProgram& program, const ParticleSystem& particles,
+                                   const Camera& camera, const ParticleStyle& style,
+                                   const RenderTarget& target) const {
+    const auto at = [&](const char* name) { return uniformLocation(program, name); };
+    const glm::mat4 view = camera.view();
+    const glm::mat4 projection = camera.projection(target.aspect());
+    const glm::vec3 sun = glm::mat3(view) * sunDirection();
+    const glm::vec3 up = glm::mat3(view) * glm::vec3(0.0F, 1.0F, 0.0F);
+    std::array<GLfloat, 2> sizes{1.0F, 1.0F};
+    glGetFloatv(GL_ALIASED_POINT_SIZE_RANGE, sizes.data());
+    const bool quads = style.sprite == Sprite::kQuad;
+    const float largest = quads ? 1e30F : sizes[1];
+
+    glUseProgram(program.name());
+    glUniform1i(at("u_width"), static_cast<GLint>(particles.textureWidth()));
+    glUniform1i(at("u_extent"), static_cast<GLint>(particles.extent()));
+    glUniform1f(at("u_now"), particles.clock());
+    glUniformMatrix4fv(at("u_view"), 1, GL_FALSE, glm::value_ptr(view));
+    glUniformMatrix4fv(at("u_projection"), 1, GL_FALSE, glm::value_ptr(projection));
+    glUniform1f(at("u_pixels_per_unit"), 0.5F * static_cast<float>(target.height) / camera.tanHalfFov());
+    glUniform2f(at("u_pixels"), std::min(kPixelsMin, largest), largest);
+    glUniform2f(at("u_target"), static_cast<float>(target.width), static_cast<float>(target.height));
+    const glm::vec2 depth = camera.depthOfDistance();
+    glUniform2f(at("u_depth"), depth.x, depth.y);
+    glUniform3f(at("u_sun_view"), sun.x, sun.y, sun.z);
+    glUniform3f(at("u_up_view"), up.x, up.y, up.z);
+    glUniform2i(at("u_cells"), style.atlas != nullptr ? style.atlas->columns() : 0,
+                style.atlas != nullptr ? style.atlas->rows() : 0);
+    glUniform1f(at("u_levels_max"),
+                style.atlas != nullptr ? static_cast<float>(style.atlas->lastLevel()) : 0.0F);
+}
+
+Result<void> ParticleRenderer::draw(const ParticleSystem& particles, const Camera& camera,
+                                    const ParticleStyle& style, const RenderTarget& target,
+                                    const ParticleOrder& order, const GlTexture* behind) {
+    if (!(style.soft >= 0.0F && style.soft < 1e30F)) {
+        return fail(ErrorCode::kUsage, "the soft edge of particles is a distance, 0 or more");
+    }
+    const PassState state;
+    if (auto done = uploadLooks(style); !done) {
+        return done;
+    }
+    if (particles.extent() == 0) {
+        return {};
+    }
+    if (light_) {
+        if (auto done = light_->update(particles, looks_); !done) {
+            return done;
+        }
+    }
+    const bool quads = style.sprite == Sprite::kQuad;
+    const GlProgram& program = quads ? quad_program_ : point_program_;
+    setUniforms(program, particles, camera, style, target);
+    glUniform1i(uniformLocation(program, "u_ordered"), order.texture != nullptr ? 1 : 0);
+    glUniform1f(uniformLocation(program, "u_soft"), behind != nullptr ? style.soft : 0.0F);
+    const std::array<const GlTexture*, kSamplers.size()> textures{
+        &particles.positions(),
+        &particles.births(),
+        &looks_,
+        light_ ? &light_->texture() : &nothing_,
+        style.atlas != nullptr ? &style.atlas->texture() : &nothing_,
+        order.texture != nullptr ? order.texture : &no_order_,
+        behind != nullptr ? behind : &nothing_};
+    for (std::size_t unit = 0; unit < textures.size(); ++unit) {
+        glActiveTexture(static_cast<GLenum>(GL_TEXTURE0 + unit));
+        glBindTexture(GL_TEXTURE_2D, textures[unit]->name());
+    }
+    glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
+    glViewport(0, 0, target.width, target.height);
+    glEnable(GL_BLEND);
+    glBlendEquation(GL_FUNC_ADD);
+    glBlendFunc(GL_ONE, style.blend == Blend::kAdditive ? GL_ONE : GL_ONE_MINUS_SRC_ALPHA);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LEQUAL);
+    glDepthMask(GL_FALSE);
+    glBindVertexArray(no_attributes_.name());
+    const auto count = static_cast<GLsizei>(order.texture != nullptr ? order.count : particles.extent());
+    if (quads) {
+        glDrawArrays(GL_TRIANGLES, 0, kQuadVertices * count);
+    } else {
+        glDrawArrays(GL_POINTS, 0, count);
+    }
+    return {};
+}
+
+}  // namespace relief

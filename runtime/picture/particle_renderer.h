@@ -1,0 +1,86 @@
+// Draws the particles of a ParticleSystem as sprites that face the viewer, straight from its state textures.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <vector>
+
+#include "formats/base/result.h"
+#include "runtime/gl/gl_object.h"
+#include "runtime/particles/particle_system.h"
+#include "runtime/picture/camera.h"
+#include "runtime/picture/collider_view.h"
+#include "runtime/picture/particle_light.h"
+#include "runtime/picture/particle_look.h"
+#include "runtime/picture/render_target.h"
+#include "runtime/picture/sprite_atlas.h"
+
+namespace relief {
+
+enum class Sprite : std::uint8_t {
+    kPoint,  ///< one vertex, but no larger than the GL's points, and cut off where its centre leaves the
+             ///< picture
+    kQuad,   ///< six vertices, of any size
+};
+
+enum class Blend : std::uint8_t {
+    kAlpha,     ///< over what is there: right where the farther is drawn first
+    kAdditive,  ///< added to what is there, in whatever order
+};
+
+struct ParticleStyle {
+    float diameter = 0.01F;               ///< object units
+    glm::vec3 color{0.97F, 0.98F, 1.0F};  ///< sRGB
+    float opacity = 0.95F;                ///< 0…1
+    float fade_in = 0.2F;  ///< seconds after birth, and before death, over which opacity rises and falls
+    float fade_out = 0.5F;
+    std::vector<ParticleLook> looks{};  ///< of type 0, 1, …, kLooksMax at most; what they leave open is
+                                        ///< above. A type beyond the last has the last one's
+    Sprite sprite = Sprite::kPoint;
+    Blend blend = Blend::kAlpha;
+    float soft = 0.0F;  ///< object units, ≥ 0: a sprite fades out so far before what lies behind it
+    const SpriteAtlas* atlas = nullptr;  ///< for the cells of looks; null: every particle is a round grain
+};
+
+/// Ranks, as DepthSorter has them: RG32UI, texel (i mod width, i / width), width being the texture's, holds
+/// the index of the i-th particle to draw in x, and 0 in y where there is none. Indices beyond extent() are
+/// left out.
+struct ParticleOrder {
+    const GlTexture* texture = nullptr;
+    std::uint32_t count = 0;  ///< ranks
+};
+
+class ParticleRenderer {
+  public:
+    /// \param collider  shades the particles; nullopt: they lie in the open.
+    /// Errors: kFailure (the driver's compiler).
+    [[nodiscard]] static Result<ParticleRenderer> create(const std::optional<ColliderView>& collider);
+
+    /// Draws over what the target shows, in linear light, hidden where its depth is nearer; depth stays as it
+    /// is. Nothing is read back, nothing waits for the GPU.
+    /// \param order   in which they are drawn; without a texture that of their texels.
+    /// \param behind  what style.soft compares with: window depths of a picture by the same camera and of the
+    ///                target's size, not attached to the target, such as ColliderRenderer::depth(). Null:
+    ///                style.soft has no effect.
+    /// Errors: kUsage (looks, see packLooks; soft), kUnsupported.
+    Result<void> draw(const ParticleSystem& particles, const Camera& camera, const ParticleStyle& style,
+                      const RenderTarget& target, const ParticleOrder& order = {},
+                      const GlTexture* behind = nullptr);
+
+  private:
+    [[nodiscard]] Result<void> uploadLooks(const ParticleStyle& style);
+    void setUniforms(const GlProgram& program, const ParticleSystem& particles, const Camera& camera,
+                     const ParticleStyle& style, const RenderTarget& target) const;
+
+    std::optional<ParticleLight> light_;
+    GlProgram point_program_;
+    GlProgram quad_program_;
+    GlVertexArray no_attributes_;
+    GlTexture no_order_;
+    GlTexture nothing_;  // stands for a texture that a draw does without
+    GlTexture looks_;
+    std::vector<glm::vec4> packed_;  // what looks_ holds
+};
+
+}  // namespace relief

@@ -1,0 +1,130 @@
+#include "runtime/picture/picture_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <span>
+#include <string>
+
+namespace relief {
+namespace {
+
+// Round a vertex of more corners than this they are not compared one by one: the time would grow by their
+// square.
+constexpr std::size_t kFanMax = 64;
+
+glm::vec3 unitOrZero(const glm::vec3& v) {
+    // Scaled first: squares of small numbers vanish.
+    const float largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    return largest > 0.0F && std::isfinite(largest) ? glm::normalize(v / largest) : glm::vec3(0.0F);
+}
+
+struct Corner {
+    glm::vec3 face;  // its triangle's normal
+    float angle;
+};
+
+std::vector<Corner> cornersOf(const PictureMesh& mesh) {
+    std::vector<Corner> corners(mesh.triangles.size());
+    for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
+        glm::vec3 p[3];
+        for (std::size_t i = 0; i < 3; ++i) {
+            p[i] = mesh.positions[mesh.triangles[t + i]];
+        }
+        const glm::vec3 normal = unitOrZero(glm::cross(unitOrZero(p[1] - p[0]), unitOrZero(p[2] - p[0])));
+        for (std::size_t i = 0; i < 3; ++i) {
+            const glm::vec3 a = unitOrZero(p[(i + 1) % 3] - p[i]);
+            const glm::vec3 b = unitOrZero(p[(i + 2) % 3] - p[i]);
+            corners[t + i] = {normal, std::acos(std::clamp(glm::dot(a, b), -1.0F, 1.0F))};
+        }
+    }
+    return corners;
+}
+
+/// Corners by their vertex: those of v are list[begin[v]] … list[begin[v + 1] - 1], in ascending order.
+struct Fans {
+    std::vector<std::size_t> begin;
+    std::vector<std::uint32_t> list;
+};
+
+Fans fansOf(const PictureMesh& mesh) {
+    Fans fans;
+    fans.begin.assign(mesh.positions.size() + 1, 0);
+    for (const std::uint32_t v : mesh.triangles) {
+        ++fans.begin[v + 1];
+    }
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        fans.begin[v + 1] += fans.begin[v];
+    }
+    fans.list.resize(mesh.triangles.size());
+    std::vector<std::size_t> next(fans.begin.begin(), fans.begin.end() - 1);
+    for (std::size_t c = 0; c < mesh.triangles.size(); ++c) {
+        fans.list[next[mesh.triangles[c]]++] = static_cast<std::uint32_t>(c);
+    }
+    return fans;
+}
+
+}  // namespace
+
+Result<void> checkMesh(const PictureMesh& mesh) {
+    if (mesh.triangles.empty() || mesh.triangles.size() % 3 != 0) {
+        return fail(ErrorCode::kInvalidInput, "a mesh without whole triangles shows nothing");
+    }
+    if (!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size()) {
+        return fail(ErrorCode::kInvalidInput, "a mesh has " + std::to_string(mesh.positions.size()) +
+                                                  " vertices but " + std::to_string(mesh.normals.size()) +
+                                                  " normals");
+    }
+    for (const std::uint32_t v : mesh.triangles) {
+        if (v >= mesh.positions.size()) {
+            return fail(ErrorCode::kInvalidInput, "a triangle names vertex " + std::to_string(v) + " of " +
+                                                      std::to_string(mesh.positions.size()));
+        }
+    }
+    for (const glm::vec3& p : mesh.positions) {
+        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+            return fail(ErrorCode::kInvalidInput, "a vertex of the mesh is not finite");
+        }
+    }
+    return {};
+}
+
+PictureMesh withNormals(const PictureMesh& mesh, float crease) {
+    const float cosine = std::cos(crease);
+    const std::vector<Corner> corners = cornersOf(mesh);
+    const Fans fans = fansOf(mesh);
+    PictureMesh out;
+    out.triangles.resize(mesh.triangles.size());
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        const std::span<const std::uint32_t> fan(&fans.list[0] + fans.begin[v],
+                                                 fans.begin[v + 1] - fans.begin[v]);
+        const std::size_t first = out.positions.size();  // of this vertex's doubles
+        for (const std::uint32_t c : fan) {
+            glm::vec3 sum(0.0F);
+            for (const std::uint32_t other : fan) {
+                const bool alike = fan.size() > kFanMax || other == c ||
+                                   glm::dot(corners[c].face, corners[other].face) >= cosine;
+                sum += alike ? corners[other].angle * corners[other].face : glm::vec3(0.0F);
+            }
+            const glm::vec3 normal = unitOrZero(sum);
+            std::size_t at = first;
+            while (at < out.positions.size() && out.normals[at] != normal) {
+                ++at;
+            }
+            if (at == out.positions.size()) {
+                out.positions.push_back(mesh.positions[v]);
+                out.normals.push_back(normal);
+            }
+            out.triangles[c] = static_cast<std::uint32_t>(at);
+            if (fan.size() > kFanMax) {
+                for (const std::uint32_t other : fan) {
+                    out.triangles[other] = static_cast<std::uint32_t>(at);
+                }
+                break;
+            }
+        }
+    }
+    return out;
+}
+
+}  // namespace relief

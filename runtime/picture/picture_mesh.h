@@ -1,0 +1,28 @@
+// Triangles as a picture needs them. The runtime takes them raw; relief-sim reads them from files
+// (mesh_file.h).
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "formats/base/result.h"
+
+namespace relief {
+
+struct PictureMesh {
+    std::vector<glm::vec3> positions;      ///< object units, finite
+    std::vector<glm::vec3> normals;        ///< of the vertices, unit or zero, as many as positions; or empty
+    std::vector<std::uint32_t> triangles;  ///< three indices each, anticlockwise seen from outside
+};
+
+/// Errors: kInvalidInput (no triangle, an index beyond the vertices, numbers of things that do not match, a
+/// position that is not finite).
+[[nodiscard]] Result<void> checkMesh(const PictureMesh& mesh);
+
+/// The same triangles with normals: each corner has the mean of the triangles round its vertex, weighted by
+/// their angles there, but of those alone that lie within `crease` of its own triangle. Vertices on a crease
+/// are doubled. \param mesh    as checkMesh wants it; its normals are replaced. \param crease  radians.
+[[nodiscard]] PictureMesh withNormals(const PictureMesh& mesh, float crease = 1.0F);
+
+}  // namespace relief

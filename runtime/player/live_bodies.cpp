@@ -1,0 +1,69 @@
+#include "runtime/player/live_bodies.h"
+
+#include <glm/vec3.hpp>
+
+namespace relief {
+
+Result<LiveBodies> LiveBodies::create(const LoadedScene& loaded) {
+    LiveBodies out;
+    for (std::size_t i = 0; i < loaded.live.size(); ++i) {
+        if (!loaded.live[i]) {
+            continue;
+        }
+        const LiveMesh& live = *loaded.live[i];
+        std::vector<glm::uvec3> triangles;
+        for (std::size_t t = 0; t + 2 < live.mesh.triangles.size(); t += 3) {
+            triangles.emplace_back(live.mesh.triangles[t], live.mesh.triangles[t + 1],
+                                   live.mesh.triangles[t + 2]);
+        }
+        auto collider = LiveCollider::create(live.mesh.positions, triangles, live.frames);
+        if (!collider) {
+            return fail(collider.error().code,
+                        loaded.scene.colliders[i].origin + ": collider.mesh: " + collider.error().message);
+        }
+        auto pass = DeformPass::create(live.deformation, live.mesh.positions, live.mesh.normals);
+        if (!pass) {
+            return fail(pass.error().code,
+                        loaded.scene.colliders[i].origin + ": collider.deform: " + pass.error().message);
+        }
+        out.bodies_.push_back({i, std::move(*collider), std::move(*pass)});
+    }
+    return out;
+}
+
+Result<void> LiveBodies::show(double time, ColliderTextures& textures) {
+    for (Body& body : bodies_) {
+        body.pass.run(time);
+        if (auto done = body.collider.setPositions(body.pass.buffer().name()); !done) {
+            return done;
+        }
+        if (auto done = body.collider.update(textures, body.index); !done) {
+            return done;
+        }
+    }
+    return {};
+}
+
+Result<LivePicture> LivePicture::create(const LiveMesh& live) {
+    // Doubled vertices would come apart along a crease where each goes along its own normal.
+    const bool smooth = live.deformation.kind == DeformKind::kWobble;
+    const PictureMesh creased = smooth ? PictureMesh{} : withNormals(live.mesh);
+    const PictureMesh& drawn = smooth ? live.mesh : creased;
+    auto mesh = ColliderMesh::create(drawn);
+    if (!mesh) {
+        return forward(mesh);
+    }
+    auto pass = DeformPass::create(live.deformation, drawn.positions, drawn.normals,
+                                   DeformPass::Output::kPositionsAndNormals);
+    if (!pass) {
+        return forward(pass);
+    }
+    return LivePicture(std::make_unique<ColliderMesh>(std::move(*mesh)), std::move(*pass));
+}
+
+void LivePicture::show(double time) {
+    pass_.run(time);
+    mesh_->setVertices(pass_.buffer());
+}
+
+}  // namespace relief

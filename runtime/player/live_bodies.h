@@ -1,0 +1,53 @@
+// The colliders of a scene that deform, on the GPU: what a player does with them each step.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "formats/base/result.h"
+#include "runtime/collider/collider_textures.h"
+#include "runtime/collider/deform_pass.h"
+#include "runtime/collider/live_collider.h"
+#include "runtime/picture/collider_mesh.h"
+#include "runtime/scene/loaded_scene.h"
+
+namespace relief {
+
+class LiveBodies {
+  public:
+    /// Needs a current context; empty without live colliders.
+    /// Errors: those of LiveCollider and DeformPass, with the scene's place.
+    [[nodiscard]] static Result<LiveBodies> create(const LoadedScene& loaded);
+
+    [[nodiscard]] bool empty() const { return bodies_.empty(); }
+    /// Deforms all of them to a time, in seconds, and renders their maps. Before each step, for its end.
+    /// Errors: those of LiveCollider::update.
+    [[nodiscard]] Result<void> show(double time, ColliderTextures& textures);
+
+  private:
+    struct Body {
+        std::size_t index;  // in the scene
+        LiveCollider collider;
+        DeformPass pass;
+    };
+    std::vector<Body> bodies_;
+};
+
+/// The picture of a collider that deforms: of its mesh at a time.
+class LivePicture {
+  public:
+    /// Errors: those of ColliderMesh and DeformPass.
+    [[nodiscard]] static Result<LivePicture> create(const LiveMesh& live);
+    void show(double time);
+    [[nodiscard]] const ColliderMesh& mesh() const { return *mesh_; }
+
+  private:
+    LivePicture(std::unique_ptr<ColliderMesh> mesh, DeformPass pass)
+        : mesh_(std::move(mesh)), pass_(std::move(pass)) {}
+
+    std::unique_ptr<ColliderMesh> mesh_;  // at one place: renderers point to it
+    DeformPass pass_;
+};
+
+}  // namespace relief

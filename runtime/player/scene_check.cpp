@@ -1,0 +1,97 @@
+#include "runtime/player/scene_check.h"
+
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "formats/base/file_io.h"
+#include "formats/container.h"
+#include "runtime/picture/frame.h"
+#include "runtime/scene/scene_pictures.h"
+
+namespace relief {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+CheckedFile checkedFile(const fs::path& path, const char* kind) {
+    std::error_code error;  // read a moment ago; a pipe has no size
+    const std::uintmax_t bytes = fs::file_size(path, error);
+    return {path, kind, error ? 0 : static_cast<std::uint64_t>(bytes)};
+}
+
+std::string dump(const Json& json) {
+    // A file name that is no UTF-8 must not end the program.
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+Result<CheckReport> checkScene(const PlayerOptions& options) {
+    const auto loaded = loadAll(options.input, options.overrides);
+    if (!loaded) {
+        return forward(loaded);
+    }
+    const auto& render = loaded->scene.render;
+    if (std::uint64_t{render.width} * render.height > Frame::kPixelsMax) {
+        return fail(ErrorCode::kLimit, quotedPath(options.input) + ": render.size has more than " +
+                                           std::to_string(Frame::kPixelsMax) +
+                                           " pixels in all; choose a smaller one");
+    }
+    if (const auto emitters = makeEmitters(loaded->scene.emitters); !emitters) {
+        return forward(emitters);
+    }
+    if (auto done = checkPictures(loaded->scene, loaded->bounds); !done) {
+        return forward(done);
+    }
+    CheckReport report;
+    if (options.input != loaded->scene.colliders.front().path) {
+        report.files.push_back(checkedFile(options.input, "scene"));
+    }
+    for (std::size_t i = 0; i < loaded->colliders.size(); ++i) {
+        const SceneCollider& from = loaded->scene.colliders[i];
+        report.files.push_back(checkedFile(from.path, from.live ? "mesh" : "collider"));
+        report.collider_maps += loaded->colliders[i].maps.size();
+    }
+    if (loaded->scene.flow) {
+        report.files.push_back(checkedFile(loaded->scene.flow->path, "flow"));
+    }
+    for (const auto& [path, kind] :
+         {std::pair(loaded->scene.render.atlas, "atlas"), {loaded->scene.render.mesh, "mesh"}}) {
+        if (!path.empty()) {
+            report.files.push_back(checkedFile(path, kind));
+        }
+    }
+    report.steps = loaded->scene.steps;
+    report.capacity = loaded->scene.capacity;
+    return report;
+}
+
+std::string checkText(const CheckReport& report) {
+    std::string text = quotedPath(report.files.front().path) + " is valid: " + std::to_string(report.steps) +
+                       " steps of up to " + std::to_string(report.capacity) + " particles, " +
+                       std::to_string(report.collider_maps) + " maps";
+    for (std::size_t i = 1; i < report.files.size(); ++i) {
+        text += ", " + report.files[i].kind + " " + quotedPath(report.files[i].path);
+    }
+    return text + "\n";
+}
+
+std::string checkJson(const CheckReport& report) {
+    Json json;
+    json["valid"] = true;
+    json["steps"] = report.steps;
+    json["capacity"] = report.capacity;
+    json["maps"] = report.collider_maps;
+    json["files"] = Json::array();
+    for (const CheckedFile& file : report.files) {
+        json["files"].push_back({{"file", file.path.native()}, {"kind", file.kind}, {"bytes", file.bytes}});
+    }
+    return dump(json);
+}
+
+std::string checkJson(const Error& error) {
+    return dump({{"valid", false}, {"code", static_cast<int>(error.code)}, {"error", error.message}});
+}
+
+}  // namespace relief

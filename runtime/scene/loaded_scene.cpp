@@ -1,0 +1,95 @@
+#include "runtime/scene/loaded_scene.h"
+
+#include "formats/base/file_io.h"
+#include "formats/container.h"
+#include "runtime/files/flow_file.h"
+#include "runtime/scene/scene_parser.h"
+
+namespace relief {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string lowerCaseExtension(const fs::path& path) {
+    std::string extension = path.extension().native();
+    for (char& c : extension) {
+        c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    }
+    return extension;
+}
+
+Result<Scene> openScene(const fs::path& input) {
+    const std::string extension = lowerCaseExtension(input);
+    if (extension == ".toml") {
+        return loadScene(input);
+    }
+    if (extension == ".relief") {
+        Scene scene;
+        scene.colliders.resize(1);
+        scene.colliders.front().path = input;
+        return scene;
+    }
+    return fail(ErrorCode::kUsage,
+                quotedPath(input) + " is neither a scene nor a collider; name a .toml or a .relief file");
+}
+
+Result<Collider> openCollider(const SceneCollider& from) {
+    auto collider = loadCollider(from.path);
+    if (!collider && !from.origin.empty()) {
+        return fail(collider.error().code, from.origin + ": collider.file: " + collider.error().message);
+    }
+    return collider;
+}
+
+}  // namespace
+
+Result<LoadedScene> loadAll(const fs::path& input, const SceneOverrides& overrides) {
+    auto scene = openScene(input);
+    if (!scene) {
+        return forward(scene);
+    }
+    scene->steps = overrides.steps.value_or(scene->steps);
+    scene->render.width = overrides.width.value_or(scene->render.width);
+    scene->render.height = overrides.height.value_or(scene->render.height);
+    for (SceneEmitter& emitter : scene->emitters) {
+        emitter.seed = overrides.seed.value_or(emitter.seed);
+    }
+    LoadedScene loaded;
+    for (const SceneCollider& from : scene->colliders) {
+        loaded.live.emplace_back();
+        if (from.live) {
+            auto mesh = loadLiveMesh(from);
+            if (!mesh) {
+                return forward(mesh);
+            }
+            loaded.live.back() = std::move(*mesh);
+        }
+        auto collider = from.live ? Result<Collider>(loaded.live.back()->frames) : openCollider(from);
+        if (!collider) {
+            return forward(collider);
+        }
+        const bool posed = from.posed || scene->colliders.size() > 1;
+        const Bounds bounds = posed ? worldBounds(from, collider->bounds) : collider->bounds;
+        if (loaded.colliders.empty()) {
+            loaded.bounds = bounds;
+        }
+        loaded.bounds.min = glm::min(loaded.bounds.min, bounds.min);
+        loaded.bounds.max = glm::max(loaded.bounds.max, bounds.max);
+        loaded.colliders.push_back(std::move(*collider));
+    }
+    auto complete = withDefaults(std::move(*scene), loaded.bounds);
+    if (!complete) {
+        return fail(complete.error().code, quotedPath(input) + ": " + complete.error().message);
+    }
+    if (complete->flow) {
+        auto flow = loadFlow(*complete->flow);
+        if (!flow) {
+            return forward(flow);
+        }
+        complete->air.flow = std::make_shared<const FlowField>(std::move(*flow));
+    }
+    loaded.scene = std::move(*complete);
+    return loaded;
+}
+
+}  // namespace relief

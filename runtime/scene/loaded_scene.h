@@ -1,0 +1,39 @@
+// A scene with every file that it names, read and complete.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "formats/base/result.h"
+#include "formats/collider.h"
+#include "runtime/scene/scene.h"
+#include "runtime/scene/scene_live.h"
+
+namespace relief {
+
+/// What is taken instead of the scene's own.
+struct SceneOverrides {
+    std::optional<std::uint32_t> steps;
+    std::optional<std::uint32_t> width;  ///< of pictures, pixels, as is the next
+    std::optional<std::uint32_t> height;
+    std::optional<std::uint64_t> seed;  ///< of every emitter
+};
+
+/// A scene and what it names, read and complete.
+struct LoadedScene {
+    Scene scene;                      ///< overridden by the options, every default filled in
+    std::vector<Collider> colliders;  ///< those of the scene, in its order
+    /// As many: the meshes of those that deform, whose colliders have maps without texels.
+    std::vector<std::optional<LiveMesh>> live;
+    Bounds bounds;  ///< of what they occupy in the course of time, in the particles' space
+};
+
+/// Reads a scene (.toml) or a collider (.relief), for which the default scene is made, and every file that it
+/// names. Needs no context.
+/// Errors: those of the files; a scene's name the scene's line and column.
+[[nodiscard]] Result<LoadedScene> loadAll(const std::filesystem::path& input,
+                                          const SceneOverrides& overrides);
+
+}  // namespace relief

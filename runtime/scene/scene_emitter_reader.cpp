@@ -1,0 +1,276 @@
+#include <algorithm>
+#include <initializer_list>
+#include <limits>
+#include <string>
+
+#include "formats/config/confined_path.h"
+#include "runtime/particles/particle_system.h"
+#include "runtime/scene/scene_readers.h"
+
+namespace relief {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kSeedMax = 9007199254740992.0;
+// A step of the longest dt then holds 10,000 bursts.
+constexpr double kBurstEveryMin = 1e-4;
+
+// In the order of EmitterShape, then the box without extent.
+const std::vector<std::string_view> kShapes{"box", "sphere", "shell", "disc", "points", "point"};
+constexpr std::size_t kPoint = 5;
+
+/// A float of it is not 0.
+float positive(double value) {
+    return std::max(static_cast<float>(value), std::numeric_limits<float>::min());
+}
+
+/// A number, or [least, most].
+struct Span {
+    double least = 0.0;
+    double most = 0.0;
+};
+Span readSpan(const SceneTable& table, const toml::node& node, std::string_view key, const SceneRange& range,
+              std::string_view wanted) {
+    const toml::array* both = node.as_array();
+    if (both == nullptr ? !node.is_number() : both->size() != 2) {
+        table.wrongType(node, key, wanted);
+    }
+    const Span span{table.numberOf(both == nullptr ? node : *both->get(0), key, range),
+                    table.numberOf(both == nullptr ? node : *both->get(1), key, range)};
+    if (span.least > span.most) {
+        table.failAt(node, table.full(key) + " has its least above its most; exchange them");
+    }
+    return span;
+}
+
+void readBox(SceneTable& table, SceneEmitter& emitter) {
+    const SceneRange length = symmetric(kLengthMax);
+    const bool low = table.vector("box_min", length, emitter.box_min);
+    const bool high = table.vector("box_max", length, emitter.box_max);
+    if (low != high) {
+        const std::string_view given = low ? "box_min" : "box_max";
+        table.failAt(*table.find(given),
+                     table.full(given) + " needs " + table.full(low ? "box_max" : "box_min") + " beside it");
+    }
+    for (int i = 0; low && i < 3; ++i) {
+        if ((*emitter.box_min)[i] > (*emitter.box_max)[i]) {
+            table.failAt(*table.find("box_min"), "emitter.box_min lies above emitter.box_max on the " +
+                                                     std::string(1, "xyz"[i]) + " axis; exchange them");
+        }
+    }
+    glm::vec3 point{0.0F};
+    if (table.vector("point", length, point)) {
+        if (low) {
+            table.failAt(*table.find("point"),
+                         "emitter.point and emitter.box_min are two places; remove one");
+        }
+        emitter.box_min = point;
+        emitter.box_max = point;
+    }
+}
+
+/// A vector that must point somewhere.
+template <class T>
+bool readDirection(SceneTable& table, std::string_view key, T& out) {
+    glm::vec3 value{0.0F};
+    if (!table.vector(key, symmetric(kLengthMax), value)) {
+        return false;
+    }
+    if (unitVector(value) == glm::vec3(0.0F)) {
+        table.failAt(*table.find(key), table.full(key) + " = [0, 0, 0] points nowhere; choose a direction");
+    }
+    out = value;
+    return true;
+}
+
+void readPlace(SceneTable& table, const fs::path& folder, SceneEmitter& emitter) {
+    // Without the word the place says what it is.
+    std::size_t shape = table.find("points") != nullptr  ? static_cast<std::size_t>(EmitterShape::kPoints)
+                        : table.find("point") != nullptr ? kPoint
+                                                         : 0;
+    const bool named = table.word("shape", kShapes, shape);
+    const std::string word = "shape = \"" + std::string(kShapes[shape]) + "\"";
+    readBox(table, emitter);
+    table.vector("center", symmetric(kLengthMax), emitter.center);
+    table.number("radius", {0.0, kLengthMax}, emitter.radius);
+    readDirection(table, "normal", emitter.normal);
+    std::string file;
+    table.text("points", file);
+    emitter.shape = shape == kPoint ? EmitterShape::kBox : static_cast<EmitterShape>(shape);
+
+    struct Key {
+        std::string_view name;
+        std::initializer_list<std::string_view> shapes;  // that it is for
+        bool needed;
+    };
+    for (const Key& key : {Key{"box_min", {"box"}, false},
+                           {"point", {"point"}, true},
+                           {"center", {"sphere", "shell", "disc"}, true},
+                           {"radius", {"sphere", "shell", "disc"}, true},
+                           {"normal", {"disc"}, false},
+                           {"points", {"points"}, true}}) {
+        const bool mine = std::find(key.shapes.begin(), key.shapes.end(), kShapes[shape]) != key.shapes.end();
+        const bool given = table.find(key.name) != nullptr;
+        if (given && !mine) {
+            table.failUseless(key.name, "for emitter." + word + "; remove it, or choose emitter.shape = \"" +
+                                            std::string(*key.shapes.begin()) + "\"");
+        }
+        if (!given && mine && key.needed) {
+            table.failAt(*table.find(named ? "shape" : "points"),
+                         "emitter." + word + " needs " + table.full(key.name) + " beside it");
+        }
+    }
+    if (emitter.shape == EmitterShape::kPoints) {
+        const toml::node& node = *table.find("points");
+        auto inside = resolveInside(folder, file);
+        if (!inside) {
+            table.failAt(node, "emitter.points = " + inside.error().message);
+        }
+        emitter.points = std::move(*inside);
+        emitter.points_origin = table.place(node.source().begin);
+    }
+}
+
+void readMoments(SceneTable& table, std::uint32_t capacity, SceneEmitter& emitter) {
+    table.number("start", {0.0, kSecondsMax}, emitter.start);
+    double rate = 0.0;
+    if (table.number("rate", {0.0, kRateMax}, rate)) {
+        emitter.rate = rate;
+    }
+    const bool burst = table.integer("burst", {0.0, ParticleSystem::kCapacityMax}, emitter.burst);
+    const bool again = table.number("burst_every", {kBurstEveryMin, kSecondsMax}, emitter.burst_every);
+    if (again && emitter.burst == 0) {
+        table.failUseless("burst_every", "without emitter.burst; say how many, or remove it");
+    }
+    double duration = 0.0;
+    if (table.number("duration", {0.0, kSecondsMax, false}, duration)) {
+        emitter.duration = duration;
+        if (emitter.rate == 0.0 && !again) {
+            table.failUseless("duration", "while emitter.rate is 0; raise the rate or remove it");
+        }
+    }
+    if (emitter.rate == 0.0 && emitter.burst == 0) {
+        table.failAt(*table.find(burst ? "burst" : "rate"),
+                     "emitter.rate = 0 without emitter.burst gives birth to nothing; raise one of them");
+    }
+    if (burst && emitter.burst > capacity) {
+        table.failAt(*table.find("burst"), "emitter.burst = " + std::to_string(emitter.burst) +
+                                               " is more than particles.capacity = " +
+                                               std::to_string(capacity) + "; raise the capacity");
+    }
+    const bool spread = table.find("spread") != nullptr;
+    table.boolean("spread", emitter.spread);
+    if (spread && emitter.rate == 0.0) {
+        table.failUseless("spread", "while emitter.rate is 0: a burst is born at once; remove it");
+    }
+}
+
+/// `speed`: a number, [least, most], or { mean, deviation }.
+void readSpeed(SceneTable& table, std::string_view file, SceneEmitter& emitter) {
+    const toml::node* node = table.find("speed");
+    if (node == nullptr) {
+        return;
+    }
+    const SceneRange range{0.0, kSpeedMax};
+    if (const toml::table* both = node->as_table(); both != nullptr) {
+        SceneTable normal(both, "emitter.speed", file);
+        float mean = 0.0F;
+        if (!normal.number("mean", range, mean)) {
+            table.failAt(*node, "emitter.speed needs a mean, as in { mean = 2.0, deviation = 0.5 }");
+        }
+        normal.number("deviation", range, emitter.speed_deviation);
+        normal.finish();
+        emitter.speed_min = mean;
+        emitter.speed_max = mean;
+        return;
+    }
+    const Span span =
+        readSpan(table, *node, "speed", range, "a number, two [least, most], or { mean = …, deviation = … }");
+    emitter.speed_min = static_cast<float>(span.least);
+    emitter.speed_max = static_cast<float>(span.most);
+}
+
+void readVelocity(SceneTable& table, std::string_view file, SceneEmitter& emitter) {
+    const bool velocity = table.vector("velocity", symmetric(kSpeedMax), emitter.velocity);
+    table.vector("velocity_spread", {0.0, kSpeedMax}, emitter.velocity_spread);
+    const bool direction = readDirection(table, "direction", emitter.direction);
+    const bool cone = table.number("cone", {0.0, 180.0}, emitter.cone);
+    readSpeed(table, file, emitter);
+    emitter.aimed = direction || cone || emitter.speed_min;
+    if (!emitter.aimed) {
+        return;
+    }
+    const std::string_view by = direction ? "direction" : cone ? "cone" : "speed";
+    if (velocity) {
+        table.failAt(*table.find("velocity"),
+                     "emitter.velocity and " + table.full(by) + " are two velocities; remove one");
+    }
+    if (!direction && emitter.shape == EmitterShape::kBox) {
+        table.failAt(*table.find(by),
+                     table.full(by) + " needs emitter.direction: a box or point has no normal");
+    }
+}
+
+void readLife(SceneTable& table, SceneEmitter& emitter) {
+    if (const toml::node* node = table.find("lifetime"); node != nullptr) {
+        const Span span = readSpan(table, *node, "lifetime", {0.0, kSecondsMax, false},
+                                   "a number of seconds, or two [least, most]");
+        // A lifetime below the smallest float would be none.
+        emitter.lifetime_min = positive(span.least);
+        emitter.lifetime_max = positive(span.most);
+    }
+    if (const toml::node* node = table.find("type"); node != nullptr) {
+        emitter.type_origin = table.place(node->source().begin);
+        if (!node->is_string() && !node->is_integer()) {
+            table.wrongType(*node, "type", "a whole number or the name of a type");
+        }
+        if (node->is_string()) {
+            table.text("type", emitter.type_name);
+            if (emitter.type_name.empty()) {
+                table.failAt(*node, "emitter.type is an empty name; name a type");
+            }
+        } else {
+            table.integer("type", {0.0, kEmitterTypeMax}, emitter.type);
+        }
+    }
+    table.integer("seed", {0.0, kSeedMax}, emitter.seed);
+}
+
+SceneEmitter readEmitter(SceneTable table, std::string_view file, const fs::path& folder,
+                         std::uint32_t capacity) {
+    SceneEmitter emitter;
+    readPlace(table, folder, emitter);
+    readMoments(table, capacity, emitter);
+    readVelocity(table, file, emitter);
+    readLife(table, emitter);
+    table.finish();
+    return emitter;
+}
+
+}  // namespace
+
+std::vector<SceneEmitter> readEmitters(SceneTable& top, std::string_view file, const fs::path& folder,
+                                       std::uint32_t capacity) {
+    constexpr std::string_view kName = "emitter";
+    const toml::node* node = top.find(kName);
+    const toml::array* several = node == nullptr ? nullptr : node->as_array();
+    if (several == nullptr) {
+        return {readEmitter(top.sub(kName), file, folder, capacity)};
+    }
+    if (several->empty() || !several->is_array_of_tables()) {
+        top.wrongType(*node, kName, "a table, as in [emitter], or several, as in [[emitter]]");
+    }
+    if (several->size() > kEmittersMax) {
+        top.failAt(*several->get(kEmittersMax), std::to_string(several->size()) +
+                                                    " emitters are too many; choose at most " +
+                                                    std::to_string(kEmittersMax));
+    }
+    std::vector<SceneEmitter> emitters;
+    for (const toml::node& one : *several) {
+        emitters.push_back(readEmitter({one.as_table(), kName, file}, file, folder, capacity));
+    }
+    return emitters;
+}
+
+}  // namespace relief

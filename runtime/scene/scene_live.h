@@ -1,0 +1,30 @@
+// A scene's collider that deforms: a mesh instead of a container, how it moves, and what its maps are.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <vector>
+
+#include "formats/base/result.h"
+#include "formats/collider.h"
+#include "runtime/collider/deformation.h"
+#include "runtime/picture/picture_mesh.h"
+#include "runtime/scene/scene_collider.h"
+
+namespace relief {
+
+/// The mesh of a live collider, ready to deform.
+struct LiveMesh {
+    /// One normal a vertex, so that a wobble tears nothing.
+    PictureMesh mesh;
+    Deformation deformation;  ///< complete
+    Collider frames;          ///< bounds of the whole motion, and three maps without texels
+};
+
+/// Reads the mesh, completes its deformation, and chooses maps that hold its whole motion.
+/// \param from  with `live`. Errors: those of loadMesh, and kInvalidInput (a mesh without extent), all with
+/// the place in the scene.
+[[nodiscard]] Result<LiveMesh> loadLiveMesh(const SceneCollider& from);
+
+}  // namespace relief

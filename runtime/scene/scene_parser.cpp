@@ -1,0 +1,162 @@
+#include "runtime/scene/scene_parser.h"
+
+#include <algorithm>
+#include <exception>
+#include <limits>
+
+#include "formats/base/file_io.h"
+#include "formats/config/confined_path.h"
+#include "runtime/scene/scene_readers.h"
+#include "runtime/scene/scene_table.h"
+
+namespace relief {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kSceneBytesMax = std::uint64_t{1} << 20;
+
+constexpr double kStepsMax = 1e7;
+constexpr double kPixelsMax = 65535;
+
+void readForces(SceneTable table, Scene& scene) {
+    auto& forces = scene.forces;
+    table.vector("gravity", symmetric(kAccelerationMax), forces.gravity);
+    const bool wind = table.vector("wind", symmetric(kSpeedMax), forces.wind);
+    table.number("drag", {0.0, kDragMax}, forces.drag);
+    readViscosity(table, scene);
+    table.finish();
+    if (wind && forces.wind != glm::vec3(0.0F) && forces.drag == 0.0F) {
+        table.failUseless("wind", "while forces.drag is 0; raise the drag or remove the wind");
+    }
+}
+
+void readCollision(SceneTable table, Scene& scene) {
+    Collision& collision = scene.collision;
+    table.number("restitution", {0.0, 1.0}, collision.restitution);
+    table.number("friction", {0.0, 1.0}, collision.friction);
+    table.number("friction_threshold", {0.0, kSpeedMax}, collision.friction_threshold);
+    table.number("sweep", {0.0, kLengthMax}, scene.sweep);
+    table.finish();
+    if (collision.friction_threshold > 0.0F && collision.friction == 0.0F) {
+        table.failUseless("friction_threshold",
+                          "while collision.friction is 0; raise the friction or remove it");
+    }
+}
+
+void readGround(SceneTable table, Scene& scene) {
+    table.boolean("enabled", scene.ground.enabled);
+    float height = 0.0F;
+    const bool found = table.number("height", symmetric(kLengthMax), height);
+    table.finish();
+    if (found && !scene.ground.enabled) {
+        table.failUseless("height", "while ground.enabled is false; remove one of them");
+    }
+    if (found) {
+        scene.ground.height = height;
+    }
+}
+
+void readCamera(SceneTable table, std::string_view file, Scene& scene) {
+    auto& camera = scene.camera;
+    const bool eye = table.vector("eye", symmetric(kLengthMax), camera.eye);
+    const bool target = table.vector("target", symmetric(kLengthMax), camera.target);
+    table.number("fov", {1.0, 170.0}, camera.fov);
+    readCameraPath(table, file, scene);
+    table.finish();
+    if (eye && target) {
+        if (const std::string_view problem = cameraProblem(*camera.eye, *camera.target); !problem.empty()) {
+            table.failAt(*table.find("eye"), std::string(problem));
+        }
+    }
+}
+
+void readRender(SceneTable table, const fs::path& folder, Scene& scene) {
+    auto& render = scene.render;
+    if (const toml::node* node = table.find("size"); node != nullptr) {
+        const toml::array* both = node->as_array();
+        if (both == nullptr || both->size() != 2) {
+            table.wrongType(*node, "size", "two whole numbers [width, height]");
+        }
+        render.width = static_cast<std::uint32_t>(table.integerOf(*both->get(0), "size", {1.0, kPixelsMax}));
+        render.height = static_cast<std::uint32_t>(table.integerOf(*both->get(1), "size", {1.0, kPixelsMax}));
+    }
+    float point_size = 0.0F;
+    if (table.number("point_size", {0.0, kLengthMax, false}, point_size)) {
+        render.point_size = std::max(point_size, std::numeric_limits<float>::min());
+    }
+    table.vector("color", {0.0, 1.0}, render.color);
+    table.number("opacity", {0.0, 1.0, false}, render.opacity);
+    table.vector("background", {0.0, 1.0}, render.background);
+    table.integer("every", {1.0, kStepsMax}, render.every);
+    readSort(table, scene);
+    readSprites(table, folder, scene);
+    table.finish();
+}
+
+Scene readScene(const toml::table& root, const fs::path& path, std::string_view file) {
+    Scene scene;
+    SceneTable top(&root, "", file);
+    static_cast<void>(top.find("collider"));  // a table or an array: readColliders
+    SceneTable time = top.sub("time");
+    SceneTable particles = top.sub("particles");
+    static_cast<void>(top.find("emitter"));
+    SceneTable forces = top.sub("forces");
+    SceneTable collision = top.sub("collision");
+    SceneTable ground = top.sub("ground");
+    SceneTable camera = top.sub("camera");
+    SceneTable render = top.sub("render");
+    nameAirTables(top);
+    static_cast<void>(top.find("type"));  // an array: readTypes
+    top.finish();
+
+    scene.colliders = readColliders(top, file, path.parent_path());
+    time.number("dt", {1e-6, 1.0}, scene.dt);
+    time.integer("steps", {0.0, kStepsMax}, scene.steps);
+    time.word("integrator", {"euler", "verlet"}, scene.integrator);
+    time.finish();
+    particles.integer("capacity", {1.0, ParticleSystem::kCapacityMax}, scene.capacity);
+    particles.finish();
+    scene.emitters = readEmitters(top, file, path.parent_path(), scene.capacity);
+    readForces(forces, scene);
+    readAir(top, path.parent_path(), scene);
+    readCollision(collision, scene);
+    readGround(ground, scene);
+    readCamera(camera, file, scene);
+    readRender(render, path.parent_path(), scene);
+    readTypes(top, file, scene);
+    return scene;
+}
+
+}  // namespace
+
+Result<Scene> parseScene(std::string_view text, const fs::path& path) {
+    const std::string file = oneLine(path.native());
+    try {
+        const toml::table root = toml::parse(text, file);
+        Scene scene = readScene(root, path, file);
+        if (auto done = resolveEmitterTypes(scene.emitters, scene.type_names); !done) {
+            return forward(done);
+        }
+        return scene;
+    } catch (const toml::parse_error& error) {
+        const toml::source_position& at = error.source().begin;
+        return fail(ErrorCode::kInvalidInput, file + ":" + std::to_string(at.line) + ":" +
+                                                  std::to_string(at.column) +
+                                                  ": not TOML: " + oneLine(error.description()));
+    } catch (const SceneError& error) {
+        return fail(ErrorCode::kInvalidInput, error.message);
+    } catch (const std::exception& error) {
+        return fail(ErrorCode::kInvalidInput, file + ":1:1: cannot be read: " + oneLine(error.what()));
+    }
+}
+
+Result<Scene> loadScene(const fs::path& path) {
+    const auto bytes = readFile(path, kSceneBytesMax);
+    if (!bytes) {
+        return forward(bytes);
+    }
+    return parseScene({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, path);
+}
+
+}  // namespace relief

@@ -1,0 +1,21 @@
+// A scene file: TOML to the structs of scene.h.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "formats/base/result.h"
+#include "runtime/scene/scene.h"
+
+namespace relief {
+
+/// \param text    the file's contents; may be hostile.
+/// \param path    names it in messages and resolves the paths in it, which may not leave its folder
+///                (confined_path.h).
+/// Errors: kInvalidInput, one line "file:line:column: what is wrong; the cure".
+[[nodiscard]] Result<Scene> parseScene(std::string_view text, const std::filesystem::path& path);
+
+/// readFile and parseScene. Errors: theirs, kLimit above 1 MiB.
+[[nodiscard]] Result<Scene> loadScene(const std::filesystem::path& path);
+
+}  // namespace relief

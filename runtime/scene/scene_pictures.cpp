@@ -1,0 +1,141 @@
+#include "runtime/scene/scene_pictures.h"
+
+#include <vector>
+
+#include "formats/base/file_io.h"
+#include "runtime/files/mesh_file.h"
+#include "runtime/files/png.h"
+#include "runtime/picture/camera_path.h"
+
+namespace relief {
+namespace {
+
+constexpr std::uint64_t kAtlasBytesMax = std::uint64_t{256} << 20;
+
+tl::unexpected<Error> failAt(const std::string& origin, const char* key, const Error& error) {
+    return fail(error.code, origin + ": " + key + ": " + error.message);
+}
+
+Result<RgbaPicture> readAtlas(const Scene& scene) {
+    const auto& render = scene.render;
+    const auto bytes = readFile(render.atlas, kAtlasBytesMax);
+    if (!bytes) {
+        return failAt(render.atlas_origin, "render.atlas", bytes.error());
+    }
+    auto picture = decodePng(*bytes, quotedPath(render.atlas));
+    if (!picture) {
+        return failAt(render.atlas_origin, "render.atlas", picture.error());
+    }
+    return picture;
+}
+
+Result<PictureMesh> readMesh(const Scene& scene, const Bounds& bounds) {
+    const auto& render = scene.render;
+    auto mesh = loadMesh(render.mesh);
+    if (!mesh) {
+        return failAt(render.mesh_origin, "render.mesh", mesh.error());
+    }
+    Bounds box;
+    for (const std::uint32_t v : mesh->triangles) {
+        box.add(mesh->positions[v]);
+    }
+    bool apart = false;
+    for (int i = 0; i < 3; ++i) {
+        apart = apart || box.min[i] > bounds.max[i] || box.max[i] < bounds.min[i];
+    }
+    if (apart) {
+        return failAt(
+            render.mesh_origin, "render.mesh",
+            {ErrorCode::kInvalidInput,
+             quotedPath(render.mesh) +
+                 " does not lie where the collider lies; name the mesh that the collider was baked from"});
+    }
+    return mesh;
+}
+
+}  // namespace
+
+Result<void> checkPictures(const Scene& scene, const Bounds& bounds) {
+    if (!scene.render.atlas.empty()) {
+        if (const auto atlas = readAtlas(scene); !atlas) {
+            return forward(atlas);
+        }
+    }
+    if (!scene.render.mesh.empty()) {
+        if (const auto mesh = readMesh(scene, bounds); !mesh) {
+            return forward(mesh);
+        }
+    }
+    return {};
+}
+
+Result<std::unique_ptr<SpriteAtlas>> loadAtlas(const Scene& scene) {
+    const auto& render = scene.render;
+    if (render.atlas.empty()) {
+        return nullptr;
+    }
+    const auto picture = readAtlas(scene);
+    if (!picture) {
+        return forward(picture);
+    }
+    auto atlas = SpriteAtlas::create(picture->rgba, picture->width, picture->height, render.atlas_columns,
+                                     render.atlas_rows);
+    if (!atlas) {
+        // The picture does not suit the scene: not the caller's mistake but the file's.
+        const ErrorCode code =
+            atlas.error().code == ErrorCode::kUsage ? ErrorCode::kInvalidInput : atlas.error().code;
+        return failAt(render.atlas_origin, "render.atlas", {code, atlas.error().message});
+    }
+    return std::make_unique<SpriteAtlas>(std::move(*atlas));
+}
+
+Result<std::unique_ptr<ColliderMesh>> loadColliderMesh(const Scene& scene, const Bounds& bounds) {
+    const auto& render = scene.render;
+    if (render.mesh.empty()) {
+        return nullptr;
+    }
+    const auto mesh = readMesh(scene, bounds);
+    if (!mesh) {
+        return forward(mesh);
+    }
+    auto drawn = ColliderMesh::create(*mesh);
+    if (!drawn) {
+        return failAt(render.mesh_origin, "render.mesh", drawn.error());
+    }
+    return std::make_unique<ColliderMesh>(std::move(*drawn));
+}
+
+ParticleStyle particleStyle(const Scene& scene, const SpriteAtlas* atlas) {
+    const auto& render = scene.render;
+    ParticleStyle style;
+    style.diameter = *render.point_size;
+    style.color = render.color;
+    style.opacity = render.opacity;
+    style.looks = render.looks;
+    style.sprite = render.sprite;
+    style.blend = render.blend;
+    style.soft = render.soft;
+    style.atlas = atlas;
+    return style;
+}
+
+Camera sceneCamera(const Scene& scene, const Bounds& bounds, double seconds) {
+    const auto& given = scene.camera;
+    Camera camera;
+    if (given.keys.empty()) {
+        camera.eye = *given.eye;
+        camera.target = *given.target;
+        camera.fov = given.fov;
+    } else {
+        std::vector<CameraKey> keys;
+        for (const SceneCameraKey& key : given.keys) {
+            keys.push_back(
+                {key.time, key.eye, key.target.value_or(*given.target), key.fov.value_or(given.fov)});
+        }
+        camera = cameraAt(keys, given.curve, seconds);
+    }
+    setClipPlanes(camera, bounds);
+    return camera;
+}
+
+}  // namespace relief

@@ -1,0 +1,125 @@
+// One table of a scene file: typed access that names file, line and column of what is wrong. For the readers
+// of scene.cpp alone: it needs toml++.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/config/toml.h"
+
+namespace relief {
+
+// Generous, yet small enough that nothing overflows a float within a lifetime: see runtime/README.md.
+inline constexpr double kLengthMax = 1e9;
+inline constexpr double kRateMax = 1e9;
+inline constexpr double kSpeedMax = 1e6;
+inline constexpr double kAccelerationMax = 1e6;
+inline constexpr double kSecondsMax = 1e6;
+inline constexpr double kDragMax = 1e6;
+
+/// Raised by readers of scenes alone, where a value is found wrong; parseScene turns it into its Result.
+struct SceneError {
+    std::string message;
+};
+
+/// As people write it.
+[[nodiscard]] std::string numberText(double value);
+/// A line of text that a hostile file can neither break nor colour.
+[[nodiscard]] std::string oneLine(std::string_view text);
+
+struct SceneRange {
+    double low;
+    double high;
+    bool low_included = true;
+
+    [[nodiscard]] bool holds(double value) const;  ///< false for NaN
+    [[nodiscard]] std::string text() const;        ///< "choose 0 to 1"
+};
+
+constexpr SceneRange symmetric(double limit) {
+    return {-limit, limit};
+}
+
+/// Remembers which keys were asked for: what is left over at the end is unknown. All but the constructor
+/// throw SceneError.
+class SceneTable {
+  public:
+    /// \param table  null for a table that the file does not have: every key then is absent. It, name and
+    /// file
+    ///               must outlive this.
+    SceneTable(const toml::table* table, std::string_view name, std::string_view file)
+        : table_(table), name_(name), file_(file) {}
+
+    /// The table `name` in this one.
+    [[nodiscard]] SceneTable sub(std::string_view name);
+    /// Whether the file has this table.
+    [[nodiscard]] bool present() const { return table_ != nullptr; }
+    /// The scene file, as messages name it.
+    [[nodiscard]] std::string_view file() const { return file_; }
+
+    /// The value of a key; null if absent.
+    [[nodiscard]] const toml::node* find(std::string_view key);
+
+    // Each reads a key into `out` if it is there, and says whether it is.
+    template <class T>
+    bool number(std::string_view key, const SceneRange& range, T& out) {
+        const toml::node* node = find(key);
+        if (node != nullptr) {
+            out = static_cast<T>(numberOf(*node, key, range));
+        }
+        return node != nullptr;
+    }
+    template <class T>
+    bool integer(std::string_view key, const SceneRange& range, T& out) {
+        const toml::node* node = find(key);
+        if (node != nullptr) {
+            out = static_cast<T>(integerOf(*node, key, range));
+        }
+        return node != nullptr;
+    }
+    bool boolean(std::string_view key, bool& out);
+    bool text(std::string_view key, std::string& out);
+    bool vector(std::string_view key, const SceneRange& range, glm::vec3& out);
+    bool vector(std::string_view key, const SceneRange& range, std::optional<glm::vec3>& out);
+    /// One of `words`; `out` is its index.
+    template <class T>
+    bool word(std::string_view key, const std::vector<std::string_view>& words, T& out) {
+        const toml::node* node = find(key);
+        if (node != nullptr) {
+            out = static_cast<T>(wordOf(*node, key, words));
+        }
+        return node != nullptr;
+    }
+
+    [[nodiscard]] double numberOf(const toml::node& node, std::string_view key,
+                                  const SceneRange& range) const;
+    [[nodiscard]] std::int64_t integerOf(const toml::node& node, std::string_view key,
+                                         const SceneRange& range) const;
+    [[nodiscard]] std::size_t wordOf(const toml::node& node, std::string_view key,
+                                     const std::vector<std::string_view>& words) const;
+
+    [[noreturn]] void wrongType(const toml::node& node, std::string_view key, std::string_view wanted) const;
+    /// "file:line:column: message"
+    [[noreturn]] void failAt(const toml::node& node, const std::string& message) const;
+    [[noreturn]] void failAt(const toml::source_position& at, const std::string& message) const;
+    /// A setting that has no effect, and why.
+    [[noreturn]] void failUseless(std::string_view key, const std::string& why) const;
+    [[nodiscard]] std::string place(const toml::source_position& at) const;  ///< "file:line:column"
+    [[nodiscard]] std::string full(std::string_view key) const;              ///< "table.key"
+
+    /// Call last: any key that nobody has asked for is unknown.
+    void finish() const;
+
+  private:
+    const toml::table* table_;
+    std::string_view name_;
+    std::string_view file_;
+    std::vector<std::string_view> known_;
+};
+
+}  // namespace relief

@@ -1,0 +1,105 @@
+#include "runtime/tool/gpu_tool.h"
+
+#include <unistd.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "formats/base/file_io.h"
+
+namespace relief {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kTimeoutMax = 1e6;  // seconds
+
+Json orNull(const std::string& text) {
+    return text.empty() ? Json(nullptr) : Json(text);
+}
+
+std::string secondsText(std::chrono::milliseconds time) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%g", static_cast<double>(time.count()) / 1000.0);
+    return text.data();
+}
+
+}  // namespace
+
+Result<std::size_t> parseDevice(const std::string& text) {
+    std::size_t device = 0;
+    const char* end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data(), end, device);
+    if (error != std::errc() || rest != end) {
+        return fail(ErrorCode::kUsage, "--device " + quotedPath(text) +
+                                           " is not the number of a device; --list-devices names them");
+    }
+    return device;
+}
+
+Result<std::chrono::milliseconds> parseGpuTimeout(const std::string& text) {
+    double seconds = 0.0;
+    const char* end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data(), end, seconds);
+    if (error != std::errc() || rest != end || !(seconds >= 0.0 && seconds <= kTimeoutMax)) {
+        return fail(ErrorCode::kUsage, "--gpu-timeout " + quotedPath(text) +
+                                           " is not a number of seconds from 0 (never) to 1000000");
+    }
+    // Rounded up, for 0 means never.
+    return std::chrono::milliseconds(static_cast<std::int64_t>(std::ceil(seconds * 1000.0)));
+}
+
+std::chrono::milliseconds defaultGpuTimeout(bool software) {
+    return std::chrono::seconds(software ? 600 : 60);
+}
+
+std::string devicesText(const std::vector<GlDevice>& devices) {
+    if (devices.empty()) {
+        return "EGL names no devices; leave --device out\n";
+    }
+    std::string text;
+    for (const GlDevice& device : devices) {
+        text += std::to_string(device.index) + "  ";
+        if (device.problem.empty()) {
+            text += device.renderer + ", " + device.vendor + ", " + device.version;
+        } else {
+            text += (device.name.empty() ? "" : device.name + ": ") + device.problem;
+        }
+        text += (device.software ? ", software" : "") +
+                (device.drm_device.empty() ? std::string() : ", " + device.drm_device) + "\n";
+    }
+    return text;
+}
+
+std::string devicesJson(const std::vector<GlDevice>& devices) {
+    Json list = Json::array();
+    for (const GlDevice& device : devices) {
+        list.push_back({{"index", device.index},
+                        {"name", orNull(device.name)},
+                        {"drm_device", orNull(device.drm_device)},
+                        {"vendor", orNull(device.vendor)},
+                        {"renderer", orNull(device.renderer)},
+                        {"version", orNull(device.version)},
+                        {"software", device.software},
+                        {"problem", orNull(device.problem)}});
+    }
+    return Json{{"devices", list}}.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Watchdog::Starved endProcess(const std::string& program) {
+    return [program](const std::string& what, std::chrono::milliseconds limit) {
+        const std::string line = program + ": error: the GPU has not finished " + what + " within " +
+                                 secondsText(limit) +
+                                 " seconds; if it is only slow, raise --gpu-timeout (0: wait for ever)\n";
+        // Past the streams, whose locks the stuck thread may hold.
+        if (::write(STDERR_FILENO, line.data(), line.size()) < 0) {
+            // There is nobody left to tell.
+        }
+        ::_exit(static_cast<int>(ErrorCode::kFailure));
+    };
+}
+
+}  // namespace relief

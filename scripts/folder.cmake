@@ -1,0 +1,62 @@
+# relief_folder(FOLDER [USES FOLDER…] [LINKS LIBRARY…] [PUBLIC LIBRARY…] [EXCEPT FILE…])
+# Every .cpp of FOLDER, but for those named EXCEPT, as a library whose target is FOLDER with _ for /.
+#
+# Its sources find the headers of FOLDER, of the folders that it USES, and of those that these use in turn; no others
+# compile. For that each folder has an include root of its own in the build tree, which holds a link to it alone. USES
+# takes only folders declared earlier, so that no arrow can run back.
+#
+# LINKS are libraries for the sources alone; those whose headers the folder's own headers include are PUBLIC.
+function(relief_folder folder)
+    cmake_parse_arguments(ARG "" "" "USES;LINKS;PUBLIC;EXCEPT" ${ARGN})
+    string(REPLACE / _ target ${folder})
+    set(root ${PROJECT_BINARY_DIR}/folders/${target})
+    cmake_path(GET folder PARENT_PATH parent)
+    file(MAKE_DIRECTORY ${root}/${parent})
+    file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${folder} ${root}/${folder} SYMBOLIC)
+
+    file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
+    list(TRANSFORM ARG_EXCEPT PREPEND ${PROJECT_SOURCE_DIR}/${folder}/)
+    list(REMOVE_ITEM sources ${ARG_EXCEPT})
+    add_library(${target} STATIC ${sources})
+    target_include_directories(${target} PUBLIC ${root})
+    target_link_libraries(${target} PUBLIC relief_options ${ARG_PUBLIC} PRIVATE ${ARG_LINKS})
+    foreach(used IN LISTS ARG_USES)
+        string(REPLACE / _ used_target ${used})
+        if(NOT TARGET ${used_target})
+            message(FATAL_ERROR "${folder} uses ${used}, which is declared later or not at all")
+        endif()
+        target_link_libraries(${target} PUBLIC ${used_target})
+    endforeach()
+    # For tests/arrows.py, which says in words what a compiler says of a missing file.
+    string(REPLACE ";" " " uses "${ARG_USES}")
+    set_property(GLOBAL APPEND PROPERTY RELIEF_FOLDERS "${folder}: ${uses}")
+endfunction()
+
+# relief_unit(FOLDER FILE [LINKS LIBRARY…] [OPTIONS …]): one file that the folder was declared EXCEPT, as a part of it
+# that is compiled with libraries or options that its other files must not have.
+function(relief_unit folder file)
+    cmake_parse_arguments(ARG "" "" "LINKS;OPTIONS" ${ARGN})
+    string(REPLACE / _ target ${folder})
+    cmake_path(GET file STEM stem)
+    set(unit ${target}_${stem})
+    add_library(${unit} OBJECT ${PROJECT_SOURCE_DIR}/${folder}/${file})
+    target_include_directories(${unit} PRIVATE $<TARGET_PROPERTY:${target},INCLUDE_DIRECTORIES>)
+    target_compile_options(${unit} PRIVATE ${ARG_OPTIONS})
+    target_link_libraries(${unit} PRIVATE relief_options ${ARG_LINKS})
+    target_link_libraries(${target} PRIVATE ${unit})
+endfunction()
+
+# relief_archive(NAME FOLDER…): folders as one library for other people's programs. Its public headers are all those
+# of these folders.
+function(relief_archive name)
+    set(objects)
+    set(roots)
+    foreach(folder IN LISTS ARGN)
+        string(REPLACE / _ target ${folder})
+        list(APPEND objects $<TARGET_OBJECTS:${target}>)
+        list(APPEND roots $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/folders/${target}>)
+    endforeach()
+    add_library(${name} STATIC ${objects})
+    set_target_properties(${name} PROPERTIES LINKER_LANGUAGE CXX RELIEF_FOLDERS "${ARGN}")
+    target_include_directories(${name} INTERFACE ${roots})
+endfunction()

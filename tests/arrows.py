@@ -1,0 +1,109 @@
+#!/usr/bin/env python3
+"""Every #include goes along an arrow of the build files: arrows.py SOURCE FOLDERS_TXT
+
+FOLDERS_TXT is what CMake writes of relief_folder(): "FOLDER: USED USED…", a line each. Also fails on circles among
+files (a .cpp and its .h count as one), and on third parties outside of the folders that may know them.
+"""
+import pathlib
+import re
+import sys
+
+# Third parties that only some folders may include; those of the standard library and the system are free.
+THIRD_PARTIES = {
+    'assimp': ['bake/import'],
+    'embree3': ['bake/mesh', 'bake/texels', 'bake/bench'],
+    'CGAL': ['bake/mesh', 'bake/repair'],
+    'OpenEXR': ['bake/picture', 'runtime/files'],
+    'cairo.h': ['bake/picture'],
+    'png.h': ['runtime/files'],
+    'flatbuffers': ['formats', 'bake/import'],
+    'zstd.h': ['formats'],
+    'xxhash.h': ['formats/base'],
+    'toml++': ['formats/config'],
+    'CLI': ['runtime/tool', 'bake/cli', 'bake/bench', 'runtime'],
+    'spdlog': ['bake/cli'],
+    'nlohmann': ['bake/import', 'bake/recipe', 'bake/report', 'bake/cli', 'bake/bench', 'runtime/tool', 'runtime/player',
+                 'runtime/bench'],
+    'epoxy': ['runtime/gl', 'runtime/collider', 'runtime/picture'],
+}
+TOP = {'bake', 'runtime'}  # main.cpp alone, which may use everything below
+
+
+def reachable(folder, uses):
+    found, waiting = {folder}, [folder]
+    while waiting:
+        for used in uses.get(waiting.pop(), []):
+            if used not in found:
+                found.add(used)
+                waiting.append(used)
+    return found
+
+
+def circles(graph):
+    """Groups of files that include each other, by Tarjan's algorithm."""
+    index, low, stack, groups = {}, {}, [], []
+
+    def visit(node):
+        index[node] = low[node] = len(index)
+        stack.append(node)
+        for other in sorted(graph.get(node, ())):
+            if other not in index:
+                visit(other)
+                low[node] = min(low[node], low[other])
+            elif other in stack:
+                low[node] = min(low[node], index[other])
+        if low[node] == index[node]:
+            group = []
+            while not group or group[-1] != node:
+                group.append(stack.pop())
+            if len(group) > 1:
+                groups.append(sorted(group))
+
+    sys.setrecursionlimit(10000)
+    for node in sorted(graph):
+        if node not in index:
+            visit(node)
+    return groups
+
+
+def main(source, folders_file):
+    source = pathlib.Path(source)
+    uses = {}
+    for line in open(folders_file):
+        folder, used = line.strip().split(':')
+        uses[folder] = used.split()
+    faults, graph, files = [], {}, 0
+    for path in sorted(p for top in ('formats', 'shaders', 'runtime', 'bake') for p in (source / top).rglob('*')):
+        if path.suffix not in ('.h', '.cpp'):
+            continue
+        files += 1
+        name = path.relative_to(source)
+        folder = str(name.parent)
+        if folder not in uses and folder not in TOP:
+            faults.append(f'{name}: {folder} is no relief_folder() of the build files')
+            continue
+        allowed = set(uses) if folder in TOP else reachable(folder, uses)
+        for number, line in enumerate(path.read_text().split('\n'), 1):
+            ours = re.match(r'\s*#\s*include\s*"([^"]+)"', line)
+            theirs = re.match(r'\s*#\s*include\s*<([^>]+)>', line)
+            if theirs and theirs[1].split('/')[0] in THIRD_PARTIES:
+                party = theirs[1].split('/')[0]
+                if folder not in THIRD_PARTIES[party]:
+                    faults.append(f'{name}:{number}: {party} is for {", ".join(THIRD_PARTIES[party])} alone')
+            if not ours or ours[1].endswith('_generated.h'):
+                continue
+            target = pathlib.Path(ours[1])
+            if not (source / target).is_file():
+                faults.append(f'{name}:{number}: there is no {target}; includes are named from the root')
+            elif str(target.parent) not in allowed:
+                faults.append(f'{name}:{number}: an arrow runs back: {folder} may not use {target.parent}')
+            stem, other = str(name.with_suffix('')), str(target.with_suffix(''))
+            if stem != other:
+                graph.setdefault(stem, set()).add(other)
+    faults += ['a circle: ' + ', '.join(group) for group in circles(graph)]
+    print('\n'.join(faults) if faults else f'{files} files in {len(uses)} folders, no arrow runs back')
+    return 1 if faults or files < 100 else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main(*sys.argv[1:]))

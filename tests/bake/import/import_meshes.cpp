@@ -1,0 +1,125 @@
+#include "tests/bake/import/import_meshes.h"
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+
+namespace relief::test {
+namespace {
+
+std::string base64(const std::string& bytes) {
+    constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    for (std::size_t i = 0; i + 2 < bytes.size(); i += 3) {  // 72 bytes: no remainder
+        std::uint32_t group = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            group = group << 8U | static_cast<unsigned char>(bytes[i + k]);
+        }
+        for (unsigned k = 0; k < 4; ++k) {
+            text += kDigits[group >> (18U - 6U * k) & 63U];
+        }
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string tetrahedronObj() {
+    return "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+}
+
+std::string tetrahedronPly() {
+    return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+           "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
+           "0 0 0\n1 0 0\n0 2 0\n0 0 3\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+}
+
+std::string tetrahedronOff() {
+    return "OFF\n4 4 0\n0 0 0\n1 0 0\n0 2 0\n0 0 3\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+}
+
+std::string tetrahedronStl() {
+    const std::array<const char*, 4> corners = {"vertex 0 0 0\n", "vertex 1 0 0\n", "vertex 0 2 0\n",
+                                                "vertex 0 0 3\n"};
+    constexpr std::array<std::array<std::size_t, 3>, 4> kFaces = {
+        {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+    std::string text = "solid t\n";
+    for (const auto& face : kFaces) {
+        text += "facet normal 0 0 0\nouter loop\n";
+        for (const std::size_t corner : face) {
+            text += corners.at(corner);
+        }
+        text += "endloop\nendfacet\n";
+    }
+    return text + "endsolid t\n";
+}
+
+std::string tetrahedron3ds() {
+    const auto bytesOf = [](const auto& values) {
+        return std::string(reinterpret_cast<const char*>(values.data()), sizeof(values[0]) * values.size());
+    };
+    const auto chunk = [&](std::uint16_t id, const std::string& contents) {
+        const auto size = static_cast<std::uint32_t>(contents.size() + 6);
+        std::string text(6, '\0');
+        std::memcpy(text.data(), &id, 2);
+        std::memcpy(text.data() + 2, &size, 4);
+        return text + contents;
+    };
+    const std::array<std::uint16_t, 1> four = {4};
+    const std::array<float, 12> corners = {0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3};
+    const std::array<std::uint16_t, 16> faces = {0, 2, 1, 0, 0, 1, 3, 0, 1, 2, 3, 0, 0, 3, 2, 0};
+    const std::string mesh =
+        chunk(0x4110, bytesOf(four) + bytesOf(corners)) + chunk(0x4120, bytesOf(four) + bytesOf(faces));
+    return chunk(0x4D4D, chunk(0x3D3D, chunk(0x4000, std::string("t\0", 2) + chunk(0x4100, mesh))));
+}
+
+std::string tetrahedronDae(const std::string& asset) {
+    return R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset>)" +
+           asset +
+           R"(</asset><library_geometries><geometry id="g"><mesh><source id="p"><float_array id="a" count="12">)"
+           R"(0 0 0 1 0 0 0 2 0 0 0 3</float_array><technique_common><accessor source="#a" count="4" stride="3">)"
+           R"(<param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor>)"
+           R"(</technique_common></source><vertices id="v"><input semantic="POSITION" source="#p"/></vertices>)"
+           R"(<triangles count="4"><input semantic="VERTEX" source="#v" offset="0"/><p>0 2 1 0 1 3 1 2 3 0 3 2</p>)"
+           R"(</triangles></mesh></geometry></library_geometries><library_visual_scenes><visual_scene id="s">)"
+           R"(<node id="n"><instance_geometry url="#g"/></node></visual_scene></library_visual_scenes><scene>)"
+           R"(<instance_visual_scene url="#s"/></scene></COLLADA>)";
+}
+
+std::string tetrahedronFbx(int up, int sign, const std::string& unit) {
+    const auto property = [](const char* name, const char* type, const std::string& value) {
+        return std::string("P: \"") + name + "\", " + type + ", \"\"," + value + "\n";
+    };
+    constexpr const char* kInt = R"("int", "Integer")";
+    return "; FBX 7.3.0 project file\nFBXHeaderExtension:  {\nFBXHeaderVersion: 1003\nFBXVersion: 7300\n}\n"
+           "GlobalSettings:  {\nVersion: 1000\nProperties70:  {\n" +
+           property("UpAxis", kInt, std::to_string(up)) + property("UpAxisSign", kInt, std::to_string(sign)) +
+           property("UnitScaleFactor", R"("double", "Number")", unit) +
+           "}\n}\nObjects:  {\nGeometry: 1000, \"Geometry::t\", \"Mesh\" {\n"
+           "Vertices: *12 {\na: 0,0,0,1,0,0,0,2,0,0,0,3\n}\n"
+           "PolygonVertexIndex: *12 {\na: 0,2,-2,0,1,-4,1,2,-4,0,3,-3\n}\nGeometryVersion: 124\n}\n"
+           "Model: 2000, \"Model::t\", \"Mesh\" {\nVersion: 232\nProperties70:  {\n}\n}\n}\n"
+           "Connections:  {\nC: \"OO\",2000,0\nC: \"OO\",1000,2000\n}\n";
+}
+
+std::string tetrahedronBuffer() {
+    const std::array<float, 12> positions = {0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3};
+    const std::array<std::uint16_t, 12> indices = {0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2};
+    std::string buffer(sizeof(positions) + sizeof(indices), '\0');
+    std::memcpy(buffer.data(), positions.data(), sizeof(positions));
+    std::memcpy(buffer.data() + sizeof(positions), indices.data(), sizeof(indices));
+    return buffer;
+}
+
+std::string tetrahedronGltf(const GltfParts& parts) {
+    const std::string uri =
+        parts.uri.empty() ? "data:application/octet-stream;base64," + base64(tetrahedronBuffer()) : parts.uri;
+    return "{" + parts.more + R"("asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[)" + parts.roots +
+           R"(]}],"nodes":[)" + parts.nodes + R"(],"meshes":[{"primitives":[{)" + parts.primitive +
+           R"(}]}],"accessors":[{)" + parts.position + "},{" + parts.indices +
+           R"(}],"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":48},)"
+           R"({"buffer":0,"byteOffset":48,"byteLength":24}],"buffers":[{"byteLength":72,"uri":")" +
+           uri + R"("}]})";
+}
+
+}  // namespace relief::test

@@ -1,0 +1,134 @@
+// What a worker that a hostile mesh has taken over may answer.
+#include "bake/import/import_message.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <random>
+
+#include "bake/import/import_source.h"
+#include "tests/bake/import/import_meshes.h"
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+namespace {
+
+TriangleMesh rawTriangle() {
+    TriangleMesh raw;
+    raw.unit = "m";
+    raw.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    raw.triangles = {{0, 1, 2}};
+    raw.dependencies = {"b/x.mtl"};
+    raw.dependency_hashes = {std::string(32, 'a')};
+    raw.warnings = {"something"};
+    return raw;
+}
+
+std::vector<std::byte> bytesOf(const Result<TriangleMesh>& raw) {
+    const ImportMessage message = makeImportMessage(raw);
+    std::vector<std::byte> bytes(message.size);
+    writeImportMessage(message, raw, bytes);
+    return bytes;
+}
+
+TEST(ImportMessage, CarriesMeshesAndErrors) {
+    const Result<TriangleMesh> read = readImportMessage(bytesOf(rawTriangle()));
+    ASSERT_TRUE(read) << read.error().message;
+    const TriangleMesh raw = rawTriangle();
+    EXPECT_EQ(read->unit, raw.unit);
+    EXPECT_EQ(read->positions, raw.positions);
+    EXPECT_EQ(read->triangles, raw.triangles);
+    EXPECT_EQ(read->dependencies, raw.dependencies);
+    EXPECT_EQ(read->dependency_hashes, raw.dependency_hashes);
+    EXPECT_EQ(read->warnings, raw.warnings);
+
+    const Result<TriangleMesh> error = readImportMessage(bytesOf(fail(ErrorCode::kLimit, "two\nlines \x1b")));
+    ASSERT_FALSE(error);
+    EXPECT_EQ(error.error().code, ErrorCode::kLimit);
+    EXPECT_EQ(error.error().message.find('\n'), std::string::npos);
+    EXPECT_EQ(error.error().message.find('\x1b'), std::string::npos);
+}
+
+TEST(ImportMessage, EveryTruncationAndExtensionIsRefused) {
+    const std::vector<std::byte> whole = bytesOf(rawTriangle());
+    for (std::size_t size = 0; size < whole.size(); ++size) {
+        const std::vector<std::byte> cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
+        EXPECT_FALSE(readImportMessage(cut)) << size;
+    }
+    std::vector<std::byte> longer = whole;
+    longer.push_back(std::byte{0});
+    EXPECT_FALSE(readImportMessage(longer));
+}
+
+TEST(ImportMessage, AnyFlippedBitsAreReadSafely) {
+    // The sanitizers watch; nothing but a mesh that finishMesh takes or an error may come out.
+    const TemporaryFolder folder;
+    const Result<ImportSource> source = ImportSource::open(folder.write("t.obj", tetrahedronObj()));
+    ASSERT_TRUE(source);
+    const std::vector<std::byte> whole = bytesOf(rawTriangle());
+    std::mt19937 random(5);
+    int refused = 0;
+    for (int i = 0; i < 20000; ++i) {
+        std::vector<std::byte> bytes = whole;
+        const std::uint32_t flips = 1 + random() % 4;
+        for (std::uint32_t k = 0; k < flips; ++k) {
+            bytes[random() % bytes.size()] ^= std::byte{static_cast<unsigned char>(1U << random() % 8)};
+        }
+        Result<TriangleMesh> raw = readImportMessage(bytes);
+        if (raw) {
+            raw = source->finish(std::move(*raw));
+        }
+        refused += raw ? 0 : 1;
+    }
+    EXPECT_GT(refused, 1000);
+    EXPECT_LT(refused, 20000);
+}
+
+TEST(ImportSource, ClaimsOfTheWorkerAreChecked) {
+    const TemporaryFolder folder;
+    const Result<ImportSource> source = ImportSource::open(folder.write("t.obj", tetrahedronObj()));
+    ASSERT_TRUE(source);
+    ASSERT_TRUE(source->finish(rawTriangle()));
+    const std::vector<std::function<void(TriangleMesh&)>> lies = {
+        [](TriangleMesh& raw) { raw.unit = "parsec"; },
+        [](TriangleMesh& raw) { raw.dependencies = {"/etc/passwd"}; },
+        [](TriangleMesh& raw) { raw.dependencies = {"a/../../x"}; },
+        [](TriangleMesh& raw) { raw.dependencies = {""}; },
+        [](TriangleMesh& raw) { raw.dependencies = {std::string("a\0b", 3)}; },
+        [](TriangleMesh& raw) { raw.dependencies.clear(); },
+        [](TriangleMesh& raw) { raw.dependency_hashes = {"short"}; },
+        [](TriangleMesh& raw) { raw.triangles[0].z = 3; },
+        [](TriangleMesh& raw) { raw.triangles.clear(); },
+        [](TriangleMesh& raw) { raw.positions[1].x = std::numeric_limits<float>::quiet_NaN(); },
+    };
+    for (std::size_t i = 0; i < lies.size(); ++i) {
+        TriangleMesh raw = rawTriangle();
+        lies[i](raw);
+        const Result<TriangleMesh> mesh = source->finish(std::move(raw));
+        ASSERT_FALSE(mesh) << "lie " << i;
+        EXPECT_EQ(mesh.error().code, ErrorCode::kInvalidInput);
+        EXPECT_NE(mesh.error().message.find("t.obj"), std::string::npos) << mesh.error().message;
+    }
+}
+
+TEST(ImportSource, FilesAreNamedAsTheyCanBeOpenedAndSorted) {
+    const TemporaryFolder folder;
+    const std::filesystem::path path = folder.write("t.obj", tetrahedronObj());
+    const Result<ImportSource> source = ImportSource::open(path);
+    ASSERT_TRUE(source);
+    TriangleMesh raw = rawTriangle();
+    raw.dependencies = {"z.mtl", "a.mtl"};
+    raw.dependency_hashes = {std::string(32, 'f'), std::string(32, '0')};
+    const Result<TriangleMesh> mesh = source->finish(std::move(raw));
+    ASSERT_TRUE(mesh);
+    const std::vector<std::string> files = {path.string(), folder.path() / "a.mtl", folder.path() / "z.mtl"};
+    EXPECT_EQ(mesh->dependencies, files);
+    const std::vector<std::string> hashes = {mesh->content_hash, std::string(32, '0'), std::string(32, 'f')};
+    EXPECT_EQ(mesh->dependency_hashes, hashes);
+    EXPECT_EQ(mesh->warnings, std::vector<std::string>{"t.obj: something"});
+}
+
+}  // namespace
+}  // namespace relief::test

@@ -1,0 +1,170 @@
+// One tetrahedron in every format, with units and axes: it must lie at the same coordinates.
+#include "bake/import/import_units.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+#include "bake/import/mesh_import.h"
+#include "bake/mesh/triangle_plane.h"
+#include "tests/bake/import/import_meshes.h"
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+namespace {
+
+double signedVolume(const TriangleMesh& mesh) {
+    double volume = 0.0;
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+        const TrianglePlane plane = planeOf(mesh, i);
+        volume += dot(plane.point, plane.normal) / 6.0;
+    }
+    return volume;
+}
+
+void expectLiesAt(const Result<TriangleMesh>& mesh, const glm::vec3& low, const glm::vec3& high,
+                  const std::string& unit) {
+    ASSERT_TRUE(mesh) << mesh.error().message;
+    const float tolerance = 1e-5F * glm::distance(low, high);
+    EXPECT_LT(glm::distance(mesh->bounds.min, low), tolerance)
+        << mesh->bounds.min.x << " " << mesh->bounds.min.y;
+    EXPECT_LT(glm::distance(mesh->bounds.max, high), tolerance)
+        << mesh->bounds.max.x << " " << mesh->bounds.max.y;
+    EXPECT_EQ(mesh->unit, unit);
+    const glm::vec3 size = high - low;
+    EXPECT_NEAR(signedVolume(*mesh) / double{size.x * size.y * size.z / 6.0F}, 1.0, 1e-4)
+        << "turned inside out";
+}
+
+ImportOptions options(const std::string& unit, std::optional<UpAxis> up = std::nullopt) {
+    return {unit, up};
+}
+
+TEST(ImportUnits, EveryTurnIsARotationThatLiftsItsAxis) {
+    for (const char* name : {"+x", "-x", "+y", "-y", "+z", "-z", "+Z"}) {
+        SCOPED_TRACE(name);
+        const Result<UpAxis> up = parseUpAxis(name);
+        ASSERT_TRUE(up);
+        const glm::dmat3 turn = turnUpwards(*up);
+        const int axis = (name[1] | 0x20) - 'x';
+        EXPECT_EQ(turn[axis], glm::dvec3(0, name[0] == '-' ? -1 : 1, 0));
+        EXPECT_EQ(glm::transpose(turn) * turn, glm::dmat3(1.0));
+        EXPECT_EQ(glm::dot(glm::cross(turn[0], turn[1]), turn[2]), 1.0);
+    }
+    for (const char* wrong : {"", "z", "up", "+w", "+zz"}) {
+        const Result<UpAxis> up = parseUpAxis(wrong);
+        ASSERT_FALSE(up) << wrong;
+        EXPECT_EQ(up.error().code, ErrorCode::kUsage);
+    }
+}
+
+TEST(ImportUnits, WordsAreMetres) {
+    EXPECT_EQ(metresPer("in"), 0.0254);
+    EXPECT_DOUBLE_EQ(metresPer("ft").value_or(0), 12 * 0.0254);
+    EXPECT_DOUBLE_EQ(metresPer("yd").value_or(0), 36 * 0.0254);
+    EXPECT_EQ(metresPer("cm"), 0.01);
+    EXPECT_FALSE(metresPer(""));
+    EXPECT_FALSE(metresPer("inch"));
+    for (const std::string_view unit : lengthUnits()) {
+        EXPECT_TRUE(metresPer(unit)) << unit;
+    }
+}
+
+TEST(ImportUnits, FormatsWithoutUnitStayAsTheyAreUntilToldOtherwise) {
+    const TemporaryFolder folder;
+    for (const auto& [name, text] :
+         {std::pair{"t.obj", tetrahedronObj()}, std::pair{"t.ply", tetrahedronPly()},
+          std::pair{"t.off", tetrahedronOff()}, std::pair{"t.stl", tetrahedronStl()}}) {
+        SCOPED_TRACE(name);
+        const std::filesystem::path path = folder.write(name, text);
+        expectLiesAt(importMesh(path), {0, 0, 0}, {1, 2, 3}, "");
+        expectLiesAt(importMesh(path, options("m")), {0, 0, 0}, {1, 2, 3}, "m");
+        expectLiesAt(importMesh(path, options("in")), {0, 0, 0}, {0.0254F, 0.0508F, 0.0762F}, "m");
+        expectLiesAt(importMesh(path, options("", UpAxis::kPlusZ)), {0, 0, -2}, {1, 3, 0}, "");
+        expectLiesAt(importMesh(path, options("mm", UpAxis::kMinusX)), {0, -0.001F, 0}, {0.002F, 0, 0.003F},
+                     "m");
+        const Result<TriangleMesh> told = importMesh(path, options("mm", UpAxis::kPlusZ));
+        ASSERT_TRUE(told);
+        EXPECT_TRUE(told->warnings.empty()) << told->warnings.front();
+    }
+}
+
+TEST(ImportUnits, FormatsThatSayItLandAtTheSamePlace) {
+    const TemporaryFolder folder;
+    const glm::vec3 low(0, 0, -2);  // 1, 2, 3 m with z upwards
+    const glm::vec3 high(1, 3, 0);
+    expectLiesAt(importMesh(folder.write("z.fbx", tetrahedronFbx(2, 1, "100"))), low, high, "m");
+    expectLiesAt(
+        importMesh(folder.write("z.dae", tetrahedronDae("<unit meter=\"1\"/><up_axis>Z_UP</up_axis>"))), low,
+        high, "m");
+    expectLiesAt(importMesh(folder.write("z.gltf", tetrahedronGltf()), options("", UpAxis::kPlusZ)), low,
+                 high, "m");
+    expectLiesAt(importMesh(folder.write("z.stl", tetrahedronStl()), options("m", UpAxis::kPlusZ)), low, high,
+                 "m");
+}
+
+TEST(ImportUnits, FbxIsInCentimetresTimesItsFactor) {
+    const TemporaryFolder folder;
+    expectLiesAt(importMesh(folder.write("y.fbx", tetrahedronFbx(1, 1, "1"))), {0, 0, 0},
+                 {0.01F, 0.02F, 0.03F}, "m");
+    expectLiesAt(importMesh(folder.write("in.fbx", tetrahedronFbx(1, 1, "2.54"))), {0, 0, 0},
+                 {0.0254F, 0.0508F, 0.0762F}, "m");
+    expectLiesAt(importMesh(folder.write("x.fbx", tetrahedronFbx(0, 1, "100"))), {-2, 0, 0}, {0, 1, 3}, "m");
+    expectLiesAt(importMesh(folder.write("ny.fbx", tetrahedronFbx(1, -1, "100"))), {0, -2, -3}, {1, 0, 0},
+                 "m");
+}
+
+TEST(ImportUnits, ColladaSaysMetresAndAxis) {
+    const TemporaryFolder folder;
+    expectLiesAt(importMesh(folder.write("no.dae", tetrahedronDae(""))), {0, 0, 0}, {1, 2, 3}, "m");
+    expectLiesAt(importMesh(folder.write("in.dae", tetrahedronDae("<unit name=\"inch\" meter=\"0.0254\"/>"))),
+                 {0, 0, 0}, {0.0254F, 0.0508F, 0.0762F}, "m");
+    expectLiesAt(importMesh(folder.write("x.dae", tetrahedronDae("<up_axis>X_UP</up_axis>"))), {-2, 0, 0},
+                 {0, 1, 3}, "m");
+}
+
+TEST(ImportUnits, ThreeDsHasZUpwardsAndNoUnit) {
+    const TemporaryFolder folder;
+    const std::filesystem::path path = folder.write("t.3ds", tetrahedron3ds());
+    expectLiesAt(importMesh(path), {0, 0, -2}, {1, 3, 0}, "");
+    expectLiesAt(importMesh(path, options("mm", UpAxis::kPlusY)), {0, 0, 0}, {0.001F, 0.002F, 0.003F}, "m");
+}
+
+TEST(ImportUnits, AnOptionWinsOverTheFileAndSaysSo) {
+    const TemporaryFolder folder;
+    const std::filesystem::path dae =
+        folder.write("in.dae", tetrahedronDae("<unit meter=\"0.0254\"/><up_axis>Z_UP</up_axis>"));
+    const Result<TriangleMesh> mesh = importMesh(dae, options("cm", UpAxis::kPlusX));
+    expectLiesAt(mesh, {-0.02F, 0, 0}, {0, 0.01F, 0.03F}, "m");
+    ASSERT_EQ(mesh->warnings.size(), 2U);
+    EXPECT_EQ(mesh->warnings[0], "in.dae: --unit cm is taken, but the file says that its unit is 0.0254 m");
+    EXPECT_EQ(mesh->warnings[1], "in.dae: --up +x is taken, but the file says that +z points upwards");
+    // Said again, it is no contradiction.
+    const Result<TriangleMesh> same = importMesh(dae, options("in", UpAxis::kPlusZ));
+    ASSERT_TRUE(same);
+    EXPECT_TRUE(same->warnings.empty());
+
+    const Result<TriangleMesh> gltf = importMesh(folder.write("t.gltf", tetrahedronGltf()), options("mm"));
+    expectLiesAt(gltf, {0, 0, 0}, {0.001F, 0.002F, 0.003F}, "m");
+    EXPECT_EQ(gltf->warnings.size(), 1U);
+    const Result<TriangleMesh> fbx =
+        importMesh(folder.write("t.fbx", tetrahedronFbx(2, 1, "1")), options("m", UpAxis::kPlusY));
+    expectLiesAt(fbx, {0, 0, 0}, {1, 2, 3}, "m");
+    EXPECT_EQ(fbx->warnings.size(), 2U);
+}
+
+TEST(ImportUnits, ColladaHeadersAreReadAsWritten) {
+    EXPECT_EQ(colladaUp("<asset><up_axis> Z_UP\n</up_axis></asset>"), UpAxis::kPlusZ);
+    EXPECT_EQ(colladaUp("<asset><up_axis>X_UP</up_axis></asset>"), UpAxis::kPlusX);
+    EXPECT_EQ(colladaUp("<asset></asset><up_axis>Z_UP</up_axis>"), UpAxis::kPlusY) << "not of the document";
+    EXPECT_EQ(colladaUp(""), UpAxis::kPlusY);
+    // As XML allows it.
+    const TemporaryFolder folder;
+    const std::string asset = "<unit name=\"meter\"\n meter = '0.5'/><up_axis>\nZ_UP </up_axis>";
+    const std::filesystem::path path = folder.write("t.dae", tetrahedronDae(asset));
+    expectLiesAt(importMesh(path), {0, 0, -1}, {0.5F, 1.5F, 0}, "m");
+    expectLiesAt(importMesh(path, options("m")), {0, 0, -2}, {1, 3, 0}, "m");
+}
+
+}  // namespace
+}  // namespace relief::test

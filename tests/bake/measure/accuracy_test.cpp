@@ -1,0 +1,533 @@
+// The yardstick against closed forms: truth, the shares that it finds for fields whose mistakes are known,
+// the distance volume that colliders are compared with, and the report.
+#include "bake/measure/accuracy.h"
+
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <random>
+
+#include "bake/bench/distance_volume.h"
+#include "bake/mesh/inside.h"
+#include "bake/picture/heat_map.h"
+#include "bake/report/accuracy_report.h"
+#include "formats/base/byte_count.h"
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+namespace {
+
+MeshQuery queryOf(const TriangleMesh& mesh) {
+    Result<MeshQuery> query = MeshQuery::build(mesh);
+    EXPECT_TRUE(query) << query.error().message;
+    return std::move(*query);
+}
+
+/// Points in a box of 1.2 times the bounds.
+std::vector<glm::vec3> randomPoints(const Bounds& bounds, int count) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> unit(-0.6F, 0.6F);
+    std::vector<glm::vec3> points;
+    for (int i = 0; i < count; ++i) {
+        const glm::vec3 offset(unit(random), unit(random), unit(random));
+        points.push_back(bounds.center() + bounds.size() * offset);
+    }
+    return points;
+}
+
+double boxDistance(const glm::dvec3& p, const glm::dvec3& half) {
+    const glm::dvec3 q = glm::abs(p) - half;
+    return glm::length(glm::max(q, 0.0)) + std::min(std::max({q.x, q.y, q.z}), 0.0);
+}
+
+// --- truth ---
+
+TEST(MeshQuery, BoxHasTheDistanceOfTheFormula) {
+    const glm::dvec3 half(1.0, 0.5, 2.0);
+    const glm::dmat3 axes = rotation({1, 1, 0}, 40.0);
+    const glm::dvec3 center(3.0, -1.0, 2.0);
+    const TriangleMesh mesh = makeBoxMesh(center, half, axes);
+    const MeshQuery query = queryOf(mesh);
+    EXPECT_TRUE(query.watertight());
+    for (const glm::vec3& p : randomPoints(mesh.bounds, 3000)) {
+        const double expected = boxDistance(glm::transpose(axes) * (glm::dvec3(p) - center), half);
+        // The mesh's corners are floats.
+        EXPECT_NEAR(query.signedDistance(p), expected, 2e-6);
+    }
+}
+
+TEST(MeshQuery, SphereAndTorusHaveTheDistanceOfTheFormula) {
+    const TriangleMesh sphere = makeIcosphere({0, 0, 0}, 2.0, 5);
+    const MeshQuery in_sphere = queryOf(sphere);
+    for (const glm::vec3& p : randomPoints(sphere.bounds, 2000)) {
+        EXPECT_NEAR(in_sphere.signedDistance(p), glm::length(glm::dvec3(p)) - 2.0, 2e-3);
+    }
+    const TriangleMesh torus = makeTorusMesh(1.0, 0.3, 256, 128);
+    const MeshQuery in_torus = queryOf(torus);
+    for (const glm::vec3& p : randomPoints(torus.bounds, 2000)) {
+        const double ring = std::hypot(double{p.x}, double{p.y}) - 1.0;
+        EXPECT_NEAR(in_torus.signedDistance(p), std::hypot(ring, double{p.z}) - 0.3, 5e-4);
+    }
+}
+
+TEST(MeshQuery, AgreesWithCountingAllTrianglesInDoublePrecision) {
+    const TriangleMesh mesh = makeTorusMesh(1.0, 0.4, 40, 24);
+    const MeshQuery query = queryOf(mesh);
+    for (const glm::vec3& p : randomPoints(mesh.bounds, 2000)) {
+        EXPECT_EQ(query.inside(p), insideByParity(mesh, p));
+    }
+}
+
+TEST(MeshQuery, AHoleChangesNoSideButNearIt) {
+    TriangleMesh mesh = makeIcosphere({0, 0, 0}, 1.0, 3);
+    mesh.triangles.erase(mesh.triangles.begin() + 100, mesh.triangles.begin() + 104);
+    const MeshQuery query = queryOf(mesh);
+    EXPECT_FALSE(query.watertight());
+    for (const glm::vec3& p : randomPoints(mesh.bounds, 2000)) {
+        const float radius = glm::length(p);
+        if (radius < 0.8F || radius > 1.0F) {
+            EXPECT_EQ(query.inside(p), radius < 1.0F) << p.x << " " << p.y << " " << p.z;
+        }
+    }
+}
+
+TEST(MeshQuery, AHintChangesNoAnswer) {
+    const TriangleMesh mesh = makeIcosphere({0, 0, 0}, 1.0, 3);
+    const MeshQuery query = queryOf(mesh);
+    std::uint32_t hint = 0;
+    for (const glm::vec3& p : randomPoints(mesh.bounds, 500)) {
+        const ClosestPoint plain = query.closest(p);
+        const ClosestPoint hinted = query.closest(p, hint);
+        EXPECT_EQ(plain.distance, hinted.distance);
+        EXPECT_EQ(plain.triangle, hinted.triangle);
+        EXPECT_NEAR(glm::length(plain.point - glm::dvec3(p)), plain.distance, 1e-12);
+        hint = (hint + 97) % static_cast<std::uint32_t>(mesh.triangles.size());
+    }
+}
+
+TEST(MeshQuery, RaysAndSegmentsMeetABox) {
+    const TriangleMesh mesh = makeBoxMesh({0, 0, 0}, {1, 1, 1});
+    const MeshQuery query = queryOf(mesh);
+    const std::optional<FirstHit> hit = query.firstHit({0.1, 0.2, 5.0}, {0.0, 0.0, -2.0});
+    ASSERT_TRUE(hit);
+    EXPECT_NEAR(hit->along, 2.0, 1e-6);
+    EXPECT_FALSE(query.firstHit({0.1, 0.2, 5.0}, {0.0, 0.0, 2.0}));
+    EXPECT_FALSE(query.segmentIsFree({0.1, 0.2, 5.0}, {0.1, 0.2, 0.0}));
+    EXPECT_TRUE(query.segmentIsFree({0.1, 0.2, 5.0}, {0.1, 0.2, 1.001}));
+    EXPECT_TRUE(query.segmentIsFree({0.1, 0.2, 0.9}, {0.1, 0.2, -0.9}));
+}
+
+// --- accuracy ---
+
+AccuracyOptions withSamples(std::uint32_t samples) {
+    AccuracyOptions options;
+    options.samples = samples;
+    return options;
+}
+
+/// P(|P| <= r) for P on a sphere of radius R plus an isotropic normal deviate σ: the noncentral Maxwell
+/// distribution.
+double radiusBelow(double r, double sphere, double sigma) {
+    const auto normal = [](double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); };
+    const auto bell = [&](double x) { return std::exp(-0.5 * x * x / (sigma * sigma)); };
+    return normal((r - sphere) / sigma) - normal(-(r + sphere) / sigma) -
+           sigma / (sphere * std::sqrt(2.0 * 3.14159265358979323846)) * (bell(r - sphere) - bell(r + sphere));
+}
+
+constexpr std::uint32_t kSamples = 40'000;
+/// Four standard deviations of a share near 1/4 of that many points, in percent, and the mesh's own error.
+constexpr double kShareTolerance = 400.0 * 0.433 / 200.0 + 0.1;
+
+class AccuracyOfASphere : public ::testing::Test {
+  protected:
+    static constexpr double kRadius = 1.0;
+    static const TriangleMesh& mesh() {
+        static const TriangleMesh sphere = makeIcosphere({0, 0, 0}, kRadius, 5);
+        return sphere;
+    }
+    static const MeshQuery& query() {
+        static const MeshQuery of_sphere = queryOf(mesh());
+        return of_sphere;
+    }
+    static const TruthSamples& samples() {
+        static const TruthSamples truth = sampleTruth(query(), withSamples(kSamples));
+        return truth;
+    }
+    /// The mesh's own signed distance minus `shift`: the solid grown by that much.
+    static Field grown(double shift) {
+        return [shift](const glm::vec3& p) -> std::optional<FieldValue> {
+            return FieldValue{static_cast<float>(query().signedDistance(p) - shift),
+                              glm::normalize(glm::vec3(p))};
+        };
+    }
+};
+
+TEST_F(AccuracyOfASphere, APerfectFieldHasNoMistakes) {
+    const FieldAccuracy accuracy = measureField(samples(), grown(0.0));
+    EXPECT_EQ(accuracy.near.total(), 0.0);
+    EXPECT_EQ(accuracy.uniform.total(), 0.0);
+    EXPECT_EQ(accuracy.distance_mean, 0.0);
+    EXPECT_EQ(accuracy.distance_p99, 0.0);
+    EXPECT_EQ(accuracy.far_percent, 0.0);
+    EXPECT_EQ(accuracy.unknown_percent, 0.0);
+    EXPECT_EQ(accuracy.no_normal_percent, 0.0);
+    // The field's normals are the sphere's, the truth those of its triangles, of edges 0.036 long.
+    EXPECT_LT(accuracy.normal_p99, 1.4);
+    EXPECT_GT(accuracy.normal_mean, 0.1);
+}
+
+TEST_F(AccuracyOfASphere, AGrownFieldIsFalselyInsideByTheShareOfTheFormula) {
+    const double sigma = samples().options.sigma_share * samples().longest_side;
+    for (const double shift : {0.5 * sigma, 2.0 * sigma}) {
+        const FieldAccuracy accuracy = measureField(samples(), grown(shift));
+        const double share =
+            radiusBelow(kRadius + shift, kRadius, sigma) - radiusBelow(kRadius, kRadius, sigma);
+        EXPECT_NEAR(accuracy.near.false_inside, 100.0 * share, kShareTolerance);
+        EXPECT_EQ(accuracy.near.false_outside, 0.0);
+        EXPECT_EQ(accuracy.uniform.false_outside, 0.0);
+        EXPECT_NEAR(accuracy.distance_mean, shift, 1e-7);
+        EXPECT_NEAR(accuracy.distance_p99, shift, 1e-6);
+    }
+}
+
+TEST_F(AccuracyOfASphere, AShrunkFieldIsFalselyOutsideByTheShareOfTheFormula) {
+    const double sigma = samples().options.sigma_share * samples().longest_side;
+    const FieldAccuracy near = measureField(samples(), grown(-sigma));
+    EXPECT_NEAR(near.near.false_outside,
+                100.0 * (radiusBelow(kRadius, kRadius, sigma) - radiusBelow(kRadius - sigma, kRadius, sigma)),
+                kShareTolerance);
+    EXPECT_EQ(near.near.false_inside, 0.0);
+    // Uniform points: the volume of a thick shell in the box of side 2.
+    const FieldAccuracy thick = measureField(samples(), grown(-0.3));
+    const double shell = 4.0 / 3.0 * 3.14159265358979323846 * (1.0 - 0.7 * 0.7 * 0.7) / 8.0;
+    EXPECT_NEAR(thick.uniform.false_outside, 100.0 * shell, kShareTolerance);
+    EXPECT_EQ(thick.uniform.false_inside, 0.0);
+}
+
+TEST_F(AccuracyOfASphere, WhatAFieldDoesNotSayCountsAsOutside) {
+    const FieldAccuracy silent = measureField(samples(), [](const glm::vec3&) { return std::nullopt; });
+    EXPECT_EQ(silent.unknown_percent, 100.0);
+    EXPECT_EQ(silent.no_normal_percent, 100.0);
+    EXPECT_EQ(silent.near.false_inside, 0.0);
+    EXPECT_NEAR(silent.near.false_outside, 50.0, 1.5);
+    EXPECT_EQ(silent.distance_mean, 0.0);
+    const FieldAccuracy far = measureField(samples(), [](const glm::vec3&) {
+        return FieldValue{kFarOutside, glm::vec3(0.0F)};
+    });
+    EXPECT_EQ(far.far_percent, 100.0);
+    EXPECT_EQ(far.unknown_percent, 0.0);
+    EXPECT_EQ(far.near.false_outside, silent.near.false_outside);
+}
+
+TEST_F(AccuracyOfASphere, NormalsAreMeasuredInDegrees) {
+    // Turned about a fixed axis by 10°, a normal n moves by 2·asin(sin 5° · sin ∠(n, axis)): 10° at most.
+    const glm::mat3 turn(rotation({0, 0, 1}, 10.0));
+    const FieldAccuracy accuracy = measureField(samples(), [&](const glm::vec3& p) {
+        return FieldValue{0.0F, turn * glm::normalize(p)};
+    });
+    EXPECT_NEAR(accuracy.normal_p99, 10.0, 1.0);
+    // The mean of sin over the sphere is π/4.
+    EXPECT_NEAR(accuracy.normal_mean, 10.0 * 3.14159265 / 4.0, 0.1);
+}
+
+TEST_F(AccuracyOfASphere, SurfaceThatMapsSee) {
+    const auto unseen = [&](const std::vector<std::string>& specs) {
+        return measureCollider(samples(), query(), bakeSpecs(mesh(), specs, 32)).unseen_percent;
+    };
+    EXPECT_NEAR(unseen({"fixed8:dir=-z"}), 50.0, 1.2);
+    EXPECT_NEAR(unseen({"fixed8:dir=-z", "fixed8:dir=-x"}), 25.0, 1.2);
+    EXPECT_NEAR(unseen({"fixed8:dir=-z,compare=greater"}), 50.0, 1.2);
+    EXPECT_LT(unseen({"front-back:dir=1/2/3"}), 0.2);
+    EXPECT_EQ(unseen({"cube:center=0/0/0"}), 0.0);
+    // A half of the sphere lies in the box, and a half of that is seen.
+    EXPECT_NEAR(unseen({"fixed8:dir=-z,box=0/-1.1/-1.1/1.1/1.1/1.1"}), 75.0, 1.2);
+    // From a point at twice the radius, a cap of (1 − 1/2) / 2.
+    EXPECT_NEAR(unseen({"cube:center=0/0/2,compare=less"}), 75.0, 1.2);
+}
+
+TEST(Accuracy, SurfaceInAHollowIsSeenByNoOuterMap) {
+    // A ball in a box: all of the ball's surface, and none of the box's, is hidden.
+    TriangleMesh mesh = makeBoxMesh({0, 0, 0}, {1, 1, 1});
+    const TriangleMesh ball = makeIcosphere({0, 0, 0}, 0.5, 4);
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), ball.positions.begin(), ball.positions.end());
+    for (const glm::uvec3& t : ball.triangles) {
+        mesh.triangles.push_back(t + first);
+    }
+    const MeshQuery query = queryOf(mesh);
+    EXPECT_FALSE(query.inside({0, 0, 0}));
+    EXPECT_TRUE(query.inside({0.8F, 0, 0}));
+    const TruthSamples samples = sampleTruth(query, withSamples(20'000));
+    const double hidden = 3.14159265 / (24.0 + 3.14159265);
+    const auto unseen = [&](const std::vector<std::string>& specs) {
+        return measureCollider(samples, query, bakeSpecs(mesh, specs, 32)).unseen_percent;
+    };
+    EXPECT_NEAR(unseen({"front-back:dir=-x", "front-back:dir=-y", "front-back:dir=-z"}), 100.0 * hidden, 1.0);
+    EXPECT_NEAR(unseen({"front-back:dir=-x", "front-back:dir=-y", "front-back:dir=-z",
+                        "cube:compare=less,box=-0.6/-0.6/-0.6/0.6/0.6/0.6"}),
+                0.0, 0.1);
+}
+
+TEST(Accuracy, BuriedSurfaceIsLeftOut) {
+    // Two boxes that touch: both copies of the face between them have the inside on both sides.
+    TriangleMesh mesh = makeBoxMesh({-1, 0, 0}, {1, 1, 1});
+    const TriangleMesh other = makeBoxMesh({1, 0, 0}, {1, 1, 1});
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
+    for (const glm::uvec3& t : other.triangles) {
+        mesh.triangles.push_back(t + first);
+    }
+    mesh = finished(mesh.positions, mesh.triangles);
+    const MeshQuery query = queryOf(mesh);
+    EXPECT_TRUE(query.watertight());
+    const TruthSamples samples = sampleTruth(query, withSamples(20'000));
+    const ColliderAccuracy accuracy = measureCollider(
+        samples, query, bakeSpecs(mesh, {"front-back:dir=-x", "front-back:dir=-y", "front-back:dir=-z"}));
+    EXPECT_NEAR(accuracy.buried_percent, 100.0 * 8.0 / 48.0, 1.1);
+    EXPECT_EQ(accuracy.unseen_percent, 0.0);
+    EXPECT_EQ(accuracy.gpu_bytes, 3U * 64U * 64U * 8U);
+}
+
+std::string everything(unsigned threads) {
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    tbb::task_arena arena(static_cast<int>(threads));
+    std::string text;
+    arena.execute([&] {
+        const TriangleMesh mesh = makeTorusMesh(1.0, 0.3, 64, 32);
+        const MeshQuery query = queryOf(mesh);
+        const TruthSamples samples = sampleTruth(query, withSamples(5000));
+        const ColliderAccuracy maps =
+            measureCollider(samples, query, bakeSpecs(mesh, {"front-back", "cube"}));
+        const DistanceGrid grid =
+            sampleDistances(query, makeLattice(mesh.bounds, 5000, LatticeFit::kCentered));
+        const DistanceVolume volume(grid, DistanceVolume::fullRange(grid));
+        text = jsonColliderAccuracy(maps, samples.longest_side).dump() +
+               jsonFieldAccuracy(measureField(samples, fieldOf(volume)), samples.longest_side).dump();
+        for (const TruthPoint& point : samples.near) {
+            text += shortNumber(static_cast<double>(point.distance)) + " ";
+        }
+    });
+    return text;
+}
+
+TEST(Accuracy, IsTheSameForAnyNumberOfThreads) {
+    const std::string one = everything(1);
+    EXPECT_EQ(one, everything(2));
+    EXPECT_EQ(one, everything(7));
+}
+
+TEST(Accuracy, SeedsGiveOtherPointsAndPrefixesStay) {
+    const TriangleMesh mesh = makeBoxMesh({0, 0, 0}, {1, 1, 1});
+    const MeshQuery query = queryOf(mesh);
+    AccuracyOptions options = withSamples(100);
+    const TruthSamples first = sampleTruth(query, options);
+    options.samples = 200;
+    const TruthSamples more = sampleTruth(query, options);
+    options.seed = 2;
+    const TruthSamples other = sampleTruth(query, options);
+    for (std::size_t i = 0; i < 100; ++i) {
+        EXPECT_EQ(first.near[i].position, more.near[i].position);
+        EXPECT_NE(more.near[i].position, other.near[i].position);
+        EXPECT_NE(more.uniform[i].position, other.uniform[i].position);
+        EXPECT_NE(more.surface[i].position, more.near[i].position);
+    }
+}
+
+TEST(Accuracy, SurfacePointsFollowTheArea) {
+    // Of a box of 4 × 1 × 1 the two small faces have a ninth of the area.
+    const TriangleMesh mesh = makeBoxMesh({0, 0, 0}, {2, 0.5, 0.5});
+    const TruthSamples samples = sampleTruth(queryOf(mesh), withSamples(kSamples));
+    std::size_t small = 0;
+    glm::dvec3 sum(0.0);
+    for (const SurfacePoint& point : samples.surface) {
+        small += std::abs(point.normal.x) > 0.5F ? 1 : 0;
+        sum += glm::dvec3(point.position);
+        EXPECT_GT(glm::dot(point.normal, point.position), 0.0F);
+        EXPECT_FALSE(point.buried);
+    }
+    EXPECT_NEAR(static_cast<double>(small) / kSamples, 1.0 / 9.0, 0.01);
+    EXPECT_LT(glm::length(sum / double{kSamples}), 0.03);
+}
+
+// --- the distance volume ---
+
+TEST(DistanceVolume, LookupIsExactForALinearField) {
+    Bounds box;
+    box.add({-1.0F, 0.0F, 2.0F});
+    box.add({3.0F, 1.3F, 4.1F});
+    const glm::dvec3 slope(0.3, -0.5, 0.2);
+    const auto linear = [&](const glm::dvec3& p) { return glm::dot(slope, p) - 0.4; };
+    for (const LatticeFit fit : {LatticeFit::kCentered, LatticeFit::kCorner, LatticeFit::kStretched}) {
+        DistanceGrid grid{makeLattice(box, 3000, fit), {}};
+        const Lattice& lattice = grid.lattice;
+        for (std::uint32_t z = 0; z < lattice.nodes.z; ++z) {
+            for (std::uint32_t y = 0; y < lattice.nodes.y; ++y) {
+                for (std::uint32_t x = 0; x < lattice.nodes.x; ++x) {
+                    grid.distances.push_back(
+                        static_cast<float>(linear(lattice.origin + lattice.spacing * glm::dvec3(x, y, z))));
+                }
+            }
+        }
+        const double range = DistanceVolume::fullRange(grid);
+        const DistanceVolume volume(grid, range);
+        std::mt19937 random(5);
+        std::uniform_real_distribution<float> unit(0.0F, 1.0F);
+        for (int i = 0; i < 1000; ++i) {
+            const glm::vec3 p = box.min + box.size() * glm::vec3(unit(random), unit(random), unit(random));
+            const FieldValue value = volume.at(p);
+            EXPECT_NEAR(value.distance, linear(p), 0.51 * range / 32767.0);
+            EXPECT_GT(glm::dot(glm::dvec3(value.normal), glm::normalize(slope)), 0.9999);
+        }
+        // Beyond the box all is outside, and the distance grows by the way to it.
+        const glm::vec3 beyond(-1.5F, 0.5F, 3.0F);
+        EXPECT_NEAR(volume.at(beyond).distance, std::max(0.0, linear({-1.0, 0.5, 3.0})) + 0.5, 1e-4);
+        EXPECT_GT(volume.at({1.0F, 5.0F, 3.0F}).distance, 0.0F);
+    }
+}
+
+TEST(DistanceVolume, LatticesCoverTheBoxWithinTheBudget) {
+    Bounds box;
+    box.add({0.0F, 0.0F, 0.0F});
+    box.add({1.0F, 0.37F, 0.61F});
+    for (const std::uint64_t budget : {8U, 100U, 1000U, 125'000U}) {
+        for (const LatticeFit fit : {LatticeFit::kCentered, LatticeFit::kCorner, LatticeFit::kStretched}) {
+            const Lattice lattice = makeLattice(box, budget, fit);
+            EXPECT_LE(lattice.count(), budget);
+            const glm::dvec3 end = lattice.origin + lattice.spacing * (glm::dvec3(lattice.nodes) - 1.0);
+            for (int i = 0; i < 3; ++i) {
+                EXPECT_LE(lattice.origin[i], 1e-9);
+                EXPECT_GE(end[i], static_cast<double>(box.max[i]) - 1e-9);
+            }
+            if (budget >= 1000) {
+                // One more layer along the longest side would not fit: the budget is used.
+                EXPECT_GT(static_cast<double>(lattice.count()), 0.8 * static_cast<double>(budget));
+            }
+        }
+    }
+    const Lattice cube = makeLattice(makeBoxMesh({0, 0, 0}, {1, 1, 1}).bounds, 1000, LatticeFit::kCentered);
+    EXPECT_EQ(cube.nodes, glm::uvec3(10));
+    EXPECT_NEAR(cube.spacing.x, 2.0 / 9.0, 1e-9);
+}
+
+TEST(DistanceVolume, NodesHoldTheTruth) {
+    // Closed, where signs are carried along rows, and open, where every node is asked.
+    for (const bool open : {false, true}) {
+        TriangleMesh mesh = makeTorusMesh(1.0, 0.3, 48, 24);
+        if (open) {
+            mesh.triangles.pop_back();
+        }
+        const MeshQuery query = queryOf(mesh);
+        const DistanceGrid grid =
+            sampleDistances(query, makeLattice(mesh.bounds, 20'000, LatticeFit::kStretched));
+        const glm::uvec3 n = grid.lattice.nodes;
+        for (std::uint32_t i = 0; i < grid.distances.size(); ++i) {
+            const glm::vec3 p = grid.lattice.origin +
+                                grid.lattice.spacing * glm::dvec3(i % n.x, i / n.x % n.y, i / n.x / n.y);
+            ASSERT_EQ(grid.distances[i], static_cast<float>(query.signedDistance(p)));
+        }
+    }
+}
+
+TEST(DistanceVolume, ANarrowBandKeepsTheSignsAndItsDistances) {
+    const TriangleMesh mesh = makeIcosphere({0, 0, 0}, 1.0, 5);
+    const MeshQuery query = queryOf(mesh);
+    const TruthSamples samples = sampleTruth(query, withSamples(10'000));
+    const DistanceGrid grid = sampleDistances(query, makeLattice(mesh.bounds, 30'000, LatticeFit::kCentered));
+    const double reach = 4.0 * 0.005 * 2.0;
+    const DistanceVolume full(grid, DistanceVolume::fullRange(grid));
+    const DistanceVolume band(grid, DistanceVolume::bandRange(grid, reach));
+    EXPECT_LT(band.range(), 0.3 * full.range());
+    for (const TruthPoint& point : samples.near) {
+        if (std::abs(static_cast<double>(point.distance)) < reach) {
+            EXPECT_NEAR(band.at(point.position).distance, full.at(point.position).distance,
+                        full.range() / 32767.0);
+        }
+    }
+    const FieldAccuracy accuracy = measureField(samples, fieldOf(band));
+    EXPECT_LT(accuracy.near.total(), 10.0);
+    EXPECT_LT(accuracy.normal_mean, 5.0);
+}
+
+// --- pictures and reports ---
+
+TEST(HeatMap, ShowsTheErrorAndNothingBesideTheMesh) {
+    const TriangleMesh mesh = makeIcosphere({0, 0, 0}, 1.0, 4);
+    const MeshQuery query = queryOf(mesh);
+    HeatMapOptions options;
+    options.size = 64;
+    options.range = 0.1;
+    const auto middleOf = [&](const Field& field) {
+        const RgbImage image = drawHeatMap(query, field, options);
+        EXPECT_EQ(image.pixels.size(), 64U * 64U);
+        EXPECT_EQ(image.pixels.front(), 0xffffffU);
+        const std::uint32_t pixel = image.pixels[32 * 64 + 32];
+        return glm::ivec3(pixel >> 16, pixel >> 8 & 0xffU, pixel & 0xffU);
+    };
+    const auto constant = [](float f) {
+        return [f](const glm::vec3&) -> std::optional<FieldValue> { return FieldValue{f, glm::vec3(0.0F)}; };
+    };
+    const glm::ivec3 blue = middleOf(constant(-0.1F));
+    EXPECT_GT(blue.z, blue.x + 60);
+    const glm::ivec3 orange = middleOf(constant(0.1F));
+    EXPECT_GT(orange.x, orange.z + 60);
+    const glm::ivec3 neutral = middleOf(constant(0.0F));
+    EXPECT_LT(std::abs(neutral.x - neutral.z), 12);
+    EXPECT_GT(neutral.y, 220);
+}
+
+TEST(AccuracyReport, JsonHasEveryField) {
+    const TriangleMesh mesh = makeBoxMesh({0, 0, 0}, {1, 2, 0.5});
+    const MeshQuery query = queryOf(mesh);
+    const TruthSamples samples = sampleTruth(query, withSamples(1000));
+    const ColliderAccuracy accuracy = measureCollider(samples, query, bakeSpecs(mesh, {"front-back"}));
+    const nlohmann::ordered_json json = jsonColliderAccuracy(accuracy, samples.longest_side);
+    for (const char* group : {"near", "uniform"}) {
+        for (const char* name : {"wrong_percent", "false_inside_percent", "false_outside_percent"}) {
+            EXPECT_TRUE(json.at(group).at(name).is_number()) << group << "." << name;
+        }
+        EXPECT_DOUBLE_EQ(json.at(group).at("wrong_percent").get<double>(),
+                         json.at(group).at("false_inside_percent").get<double>() +
+                             json.at(group).at("false_outside_percent").get<double>());
+    }
+    for (const char* name : {"mean", "p99", "mean_percent", "p99_percent"}) {
+        EXPECT_TRUE(json.at("distance_error").at(name).is_number()) << name;
+    }
+    EXPECT_NEAR(json.at("distance_error").at("mean_percent").get<double>(),
+                json.at("distance_error").at("mean").get<double>() / 4.0 * 100.0, 1e-9);
+    for (const char* name : {"far_percent", "unknown_percent", "no_normal_percent", "unseen_area_percent",
+                             "buried_area_percent", "gpu_bytes"}) {
+        EXPECT_TRUE(json.at(name).is_number()) << name;
+    }
+    EXPECT_TRUE(json.at("normal_error_degrees").at("p99").is_number());
+    const nlohmann::ordered_json sampling = jsonSamples(samples);
+    EXPECT_EQ(sampling.at("samples"), 1000);
+    EXPECT_EQ(sampling.at("seed"), 1);
+    EXPECT_DOUBLE_EQ(sampling.at("sigma").get<double>(), 0.02);
+    EXPECT_DOUBLE_EQ(sampling.at("step").get<double>(), 2e-4);
+    const std::string text = accuracyText(accuracy, samples, "m");
+    for (const char* word :
+         {"near the surface", "false inside", "false outside", "normal", " m ", "1000 points"}) {
+        EXPECT_NE(text.find(word), std::string::npos) << word;
+    }
+}
+
+TEST(ByteCount, ReadsWhatPeopleWrite) {
+    EXPECT_EQ(parseByteCount("0.25MB"), 250'000U);
+    EXPECT_EQ(parseByteCount("1 MB"), 1'000'000U);
+    EXPECT_EQ(parseByteCount("4mb"), 4'000'000U);
+    EXPECT_EQ(parseByteCount("1MiB"), 1'048'576U);
+    EXPECT_EQ(parseByteCount("512kB"), 512'000U);
+    EXPECT_EQ(parseByteCount("2GiB"), 2'147'483'648U);
+    EXPECT_EQ(parseByteCount("65536"), 65536U);
+    EXPECT_EQ(parseByteCount("64B"), 64U);
+    for (const char* text : {"", "MB", "-1MB", "0", "0.1B", "1 TBB", "1e3", "nan", "inf", "1MB2", "1,5MB",
+                             "99999999999999999999GB"}) {
+        EXPECT_EQ(parseByteCount(text), std::nullopt) << text;
+    }
+}
+
+}  // namespace
+}  // namespace relief::test

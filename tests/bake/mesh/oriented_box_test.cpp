@@ -1,0 +1,139 @@
+// The axes of the oriented box, against boxes of known axes, and on all that has no volume; then what the
+// planner makes of them.
+#include "bake/mesh/oriented_box.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <random>
+
+#include "bake/measure/accuracy.h"
+#include "bake/plan/view.h"
+#include "bake/plan/view_planner.h"
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+namespace {
+
+const glm::dmat3 kTurned = rotation({1, 2, 3}, 33.0) * rotation({0, 1, 0}, 17.0);
+
+double largestCosine(const glm::dvec3& direction, const glm::dmat3& axes) {
+    double largest = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        largest = std::max(largest, std::abs(glm::dot(glm::normalize(direction), axes[i])));
+    }
+    return largest;
+}
+
+TEST(OrientedBox, FindsTheAxesOfATurnedBox) {
+    const TriangleMesh mesh = makeBoxMesh({5, -2, 1}, {1, 3, 2}, kTurned);
+    const auto axes = orientedBoxAxes(extremeVertices(mesh));
+    ASSERT_TRUE(axes);
+    const int sorted[] = {1, 2, 0};  // the longest side first
+    for (std::size_t i = 0; i < 3; ++i) {
+        const glm::dvec3 wanted = kTurned[sorted[i]];
+        EXPECT_LT(glm::length(glm::cross((*axes)[i], wanted)), 1e-5) << i;
+        EXPECT_NEAR(glm::length((*axes)[i]), 1.0, 1e-12);
+    }
+    EXPECT_NEAR(glm::dot(glm::cross((*axes)[0], (*axes)[1]), (*axes)[2]), 1.0, 1e-6) << "right-handed";
+}
+
+TEST(OrientedBox, AxesOfSpaceAreExact) {
+    const auto axes = orientedBoxAxes(extremeVertices(makeBoxMesh({0.1, 0.2, 0.3}, {3, 1, 2})));
+    ASSERT_TRUE(axes);
+    EXPECT_EQ(glm::abs((*axes)[0]), glm::dvec3(1, 0, 0));
+    EXPECT_EQ(glm::abs((*axes)[1]), glm::dvec3(0, 0, 1));
+    EXPECT_EQ(glm::abs((*axes)[2]), glm::dvec3(0, 1, 0));
+}
+
+TEST(OrientedBox, SameBitsEveryTime) {
+    const TriangleMesh mesh = makeIcosphere({1, 2, 3}, 1.5, 4);
+    const std::vector<glm::dvec3> points = extremeVertices(mesh);
+    EXPECT_LE(points.size(), 146U);
+    const auto first = orientedBoxAxes(points);
+    ASSERT_TRUE(first);
+    for (int repeat = 0; repeat < 3; ++repeat) {
+        EXPECT_EQ(extremeVertices(mesh), points);
+        EXPECT_EQ(*orientedBoxAxes(points), *first);
+    }
+}
+
+TEST(OrientedBox, WithoutVolumeThereIsNone) {
+    EXPECT_FALSE(orientedBoxAxes({}));
+    EXPECT_FALSE(orientedBoxAxes(std::vector<glm::dvec3>(3, glm::dvec3(1, 2, 3))));
+    EXPECT_FALSE(orientedBoxAxes(std::vector<glm::dvec3>(100, glm::dvec3(1, 2, 3))));
+    EXPECT_FALSE(orientedBoxAxes(extremeVertices(makePlane(3.0F, 10))));
+    std::vector<glm::dvec3> line;
+    std::vector<glm::dvec3> plane;
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    for (int i = 0; i < 50; ++i) {
+        const double a = unit(random);
+        line.emplace_back(a, 2 * a, -3 * a);
+        plane.push_back(kTurned * glm::dvec3(a, unit(random), 0.0));
+    }
+    EXPECT_FALSE(orientedBoxAxes(line));
+    EXPECT_FALSE(orientedBoxAxes(plane));
+    EXPECT_FALSE(
+        orientedBoxAxes(std::vector<glm::dvec3>{{0, 0, 0}, {1e308, 0, 0}, {0, 1e308, 0}, {-1e308, 0, 1e308}}))
+        << "a size beyond double";
+    // Hardly any volume, of any size: whatever comes back, nothing breaks.
+    for (const double thickness : {1e-2, 1e-4, 1e-6, 1e-9, 1e-15}) {
+        for (const double size : {1e-30, 1.0, 1e30}) {
+            for (const std::size_t count : {std::size_t{4}, std::size_t{8}, std::size_t{50}}) {
+                std::vector<glm::dvec3> thin(count);
+                for (glm::dvec3& p : thin) {
+                    p = size * (kTurned *
+                                glm::dvec3(unit(random), std::round(unit(random)), thickness * unit(random)));
+                }
+                if (const auto axes = orientedBoxAxes(thin)) {
+                    for (std::size_t i = 0; i < 3; ++i) {
+                        EXPECT_NEAR(glm::length((*axes)[i]), 1.0, 1e-9);
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST(OrientedBox, PlannedViewsLookAlongTheWallsOfATurnedPart) {
+    const TriangleMesh mesh = makeBoxMesh({0, 0, 0}, {1, 0.6, 0.3}, kTurned);
+    const Result<MeshQuery> query = MeshQuery::build(mesh);
+    ASSERT_TRUE(query);
+    AccuracyOptions accuracy;
+    accuracy.samples = 30'000;
+    const TruthSamples truth = sampleTruth(*query, accuracy);
+    double wrong[2] = {};
+    for (const bool oriented_box : {false, true}) {
+        PlanOptions options;
+        options.budget_bytes = 16'000;
+        options.oriented_box = oriented_box;
+        const Result<Plan> plan = planViews(mesh, *query, options);
+        ASSERT_TRUE(plan) << plan.error().message;
+        BakeOptions bake_options;
+        bake_options.maps = specsOf(*plan);
+        if (oriented_box) {
+            // The first view, which serves most, looks along a wall and is turned with the others.
+            const MapSpec& first = plan->maps.front().spec;
+            EXPECT_GT(largestCosine(first.direction, kTurned), 1.0 - 1e-6);
+            const Result<View> view = makeView(*completeSpec(first, mesh, 64), mesh);
+            ASSERT_TRUE(view);
+            EXPECT_GT(largestCosine(view->axis[0], kTurned), 1.0 - 1e-6);
+        }
+        std::string directions;
+        for (const PlannedMap& map : plan->maps) {
+            directions += std::to_string(largestCosine(map.spec.direction, kTurned)) + " ";
+        }
+        RecordProperty(oriented_box ? "cosines_with" : "cosines_without", directions);
+        const Result<Baked> baked = bake(mesh, bake_options);
+        ASSERT_TRUE(baked);
+        wrong[oriented_box ? 1 : 0] = measureField(truth, fieldOf(baked->collider)).near.total();
+    }
+    EXPECT_LT(wrong[1], 0.85 * wrong[0]);
+    RecordProperty("wrong_percent_without", std::to_string(wrong[0]));
+    RecordProperty("wrong_percent_with", std::to_string(wrong[1]));
+}
+
+}  // namespace
+}  // namespace relief::test

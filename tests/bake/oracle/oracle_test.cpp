@@ -1,0 +1,196 @@
+// Baked colliders against CGAL, which decides inside and outside by exact predicates.
+//
+// Bound. Let P be voted outside by an orthographic map, and Q the point of its texel's centre ray of P's
+// depth. The ray is free space up to the surface it meets, and the stored depth is off by at most a quantum
+// q: so a free point lies within |PQ| + q of P, where |PQ| is at most half the texel's diagonal. For a cube,
+// Q has P's radius in the normalised volume; directions within a texel are at most √2/N apart, radii at most
+// √3, and s_max carries that to object units. A point inside the solid and voted outside is therefore at most
+// that deep. For a convex solid every ray through P decides, so points outside and voted inside obey the same
+// bound.
+#include <CGAL/AABB_face_graph_triangle_primitive.h>
+#include <CGAL/AABB_traits.h>
+#include <CGAL/AABB_tree.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/orientation.h>
+#include <CGAL/Side_of_triangle_mesh.h>
+#include <CGAL/Surface_mesh.h>
+
+#include <cmath>
+#include <random>
+
+#include "bake/mesh/inside.h"
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using SurfaceMesh = CGAL::Surface_mesh<Kernel::Point_3>;
+using Tree =
+    CGAL::AABB_tree<CGAL::AABB_traits<Kernel, CGAL::AABB_face_graph_triangle_primitive<SurfaceMesh>>>;
+
+SurfaceMesh toCgal(const TriangleMesh& mesh) {
+    SurfaceMesh out;
+    std::vector<SurfaceMesh::Vertex_index> vertices;
+    for (const glm::vec3& p : mesh.positions) {
+        vertices.push_back(out.add_vertex(Kernel::Point_3(p.x, p.y, p.z)));
+    }
+    for (const glm::uvec3& t : mesh.triangles) {
+        out.add_face(vertices[t.x], vertices[t.y], vertices[t.z]);
+    }
+    return out;
+}
+
+double boundOf(const Collider& collider) {
+    double bound = 0.0;
+    for (const DepthMap& map : collider.maps) {
+        const glm::dvec3 scale = map.object_per_map;
+        double own = 0.0;
+        if (map.projection() == Projection::kCube) {
+            const double s_max = std::max({scale.x, scale.y, scale.z});
+            own = s_max * (std::sqrt(6.0) / map.width + std::sqrt(3.0) / 65534.0);
+        } else {
+            const double quantum = map.format == MapFormat::kFrontBackHalf ? 1.0 / 4096.0 : 1.0 / 65534.0;
+            own = 0.5 * std::hypot(scale.x / map.width, scale.y / map.height) + scale.z * quantum;
+        }
+        bound = std::max(bound, own);
+    }
+    return 1.001 * bound;  // floats
+}
+
+struct Tally {
+    int points = 0;
+    int inside = 0;
+    int inside_voted_outside = 0;
+    int outside_voted_inside = 0;
+    double deepest = 0.0;   // of the former
+    double farthest = 0.0;  // of the latter
+};
+
+Tally compare(const TriangleMesh& mesh, const Collider& collider, int count) {
+    const SurfaceMesh surface = toCgal(mesh);
+    EXPECT_TRUE(CGAL::is_closed(surface));
+    EXPECT_TRUE(CGAL::Polygon_mesh_processing::is_outward_oriented(surface));
+    Tree tree(faces(surface).begin(), faces(surface).end(), surface);
+    tree.accelerate_distance_queries();
+    const CGAL::Side_of_triangle_mesh<SurfaceMesh, Kernel> side(surface);
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> share(-0.1F, 1.1F);
+    Tally tally;
+    for (int i = 0; i < count; ++i) {
+        glm::vec3 p;
+        for (int k = 0; k < 3; ++k) {
+            p[k] = mesh.bounds.min[k] + share(random) * mesh.bounds.size()[k];
+        }
+        const Kernel::Point_3 q(p.x, p.y, p.z);
+        const bool truly_inside = side(q) == CGAL::ON_BOUNDED_SIDE;
+        const FieldSample sample = evaluate(collider, p);
+        EXPECT_GE(sample.map, 0);
+        ++tally.points;
+        tally.inside += truly_inside ? 1 : 0;
+        if (truly_inside == sample.inside()) {
+            continue;
+        }
+        const double depth = std::sqrt(CGAL::to_double(tree.squared_distance(q)));
+        (truly_inside ? tally.inside_voted_outside : tally.outside_voted_inside) += 1;
+        double& worst = truly_inside ? tally.deepest : tally.farthest;
+        worst = std::max(worst, depth);
+    }
+    EXPECT_GT(tally.inside, count / 20);
+    EXPECT_LT(tally.inside, count * 9 / 10);
+    return tally;
+}
+
+const std::vector<std::vector<std::string>> kSets = {
+    {"front-back:dir=-x", "front-back:dir=-y", "front-back:dir=-z", "cube"},
+    {"front-back:dir=1/2/3"},
+    {"fixed8:dir=-x", "fixed8:dir=-x,compare=greater", "fixed8:dir=2/-1/1",
+     "fixed8:dir=2/-1/1,compare=greater"},
+    {"float:dir=+z", "float:dir=+z,compare=greater"},
+};
+
+TEST(Oracle, ConvexSolidsAreWrongOnlyWithinTheBound) {
+    for (const TriangleMesh& mesh :
+         {makeIcosphere({0.3, -0.2, 0.1}, 0.8, 4),
+          makeBoxMesh({0.1, 0.2, 0.3}, {1, 0.6, 0.4}, rotation({1, 2, 3}, 40.0))}) {
+        for (const std::vector<std::string>& specs : kSets) {
+            SCOPED_TRACE(specs.front());
+            const Collider collider = bakeSpecs(mesh, specs, 96);
+            const double bound = boundOf(collider);
+            const Tally tally = compare(mesh, collider, 20000);
+            EXPECT_LE(tally.deepest, bound);
+            // A ray may also miss a solid that lies beside its texel's centre, or meet one that does not
+            // reach it.
+            EXPECT_LE(tally.farthest, bound);
+            EXPECT_LT(tally.inside_voted_outside + tally.outside_voted_inside, tally.points / 20);
+        }
+    }
+    // A cube alone, centre inside.
+    const TriangleMesh sphere = makeIcosphere({0.3, -0.2, 0.1}, 0.8, 4);
+    const Collider cube = bakeSpecs(sphere, {"cube"}, 64);
+    const Tally tally = compare(sphere, cube, 20000);
+    EXPECT_LE(tally.deepest, boundOf(cube));
+    EXPECT_LE(tally.farthest, boundOf(cube));
+}
+
+TEST(Oracle, ATorusIsNeverPenetratedBeyondTheBound) {
+    const TriangleMesh mesh = makeTorusMesh(1.0, 0.35, 90, 45);
+    std::vector<std::vector<std::string>> sets = kSets;
+    sets.push_back({"cube"});                                                    // LESS, in the hole
+    sets.push_back({"cube:center=1/0/0"});                                       // GREATER, in the tube
+    sets.push_back({"cube:center=0/0/3,compare=less", "cube:compare=greater"});  // by hand
+    for (const std::vector<std::string>& specs : sets) {
+        SCOPED_TRACE(specs.front());
+        const Collider collider = bakeSpecs(mesh, specs, 96);
+        const Tally tally = compare(mesh, collider, 20000);
+        EXPECT_LE(tally.deepest, boundOf(collider));
+    }
+}
+
+TEST(Oracle, SubBoxesNeverCallTheSolidFree) {
+    // Volumes that cut the torus, whose rays may start inside it.
+    const TriangleMesh mesh = makeTorusMesh(1.0, 0.35, 90, 45);
+    const SurfaceMesh surface = toCgal(mesh);
+    const CGAL::Side_of_triangle_mesh<SurfaceMesh, Kernel> side(surface);
+    Tree tree(faces(surface).begin(), faces(surface).end(), surface);
+    tree.accelerate_distance_queries();
+    for (const std::string spec :
+         {"float:dir=-x,box=-0.5/-1.5/-0.5/1.1/1.5/0.5", "fixed8:dir=-z,box=-2/-2/-1/2/2/0.1",
+          "front-back:dir=-y,box=-2/-0.2/-1/2/0.9/1",
+          "fixed8:dir=1/1/1,compare=greater,box=-0.4/-0.4/-0.4/0.9/0.9/0.4",
+          "cube:box=0.5/-0.5/-0.5/1.5/0.5/0.5,compare=greater",
+          "cube:box=-1.1/-1.1/-0.2/1.1/1.1/0.2,compare=less"}) {
+        SCOPED_TRACE(spec);
+        const Collider collider = bakeSpecs(mesh, {spec}, 96);
+        const double bound = boundOf(collider);
+        std::mt19937 random(5);
+        std::uniform_real_distribution<float> xy(-1.5F, 1.5F);
+        std::uniform_real_distribution<float> z(-0.5F, 0.5F);
+        int votes = 0;
+        for (int i = 0; i < 20000; ++i) {
+            const glm::vec3 p(xy(random), xy(random), z(random));
+            const FieldSample sample = evaluate(collider, p);
+            votes += sample.map >= 0 ? 1 : 0;
+            if (sample.map >= 0 && !sample.inside() && side({p.x, p.y, p.z}) == CGAL::ON_BOUNDED_SIDE) {
+                EXPECT_LE(std::sqrt(CGAL::to_double(tree.squared_distance({p.x, p.y, p.z}))), bound);
+            }
+        }
+        EXPECT_GT(votes, 200);
+        EXPECT_LT(votes, 20000) << "outside its volume it abstains";
+    }
+}
+
+TEST(Oracle, ParityAgreesWithCgal) {
+    const TriangleMesh mesh = makeTorusMesh(1.0, 0.35, 30, 15);
+    const SurfaceMesh surface = toCgal(mesh);
+    const CGAL::Side_of_triangle_mesh<SurfaceMesh, Kernel> side(surface);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> at(-1.4F, 1.4F);
+    for (int i = 0; i < 3000; ++i) {
+        const glm::vec3 p(at(random), at(random), 0.3F * at(random));
+        EXPECT_EQ(insideByParity(mesh, p), side({p.x, p.y, p.z}) == CGAL::ON_BOUNDED_SIDE);
+    }
+}
+
+}  // namespace
+}  // namespace relief::test

@@ -1,0 +1,130 @@
+#include "bake/picture/slice.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "bake/picture/slice_image.h"
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+namespace {
+
+Collider sampleCollider() {
+    return bakeSpecs(makeTorusMesh(1.0, 0.3, 60, 30),
+                     {"front-back:dir=-z", "fixed8:dir=-x,box=0/-1/-1/2/1/1", "cube"}, 48);
+}
+
+TEST(Slice, HoldsTheFieldOfItsPoints) {
+    const Collider collider = sampleCollider();
+    for (int axis = 0; axis < 3; ++axis) {
+        const Result<Slice> slice = evaluateSlice(collider, {.axis = axis, .at = 0.125F, .size = 90});
+        ASSERT_TRUE(slice);
+        EXPECT_EQ(std::max(slice->width, slice->height), 90U);
+        int inside = 0;
+        for (std::uint32_t y = 0; y < slice->height; ++y) {
+            for (std::uint32_t x = 0; x < slice->width; ++x) {
+                const glm::vec3 p = slice->point(x, y);
+                ASSERT_EQ(p[axis], 0.125F);
+                const FieldSample expected = evaluate(collider, p);
+                const FieldSample& sample = slice->sample(x, y);
+                ASSERT_EQ(sample.map, expected.map);
+                ASSERT_EQ(sample.distance, expected.distance);
+                ASSERT_EQ(sample.normal, expected.normal);
+                inside += sample.inside() ? 1 : 0;
+            }
+        }
+        EXPECT_GT(inside, 100);
+        // The area holds the bounds, and is centred on them.
+        const glm::vec3 first = slice->point(0, 0);
+        const glm::vec3 last = slice->point(slice->width - 1, slice->height - 1);
+        for (const int i : {slice->right, slice->up}) {
+            EXPECT_LT(first[i], collider.bounds.min[i]);
+            EXPECT_GT(last[i], collider.bounds.max[i]);
+            EXPECT_NEAR(first[i] + last[i], collider.bounds.min[i] + collider.bounds.max[i], 1e-5);
+        }
+    }
+    EXPECT_EQ(evaluateSlice(collider, {.axis = 2, .at = {}, .size = 16})->at, 0.0F);
+}
+
+TEST(Slice, RefusesSizes) {
+    const Collider collider = sampleCollider();
+    EXPECT_EQ(evaluateSlice(collider, {.axis = 0, .at = {}, .size = 0}).error().code, ErrorCode::kUsage);
+    EXPECT_EQ(evaluateSlice(collider, {.axis = 0, .at = {}, .size = 1}).error().code, ErrorCode::kUsage);
+    EXPECT_EQ(evaluateSlice(collider, {.axis = 0, .at = {}, .size = 8193}).error().code, ErrorCode::kLimit);
+}
+
+TEST(SliceImage, HasTheChannelsTopRowFirst) {
+    Collider collider = sampleCollider();
+    collider.maps.erase(collider.maps.begin());  // the sub-box map abstains
+    collider.maps.pop_back();
+    const Result<Slice> slice = evaluateSlice(collider, {.axis = 1, .at = 0.0F, .size = 64});
+    ASSERT_TRUE(slice);
+    const FloatImage image = sliceImage(*slice, "m");
+    ASSERT_EQ(image.channels.size(), 6U);
+    bool abstained = false;
+    bool far = false;
+    for (std::uint32_t y = 0; y < slice->height; ++y) {
+        for (std::uint32_t x = 0; x < slice->width; ++x) {
+            const FieldSample& sample = slice->sample(x, y);
+            const std::size_t pixel = std::size_t{slice->height - 1 - y} * slice->width + x;
+            const auto value = [&](std::size_t channel) { return image.channels[channel].values[pixel]; };
+            EXPECT_EQ(value(1), sample.inside() ? 1.0F : 0.0F);
+            EXPECT_EQ(value(2), static_cast<float>(sample.map));
+            if (sample.map < 0) {
+                abstained = true;
+                EXPECT_TRUE(std::isnan(value(0)));
+            } else if (sample.distance == kFarOutside) {
+                far = true;
+                EXPECT_TRUE(std::isinf(value(0)));
+            } else {
+                EXPECT_EQ(value(0), sample.distance);
+                EXPECT_EQ(value(3), sample.normal.x);
+            }
+        }
+    }
+    EXPECT_TRUE(abstained);
+    EXPECT_TRUE(far);
+}
+
+/// Big-endian number in a PNG's header.
+std::uint32_t pngNumber(const std::vector<std::byte>& png, std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        value = value << 8 | std::to_integer<std::uint32_t>(png[at + i]);
+    }
+    return value;
+}
+
+TEST(SliceFigure, IsAPngOfTwoPanelsAndRepeatable) {
+    const Collider collider = sampleCollider();
+    for (const std::uint32_t size : {2U, 33U, 700U}) {
+        const Result<Slice> slice = evaluateSlice(collider, {.axis = 1, .at = 0.0F, .size = size});
+        ASSERT_TRUE(slice);
+        const Result<std::vector<std::byte>> png = drawSlice(*slice, {"torus.relief", "m"});
+        ASSERT_TRUE(png) << png.error().message;
+        ASSERT_GT(png->size(), 1000U);
+        EXPECT_EQ(std::memcmp(png->data(), "\x89PNG\r\n\x1a\n", 8), 0);
+        EXPECT_GT(pngNumber(*png, 16), 2 * std::max(size, 440U));
+        EXPECT_EQ(*png, *drawSlice(*slice, {"torus.relief", "m"}));
+    }
+}
+
+TEST(SliceFigure, DrawsWhateverTheFieldIs) {
+    // Nothing but far outside; nothing but abstention; names of any length; huge and tiny coordinates.
+    Collider collider = sampleCollider();
+    EXPECT_TRUE(drawSlice(*evaluateSlice(collider, {.axis = 0, .at = 1e6F, .size = 20}),
+                          {std::string(5000, 'n'), "m"}));
+    collider.maps = {collider.maps[1]};
+    EXPECT_TRUE(drawSlice(*evaluateSlice(collider, {.axis = 0, .at = 50.0F, .size = 20}), {"", ""}));
+    for (const float scale : {1e-14F, 1e14F}) {
+        const TriangleMesh mesh = makeBoxMesh({0, 0, 0}, glm::dvec3(scale));
+        const Collider scaled = bakeSpecs(mesh, {"cube"}, 8);
+        EXPECT_TRUE(
+            drawSlice(*evaluateSlice(scaled, {.axis = 2, .at = {}, .size = 20}), {"\xf0\x9f\x90\x87", "m"}));
+    }
+}
+
+}  // namespace
+}  // namespace relief::test

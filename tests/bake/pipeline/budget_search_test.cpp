@@ -1,0 +1,91 @@
+// The least budget for a promise: kept, not wasteful, within its bounds, and honest where it cannot be kept.
+#include "bake/pipeline/budget_search.h"
+
+#include "formats/container.h"
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+namespace {
+
+BudgetSearchOptions optionsFor(double percent) {
+    BudgetSearchOptions options;
+    options.max_error_percent = percent;
+    options.bake.quality = Quality::kFast;
+    options.accuracy.samples = 10'000;
+    return options;
+}
+
+TEST(BudgetSearch, KeepsThePromiseWithLittleMoreThanItNeeds) {
+    const TriangleMesh mesh = makeTorusMesh(1.0, 0.4, 64, 32);
+    const Result<MeshQuery> query = MeshQuery::build(mesh);
+    ASSERT_TRUE(query);
+    BudgetSearchOptions options = optionsFor(2.0);
+    std::size_t told = 0;
+    options.tried = [&](const BudgetTry&) { ++told; };
+    const Result<BudgetSearchResult> found = bakeForError(*query, *query, options);
+    ASSERT_TRUE(found) << found.error().message;
+    EXPECT_LE(found->chosen.wrong_percent, 2.0);
+    EXPECT_EQ(found->chosen.bytes, found->baked.collider.texelBytes());
+    EXPECT_EQ(found->plan.bytes, found->chosen.bytes);
+    EXPECT_LE(found->chosen.bytes, found->chosen.budget);
+    EXPECT_EQ(told, found->tries.size());
+    // What it says is what measuring the result says.
+    const TruthSamples truth = sampleTruth(*query, options.accuracy);
+    EXPECT_EQ(measureField(truth, fieldOf(found->baked.collider)).near.total(), found->chosen.wrong_percent);
+    // A budget within a tenth below was tried, and is too small.
+    bool narrow = false;
+    for (const BudgetTry& made : found->tries) {
+        EXPECT_GE(made.budget, 32'000U);
+        narrow =
+            narrow ||
+            (made.wrong_percent > 2.0 &&
+             made.budget<found->chosen.budget&& static_cast<double>(made.budget) * 1.1> static_cast<double>(
+                 found->chosen.budget));
+    }
+    EXPECT_TRUE(narrow);
+
+    // The same again, on one thread.
+    options.bake.threads = 1;
+    const Result<BudgetSearchResult> again = bakeForError(*query, *query, options);
+    ASSERT_TRUE(again);
+    EXPECT_EQ(*writeContainer(again->baked.collider), *writeContainer(found->baked.collider));
+}
+
+TEST(BudgetSearch, AnEasyPromiseCostsTheLeastBudget) {
+    const TriangleMesh mesh = makeTorusMesh(1.0, 0.4, 64, 32);
+    const Result<MeshQuery> query = MeshQuery::build(mesh);
+    ASSERT_TRUE(query);
+    const Result<BudgetSearchResult> found = bakeForError(*query, *query, optionsFor(50.0));
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->chosen.budget, 32'000U);
+    EXPECT_EQ(found->tries.size(), 1U);
+}
+
+TEST(BudgetSearch, SaysWhatTheBestIsWhereThePromiseCannotBeKept) {
+    const TriangleMesh mesh = makeTorusMesh(1.0, 0.4, 64, 32);
+    const Result<MeshQuery> query = MeshQuery::build(mesh);
+    ASSERT_TRUE(query);
+    BudgetSearchOptions options = optionsFor(0.0);
+    options.budget_max = 50'000;
+    std::vector<BudgetTry> tries;
+    options.tried = [&](const BudgetTry& made) { tries.push_back(made); };
+    const Result<BudgetSearchResult> found = bakeForError(*query, *query, options);
+    ASSERT_FALSE(found);
+    EXPECT_EQ(found.error().code, ErrorCode::kDifference);
+    ASSERT_EQ(tries.size(), 2U);
+    EXPECT_EQ(tries[1].budget, 50'000U) << "the limit itself is tried";
+    EXPECT_NE(found.error().message.find(std::to_string(tries[1].bytes) + " bytes"), std::string::npos)
+        << found.error().message;
+    // A limit below the usual start is the only budget.
+    options.budget_max = 20'000;
+    tries.clear();
+    EXPECT_FALSE(bakeForError(*query, *query, options));
+    ASSERT_EQ(tries.size(), 1U);
+    EXPECT_EQ(tries[0].budget, 20'000U);
+    options.budget_max = 10;
+    EXPECT_EQ(bakeForError(*query, *query, options).error().code, ErrorCode::kUsage)
+        << "too small for any plan";
+}
+
+}  // namespace
+}  // namespace relief::test

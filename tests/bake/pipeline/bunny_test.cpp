@@ -1,0 +1,143 @@
+// The whole pipeline on a real mesh: determinism, provenance, round trip, and known signs.
+#include <fstream>
+
+#include "bake/import/mesh_import.h"
+#include "bake/mesh/inside.h"
+#include "formats/container.h"
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+namespace {
+
+constexpr const char* kBunny = "/usr/share/glmark2/models/bunny.obj";
+
+const TriangleMesh& bunny() {
+    static const Result<TriangleMesh> mesh = importMesh(kBunny);
+    if (!mesh) {
+        ADD_FAILURE() << mesh.error().message << " (Debian package glmark2-data)";
+        std::abort();
+    }
+    return *mesh;
+}
+
+const std::vector<std::string> kAllFormats = {
+    "front-back:dir=-x", "front-back:dir=1/2/3", "fixed8:dir=-y", "float:dir=+z,compare=greater", "cube",
+    "cube:center=0/5/0"};
+
+TEST(BakeBunny, IsWhatTheFileHolds) {
+    EXPECT_EQ(bunny().triangles.size(), 69666U);
+    EXPECT_EQ(bunny().name, "bunny.obj");
+    EXPECT_EQ(bunny().content_hash.size(), 32U);
+    EXPECT_EQ(bunny().unit, "");
+    // The bounds, read by hand.
+    Bounds bounds;
+    std::ifstream file(kBunny);
+    for (std::string line; std::getline(file, line);) {
+        glm::vec3 p;
+        if (std::sscanf(line.c_str(), "v %f %f %f", &p.x, &p.y, &p.z) == 3) {
+            bounds.add(p);
+        }
+    }
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_NEAR(bunny().bounds.min[i], bounds.min[i], 1e-6);
+        EXPECT_NEAR(bunny().bounds.max[i], bounds.max[i], 1e-6);
+    }
+}
+
+TEST(BakeBunny, ThreadsDoNotChangeAByte) {
+    const Result<std::vector<std::byte>> one = writeContainer(bakeSpecs(bunny(), kAllFormats, 96, 1));
+    ASSERT_TRUE(one);
+    for (const unsigned threads : {2U, 7U}) {
+        const Result<std::vector<std::byte>> more =
+            writeContainer(bakeSpecs(bunny(), kAllFormats, 96, threads));
+        ASSERT_TRUE(more);
+        EXPECT_TRUE(*one == *more) << threads << " threads";
+    }
+}
+
+TEST(BakeTies, ThreadsDoNotChangeAByte) {
+    // Triangles' edges on texel centres, and every triangle twice, the second time turned over: ties
+    // everywhere.
+    TriangleMesh mesh = makePlane(0.0F, 60);
+    for (std::size_t i = 0, n = mesh.triangles.size(); i < n; ++i) {
+        const glm::uvec3 t = mesh.triangles[i];
+        mesh.triangles.emplace_back(t.x, t.z, t.y);
+    }
+    const std::vector<std::string> specs = {"float:dir=-y,size=62,box=-1/-1/-1/1/1/1",
+                                            "fixed8:dir=-y,size=61x122",
+                                            "front-back:dir=+y,size=62,box=-1/-1/-1/1/1/1"};
+    const Collider one = bakeSpecs(mesh, specs, 64, 1);
+    for (const unsigned threads : {2U, 7U}) {
+        EXPECT_TRUE(one == bakeSpecs(mesh, specs, 64, threads)) << threads << " threads";
+    }
+}
+
+TEST(BakeBunny, SurvivesTheContainerAndTellsItsStory) {
+    const Collider collider = bakeSpecs(bunny(), kAllFormats, 32);
+    const Result<std::vector<std::byte>> bytes = writeContainer(collider);
+    ASSERT_TRUE(bytes) << bytes.error().message;
+    const Result<Collider> back = readContainer(*bytes);
+    ASSERT_TRUE(back) << back.error().message;
+    EXPECT_TRUE(*back == collider);
+    EXPECT_EQ(back->provenance.mesh_name, "bunny.obj");
+    EXPECT_EQ(back->provenance.mesh_hash, bunny().content_hash);
+    EXPECT_EQ(back->provenance.triangles, 69666U);
+    EXPECT_EQ(back->provenance.options.find(
+                  "--map front-back:dir=-x,size=32x32,depth=half,decode=projected,box=tight --map "),
+              0U);
+    EXPECT_NE(
+        back->provenance.options.find("cube:size=32,compare=less,center=0/5/0,decode=projected,box=tight"),
+        std::string::npos);
+
+    // The recorded options bake the same maps again.
+    std::vector<std::string> specs;
+    std::string rest = back->provenance.options;
+    while (!rest.empty()) {
+        rest = rest.substr(rest.find("--map ") + 6);
+        const std::size_t end = rest.find(' ');
+        specs.push_back(rest.substr(0, end));
+        rest = end == std::string::npos ? "" : rest.substr(end + 1);
+    }
+    EXPECT_TRUE(bakeSpecs(bunny(), specs, 999).maps == collider.maps);
+}
+
+TEST(BakeBunny, DefaultMapsKnowInsideFromOutside) {
+    const Result<Baked> baked = bake(bunny(), {.maps = {}, .resolution = 256, .threads = 0, .progress = {}});
+    ASSERT_TRUE(baked);
+    ASSERT_EQ(baked->collider.maps.size(), 4U);
+    EXPECT_EQ(baked->collider.maps[3].compare, Compare::kGreater);
+    int wrong = 0;
+    int inside = 0;
+    std::uint32_t state = 7;
+    const auto random = [&] {
+        state = state * 1664525U + 1013904223U;
+        return static_cast<float>(state >> 8) / 16777216.0F;
+    };
+    for (int i = 0; i < 400; ++i) {
+        glm::vec3 p;
+        for (int k = 0; k < 3; ++k) {
+            p[k] = bunny().bounds.min[k] + random() * bunny().bounds.size()[k];
+        }
+        const FieldSample sample = evaluate(baked->collider, p);
+        ASSERT_GE(sample.map, 0);
+        inside += sample.inside() ? 1 : 0;
+        wrong += sample.inside() != insideByParity(bunny(), p) ? 1 : 0;
+    }
+    EXPECT_GT(inside, 80);
+    EXPECT_LE(wrong, 8) << "of 400; concavities that no map sees are told inside";
+}
+
+TEST(BakeProgress, RunsFromNothingToOne) {
+    double last = 0.0;
+    BakeOptions options;
+    options.resolution = 16;
+    options.progress = [&](double share) {
+        EXPECT_GT(share, last);
+        last = share;
+    };
+    ASSERT_TRUE(bake(makeBoxMesh({0, 0, 0}, {1, 1, 1}), options));
+    EXPECT_EQ(last, 1.0);
+}
+
+}  // namespace
+}  // namespace relief::test

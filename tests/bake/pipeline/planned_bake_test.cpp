@@ -1,0 +1,238 @@
+// Supporting planes and planned views: promises of plane_fit.h, fitted_map.h and view_planner.h, first on
+// shapes with a closed form, then by the yardstick.
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <random>
+
+#include "bake/measure/accuracy.h"
+#include "bake/mesh/triangle_plane.h"
+#include "bake/plan/view_planner.h"
+#include "bake/texels/plane_fit.h"
+#include "formats/container.h"
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+namespace {
+
+constexpr std::uint64_t kBudget = 65536;
+
+MeshQuery queryOf(const TriangleMesh& mesh) {
+    Result<MeshQuery> query = MeshQuery::build(mesh);
+    EXPECT_TRUE(query) << query.error().message;
+    return std::move(*query);
+}
+
+Plan planOf(const TriangleMesh& mesh, std::uint64_t budget = kBudget) {
+    PlanOptions options;
+    options.budget_bytes = budget;
+    const MeshQuery query = queryOf(mesh);
+    Result<Plan> plan = planViews(mesh, query, options);
+    EXPECT_TRUE(plan) << plan.error().message;
+    return plan ? std::move(*plan) : Plan{};
+}
+
+Collider bakePlan(const TriangleMesh& mesh, const Plan& plan, unsigned threads = 0,
+                  Quality quality = Quality::kNormal) {
+    BakeOptions options;
+    options.threads = threads;
+    options.quality = quality;
+    options.maps = specsOf(plan);
+    Result<Baked> baked = bake(mesh, options);
+    EXPECT_TRUE(baked) << baked.error().message;
+    return baked ? std::move(baked->collider) : Collider{};
+}
+
+WrongShare wrongNear(const TriangleMesh& mesh, const Collider& collider) {
+    const MeshQuery query = queryOf(mesh);
+    AccuracyOptions options;
+    options.samples = 30'000;
+    return measureField(sampleTruth(query, options), fieldOf(collider)).near;
+}
+
+/// A box of side 2, hollow, with a small square mouth in its top: no straight line from outside reaches most
+/// of the cavity's walls.
+TriangleMesh makeJar() {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec3> triangles;
+    const auto quad = [&](glm::vec3 a, glm::vec3 b, glm::vec3 c, glm::vec3 d) {
+        const auto first = static_cast<std::uint32_t>(positions.size());
+        positions.insert(positions.end(), {a, b, c, d});
+        triangles.emplace_back(first, first + 1, first + 2);
+        triangles.emplace_back(first, first + 2, first + 3);
+    };
+    // Rings of squares, from the outer bottom round to the cavity's floor: half sides and heights.
+    const float ring[][2] = {{1.0F, -1.0F}, {1.0F, 1.0F}, {0.1F, 1.0F},
+                             {0.1F, 0.8F},  {0.8F, 0.8F}, {0.8F, -0.8F}};
+    const glm::vec2 corner[] = {{-1, -1}, {-1, 1}, {1, 1}, {1, -1}};
+    const auto at = [&](int r, int k) {
+        const glm::vec2 c = corner[k % 4] * ring[r][0];
+        return glm::vec3(c.x, ring[r][1], c.y);
+    };
+    for (int r = 0; r + 1 < 6; ++r) {
+        for (int k = 0; k < 4; ++k) {
+            quad(at(r, k), at(r, k + 1), at(r + 1, k + 1), at(r + 1, k));
+        }
+    }
+    quad(at(0, 3), at(0, 2), at(0, 1), at(0, 0));
+    quad(at(5, 0), at(5, 1), at(5, 2), at(5, 3));
+    return finished(std::move(positions), std::move(triangles));
+}
+
+TEST(PlaneFit, NoSampledSurfacePointLiesInFrontOfThePlane) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    PlaneFitOptions options;
+    options.reach = 0.5;
+    for (int repeat = 0; repeat < 2000; ++repeat) {
+        std::vector<FootprintRay> rays(16);
+        const double texel = 0.02;
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            rays[i].origin = {texel * (static_cast<double>(i % 4) - 1.5) / 4,
+                              texel * (static_cast<double>(i / 4) - 1.5) / 4, 0};
+            rays[i].direction = {0, 0, 1};
+            if (unit(random) < 0.8) {
+                rays[i].u = 0.3 + 0.05 * unit(random);
+                rays[i].normal =
+                    glm::normalize(glm::dvec3(unit(random) - 0.5, unit(random) - 0.5, -unit(random)));
+            }
+        }
+        const FootprintRay center{{0, 0, 0}, {0, 0, 1}, -1.0, glm::dvec3(0.0)};
+        const std::optional<FittedPlane> plane =
+            fitSupportingPlane(rays, {}, {}, center, center.origin, options);
+        ASSERT_TRUE(plane);
+        ASSERT_FALSE(plane->stands);
+        EXPECT_LE(plane->normal.z, -1.0 / 32.0);
+        const glm::dvec3 on_plane(0, 0, plane->code / 65534.0);
+        for (const FootprintRay& ray : rays) {
+            if (ray.u >= 0.0) {
+                EXPECT_LE(dot(plane->normal, ray.origin + ray.u * ray.direction - on_plane), 1e-12);
+            }
+        }
+    }
+}
+
+TEST(PlaneFit, FootprintWithoutSurfaceIsEmpty) {
+    const FootprintRay ray{{0, 0, 0}, {0, 0, 1}, -1.0, glm::dvec3(0.0)};
+    EXPECT_FALSE(fitSupportingPlane(std::vector<FootprintRay>(4, ray), {}, {}, ray, ray.origin, {}));
+}
+
+TEST(FittedMap, ATiltedFaceIsFoundToAQuantumEverywhere) {
+    // One face of a turned box, seen obliquely: away from the edges the plane is the face itself, but for the
+    // normal's index (at most 0.65°, over half a texel) and the depth's quantum, both on the free side.
+    const glm::dmat3 axes = rotation({0, 1, 0}, 25.0);
+    const TriangleMesh mesh = makeBoxMesh({0, 0, 0}, {1, 1, 1}, axes);
+    const Collider collider = bakeSpecs(mesh, {"front-back:dir=-z,size=66x66,depth=unorm16,decode=plane"});
+    const glm::dvec3 normal = axes * glm::dvec3(0, 0, 1);
+    const double texel = 2.0 * 1.33 / 64.0;
+    const double bound = texel * 0.0114 + 4.0 / 65534.0;
+    // The outermost eighth of a texel lies beyond its samples.
+    const double rim = std::sqrt(2.0) / 8.0 * texel * 0.0114;
+    std::mt19937 random(2);
+    std::uniform_real_distribution<double> unit(-0.9, 0.9);
+    for (int i = 0; i < 5000; ++i) {
+        const double f = 0.05 * unit(random);
+        const glm::dvec3 p = axes * glm::dvec3(unit(random), unit(random), 1.0 + f);
+        const FieldSample sample = evaluate(collider, glm::vec3(p));
+        ASSERT_EQ(sample.map, 0);
+        EXPECT_LE(sample.distance, f + 0.002 * std::abs(f) + rim) << "in front of the face by " << f;
+        EXPECT_GE(sample.distance, f - bound - 0.002 * std::abs(f)) << "in front of the face by " << f;
+        EXPECT_GT(dot(glm::dvec3(sample.normal), normal), 0.9998);
+    }
+}
+
+TEST(FittedMap, WallsSeenEdgeOnAreFoundInsideTheirTexels) {
+    // A box whose walls run through texels, not along their edges, seen along three of its edges: the map's
+    // rays never meet the walls, yet it says on which side of them a point is, to the 63rd part of the
+    // quarter of a texel to which their place is known and the quantum of the offset.
+    const TriangleMesh mesh = makeBoxMesh({0, 0, 0}, {1.0, 0.7, 0.4}, glm::dmat3(1.0));
+    const Collider collider = bakeSpecs(
+        mesh, {"front-back:dir=-z,size=23x19,depth=unorm16,decode=plane,box=-1.2/-1.05/-0.4/1.3/1.15/0.4"});
+    const double texel = std::max(2.5 / 21.0, 2.2 / 17.0);
+    const double bound = texel / 4.0 / 63.0 + 4.0 * texel / 65534.0;
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    for (int i = 0; i < 4000; ++i) {
+        const double f = 0.3 * texel * unit(random);
+        const double sign = i % 4 < 2 ? 1.0 : -1.0;
+        const double along = 0.8 * unit(random);  // away from the corners
+        const glm::vec3 p = i % 2 == 0 ? glm::vec3(sign * (1.0 + f), 0.7 * along, 0.39 * unit(random))
+                                       : glm::vec3(along, sign * (0.7 + f), 0.39 * unit(random));
+        const FieldSample sample = evaluate(collider, p);
+        ASSERT_EQ(sample.map, 0);
+        if (std::abs(f) > bound) {
+            ASSERT_EQ(sample.inside(), f < 0.0) << p.x << " " << p.y << " " << p.z;
+        }
+        if (f > bound && sample.distance < kFarOutside) {
+            EXPECT_NEAR(sample.distance, f, bound);
+        }
+    }
+}
+
+TEST(FittedMap, SameBytesForAnyNumberOfThreads) {
+    const TriangleMesh mesh = makeTorusMesh(1.0, 0.4, 48, 24);
+    const Plan plan = planOf(mesh);
+    const auto bytes = [&](unsigned threads) { return *writeContainer(bakePlan(mesh, plan, threads)); };
+    EXPECT_EQ(bytes(1), bytes(2));
+    EXPECT_EQ(bytes(1), bytes(7));
+}
+
+TEST(FittedMap, SupportingPlanesHardlyEverCallAnInsidePointOutside) {
+    const TriangleMesh mesh = makeTorusMesh(1.0, 0.4, 64, 32);
+    const WrongShare fitted = wrongNear(mesh, bakePlan(mesh, planOf(mesh)));
+    const WrongShare centred = wrongNear(mesh, bakePlan(mesh, planOf(mesh), 0, Quality::kFast));
+    EXPECT_LT(fitted.false_outside, 0.5 * centred.false_outside);
+    EXPECT_LT(fitted.total(), centred.total());
+}
+
+TEST(ViewPlanner, KeepsTheBudgetAndSeesAllOfAConvexShape) {
+    const TriangleMesh mesh = makeIcosphere({1, 2, 3}, 2.0, 4);
+    for (const std::uint64_t budget : {std::uint64_t{8192}, std::uint64_t{100'000}, std::uint64_t{1} << 20}) {
+        const Plan plan = planOf(mesh, budget);
+        EXPECT_LE(plan.bytes, budget);
+        EXPECT_GE(plan.bytes, budget * 9 / 10);
+        EXPECT_EQ(plan.unseen_percent, 0.0);
+        EXPECT_LE(bakePlan(mesh, plan).texelBytes(), budget);
+    }
+}
+
+TEST(ViewPlanner, MakesAThirdOfTheMistakesOfThePapersMaps) {
+    for (const TriangleMesh& mesh : {makeIcosphere({0, 0, 0}, 1.0, 4), makeTorusMesh(1.0, 0.4, 64, 32),
+                                     makeBoxMesh({0, 0, 0}, {1, 0.6, 0.3}, rotation({1, 2, 3}, 33.0))}) {
+        // 52² · 8 · 3 bytes, the budget.
+        const Collider paper = bakeSpecs(
+            mesh,
+            {"front-back:dir=-x,size=52x52", "front-back:dir=-y,size=52x52", "front-back:dir=-z,size=52x52"});
+        ASSERT_LE(paper.texelBytes(), kBudget);
+        EXPECT_LT(wrongNear(mesh, bakePlan(mesh, planOf(mesh))).total(),
+                  wrongNear(mesh, paper).total() / 3.0);
+    }
+}
+
+TEST(ViewPlanner, PutsACubeIntoACavity) {
+    const TriangleMesh mesh = makeJar();
+    const Plan plan = planOf(mesh);
+    const auto cubes = std::count_if(plan.maps.begin(), plan.maps.end(), [](const PlannedMap& map) {
+        return map.spec.format == MapFormat::kCube8 && map.spec.compare == Compare::kLess;
+    });
+    EXPECT_GE(cubes, 1);
+    EXPECT_LT(plan.unseen_percent, 1.0);
+    // The middle of the cavity is free, which no outer view can know.
+    const Collider collider = bakePlan(mesh, plan);
+    EXPECT_FALSE(evaluate(collider, {0.5F, -0.5F, 0.5F}).inside());
+    EXPECT_TRUE(evaluate(collider, {0.9F, -0.5F, 0.0F}).inside());
+}
+
+TEST(ViewPlanner, RefusesABudgetThatIsTooSmall) {
+    const TriangleMesh mesh = makeIcosphere({0, 0, 0}, 1.0, 2);
+    const MeshQuery query = queryOf(mesh);
+    PlanOptions options;
+    options.budget_bytes = 100;
+    const Result<Plan> plan = planViews(mesh, query, options);
+    ASSERT_FALSE(plan);
+    EXPECT_EQ(plan.error().code, ErrorCode::kUsage);
+}
+
+}  // namespace
+}  // namespace relief::test

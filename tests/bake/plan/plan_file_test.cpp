@@ -1,0 +1,131 @@
+// Plan files: what is written reads back as the same specs, to the last bit, and whatever is wrong in a file
+// is told with its place.
+#include "bake/plan/plan_file.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <random>
+
+namespace relief::test {
+namespace {
+
+constexpr const char* kHead = "version = 1\n";
+
+TEST(PlanFile, ReadsWhatItWrites) {
+    PlanFile plan;
+    plan.quality = Quality::kBest;
+    for (const char* text :
+         {"front-back:dir=0.1/-0.7/1e-20,up=+x,size=7x9,depth=unorm16,decode=plane,box=tight",
+          "front-back:dir=-y,size=16384x3,depth=half,decode=projected,box=-1/-2/-3/0.1/1e+20/3",
+          "float:dir=+x,size=12x12,compare=greater,decode=plane,box=tight",
+          "fixed8:dir=1/2/3,size=12x12,compare=less,decode=projected,box=tight",
+          "cube:size=5,compare=less,center=0/0.1/-0.25,decode=plane,box=tight",
+          "cube:size=5,compare=greater,decode=plane,box=0/0/0/1/1/1"}) {
+        plan.maps.push_back({*parseMapSpec(text), "why\nnot\x1b"});
+    }
+    const std::string text = planText(plan);
+    const Result<PlanFile> back = parsePlan(text, "plan.toml");
+    ASSERT_TRUE(back) << back.error().message << "\n" << text;
+    EXPECT_EQ(back->quality, Quality::kBest);
+    ASSERT_EQ(back->maps.size(), plan.maps.size());
+    for (std::size_t i = 0; i < plan.maps.size(); ++i) {
+        EXPECT_EQ(back->maps[i].spec, plan.maps[i].spec) << toString(plan.maps[i].spec);
+    }
+    EXPECT_NE(text.find("\n# why"), std::string::npos) << "the reason stands above its map";
+}
+
+TEST(PlanFile, KeepsEveryBitOfAnyFloat) {
+    std::mt19937 random(3);
+    for (int repeat = 0; repeat < 500; ++repeat) {
+        const auto number = [&] {
+            for (;;) {
+                const auto value = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
+                if (std::isfinite(value) && value != 0.0F) {
+                    return value;
+                }
+            }
+        };
+        PlanFile plan;
+        plan.maps.resize(1);
+        MapSpec& spec = plan.maps[0].spec;
+        spec.format = MapFormat::kCube8;
+        spec.width = spec.height = 4;
+        spec.center = glm::vec3(number(), number(), number());
+        const Result<PlanFile> back = parsePlan(planText(plan), "plan.toml");
+        ASSERT_TRUE(back) << planText(plan);
+        ASSERT_EQ(back->maps[0].spec, spec);
+    }
+}
+
+TEST(PlanFile, TakesWhatAPersonWrites) {
+    const Result<PlanFile> plan = parsePlan(
+        "version = 1  # no quality\n[[map]]\nsize = 12\nformat = 'front-back'\n[[map]]\nformat = 'cube'\n"
+        "compare = \"less\"\nsize = \"8\"\n",
+        "plan.toml");
+    ASSERT_TRUE(plan) << plan.error().message;
+    EXPECT_EQ(plan->quality, Quality::kNormal);
+    EXPECT_EQ(plan->maps[0].spec, *parseMapSpec("front-back:size=12"));
+    EXPECT_EQ(plan->maps[1].spec, *parseMapSpec("cube:size=8,compare=less"));
+}
+
+TEST(PlanFile, SaysWhatIsWrongAndWhere) {
+    struct Case {
+        std::string text;
+        ErrorCode code;
+        const char* says;
+    };
+    constexpr ErrorCode kInvalid = ErrorCode::kInvalidInput;
+    const std::string head = kHead;
+    const std::string map = "[[map]]\nformat = 'float'\nsize = 9\n";
+    std::string many = head;
+    for (int i = 0; i < 1025; ++i) {
+        many += "[[map]]\nformat = 'float'\nsize = 9\n";
+    }
+    const Case cases[] = {
+        {"", kInvalid, "p.toml:1:1: a plan starts with version = 1"},
+        {"version = ", kInvalid, "p.toml:1:"},
+        {"version = 2\n" + map, kInvalid, "p.toml:1:11: version must be 1"},
+        {"version = '1'\n" + map, kInvalid, "p.toml:1:11: version must be 1"},
+        {head, kInvalid, "at least one [[map]]"},
+        {head + "map = []", kInvalid, "at least one [[map]]"},
+        {head + "map = 3", kInvalid, "p.toml:2:7: map must be a list of tables"},
+        {head + "map = [3]", kInvalid, "p.toml:2:8: a map must be a table"},
+        {head + "[map]\nformat = 'float'", kInvalid, "write [[map]]"},
+        {head + "qualty = 'best'\n" + map, kInvalid,
+         "p.toml:2:1: unknown key 'qualty'; did you mean 'quality'"},
+        {head + "quality = 'bests'\n" + map, kInvalid, "p.toml:2:11: quality must be"},
+        {head + "quality = 3\n" + map, kInvalid, "p.toml:2:11: quality must be"},
+        {head + "[[map]]\nsize = 9\n", kInvalid, "p.toml:2:1: a map needs format"},
+        {head + "[[map]]\nformat = 'float'\n", kInvalid, "p.toml:2:1: a map needs size"},
+        {head + "[[map]]\nformat = 3\nsize = 9\n", kInvalid, "p.toml:3:10: format must be a string"},
+        {head + "[[map]]\nformat = 'flat'\nsize = 9\n", kInvalid, "p.toml:3:10: unknown format 'flat'"},
+        {head + map + "sise = 3\n", kInvalid, "p.toml:5:1: unknown key 'sise'; did you mean 'size'"},
+        {head + map + "\"a\\u001bb\" = 3\n", kInvalid, "p.toml:5:1: unknown key"},
+        {head + map + "dir = [0, 1, 0]\n", kInvalid, "p.toml:5:7: dir must be a string"},
+        {head + map + "dir = '+x,size=5'\n", kInvalid, "p.toml:5:7: dir is"},
+        {head + map + "dir = '0/0/0'\n", kInvalid, "p.toml:5:7: dir is"},
+        {head + map + "depth = 'half'\n", kInvalid, "p.toml:5:9: depth does nothing"},
+        {head + map + "dir = '+x'\nup = '-x'\n", kInvalid, "p.toml:2:1: up is parallel"},
+        {head + map + "size = 10\n", kInvalid, "p.toml:5:"},
+        {head + "[[map]]\nformat = 'float'\nsize = -3\n", kInvalid, "p.toml:4:8: size is '-3'"},
+        {head + "[[map]]\nformat = 'float'\nsize = 2\n", kInvalid, "p.toml:4:8: size is 2"},
+        {head + "[[map]]\nformat = 'float'\nsize = 9.5\n", kInvalid, "p.toml:4:8: size must be"},
+        {head + "[[map]]\nformat = 'float'\nsize = 16385\n", ErrorCode::kLimit, "p.toml:4:8: size is 16385"},
+        {many, ErrorCode::kLimit, "1025 maps"},
+        {head + "x = " + std::string(5000, '['), kInvalid, "p.toml:2:"},
+        {"\xff\xfe", kInvalid, "p.toml:1:"},
+    };
+    for (const Case& c : cases) {
+        const Result<PlanFile> plan = parsePlan(c.text, "p.toml");
+        const std::string shown = c.text.substr(0, 200);
+        ASSERT_FALSE(plan) << shown;
+        EXPECT_EQ(plan.error().code, c.code) << shown;
+        EXPECT_EQ(plan.error().message.find("p.toml:"), 0U) << plan.error().message;
+        EXPECT_NE(plan.error().message.find(c.says), std::string::npos) << shown << plan.error().message;
+        EXPECT_EQ(plan.error().message.find_first_of("\n\x1b"), std::string::npos);
+    }
+}
+
+}  // namespace
+}  // namespace relief::test

@@ -1,0 +1,173 @@
+// The cache of a recipe: what is up to date is recognised, and every single change is; a file of somebody
+// else's making never passes for one of ours. And depfiles, in both programs' syntax.
+#include "bake/recipe/bake_cache.h"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+namespace relief::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class BakeCache : public testing::Test {
+  protected:
+    void SetUp() override {
+        std::string name = (fs::temp_directory_path() / "relief_cache_XXXXXX").string();
+        ASSERT_NE(::mkdtemp(name.data()), nullptr);
+        folder_ = name;
+        for (const char* file : {"m.obj", "m.bin", "m.relief"}) {
+            put(file, file);
+        }
+        job_.mesh = "m.obj";
+        job_.mesh_path = folder_ / "m.obj";
+        job_.output = "m.relief";
+        job_.output_path = folder_ / "m.relief";
+        job_.options = {"--compress=3"};
+        entry_ = {"relief 1",
+                  job_.options,
+                  {{"m.obj", hash("m.obj")}, {"m.bin", hash("m.bin")}},
+                  hash("m.relief"),
+                  8};
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    void put(const std::string& file, const std::string& text) const {
+        std::ofstream(folder_ / file) << text;
+    }
+    [[nodiscard]] std::string hash(const char* file) const {
+        return hashOfFile(folder_ / file).value_or("none");
+    }
+    [[nodiscard]] std::string why() const {
+        return staleness(job_, &entry_, "relief 1", folder_).value_or("up to date");
+    }
+
+    fs::path folder_;
+    RecipeJob job_;
+    BakeCacheEntry entry_;
+};
+
+TEST_F(BakeCache, EveryChangeIsSeen) {
+    EXPECT_EQ(why(), "up to date");
+    fs::last_write_time(folder_ / "m.obj", fs::file_time_type::clock::now() + std::chrono::hours(1));
+    EXPECT_EQ(why(), "up to date") << "times are not looked at";
+
+    for (const char* input : {"m.obj", "m.bin"}) {
+        const auto time = fs::last_write_time(folder_ / input);
+        put(input, "m.xyz");  // as long as before, and as old
+        fs::last_write_time(folder_ / input, time);
+        EXPECT_EQ(why(), std::string("'") + input + "' changed");
+        fs::remove(folder_ / input);
+        EXPECT_EQ(why(), std::string("'") + input + "' changed");
+        put(input, input);
+        EXPECT_EQ(why(), "up to date");
+    }
+    put("m.relief", "M.relief");
+    EXPECT_EQ(why(), "the output changed");
+    fs::remove(folder_ / "m.relief");
+    EXPECT_EQ(why(), "the output is gone");
+    EXPECT_EQ(*staleness(job_, nullptr, "relief 1", folder_), "new");
+    put("m.relief", "m.relief");
+    EXPECT_EQ(*staleness(job_, nullptr, "relief 1", folder_), "nothing is known of the output");
+    EXPECT_EQ(*staleness(job_, &entry_, "relief 2", folder_), "made by another version of relief");
+    job_.options = {"--compress=4"};
+    EXPECT_EQ(why(), "the options changed");
+    job_.options = entry_.options;
+    job_.mesh = "m.bin";
+    EXPECT_EQ(why(), "the mesh is another");
+}
+
+TEST_F(BakeCache, APipeIsNoInput) {
+    fs::remove(folder_ / "m.bin");
+    ASSERT_EQ(std::system(("mkfifo " + (folder_ / "m.bin").string()).c_str()), 0);
+    EXPECT_EQ(why(), "'m.bin' changed") << "and nobody waits for its writer";
+    EXPECT_FALSE(hashOfFile("/dev/zero"));
+}
+
+TEST_F(BakeCache, ReadsWhatItWrites) {
+    EXPECT_TRUE(loadBakeCache(folder_)->empty());
+    ASSERT_TRUE(updateBakeCache(folder_, {{"m.relief", entry_}}));
+    put("n.relief", "n");
+    BakeCacheEntry other = entry_;
+    other.options.clear();
+    ASSERT_TRUE(updateBakeCache(folder_, {{"n.relief", other}, {"gone.relief", other}}));
+    const auto read = loadBakeCache(folder_);
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(*read, (BakeCacheEntries{{"m.relief", entry_}, {"n.relief", other}}))
+        << "both runs' entries, without the output that is gone";
+}
+
+TEST_F(BakeCache, ManyWritersLoseNothing) {
+    constexpr int kWriters = 8;
+    constexpr int kEach = 8;
+    std::vector<std::jthread> writers;
+    for (int w = 0; w < kWriters; ++w) {
+        writers.emplace_back([this, w] {
+            for (int i = 0; i < kEach; ++i) {
+                const std::string name = std::to_string(w) + "_" + std::to_string(i) + ".relief";
+                put(name, name);
+                EXPECT_TRUE(updateBakeCache(folder_, {{name, entry_}}));
+            }
+        });
+    }
+    writers.clear();
+    const auto read = loadBakeCache(folder_);
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(read->size(), static_cast<std::size_t>(kWriters * kEach));
+}
+
+TEST_F(BakeCache, WhatIsNoCacheIsRefused) {
+    const std::string good = bakeCacheText({{"m.relief", entry_}});
+    ASSERT_TRUE(parseBakeCache(good));
+    const auto replaced = [&](const std::string& from, const std::string& to) {
+        std::string text = good;
+        const std::size_t at = text.find(from);
+        EXPECT_NE(at, std::string::npos) << from;
+        return text.replace(at, from.size(), to);
+    };
+    for (const std::string& text :
+         {std::string(), std::string("x"), std::string("[]"), std::string("null"), std::string(100'000, '['),
+          good.substr(0, good.size() / 2), replaced("relief-cache", "other-cache"),
+          replaced("\"version\": 1", "\"version\": 2"), replaced("\"version\": 1", "\"version\": \"1\""),
+          replaced("\"output_bytes\": 8", "\"output_bytes\": -8"), replaced("\"tool\"", "\"tol\""),
+          replaced("\"inputs\": [", "\"inputs\": [1,"), replaced("\"options\": [", "\"options\": [1,"),
+          replaced("\"hash\"", "\"hsh\""),
+          std::string(R"({"format":"relief-cache","version":1,"outputs":[]})"),
+          std::string(R"({"format":"relief-cache","version":1,"outputs":{"a":1}})"),
+          // Without inputs nothing could ever change.
+          std::string(
+              R"({"format":"relief-cache","version":1,"outputs":{"a":{"tool":"t","options":[],"inputs":[],)"
+              R"("output_hash":"h","output_bytes":1}}})")}) {
+        const auto entries = parseBakeCache(text);
+        ASSERT_FALSE(entries) << text.substr(0, 300);
+        EXPECT_EQ(entries.error().code, ErrorCode::kInvalidInput);
+    }
+    put(kBakeCacheName, "{}");
+    const auto loaded = loadBakeCache(folder_);
+    ASSERT_FALSE(loaded);
+    EXPECT_NE(loaded.error().message.find(kBakeCacheName), std::string::npos);
+    ASSERT_TRUE(updateBakeCache(folder_, {{"m.relief", entry_}})) << "it is replaced";
+    EXPECT_EQ(loadBakeCache(folder_)->size(), 1U);
+}
+
+TEST(Depfile, EscapesForMakeAndNinja) {
+    EXPECT_EQ(*depfileText({"o"}, {"a"}), "o: \\\n  a\n");
+    EXPECT_EQ(
+        *depfileText({"o", "p q"}, {"a b", "c#d", "e$f", "a b", "g:h", "i\\j"}),
+        "o p\\ q: \\\n  a\\ b \\\n  c\\#d \\\n  e$$f \\\n  g\\:h \\\n  i\\j\nc\\#d:\ne$$f:\ng\\:h:\ni\\j:\n");
+    for (const char* name : {"", "a\nb", "a\tb", "a;b", "a=b", "a\\ b", "a\\#b", "a\\"}) {
+        const Result<std::string> text = depfileText({"o"}, {name});
+        ASSERT_FALSE(text) << name;
+        EXPECT_EQ(text.error().code, ErrorCode::kUnsupported);
+        EXPECT_FALSE(depfileText({name}, {"a"})) << name;
+    }
+    EXPECT_FALSE(depfileText({"50%"}, {"a"})) << "a pattern rule";
+    EXPECT_TRUE(depfileText({"o"}, {"50%"}));
+}
+
+}  // namespace
+}  // namespace relief::test

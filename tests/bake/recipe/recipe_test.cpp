@@ -1,0 +1,263 @@
+// Recipes: what is read, merged and found, and that whatever is wrong is told with its place and nothing
+// outside of the folders is reached.
+#include "bake/recipe/recipe.h"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "bake/recipe/recipe_jobs.h"
+
+namespace relief::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<RecipeKey>& keys() {
+    using Kind = RecipeKey::Kind;
+    static const std::vector<RecipeKey> kKeys = {{"map", Kind::kList},        {"paper", Kind::kFlag},
+                                                 {"plan", Kind::kValue},      {"budget", Kind::kValue},
+                                                 {"decode", Kind::kValue},    {"prefer", Kind::kValue},
+                                                 {"max-error", Kind::kValue}, {"compress", Kind::kValue}};
+    return kKeys;
+}
+
+std::string recipe(const std::string& rest) {
+    return "version = 1\n" + rest;
+}
+
+TEST(Recipe, MergesDefaultsKeyByKey) {
+    const auto assets =
+        parseRecipe(recipe("[defaults]\noutput = '{stem}.relief'\ncompress = 3\nprefer = 'inside'\n"
+                           "[[asset]]\nmesh = 'a.obj'\n"
+                           "[[asset]]\nmesh = ['b.obj', 'c/*.obj']\nprefer = 'outside'\n"
+                           "max-error = 1.5\noutput = 'x/{stem}.relief'\nexclude = 'c/d.obj'\n"),
+                    keys(), "r.toml");
+    ASSERT_TRUE(assets) << assets.error().message;
+    ASSERT_EQ(assets->size(), 2U);
+    const std::vector<std::string> first = {"--compress=3", "--prefer=inside"};
+    const std::vector<std::string> second = {"--compress=3", "--max-error=1.5", "--prefer=outside"};
+    EXPECT_EQ(recipeArguments((*assets)[0].options), first);
+    EXPECT_EQ(recipeArguments((*assets)[1].options), second);
+    EXPECT_EQ((*assets)[0].output, "{stem}.relief");
+    EXPECT_EQ((*assets)[1].output, "x/{stem}.relief");
+    EXPECT_EQ((*assets)[1].meshes.size(), 2U);
+    EXPECT_EQ((*assets)[1].exclude, std::vector<std::string>{"c/d.obj"});
+}
+
+// Otherwise an asset could not have planned maps beside defaults that name maps, nor the other way round.
+TEST(Recipe, AnAssetThatChoosesItsMapsTakesNoneOfTheDefaultsChoice) {
+    const auto assets =
+        parseRecipe(recipe("[defaults]\noutput = '{stem}.relief'\nmap = ['cube:size=8', 'float:size=8']\n"
+                           "decode = 'projected'\ncompress = 1\n"
+                           "[[asset]]\nmesh = 'a'\n[[asset]]\nmesh = 'b'\nbudget = '1MB'\n"
+                           "[[asset]]\nmesh = 'c'\npaper = true\n[[asset]]\nmesh = 'd'\npaper = false\n"),
+                    keys(), "r.toml");
+    ASSERT_TRUE(assets) << assets.error().message;
+    using Arguments = std::vector<std::string>;
+    EXPECT_EQ(recipeArguments((*assets)[0].options),
+              (Arguments{"--compress=1", "--decode=projected", "--map=cube:size=8", "--map=float:size=8"}));
+    EXPECT_EQ(recipeArguments((*assets)[1].options), (Arguments{"--budget=1MB", "--compress=1"}));
+    EXPECT_EQ(recipeArguments((*assets)[2].options), (Arguments{"--compress=1", "--paper"}));
+    EXPECT_EQ(recipeArguments((*assets)[3].options), (Arguments{"--compress=1"}));
+}
+
+TEST(Recipe, SaysWhatIsWrongAndWhere) {
+    struct Case {
+        std::string text;
+        const char* says;
+        ErrorCode code = ErrorCode::kInvalidInput;
+    };
+    const std::string asset = "[[asset]]\nmesh = 'a.obj'\noutput = 'a.relief'\n";
+    std::string many = "version = 1\n";
+    for (std::size_t i = 0; i <= kRecipeTablesMax; ++i) {
+        many += "[[asset]]\n";
+    }
+    std::string patterns = "mesh = [";
+    for (std::size_t i = 0; i <= kRecipePatternsMax; ++i) {
+        patterns += "'a',";
+    }
+    const Case cases[] = {
+        {"", "r.toml:1:1: a recipe starts with version = 1"},
+        {"version = 2\n" + asset, "r.toml:1:11: version must be 1"},
+        {"version = ", "r.toml:1:"},
+        {recipe(""), "r.toml:1:1: a recipe needs at least one [[asset]]"},
+        {recipe("asset = 3"), "r.toml:2:9: a recipe needs at least one [[asset]]"},
+        {recipe("asset = [3]"), "r.toml:2:10: an asset must be a table"},
+        {recipe("[default]\n" + asset), "r.toml:2:2: unknown key 'default'; did you mean 'defaults'"},
+        {recipe("defaults = 1\n" + asset), "r.toml:2:12: defaults must be a table"},
+        {recipe("[defaults]\nmesh = 'a'\n" + asset), "r.toml:3:1: unknown key 'mesh'"},
+        {recipe("[defaults]\nprefre = 'inside'\n" + asset),
+         "r.toml:3:1: unknown key 'prefre'; did you mean 'prefer'"},
+        {recipe(asset + "\"a\\u001bb\" = 3\n"), "r.toml:5:1: unknown key"},
+        {recipe(asset + "threads = 3\n"), "r.toml:5:1: unknown key 'threads'"},
+        {recipe("[[asset]]\noutput = 'a.relief'"), "r.toml:2:1: an asset needs mesh"},
+        {recipe("[[asset]]\nmesh = 'a.relief'"), "r.toml:2:1: an asset needs output"},
+        {recipe("[[asset]]\nmesh = []\noutput = 'a.relief'"), "r.toml:3:8: mesh names nothing"},
+        {recipe("[[asset]]\nmesh = ''\noutput = 'a.relief'"), "r.toml:3:8: mesh is empty"},
+        {recipe("[[asset]]\nmesh = 3\noutput = 'a.relief'"), "r.toml:3:8: mesh must be a string"},
+        {recipe(asset + "compress = true"), "r.toml:5:12: compress must be a string or a number"},
+        {recipe(asset + "compress = [1]"), "r.toml:5:12: compress must be a string or a number"},
+        {recipe(asset + "map = [1]"), "r.toml:5:8: map must be a string"},
+        {recipe(asset + "paper = 'yes'"), "r.toml:5:9: paper must be true or false"},
+        {recipe(asset + "optional = 1"), "r.toml:5:12: optional must be true or false"},
+        {recipe(asset + "prefer = \"a\\u0000b\""), "r.toml:5:10: prefer holds a zero byte"},
+        {recipe(asset + "prefer = '" + std::string(5000, 'x') + "'"), "longer than", ErrorCode::kLimit},
+        {many, "10001 [[asset]]", ErrorCode::kLimit},
+        {recipe("[[asset]]\n" + patterns + "]"), "mesh lists more than 1000", ErrorCode::kLimit},
+        {recipe("x = " + std::string(5000, '[')), "r.toml:2:"},
+        {"\xff\xfe", "r.toml:1:"},
+    };
+    for (const Case& c : cases) {
+        const auto assets = parseRecipe(c.text, keys(), "r.toml");
+        ASSERT_FALSE(assets) << c.says;
+        EXPECT_EQ(assets.error().code, c.code) << assets.error().message;
+        EXPECT_NE(assets.error().message.find(c.says), std::string::npos) << c.says << "\n"
+                                                                          << assets.error().message;
+        EXPECT_EQ(assets.error().message.find("r.toml:"), 0U) << assets.error().message;
+        EXPECT_EQ(assets.error().message.find_first_of("\n\x1b"), std::string::npos);
+    }
+}
+
+class RecipeJobsTest : public testing::Test {
+  protected:
+    void SetUp() override {
+        std::string name = (fs::temp_directory_path() / "relief_recipe_XXXXXX").string();
+        ASSERT_NE(::mkdtemp(name.data()), nullptr);
+        folder_ = fs::path(name) / "in";
+        for (const char* file :
+             {"rocks/a.obj", "rocks/b.obj", "rocks/deep/a.obj", "rocks/b.mtl", "hill.off"}) {
+            put(file);
+        }
+    }
+    void TearDown() override { fs::remove_all(folder_.parent_path()); }
+
+    void put(const std::string& file) {
+        fs::create_directories((folder_ / file).parent_path());
+        std::ofstream(folder_ / file) << file;
+    }
+    Result<RecipeJobs> jobs(const std::string& rest, const fs::path& out = "") {
+        const auto assets = parseRecipe(recipe(rest), keys(), folder_ / "r.toml");
+        EXPECT_TRUE(assets) << assets.error().message;
+        return assets ? recipeJobs(*assets, folder_ / "r.toml", out) : Result<RecipeJobs>(forward(assets));
+    }
+    static std::vector<std::string> outputs(const Result<RecipeJobs>& found) {
+        std::vector<std::string> names;
+        for (const RecipeJob& job : found ? found->jobs : std::vector<RecipeJob>{}) {
+            names.push_back(job.mesh + ">" + job.output);
+        }
+        return names;
+    }
+    void fails(const std::string& rest, const std::string& says, const fs::path& out = "") {
+        const auto found = jobs(rest, out);
+        ASSERT_FALSE(found) << rest;
+        EXPECT_EQ(found.error().code, ErrorCode::kInvalidInput) << found.error().message;
+        EXPECT_NE(found.error().message.find(says), std::string::npos) << found.error().message;
+        EXPECT_NE(found.error().message.find("r.toml:"), std::string::npos) << found.error().message;
+    }
+
+    fs::path folder_;
+};
+
+TEST_F(RecipeJobsTest, FindsFilesInOrderAndNamesTheirOutputs) {
+    const auto found = jobs(
+        "[defaults]\noutput = 'baked/{dir}/{stem}.relief'\n"
+        "[[asset]]\nmesh = ['hill.off', '**/*.obj']\nexclude = '**/b.*'\n"
+        "[[asset]]\nmesh = 'rocks/b.obj'\noutput = './x//{name}.relief'\nplan = 'hill.off'\n");
+    ASSERT_TRUE(found) << found.error().message;
+    EXPECT_EQ(outputs(found),
+              (std::vector<std::string>{"hill.off>baked/hill.relief", "rocks/a.obj>baked/rocks/a.relief",
+                                        "rocks/deep/a.obj>baked/rocks/deep/a.relief",
+                                        "rocks/b.obj>x/b.obj.relief"}));
+    EXPECT_EQ(found->jobs[0].mesh_path, folder_ / "hill.off");
+    EXPECT_EQ(found->jobs[0].output_path, folder_ / "baked/hill.relief");
+    EXPECT_EQ(found->jobs[3].arguments,
+              std::vector<std::string>{"--plan=" + (folder_ / "hill.off").string()});
+    EXPECT_EQ(found->jobs[3].options, std::vector<std::string>{"--plan=hill.off"});
+    EXPECT_EQ(found->folders.size(), 3U) << "the folder, rocks and rocks/deep";
+    const auto elsewhere = jobs("[[asset]]\nmesh = 'hill.off'\noutput = '{stem}.relief'\n", folder_ / "out");
+    ASSERT_TRUE(elsewhere);
+    EXPECT_EQ(elsewhere->jobs[0].output_path, folder_ / "out/hill.relief");
+}
+
+TEST_F(RecipeJobsTest, APatternThatMatchesNothingIsAMistake) {
+    fails("[[asset]]\nmesh = 'rock/*.obj'\noutput = '{stem}.relief'\n", "'rock/*.obj' matches no file");
+    fails("[[asset]]\nmesh = 'gone.obj'\noutput = '{stem}.relief'\n", "'gone.obj' matches no file");
+    fails("[[asset]]\nmesh = 'rocks'\noutput = '{stem}.relief'\n", "'rocks' matches no file");
+    const auto found = jobs("[[asset]]\nmesh = 'rock/*.obj'\noptional = true\noutput = '{stem}.relief'\n");
+    ASSERT_TRUE(found) << found.error().message;
+    EXPECT_TRUE(found->jobs.empty());
+}
+
+TEST_F(RecipeJobsTest, OutputsCollideWithNothing) {
+    const std::string rocks = "[[asset]]\nmesh = '**/a.obj'\n";
+    fails(rocks + "output = '{stem}.relief'\n",
+          "'rocks/a.obj' and 'rocks/deep/a.obj' would both be baked into 'a.relief'");
+    fails(rocks + "output = 'x/../a.relief'\n", "would both be baked into 'a.relief'");
+    put("mesh.relief");
+    fails("[[asset]]\nmesh = 'mesh.relief'\noutput = '{stem}.relief'\n", "is the input");
+    fs::create_symlink("rocks", folder_ / "link");
+    fails(
+        "[[asset]]\nmesh = 'hill.off'\noutput = 'rocks/x.relief'\n"
+        "[[asset]]\nmesh = 'rocks/a.obj'\noutput = 'link/x.relief'\n",
+        "would both be baked into 'link/x.relief'");
+    put("one.relief");
+    fs::create_hard_link(folder_ / "one.relief", folder_ / "two.relief");
+    fails(
+        "[[asset]]\nmesh = 'hill.off'\noutput = 'one.relief'\n"
+        "[[asset]]\nmesh = 'rocks/a.obj'\noutput = 'two.relief'\n",
+        "would both be baked into 'two.relief'");
+}
+
+TEST_F(RecipeJobsTest, NothingOutsideOfTheFoldersIsReached) {
+    const auto mesh = [](const std::string& name) {
+        return "[[asset]]\nmesh = '" + name + "'\noutput = '{stem}.relief'\n";
+    };
+    const auto output = [](const std::string& name) {
+        return "[[asset]]\nmesh = 'hill.off'\noutput = '" + name + "'\n";
+    };
+    std::ofstream(folder_.parent_path() / "secret.obj") << "x";
+    fs::create_symlink("../secret.obj", folder_ / "secret.obj");
+    fs::create_symlink("..", folder_ / "up");
+    fails(mesh("../secret.obj"), "leads upwards");
+    fails(mesh("/etc/passwd"), "is an absolute path");
+    fails(mesh("secret.obj"), "leads out of the recipe's folder");
+    fails(mesh("up/*.obj"), "leads out of the recipe's folder");
+    fails(output("../x.relief"), "leads out of the output folder");
+    fails(output("up/x.relief"), "leads out of the output folder");
+    fails(output("/x.relief"), "must be a relative path");
+    fails(output("hill.off"), "must end in .relief");
+    fails(output("{stem}/.relief"), "must end in .relief");
+    fails(output("{sten}.relief"), "{sten}");
+    fails(output("{stem.relief"), "known are");
+    fails(output("stem}.relief"), "} without {");
+    fails(output("hill.relief") + "plan = '../p.toml'\n",
+          "plan '../p.toml' leads out of the recipe's folder");
+}
+
+TEST(RecipeShards, EveryOutputIsInExactlyOne) {
+    for (const std::uint64_t count : {1, 2, 3, 7, 64}) {
+        std::vector<int> sizes(count, 0);
+        for (int i = 0; i < 1000; ++i) {
+            const std::string name = "baked/rock_" + std::to_string(i) + ".relief";
+            int homes = 0;
+            for (std::uint64_t k = 1; k <= count; ++k) {
+                const bool here = inShard(name, {k, count});
+                homes += here ? 1 : 0;
+                sizes[k - 1] += here ? 1 : 0;
+            }
+            ASSERT_EQ(homes, 1) << name << " of " << count;
+        }
+        for (const int size : sizes) {
+            EXPECT_GT(size, static_cast<int>(1000 / count / 4)) << "shards are about as large";
+        }
+    }
+    // For ever, as the shards of one array may run on several machines: XXH3-64 of nothing is
+    // 2d06800538d394c2.
+    EXPECT_TRUE(inShard("", {1 + 0xc2 % 4, 4}));
+}
+
+}  // namespace
+}  // namespace relief::test

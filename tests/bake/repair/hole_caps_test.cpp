@@ -1,0 +1,301 @@
+// Caps over the holes of nearly closed meshes: promises of hole_caps.h and mesh_edges.h.
+#include "bake/repair/hole_caps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <set>
+
+#include "bake/measure/accuracy.h"
+#include "bake/mesh/mesh_edges.h"
+#include "bake/mesh/triangle_plane.h"
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+namespace {
+
+TriangleMesh closedBy(const TriangleMesh& mesh) {
+    Result<TriangleMesh> closed = closeHoles(TriangleMesh(mesh));
+    EXPECT_TRUE(closed) << closed.error().message;
+    return closed ? std::move(*closed) : mesh;
+}
+
+MeshQuery queryOf(const TriangleMesh& mesh) {
+    Result<MeshQuery> query = MeshQuery::build(mesh);
+    EXPECT_TRUE(query) << query.error().message;
+    return std::move(*query);
+}
+
+double volume(const TriangleMesh& mesh) {
+    double sum = 0.0;
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+        const TrianglePlane plane = planeOf(mesh, i);
+        sum += dot(plane.point, plane.normal) / 6.0;
+    }
+    return sum;
+}
+
+/// Without the triangles that `gone` says so of.
+template <class Gone>
+TriangleMesh without(const TriangleMesh& mesh, const Gone& gone) {
+    std::vector<glm::uvec3> kept;
+    for (const glm::uvec3& t : mesh.triangles) {
+        const glm::dvec3 middle = (glm::dvec3(mesh.positions[t.x]) + glm::dvec3(mesh.positions[t.y]) +
+                                   glm::dvec3(mesh.positions[t.z])) /
+                                  3.0;
+        if (!gone(middle)) {
+            kept.push_back(t);
+        }
+    }
+    return finished(mesh.positions, kept);
+}
+
+/// A unit ball whose part above y = `height` is cut away, down to the next edges.
+TriangleMesh makeCutBall(double height, int levels = 4) {
+    return without(makeIcosphere(glm::dvec3(0.0), 1.0, levels),
+                   [&](const glm::dvec3& p) { return p.y > height; });
+}
+
+void expectClosed(const TriangleMesh& mesh, std::uint64_t holes) {
+    const TriangleMesh closed = closedBy(mesh);
+    EXPECT_EQ(closed.closed_holes, holes);
+    EXPECT_EQ(closed.sourceTriangles(), mesh.triangles.size());
+    EXPECT_TRUE(std::equal(mesh.triangles.begin(), mesh.triangles.end(), closed.triangles.begin()));
+    EXPECT_TRUE(queryOf(closed).watertight());
+    EXPECT_EQ(closed.bounds.min, mesh.bounds.min);
+    EXPECT_EQ(closed.bounds.max, mesh.bounds.max);
+    for (std::uint32_t i = 0; i < closed.triangles.size(); ++i) {
+        EXPECT_NE(planeOf(closed, i).normal, glm::dvec3(0.0)) << "triangle " << i << " has no area";
+    }
+    // Wound as their neighbours: no direction of an edge is used more often than the other.
+    std::multiset<std::pair<std::uint32_t, std::uint32_t>> directed;
+    for (const glm::uvec3& t : closed.triangles) {
+        for (int i = 0; i < 3; ++i) {
+            directed.emplace(t[i], t[(i + 1) % 3]);
+        }
+    }
+    for (const auto& [a, b] : directed) {
+        EXPECT_EQ(directed.count({a, b}), directed.count({b, a})) << a << " to " << b;
+    }
+}
+
+void expectKept(const TriangleMesh& mesh) {
+    const TriangleMesh same = closedBy(mesh);
+    EXPECT_EQ(same.closed_holes, 0U);
+    EXPECT_EQ(same.cap_triangles, 0U);
+    EXPECT_EQ(same.triangles, mesh.triangles);
+    EXPECT_EQ(same.positions, mesh.positions);
+}
+
+TEST(OddEdges, OpenEdgesRunAsTheirTriangle) {
+    const TriangleMesh box = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0));
+    EXPECT_TRUE(oddEdges(box).empty());
+    EXPECT_TRUE(edgesAreEven(box));
+    TriangleMesh open = box;
+    open.triangles.erase(open.triangles.begin());  // 0, 4, 6: its neighbours run the other way
+    EXPECT_EQ(oddEdges(open), (std::vector<OddEdge>{{4, 0}, {0, 6}, {6, 4}}));
+    EXPECT_FALSE(edgesAreEven(open));
+}
+
+TEST(OddEdges, EqualPositionsAreOneVertex) {
+    TriangleMesh box = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0));
+    std::vector<glm::vec3> positions;
+    for (glm::uvec3& t : box.triangles) {
+        const auto first = static_cast<std::uint32_t>(positions.size());
+        positions.insert(positions.end(), {box.positions[t.x], box.positions[t.y], box.positions[t.z]});
+        t = {first, first + 1, first + 2};
+    }
+    box.positions = positions;
+    EXPECT_TRUE(oddEdges(box).empty());
+    EXPECT_TRUE(edgesAreEven(box));
+    // Zeros of either sign are equal too: the middle of the ball's edges.
+    TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 2);
+    const std::size_t count = ball.positions.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        const glm::vec3& p = ball.positions[i];
+        ball.positions.emplace_back(p.x == 0.0F ? -p.x : p.x, p.y == 0.0F ? -p.y : p.y,
+                                    p.z == 0.0F ? -p.z : p.z);
+    }
+    for (std::size_t i = 0; i < ball.triangles.size(); i += 2) {
+        ball.triangles[i] += static_cast<std::uint32_t>(count);
+    }
+    EXPECT_TRUE(oddEdges(ball).empty());
+    EXPECT_TRUE(edgesAreEven(ball));
+}
+
+TEST(HoleCaps, BallWithACutTopIsASolid) {
+    const TriangleMesh mesh = makeCutBall(0.8);
+    expectClosed(mesh, 1);
+    const TriangleMesh closed = closedBy(mesh);
+    // A ball less a segment of height 0.2, give or take its facets and the ragged cut.
+    EXPECT_NEAR(volume(closed), 3.14159265 * (4.0 / 3.0 - 0.04 * (3.0 - 0.2) / 3.0), 0.06);
+    const MeshQuery query = queryOf(closed);
+    EXPECT_TRUE(query.inside({0.0F, 0.7F, 0.0F}));
+    EXPECT_FALSE(query.inside({0.0F, 0.9F, 0.0F}));
+}
+
+TEST(HoleCaps, ThreeEdgesAreClosedByOneTriangle) {
+    TriangleMesh mesh = makeIcosphere(glm::dvec3(0.0), 1.0, 2);
+    mesh.triangles.pop_back();
+    expectClosed(mesh, 1);
+    EXPECT_EQ(closedBy(mesh).cap_triangles, 1U);
+}
+
+TEST(HoleCaps, HolesThatMeetInAVertexAreTwo) {
+    // Two triangles of an icosahedron that share one vertex alone.
+    TriangleMesh mesh = makeIcosphere(glm::dvec3(0.0), 1.0, 0);
+    std::erase_if(mesh.triangles,
+                  [](const glm::uvec3& t) { return t == glm::uvec3(0, 11, 5) || t == glm::uvec3(0, 1, 7); });
+    ASSERT_EQ(mesh.triangles.size(), 18U);
+    expectClosed(mesh, 2);
+    EXPECT_EQ(closedBy(mesh).cap_triangles, 2U);
+}
+
+TEST(HoleCaps, HolesThatMeetInTwoVerticesKeepTheWinding) {
+    // Round both ends of an edge only the edge's own two triangles are left, whose tips then belong to both
+    // holes: a walk may go on from there in either direction.
+    const TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 4);
+    const auto has = [](const glm::uvec3& t, std::uint32_t v) { return t.x == v || t.y == v || t.z == v; };
+    for (std::size_t i = 0; i < ball.triangles.size(); i += 97) {
+        SCOPED_TRACE(i);
+        const std::uint32_t a = ball.triangles[i].x;
+        const std::uint32_t b = ball.triangles[i].y;
+        std::vector<glm::uvec3> kept;
+        for (const glm::uvec3& t : ball.triangles) {
+            if (has(t, a) == has(t, b)) {
+                kept.push_back(t);
+            }
+        }
+        expectClosed(finished(ball.positions, kept), 2);
+    }
+}
+
+TEST(HoleCaps, CentroidInLineWithEdges) {
+    // A shaft whose section is two rectangles side by side, one farther up: point-symmetric, and two edges
+    // lie in line with the centre.
+    const glm::vec2 section[] = {{-2, -1}, {0, -1}, {0, -3}, {2, -3}, {2, 1}, {0, 1}, {0, 3}, {-2, 3}};
+    std::vector<glm::vec3> positions;
+    for (const float y : {20.0F, 0.0F}) {
+        for (const glm::vec2& p : section) {
+            positions.emplace_back(p.x, y, p.y);
+        }
+    }
+    std::vector<glm::uvec3> triangles = {{8, 9, 13},   {8, 13, 14}, {8, 14, 15},
+                                         {11, 12, 13}, {11, 13, 9}, {11, 9, 10}};
+    for (std::uint32_t i = 0; i < 8; ++i) {
+        const std::uint32_t j = (i + 1) % 8;
+        triangles.emplace_back(j + 8, i + 8, i);
+        triangles.emplace_back(j + 8, i, j);
+    }
+    const TriangleMesh mesh = finished(positions, triangles);
+    expectClosed(mesh, 1);
+    const glm::vec3 apex = closedBy(mesh).positions.back();
+    EXPECT_NE(apex, glm::vec3(0.0F, 20.0F, 0.0F));
+    EXPECT_LT(glm::length(apex - glm::vec3(0.0F, 20.0F, 0.0F)), 1e-3F);
+}
+
+TEST(HoleCaps, EdgeAgainstTwoShorterOnes) {
+    // A box one of whose triangles has a vertex more in the middle of an edge, where its neighbour has none:
+    // a hole without any area.
+    TriangleMesh mesh = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0));
+    const auto middle = static_cast<std::uint32_t>(mesh.positions.size());
+    const glm::uvec3 split = mesh.triangles.front();
+    mesh.positions.push_back(0.5F * (mesh.positions[split.x] + mesh.positions[split.y]));
+    mesh.triangles.front() = {split.x, middle, split.z};
+    mesh.triangles.emplace_back(middle, split.y, split.z);
+    ASSERT_EQ(oddEdges(mesh).size(), 3U);
+    expectClosed(mesh, 1);
+    EXPECT_NEAR(volume(closedBy(mesh)), 8.0, 1e-5);
+}
+
+TEST(HoleCaps, ClosedMeshesStay) {
+    expectKept(makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0), rotation({1, 2, 3}, 25)));
+    expectKept(makeTorusMesh(1.0, 0.3, 24, 12));
+}
+
+TEST(HoleCaps, SheetsStay) {
+    expectKept(makePlane(0.0F, 8));
+    // Turned any way: the box is no longer flat, and of the seven directions of MeshQuery::inside always more
+    // go to one side.
+    for (const glm::dvec3& axis : {glm::dvec3(1, 0, 0), glm::dvec3(0, 0, 1), glm::dvec3(1, 2, 3)}) {
+        for (const double degrees : {30.0, 120.0, 210.0, 300.0}) {
+            TriangleMesh mesh = makePlane(0.0F, 8);
+            for (glm::vec3& p : mesh.positions) {
+                p = rotation(axis, degrees) * glm::dvec3(p);
+            }
+            expectKept(finished(mesh.positions, mesh.triangles));
+        }
+    }
+}
+
+TEST(HoleCaps, TerrainsStay) {
+    for (const float steepness : {0.05F, 0.5F}) {
+        TriangleMesh mesh = makePlane(0.0F, 32);
+        for (glm::vec3& p : mesh.positions) {
+            p.y = steepness * (std::sin(5.0F * p.x) * std::cos(4.0F * p.z) + 0.3F * p.x);
+        }
+        const TriangleMesh terrain = finished(mesh.positions, mesh.triangles);
+        expectKept(terrain);
+        expectKept(reversed(terrain));
+    }
+}
+
+TEST(HoleCaps, BowlsStay) {
+    for (const double height : {-0.5, 0.0, 0.1}) {
+        SCOPED_TRACE(height);
+        expectKept(makeCutBall(height));
+    }
+}
+
+TEST(HoleCaps, PatchesWhoseSeamsDoNotMeetStay) {
+    // Every triangle of a ball is drawn in a little: caps would be lids upon the triangles themselves.
+    const TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 3);
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec3> triangles;
+    for (const glm::uvec3& t : ball.triangles) {
+        const glm::vec3 middle = (ball.positions[t.x] + ball.positions[t.y] + ball.positions[t.z]) / 3.0F;
+        const auto first = static_cast<std::uint32_t>(positions.size());
+        for (const std::uint32_t v : {t.x, t.y, t.z}) {
+            positions.push_back(ball.positions[v] + 1e-3F * (middle - ball.positions[v]));
+        }
+        triangles.emplace_back(first, first + 1, first + 2);
+    }
+    const TriangleMesh mesh = finished(positions, triangles);
+    EXPECT_GT(measureEnclosure(queryOf(mesh)).agreement, 0.95);
+    expectKept(mesh);
+}
+
+TEST(HoleCaps, EnclosureOfKnownShapes) {
+    const Enclosure ball = measureEnclosure(queryOf(makeIcosphere(glm::dvec3(0.0), 1.0, 4)));
+    EXPECT_EQ(ball.one_sided, 1.0);
+    EXPECT_NEAR(ball.agreement, 1.0, 1e-3);
+    const Enclosure sheet = measureEnclosure(queryOf(makePlane(0.0F, 8)));
+    EXPECT_LE(sheet.one_sided, 0.02);
+    EXPECT_NEAR(sheet.agreement, 0.5, 0.01);
+    // Of half a ball, a fifth of the directions go out by the opening: the mean solid angle of the disc over
+    // the half sphere, between (1 - √½) / 2 at the bottom and ¼ at the rim.
+    const Enclosure half = measureEnclosure(queryOf(makeCutBall(0.0, 5)));
+    EXPECT_GT(half.one_sided, 0.99);
+    EXPECT_NEAR(half.agreement, 0.8, 0.015);
+}
+
+TEST(HoleCaps, TheBakeIsOfTheSolidAndNamesTheSource) {
+    const TriangleMesh mesh = makeCutBall(0.8);
+    const MeshQuery truth = queryOf(mesh);
+    AccuracyOptions options;
+    options.samples = 20'000;
+    const TruthSamples samples = sampleTruth(truth, options);
+    const auto falseOutside = [&](const TriangleMesh& baked) {
+        const Collider collider =
+            bakeSpecs(baked, {"front-back:dir=-x,decode=plane", "front-back:dir=-y,decode=plane",
+                              "front-back:dir=-z,decode=plane"});
+        EXPECT_EQ(collider.provenance.triangles, mesh.triangles.size());
+        return measureField(samples, fieldOf(collider)).near.false_outside;
+    };
+    EXPECT_GT(falseOutside(mesh), 3.0);
+    EXPECT_LT(falseOutside(closedBy(mesh)), 1.0);
+}
+
+}  // namespace
+}  // namespace relief::test

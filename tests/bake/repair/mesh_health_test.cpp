@@ -1,0 +1,333 @@
+// What is counted, refused, repaired and turned: promises of mesh_health.h, mesh_repair.h and winding.h.
+#include "bake/repair/mesh_health.h"
+
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "bake/import/mesh_import.h"
+#include "bake/mesh/inside.h"
+#include "bake/mesh/mesh_query.h"
+#include "bake/mesh/triangle_plane.h"
+#include "bake/repair/mesh_repair.h"
+#include "bake/repair/winding.h"
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+namespace {
+
+MeshHealth healthOf(const TriangleMesh& mesh, bool intersections = false) {
+    const Result<MeshHealth> health = inspectMesh(mesh, {intersections});
+    EXPECT_TRUE(health) << health.error().message;
+    return health.value_or(MeshHealth{});
+}
+
+TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
+    std::vector<glm::vec3> positions = a.positions;
+    std::vector<glm::uvec3> triangles = a.triangles;
+    const auto first = static_cast<std::uint32_t>(positions.size());
+    positions.insert(positions.end(), b.positions.begin(), b.positions.end());
+    for (const glm::uvec3& t : b.triangles) {
+        triangles.push_back(t + first);
+    }
+    return finished(positions, triangles);
+}
+
+TriangleMesh unitBox(const glm::dvec3& center) {
+    return makeBoxMesh(center, glm::dvec3(0.5));
+}
+
+TriangleMesh withRandomFlips(TriangleMesh mesh, unsigned seed) {
+    std::mt19937 random(seed);
+    for (glm::uvec3& t : mesh.triangles) {
+        if (random() % 2 == 0) {
+            std::swap(t.y, t.z);
+        }
+    }
+    return mesh;
+}
+
+/// A strip round the z axis that turns over once.
+TriangleMesh makeMoebiusStrip(unsigned around, unsigned across) {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec3> triangles;
+    for (unsigned i = 0; i < around; ++i) {
+        for (unsigned j = 0; j <= across; ++j) {
+            const double a = 6.283185307179586 * i / around;
+            const double w = 0.4 * (2.0 * j / across - 1.0);
+            const double r = 1.0 + w * std::cos(0.5 * a);
+            positions.emplace_back(r * std::cos(a), r * std::sin(a), w * std::sin(0.5 * a));
+            const auto index = [&](unsigned u, unsigned v) {
+                return u < around ? u * (across + 1) + v : across - v;
+            };
+            if (j < across) {
+                triangles.emplace_back(index(i, j), index(i + 1, j), index(i + 1, j + 1));
+                triangles.emplace_back(index(i, j), index(i + 1, j + 1), index(i, j + 1));
+            }
+        }
+    }
+    return finished(positions, triangles);
+}
+
+TEST(MeshHealth, ClosedSolidsHaveNoFault) {
+    for (const TriangleMesh& mesh :
+         {unitBox({1, 2, 3}), makeIcosphere({0, 0, 0}, 1.0, 3), makeTorusMesh(1, 0.3, 20, 9)}) {
+        const MeshHealth health = healthOf(mesh, true);
+        EXPECT_TRUE(health.isSolid()) << faultsText(health);
+        EXPECT_TRUE(health.closed);
+        EXPECT_FALSE(health.inside_out);
+        EXPECT_EQ(health.triangles, mesh.triangles.size());
+        EXPECT_EQ(health.components, 1U);
+        EXPECT_EQ(health.closed_components, 1U);
+        EXPECT_EQ(health.self_intersections, 0U);
+        EXPECT_TRUE(requireSolid(health, "m"));
+    }
+}
+
+TEST(MeshHealth, EveryFaultIsCounted) {
+    TriangleMesh open = unitBox({0, 0, 0});
+    open.triangles.pop_back();
+    MeshHealth health = healthOf(open);
+    EXPECT_EQ(health.boundary_edges, 3U);
+    EXPECT_FALSE(health.closed);
+    EXPECT_EQ(health.closed_components, 0U);
+    EXPECT_EQ(faultsText(health), "3 boundary edges");
+    // 4, 7, 6 is gone; of its edges 4–6 has the lowest vertices: its middle.
+    EXPECT_EQ(health.first_fault->at, glm::vec3(-0.5F, 0.0F, 0.5F));
+
+    TriangleMesh turned = unitBox({0, 0, 0});
+    std::swap(turned.triangles[3].y, turned.triangles[3].z);
+    health = healthOf(turned);
+    EXPECT_EQ(health.inconsistent_edges, 3U);
+    EXPECT_EQ(health.boundary_edges, 0U);
+    EXPECT_TRUE(health.closed);
+
+    TriangleMesh twice = unitBox({0, 0, 0});
+    const glm::uvec3 t = twice.triangles[5];
+    twice.triangles.emplace_back(t.z, t.y, t.x);
+    health = healthOf(twice);
+    EXPECT_EQ(health.duplicate_triangles, 1U);
+    EXPECT_EQ(health.nonmanifold_edges, 3U);
+
+    // Two boxes that share an edge, and two that share a corner.
+    health = healthOf(joined(unitBox({0, 0, 0}), unitBox({1, 1, 0})), true);
+    EXPECT_EQ(health.nonmanifold_edges, 1U);
+    EXPECT_EQ(health.nonmanifold_vertices, 0U);
+    EXPECT_EQ(health.components, 1U);
+    health = healthOf(joined(unitBox({0, 0, 0}), unitBox({1, 1, 1})));
+    EXPECT_EQ(health.nonmanifold_edges, 0U);
+    EXPECT_EQ(health.nonmanifold_vertices, 1U);
+    EXPECT_EQ(health.components, 2U);
+    EXPECT_EQ(health.first_fault->at, glm::vec3(0.5F));
+
+    health = healthOf(reversed(unitBox({0, 0, 0})));
+    EXPECT_TRUE(health.inside_out);
+    EXPECT_FALSE(health.isSolid());
+
+    const TriangleMesh thin = finished({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}}, {{0, 1, 2}, {0, 1, 3}});
+    EXPECT_EQ(healthOf(thin).degenerate_triangles, 1U);
+
+    const MeshHealth strip = healthOf(makeMoebiusStrip(40, 4));
+    EXPECT_EQ(strip.boundary_edges, 80U);
+    EXPECT_EQ(strip.inconsistent_edges, 4U) << "the seam";
+}
+
+TEST(MeshHealth, StrictNamesCountsAndPlace) {
+    TriangleMesh open = unitBox({0, 0, 0});
+    open.triangles.pop_back();
+    const Result<void> solid = requireSolid(healthOf(open), "open.obj");
+    ASSERT_FALSE(solid);
+    EXPECT_EQ(solid.error().code, ErrorCode::kInvalidInput);
+    EXPECT_NE(solid.error().message.find("open.obj: not a closed solid: 3 boundary edges"),
+              std::string::npos);
+    EXPECT_NE(solid.error().message.find("-0.5/0/0.5"), std::string::npos) << solid.error().message;
+}
+
+TEST(MeshHealth, IntersectionsAreCountedInPairs) {
+    // A spike through one triangle: its three sides cut it, and nothing else.
+    const TriangleMesh sheet = finished({{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}}, {{0, 1, 2}});
+    const TriangleMesh spike =
+        finished({{0, 0, -1}, {1, 0, 1}, {-1, 1, 1}, {-1, -1, 1}}, {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}});
+    EXPECT_EQ(healthOf(joined(sheet, spike), true).self_intersections, 3U);
+    EXPECT_EQ(healthOf(joined(sheet, sheet), true).self_intersections, 0U)
+        << "duplicates have a count of their own";
+    // Folded onto itself along an edge: in one plane, on the same side.
+    const TriangleMesh folded =
+        finished({{0, 0, 0}, {2, 0, 0}, {1, 2, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 0, 3}});
+    EXPECT_EQ(healthOf(folded, true).self_intersections, 1U);
+    const TriangleMesh flat = finished({{0, 0, 0}, {2, 0, 0}, {1, 2, 0}, {1, -1, 0}}, {{0, 1, 2}, {1, 0, 3}});
+    EXPECT_EQ(healthOf(flat, true).self_intersections, 0U);
+    // One common corner, and the opposite edge through the other triangle.
+    const TriangleMesh corner =
+        finished({{0, 0, 0}, {4, -2, 0}, {4, 2, 0}, {2, 0, 1}, {2, 0, -1}}, {{0, 1, 2}, {0, 3, 4}});
+    EXPECT_EQ(healthOf(corner, true).self_intersections, 1U);
+}
+
+// --- winding ---
+
+/// The texels of some maps of a mesh, as the tool bakes it.
+Collider bakedOutwards(const TriangleMesh& mesh) {
+    Result<Winding> winding = windOutwards(mesh);
+    EXPECT_TRUE(winding);
+    return bakeSpecs(winding->mesh,
+                     {"front-back:dir=1/2/3,decode=plane", "fixed8:dir=-y", "cube:decode=plane",
+                      "float:dir=-x,box=-5/-5/-5/0/5/5"},
+                     48);
+}
+
+void expectSameTexels(const Collider& a, const Collider& b) {
+    ASSERT_EQ(a.maps.size(), b.maps.size());
+    for (std::size_t i = 0; i < a.maps.size(); ++i) {
+        EXPECT_EQ(a.maps[i].compare, b.maps[i].compare) << "map " << i;
+        EXPECT_TRUE(a.maps[i].texels == b.maps[i].texels) << "map " << i;
+    }
+}
+
+TEST(Winding, GoodMeshesStay) {
+    for (const TriangleMesh& mesh :
+         {unitBox({1, 2, 3}), reversed(unitBox({0, 0, 0})), makePlane(0, 5),
+          joined(unitBox({0, 0, 0}), unitBox({3, 0, 0})),
+          joined(makeIcosphere({0, 0, 0}, 1, 2), reversed(makeIcosphere({0, 0, 0}, 0.5, 2)))}) {
+        const Result<Winding> winding = windOutwards(mesh);
+        ASSERT_TRUE(winding);
+        EXPECT_EQ(winding->turned, 0U);
+        EXPECT_EQ(winding->mesh.triangles, mesh.triangles);
+    }
+}
+
+TEST(Winding, FlippedTrianglesComeBack) {
+    const Result<TriangleMesh> bunny = importMesh("/usr/share/glmark2/models/bunny.obj");
+    ASSERT_TRUE(bunny);
+    const TriangleMesh hollow =
+        joined(makeIcosphere({0, 0, 0}, 1, 3), reversed(makeIcosphere({0, 0, 0}, 0.5, 3)));
+    const TriangleMesh crossing = joined(unitBox({0, 0, 0}), unitBox({0.4, 0.3, 0.2}));
+    unsigned seed = 1;
+    for (const TriangleMesh& mesh : {*bunny, hollow, crossing, makeTorusMesh(1, 0.3, 40, 20)}) {
+        const Collider truth = bakedOutwards(mesh);
+        const TriangleMesh flipped = withRandomFlips(mesh, seed++);
+        const Result<Winding> winding = windOutwards(flipped);
+        ASSERT_TRUE(winding);
+        EXPECT_GT(winding->turned, mesh.triangles.size() / 3);
+        EXPECT_EQ(winding->mesh.triangles, mesh.triangles);
+        expectSameTexels(bakedOutwards(flipped), truth);
+    }
+    // The inner ball, turned as a whole, is a hollow all the same.
+    const TriangleMesh nested = joined(makeIcosphere({0, 0, 0}, 1, 3), makeIcosphere({0, 0, 0}, 0.5, 3));
+    const Result<Winding> winding = windOutwards(nested);
+    ASSERT_TRUE(winding);
+    EXPECT_EQ(winding->mesh.triangles, hollow.triangles);
+}
+
+TEST(Winding, OneSidedStripsBakeTheSameField) {
+    const TriangleMesh strip = makeMoebiusStrip(60, 6);
+    const Collider truth = bakedOutwards(strip);
+    const Collider flipped = bakedOutwards(withRandomFlips(strip, 7));
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> unit(-1.5F, 1.5F);
+    int differ = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        const glm::vec3 p(unit(random), unit(random), 0.5F * unit(random));
+        const FieldSample a = evaluate(truth, p);
+        const FieldSample b = evaluate(flipped, p);
+        differ += a.inside() != b.inside() || std::abs(a.distance - b.distance) > 1e-4F ? 1 : 0;
+    }
+    EXPECT_EQ(differ, 0);
+}
+
+TEST(Winding, WhereSolidsOverlapIsInside) {
+    const TriangleMesh crossing = joined(unitBox({0, 0, 0}), unitBox({0.4, 0.3, 0.2}));
+    const TriangleMesh hollow = joined(makeBoxMesh({0, 0, 0}, {2, 2, 2}), reversed(unitBox({0, 0, 0})));
+    const TriangleMesh island = joined(hollow, makeBoxMesh({0, 0, 0}, {0.2, 0.2, 0.2}));
+    const auto insideAt = [](const TriangleMesh& mesh, const glm::vec3& p) {
+        const Result<Winding> winding = windOutwards(withRandomFlips(mesh, 11));
+        const Result<MeshQuery> query = MeshQuery::build(winding->mesh);
+        EXPECT_EQ(query->inside(p), insideByParity(winding->mesh, p));
+        return query->inside(p);
+    };
+    EXPECT_TRUE(insideAt(crossing, {0.2F, 0.1F, 0.1F})) << "in both";
+    EXPECT_TRUE(insideAt(crossing, {-0.4F, 0.1F, 0.1F}));
+    EXPECT_FALSE(insideAt(crossing, {-0.4F, 0.7F, 0.1F}));
+    EXPECT_FALSE(insideAt(hollow, {0.1F, 0.1F, 0.1F}));
+    EXPECT_TRUE(insideAt(island, {0.1F, 0.1F, 0.1F}));
+    EXPECT_FALSE(insideAt(island, {0.3F, 0.3F, 0.3F}));
+    EXPECT_TRUE(insideAt(island, {1.0F, 1.0F, 1.0F}));
+    const Collider collider = bakedOutwards(crossing);
+    for (int i = 0; i < 1000; ++i) {
+        const glm::vec3 p(-0.08F + 0.0005F * static_cast<float>(i), 0.1F, 0.05F);  // through both
+        EXPECT_TRUE(evaluate(collider, p).inside()) << p.x;
+    }
+}
+
+// --- repair ---
+
+TEST(MeshRepair, AWrapIsASolidThatHoldsTheMesh) {
+    TriangleMesh open = makeIcosphere({5, 0, 0}, 2.0, 3);
+    open.triangles.resize(open.triangles.size() - 2);
+    const TriangleMesh soup = joined(withRandomFlips(open, 3), unitBox({6.5, 0.5, 0.1}));
+    for (const double alpha : {0.1, 0.05}) {
+        const Result<TriangleMesh> wrap = wrapMesh(soup, {alpha});
+        ASSERT_TRUE(wrap) << wrap.error().message;
+        const MeshHealth health = healthOf(*wrap, true);
+        EXPECT_TRUE(health.isSolid()) << faultsText(health);
+        EXPECT_EQ(health.self_intersections, 0U);
+        EXPECT_EQ(wrap->name, soup.name);
+        const Result<MeshQuery> query = MeshQuery::build(*wrap);
+        ASSERT_TRUE(query);
+        for (const glm::vec3& p : soup.positions) {
+            EXPECT_TRUE(query->inside(p));
+        }
+        const Result<MeshQuery> source = MeshQuery::build(soup);
+        ASSERT_TRUE(source);
+        const double offset = alpha / 30.0 * static_cast<double>(soup.bounds.longestSide());
+        for (const glm::vec3& p : wrap->positions) {
+            EXPECT_NEAR(source->closest(p).distance, offset, 0.01 * offset);
+        }
+        const Result<TriangleMesh> again = wrapMesh(soup, {alpha});
+        ASSERT_TRUE(again);
+        EXPECT_EQ(again->positions, wrap->positions);
+        EXPECT_EQ(again->triangles, wrap->triangles);
+    }
+    for (const double alpha : {0.0, -1.0, 1.0, std::nan("")}) {
+        const Result<TriangleMesh> wrap = wrapMesh(soup, {alpha});
+        ASSERT_FALSE(wrap);
+        EXPECT_EQ(wrap.error().code, ErrorCode::kUsage);
+    }
+}
+
+TEST(MeshRepair, HolesAreFilled) {
+    TriangleMesh open = makeIcosphere({0, 0, 0}, 1.0, 3);
+    open.triangles.erase(open.triangles.begin() + 100, open.triangles.begin() + 104);
+    open.triangles.pop_back();
+    const MeshHealth before = healthOf(open);
+    EXPECT_GT(before.boundary_edges, 6U);
+    const Result<HoleFill> fill = fillHoles(withRandomFlips(open, 2));
+    ASSERT_TRUE(fill) << fill.error().message;
+    EXPECT_EQ(fill->filled, 2U);
+    EXPECT_EQ(fill->left, 0U);
+    EXPECT_EQ(fill->mesh.triangles.size(), open.triangles.size() + fill->triangles);
+    const MeshHealth after = healthOf(fill->mesh, true);
+    EXPECT_TRUE(after.closed);
+    EXPECT_EQ(after.nonmanifold_edges + after.inconsistent_edges + *after.self_intersections, 0U);
+
+    const Result<HoleFill> fan = fillHoles(finished({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, -1, 0}},
+                                                    {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}}));
+    ASSERT_FALSE(fan);
+    EXPECT_EQ(fan.error().code, ErrorCode::kInvalidInput);
+}
+
+TEST(MeshRepair, OrientingTakesMeshesApartWhereTheyAreNotManifold) {
+    const TriangleMesh boxes = joined(unitBox({0, 0, 0}), unitBox({3, 0, 0}));
+    const Result<TriangleMesh> oriented = orientMesh(withRandomFlips(boxes, 5));
+    ASSERT_TRUE(oriented);
+    EXPECT_EQ(healthOf(*oriented).inconsistent_edges, 0U);
+    EXPECT_EQ(oriented->triangles.size(), boxes.triangles.size());
+    TriangleMesh twice = boxes;
+    twice.triangles.push_back(twice.triangles[4]);
+    const Result<TriangleMesh> once = orientMesh(twice);
+    ASSERT_TRUE(once);
+    EXPECT_TRUE(healthOf(*once).closed);
+    EXPECT_EQ(healthOf(*once).duplicate_triangles, 0U);
+}
+
+}  // namespace
+}  // namespace relief::test

@@ -1,0 +1,102 @@
+// Encoded texels against encodeTexel of formats/texel.h, which is proven there.
+#include "bake/texels/encode.h"
+
+#include "bake/mesh/triangle_plane.h"
+#include "bake/plan/view.h"
+#include "bake/texels/raycast.h"
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+namespace {
+
+TEST(Encode, WritesWhatEncodeTexelWrites) {
+    const TriangleMesh mesh = makeIcosphere({0.1, 0.2, 0.3}, 0.7, 3);
+    const Result<RayScene> scene = RayScene::build(mesh);
+    ASSERT_TRUE(scene);
+    for (const std::string text :
+         {"float:size=40", "fixed8:size=40", "front-back:size=40,dir=1/1/1,depth=half",
+          "front-back:size=40,dir=1/1/1,depth=unorm16", "cube:size=20"}) {
+        const Result<MapSpec> spec = completeSpec(*parseMapSpec(text), mesh, 40);
+        const Result<View> view = makeView(*spec, mesh);
+        ASSERT_TRUE(view);
+        // With a table of normals and without one, the same bytes.
+        for (const std::uint64_t texels : {std::uint64_t{0}, std::uint64_t{1} << 30}) {
+            const NormalTable normals(mesh, scene->winding(), texels);
+            DepthMap map = view->emptyMap();
+            std::uint64_t covered = 0;
+            std::uint64_t expected_covered = 0;
+            for (std::uint32_t face = 0; face < view->faceCount(); ++face) {
+                const RowRange rows{face, 0, view->height};
+                std::vector<Hit> hits[2];
+                for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
+                    if (view->keeps(end)) {
+                        hits[static_cast<std::size_t>(end)].resize(std::size_t{view->width} * view->height);
+                        scene->trace(*view, end, rows, hits[static_cast<std::size_t>(end)]);
+                    }
+                }
+                covered += encodeRows(mesh, scene->winding(), normals, *view, rows, hits[0], hits[1], map);
+                for (std::uint32_t y = 0; y < view->height; ++y) {
+                    for (std::uint32_t x = 0; x < view->width; ++x) {
+                        const auto surface = [&](const std::vector<Hit>& end) -> std::optional<Surface> {
+                            if (end.empty() || end[std::size_t{y} * view->width + x].empty()) {
+                                return std::nullopt;
+                            }
+                            const Hit& hit = end[std::size_t{y} * view->width + x];
+                            const glm::dvec3 n = planeOf(mesh, hit.triangle()).normal;
+                            const glm::vec3 unit = n / std::sqrt(dot(n, n));
+                            return Surface{hit.depth(), (hit.fromBehind() ? -unit : unit) + 0.0F};
+                        };
+                        Texel texel{surface(hits[0]), surface(hits[1])};
+                        if (view->compare == Compare::kGreater) {
+                            texel.front = texel.back;
+                        }
+                        expected_covered += texel.front || texel.back ? 1 : 0;
+                        std::vector<std::byte> expected(texelSize(view->format));
+                        encodeTexel(view->format, texel, expected);
+                        const std::span<const std::byte> written = map.texelAt(face, x, y);
+                        ASSERT_TRUE(std::equal(written.begin(), written.end(), expected.begin()))
+                            << text << " " << x << ", " << y;
+                    }
+                }
+            }
+            EXPECT_EQ(covered, expected_covered);
+            EXPECT_GT(covered, 500U);
+        }
+    }
+}
+
+TEST(Trace, RowsOfAnyRangeAreTheSameRows) {
+    // Stripes of big maps must not change a thing, nor sizes that no packet of 4×4 divides.
+    const TriangleMesh mesh = makeTorusMesh(1.0, 0.3, 50, 30);
+    const Result<RayScene> scene = RayScene::build(mesh);
+    ASSERT_TRUE(scene);
+    for (const std::string text : {"float:size=43x37,dir=1/2/3", "cube:size=37"}) {
+        const Result<MapSpec> spec = completeSpec(*parseMapSpec(text), mesh, 8);
+        const Result<View> view = makeView(*spec, mesh);
+        ASSERT_TRUE(view);
+        const std::uint32_t face = view->faceCount() - 1;
+        std::vector<Hit> whole(std::size_t{view->width} * 37);
+        scene->trace(*view, RayEnd::kNear, {face, 0, 37}, whole);
+        std::size_t hits = 0;
+        for (const std::uint32_t step : {1U, 5U, 8U}) {
+            for (std::uint32_t y = 0; y < 37; y += step) {
+                const RowRange rows{face, y, std::min(y + step, 37U)};
+                std::vector<Hit> part(std::size_t{rows.end - rows.begin} * view->width);
+                scene->trace(*view, RayEnd::kNear, rows, part);
+                for (std::size_t i = 0; i < part.size(); ++i) {
+                    const Hit& other = whole[std::size_t{y} * view->width + i];
+                    ASSERT_EQ(part[i].empty(), other.empty());
+                    if (!part[i].empty()) {
+                        ++hits;
+                        ASSERT_EQ(part[i].triangle(), other.triangle());
+                        ASSERT_EQ(part[i].depth(), other.depth());
+                    }
+                }
+            }
+        }
+        EXPECT_GT(hits, 100U);
+    }
+}
+
+}  // namespace
+}  // namespace relief::test

@@ -1,0 +1,125 @@
+// Texels that know the other maps, and the bias that users ask for: measured by points that the refinement
+// never saw.
+#include "bake/texels/refine.h"
+
+#include <glm/geometric.hpp>
+
+#include "bake/measure/accuracy.h"
+#include "bake/mesh/surface_sampler.h"
+#include "bake/pipeline/bake.h"
+#include "bake/plan/view_planner.h"
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+namespace {
+
+MeshQuery queryOf(const TriangleMesh& mesh) {
+    Result<MeshQuery> query = MeshQuery::build(mesh);
+    EXPECT_TRUE(query) << query.error().message;
+    return std::move(*query);
+}
+
+WrongShare wrongNear(const MeshQuery& query, const Collider& collider) {
+    AccuracyOptions options;
+    options.samples = 60'000;
+    options.seed = 99;
+    return measureField(sampleTruth(query, options), fieldOf(collider)).near;
+}
+
+Collider bakePlanned(const TriangleMesh& mesh, const MeshQuery& query, Quality quality, Prefer prefer) {
+    PlanOptions plan_options;
+    plan_options.budget_bytes = 65536;
+    plan_options.prefer = prefer;
+    const Result<Plan> plan = planViews(mesh, query, plan_options);
+    EXPECT_TRUE(plan);
+    BakeOptions options;
+    options.quality = quality;
+    options.prefer = prefer;
+    options.maps = specsOf(*plan);
+    Result<Baked> baked = bake(mesh, options);
+    EXPECT_TRUE(baked);
+    return baked ? std::move(baked->collider) : Collider{};
+}
+
+std::vector<TriangleMesh> shapes() {
+    return {makeTorusMesh(1.0, 0.4, 64, 32), makeIcosphere({1, 2, 3}, 2.0, 4),
+            makeBoxMesh({0, 0, 0}, {1, 0.6, 0.3}, rotation({1, 2, 3}, 33.0))};
+}
+
+TEST(Refine, MakesFewerMistakesAmongPointsItNeverSaw) {
+    int better = 0;
+    for (const TriangleMesh& mesh : shapes()) {
+        const MeshQuery query = queryOf(mesh);
+        Collider collider = bakePlanned(mesh, query, Quality::kFast, Prefer::kNeither);
+        const WrongShare before = wrongNear(query, collider);
+        refineTexels(collider, mesh, query, {});
+        const WrongShare after = wrongNear(query, collider);
+        EXPECT_LE(after.total(), before.total());
+        better += after.total() < 0.98 * before.total() ? 1 : 0;
+    }
+    EXPECT_GE(better, 2);  // the turned box has little left to gain
+}
+
+TEST(Refine, LeavesMapsOfProjectedDepthAlone) {
+    const TriangleMesh mesh = makeTorusMesh(1.0, 0.4, 48, 24);
+    const MeshQuery query = queryOf(mesh);
+    BakeOptions options;
+    options.maps = {*parseMapSpec("front-back:dir=-z,size=40,depth=unorm16,decode=projected"),
+                    *parseMapSpec("front-back:dir=-x,size=40,depth=half,decode=plane")};
+    options.quality = Quality::kFast;
+    Result<Baked> baked = bake(mesh, options);
+    ASSERT_TRUE(baked);
+    const Collider before = baked->collider;
+    refineTexels(baked->collider, mesh, query, {});
+    EXPECT_EQ(before.maps, baked->collider.maps);
+}
+
+TEST(Prefer, ShiftsTheMistakesToTheOtherKind) {
+    for (const TriangleMesh& mesh : shapes()) {
+        const MeshQuery query = queryOf(mesh);
+        const auto wrong = [&](Prefer prefer) {
+            return wrongNear(query, bakePlanned(mesh, query, Quality::kNormal, prefer));
+        };
+        const WrongShare neither = wrong(Prefer::kNeither);
+        const WrongShare inside = wrong(Prefer::kInside);
+        const WrongShare outside = wrong(Prefer::kOutside);
+        // 0.04 % is 24 points.
+        EXPECT_LE(inside.false_outside, std::max(0.5 * neither.false_outside, 0.04));
+        EXPECT_LE(outside.false_inside, 0.6 * neither.false_inside);
+    }
+}
+
+/// Every label as the majority of rays has it.
+void expectTrueLabels(const TriangleMesh& mesh) {
+    const MeshQuery query = queryOf(mesh);
+    const double sigma = 0.02 * mesh.bounds.longestSide();
+    const std::vector<LabelledPoint> points = drawNearSurface(mesh, query, 20'000, sigma, 3);
+    ASSERT_GE(points.size(), 5000U);
+    std::size_t inside = 0;
+    std::size_t wrong = 0;
+    for (const LabelledPoint& point : points) {
+        inside += point.inside ? 1 : 0;
+        wrong += point.inside != query.inside(point.position) ? 1 : 0;
+    }
+    EXPECT_GT(inside, points.size() / 3);
+    EXPECT_LT(inside, points.size() * 2 / 3);
+    EXPECT_LE(wrong, points.size() / 2000);  // points on the surface itself may go either way
+}
+
+TEST(NearSurface, LabelsAreTrueWhateverTheWinding) {
+    TriangleMesh mesh = makeTorusMesh(1.0, 0.4, 48, 24);
+    expectTrueLabels(mesh);
+    for (glm::uvec3& t : mesh.triangles) {
+        std::swap(t.y, t.z);  // inside out
+    }
+    expectTrueLabels(mesh);
+    for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) {
+        std::swap(mesh.triangles[i].y, mesh.triangles[i].z);  // no winding at all
+    }
+    expectTrueLabels(mesh);
+    mesh.triangles.pop_back();  // open
+    expectTrueLabels(mesh);
+}
+
+}  // namespace
+}  // namespace relief::test

@@ -1,0 +1,131 @@
+#include "formats/base/temporary_file.h"
+
+#include <gtest/gtest.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+
+#include <csignal>
+#include <fstream>
+#include <set>
+#include <string>
+
+#include "formats/base/ending_signals.h"
+#include "formats/base/file_io.h"
+
+namespace relief {
+namespace {
+
+namespace fs = std::filesystem;
+
+class TemporaryFiles : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        std::string text = (fs::temp_directory_path() / "relief-XXXXXX").string();
+        ASSERT_NE(::mkdtemp(text.data()), nullptr);
+        folder_ = text;
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    [[nodiscard]] std::set<std::string> names() const {
+        std::set<std::string> found;
+        for (const auto& entry : fs::directory_iterator(folder_)) {
+            found.insert(entry.path().filename());
+        }
+        return found;
+    }
+
+    fs::path folder_;
+};
+
+constexpr const char* kStale = ".relief-1-0-00000000.tmp";
+
+TEST_F(TemporaryFiles, OfDeadWritersAreRemovedAndOthersStay) {
+    std::ofstream(folder_ / kStale) << "half a";
+    std::ofstream(folder_ / "kept.tmp") << "not ours";
+    std::ofstream(folder_ / ".relief-1-0") << "a film's, whose writer holds no lock";
+    fs::create_symlink("kept.tmp", folder_ / ".relief-2-0-00000000.tmp");
+    ASSERT_EQ(::mkfifo((folder_ / ".relief-3-0-00000000.tmp").c_str(), 0600), 0);
+    TemporaryFile live;
+    ASSERT_EQ(live.create(folder_, 0600), 0);
+    std::set<std::string> expected = names();
+    EXPECT_EQ(expected.count(kStale), 0U) << "the first file in a folder removes what is left";
+    EXPECT_EQ(expected.size(), 5U);
+    removeStaleTemporaryFiles(folder_);
+    EXPECT_EQ(names(), expected) << "a living writer's was removed, or what is no file of ours";
+}
+
+TEST_F(TemporaryFiles, StayLockedUntilTheyHaveTheirName) {
+    TemporaryFile file;
+    ASSERT_EQ(file.create(folder_, 0600), 0);
+    ASSERT_EQ(file.fill(std::as_bytes(std::span("whole", 5)), std::nullopt), 0);
+    removeStaleTemporaryFiles(folder_);
+    ASSERT_EQ(file.renameTo(folder_ / "a"), 0);
+    EXPECT_EQ(names(), std::set<std::string>{"a"});
+}
+
+TEST_F(TemporaryFiles, AKilledWriterLeavesOneThatTheNextRemoves) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+        TemporaryFile file;
+        if (file.create(folder_, 0600) == 0) {
+            ::raise(SIGKILL);
+        }
+        ::_exit(1);
+    }
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFSIGNALED(status));
+    EXPECT_EQ(names().size(), 1U);
+    ASSERT_TRUE(writeFile(folder_ / "a", std::as_bytes(std::span("x", 1))));
+    EXPECT_EQ(names(), std::set<std::string>{"a"});
+}
+
+TEST_F(TemporaryFiles, ASignalThatEndsTheProgramRemovesThem) {
+    for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
+        const pid_t child = ::fork();
+        if (child == 0) {
+            ::signal(number, SIG_DFL);
+            endCleanlyOnSignals();
+            TemporaryFile file;
+            if (file.create(folder_, 0600) == 0 &&
+                fs::directory_iterator(folder_) != fs::directory_iterator()) {
+                ::raise(number);
+            }
+            ::_exit(1);
+        }
+        int status = 0;
+        ASSERT_EQ(::waitpid(child, &status, 0), child);
+        EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == number) << number;
+        EXPECT_TRUE(names().empty()) << number;
+    }
+}
+
+TEST_F(TemporaryFiles, AnIgnoredSignalStaysIgnored) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+        ::signal(SIGHUP, SIG_IGN);
+        endCleanlyOnSignals();
+        ::raise(SIGHUP);
+        ::_exit(7);
+    }
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 7);
+}
+
+TEST_F(TemporaryFiles, ADescriptorsNameIsWrittenToTheDescriptor) {
+    const int fd = ::open((folder_ / "log").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
+    ASSERT_GE(fd, 0);
+    ASSERT_EQ(::write(fd, "first ", 6), 6);
+    ASSERT_TRUE(writeFile("/dev/fd/" + std::to_string(fd), std::as_bytes(std::span("second", 6))));
+    ::close(fd);
+    std::string text;
+    std::getline(std::ifstream(folder_ / "log"), text);
+    EXPECT_EQ(text, "first second");
+    EXPECT_EQ(names(), std::set<std::string>{"log"});
+    EXPECT_FALSE(writeFile("/dev/fd/" + std::to_string(fd), std::as_bytes(std::span("x", 1))));
+}
+
+}  // namespace
+}  // namespace relief

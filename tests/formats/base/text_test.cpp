@@ -1,0 +1,68 @@
+#include "formats/base/text.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace relief {
+namespace {
+
+TEST(Numbers, ShortestTextReadsBackExactly) {
+    EXPECT_EQ(shortest(0.1F), "0.1");
+    EXPECT_EQ(shortest(-2.0F), "-2");
+    EXPECT_EQ(shortest(glm::vec3(1, 0.5F, -3)), "1/0.5/-3");
+    std::uint32_t state = 1;
+    for (int i = 0; i < 2000; ++i) {
+        state = state * 1664525U + 1013904223U;
+        const float value = std::bit_cast<float>(state);
+        if (std::isfinite(value)) {
+            EXPECT_EQ(parseFloat(shortest(value)), value);
+        }
+    }
+}
+
+TEST(Numbers, ParsersTakeWholeNumbersOnly) {
+    EXPECT_EQ(parseFloat("+1.5e2"), 150.0F);
+    EXPECT_EQ(parseFloat("-.5"), -0.5F);
+    for (const char* text :
+         {"", "+", "-", "+-1", "1.0 ", " 1", "1,5", "0x10", "nan", "inf", "-infinity", "1e39", "1f"}) {
+        EXPECT_FALSE(parseFloat(text)) << text;
+    }
+    EXPECT_EQ(parseUnsigned("007"), 7U);
+    EXPECT_EQ(parseUnsigned("99999999999999999999"), std::numeric_limits<std::uint64_t>::max());
+    for (const char* text : {"", "-1", "+1", "1.0", "1 ", "a"}) {
+        EXPECT_FALSE(parseUnsigned(text)) << text;
+    }
+}
+
+TEST(Words, NearOnesAreGuessed) {
+    constexpr std::array<std::string_view, 4> kKnown = {"resolution", "threads", "map", "json"};
+    EXPECT_EQ(didYouMean("resolutoin", kKnown), "; did you mean 'resolution'?");
+    EXPECT_EQ(didYouMean("thread", kKnown), "; did you mean 'threads'?");
+    EXPECT_EQ(didYouMean("reso", kKnown), "; did you mean 'resolution'?");
+    EXPECT_EQ(didYouMean("mpa", kKnown), "; did you mean 'map'?");
+    EXPECT_EQ(didYouMean("banana", kKnown), "");
+    EXPECT_EQ(didYouMean("", kKnown), "");
+    EXPECT_EQ(didYouMean(std::string(100000, 'x'), kKnown), "");
+}
+
+TEST(Utf8, WhatIsNoneIsReplaced) {
+    EXPECT_EQ(cleanUtf8("h\xc3\xa4se.obj"), "h\xc3\xa4se.obj");
+    EXPECT_EQ(cleanUtf8("a\x1b\n\x7f\xc2\x85z"), "a\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbdz");
+    for (const std::string bad : {"\xff", "\xc0", "\xed\xa0", "\xf5"}) {
+        EXPECT_EQ(cleanUtf8(bad).substr(0, 3), "\xef\xbf\xbd") << bad;
+    }
+    EXPECT_EQ(cleanUtf8("\xc3\xa4\xc3\xa4", 3), "\xc3\xa4") << "no half characters";
+}
+
+TEST(Split, KeepsEmptyParts) {
+    EXPECT_EQ(split("a,,b", ',').size(), 3U);
+    EXPECT_EQ(split("", ',').size(), 1U);
+    EXPECT_EQ(trimmed(" \t a b\r"), "a b");
+    EXPECT_EQ(trimmed(" \r"), "");
+}
+
+}  // namespace
+}  // namespace relief

@@ -1,0 +1,130 @@
+// Paths of a scene: inside its folder, whatever links and dots they are made of.
+#include "formats/config/confined_path.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <string>
+
+namespace relief {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// scenes/            the folder of the scene
+///     a.relief  sub/b.relief  …links
+/// scenes_too/c.relief
+class ScenePaths : public testing::Test {
+  protected:
+    void SetUp() override {
+        std::string pattern = (fs::temp_directory_path() / "relief_paths_XXXXXX").native();
+        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+        base_ = pattern;
+        folder_ = base_ / "scenes";
+        fs::create_directories(folder_ / "sub");
+        fs::create_directories(base_ / "scenes_too");
+        for (const char* name : {"scenes/a.relief", "scenes/sub/b.relief", "scenes_too/c.relief"}) {
+            std::ofstream(base_ / name) << "x";
+        }
+    }
+    void TearDown() override { fs::remove_all(base_); }
+
+    void link(const fs::path& target, const char* name) { fs::create_symlink(target, folder_ / name); }
+    void expectInside(const std::string& text) {
+        const auto path = resolveInside(folder_, text);
+        ASSERT_TRUE(path) << text << ": " << path.error().message;
+        EXPECT_EQ(*path, folder_ / text);
+    }
+    void expectError(const std::string& text, const std::string& part) {
+        const auto path = resolveInside(folder_, text);
+        ASSERT_FALSE(path) << text << " is " << path->native();
+        EXPECT_EQ(path.error().code, ErrorCode::kInvalidInput);
+        EXPECT_NE(path.error().message.find(part), std::string::npos) << path.error().message;
+        EXPECT_EQ(path.error().message.find('\n'), std::string::npos);
+    }
+
+    fs::path base_;
+    fs::path folder_;
+};
+
+TEST_F(ScenePaths, FilesInTheFolderAndBelow) {
+    for (const char* text :
+         {"a.relief", "./a.relief", "sub/b.relief", "sub/../a.relief", "sub/./../sub/b.relief",
+          "missing.relief", "missing/../a.relief", "..a", "a..", "../scenes/a.relief"}) {
+        expectInside(text);
+    }
+}
+
+TEST_F(ScenePaths, WhatClimbsOut) {
+    for (const char* text : {"..", "../a", "../scenes_too/c.relief", "sub/../../scenes_too/c.relief",
+                             "missing/../../a", "sub/../..", "../../../../../../../../../../etc/passwd"}) {
+        expectError(text, "leads out of the scene's folder");
+    }
+    expectError((folder_ / "a.relief").native(), "absolute");
+    expectError("/", "absolute");
+    expectError("", "names no file");
+    expectError(std::string("a\0b", 3), "zero byte");
+    expectError("../a\nb", "\\x0a");
+}
+
+TEST_F(ScenePaths, LinksThatStayIn) {
+    link("a.relief", "to_file");
+    link("sub", "to_folder");
+    link(folder_ / "sub", "to_folder_absolute");
+    link("../scenes/sub", "out_and_in");
+    link("missing", "dangling");
+    for (const char* text : {"to_file", "to_folder/b.relief", "to_folder_absolute/b.relief",
+                             "out_and_in/b.relief", "to_folder/../a.relief", "dangling"}) {
+        expectInside(text);
+    }
+}
+
+TEST_F(ScenePaths, LinksThatLeadOut) {
+    link("../scenes_too/c.relief", "to_file");
+    link("/etc/passwd", "to_etc");
+    link(base_ / "scenes_too", "to_folder");
+    link("to_folder", "to_link");
+    fs::create_symlink("../..", folder_ / "sub/up");
+    for (const char* text :
+         {"to_file", "to_etc", "to_folder/c.relief", "to_link/c.relief", "sub/up/scenes_too/c.relief",
+          "to_folder/missing", "to_folder/../scenes_too/c.relief"}) {
+        expectError(text, "leads out");
+    }
+    // Through the folder outside `..` leads elsewhere than the text alone says.
+    link("/usr/share", "share");
+    expectError("share/../a.relief", "leads out");
+}
+
+// By the time that it is opened something may be there.
+TEST_F(ScenePaths, DanglingLinksThatLeadOut) {
+    link(base_ / "scenes_too/missing", "dangling");
+    link("dangling", "to_dangling");
+    link("../nowhere", "relative");
+    for (const char* text : {"dangling", "to_dangling", "relative", "relative/a", "sub/../dangling"}) {
+        expectError(text, "leads out");
+    }
+    link("circle_b", "circle_a");
+    link("circle_a", "circle_b");
+    EXPECT_FALSE(resolveInside(folder_, "circle_a"));
+}
+
+// The folder's own name may be a link, end in a slash, be empty, or name nothing.
+TEST_F(ScenePaths, EveryWayToNameTheFolder) {
+    fs::create_directory_symlink(folder_, base_ / "alias");
+    for (const fs::path& folder :
+         {base_ / "alias", folder_ / "", folder_ / ".", folder_ / "sub/..", base_ / "none/"}) {
+        EXPECT_TRUE(resolveInside(folder, "a.relief")) << folder;
+        EXPECT_FALSE(resolveInside(folder, "../a.relief")) << folder;
+    }
+    EXPECT_EQ(*resolveInside("", "a.relief"), fs::path("a.relief"));
+    EXPECT_FALSE(resolveInside("", "../a.relief"));
+    EXPECT_TRUE(resolveInside("/", "a.relief"));
+}
+
+TEST_F(ScenePaths, ADashIsAFile) {
+    EXPECT_EQ(*resolveInside("", "-"), fs::path("./-"));
+}
+
+}  // namespace
+}  // namespace relief

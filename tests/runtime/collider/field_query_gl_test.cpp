@@ -1,0 +1,436 @@
+// shaders/collider.glsl against formats/collider.cpp, point by point. The maps are random bytes in random
+// frames: the two must agree on whatever lies in a texture, not only on what a baker writes.
+//
+// Tolerance. Both sides evaluate the same formulas in floats, but not in the same order (the shader's rows
+// are in texels, and it divides by a normal's length last), and a GL may fuse or reorder operations and be
+// off by some units in the last place in its square roots and divisions. So distances may differ by kRelative
+// of the distance's own scale (that of the map's volume), and normals by kNormal. A point closer than kBorder
+// texels to a texel's edge may fall to the neighbour: it counts as agreeing if it agrees with the CPU's
+// answer at one of the surrounding points kBorder texels away, and such points are counted.
+#include "runtime/collider/field_query.h"
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <glm/geometric.hpp>
+#include <random>
+#include <span>
+
+#include "tests/runtime/gl/gl_test.h"
+
+namespace relief {
+namespace {
+
+constexpr float kRelative = 2e-6F;
+constexpr float kNormal = 2e-6F;
+constexpr float kBorder = 2e-3F;
+
+/// A map of random surfaces in a random, rotated, anisotropic frame round the origin.
+DepthMap randomMap(MapFormat format, Compare compare, std::uint32_t width, std::uint32_t height,
+                   std::mt19937& random) {
+    std::uniform_real_distribution<float> unit(0.0F, 1.0F);
+    const auto direction = [&] {
+        std::normal_distribution<float> normal;
+        return glm::normalize(glm::vec3(normal(random), normal(random), normal(random)));
+    };
+    const glm::vec3 z = direction();
+    const glm::vec3 x = glm::normalize(glm::cross(direction(), z));
+    const glm::vec3 y = glm::cross(z, x);
+    const bool cube = format == MapFormat::kCube8;
+
+    DepthMap map;
+    map.format = format;
+    map.compare = compare;
+    map.width = width;
+    map.height = height;
+    map.decode = unit(random) < 0.5F ? Decode::kPlane : Decode::kProjected;
+    map.encloses = unit(random) < 0.5F;
+    map.empty_is_outside = unit(random) < 0.5F;
+    map.object_per_map = {1.0F + unit(random), 1.0F + unit(random), 1.0F + unit(random)};
+    const glm::vec3 axes[3] = {x, y, z};
+    for (int i = 0; i < 3; ++i) {
+        const glm::vec3 row = axes[i] / map.object_per_map[i];
+        map.object_to_map.row[i] = glm::vec4(row, (cube ? 0.0F : 0.5F) + 0.2F * (unit(random) - 0.5F));
+    }
+    map.texels.resize(map.texelBytes());
+    for (std::uint32_t face = 0; face < map.faceCount(); ++face) {
+        for (std::uint32_t j = 0; j < height; ++j) {
+            for (std::uint32_t i = 0; i < width; ++i) {
+                Texel texel;
+                if (unit(random) < 0.8F) {
+                    texel.front = Surface{cube ? 0.2F + unit(random) : unit(random), direction()};
+                    if (isFrontBack(format) && unit(random) < 0.9F) {
+                        texel.back = Surface{unit(random), direction()};
+                    }
+                    if (texel.back && unit(random) < 0.1F) {
+                        texel.front.reset();
+                    }
+                }
+                const std::span<std::byte> bytes = map.texelAt(face, i, j);
+                if (texel.front && format == MapFormat::kFloat32) {
+                    // As far from length 1 as a reader lets pass: it counts as it is.
+                    texel.front->normal *= 1.0F + 1.8e-3F * (unit(random) - 0.5F);
+                }
+                encodeTexel(format, texel, bytes);
+                // What no baker writes: an index that reads as 254.
+                if (texel.front && format != MapFormat::kFloat32 && unit(random) < 0.1F) {
+                    bytes[unit(random) < 0.5F ? 0 : 1] = std::byte{255};
+                }
+            }
+        }
+    }
+    return map;
+}
+
+std::vector<glm::vec3> randomPoints(std::size_t count, std::mt19937& random) {
+    std::uniform_real_distribution<float> inside(-0.8F, 0.8F);
+    std::vector<glm::vec3> points(count);
+    for (glm::vec3& p : points) {
+        p = {inside(random), inside(random), inside(random)};
+    }
+    return points;
+}
+
+bool agrees(const FieldSample& a, const FieldSample& b) {
+    if (a.map != b.map) {
+        return false;
+    }
+    return a.map < 0 ||
+           (std::abs(a.distance - b.distance) <= kRelative * std::max(2.0F, std::abs(b.distance)) &&
+            glm::length(a.normal - b.normal) <= kNormal);
+}
+
+std::string nameOf(const DepthMap& map) {
+    return std::string(mapFormatName(map.format)) + " " + depthEncodingName(map.format) + " " +
+           compareName(map.compare) + " " + decodeName(map.decode);
+}
+
+/// Agreement with the CPU's answer at p, or at one of the 26 neighbours `step` away.
+enum class Agreement { kExact, kAtBorder, kNone };
+Agreement compareAt(const Collider& collider, const glm::vec3& p, const FieldSample& gpu, float step) {
+    if (agrees(gpu, evaluate(collider, p))) {
+        return Agreement::kExact;
+    }
+    for (int k = 0; k < 27; ++k) {
+        const glm::vec3 offset(static_cast<float>(k % 3 - 1), static_cast<float>(k / 3 % 3 - 1),
+                               static_cast<float>(k / 9 - 1));
+        const FieldSample near = evaluate(collider, p + step * offset);
+        // The distance has moved with the point, too.
+        if (near.map == gpu.map && std::abs(near.distance - gpu.distance) <= 4.0F * step + kRelative * 2.0F &&
+            glm::length(near.normal - gpu.normal) <= kNormal) {
+            return Agreement::kAtBorder;
+        }
+    }
+    return Agreement::kNone;
+}
+
+void expectAgreement(const Collider& collider, std::span<const glm::vec3> points, float texel,
+                     double border_share_max) {
+    Result<FieldQuery> query = FieldQuery::create(collider);
+    ASSERT_TRUE(query) << query.error().message;
+    const Result<std::vector<FieldSample>> samples = query->evaluate(points);
+    ASSERT_TRUE(samples) << samples.error().message;
+    ASSERT_EQ(samples->size(), points.size());
+    std::size_t at_border = 0;
+    std::size_t none = 0;
+    std::size_t votes = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        votes += (*samples)[i].map >= 0 ? 1U : 0U;
+        switch (compareAt(collider, points[i], (*samples)[i], kBorder * texel)) {
+            case Agreement::kExact:
+                break;
+            case Agreement::kAtBorder:
+                ++at_border;
+                break;
+            case Agreement::kNone:
+                if (none++ < 5) {
+                    const FieldSample cpu = evaluate(collider, points[i]);
+                    ADD_FAILURE() << "point " << i << ": GPU " << (*samples)[i].distance << " map "
+                                  << (*samples)[i].map << ", CPU " << cpu.distance << " map " << cpu.map;
+                }
+                break;
+        }
+    }
+    EXPECT_EQ(none, 0U);
+    EXPECT_GT(votes, points.size() / 8) << "the points hardly meet the maps: this would prove nothing";
+    EXPECT_LE(static_cast<double>(at_border), border_share_max * static_cast<double>(points.size()));
+    testing::Test::RecordProperty("at_border", static_cast<int>(at_border));
+}
+
+struct Kind {
+    MapFormat format;
+    Compare compare;
+    std::uint32_t width;
+    std::uint32_t height;
+};
+constexpr Kind kKinds[] = {
+    {MapFormat::kFloat32, Compare::kLess, 32, 48},       {MapFormat::kFloat32, Compare::kGreater, 17, 9},
+    {MapFormat::kFixed8, Compare::kLess, 64, 64},        {MapFormat::kFixed8, Compare::kGreater, 5, 90},
+    {MapFormat::kFrontBackHalf, Compare::kBoth, 33, 40}, {MapFormat::kCube8, Compare::kLess, 31, 31},
+    {MapFormat::kCube8, Compare::kGreater, 40, 40},      {MapFormat::kFrontBackFixed, Compare::kBoth, 40, 33},
+};
+
+class FieldQueryGlTest : public GlTest {};
+
+TEST_P(FieldQueryGlTest, EveryFormatCompareAndDecodeAgreesWithTheCpu) {
+    std::mt19937 random(7);
+    for (const Kind& kind : kKinds) {
+        for (int repeat = 0; repeat < 8; ++repeat) {
+            Collider collider;
+            collider.maps.push_back(randomMap(kind.format, kind.compare, kind.width, kind.height, random));
+            collider.maps[0].decode = repeat < 4 ? Decode::kProjected : Decode::kPlane;
+            SCOPED_TRACE(nameOf(collider.maps[0]));
+            collider.maps[0].encloses = (repeat & 1) != 0;
+            collider.maps[0].empty_is_outside = (repeat & 2) != 0;
+            expectAgreement(collider, randomPoints(50'000, random), 1.0F / 90.0F, 1e-3);
+        }
+    }
+}
+
+TEST_P(FieldQueryGlTest, AnyMixtureOfMapsAgreesWithTheCpu) {
+    std::mt19937 random(11);
+    for (int repeat = 0; repeat < 5; ++repeat) {
+        Collider collider;
+        for (int i = 0; i < 40; ++i) {
+            const Kind& kind = kKinds[random() % std::size(kKinds)];
+            const auto width = static_cast<std::uint32_t>(3 + random() % 60);
+            const auto height =
+                kind.format == MapFormat::kCube8 ? width : static_cast<std::uint32_t>(3 + random() % 60);
+            collider.maps.push_back(randomMap(kind.format, kind.compare, width, height, random));
+        }
+        // Forty maps have forty times the borders.
+        expectAgreement(collider, randomPoints(20'000, random), 1.0F / 60.0F, 5e-3);
+    }
+}
+
+TEST_P(FieldQueryGlTest, TexelBordersFallToEitherSideAndCornersOfCubesToo) {
+    std::mt19937 random(13);
+    for (const Kind& kind : kKinds) {
+        Collider collider;
+        collider.maps.push_back(randomMap(kind.format, kind.compare, kind.width, kind.height, random));
+        SCOPED_TRACE(nameOf(collider.maps[0]));
+        DepthMap& map = collider.maps[0];
+        // Identity frame, so that the borders are representable numbers.
+        map.object_per_map = glm::vec3(1.0F);
+        map.object_to_map = {};
+        std::vector<glm::vec3> points;
+        const bool cube = kind.format == MapFormat::kCube8;
+        for (std::uint32_t j = 0; j <= kind.height; ++j) {
+            for (std::uint32_t i = 0; i <= kind.width; ++i) {
+                const float x = static_cast<float>(i) / static_cast<float>(kind.width);
+                const float y = static_cast<float>(j) / static_cast<float>(kind.height);
+                if (!cube) {
+                    points.emplace_back(x, y, 0.5F);
+                    continue;
+                }
+                for (std::uint32_t face = 0; face < 6; ++face) {
+                    points.push_back(0.7F * cubeDirection({face, x, y}));
+                }
+            }
+        }
+        expectAgreement(collider, points, 1.0F / 90.0F, 1.0);
+    }
+}
+
+TEST_P(FieldQueryGlTest, ExtremePointsGiveAnAnswerAndNoNan) {
+    std::mt19937 random(17);
+    Collider collider;
+    for (const Kind& kind : kKinds) {
+        collider.maps.push_back(randomMap(kind.format, kind.compare, kind.width, kind.height, random));
+        collider.maps.back().object_to_map.row[0].w = 0.0F;
+    }
+    const std::vector<glm::vec3> points = {{0, 0, 0},
+                                           {1e30F, 0, 0},
+                                           {-1e30F, 1e30F, -1e30F},
+                                           {3e38F, 3e38F, 0},
+                                           {1e-30F, -1e-38F, 0},
+                                           {-0.0F, 0.0F, -0.0F},
+                                           {1e16F, 1e16F, 1e16F}};
+    Result<FieldQuery> query = FieldQuery::create(collider);
+    ASSERT_TRUE(query) << query.error().message;
+    const Result<std::vector<FieldSample>> samples = query->evaluate(points);
+    ASSERT_TRUE(samples) << samples.error().message;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const FieldSample cpu = evaluate(collider, points[i]);
+        EXPECT_FALSE(std::isnan((*samples)[i].distance)) << i;
+        EXPECT_EQ((*samples)[i].map, cpu.map) << i;
+        EXPECT_EQ((*samples)[i].inside(), cpu.inside()) << i;
+    }
+}
+
+// ---- the early out
+
+/// reliefSolid at every point, one a fragment.
+std::vector<InsideSample> insideByGpu(const Collider& collider, std::span<const glm::vec3> points) {
+    constexpr GLsizei kWidth = 1024;
+    const GlStateGuard guard;
+    std::vector<InsideSample> samples;
+    const auto height = static_cast<GLsizei>((points.size() + kWidth - 1) / kWidth);
+    std::vector<float> texels(std::size_t{4} * kWidth * static_cast<std::size_t>(height), 0.0F);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        std::copy_n(&points[i].x, 3, &texels[4 * i]);
+    }
+    const Result<ColliderTextures> textures = ColliderTextures::create(collider);
+    const Result<GlProgram> program =
+        makeProgram("quad.vert", "query.frag", textures->defines() + "#define RELIEF_QUERY_INSIDE\n");
+    EXPECT_TRUE(program) << program.error().message;
+    if (!program) {
+        return samples;
+    }
+    const GlTexture input = makeTexture2D(GL_RGBA32F, kWidth, height, GL_RGBA, GL_FLOAT, texels.data());
+    const GlTexture normal_sign = makeTexture2D(GL_RGBA32F, kWidth, height, GL_RGBA, GL_FLOAT);
+    const GlTexture map = makeTexture2D(GL_RGBA32F, kWidth, height, GL_RGBA, GL_FLOAT);
+    const std::array<GLuint, 2> targets = {normal_sign.name(), map.name()};
+    const Result<GlFramebuffer> framebuffer = makeFramebuffer(targets);
+    EXPECT_TRUE(framebuffer);
+    const GlVertexArray no_attributes = makeVertexArray();
+    const ColliderTextures::Binding binding{1, 0};
+    textures->attach(*program, binding);
+    glUniform1i(uniformLocation(*program, "u_points"), 0);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer->name());
+    glViewport(0, 0, kWidth, height);
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_2D, input.name());
+    textures->bind(binding);
+    glBindVertexArray(no_attributes.name());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    const Result<std::vector<float>> fields = readTextureFloats(normal_sign, kWidth, height);
+    const Result<std::vector<float>> maps = readTextureFloats(map, kWidth, height);
+    EXPECT_TRUE(fields && maps);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const float* field = &(*fields)[4 * i];
+        samples.push_back(
+            {field[3] < 0.0F, {field[0], field[1], field[2]}, static_cast<int>((*maps)[4 * i])});
+    }
+    return samples;
+}
+
+TEST_P(FieldQueryGlTest, TheEarlyOutIsTheSignOfTheWholeWalkAndAgreesWithTheCpu) {
+    std::mt19937 random(29);
+    std::size_t inside = 0;
+    std::size_t points_tested = 0;
+    for (int repeat = 0; repeat < 12; ++repeat) {
+        Collider collider;
+        for (int i = 0; i < 1 + repeat % 6; ++i) {
+            const Kind& kind = kKinds[random() % std::size(kKinds)];
+            collider.maps.push_back(randomMap(kind.format, kind.compare, kind.width, kind.height, random));
+            if (repeat % 2 == 0) {
+                collider.maps.back().encloses = false;  // more points that no map sees outside
+                collider.maps.back().empty_is_outside = false;
+            }
+        }
+        const std::vector<glm::vec3> points = randomPoints(20'000, random);
+        const std::vector<InsideSample> early = insideByGpu(collider, points);
+        ASSERT_EQ(early.size(), points.size());
+        const Result<FieldQuery> query = FieldQuery::create(collider);
+        ASSERT_TRUE(query) << query.error().message;
+        const Result<std::vector<FieldSample>> full = query->evaluate(points);
+        ASSERT_TRUE(full) << full.error().message;
+        std::size_t at_border = 0;
+        std::size_t other_sign = 0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            // On the GPU itself the same votes give the same sign, unless its compiler fuses them
+            // differently.
+            const FieldSample& whole = (*full)[i];
+            const bool same = early[i].inside == whole.inside() &&
+                              (!early[i].inside || (early[i].map == whole.map &&
+                                                    glm::length(early[i].normal - whole.normal) <= kNormal));
+            other_sign += same ? 0U : 1U;
+            if (!early[i].inside) {
+                ASSERT_EQ(early[i].normal, glm::vec3(0.0F)) << i;
+            }
+            const auto agreesAt = [&](const glm::vec3& p) {
+                const InsideSample cpu = evaluateInside(collider, p);
+                return cpu.inside == early[i].inside && cpu.map == early[i].map &&
+                       glm::length(cpu.normal - early[i].normal) <= kNormal;
+            };
+            if (!agreesAt(points[i])) {
+                bool near = false;
+                for (int k = 0; k < 27 && !near; ++k) {
+                    const glm::vec3 offset(static_cast<float>(k % 3 - 1), static_cast<float>(k / 3 % 3 - 1),
+                                           static_cast<float>(k / 9 - 1));
+                    near = agreesAt(points[i] + kBorder / 90.0F * offset);
+                }
+                ASSERT_TRUE(near) << i;
+                ++at_border;
+            }
+            inside += early[i].inside ? 1U : 0U;
+        }
+        EXPECT_LE(static_cast<double>(at_border), 2e-3 * static_cast<double>(points.size()));
+        EXPECT_LE(static_cast<double>(other_sign), 1e-4 * static_cast<double>(points.size()));
+        points_tested += points.size();
+    }
+    EXPECT_GT(inside, points_tested / 20);
+    EXPECT_LT(inside, points_tested / 2);
+}
+
+TEST_P(FieldQueryGlTest, TooManyMapsAndTooLargeMapsAreNamedErrors) {
+    std::mt19937 random(19);
+    Collider collider;
+    EXPECT_EQ(FieldQuery::create(collider).error().code, ErrorCode::kUnsupported);
+    collider.maps.assign(20'000, randomMap(MapFormat::kFixed8, Compare::kLess, 3, 3, random));
+    const auto many = FieldQuery::create(collider);
+    ASSERT_FALSE(many);
+    EXPECT_EQ(many.error().code, ErrorCode::kLimit);
+    EXPECT_NE(many.error().message.find("20000 maps"), std::string::npos) << many.error().message;
+
+    collider.maps.resize(1);
+    collider.maps[0].width = collider.maps[0].height = 1U << 16U;
+    const auto large = FieldQuery::create(collider);
+    ASSERT_FALSE(large);
+    EXPECT_EQ(large.error().code, ErrorCode::kLimit);
+    EXPECT_NE(large.error().message.find("4294967296 texels"), std::string::npos) << large.error().message;
+}
+
+/// A map may be longer than the GL's textures are wide, and the bytes on the GPU are the maps' own.
+TEST_P(FieldQueryGlTest, MapsOfAnyShapeLieTogetherWithoutAGap) {
+    std::mt19937 random(20);
+    Collider collider;
+    for (const MapFormat format : {MapFormat::kFixed8, MapFormat::kFrontBackFixed, MapFormat::kFloat32}) {
+        const Compare compare = isFrontBack(format) ? Compare::kBoth : Compare::kLess;
+        collider.maps.push_back(randomMap(format, compare, 20'000, 3, random));
+        collider.maps.push_back(randomMap(format, compare, 3, 777, random));
+    }
+    collider.maps.push_back(randomMap(MapFormat::kCube8, Compare::kLess, 19, 19, random));
+    // A column is no more than a hundred roundings of x wide.
+    expectAgreement(collider, randomPoints(20'000, random), 1e-3F, 4e-2);
+    const auto textures = ColliderTextures::create(collider);
+    ASSERT_TRUE(textures);
+    EXPECT_GE(textures->bytes(), collider.texelBytes());
+    EXPECT_LE(textures->bytes(), collider.texelBytes() + 1024 * (4 + 8 + 16)) << "less than a row each";
+}
+
+/// What a caller has bound must still be bound afterwards.
+TEST_P(FieldQueryGlTest, StateIsRestored) {
+    std::mt19937 random(23);
+    Collider collider;
+    collider.maps.push_back(randomMap(MapFormat::kFixed8, Compare::kLess, 8, 8, random));
+    const GlTexture texture = makeTexture2D(GL_RGBA8, 4, 4, GL_RGBA, GL_UNSIGNED_BYTE);
+    glActiveTexture(GL_TEXTURE1);
+    glBindTexture(GL_TEXTURE_2D, texture.name());
+    glEnable(GL_BLEND);
+    glEnable(GL_SCISSOR_TEST);
+    glViewport(1, 2, 3, 4);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 8);
+    Result<FieldQuery> query = FieldQuery::create(collider);
+    ASSERT_TRUE(query);
+    ASSERT_TRUE(query->evaluate(randomPoints(10, random)));
+    GLint value[4];
+    glGetIntegerv(GL_ACTIVE_TEXTURE, value);
+    EXPECT_EQ(value[0], GL_TEXTURE1);
+    glGetIntegerv(GL_TEXTURE_BINDING_2D, value);
+    EXPECT_EQ(static_cast<GLuint>(value[0]), texture.name());
+    glGetIntegerv(GL_VIEWPORT, value);
+    EXPECT_EQ(value[3], 4);
+    glGetIntegerv(GL_CURRENT_PROGRAM, value);
+    EXPECT_EQ(value[0], 0);
+    glGetIntegerv(GL_UNPACK_ALIGNMENT, value);
+    EXPECT_EQ(value[0], 8);
+    EXPECT_TRUE(glIsEnabled(GL_BLEND));
+    EXPECT_TRUE(glIsEnabled(GL_SCISSOR_TEST));
+}
+
+RELIEF_INSTANTIATE_GL_TESTS(FieldQueryGlTest);
+
+}  // namespace
+}  // namespace relief

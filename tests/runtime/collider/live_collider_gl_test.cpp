@@ -1,0 +1,560 @@
+// Colliders that deform: their maps against the CPU's field of the same texels and against closed forms, the
+// motion that a particle is met with, and a mesh that never stops.
+#include "runtime/collider/live_collider.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <random>
+#include <vector>
+
+#include "runtime/collider/deform_pass.h"
+#include "runtime/collider/deformation.h"
+#include "runtime/collider/field_query.h"
+#include "tests/runtime/particles/collision_test.h"
+
+namespace relief {
+namespace {
+
+struct Mesh {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec3> triangles;
+};
+
+/// A box whose faces are cut into cells, so that it can be twisted.
+Mesh gridBox(const glm::vec3& half, int cells) {
+    Mesh mesh;
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const float side : {-1.0F, 1.0F}) {
+            const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+            const int u = (axis + 1) % 3;
+            const int v = (axis + 2) % 3;
+            for (int j = 0; j <= cells; ++j) {
+                for (int i = 0; i <= cells; ++i) {
+                    glm::vec3 p;
+                    p[axis] = side * half[axis];
+                    p[u] = half[u] * (2.0F * static_cast<float>(i) / static_cast<float>(cells) - 1.0F);
+                    p[v] = half[v] * (2.0F * static_cast<float>(j) / static_cast<float>(cells) - 1.0F);
+                    mesh.positions.push_back(p);
+                }
+            }
+            const auto row = static_cast<std::uint32_t>(cells + 1);
+            for (std::uint32_t j = 0; j + 1 < row; ++j) {
+                for (std::uint32_t i = 0; i + 1 < row; ++i) {
+                    const std::uint32_t a = first + j * row + i;
+                    glm::uvec3 one(a, a + 1, a + row + 1);
+                    glm::uvec3 other(a, a + row + 1, a + row);
+                    if (side < 0.0F) {
+                        std::swap(one.y, one.z);
+                        std::swap(other.y, other.z);
+                    }
+                    mesh.triangles.push_back(one);
+                    mesh.triangles.push_back(other);
+                }
+            }
+        }
+    }
+    return mesh;
+}
+
+Mesh sphere(float radius, std::uint32_t around, std::uint32_t rings) {
+    constexpr double kPi = 3.14159265358979;
+    Mesh mesh;
+    for (std::uint32_t j = 0; j <= rings; ++j) {
+        for (std::uint32_t i = 0; i < around; ++i) {
+            const double a = 2.0 * kPi * i / around;
+            const double b = kPi * j / rings;
+            mesh.positions.emplace_back(radius * std::sin(b) * std::cos(a), radius * std::cos(b),
+                                        -radius * std::sin(b) * std::sin(a));
+        }
+    }
+    for (std::uint32_t j = 0; j < rings; ++j) {
+        for (std::uint32_t i = 0; i < around; ++i) {
+            const std::uint32_t a = j * around + i;
+            const std::uint32_t b = j * around + (i + 1) % around;
+            mesh.triangles.emplace_back(a, a + around, b + around);
+            mesh.triangles.emplace_back(a, b + around, b);
+        }
+    }
+    return mesh;
+}
+
+std::vector<glm::vec3> moved(const Mesh& mesh, const glm::vec3& by) {
+    std::vector<glm::vec3> positions = mesh.positions;
+    for (glm::vec3& p : positions) {
+        p += by;
+    }
+    return positions;
+}
+
+Bounds cube(float half) {
+    return {glm::vec3(-half), glm::vec3(half)};
+}
+
+class LiveColliderGlTest : public CollisionTest {
+  protected:
+    void makeLive(const Mesh& mesh, const Bounds& box, std::uint32_t resolution,
+                  const ColliderBody& like = {}) {
+        auto frames = liveFrames(box, resolution);
+        ASSERT_TRUE(frames) << frames.error().message;
+        makeLive(mesh, std::move(*frames), like);
+    }
+    void makeLive(const Mesh& mesh, Collider frames, const ColliderBody& like = {}) {
+        auto live = LiveCollider::create(mesh.positions, mesh.triangles, std::move(frames));
+        ASSERT_TRUE(live) << live.error().message;
+        live_.emplace(std::move(*live));
+        ColliderBody body = like;
+        body.collider = &live_->frames();
+        body.live = true;
+        auto textures = ColliderTextures::create({&body, 1});
+        ASSERT_TRUE(textures) << textures.error().message;
+        textures_ = std::make_unique<ColliderTextures>(std::move(*textures));
+    }
+    void update() {
+        const auto done = live_->update(*textures_, 0);
+        ASSERT_TRUE(done) << done.error().message;
+    }
+    void particlesOf(const ParticleSystemOptions& options, const ParticleType& type) {
+        make(options);
+        setType(type);
+        const std::array<ColliderInstance, 1> instances{ColliderInstance{textures_.get()}};
+        const auto set = particles_->setColliders(instances);
+        ASSERT_TRUE(set) << set.error().message;
+    }
+    [[nodiscard]] std::vector<FieldSample> field(std::span<const glm::vec3> points) const {
+        auto query = FieldQuery::create(*textures_);
+        EXPECT_TRUE(query);
+        auto samples = query->evaluate(points);
+        EXPECT_TRUE(samples);
+        return samples.value_or(std::vector<FieldSample>{});
+    }
+
+    std::optional<LiveCollider> live_;
+};
+RELIEF_INSTANTIATE_GL_TESTS(LiveColliderGlTest);
+
+/// Maps of one format that enclose a cube about the origin and together see a convex mesh from all sides.
+Collider framesOf(MapFormat format, Decode decode, float half, std::uint32_t resolution) {
+    Collider frames = *liveFrames(cube(half), resolution);
+    if (format == MapFormat::kCube8) {
+        DepthMap map;
+        map.compare = Compare::kGreater;
+        map.width = map.height = resolution;
+        for (int i = 0; i < 3; ++i) {
+            map.object_to_map.row[i][i] = 1.0F / half;
+            map.object_per_map[i] = half;
+        }
+        frames.maps = {map};
+    } else if (!isFrontBack(format)) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            frames.maps[i].compare = Compare::kLess;
+            frames.maps.push_back(frames.maps[i]);
+            frames.maps.back().compare = Compare::kGreater;
+        }
+    }
+    for (DepthMap& map : frames.maps) {
+        map.format = format;
+        map.decode = decode;
+    }
+    return frames;
+}
+
+constexpr MapFormat kFormats[] = {MapFormat::kFloat32, MapFormat::kFixed8, MapFormat::kFrontBackHalf,
+                                  MapFormat::kFrontBackFixed, MapFormat::kCube8};
+constexpr Decode kDecodes[] = {Decode::kProjected, Decode::kPlane};
+
+std::vector<glm::vec3> randomPoints(std::size_t count, float half) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> in(-half, half);
+    std::vector<glm::vec3> points;
+    for (std::size_t i = 0; i < count; ++i) {
+        points.emplace_back(in(random), in(random), in(random));
+    }
+    return points;
+}
+
+// What the shader reads from the rectangles is what the CPU says of the same maps rendered one by one and
+// read back; and it is a sphere.
+TEST_P(LiveColliderGlTest, MapsOfEveryFormatAreThoseOfAStaticBakeOfTheMesh) {
+    const Mesh mesh = sphere(0.5F, 64, 32);
+    auto gpu_mesh = GpuMesh::create(mesh.positions, mesh.triangles);
+    auto renderer = DepthMapRenderer::create();
+    ASSERT_TRUE(gpu_mesh && renderer);
+    const std::vector<glm::vec3> points = randomPoints(20'000, 0.7F);
+    for (const MapFormat format : kFormats) {
+        for (const Decode decode : kDecodes) {
+            SCOPED_TRACE(std::string(mapFormatName(format)) + " " + depthEncodingName(format) + " " +
+                         decodeName(decode));
+            makeLive(mesh, framesOf(format, decode, 0.6F, 96));
+            update();
+            Collider baked = live_->frames();
+            for (DepthMap& map : baked.maps) {
+                const DepthMapFrame frame = frameOf(map);
+                const auto target = DepthMapTarget::create(frame);
+                ASSERT_TRUE(target && renderer->render(*gpu_mesh, frame, *target));
+                map.texels.resize(map.texelBytes());
+                ASSERT_TRUE(target->read(0, 0, map.width, map.height * map.faceCount(), map.texels));
+            }
+            const std::vector<FieldSample> live = field(points);
+            std::size_t inside = 0;
+            std::size_t other = 0;
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                const FieldSample cpu = evaluate(baked, points[i]);
+                const bool same =
+                    cpu.inside() == live[i].inside() &&
+                    (cpu.distance >= 1e29F || std::abs(cpu.distance - live[i].distance) < 1.2F / 65534.0F);
+                other += same ? 0 : 1;
+                inside += live[i].inside() ? 1 : 0;
+                // To a texel's sagitta, where no silhouette is near.
+                const float truth = glm::length(points[i]) - 0.5F;
+                if (std::abs(truth) > 0.02F) {
+                    EXPECT_EQ(live[i].inside(), truth < 0.0F) << i << " " << truth;
+                }
+            }
+            EXPECT_LE(other, 20U);  // on the border of two texels the CPU may take the other
+            EXPECT_GT(inside, 2000U);
+        }
+    }
+}
+
+// The motion beside the texels of every format: a plate that rises with speed w sends off what it meets
+// with 1.5 w.
+TEST_P(LiveColliderGlTest, MapsOfEveryFormatThrow) {
+    const Mesh plate = gridBox({0.4F, 0.05F, 0.4F}, 1);
+    constexpr float kRise = 0.01F;  // a step
+    for (const MapFormat format : kFormats) {
+        for (const Decode decode : kDecodes) {
+            SCOPED_TRACE(std::string(mapFormatName(format)) + " " + depthEncodingName(format) + " " +
+                         decodeName(decode));
+            makeLive(plate, framesOf(format, decode, 0.6F, 128));
+            update();
+            ParticleType type;
+            type.restitution = 0.5F;
+            particlesOf({.capacity = 16}, type);
+            spawnOne({{0.1F, 0.055F, -0.07F}, glm::vec3(0.0F), 100.0F, 0});
+            ASSERT_TRUE(live_->setPositions(moved(plate, {0.0F, kRise, 0.0F})));
+            update();
+            particles_->step(kDt);
+            const ParticleState after = state().at(0);
+            EXPECT_EQ(after.contact, Contact::kCollided);
+            EXPECT_NEAR(after.velocity.y, 1.5F * kRise / kDt, 0.01F * kRise / kDt);
+        }
+    }
+}
+
+// Closed form: a plate that rises with speed w meets a particle at rest, which leaves with (1 + e) w.
+TEST_P(LiveColliderGlTest, ARisingPlateThrowsWhatItMeets) {
+    const Mesh plate = gridBox({0.4F, 0.05F, 0.4F}, 1);
+    constexpr float kSpeed = 0.6F;  // a hundredth of a unit a step
+    struct Case {
+        float restitution;
+        Integrator integrator;
+        bool shows_motion;
+    };
+    for (const auto& [restitution, integrator, shows_motion] :
+         {Case{0.0F, Integrator::kEuler, true}, Case{0.5F, Integrator::kEuler, true},
+          Case{1.0F, Integrator::kVerlet, true}, Case{0.5F, Integrator::kEuler, false}}) {
+        makeLive(plate, cube(0.6F), 128);
+        update();
+        ParticleType type;
+        type.restitution = restitution;
+        particlesOf({.capacity = 16, .integrator = integrator}, type);
+        spawnOne({{0.1F, 0.104F, -0.07F}, glm::vec3(0.0F), 100.0F, 0});
+        bool met = false;
+        for (int step = 1; step <= 12 && !met; ++step) {
+            ASSERT_TRUE(
+                live_->setPositions(moved(plate, {0.0F, kSpeed * kDt * static_cast<float>(step), 0.0F})));
+            if (!shows_motion) {
+                live_->settle();
+            }
+            update();
+            particles_->step(kDt);
+            met = state().at(0).collisions > 0;
+            EXPECT_EQ(met, step == 6) << step;
+        }
+        ASSERT_TRUE(met);
+        const ParticleState after = state().at(0);
+        if (shows_motion) {
+            EXPECT_EQ(after.contact, Contact::kCollided);
+            EXPECT_NEAR(after.velocity.y, (1.0F + restitution) * kSpeed, 0.01F * kSpeed);
+            EXPECT_NEAR(after.velocity.x, 0.0F, 1e-3F);
+        } else {
+            // Without its motion the same plate has caught the particle and moves it nowhere.
+            EXPECT_EQ(after.contact, Contact::kCaught);
+            EXPECT_NEAR(after.velocity.y, 0.0F, 1e-6F);
+        }
+    }
+}
+
+// The same with a pose: the plate stands upright, twice as large, and pushes along −x.
+TEST_P(LiveColliderGlTest, ThePoseTurnsTheMotionToo) {
+    const Mesh plate = gridBox({0.4F, 0.05F, 0.4F}, 1);
+    const ColliderBody like{
+        .pose = {{0.3F, 1.0F, 0.0F}, glm::angleAxis(glm::radians(90.0F), glm::vec3(0.0F, 0.0F, 1.0F)), 2.0F}};
+    makeLive(plate, cube(0.6F), 128, like);
+    update();
+    ParticleType type;
+    type.restitution = 0.5F;
+    particlesOf({.capacity = 16}, type);
+    // The plate's top, y = 0.05, is at x = 0.3 − 0.1 in the world.
+    spawnOne({{0.185F, 1.1F, 0.2F}, glm::vec3(0.0F), 100.0F, 0});
+    ASSERT_TRUE(live_->setPositions(moved(plate, {0.0F, 0.02F, 0.0F})));  // more than a texel
+    update();
+    particles_->step(kDt);
+    const ParticleState after = state().at(0);
+    EXPECT_EQ(after.contact, Contact::kCollided);
+    EXPECT_NEAR(after.velocity.x, -1.5F * 0.04F / kDt, 0.02F);
+    EXPECT_NEAR(after.velocity.y, 0.0F, 1e-3F);
+}
+
+// Rest, motion, rest: what no longer moves throws nothing.
+TEST_P(LiveColliderGlTest, WhatHasStoppedDoesNotMoveAnything) {
+    const Mesh plate = gridBox({0.4F, 0.05F, 0.4F}, 1);
+    makeLive(plate, cube(0.6F), 64);
+    update();
+    ASSERT_TRUE(live_->setPositions(moved(plate, {0.0F, 0.1F, 0.0F})));
+    update();
+    const std::uint64_t moving = textures_->revision();
+    update();  // at rest now
+    EXPECT_NE(textures_->revision(), moving);
+    const std::uint64_t resting = textures_->revision();
+    update();
+    EXPECT_EQ(textures_->revision(), resting) << "a mesh at rest costs nothing";
+    particlesOf({.capacity = 16}, {});
+    spawnOne({{0.0F, 0.152F, 0.0F}, {0.0F, -0.3F, 0.0F}, 100.0F, 0});
+    particles_->step(kDt);
+    const ParticleState after = state().at(0);
+    EXPECT_EQ(after.contact, Contact::kCollided);
+    EXPECT_NEAR(after.velocity.y, 0.0F, 1e-6F);
+}
+
+// A particle that stopped on the plate goes where its surface goes.
+TEST_P(LiveColliderGlTest, WhatStoppedGoesWithTheSurface) {
+    const Mesh plate = gridBox({0.4F, 0.05F, 0.4F}, 1);
+    makeLive(plate, cube(0.6F), 64);
+    update();
+    ParticleType type;
+    type.on_collision = OnCollision::kStop;
+    particlesOf({.capacity = 16}, type);
+    spawnOne({{0.05F, 0.052F, 0.1F}, {0.0F, -0.3F, 0.0F}, 100.0F, 0});
+    particles_->step(kDt);
+    ASSERT_EQ(state().at(0).contact, Contact::kStopped);
+    const glm::vec3 begin = state().at(0).position;
+    glm::vec3 way(0.0F);
+    for (int step = 1; step <= 20; ++step) {
+        way = {0.004F * static_cast<float>(step), 0.006F * static_cast<float>(step), 0.0F};
+        ASSERT_TRUE(live_->setPositions(moved(plate, way)));
+        update();
+        particles_->step(kDt);
+    }
+    EXPECT_LE(glm::length(state().at(0).position - begin - way), 1e-4F);
+}
+
+// A box twists among particles in a cloud: none ends deeper than the surface moves in a step and a texel is
+// wide, and a thousand steps leave no GL error.
+TEST_P(LiveColliderGlTest, ATwistingBoxLetsNothingIn) {
+    const Mesh box = gridBox({0.2F, 0.5F, 0.2F}, 16);
+    const Deformation twist{.kind = DeformKind::kTwist,
+                            .amplitude = 1.2F,
+                            .frequency = 0.5F,
+                            .range_low = -0.5F,
+                            .range_high = 0.5F};
+    makeLive(box, deformedBounds(twist, box.positions), 64);
+    auto deform_pass = DeformPass::create(twist, box.positions, {});
+    ASSERT_TRUE(deform_pass) << deform_pass.error().message;
+    update();
+    ParticleType type;
+    type.restitution = 0.5F;
+    particlesOf({.capacity = 1024}, type);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> in(-0.8F, 0.8F);
+    std::vector<Birth> births;
+    while (births.size() < 1024) {
+        const glm::vec3 p(in(random), in(random), in(random));
+        if (std::max(std::abs(p.x), std::abs(p.z)) > 0.22F) {
+            births.push_back({p, {-0.6F * p.x, 0.0F, -0.6F * p.z}, 1000.0F, 0});
+        }
+    }
+    particles_->spawn(births);
+    // A corner's way in a step at the greatest speed, plus a texel's diagonal.
+    const float allowed = 0.2F * std::sqrt(2.0F) * 1.2F * 3.1416F * kDt + 1.5F * 1.03F / 62.0F;
+    std::size_t touched = 0;
+    for (int step = 1; step <= 1000; ++step) {
+        const double time = step * static_cast<double>(kDt);
+        deform_pass->run(time);
+        ASSERT_TRUE(live_->setPositions(deform_pass->buffer().name()));
+        update();
+        particles_->step(kDt);
+        if (step % 50 != 25 && step != 1000) {
+            continue;
+        }
+        const float angle = momentOf(twist, time).angle;
+        float deepest = 0.0F;
+        touched = 0;
+        for (const ParticleState& p : state()) {
+            touched += p.collisions > 0 ? 1 : 0;
+            // Turned back by the slice's angle.
+            const float a = angle * (p.position.y + 0.5F);
+            const float x = std::cos(a) * p.position.x - std::sin(a) * p.position.z;
+            const float z = std::sin(a) * p.position.x + std::cos(a) * p.position.z;
+            deepest = std::max(
+                deepest, std::min(0.2F - std::max(std::abs(x), std::abs(z)), 0.5F - std::abs(p.position.y)));
+        }
+        EXPECT_LE(deepest, allowed) << "step " << step;
+    }
+    EXPECT_GT(touched, 100U);
+    EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+}
+
+// Positions from a span and from a caller's own buffer, at an offset, are the same.
+TEST_P(LiveColliderGlTest, PositionsComeFromTheCallersBuffer) {
+    const Mesh mesh = sphere(0.3F, 32, 16);
+    const std::vector<glm::vec3> points = randomPoints(5000, 0.6F);
+    makeLive(mesh, cube(0.6F), 64);
+    update();
+    const std::vector<glm::vec3> positions = moved(mesh, {0.1F, -0.05F, 0.2F});
+    ASSERT_TRUE(live_->setPositions(positions));
+    update();
+    const std::vector<FieldSample> by_span = field(points);
+
+    makeLive(mesh, cube(0.6F), 64);
+    update();
+    std::vector<float> bytes(7, -9.0F);
+    for (const glm::vec3& p : positions) {
+        bytes.insert(bytes.end(), {p.x, p.y, p.z});
+    }
+    const GlBuffer buffer = makeBuffer();
+    glBindBuffer(GL_ARRAY_BUFFER, buffer.name());
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(bytes.size() * sizeof(float)), bytes.data(),
+                 GL_STATIC_DRAW);
+    ASSERT_TRUE(live_->setPositions(buffer.name(), 7 * sizeof(float)));
+    update();
+    const std::vector<FieldSample> by_buffer = field(points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        EXPECT_EQ(by_span[i].distance, by_buffer[i].distance);
+        EXPECT_EQ(by_span[i].map, by_buffer[i].map);
+    }
+}
+
+// A live body beside a static one, of another layout and of the same: each says what it would say alone.
+TEST_P(LiveColliderGlTest, StandsBesideStaticBodies) {
+    const Mesh mesh = sphere(0.3F, 48, 24);
+    auto frames = liveFrames(cube(0.5F), 64);
+    ASSERT_TRUE(frames);
+    auto live = LiveCollider::create(mesh.positions, mesh.triangles, std::move(*frames));
+    ASSERT_TRUE(live) << live.error().message;
+    const Collider half = analytic::frontBackCollider(analytic::sphere({0, 0, 0}, 0.25), 48);
+    Collider single;
+    single.bounds = half.bounds;
+    single.maps.push_back(analytic::orthographicMap(analytic::box({-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}),
+                                                    MapFormat::kFloat32, Compare::kLess, {1, false}, 40));
+    const std::array<ColliderBody, 3> bodies{
+        ColliderBody{&half, {{-1.0F, 0.0F, 0.0F}}, 1.0F, 0.0F, false},
+        ColliderBody{&live->frames(), {{0.0F, 0.0F, 0.0F}}, 1.0F, 0.0F, true},
+        ColliderBody{&single, {{1.0F, 0.0F, 0.0F}}, 1.0F, 0.0F, false}};
+    auto textures = ColliderTextures::create(bodies);
+    ASSERT_TRUE(textures) << textures.error().message;
+    EXPECT_FALSE(live->update(*textures, 0));
+    EXPECT_FALSE(live->update(*textures, 3));
+    ASSERT_TRUE(live->update(*textures, 1));
+    textures_ = std::make_unique<ColliderTextures>(std::move(*textures));
+    const std::vector<glm::vec3> points = randomPoints(20'000, 1.4F);
+    const std::vector<FieldSample> samples = field(points);
+    std::size_t inside[3] = {};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const glm::vec3 p = points[i];
+        const float of_half = glm::length(p + glm::vec3(1, 0, 0)) - 0.25F;
+        const float of_live = glm::length(p) - 0.3F;
+        const glm::vec3 q = glm::abs(p - glm::vec3(1, 0, 0));
+        const float of_box = std::max({q.x, q.y, q.z}) - 0.2F;
+        const float truth = std::min({of_half, of_live, of_box});
+        if (std::abs(truth) > 0.03F) {
+            EXPECT_EQ(samples[i].inside(), truth < 0.0F) << p.x << " " << p.y << " " << p.z;
+        }
+        inside[0] += of_half < 0.0F ? 1 : 0;
+        inside[1] += of_live < 0.0F ? 1 : 0;
+        inside[2] += of_box < 0.0F ? 1 : 0;
+    }
+    for (const std::size_t count : inside) {
+        EXPECT_GT(count, 30U);
+    }
+}
+
+TEST_P(LiveColliderGlTest, MisuseIsRefused) {
+    const Mesh plate = gridBox({0.4F, 0.05F, 0.4F}, 1);
+    makeLive(plate, cube(0.5F), 32);
+    update();
+    const auto refused = [](const Result<void>& result, const char* part) {
+        ASSERT_FALSE(result);
+        EXPECT_EQ(result.error().code, ErrorCode::kUsage);
+        EXPECT_NE(result.error().message.find(part), std::string::npos) << result.error().message;
+    };
+    refused(live_->setPositions(moved(plate, {0.0F, 0.6F, 0.0F})), "leaves the box");
+    ASSERT_TRUE(live_->setPositions(moved(plate, {0.0F, 0.1F, 0.0F})));
+    refused(live_->setPositions(plate.positions), "twice");
+    update();
+    EXPECT_FALSE(live_->setPositions(std::span(plate.positions).first(3)));
+    EXPECT_FALSE(live_->setPositions(GLuint{0}));
+    EXPECT_FALSE(LiveCollider::create(plate.positions, plate.triangles, {}));
+    EXPECT_FALSE(liveFrames(cube(0.5F), 2));
+    EXPECT_FALSE(liveFrames({}, 64));
+    EXPECT_FALSE(liveFrames({glm::vec3(1.0F), glm::vec3(1.0F)}, 64));
+}
+
+TEST_P(LiveColliderGlTest, TheCallersStateIsKeptAndDoesNoHarm) {
+    const Mesh mesh = sphere(0.3F, 24, 12);
+    const std::vector<glm::vec3> points = randomPoints(1000, 0.5F);
+    makeLive(mesh, cube(0.5F), 48);
+    update();
+    const std::vector<FieldSample> plain = field(points);
+
+    const GlBuffer buffer = makeBuffer();
+    const GlVertexArray array = makeVertexArray();
+    const GlTexture texture = makeTexture2D(GL_RGBA8, 4, 4, GL_RGBA, GL_UNSIGNED_BYTE);
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer.name());
+    glBindVertexArray(array.name());
+    glActiveTexture(GL_TEXTURE1);
+    glBindTexture(GL_TEXTURE_2D, texture.name());
+    glEnable(GL_SCISSOR_TEST);
+    glEnable(GL_RASTERIZER_DISCARD);
+    glEnable(GL_BLEND);
+    glEnable(GL_CULL_FACE);
+    glDepthMask(GL_FALSE);
+    glDepthFunc(GL_NEVER);
+    glScissor(0, 0, 0, 0);
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    glViewport(1, 2, 3, 4);
+    const auto gl_state = [] {
+        std::vector<GLint> values;
+        for (const GLenum what :
+             {GL_CURRENT_PROGRAM, GL_VERTEX_ARRAY_BINDING, GL_PIXEL_UNPACK_BUFFER_BINDING, GL_VIEWPORT,
+              GL_SCISSOR_BOX, GL_DRAW_FRAMEBUFFER_BINDING, GL_READ_FRAMEBUFFER_BINDING, GL_TEXTURE_BINDING_2D,
+              GL_SCISSOR_TEST, GL_ACTIVE_TEXTURE, GL_RASTERIZER_DISCARD, GL_BLEND, GL_CULL_FACE,
+              GL_DEPTH_TEST, GL_DEPTH_WRITEMASK, GL_DEPTH_FUNC, GL_COLOR_WRITEMASK, GL_ARRAY_BUFFER_BINDING,
+              GL_UNIFORM_BUFFER_BINDING}) {
+            std::array<GLint, 4> some{};
+            glGetIntegerv(what, some.data());
+            values.insert(values.end(), some.begin(), some.end());
+        }
+        return values;
+    };
+    const auto before = gl_state();
+    makeLive(mesh, cube(0.5F), 48);
+    EXPECT_EQ(gl_state(), before) << "create";
+    ASSERT_TRUE(live_->setPositions(moved(mesh, {0.1F, 0.0F, 0.0F})));
+    EXPECT_EQ(gl_state(), before) << "setPositions";
+    update();
+    EXPECT_EQ(gl_state(), before) << "update";
+    ASSERT_TRUE(live_->setPositions(mesh.positions));
+    update();
+    EXPECT_EQ(gl_state(), before) << "update";
+    const std::vector<FieldSample> hostile = field(points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        EXPECT_EQ(hostile[i].distance, plain[i].distance);
+    }
+}
+
+}  // namespace
+}  // namespace relief

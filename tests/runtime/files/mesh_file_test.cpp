@@ -1,0 +1,213 @@
+// Mesh files by hand, good and hostile; and the normals made for them.
+#include "runtime/files/mesh_file.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <glm/glm.hpp>
+#include <string>
+
+namespace relief {
+namespace {
+
+using Triangles = std::vector<std::uint32_t>;
+
+Result<PictureMesh> ply(const std::string& text) {
+    return parsePlyMesh(std::as_bytes(std::span(text)), "'a.ply'");
+}
+
+void expectError(const Result<PictureMesh>& mesh, const std::string& part,
+                 ErrorCode code = ErrorCode::kInvalidInput) {
+    ASSERT_FALSE(mesh) << part;
+    EXPECT_EQ(mesh.error().code, code);
+    EXPECT_NE(mesh.error().message.find(part), std::string::npos) << mesh.error().message;
+    EXPECT_EQ(mesh.error().message.find('\n'), std::string::npos);
+}
+
+TEST(ObjMesh, VerticesAndFaces) {
+    const auto mesh = parseObj(
+        "# a comment\r\no thing\nv 0 0 0\nv 1 0 0 1.0\n  v\t1 1e0 +0\nv 0 1 0\nvn 0 0 1\nvt 0 0\n"
+        "f 1/1/1 2//1 3/1 # and a comment\nf -4 -2 -1\nf 1 2 3 4\ns off",
+        "a.obj");
+    ASSERT_TRUE(mesh) << mesh.error().message;
+    EXPECT_EQ(mesh->positions.size(), 4U);
+    EXPECT_EQ(mesh->positions[2], glm::vec3(1.0F, 1.0F, 0.0F));
+    EXPECT_EQ(mesh->triangles, (Triangles{0, 1, 2, 0, 2, 3, 0, 1, 2, 0, 2, 3}));
+}
+
+TEST(ObjMesh, Hostile) {
+    const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    expectError(parseObj("", "a.obj"), "a.obj has no faces");
+    expectError(parseObj(three, "a.obj"), "no faces");
+    expectError(parseObj(three + "f 1 2\n", "a.obj"), "a.obj, line 4: a face needs three corners");
+    for (const char* corner : {"0", "4", "-4", "x", "1.5", "99999999999999999999", "/1", "2x"}) {
+        expectError(parseObj(three + "f 1 2 " + corner + "\n", "a.obj"), "line 4: a face names a vertex");
+    }
+    expectError(parseObj("f 1 2 3\n" + three, "a.obj"), "line 1: a face names a vertex");
+    for (const char* number : {"nan", "inf", "-inf", "1e39", "1e999", "x", "1x", ""}) {
+        expectError(parseObj("v 0 0 " + std::string(number) + "\n", "a.obj"), "line 1: a vertex needs");
+    }
+    expectError(parseObj(std::string(1000, '\0'), "a.obj"), "no faces");
+}
+
+const std::string kHead =
+    "element vertex 4\nproperty float x\nproperty uchar red\nproperty double y\nproperty short z\n"
+    "element face 2\nproperty int flags\nproperty list uchar int vertex_indices\nend_header\n";
+
+TEST(PlyMesh, AsciiWithOtherElements) {
+    const auto mesh =
+        ply("ply\r\nformat ascii 1.0\ncomment x\nelement camera 1\nproperty float f\nproperty list uint8 "
+            "int32 l\n" +
+            kHead + "0.5 2 7 8\n0 255 0 0\n1 255 0.5 2\n1 0 1 0\n0 9 1 -3\n  7 3 0 1 2\n7 4 0 1\n2 3\n");
+    ASSERT_TRUE(mesh) << mesh.error().message;
+    ASSERT_EQ(mesh->positions.size(), 4U);
+    EXPECT_EQ(mesh->positions[1], glm::vec3(1.0F, 0.5F, 2.0F));
+    EXPECT_EQ(mesh->positions[3], glm::vec3(0.0F, 1.0F, -3.0F));
+    EXPECT_EQ(mesh->triangles, (Triangles{0, 1, 2, 0, 1, 2, 0, 2, 3}));
+}
+
+/// A number's bytes in either order.
+template <class T>
+void put(std::string& out, T value, bool big) {
+    char bytes[sizeof(T)];
+    std::memcpy(bytes, &value, sizeof(T));
+    for (std::size_t i = 0; i < sizeof(T); ++i) {
+        out.push_back(bytes[big == (std::endian::native == std::endian::little) ? sizeof(T) - 1 - i : i]);
+    }
+}
+
+std::string binaryPly(bool big) {
+    std::string text =
+        std::string("ply\nformat ") + (big ? "binary_big_endian" : "binary_little_endian") + " 1.0\n" + kHead;
+    for (int i = 0; i < 4; ++i) {
+        put(text, 0.25F * static_cast<float>(i), big);
+        text.push_back('\n');
+        put(text, -1.5 * i, big);
+        put(text, static_cast<std::int16_t>(-300 * i), big);
+    }
+    for (const int corners : {3, 4}) {
+        put(text, -1, big);
+        text.push_back(static_cast<char>(corners));
+        for (int i = 0; i < corners; ++i) {
+            put(text, 3 - i, big);
+        }
+    }
+    return text;
+}
+
+TEST(PlyMesh, BinaryOfEitherOrder) {
+    for (const bool big : {false, true}) {
+        const auto mesh = ply(binaryPly(big));
+        ASSERT_TRUE(mesh) << mesh.error().message;
+        EXPECT_EQ(mesh->positions[3], glm::vec3(0.75F, -4.5F, -900.0F));
+        EXPECT_EQ(mesh->triangles, (Triangles{3, 2, 1, 3, 2, 1, 3, 1, 0}));
+    }
+}
+
+TEST(PlyMesh, Hostile) {
+    const std::string ascii = "ply\nformat ascii 1.0\n";
+    expectError(ply(""), "'a.ply': its header does not end");
+    expectError(ply("plyx\nend_header\n"), "it is no PLY file");
+    expectError(ply("ply\nend_header\n"), "no format");
+    expectError(ply("ply\nformat binary 1.0\nend_header\n"), "no format");
+    expectError(ply(ascii + "end_header\n"), "no faces");
+    expectError(ply(ascii + "property float x\nend_header\n"), "belongs to no element");
+    expectError(ply(ascii + "element vertex -1\nend_header\n"), "element of its header");
+    expectError(ply(ascii + "element vertex 99999999999999999999999\nend_header\n"), "element of its header");
+    expectError(ply(ascii + "element vertex 1\nproperty half x\nend_header\n"), "unknown type");
+    expectError(ply(ascii + "element vertex 1\nproperty float x\nend_header\n1\n"), "x, y and z");
+    const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
+    expectError(ply(ascii + "element vertex 20000001\n" + xyz + "end_header\n"), "vertices",
+                ErrorCode::kLimit);
+    // A count that the file does not hold allocates nothing of that size.
+    expectError(ply(ascii + "element vertex 20000000\n" + xyz + "end_header\n1 2 3\n"), "ends too early");
+    expectError(ply(ascii + "element vertex 1\n" + xyz + "end_header\n1 nan 3\n"), "not finite");
+    expectError(ply(ascii + "element vertex 1\n" + xyz + "end_header\n1 z 3\n"), "is none");
+    const std::string face =
+        ascii + "element vertex 3\n" + xyz +
+        "element face 1\nproperty list char int vertex_index\nend_header\n0 0 0 1 0 0 0 1 0\n";
+    EXPECT_TRUE(ply(face + "3 0 1 2\n"));
+    expectError(ply(face + "3 0 1 3\n"), "face 0 names a vertex");
+    expectError(ply(face + "3 0 1 -1\n"), "face 0 names a vertex");
+    expectError(ply(face + "3 0 1 0.5\n"), "face 0 names a vertex");
+    expectError(ply(face + "2 0 1\n"), "fewer than three");
+    expectError(ply(face + "-3 0 1 2\n"), "length");
+    expectError(ply(face + "1e9 0 1 2\n"), "length");
+    expectError(ply(face + "3 0 1"), "ends too early");
+    // A crowd of faces without anything in them ends at once.
+    expectError(ply(ascii + "element face 18446744073709551615\nend_header\n"), "no faces");
+}
+
+// Every prefix and every flipped byte is read or refused; the sanitizers see the rest.
+TEST(PlyMesh, EveryPrefixAndEveryFlippedByteIsSurvived) {
+    for (const bool big : {false, true}) {
+        const std::string text = binaryPly(big);
+        for (std::size_t i = 0; i < text.size(); ++i) {
+            EXPECT_FALSE(ply(text.substr(0, i))) << i;
+            for (const unsigned flip : {1U, 0x20U, 0x80U}) {
+                std::string changed = text;
+                changed[i] = static_cast<char>(static_cast<unsigned char>(changed[i]) ^ flip);
+                if (const auto mesh = ply(changed)) {
+                    EXPECT_TRUE(checkMesh(*mesh));
+                }
+            }
+        }
+    }
+}
+
+TEST(MeshFile, ByExtension) {
+    expectError(loadMesh("/nonexistent/a.stl"), "convert it", ErrorCode::kUnsupported);
+    expectError(loadMesh("/nonexistent/a.OBJ"), "/nonexistent/a.OBJ", ErrorCode::kIo);
+    const std::string path = testing::TempDir() + "relief_mesh.Ply";
+    std::ofstream(path, std::ios::binary) << binaryPly(false);
+    const auto mesh = loadMesh(path);
+    ASSERT_TRUE(mesh) << mesh.error().message;
+    EXPECT_EQ(mesh->triangles.size(), 9U);
+    std::filesystem::remove(path);
+}
+
+// A cube's corners have three normals each, a flat square's one, and a gentle roof's ridge the mean of both
+// sides.
+TEST(MeshNormals, CreasesAreKeptAndCurvesAreSmoothed) {
+    PictureMesh cube;
+    for (int i = 0; i < 8; ++i) {
+        cube.positions.emplace_back(i & 1, i >> 1 & 1, i >> 2);
+    }
+    for (const Triangles& q :
+         {Triangles{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}) {
+        ASSERT_TRUE(addPolygon(q, cube));
+    }
+    const PictureMesh sharp = withNormals(cube);
+    EXPECT_EQ(sharp.positions.size(), 24U);
+    for (std::size_t t = 0; t < sharp.triangles.size(); t += 3) {
+        const glm::vec3 a = sharp.positions[sharp.triangles[t]];
+        const glm::vec3 face = glm::cross(sharp.positions[sharp.triangles[t + 1]] - a,
+                                          sharp.positions[sharp.triangles[t + 2]] - a);
+        for (std::size_t i = 0; i < 3; ++i) {
+            EXPECT_NEAR(glm::dot(sharp.normals[sharp.triangles[t + i]], face), 1.0F, 1e-6F);
+            EXPECT_EQ(sharp.positions[sharp.triangles[t + i]], cube.positions[cube.triangles[t + i]]);
+        }
+    }
+    PictureMesh roof;
+    roof.positions = {{0, 0.2F, 0}, {0, 0.2F, 1}, {1, 0, 0}, {1, 0, 1}, {-1, 0, 0}, {-1, 0, 1}};
+    roof.triangles = {0, 1, 2, 1, 3, 2, 0, 4, 1, 1, 4, 5};
+    const PictureMesh smooth = withNormals(roof);
+    EXPECT_EQ(smooth.positions.size(), 6U);
+    EXPECT_NEAR(smooth.normals[smooth.triangles[1]].y, 1.0F, 1e-3F);
+    EXPECT_EQ(withNormals(roof, 0.1F).positions.size(), 8U);
+}
+
+TEST(MeshNormals, TrianglesWithoutAreaHaveNone) {
+    PictureMesh flat;
+    flat.positions = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {0, 0, 0}};
+    flat.triangles = {0, 1, 2, 0, 3, 0};
+    for (const glm::vec3& n : withNormals(flat).normals) {
+        EXPECT_TRUE(glm::length(n) < 1e-3F || std::abs(glm::length(n) - 1.0F) < 1e-5F);
+    }
+}
+
+}  // namespace
+}  // namespace relief

@@ -1,0 +1,124 @@
+// Platforms and devices that a context comes from, present and missing.
+#include "runtime/gl/gl_device.h"
+
+#include <epoxy/egl.h>
+#include <gtest/gtest.h>
+
+#include "tests/runtime/gl/gl_test.h"
+
+namespace relief {
+namespace {
+
+std::string ending(const std::string& text) {
+    return text.substr(text.rfind(", ") + 2);
+}
+
+EGLDisplay noPlatform(EGLenum /*platform*/, void* /*native*/, const EGLint* /*attributes*/) {
+    return EGL_NO_DISPLAY;
+}
+EGLDisplay noDisplay(EGLNativeDisplayType /*native*/) {
+    return EGL_NO_DISPLAY;
+}
+decltype(epoxy_eglCreateContext) real_create_context = nullptr;
+int refused = 0;
+EGLContext noRobustContext(EGLDisplay display, EGLConfig config, EGLContext share, const EGLint* attributes) {
+    for (const EGLint* at = attributes; *at != EGL_NONE; at += 2) {
+        if (*at == EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT ||
+            *at == EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_KHR) {
+            ++refused;
+            return EGL_NO_CONTEXT;
+        }
+    }
+    return real_create_context(display, config, share, attributes);
+}
+
+using GlDeviceTest = GlTest;
+
+TEST_P(GlDeviceTest, APlatformIsTakenByNameAndNamed) {
+    const auto surfaceless =
+        GlContext::create({.api = GetParam(), .platform = GlPlatform::kSurfaceless, .device = {}});
+    ASSERT_TRUE(surfaceless) << surfaceless.error().message;
+    EXPECT_EQ(ending((*surfaceless)->description()), "surfaceless");
+    EXPECT_EQ((*surfaceless)->api(), GetParam());
+    const auto device = GlContext::create({.api = GetParam(), .platform = GlPlatform::kDevice, .device = {}});
+    ASSERT_TRUE(device) << device.error().message;
+    EXPECT_EQ(ending((*device)->description()).rfind("device ", 0), 0U);
+    const auto any = GlContext::create(GetParam());
+    ASSERT_TRUE(any);
+    EXPECT_EQ(ending((*any)->description()), "surfaceless") << "the first that is there";
+}
+
+TEST_P(GlDeviceTest, MissingPlatformsAreNamed) {
+    const auto platform = epoxy_eglGetPlatformDisplayEXT;
+    static_cast<void>(eglGetDisplay(EGL_DEFAULT_DISPLAY));  // libepoxy finds it at the first call
+    const auto real_display = epoxy_eglGetDisplay;
+    epoxy_eglGetPlatformDisplayEXT = noPlatform;
+    epoxy_eglGetDisplay = noDisplay;
+    for (const auto& [asked, name] : {std::pair(GlPlatform::kSurfaceless, "surfaceless: not available"),
+                                      std::pair(GlPlatform::kDevice, "device 0: not available"),
+                                      std::pair(GlPlatform::kDefault, "default: not available")}) {
+        const auto context = GlContext::create({.api = GetParam(), .platform = asked, .device = {}});
+        EXPECT_FALSE(context);
+        EXPECT_EQ(context.error().code, ErrorCode::kUnsupported);
+        EXPECT_NE(context.error().message.find(name), std::string::npos) << context.error().message;
+        const auto any = GlContext::create(GetParam());
+        EXPECT_FALSE(any);
+        EXPECT_NE(any.error().message.find(name), std::string::npos) << "all that was tried is named";
+        EXPECT_EQ(any.error().message.find('\n'), std::string::npos);
+    }
+    const auto device =
+        GlContext::create({.api = GetParam(), .platform = GlPlatform::kAny, .device = std::size_t{0}});
+    EXPECT_FALSE(device);
+    EXPECT_EQ(device.error().code, ErrorCode::kUnsupported);
+    EXPECT_NE(device.error().message.find("device 0"), std::string::npos);
+    epoxy_eglGetPlatformDisplayEXT = platform;
+    epoxy_eglGetDisplay = real_display;
+}
+
+TEST_P(GlDeviceTest, EachListedDeviceCanBeOpenedByItsNumber) {
+    const EGLContext before = eglGetCurrentContext();
+    const auto devices = listGlDevices(GetParam());
+    ASSERT_TRUE(devices) << devices.error().message;
+    EXPECT_EQ(eglGetCurrentContext(), before) << "the caller's context stays current";
+    EXPECT_NE(before, EGL_NO_CONTEXT);
+    std::size_t opened = 0;
+    for (std::size_t i = 0; i < devices->size(); ++i) {
+        const GlDevice& device = (*devices)[i];
+        EXPECT_EQ(device.index, i);
+        if (!device.problem.empty()) {
+            continue;
+        }
+        ++opened;
+        const auto context =
+            GlContext::create({.api = GetParam(), .platform = GlPlatform::kAny, .device = i});
+        ASSERT_TRUE(context) << context.error().message;
+        EXPECT_NE((*context)->description().find(device.renderer), std::string::npos);
+        EXPECT_EQ(ending((*context)->description()), "device " + std::to_string(i));
+        EXPECT_FALSE(device.vendor.empty());
+        EXPECT_NE((*context)->description().find(device.version), std::string::npos);
+        EXPECT_TRUE(!(*context)->software() || device.software);
+    }
+    EXPECT_GT(opened, 0U) << "Mesa's llvmpipe, at least, is a device";
+    const auto beyond =
+        GlContext::create({.api = GetParam(), .platform = GlPlatform::kAny, .device = devices->size()});
+    ASSERT_FALSE(beyond);
+    EXPECT_EQ(beyond.error().code, ErrorCode::kUsage);
+    EXPECT_NE(beyond.error().message.find("EGL has " + std::to_string(devices->size())), std::string::npos)
+        << beyond.error().message;
+}
+
+TEST_P(GlDeviceTest, ADriverThatCannotTellOfResetsStillGivesAContext) {
+    real_create_context = epoxy_eglCreateContext;
+    refused = 0;
+    epoxy_eglCreateContext = noRobustContext;
+    const auto context = GlContext::create(GetParam());
+    epoxy_eglCreateContext = real_create_context;
+    ASSERT_TRUE(context) << context.error().message;
+    EXPECT_EQ(refused, 1) << "Mesa's llvmpipe knows the attribute, and it was asked for first";
+}
+
+}  // namespace
+
+RELIEF_INSTANTIATE_GL_TESTS(GlDeviceTest);
+
+}  // namespace relief

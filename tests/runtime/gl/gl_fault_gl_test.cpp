@@ -1,0 +1,368 @@
+// Faults put into the GL: libepoxy's entry points are pointers, replaced for a while by functions that fail.
+#include "runtime/gl/gl_fault.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "runtime/collider/field_query.h"
+#include "runtime/gl/gl_fence.h"
+#include "runtime/particles/statistics.h"
+#include "runtime/picture/collider_mesh.h"
+#include "runtime/picture/collider_renderer.h"
+#include "runtime/picture/depth_sort.h"
+#include "runtime/picture/frame.h"
+#include "runtime/picture/particle_renderer.h"
+#include "runtime/picture/sprite_atlas.h"
+#include "tests/runtime/collider/analytic_collider.h"
+#include "tests/runtime/gl/gl_test.h"
+
+namespace relief {
+namespace {
+
+/// Replaces an entry point while it lives. The GL must have been called through it before: libepoxy puts the
+/// driver's function into the pointer at the first call.
+template <class Function>
+class Replaced {
+  public:
+    Replaced(Function& entry, Function by) : entry_(entry), original_(entry) { entry = by; }
+    ~Replaced() { entry_ = original_; }
+    Replaced(const Replaced&) = delete;
+    Replaced& operator=(const Replaced&) = delete;
+
+  private:
+    Function& entry_;
+    Function original_;
+};
+
+// What the replacements share with the test that runs: they are plain functions.
+int allocations = 0;
+int failing_allocation = -1;
+GLenum pending_error = GL_NO_ERROR;
+GLint texture_side = 0;
+decltype(epoxy_glTexImage2D) real_image_2d = nullptr;
+decltype(epoxy_glTexImage3D) real_image_3d = nullptr;
+decltype(epoxy_glBufferData) real_buffer_data = nullptr;
+decltype(epoxy_glGetError) real_get_error = nullptr;
+decltype(epoxy_glGetIntegerv) real_get_integer = nullptr;
+decltype(epoxy_glGetShaderiv) real_get_shader = nullptr;
+
+bool failsNow() {
+    if (allocations++ != failing_allocation) {
+        return false;
+    }
+    pending_error = GL_OUT_OF_MEMORY;
+    return true;
+}
+void image2d(GLenum target, GLint level, GLint internal, GLsizei width, GLsizei height, GLint border,
+             GLenum format, GLenum type, const void* pixels) {
+    if (!failsNow()) {
+        real_image_2d(target, level, internal, width, height, border, format, type, pixels);
+    }
+}
+void image3d(GLenum target, GLint level, GLint internal, GLsizei width, GLsizei height, GLsizei depth,
+             GLint border, GLenum format, GLenum type, const void* pixels) {
+    if (!failsNow()) {
+        real_image_3d(target, level, internal, width, height, depth, border, format, type, pixels);
+    }
+}
+void bufferData(GLenum target, GLsizeiptr size, const void* data, GLenum usage) {
+    if (!failsNow()) {
+        real_buffer_data(target, size, data, usage);
+    }
+}
+GLenum getError() {
+    const GLenum pending = std::exchange(pending_error, GL_NO_ERROR);
+    const GLenum real = real_get_error();
+    return pending != GL_NO_ERROR ? pending : real;
+}
+void getInteger(GLenum what, GLint* value) {
+    real_get_integer(what, value);
+    if (what == GL_MAX_TEXTURE_SIZE || what == GL_MAX_3D_TEXTURE_SIZE) {
+        *value = texture_side;
+    }
+}
+GLenum guiltyReset() {
+    return GL_GUILTY_CONTEXT_RESET;
+}
+GLenum innocentReset() {
+    return GL_INNOCENT_CONTEXT_RESET;
+}
+GLenum endlessError() {
+    return GL_CONTEXT_LOST;
+}
+GLenum incomplete(GLenum /*target*/) {
+    return GL_FRAMEBUFFER_UNSUPPORTED;
+}
+void shaderStatus(GLuint shader, GLenum what, GLint* value) {
+    real_get_shader(shader, what, value);
+    if (what == GL_COMPILE_STATUS) {
+        *value = GL_FALSE;
+    }
+}
+GLenum waitFails(GLsync /*sync*/, GLbitfield /*flags*/, GLuint64 /*nanoseconds*/) {
+    return GL_WAIT_FAILED;
+}
+
+Collider sphereCollider() {
+    return analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, 0.5), 32);
+}
+
+PictureMesh tetrahedron() {
+    PictureMesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    mesh.triangles = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
+    return mesh;
+}
+
+template <class T>
+Result<void> outcome(const Result<T>& result) {
+    return result ? Result<void>{} : Result<void>(forward(result));
+}
+
+/// Everything that takes room on the GPU, once. What it needs of others is made before `work` is called.
+struct Work {
+    std::string name;
+    std::function<Result<void>()> work;
+};
+
+class GlFaultTest : public GlTest {
+  protected:
+    void SetUp() override {
+        GlTest::SetUp();
+        if (HasFatalFailure()) {
+            return;
+        }
+        // Every entry point that is replaced below, through to the driver.
+        collider_ = sphereCollider();
+        auto textures = ColliderTextures::create(collider_);
+        auto frame = Frame::create(32, 32);
+        auto mesh = ColliderMesh::create(tetrahedron());
+        auto particles = ParticleSystem::create({.capacity = 100});
+        ASSERT_TRUE(textures && frame && mesh && particles);
+        textures_ = std::make_unique<ColliderTextures>(std::move(*textures));
+        frame_ = std::make_unique<Frame>(std::move(*frame));
+        mesh_ = std::make_unique<ColliderMesh>(std::move(*mesh));
+        particles_ = std::make_unique<ParticleSystem>(std::move(*particles));
+        const std::array<Birth, 1> births{Birth{{0.0F, 2.0F, 0.0F}, glm::vec3(0.0F), 100.0F, 0}};
+        particles_->spawn(births);
+        particles_->step(0.01F);
+        ASSERT_TRUE(ParticleSystem::create({.capacity = 1})->setAir(air()));
+        ASSERT_TRUE(waitForGpu("nothing"));
+        const auto points = FieldQuery::create(collider_);
+        ASSERT_TRUE(points);
+        real_image_2d = epoxy_glTexImage2D;
+        real_image_3d = epoxy_glTexImage3D;
+        real_buffer_data = epoxy_glBufferData;
+        real_get_error = epoxy_glGetError;
+        real_get_integer = epoxy_glGetIntegerv;
+        real_get_shader = epoxy_glGetShaderiv;
+        allocations = 0;
+        failing_allocation = -1;
+        pending_error = GL_NO_ERROR;
+    }
+    void TearDown() override {
+        textures_.reset();
+        frame_.reset();
+        mesh_.reset();
+        particles_.reset();
+        GlTest::TearDown();
+    }
+
+    static AirSettings air() {
+        AirSettings settings;
+        auto flow = std::make_shared<FlowField>();
+        flow->size = {100, 1, 1};
+        flow->nodes.assign(100, glm::vec3(1.0F));
+        settings.flow = flow;
+        return settings;
+    }
+    [[nodiscard]] ColliderView view() const {
+        return {textures_.get(), collider_.bounds, finestTexel(collider_)};
+    }
+
+    std::vector<Work> allWork() {
+        const auto drawCollider = [this](const ColliderMesh* mesh) -> Result<void> {
+            auto renderer = ColliderRenderer::create(view(), mesh);
+            return renderer ? renderer->draw({}, {}, frame_->target()) : outcome(renderer);
+        };
+        return {
+            {"maps", [this] { return outcome(ColliderTextures::create(collider_)); }},
+            {"query",
+             [this]() -> Result<void> {
+                 const auto query = FieldQuery::create(collider_);
+                 const std::vector<glm::vec3> points(200'000);  // more rows than the limit below
+                 return query ? outcome(query->evaluate(points)) : outcome(query);
+             }},
+            {"euler", [] { return outcome(ParticleSystem::create({.capacity = 200'000})); }},
+            {"verlet",
+             [] {
+                 return outcome(
+                     ParticleSystem::create({.capacity = 200'000, .integrator = Integrator::kVerlet}));
+             }},
+            {"flow", [this] { return particles_->setAir(air()); }},
+            {"sort", [] { return outcome(DepthSorter::create(200'000)); }},
+            {"frame", [] { return outcome(Frame::create(100, 100)); }},
+            {"collider from maps", [=] { return drawCollider(nullptr); }},
+            {"collider from mesh", [=, this] { return drawCollider(mesh_.get()); }},
+            {"atlas",
+             [] {
+                 return outcome(
+                     SpriteAtlas::create(std::vector<std::uint8_t>(4 * 128 * 128), 128, 128, 2, 2));
+             }},
+        };
+    }
+    /// What is small on every GL, and never beyond a limit.
+    std::vector<Work> smallWork() {
+        return {{"statistics", [] { return outcome(Statistics::create(200'000)); }},
+                {"mesh", [] { return outcome(ColliderMesh::create(tetrahedron())); }},
+                {"particles, lit", [this]() -> Result<void> {
+                     auto renderer = ParticleRenderer::create(view());
+                     return renderer ? renderer->draw(*particles_, {}, {}, frame_->target(), {}, nullptr)
+                                     : outcome(renderer);
+                 }}};
+    }
+
+    Collider collider_;
+    std::unique_ptr<ColliderTextures> textures_;
+    std::unique_ptr<Frame> frame_;
+    std::unique_ptr<ColliderMesh> mesh_;
+    std::unique_ptr<ParticleSystem> particles_;
+};
+
+// The first allocation fails, then the second alone, …: each is an error of its own, until all succeed.
+TEST_P(GlFaultTest, EveryAllocationThatFailsIsNamed) {
+    std::vector<Work> all = allWork();
+    for (Work& small : smallWork()) {
+        all.push_back(std::move(small));
+    }
+    const Replaced two(epoxy_glTexImage2D, &image2d);
+    const Replaced three(epoxy_glTexImage3D, &image3d);
+    const Replaced buffers(epoxy_glBufferData, &bufferData);
+    const Replaced errors(epoxy_glGetError, &getError);
+    for (const Work& one : all) {
+        SCOPED_TRACE(one.name);
+        for (failing_allocation = 0;; ++failing_allocation) {
+            ASSERT_LT(failing_allocation, 100);
+            allocations = 0;
+            pending_error = GL_NO_ERROR;
+            const Result<void> done = one.work();
+            if (allocations <= failing_allocation) {
+                EXPECT_TRUE(done) << done.error().message;
+                EXPECT_GT(failing_allocation, 0) << "nothing is allocated: the test does not test";
+                break;
+            }
+            ASSERT_FALSE(done) << "allocation " << failing_allocation << " failed in silence";
+            EXPECT_EQ(done.error().code, ErrorCode::kLimit) << done.error().message;
+            EXPECT_NE(done.error().message.find("no room on the GPU"), std::string::npos)
+                << done.error().message;
+        }
+    }
+    failing_allocation = -1;
+    pending_error = GL_NO_ERROR;
+}
+
+TEST_P(GlFaultTest, EveryTextureAboveTheLimitIsNamedWithBothNumbers) {
+    const Replaced integers(epoxy_glGetIntegerv, &getInteger);
+    texture_side = 31;  // of the smallest of them, 32x32 pixels, and of all others
+    for (const Work& one : allWork()) {
+        SCOPED_TRACE(one.name);
+        const Result<void> done = one.work();
+        ASSERT_FALSE(done) << "accepted";
+        EXPECT_EQ(done.error().code, ErrorCode::kLimit) << done.error().message;
+        EXPECT_NE(done.error().message.find("31"), std::string::npos) << done.error().message;
+        EXPECT_NE(done.error().message.find_first_of("123456789"), std::string::npos);
+    }
+}
+
+TEST_P(GlFaultTest, AResetIsNamedWhereverSomethingIsReadBack) {
+    const auto query = FieldQuery::create(collider_);
+    auto statistics = Statistics::create(100);
+    ASSERT_TRUE(query && statistics);
+    const std::array<glm::vec3, 1> points{glm::vec3(0.0F)};
+    ASSERT_TRUE(query->evaluate(points));
+    ASSERT_TRUE(checkGpu("testing")) << "without a reset there is no error";
+    ASSERT_TRUE(statistics->request(*particles_, 1));
+    struct Cause {
+        GLenum (*status)();
+        const char* words;
+    };
+    for (const Cause& cause :
+         {Cause{guiltyReset, "by what Relief had asked of it"}, Cause{innocentReset, "by another program"}}) {
+        const Replaced status(epoxy_glGetGraphicsResetStatus, cause.status);
+        for (const Result<void>& done :
+             {checkGpu("testing"), waitForGpu("steps 1 to 2"), outcome(query->evaluate(points)),
+              outcome(particles_->readState()), outcome(statistics->wait())}) {
+            if (done) {
+                // The one sample that was asked for came back at the first cause.
+                EXPECT_EQ(statistics->inFlight(), 0);
+                EXPECT_EQ(cause.status, &innocentReset);
+                continue;
+            }
+            EXPECT_EQ(done.error().code, ErrorCode::kFailure);
+            EXPECT_NE(done.error().message.find("the GPU was reset"), std::string::npos);
+            EXPECT_NE(done.error().message.find(cause.words), std::string::npos) << done.error().message;
+        }
+    }
+    EXPECT_TRUE(query->evaluate(points));
+}
+
+// A lost context may answer every question for errors with yes.
+TEST_P(GlFaultTest, ErrorsWithoutEndEnd) {
+    const Replaced errors(epoxy_glGetError, &endlessError);
+    forgetGlErrors();
+    const auto textures = ColliderTextures::create(collider_);
+    ASSERT_FALSE(textures);
+    EXPECT_EQ(textures.error().code, ErrorCode::kFailure);
+    EXPECT_NE(textures.error().message.find("0x0507"), std::string::npos) << textures.error().message;
+}
+
+TEST_P(GlFaultTest, AWaitThatFailsIsAnError) {
+    const Replaced wait(epoxy_glClientWaitSync, &waitFails);
+    const Result<void> done = waitForGpu("steps 3 to 4");
+    ASSERT_FALSE(done);
+    EXPECT_EQ(done.error().code, ErrorCode::kFailure);
+    EXPECT_NE(done.error().message.find("steps 3 to 4"), std::string::npos);
+    GlFence fence;
+    EXPECT_TRUE(fence.failed()) << "never inserted";
+    fence.insert();
+    EXPECT_FALSE(fence.failed());
+    EXPECT_FALSE(fence.passed());
+    EXPECT_TRUE(fence.failed());
+}
+
+TEST_P(GlFaultTest, FramebuffersAndShadersThatTheDriverRefuses) {
+    {
+        const Replaced status(epoxy_glCheckFramebufferStatus, &incomplete);
+        const auto particles = ParticleSystem::create({.capacity = 10});
+        ASSERT_FALSE(particles);
+        EXPECT_EQ(particles.error().code, ErrorCode::kUnsupported);
+        EXPECT_NE(particles.error().message.find("0x8cdd"), std::string::npos) << particles.error().message;
+        const auto state = particles_->readState();
+        ASSERT_FALSE(state);
+        EXPECT_EQ(state.error().code, ErrorCode::kUnsupported);
+    }
+    {
+        const Replaced status(epoxy_glGetShaderiv, &shaderStatus);
+        const auto frame = Frame::create(8, 8);
+        ASSERT_FALSE(frame);
+        EXPECT_EQ(frame.error().code, ErrorCode::kFailure);
+        EXPECT_NE(frame.error().message.find("quad.vert"), std::string::npos) << frame.error().message;
+    }
+    // The driver's own words.
+    const auto program = makeProgram("quad.vert", "copy_state.frag", "no GLSL at all\n");
+    ASSERT_FALSE(program);
+    EXPECT_NE(program.error().message.find("quad.vert does not compile: "), std::string::npos);
+    EXPECT_NE(program.error().message.find("syntax error"), std::string::npos) << program.error().message;
+    EXPECT_EQ(program.error().message.find('\n'), std::string::npos)
+        << "one line: " << program.error().message;
+}
+
+}  // namespace
+
+RELIEF_INSTANTIATE_GL_TESTS(GlFaultTest);
+
+}  // namespace relief

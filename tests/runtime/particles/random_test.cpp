@@ -1,0 +1,200 @@
+// What is drawn with random numbers, against closed forms: Kolmogorov's distance to the distribution
+// function, for fixed seeds. Its critical value for n draws at one in a million is 2.7 / √n.
+#include "runtime/particles/random.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <vector>
+
+namespace relief {
+namespace {
+
+constexpr int kCount = 100'000;
+constexpr double kPi = 3.14159265358979323846;
+
+/// The largest distance between the draws' share below x and cdf(x), in units of 1/√n.
+double kolmogorov(std::vector<double> draws, const std::function<double(double)>& cdf) {
+    std::sort(draws.begin(), draws.end());
+    const auto n = static_cast<double>(draws.size());
+    double worst = 0.0;
+    for (std::size_t i = 0; i < draws.size(); ++i) {
+        const double f = cdf(draws[i]);
+        const auto k = static_cast<double>(i);
+        worst = std::max({worst, f - k / n, (k + 1.0) / n - f});
+    }
+    return worst * std::sqrt(n);
+}
+constexpr double kCritical = 2.7;
+
+template <class Draw, class Value>
+std::vector<double> values(std::uint64_t seed, Draw draw, Value value) {
+    Pcg32 random(seed);
+    std::vector<double> out;
+    for (int i = 0; i < kCount; ++i) {
+        out.push_back(static_cast<double>(value(draw(random))));
+    }
+    return out;
+}
+
+double azimuth(float x, float y) {
+    return std::atan2(static_cast<double>(y), static_cast<double>(x));
+}
+double uniformAzimuth(double a) {
+    return (a + kPi) / (2.0 * kPi);
+}
+
+TEST(Random, BelowIsEvenAndInRange) {
+    for (const std::uint32_t count : {1U, 2U, 7U, 1000U}) {
+        Pcg32 random(count);
+        std::vector<int> hits(count);
+        for (int i = 0; i < kCount; ++i) {
+            const std::uint32_t at = random.below(count);
+            ASSERT_LT(at, count);
+            ++hits[at];
+        }
+        // χ² has mean count − 1 and variance 2 (count − 1).
+        const double mean = static_cast<double>(kCount) / count;
+        double square = 0.0;
+        for (const int n : hits) {
+            square += (n - mean) * (n - mean) / mean;
+        }
+        EXPECT_NEAR(square, count - 1.0, 5.0 * std::sqrt(2.0 * (count - 1.0)) + 1e-9);
+    }
+    // Of three quarters of 2^32 a product without rejection makes every third number twice as likely.
+    Pcg32 random(9);
+    int thirds = 0;
+    for (int i = 0; i < kCount; ++i) {
+        thirds += random.below(0xC0000000U) % 3 == 0 ? 1 : 0;
+    }
+    EXPECT_NEAR(thirds, kCount / 3.0, 5.0 * std::sqrt(kCount * 2.0 / 9.0));
+}
+
+TEST(Random, SignedUniformIsOddAndNeverZero) {
+    const auto draws = values(
+        1, [](Pcg32& r) { return r.signedUniform(); }, [](float x) { return x; });
+    for (const double x : draws) {
+        ASSERT_LT(std::abs(x), 1.0);
+        ASSERT_NE(x, 0.0);
+        ASSERT_EQ(std::fmod(std::abs(x) * 0x1p24, 2.0), 1.0);
+    }
+    EXPECT_LT(kolmogorov(draws, [](double x) { return 0.5 * (x + 1.0); }), kCritical);
+}
+
+TEST(Random, DiscIsUniformInArea) {
+    const auto radius = [](const glm::vec2& p) { return std::hypot(p.x, p.y); };
+    const auto turn = [](const glm::vec2& p) { return azimuth(p.x, p.y); };
+    EXPECT_LT(kolmogorov(values(2, inUnitDisc, radius), [](double r) { return r * r; }), kCritical);
+    EXPECT_LT(kolmogorov(values(2, inUnitDisc, turn), uniformAzimuth), kCritical);
+}
+
+TEST(Random, BallIsUniformInVolume) {
+    const auto radius = [](const glm::vec3& p) { return std::hypot(p.x, p.y, p.z); };
+    EXPECT_LT(kolmogorov(values(3, inUnitBall, radius), [](double r) { return r * r * r; }), kCritical);
+    for (int axis = 0; axis < 3; ++axis) {
+        // The share of the ball below a plane at x.
+        const auto cdf = [](double x) { return (2.0 + 3.0 * x - x * x * x) / 4.0; };
+        EXPECT_LT(kolmogorov(values(3, inUnitBall, [&](const glm::vec3& p) { return p[axis]; }), cdf),
+                  kCritical);
+    }
+}
+
+TEST(Random, SphereIsUniformInArea) {
+    for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_LT(kolmogorov(values(4, onUnitSphere, [&](const glm::vec3& p) { return p[axis]; }),
+                             [](double x) { return 0.5 * (x + 1.0); }),
+                  kCritical);
+    }
+}
+
+TEST(Random, ConeIsUniformInSolidAngle) {
+    for (const double degrees : {0.5, 20.0, 90.0, 135.0, 180.0}) {
+        const double opening = oneMinusCosine(degrees);
+        const auto draw = [&](Pcg32& r) { return inCone(r, static_cast<float>(opening)); };
+        double worst = 0.0;
+        const auto height = [&](const glm::vec3& d) {
+            worst = std::max(worst, std::abs(std::hypot(static_cast<double>(d.x), static_cast<double>(d.y),
+                                                        static_cast<double>(d.z)) -
+                                             1.0));
+            // From the radius where that is the better conditioned of the two.
+            const double aside = std::hypot(static_cast<double>(d.x), static_cast<double>(d.y));
+            return degrees < 1.0 ? aside * aside / (1.0 + std::sqrt(1.0 - aside * aside))
+                                 : 1.0 - static_cast<double>(d.z);
+        };
+        const auto turn = [](const glm::vec3& d) { return azimuth(d.x, d.y); };
+        EXPECT_LT(kolmogorov(values(5, draw, height), [&](double down) { return down / opening; }), kCritical)
+            << degrees;
+        EXPECT_LT(kolmogorov(values(5, draw, turn), uniformAzimuth), kCritical) << degrees;
+        EXPECT_LT(worst, 3e-7);
+    }
+}
+
+TEST(Random, NormalIsNormal) {
+    const auto cdf = [](double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); };
+    const auto draws = values(6, standardNormal, [](float x) { return x; });
+    EXPECT_LT(kolmogorov(draws, cdf), kCritical);
+    double fourth = 0.0;
+    for (const double x : draws) {
+        fourth += x * x * x * x / kCount;
+    }
+    EXPECT_NEAR(fourth, 3.0, 5.0 * std::sqrt(96.0 / kCount));  // the tails: its variance is 105 − 9
+}
+
+TEST(Random, OneMinusCosineIsThatOfTheLibrary) {
+    EXPECT_EQ(oneMinusCosine(0.0), 0.0);
+    EXPECT_DOUBLE_EQ(oneMinusCosine(90.0), 1.0);
+    EXPECT_DOUBLE_EQ(oneMinusCosine(180.0), 2.0);
+    for (double degrees = 1e-6; degrees <= 180.0; degrees *= 1.7) {
+        const double sine = std::sin(degrees * kPi / 360.0);
+        EXPECT_NEAR(oneMinusCosine(degrees) / (2.0 * sine * sine), 1.0, 1e-14) << degrees;
+    }
+}
+
+TEST(Random, BasesAreRightHandedAndOrthonormal) {
+    Pcg32 random(7);
+    for (int i = 0; i < 1000; ++i) {
+        glm::vec3 z = onUnitSphere(random);
+        if (i < 6) {
+            z = glm::vec3(0.0F);
+            z[i / 2] = i % 2 == 0 ? 1.0F : -1.0F;
+        }
+        const Basis basis = basisAbout(z);
+        const glm::vec3 cross{basis.x.y * basis.y.z - basis.x.z * basis.y.y,
+                              basis.x.z * basis.y.x - basis.x.x * basis.y.z,
+                              basis.x.x * basis.y.y - basis.x.y * basis.y.x};
+        for (int axis = 0; axis < 3; ++axis) {
+            ASSERT_NEAR(cross[axis], z[axis], 1e-6);
+            ASSERT_NEAR(basis.toWorld({0.0F, 0.0F, 1.0F})[axis], z[axis], 0.0);
+        }
+        ASSERT_NEAR(basis.x.x * basis.x.x + basis.x.y * basis.x.y + basis.x.z * basis.x.z, 1.0F, 1e-6F);
+    }
+}
+
+TEST(Random, UnitVectorsOfAnyLength) {
+    EXPECT_EQ(unitVector({0.0F, -1e-40F, 0.0F}), glm::vec3(0.0F, -1.0F, 0.0F));
+    EXPECT_EQ(unitVector({3e38F, 0.0F, 0.0F}), glm::vec3(1.0F, 0.0F, 0.0F));
+    EXPECT_NEAR(unitVector({3e20F, 0.0F, -4e20F}).z, -0.8F, 1e-7F);
+    EXPECT_EQ(unitVector({0.0F, 0.0F, 0.0F}), glm::vec3(0.0F));
+    EXPECT_EQ(unitVector({1.0F, std::numeric_limits<float>::infinity(), 0.0F}), glm::vec3(0.0F));
+    EXPECT_EQ(unitVector({std::numeric_limits<float>::quiet_NaN(), 1.0F, 0.0F}), glm::vec3(0.0F));
+}
+
+// Pins the bits: the same on every machine, for the draws of a seeded run hang by them.
+TEST(Random, TheBitsOfEveryKindOfDrawArePinned) {
+    Pcg32 random(42, 54);
+    float sum = 0.0F;
+    for (int i = 0; i < 1000; ++i) {
+        const glm::vec3 ball = inUnitBall(random);
+        const glm::vec3 cone = inCone(random, static_cast<float>(oneMinusCosine(33.0)));
+        sum += ball.x + 2.0F * ball.y + 4.0F * cone.x + 8.0F * cone.z + standardNormal(random);
+        sum += static_cast<float>(random.below(1000)) * 0x1p-10F;
+    }
+    EXPECT_EQ(sum, 0x1.e5864ep+12F);
+}
+
+}  // namespace
+}  // namespace relief

@@ -1,0 +1,198 @@
+// The step of shaders/step.glsl on the CPU: float32, the same operations in the same order, the field from
+// formats/. Written from the rule (paper, section 3.3.2), and the truth that the GPU
+// is held to.
+#pragma once
+
+#include <cmath>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <vector>
+
+#include "formats/collider.h"
+#include "runtime/collider/pose.h"
+#include "runtime/particles/particle_system.h"
+
+namespace relief {
+
+/// A collider with the poses of the beginning and the end of a step.
+struct ReferenceBody {
+    const Collider* collider = nullptr;
+    Pose before;
+    Pose now;
+    float restitution = 1.0F;
+    float friction = 0.0F;
+};
+
+struct ReferenceSettings {
+    const Collider* collider = nullptr;  ///< in its own space; or
+    std::vector<ReferenceBody> bodies;
+    std::optional<float> ground;
+    Forces forces;
+    ParticleType type;
+    float dt = 0.0F;
+};
+
+struct ReferenceState {
+    glm::vec3 position{0.0F};
+    glm::vec3 velocity{0.0F};
+    Contact contact = Contact::kNone;
+    /// Some decision hung by a hair: P_prev or P* lies closer than the tolerance to a border between texels
+    /// or cube faces, to the edge of a volume, or to a vote of 0, so that another rounding may decide
+    /// otherwise.
+    bool ambiguous = false;
+};
+
+inline float dot(const glm::vec3& a, const glm::vec3& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+/// How near to a decision counts as a hair: texels for borders, parts of a volume for its ends and for votes.
+inline constexpr float kTexelHair = 1e-3F;
+inline constexpr float kVolumeHair = 1e-6F;
+
+inline bool isAmbiguous(const Collider& collider, const glm::vec3& p) {
+    const auto nearInteger = [](float x) { return std::abs(x - std::round(x)) < kTexelHair; };
+    for (const DepthMap& map : collider.maps) {
+        const glm::vec3 q = map.object_to_map.apply(p);
+        if (map.projection() == Projection::kCube) {
+            const float a[3] = {std::abs(q.x), std::abs(q.y), std::abs(q.z)};
+            const CubeCoordinates at = cubeCoordinates(q);
+            const auto size = static_cast<float>(map.width);
+            for (int i = 0; i < 3; ++i) {
+                if (std::abs(a[i] - a[(i + 1) % 3]) < kVolumeHair * 10.0F ||
+                    std::abs(a[i] - 1.0F) < kVolumeHair) {
+                    return true;
+                }
+            }
+            if (nearInteger(at.s * size) || nearInteger(at.t * size)) {
+                return true;
+            }
+        } else if (nearInteger(q.x * static_cast<float>(map.width)) ||
+                   nearInteger(q.y * static_cast<float>(map.height)) || std::abs(q.z) < kVolumeHair ||
+                   std::abs(q.z - 1.0F) < kVolumeHair) {
+            return true;
+        }
+        const std::optional<Vote> v = vote(map, p);
+        if (v && std::abs(v->distance) < 4.0F * kVolumeHair * collider.bounds.longestSide()) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// What is solid at a point, and the way out: body −1 is the floor, −2 nothing.
+struct ReferenceSolid {
+    float distance = 1e30F;
+    glm::vec3 normal{0.0F};
+    int body = -2;
+};
+
+/// Of the body as it is now, or as it was before the step.
+inline ReferenceSolid solidOf(const ReferenceBody& body, int number, const glm::vec3& p, bool before) {
+    const Pose& pose = before ? body.before : body.now;
+    const FieldSample field = evaluate(*body.collider, toObject(pose, p));
+    return field.inside() ? ReferenceSolid{pose.scale * field.distance, pose.rotation * field.normal, number}
+                          : ReferenceSolid{};
+}
+
+/// The union of all bodies and the floor; the deepest decides.
+inline ReferenceSolid solidAt(const ReferenceSettings& settings, const glm::vec3& p) {
+    ReferenceSolid best;
+    if (settings.collider != nullptr) {
+        best = solidOf({settings.collider, {}, {}, 1.0F, 0.0F}, 0, p, false);
+    }
+    for (std::size_t i = 0; i < settings.bodies.size(); ++i) {
+        const ReferenceSolid solid = solidOf(settings.bodies[i], static_cast<int>(i), p, false);
+        best = solid.distance < best.distance ? solid : best;
+    }
+    if (settings.ground && p.y - *settings.ground < best.distance) {
+        best = {p.y - *settings.ground, glm::vec3(0.0F, 1.0F, 0.0F), -1};
+    }
+    return best;
+}
+
+/// Whether the step began inside what it ran into.
+inline bool wasInside(const ReferenceSettings& settings, const ReferenceSolid& solid, const glm::vec3& p) {
+    if (solid.body < 0) {
+        return p.y < *settings.ground;
+    }
+    if (settings.collider != nullptr) {
+        return evaluate(*settings.collider, p).inside();
+    }
+    return solidOf(settings.bodies[static_cast<std::size_t>(solid.body)], 0, p, true).distance < 0.0F;
+}
+
+inline ReferenceState referenceStep(const ReferenceSettings& settings, const glm::vec3& p,
+                                    const glm::vec3& v_before) {
+    const float dt = settings.dt;
+    const ParticleType& type = settings.type;
+    const float drag = dragRate(settings.forces, type);
+    glm::vec3 v = (v_before + dt * (settings.forces.gravity + drag * settings.forces.wind)) *
+                  (1.0F / (1.0F + dt * drag));
+    const glm::vec3 p_star = p + dt * v;
+
+    ReferenceState out;
+    out.position = p_star;
+    const ReferenceSolid ahead = solidAt(settings, p_star);
+    if (settings.collider != nullptr) {
+        out.ambiguous = isAmbiguous(*settings.collider, p_star) || isAmbiguous(*settings.collider, p);
+    }
+    for (const ReferenceBody& body : settings.bodies) {
+        out.ambiguous = out.ambiguous || isAmbiguous(*body.collider, toObject(body.now, p_star)) ||
+                        isAmbiguous(*body.collider, toObject(body.before, p));
+    }
+    // Which of two bodies is deeper, and on which side of the floor.
+    const float hair = kVolumeHair * (2.0F + std::abs(settings.ground.value_or(0.0F)));
+    int inside = 0;
+    for (std::size_t i = 0; i < settings.bodies.size(); ++i) {
+        const float distance = solidOf(settings.bodies[i], static_cast<int>(i), p_star, false).distance;
+        inside += std::abs(distance - ahead.distance) < hair ? 1 : 0;
+    }
+    if (settings.ground) {
+        inside += std::abs(p_star.y - *settings.ground - ahead.distance) < hair ? 1 : 0;
+        inside += settings.collider != nullptr &&
+                          std::abs(evaluate(*settings.collider, p_star).distance - ahead.distance) < hair
+                      ? 1
+                      : 0;
+        out.ambiguous = out.ambiguous || std::abs(p_star.y - *settings.ground) < hair ||
+                        std::abs(p.y - *settings.ground) < hair;
+    }
+    out.ambiguous = out.ambiguous || (ahead.distance < 0.0F && inside > 1);
+    if (ahead.distance < 0.0F) {
+        const glm::vec3 n = ahead.normal;
+        ReferenceBody body;
+        if (ahead.body >= 0 && !settings.bodies.empty()) {
+            body = settings.bodies[static_cast<std::size_t>(ahead.body)];
+        }
+        const glm::vec3 carried = body.collider == nullptr
+                                      ? glm::vec3(0.0F)
+                                      : (p_star - toWorld(body.before, toObject(body.now, p_star))) / dt;
+        const glm::vec3 relative = v - carried;
+        const float vn = dot(relative, n);
+        if (wasInside(settings, ahead, p)) {
+            out.contact = Contact::kCaught;
+            if (vn < 0.0F) {
+                v = v - (2.0F * vn) * n;
+            }
+            out.ambiguous = out.ambiguous || std::abs(vn) < 1e-5F;
+        } else {
+            out.contact = Contact::kCollided;
+            const glm::vec3 along = relative - vn * n;
+            const float threshold = type.friction_threshold;
+            const float still = 1e-3F * dt * glm::length(settings.forces.gravity);
+            const float speed = dot(relative, relative);
+            const float slide =
+                speed >= threshold * threshold ? (1.0F - type.friction) * (1.0F - body.friction) : 1.0F;
+            const float arrives = std::min(std::max(-dot(v_before - carried, n), 0.0F), std::abs(vn));
+            const glm::vec3 left = slide * along + (type.restitution * body.restitution * arrives) * n;
+            v = carried + (dot(left, left) > still * still ? left : glm::vec3(0.0F));
+            out.ambiguous = out.ambiguous || std::abs(glm::length(left) - still) < 1e-3F * still;
+            out.ambiguous = out.ambiguous || std::abs(speed - threshold * threshold) < 1e-5F;
+        }
+        out.position = p + dt * v;
+    }
+    out.velocity = v;
+    return out;
+}
+
+}  // namespace relief

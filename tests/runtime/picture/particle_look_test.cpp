@@ -1,0 +1,91 @@
+// Key-frames: straight lines between keys, and rows for the shader that say the same.
+#include "runtime/picture/particle_look.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace relief {
+namespace {
+
+TEST(ParticleLook, StraightLinesBetweenKeys) {
+    const AgeTrack<float> track{{0.25F, 1.0F}, {0.5F, 3.0F}, {1.0F, -1.0F}};
+    EXPECT_EQ(valueAt(track, 0.0F, 9.0F), 1.0F);
+    EXPECT_EQ(valueAt(track, 0.25F, 9.0F), 1.0F);
+    EXPECT_EQ(valueAt(track, 0.375F, 9.0F), 2.0F);
+    EXPECT_EQ(valueAt(track, 0.5F, 9.0F), 3.0F);
+    EXPECT_EQ(valueAt(track, 0.75F, 9.0F), 1.0F);
+    EXPECT_EQ(valueAt(track, 1.0F, 9.0F), -1.0F);
+    EXPECT_EQ(valueAt(AgeTrack<float>{}, 0.5F, 9.0F), 9.0F);
+}
+
+TEST(ParticleLook, TracksOfDifferentAgesShareARow) {
+    ParticleLook look;
+    look.size = {{0.0F, 1.0F}, {1.0F, 2.0F}};
+    look.opacity = {{0.5F, 1.0F}, {0.75F, 0.0F}};
+    look.color = {{0.0F, glm::vec3(0.0F)}, {1.0F, glm::vec3(1.0F)}};
+    look.cell_first = 3;
+    look.cell_last = 5;
+    look.turn = 0.5F;
+    look.spin = 2.0F;
+    look.lit = false;
+    const std::vector<ParticleLook> looks{ParticleLook{}, look};
+    const auto texels = packLooks(looks, {0.1F, glm::vec3(1.0F), 0.9F, 0.2F, 0.3F});
+    ASSERT_TRUE(texels) << texels.error().message;
+    ASSERT_EQ(texels->size(), 2 * kLookTexels);
+    // The defaults, as one key.
+    EXPECT_EQ((*texels)[0], glm::vec4(0.0F, 0.0F, -1.0F, 0.0F));
+    EXPECT_EQ((*texels)[1], glm::vec4(1.0F, 0.2F, 0.3F, 1.0F));
+    EXPECT_EQ((*texels)[2], glm::vec4(0.0F, 0.1F, 0.9F, 0.0F));
+    EXPECT_EQ((*texels)[3], glm::vec4(1.0F, 1.0F, 1.0F, 0.0F));
+    const glm::vec4* row = &(*texels)[kLookTexels];
+    EXPECT_EQ(row[0], glm::vec4(0.5F, 2.0F, 3.0F, 3.0F));
+    EXPECT_EQ(row[1], glm::vec4(0.0F, 0.2F, 0.3F, 4.0F));
+    EXPECT_EQ(row[2], glm::vec4(0.0F, 1.0F, 1.0F, 0.0F));
+    EXPECT_EQ(row[4], glm::vec4(0.5F, 1.5F, 1.0F, 0.0F));
+    EXPECT_EQ(row[5], glm::vec4(0.5F, 0.5F, 0.5F, 0.0F)) << "half of the light, not of sRGB";
+    EXPECT_EQ(row[6], glm::vec4(0.75F, 1.75F, 0.0F, 0.0F));
+    EXPECT_EQ(row[8], glm::vec4(1.0F, 2.0F, 0.0F, 0.0F));
+}
+
+TEST(ParticleLook, EveryTrackMayHaveItsOwnAges) {
+    ParticleLook look;
+    for (std::size_t i = 0; i < kLookKeysMax; ++i) {
+        const float age = static_cast<float>(i) / 8.0F;
+        look.size.push_back({age, 1.0F});
+        look.opacity.push_back({age + 0.03F, 1.0F});
+        look.rotation.push_back({age + 0.06F, 1.0F});
+        look.color.push_back({age + 0.09F, glm::vec3(1.0F)});
+    }
+    const auto texels = packLooks(std::vector<ParticleLook>{look}, {});
+    ASSERT_TRUE(texels) << texels.error().message;
+    EXPECT_EQ((*texels)[1].w, 4.0F * kLookKeysMax);
+    EXPECT_EQ(texels->back(), glm::vec4(1.0F, 1.0F, 1.0F, 0.0F)) << "the row is full";
+}
+
+TEST(ParticleLook, WhatCannotBeIsRefused) {
+    const auto refused = [](const auto& change) {
+        ParticleLook look;
+        change(look);
+        const auto texels = packLooks(std::vector<ParticleLook>{look}, {});
+        return !texels && texels.error().code == ErrorCode::kUsage;
+    };
+    EXPECT_FALSE(refused([](ParticleLook&) {}));
+    EXPECT_TRUE(refused([](ParticleLook& l) { l.size.resize(kLookKeysMax + 1); }));
+    EXPECT_TRUE(refused([](ParticleLook& l) { l.size = {{0.5F, 1.0F}, {0.5F, 1.0F}}; }));
+    EXPECT_TRUE(refused([](ParticleLook& l) { l.color = {{0.5F, {}}, {0.2F, {}}}; }));
+    EXPECT_TRUE(refused([](ParticleLook& l) { l.opacity = {{1.1F, 1.0F}}; }));
+    EXPECT_TRUE(refused([](ParticleLook& l) { l.opacity = {{0.0F, 1.1F}}; }));
+    EXPECT_TRUE(refused([](ParticleLook& l) { l.size = {{0.0F, -1.0F}}; }));
+    EXPECT_TRUE(refused([](ParticleLook& l) { l.color = {{0.0F, {0.0F, 2.0F, 0.0F}}}; }));
+    EXPECT_TRUE(refused([](ParticleLook& l) {
+        l.rotation = {{0.0F, std::numeric_limits<float>::quiet_NaN()}};
+    }));
+    EXPECT_TRUE(refused([](ParticleLook& l) { l.spin = std::numeric_limits<float>::infinity(); }));
+    EXPECT_TRUE(refused([](ParticleLook& l) { l.cell_first = 2; }));
+    EXPECT_FALSE(packLooks(std::vector<ParticleLook>(kLooksMax + 1), {}));
+    EXPECT_TRUE(packLooks(std::vector<ParticleLook>(kLooksMax), {}));
+}
+
+}  // namespace
+}  // namespace relief

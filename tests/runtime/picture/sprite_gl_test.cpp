@@ -1,0 +1,382 @@
+// Sprites in closed form: unlit sprites on a float target, so that every pixel is colour times opacity.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "runtime/picture/particle_renderer.h"
+#include "tests/runtime/gl/gl_test.h"
+
+namespace relief {
+namespace {
+
+constexpr GLsizei kSide = 64;
+constexpr float kPi = 3.14159265F;
+// RGBA16F resolves 2^-11 of a number.
+constexpr float kHalf = 1.0F / 1024.0F;
+
+class SpriteGlTest : public GlTest {
+  protected:
+    void SetUp() override {
+        GlTest::SetUp();
+        if (HasFatalFailure()) {
+            return;
+        }
+        color_ = makeTexture2D(GL_RGBA16F, kSide, kSide, GL_RGBA, GL_HALF_FLOAT);
+        depth_ = makeTexture2D(GL_DEPTH_COMPONENT32F, kSide, kSide, GL_DEPTH_COMPONENT, GL_FLOAT);
+        const std::array<GLuint, 1> colors{color_.name()};
+        auto framebuffer = makeFramebuffer(colors, depth_.name());
+        ASSERT_TRUE(framebuffer) << framebuffer.error().message;
+        framebuffer_ = std::move(*framebuffer);
+        auto renderer = ParticleRenderer::create(std::nullopt);
+        ASSERT_TRUE(renderer) << renderer.error().message;
+        renderer_.emplace(std::move(*renderer));
+        // At the origin a unit is half the picture's height: 32 pixels.
+        camera_.eye = {0.0F, 0.0F, 3.0F};
+        camera_.fov = glm::degrees(2.0F * std::atan(1.0F / 3.0F));
+        camera_.near_plane = 0.5F;
+        camera_.far_plane = 50.0F;
+        style_.fade_in = 0.0F;
+        style_.fade_out = 0.0F;
+        style_.sprite = Sprite::kQuad;
+    }
+    void TearDown() override {
+        particles_.reset();
+        renderer_.reset();
+        atlas_.reset();
+        framebuffer_ = GlFramebuffer();
+        color_ = GlTexture();
+        depth_ = GlTexture();
+        GlTest::TearDown();
+    }
+
+    /// A sprite at the origin for each type, of lifetime 8, aged `age` seconds.
+    void spawn(const std::vector<std::uint32_t>& types, float age) {
+        auto particles = ParticleSystem::create({.capacity = 64});
+        ASSERT_TRUE(particles) << particles.error().message;
+        particles_.reset();
+        particles_.emplace(std::move(*particles));
+        std::vector<Birth> births;
+        for (const std::uint32_t type : types) {
+            births.push_back({glm::vec3(0.0F), glm::vec3(0.0F), 8.0F, type});
+        }
+        particles_->spawn(births);
+        particles_->step(age);
+    }
+    static ParticleLook look(const glm::vec3& color, float opacity, float size) {
+        ParticleLook out;
+        out.color = {{0.0F, color}};
+        out.opacity = {{0.0F, opacity}};
+        out.size = {{0.0F, size}};
+        out.lit = false;
+        return out;
+    }
+    void draw(const GlTexture* order = nullptr, const GlTexture* behind = nullptr) {
+        const ParticleOrder ranks{order, order_count_};
+        glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
+        const std::array<GLfloat, 4> black{};
+        const GLfloat far = 1.0F;
+        glClearBufferfv(GL_COLOR, 0, black.data());
+        glClearBufferfv(GL_DEPTH, 0, &far);
+        glBindFramebuffer(GL_FRAMEBUFFER, 0);
+        const auto drawn =
+            renderer_->draw(*particles_, camera_, style_, {framebuffer_.name(), kSide, kSide}, ranks, behind);
+        ASSERT_TRUE(drawn) << drawn.error().message;
+        auto pixels = readTextureFloats(color_, kSide, kSide);
+        ASSERT_TRUE(pixels) << pixels.error().message;
+        pixels_ = std::move(*pixels);
+    }
+    /// From the lower left.
+    [[nodiscard]] glm::vec4 pixel(int x, int y) const {
+        const std::size_t at = 4 * (static_cast<std::size_t>(y) * kSide + static_cast<std::size_t>(x));
+        return {pixels_[at], pixels_[at + 1], pixels_[at + 2], pixels_[at + 3]};
+    }
+    /// Of as many ranks as will be drawn; below 0: nothing there.
+    [[nodiscard]] GlTexture orderTexture(const std::vector<int>& order) {
+        std::vector<std::uint32_t> texels;
+        for (const int index : order) {
+            texels.push_back(static_cast<std::uint32_t>(std::max(index, 0)));
+            texels.push_back(index < 0 ? 0U : 7U);
+        }
+        order_count_ = static_cast<std::uint32_t>(order.size());
+        // Two in a row, so that rows are taken as well.
+        return makeTexture2D(GL_RG32UI, 2, static_cast<GLsizei>(order.size() / 2), GL_RG_INTEGER,
+                             GL_UNSIGNED_INT, texels.data());
+    }
+    std::uint32_t order_count_ = 0;
+    /// Two cells of 2 × 2: grey, and
+    ///     red  green
+    ///     blue clear
+    void useAtlas() {
+        const std::vector<std::uint8_t> rgba{128, 128, 128, 255, 128, 128, 128, 255, 255, 0,   0,
+                                             255, 0,   255, 0,   255, 128, 128, 128, 255, 128, 128,
+                                             128, 255, 0,   0,   255, 255, 255, 255, 0,   0};
+        auto atlas = SpriteAtlas::create(rgba, 4, 2, 2, 1);
+        ASSERT_TRUE(atlas) << atlas.error().message;
+        atlas_.emplace(std::move(*atlas));
+        style_.atlas = &*atlas_;
+    }
+
+    GlTexture color_;
+    GlTexture depth_;
+    GlFramebuffer framebuffer_;
+    Camera camera_;
+    ParticleStyle style_;
+    std::optional<SpriteAtlas> atlas_;
+    std::optional<ParticleRenderer> renderer_;
+    std::optional<ParticleSystem> particles_;
+    std::vector<float> pixels_;
+};
+
+void expectNear(const glm::vec4& got, const glm::vec4& wanted, float tolerance, const char* what) {
+    for (int i = 0; i < 4; ++i) {
+        EXPECT_NEAR(got[i], wanted[i], tolerance) << what << " component " << i;
+    }
+}
+
+const glm::vec4 kRed{1, 0, 0, 1};
+const glm::vec4 kGreen{0, 1, 0, 1};
+const glm::vec4 kBlue{0, 0, 1, 1};
+const glm::vec4 kClear{0, 0, 0, 0};
+
+// A quarter turn anticlockwise takes what was right to the top, what was at the top to the left. Quads and
+// points, for the middles of the four texels and beyond are free of filtering: 16 pixels is the sprite's half
+// side.
+TEST_P(SpriteGlTest, ACellTurnsAnticlockwise) {
+    useAtlas();
+    for (const Sprite sprite : {Sprite::kQuad, Sprite::kPoint}) {
+        style_.sprite = sprite;
+        ParticleLook one = look(glm::vec3(1.0F), 1.0F, 1.0F);
+        one.cell_first = 1;
+        one.cell_last = 1;
+        style_.looks = {one};
+        spawn({0}, 1.0F);
+        draw();
+        expectNear(pixel(20, 43), kRed, kHalf, "upper left");
+        expectNear(pixel(43, 43), kGreen, kHalf, "upper right");
+        expectNear(pixel(20, 20), kBlue, kHalf, "lower left");
+        expectNear(pixel(43, 20), kClear, kHalf, "lower right");
+        // The square's own outline, to the pixel.
+        expectNear(pixel(16, 43), kRed, kHalf, "inside the left edge");
+        expectNear(pixel(15, 43), kClear, 0.0F, "outside the left edge");
+        expectNear(pixel(20, 47), kRed, kHalf, "inside the upper edge");
+        expectNear(pixel(20, 48), kClear, 0.0F, "outside the upper edge");
+
+        one.rotation = {{0.0F, 0.5F * kPi}};
+        style_.looks = {one};
+        draw();
+        expectNear(pixel(20, 43), kGreen, kHalf, "turned, upper left");
+        expectNear(pixel(43, 43), kClear, kHalf, "turned, upper right");
+        expectNear(pixel(20, 20), kRed, kHalf, "turned, lower left");
+        expectNear(pixel(43, 20), kBlue, kHalf, "turned, lower right");
+    }
+}
+
+// Turned by 45° the corner of a quad of half side 16 reaches 16·√2 = 22.6 pixels; a point's does not leave
+// its square.
+TEST_P(SpriteGlTest, AQuadTurnsWithItsCorners) {
+    useAtlas();
+    ParticleLook one = look(glm::vec3(1.0F), 1.0F, 1.0F);
+    one.cell_first = 0;
+    one.cell_last = 0;
+    one.rotation = {{0.0F, 0.25F * kPi}};
+    style_.looks = {one};
+    spawn({0}, 1.0F);
+    draw();
+    EXPECT_EQ(pixel(31, 31 + 22).a, 1.0F);
+    EXPECT_EQ(pixel(31, 31 + 24).a, 0.0F);
+    EXPECT_EQ(pixel(31 + 14, 31 + 14).a, 0.0F);
+    style_.sprite = Sprite::kPoint;
+    draw();
+    EXPECT_EQ(pixel(31, 31 + 15).a, 1.0F);
+    EXPECT_EQ(pixel(31, 31 + 22).a, 0.0F);
+}
+
+TEST_P(SpriteGlTest, AQuadIsNoSmallerThanItSays) {
+    GLfloat sizes[2] = {};
+    glGetFloatv(GL_ALIASED_POINT_SIZE_RANGE, sizes);
+    useAtlas();
+    ParticleLook one = look(glm::vec3(1.0F), 1.0F, 1.0F);
+    one.cell_first = 0;
+    one.cell_last = 0;
+    one.size = {{0.0F, 4.0F * sizes[1] / 32.0F}};
+    style_.looks = {one};
+    spawn({0}, 1.0F);
+    // Its centre lies beside the picture, where a point would be gone.
+    camera_.eye.x = 1.5F;
+    camera_.target.x = 1.5F;
+    draw();
+    EXPECT_EQ(pixel(0, 0).a, 1.0F);
+    EXPECT_EQ(pixel(kSide - 1, kSide - 1).a, 1.0F);
+}
+
+// Keys at ages 0, ½ and 1 of a life of 8 seconds: at 4 s the middle key itself, at 2 s and 6 s the means.
+TEST_P(SpriteGlTest, KeyFramesAtExactAges) {
+    ParticleLook one = look(glm::vec3(1.0F), 1.0F, 1.0F);
+    one.color = {{0.0F, {1.0F, 0.0F, 0.0F}}, {0.5F, {0.0F, 1.0F, 0.0F}}, {1.0F, {0.0F, 0.0F, 1.0F}}};
+    one.opacity = {{0.0F, 0.0F}, {0.5F, 1.0F}, {1.0F, 0.5F}};
+    one.size = {{0.25F, 0.5F}, {0.75F, 1.5F}};
+    style_.looks = {one};
+    struct Case {
+        float age;
+        glm::vec3 color;
+        float opacity;
+        float size;
+    };
+    for (const Case& c :
+         {Case{2.0F, {0.5F, 0.5F, 0.0F}, 0.5F, 0.5F}, Case{4.0F, {0.0F, 1.0F, 0.0F}, 1.0F, 1.0F},
+          Case{6.0F, {0.0F, 0.5F, 0.5F}, 0.75F, 1.5F}, Case{1.0F, {0.75F, 0.25F, 0.0F}, 0.25F, 0.5F}}) {
+        spawn({0}, c.age);
+        draw();
+        expectNear(pixel(32, 32), glm::vec4(c.opacity * c.color, c.opacity), kHalf, "middle");
+        // A grain is full up to 0.65 of its radius, and nothing from the radius on.
+        const int radius = static_cast<int>(16.0F * c.size);
+        EXPECT_NEAR(pixel(32 + static_cast<int>(0.6F * static_cast<float>(radius)), 32).a, c.opacity, kHalf)
+            << c.age;
+        EXPECT_EQ(pixel(32 + radius, 32).a, 0.0F) << c.age;
+        EXPECT_GT(pixel(32 + radius - 3, 32).a, 0.0F) << c.age;
+    }
+}
+
+TEST_P(SpriteGlTest, CellsArePlayedOverAge) {
+    useAtlas();
+    ParticleLook one = look(glm::vec3(1.0F), 1.0F, 1.0F);
+    one.cell_first = 0;
+    one.cell_last = 1;
+    style_.looks = {one};
+    spawn({0}, 3.9F);  // 0.49 of its life
+    draw();
+    EXPECT_NEAR(pixel(20, 43).g, 0.2158605F, kHalf) << "128 of sRGB in linear light";
+    spawn({0}, 4.1F);
+    draw();
+    expectNear(pixel(20, 43), kRed, kHalf, "second cell");
+}
+
+TEST_P(SpriteGlTest, EachTypeHasItsLook) {
+    style_.looks = {look({1, 0, 0}, 1.0F, 1.0F), look({0, 1, 0}, 1.0F, 1.0F)};
+    for (const auto& [type, wanted] : {std::pair{0U, kRed}, {1U, kGreen}, {9U, kGreen}}) {
+        spawn({type}, 1.0F);
+        draw();
+        expectNear(pixel(32, 32), wanted, kHalf, "middle");
+    }
+}
+
+// Opacities of whole 64ths are exact in half floats, and so is their sum in any order.
+TEST_P(SpriteGlTest, AdditiveSumsInAnyOrder) {
+    style_.blend = Blend::kAdditive;
+    float sum = 0.0F;
+    std::vector<std::uint32_t> types;
+    std::vector<int> reversed;
+    for (std::uint32_t i = 0; i < 8; ++i) {
+        const float opacity = static_cast<float>(i + 1) / 64.0F;
+        style_.looks.push_back(look(glm::vec3(1.0F), opacity, 0.5F + 0.1F * static_cast<float>(i)));
+        types.push_back(i);
+        reversed.push_back(7 - static_cast<int>(i));
+        sum += opacity;
+    }
+    spawn(types, 1.0F);
+    draw();
+    EXPECT_EQ(pixel(32, 32), glm::vec4(sum));
+    const std::vector<float> first = pixels_;
+    const GlTexture order = orderTexture(reversed);
+    draw(&order);
+    EXPECT_EQ(pixel(32, 32), glm::vec4(sum));
+    for (std::size_t i = 0; i < first.size(); ++i) {
+        ASSERT_NEAR(pixels_[i], first[i], kHalf);
+    }
+}
+
+// Over: the later of two halves covers half of the earlier.
+TEST_P(SpriteGlTest, AlphaFollowsTheOrder) {
+    style_.looks = {look({1, 0, 0}, 0.5F, 1.0F), look({0, 1, 0}, 0.5F, 1.0F)};
+    spawn({0, 1}, 1.0F);
+    const GlTexture forwards = orderTexture({0, 1});
+    const GlTexture backwards = orderTexture({1, 0});
+    const GlTexture one = orderTexture({1, -1});
+    const GlTexture beyond = orderTexture({2, 0});
+    const glm::vec4 green_last{0.25F, 0.5F, 0.0F, 0.75F};
+    const glm::vec4 red_last{0.5F, 0.25F, 0.0F, 0.75F};
+    for (const Sprite sprite : {Sprite::kQuad, Sprite::kPoint}) {
+        style_.sprite = sprite;
+        draw();
+        expectNear(pixel(32, 32), green_last, kHalf, "no order");
+        draw(&forwards);
+        expectNear(pixel(32, 32), green_last, kHalf, "forwards");
+        draw(&backwards);
+        expectNear(pixel(32, 32), red_last, kHalf, "backwards");
+        draw(&one);
+        expectNear(pixel(32, 32), {0.0F, 0.5F, 0.0F, 0.5F}, kHalf, "one left out");
+        draw(&beyond);
+        expectNear(pixel(32, 32), {0.5F, 0.0F, 0.0F, 0.5F}, kHalf, "one beyond the extent");
+    }
+}
+
+// A sprite of diameter ½ at distance 3 has its front at 2.75: what lies h behind that lets h / soft of it
+// through.
+TEST_P(SpriteGlTest, SoftEdgesFadeByDistance) {
+    style_.looks = {look(glm::vec3(1.0F), 1.0F, 0.5F)};
+    style_.soft = 0.4F;
+    spawn({0}, 1.0F);
+    for (const auto& [behind, wanted] :
+         {std::pair{0.0F, 0.0F}, {0.1F, 0.25F}, {0.2F, 0.5F}, {0.3F, 0.75F}, {0.4F, 1.0F}, {9.0F, 1.0F}}) {
+        const glm::vec2 depth = camera_.depthOfDistance();
+        const std::vector<float> depths(kSide * kSide, depth.x + depth.y / (2.75F + behind));
+        const GlTexture texture =
+            makeTexture2D(GL_DEPTH_COMPONENT32F, kSide, kSide, GL_DEPTH_COMPONENT, GL_FLOAT, depths.data());
+        for (const Sprite sprite : {Sprite::kQuad, Sprite::kPoint}) {
+            style_.sprite = sprite;
+            draw(nullptr, &texture);
+            EXPECT_NEAR(pixel(32, 32).a, wanted, 2e-3F) << behind;
+            EXPECT_NEAR(pixel(32, 32).r, wanted, 2e-3F) << behind;
+        }
+    }
+    draw();
+    EXPECT_EQ(pixel(32, 32).a, 1.0F) << "nothing to compare with";
+}
+
+TEST_P(SpriteGlTest, RandomTurnsAreThoseOfTheParticle) {
+    useAtlas();
+    ParticleLook one = look(glm::vec3(1.0F), 1.0F, 1.0F);
+    one.cell_first = 1;
+    one.cell_last = 1;
+    one.turn = kPi;
+    style_.looks = {one};
+    spawn({0}, 1.0F);
+    draw();
+    const std::vector<float> first = pixels_;
+    spawn({0}, 2.0F);
+    draw();
+    EXPECT_EQ(pixels_, first) << "the start stays";
+    style_.looks[0].spin = 1.0F;
+    draw();
+    EXPECT_NE(pixels_, first) << "the speed turns it";
+}
+
+TEST_P(SpriteGlTest, WhatCannotBeDrawnIsRefused) {
+    spawn({0}, 1.0F);
+    const RenderTarget target{framebuffer_.name(), kSide, kSide};
+    style_.looks.resize(kLooksMax + 1);
+    EXPECT_EQ(renderer_->draw(*particles_, camera_, style_, target).error().code, ErrorCode::kUsage);
+    style_.looks.clear();
+    for (const float soft :
+         {-1.0F, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        style_.soft = soft;
+        EXPECT_EQ(renderer_->draw(*particles_, camera_, style_, target).error().code, ErrorCode::kUsage);
+    }
+    const std::vector<std::uint8_t> rgba(4 * 6 * 4);
+    EXPECT_TRUE(SpriteAtlas::create(rgba, 6, 4, 3, 2));
+    EXPECT_EQ(SpriteAtlas::create(rgba, 6, 4, 4, 2).error().code, ErrorCode::kUsage);
+    EXPECT_EQ(SpriteAtlas::create(rgba, 6, 4, 0, 1).error().code, ErrorCode::kUsage);
+    EXPECT_EQ(SpriteAtlas::create(rgba, 6, 5, 1, 1).error().code, ErrorCode::kUsage);
+    EXPECT_EQ(SpriteAtlas::create(rgba, 0, 0, 1, 1).error().code, ErrorCode::kUsage);
+    EXPECT_EQ(SpriteAtlas::create(rgba, 9000, 1, 1, 1).error().code, ErrorCode::kLimit);
+}
+
+}  // namespace
+
+RELIEF_INSTANTIATE_GL_TESTS(SpriteGlTest);
+
+}  // namespace relief
