@@ -126,9 +126,7 @@ Result<void> checkWritable(const Collider& collider, const ContainerWriteOptions
         return fail(ErrorCode::kLimit, decimal(collider.maps.size()) + " maps are more than the limit of " +
                                            decimal(limits.maps) + "; use fewer maps");
     }
-    if (const Result<void> ok = validate(collider); !ok) {
-        return ok;
-    }
+    RELIEF_TRY(validate(collider));
     if (collider.texelBytes() > limits.texel_bytes) {
         return fail(ErrorCode::kLimit, decimal(collider.texelBytes()) +
                                            " bytes of texels are more than the limit of " +
@@ -208,13 +206,10 @@ Result<void> readMaps(ParsedMetadata&& parsed, const ContainerLimits& limits, De
 
 Result<void> readMetadata(std::span<const std::byte> bytes, const ContainerLimits& limits,
                           Description& into) {
-    Result<ParsedMetadata> parsed = parseMetadata(bytes, limits.maps);
-    if (!parsed) {
-        return forward(parsed);
-    }
-    into.collider = std::move(parsed->collider);
+    ParsedMetadata parsed = RELIEF_TRY(parseMetadata(bytes, limits.maps));
+    into.collider = std::move(parsed.collider);
     return validateDescription(into.collider).and_then([&] {
-        return readMaps(std::move(*parsed), limits, into);
+        return readMaps(std::move(parsed), limits, into);
     });
 }
 
@@ -249,22 +244,15 @@ Result<void> checkLayout(std::span<const std::byte> bytes, const Description& de
 }
 
 Result<Description> readDescription(std::span<const std::byte> bytes, const ContainerLimits& limits) {
-    const Result<ContainerHeader> header = readContainerHeader(bytes);
-    if (!header) {
-        return forward(header);
-    }
-    const auto metadata = bytes.subspan(header->metadata_offset, header->metadata_size);
-    if (header->metadata_hash != xxh3_64(metadata)) {
+    const ContainerHeader header = RELIEF_TRY(readContainerHeader(bytes));
+    const auto metadata = bytes.subspan(header.metadata_offset, header.metadata_size);
+    if (header.metadata_hash != xxh3_64(metadata)) {
         return invalid("damaged: the checksum at byte 48 is not that of the metadata");
     }
     Description description;
-    description.header = *header;
-    if (const Result<void> ok = readMetadata(metadata, limits, description); !ok) {
-        return forward(ok);
-    }
-    if (const Result<void> ok = checkLayout(bytes, description); !ok) {
-        return forward(ok);
-    }
+    description.header = header;
+    RELIEF_TRY(readMetadata(metadata, limits, description));
+    RELIEF_TRY(checkLayout(bytes, description));
     return description;
 }
 
@@ -275,11 +263,8 @@ Result<void> readTexels(std::span<const std::byte> bytes, const StoredPayload& p
                        " is wrong");
     }
     if (payload.info.compressed) {
-        Result<std::vector<std::byte>> raw = unpackPayload(stored, payload.info.raw_size);
-        if (!raw) {
-            return forward(raw);
-        }
-        map.texels = std::move(*raw);
+        std::vector<std::byte> raw = RELIEF_TRY(unpackPayload(stored, payload.info.raw_size));
+        map.texels = std::move(raw);
     } else {
         map.texels.assign(stored.begin(), stored.end());
     }
@@ -287,18 +272,14 @@ Result<void> readTexels(std::span<const std::byte> bytes, const StoredPayload& p
 }
 
 Result<Collider> readCollider(std::span<const std::byte> bytes, const ContainerLimits& limits) {
-    Result<Description> description = readDescription(bytes, limits);
-    if (!description) {
-        return forward(description);
-    }
-    for (std::size_t i = 0; i < description->payloads.size(); ++i) {
-        if (const Result<void> ok =
-                readTexels(bytes, description->payloads[i], description->collider.maps[i]);
+    Description description = RELIEF_TRY(readDescription(bytes, limits));
+    for (std::size_t i = 0; i < description.payloads.size(); ++i) {
+        if (const Result<void> ok = readTexels(bytes, description.payloads[i], description.collider.maps[i]);
             !ok) {
             return tl::unexpected<Error>(inMap(i, ok.error()));
         }
     }
-    return std::move(description->collider);
+    return std::move(description.collider);
 }
 
 /// Runs f with the exceptions of allocation, by the standard library and by FlatBuffers, as an Error.
@@ -316,9 +297,7 @@ auto withoutExceptions(F f) -> decltype(f()) {
 Result<std::vector<std::byte>> writeContainer(const Collider& collider,
                                               const ContainerWriteOptions& options) {
     return withoutExceptions([&]() -> Result<std::vector<std::byte>> {
-        if (const Result<void> ok = checkWritable(collider, options); !ok) {
-            return forward(ok);
-        }
+        RELIEF_TRY(checkWritable(collider, options));
         return writeChecked(collider, options);
     });
 }
@@ -329,13 +308,10 @@ Result<Collider> readContainer(std::span<const std::byte> bytes, const Container
 
 Result<ContainerInfo> readContainerInfo(std::span<const std::byte> bytes, const ContainerLimits& limits) {
     return withoutExceptions([&]() -> Result<ContainerInfo> {
-        const Result<Description> description = readDescription(bytes, limits);
-        if (!description) {
-            return forward(description);
-        }
-        const ContainerHeader& header = description->header;
+        const Description description = RELIEF_TRY(readDescription(bytes, limits));
+        const ContainerHeader& header = description.header;
         ContainerInfo info{header.major, header.minor, header.file_size, {}};
-        for (const StoredPayload& payload : description->payloads) {
+        for (const StoredPayload& payload : description.payloads) {
             info.payloads.push_back(payload.info);
         }
         return info;
@@ -343,11 +319,8 @@ Result<ContainerInfo> readContainerInfo(std::span<const std::byte> bytes, const 
 }
 
 Result<Collider> loadCollider(const std::filesystem::path& path, const ContainerLimits& limits) {
-    const Result<std::vector<std::byte>> bytes = readFile(path, containerSizeMax(limits));
-    if (!bytes) {
-        return forward(bytes);
-    }
-    Result<Collider> collider = readContainer(*bytes, limits);
+    const std::vector<std::byte> bytes = RELIEF_TRY(readFile(path, containerSizeMax(limits)));
+    Result<Collider> collider = readContainer(bytes, limits);
     if (!collider) {
         return fail(collider.error().code, quotedPath(path) + ": " + collider.error().message);
     }

@@ -77,9 +77,7 @@ Result<ContainerHeader> readContainerHeader(std::span<const std::byte> bytes) {
                        decimal(sizeof(header)) + " bytes");
     }
     std::memcpy(&header, bytes.data(), sizeof(header));
-    if (const Result<void> ok = checkSignature(header); !ok) {
-        return forward(ok);
-    }
+    RELIEF_TRY(checkSignature(header));
     if (header.major != kContainerMajor) {
         return fail(ErrorCode::kUnsupported, "it is of container version " + decimal(header.major) + "." +
                                                  decimal(header.minor) + ", this program reads version " +
@@ -88,9 +86,7 @@ Result<ContainerHeader> readContainerHeader(std::span<const std::byte> bytes) {
     if (header.header_hash != header.computeHash()) {
         return invalid("damaged: the checksum at byte 56 is not that of the header");
     }
-    if (const Result<void> ok = checkFields(header, bytes.size()); !ok) {
-        return forward(ok);
-    }
+    RELIEF_TRY(checkFields(header, bytes.size()));
     return header;
 }
 

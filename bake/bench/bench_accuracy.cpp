@@ -54,12 +54,9 @@ Result<std::vector<MapSpec>> threeMaps(const TriangleMesh& mesh, std::uint64_t b
         spec.direction = glm::vec3(0.0F);
         spec.direction[axis] = -1.0F;
         spec.width = spec.height = kMapSizeMin;
-        const Result<View> view = makeView(spec, mesh);
-        if (!view) {
-            return forward(view);
-        }
+        const View view = RELIEF_TRY(makeView(spec, mesh));
         // One texel between the borders: the tight volume is a third of the texture.
-        extent[axis] = glm::dvec2(view->object_per_map.x, view->object_per_map.y) / 3.0;
+        extent[axis] = glm::dvec2(view.object_per_map.x, view.object_per_map.y) / 3.0;
     }
     const auto resize = [&](double texel) {
         std::uint64_t total = 0;
@@ -89,34 +86,22 @@ Result<std::vector<MapSpec>> threeMaps(const TriangleMesh& mesh, std::uint64_t b
 
 /// The paper's projected depth in the paper's front-back format.
 Result<Baked> bakePaper(const TriangleMesh& mesh, std::uint64_t bytes) {
-    Result<std::vector<MapSpec>> specs = threeMaps(mesh, bytes);
-    if (!specs) {
-        return forward(specs);
-    }
+    std::vector<MapSpec> specs = RELIEF_TRY(threeMaps(mesh, bytes));
     BakeOptions options;
-    options.maps = std::move(*specs);
+    options.maps = std::move(specs);
     return bake(mesh, options);
 }
 
 /// What `relief bake --budget` makes.
 Result<Baked> bakeOurs(const TriangleMesh& open_mesh, std::uint64_t bytes) {
-    const Result<TriangleMesh> closed = closeHoles(open_mesh);
-    if (!closed) {
-        return forward(closed);
-    }
-    const TriangleMesh& mesh = *closed;
-    const Result<MeshQuery> query = MeshQuery::build(mesh);
-    if (!query) {
-        return forward(query);
-    }
+    const TriangleMesh closed = RELIEF_TRY(closeHoles(open_mesh));
+    const TriangleMesh& mesh = closed;
+    const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
     PlanOptions plan_options;
     plan_options.budget_bytes = bytes;
-    const Result<Plan> plan = planViews(mesh, *query, plan_options);
-    if (!plan) {
-        return forward(plan);
-    }
+    const Plan plan = RELIEF_TRY(planViews(mesh, query, plan_options));
     BakeOptions options;
-    options.maps = specsOf(*plan);
+    options.maps = specsOf(plan);
     return bake(mesh, options);
 }
 
@@ -184,20 +169,17 @@ Entry measureVolume(const MeshQuery& query, const TruthSamples& samples, std::ui
 Result<Entry> measureMaps(const MeshQuery& query, const TruthSamples& samples, const std::string& method,
                           std::uint64_t budget) {
     const Stopwatch watch;
-    const Result<Baked> baked =
-        method == "paper" ? bakePaper(query.mesh(), budget) : bakeOurs(query.mesh(), budget);
-    if (!baked) {
-        return forward(baked);
-    }
+    const Baked baked =
+        RELIEF_TRY(method == "paper" ? bakePaper(query.mesh(), budget) : bakeOurs(query.mesh(), budget));
     Entry entry;
     entry.build_seconds = watch.seconds();
     entry.method = method;
-    const ColliderAccuracy accuracy = measureCollider(samples, query, baked->collider);
-    for (const DepthMap& map : baked->collider.maps) {
+    const ColliderAccuracy accuracy = measureCollider(samples, query, baked.collider);
+    for (const DepthMap& map : baked.collider.maps) {
         entry.what += (entry.what.empty() ? "" : " ") + std::to_string(map.width) + "x" +
                       std::to_string(map.height) + (map.faceCount() == 6 ? "x6" : "");
     }
-    entry.maps = baked->collider.maps.size();
+    entry.maps = baked.collider.maps.size();
     entry.bytes = accuracy.gpu_bytes;
     entry.accuracy = jsonColliderAccuracy(accuracy, samples.longest_side);
     return entry;
@@ -419,20 +401,14 @@ struct Arguments {
 /// For the cross-check against other tools: what the volume knows of given points, one line for each:
 /// x,y,z, the exact signed distance that its nodes are made of, and its own lookup.
 Result<void> printValues(const MeshQuery& query, std::uint64_t budget, const std::string& path) {
-    const Result<std::vector<std::byte>> text = readFile(path);
-    if (!text) {
-        return forward(text);
-    }
-    const Result<std::vector<glm::vec3>> points =
-        parsePoints({reinterpret_cast<const char*>(text->data()), text->size()}, path);
-    if (!points) {
-        return forward(points);
-    }
+    const std::vector<std::byte> text = RELIEF_TRY(readFile(path));
+    const std::vector<glm::vec3> points =
+        RELIEF_TRY(parsePoints({reinterpret_cast<const char*>(text.data()), text.size()}, path));
     const DistanceGrid grid = sampleDistances(
         query, makeLattice(query.mesh().bounds, budget / sizeof(std::int16_t), LatticeFit::kCentered));
     const DistanceVolume volume(grid, DistanceVolume::fullRange(grid));
     std::string out;
-    for (const glm::vec3& p : *points) {
+    for (const glm::vec3& p : points) {
         const float values[5] = {p.x, p.y, p.z, static_cast<float>(query.signedDistance(p)),
                                  volume.at(p).distance};
         for (int i = 0; i < 5; ++i) {
@@ -481,70 +457,53 @@ Result<std::vector<std::string>> chosenMeshes(const Arguments& arguments) {
 }
 
 Result<void> run(const Arguments& arguments) {
-    const Result<std::vector<std::uint64_t>> budgets = parseBudgets(arguments.budgets);
-    if (!budgets) {
-        return forward(budgets);
-    }
-    const Result<std::vector<std::string>> paths = chosenMeshes(arguments);
-    if (!paths) {
-        return forward(paths);
-    }
+    const std::vector<std::uint64_t> budgets = RELIEF_TRY(parseBudgets(arguments.budgets));
+    const std::vector<std::string> paths = RELIEF_TRY(chosenMeshes(arguments));
     Cache cache(arguments.cache);
     AccuracyOptions options;
     options.samples = arguments.samples;
     options.seed = arguments.seed;
     std::vector<Entry> entries;
     Json mesh_reports = Json::array();
-    for (const std::string& path : *paths) {
+    for (const std::string& path : paths) {
         const Stopwatch watch;
-        const Result<TriangleMesh> mesh = loadMesh(path);
-        if (!mesh) {
-            return forward(mesh);
-        }
-        const Result<MeshQuery> query = MeshQuery::build(*mesh);
-        if (!query) {
-            return forward(query);
-        }
+        const TriangleMesh mesh = RELIEF_TRY(loadMesh(path));
+        const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
         if (!arguments.values.empty()) {
-            return printValues(*query, budgets->front(), arguments.values);
+            return printValues(query, budgets.front(), arguments.values);
         }
-        const TruthSamples samples = sampleTruth(*query, options);
+        const TruthSamples samples = sampleTruth(query, options);
         Json mesh_report = jsonSamples(samples);
-        mesh_report["mesh"] = mesh->name;
-        mesh_report["mesh_hash"] = mesh->content_hash;
-        mesh_report["triangles"] = mesh->triangles.size();
-        mesh_report["watertight"] = query->watertight();
+        mesh_report["mesh"] = mesh.name;
+        mesh_report["mesh_hash"] = mesh.content_hash;
+        mesh_report["triangles"] = mesh.triangles.size();
+        mesh_report["watertight"] = query.watertight();
         mesh_reports.push_back(std::move(mesh_report));
-        for (const std::uint64_t budget : *budgets) {
+        for (const std::uint64_t budget : budgets) {
             for (const std::string& method : arguments.methods) {
                 Entry entry;
                 if (method == "volume") {
-                    const std::string key = Cache::key(*mesh, budget, options);
+                    const std::string key = Cache::key(mesh, budget, options);
                     if (std::optional<Entry> known = cache.find(key)) {
                         entry = std::move(*known);
                     } else {
-                        entry = measureVolume(*query, samples, budget);
-                        if (const Result<void> added = cache.add(key, entry); !added) {
-                            return added;
-                        }
+                        entry = measureVolume(query, samples, budget);
+                        RELIEF_TRY(cache.add(key, entry));
                     }
                 } else {
-                    Result<Entry> measured = measureMaps(*query, samples, method, budget);
-                    if (!measured) {
-                        return forward(measured);
-                    }
-                    entry = std::move(*measured);
+                    Entry measured = RELIEF_TRY(measureMaps(query, samples, method, budget));
+                    entry = std::move(measured);
                 }
-                entry.mesh = mesh->name;
-                entry.closed = query->watertight();
+                entry.mesh = mesh.name;
+                entry.closed = query.watertight();
                 entry.budget = budget;
                 entries.push_back(std::move(entry));
             }
         }
-        std::fprintf(stderr, "%s: %.1f s\n", mesh->name.c_str(), watch.seconds());
+        std::fprintf(stderr, "%s: %.1f s\n", mesh.name.c_str(), watch.seconds());
     }
     const std::vector<Contest> contests = contestsOf(entries);
-    const std::vector<BudgetSummary> summaries = summarize(summaryRows(contests, options.samples), *budgets);
+    const std::vector<BudgetSummary> summaries = summarize(summaryRows(contests, options.samples), budgets);
     std::string text;
     if (arguments.json) {
         Json json = {{"meshes", mesh_reports}, {"results", Json::array()}, {"summaries", Json::array()}};

@@ -48,9 +48,7 @@ Result<Backend> chooseBackend(const BackendOptions& options, const GlOptions& gl
     }
     Backend backend;
     if (*word == "raycast") {
-        if (const Result<void> idle = refuseGlOptions(gl, "--backend raster or auto"); !idle) {
-            return forward(idle);
-        }
+        RELIEF_TRY(refuseGlOptions(gl, "--backend raster or auto"));
         return backend;
     }
     const bool automatic = *word == "auto";

@@ -33,18 +33,12 @@ Result<MapSpecDefaults> mapDefaults(const BakeCommand& command) {
     constexpr std::array<std::string_view, 2> kDepths = {"half", "unorm16"};
     MapSpecDefaults defaults;
     if (!command.decode.empty()) {
-        const Result<std::size_t> decode = wordOf("--decode", command.decode, kDecodes);
-        if (!decode) {
-            return forward(decode);
-        }
-        defaults.decode = *decode == 0 ? Decode::kProjected : Decode::kPlane;
+        const std::size_t decode = RELIEF_TRY(wordOf("--decode", command.decode, kDecodes));
+        defaults.decode = decode == 0 ? Decode::kProjected : Decode::kPlane;
     }
     if (!command.depth.empty()) {
-        const Result<std::size_t> depth = wordOf("--depth", command.depth, kDepths);
-        if (!depth) {
-            return forward(depth);
-        }
-        defaults.front_back = *depth == 0 ? MapFormat::kFrontBackHalf : MapFormat::kFrontBackFixed;
+        const std::size_t depth = RELIEF_TRY(wordOf("--depth", command.depth, kDepths));
+        defaults.front_back = depth == 0 ? MapFormat::kFrontBackHalf : MapFormat::kFrontBackFixed;
     }
     if (command.maps.empty() && !(command.decode.empty() && command.depth.empty())) {
         return fail(ErrorCode::kUsage, std::string(command.decode.empty() ? "--depth" : "--decode") +
@@ -89,11 +83,8 @@ Result<void> readPlanSettings(const BakeCommand& command, BakeSettings& settings
         }
     }
     if (!command.max_error.empty()) {
-        const Result<float> percent = parsePercent(command.max_error, "--max-error");
-        if (!percent) {
-            return forward(percent);
-        }
-        settings.max_error = double{*percent};
+        const float percent = RELIEF_TRY(parsePercent(command.max_error, "--max-error"));
+        settings.max_error = double{percent};
     }
     if (!command.plan_out.empty()) {
         if (settings.source != MapSource::kPlanner) {
@@ -106,34 +97,22 @@ Result<void> readPlanSettings(const BakeCommand& command, BakeSettings& settings
     }
     if (!command.quality.empty()) {
         constexpr std::array<std::string_view, 3> kQualities = {"fast", "normal", "best"};
-        const Result<std::size_t> quality = wordOf("--quality", command.quality, kQualities);
-        if (!quality) {
-            return forward(quality);
-        }
-        settings.bake.quality = static_cast<Quality>(*quality);
+        const std::size_t quality = RELIEF_TRY(wordOf("--quality", command.quality, kQualities));
+        settings.bake.quality = static_cast<Quality>(quality);
     }
     if (!command.prefer.empty()) {
         constexpr std::array<std::string_view, 3> kPreferences = {"neither", "inside", "outside"};
-        const Result<std::size_t> prefer = wordOf("--prefer", command.prefer, kPreferences);
-        if (!prefer) {
-            return forward(prefer);
-        }
-        settings.bake.prefer = static_cast<Prefer>(*prefer);
+        const std::size_t prefer = RELIEF_TRY(wordOf("--prefer", command.prefer, kPreferences));
+        settings.bake.prefer = static_cast<Prefer>(prefer);
     }
     return {};
 }
 
 Result<void> readMapSettings(const BakeCommand& command, BakeSettings& settings) {
-    const Result<MapSpecDefaults> defaults = mapDefaults(command);
-    if (!defaults) {
-        return forward(defaults);
-    }
+    const MapSpecDefaults defaults = RELIEF_TRY(mapDefaults(command));
     for (const std::string& text : command.maps) {
-        const Result<MapSpec> spec = parseMapSpec(text, *defaults);
-        if (!spec) {
-            return forward(spec);
-        }
-        settings.bake.maps.push_back(*spec);
+        const MapSpec spec = RELIEF_TRY(parseMapSpec(text, defaults));
+        settings.bake.maps.push_back(spec);
     }
     if (settings.source == MapSource::kPaper) {
         settings.bake.maps = paperMapSpecs();
@@ -147,15 +126,10 @@ Result<void> readMapSettings(const BakeCommand& command, BakeSettings& settings)
             "--resolution does nothing where maps are planned, each of the size that it needs; leave it "
             "out, set --budget, or choose --map or --paper");
     }
-    const Result<std::uint64_t> resolution = parseCount(command.resolution, "--resolution");
-    if (!resolution) {
-        return forward(resolution);
-    }
-    const Result<std::uint32_t> texels = checkMapSize(*resolution, MapFormat::kFrontBackHalf, "--resolution");
-    if (!texels) {
-        return forward(texels);
-    }
-    settings.bake.resolution = *texels;
+    const std::uint64_t resolution = RELIEF_TRY(parseCount(command.resolution, "--resolution"));
+    const std::uint32_t texels =
+        RELIEF_TRY(checkMapSize(resolution, MapFormat::kFrontBackHalf, "--resolution"));
+    settings.bake.resolution = texels;
     return {};
 }
 
@@ -163,39 +137,28 @@ Result<void> readMapSettings(const BakeCommand& command, BakeSettings& settings)
 
 Result<BakeSettings> settingsOf(const BakeCommand& command) {
     BakeSettings settings;
-    const Result<MapSource> source = sourceOf(command);
-    if (!source) {
-        return forward(source);
-    }
-    settings.source = *source;
+    const MapSource source = RELIEF_TRY(sourceOf(command));
+    settings.source = source;
     for (const auto& read : {readPlanSettings, readMapSettings}) {
-        if (const Result<void> done = read(command, settings); !done) {
-            return forward(done);
-        }
+        RELIEF_TRY(read(command, settings));
     }
     if (command.holes != "close" && command.holes != "keep") {
         return fail(ErrorCode::kUsage,
                     "--holes is '" + cleanUtf8(command.holes) + "' but must be close or keep");
     }
     if (!command.threads.empty()) {
-        const Result<std::uint64_t> threads = parseCount(command.threads, "--threads");
-        if (!threads) {
-            return forward(threads);
-        }
-        if (*threads < 1 || *threads > kThreadsMax) {
+        const std::uint64_t threads = RELIEF_TRY(parseCount(command.threads, "--threads"));
+        if (threads < 1 || threads > kThreadsMax) {
             return fail(ErrorCode::kUsage, "--threads must be 1 to " + std::to_string(kThreadsMax));
         }
-        settings.bake.threads = static_cast<unsigned>(*threads);
+        settings.bake.threads = static_cast<unsigned>(threads);
     }
-    const Result<std::uint64_t> level = parseCount(command.compress, "--compress");
-    if (!level) {
-        return forward(level);
-    }
-    if (*level > kCompressionMax) {
+    const std::uint64_t level = RELIEF_TRY(parseCount(command.compress, "--compress"));
+    if (level > kCompressionMax) {
         return fail(ErrorCode::kUsage,
                     "--compress must be 0 (none) to " + std::to_string(kCompressionMax) + " (smallest)");
     }
-    settings.write.compression_level = static_cast<int>(*level);
+    settings.write.compression_level = static_cast<int>(level);
     if (command.json && command.output == "-") {
         return fail(ErrorCode::kUsage, "--json and -o - both want standard output; give -o a file");
     }

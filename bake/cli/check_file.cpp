@@ -12,12 +12,9 @@
 namespace relief {
 
 Result<void> checkFile(const std::string& file, bool json) {
-    const Result<std::vector<std::byte>> bytes = readFile(file, containerSizeMax({}));
-    if (!bytes) {
-        return forward(bytes);
-    }
+    const std::vector<std::byte> bytes = RELIEF_TRY(readFile(file, containerSizeMax({})));
     const std::string quoted = file == "-" ? "standard input" : quotedPath(file);
-    const Result<Inspection> inspection = inspectContainer(*bytes);
+    const Result<Inspection> inspection = inspectContainer(bytes);
     if (!inspection) {
         return fail(inspection.error().code, quoted + ": " + inspection.error().message);
     }

@@ -61,18 +61,15 @@ std::vector<InputFile> inputsOf(const BakeCommand& command, const TriangleMesh& 
 
 /// The maps of --plan, and its quality and preference where the command line names none.
 Result<void> readPlanFile(const BakeCommand& command, BakeSettings& settings) {
-    const Result<PlanFile> plan = loadPlan(command.plan);
-    if (!plan) {
-        return forward(plan);
-    }
+    const PlanFile plan = RELIEF_TRY(loadPlan(command.plan));
     if (command.quality.empty()) {
-        settings.bake.quality = plan->quality;
-        settings.plan_quality = plan->quality;
+        settings.bake.quality = plan.quality;
+        settings.plan_quality = plan.quality;
     }
     if (command.prefer.empty()) {
-        settings.bake.prefer = plan->prefer;
+        settings.bake.prefer = plan.prefer;
     }
-    for (const PlanFileMap& map : plan->maps) {
+    for (const PlanFileMap& map : plan.maps) {
         settings.bake.maps.push_back(map.spec);
     }
     return {};
@@ -85,11 +82,8 @@ Result<PlanReport> planMaps(const MeshQuery& query, BakeSettings& settings) {
     PlanOptions options;
     options.budget_bytes = report.budget;
     options.prefer = settings.bake.prefer;
-    Result<Plan> plan = planViews(query.mesh(), query, options);
-    if (!plan) {
-        return forward(plan);
-    }
-    report.plan = std::move(*plan);
+    Plan plan = RELIEF_TRY(planViews(query.mesh(), query, options));
+    report.plan = std::move(plan);
     settings.bake.maps = specsOf(report.plan);
     return report;
 }
@@ -107,13 +101,10 @@ Result<Baked> searchBudget(const MeshQuery& query, const MeshQuery& truth, const
         spdlog::info("{}: {:.3g} % of the points near the surface are on the wrong side",
                      bytesText(made.budget), made.wrong_percent);
     };
-    Result<BudgetSearchResult> found = bakeForError(query, truth, options);
-    if (!found) {
-        return forward(found);
-    }
-    report = PlanReport{std::move(found->plan), found->chosen.budget, settings.max_error,
-                        found->chosen.wrong_percent, std::move(found->tries)};
-    return std::move(found->baked);
+    BudgetSearchResult found = RELIEF_TRY(bakeForError(query, truth, options));
+    report = PlanReport{std::move(found.plan), found.chosen.budget, settings.max_error,
+                        found.chosen.wrong_percent, std::move(found.tries)};
+    return std::move(found.baked);
 }
 
 Result<Baked> bakeMaps(const BakeCommand& command, const TriangleMesh& mesh, BakeSettings& settings) {
@@ -136,10 +127,7 @@ Result<Baked> makeCollider(const BakeCommand& command, const TriangleMesh& impor
                            BakeSettings& settings, std::optional<PlanReport>& plan, BakeTimes& times) {
     if (settings.source == MapSource::kPlanner) {
         const Stopwatch watch;
-        const Result<MeshQuery> query = MeshQuery::build(mesh);
-        if (!query) {
-            return forward(query);
-        }
+        const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
         if (settings.max_error) {
             std::optional<Result<MeshQuery>> open;
             if (mesh.closed_holes > 0 || !command.care.repair.empty()) {
@@ -148,15 +136,12 @@ Result<Baked> makeCollider(const BakeCommand& command, const TriangleMesh& impor
                     return forward(*open);
                 }
             }
-            Result<Baked> baked = searchBudget(*query, open ? **open : *query, settings, plan);
+            Result<Baked> baked = searchBudget(query, open ? **open : query, settings, plan);
             times.search_ms = watch.ms();
             return baked;
         }
-        Result<PlanReport> planned = planMaps(*query, settings);
-        if (!planned) {
-            return forward(planned);
-        }
-        plan = std::move(*planned);
+        PlanReport planned = RELIEF_TRY(planMaps(query, settings));
+        plan = std::move(planned);
         times.plan_ms = watch.ms();
     }
     return bakeMaps(command, mesh, settings);
@@ -203,10 +188,7 @@ nlohmann::ordered_json jsonSettings(const BakeCommand& command, const BakeSettin
 Result<void> runBake(const BakeCommand& command) {
     startLogging(command.common);
     const Stopwatch total;
-    Result<BakeSettings> settings = settingsOf(command);
-    if (!settings) {
-        return forward(settings);
-    }
+    BakeSettings settings = RELIEF_TRY(settingsOf(command));
     for (const Result<void>& ready :
          {checkImportArguments(command.import), checkMeshCare(command.care), preflight(command)}) {
         if (!ready) {
@@ -214,30 +196,25 @@ Result<void> runBake(const BakeCommand& command) {
         }
     }
     std::string plan_hash;
-    if (settings->source == MapSource::kPlanFile) {
+    if (settings.source == MapSource::kPlanFile) {
         // Before it is read: should it change meanwhile, the hash is that of neither, or of the older one.
         const auto plan_bytes = readFile(command.plan);
         plan_hash = plan_bytes ? xxh3_128Hex(*plan_bytes) : "";
-        if (const Result<void> read = readPlanFile(command, *settings); !read) {
-            return read;
-        }
+        RELIEF_TRY(readPlanFile(command, settings));
     }
-    const Result<Backend> backend =
-        chooseBackend(command.backend, command.gl,
-                      {settings->source == MapSource::kPlanner,
-                       !command.quality.empty() || settings->plan_quality.has_value(), settings->bake.quality,
-                       settings->bake.prefer});
-    if (!backend) {
-        return forward(backend);
-    }
-    settings->bake.rasterize = backend->raster;
-    if (backend->raster) {
-        settings->bake.quality = Quality::kFast;
+    const Backend backend =
+        RELIEF_TRY(chooseBackend(command.backend, command.gl,
+                                 {settings.source == MapSource::kPlanner,
+                                  !command.quality.empty() || settings.plan_quality.has_value(),
+                                  settings.bake.quality, settings.bake.prefer}));
+    settings.bake.rasterize = backend.raster;
+    if (backend.raster) {
+        settings.bake.quality = Quality::kFast;
     }
     // Planning and measuring keep to --threads too.
     std::optional<tbb::global_control> control;
-    if (settings->bake.threads != 0) {
-        control.emplace(tbb::global_control::max_allowed_parallelism, settings->bake.threads);
+    if (settings.bake.threads != 0) {
+        control.emplace(tbb::global_control::max_allowed_parallelism, settings.bake.threads);
     }
 
     BakeTimes times;
@@ -254,16 +231,13 @@ Result<void> runBake(const BakeCommand& command) {
     }
 
     std::optional<TriangleMesh> imported;  // only --max-error looks back
-    if (settings->max_error && (command.holes == "close" || !command.care.repair.empty())) {
+    if (settings.max_error && (command.holes == "close" || !command.care.repair.empty())) {
         imported = *mesh;
     }
     MeshCareOptions care_options = command.care;
     care_options.report = command.json || !command.common.quiet;
-    Result<CaredMesh> cared = careFor(std::move(*mesh), care_options);
-    if (!cared) {
-        return forward(cared);
-    }
-    mesh = std::move(cared->mesh);
+    CaredMesh cared = RELIEF_TRY(careFor(std::move(*mesh), care_options));
+    mesh = std::move(cared.mesh);
     if (command.holes == "close") {
         mesh = closeHoles(std::move(*mesh));
         if (!mesh) {
@@ -271,9 +245,9 @@ Result<void> runBake(const BakeCommand& command) {
         }
     }
     std::optional<PlanReport> plan;
-    Result<Baked> baked = makeCollider(command, imported ? *imported : *mesh, *mesh, *settings, plan, times);
-    if (backend->raster) {
-        backend->gl.watchdog->rest();
+    Result<Baked> baked = makeCollider(command, imported ? *imported : *mesh, *mesh, settings, plan, times);
+    if (backend.raster) {
+        backend.gl.watchdog->rest();
     }
     if (!baked) {
         return forward(baked);
@@ -283,8 +257,8 @@ Result<void> runBake(const BakeCommand& command) {
         spdlog::info("{}: closed {} hole{} with {} triangles for baking: the mesh is nearly closed",
                      mesh->name, mesh->closed_holes, mesh->closed_holes == 1 ? "" : "s", mesh->cap_triangles);
     }
-    if (!backend->reason.empty()) {
-        spdlog::info("backend {}: {}", backend->raster ? "raster" : "raycast", backend->reason);
+    if (!backend.reason.empty()) {
+        spdlog::info("backend {}: {}", backend.raster ? "raster" : "raycast", backend.reason);
     }
     std::vector<std::string>& warnings = baked->report.warnings;
     warnings.insert(warnings.begin(), mesh->warnings.begin(), mesh->warnings.end());
@@ -296,20 +270,12 @@ Result<void> runBake(const BakeCommand& command) {
         baked->collider.provenance.options += " --holes keep";
     }
     baked->collider.provenance.options += importProvenance(command.import);
-    baked->collider.provenance.options += careOptionsText(cared->care);
+    baked->collider.provenance.options += careOptionsText(cared.care);
     const Stopwatch write_watch;
-    const Result<std::vector<std::byte>> bytes = writeContainer(baked->collider, settings->write);
-    if (!bytes) {
-        return forward(bytes);
-    }
-    if (const Result<void> written = writeFile(command.output, *bytes); !written) {
-        return written;
-    }
+    const std::vector<std::byte> bytes = RELIEF_TRY(writeContainer(baked->collider, settings.write));
+    RELIEF_TRY(writeFile(command.output, bytes));
     if (!command.plan_out.empty()) {
-        if (const Result<void> written = writePlanFile(command.plan_out, *plan, *baked, settings->bake);
-            !written) {
-            return written;
-        }
+        RELIEF_TRY(writePlanFile(command.plan_out, *plan, *baked, settings.bake));
     }
     const std::vector<InputFile> inputs = inputsOf(command, *mesh, plan_hash);
     if (!command.depfile.empty()) {
@@ -317,27 +283,22 @@ Result<void> runBake(const BakeCommand& command) {
         for (const InputFile& input : inputs) {
             names.push_back(input.path);
         }
-        if (const Result<void> written = writeDepfile(command.depfile, {command.output}, names); !written) {
-            return written;
-        }
+        RELIEF_TRY(writeDepfile(command.depfile, {command.output}, names));
     }
     times.write_ms = write_watch.ms();
     times.total_ms = total.ms();
 
-    const BakeSummary summary{*mesh, *baked, plan, times, cared->care, command.common.verbose};
+    const BakeSummary summary{*mesh, *baked, plan, times, cared.care, command.common.verbose};
     if (command.json) {
-        const Result<ContainerInfo> info = readContainerInfo(*bytes);
-        if (!info) {
-            return forward(info);
-        }
-        auto report = jsonBake(summary, *info, jsonSettings(command, *settings, *backend, *baked, plan));
+        const ContainerInfo info = RELIEF_TRY(readContainerInfo(bytes));
+        auto report = jsonBake(summary, info, jsonSettings(command, settings, backend, *baked, plan));
         for (const InputFile& input : inputs) {
             report["inputs"].push_back({{"file", input.path}, {"hash", input.hash}});
         }
         return printOut(dump(report));
     }
     if (!command.common.quiet) {
-        std::fputs(bakeText(summary, command.output, bytes->size()).c_str(), stderr);
+        std::fputs(bakeText(summary, command.output, bytes.size()).c_str(), stderr);
     }
     return {};
 }

@@ -44,29 +44,20 @@ struct Settings {
 
 Result<Settings> settingsOf(const CheckCommand& command) {
     Settings settings;
-    const Result<std::uint64_t> samples = parseCount(command.samples, "--samples");
-    if (!samples) {
-        return forward(samples);
-    }
-    if (*samples < 1) {
+    const std::uint64_t samples = RELIEF_TRY(parseCount(command.samples, "--samples"));
+    if (samples < 1) {
         return fail(ErrorCode::kUsage, "--samples is 0 but must be at least 1");
     }
-    if (*samples > kSamplesMax) {
-        return fail(ErrorCode::kLimit, "--samples is " + std::to_string(*samples) + "; the limit is " +
+    if (samples > kSamplesMax) {
+        return fail(ErrorCode::kLimit, "--samples is " + std::to_string(samples) + "; the limit is " +
                                            std::to_string(kSamplesMax));
     }
-    settings.accuracy.samples = static_cast<std::uint32_t>(*samples);
-    const Result<std::uint64_t> seed = parseCount(command.seed, "--seed");
-    if (!seed) {
-        return forward(seed);
-    }
-    settings.accuracy.seed = *seed;
+    settings.accuracy.samples = static_cast<std::uint32_t>(samples);
+    const std::uint64_t seed = RELIEF_TRY(parseCount(command.seed, "--seed"));
+    settings.accuracy.seed = seed;
     if (!command.max_error.empty()) {
-        const Result<float> percent = parsePercent(command.max_error, "--max-error");
-        if (!percent) {
-            return forward(percent);
-        }
-        settings.max_error = *percent;
+        const float percent = RELIEF_TRY(parsePercent(command.max_error, "--max-error"));
+        settings.max_error = percent;
     }
     return settings;
 }
@@ -100,13 +91,8 @@ Result<void> runCheck(const CheckCommand& command) {
     if (command.mesh.empty()) {
         return checkFile(command.file, command.json);
     }
-    const Result<Settings> settings = settingsOf(command);
-    if (!settings) {
-        return forward(settings);
-    }
-    if (const Result<void> known = checkImportArguments(command.import); !known) {
-        return known;
-    }
+    const Settings settings = RELIEF_TRY(settingsOf(command));
+    RELIEF_TRY(checkImportArguments(command.import));
     if (!command.html.empty()) {
         if (command.html == "-") {
             return fail(ErrorCode::kUsage, "--html cannot be standard output, where the report goes");
@@ -119,54 +105,35 @@ Result<void> runCheck(const CheckCommand& command) {
             }
         }
     }
-    const Result<Collider> collider = loadCollider(command.file);
-    if (!collider) {
-        return forward(collider);
-    }
-    const Result<TriangleMesh> imported = loadMesh(command.mesh, command.import);
-    if (!imported) {
-        return forward(imported);
-    }
+    const Collider collider = RELIEF_TRY(loadCollider(command.file));
+    const TriangleMesh imported = RELIEF_TRY(loadMesh(command.mesh, command.import));
     // As baked: where solids overlap, their winding decides what is inside.
-    const Result<Winding> winding = windOutwards(*imported);
-    if (!winding) {
-        return forward(winding);
-    }
-    const TriangleMesh* const mesh = &winding->mesh;
-    if (const Result<void> same = checkSameMesh(*collider, *mesh); !same) {
-        return same;
-    }
-    const bool same_file = collider->provenance.mesh_hash == mesh->content_hash;
+    const Winding winding = RELIEF_TRY(windOutwards(imported));
+    const TriangleMesh* const mesh = &winding.mesh;
+    RELIEF_TRY(checkSameMesh(collider, *mesh));
+    const bool same_file = collider.provenance.mesh_hash == mesh->content_hash;
     std::vector<std::string> warnings = mesh->warnings;
     if (!same_file) {
         warnings.push_back(
             mesh->name + " is not the file that the collider was baked from (" +
-            collider->provenance.mesh_name + ", XXH3-128 " +
-            (collider->provenance.mesh_hash.empty() ? "unknown" : collider->provenance.mesh_hash) +
+            collider.provenance.mesh_name + ", XXH3-128 " +
+            (collider.provenance.mesh_hash.empty() ? "unknown" : collider.provenance.mesh_hash) +
             "); its bounds are the same");
     }
     for (const std::string& warning : warnings) {
         spdlog::warn(warning);
     }
-    const Result<MeshQuery> query = MeshQuery::build(*mesh);
-    if (!query) {
-        return forward(query);
-    }
-    const TruthSamples samples = sampleTruth(*query, settings->accuracy);
-    const ColliderAccuracy accuracy = measureCollider(samples, *query, *collider);
+    const MeshQuery query = RELIEF_TRY(MeshQuery::build(*mesh));
+    const TruthSamples samples = sampleTruth(query, settings.accuracy);
+    const ColliderAccuracy accuracy = measureCollider(samples, query, collider);
     spdlog::debug("truth {:.2f} s, field {:.2f} s", samples.seconds, accuracy.field.seconds);
 
     if (!command.html.empty()) {
-        const Result<std::string> page =
-            accuracyPage({fileName(command.file), *collider, *query, samples, accuracy});
-        if (!page) {
-            return forward(page);
-        }
-        if (const Result<void> written = writeFile(command.html, std::as_bytes(std::span(*page))); !written) {
-            return written;
-        }
+        const std::string page =
+            RELIEF_TRY(accuracyPage({fileName(command.file), collider, query, samples, accuracy}));
+        RELIEF_TRY(writeFile(command.html, std::as_bytes(std::span(page))));
     }
-    const bool passed = !settings->max_error || accuracy.field.near.total() <= double{*settings->max_error};
+    const bool passed = !settings.max_error || accuracy.field.near.total() <= double{*settings.max_error};
     std::string text;
     if (command.json) {
         nlohmann::ordered_json json = {
@@ -175,33 +142,31 @@ Result<void> runCheck(const CheckCommand& command) {
              {{"name", mesh->name},
               {"hash", mesh->content_hash},
               {"triangles", mesh->triangles.size()},
-              {"watertight", query->watertight()},
+              {"watertight", query.watertight()},
               {"baked_from_it", same_file}}},
-            {"unit", collider->unit},
+            {"unit", collider.unit},
             {"sampling", jsonSamples(samples)},
             {"accuracy", jsonColliderAccuracy(accuracy, samples.longest_side)},
             {"max_error_percent", nullptr},
             {"passed", passed},
             {"warnings", warnings},
             {"times_ms", {{"truth", 1000.0 * samples.seconds}, {"field", 1000.0 * accuracy.field.seconds}}}};
-        if (settings->max_error) {
-            json["max_error_percent"] = jsonNumber(*settings->max_error);
+        if (settings.max_error) {
+            json["max_error_percent"] = jsonNumber(*settings.max_error);
         }
         text = dump(json);
     } else {
         text = fileName(command.file) + " measured against " + mesh->name + ", " +
                std::to_string(mesh->triangles.size()) + " triangles" +
-               (query->watertight() ? "" : " (not closed)") + "\n\n" +
-               accuracyText(accuracy, samples, collider->unit);
+               (query.watertight() ? "" : " (not closed)") + "\n\n" +
+               accuracyText(accuracy, samples, collider.unit);
     }
-    if (const Result<void> printed = printOut(text); !printed) {
-        return printed;
-    }
+    RELIEF_TRY(printOut(text));
     if (!passed) {
         return fail(ErrorCode::kDifference, shortNumber(accuracy.field.near.total()) +
                                                 " % of the points near the surface are on the wrong side, "
                                                 "more than --max-error " +
-                                                shortest(*settings->max_error) +
+                                                shortest(*settings.max_error) +
                                                 " %; bake with larger or more maps");
     }
     return {};

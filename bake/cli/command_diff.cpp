@@ -31,15 +31,12 @@ std::string shownName(const std::string& file) {
 }
 
 Result<Loaded> load(const std::string& file) {
-    Result<std::vector<std::byte>> bytes = readFile(file);
-    if (!bytes) {
-        return forward(bytes);
-    }
-    Result<Collider> collider = readContainer(*bytes);
+    std::vector<std::byte> bytes = RELIEF_TRY(readFile(file));
+    Result<Collider> collider = readContainer(bytes);
     if (!collider) {
         return fail(collider.error().code, shownName(file) + ": " + collider.error().message);
     }
-    return Loaded{std::move(*bytes), std::move(*collider)};
+    return Loaded{std::move(bytes), std::move(*collider)};
 }
 
 Result<double> parseAmount(const std::string& text, const std::string& option, const char* unit) {
@@ -72,30 +69,19 @@ Result<DiffLimits> limitsOf(const DiffCommand& command) {
 
 Result<void> runDiff(const DiffCommand& command) {
     startLogging(command.common);
-    const Result<DiffLimits> limits = limitsOf(command);
-    if (!limits) {
-        return forward(limits);
-    }
+    const DiffLimits limits = RELIEF_TRY(limitsOf(command));
     if (command.a == "-" && command.b == "-") {
         return fail(ErrorCode::kUsage, "A and B cannot both be standard input; give one of them a file");
     }
-    const Result<Loaded> a = load(command.a);
-    if (!a) {
-        return forward(a);
-    }
-    const Result<Loaded> b = load(command.b);
-    if (!b) {
-        return forward(b);
-    }
-    const ColliderDifference difference = compareColliders(a->collider, b->collider, limits->surface);
-    const std::string verdict = diffVerdict(difference, *limits);
-    const DiffSummary summary{shownName(command.a), shownName(command.b), a->collider, difference, *limits,
-                              a->bytes == b->bytes};
+    const Loaded a = RELIEF_TRY(load(command.a));
+    const Loaded b = RELIEF_TRY(load(command.b));
+    const ColliderDifference difference = compareColliders(a.collider, b.collider, limits.surface);
+    const std::string verdict = diffVerdict(difference, limits);
+    const DiffSummary summary{shownName(command.a), shownName(command.b), a.collider, difference, limits,
+                              a.bytes == b.bytes};
     if (command.json || !command.common.quiet) {
         const std::string text = command.json ? dump(jsonDiff(summary)) : diffText(summary);
-        if (const Result<void> printed = printOut(text); !printed) {
-            return printed;
-        }
+        RELIEF_TRY(printOut(text));
     }
     if (!verdict.empty()) {
         return fail(ErrorCode::kDifference, summary.a + " and " + summary.b + " differ: " + verdict);

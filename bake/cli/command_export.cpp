@@ -18,26 +18,16 @@ struct ExportCommand {
 
 Result<void> runExport(const ExportCommand& command) {
     startLogging(command.common);
-    const Result<Collider> collider = loadCollider(command.file);
-    if (!collider) {
-        return forward(collider);
-    }
+    const Collider collider = RELIEF_TRY(loadCollider(command.file));
     const std::filesystem::path folder = command.output;
-    if (const Result<void> ready = preflightFolder(folder); !ready) {
-        return ready;
-    }
+    RELIEF_TRY(preflightFolder(folder));
     std::size_t count = 0;
-    for (std::size_t i = 0; i < collider->maps.size(); ++i) {
-        const DepthMap& map = collider->maps[i];
+    for (std::size_t i = 0; i < collider.maps.size(); ++i) {
+        const DepthMap& map = collider.maps[i];
         for (std::uint32_t face = 0; face < map.faceCount(); ++face) {
             const std::filesystem::path path = folder / mapImageName(map, i, face);
-            const Result<std::vector<std::byte>> bytes = encodeExr(mapImage(map, face, collider->unit));
-            if (!bytes) {
-                return forward(bytes);
-            }
-            if (const Result<void> written = writeFile(path, *bytes); !written) {
-                return written;
-            }
+            const std::vector<std::byte> bytes = RELIEF_TRY(encodeExr(mapImage(map, face, collider.unit)));
+            RELIEF_TRY(writeFile(path, bytes));
             spdlog::debug("wrote {}", quotedPath(path));
             ++count;
         }

@@ -54,20 +54,17 @@ std::string humanReport(const Collider& collider, const ContainerInfo& info) {
 
 Result<void> runInfo(const InfoCommand& command) {
     startLogging(command.common);
-    const Result<std::vector<std::byte>> bytes = readFile(command.file);
-    if (!bytes) {
-        return forward(bytes);
-    }
+    const std::vector<std::byte> bytes = RELIEF_TRY(readFile(command.file));
     const auto named = [&](const Error& error) {
         return fail(error.code, (command.file == "-" ? "standard input" : quotedPath(command.file)) + ": " +
                                     error.message);
     };
     // The whole container is checked, payloads too: what info shows can be relied on.
-    const Result<Collider> collider = readContainer(*bytes);
+    const Result<Collider> collider = readContainer(bytes);
     if (!collider) {
         return named(collider.error());
     }
-    const Result<ContainerInfo> info = readContainerInfo(*bytes);
+    const Result<ContainerInfo> info = readContainerInfo(bytes);
     if (!info) {
         return named(info.error());
     }

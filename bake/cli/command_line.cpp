@@ -126,14 +126,11 @@ Result<void> runCommandLine(int argc, char** argv) {
     if (const auto dumped = dumpedCommandLine(readProgram(app, "relief", RELIEF_VERSION), argc, argv)) {
         return printOut(*dumped);
     }
-    Result<std::vector<std::string>> arguments =
-        expandArguments(std::vector<std::string>(argv + std::min(argc, 1), argv + argc));
-    if (!arguments) {
-        return forward(arguments);
-    }
-    std::reverse(arguments->begin(), arguments->end());  // as CLI11 takes them
+    std::vector<std::string> arguments =
+        RELIEF_TRY(expandArguments(std::vector<std::string>(argv + std::min(argc, 1), argv + argc)));
+    std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
     try {
-        app.parse(std::move(*arguments));
+        app.parse(std::move(arguments));
     } catch (const CLI::CallForHelp&) {
         const std::vector<CLI::App*> called = app.get_subcommands();
         return printOut(called.empty() ? app.help() : called.front()->help("relief"));

@@ -35,39 +35,28 @@ std::vector<FieldSample> evaluateOnCpu(const Collider& collider, std::span<const
 
 Result<std::vector<FieldSample>> evaluateOnGpu(const Collider& collider, std::span<const glm::vec3> points,
                                                const GlOptions& options) {
-    const Result<WatchedContext> gl = openGl(options);
-    if (!gl) {
-        return forward(gl);
-    }
-    spdlog::debug("{}", gl->context->description());
-    gl->watchdog->feed("uploading the collider");
-    const Result<FieldQuery> query = FieldQuery::create(collider);
-    if (!query) {
-        return forward(query);
-    }
+    const WatchedContext gl = RELIEF_TRY(openGl(options));
+    spdlog::debug("{}", gl.context->description());
+    gl.watchdog->feed("uploading the collider");
+    const FieldQuery query = RELIEF_TRY(FieldQuery::create(collider));
     std::vector<FieldSample> samples;
     samples.reserve(points.size());
     for (std::size_t first = 0; first < points.size(); first += kPointsAtOnce) {
         const std::span<const glm::vec3> some =
             points.subspan(first, std::min(kPointsAtOnce, points.size() - first));
-        gl->watchdog->feed("points " + std::to_string(first + 1) + " to " +
-                           std::to_string(first + some.size()));
-        const Result<std::vector<FieldSample>> evaluated = query->evaluate(some);
-        if (!evaluated) {
-            return forward(evaluated);
-        }
-        samples.insert(samples.end(), evaluated->begin(), evaluated->end());
+        gl.watchdog->feed("points " + std::to_string(first + 1) + " to " +
+                          std::to_string(first + some.size()));
+        const std::vector<FieldSample> evaluated = RELIEF_TRY(query.evaluate(some));
+        samples.insert(samples.end(), evaluated.begin(), evaluated.end());
     }
-    gl->watchdog->rest();
+    gl.watchdog->rest();
     return samples;
 }
 
 Result<void> runQuery(const QueryCommand& command) {
     startLogging(command.common);
     if (!command.gpu) {
-        if (const Result<void> idle = refuseGlOptions(command.gl, "--gpu"); !idle) {
-            return idle;
-        }
+        RELIEF_TRY(refuseGlOptions(command.gl, "--gpu"));
     }
     if (command.file == "-" && command.points == "-") {
         return fail(ErrorCode::kUsage,
@@ -80,26 +69,14 @@ Result<void> runQuery(const QueryCommand& command) {
             return ready;
         }
     }
-    const Result<Collider> collider = loadCollider(command.file);
-    if (!collider) {
-        return forward(collider);
-    }
-    const Result<std::vector<std::byte>> text = readFile(command.points);
-    if (!text) {
-        return forward(text);
-    }
-    const Result<std::vector<glm::vec3>> points =
-        parsePoints({reinterpret_cast<const char*>(text->data()), text->size()},
-                    command.points == "-" ? "standard input" : command.points);
-    if (!points) {
-        return forward(points);
-    }
-    const Result<std::vector<FieldSample>> samples =
-        command.gpu ? evaluateOnGpu(*collider, *points, command.gl) : evaluateOnCpu(*collider, *points);
-    if (!samples) {
-        return forward(samples);
-    }
-    const std::string csv = formatSamples(*points, *samples);
+    const Collider collider = RELIEF_TRY(loadCollider(command.file));
+    const std::vector<std::byte> text = RELIEF_TRY(readFile(command.points));
+    const std::vector<glm::vec3> points =
+        RELIEF_TRY(parsePoints({reinterpret_cast<const char*>(text.data()), text.size()},
+                               command.points == "-" ? "standard input" : command.points));
+    const std::vector<FieldSample> samples = RELIEF_TRY(
+        command.gpu ? evaluateOnGpu(collider, points, command.gl) : evaluateOnCpu(collider, points));
+    const std::string csv = formatSamples(points, samples);
     return writeFile(command.output, std::as_bytes(std::span(csv)));
 }
 

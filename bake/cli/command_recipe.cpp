@@ -129,14 +129,11 @@ Result<RecipeRun> runOf(const RecipeOptionsOfBake& options, const RecipeCall& ca
     }
     run.at_once = std::max(1U, std::thread::hardware_concurrency());
     if (!call.threads.empty()) {
-        const Result<std::uint64_t> at_once = parseCount(call.threads, "--threads");
-        if (!at_once) {
-            return forward(at_once);
-        }
-        if (*at_once < 1 || *at_once > kAtOnceMax) {
+        const std::uint64_t at_once = RELIEF_TRY(parseCount(call.threads, "--threads"));
+        if (at_once < 1 || at_once > kAtOnceMax) {
             return fail(ErrorCode::kUsage, "--threads must be 1 to " + std::to_string(kAtOnceMax));
         }
-        run.at_once = static_cast<unsigned>(*at_once);
+        run.at_once = static_cast<unsigned>(at_once);
     }
     if (call.output == "-") {
         return fail(ErrorCode::kUsage, "--output is a folder beside --recipe, and not standard output");
@@ -152,9 +149,7 @@ Result<RecipeRun> runOf(const RecipeOptionsOfBake& options, const RecipeCall& ca
 Result<void> preflight(const RecipeOptionsOfBake& options, const RecipeCall& call, const RecipeRun& run,
                        const std::vector<RecipeJob>& jobs) {
     if (!run.dry_run) {
-        if (const Result<void> ready = preflightFolder(run.output_folder); !ready) {
-            return ready;
-        }
+        RELIEF_TRY(preflightFolder(run.output_folder));
     }
     std::vector<std::string> files;
     for (const std::string& file : {options.stamp, call.depfile, options.events}) {
@@ -256,35 +251,23 @@ Result<void> runRecipeCommand(const RecipeOptionsOfBake& options, const RecipeCa
             return check;
         }
     }
-    const Result<std::vector<RecipeAsset>> assets = loadRecipe(options.recipe, recipeKeys(call.verb));
-    if (!assets) {
-        return forward(assets);
-    }
-    if (const Result<void> checked = checkAssets(*assets, call); !checked) {
-        return checked;
-    }
-    Result<RecipeJobs> all = recipeJobs(*assets, options.recipe, run->output_folder);
-    if (!all) {
-        return forward(all);
-    }
+    const std::vector<RecipeAsset> assets = RELIEF_TRY(loadRecipe(options.recipe, recipeKeys(call.verb)));
+    RELIEF_TRY(checkAssets(assets, call));
+    RecipeJobs all = RELIEF_TRY(recipeJobs(assets, options.recipe, run->output_folder));
     std::vector<RecipeJob> jobs;
-    for (const RecipeJob& job : all->jobs) {
+    for (const RecipeJob& job : all.jobs) {
         if (inShard(job.output, *shard)) {
             jobs.push_back(job);
         }
     }
-    if (const Result<void> ready = preflight(options, call, *run, jobs); !ready) {
-        return ready;
-    }
+    RELIEF_TRY(preflight(options, call, *run, jobs));
     const auto cores = std::max(1U, std::thread::hardware_concurrency());
     run->threads =
         std::max(1U, cores / std::max(1U, std::min(run->at_once, static_cast<unsigned>(jobs.size()))));
 
     RecipeEvents events;
     if (!options.events.empty()) {
-        if (const Result<void> opened = events.open(options.events); !opened) {
-            return opened;
-        }
+        RELIEF_TRY(events.open(options.events));
     }
     events.write({{"event", "start"},
                   {"tool", std::string("relief ") + RELIEF_VERSION},
@@ -354,29 +337,20 @@ Result<void> runRecipeCommand(const RecipeOptionsOfBake& options, const RecipeCa
         for (const AssetResult& asset : result->assets) {
             json["assets"].push_back(jsonAsset(asset));
         }
-        if (const Result<void> printed = printOut(dump(json)); !printed) {
-            return printed;
-        }
+        RELIEF_TRY(printOut(dump(json)));
     } else if (options.dry_run && options.events != "-") {
-        if (const Result<void> printed = printDryRun(result->assets); !printed) {
-            return printed;
-        }
+        RELIEF_TRY(printDryRun(result->assets));
     }
     if (const Result<void> fine = verdict(result->assets, counts); !fine || options.dry_run) {
         return fine;
     }
     if (!call.depfile.empty()) {
         const std::vector<std::string> beside = {options.stamp, call.depfile, options.events};
-        if (const Result<void> written =
-                writeRecipeDepfile(call.depfile, options.stamp, beside, *run, all->folders, result->assets);
-            !written) {
-            return written;
-        }
+        RELIEF_TRY(
+            writeRecipeDepfile(call.depfile, options.stamp, beside, *run, all.folders, result->assets));
     }
     if (!options.stamp.empty()) {
-        if (const Result<void> written = writeRecipeStamp(options.stamp, result->assets); !written) {
-            return written;
-        }
+        RELIEF_TRY(writeRecipeStamp(options.stamp, result->assets));
     }
     return events.finish();
 }

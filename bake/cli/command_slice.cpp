@@ -50,45 +50,25 @@ Result<SliceOptions> optionsOf(const SliceCommand& command) {
                         "--at is '" + cleanUtf8(command.at) + "' but must be a number or center");
         }
     }
-    const Result<std::uint64_t> size = parseCount(command.size, "--size");
-    if (!size) {
-        return forward(size);
-    }
-    options.size = static_cast<std::uint32_t>(std::min<std::uint64_t>(*size, kSliceSizeMax + 1));
+    const std::uint64_t size = RELIEF_TRY(parseCount(command.size, "--size"));
+    options.size = static_cast<std::uint32_t>(std::min<std::uint64_t>(size, kSliceSizeMax + 1));
     return options;
 }
 
 Result<void> runSlice(const SliceCommand& command) {
     startLogging(command.common);
-    const Result<ImageKind> kind = imageKind(command.output);
-    if (!kind) {
-        return forward(kind);
-    }
-    const Result<SliceOptions> options = optionsOf(command);
-    if (!options) {
-        return forward(options);
-    }
-    if (const Result<void> ready = preflightFile(command.output); !ready) {
-        return ready;
-    }
-    const Result<Collider> collider = loadCollider(command.file);
-    if (!collider) {
-        return forward(collider);
-    }
-    const Result<Slice> slice = evaluateSlice(*collider, *options);
-    if (!slice) {
-        return forward(slice);
-    }
+    const ImageKind kind = RELIEF_TRY(imageKind(command.output));
+    const SliceOptions options = RELIEF_TRY(optionsOf(command));
+    RELIEF_TRY(preflightFile(command.output));
+    const Collider collider = RELIEF_TRY(loadCollider(command.file));
+    const Slice slice = RELIEF_TRY(evaluateSlice(collider, options));
     const std::string name = command.file == "-"
                                  ? "standard input"
                                  : cleanUtf8(std::filesystem::path(command.file).filename().string());
-    const Result<std::vector<std::byte>> bytes = *kind == ImageKind::kPng
-                                                     ? drawSlice(*slice, {name, collider->unit})
-                                                     : encodeExr(sliceImage(*slice, collider->unit));
-    if (!bytes) {
-        return forward(bytes);
-    }
-    return writeFile(command.output, *bytes);
+    const std::vector<std::byte> bytes =
+        RELIEF_TRY(kind == ImageKind::kPng ? drawSlice(slice, {name, collider.unit})
+                                           : encodeExr(sliceImage(slice, collider.unit)));
+    return writeFile(command.output, bytes);
 }
 
 }  // namespace

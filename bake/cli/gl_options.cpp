@@ -19,11 +19,8 @@ void addGlOptions(CLI::App& verb, GlOptions& options) {
 }
 
 Result<void> listDevices(const ListDevices& what) {
-    const Result<std::vector<GlDevice>> devices = listGlDevices();
-    if (!devices) {
-        return forward(devices);
-    }
-    return printOut(what.json ? devicesJson(*devices) : devicesText(*devices));
+    const std::vector<GlDevice> devices = RELIEF_TRY(listGlDevices());
+    return printOut(what.json ? devicesJson(devices) : devicesText(devices));
 }
 
 Result<void> refuseGlOptions(const GlOptions& options, const std::string& add) {
@@ -40,19 +37,13 @@ Result<void> refuseGlOptions(const GlOptions& options, const std::string& add) {
 Result<WatchedContext> openGl(const GlOptions& options) {
     GlContextOptions wanted;
     if (!options.device.empty()) {
-        const Result<std::size_t> device = parseDevice(options.device);
-        if (!device) {
-            return forward(device);
-        }
-        wanted.device = *device;
+        const std::size_t device = RELIEF_TRY(parseDevice(options.device));
+        wanted.device = device;
     }
     std::chrono::milliseconds limit = defaultGpuTimeout(false);
     if (!options.gpu_timeout.empty()) {
-        const auto given = parseGpuTimeout(options.gpu_timeout);
-        if (!given) {
-            return forward(given);
-        }
-        limit = *given;
+        const auto given = RELIEF_TRY(parseGpuTimeout(options.gpu_timeout));
+        limit = given;
     }
     WatchedContext opened;
     opened.watchdog = std::make_unique<Watchdog>(limit, endProcess("relief"));

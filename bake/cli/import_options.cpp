@@ -29,11 +29,8 @@ Result<Parsed> parse(const ImportArguments& arguments) {
         parsed.options.unit = arguments.unit;
     }
     if (!arguments.up.empty()) {
-        const Result<UpAxis> up = parseUpAxis(arguments.up);
-        if (!up) {
-            return forward(up);
-        }
-        parsed.options.up = *up;
+        const UpAxis up = RELIEF_TRY(parseUpAxis(arguments.up));
+        parsed.options.up = up;
     }
     if (!arguments.memory.empty()) {
         const std::optional<std::uint64_t> memory = parseByteCount(arguments.memory);
@@ -79,11 +76,8 @@ Result<void> checkImportArguments(const ImportArguments& arguments) {
 }
 
 Result<TriangleMesh> loadMesh(const std::string& path, const ImportArguments& arguments) {
-    const Result<Parsed> parsed = parse(arguments);
-    if (!parsed) {
-        return forward(parsed);
-    }
-    return loadMesh(path, parsed->options, parsed->limits);
+    const Parsed parsed = RELIEF_TRY(parse(arguments));
+    return loadMesh(path, parsed.options, parsed.limits);
 }
 
 std::string importProvenance(const ImportArguments& arguments) {

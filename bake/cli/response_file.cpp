@@ -26,9 +26,8 @@ class WordReader {
                 }
             } else if (words_.size() == kResponseWordsMax) {
                 return tooMany();
-            } else if (const Result<void> done = readWord(); !done) {
-                return forward(done);
-            }
+            } else
+                RELIEF_TRY(readWord());
         }
         return std::move(words_);
     }
@@ -94,9 +93,8 @@ struct Expander {
                 out.push_back(argument);
             } else if (argument[1] == '@') {
                 out.push_back(argument.substr(1));
-            } else if (const Result<void> done = addFile(argument.substr(1), depth); !done) {
-                return done;
-            }
+            } else
+                RELIEF_TRY(addFile(argument.substr(1), depth));
         }
         return {};
     }
@@ -112,17 +110,14 @@ struct Expander {
         if (!bytes) {
             return fail(bytes.error().code, "response file: " + bytes.error().message);
         }
-        const Result<std::vector<std::string>> words =
-            responseWords({reinterpret_cast<const char*>(bytes->data()), bytes->size()},
-                          quoted.substr(1, quoted.size() - 2));
-        if (!words) {
-            return forward(words);
-        }
-        total += words->size();
+        const std::vector<std::string> words =
+            RELIEF_TRY(responseWords({reinterpret_cast<const char*>(bytes->data()), bytes->size()},
+                                     quoted.substr(1, quoted.size() - 2)));
+        total += words.size();
         if (total > kResponseWordsMax) {
             return tooMany();
         }
-        return add(*words, depth + 1);
+        return add(words, depth + 1);
     }
 };
 
@@ -134,9 +129,7 @@ Result<std::vector<std::string>> responseWords(std::string_view text, const std:
 
 Result<std::vector<std::string>> expandArguments(const std::vector<std::string>& arguments) {
     Expander expander;
-    if (const Result<void> done = expander.add(arguments, 0); !done) {
-        return forward(done);
-    }
+    RELIEF_TRY(expander.add(arguments, 0));
     return std::move(expander.out);
 }
 

@@ -63,10 +63,7 @@ ImportSource::~ImportSource() {
 }
 
 Result<ImportSource> ImportSource::open(const fs::path& path) {
-    Result<std::vector<std::byte>> bytes = readFile(path);
-    if (!bytes) {
-        return forward(bytes);
-    }
+    std::vector<std::byte> bytes = RELIEF_TRY(readFile(path));
     const std::string extension = lowerCase(path.extension().string());
     if (extension.empty() || std::find(kFormats.begin(), kFormats.end(),
                                        std::string_view(extension).substr(1)) == kFormats.end()) {
@@ -74,11 +71,11 @@ Result<ImportSource> ImportSource::open(const fs::path& path) {
                                                  cleanUtf8(extension) + "'; use one of " +
                                                  listed(std::span(kFormats).first(kNamedFormats)));
     }
-    if (bytes->empty()) {
+    if (bytes.empty()) {
         return fail(ErrorCode::kInvalidInput,
                     quotedPath(path) + ": the file is empty; export the mesh again");
     }
-    return ImportSource(path, extension.substr(1), std::move(*bytes));
+    return ImportSource(path, extension.substr(1), std::move(bytes));
 }
 
 Result<TriangleMesh> ImportSource::finish(TriangleMesh raw) const {

@@ -240,12 +240,9 @@ class Import {
             return fail(ErrorCode::kUsage,
                         "the importer's limits must be 1 byte to 64 TB, and at least 1 second");
         }
-        Result<ImportSource> source = ImportSource::open(path_);
-        if (!source) {
-            return forward(source);
-        }
-        Result<TriangleMesh> raw = workOn(*source);
-        return raw ? source->finish(std::move(*raw)) : raw;
+        ImportSource source = RELIEF_TRY(ImportSource::open(path_));
+        Result<TriangleMesh> raw = workOn(source);
+        return raw ? source.finish(std::move(*raw)) : raw;
     }
 
   private:

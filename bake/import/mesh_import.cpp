@@ -403,11 +403,8 @@ tl::unexpected<Error> unreadable(const ImportJob& job, const std::string& words,
 Result<TriangleMesh> importWithAssimp(const ImportJob& job) {
     TriangleMesh mesh;
     if (job.extension == "gltf" || job.extension == "glb") {
-        Result<std::vector<std::string>> warnings = checkGltf(job.bytes, job.shown);
-        if (!warnings) {
-            return forward(warnings);
-        }
-        mesh.warnings = std::move(*warnings);
+        std::vector<std::string> warnings = RELIEF_TRY(checkGltf(job.bytes, job.shown));
+        mesh.warnings = std::move(warnings);
     }
     ImportFiles files(job.folder, job.file_name, job.bytes);
     Assimp::Importer importer;
@@ -514,13 +511,10 @@ Result<TriangleMesh> importRaw(const ImportJob& job) {
 }
 
 Result<TriangleMesh> importMesh(const fs::path& path, const ImportOptions& options) {
-    const Result<ImportSource> source = ImportSource::open(path);
-    if (!source) {
-        return forward(source);
-    }
-    Result<TriangleMesh> raw = importRaw({quotedPath(path), path.filename().string(), source->extension(),
-                                          source->bytes(), source->folder(), options});
-    return raw ? source->finish(std::move(*raw)) : raw;
+    const ImportSource source = RELIEF_TRY(ImportSource::open(path));
+    Result<TriangleMesh> raw = importRaw({quotedPath(path), path.filename().string(), source.extension(),
+                                          source.bytes(), source.folder(), options});
+    return raw ? source.finish(std::move(*raw)) : raw;
 }
 
 }  // namespace relief

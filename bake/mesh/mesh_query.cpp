@@ -204,11 +204,8 @@ Result<MeshQuery> MeshQuery::build(const TriangleMesh& mesh) {
         impl->watertight = oddEdges(edges).empty();
         impl->shells = impl->watertight && mesh.wound_outwards && isSeveralShells(edges);
     }
-    Result<EmbreeMesh> tree = EmbreeMesh::build(mesh);
-    if (!tree) {
-        return forward(tree);
-    }
-    impl->tree = std::move(*tree);
+    EmbreeMesh tree = RELIEF_TRY(EmbreeMesh::build(mesh));
+    impl->tree = std::move(tree);
     return MeshQuery(std::move(impl));
 }
 

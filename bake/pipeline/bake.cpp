@@ -64,16 +64,10 @@ Result<std::vector<Job>> planJobs(const TriangleMesh& mesh, const BakeOptions& o
     std::vector<Job> jobs;
     std::uint64_t bytes = 0;
     for (const MapSpec& spec : specs) {
-        const Result<MapSpec> complete = completeSpec(spec, mesh, options.resolution);
-        if (!complete) {
-            return forward(complete);
-        }
-        const Result<View> view = makeView(*complete, mesh);
-        if (!view) {
-            return forward(view);
-        }
-        jobs.push_back({*complete, *view, spec.compare.has_value()});
-        bytes += jobs.back().texels() * texelSize(view->format);
+        const MapSpec complete = RELIEF_TRY(completeSpec(spec, mesh, options.resolution));
+        const View view = RELIEF_TRY(makeView(complete, mesh));
+        jobs.push_back({complete, view, spec.compare.has_value()});
+        bytes += jobs.back().texels() * texelSize(view.format);
     }
     if (bytes > limits.texel_bytes) {
         return fail(ErrorCode::kLimit,
@@ -311,13 +305,10 @@ Result<void> raycastMaps(const TriangleMesh& mesh, const std::vector<Job>& jobs,
 }
 
 Result<Baked> bakeOnThisArena(const TriangleMesh& mesh, const BakeOptions& options) {
-    const Result<std::vector<Job>> jobs = planJobs(mesh, options);
-    if (!jobs) {
-        return forward(jobs);
-    }
+    const std::vector<Job> jobs = RELIEF_TRY(planJobs(mesh, options));
     std::uint64_t texels = 0;
     bool has_planes = false;
-    for (const Job& job : *jobs) {
+    for (const Job& job : jobs) {
         texels += job.texels();
         has_planes = has_planes || job.spec.decode == Decode::kPlane;
     }
@@ -331,12 +322,8 @@ Result<Baked> bakeOnThisArena(const TriangleMesh& mesh, const BakeOptions& optio
             options.progress(static_cast<double>(done) / static_cast<double>(texels));
         }
     };
-    if (const Result<void> all = options.rasterize
-                                     ? rasterizeMaps(mesh, *jobs, baked, stripeDone)
-                                     : raycastMaps(mesh, *jobs, options, texels, baked, stripeDone);
-        !all) {
-        return forward(all);
-    }
+    RELIEF_TRY(options.rasterize ? rasterizeMaps(mesh, jobs, baked, stripeDone)
+                                 : raycastMaps(mesh, jobs, options, texels, baked, stripeDone));
     std::uint64_t all_covered = 0;
     for (const MapReport& map : report.maps) {
         all_covered += map.covered;
@@ -350,18 +337,15 @@ Result<Baked> bakeOnThisArena(const TriangleMesh& mesh, const BakeOptions& optio
     const bool refine = options.quality != Quality::kFast || options.prefer != Prefer::kNeither;
     if (has_planes && refine && !options.rasterize) {
         const Stopwatch watch(report.refine_ms);
-        const Result<MeshQuery> query = MeshQuery::build(mesh);
-        if (!query) {
-            return forward(query);
-        }
-        refineTexels(baked.collider, mesh, *query, refineOptions(options));
+        const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
+        refineTexels(baked.collider, mesh, query, refineOptions(options));
     }
-    warnAbout(mesh, *jobs, report);
+    warnAbout(mesh, jobs, report);
 
     baked.collider.bounds = mesh.bounds;
     baked.collider.unit = mesh.unit;
     baked.collider.provenance = {mesh.name, mesh.content_hash, mesh.sourceTriangles(),
-                                 "relief " RELIEF_VERSION, effectiveOptions(*jobs, options)};
+                                 "relief " RELIEF_VERSION, effectiveOptions(jobs, options)};
     return baked;
 }
 

@@ -68,18 +68,12 @@ class Search {
         PlanOptions plan_options;
         plan_options.budget_bytes = budget;
         plan_options.prefer = options_.bake.prefer;
-        Result<Plan> plan = planViews(query_.mesh(), query_, plan_options);
-        if (!plan) {
-            return forward(plan);
-        }
+        Plan plan = RELIEF_TRY(planViews(query_.mesh(), query_, plan_options));
         BakeOptions bake_options = options_.bake;
-        bake_options.maps = specsOf(*plan);
-        Result<Baked> baked = bake(query_.mesh(), bake_options);
-        if (!baked) {
-            return forward(baked);
-        }
-        const double wrong = measureField(truth_, fieldOf(baked->collider)).near.total();
-        const BudgetTry made{budget, plan->bytes, wrong};
+        bake_options.maps = specsOf(plan);
+        Baked baked = RELIEF_TRY(bake(query_.mesh(), bake_options));
+        const double wrong = measureField(truth_, fieldOf(baked.collider)).near.total();
+        const BudgetTry made{budget, plan.bytes, wrong};
         tries_.push_back(made);
         if (options_.tried) {
             options_.tried(made);
@@ -87,7 +81,7 @@ class Search {
         if (!(wrong <= options_.max_error_percent)) {
             return false;
         }
-        best_ = BudgetSearchResult{std::move(*plan), std::move(*baked), made, {}};
+        best_ = BudgetSearchResult{std::move(plan), std::move(baked), made, {}};
         return true;
     }
 

@@ -144,9 +144,7 @@ Result<MapSpec> MapSpecBuilder::finish() const {
     if (isCube() && spec_.center && spec_.box) {
         return usage("a cube with a box is centred on the box; leave out center or box");
     }
-    if (const Result<void> up = checkUp(spec_); !up) {
-        return forward(up);
-    }
+    RELIEF_TRY(checkUp(spec_));
     return spec_;
 }
 
@@ -154,11 +152,8 @@ Result<void> MapSpecBuilder::setDirection(std::string_view value) {
     if (isCube()) {
         return usage("dir does nothing for a cube, which looks all round; leave it out");
     }
-    const Result<glm::vec3> direction = parseDirection("dir", value);
-    if (!direction) {
-        return forward(direction);
-    }
-    spec_.direction = *direction;
+    const glm::vec3 direction = RELIEF_TRY(parseDirection("dir", value));
+    spec_.direction = direction;
     return {};
 }
 
@@ -166,11 +161,8 @@ Result<void> MapSpecBuilder::setUp(std::string_view value) {
     if (isCube()) {
         return usage("up does nothing for a cube, whose faces lie along the axes; leave it out");
     }
-    const Result<glm::vec3> up = parseDirection("up", value);
-    if (!up) {
-        return forward(up);
-    }
-    spec_.up = *up;
+    const glm::vec3 up = RELIEF_TRY(parseDirection("up", value));
+    spec_.up = up;
     return {};
 }
 
@@ -270,9 +262,7 @@ Result<MapSpec> parseMapSpec(std::string_view text, const MapSpecDefaults& defau
     const auto read = [&]() -> Result<MapSpec> {
         MapSpecBuilder builder(defaults);
         const std::size_t colon = text.find(':');
-        if (const Result<void> format = builder.setFormat(text.substr(0, colon)); !format) {
-            return forward(format);
-        }
+        RELIEF_TRY(builder.setFormat(text.substr(0, colon)));
         if (colon == std::string_view::npos) {
             return builder.finish();
         }
@@ -283,9 +273,7 @@ Result<MapSpec> parseMapSpec(std::string_view text, const MapSpecDefaults& defau
                 return usage(std::string(key) + " has no value; write " + std::string(key) + "=…");
             }
             const std::string_view value = equals == std::string_view::npos ? "" : pair.substr(equals + 1);
-            if (const Result<void> set = builder.set(key, value); !set) {
-                return forward(set);
-            }
+            RELIEF_TRY(builder.set(key, value));
         }
         return builder.finish();
     };

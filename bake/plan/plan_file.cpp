@@ -120,11 +120,8 @@ class Reader {
             if (table == nullptr) {
                 return invalid(map.source().begin, "a map must be a table; write [[map]] before each");
             }
-            const Result<MapSpec> spec = readMap(*table);
-            if (!spec) {
-                return forward(spec);
-            }
-            plan.maps.push_back({*spec, ""});
+            const MapSpec spec = RELIEF_TRY(readMap(*table));
+            plan.maps.push_back({spec, ""});
         }
         return {};
     }
@@ -206,11 +203,8 @@ Result<PlanFile> parsePlan(std::string_view text, const fs::path& path) {
 }
 
 Result<PlanFile> loadPlan(const fs::path& path) {
-    const auto bytes = readFile(path, kPlanBytesMax);
-    if (!bytes) {
-        return forward(bytes);
-    }
-    return parsePlan({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, path);
+    const auto bytes = RELIEF_TRY(readFile(path, kPlanBytesMax));
+    return parsePlan({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path);
 }
 
 }  // namespace relief

@@ -197,9 +197,7 @@ class Planner {
           served_(points_.size(), 0.0F) {}
 
     Result<Plan> run() {
-        if (const Result<void> ok = addOuterViews(); !ok) {
-            return forward(ok);
-        }
+        RELIEF_TRY(addOuterViews());
         addCavityCubes();
         return finish();
     }
@@ -231,13 +229,10 @@ class Planner {
                 view.spec.up = glm::vec3(*candidate.up);
             }
             view.spec.width = view.spec.height = 64;  // any: the extents do not depend on it
-            const Result<View> frame = makeView(view.spec, mesh_);
-            if (!frame) {
-                return forward(frame);
-            }
+            const View frame = RELIEF_TRY(makeView(view.spec, mesh_));
             // The inner 62 of 64 texels cover the mesh.
-            view.width = length(frame->axis[0]) * 62.0 / 64.0;
-            view.height = length(frame->axis[1]) * 62.0 / 64.0;
+            view.width = length(frame.axis[0]) * 62.0 / 64.0;
+            view.height = length(frame.axis[1]) * 62.0 / 64.0;
             views.push_back(std::move(view));
         }
         tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {

@@ -87,11 +87,8 @@ std::optional<BakeCacheEntry> entryOf(const Json& json) {
 
 Result<std::string> toolIdentity() {
     const fs::path self = "/proc/self/exe";
-    const auto bytes = readFile(self);
-    if (!bytes) {
-        return forward(bytes);
-    }
-    std::string identity = std::string("relief ") + RELIEF_VERSION + " " + xxh3_128Hex(*bytes);
+    const auto bytes = RELIEF_TRY(readFile(self));
+    std::string identity = std::string("relief ") + RELIEF_VERSION + " " + xxh3_128Hex(bytes);
     // The program that reads meshes for it, where that lies beside it.
     std::error_code error;
     const fs::path importer = fs::read_symlink(self, error).parent_path() / "relief-import";
@@ -162,12 +159,9 @@ Result<BakeCacheEntries> loadBakeCache(const fs::path& output_folder) {
     if (!fs::is_regular_file(path, error)) {
         return fail(ErrorCode::kInvalidInput, quotedPath(path) + ": it is not a regular file");
     }
-    const auto bytes = readFile(path, kCacheBytesMax);
-    if (!bytes) {
-        return forward(bytes);
-    }
+    const auto bytes = RELIEF_TRY(readFile(path, kCacheBytesMax));
     Result<BakeCacheEntries> entries =
-        parseBakeCache({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+        parseBakeCache({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     if (!entries) {
         return fail(entries.error().code, quotedPath(path) + ": " + entries.error().message);
     }

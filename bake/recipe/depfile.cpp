@@ -52,11 +52,8 @@ Result<std::string> depfileText(const std::vector<std::string>& targets,
                                 const std::vector<std::string>& inputs) {
     std::string text;
     for (const std::string& target : targets) {
-        const Result<std::string> name = escaped(target, true);
-        if (!name) {
-            return forward(name);
-        }
-        text += (text.empty() ? "" : " ") + *name;
+        const std::string name = RELIEF_TRY(escaped(target, true));
+        text += (text.empty() ? "" : " ") + name;
     }
     text += ":";
     std::string empty_rules;
@@ -65,13 +62,10 @@ Result<std::string> depfileText(const std::vector<std::string>& targets,
         if (!seen.insert(input).second) {
             continue;
         }
-        const Result<std::string> name = escaped(input, false);
-        if (!name) {
-            return forward(name);
-        }
-        text += " \\\n  " + *name;
+        const std::string name = RELIEF_TRY(escaped(input, false));
+        text += " \\\n  " + name;
         if (seen.size() > 1) {
-            empty_rules += *name + ":\n";
+            empty_rules += name + ":\n";
         }
     }
     return text + "\n" + empty_rules;
@@ -79,11 +73,8 @@ Result<std::string> depfileText(const std::vector<std::string>& targets,
 
 Result<void> writeDepfile(const std::filesystem::path& path, const std::vector<std::string>& targets,
                           const std::vector<std::string>& inputs) {
-    const Result<std::string> text = depfileText(targets, inputs);
-    if (!text) {
-        return forward(text);
-    }
-    return writeFile(path, std::as_bytes(std::span(*text)));
+    const std::string text = RELIEF_TRY(depfileText(targets, inputs));
+    return writeFile(path, std::as_bytes(std::span(text)));
 }
 
 }  // namespace relief

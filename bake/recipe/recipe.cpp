@@ -81,9 +81,7 @@ class Reader {
             if (table == nullptr) {
                 return invalid(node->source().begin, "defaults must be a table; write [defaults]");
             }
-            if (const Result<void> done = readTable(*table, false, defaults); !done) {
-                return forward(done);
-            }
+            RELIEF_TRY(readTable(*table, false, defaults));
         }
         const toml::node* node = root.get("asset");
         const toml::array* tables = node == nullptr ? nullptr : node->as_array();
@@ -104,9 +102,7 @@ class Reader {
             }
             RecipeAsset asset;
             asset.place = place(table->source().begin);
-            if (const Result<void> done = readTable(*table, true, asset); !done) {
-                return forward(done);
-            }
+            RELIEF_TRY(readTable(*table, true, asset));
             if (asset.meshes.empty()) {
                 return invalid(table->source().begin, "an asset needs mesh = \"FILE or pattern\"");
             }
@@ -181,11 +177,8 @@ class Reader {
     }
 
     Result<void> readOutput(const toml::node& node, RecipeAsset& asset) const {
-        const Result<std::string> text = readText(node, "output", false);
-        if (!text) {
-            return forward(text);
-        }
-        asset.output = *text;
+        const std::string text = RELIEF_TRY(readText(node, "output", false));
+        asset.output = text;
         asset.output_place = place(node.source().begin);
         return {};
     }
@@ -228,11 +221,8 @@ class Reader {
                               "; use patterns");
         }
         for (std::size_t i = 0; i < count; ++i) {
-            Result<std::string> text = readText(list == nullptr ? node : *list->get(i), name, false);
-            if (!text) {
-                return forward(text);
-            }
-            texts.push_back(std::move(*text));
+            std::string text = RELIEF_TRY(readText(list == nullptr ? node : *list->get(i), name, false));
+            texts.push_back(std::move(text));
         }
         return {};
     }
@@ -248,15 +238,10 @@ class Reader {
                 value.values.emplace_back();
             }
         } else if (key.kind == RecipeKey::Kind::kList) {
-            if (const Result<void> done = readTexts(node, key.name, value.values); !done) {
-                return done;
-            }
+            RELIEF_TRY(readTexts(node, key.name, value.values));
         } else {
-            Result<std::string> text = readText(node, key.name, true);
-            if (!text) {
-                return forward(text);
-            }
-            value.values.push_back(std::move(*text));
+            std::string text = RELIEF_TRY(readText(node, key.name, true));
+            value.values.push_back(std::move(text));
         }
         options[key.name] = std::move(value);
         return {};
@@ -276,11 +261,8 @@ Result<std::vector<RecipeAsset>> parseRecipe(std::string_view text, const std::v
 }
 
 Result<std::vector<RecipeAsset>> loadRecipe(const fs::path& path, const std::vector<RecipeKey>& keys) {
-    const auto bytes = readFile(path, kRecipeBytesMax);
-    if (!bytes) {
-        return forward(bytes);
-    }
-    return parseRecipe({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, keys, path);
+    const auto bytes = RELIEF_TRY(readFile(path, kRecipeBytesMax));
+    return parseRecipe({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, keys, path);
 }
 
 std::vector<std::string> recipeArguments(const RecipeOptions& options) {

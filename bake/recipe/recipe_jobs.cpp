@@ -42,10 +42,7 @@ class Expander {
         : folder_(std::move(folder)), output_folder_(std::move(output_folder)) {}
 
     Result<void> add(const RecipeAsset& asset) {
-        Result<std::vector<std::string>> meshes = meshesOf(asset);
-        if (!meshes) {
-            return forward(meshes);
-        }
+        std::vector<std::string> meshes = RELIEF_TRY(meshesOf(asset));
         RecipeOptions opened = asset.options;
         for (const std::string_view name : kFileOptions) {
             const auto found = opened.find(std::string(name));
@@ -63,15 +60,13 @@ class Expander {
         }
         const std::vector<std::string> arguments = recipeArguments(opened);
         const std::vector<std::string> options = recipeArguments(asset.options);
-        for (const std::string& mesh : *meshes) {
+        for (const std::string& mesh : meshes) {
             if (result_.jobs.size() == kRecipeJobsMax) {
                 return at(asset.place,
                           "more than " + std::to_string(kRecipeJobsMax) + " meshes; use several recipes",
                           ErrorCode::kLimit);
             }
-            if (const Result<void> done = addJob(asset, mesh, arguments, options); !done) {
-                return done;
-            }
+            RELIEF_TRY(addJob(asset, mesh, arguments, options));
         }
         return {};
     }
@@ -176,11 +171,8 @@ class Expander {
             return at(asset.mesh_place, "mesh " + path.error().message);
         }
         job.mesh_path = *path;
-        Result<std::string> output = outputOf(asset, mesh);
-        if (!output) {
-            return forward(output);
-        }
-        job.output = std::move(*output);
+        std::string output = RELIEF_TRY(outputOf(asset, mesh));
+        job.output = std::move(output);
         if (!resolveInside(output_folder_, job.output)) {
             return at(asset.output_place, "the output " + inQuotes(job.output) +
                                               " leads out of the output folder " +
@@ -262,9 +254,7 @@ Result<RecipeJobs> recipeJobs(const std::vector<RecipeAsset>& assets, const fs::
     const fs::path folder = recipeFolder(recipe);
     Expander expander(folder, output_folder.empty() ? folder : output_folder);
     for (const RecipeAsset& asset : assets) {
-        if (const Result<void> done = expander.add(asset); !done) {
-            return forward(done);
-        }
+        RELIEF_TRY(expander.add(asset));
     }
     return expander.finish(recipe);
 }

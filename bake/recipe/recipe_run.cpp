@@ -61,9 +61,7 @@ class Runner {
             }
         }
         if (!fresh_.empty()) {
-            if (const Result<void> written = updateBakeCache(run_.output_folder, fresh_); !written) {
-                return forward(written);
-            }
+            RELIEF_TRY(updateBakeCache(run_.output_folder, fresh_));
         }
         return std::move(result_);
     }
@@ -242,11 +240,8 @@ class Runner {
 }  // namespace
 
 Result<RecipeResult> runRecipe(std::vector<RecipeJob> jobs, const RecipeRun& run) {
-    Result<std::string> tool = toolIdentity();
-    if (!tool) {
-        return forward(tool);
-    }
-    return Runner(run, std::move(*tool)).go(std::move(jobs));
+    std::string tool = RELIEF_TRY(toolIdentity());
+    return Runner(run, std::move(tool)).go(std::move(jobs));
 }
 
 }  // namespace relief

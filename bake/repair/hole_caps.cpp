@@ -299,17 +299,14 @@ Result<TriangleMesh> closeOpenMesh(const TriangleMesh& mesh, const MeshQuery& qu
     for (const Loop& loop : loopsOf(edges)) {
         capper.close(loop);
     }
-    const Result<MeshQuery> closed_query = MeshQuery::build(closed);
-    if (!closed_query) {
-        return forward(closed_query);
-    }
+    const MeshQuery closed_query = RELIEF_TRY(MeshQuery::build(closed));
     // On the surface and off it: the caps of patches whose seams do not meet cross the inside.
     std::vector<Vote> sides;
     for (const auto& [front, back] : votes) {
         sides.insert(sides.end(), {front, back});
     }
-    if (turnedShare(sides, *closed_query) > kTurnedMax ||
-        turnedShare(voteInBox(query), *closed_query) > kTurnedMax) {
+    if (turnedShare(sides, closed_query) > kTurnedMax ||
+        turnedShare(voteInBox(query), closed_query) > kTurnedMax) {
         return mesh;
     }
     return closed;
@@ -332,11 +329,8 @@ Result<TriangleMesh> closeHoles(TriangleMesh mesh) {
     if (edgesAreEven(mesh)) {
         return mesh;
     }
-    const Result<MeshQuery> query = MeshQuery::build(mesh);
-    if (!query) {
-        return forward(query);
-    }
-    return closeHoles(mesh, *query);
+    const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
+    return closeHoles(mesh, query);
 }
 
 }  // namespace relief

@@ -66,13 +66,10 @@ Result<TriangleMesh> repaired(const TriangleMesh& mesh, const Repair& repair, Me
         case Method::kOrient:
             return orientMesh(mesh);
         case Method::kHoles: {
-            Result<HoleFill> fill = fillHoles(mesh);
-            if (!fill) {
-                return forward(fill);
-            }
-            care.filled_holes = fill->filled;
-            care.holes_left = fill->left;
-            return std::move(fill->mesh);
+            HoleFill fill = RELIEF_TRY(fillHoles(mesh));
+            care.filled_holes = fill.filled;
+            care.holes_left = fill.left;
+            return std::move(fill.mesh);
         }
     }
     return mesh;
@@ -100,53 +97,37 @@ Result<CaredMesh> careFor(TriangleMesh mesh, const MeshCareOptions& options) {
     MeshCare& care = cared.care;
     MeshEdges edges = edgesOf(mesh);
     if (options.report || options.strict || options.check_intersections || *repair) {
-        Result<MeshHealth> health = inspectMesh(mesh, edges, {options.check_intersections});
-        if (!health) {
-            return forward(health);
-        }
-        care.health = std::move(*health);
+        MeshHealth health = RELIEF_TRY(inspectMesh(mesh, edges, {options.check_intersections}));
+        care.health = std::move(health);
     }
     if (options.strict && !*repair) {
-        if (const Result<void> solid = requireSolid(*care.health, mesh.name); !solid) {
-            return forward(solid);
-        }
+        RELIEF_TRY(requireSolid(*care.health, mesh.name));
     }
     if (*repair) {
         care.repair = (*repair)->text();
         edges = {};
-        Result<TriangleMesh> other = repaired(mesh, **repair, care);
-        if (!other) {
-            return forward(other);
-        }
-        mesh = std::move(*other);
+        TriangleMesh other = RELIEF_TRY(repaired(mesh, **repair, care));
+        mesh = std::move(other);
         edges = edgesOf(mesh);
     }
-    Result<Winding> winding = windOutwards(std::move(mesh), std::move(edges));
-    if (!winding) {
-        return forward(winding);
-    }
-    cared.mesh = std::move(winding->mesh);
-    care.turned = winding->turned;
+    Winding winding = RELIEF_TRY(windOutwards(std::move(mesh), std::move(edges)));
+    cared.mesh = std::move(winding.mesh);
+    care.turned = winding.turned;
     if (!*repair) {
         return cared;
     }
     if (orientation(cared.mesh) < 0.0) {
         turnInsideOut(cared.mesh);
     }
-    Result<MeshHealth> after = inspectMesh(cared.mesh, {options.check_intersections});
-    if (!after) {
-        return forward(after);
-    }
-    care.repaired = std::move(*after);
+    MeshHealth after = RELIEF_TRY(inspectMesh(cared.mesh, {options.check_intersections}));
+    care.repaired = std::move(after);
     if ((*repair)->method == Method::kWrap && !care.repaired->isSolid()) {
         return fail(ErrorCode::kFailure,
                     cared.mesh.name + ": wrapping it left " + faultsText(*care.repaired) +
                         "; move the mesh to the origin, or try another --repair wrap=ALPHA");
     }
     if (options.strict) {
-        if (const Result<void> solid = requireSolid(*care.repaired, cared.mesh.name); !solid) {
-            return forward(solid);
-        }
+        RELIEF_TRY(requireSolid(*care.repaired, cared.mesh.name));
     }
     return cared;
 }

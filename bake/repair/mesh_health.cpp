@@ -193,14 +193,11 @@ Result<MeshHealth> inspectMesh(const TriangleMesh& mesh, const MeshEdges& edges,
     inspection.run();
     inspection.write(health);
     if (options.intersections) {
-        const Result<SelfIntersections> found = selfIntersections(mesh);
-        if (!found) {
-            return forward(found);
-        }
-        health.self_intersections = found->pairs;
-        if (found->pairs > 0 && !health.first_fault) {
+        const SelfIntersections found = RELIEF_TRY(selfIntersections(mesh));
+        health.self_intersections = found.pairs;
+        if (found.pairs > 0 && !health.first_fault) {
             health.first_fault =
-                MeshFault{"a triangle that another one cuts", inspection.middle(found->first_triangle)};
+                MeshFault{"a triangle that another one cuts", inspection.middle(found.first_triangle)};
         }
     }
     return health;

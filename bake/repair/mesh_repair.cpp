@@ -335,28 +335,22 @@ Result<HoleFill> fillHoles(const TriangleMesh& mesh) {
                             ": three or more triangles share an edge, so that no one can say what a hole "
                             "is; try --repair wrap");
         }
-        Result<SurfaceMesh> surface = surfaceOf(mesh, soup);
-        if (!surface) {
-            return forward(surface);
-        }
+        SurfaceMesh surface = RELIEF_TRY(surfaceOf(mesh, soup));
         std::vector<SurfaceMesh::Halfedge_index> borders;
-        pmp::extract_boundary_cycles(*surface, std::back_inserter(borders));
+        pmp::extract_boundary_cycles(surface, std::back_inserter(borders));
         HoleFill fill;
         for (const SurfaceMesh::Halfedge_index border : borders) {
-            const std::size_t edges = edgesAround(*surface, border);
+            const std::size_t edges = edgesAround(surface, border);
             std::vector<SurfaceMesh::Face_index> patch;
             if (edges <= kHoleEdgesMax) {
-                pmp::triangulate_hole(*surface, border, std::back_inserter(patch),
+                pmp::triangulate_hole(surface, border, std::back_inserter(patch),
                                       CGAL::parameters::do_not_use_cubic_algorithm(edges > kCubicEdgesMax));
             }
             ++(patch.empty() ? fill.left : fill.filled);
             fill.triangles += patch.size();
         }
-        Result<TriangleMesh> filled = meshOf(mesh, soup, *surface);
-        if (!filled) {
-            return forward(filled);
-        }
-        fill.mesh = std::move(*filled);
+        TriangleMesh filled = RELIEF_TRY(meshOf(mesh, soup, surface));
+        fill.mesh = std::move(filled);
         return fill;
     });
 }

@@ -51,15 +51,12 @@ class Winder {
             return std::uint64_t{0};
         }
         // Parity does not care about the winding: asked before anything is turned.
-        const Result<MeshQuery> query = MeshQuery::build(mesh_);
-        if (!query) {
-            return forward(query);
-        }
+        const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh_));
         tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t i) {
             Patch& patch = patches_[i];
             // Breadth first is no order to spread samples over.
             std::sort(patch.triangles.begin(), patch.triangles.end());
-            if (looksInwards(patch, *query)) {
+            if (looksInwards(patch, query)) {
                 for (const std::uint32_t triangle : patch.triangles) {
                     turn_[triangle] ^= 1U;
                 }
@@ -202,11 +199,8 @@ Result<Winding> windOutwards(TriangleMesh mesh) {
 Result<Winding> windOutwards(TriangleMesh mesh, MeshEdges edges) {
     Winding winding;
     winding.mesh = std::move(mesh);
-    const Result<std::uint64_t> turned = Winder(winding.mesh, std::move(edges)).run();
-    if (!turned) {
-        return forward(turned);
-    }
-    winding.turned = *turned;
+    const std::uint64_t turned = RELIEF_TRY(Winder(winding.mesh, std::move(edges)).run());
+    winding.turned = turned;
     winding.mesh.wound_outwards = true;
     return winding;
 }

@@ -216,12 +216,9 @@ class Page {
             {{-1.0F, 0.9F, 1.0F}, "from below, +x and -z"}};
         for (const auto& [direction, words] : kViews) {
             const RgbImage image = drawHeatMap(input_.query, field_, {direction, kHeatMapSize, range});
-            const Result<std::vector<std::byte>> png = encodePng(image);
-            if (!png) {
-                return forward(png);
-            }
-            html_ += "<figure>" + imageTag(*png, std::string("error of the surface seen ") + words) +
-                     "</figure>\n";
+            const std::vector<std::byte> png = RELIEF_TRY(encodePng(image));
+            html_ +=
+                "<figure>" + imageTag(png, std::string("error of the surface seen ") + words) + "</figure>\n";
         }
         html_ += "</div>\n<div class=legend><div class=bar><i style=\"background:linear-gradient(90deg";
         for (int i = -10; i <= 10; ++i) {
@@ -245,12 +242,9 @@ class Page {
             options.axis = axis;
             options.size = kSliceSize;
             const Result<Slice> slice = evaluateSlice(input_.collider, options);
-            const Result<std::vector<std::byte>> png =
-                slice ? drawSlice(*slice, {input_.file_name, input_.collider.unit}) : forward(slice);
-            if (!png) {
-                return forward(png);
-            }
-            html_ += "<div class=card>" + imageTag(*png, std::string("slice across ") + axisName(axis)) +
+            const std::vector<std::byte> png = RELIEF_TRY(
+                slice ? drawSlice(*slice, {input_.file_name, input_.collider.unit}) : forward(slice));
+            html_ += "<div class=card>" + imageTag(png, std::string("slice across ") + axisName(axis)) +
                      "</div>\n";
         }
         html_ += "</div>\n";
@@ -270,9 +264,7 @@ class Page {
                      (map.faceCount() > 1 ? " &times; 6 faces" : "") + ", " + bytesText(map.texelBytes()) +
                      "</small></h3>\n<div class=pictures>\n";
             for (std::uint32_t face = 0; face < map.faceCount(); ++face) {
-                if (const Result<void> added = addMapPictures(map, face); !added) {
-                    return added;
-                }
+                RELIEF_TRY(addMapPictures(map, face));
             }
             html_ += "</div></div>\n";
         }
@@ -292,13 +284,11 @@ class Page {
                                                                 : "";
             const std::uint32_t most = cube ? kMapPictureMax * 2 / 3 : kMapPictureMax;
             for (const bool normals : {false, true}) {
-                const Result<std::vector<std::byte>> png = encodePng(picture(image, first, normals, most));
-                if (!png) {
-                    return forward(png);
-                }
+                const std::vector<std::byte> png =
+                    RELIEF_TRY(encodePng(picture(image, first, normals, most)));
                 const std::string words = end + (normals ? "normals" : "depth");
                 html_ +=
-                    "<figure>" + imageTag(*png, words) + "<figcaption>" + words + "</figcaption></figure>\n";
+                    "<figure>" + imageTag(png, words) + "<figcaption>" + words + "</figcaption></figure>\n";
             }
         }
         return {};

@@ -62,11 +62,8 @@ Result<Rasterizer> Rasterizer::create(const TriangleMesh& mesh) {
     if (!gpu_mesh) {
         return fail(gpu_mesh.error().code, mesh.name + ": " + gpu_mesh.error().message);
     }
-    auto renderer = DepthMapRenderer::create();
-    if (!renderer) {
-        return forward(renderer);
-    }
-    return Rasterizer(mesh, orientation(mesh), std::move(*gpu_mesh), std::move(*renderer));
+    auto renderer = RELIEF_TRY(DepthMapRenderer::create());
+    return Rasterizer(mesh, orientation(mesh), std::move(*gpu_mesh), std::move(renderer));
 }
 
 Result<DepthMap> Rasterizer::bake(const View& view, Decode decode, std::uint64_t& covered,
@@ -74,11 +71,8 @@ Result<DepthMap> Rasterizer::bake(const View& view, Decode decode, std::uint64_t
     const DepthMapFrame frame = frameOf(view, decode, *mesh_, winding_);
     DepthMap map = view.emptyMap();
     map.decode = decode;
-    const auto target =
-        DepthMapTarget::create(frame.format, std::min(kTile, frame.width), std::min(kTile, frame.height));
-    if (!target) {
-        return forward(target);
-    }
+    const auto target = RELIEF_TRY(
+        DepthMapTarget::create(frame.format, std::min(kTile, frame.width), std::min(kTile, frame.height)));
     covered = 0;
     std::vector<std::byte> tile;
     for (std::uint32_t face = 0; face < map.faceCount(); ++face) {
@@ -86,14 +80,10 @@ Result<DepthMap> Rasterizer::bake(const View& view, Decode decode, std::uint64_t
             const std::uint32_t rows = std::min(kTile, map.height - y);
             for (std::uint32_t x = 0; x < map.width; x += kTile) {
                 const TexelWindow window{face, x, y, std::min(kTile, map.width - x), rows};
-                if (auto done = renderer_.render(gpu_mesh_, frame, window, *target); !done) {
-                    return forward(done);
-                }
+                RELIEF_TRY(renderer_.render(gpu_mesh_, frame, window, target));
                 const std::size_t row_bytes = window.width * texelSize(map.format);
                 tile.resize(row_bytes * rows);
-                if (auto done = target->read(0, 0, window.width, rows, tile); !done) {
-                    return forward(done);
-                }
+                RELIEF_TRY(target.read(0, 0, window.width, rows, tile));
                 for (std::uint32_t row = 0; row < rows; ++row) {
                     const std::size_t first = map.texelAt(face, x, y + row).data() - map.texels.data();
                     covered += copyRow(std::span(tile).subspan(row * row_bytes, row_bytes), map.format,

@@ -556,11 +556,8 @@ Result<RayScene> RayScene::build(const TriangleMesh& mesh) {
     impl->mesh = &mesh;
     impl->winding = orientation(mesh);
     impl->closed = edgesAreEven(mesh);
-    Result<EmbreeMesh> tree = EmbreeMesh::build(mesh);
-    if (!tree) {
-        return forward(tree);
-    }
-    impl->tree = std::move(*tree);
+    EmbreeMesh tree = RELIEF_TRY(EmbreeMesh::build(mesh));
+    impl->tree = std::move(tree);
     return RayScene(std::move(impl));
 }
 

@@ -39,6 +39,26 @@ template <class T>
     return tl::unexpected<Error>(result.error());
 }
 
+/// What a successful Result holds: RELIEF_TRY's last step.
+template <class T>
+[[nodiscard]] T&& valueOf(Result<T>&& result) {
+    return *std::move(result);
+}
+inline void valueOf(Result<void>&& /*result*/) {}
+
+/// The value of a Result, or out of the calling function with its error: `const View view =
+/// RELIEF_TRY(makeView(spec));`. Use it as a statement of its own, or as the whole right side of a
+/// declaration or an assignment. A statement expression of GCC and Clang, as no function can return for its
+/// caller.
+#define RELIEF_TRY(...)                             \
+    __extension__({                                 \
+        auto relief_tried = (__VA_ARGS__);          \
+        if (!relief_tried) {                        \
+            return ::relief::forward(relief_tried); \
+        }                                           \
+        ::relief::valueOf(std::move(relief_tried)); \
+    })
+
 /// "file or I/O", "invalid input", …: the words of the exit code table.
 [[nodiscard]] const char* errorCodeName(ErrorCode code);
 

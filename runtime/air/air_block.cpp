@@ -85,9 +85,7 @@ GlTexture uploadFlow(const FlowField& flow) {
 }  // namespace
 
 Result<AirBlock> AirBlock::create(const AirSettings& air) {
-    if (auto checked = checkAir(air); !checked) {
-        return forward(checked);
-    }
+    RELIEF_TRY(checkAir(air));
     AirBlock result;
     result.kinds_ = kindsOf(air);
     if (result.kinds_ == 0) {
@@ -121,19 +119,14 @@ Result<AirBlock> AirBlock::create(const AirSettings& air) {
     result.block_ = makeBuffer();
     glBindBuffer(GL_UNIFORM_BUFFER, result.block_.name());
     glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_DYNAMIC_DRAW);
-    if (auto done = checkAllocated("the flow's " + std::to_string(result.bytes_) + " bytes", "resample it");
-        !done) {
-        return forward(done);
-    }
+    RELIEF_TRY(checkAllocated("the flow's " + std::to_string(result.bytes_) + " bytes", "resample it"));
     return result;
 }
 
 Result<void> AirBlock::update(const AirSettings& air) {
     AirSettings changed = air;
     changed.flow = nullptr;
-    if (auto checked = checkAir(changed); !checked) {
-        return checked;
-    }
+    RELIEF_TRY(checkAir(changed));
     if (const unsigned missing = kindsOf(changed) & ~kinds_; missing != 0) {
         return fail(ErrorCode::kUsage,
                     "the air was made without what it is to have now; make it anew, and its programs");

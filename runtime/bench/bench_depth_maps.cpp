@@ -113,12 +113,9 @@ class BareMesh {
     static Result<BareMesh> create(const PictureMesh& mesh) {
         BareMesh bare;
         for (int words = 0; words < 2; ++words) {
-            auto program =
-                makeProgram("bare_draw.vert", "bare_draw.frag", words == 0 ? "" : "#define RELIEF_WORDS 1\n");
-            if (!program) {
-                return forward(program);
-            }
-            bare.program_[words] = std::move(*program);
+            auto program = RELIEF_TRY(makeProgram("bare_draw.vert", "bare_draw.frag",
+                                                  words == 0 ? "" : "#define RELIEF_WORDS 1\n"));
+            bare.program_[words] = std::move(program);
         }
         bare.corners_ = static_cast<GLsizei>(mesh.triangles.size());
         bare.positions_ = makeBuffer();
@@ -251,11 +248,8 @@ Result<Json> benchSet(const MapSet& set, Decode decode, const PictureMesh& mesh,
     std::vector<DepthMapTarget> targets;
     for (int view = 0; view < set.views; ++view) {
         frames.push_back(frameFor(box, set.format, set.compare, decode, view));
-        auto target = DepthMapTarget::create(frames.back());
-        if (!target) {
-            return forward(target);
-        }
-        targets.push_back(std::move(*target));
+        auto target = RELIEF_TRY(DepthMapTarget::create(frames.back()));
+        targets.push_back(std::move(target));
     }
     Result<void> done;
     const auto render = [&] {
@@ -292,37 +286,28 @@ Result<Json> benchSet(const MapSet& set, Decode decode, const PictureMesh& mesh,
 }
 
 Result<Json> bench(const char* path) {
-    const auto context = GlContext::create();
-    if (!context) {
-        return forward(context);
-    }
-    const auto mesh = loadMesh(path);
-    if (!mesh) {
-        return forward(mesh);
-    }
+    const auto context = RELIEF_TRY(GlContext::create());
+    const auto mesh = RELIEF_TRY(loadMesh(path));
     std::vector<glm::uvec3> triangles;
-    for (std::size_t i = 0; i < mesh->triangles.size(); i += 3) {
-        triangles.emplace_back(mesh->triangles[i], mesh->triangles[i + 1], mesh->triangles[i + 2]);
+    for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) {
+        triangles.emplace_back(mesh.triangles[i], mesh.triangles[i + 1], mesh.triangles[i + 2]);
     }
-    auto gpu_mesh = GpuMesh::create(mesh->positions, triangles);
+    auto gpu_mesh = GpuMesh::create(mesh.positions, triangles);
     auto renderer = DepthMapRenderer::create();
-    const auto bare = BareMesh::create(*mesh);
+    const auto bare = BareMesh::create(mesh);
     if (!gpu_mesh || !renderer || !bare) {
         return fail(ErrorCode::kFailure, !gpu_mesh ? gpu_mesh.error().message : "a program does not compile");
     }
-    Json json{{"device", (*context)->description()},
+    Json json{{"device", context->description()},
               {"triangles", triangles.size()},
-              {"vertices", mesh->positions.size()},
+              {"vertices", mesh.positions.size()},
               {"slots", gpu_mesh->slotCount()},
               {"size", kSize},
               {"sets", Json::array()}};
     for (const Decode decode : {Decode::kProjected, Decode::kPlane}) {
         for (const MapSet& set : kSets) {
-            auto row = benchSet(set, decode, *mesh, *bare, *gpu_mesh, *renderer);
-            if (!row) {
-                return row;
-            }
-            json["sets"].push_back(std::move(*row));
+            auto row = RELIEF_TRY(benchSet(set, decode, mesh, *bare, *gpu_mesh, *renderer));
+            json["sets"].push_back(std::move(row));
         }
     }
     return json;

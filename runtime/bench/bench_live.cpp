@@ -45,9 +45,7 @@ Result<void> measure(std::vector<Part>& parts) {
             glFinish();
             const Clock::time_point begun = Clock::now();
             for (int i = 0; i < kRuns; ++i) {
-                if (auto done = part.run(); !done) {
-                    return done;
-                }
+                RELIEF_TRY(part.run());
             }
             glFinish();
             const double ms = std::chrono::duration<double, std::milli>(Clock::now() - begun).count();
@@ -79,11 +77,8 @@ Result<Json> bench(const std::string& path, std::uint32_t count) {
     twist.center = bounds.center();
     twist.range_low = bounds.min.y - twist.center.y;
     twist.range_high = bounds.max.y - twist.center.y;
-    auto frames = liveFrames(deformedBounds(twist, mesh.positions));
-    if (!frames) {
-        return forward(frames);
-    }
-    auto live = LiveCollider::create(mesh.positions, triangles, *frames);
+    auto frames = RELIEF_TRY(liveFrames(deformedBounds(twist, mesh.positions)));
+    auto live = LiveCollider::create(mesh.positions, triangles, frames);
     auto pass = DeformPass::create(twist, mesh.positions, mesh.normals);
     auto gpu_mesh = GpuMesh::create(mesh.positions, triangles, {.keep_previous = true});
     if (!live || !pass || !gpu_mesh) {
@@ -98,9 +93,7 @@ Result<Json> bench(const std::string& path, std::uint32_t count) {
         return !textures ? forward(textures) : forward(particles);
     }
     const ColliderInstance instance{&*textures};
-    if (auto set = particles->setColliders({&instance, 1}); !set) {
-        return forward(set);
-    }
+    RELIEF_TRY(particles->setColliders({&instance, 1}));
     BenchScene scene = makeBenchScene(live->frames(), count);
     for (Birth& birth : scene.births) {
         birth.lifetime = 1e6F;
@@ -117,9 +110,7 @@ Result<Json> bench(const std::string& path, std::uint32_t count) {
                             {"positions", [&] { return gpu_mesh->setPositions(pass->buffer().name()); }, {}},
                             {"update",
                              [&]() -> Result<void> {
-                                 if (auto moved = live->setPositions(pass->buffer().name()); !moved) {
-                                     return moved;
-                                 }
+                                 RELIEF_TRY(live->setPositions(pass->buffer().name()));
                                  return live->update(*textures, 0);
                              },
                              {}},
@@ -132,15 +123,11 @@ Result<Json> bench(const std::string& path, std::uint32_t count) {
                             {"all", {}, {}}};
     parts.back().run = [&]() -> Result<void> {
         for (const std::size_t i : {0, 2, 3}) {
-            if (auto done = parts[i].run(); !done) {
-                return done;
-            }
+            RELIEF_TRY(parts[i].run());
         }
         return {};
     };
-    if (auto measured = measure(parts); !measured) {
-        return forward(measured);
-    }
+    RELIEF_TRY(measure(parts));
     Json json{{"device", (*context)->description()},
               {"triangles", triangles.size()},
               {"vertices", mesh.positions.size()},

@@ -127,18 +127,12 @@ class Copy {
                 texture =
                     relief::makeTexture2D(GL_RGBA32F, kWidth, copy.rows_, GL_RGBA, GL_FLOAT, texels.data());
             }
-            auto target = relief::makeFramebuffer(
-                std::array<GLuint, 2>{copy.state_[i][0].name(), copy.state_[i][1].name()});
-            if (!target) {
-                return forward(target);
-            }
-            copy.target_[i] = std::move(*target);
+            auto target = RELIEF_TRY(relief::makeFramebuffer(
+                std::array<GLuint, 2>{copy.state_[i][0].name(), copy.state_[i][1].name()}));
+            copy.target_[i] = std::move(target);
         }
-        auto program = relief::makeProgram("quad.vert", "copy_state.frag");
-        if (!program) {
-            return forward(program);
-        }
-        copy.program_ = std::move(*program);
+        auto program = RELIEF_TRY(relief::makeProgram("quad.vert", "copy_state.frag"));
+        copy.program_ = std::move(program);
         copy.array_ = relief::makeVertexArray();
         glUseProgram(copy.program_.name());
         glUniform1i(relief::uniformLocation(copy.program_, "u_velocity"), 1);
@@ -195,22 +189,16 @@ Result<void> benchSteps(const BenchScene& scene, const Sizes& sizes, Json& json)
     const std::vector<BenchVariant> variants = relief::benchVariants();
     std::vector<BenchSystem> systems;
     for (const BenchVariant& variant : variants) {
-        auto made = variant.make(scene);
-        if (!made) {
-            return forward(made);
-        }
-        systems.push_back(std::move(*made));
+        auto made = RELIEF_TRY(variant.make(scene));
+        systems.push_back(std::move(made));
     }
-    auto copy = Copy::create(sizes.particles);
-    if (!copy) {
-        return forward(copy);
-    }
+    auto copy = RELIEF_TRY(Copy::create(sizes.particles));
     Times copied;
     std::vector<Times> times(variants.size());
     std::vector<Json> touch(variants.size());
-    copy->step();  // the driver compiles
+    copy.step();  // the driver compiles
     for (int round = 0; round < sizes.rounds; ++round) {
-        copied.measure(sizes.steps, [&] { copy->step(); });
+        copied.measure(sizes.steps, [&] { copy.step(); });
         glUseProgram(0);  // whoever saves the state of the GL shall find nothing that goes with the copy
         for (std::size_t i = 0; i < variants.size(); ++i) {
             systems[i].begin(scene);
@@ -247,24 +235,16 @@ Result<void> benchSteps(const BenchScene& scene, const Sizes& sizes, Json& json)
 Result<void> benchFrames(const relief::Collider& collider, std::uint32_t particles, const Sizes& sizes,
                          Json& json) {
     const BenchScene scene = relief::makeBenchScene(collider, particles);
-    auto system = relief::makeColliderSystem(scene);
-    if (!system) {
-        return forward(system);
-    }
-    auto renderer = relief::ParticleRenderer::create(
-        relief::ColliderView{system->textures.get(), collider.bounds, relief::finestTexel(collider)});
-    if (!renderer) {
-        return forward(renderer);
-    }
+    auto system = RELIEF_TRY(relief::makeColliderSystem(scene));
+    auto renderer = RELIEF_TRY(relief::ParticleRenderer::create(
+        relief::ColliderView{system.textures.get(), collider.bounds, relief::finestTexel(collider)}));
     const GlTexture color =
         relief::makeTexture2D(GL_RGBA16F, kPictureWidth, kPictureHeight, GL_RGBA, GL_HALF_FLOAT);
     const GlTexture depth = relief::makeTexture2D(GL_DEPTH_COMPONENT32F, kPictureWidth, kPictureHeight,
                                                   GL_DEPTH_COMPONENT, GL_FLOAT);
-    const auto framebuffer = relief::makeFramebuffer(std::array<GLuint, 1>{color.name()}, depth.name());
-    if (!framebuffer) {
-        return forward(framebuffer);
-    }
-    const relief::RenderTarget target{framebuffer->name(), kPictureWidth, kPictureHeight};
+    const auto framebuffer =
+        RELIEF_TRY(relief::makeFramebuffer(std::array<GLuint, 1>{color.name()}, depth.name()));
+    const relief::RenderTarget target{framebuffer.name(), kPictureWidth, kPictureHeight};
     relief::Camera camera;
     camera.target = collider.bounds.center();
     camera.eye = relief::defaultEye(camera.target, 0.5F * glm::length(collider.bounds.size()), camera.fov);
@@ -274,11 +254,11 @@ Result<void> benchFrames(const relief::Collider& collider, std::uint32_t particl
 
     Result<void> drawn;
     const auto frame = [&](relief::Sprite sprite) {
-        system->step();
+        system.step();
         glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         style.sprite = sprite;
-        if (auto done = renderer->draw(*system->particles, camera, style, target); !done) {
+        if (auto done = renderer.draw(*system.particles, camera, style, target); !done) {
             drawn = done;
         }
     };
@@ -286,15 +266,15 @@ Result<void> benchFrames(const relief::Collider& collider, std::uint32_t particl
     Times points;
     Times quads;
     const auto block = [&](Times& times, const std::function<void()>& work) {
-        system->begin(scene);
+        system.begin(scene);
         times.measure(sizes.frame_steps, work);
-        system->end();
+        system.end();
     };
     for (int round = -1; round < sizes.frame_rounds; ++round) {
         if (round == 0) {  // the one before was for the driver, which compiles
             step = points = quads = {};
         }
-        block(step, [&] { system->step(); });
+        block(step, [&] { system.step(); });
         block(points, [&] { frame(relief::Sprite::kPoint); });
         block(quads, [&] { frame(relief::Sprite::kQuad); });
     }

@@ -42,27 +42,19 @@ Result<ColliderTextures> makeTextures(const BenchScene& scene, Solids solids) {
 }
 
 Result<BenchSystem> makeSystem(const BenchScene& scene, Solids solids, Integrator integrator) {
-    auto particles = ParticleSystem::create(
-        {.capacity = static_cast<std::uint32_t>(scene.births.size()), .integrator = integrator});
-    if (!particles) {
-        return forward(particles);
-    }
+    auto particles = RELIEF_TRY(ParticleSystem::create(
+        {.capacity = static_cast<std::uint32_t>(scene.births.size()), .integrator = integrator}));
     BenchSystem system;
-    system.particles = std::make_unique<ParticleSystem>(std::move(*particles));
+    system.particles = std::make_unique<ParticleSystem>(std::move(particles));
     system.particles->setForces(scene.forces);
     system.particles->setCollision(kSnow);
     if (solids == Solids::kNone) {
         return system;
     }
-    auto textures = makeTextures(scene, solids);
-    if (!textures) {
-        return forward(textures);
-    }
-    system.textures = std::make_unique<ColliderTextures>(std::move(*textures));
+    auto textures = RELIEF_TRY(makeTextures(scene, solids));
+    system.textures = std::make_unique<ColliderTextures>(std::move(textures));
     const ColliderInstance instance{system.textures.get()};
-    if (const auto set = system.particles->setColliders({&instance, 1}); !set) {
-        return forward(set);
-    }
+    RELIEF_TRY(system.particles->setColliders({&instance, 1}));
     return system;
 }
 
@@ -150,9 +142,7 @@ BenchVariant feature(std::string name, std::string what,
     const auto make = [set = std::move(set)](const BenchScene& scene) -> Result<BenchSystem> {
         auto system = makeColliderSystem(scene);
         if (system) {
-            if (const auto done = set(*system->particles, scene); !done) {
-                return forward(done);
-            }
+            RELIEF_TRY(set(*system->particles, scene));
         }
         return system;
     };

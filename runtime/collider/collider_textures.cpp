@@ -300,11 +300,8 @@ Result<ColliderTextures> ColliderTextures::upload(std::span<const PlacedMap> map
     glBufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(bytes.size()), bytes.data(),
                  bodies.empty() ? GL_STATIC_DRAW : GL_DYNAMIC_DRAW);
 
-    if (auto done = checkAllocated("the collider's " + std::to_string(result.bytes_) + " bytes of maps",
-                                   "bake it with fewer");
-        !done) {
-        return forward(done);
-    }
+    RELIEF_TRY(checkAllocated("the collider's " + std::to_string(result.bytes_) + " bytes of maps",
+                              "bake it with fewer"));
     result.map_count_ = static_cast<int>(blocks.size());
     result.defines_ = "#define RELIEF_MAP_CAPACITY " + std::to_string(blocks.size()) + "\n";
     if (std::any_of(maps.begin(), maps.end(), [](const PlacedMap& map) { return map.live; })) {

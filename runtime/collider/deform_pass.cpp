@@ -60,9 +60,7 @@ void setVector(const GlProgram& program, const char* name, const glm::vec3& v) {
 
 Result<DeformPass> DeformPass::create(const Deformation& deformation, std::span<const glm::vec3> positions,
                                       std::span<const glm::vec3> normals, Output output) {
-    if (auto good = checkDeformation(deformation); !good) {
-        return forward(good);
-    }
+    RELIEF_TRY(checkDeformation(deformation));
     if (deformation.kind == DeformKind::kWobble && normals.empty()) {
         return fail(ErrorCode::kUsage, "a wobble goes along the normals of the mesh; give them");
     }
@@ -102,27 +100,21 @@ Result<DeformPass> DeformPass::make(const std::string& defines, const std::strin
 
     const PassState state;
     constexpr std::array<const char*, 2> kOutputs{"v_position", "v_normal"};
-    auto program =
+    auto program = RELIEF_TRY(
         makeFeedbackProgram("deform.vert", std::span(kOutputs).first(wants_normals ? 2 : 1),
-                            (wants_normals ? "#define RELIEF_DEFORM_NORMALS 1\n" : "") + defines, glsl);
-    if (!program) {
-        return forward(program);
-    }
+                            (wants_normals ? "#define RELIEF_DEFORM_NORMALS 1\n" : "") + defines, glsl));
     DeformPass pass;
     pass.what_ = output;
     pass.vertices_ = static_cast<GLsizei>(positions.size());
     pass.inch_ = std::max(kInch * bounds.longestSide(), std::numeric_limits<float>::min());
-    pass.program_ = std::move(*program);
+    pass.program_ = std::move(program);
     pass.rest_ = makeBuffer();
     pass.output_ = makeBuffer();
     pass.array_ = makeVertexArray();
     pass.pixel_ = makeTexture2D(GL_RGBA8, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE);
     const std::array<GLuint, 1> colors{pass.pixel_.name()};
-    auto target = makeFramebuffer(colors);
-    if (!target) {
-        return forward(target);
-    }
-    pass.target_ = std::move(*target);
+    auto target = RELIEF_TRY(makeFramebuffer(colors));
+    pass.target_ = std::move(target);
     glBindVertexArray(pass.array_.name());
     glBindBuffer(GL_ARRAY_BUFFER, pass.output_.name());
     glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(pass.bytes()), nullptr, GL_DYNAMIC_COPY);

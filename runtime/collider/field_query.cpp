@@ -16,11 +16,8 @@ constexpr ColliderTextures::Binding kBinding{1, 0};         // unit 0 holds the 
 }  // namespace
 
 Result<FieldQuery> FieldQuery::create(const Collider& collider) {
-    Result<ColliderTextures> textures = ColliderTextures::create(collider);
-    if (!textures) {
-        return forward(textures);
-    }
-    auto own = std::make_unique<ColliderTextures>(std::move(*textures));
+    ColliderTextures textures = RELIEF_TRY(ColliderTextures::create(collider));
+    auto own = std::make_unique<ColliderTextures>(std::move(textures));
     auto query = create(*own);
     if (query) {
         query->own_ = std::move(own);
@@ -32,11 +29,8 @@ Result<FieldQuery> FieldQuery::create(const ColliderTextures& textures) {
     const PassState state;
     FieldQuery query;
     query.textures_ = &textures;
-    Result<GlProgram> program = makeProgram("quad.vert", "query.frag", textures.defines());
-    if (!program) {
-        return forward(program);
-    }
-    query.program_ = std::move(*program);
+    GlProgram program = RELIEF_TRY(makeProgram("quad.vert", "query.frag", textures.defines()));
+    query.program_ = std::move(program);
     textures.attach(query.program_, kBinding);
     glUniform1i(uniformLocation(query.program_, "u_points"), 0);
     query.no_attributes_ = makeVertexArray();
@@ -45,11 +39,8 @@ Result<FieldQuery> FieldQuery::create(const ColliderTextures& textures) {
 
 Result<std::vector<FieldSample>> FieldQuery::evaluate(std::span<const glm::vec3> points) const {
     const PassState state;
-    if (auto done = checkTextureSize(kWidth, std::min(kBatch, points.size()) / kWidth,
-                                     "the points of a query", "this GL is too small for it");
-        !done) {
-        return forward(done);
-    }
+    RELIEF_TRY(checkTextureSize(kWidth, std::min(kBatch, points.size()) / kWidth, "the points of a query",
+                                "this GL is too small for it"));
     std::vector<FieldSample> samples;
     samples.reserve(points.size());
     for (std::size_t first = 0; first < points.size(); first += kBatch) {
@@ -65,17 +56,11 @@ Result<std::vector<FieldSample>> FieldQuery::evaluate(std::span<const glm::vec3>
         const GlTexture input = makeTexture2D(GL_RGBA32F, kWidth, height, GL_RGBA, GL_FLOAT, texels.data());
         const GlTexture normal_distance = makeTexture2D(GL_RGBA32F, kWidth, height, GL_RGBA, GL_FLOAT);
         const GlTexture map = makeTexture2D(GL_RGBA32F, kWidth, height, GL_RGBA, GL_FLOAT);
-        if (auto done = checkAllocated("a query of " + std::to_string(batch.size()) + " points",
-                                       "close what else is on the GPU");
-            !done) {
-            return forward(done);
-        }
+        RELIEF_TRY(checkAllocated("a query of " + std::to_string(batch.size()) + " points",
+                                  "close what else is on the GPU"));
         const std::array<GLuint, 2> targets = {normal_distance.name(), map.name()};
-        const Result<GlFramebuffer> framebuffer = makeFramebuffer(targets);
-        if (!framebuffer) {
-            return forward(framebuffer);
-        }
-        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer->name());
+        const GlFramebuffer framebuffer = RELIEF_TRY(makeFramebuffer(targets));
+        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer.name());
         glViewport(0, 0, kWidth, height);
         glUseProgram(program_.name());
         glActiveTexture(GL_TEXTURE0);

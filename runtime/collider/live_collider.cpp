@@ -92,27 +92,16 @@ Result<LiveCollider> LiveCollider::create(std::span<const glm::vec3> positions,
     if (frames.maps.empty()) {
         return fail(ErrorCode::kUsage, "a live collider needs maps; liveFrames() makes some");
     }
-    auto mesh = GpuMesh::create(positions, triangles, {.keep_previous = true});
-    if (!mesh) {
-        return forward(mesh);
-    }
-    auto renderer = DepthMapRenderer::create();
-    if (!renderer) {
-        return forward(renderer);
-    }
+    auto mesh = RELIEF_TRY(GpuMesh::create(positions, triangles, {.keep_previous = true}));
+    auto renderer = RELIEF_TRY(DepthMapRenderer::create());
     for (DepthMap& map : frames.maps) {
         map.texels.clear();
     }
-    LiveCollider live(std::move(*mesh), std::move(*renderer), std::move(frames));
-    if (auto done = live.createTargets(); !done) {
-        return forward(done);
-    }
+    LiveCollider live(std::move(mesh), std::move(renderer), std::move(frames));
+    RELIEF_TRY(live.createTargets());
     const PassState state;
-    auto program = makeProgram("quad.vert", "live_motion.frag");
-    if (!program) {
-        return forward(program);
-    }
-    live.motion_program_ = std::move(*program);
+    auto program = RELIEF_TRY(makeProgram("quad.vert", "live_motion.frag"));
+    live.motion_program_ = std::move(program);
     glUseProgram(live.motion_program_.name());
     glUniform1i(uniformLocation(live.motion_program_, "u_motion_xy"), kMotionXyUnit);
     glUniform1i(uniformLocation(live.motion_program_, "u_motion_z"), kMotionZUnit);
@@ -136,12 +125,9 @@ Result<void> LiveCollider::createTargets() {
             target_of_.push_back(target_of_[same]);
             continue;
         }
-        auto target = DepthMapTarget::create(views_.back(), true);
-        if (!target) {
-            return forward(target);
-        }
+        auto target = RELIEF_TRY(DepthMapTarget::create(views_.back(), true));
         target_of_.push_back(targets_.size());
-        targets_.push_back(std::move(*target));
+        targets_.push_back(std::move(target));
     }
     return {};
 }
@@ -156,9 +142,7 @@ Result<void> LiveCollider::refuseSecondChange() const {
 }
 
 Result<void> LiveCollider::setPositions(std::span<const glm::vec3> positions) {
-    if (auto once = refuseSecondChange(); !once) {
-        return once;
-    }
+    RELIEF_TRY(refuseSecondChange());
     for (const DepthMap& map : frames_.maps) {
         for (std::size_t i = 0; map.encloses && i < positions.size(); ++i) {
             const glm::vec3& p = positions[i];
@@ -169,20 +153,14 @@ Result<void> LiveCollider::setPositions(std::span<const glm::vec3> positions) {
             }
         }
     }
-    if (auto done = mesh_.setPositions(positions); !done) {
-        return done;
-    }
+    RELIEF_TRY(mesh_.setPositions(positions));
     moved_ = true;
     return {};
 }
 
 Result<void> LiveCollider::setPositions(GLuint buffer, std::size_t offset) {
-    if (auto once = refuseSecondChange(); !once) {
-        return once;
-    }
-    if (auto done = mesh_.setPositions(buffer, offset); !done) {
-        return done;
-    }
+    RELIEF_TRY(refuseSecondChange());
+    RELIEF_TRY(mesh_.setPositions(buffer, offset));
     moved_ = true;
     return {};
 }
@@ -208,9 +186,7 @@ Result<void> LiveCollider::update(ColliderTextures& textures, std::size_t body) 
     const PassState state;
     for (std::size_t m = 0; m < slots.size(); ++m) {
         const DepthMapTarget& target = targets_[target_of_[m]];
-        if (auto done = renderer_.render(mesh_, views_[m], target); !done) {
-            return done;
-        }
+        RELIEF_TRY(renderer_.render(mesh_, views_[m], target));
         copyTexels(target, frames_.maps[m], slots[m]);
         copyMotion(target, frames_.maps[m], slots[m]);
     }

@@ -207,13 +207,10 @@ Result<const DepthMapRenderer::Program*> DepthMapRenderer::programFor(const Dept
     if (found != programs_.end()) {
         return &found->second;
     }
-    auto made =
-        makeProgram(frame.exact ? "depth_map_exact.vert" : "depth_map.vert", "depth_map.frag", defines);
-    if (!made) {
-        return forward(made);
-    }
+    auto made = RELIEF_TRY(
+        makeProgram(frame.exact ? "depth_map_exact.vert" : "depth_map.vert", "depth_map.frag", defines));
     Program program;
-    program.program = std::move(*made);
+    program.program = std::move(made);
     const auto at = [&](const char* name) { return uniformLocation(program.program, name); };
     program.shift = at("u_shift");
     program.center = at("u_center");
@@ -290,21 +287,15 @@ Result<void> DepthMapRenderer::render(GpuMesh& mesh, const DepthMapFrame& frame,
                                       const DepthMapTarget& target) {
     for (std::uint32_t face = 0; face < faceCount(frame); ++face) {
         const TexelWindow window{face, 0, 0, frame.width, frame.height};
-        if (auto done = render(mesh, frame, window, target, 0, face * frame.height); !done) {
-            return done;
-        }
+        RELIEF_TRY(render(mesh, frame, window, target, 0, face * frame.height));
     }
     return {};
 }
 
 Result<void> DepthMapRenderer::render(GpuMesh& mesh, const DepthMapFrame& frame, const TexelWindow& window,
                                       const DepthMapTarget& target, std::uint32_t x, std::uint32_t y) {
-    if (auto good = checkFrame(frame); !good) {
-        return good;
-    }
-    if (auto good = checkWindow(frame, window, target, x, y); !good) {
-        return good;
-    }
+    RELIEF_TRY(checkFrame(frame));
+    RELIEF_TRY(checkWindow(frame, window, target, x, y));
     const bool motion = target.motion(0) != 0;
     if (motion && frame.exact) {
         return fail(ErrorCode::kUsage,
@@ -312,10 +303,7 @@ Result<void> DepthMapRenderer::render(GpuMesh& mesh, const DepthMapFrame& frame,
     }
     const PassState state;
     const DrawState draw_state;
-    const Result<const Program*> program = programFor(frame, motion);
-    if (!program) {
-        return forward(program);
-    }
+    const Program* program = RELIEF_TRY(programFor(frame, motion));
     const GLuint planes = mesh.planes();
     useTexture(kPositionUnit, mesh.positions());
     useTexture(kPlaneUnit, planes);
@@ -339,15 +327,15 @@ Result<void> DepthMapRenderer::render(GpuMesh& mesh, const DepthMapFrame& frame,
         glScissor(static_cast<GLint>(x + (left - window.x)), static_cast<GLint>(y + (below - window.y)),
                   static_cast<GLsizei>(right - left), static_cast<GLsizei>(above - below));
     }
-    glUseProgram((*program)->program.name());
-    setUniforms(**program, mesh, frame, window, x, y);
+    glUseProgram(program->program.name());
+    setUniforms(*program, mesh, frame, window, x, y);
     glEnable(GL_DEPTH_TEST);
     for (const bool far : {false, true}) {
         if (frame.compare == (far ? Compare::kLess : Compare::kGreater)) {
             continue;
         }
-        glUniform1i((*program)->far, far ? 1 : 0);
-        glUniform1i((*program)->starts_free, frame.starts_free[far ? 1 : 0] ? 1 : 0);
+        glUniform1i(program->far, far ? 1 : 0);
+        glUniform1i(program->starts_free, frame.starts_free[far ? 1 : 0] ? 1 : 0);
         const GLfloat farthest = far ? 0.0F : 1.0F;
         glClearBufferfv(GL_DEPTH, 0, &farthest);
         glDepthFunc(far ? GL_GREATER : GL_LESS);

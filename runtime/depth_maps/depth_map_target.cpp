@@ -69,18 +69,13 @@ Result<DepthMapTarget> DepthMapTarget::create(MapFormat format, std::uint32_t wi
         target.motion_[i] = makeTexture2D(GL_RGBA32F, w, h, GL_RGBA, GL_FLOAT);
         colors.push_back(target.motion_[i].name());
     }
-    auto framebuffer = makeFramebuffer(colors, target.depth_.name());
-    if (!framebuffer) {
-        return forward(framebuffer);
-    }
-    target.framebuffer_ = std::move(*framebuffer);
+    auto framebuffer = RELIEF_TRY(makeFramebuffer(colors, target.depth_.name()));
+    target.framebuffer_ = std::move(framebuffer);
     return target;
 }
 
 Result<DepthMapTarget> DepthMapTarget::create(const DepthMapFrame& frame, bool motion) {
-    if (auto good = checkFrame(frame); !good) {
-        return forward(good);
-    }
+    RELIEF_TRY(checkFrame(frame));
     return create(frame.format, frame.width, frame.height * faceCount(frame), motion);
 }
 

@@ -125,12 +125,8 @@ Result<GpuMesh> GpuMesh::create(std::span<const glm::vec3> positions, std::span<
     if (triangles.empty() || positions.empty()) {
         return fail(ErrorCode::kInvalidInput, "a mesh without triangles cannot be drawn; give it some");
     }
-    if (auto fits = checkSize(positions.size(), triangles.size()); !fits) {
-        return forward(fits);
-    }
-    if (auto finite = checkFinite(positions); !finite) {
-        return forward(finite);
-    }
+    RELIEF_TRY(checkSize(positions.size(), triangles.size()));
+    RELIEF_TRY(checkFinite(positions));
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         const glm::uvec3& t = triangles[i];
         if (std::max({t.x, t.y, t.z}) >= positions.size()) {
@@ -145,9 +141,7 @@ Result<GpuMesh> GpuMesh::create(std::span<const glm::vec3> positions, std::span<
     mesh.triangle_count_ = static_cast<std::uint32_t>(triangles.size());
     mesh.keep_previous_ = options.keep_previous;
     const PassState state;
-    if (auto made = mesh.createTextures(triangles); !made) {
-        return forward(made);
-    }
+    RELIEF_TRY(mesh.createTextures(triangles));
     mesh.upload(positions.data());
     mesh.revision_ = 1;
     return mesh;
@@ -176,16 +170,10 @@ Result<void> GpuMesh::createTextures(std::span<const glm::uvec3> triangles) {
                              texels.data());
     planes_ = makeTexture2D(GL_RGBA32UI, 1 << triangle_shift_, rows, GL_RGBA_INTEGER, GL_UNSIGNED_INT);
     const std::array<GLuint, 1> planes{planes_.name()};
-    auto target = makeFramebuffer(planes);
-    if (!target) {
-        return forward(target);
-    }
-    planes_target_ = std::move(*target);
-    auto program = makeProgram("quad.vert", "triangle_plane.frag");
-    if (!program) {
-        return forward(program);
-    }
-    planes_program_ = std::move(*program);
+    auto target = RELIEF_TRY(makeFramebuffer(planes));
+    planes_target_ = std::move(target);
+    auto program = RELIEF_TRY(makeProgram("quad.vert", "triangle_plane.frag"));
+    planes_program_ = std::move(program);
     glUseProgram(planes_program_.name());
     glUniform1i(uniformLocation(planes_program_, "u_positions"), 0);
     glUniform1i(uniformLocation(planes_program_, "u_corners"), 1);
@@ -235,9 +223,7 @@ Result<void> GpuMesh::setPositions(std::span<const glm::vec3> positions) {
                                            std::to_string(vertex_count_) +
                                            " vertices; give as many as at first, or make another mesh");
     }
-    if (auto finite = checkFinite(positions); !finite) {
-        return finite;
-    }
+    RELIEF_TRY(checkFinite(positions));
     const PassState state;
     current_ = keep_previous_ ? 1 - current_ : current_;
     moved_ = keep_previous_;

@@ -100,10 +100,7 @@ Result<Slice> decode(const std::vector<std::byte>& bytes, const std::string& nam
 }
 
 Result<Slice> readImage(const fs::path& path) {
-    const auto bytes = readFile(path, kImageBytesMax);
-    if (!bytes) {
-        return forward(bytes);
-    }
+    const auto bytes = RELIEF_TRY(readFile(path, kImageBytesMax));
     // Before anything is allocated for a size that the file merely claims. 0 is OpenEXR's own "no limit".
     struct SizeLimit {
         SizeLimit() { Imf::Header::setMaxImageSize(FlowField::kSideMax, FlowField::kSideMax); }
@@ -112,7 +109,7 @@ Result<Slice> readImage(const fs::path& path) {
     const SizeLimit limit;
     const std::string name = quotedPath(path);
     try {
-        return decode(*bytes, name);
+        return decode(bytes, name);
     } catch (const std::bad_alloc&) {
         return fail(ErrorCode::kLimit, "out of memory while reading " + name);
     } catch (const std::exception& error) {
@@ -191,24 +188,21 @@ Result<void> readSlices(const FlowFile& file, FlowField& flow) {
     }
     for (std::uint32_t i = 0; i < count; ++i) {
         const fs::path path = slicePath(file.path, first + i);
-        auto slice = readImage(path);
-        if (!slice) {
-            return forward(slice);
-        }
+        auto slice = RELIEF_TRY(readImage(path));
         if (i == 0) {
-            flow.size = {static_cast<std::uint32_t>(slice->width), static_cast<std::uint32_t>(slice->height),
+            flow.size = {static_cast<std::uint32_t>(slice.width), static_cast<std::uint32_t>(slice.height),
                          count};
-            if (auto checked = checkFlowSize({slice->width, slice->height, count}); !checked) {
+            if (auto checked = checkFlowSize({slice.width, slice.height, count}); !checked) {
                 return fail(checked.error().code, quotedPath(path) + ": " + checked.error().message);
             }
-        } else if (slice->width != flow.size[0] || slice->height != flow.size[1]) {
+        } else if (slice.width != flow.size[0] || slice.height != flow.size[1]) {
             return fail(ErrorCode::kInvalidInput,
-                        quotedPath(path) + " is " + std::to_string(slice->width) + "x" +
-                            std::to_string(slice->height) + " pixels, the first slice " +
+                        quotedPath(path) + " is " + std::to_string(slice.width) + "x" +
+                            std::to_string(slice.height) + " pixels, the first slice " +
                             std::to_string(flow.size[0]) + "x" + std::to_string(flow.size[1]) +
                             "; all must be of one size");
         }
-        flow.nodes.insert(flow.nodes.end(), slice->nodes.begin(), slice->nodes.end());
+        flow.nodes.insert(flow.nodes.end(), slice.nodes.begin(), slice.nodes.end());
     }
     return {};
 }
@@ -223,12 +217,9 @@ Result<void> readRaw(const FlowFile& file, FlowField& flow) {
     }
     const std::size_t nodes = std::size_t{file.size[0]} * file.size[1] * file.size[2];
     const std::size_t expected = nodes * file.components * sizeof(float);
-    const auto bytes = readFile(file.path, FlowField::kNodesMax * 3 * sizeof(float));
-    if (!bytes) {
-        return forward(bytes);
-    }
-    if (bytes->size() != expected) {
-        return fail(ErrorCode::kInvalidInput, name + " has " + std::to_string(bytes->size()) +
+    const auto bytes = RELIEF_TRY(readFile(file.path, FlowField::kNodesMax * 3 * sizeof(float)));
+    if (bytes.size() != expected) {
+        return fail(ErrorCode::kInvalidInput, name + " has " + std::to_string(bytes.size()) +
                                                   " bytes, but size and components ask for " +
                                                   std::to_string(expected));
     }
@@ -236,7 +227,7 @@ Result<void> readRaw(const FlowFile& file, FlowField& flow) {
     flow.nodes.assign(nodes, glm::vec3(0.0F));
     for (std::size_t i = 0; i < nodes; ++i) {
         const std::size_t node_bytes = file.components * sizeof(float);
-        std::memcpy(&flow.nodes[i].x, bytes->data() + i * node_bytes, node_bytes);
+        std::memcpy(&flow.nodes[i].x, bytes.data() + i * node_bytes, node_bytes);
     }
     return {};
 }
@@ -271,12 +262,9 @@ Result<FlowField> load(const FlowFile& file) {
     } else if (file.kind == FlowFileKind::kSlices) {
         read = readSlices(file, flow);
     } else {
-        auto image = readImage(file.path);
-        if (!image) {
-            return forward(image);
-        }
-        flow.size = {static_cast<std::uint32_t>(image->width), static_cast<std::uint32_t>(image->height), 1};
-        flow.nodes = std::move(image->nodes);
+        auto image = RELIEF_TRY(readImage(file.path));
+        flow.size = {static_cast<std::uint32_t>(image.width), static_cast<std::uint32_t>(image.height), 1};
+        flow.nodes = std::move(image.nodes);
     }
     if (read) {
         read = checkSpeeds(file, flow);

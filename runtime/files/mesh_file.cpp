@@ -26,15 +26,12 @@ Result<PictureMesh> loadMesh(const std::filesystem::path& path) {
             ErrorCode::kUnsupported,
             quotedPath(path) + " is no mesh that a picture can be drawn from; convert it to .obj or .ply");
     }
-    const auto bytes = readFile(path, kMeshBytesMax);
-    if (!bytes) {
-        return forward(bytes);
-    }
+    const auto bytes = RELIEF_TRY(readFile(path, kMeshBytesMax));
     const std::string name = quotedPath(path);
     if (extension == ".obj") {
-        return parseObj({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, name);
+        return parseObj({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name);
     }
-    return parsePlyMesh(*bytes, name);
+    return parsePlyMesh(bytes, name);
 }
 
 }  // namespace relief

@@ -51,10 +51,7 @@ class ObjReader {
             text.remove_prefix(std::min(end + 1, text.size()));
             const std::string_view statement = nextWord(line);
             if (statement == "v" || statement == "f") {
-                auto done = statement == "v" ? readVertex(line) : readFace(line);
-                if (!done) {
-                    return forward(done);
-                }
+                RELIEF_TRY(statement == "v" ? readVertex(line) : readFace(line));
             }
         }
         if (mesh_.triangles.empty()) {

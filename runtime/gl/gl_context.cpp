@@ -217,9 +217,7 @@ Result<std::unique_ptr<GlContext>> GlContext::create(const GlContextOptions& opt
                     "no " + impl.apiName() + " context: " + missing + " cannot be loaded" + kCure);
     }
     if (options.device) {
-        if (const Result<void> opened = impl.openDevice(*options.device); !opened) {
-            return forward(opened);
-        }
+        RELIEF_TRY(impl.openDevice(*options.device));
         return context;
     }
     if (const std::string tried = impl.openPlatform(options.platform); !tried.empty()) {

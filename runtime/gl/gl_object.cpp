@@ -34,11 +34,8 @@ Result<std::string> resolveIncludes(std::string_view name, std::vector<std::stri
         }
         if (!seen) {
             included.push_back(child);
-            Result<std::string> nested = resolveIncludes(child, included);
-            if (!nested) {
-                return nested;
-            }
-            text += *nested;
+            std::string nested = RELIEF_TRY(resolveIncludes(child, included));
+            text += nested;
         }
     }
     return text;
@@ -59,10 +56,7 @@ std::string infoLog(GLuint name, bool is_program) {
 Result<GLuint> compile(GLenum stage, std::string_view file, std::string_view defines,
                        std::string_view appended = {}) {
     std::vector<std::string> included;
-    const Result<std::string> body = resolveIncludes(file, included);
-    if (!body) {
-        return forward(body);
-    }
+    const std::string body = RELIEF_TRY(resolveIncludes(file, included));
     // highp everywhere: state and depth are 32-bit floats, and ES 3.0 requires highp in fragment shaders.
     std::string source = isGles() ? "#version 300 es\n" : "#version 330 core\n";
     source += defines;
@@ -70,7 +64,7 @@ Result<GLuint> compile(GLenum stage, std::string_view file, std::string_view def
         "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n"
         "precision highp usampler2D;\nprecision highp sampler3D;\n";
     source += "#line 1\n";
-    source += *body;
+    source += body;
     if (!appended.empty()) {
         source += "\n#line 1\n";
         source += appended;
@@ -161,24 +155,21 @@ namespace {
 /// \param outputs  of the vertex shader that transform feedback writes, interleaved; empty: none.
 Result<GlProgram> compileAndLink(std::string_view vertex, std::string_view fragment, std::string_view defines,
                                  std::span<const char* const> outputs, std::string_view appended) {
-    const Result<GLuint> vertex_shader = compile(GL_VERTEX_SHADER, vertex, defines, appended);
-    if (!vertex_shader) {
-        return forward(vertex_shader);
-    }
+    const GLuint vertex_shader = RELIEF_TRY(compile(GL_VERTEX_SHADER, vertex, defines, appended));
     const Result<GLuint> fragment_shader = compile(GL_FRAGMENT_SHADER, fragment, defines);
     if (!fragment_shader) {
-        glDeleteShader(*vertex_shader);
+        glDeleteShader(vertex_shader);
         return forward(fragment_shader);
     }
     GlProgram program(glCreateProgram());
-    glAttachShader(program.name(), *vertex_shader);
+    glAttachShader(program.name(), vertex_shader);
     glAttachShader(program.name(), *fragment_shader);
     if (!outputs.empty()) {
         glTransformFeedbackVaryings(program.name(), static_cast<GLsizei>(outputs.size()), outputs.data(),
                                     GL_INTERLEAVED_ATTRIBS);
     }
     glLinkProgram(program.name());
-    glDeleteShader(*vertex_shader);
+    glDeleteShader(vertex_shader);
     glDeleteShader(*fragment_shader);
     GLint linked = GL_FALSE;
     glGetProgramiv(program.name(), GL_LINK_STATUS, &linked);

@@ -57,19 +57,12 @@ Result<ParticleSystem> ParticleSystem::create(const ParticleSystemOptions& optio
     system.height_ = (options.capacity + system.width_ - 1) / system.width_;
     system.ids_.resize(options.capacity);
 
-    if (auto fits =
-            checkTextureSize(system.width_, system.height_, std::to_string(options.capacity) + " particles",
-                             "choose a smaller capacity");
-        !fits) {
-        return forward(fits);
-    }
+    RELIEF_TRY(checkTextureSize(system.width_, system.height_,
+                                std::to_string(options.capacity) + " particles",
+                                "choose a smaller capacity"));
     const PassState state;
-    if (auto done = system.createTextures(); !done) {
-        return forward(done);
-    }
-    if (auto done = system.createPrograms(); !done) {
-        return forward(done);
-    }
+    RELIEF_TRY(system.createTextures());
+    RELIEF_TRY(system.createPrograms());
     return system;
 }
 
@@ -84,11 +77,8 @@ Result<void> ParticleSystem::createTextures() {
             velocity_[i] = makeStateTexture(width_, height_);
         }
     }
-    if (auto done = checkAllocated("the state of " + std::to_string(ids_.size()) + " particles",
-                                   "choose a smaller capacity");
-        !done) {
-        return done;
-    }
+    RELIEF_TRY(checkAllocated("the state of " + std::to_string(ids_.size()) + " particles",
+                              "choose a smaller capacity"));
     for (int i = 0; i < buffers; ++i) {
         // Verlet reads the two positions before, and a birth writes both.
         const GlTexture& second = verlet() ? position_[(i + 2) % 3] : velocity_[i];
@@ -155,11 +145,8 @@ StepFeatures ParticleSystem::featuresFor(const ColliderTextures* collider) const
 }
 
 Result<void> ParticleSystem::remakeStep(const ColliderTextures* collider) {
-    auto made = StepPass::create(featuresFor(collider));
-    if (!made) {
-        return forward(made);
-    }
-    step_ = std::move(*made);
+    auto made = RELIEF_TRY(StepPass::create(featuresFor(collider)));
+    step_ = std::move(made);
     return {};
 }
 
@@ -218,12 +205,9 @@ Result<void> ParticleSystem::setColliders(std::span<const ColliderInstance> coll
 
 Result<void> ParticleSystem::setAir(const AirSettings& air) {
     const PassState state;
-    auto block = AirBlock::create(air);
-    if (!block) {
-        return forward(block);
-    }
+    auto block = RELIEF_TRY(AirBlock::create(air));
     std::unique_ptr<AirBlock> old = std::move(air_);
-    air_ = block->defines().empty() ? nullptr : std::make_unique<AirBlock>(std::move(*block));
+    air_ = block.defines().empty() ? nullptr : std::make_unique<AirBlock>(std::move(block));
     if (auto done = remakeStep(step_.features().collider); !done) {
         air_ = std::move(old);  // the step that there is points to it
         return done;
@@ -376,11 +360,9 @@ Result<RawState> ParticleSystem::readRaw() const {
     }
     const PassState state;
     const auto read = [&](const GlTexture& texture, std::vector<float>& floats) -> Result<void> {
-        auto all = readTextureFloats(texture, static_cast<GLsizei>(width_), static_cast<GLsizei>(rows));
-        if (!all) {
-            return forward(all);
-        }
-        floats = std::move(*all);
+        auto all =
+            RELIEF_TRY(readTextureFloats(texture, static_cast<GLsizei>(width_), static_cast<GLsizei>(rows)));
+        floats = std::move(all);
         floats.resize(std::size_t{4} * drawn_extent_);
         return {};
     };
@@ -404,10 +386,7 @@ Result<RawState> ParticleSystem::readRaw() const {
 }
 
 Result<std::vector<ParticleState>> ParticleSystem::readState() const {
-    auto raw = readRaw();
-    if (!raw) {
-        return forward(raw);
-    }
+    auto raw = RELIEF_TRY(readRaw());
     std::vector<bool> unborn(drawn_extent_);
     for (const BirthVertex& vertex : newborn_) {
         if (vertex.index < drawn_extent_) {
@@ -421,9 +400,9 @@ Result<std::vector<ParticleState>> ParticleSystem::readState() const {
         if (!allocator_.isLive(index) || unborn[index]) {
             continue;
         }
-        const float* position = &raw->position[std::size_t{4} * index];
-        const float* velocity = &raw->velocity[std::size_t{4} * index];
-        const float* birth = &raw->birth[std::size_t{4} * index];
+        const float* position = &raw.position[std::size_t{4} * index];
+        const float* velocity = &raw.velocity[std::size_t{4} * index];
+        const float* birth = &raw.birth[std::size_t{4} * index];
         if (position[3] < 0.0F) {  // by a collision, of which the CPU does not know
             continue;
         }

@@ -128,9 +128,7 @@ Result<PointList> parseCsv(std::string_view text, const std::string& name) {
                                                              " numbers, as those before it"));
         }
         columns = count;
-        if (auto added = add(list, fields, count == kFields, where()); !added) {
-            return forward(added);
-        }
+        RELIEF_TRY(add(list, fields, count == kFields, where()));
     }
     return list;
 }
@@ -255,9 +253,7 @@ Result<Header> parseHeader(std::string_view& text, const std::string& name) {
                 header.vertices = *count;
             }
         } else if (key == "property"sv && in_vertices) {
-            if (auto done = parseProperty(line, where, header); !done) {
-                return forward(done);
-            }
+            RELIEF_TRY(parseProperty(line, where, header));
         } else if (key == "end_header"sv) {
             if (!format || header.place[0] < 0 || header.place[1] < 0 || header.place[2] < 0) {
                 return forward(wrong(where, "a PLY of points needs a format, and vertices with x, y and z"));
@@ -274,26 +270,23 @@ Result<Header> parseHeader(std::string_view& text, const std::string& name) {
 }
 
 Result<PointList> parsePly(std::string_view text, const std::string& name) {
-    const auto header = parseHeader(text, name);
-    if (!header) {
-        return forward(header);
-    }
+    const auto header = RELIEF_TRY(parseHeader(text, name));
     PointList list;
-    std::vector<double> values(header->properties.size());
-    std::size_t line_number = header->lines;
-    for (std::uint64_t vertex = 0; vertex < header->vertices; ++vertex) {
+    std::vector<double> values(header.properties.size());
+    std::size_t line_number = header.lines;
+    for (std::uint64_t vertex = 0; vertex < header.vertices; ++vertex) {
         std::string_view line;
-        while (header->encoding == Encoding::kAscii && line.empty() && !text.empty()) {
+        while (header.encoding == Encoding::kAscii && line.empty() && !text.empty()) {
             line = trimmed(takeLine(text));
             ++line_number;
         }
         const auto where = [&] {
-            return header->encoding == Encoding::kAscii ? name + ":" + std::to_string(line_number)
-                                                        : name + ": vertex " + std::to_string(vertex);
+            return header.encoding == Encoding::kAscii ? name + ":" + std::to_string(line_number)
+                                                       : name + ": vertex " + std::to_string(vertex);
         };
         for (std::size_t i = 0; i < values.size(); ++i) {
-            const Scalar scalar = header->properties[i];
-            if (header->encoding == Encoding::kAscii) {
+            const Scalar scalar = header.properties[i];
+            if (header.encoding == Encoding::kAscii) {
                 const auto value = numberOf<double>(takeWord(line));
                 if (!value) {
                     return forward(wrong(where(), "fewer numbers than the header announces"));
@@ -303,17 +296,15 @@ Result<PointList> parsePly(std::string_view text, const std::string& name) {
                 if (text.size() < sizeOf(scalar)) {
                     return forward(wrong(where(), "the file ends early"));
                 }
-                values[i] = decode(text, scalar, header->encoding == Encoding::kBig);
+                values[i] = decode(text, scalar, header.encoding == Encoding::kBig);
                 text.remove_prefix(sizeOf(scalar));
             }
         }
         Fields fields{};
         for (std::size_t i = 0; i < kFields; ++i) {
-            fields[i] = header->place[i] >= 0 ? values[static_cast<std::size_t>(header->place[i])] : 0.0;
+            fields[i] = header.place[i] >= 0 ? values[static_cast<std::size_t>(header.place[i])] : 0.0;
         }
-        if (auto added = add(list, fields, header->normals(), where()); !added) {
-            return forward(added);
-        }
+        RELIEF_TRY(add(list, fields, header.normals(), where()));
     }
     return list;
 }
@@ -331,11 +322,8 @@ Result<PointList> parsePointList(std::span<const std::byte> bytes, const std::st
 }
 
 Result<PointList> loadPointList(const std::filesystem::path& path) {
-    const auto bytes = readFile(path, kPointBytesMax);
-    if (!bytes) {
-        return forward(bytes);
-    }
-    return parsePointList(*bytes, quotedPath(path));
+    const auto bytes = RELIEF_TRY(readFile(path, kPointBytesMax));
+    return parsePointList(bytes, quotedPath(path));
 }
 
 }  // namespace relief

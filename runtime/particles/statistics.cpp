@@ -50,17 +50,11 @@ Result<Statistics> Statistics::create(std::uint32_t capacity) {
                                  GL_RGBA, GL_FLOAT);
         };
         Level level{make(), make(), {}};
-        if (auto done = checkAllocated("the statistics of " + std::to_string(capacity) + " particles",
-                                       "choose a smaller capacity");
-            !done) {
-            return forward(done);
-        }
+        RELIEF_TRY(checkAllocated("the statistics of " + std::to_string(capacity) + " particles",
+                                  "choose a smaller capacity"));
         const std::array<GLuint, 2> textures{level.counts.name(), level.sums.name()};
-        auto target = makeFramebuffer(textures);
-        if (!target) {
-            return forward(target);
-        }
-        level.target = std::move(*target);
+        auto target = RELIEF_TRY(makeFramebuffer(textures));
+        level.target = std::move(target);
         statistics.levels_.push_back(std::move(level));
     } while (width > 1 || height > 1);
 
@@ -69,9 +63,7 @@ Result<Statistics> Statistics::create(std::uint32_t capacity) {
         glBindBuffer(GL_PIXEL_PACK_BUFFER, slot.buffer.name());
         glBufferData(GL_PIXEL_PACK_BUFFER, 2 * kTexelBytes, nullptr, GL_STREAM_READ);
     }
-    if (auto done = checkAllocated("the statistics' buffers", "choose a smaller capacity"); !done) {
-        return forward(done);
-    }
+    RELIEF_TRY(checkAllocated("the statistics' buffers", "choose a smaller capacity"));
     statistics.no_attributes_ = makeVertexArray();
 
     auto state_program = makeProgram("quad.vert", "reduce_state.frag");
@@ -153,15 +145,11 @@ Result<std::optional<StatisticsSample>> Statistics::wait() {
     }
     const Slot& slot = slots_[static_cast<std::size_t>(oldest_)];
     if (!slot.empty && !slot.fence.passed(kPatience)) {
-        if (auto alive = checkGpu("making statistics"); !alive) {
-            return forward(alive);
-        }
+        RELIEF_TRY(checkGpu("making statistics"));
         return fail(ErrorCode::kFailure, "the GPU has not finished its statistics within ten seconds");
     }
     auto sample = collect();
-    if (auto alive = checkGpu("making statistics"); !alive) {
-        return forward(alive);
-    }
+    RELIEF_TRY(checkGpu("making statistics"));
     if (!sample) {
         return fail(ErrorCode::kFailure, "the GPU's statistics cannot be read");
     }

@@ -26,9 +26,7 @@ void setAttribute(GLuint location, std::size_t offset) {
 }  // namespace
 
 Result<ColliderMesh> ColliderMesh::create(const PictureMesh& mesh) {
-    if (auto good = checkMesh(mesh); !good) {
-        return forward(good);
-    }
+    RELIEF_TRY(checkMesh(mesh));
     if (mesh.triangles.size() > static_cast<std::size_t>(std::numeric_limits<GLsizei>::max())) {
         return fail(ErrorCode::kInvalidInput, "a mesh of more triangles than one draw takes");
     }
@@ -39,13 +37,10 @@ Result<ColliderMesh> ColliderMesh::create(const PictureMesh& mesh) {
         vertices[i] = {full.positions[i], full.normals[i]};
     }
     const PassState state;
-    auto program = makeProgram("mesh.vert", "mesh.frag");
-    if (!program) {
-        return forward(program);
-    }
+    auto program = RELIEF_TRY(makeProgram("mesh.vert", "mesh.frag"));
     forgetGlErrors();
     ColliderMesh out;
-    out.program_ = std::move(*program);
+    out.program_ = std::move(program);
     out.vertex_bytes_ = static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex));
     out.corners_ = static_cast<GLsizei>(full.triangles.size());
     out.vertices_ = makeBuffer();
@@ -61,9 +56,7 @@ Result<ColliderMesh> ColliderMesh::create(const PictureMesh& mesh) {
     glBufferData(GL_ELEMENT_ARRAY_BUFFER,
                  static_cast<GLsizeiptr>(full.triangles.size() * sizeof(full.triangles[0])),
                  full.triangles.data(), GL_STATIC_DRAW);
-    if (auto done = checkAllocated("the collider's mesh", "choose a smaller one"); !done) {
-        return forward(done);
-    }
+    RELIEF_TRY(checkAllocated("the collider's mesh", "choose a smaller one"));
     return out;
 }
 
@@ -80,26 +73,18 @@ void ColliderMesh::setVertices(const GlBuffer& buffer) {
 
 Result<ColliderMesh::View> ColliderMesh::view(const Camera& camera, GLsizei width, GLsizei height) const {
     const PassState state;
-    if (auto fits = checkTextureSize(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height),
-                                     "the mesh's picture's pixels", "choose a smaller size");
-        !fits) {
-        return forward(fits);
-    }
+    RELIEF_TRY(checkTextureSize(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height),
+                                "the mesh's picture's pixels", "choose a smaller size"));
     forgetGlErrors();
     View view;
     view.normal = makeTexture2D(GL_RGBA16F, width, height, GL_RGBA, GL_HALF_FLOAT);
     view.depth = makeTexture2D(GL_DEPTH_COMPONENT32F, width, height, GL_DEPTH_COMPONENT, GL_FLOAT);
-    if (auto done = checkAllocated("the mesh's picture", "choose a smaller size"); !done) {
-        return forward(done);
-    }
+    RELIEF_TRY(checkAllocated("the mesh's picture", "choose a smaller size"));
     const std::array<GLuint, 1> colors{view.normal.name()};
-    const auto framebuffer = makeFramebuffer(colors, view.depth.name());
-    if (!framebuffer) {
-        return forward(framebuffer);
-    }
+    const auto framebuffer = RELIEF_TRY(makeFramebuffer(colors, view.depth.name()));
     const float aspect = static_cast<float>(width) / static_cast<float>(height);
     const glm::mat4 clip = camera.projection(aspect) * camera.view();
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer->name());
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
     glViewport(0, 0, width, height);
     const std::array<GLfloat, 4> nothing{};
     const GLfloat far = 1.0F;

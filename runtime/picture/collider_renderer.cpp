@@ -114,9 +114,7 @@ Result<void> ColliderRenderer::draw(const Camera& camera, const ColliderStyle& s
     const Drawn wanted{camera, style, target.width, target.height, view_.textures->revision()};
     if (drawn_ != wanted) {
         drawn_.reset();
-        if (auto done = trace(camera, style, target.width, target.height); !done) {
-            return done;
-        }
+        RELIEF_TRY(trace(camera, style, target.width, target.height));
         drawn_ = wanted;
     }
     glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
@@ -147,14 +145,9 @@ Result<void> ColliderRenderer::trace(const Camera& camera, const ColliderStyle& 
     forgetGlErrors();
     color_ = makeTexture2D(GL_RGBA16F, width, height, GL_RGBA, GL_HALF_FLOAT);
     depth_ = makeTexture2D(GL_DEPTH_COMPONENT32F, width, height, GL_DEPTH_COMPONENT, GL_FLOAT);
-    if (auto done = checkAllocated("the collider's picture", kSmallerPicture); !done) {
-        return done;
-    }
+    RELIEF_TRY(checkAllocated("the collider's picture", kSmallerPicture));
     const std::array<GLuint, 1> colors{color_.name()};
-    auto framebuffer = makeFramebuffer(colors, depth_.name());
-    if (!framebuffer) {
-        return forward(framebuffer);
-    }
+    auto framebuffer = RELIEF_TRY(makeFramebuffer(colors, depth_.name()));
     setViewUniforms(coarse_program_, camera, style, width, height);
     setViewUniforms(trace_program_, camera, style, width, height);
     view_.textures->bind(kColliderBinding);
@@ -165,24 +158,19 @@ Result<void> ColliderRenderer::trace(const Camera& camera, const ColliderStyle& 
     ColliderMesh::View of_mesh;
     GlTexture coarse;
     if (mesh_ != nullptr) {
-        auto seen = mesh_->view(camera, width, height);
-        if (!seen) {
-            return forward(seen);
-        }
-        of_mesh = std::move(*seen);
+        auto seen = RELIEF_TRY(mesh_->view(camera, width, height));
+        of_mesh = std::move(seen);
         glActiveTexture(GL_TEXTURE0 + kMeshNormalUnit);
         glBindTexture(GL_TEXTURE_2D, of_mesh.normal.name());
         glActiveTexture(GL_TEXTURE0 + kMeshDepthUnit);
         glBindTexture(GL_TEXTURE_2D, of_mesh.depth.name());
     } else {
-        if (auto done = traceCoarse(width, height, coarse); !done) {
-            return done;
-        }
+        RELIEF_TRY(traceCoarse(width, height, coarse));
         glActiveTexture(GL_TEXTURE0 + kCoarseUnit);
         glBindTexture(GL_TEXTURE_2D, coarse.name());
     }
 
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer->name());
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
     glUseProgram(trace_program_.name());
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_ALWAYS);
@@ -196,15 +184,10 @@ Result<void> ColliderRenderer::traceCoarse(GLsizei width, GLsizei height, GlText
     const GLsizei coarse_height = (height + kCoarseStride - 1) / kCoarseStride;
     forgetGlErrors();
     coarse = makeTexture2D(GL_R32F, coarse_width, coarse_height, GL_RED, GL_FLOAT);
-    if (auto done = checkAllocated("the collider's coarse picture", kSmallerPicture); !done) {
-        return done;
-    }
+    RELIEF_TRY(checkAllocated("the collider's coarse picture", kSmallerPicture));
     const std::array<GLuint, 1> colors{coarse.name()};
-    const auto target = makeFramebuffer(colors);
-    if (!target) {
-        return forward(target);
-    }
-    glBindFramebuffer(GL_FRAMEBUFFER, target->name());
+    const auto target = RELIEF_TRY(makeFramebuffer(colors));
+    glBindFramebuffer(GL_FRAMEBUFFER, target.name());
     glUseProgram(coarse_program_.name());
     drawInBands(coarse_width, coarse_height);
     return {};

@@ -42,12 +42,8 @@ Result<DepthSorter> DepthSorter::create(std::uint32_t capacity) {
     }
     const PassState state;
     DepthSorter sorter(capacity);
-    if (auto done = sorter.createTextures(); !done) {
-        return forward(done);
-    }
-    if (auto done = sorter.createPrograms(); !done) {
-        return forward(done);
-    }
+    RELIEF_TRY(sorter.createTextures());
+    RELIEF_TRY(sorter.createPrograms());
     return sorter;
 }
 
@@ -57,17 +53,11 @@ Result<void> DepthSorter::createTextures() {
     for (int i = 0; i < 2; ++i) {
         order_[i] = makeTexture2D(GL_RG32UI, static_cast<GLsizei>(kWidth), static_cast<GLsizei>(rows),
                                   GL_RG_INTEGER, GL_UNSIGNED_INT);
-        if (auto done = checkAllocated("sorting " + std::to_string(capacity_) + " particles",
-                                       "choose a smaller capacity");
-            !done) {
-            return done;
-        }
+        RELIEF_TRY(checkAllocated("sorting " + std::to_string(capacity_) + " particles",
+                                  "choose a smaller capacity"));
         const std::array<GLuint, 1> textures{order_[i].name()};
-        auto target = makeFramebuffer(textures);
-        if (!target) {
-            return forward(target);
-        }
-        target_[i] = std::move(*target);
+        auto target = RELIEF_TRY(makeFramebuffer(textures));
+        target_[i] = std::move(target);
     }
     no_attributes_ = makeVertexArray();
     return {};

@@ -39,9 +39,7 @@ Result<Frame> Frame::create(std::uint32_t width, std::uint32_t height) {
         makeTexture2D(GL_DEPTH_COMPONENT32F, large.width, large.height, GL_DEPTH_COMPONENT, GL_FLOAT);
     frame.finished_ = makeTexture2D(GL_RGBA8, static_cast<GLsizei>(width), static_cast<GLsizei>(height),
                                     GL_RGBA, GL_UNSIGNED_BYTE);
-    if (auto done = checkAllocated("a picture of " + size + " pixels", "choose a smaller size"); !done) {
-        return forward(done);
-    }
+    RELIEF_TRY(checkAllocated("a picture of " + size + " pixels", "choose a smaller size"));
     const std::array<GLuint, 1> color{frame.color_.name()};
     const std::array<GLuint, 1> finished{frame.finished_.name()};
     auto large_target = makeFramebuffer(color, frame.depth_.name());

@@ -21,13 +21,10 @@ constexpr LightRays kLightRays{.sun = 1, .sky = 2, .sun_steps = 16, .sky_steps =
 
 Result<ParticleLight> ParticleLight::create(const ColliderView& collider) {
     const PassState state;
-    auto program = makeProgram("quad.vert", "particle_light.frag", collider.textures->defines());
-    if (!program) {
-        return forward(program);
-    }
+    auto program = RELIEF_TRY(makeProgram("quad.vert", "particle_light.frag", collider.textures->defines()));
     ParticleLight light;
     light.collider_ = collider;
-    light.program_ = std::move(*program);
+    light.program_ = std::move(program);
     light.no_attributes_ = makeVertexArray();
     collider.textures->attach(light.program_, kColliderBinding);
     setLightUniforms(light.program_, collider, kLightRays);
@@ -49,22 +46,14 @@ Result<void> ParticleLight::update(const ParticleSystem& particles, const GlText
         height_ = std::max(rows, (capacity + width - 1) / width);
         const std::string what = "the light of " + std::to_string(capacity) + " particles";
         constexpr const char* kCure = "choose a smaller capacity";
-        if (auto fits = checkTextureSize(static_cast<std::uint64_t>(width_),
-                                         static_cast<std::uint64_t>(height_), what, kCure);
-            !fits) {
-            return fits;
-        }
+        RELIEF_TRY(checkTextureSize(static_cast<std::uint64_t>(width_), static_cast<std::uint64_t>(height_),
+                                    what, kCure));
         forgetGlErrors();
         light_ = makeTexture2D(GL_RGBA32F, width_, height_, GL_RGBA, GL_FLOAT);
-        if (auto done = checkAllocated(what, kCure); !done) {
-            return done;
-        }
+        RELIEF_TRY(checkAllocated(what, kCure));
         const std::array<GLuint, 1> colors{light_.name()};
-        auto target = makeFramebuffer(colors);
-        if (!target) {
-            return forward(target);
-        }
-        target_ = std::move(*target);
+        auto target = RELIEF_TRY(makeFramebuffer(colors));
+        target_ = std::move(target);
     }
     glUseProgram(program_.name());
     glUniform1i(uniformLocation(program_, "u_extent"), extent);

@@ -38,11 +38,8 @@ Result<ParticleRenderer> ParticleRenderer::create(const std::optional<ColliderVi
     const PassState state;
     ParticleRenderer renderer;
     if (collider) {
-        auto light = ParticleLight::create(*collider);
-        if (!light) {
-            return forward(light);
-        }
-        renderer.light_ = std::move(*light);
+        auto light = RELIEF_TRY(ParticleLight::create(*collider));
+        renderer.light_ = std::move(light);
     }
     const std::string defines = collider ? "#define RELIEF_LIT 1\n" : "";
     auto points = makeSpriteProgram(defines);
@@ -58,21 +55,16 @@ Result<ParticleRenderer> ParticleRenderer::create(const std::optional<ColliderVi
     renderer.nothing_ = makeTexture2D(GL_RGBA8, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, zero.data());
     constexpr std::array<std::uint32_t, 2> kNoRank{};
     renderer.no_order_ = makeTexture2D(GL_RG32UI, 1, 1, GL_RG_INTEGER, GL_UNSIGNED_INT, kNoRank.data());
-    if (auto done = checkAllocated("the renderer of the particles", "close what else is on the GPU"); !done) {
-        return forward(done);
-    }
+    RELIEF_TRY(checkAllocated("the renderer of the particles", "close what else is on the GPU"));
     return renderer;
 }
 
 Result<void> ParticleRenderer::uploadLooks(const ParticleStyle& style) {
-    auto packed =
-        packLooks(style.looks, {style.diameter, style.color, style.opacity, style.fade_in, style.fade_out});
-    if (!packed) {
-        return forward(packed);
-    }
-    if (!looks_ || *packed != packed_) {
+    auto packed = RELIEF_TRY(
+        packLooks(style.looks, {style.diameter, style.color, style.opacity, style.fade_in, style.fade_out}));
+    if (!looks_ || packed != packed_) {
         forgetGlErrors();
-        packed_ = std::move(*packed);
+        packed_ = std::move(packed);
         looks_ = makeTexture2D(GL_RGBA32F, static_cast<GLsizei>(kLookTexels),
                                static_cast<GLsizei>(packed_.size() / kLookTexels), GL_RGBA, GL_FLOAT,
                                packed_.data());
@@ -123,16 +115,12 @@ Result<void> ParticleRenderer::draw(const ParticleSystem& particles, const Camer
         return fail(ErrorCode::kUsage, "the soft edge of particles is a distance, 0 or more");
     }
     const PassState state;
-    if (auto done = uploadLooks(style); !done) {
-        return done;
-    }
+    RELIEF_TRY(uploadLooks(style));
     if (particles.extent() == 0) {
         return {};
     }
     if (light_) {
-        if (auto done = light_->update(particles, looks_); !done) {
-            return done;
-        }
+        RELIEF_TRY(light_->update(particles, looks_));
     }
     const bool quads = style.sprite == Sprite::kQuad;
     const GlProgram& program = quads ? quad_program_ : point_program_;

@@ -82,9 +82,7 @@ Result<SpriteAtlas> SpriteAtlas::create(std::span<const std::uint8_t> rgba, std:
         glTexImage2D(GL_TEXTURE_2D, atlas.last_level_, GL_RGBA16F, static_cast<GLsizei>(width),
                      static_cast<GLsizei>(height), 0, GL_RGBA, GL_FLOAT, level.data());
     }
-    if (auto done = checkAllocated("an atlas of " + size + " pixels", "choose a smaller one"); !done) {
-        return forward(done);
-    }
+    RELIEF_TRY(checkAllocated("an atlas of " + size + " pixels", "choose a smaller one"));
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, atlas.last_level_);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);

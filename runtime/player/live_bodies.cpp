@@ -34,12 +34,8 @@ Result<LiveBodies> LiveBodies::create(const LoadedScene& loaded) {
 Result<void> LiveBodies::show(double time, ColliderTextures& textures) {
     for (Body& body : bodies_) {
         body.pass.run(time);
-        if (auto done = body.collider.setPositions(body.pass.buffer().name()); !done) {
-            return done;
-        }
-        if (auto done = body.collider.update(textures, body.index); !done) {
-            return done;
-        }
+        RELIEF_TRY(body.collider.setPositions(body.pass.buffer().name()));
+        RELIEF_TRY(body.collider.update(textures, body.index));
     }
     return {};
 }
@@ -49,16 +45,10 @@ Result<LivePicture> LivePicture::create(const LiveMesh& live) {
     const bool smooth = live.deformation.kind == DeformKind::kWobble;
     const PictureMesh creased = smooth ? PictureMesh{} : withNormals(live.mesh);
     const PictureMesh& drawn = smooth ? live.mesh : creased;
-    auto mesh = ColliderMesh::create(drawn);
-    if (!mesh) {
-        return forward(mesh);
-    }
-    auto pass = DeformPass::create(live.deformation, drawn.positions, drawn.normals,
-                                   DeformPass::Output::kPositionsAndNormals);
-    if (!pass) {
-        return forward(pass);
-    }
-    return LivePicture(std::make_unique<ColliderMesh>(std::move(*mesh)), std::move(*pass));
+    auto mesh = RELIEF_TRY(ColliderMesh::create(drawn));
+    auto pass = RELIEF_TRY(DeformPass::create(live.deformation, drawn.positions, drawn.normals,
+                                              DeformPass::Output::kPositionsAndNormals));
+    return LivePicture(std::make_unique<ColliderMesh>(std::move(mesh)), std::move(pass));
 }
 
 void LivePicture::show(double time) {

@@ -85,51 +85,32 @@ class Picture {
             texel = std::min(texel, scene.colliders[i].pose.scale * finestTexel(loaded.colliders[i]));
         }
         const ColliderView view{&textures, loaded.bounds, texel};
-        auto frame = Frame::create(scene.render.width, scene.render.height);
-        if (!frame) {
-            return forward(frame);
-        }
-        auto atlas = loadAtlas(scene);
-        if (!atlas) {
-            return forward(atlas);
-        }
+        auto frame = RELIEF_TRY(Frame::create(scene.render.width, scene.render.height));
+        auto atlas = RELIEF_TRY(loadAtlas(scene));
         std::optional<LivePicture> live;
         if (!scene.render.mesh.empty() && loaded.live.front()) {
-            auto made = LivePicture::create(*loaded.live.front());
-            if (!made) {
-                return forward(made);
-            }
-            live.emplace(std::move(*made));
+            auto made = RELIEF_TRY(LivePicture::create(*loaded.live.front()));
+            live.emplace(std::move(made));
         }
-        auto mesh = live ? Result<std::unique_ptr<ColliderMesh>>{} : loadColliderMesh(scene, loaded.bounds);
-        if (!mesh) {
-            return forward(mesh);
-        }
-        auto collider_renderer = ColliderRenderer::create(view, live ? &live->mesh() : mesh->get());
-        if (!collider_renderer) {
-            return forward(collider_renderer);
-        }
-        auto particle_renderer = ParticleRenderer::create(view);
-        if (!particle_renderer) {
-            return forward(particle_renderer);
-        }
-        Picture picture{std::move(*frame), std::move(*collider_renderer), std::move(*particle_renderer)};
+        auto mesh = RELIEF_TRY(live ? Result<std::unique_ptr<ColliderMesh>>{}
+                                    : loadColliderMesh(scene, loaded.bounds));
+        auto collider_renderer =
+            RELIEF_TRY(ColliderRenderer::create(view, live ? &live->mesh() : mesh.get()));
+        auto particle_renderer = RELIEF_TRY(ParticleRenderer::create(view));
+        Picture picture{std::move(frame), std::move(collider_renderer), std::move(particle_renderer)};
         picture.scene_ = &scene;
         if (scene.render.sort_frames > 0) {
-            auto sorter = DepthSorter::create(scene.capacity);
-            if (!sorter) {
-                return forward(sorter);
-            }
-            picture.sorter_.emplace(std::move(*sorter));
+            auto sorter = RELIEF_TRY(DepthSorter::create(scene.capacity));
+            picture.sorter_.emplace(std::move(sorter));
         }
         picture.bounds_ = loaded.bounds;
         if (scene.ground.enabled) {
             picture.collider_style_.ground = scene.ground.height;
         }
         picture.collider_style_.background = scene.render.background;
-        picture.particle_style_ = particleStyle(scene, atlas->get());
-        picture.atlas_ = std::move(*atlas);
-        picture.mesh_ = std::move(*mesh);
+        picture.particle_style_ = particleStyle(scene, atlas.get());
+        picture.atlas_ = std::move(atlas);
+        picture.mesh_ = std::move(mesh);
         picture.live_ = std::move(live);
         return picture;
     }
@@ -148,18 +129,11 @@ class Picture {
         if (live_) {
             live_->show(particles.time());
         }
-        if (auto drawn = collider_.draw(camera, collider_style_, frame_.target()); !drawn) {
-            return forward(drawn);
-        }
-        if (auto drawn = particles_.draw(particles, camera, particle_style_, frame_.target(), order,
-                                         &collider_.depth());
-            !drawn) {
-            return forward(drawn);
-        }
+        RELIEF_TRY(collider_.draw(camera, collider_style_, frame_.target()));
+        RELIEF_TRY(
+            particles_.draw(particles, camera, particle_style_, frame_.target(), order, &collider_.depth()));
         std::vector<std::uint8_t> rgb = frame_.read();
-        if (auto alive = checkGpu("drawing a picture"); !alive) {
-            return forward(alive);
-        }
+        RELIEF_TRY(checkGpu("drawing a picture"));
         return rgb;
     }
 
@@ -214,12 +188,9 @@ Result<void> openOutputs(const PlayerOptions& options, const Scene& scene, const
         outputs.picture.emplace(std::move(*made));
     }
     if (!options.video.empty()) {
-        auto video =
-            VideoWriter::create(options.video, {scene.render.width, scene.render.height, videoRate(scene)});
-        if (!video) {
-            return forward(video);
-        }
-        outputs.video = std::move(*video);
+        auto video = RELIEF_TRY(
+            VideoWriter::create(options.video, {scene.render.width, scene.render.height, videoRate(scene)}));
+        outputs.video = std::move(video);
         if (options.watchdog != nullptr) {
             options.watchdog->setCleanUp([writer = outputs.video.get()] { writer->abandon(); });
         }
@@ -228,20 +199,15 @@ Result<void> openOutputs(const PlayerOptions& options, const Scene& scene, const
         outputs.timer.emplace();
     }
     if (!options.stats.empty()) {
-        auto log = StatisticsLog::create(options.stats, scene.capacity, *outputs.timer);
-        if (!log) {
-            return forward(log);
-        }
-        outputs.log.emplace(std::move(*log));
+        auto log = RELIEF_TRY(StatisticsLog::create(options.stats, scene.capacity, *outputs.timer));
+        outputs.log.emplace(std::move(log));
     }
     for (const auto& [folder, option] :
          {std::pair(options.frames, "--frames"), {options.dump_frames, "--dump-frames"}}) {
         if (folder.empty()) {
             continue;
         }
-        if (auto done = prepareFolder(folder, option); !done) {
-            return done;
-        }
+        RELIEF_TRY(prepareFolder(folder, option));
     }
     return {};
 }
@@ -257,19 +223,13 @@ Result<void> writeFrame(const PlayerOptions& options, const ParticleSystem& part
             return forward(rgb);
         }
         if (!options.frames.empty()) {
-            const auto png = encodePng(*rgb, report.scene.render.width, report.scene.render.height);
-            if (!png) {
-                return forward(png);
-            }
+            const auto png =
+                RELIEF_TRY(encodePng(*rgb, report.scene.render.width, report.scene.render.height));
             const fs::path path = numberedPath(options.frames, "frame_", report.frames_written, ".png");
-            if (auto written = writeFile(path, *png); !written) {
-                return written;
-            }
+            RELIEF_TRY(writeFile(path, png));
         }
         if (outputs.video) {
-            if (auto added = outputs.video->add(*rgb); !added) {
-                return added;
-            }
+            RELIEF_TRY(outputs.video->add(*rgb));
         }
         ++report.frames_written;
     }
@@ -281,9 +241,7 @@ Result<void> writeFrame(const PlayerOptions& options, const ParticleSystem& part
             return forward(state);
         }
         const fs::path path = numberedPath(options.dump_frames, "particles_", report.dumps_written, ".ply");
-        if (auto written = writeFile(path, encodePly(*state)); !written) {
-            return written;
-        }
+        RELIEF_TRY(writeFile(path, encodePly(*state)));
         ++report.dumps_written;
     }
     return {};
@@ -295,26 +253,18 @@ Result<ParticleSystem> makeParticles(const Scene& scene, const ColliderTextures&
         return particles;
     }
     const std::array<ColliderInstance, 1> colliders{ColliderInstance{&textures}};
-    if (auto done = particles->setColliders(colliders); !done) {
-        return forward(done);
-    }
+    RELIEF_TRY(particles->setColliders(colliders));
     particles->setForces({*scene.forces.gravity, scene.forces.wind,
                           scene.air.viscosity ? 0.0F : scene.forces.drag,
                           scene.air.viscosity.value_or(0.0F)});
     particles->setCollision(scene.collision);
     if (!scene.types.empty()) {
-        if (auto done = particles->setTypes(scene.types); !done) {
-            return forward(done);
-        }
+        RELIEF_TRY(particles->setTypes(scene.types));
     }
     if (scene.sweep > 0.0F) {
-        if (auto done = particles->setSweep(scene.sweep); !done) {
-            return forward(done);
-        }
+        RELIEF_TRY(particles->setSweep(scene.sweep));
     }
-    if (auto done = particles->setAir(scene.air); !done) {
-        return forward(done);
-    }
+    RELIEF_TRY(particles->setAir(scene.air));
     particles->setGround(scene.ground.enabled ? scene.ground.height : std::nullopt);
     return particles;
 }
@@ -403,25 +353,17 @@ Result<void> run(const PlayerOptions& options, std::span<Emitter> emitters, Coll
                 if (moves) {
                     textures.setPoses(posesAt(scene, end_time));
                 }
-                if (auto shown = live.show(end_time, textures); !shown) {
-                    return shown;
-                }
+                RELIEF_TRY(live.show(end_time, textures));
                 particles.step(scene.dt);
             }
             ++step;
             if (outputs.log && (step % stats_every == 0 || step == scene.steps)) {
-                if (auto asked = outputs.log->request(particles, step, refused); !asked) {
-                    return asked;
-                }
+                RELIEF_TRY(outputs.log->request(particles, step, refused));
             }
         }
-        if (auto done = waitForGpu(steps); !done) {
-            return done;
-        }
+        RELIEF_TRY(waitForGpu(steps));
         // A step has no result of its own: births that found no room would be missing in silence.
-        if (auto done = checkAllocated(steps, "choose a smaller capacity"); !done) {
-            return done;
-        }
+        RELIEF_TRY(checkAllocated(steps, "choose a smaller capacity"));
         rest(options);
         const Clock::duration stretch = Clock::now() - begun;
         if (stretch > kStretchMax) {
@@ -432,17 +374,13 @@ Result<void> run(const PlayerOptions& options, std::span<Emitter> emitters, Coll
             stretches.push_back(std::chrono::duration<double, std::milli>(stretch).count() / (step - first));
         }
         if (outputs.log) {
-            if (auto written = outputs.log->poll(); !written) {
-                return written;
-            }
+            RELIEF_TRY(outputs.log->poll());
         }
         if (options.progress) {
             options.progress(step, scene.steps);
         }
         if (has_frames && (step % scene.render.every == 0 || step == scene.steps)) {
-            if (auto written = writeFrame(options, particles, outputs, report); !written) {
-                return written;
-            }
+            RELIEF_TRY(writeFrame(options, particles, outputs, report));
         }
         if (scene.steps == 0) {
             break;
@@ -456,9 +394,7 @@ Result<void> run(const PlayerOptions& options, std::span<Emitter> emitters, Coll
     report.counts.refused += refused;
     if (outputs.log) {
         feed(options, "the statistics");
-        if (auto done = outputs.log->finish(); !done) {
-            return done;
-        }
+        RELIEF_TRY(outputs.log->finish());
         rest(options);
     }
     if (outputs.timer) {
@@ -489,18 +425,10 @@ Result<void> readBack(const PlayerOptions& options, const ParticleSystem& partic
 
 Result<PlayerReport> play(const PlayerOptions& options) {
     // What can fail cheaply comes first.
-    auto loaded = loadAll(options.input, options.overrides);
-    if (!loaded) {
-        return forward(loaded);
-    }
-    auto emitters = makeEmitters(loaded->scene.emitters);
-    if (!emitters) {
-        return forward(emitters);
-    }
+    auto loaded = RELIEF_TRY(loadAll(options.input, options.overrides));
+    auto emitters = RELIEF_TRY(makeEmitters(loaded.scene.emitters));
     if (!options.dump.empty()) {
-        if (auto done = checkDumpFolder(options.dump); !done) {
-            return forward(done);
-        }
+        RELIEF_TRY(checkDumpFolder(options.dump));
     }
 
     feed(options, "making a context");
@@ -513,10 +441,10 @@ Result<PlayerReport> play(const PlayerOptions& options) {
         options.watchdog->setLimit(defaultGpuTimeout((*context)->software()));
     }
     PlayerReport report;
-    report.scene = loaded->scene;
+    report.scene = loaded.scene;
     report.device = (*context)->description();
     feed(options, "uploading the collider");
-    auto textures = makeTextures(report.scene, loaded->colliders);
+    auto textures = makeTextures(report.scene, loaded.colliders);
     if (!textures) {
         return fail(textures.error().code,
                     quotedPath(report.scene.colliders.front().path) + ": " + textures.error().message);
@@ -524,31 +452,17 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     report.collider_maps = static_cast<std::size_t>(textures->mapCount());
     report.collider_bytes = textures->bytes();
     feed(options, "the shaders of colliders");
-    auto live = LiveBodies::create(*loaded);
-    if (!live) {
-        return forward(live);
-    }
-    if (auto shown = live->show(0.0, *textures); !shown) {
-        return forward(shown);
-    }
+    auto live = RELIEF_TRY(LiveBodies::create(loaded));
+    RELIEF_TRY(live.show(0.0, *textures));
     feed(options, "the shaders of particles");
-    auto particles = makeParticles(report.scene, *textures);
-    if (!particles) {
-        return forward(particles);
-    }
+    auto particles = RELIEF_TRY(makeParticles(report.scene, *textures));
     rest(options);
     Outputs outputs;
     const WithoutCleanUp at_end(options.watchdog);  // before the video goes
-    if (auto done = openOutputs(options, report.scene, *loaded, *textures, outputs); !done) {
-        return forward(done);
-    }
-    if (auto done = run(options, *emitters, *textures, *live, *particles, outputs, report); !done) {
-        return forward(done);
-    }
+    RELIEF_TRY(openOutputs(options, report.scene, loaded, *textures, outputs));
+    RELIEF_TRY(run(options, emitters, *textures, live, particles, outputs, report));
     if (options.count_collisions || !options.dump.empty()) {
-        if (auto done = readBack(options, *particles, report); !done) {
-            return forward(done);
-        }
+        RELIEF_TRY(readBack(options, particles, report));
     }
     return report;
 }

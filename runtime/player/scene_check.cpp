@@ -28,42 +28,35 @@ std::string dump(const Json& json) {
 }  // namespace
 
 Result<CheckReport> checkScene(const PlayerOptions& options) {
-    const auto loaded = loadAll(options.input, options.overrides);
-    if (!loaded) {
-        return forward(loaded);
-    }
-    const auto& render = loaded->scene.render;
+    const auto loaded = RELIEF_TRY(loadAll(options.input, options.overrides));
+    const auto& render = loaded.scene.render;
     if (std::uint64_t{render.width} * render.height > Frame::kPixelsMax) {
         return fail(ErrorCode::kLimit, quotedPath(options.input) + ": render.size has more than " +
                                            std::to_string(Frame::kPixelsMax) +
                                            " pixels in all; choose a smaller one");
     }
-    if (const auto emitters = makeEmitters(loaded->scene.emitters); !emitters) {
-        return forward(emitters);
-    }
-    if (auto done = checkPictures(loaded->scene, loaded->bounds); !done) {
-        return forward(done);
-    }
+    RELIEF_TRY(makeEmitters(loaded.scene.emitters));
+    RELIEF_TRY(checkPictures(loaded.scene, loaded.bounds));
     CheckReport report;
-    if (options.input != loaded->scene.colliders.front().path) {
+    if (options.input != loaded.scene.colliders.front().path) {
         report.files.push_back(checkedFile(options.input, "scene"));
     }
-    for (std::size_t i = 0; i < loaded->colliders.size(); ++i) {
-        const SceneCollider& from = loaded->scene.colliders[i];
+    for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
+        const SceneCollider& from = loaded.scene.colliders[i];
         report.files.push_back(checkedFile(from.path, from.live ? "mesh" : "collider"));
-        report.collider_maps += loaded->colliders[i].maps.size();
+        report.collider_maps += loaded.colliders[i].maps.size();
     }
-    if (loaded->scene.flow) {
-        report.files.push_back(checkedFile(loaded->scene.flow->path, "flow"));
+    if (loaded.scene.flow) {
+        report.files.push_back(checkedFile(loaded.scene.flow->path, "flow"));
     }
     for (const auto& [path, kind] :
-         {std::pair(loaded->scene.render.atlas, "atlas"), {loaded->scene.render.mesh, "mesh"}}) {
+         {std::pair(loaded.scene.render.atlas, "atlas"), {loaded.scene.render.mesh, "mesh"}}) {
         if (!path.empty()) {
             report.files.push_back(checkedFile(path, kind));
         }
     }
-    report.steps = loaded->scene.steps;
-    report.capacity = loaded->scene.capacity;
+    report.steps = loaded.scene.steps;
+    report.capacity = loaded.scene.capacity;
     return report;
 }
 

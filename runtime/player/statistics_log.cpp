@@ -29,11 +29,8 @@ void StatisticsLog::Close::operator()(std::FILE* file) const {
 
 Result<StatisticsLog> StatisticsLog::create(const std::filesystem::path& path, std::uint32_t capacity,
                                             GpuTimer& timer) {
-    auto statistics = Statistics::create(capacity);
-    if (!statistics) {
-        return forward(statistics);
-    }
-    StatisticsLog log(std::move(*statistics), timer);
+    auto statistics = RELIEF_TRY(Statistics::create(capacity));
+    StatisticsLog log(std::move(statistics), timer);
     log.path_ = path;
     log.file_.reset(path == "-" ? stdout : std::fopen(path.c_str(), "we"));
     if (!log.file_) {
@@ -45,9 +42,7 @@ Result<StatisticsLog> StatisticsLog::create(const std::filesystem::path& path, s
 Result<void> StatisticsLog::request(const ParticleSystem& particles, std::uint64_t step,
                                     std::uint64_t refused) {
     while (statistics_.inFlight() == Statistics::kInFlightMax) {
-        if (auto done = waitForOne(); !done) {
-            return done;
-        }
+        RELIEF_TRY(waitForOne());
     }
     Entry entry{step, particles.time(), particles.counts(), timer_->times()};
     entry.counts.refused += refused;
@@ -61,28 +56,21 @@ Result<void> StatisticsLog::request(const ParticleSystem& particles, std::uint64
 
 Result<void> StatisticsLog::poll() {
     while (const auto sample = statistics_.poll()) {
-        if (auto done = write(*sample); !done) {
-            return done;
-        }
+        RELIEF_TRY(write(*sample));
     }
     return {};
 }
 
 Result<void> StatisticsLog::finish() {
     while (statistics_.inFlight() > 0) {
-        if (auto done = waitForOne(); !done) {
-            return done;
-        }
+        RELIEF_TRY(waitForOne());
     }
     return {};
 }
 
 Result<void> StatisticsLog::waitForOne() {
-    const auto sample = statistics_.wait();
-    if (!sample) {
-        return forward(sample);
-    }
-    return *sample ? write(**sample) : Result<void>{};
+    const auto sample = RELIEF_TRY(statistics_.wait());
+    return sample ? write(*sample) : Result<void>{};
 }
 
 Result<void> StatisticsLog::write(const StatisticsSample& sample) {

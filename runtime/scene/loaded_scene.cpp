@@ -44,49 +44,38 @@ Result<Collider> openCollider(const SceneCollider& from) {
 }  // namespace
 
 Result<LoadedScene> loadAll(const fs::path& input, const SceneOverrides& overrides) {
-    auto scene = openScene(input);
-    if (!scene) {
-        return forward(scene);
-    }
-    scene->steps = overrides.steps.value_or(scene->steps);
-    scene->render.width = overrides.width.value_or(scene->render.width);
-    scene->render.height = overrides.height.value_or(scene->render.height);
-    for (SceneEmitter& emitter : scene->emitters) {
+    auto scene = RELIEF_TRY(openScene(input));
+    scene.steps = overrides.steps.value_or(scene.steps);
+    scene.render.width = overrides.width.value_or(scene.render.width);
+    scene.render.height = overrides.height.value_or(scene.render.height);
+    for (SceneEmitter& emitter : scene.emitters) {
         emitter.seed = overrides.seed.value_or(emitter.seed);
     }
     LoadedScene loaded;
-    for (const SceneCollider& from : scene->colliders) {
+    for (const SceneCollider& from : scene.colliders) {
         loaded.live.emplace_back();
         if (from.live) {
-            auto mesh = loadLiveMesh(from);
-            if (!mesh) {
-                return forward(mesh);
-            }
-            loaded.live.back() = std::move(*mesh);
+            auto mesh = RELIEF_TRY(loadLiveMesh(from));
+            loaded.live.back() = std::move(mesh);
         }
-        auto collider = from.live ? Result<Collider>(loaded.live.back()->frames) : openCollider(from);
-        if (!collider) {
-            return forward(collider);
-        }
-        const bool posed = from.posed || scene->colliders.size() > 1;
-        const Bounds bounds = posed ? worldBounds(from, collider->bounds) : collider->bounds;
+        auto collider =
+            RELIEF_TRY(from.live ? Result<Collider>(loaded.live.back()->frames) : openCollider(from));
+        const bool posed = from.posed || scene.colliders.size() > 1;
+        const Bounds bounds = posed ? worldBounds(from, collider.bounds) : collider.bounds;
         if (loaded.colliders.empty()) {
             loaded.bounds = bounds;
         }
         loaded.bounds.min = glm::min(loaded.bounds.min, bounds.min);
         loaded.bounds.max = glm::max(loaded.bounds.max, bounds.max);
-        loaded.colliders.push_back(std::move(*collider));
+        loaded.colliders.push_back(std::move(collider));
     }
-    auto complete = withDefaults(std::move(*scene), loaded.bounds);
+    auto complete = withDefaults(std::move(scene), loaded.bounds);
     if (!complete) {
         return fail(complete.error().code, quotedPath(input) + ": " + complete.error().message);
     }
     if (complete->flow) {
-        auto flow = loadFlow(*complete->flow);
-        if (!flow) {
-            return forward(flow);
-        }
-        complete->air.flow = std::make_shared<const FlowField>(std::move(*flow));
+        auto flow = RELIEF_TRY(loadFlow(*complete->flow));
+        complete->air.flow = std::make_shared<const FlowField>(std::move(flow));
     }
     loaded.scene = std::move(*complete);
     return loaded;

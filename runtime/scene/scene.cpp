@@ -34,9 +34,7 @@ Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
     const float away = std::max({std::abs(center.x), std::abs(center.y), std::abs(center.z)});
     const float scale = std::max({bounds.longestSide(), 1e-3F * away, 1e-6F});
     const double run = static_cast<double>(scene.dt) * scene.steps;
-    if (auto done = completeEmitters(scene.emitters, bounds, scale, run, scene.capacity); !done) {
-        return forward(done);
-    }
+    RELIEF_TRY(completeEmitters(scene.emitters, bounds, scale, run, scene.capacity));
     if (!scene.forces.gravity) {
         scene.forces.gravity = glm::vec3(0.0F, -3.0F * scale, 0.0F);
     }

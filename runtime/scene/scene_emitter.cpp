@@ -140,14 +140,9 @@ Result<void> completeEmitters(std::span<SceneEmitter> emitters, const Bounds& bo
 Result<std::vector<Emitter>> makeEmitters(std::span<const SceneEmitter> emitters) {
     std::vector<Emitter> made;
     for (const SceneEmitter& emitter : emitters) {
-        auto settings = settingsOf(emitter);
-        if (!settings) {
-            return forward(settings);
-        }
-        if (auto good = Emitter::check(*settings); !good) {
-            return forward(good);
-        }
-        made.emplace_back(std::move(*settings), emitter.seed, made.size());
+        auto settings = RELIEF_TRY(settingsOf(emitter));
+        RELIEF_TRY(Emitter::check(settings));
+        made.emplace_back(std::move(settings), emitter.seed, made.size());
     }
     return made;
 }

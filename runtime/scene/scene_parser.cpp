@@ -135,9 +135,7 @@ Result<Scene> parseScene(std::string_view text, const fs::path& path) {
     try {
         const toml::table root = toml::parse(text, file);
         Scene scene = readScene(root, path, file);
-        if (auto done = resolveEmitterTypes(scene.emitters, scene.type_names); !done) {
-            return forward(done);
-        }
+        RELIEF_TRY(resolveEmitterTypes(scene.emitters, scene.type_names));
         return scene;
     } catch (const toml::parse_error& error) {
         const toml::source_position& at = error.source().begin;
@@ -152,11 +150,8 @@ Result<Scene> parseScene(std::string_view text, const fs::path& path) {
 }
 
 Result<Scene> loadScene(const fs::path& path) {
-    const auto bytes = readFile(path, kSceneBytesMax);
-    if (!bytes) {
-        return forward(bytes);
-    }
-    return parseScene({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, path);
+    const auto bytes = RELIEF_TRY(readFile(path, kSceneBytesMax));
+    return parseScene({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path);
 }
 
 }  // namespace relief

@@ -57,14 +57,10 @@ Result<PictureMesh> readMesh(const Scene& scene, const Bounds& bounds) {
 
 Result<void> checkPictures(const Scene& scene, const Bounds& bounds) {
     if (!scene.render.atlas.empty()) {
-        if (const auto atlas = readAtlas(scene); !atlas) {
-            return forward(atlas);
-        }
+        RELIEF_TRY(readAtlas(scene));
     }
     if (!scene.render.mesh.empty()) {
-        if (const auto mesh = readMesh(scene, bounds); !mesh) {
-            return forward(mesh);
-        }
+        RELIEF_TRY(readMesh(scene, bounds));
     }
     return {};
 }
@@ -74,11 +70,8 @@ Result<std::unique_ptr<SpriteAtlas>> loadAtlas(const Scene& scene) {
     if (render.atlas.empty()) {
         return nullptr;
     }
-    const auto picture = readAtlas(scene);
-    if (!picture) {
-        return forward(picture);
-    }
-    auto atlas = SpriteAtlas::create(picture->rgba, picture->width, picture->height, render.atlas_columns,
+    const auto picture = RELIEF_TRY(readAtlas(scene));
+    auto atlas = SpriteAtlas::create(picture.rgba, picture.width, picture.height, render.atlas_columns,
                                      render.atlas_rows);
     if (!atlas) {
         // The picture does not suit the scene: not the caller's mistake but the file's.
@@ -94,11 +87,8 @@ Result<std::unique_ptr<ColliderMesh>> loadColliderMesh(const Scene& scene, const
     if (render.mesh.empty()) {
         return nullptr;
     }
-    const auto mesh = readMesh(scene, bounds);
-    if (!mesh) {
-        return forward(mesh);
-    }
-    auto drawn = ColliderMesh::create(*mesh);
+    const auto mesh = RELIEF_TRY(readMesh(scene, bounds));
+    auto drawn = ColliderMesh::create(mesh);
     if (!drawn) {
         return failAt(render.mesh_origin, "render.mesh", drawn.error());
     }
