@@ -5,7 +5,7 @@ set -euo pipefail
 
 packages=(
     # tools
-    ca-certificates clang-format cmake g++ git ninja-build pkg-config
+    ca-certificates clang-format cmake g++ git mold ninja-build pkg-config
     # formats
     flatbuffers-compiler libexpected-dev libflatbuffers-dev libglm-dev libxxhash-dev libzstd-dev
     # bake

@@ -1,13 +1,39 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds everything and runs every test: the release build, then the same tests, but
-# for those labelled slow, under the address and undefined-behaviour sanitizers. Needs no GPU.
+# Installs what is missing, builds everything and runs every test. Needs no GPU. scripts/test.sh [--quick]
+#
+#   (nothing)  the release build and all tests; then the sanitizer build, and what a sanitizer can find: no slow tests,
+#              and none of numbers alone
+#   --quick    for the work in between: the release build, and its tests but for the slow ones and those that only
+#              repeat another in OpenGL ES
 set -euo pipefail
 cd "$(dirname "$0")/.."
 jobs=$(nproc)
 
-scripts/setup.sh
-scripts/format.sh --check
-scripts/build.sh release
-ctest --preset release -j "$jobs"
-scripts/build.sh sanitize
-ctest --preset sanitize -j "$jobs"
+quick=0
+case ${1-} in
+    "") ;;
+    --quick) quick=1 ;;
+    *)
+        echo "test.sh: unknown option '$1'; use --quick, or none" >&2
+        exit 1
+        ;;
+esac
+
+# stage NAME COMMAND…: runs it, and says how long it took.
+stage() {
+    local name=$1 begun=$SECONDS
+    shift
+    "$@"
+    echo "test.sh: $name took $((SECONDS - begun)) s" >&2
+}
+
+stage setup scripts/setup.sh
+stage format scripts/format.sh --check
+stage 'release build' scripts/build.sh release
+if [ $quick = 1 ]; then
+    stage 'quick tests' ctest --preset quick -j "$jobs"
+    exit
+fi
+stage 'release tests' ctest --preset release -j "$jobs"
+stage 'sanitizer build' scripts/build.sh sanitize
+stage 'sanitizer tests' ctest --preset sanitize -j "$jobs"

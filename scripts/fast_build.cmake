@@ -1,0 +1,47 @@
+# What makes builds fast and changes nothing else: the fastest linker there is, a compiler cache where there is one, and
+# precompiled headers.
+find_program(RELIEF_LINKER NAMES mold ld.lld)
+if(RELIEF_LINKER)
+    cmake_path(GET RELIEF_LINKER FILENAME linker)
+    string(REPLACE "ld.lld" "lld" linker ${linker})
+    add_link_options(-fuse-ld=${linker})
+endif()
+
+# With precompiled headers ccache works only if it is told so.
+find_program(RELIEF_CCACHE ccache)
+if(RELIEF_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}/..
+        CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=pch_defines,time_macros ${RELIEF_CCACHE})
+endif()
+
+# relief_precompiled(NAME [LIBRARY…]): a target whose precompiled headers others reuse; with the headers of GoogleTest
+# if that is among the libraries.
+function(relief_precompiled name)
+    if(NOT RELIEF_PRECOMPILE)
+        return()
+    endif()
+    set(source ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
+    file(CONFIGURE OUTPUT ${source} CONTENT "// For its precompiled headers.\n")
+    add_library(${name} STATIC ${source})
+    target_link_libraries(${name} PRIVATE relief_options glm::glm ${ARGN})
+    target_precompile_headers(${name} PRIVATE
+        <algorithm> <array> <charconv> <chrono> <cmath> <cstddef> <cstdint> <cstring> <filesystem> <functional>
+        <limits> <memory> <optional> <span> <string> <string_view> <utility> <vector>
+        <glm/glm.hpp> <tl/expected.hpp>)
+    if("GTest::gtest" IN_LIST ARGN)
+        target_precompile_headers(${name} PRIVATE <gtest/gtest.h>)
+    endif()
+endfunction()
+
+# relief_precompile(TARGET FROM): TARGET is compiled with the precompiled headers of FROM.
+function(relief_precompile target from)
+    if(NOT RELIEF_PRECOMPILE)
+        return()
+    endif()
+    target_precompile_headers(${target} REUSE_FROM ${from})
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+        # GCC 12 forgets that a precompiled header is the system's, and warns of copies inside std::string that never
+        # happen. scripts/soak.sh builds without precompiled headers, and with these warnings.
+        target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow)
+    endif()
+endfunction()
