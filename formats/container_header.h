@@ -1,4 +1,4 @@
-// The first 64 bytes of a `.relief` container (README.md beside this file, "Header").
+// The first 64 bytes of a `.relief` container (README.md beside this file, "Bytes").
 #pragma once
 
 #include <array>

@@ -1,23 +1,23 @@
 #!/usr/bin/env bash
-# Wrong points per byte, on the meshes that the README's claims are about: a dense signed distance volume, the
-# paper's maps and ours, at 0.25, 1 and 4 MB; then geometric means and a verdict on the claims. Takes a few
-# minutes. Further arguments go to relief-accuracy, which scripts/build.sh builds: --only bunny,camel --budgets 1MB
-# --methods ours --cache FILE for quick rounds of work on the baker, --details, --markdown (the README's), --json.
+# Wrong points per byte, on the meshes that bake/measure/README.md writes about: a dense signed distance volume, the
+# paper's maps and ours, at 0.25, 1 and 4 MB; then geometric means, and whether the targets are met. Takes a few
+# minutes. Further arguments go to relief-accuracy: --only bunny,camel --budgets 1MB --methods ours --cache FILE for
+# quick rounds of work on the baker; --details, --markdown, --json.
 #
 #   scripts/accuracy.sh                  the table
 #   scripts/accuracy.sh --markdown       the same as Markdown
-#   scripts/accuracy.sh --page           writes it to bake/measure/accuracy.md, whose figures the README cites
+#   scripts/accuracy.sh --page           writes it to bake/measure/accuracy.md, whose figures README.md and bake/measure/README.md cite
 #   scripts/accuracy.sh --cross-check    compares the volume with OpenVDB's mesh2ls, on the bunny
 #
 # The cross-check samples the level set that Debian's vdb_tool (libopenvdb-tools) makes of the bunny at 128
-# voxels, read by python3-openvdb; neither package is needed for anything else. Found with OpenVDB 10.0.1, in
-# voxels of the level set, at the 213239 nodes of its band:
+# voxels. python3-openvdb reads it; nothing else needs either package. Found with OpenVDB 10.0.1, in voxels of the
+# level set, at the 213239 nodes of its band:
 #
 #     the volume's exact values    mean 0.008, 99 % below 0.12, largest 0.76; 564 other signs
 #     its lookup at 4 MB           mean 0.017, 99 % below 0.14, largest 0.9; 568 other signs
 #
-# Other signs are found within 0.29 voxels of the surface alone. The differences are the level set's (why was not
-# looked into): CGAL gives the bunny our distances to nine digits, and our signs (tests/bake/oracle/truth_oracle_test.cpp).
+# Other signs occur only within 0.29 voxels of the surface. The differences are the level set's; nobody has looked into
+# why. CGAL gives the bunny our distances to nine digits, and our signs (tests/bake/oracle/truth_oracle_test.cpp).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Kills, fails and races relief's writing (tests/cli/atomic_outputs.sh), for as many rounds as RELIEF_ATOMIC_ROUNDS says
-# (20), and prints what was counted; with --page into bake/measure/trust.md too.
+# Kills relief while it writes, makes its writing fail, and races several writers (tests/cli/atomic_outputs.sh), for
+# RELIEF_ATOMIC_ROUNDS rounds (20 by default). Prints what it counted; with --page also into bake/measure/trust.md.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

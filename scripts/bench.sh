@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Prints the ratios that Relief promises, each from one run on this machine: scripts/bench.sh [MESH]
-# Nothing here is a test: machines are shared and noisy. Medians; run it twice before you believe a change.
-# RELIEF_BENCH_LARGE=1 takes the sizes meant for a GPU (a million particles and more) where there is none.
+# Nothing here is a test, because machines are shared and noisy. It prints medians; run it twice before you believe a
+# change. RELIEF_BENCH_LARGE=1 takes the sizes for a GPU (a million particles and more) even where there is none.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -25,7 +25,7 @@ for name, value in ms.items():
 # The whole process, for the six maps (three front-back) that the loop above traces.
 specs = [a for d in ('-x', '-y', '-z') for a in ('--map', f'front-back:dir={d},depth=half,decode=projected')]
 command = [f'{bin}/relief', 'bake', mesh, '-o', f'{work}/out.relief', '-q', *specs]
-# Its floor is taken as cold as the process itself: a fresh process each time, in turns.
+# Its floor is measured as cold as the process itself: a fresh process each time, in turns.
 times, floors = [], []
 for _ in range(15):
     floor = subprocess.run([f'{bin}/relief-bench-raycast', mesh, f'{work}/floor.relief'], check=True, capture_output=True)
@@ -40,8 +40,8 @@ print(f"trace / bare rtcIntersect16 loop                   {ms['trace'] / ms['ba
 print(f"relief bake / (import + build + bare loop + write) {process / floor:.2f}   (at most 1.3)")
 
 # The particle step: planned maps of 1 MB against the paper's collider, one front-back map and one cube of 512
-# texels a side. Snow as in samples/, but born all through the box of the bunny at once: from the first step on
-# there is something to collide with.
+# texels a side. Snow as in samples/, but born at once all through the box of the bunny: so it has
+# something to collide with from the first step on.
 COUNT, STEPS, REPEATS = 262144, 64, 5
 paper_maps = ['--map', 'front-back:dir=-z,size=512,depth=half,decode=projected',
               '--map', 'cube:size=512,decode=projected']

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Bakes meshes under all that must not matter and compares the bytes: scripts/determinism.sh [--quick | --page].
+# Bakes meshes in surroundings that must not matter, and compares the bytes: scripts/determinism.sh [--quick | --page].
 # Prints a table of SHA-256 and ends with 0 if no mesh has two; 7 if one has.
 #
 #   (nothing)   204 bakes: ten meshes, the paper's maps and planned ones; threads, locale, time zone, folder, umask,
@@ -51,7 +51,7 @@ cpu() { # MODEL: QEMU speaks of features that it lacks; relief's own errors come
     echo "qemu-x86_64-static -cpu $1"
 }
 no_fma=GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX2_Usable,-FMA_Usable
-# Whatever of these is installed; elsewhere setlocale() says no, and that must not matter either.
+# Where a locale is not installed, setlocale() fails, and that must not matter either.
 turkish=LC_ALL=tr_TR.UTF-8
 
 paper=(--paper --resolution 128)

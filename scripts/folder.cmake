@@ -1,11 +1,11 @@
 # relief_folder(FOLDER [USES FOLDER…] [LINKS LIBRARY…] [PUBLIC LIBRARY…] [EXCEPT FILE…])
-# Every .cpp of FOLDER, but for those named EXCEPT, as a library whose target is FOLDER with _ for /.
+# Makes a library of every .cpp of FOLDER, except those named after EXCEPT. The target's name is FOLDER with _ for /.
 #
-# Its sources find the headers of FOLDER, of the folders that it USES, and of those that these use in turn; no others
-# compile. For that each folder has an include root of its own in the build tree, which holds a link to it alone. USES
-# takes only folders declared earlier, so that no arrow can run back.
+# Its sources find the headers of FOLDER, of the folders that it USES, and of those that these use in turn; other includes
+# do not compile. To this end each folder has an include root of its own in the build tree, with a link to that folder and
+# nothing else. USES takes only folders declared earlier, so no arrow can run back.
 #
-# LINKS are libraries for the sources alone; those whose headers the folder's own headers include are PUBLIC.
+# LINKS are libraries that only the sources use; PUBLIC are those whose headers the folder's own headers include.
 function(relief_folder folder)
     cmake_parse_arguments(ARG "" "" "USES;LINKS;PUBLIC;EXCEPT" ${ARGN})
     string(REPLACE / _ target ${folder})
@@ -28,13 +28,14 @@ function(relief_folder folder)
         endif()
         target_link_libraries(${target} PUBLIC ${used_target})
     endforeach()
-    # For tests/arrows.py, which says in words what a compiler says of a missing file.
+    # For tests/arrows.py, which explains in words what a compiler reports as a missing file.
     string(REPLACE ";" " " uses "${ARG_USES}")
     set_property(GLOBAL APPEND PROPERTY RELIEF_FOLDERS "${folder}: ${uses}")
 endfunction()
 
-# relief_unit(FOLDER FILE [LINKS LIBRARY…] [OPTIONS …]): one file that the folder was declared EXCEPT, as a part of it
-# that is compiled with libraries or options that its other files must not have.
+# relief_unit(FOLDER FILE [LINKS LIBRARY…] [OPTIONS …])
+# Adds FILE, which FOLDER left out by EXCEPT, to FOLDER again, compiled with libraries or options that the folder's other
+# files must not have.
 function(relief_unit folder file)
     cmake_parse_arguments(ARG "" "" "LINKS;OPTIONS" ${ARGN})
     string(REPLACE / _ target ${folder})
@@ -47,8 +48,8 @@ function(relief_unit folder file)
     target_link_libraries(${target} PRIVATE ${unit})
 endfunction()
 
-# relief_archive(NAME FOLDER…): folders as one library for other people's programs. Its public headers are all those
-# of these folders.
+# relief_archive(NAME FOLDER…)
+# Makes one library of several folders, for other people's programs. All their headers are public.
 function(relief_archive name)
     set(objects)
     set(roots)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Looks for trouble with libFuzzer, under the sanitizers: scripts/fuzz.sh [SECONDS [TARGET…]], 60 seconds a target and
-# all of tests/fuzz by default. What it finds lies in out/fuzz/: mend it, and put the input into tests/fuzz/corpus/.
+# Looks for bugs with libFuzzer, under the sanitizers: scripts/fuzz.sh [SECONDS [TARGET…]], by default 60 seconds a
+# target and all of tests/fuzz. What it finds is in out/fuzz/: fix the bug, and put the input into tests/fuzz/corpus/.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Gives relief broken meshes (tests/cli/mutants.sh), and every file of assimp-testmodels, and prints what came of them:
-# scripts/mutants.sh [COUNT] [--page], 2000 by default; with --page into bake/measure/trust.md too.
+# Gives relief broken meshes (tests/cli/mutants.sh) and every file of assimp-testmodels, and prints what became of them:
+# scripts/mutants.sh [COUNT] [--page], 2000 by default; with --page also into bake/measure/trust.md.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Bakes and plays samples without a window: scripts/samples.sh [NAME…], all of them by default. Leaves frames and a
-# picture of six of them, contact_sheet.png and .jpg, in out/samples/NAME. Needs no GPU; with one it is done sooner.
+# picture of six of them, contact_sheet.png and .jpg, in out/samples/NAME. Needs no GPU, but is faster with one.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

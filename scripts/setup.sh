@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs what Relief builds and runs with, from Debian 12's own packages. Does nothing, and needs no network,
-# when all are there already. The other scripts call it: scripts/setup.sh [PACKAGE]…, with what they need besides.
+# Installs the Debian 12 packages that Relief needs to build and run. Does nothing, and needs no network, when all are
+# there already. The other scripts call it: scripts/setup.sh [PACKAGE]…, with the packages that they need besides.
 set -euo pipefail
 
 packages=(

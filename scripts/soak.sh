@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Long runs, for a night and not for CI: scripts/soak.sh [RUN]…, all of these by default. Ends with 0 if all hold.
+# Long runs, for a night and not for CI: scripts/soak.sh [RUN]…, all of these by default. Ends with 0 if all pass.
 #
 #   sweep   a million particles take a thousand swept steps in a closed hollow box, and none gets out; without the
 #           sweep most do. In OpenGL 3.3 and in OpenGL ES 3.0. An hour or so on llvmpipe.
@@ -8,7 +8,7 @@
 #   import  every file of assimp-testmodels is read or refused, and none crashes the worker.
 #   mutants 2,000 broken mesh files and every file of assimp-testmodels are baked soundly or refused (scripts/mutants.sh)
 #   package a build without the baker, from nothing, installs a runtime that samples/embed builds with.
-#   bytes   204 bakes of ten meshes under all that must not matter give one hash each (scripts/determinism.sh)
+#   bytes   204 bakes of ten meshes in surroundings that must not matter give one hash each (scripts/determinism.sh)
 #   fuzz    libFuzzer looks at containers, scenes, plans, recipes, points and import messages, ten minutes each (scripts/fuzz.sh)
 #   outputs 20 rounds of kills, errors, signals and eight writers leave no torn file (scripts/all_or_nothing.sh)
 set -euo pipefail
@@ -68,7 +68,7 @@ burst = 10000
 rate = 0.0
 lifetime = 10000.0
 T
-    # The same scene gives the same particles, so that two runs are one that was looked at twice.
+    # The same scene gives the same particles, so two runs are the same run, looked at twice.
     local steps
     for steps in "${RELIEF_SOAK_SETTLED:-5000}" "${RELIEF_SOAK_STEPS:-100000}"; do
         "$bin/relief-sim" "$work/rest.toml" --steps "$steps" --dump "$work/$steps.ply" -q || return 1
@@ -80,7 +80,7 @@ work, settled, steps = sys.argv[1:]
 def positions(name):
     data = open(f'{work}/{name}.ply', 'rb').read()
     body = data[data.index(b'end_header\n') + 11:]
-    # x y z vx vy vz age lifetime id type; the bits of x y z, for -0 is not 0.
+    # x y z vx vy vz age lifetime id type; compares the bits of x y z, because -0 is not 0.
     return {row[8]: row[:3] for row in struct.iter_unpack('<10I', body)}
 
 before, after = positions(settled), positions(steps)

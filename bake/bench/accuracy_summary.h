@@ -1,5 +1,5 @@
 // What relief-accuracy concludes from its measurements: ratios, means over meshes, and the verdict on the
-// README's claims. Arithmetic alone.
+// claims of bake/measure/README.md. Arithmetic alone.
 #pragma once
 
 #include <cstdint>

@@ -7,8 +7,8 @@
 
 namespace relief {
 
-/// What went wrong, by who can cure it. The value is the exit code of both executables (README, "Exit
-/// codes").
+/// What went wrong, by who can cure it. The value is the exit code of both executables (bake/cli/README.md,
+/// "Exit codes").
 enum class ErrorCode : int {
     kUsage = 1,         ///< the call itself: option, key or value
     kIo = 2,            ///< a file could not be opened, read or written

@@ -134,7 +134,7 @@ class ParticleSystem {
     /// place; the rest are refused and counted.
     std::size_t spawn(std::span<const Birth> births);
 
-    /// Moves everything by `dt` seconds, > 0. Restores the GL state that it touches (runtime/README.md).
+    /// Moves everything by `dt` seconds, > 0. Restores the GL state that it touches (runtime/INTEGRATE.md).
     void step(float dt);
 
     [[nodiscard]] std::uint32_t capacity() const { return allocator_.capacity(); }

@@ -7,7 +7,7 @@
 
 namespace relief {
 
-/// One JSON object, indented, with a trailing newline. Keys: runtime/README.md, "The report".
+/// One JSON object, indented, with a trailing newline. Keys: README.md beside this file, "The report".
 [[nodiscard]] std::string reportJson(const PlayerReport& report);
 
 /// A few lines for a person.

@@ -33,7 +33,7 @@ struct CheckReport {
 
 /// "scene.toml is valid: …", one line with a newline.
 [[nodiscard]] std::string checkText(const CheckReport& report);
-/// One JSON object with a trailing newline. Keys: runtime/README.md, "Checking a scene".
+/// One JSON object with a trailing newline. Keys: README.md beside this file, "Checking a scene".
 [[nodiscard]] std::string checkJson(const CheckReport& report);
 /// The same for a scene that is not valid.
 [[nodiscard]] std::string checkJson(const Error& error);

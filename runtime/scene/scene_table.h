@@ -14,7 +14,7 @@
 
 namespace relief {
 
-// Generous, yet small enough that nothing overflows a float within a lifetime: see runtime/README.md.
+// Generous, yet small enough that nothing overflows a float within a lifetime: see README.md beside this file.
 inline constexpr double kLengthMax = 1e9;
 inline constexpr double kRateMax = 1e9;
 inline constexpr double kSpeedMax = 1e6;

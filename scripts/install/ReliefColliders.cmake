@@ -3,10 +3,10 @@
 #   relief_add_colliders(<target> RECIPE <recipe.toml> [OUTPUT_DIR <dir>])
 #   relief_add_colliders(<target> MESHES <mesh>… [OPTIONS <option>…] [OUTPUT_DIR <dir>])
 #
-# Adds a target that is built by default. RECIPE: all that `relief bake --recipe` lists, by one command. MESHES: <dir>/<name
-# of the mesh>.relief by one command a mesh, with these options of `relief bake`; the target's property
-# RELIEF_COLLIDERS lists them. <dir> is the current binary directory if not given. Materials, buffers and whatever else
-# a mesh refers to are watched too, and so is `relief` itself.
+# Adds a target that is built by default. With RECIPE one command bakes all that the recipe lists. With MESHES one command
+# a mesh bakes <dir>/<name of the mesh>.relief, with these options of `relief bake`; the target's property RELIEF_COLLIDERS
+# lists them. <dir> is by default the current binary directory. The build also watches materials, buffers and other files
+# that a mesh refers to, and `relief` itself.
 
 function(relief_add_colliders target)
     cmake_parse_arguments(PARSE_ARGV 1 arg "" "RECIPE;OUTPUT_DIR" "MESHES;OPTIONS")

@@ -1,5 +1,5 @@
-# The installed tree from outside: the README's CMake project builds, runs, and bakes again exactly what changed; the
-# sample of embedding builds by pkg-config alone; a build without the baker installs the runtime.
+# The installed tree from outside: the pages' links lead somewhere; the CMake project of scripts/install/README.md builds,
+# runs, and bakes again exactly what changed; the sample of embedding builds by pkg-config alone; a build without the baker installs the runtime.
 . "$(dirname "$0")/lib.sh"
 build="$RELIEF_BIN/.."
 prefix="$work/a prefix"
@@ -15,6 +15,14 @@ done
 ! grep -rIlF "$RELIEF_SOURCE" "$prefix" --include='*.cmake' --include='*.pc' --include='*.h' --include='*.1' ||
     die "the installed tree knows where it was built"
 
+# Every link of an installed page to another page, or to a picture, leads there.
+(cd "$prefix/share/doc/relief" && grep -roE '\]\([^):]+\.(md|jpg)\)' . | sort -u) >links
+[ "$(wc -l <links)" -ge 20 ] || die "only $(wc -l <links) links in the installed pages"
+while IFS=: read -r page link; do
+    target=${link#"]("}
+    [ -f "$prefix/share/doc/relief/$(dirname "$page")/${target%)}" ] || die "$page links to ${target%)}, which is not installed"
+done <links
+
 # Every header includes nothing that is not installed, or that is the player's.
 (cd "$prefix/include/relief" && grep -rhoE '#include "[^"]+"' . | sort -u | sed 's/.*"\(.*\)"/\1/') >includes
 while read -r header; do
@@ -22,12 +30,12 @@ while read -r header; do
 done <includes
 ! grep -rlE '#include <(nlohmann|toml|CLI|png|Imf|flatbuffers|zstd)' "$prefix/include/relief" || die "headers of third parties"
 
-# The README's project.
+# The project of scripts/install/README.md.
 mkdir consumer
-between() { sed -n "/<!-- $1 -->/,/^\`\`\`\$/p" "$RELIEF_SOURCE/README.md" | sed '1,2d;$d'; }
+between() { sed -n "/<!-- $1 -->/,/^\`\`\`\$/p" "$RELIEF_SOURCE/scripts/install/README.md" | sed '1,2d;$d'; }
 between install:cmake >consumer/CMakeLists.txt
 between install:cpp >consumer/main.cpp
-[ -s consumer/CMakeLists.txt ] && [ -s consumer/main.cpp ] || die "the README shows no project"
+[ -s consumer/CMakeLists.txt ] && [ -s consumer/main.cpp ] || die "scripts/install/README.md shows no project"
 cp "$bunny" consumer/bunny.obj
 cat >consumer/box.obj <<'O'
 mtllib box.mtl

@@ -169,7 +169,7 @@ Measured disorderInMotion(const Motion& motion) {
     return sum;
 }
 
-// The depth errors are those of runtime/README.md's table; the bounds leave a fifth or more for other
+// The depth errors are those of runtime/METHOD.md's table; the bounds leave a fifth or more for other
 // roundings. The newborn wait at the end for one to two sequences, so that short lives tell. Neighbours are
 // as close in depth as 0.0003: it takes little for 4 in 10 of them to be out of order.
 TEST_P(DepthSortMotionGlTest, SpreadOverFramesItKeepsUpWithMotion) {
