@@ -8,6 +8,7 @@
 #   import  every file of assimp-testmodels is read or refused, and none crashes the worker.
 #   mutants 2,000 broken mesh files and every file of assimp-testmodels are baked soundly or refused (scripts/mutants.sh)
 #   package a build without the baker, from nothing, installs a runtime that samples/embed builds with.
+#   headers a build without precompiled headers: every file includes what it uses, and no warning of GCC is off.
 #   bytes   204 bakes of ten meshes in surroundings that must not matter give one hash each (scripts/determinism.sh)
 #   fuzz    libFuzzer looks at containers, scenes, plans, recipes, points and import messages, ten minutes each (scripts/fuzz.sh)
 #   outputs 20 rounds of kills, errors, signals and eight writers leave no torn file (scripts/all_or_nothing.sh)
@@ -15,7 +16,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/setup.sh
-all_runs=(sweep rest import mutants package bytes outputs fuzz)
+all_runs=(sweep rest import mutants package headers bytes outputs fuzz)
 runs=("$@")
 [ ${#runs[@]} -gt 0 ] || runs=("${all_runs[@]}")
 work=$(mktemp -d)
@@ -23,8 +24,8 @@ trap 'rm -rf "$work"' EXIT
 
 sweep() {
     local bin status=0
-    bin=$(scripts/build.sh release relief_collision_gl_test) || return 1
-    RELIEF_SOAK=1 "$bin/relief_collision_gl_test" --gtest_filter='*ASweptStepNeverTunnels*' \
+    bin=$(scripts/build.sh release relief_runtime_particles_test) || return 1
+    RELIEF_SOAK=1 "$bin/relief_runtime_particles_test" --gtest_filter='*ASweptStepNeverTunnels*' \
         --gtest_output="json:$work/sweep.json" >"$work/sweep.log" || status=$?
     [ "$status" = 0 ] || cat "$work/sweep.log" >&2
     python3 - "$work/sweep.json" <<'P'
@@ -52,6 +53,15 @@ package() {
     g++ -std=c++20 samples/embed/embed.cpp -o "$work/embed" \
         $(PKG_CONFIG_PATH=$modules pkg-config --cflags --libs relief-runtime) &&
         "$work/prefix/bin/relief-sim" --version >/dev/null && echo "package: a build without the baker installs"
+}
+
+headers() {
+    cmake -G Ninja -S . -B "$work/headers" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DRELIEF_PRECOMPILE=OFF >"$work/headers.log" &&
+        cmake --build "$work/headers" >>"$work/headers.log" || {
+        grep -m5 -E ' error: ' "$work/headers.log" >&2
+        return 1
+    }
+    echo "headers: builds without precompiled headers"
 }
 
 rest() {
@@ -92,8 +102,8 @@ P
 
 import() {
     local bin
-    bin=$(scripts/build.sh release relief_import_test) || return 1
-    RELIEF_SOAK=1 "$bin/relief_import_test" --gtest_filter='*EveryModelOfThePackage*' \
+    bin=$(scripts/build.sh release relief_bake_import_test) || return 1
+    RELIEF_SOAK=1 "$bin/relief_bake_import_test" --gtest_filter='*EveryModelOfThePackage*' \
         --gtest_output="json:$work/import.json" >"$work/import.log" || {
         cat "$work/import.log" >&2
         return 1
