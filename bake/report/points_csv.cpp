@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "formats/base/csv_reader.h"
 #include "formats/base/text.h"
 
 namespace relief {
@@ -16,20 +17,19 @@ bool startsLikeANumber(std::string_view field) {
 }
 
 /// A first line of words: three fields, none of which is meant as a number.
-bool isHeader(const std::vector<std::string_view>& fields) {
+bool isHeader(std::span<const std::string_view> fields) {
     return fields.size() == 3 && std::none_of(fields.begin(), fields.end(), [](std::string_view field) {
-               const std::string_view word = trimmed(field);
-               return word.empty() || startsLikeANumber(word) || word == "nan" || word == "inf";
+               return field.empty() || startsLikeANumber(field) || field == "nan" || field == "inf";
            });
 }
 
-std::optional<glm::vec3> parsePoint(const std::vector<std::string_view>& fields) {
+std::optional<glm::vec3> parsePoint(std::span<const std::string_view> fields) {
     if (fields.size() != 3) {
         return std::nullopt;
     }
     glm::vec3 point;
     for (int i = 0; i < 3; ++i) {
-        const std::optional<float> value = parseFloat(trimmed(fields[static_cast<std::size_t>(i)]));
+        const std::optional<float> value = parseFloat(fields[static_cast<std::size_t>(i)]);
         if (!value) {
             return std::nullopt;
         }
@@ -42,28 +42,17 @@ std::optional<glm::vec3> parsePoint(const std::vector<std::string_view>& fields)
 
 Result<std::vector<glm::vec3>> parsePoints(std::string_view text, const std::string& name) {
     std::vector<glm::vec3> points;
-    if (text.starts_with("\xef\xbb\xbf")) {
-        text.remove_prefix(3);
-    }
+    CsvReader reader(text);
     bool header_allowed = true;
-    for (std::size_t number = 1; !text.empty(); ++number) {
-        const std::size_t end = text.find('\n');
-        const std::string_view line = trimmed(text.substr(0, end));
-        text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-        if (line.empty() || line[0] == '#') {
-            continue;
-        }
-        // Not split() at once: a hostile line could have millions of commas.
-        const bool too_many = std::count(line.begin(), line.end(), ',') > 2;
-        const std::vector<std::string_view> fields =
-            too_many ? std::vector<std::string_view>() : split(line, ',');
-        if (const std::optional<glm::vec3> point = parsePoint(fields)) {
+    while (reader.next()) {
+        if (const std::optional<glm::vec3> point = parsePoint(reader.fields())) {
             points.push_back(*point);
-        } else if (!header_allowed || !isHeader(fields)) {
-            const bool cut = line.size() > kQuotedMax;
+        } else if (!header_allowed || !isHeader(reader.fields())) {
+            const std::string_view line = reader.line();
             return fail(ErrorCode::kInvalidInput,
-                        name + ":" + std::to_string(number) + ": '" + cleanUtf8(line.substr(0, kQuotedMax)) +
-                            (cut ? "…" : "") + "' is no point; write three finite numbers x,y,z");
+                        name + ":" + std::to_string(reader.number()) + ": '" +
+                            cleanUtf8(line.substr(0, kQuotedMax)) + (line.size() > kQuotedMax ? "…" : "") +
+                            "' is no point; write three finite numbers x,y,z");
         }
         header_allowed = false;
     }

@@ -30,6 +30,16 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
     return previous[b.size()];
 }
 
+template <class T>
+std::optional<T> parseNumber(std::string_view text) {
+    if (text.starts_with('+') && text.size() > 1 && text[1] != '-') {
+        text.remove_prefix(1);
+    }
+    T value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc{} && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
+
 /// Length of the well-formed UTF-8 sequence at the start of `bytes`, 0 if there is none.
 std::size_t utf8Length(std::string_view bytes) {
     const auto at = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
@@ -74,15 +84,12 @@ std::string shortest(const glm::vec3& value) {
 }
 
 std::optional<float> parseFloat(std::string_view text) {
-    if (text.starts_with('+') && text.size() > 1 && text[1] != '-') {
-        text.remove_prefix(1);
-    }
-    float value = 0.0F;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) {
-        return std::nullopt;
-    }
-    return value;
+    const std::optional<float> value = parseNumber<float>(text);
+    return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+std::optional<double> parseDouble(std::string_view text) {
+    return parseNumber<double>(text);
 }
 
 std::optional<std::uint64_t> parseUnsigned(std::string_view text) {
@@ -114,6 +121,29 @@ std::string_view trimmed(std::string_view text) {
         return {};
     }
     return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::string_view takeLine(std::string_view& text) {
+    const std::size_t end = text.find('\n');
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    return line;
+}
+
+std::string_view takeWord(std::string_view& text) {
+    const auto is_space = [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
+    const char* const begin = std::find_if_not(text.data(), text.data() + text.size(), is_space);
+    const char* const end = std::find_if(begin, text.data() + text.size(), is_space);
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    return {begin, static_cast<std::size_t>(end - begin)};
+}
+
+std::string lowerCase(std::string_view text) {
+    std::string lower(text);
+    for (char& c : lower) {
+        c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    }
+    return lower;
 }
 
 std::string_view nearest(std::string_view word, std::span<const std::string_view> known) {

@@ -20,6 +20,8 @@ void appendShortest(std::string& out, float value);
 
 /// The whole of `text` as a finite float; a leading '+' is allowed. nullopt otherwise.
 [[nodiscard]] std::optional<float> parseFloat(std::string_view text);
+/// The same as a double, which may also be infinite or NaN.
+[[nodiscard]] std::optional<double> parseDouble(std::string_view text);
 /// The whole of `text` as decimal digits. Numbers too large for 64 bits come back as the largest one.
 [[nodiscard]] std::optional<std::uint64_t> parseUnsigned(std::string_view text);
 
@@ -27,6 +29,12 @@ void appendShortest(std::string& out, float value);
 [[nodiscard]] std::vector<std::string_view> split(std::string_view text, char separator);
 /// Without spaces, tabs and a carriage return at both ends.
 [[nodiscard]] std::string_view trimmed(std::string_view text);
+/// Cuts the first line off `text`. \return it, without its \n.
+[[nodiscard]] std::string_view takeLine(std::string_view& text);
+/// Cuts the first word, and the white space before it, off `text`. \return it; empty if there is none.
+[[nodiscard]] std::string_view takeWord(std::string_view& text);
+/// With a…z for A…Z; all other bytes stay.
+[[nodiscard]] std::string lowerCase(std::string_view text);
 
 /// The one of `known` that is nearest to `word`, if at most a third of its letters are changed; else "".
 [[nodiscard]] std::string_view nearest(std::string_view word, std::span<const std::string_view> known);

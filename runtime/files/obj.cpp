@@ -5,38 +5,15 @@
 #include <string>
 #include <vector>
 
+#include "formats/base/text.h"
 #include "runtime/files/mesh_file.h"
 
 namespace relief {
 namespace {
 
-bool isSpace(char c) {
-    return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
-}
-
-/// The next word of a line, which it is cut off; empty at the end.
-std::string_view nextWord(std::string_view& line) {
-    std::size_t begin = 0;
-    while (begin < line.size() && isSpace(line[begin])) {
-        ++begin;
-    }
-    std::size_t end = begin;
-    while (end < line.size() && !isSpace(line[end])) {
-        ++end;
-    }
-    const std::string_view word = line.substr(begin, end - begin);
-    line.remove_prefix(end);
-    return word;
-}
-
 bool readNumber(std::string_view word, float& out) {
-    if (word.starts_with('+')) {
-        word.remove_prefix(1);
-    }
-    double value = 0.0;
-    const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    out = static_cast<float>(value);
-    return error == std::errc() && rest == word.data() + word.size() && std::isfinite(out);
+    out = static_cast<float>(parseDouble(word).value_or(NAN));
+    return std::isfinite(out);
 }
 
 class ObjReader {
@@ -46,10 +23,8 @@ class ObjReader {
     Result<PictureMesh> read(std::string_view text) {
         while (!text.empty()) {
             ++line_;
-            const std::size_t end = std::min(text.find('\n'), text.size());
-            std::string_view line = text.substr(0, end);
-            text.remove_prefix(std::min(end + 1, text.size()));
-            const std::string_view statement = nextWord(line);
+            std::string_view line = takeLine(text);
+            const std::string_view statement = takeWord(line);
             if (statement == "v" || statement == "f") {
                 RELIEF_TRY(statement == "v" ? readVertex(line) : readFace(line));
             }
@@ -72,7 +47,7 @@ class ObjReader {
         }
         glm::vec3 p{0.0F};
         for (int i = 0; i < 3; ++i) {
-            if (!readNumber(nextWord(line), p[i])) {
+            if (!readNumber(takeWord(line), p[i])) {
                 return failHere(ErrorCode::kInvalidInput, "a vertex needs three finite numbers");
             }
         }
@@ -83,8 +58,8 @@ class ObjReader {
     // Corners are "7", "7/1", "7//3" or "7/1/3"; below 0 they count back from the last vertex so far.
     Result<void> readFace(std::string_view line) {
         corners_.clear();
-        for (std::string_view word = nextWord(line); !word.empty() && !word.starts_with('#');
-             word = nextWord(line)) {
+        for (std::string_view word = takeWord(line); !word.empty() && !word.starts_with('#');
+             word = takeWord(line)) {
             const std::string_view digits = word.substr(0, word.find('/'));
             std::int64_t index = 0;
             const auto [rest, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);

@@ -1,0 +1,123 @@
+#include "formats/base/ply_reader.h"
+
+#include <array>
+#include <bit>
+#include <charconv>
+#include <span>
+#include <utility>
+
+#include "formats/base/text.h"
+
+namespace relief {
+namespace {
+
+template <class T>
+using Words = std::span<const std::pair<std::string_view, T>>;
+
+constexpr std::pair<std::string_view, PlyHeaderLine::Kind> kKinds[] = {
+    {"ply", PlyHeaderLine::Kind::kPly},
+    {"format", PlyHeaderLine::Kind::kFormat},
+    {"element", PlyHeaderLine::Kind::kElement},
+    {"property", PlyHeaderLine::Kind::kProperty},
+    {"end_header", PlyHeaderLine::Kind::kEnd}};
+constexpr std::pair<std::string_view, PlyEncoding> kEncodings[] = {
+    {"ascii", PlyEncoding::kAscii},
+    {"binary_little_endian", PlyEncoding::kLittle},
+    {"binary_big_endian", PlyEncoding::kBig}};
+constexpr std::pair<std::string_view, PlyType> kTypes[] = {
+    {"char", PlyType::kInt8},     {"int8", PlyType::kInt8},       {"uchar", PlyType::kUint8},
+    {"uint8", PlyType::kUint8},   {"short", PlyType::kInt16},     {"int16", PlyType::kInt16},
+    {"ushort", PlyType::kUint16}, {"uint16", PlyType::kUint16},   {"int", PlyType::kInt32},
+    {"int32", PlyType::kInt32},   {"uint", PlyType::kUint32},     {"uint32", PlyType::kUint32},
+    {"float", PlyType::kFloat32}, {"float32", PlyType::kFloat32}, {"double", PlyType::kFloat64},
+    {"float64", PlyType::kFloat64}};
+
+template <class T>
+std::optional<T> find(Words<T> words, std::string_view word) {
+    for (const auto& [name, value] : words) {
+        if (name == word) {
+            return value;
+        }
+    }
+    return std::nullopt;
+}
+
+std::size_t sizeOf(PlyType type) {
+    constexpr std::array<std::size_t, 8> kSizes{1, 1, 2, 2, 4, 4, 4, 8};
+    return kSizes[static_cast<std::size_t>(type)];
+}
+
+std::optional<std::uint64_t> parseCount(std::string_view word) {
+    std::uint64_t count = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), count);
+    return error == std::errc() && end == word.data() + word.size() ? std::optional(count) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<PlyHeaderLine> takePlyHeaderLine(std::string_view& data) {
+    if (data.empty()) {
+        return std::nullopt;
+    }
+    std::string_view rest = takeLine(data);
+    std::array<std::string_view, 6> words;  // the longest line has five
+    std::size_t count = 0;
+    while (count < words.size() && !(words[count] = takeWord(rest)).empty()) {
+        ++count;
+    }
+    PlyHeaderLine line;
+    line.kind = find(Words<PlyHeaderLine::Kind>(kKinds), words[0]).value_or(PlyHeaderLine::Kind::kOther);
+    if (line.kind == PlyHeaderLine::Kind::kFormat) {
+        line.encoding = find(Words<PlyEncoding>(kEncodings), words[1]);
+    } else if (line.kind == PlyHeaderLine::Kind::kElement && count == 3) {
+        line.name = words[1];
+        line.count = parseCount(words[2]);
+    } else if (line.kind == PlyHeaderLine::Kind::kProperty) {
+        line.list = count == 5 && words[1] == "list";
+        if (line.list || count == 3) {
+            line.name = words[count - 1];
+            line.type = find(Words<PlyType>(kTypes), words[count - 2]);
+            line.length_type = line.list ? find(Words<PlyType>(kTypes), words[2]) : std::nullopt;
+        }
+    }
+    return line;
+}
+
+std::optional<double> PlyNumbers::next(PlyType type) {
+    if (encoding_ != PlyEncoding::kAscii) {
+        return nextBytes(type);
+    }
+    const std::string_view word = takeWord(data_);
+    ended_ = word.empty();
+    return parseDouble(word);
+}
+
+std::optional<double> PlyNumbers::nextBytes(PlyType type) {
+    const std::size_t size = sizeOf(type);
+    ended_ = data_.size() < size;
+    if (ended_) {
+        return std::nullopt;
+    }
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+        const std::size_t at = encoding_ == PlyEncoding::kLittle ? size - 1 - i : i;
+        bits = bits << 8 | static_cast<unsigned char>(data_[at]);
+    }
+    data_.remove_prefix(size);
+    switch (type) {
+        case PlyType::kInt8:
+            return static_cast<std::int8_t>(bits);
+        case PlyType::kInt16:
+            return static_cast<std::int16_t>(bits);
+        case PlyType::kInt32:
+            return static_cast<std::int32_t>(bits);
+        case PlyType::kFloat32:
+            return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
+        case PlyType::kFloat64:
+            return std::bit_cast<double>(bits);
+        default:
+            return static_cast<double>(bits);
+    }
+}
+
+}  // namespace relief

@@ -1,0 +1,53 @@
+// PLY files, read: the lines of a header and the numbers behind it. What a file must hold, and what an error says,
+// is the caller's.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace relief {
+
+enum class PlyEncoding : std::uint8_t { kAscii, kLittle, kBig };
+enum class PlyType : std::uint8_t { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
+
+/// Properties of one element that a reader takes: more than any program writes.
+inline constexpr std::size_t kPlyPropertiesMax = 256;
+
+/// One line of a header. It borrows from the file's bytes.
+struct PlyHeaderLine {
+    enum class Kind : std::uint8_t { kPly, kFormat, kElement, kProperty, kEnd, kOther };
+
+    Kind kind = Kind::kOther;             ///< by its first word
+    std::string_view name;                ///< of an element or a property; empty if the line has another form
+    std::optional<PlyEncoding> encoding;  ///< of a format that is known
+    std::optional<std::uint64_t> count;   ///< of an element
+    bool list = false;                    ///< a property that is a list
+    std::optional<PlyType> type;          ///< of a property, or of a list's items; nullopt if unknown
+    std::optional<PlyType> length_type;   ///< of a list's length
+};
+
+/// Cuts the next line off `data`, a file from its start or from the end of the line before.
+/// \return nullopt at the end of the data.
+[[nodiscard]] std::optional<PlyHeaderLine> takePlyHeaderLine(std::string_view& data);
+
+/// The numbers behind a header, one after the other, as words or as bytes.
+class PlyNumbers {
+  public:
+    /// \param data  from the byte after "end_header\n"; or a part of it, such as a line. Borrowed.
+    PlyNumbers(std::string_view data, PlyEncoding encoding) : data_(data), encoding_(encoding) {}
+
+    /// \return nullopt if the data have ended, or where a word is no number.
+    [[nodiscard]] std::optional<double> next(PlyType type);
+    /// After next() has failed: whether the data have ended.
+    [[nodiscard]] bool ended() const { return ended_; }
+
+  private:
+    std::optional<double> nextBytes(PlyType type);
+
+    std::string_view data_;
+    PlyEncoding encoding_;
+    bool ended_ = false;
+};
+
+}  // namespace relief
