@@ -27,16 +27,8 @@ struct Description {
     std::vector<StoredPayload> payloads;
 };
 
-tl::unexpected<Error> invalid(std::string message) {
-    return fail(ErrorCode::kInvalidInput, std::move(message));
-}
-
 tl::unexpected<Error> invalidMap(std::size_t index, const std::string& message) {
     return tl::unexpected<Error>(inMap(index, {ErrorCode::kInvalidInput, message}));
-}
-
-std::string decimal(std::uint64_t value) {
-    return std::to_string(value);
 }
 
 // ---- write
@@ -123,14 +115,15 @@ Result<void> checkWritable(const Collider& collider, const ContainerWriteOptions
     }
     const ContainerLimits limits;
     if (collider.maps.size() > limits.maps) {
-        return fail(ErrorCode::kLimit, decimal(collider.maps.size()) + " maps are more than the limit of " +
-                                           decimal(limits.maps) + "; use fewer maps");
+        return fail(ErrorCode::kLimit, std::to_string(collider.maps.size()) +
+                                           " maps are more than the limit of " + std::to_string(limits.maps) +
+                                           "; use fewer maps");
     }
     RELIEF_TRY(validate(collider));
     if (collider.texelBytes() > limits.texel_bytes) {
-        return fail(ErrorCode::kLimit, decimal(collider.texelBytes()) +
-                                           " bytes of texels are more than the limit of " +
-                                           decimal(limits.texel_bytes) + "; use smaller or fewer maps");
+        return fail(ErrorCode::kLimit,
+                    std::to_string(collider.texelBytes()) + " bytes of texels are more than the limit of " +
+                        std::to_string(limits.texel_bytes) + "; use smaller or fewer maps");
     }
     return {};
 }
@@ -182,7 +175,7 @@ Result<std::vector<std::byte>> writeChecked(const Collider& collider, const Cont
 /// Maps whose frames and sizes are in order, within the limits.
 Result<void> readMaps(ParsedMetadata&& parsed, const ContainerLimits& limits, Description& into) {
     if (parsed.maps.empty()) {
-        return invalid("there is no map");
+        return invalidInput("there is no map");
     }
     std::uint64_t texel_bytes = 0;
     for (std::size_t i = 0; i < parsed.maps.size(); ++i) {
@@ -194,9 +187,9 @@ Result<void> readMaps(ParsedMetadata&& parsed, const ContainerLimits& limits, De
         }
         texel_bytes += map.payload.info.raw_size;
         if (texel_bytes > limits.texel_bytes) {
-            return fail(ErrorCode::kLimit, "map " + decimal(i) +
+            return fail(ErrorCode::kLimit, "map " + std::to_string(i) +
                                                ": with it, the texels take more than the limit of " +
-                                               decimal(limits.texel_bytes) + " bytes");
+                                               std::to_string(limits.texel_bytes) + " bytes");
         }
         into.collider.maps.push_back(std::move(map.frame));
         into.payloads.push_back(map.payload);
@@ -220,25 +213,26 @@ Result<void> checkLayout(std::span<const std::byte> bytes, const Description& de
         const PayloadInfo& info = description.payloads[i].info;
         const std::uint64_t expected = alignPayload(end);
         if (info.offset != expected) {
-            return invalidMap(i, "its payload's offset is " + decimal(info.offset) +
-                                     " where the layout has " + decimal(expected));
+            return invalidMap(i, "its payload's offset is " + std::to_string(info.offset) +
+                                     " where the layout has " + std::to_string(expected));
         }
         if (expected > bytes.size() || info.stored_size > bytes.size() - expected) {
-            return invalidMap(i, "its payload at byte " + decimal(expected) + " of " +
-                                     decimal(info.stored_size) + " bytes reaches beyond the end of the file");
+            return invalidMap(i, "its payload at byte " + std::to_string(expected) + " of " +
+                                     std::to_string(info.stored_size) +
+                                     " bytes reaches beyond the end of the file");
         }
         const auto padding = bytes.subspan(end, expected - end);
         if (const auto at = std::ranges::find_if(padding, [](std::byte b) { return b != std::byte{0}; });
             at != padding.end()) {
             return invalidMap(i, "damaged: byte " +
-                                     decimal(end + static_cast<std::uint64_t>(at - padding.begin())) +
+                                     std::to_string(end + static_cast<std::uint64_t>(at - padding.begin())) +
                                      ", padding before its payload, is not zero");
         }
         end = expected + info.stored_size;
     }
     if (end != bytes.size()) {
-        return invalid(decimal(bytes.size() - end) + " bytes follow the last payload's end at byte " +
-                       decimal(end));
+        return invalidInput(std::to_string(bytes.size() - end) +
+                            " bytes follow the last payload's end at byte " + std::to_string(end));
     }
     return {};
 }
@@ -247,7 +241,7 @@ Result<Description> readDescription(std::span<const std::byte> bytes, const Cont
     const ContainerHeader header = RELIEF_TRY(readContainerHeader(bytes));
     const auto metadata = bytes.subspan(header.metadata_offset, header.metadata_size);
     if (header.metadata_hash != xxh3_64(metadata)) {
-        return invalid("damaged: the checksum at byte 48 is not that of the metadata");
+        return invalidInput("damaged: the checksum at byte 48 is not that of the metadata");
     }
     Description description;
     description.header = header;
@@ -259,8 +253,8 @@ Result<Description> readDescription(std::span<const std::byte> bytes, const Cont
 Result<void> readTexels(std::span<const std::byte> bytes, const StoredPayload& payload, DepthMap& map) {
     const auto stored = bytes.subspan(payload.info.offset, payload.info.stored_size);
     if (payload.hash != xxh3_64(stored)) {
-        return invalid("damaged: the checksum of its payload at byte " + decimal(payload.info.offset) +
-                       " is wrong");
+        return invalidInput("damaged: the checksum of its payload at byte " +
+                            std::to_string(payload.info.offset) + " is wrong");
     }
     if (payload.info.compressed) {
         std::vector<std::byte> raw = RELIEF_TRY(unpackPayload(stored, payload.info.raw_size));

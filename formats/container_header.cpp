@@ -15,51 +15,44 @@ static_assert(std::endian::native == std::endian::little,
 
 constexpr std::ptrdiff_t kTextSafeSignatureSize = 8;
 
-tl::unexpected<Error> invalid(std::string message) {
-    return fail(ErrorCode::kInvalidInput, std::move(message));
-}
-
-std::string decimal(std::uint64_t value) {
-    return std::to_string(value);
-}
-
 Result<void> checkSignature(const ContainerHeader& header) {
     const auto& expected = ContainerHeader::kSignature;
     if (header.signature == expected) {
         return {};
     }
     if (std::equal(expected.begin(), expected.begin() + kTextSafeSignatureSize, header.signature.begin())) {
-        return invalid(
+        return invalidInput(
             "bytes 8...11 of the signature are wrong: the file was changed, perhaps by a transfer as text; "
             "copy it again as binary");
     }
-    return invalid("it is no .relief container: bytes 0...11 are not its signature");
+    return invalidInput("it is no .relief container: bytes 0...11 are not its signature");
 }
 
 Result<void> checkFields(const ContainerHeader& header, std::uint64_t size) {
     const ContainerHeader expected;
     if (header.header_size != expected.header_size || header.reserved != expected.reserved ||
         header.metadata_offset != expected.metadata_offset) {
-        return invalid(
+        return invalidInput(
             "header_size, reserved or metadata_offset (bytes 16...23 and 32...39) are not those of "
             "version " +
-            decimal(kContainerMajor));
+            std::to_string(kContainerMajor));
     }
     if (header.file_size > size) {
-        return invalid("truncated: " + decimal(size) + " of " + decimal(header.file_size) +
-                       " bytes; copy the file again");
+        return invalidInput("truncated: " + std::to_string(size) + " of " + std::to_string(header.file_size) +
+                            " bytes; copy the file again");
     }
     if (header.file_size < size) {
-        return invalid(decimal(size - header.file_size) + " bytes follow its end at byte " +
-                       decimal(header.file_size) + "; copy the file again");
+        return invalidInput(std::to_string(size - header.file_size) + " bytes follow its end at byte " +
+                            std::to_string(header.file_size) + "; copy the file again");
     }
     if (header.metadata_size > kContainerMetadataMax) {
-        return fail(ErrorCode::kLimit, "metadata_size at byte 40 is " + decimal(header.metadata_size) +
-                                           ", at most " + decimal(kContainerMetadataMax) + " are allowed");
+        return fail(ErrorCode::kLimit, "metadata_size at byte 40 is " + std::to_string(header.metadata_size) +
+                                           ", at most " + std::to_string(kContainerMetadataMax) +
+                                           " are allowed");
     }
     if (header.metadata_size > size - sizeof(ContainerHeader)) {
-        return invalid("metadata_size at byte 40 is " + decimal(header.metadata_size) +
-                       ", beyond the end of the file");
+        return invalidInput("metadata_size at byte 40 is " + std::to_string(header.metadata_size) +
+                            ", beyond the end of the file");
     }
     return {};
 }
@@ -73,18 +66,19 @@ std::uint64_t ContainerHeader::computeHash() const {
 Result<ContainerHeader> readContainerHeader(std::span<const std::byte> bytes) {
     ContainerHeader header;
     if (bytes.size() < sizeof(header)) {
-        return invalid("truncated, or no .relief container: " + decimal(bytes.size()) + " of at least " +
-                       decimal(sizeof(header)) + " bytes");
+        return invalidInput("truncated, or no .relief container: " + std::to_string(bytes.size()) +
+                            " of at least " + std::to_string(sizeof(header)) + " bytes");
     }
     std::memcpy(&header, bytes.data(), sizeof(header));
     RELIEF_TRY(checkSignature(header));
     if (header.major != kContainerMajor) {
-        return fail(ErrorCode::kUnsupported, "it is of container version " + decimal(header.major) + "." +
-                                                 decimal(header.minor) + ", this program reads version " +
-                                                 decimal(kContainerMajor) + "; use a matching Relief");
+        return fail(ErrorCode::kUnsupported, "it is of container version " + std::to_string(header.major) +
+                                                 "." + std::to_string(header.minor) +
+                                                 ", this program reads version " +
+                                                 std::to_string(kContainerMajor) + "; use a matching Relief");
     }
     if (header.header_hash != header.computeHash()) {
-        return invalid("damaged: the checksum at byte 56 is not that of the header");
+        return invalidInput("damaged: the checksum at byte 56 is not that of the header");
     }
     RELIEF_TRY(checkFields(header, bytes.size()));
     return header;

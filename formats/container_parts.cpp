@@ -18,14 +18,6 @@ namespace {
 constexpr std::uint64_t kZstdRatioMax = 32768;
 constexpr flatbuffers::uoffset_t kMetadataDepthMax = 4;  // collider, map or provenance
 
-tl::unexpected<Error> invalid(std::string message) {
-    return fail(ErrorCode::kInvalidInput, std::move(message));
-}
-
-std::string decimal(std::uint64_t value) {
-    return std::to_string(value);
-}
-
 glm::vec3 fromFb(const fb::Vec3& v) {
     return {v.x(), v.y(), v.z()};
 }
@@ -66,8 +58,8 @@ Result<ParsedMetadata> parseMetadata(std::span<const std::byte> bytes, std::uint
     const auto* data = reinterpret_cast<const std::uint8_t*>(aligned.get());
     flatbuffers::Verifier verifier(data, bytes.size(), kMetadataDepthMax);
     if (!fb::VerifyColliderBuffer(verifier)) {
-        return invalid("the metadata at byte " + decimal(sizeof(ContainerHeader)) +
-                       " is no FlatBuffers table of a collider");
+        return invalidInput("the metadata at byte " + std::to_string(sizeof(ContainerHeader)) +
+                            " is no FlatBuffers table of a collider");
     }
     const fb::Collider& metadata = *fb::GetCollider(data);
     ParsedMetadata parsed;
@@ -79,8 +71,8 @@ Result<ParsedMetadata> parseMetadata(std::span<const std::byte> bytes, std::uint
                            from.tool_version()->str(), from.options()->str()};
     const auto& maps = *metadata.maps();
     if (maps.size() > maps_max) {
-        return fail(ErrorCode::kLimit,
-                    decimal(maps.size()) + " maps are more than the limit of " + decimal(maps_max));
+        return fail(ErrorCode::kLimit, std::to_string(maps.size()) + " maps are more than the limit of " +
+                                           std::to_string(maps_max));
     }
     for (flatbuffers::uoffset_t i = 0; i < maps.size(); ++i) {
         const fb::Map& map = *maps.Get(i);
@@ -97,38 +89,41 @@ Result<ParsedMetadata> parseMetadata(std::span<const std::byte> bytes, std::uint
 Result<void> validatePayloadSizes(const ParsedMap& map) {
     const PayloadInfo& info = map.payload.info;
     if (!info.compressed && map.compression != static_cast<std::uint8_t>(fb::Compression::None)) {
-        return invalid("its compression " + decimal(map.compression) + " is unknown");
+        return invalidInput("its compression " + std::to_string(map.compression) + " is unknown");
     }
     if (info.raw_size != map.frame.texelBytes()) {
-        return invalid("its raw_size is " + decimal(info.raw_size) + " where its size and format need " +
-                       decimal(map.frame.texelBytes()) + " bytes");
+        return invalidInput("its raw_size is " + std::to_string(info.raw_size) +
+                            " where its size and format need " + std::to_string(map.frame.texelBytes()) +
+                            " bytes");
     }
     if (info.compressed ? info.stored_size >= info.raw_size : info.stored_size != info.raw_size) {
-        return invalid("its stored_size " + decimal(info.stored_size) + " does not go with its raw_size " +
-                       decimal(info.raw_size) + " and its compression");
+        return invalidInput("its stored_size " + std::to_string(info.stored_size) +
+                            " does not go with its raw_size " + std::to_string(info.raw_size) +
+                            " and its compression");
     }
     if (info.compressed && info.raw_size / kZstdRatioMax > info.stored_size) {
-        return invalid("its " + decimal(info.stored_size) + " stored bytes cannot hold the " +
-                       decimal(info.raw_size) + " that they claim");
+        return invalidInput("its " + std::to_string(info.stored_size) + " stored bytes cannot hold the " +
+                            std::to_string(info.raw_size) + " that they claim");
     }
     return {};
 }
 
 Result<std::vector<std::byte>> unpackPayload(std::span<const std::byte> stored, std::uint64_t raw_size) {
     if (ZSTD_getFrameContentSize(stored.data(), stored.size()) != raw_size) {
-        return invalid("its payload is no zstd frame that states a content of " + decimal(raw_size) +
-                       " bytes");
+        return invalidInput("its payload is no zstd frame that states a content of " +
+                            std::to_string(raw_size) + " bytes");
     }
     if (ZSTD_findFrameCompressedSize(stored.data(), stored.size()) != stored.size()) {
-        return invalid("its payload is not exactly one zstd frame");
+        return invalidInput("its payload is not exactly one zstd frame");
     }
     std::vector<std::byte> raw(raw_size);
     const std::size_t size = ZSTD_decompress(raw.data(), raw.size(), stored.data(), stored.size());
     if (ZSTD_isError(size) != 0) {
-        return invalid(std::string("its payload does not decompress: ") + ZSTD_getErrorName(size));
+        return invalidInput(std::string("its payload does not decompress: ") + ZSTD_getErrorName(size));
     }
     if (size != raw_size) {
-        return invalid("its payload decompresses to " + decimal(size) + " bytes, not " + decimal(raw_size));
+        return invalidInput("its payload decompresses to " + std::to_string(size) + " bytes, not " +
+                            std::to_string(raw_size));
     }
     return raw;
 }

@@ -22,10 +22,6 @@ bool isLimit(IssueCode code) {
 constexpr double kOutsideVolumeShare = 0.01;      // of the other maps' surface points
 constexpr std::size_t kComparedPoints = 1 << 16;  // of all maps together
 
-std::string decimal(std::uint64_t value) {
-    return std::to_string(value);
-}
-
 /// What is kept of a map to compare the others with: not its texels.
 struct IntactMap {
     int index;
@@ -64,8 +60,8 @@ class Inspector {
     /// \return whether the metadata can be looked at.
     bool inspectHeader() {
         if (bytes_.size() < sizeof(header_)) {
-            add(IssueCode::kTooShort,
-                decimal(bytes_.size()) + " bytes, where the header alone has " + decimal(sizeof(header_)));
+            add(IssueCode::kTooShort, std::to_string(bytes_.size()) + " bytes, where the header alone has " +
+                                          std::to_string(sizeof(header_)));
             return false;
         }
         std::memcpy(&header_, bytes_.data(), sizeof(header_));
@@ -82,8 +78,8 @@ class Inspector {
         }
         if (header_.major != kContainerMajor) {
             add(IssueCode::kMajorVersion,
-                "container version " + decimal(header_.major) + "." + decimal(header_.minor) +
-                    ", this program reads version " + decimal(kContainerMajor),
+                "container version " + std::to_string(header_.major) + "." + std::to_string(header_.minor) +
+                    ", this program reads version " + std::to_string(kContainerMajor),
                 12);
             return false;
         }
@@ -96,27 +92,31 @@ class Inspector {
         result_.header = result_.damaged() ? PartState::kDamaged : PartState::kSound;
         if (header_.file_size > bytes_.size()) {
             add(IssueCode::kTruncated,
-                "truncated: " + decimal(bytes_.size()) + " of " + decimal(header_.file_size) + " bytes", 24);
+                "truncated: " + std::to_string(bytes_.size()) + " of " + std::to_string(header_.file_size) +
+                    " bytes",
+                24);
         } else if (header_.file_size < bytes_.size()) {
             add(IssueCode::kTrailingBytes,
-                decimal(bytes_.size() - header_.file_size) + " bytes more than the header says", 24);
+                std::to_string(bytes_.size() - header_.file_size) + " bytes more than the header says", 24);
         }
         if (checksum && header_.minor > kContainerMinor) {
             add(IssueCode::kLaterMinor,
-                "container version " + decimal(header_.major) + "." + decimal(header_.minor) +
-                    ", this program knows " + decimal(kContainerMajor) + "." + decimal(kContainerMinor),
+                "container version " + std::to_string(header_.major) + "." + std::to_string(header_.minor) +
+                    ", this program knows " + std::to_string(kContainerMajor) + "." +
+                    std::to_string(kContainerMinor),
                 14);
         }
         if (header_.metadata_size > kContainerMetadataMax) {
             add(IssueCode::kMetadataLimit,
-                "metadata_size is " + decimal(header_.metadata_size) + ", at most " +
-                    decimal(kContainerMetadataMax) + " are allowed",
+                "metadata_size is " + std::to_string(header_.metadata_size) + ", at most " +
+                    std::to_string(kContainerMetadataMax) + " are allowed",
                 40);
             return false;
         }
         if (header_.metadata_size > bytes_.size() - sizeof(header_)) {
             add(IssueCode::kMetadataPlace,
-                "the metadata of " + decimal(header_.metadata_size) + " bytes reaches beyond the end", 40);
+                "the metadata of " + std::to_string(header_.metadata_size) + " bytes reaches beyond the end",
+                40);
             return false;
         }
         return true;
@@ -210,7 +210,7 @@ class Inspector {
             if (texel_bytes > limits_.texel_bytes && !limit_passed) {
                 limit_passed = true;
                 add(IssueCode::kTexelLimit,
-                    "with it, the texels take more than the limit of " + decimal(limits_.texel_bytes) +
+                    "with it, the texels take more than the limit of " + std::to_string(limits_.texel_bytes) +
                         " bytes",
                     {}, index);
             }
@@ -221,8 +221,8 @@ class Inspector {
         }
         // Of a file whose size is not the header's, this has been said.
         if (all_placed && header_.file_size == bytes_.size() && end < bytes_.size()) {
-            add(IssueCode::kBytesBehind, decimal(bytes_.size() - end) + " bytes follow the last payload",
-                end);
+            add(IssueCode::kBytesBehind,
+                std::to_string(bytes_.size() - end) + " bytes follow the last payload", end);
         }
         compareMaps();
     }
@@ -247,13 +247,13 @@ class Inspector {
         const std::uint64_t expected = alignPayload(end);
         if (payload.offset != expected) {
             add(IssueCode::kPayloadPlace,
-                "its payload's offset is " + decimal(payload.offset) + " where the layout has " +
-                    decimal(expected),
+                "its payload's offset is " + std::to_string(payload.offset) + " where the layout has " +
+                    std::to_string(expected),
                 {}, index);
         }
         if (payload.offset > bytes_.size() || payload.stored_size > bytes_.size() - payload.offset) {
             add(IssueCode::kPayloadEnd,
-                "its payload of " + decimal(payload.stored_size) + " bytes reaches beyond the end",
+                "its payload of " + std::to_string(payload.stored_size) + " bytes reaches beyond the end",
                 payload.offset, index);
             return false;
         }
@@ -349,7 +349,7 @@ class Inspector {
         }
         if (static_cast<double>(outside) > kOutsideVolumeShare * static_cast<double>(points)) {
             add(IssueCode::kOutsideVolume,
-                decimal(outside) + " of " + decimal(points) +
+                std::to_string(outside) + " of " + std::to_string(points) +
                     " surface points of other maps lie outside of its volume, which is said to enclose the "
                     "collider",
                 {}, map.index);

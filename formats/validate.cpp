@@ -8,15 +8,13 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
+#include "formats/base/text.h"
+
 namespace relief {
 namespace {
 
 constexpr std::uint16_t kHalfSmallest = 0x0400;  // 2^-14
 constexpr std::uint16_t kHalfOne = 0x3c00;
-
-tl::unexpected<Error> invalid(std::string message) {
-    return fail(ErrorCode::kInvalidInput, std::move(message));
-}
 
 /// Nine significant digits: enough to tell any two floats apart.
 std::string number(double value) {
@@ -35,11 +33,11 @@ std::string words(const glm::vec3& v) {
 
 Result<void> validateText(const char* field, std::string_view text, std::size_t size_max) {
     if (text.size() > size_max) {
-        return invalid(std::string(field) + " has " + std::to_string(text.size()) + " bytes, " +
-                       std::to_string(size_max) + " are allowed");
+        return invalidInput(std::string(field) + " has " + std::to_string(text.size()) + " bytes, " +
+                            std::to_string(size_max) + " are allowed");
     }
     if (!isPlainText(text)) {
-        return invalid(std::string(field) + " is not UTF-8 without control characters");
+        return invalidInput(std::string(field) + " is not UTF-8 without control characters");
     }
     return {};
 }
@@ -47,7 +45,7 @@ Result<void> validateText(const char* field, std::string_view text, std::size_t 
 Result<void> validateHash(std::string_view hash) {
     const bool digits = hash.find_first_not_of("0123456789abcdef") == std::string_view::npos;
     if (!digits || (!hash.empty() && hash.size() != 32)) {
-        return invalid("provenance.mesh_hash is neither empty nor 32 lower-case hexadecimal digits");
+        return invalidInput("provenance.mesh_hash is neither empty nor 32 lower-case hexadecimal digits");
     }
     return {};
 }
@@ -61,11 +59,11 @@ Result<void> validateSize(const DepthMap& map) {
     const bool cube = map.projection() == Projection::kCube;
     const std::uint32_t smallest = cube ? 1 : kMapSizeMin;
     if (map.width < smallest || map.height < smallest) {
-        return invalid("its size " + size + " is below " + std::to_string(smallest) + "x" +
-                       std::to_string(smallest));
+        return invalidInput("its size " + size + " is below " + std::to_string(smallest) + "x" +
+                            std::to_string(smallest));
     }
     if (cube && map.width != map.height) {
-        return invalid("its size " + size + " is not square, as the faces of a cube are");
+        return invalidInput("its size " + size + " is not square, as the faces of a cube are");
     }
     return {};
 }
@@ -78,32 +76,33 @@ Result<void> validateTransform(const DepthMap& map) {
     for (std::size_t i = 0; i < 3; ++i) {
         const glm::vec4& r = map.object_to_map.row[i];
         if (!isFinite(glm::vec3(r)) || !std::isfinite(r.w)) {
-            return invalid("object_to_map row " + std::to_string(i) + " is not finite");
+            return invalidInput("object_to_map row " + std::to_string(i) + " is not finite");
         }
         const glm::dvec3 wide(r.x, r.y, r.z);
         length[i] = glm::length(wide);  // of floats in double: neither overflows nor vanishes
         if (!(length[i] > 0.0)) {
-            return invalid("object_to_map row " + std::to_string(i) + " is zero");
+            return invalidInput("object_to_map row " + std::to_string(i) + " is zero");
         }
         row[i] = wide / length[i];
     }
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t next = (i + 1) % 3;
         if (!(std::abs(glm::dot(row[i], row[next])) <= kFrameCosineMax)) {
-            return invalid("object_to_map is no rotation and scale: rows " +
-                           std::to_string(std::min(i, next)) + " and " + std::to_string(std::max(i, next)) +
-                           " are not orthogonal");
+            return invalidInput("object_to_map is no rotation and scale: rows " +
+                                std::to_string(std::min(i, next)) + " and " +
+                                std::to_string(std::max(i, next)) + " are not orthogonal");
         }
     }
     for (int i = 0; i < 3; ++i) {
         const double expected = 1.0 / length[static_cast<std::size_t>(i)];
         const double given = map.object_per_map[i];
         if (!(given > 0.0) || !std::isfinite(given)) {
-            return invalid("object_per_map " + words(map.object_per_map) + " is not positive and finite");
+            return invalidInput("object_per_map " + words(map.object_per_map) +
+                                " is not positive and finite");
         }
         if (!(std::abs(given - expected) <= kObjectPerMapTolerance * expected)) {
-            return invalid("object_per_map." + std::string(1, "xyz"[i]) + " is " + number(given) +
-                           " where object_to_map gives " + number(expected));
+            return invalidInput("object_per_map." + std::string(1, "xyz"[i]) + " is " + number(given) +
+                                " where object_to_map gives " + number(expected));
         }
     }
     return {};
@@ -145,42 +144,21 @@ const char* faultOfHalves(std::span<const std::byte> texel) {
 }  // namespace
 
 bool isPlainText(std::string_view text) {
-    const auto byteAt = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-    for (std::size_t i = 0; i < text.size();) {
-        const unsigned first = byteAt(i);
-        const std::size_t size = first < 0x80 ? 1 : first >> 5 == 0x6 ? 2 : first >> 4 == 0xe ? 3 : 4;
-        if ((size == 4 && first >> 3 != 0x1e) || size > text.size() - i) {
-            return false;
-        }
-        std::uint32_t code = size == 1 ? first : first & (0x7fU >> size);
-        for (std::size_t k = 1; k < size; ++k) {
-            if (byteAt(i + k) >> 6 != 0x2) {
-                return false;
-            }
-            code = code << 6 | (byteAt(i + k) & 0x3fU);
-        }
-        constexpr std::uint32_t kSmallest[] = {0, 0, 0x80, 0x800, 0x10000};
-        const bool control = code < 0x20 || (code >= 0x7f && code < 0xa0);
-        const bool surrogate = code >= 0xd800 && code < 0xe000;
-        if (code < kSmallest[size] || code > 0x10ffff || control || surrogate) {
-            return false;
-        }
-        i += size;
-    }
-    return true;
+    return cleanUtf8(text) == text;
 }
 
 Result<void> validateDescription(const Collider& collider) {
     const Bounds& bounds = collider.bounds;
     if (!isFinite(bounds.min) || !isFinite(bounds.max)) {
-        return invalid("bounds are not finite");
+        return invalidInput("bounds are not finite");
     }
     if (bounds.min.x > bounds.max.x || bounds.min.y > bounds.max.y || bounds.min.z > bounds.max.z) {
-        return invalid("bounds.min " + words(bounds.min) + " lies beyond bounds.max " + words(bounds.max));
+        return invalidInput("bounds.min " + words(bounds.min) + " lies beyond bounds.max " +
+                            words(bounds.max));
     }
     const Provenance& from = collider.provenance;
     if (from.mesh_name.find('/') != std::string::npos) {
-        return invalid("provenance.mesh_name has a '/': it is a name without its folder");
+        return invalidInput("provenance.mesh_name has a '/': it is a name without its folder");
     }
     return validateText("unit", collider.unit, kUnitMax)
         .and_then([&] { return validateText("provenance.mesh_name", from.mesh_name, kMeshNameMax); })
@@ -191,25 +169,25 @@ Result<void> validateDescription(const Collider& collider) {
 
 Result<void> validateFrame(const DepthMap& map) {
     if (static_cast<int>(map.format) >= kMapFormatCount) {
-        return invalid("its format " + std::to_string(static_cast<int>(map.format)) + " is unknown");
+        return invalidInput("its format " + std::to_string(static_cast<int>(map.format)) + " is unknown");
     }
     if (static_cast<int>(map.compare) > static_cast<int>(Compare::kBoth)) {
-        return invalid("its compare " + std::to_string(static_cast<int>(map.compare)) + " is unknown");
+        return invalidInput("its compare " + std::to_string(static_cast<int>(map.compare)) + " is unknown");
     }
     if ((map.compare == Compare::kBoth) != isFrontBack(map.format)) {
-        return invalid(std::string("its compare \"") + compareName(map.compare) +
-                       "\" does not go with its format \"" + mapFormatName(map.format) + "\"");
+        return invalidInput(std::string("its compare \"") + compareName(map.compare) +
+                            "\" does not go with its format \"" + mapFormatName(map.format) + "\"");
     }
     if (static_cast<int>(map.decode) > static_cast<int>(Decode::kPlane)) {
-        return invalid("its decode " + std::to_string(static_cast<int>(map.decode)) + " is unknown");
+        return invalidInput("its decode " + std::to_string(static_cast<int>(map.decode)) + " is unknown");
     }
     return validateSize(map).and_then([&] { return validateTransform(map); });
 }
 
 Result<void> validateTexels(const DepthMap& map) {
     if (map.texels.size() != map.texelBytes()) {
-        return invalid("it has " + std::to_string(map.texels.size()) +
-                       " bytes of texels where its size needs " + std::to_string(map.texelBytes()));
+        return invalidInput("it has " + std::to_string(map.texels.size()) +
+                            " bytes of texels where its size needs " + std::to_string(map.texelBytes()));
     }
     if (map.format != MapFormat::kFloat32 && map.format != MapFormat::kFrontBackHalf) {
         return {};  // every code has a meaning
@@ -220,7 +198,7 @@ Result<void> validateTexels(const DepthMap& map) {
             const char* fault =
                 map.format == MapFormat::kFloat32 ? faultOfFloat(texel) : faultOfHalves(texel);
             if (fault != nullptr) {
-                return invalid("texel (" + std::to_string(x) + ", " + std::to_string(y) + ") " + fault);
+                return invalidInput("texel (" + std::to_string(x) + ", " + std::to_string(y) + ") " + fault);
             }
         }
     }
@@ -232,7 +210,7 @@ Result<void> validate(const Collider& collider) {
         return ok;
     }
     if (collider.maps.empty()) {
-        return invalid("there is no map");
+        return invalidInput("there is no map");
     }
     for (std::size_t i = 0; i < collider.maps.size(); ++i) {
         const DepthMap& map = collider.maps[i];

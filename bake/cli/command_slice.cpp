@@ -1,6 +1,5 @@
 // relief slice: the field on a plane, as numbers or as a figure.
 #include <algorithm>
-#include <cctype>
 
 #include "bake/cli/command.h"
 #include "bake/cli/preflight.h"
@@ -25,9 +24,7 @@ struct SliceCommand {
 enum class ImageKind { kPng, kExr };
 
 Result<ImageKind> imageKind(const std::string& output) {
-    std::string extension = std::filesystem::path(output).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = lowerCase(std::filesystem::path(output).extension().string());
     if (extension == ".png" || output == "-") {
         return ImageKind::kPng;
     }

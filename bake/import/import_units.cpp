@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 
 #include "formats/base/text.h"
@@ -61,10 +60,7 @@ std::optional<double> metresPer(std::string_view unit) {
 }
 
 Result<UpAxis> parseUpAxis(std::string_view text) {
-    std::string lower(text);
-    std::transform(lower.begin(), lower.end(), lower.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    const auto found = std::find(kAxes.begin(), kAxes.end(), lower);
+    const auto found = std::find(kAxes.begin(), kAxes.end(), lowerCase(text));
     if (found == kAxes.end()) {
         return fail(ErrorCode::kUsage,
                     "--up is '" + cleanUtf8(text) + "' but must be one of " + listed(kAxes));

@@ -1,7 +1,6 @@
 #include "formats/base/byte_count.h"
 
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <string>
 #include <utility>
@@ -26,10 +25,7 @@ std::optional<std::uint64_t> parseByteCount(std::string_view text) {
     if (error != std::errc()) {
         return std::nullopt;
     }
-    std::string unit(trimmed({rest, static_cast<std::size_t>(end - rest)}));
-    for (char& c : unit) {
-        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    }
+    const std::string unit = lowerCase(trimmed({rest, static_cast<std::size_t>(end - rest)}));
     for (const auto& [name, factor] : kUnits) {
         if (unit == name) {
             const double bytes = number * factor;

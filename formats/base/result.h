@@ -33,6 +33,11 @@ using Result = tl::expected<T, Error>;
     return tl::unexpected<Error>(Error{code, std::move(message)});
 }
 
+/// The most frequent of them.
+[[nodiscard]] inline tl::unexpected<Error> invalidInput(std::string message) {
+    return fail(ErrorCode::kInvalidInput, std::move(message));
+}
+
 /// Hands the error of one Result on as the error of another.
 template <class T>
 [[nodiscard]] tl::unexpected<Error> forward(const Result<T>& result) {

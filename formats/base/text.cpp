@@ -1,6 +1,7 @@
 #include "formats/base/text.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -193,6 +194,13 @@ std::string cleanUtf8(std::string_view bytes, std::size_t size_max) {
         bytes.remove_prefix(length == 0 ? 1 : length);
     }
     return text;
+}
+
+std::string oneLine(std::string_view text) {
+    std::string line(trimmed(text));
+    std::replace_if(
+        line.begin(), line.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
+    return cleanUtf8(trimmed(line));
 }
 
 }  // namespace relief

@@ -46,5 +46,7 @@ void appendShortest(std::string& out, float value);
 /// Any bytes as valid UTF-8: what is none becomes U+FFFD, control characters included.
 /// \param size_max  bytes: the text ends before the character that would exceed it.
 [[nodiscard]] std::string cleanUtf8(std::string_view bytes, std::size_t size_max = std::string::npos);
+/// Words of another program for a message: cleanUtf8, with spaces for control characters, and none at both ends.
+[[nodiscard]] std::string oneLine(std::string_view text);
 
 }  // namespace relief

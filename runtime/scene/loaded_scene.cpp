@@ -1,6 +1,7 @@
 #include "runtime/scene/loaded_scene.h"
 
 #include "formats/base/file_io.h"
+#include "formats/base/text.h"
 #include "formats/container.h"
 #include "runtime/files/flow_file.h"
 #include "runtime/scene/scene_parser.h"
@@ -10,16 +11,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string lowerCaseExtension(const fs::path& path) {
-    std::string extension = path.extension().native();
-    for (char& c : extension) {
-        c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    }
-    return extension;
-}
-
 Result<Scene> openScene(const fs::path& input) {
-    const std::string extension = lowerCaseExtension(input);
+    const std::string extension = lowerCase(input.extension().native());
     if (extension == ".toml") {
         return loadScene(input);
     }
