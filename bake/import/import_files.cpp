@@ -40,30 +40,28 @@ bool ImportFiles::isMesh(std::string_view path) const {
     return path == name_ || relativePath(path) == name_;
 }
 
-int ImportFiles::openBeneath(const std::string& path, std::string& why) const {
+Descriptor ImportFiles::openBeneath(const std::string& path, std::string& why) const {
     if (path.empty() || path.starts_with('/') || hasParent(path) || path.find('\0') != std::string::npos) {
         why = "not below the mesh's folder";
-        return -1;
+        return Descriptor();
     }
     if (folder_ < 0) {
         why = "the mesh's folder is unknown";
-        return -1;
+        return Descriptor();
     }
     open_how how{};
     // Not blocking: a pipe without writer must not hang the importer.
     how.flags = O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK;
     how.resolve = RESOLVE_BENEATH | RESOLVE_NO_MAGICLINKS;
-    const long opened = ::syscall(SYS_openat2, folder_, path.c_str(), &how, sizeof(how));
-    if (opened < 0) {
+    Descriptor file(static_cast<int>(::syscall(SYS_openat2, folder_, path.c_str(), &how, sizeof(how))));
+    if (!file) {
         why = errno == EXDEV ? "not below the mesh's folder" : std::strerror(errno);
-        return -1;
+        return file;
     }
-    const int file = static_cast<int>(opened);
     struct stat status {};
-    if (::fstat(file, &status) != 0 || !S_ISREG(status.st_mode)) {
-        ::close(file);
+    if (::fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode)) {
         why = "not a regular file";
-        return -1;
+        return Descriptor();
     }
     return file;
 }
@@ -81,31 +79,26 @@ bool ImportFiles::exists(std::string_view path) {
         return true;
     }
     std::string why;
-    const int file = openBeneath(relativePath(path), why);
-    if (file >= 0) {
-        ::close(file);
-    }
-    return file >= 0;
+    return static_cast<bool>(openBeneath(relativePath(path), why));
 }
 
 std::optional<std::vector<std::byte>> ImportFiles::open(std::string_view path) {
     const std::string name = relativePath(path);
     std::string why;
-    const int file = openBeneath(name, why);
-    if (file < 0) {
+    const Descriptor file = openBeneath(name, why);
+    if (!file) {
         refuse(path, why);
         return std::nullopt;
     }
     struct stat status {};
-    if (::fstat(file, &status) != 0 || static_cast<std::uint64_t>(status.st_size) > left_) {
-        ::close(file);
+    if (::fstat(file.get(), &status) != 0 || static_cast<std::uint64_t>(status.st_size) > left_) {
         refuse(path, "all files together exceed " + std::to_string(kImportBytesMax) + " bytes");
         return std::nullopt;
     }
     std::vector<std::byte> bytes(static_cast<std::size_t>(status.st_size));
     std::size_t size = 0;
     while (size < bytes.size()) {
-        const ssize_t got = ::read(file, bytes.data() + size, bytes.size() - size);
+        const ssize_t got = ::read(file.get(), bytes.data() + size, bytes.size() - size);
         if (got < 0 && errno == EINTR) {
             continue;
         }
@@ -114,7 +107,6 @@ std::optional<std::vector<std::byte>> ImportFiles::open(std::string_view path) {
         }
         size += static_cast<std::size_t>(got);
     }
-    ::close(file);
     bytes.resize(size);
     left_ -= size;
     read_.push_back({name, xxh3_128Hex(bytes)});

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/base/descriptor.h"
+
 namespace relief {
 
 /// Limit of all files of a mesh together, in bytes.
@@ -45,8 +47,8 @@ class ImportFiles {
     [[nodiscard]] const std::vector<std::string>& refused() const { return refused_; }
 
   private:
-    /// \return a descriptor, or -1 with `why`.
-    int openBeneath(const std::string& path, std::string& why) const;
+    /// \return an empty one with `why`.
+    Descriptor openBeneath(const std::string& path, std::string& why) const;
     void refuse(std::string_view path, const std::string& why);
 
     int folder_;

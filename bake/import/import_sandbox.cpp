@@ -13,6 +13,8 @@
 #include <fstream>
 #include <string>
 
+#include "formats/base/descriptor.h"
+
 namespace relief {
 namespace {
 
@@ -54,22 +56,22 @@ Result<void> enterLandlock(int folder) {
         (std::uint64_t{LANDLOCK_ACCESS_FS_MAKE_SYM} << 1U) - 1U;  // all of the first version
     rules.handled_access_fs |= abi >= 2 ? std::uint64_t{LANDLOCK_ACCESS_FS_REFER} : 0U;
     rules.handled_access_fs |= abi >= 3 ? kLandlockTruncate : 0U;
-    const int ruleset = static_cast<int>(::syscall(SYS_landlock_create_ruleset, &rules, sizeof(rules), 0));
-    if (ruleset < 0) {
+    const Descriptor ruleset(
+        static_cast<int>(::syscall(SYS_landlock_create_ruleset, &rules, sizeof(rules), 0)));
+    if (!ruleset) {
         return cannot("make Landlock rules");
     }
     if (folder >= 0) {
         landlock_path_beneath_attr beneath{};
         beneath.allowed_access = LANDLOCK_ACCESS_FS_READ_FILE;
         beneath.parent_fd = folder;
-        if (::syscall(SYS_landlock_add_rule, ruleset, LANDLOCK_RULE_PATH_BENEATH, &beneath, 0) != 0) {
+        if (::syscall(SYS_landlock_add_rule, ruleset.get(), LANDLOCK_RULE_PATH_BENEATH, &beneath, 0) != 0) {
             return cannot("allow its folder by Landlock");
         }
     }
-    if (::syscall(SYS_landlock_restrict_self, ruleset, 0) != 0) {
+    if (::syscall(SYS_landlock_restrict_self, ruleset.get(), 0) != 0) {
         return cannot("enter Landlock");
     }
-    ::close(ruleset);
     return {};
 }
 

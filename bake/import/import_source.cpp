@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <utility>
 
 #include "formats/base/file_io.h"
@@ -24,12 +23,6 @@ constexpr std::array<std::string_view, 23> kFormats = {
     "lwo", "ac",  "ase", "b3d", "dxf",  "lxo", "ms3d", "nff", "raw", "smd",   "amf"};
 constexpr std::size_t kNamedFormats = 11;
 
-std::string lowerCase(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-}
-
 bool isHash(const std::string& text) {
     return text.size() == 32 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
@@ -46,20 +39,7 @@ ImportSource::ImportSource(fs::path path, std::string extension, std::vector<std
       bytes_(std::move(bytes)),
       hash_(xxh3_128Hex(bytes_)) {
     const fs::path parent = path_.parent_path();
-    folder_ = ::open(parent.empty() ? "." : parent.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
-}
-
-ImportSource::ImportSource(ImportSource&& other) noexcept
-    : path_(std::move(other.path_)),
-      extension_(std::move(other.extension_)),
-      bytes_(std::move(other.bytes_)),
-      hash_(std::move(other.hash_)),
-      folder_(std::exchange(other.folder_, -1)) {}
-
-ImportSource::~ImportSource() {
-    if (folder_ >= 0) {
-        ::close(folder_);
-    }
+    folder_ = Descriptor(::open(parent.empty() ? "." : parent.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
 }
 
 Result<ImportSource> ImportSource::open(const fs::path& path) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bake/mesh/mesh.h"
+#include "formats/base/descriptor.h"
 #include "formats/base/result.h"
 
 namespace relief {
@@ -22,14 +23,13 @@ class ImportSource {
   public:
     /// Errors: kUnsupported (extension), kInvalidInput (empty), and those of readFile.
     [[nodiscard]] static Result<ImportSource> open(const std::filesystem::path& path);
-    ImportSource(ImportSource&& other) noexcept;
-    ImportSource& operator=(ImportSource&&) = delete;
-    ~ImportSource();
 
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
     [[nodiscard]] const std::string& extension() const { return extension_; }  ///< lower case, without dot
     [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
-    [[nodiscard]] int folder() const { return folder_; }  ///< descriptor, O_PATH; -1 if it cannot be opened
+    [[nodiscard]] int folder() const {
+        return folder_.get();
+    }  ///< descriptor, O_PATH; -1 if it cannot be opened
     /// Frees bytes().
     void dropBytes() { bytes_ = {}; }
 
@@ -47,7 +47,7 @@ class ImportSource {
     std::string extension_;
     std::vector<std::byte> bytes_;
     std::string hash_;
-    int folder_ = -1;
+    Descriptor folder_;
 };
 
 }  // namespace relief

@@ -2,13 +2,13 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <system_error>
 
+#include "formats/base/descriptor.h"
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
 #include "formats/base/text.h"
@@ -27,20 +27,13 @@ constexpr int kVersion = 1;
 class FolderLock {
   public:
     explicit FolderLock(const fs::path& folder)
-        : fd_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-        while (fd_ >= 0 && ::flock(fd_, LOCK_EX) != 0 && errno == EINTR) {
-        }
-    }
-    FolderLock(const FolderLock&) = delete;
-    FolderLock& operator=(const FolderLock&) = delete;
-    ~FolderLock() {
-        if (fd_ >= 0) {
-            ::close(fd_);
+        : folder_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+        while (folder_ && ::flock(folder_.get(), LOCK_EX) != 0 && errno == EINTR) {
         }
     }
 
   private:
-    int fd_;
+    Descriptor folder_;
 };
 
 const std::string* textOf(const Json& object, const char* key) {

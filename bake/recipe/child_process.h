@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "formats/base/descriptor.h"
+#include "formats/base/process.h"
 #include "formats/base/result.h"
 
 namespace relief {
@@ -67,7 +69,7 @@ class ChildProcesses {
     void collect(std::vector<ChildEnd>& ended);
 
     std::vector<Child> children_;
-    int signal_fd_ = -1;
+    Descriptor signals_;
     int asked_ = 0;
     sigset_t mask_before_{};
 };

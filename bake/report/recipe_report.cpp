@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <span>
 #include <system_error>
 
 #include "bake/report/report.h"
@@ -131,18 +132,14 @@ Json jsonCounts(const RecipeCounts& counts) {
 
 // --- events ---
 
-RecipeEvents::~RecipeEvents() {
-    if (fd_ > STDERR_FILENO) {
-        ::close(fd_);
-    }
-}
-
 Result<void> RecipeEvents::open(const std::string& path) {
     // A reader that goes away must not take the bakes with it.
     std::signal(SIGPIPE, SIG_IGN);
     path_ = path;
-    fd_ = path == "-" ? STDOUT_FILENO
-                      : ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOCTTY, 0666);
+    if (path != "-") {
+        file_ = Descriptor(openRetry(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666));
+    }
+    fd_ = path == "-" ? STDOUT_FILENO : file_.get();
     if (fd_ < 0) {
         return fail(ErrorCode::kIo, "cannot write " + quotedPath(path) + ": " +
                                         std::system_category().message(errno) +
@@ -156,14 +153,7 @@ void RecipeEvents::write(const Json& event) {
         return;
     }
     const std::string line = event.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-    for (std::size_t at = 0; at < line.size();) {
-        const ssize_t written = ::write(fd_, line.data() + at, line.size() - at);
-        if (written < 0 && errno != EINTR) {
-            error_ = errno;
-            return;
-        }
-        at += static_cast<std::size_t>(std::max<ssize_t>(written, 0));
-    }
+    error_ = writeAll(fd_, std::as_bytes(std::span(line)));
 }
 
 Result<void> RecipeEvents::finish() const {

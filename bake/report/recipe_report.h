@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bake/recipe/recipe_run.h"
+#include "formats/base/descriptor.h"
 
 namespace relief {
 
@@ -32,11 +33,6 @@ struct RecipeCounts {
 /// Lines of JSON, each written as it happens.
 class RecipeEvents {
   public:
-    RecipeEvents() = default;
-    RecipeEvents(const RecipeEvents&) = delete;
-    RecipeEvents& operator=(const RecipeEvents&) = delete;
-    ~RecipeEvents();
-
     /// \param path  empties the file; "-": standard output. Errors: kIo.
     [[nodiscard]] Result<void> open(const std::string& path);
     /// Does nothing if open() was not called. What cannot be written is told by finish().
@@ -46,7 +42,8 @@ class RecipeEvents {
 
   private:
     std::string path_;
-    int fd_ = -1;
+    Descriptor file_;
+    int fd_ = -1;  ///< file_, or standard output
     int error_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// File descriptors that are owned, and calls that go on where a signal interrupted them. For formats/*.cpp.
+// File descriptors that are owned, and calls that go on where a signal interrupted them.
 #pragma once
 
 #include <fcntl.h>
@@ -36,10 +36,23 @@ class Descriptor {
         const int result = ::close(std::exchange(fd_, -1));
         return result == 0 || errno == EINTR ? 0 : errno;
     }
+    /// The same where nothing has been written that could be lost.
+    void reset() { *this = Descriptor(); }
 
   private:
     int fd_;
 };
+
+/// A pipe's two ends. \return 0 or an errno.
+[[nodiscard]] inline int makePipe(Descriptor& reading, Descriptor& writing) {
+    int ends[2] = {-1, -1};
+    if (::pipe2(ends, O_CLOEXEC) != 0) {
+        return errno;
+    }
+    reading = Descriptor(ends[0]);
+    writing = Descriptor(ends[1]);
+    return 0;
+}
 
 inline int openRetry(const char* path, int flags, mode_t mode = 0) {
     int fd = -1;

@@ -2,8 +2,6 @@
 
 #include <fcntl.h>
 #include <signal.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,7 +14,9 @@
 #include <utility>
 #include <vector>
 
+#include "formats/base/descriptor.h"
 #include "formats/base/file_io.h"
+#include "formats/base/process.h"
 
 namespace relief {
 namespace {
@@ -80,71 +80,45 @@ std::string lastWords(std::FILE* errors) {
     return text;
 }
 
-struct Spawn {  // frees what posix_spawn needs
-    posix_spawn_file_actions_t files;
-    posix_spawnattr_t attributes;
-    Spawn() {
-        posix_spawn_file_actions_init(&files);
-        posix_spawnattr_init(&attributes);
-    }
-    ~Spawn() {
-        posix_spawn_file_actions_destroy(&files);
-        posix_spawnattr_destroy(&attributes);
-    }
-    Spawn(const Spawn&) = delete;
-    Spawn& operator=(const Spawn&) = delete;
-};
-
 }  // namespace
 
 struct VideoWriter::Impl {
     fs::path target;
     fs::path temporary;
     std::size_t frame_bytes = 0;
-    pid_t process = -1;
-    int pipe = -1;
+    Process ffmpeg;
+    Descriptor pipe;
     std::FILE* errors = nullptr;
 
     Impl() = default;
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;
     ~Impl() {
-        if (process > 0) {  // abandoned
-            ::kill(process, SIGTERM);
+        if (ffmpeg.running()) {  // abandoned
+            ffmpeg.kill(SIGTERM);
             wait();
         }
-        closePipe();
         if (errors != nullptr) {
             std::fclose(errors);
         }
         removeTemporary();
     }
 
-    void closePipe() {
-        if (pipe >= 0) {
-            ::close(std::exchange(pipe, -1));
-        }
-    }
     void removeTemporary() const {
         if (!temporary.empty()) {
             ::unlink(temporary.c_str());
         }
     }
-    /// Closes the pipe, which ends ffmpeg, and takes its status.
-    int wait() {
-        closePipe();
-        int status = 0;
-        while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
-        }
-        process = -1;
-        return status;
+    /// Closes the pipe, which ends ffmpeg, and waits for that.
+    ProcessEnd wait() {
+        pipe.reset();
+        return ffmpeg.wait();
     }
-    [[nodiscard]] tl::unexpected<Error> ffmpegFailed(int status) const {
+    [[nodiscard]] tl::unexpected<Error> ffmpegFailed(const ProcessEnd& end) const {
         std::string text = lastWords(errors);
         text = text.empty() ? "" : ": " + quotedPath(text);
-        const std::string how = WIFSIGNALED(status)
-                                    ? "was ended by signal " + std::to_string(WTERMSIG(status))
-                                    : "ended with code " + std::to_string(WEXITSTATUS(status));
+        const std::string how = end.signal != 0 ? "was ended by signal " + std::to_string(end.signal)
+                                                : "ended with code " + std::to_string(end.exit_code);
         return fail(ErrorCode::kFailure, "ffmpeg could not write " + quotedPath(target) + ": it " + how +
                                              text +
                                              "; write pictures with --frames to see whether they are right");
@@ -157,9 +131,7 @@ struct VideoWriter::Impl {
         for (int i = 0; i < kNamesTried; ++i) {
             const std::string name = ".relief-" + std::to_string(::getpid()) + "-" + std::to_string(i);
             const fs::path path = folder / (name + target.extension().native());
-            const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-            if (file >= 0) {
-                ::close(file);
+            if (Descriptor(openRetry(path.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0666))) {
                 temporary = path;
                 return 0;
             }
@@ -176,62 +148,42 @@ struct VideoWriter::Impl {
         const std::string size = std::to_string(options.width) + "x" + std::to_string(options.height);
         // Padded to even sides, which the usual 4:2:0 needs. Bit-exact: no version or date in the file. The
         // protocol is named, or a colon or dash in the name would be read as one.
-        std::vector<std::string> words{"ffmpeg",
-                                       "-hide_banner",
-                                       "-loglevel",
-                                       "error",
-                                       "-nostdin",
-                                       "-y",
-                                       "-f",
-                                       "rawvideo",
-                                       "-pix_fmt",
-                                       "rgb24",
-                                       "-s",
-                                       size,
-                                       "-r",
-                                       rate,
-                                       "-i",
-                                       "pipe:0",
-                                       "-an",
-                                       "-vf",
-                                       "pad=ceil(iw/2)*2:ceil(ih/2)*2",
-                                       "-pix_fmt",
-                                       "yuv420p",
-                                       "-map_metadata",
-                                       "-1",
-                                       "-fflags",
-                                       "+bitexact",
-                                       "-flags:v",
-                                       "+bitexact",
-                                       "file:" + temporary.native()};
-        std::vector<char*> arguments;
-        for (std::string& word : words) {
-            arguments.push_back(word.data());
+        ProcessStart start;
+        start.program = "ffmpeg";
+        start.arguments = {"ffmpeg",
+                           "-hide_banner",
+                           "-loglevel",
+                           "error",
+                           "-nostdin",
+                           "-y",
+                           "-f",
+                           "rawvideo",
+                           "-pix_fmt",
+                           "rgb24",
+                           "-s",
+                           size,
+                           "-r",
+                           rate,
+                           "-i",
+                           "pipe:0",
+                           "-an",
+                           "-vf",
+                           "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+                           "-pix_fmt",
+                           "yuv420p",
+                           "-map_metadata",
+                           "-1",
+                           "-fflags",
+                           "+bitexact",
+                           "-flags:v",
+                           "+bitexact",
+                           "file:" + temporary.native()};
+        Descriptor frames;
+        if (const int code = makePipe(frames, pipe)) {
+            return code;
         }
-        arguments.push_back(nullptr);
-
-        std::array<int, 2> ends{};
-        if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
-            return errno;
-        }
-        pipe = ends[1];
-        Spawn spawn;
-        posix_spawn_file_actions_adddup2(&spawn.files, ends[0], STDIN_FILENO);
-        posix_spawn_file_actions_addopen(&spawn.files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-        posix_spawn_file_actions_adddup2(&spawn.files, ::fileno(errors), STDERR_FILENO);
-        sigset_t defaults;
-        sigset_t none;
-        sigemptyset(&none);
-        sigemptyset(&defaults);
-        sigaddset(&defaults, SIGPIPE);
-        posix_spawnattr_setsigmask(&spawn.attributes, &none);
-        posix_spawnattr_setsigdefault(&spawn.attributes, &defaults);
-        posix_spawnattr_setflags(&spawn.attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-        const int code =
-            ::posix_spawnp(&process, "ffmpeg", &spawn.files, &spawn.attributes, arguments.data(), environ);
-        ::close(ends[0]);
-        process = code == 0 ? process : -1;
-        return code;
+        start.files = {frames.get(), -1, ::fileno(errors)};
+        return ffmpeg.start(start);
     }
 };
 
@@ -282,12 +234,12 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::create(const fs::path& path, c
 }
 
 Result<void> VideoWriter::add(std::span<const std::uint8_t> rgb) {
-    if (impl_->process < 0 || rgb.size() != impl_->frame_bytes) {
+    if (!impl_->ffmpeg.running() || rgb.size() != impl_->frame_bytes) {
         return fail(ErrorCode::kUsage, "a frame of " + std::to_string(rgb.size()) +
                                            " bytes does not fit into a video of " +
                                            std::to_string(impl_->frame_bytes) + " bytes a frame");
     }
-    const int code = writePipe(impl_->pipe, rgb);
+    const int code = writePipe(impl_->pipe.get(), rgb);
     if (code == EPIPE) {
         return impl_->ffmpegFailed(impl_->wait());
     }
@@ -298,8 +250,8 @@ Result<void> VideoWriter::add(std::span<const std::uint8_t> rgb) {
 }
 
 void VideoWriter::abandon() {
-    if (impl_->process > 0) {
-        ::kill(impl_->process, SIGKILL);  // it would take the pipe's end for the video's
+    if (impl_->ffmpeg.running()) {
+        impl_->ffmpeg.kill(SIGKILL);  // it would take the pipe's end for the video's
         impl_->wait();
     }
     impl_->removeTemporary();
@@ -307,12 +259,12 @@ void VideoWriter::abandon() {
 }
 
 Result<void> VideoWriter::finish() {
-    if (impl_->process < 0) {
+    if (!impl_->ffmpeg.running()) {
         return fail(ErrorCode::kUsage, "a video is finished once");
     }
-    const int status = impl_->wait();
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-        return impl_->ffmpegFailed(status);
+    const ProcessEnd end = impl_->wait();
+    if (end.signal != 0 || end.exit_code != 0) {
+        return impl_->ffmpegFailed(end);
     }
     std::error_code error;
     if (const std::uintmax_t size = fs::file_size(impl_->temporary, error); error || size == 0) {
