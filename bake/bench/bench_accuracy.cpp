@@ -467,7 +467,7 @@ Result<void> run(const Arguments& arguments) {
     Json mesh_reports = Json::array();
     for (const std::string& path : paths) {
         const Stopwatch watch;
-        const TriangleMesh mesh = RELIEF_TRY(loadMesh(path));
+        const TriangleMesh mesh = RELIEF_TRY(importMeshInWorker(path));
         const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
         if (!arguments.values.empty()) {
             return printValues(query, budgets.front(), arguments.values);

@@ -219,7 +219,7 @@ Result<void> runBake(const BakeCommand& command) {
 
     BakeTimes times;
     const Stopwatch import_watch;
-    Result<TriangleMesh> mesh = loadMesh(command.mesh, command.import);
+    Result<TriangleMesh> mesh = importByArguments(command.mesh, command.import);
     times.import_ms = import_watch.ms();
     if (!mesh) {
         return forward(mesh);

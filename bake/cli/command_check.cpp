@@ -106,7 +106,7 @@ Result<void> runCheck(const CheckCommand& command) {
         }
     }
     const Collider collider = RELIEF_TRY(loadCollider(command.file));
-    const TriangleMesh imported = RELIEF_TRY(loadMesh(command.mesh, command.import));
+    const TriangleMesh imported = RELIEF_TRY(importByArguments(command.mesh, command.import));
     // As baked: where solids overlap, their winding decides what is inside.
     const Winding winding = RELIEF_TRY(windOutwards(imported));
     const TriangleMesh* const mesh = &winding.mesh;

@@ -75,9 +75,9 @@ Result<void> checkImportArguments(const ImportArguments& arguments) {
     return parsed ? Result<void>{} : forward(parsed);
 }
 
-Result<TriangleMesh> loadMesh(const std::string& path, const ImportArguments& arguments) {
+Result<TriangleMesh> importByArguments(const std::string& path, const ImportArguments& arguments) {
     const Parsed parsed = RELIEF_TRY(parse(arguments));
-    return loadMesh(path, parsed.options, parsed.limits);
+    return importMeshInWorker(path, parsed.options, parsed.limits);
 }
 
 std::string importProvenance(const ImportArguments& arguments) {

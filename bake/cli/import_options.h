@@ -23,8 +23,9 @@ void addImportOptions(CLI::App& verb, ImportArguments& arguments);
 /// Errors: kUsage; nothing is read. For before the long work.
 [[nodiscard]] Result<void> checkImportArguments(const ImportArguments& arguments);
 
-/// loadMesh by them. Errors: kUsage, and as loadMesh.
-[[nodiscard]] Result<TriangleMesh> loadMesh(const std::string& path, const ImportArguments& arguments);
+/// Imports a mesh in a worker, as the arguments say. Errors: kUsage, and as importMeshInWorker.
+[[nodiscard]] Result<TriangleMesh> importByArguments(const std::string& path,
+                                                     const ImportArguments& arguments);
 
 /// " --unit mm --up +z" for the provenance: those that change the mesh; "" by default.
 [[nodiscard]] std::string importProvenance(const ImportArguments& arguments);

@@ -1,5 +1,5 @@
 // `relief-import`: reads one mesh file for its parent (import_protocol.h), with limits and without rights, so
-// that a hostile file can end nothing but this process. Started by loadMesh; of no use by itself.
+// that a hostile file can end nothing but this process. Started by importMeshInWorker; of no use by itself.
 #include <fcntl.h>
 #include <malloc.h>
 #include <poll.h>
@@ -84,13 +84,9 @@ int work(char** arguments) {
         return kImportExitNoSandbox;
     }
     std::set_new_handler([] { ::_exit(kImportExitMemory); });
-    std::string extension = path.extension().string().substr(1);
-    for (char& c : extension) {
-        c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    }
     const Result<TriangleMesh> raw = importRaw({quotedPath(path),
                                                 path.filename().string(),
-                                                extension,
+                                                lowerCase(path.extension().string().substr(1)),
                                                 {static_cast<const std::byte*>(pages), size},
                                                 folder,
                                                 options});

@@ -1,4 +1,4 @@
-// Between loadMesh and the program relief-import: descriptors, arguments and exit codes.
+// Between importMeshInWorker and the program relief-import: descriptors, arguments and exit codes.
 //
 //     relief-import PATH UNIT UP MEMORY SECONDS
 //

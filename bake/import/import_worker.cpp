@@ -1,12 +1,10 @@
-// loadMesh: starts relief-import, waits for it, and believes nothing that it says.
+// importMeshInWorker: starts relief-import, waits for it, and believes nothing that it says.
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -22,9 +20,9 @@
 #include "bake/import/import_protocol.h"
 #include "bake/import/import_source.h"
 #include "bake/import/mesh_import.h"
+#include "formats/base/descriptor.h"
 #include "formats/base/file_io.h"
-
-extern char** environ;
+#include "formats/base/process.h"
 
 namespace relief {
 namespace {
@@ -35,33 +33,6 @@ constexpr const char* kWorkerName = "relief-import";
 constexpr const char* kWorkerFolder = "../libexec/relief";
 /// Sizes of files are signed.
 constexpr std::uint64_t kMemoryMax = std::uint64_t{1} << 46;
-/// Above all of import_protocol.h, so that no descriptor is overwritten before it is handed over.
-constexpr int kFirstFreeFd = 16;
-
-/// A descriptor, closed with it.
-class File {
-  public:
-    explicit File(int file = -1) : file_(file) {}
-    File(File&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
-    File& operator=(File&& other) noexcept {
-        std::swap(file_, other.file_);
-        return *this;
-    }
-    ~File() { close(); }
-
-    [[nodiscard]] int get() const { return file_; }
-    explicit operator bool() const { return file_ >= 0; }
-    void close() {
-        if (file_ >= 0) {
-            ::close(std::exchange(file_, -1));
-        }
-    }
-    /// Moves it out of the way of the worker's numbers.
-    [[nodiscard]] File raised() const { return File(::fcntl(file_, F_DUPFD_CLOEXEC, kFirstFreeFd)); }
-
-  private:
-    int file_;
-};
 
 /// Bytes of a file in memory, for as long as this lives.
 class Mapping {
@@ -86,15 +57,14 @@ class Mapping {
 };
 
 /// Empty where it cannot be had; errno then says why.
-File memoryFile(std::uint64_t size) {
-    File file(::memfd_create("relief-import", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+Descriptor memoryFile(std::uint64_t size) {
+    Descriptor file(::memfd_create("relief-import", MFD_CLOEXEC | MFD_ALLOW_SEALING));
     if (file && ::ftruncate(file.get(), static_cast<off_t>(size)) != 0) {
         const int number = errno;
-        file.close();
+        file.reset();
         errno = number;
-        return file;
     }
-    return file.raised();
+    return file;
 }
 
 /// Memory counts as a file, of which this process may have been allowed little.
@@ -106,20 +76,20 @@ std::uint64_t largestFile(std::uint64_t wanted) {
 }
 
 /// The mesh's bytes where the worker can read, and not change, them.
-File sharedBytes(std::span<const std::byte> bytes) {
-    File file = memoryFile(bytes.size());
+Descriptor sharedBytes(std::span<const std::byte> bytes) {
+    Descriptor file = memoryFile(bytes.size());
     if (!file) {
         return file;
     }
     {
         const Mapping pages(file.get(), bytes.size(), PROT_READ | PROT_WRITE);
         if (!pages) {
-            return File();
+            return Descriptor();
         }
         std::memcpy(pages.bytes().data(), bytes.data(), bytes.size());
     }
     constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL;
-    return ::fcntl(file.get(), F_ADD_SEALS, kSeals) == 0 ? std::move(file) : File();
+    return ::fcntl(file.get(), F_ADD_SEALS, kSeals) == 0 ? std::move(file) : Descriptor();
 }
 
 /// The program, beside this one or where an installation puts it; "" if it is nowhere.
@@ -134,76 +104,6 @@ std::string workerProgram() {
     }
     return "";
 }
-
-class Spawn {
-  public:
-    Spawn() {
-        posix_spawn_file_actions_init(&files_);
-        posix_spawnattr_init(&attributes_);
-    }
-    Spawn(const Spawn&) = delete;
-    Spawn& operator=(const Spawn&) = delete;
-    ~Spawn() {
-        posix_spawn_file_actions_destroy(&files_);
-        posix_spawnattr_destroy(&attributes_);
-    }
-
-    /// \param descriptors  for kImportMeshFd, and the next ones. \return an error number.
-    int start(const std::string& program, std::vector<std::string> arguments,
-              std::span<const int> descriptors, pid_t& process) {
-        for (int standard = 0; standard <= 2; ++standard) {
-            posix_spawn_file_actions_addopen(&files_, standard, "/dev/null", O_RDWR, 0);
-        }
-        int target = kImportMeshFd;
-        for (const int descriptor : descriptors) {
-            posix_spawn_file_actions_adddup2(&files_, descriptor, target++);
-        }
-        posix_spawn_file_actions_addclosefrom_np(&files_, target);
-        // Whatever this process ignores or blocks, the worker's limits must be able to end it.
-        sigset_t none;
-        sigset_t all;
-        sigemptyset(&none);
-        sigfillset(&all);
-        posix_spawnattr_setsigmask(&attributes_, &none);
-        posix_spawnattr_setsigdefault(&attributes_, &all);
-        posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-        std::vector<char*> argv;
-        for (std::string& argument : arguments) {
-            argv.push_back(argument.data());
-        }
-        argv.push_back(nullptr);
-        return ::posix_spawn(&process, program.c_str(), &files_, &attributes_, argv.data(), environ);
-    }
-
-  private:
-    posix_spawn_file_actions_t files_{};
-    posix_spawnattr_t attributes_{};
-};
-
-/// Ends the worker on every way out.
-class Worker {
-  public:
-    explicit Worker(pid_t process) : process_(process) {}
-    Worker(const Worker&) = delete;
-    Worker& operator=(const Worker&) = delete;
-    ~Worker() {
-        if (process_ > 0) {
-            ::kill(process_, SIGKILL);
-            (void)wait();
-        }
-    }
-    /// \return the status of waitpid.
-    int wait() {
-        int status = 0;
-        while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
-        }
-        process_ = -1;
-        return status;
-    }
-
-  private:
-    pid_t process_;
-};
 
 /// \return false if the other end is still open after so long.
 bool closesWithin(int file, std::uint32_t seconds) {
@@ -261,46 +161,46 @@ class Import {
             return error(ErrorCode::kFailure, std::string("the program ") + kWorkerName +
                                                   " is not beside this one; install it again");
         }
-        File mesh = sharedBytes(source.bytes());
+        Descriptor mesh = sharedBytes(source.bytes());
         if (!mesh) {
             return notStarted(errno);
         }
         source.dropBytes();
-        const File folder(source.folder() >= 0 ? ::fcntl(source.folder(), F_DUPFD_CLOEXEC, kFirstFreeFd)
-                                               : ::open("/dev/null", O_RDONLY | O_CLOEXEC));
-        const File result = memoryFile(largestFile(limits_.memory));
-        std::array<int, 2> pipe = {-1, -1};
-        if (!folder || !result || ::pipe2(pipe.data(), O_CLOEXEC) != 0) {
+        const Descriptor result = memoryFile(largestFile(limits_.memory));
+        Descriptor alive;
+        Descriptor alive_end;
+        if (!result || makePipe(alive, alive_end) != 0) {
             return notStarted(errno);
         }
-        const File alive(pipe[0]);
-        File writing(pipe[1]);
-        const File raised_folder = folder.raised();
-        File raised_writing = writing.raised();
-        writing.close();
-        if (!raised_folder || !raised_writing) {
-            return notStarted(errno);
-        }
-
-        pid_t process = -1;
-        const std::array<int, 4> descriptors = {mesh.get(), raised_folder.get(), result.get(),
-                                                raised_writing.get()};
-        const int failed =
-            Spawn().start(program,
-                          {kWorkerName, path_.string(), options_.unit.empty() ? "-" : options_.unit,
-                           options_.up ? std::string(upAxisName(*options_.up)) : "-",
-                           std::to_string(limits_.memory), std::to_string(limits_.seconds)},
-                          descriptors, process);
-        if (failed != 0) {
+        Process worker;
+        if (const int failed =
+                start(program, {mesh.get(), source.folder(), result.get(), alive_end.get()}, worker)) {
             return notStarted(failed);
         }
-        Worker worker(process);
-        raised_writing.close();
-        mesh.close();
+        alive_end.reset();
+        mesh.reset();
         if (!closesWithin(alive.get(), limits_.seconds)) {
             return timeIsUp();
         }
         return answer(worker.wait(), result.get());
+    }
+
+    /// \param files  for kImportMeshFd and the numbers behind it; -1: none, /dev/null. \return 0 or an errno.
+    [[nodiscard]] int start(const std::string& program, const std::array<int, 4>& files,
+                            Process& worker) const {
+        ProcessStart start;
+        start.program = program;
+        start.arguments = {kWorkerName,
+                           path_.string(),
+                           options_.unit.empty() ? "-" : options_.unit,
+                           options_.up ? std::string(upAxisName(*options_.up)) : "-",
+                           std::to_string(limits_.memory),
+                           std::to_string(limits_.seconds)};
+        start.files.assign(kImportMeshFd, -1);
+        start.files.insert(start.files.end(), files.begin(), files.end());
+        // Whatever this process ignores, the worker's limits must be able to end it.
+        start.reset_ignored_signals = true;
+        return worker.start(start);
     }
 
     [[nodiscard]] tl::unexpected<Error> timeIsUp() const {
@@ -308,12 +208,11 @@ class Import {
                                             " s; simplify the mesh or raise --import-time");
     }
 
-    Result<TriangleMesh> answer(int status, int result) const {
-        if (WIFSIGNALED(status)) {
-            return ended(WTERMSIG(status));
+    Result<TriangleMesh> answer(const ProcessEnd& end, int result) const {
+        if (end.signal != 0) {
+            return ended(end.signal);
         }
-        const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-        switch (code) {
+        switch (end.exit_code) {
             case kImportExitMessage:
                 return message(result);
             case kImportExitMemory:
@@ -331,7 +230,7 @@ class Import {
                              "--import-memory and this process's file size limit (ulimit -f)");
             default:
                 return error(ErrorCode::kInvalidInput, "the importer ended with exit code " +
-                                                           std::to_string(code) +
+                                                           std::to_string(end.exit_code) +
                                                            "; export the mesh again, in another format");
         }
     }
@@ -379,8 +278,8 @@ class Import {
 
 }  // namespace
 
-Result<TriangleMesh> loadMesh(const fs::path& path, const ImportOptions& options,
-                              const ImportLimits& limits) {
+Result<TriangleMesh> importMeshInWorker(const fs::path& path, const ImportOptions& options,
+                                        const ImportLimits& limits) {
     return Import(path, options, limits).run();
 }
 

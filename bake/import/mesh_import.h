@@ -1,4 +1,4 @@
-// Mesh files of every format of importFormats(), as one TriangleMesh: in a process of its own (loadMesh),
+// Mesh files of every format of importFormats(), as one TriangleMesh: in a process of its own (importMeshInWorker),
 // which is what every tool does, or in this one (importMesh), for files that one trusts.
 #pragma once
 
@@ -20,9 +20,9 @@ namespace relief {
 /// and no file behind. What the mesh means is as in importMesh. Errors, each naming the file: as importMesh;
 /// and kInvalidInput (the importer crashed), kLimit (memory or time is used up), kFailure (the worker could
 /// not be started, or was killed by somebody else).
-[[nodiscard]] Result<TriangleMesh> loadMesh(const std::filesystem::path& path,
-                                            const ImportOptions& options = {},
-                                            const ImportLimits& limits = {});
+[[nodiscard]] Result<TriangleMesh> importMeshInWorker(const std::filesystem::path& path,
+                                                      const ImportOptions& options = {},
+                                                      const ImportLimits& limits = {});
 
 /// Reads a mesh file in this process: a hostile file may crash it. In the library Relief::import.
 /// The transforms of its nodes are applied, a mesh used n times is there n times, polygons are triangulated,

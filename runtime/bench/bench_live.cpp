@@ -58,7 +58,7 @@ Result<void> measure(std::vector<Part>& parts) {
 }
 
 Result<Json> bench(const std::string& path, std::uint32_t count) {
-    auto file = loadMesh(path);
+    auto file = loadPictureMesh(path);
     auto context = GlContext::create({});
     if (!file || !context) {
         return file ? forward(context) : forward(file);

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "formats/base/file_io.h"
+#include "formats/base/text.h"
 
 namespace relief {
 
@@ -16,11 +17,8 @@ bool addPolygon(std::span<const std::uint32_t> corners, PictureMesh& mesh) {
     return true;
 }
 
-Result<PictureMesh> loadMesh(const std::filesystem::path& path) {
-    std::string extension = path.extension().native();
-    for (char& c : extension) {
-        c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    }
+Result<PictureMesh> loadPictureMesh(const std::filesystem::path& path) {
+    const std::string extension = lowerCase(path.extension().native());
     if (extension != ".obj" && extension != ".ply") {
         return fail(
             ErrorCode::kUnsupported,

@@ -20,7 +20,7 @@ inline constexpr std::size_t kMeshTrianglesMax = 40'000'000;
 /// By the file's extension, in either case: .obj or .ply. The mesh passes checkMesh; it has no normals.
 /// Errors: kUnsupported (another extension), kIo, kInvalidInput with the file and, where there are lines, the
 /// line, kLimit (the numbers above).
-[[nodiscard]] Result<PictureMesh> loadMesh(const std::filesystem::path& path);
+[[nodiscard]] Result<PictureMesh> loadPictureMesh(const std::filesystem::path& path);
 
 /// \param name  stands for the file in messages.
 /// Errors: kInvalidInput, kLimit, as above.

@@ -32,22 +32,18 @@ constexpr std::size_t kElementsMax = 64;
 constexpr double kListMax = 1e6;
 
 // Errors below do not name the file: parsePlyMesh does.
-tl::unexpected<Error> wrong(const std::string& what) {
-    return fail(ErrorCode::kInvalidInput, what);
-}
-
 tl::unexpected<Error> tooMany(std::size_t limit, const char* what) {
     return fail(ErrorCode::kLimit,
                 "it has more than " + std::to_string(limit) + " " + what + "; simplify the mesh");
 }
 
 tl::unexpected<Error> noNumber(const PlyNumbers& numbers) {
-    return wrong(numbers.ended() ? "it ends too early" : "a word among its numbers is none");
+    return invalidInput(numbers.ended() ? "it ends too early" : "a word among its numbers is none");
 }
 
 Result<void> addElement(const PlyHeaderLine& line, Header& header) {
     if (!line.count || header.elements.size() == kElementsMax) {
-        return wrong("an element of its header is not understood");
+        return invalidInput("an element of its header is not understood");
     }
     header.elements.push_back({line.name, *line.count, {}});
     return {};
@@ -55,13 +51,13 @@ Result<void> addElement(const PlyHeaderLine& line, Header& header) {
 
 Result<void> addProperty(const PlyHeaderLine& line, Header& header) {
     if (header.elements.empty() || header.elements.back().properties.size() == kPlyPropertiesMax) {
-        return wrong("a property of its header belongs to no element, or to a crowded one");
+        return invalidInput("a property of its header belongs to no element, or to a crowded one");
     }
     if (line.name.empty()) {
-        return wrong("a property of its header is not understood");
+        return invalidInput("a property of its header is not understood");
     }
     if (!line.type || (line.list && !line.length_type)) {
-        return wrong("a property of its header has an unknown type");
+        return invalidInput("a property of its header has an unknown type");
     }
     header.elements.back().properties.push_back({line.name, *line.type, line.length_type});
     return {};
@@ -74,10 +70,10 @@ Result<Header> takeHeader(std::string_view& data) {
     for (bool first = true;; first = false) {
         const std::optional<PlyHeaderLine> line = takePlyHeaderLine(data);
         if (!line) {
-            return wrong("its header does not end");
+            return invalidInput("its header does not end");
         }
         if (first && line->kind != Kind::kPly) {
-            return wrong("it is no PLY file");
+            return invalidInput("it is no PLY file");
         }
         if (line->kind == Kind::kEnd) {
             break;
@@ -91,7 +87,7 @@ Result<Header> takeHeader(std::string_view& data) {
         }
     }
     if (!header.encoding) {
-        return wrong(
+        return invalidInput(
             "its header names no format that is known: ascii, binary_little_endian or binary_big_endian");
     }
     return header;
@@ -110,12 +106,12 @@ Result<void> readVertices(const Element& element, PlyNumbers& numbers, PictureMe
     int found = 0;
     for (const Property& property : element.properties) {
         if (property.length_type) {
-            return wrong("its vertices have lists");
+            return invalidInput("its vertices have lists");
         }
         found += axisOf(property) >= 0 ? 1 : 0;
     }
     if (found != 3) {
-        return wrong("its vertices do not have x, y and z");
+        return invalidInput("its vertices do not have x, y and z");
     }
     for (std::uint64_t i = 0; i < element.count; ++i) {
         glm::vec3 p{0.0F};
@@ -127,7 +123,7 @@ Result<void> readVertices(const Element& element, PlyNumbers& numbers, PictureMe
             if (const int axis = axisOf(property); axis >= 0) {
                 p[axis] = static_cast<float>(*value);
                 if (!std::isfinite(p[axis])) {
-                    return wrong("vertex " + std::to_string(i) + " is not finite");
+                    return invalidInput("vertex " + std::to_string(i) + " is not finite");
                 }
             }
         }
@@ -146,7 +142,7 @@ Result<void> readList(const Property& property, std::uint64_t index, PlyNumbers&
         return noNumber(numbers);
     }
     if (!(*length >= 0.0 && *length <= kListMax && *length == std::floor(*length))) {
-        return wrong("a list has a length that cannot be");
+        return invalidInput("a list has a length that cannot be");
     }
     for (std::uint64_t k = 0; k < static_cast<std::uint64_t>(*length); ++k) {
         const std::optional<double> value = numbers.next(property.type);
@@ -158,7 +154,7 @@ Result<void> readList(const Property& property, std::uint64_t index, PlyNumbers&
         }
         if (!(*value >= 0.0 && *value < static_cast<double>(mesh.positions.size()) &&
               *value == std::floor(*value))) {
-            return wrong("face " + std::to_string(index) + " names a vertex that is not there");
+            return invalidInput("face " + std::to_string(index) + " names a vertex that is not there");
         }
         corners->push_back(static_cast<std::uint32_t>(*value));
     }
@@ -179,7 +175,7 @@ Result<void> readElement(const Element& element, PlyNumbers& numbers, PictureMes
             corners.clear();
             RELIEF_TRY(readList(property, i, numbers, mesh, polygon ? &corners : nullptr));
             if (polygon && corners.size() < 3) {
-                return wrong("face " + std::to_string(i) + " has fewer than three corners");
+                return invalidInput("face " + std::to_string(i) + " has fewer than three corners");
             }
             if (polygon && !addPolygon(corners, mesh)) {
                 return tooMany(kMeshTrianglesMax, "triangles");
@@ -198,7 +194,7 @@ Result<PictureMesh> readMesh(std::string_view data) {
         RELIEF_TRY(vertices ? readVertices(element, numbers, mesh) : readElement(element, numbers, mesh));
     }
     if (mesh.triangles.empty()) {
-        return wrong("it has no faces");
+        return invalidInput("it has no faces");
     }
     return mesh;
 }

@@ -39,7 +39,7 @@ void complete(const SceneLive& live, const PictureMesh& mesh, const Bounds& box,
 
 Result<LiveMesh> loadLiveMesh(const SceneCollider& from) {
     const SceneLive& live = *from.live;
-    auto read = loadMesh(from.path);
+    auto read = loadPictureMesh(from.path);
     if (!read) {
         return failAt(from, read.error());
     }

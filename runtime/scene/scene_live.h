@@ -23,7 +23,7 @@ struct LiveMesh {
 };
 
 /// Reads the mesh, completes its deformation, and chooses maps that hold its whole motion.
-/// \param from  with `live`. Errors: those of loadMesh, and kInvalidInput (a mesh without extent), all with
+/// \param from  with `live`. Errors: those of loadPictureMesh, and kInvalidInput (a mesh without extent), all with
 /// the place in the scene.
 [[nodiscard]] Result<LiveMesh> loadLiveMesh(const SceneCollider& from);
 

@@ -31,7 +31,7 @@ Result<RgbaPicture> readAtlas(const Scene& scene) {
 
 Result<PictureMesh> readMesh(const Scene& scene, const Bounds& bounds) {
     const auto& render = scene.render;
-    auto mesh = loadMesh(render.mesh);
+    auto mesh = loadPictureMesh(render.mesh);
     if (!mesh) {
         return failAt(render.mesh_origin, "render.mesh", mesh.error());
     }

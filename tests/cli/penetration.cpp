@@ -85,7 +85,7 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "usage: relief-penetration MESH PARTICLES.ply\n");
         return 1;
     }
-    const auto mesh = relief::loadMesh(argv[1]);
+    const auto mesh = relief::importMeshInWorker(argv[1]);
     if (!mesh) {
         std::fprintf(stderr, "relief-penetration: %s\n", mesh.error().message.c_str());
         return 3;

@@ -43,7 +43,7 @@ class OpenWatch {
 };
 
 Result<TriangleMesh> load(const TemporaryFolder& folder, const std::string& name, std::string_view contents) {
-    return loadMesh(folder.write(name, contents));
+    return importMeshInWorker(folder.write(name, contents));
 }
 
 void expectRefused(const Result<TriangleMesh>& mesh, ErrorCode code, const std::string& says) {
@@ -70,7 +70,7 @@ TEST(ImportWorker, GivesTheSameMeshAsTheImporterInThisProcess) {
           folder.write("T.DAE", tetrahedronDae("<unit meter=\"0.0254\"/><up_axis>Z_UP</up_axis>"))}) {
         SCOPED_TRACE(path);
         const Result<TriangleMesh> here = importMesh(path, {"", UpAxis::kPlusX});
-        const Result<TriangleMesh> there = loadMesh(path, {"", UpAxis::kPlusX});
+        const Result<TriangleMesh> there = importMeshInWorker(path, {"", UpAxis::kPlusX});
         ASSERT_TRUE(here && there) << (here ? there : here).error().message;
         EXPECT_EQ(there->positions, here->positions);
         EXPECT_EQ(there->triangles, here->triangles);
@@ -86,8 +86,8 @@ TEST(ImportWorker, GivesTheSameMeshAsTheImporterInThisProcess) {
 TEST(ImportWorker, FilesThatAreNotThereOrNoMeshes) {
     const TemporaryFolder folder;
     const auto codeOf = [](const Result<TriangleMesh>& mesh) { return mesh.error().code; };
-    EXPECT_EQ(codeOf(loadMesh(folder.path() / "missing.obj")), ErrorCode::kIo);
-    EXPECT_EQ(codeOf(loadMesh(folder.path())), ErrorCode::kIo);
+    EXPECT_EQ(codeOf(importMeshInWorker(folder.path() / "missing.obj")), ErrorCode::kIo);
+    EXPECT_EQ(codeOf(importMeshInWorker(folder.path())), ErrorCode::kIo);
     EXPECT_EQ(codeOf(load(folder, "mesh.xyzzy", "hello")), ErrorCode::kUnsupported);
     EXPECT_EQ(codeOf(load(folder, "empty.obj", "")), ErrorCode::kInvalidInput);
     EXPECT_EQ(codeOf(load(folder, "lines.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n")), ErrorCode::kInvalidInput);
@@ -135,7 +135,7 @@ TEST(ImportWorker, NoFileOutsideTheFolderIsOpened) {
     // The watch sees what it should.
     folder.write("in/t.obj", "mtllib secret.mtl\n" + tetrahedronObj());
     fs::create_hard_link(secret, folder.path() / "in/secret.mtl");
-    EXPECT_TRUE(loadMesh(folder.path() / "in/t.obj"));
+    EXPECT_TRUE(importMeshInWorker(folder.path() / "in/t.obj"));
     EXPECT_TRUE(watch.opened());
 }
 
@@ -292,11 +292,11 @@ TEST(ImportWorker, LeavesNoDescriptorsAndNoChildren) {
     };
     const fs::path good = folder.write("t.obj", tetrahedronObj());
     const fs::path bad = folder.write("bad.ply", "ply\n");
-    ASSERT_TRUE(loadMesh(good));
+    ASSERT_TRUE(importMeshInWorker(good));
     const auto before = open();
     for (int i = 0; i < 5; ++i) {
-        EXPECT_TRUE(loadMesh(good));
-        EXPECT_FALSE(loadMesh(bad));
+        EXPECT_TRUE(importMeshInWorker(good));
+        EXPECT_FALSE(importMeshInWorker(bad));
     }
     EXPECT_EQ(open(), before);
     const fs::path children = "/proc/self/task/" + std::to_string(::getpid()) + "/children";
@@ -330,7 +330,7 @@ TEST(ImportWorker, EveryModelOfThePackageIsReadOrRefused) {
         if (!all && !invalid && i % 7 != 0) {
             continue;
         }
-        const Result<TriangleMesh> mesh = loadMesh(files[i], {}, {2'000'000'000, 60});
+        const Result<TriangleMesh> mesh = importMeshInWorker(files[i], {}, {2'000'000'000, 60});
         ++tried;
         if (mesh) {
             ++read;
@@ -355,7 +355,7 @@ TEST(ImportWorker, LimitsMustBeLimits) {
     const TemporaryFolder folder;
     const fs::path path = folder.write("t.obj", tetrahedronObj());
     for (const ImportLimits& limits : {ImportLimits{0, 60}, ImportLimits{1000000, 0}}) {
-        const Result<TriangleMesh> mesh = loadMesh(path, {}, limits);
+        const Result<TriangleMesh> mesh = importMeshInWorker(path, {}, limits);
         ASSERT_FALSE(mesh);
         EXPECT_EQ(mesh.error().code, ErrorCode::kUsage);
     }

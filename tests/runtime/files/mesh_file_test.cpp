@@ -159,11 +159,11 @@ TEST(PlyMesh, EveryPrefixAndEveryFlippedByteIsSurvived) {
 }
 
 TEST(MeshFile, ByExtension) {
-    expectError(loadMesh("/nonexistent/a.stl"), "convert it", ErrorCode::kUnsupported);
-    expectError(loadMesh("/nonexistent/a.OBJ"), "/nonexistent/a.OBJ", ErrorCode::kIo);
+    expectError(loadPictureMesh("/nonexistent/a.stl"), "convert it", ErrorCode::kUnsupported);
+    expectError(loadPictureMesh("/nonexistent/a.OBJ"), "/nonexistent/a.OBJ", ErrorCode::kIo);
     const std::string path = testing::TempDir() + "relief_mesh.Ply";
     std::ofstream(path, std::ios::binary) << binaryPly(false);
-    const auto mesh = loadMesh(path);
+    const auto mesh = loadPictureMesh(path);
     ASSERT_TRUE(mesh) << mesh.error().message;
     EXPECT_EQ(mesh->triangles.size(), 9U);
     std::filesystem::remove(path);

@@ -1,0 +1,158 @@
+#include "bake/import/import_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+
+namespace relief {
+namespace {
+
+/// A transform whose determinant is this small, relative to the product of its columns' lengths, leaves no volume.
+constexpr double kFlat = 1e-9;
+
+/// p -> linear · p + offset
+struct Transform {
+    glm::dmat3 linear{1.0};
+    glm::dvec3 offset{0.0};
+
+    [[nodiscard]] glm::dvec3 apply(const glm::dvec3& p) const { return linear * p + offset; }
+    [[nodiscard]] double determinant() const {
+        const glm::dmat3& m = linear;
+        return m[0][0] * (m[1][1] * m[2][2] - m[2][1] * m[1][2]) -
+               m[1][0] * (m[0][1] * m[2][2] - m[2][1] * m[0][2]) +
+               m[2][0] * (m[0][1] * m[1][2] - m[1][1] * m[0][2]);
+    }
+    [[nodiscard]] bool mirrors() const { return determinant() < 0.0; }
+    /// A scale of 0 along some direction.
+    [[nodiscard]] bool flattens() const {
+        const double lengths = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
+        return std::abs(determinant()) <= kFlat * lengths;
+    }
+};
+
+Transform operator*(const Transform& outer, const aiMatrix4x4& inner) {
+    Transform t;
+    t.linear = outer.linear * glm::dmat3(inner.a1, inner.b1, inner.c1, inner.a2, inner.b2, inner.c2, inner.a3,
+                                         inner.b3, inner.c3);
+    t.offset = outer.apply({inner.a4, inner.b4, inner.c4});
+    return t;
+}
+
+/// Calls visit(mesh, transform) for every use of a mesh, parents before children. No recursion.
+/// \return false as soon as visit does.
+template <class Visit>
+bool forEachUse(const aiScene& scene, const Transform& root, const Visit& visit) {
+    struct Pending {
+        const aiNode* node;
+        Transform parent;
+    };
+    std::vector<Pending> pending{{scene.mRootNode, root}};
+    while (!pending.empty()) {
+        const Pending next = pending.back();
+        pending.pop_back();
+        const Transform transform = next.parent * next.node->mTransformation;
+        for (unsigned i = 0; i < next.node->mNumMeshes; ++i) {
+            const unsigned index = next.node->mMeshes[i];
+            if (index < scene.mNumMeshes && scene.mMeshes[index]->HasPositions() &&
+                !visit(*scene.mMeshes[index], transform)) {
+                return false;
+            }
+        }
+        for (unsigned i = next.node->mNumChildren; i > 0; --i) {
+            // Some importers (RAW in assimp 5.2) leave children out.
+            if (const aiNode* child = next.node->mChildren[i - 1]; child != nullptr) {
+                pending.push_back({child, transform});
+            }
+        }
+    }
+    return true;
+}
+
+void appendMesh(const aiMesh& source, const Transform& transform, TriangleMesh& mesh) {
+    const auto base = static_cast<std::uint32_t>(mesh.positions.size());
+    for (unsigned i = 0; i < source.mNumVertices; ++i) {
+        const aiVector3D& v = source.mVertices[i];
+        mesh.positions.emplace_back(transform.apply({v.x, v.y, v.z}));
+    }
+    const bool mirrors = transform.mirrors();
+    for (unsigned i = 0; i < source.mNumFaces; ++i) {
+        const aiFace& face = source.mFaces[i];
+        if (face.mNumIndices != 3) {
+            continue;
+        }
+        const std::uint32_t a = face.mIndices[0];
+        const std::uint32_t b = face.mIndices[mirrors ? 2 : 1];
+        const std::uint32_t c = face.mIndices[mirrors ? 1 : 2];
+        mesh.triangles.emplace_back(base + a, base + b, base + c);
+    }
+}
+
+}  // namespace
+
+bool indicesExist(const aiScene& scene) {
+    for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+        const aiMesh& mesh = *scene.mMeshes[m];
+        for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+            const aiFace& face = mesh.mFaces[f];
+            for (unsigned i = 0; i < face.mNumIndices; ++i) {
+                if (face.mIndices[i] >= mesh.mNumVertices) {
+                    return false;
+                }
+            }
+        }
+    }
+    return true;
+}
+
+void warnOfScene(const aiScene& scene, std::vector<std::string>& warnings) {
+    bool skinned = false;
+    bool morphed = false;
+    for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+        skinned = skinned || scene.mMeshes[m]->HasBones();
+        morphed = morphed || scene.mMeshes[m]->mNumAnimMeshes > 0;
+    }
+    for (const auto& [holds, warning] :
+         {std::pair{skinned, "it is skinned; baked as it is modelled, without its skeleton"},
+          std::pair{morphed, "it is morphed; baked as it is modelled, without its targets"}}) {
+        if (holds && std::find(warnings.begin(), warnings.end(), warning) == warnings.end()) {
+            warnings.emplace_back(warning);
+        }
+    }
+}
+
+Result<TriangleMesh> flatten(const aiScene& scene, const glm::dmat3& linear, const std::string& shown,
+                             TriangleMesh mesh) {
+    const Transform root{linear, glm::dvec3(0.0)};
+    // Counted before anything is allocated: a small file can name one mesh very often.
+    std::uint64_t faces = 0;
+    std::uint64_t vertices = 0;
+    std::uint64_t flat = 0;
+    const bool fits = forEachUse(scene, root, [&](const aiMesh& source, const Transform& transform) {
+        faces += source.mNumFaces;
+        vertices += source.mNumVertices;
+        flat += transform.flattens() ? 1 : 0;
+        return faces <= kTriangleMax && vertices <= 3 * kTriangleMax;
+    });
+    if (!fits) {
+        return fail(ErrorCode::kLimit, shown + ": more than " + std::to_string(kTriangleMax) +
+                                           " triangles, instances counted one by one; simplify the mesh");
+    }
+    mesh.positions.reserve(vertices);
+    mesh.triangles.reserve(faces);
+    forEachUse(scene, root, [&](const aiMesh& source, const Transform& transform) {
+        appendMesh(source, transform, mesh);
+        return true;
+    });
+    if (mesh.triangles.empty()) {
+        return fail(ErrorCode::kInvalidInput,
+                    shown + ": no triangles; export the surface as polygons, not as points or lines");
+    }
+    if (flat > 0) {
+        mesh.warnings.push_back(std::to_string(flat) +
+                                " of its parts are scaled to nothing in some direction, and hold no volume");
+    }
+    return mesh;
+}
+
+}  // namespace relief

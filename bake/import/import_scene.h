@@ -1,0 +1,28 @@
+// assimp's scene as one TriangleMesh.
+#pragma once
+
+#include <assimp/scene.h>
+
+#include <glm/mat3x3.hpp>
+#include <string>
+#include <vector>
+
+#include "bake/mesh/mesh.h"
+#include "formats/base/result.h"
+
+namespace relief {
+
+/// Whether every face uses vertices that exist. Ask before anything walks over the faces: some readers of assimp keep
+/// whatever index the file holds.
+[[nodiscard]] bool indicesExist(const aiScene& scene);
+
+/// Warns of what the scene holds that a rigid surface is not: bones, and targets of a morph.
+void warnOfScene(const aiScene& scene, std::vector<std::string>& warnings);
+
+/// Adds every use of every mesh to `mesh`, with the transforms of its nodes applied and then `linear`.
+/// \param shown  the file's name for messages.
+/// Errors: kLimit (more than kTriangleMax triangles), kInvalidInput (none).
+[[nodiscard]] Result<TriangleMesh> flatten(const aiScene& scene, const glm::dmat3& linear,
+                                           const std::string& shown, TriangleMesh mesh);
+
+}  // namespace relief
