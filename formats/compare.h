@@ -10,7 +10,7 @@
 
 namespace relief {
 
-/// Something that two colliders say differently, in words: {"decode", "plane", "projected"}.
+/// A property that two colliders have different values of, in words: {"decode", "plane", "projected"}.
 struct Difference {
     std::string what;
     std::string a;
@@ -18,7 +18,7 @@ struct Difference {
     friend bool operator==(const Difference&, const Difference&) = default;
 };
 
-/// Of the amounts by which surfaces differ, those that do not differ at all included.
+/// Statistics of the amounts by which surfaces differ; surfaces that are the same count as 0.
 struct DifferenceStatistics {
     std::uint64_t differing = 0;  ///< amounts above 0
     double max = 0.0;
@@ -27,7 +27,7 @@ struct DifferenceStatistics {
     friend bool operator==(const DifferenceStatistics&, const DifferenceStatistics&) = default;
 };
 
-/// One end of all texels of a map: the front, or the back of a front-back map; or both, of all maps.
+/// One end of all texels of a map: the front, or the back of a front-back map. The total is of both ends of all maps.
 struct EndDifference {
     std::uint64_t ends = 0;    ///< looked at: one a texel
     std::uint64_t both = 0;    ///< with a surface in a and in b

@@ -31,8 +31,7 @@ tl::unexpected<Error> invalidMap(std::size_t index, const std::string& message) 
     return tl::unexpected<Error>(inMap(index, {ErrorCode::kInvalidInput, message}));
 }
 
-// ---- write
-// ----------------------------------------------------------------------------------------------------
+// --- write ---
 
 /// A map's payload as it will lie in the file: `compressed`, or the map's own texels where that is empty.
 struct PackedPayload {
@@ -169,8 +168,7 @@ Result<std::vector<std::byte>> writeChecked(const Collider& collider, const Cont
     return bytes;
 }
 
-// ---- read
-// -----------------------------------------------------------------------------------------------------
+// --- read ---
 
 /// Maps whose frames and sizes are in order, within the limits.
 Result<void> readMaps(ParsedMetadata&& parsed, const ContainerLimits& limits, Description& into) {

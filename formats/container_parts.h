@@ -1,5 +1,5 @@
-// The steps of reading a container, each for itself and before anything is believed: container.cpp takes
-// them in order and stops at the first that fails, inspect.cpp goes on to say what is left of a damaged file.
+// The steps of reading a container. None believes what another has not checked. container.cpp takes them in
+// order and stops at the first that fails; inspect.cpp goes on, and says what is left of a damaged file.
 #pragma once
 
 #include <cstddef>
@@ -33,8 +33,7 @@ struct StoredPayload {
 struct ParsedMap {
     DepthMap frame;  ///< no texels; its enums may be out of range
     StoredPayload payload;
-    std::uint8_t compression =
-        0;  ///< fb::Compression, perhaps unknown; info.compressed is true for zstd alone
+    std::uint8_t compression = 0;  ///< fb::Compression, perhaps unknown; info.compressed: it is zstd
 };
 
 /// Metadata that is a table of a collider; no value has been checked.
@@ -48,7 +47,7 @@ struct ParsedMetadata {
 /// Throws std::bad_alloc.
 [[nodiscard]] Result<ParsedMetadata> parseMetadata(std::span<const std::byte> bytes, std::uint32_t maps_max);
 
-/// What a payload's sizes and its frame, which is valid, say of each other; not its place.
+/// Checks that a payload's sizes go with its frame, which must be valid. Its place is not looked at.
 /// Errors: kInvalidInput, without the map's index.
 [[nodiscard]] Result<void> validatePayloadSizes(const ParsedMap& map);
 

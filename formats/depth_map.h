@@ -51,14 +51,14 @@ struct Affine {
     friend bool operator==(const Affine&, const Affine&) = default;
 };
 
-/// A plane whose normal has a smaller |cosine| than this with its texel's ray stands along the ray: there is
-/// no depth at which they meet well, and the texel stores how far the plane is from the ray instead. So a
-/// wall that a view sees edge-on, and a silhouette, pass through a texel where they are, not along its edges.
+/// A plane whose normal has a smaller |cosine| than this with its texel's ray stands along the ray: they
+/// meet at no useful depth, and the texel stores the plane's distance from the ray instead. So a wall that a
+/// view sees edge-on, and a silhouette, pass through a texel where they are, not along its edges.
 inline constexpr float kStandingCosine = 1.0F / 32.0F;
 
 /// The largest offset of a standing plane, object units, a little more than a texel: depth d of a texel
-/// stands for n·(P − O) = (2·d/d_max − 1) · standingRange, with O where its ray has depth 0. \param
-/// object_per_map, width, height  as a DepthMap has them
+/// stands for n·(P − O) = (2·d/d_max − 1) · standingRange, with O where its ray has depth 0.
+/// \param object_per_map, width, height  as a DepthMap has them.
 [[nodiscard]] float standingRange(Projection projection, const glm::vec3& object_per_map, std::uint32_t width,
                                   std::uint32_t height);
 
@@ -105,8 +105,8 @@ struct DepthMap {
 
 /// What a map, or a whole collider, says of a point.
 struct Vote {
-    float distance =
-        -std::numeric_limits<float>::max();  ///< object units, positive outside; "far inside" at first
+    /// Object units, positive outside; "far inside" at first.
+    float distance = -std::numeric_limits<float>::max();
     glm::vec3 normal{0.0F};  ///< unit length, outwards; zero where the vote is only "far outside"
 };
 

@@ -198,7 +198,7 @@ class Inspector {
             const bool placed = inspectPlace(payload, index, end);
             all_placed = all_placed && placed;
             if (placed || payload.offset == alignPayload(end)) {
-                // Of a file that was cut off, the next payload has its place nevertheless.
+                // In a file that was cut off, too, the next payload has its place.
                 constexpr std::uint64_t kFar = std::uint64_t{1} << 60;  // their sum does not wrap
                 end = std::min(payload.offset, kFar) + std::min(payload.stored_size, kFar);
             }
@@ -219,7 +219,7 @@ class Inspector {
                 map.frame.texels = {};
             }
         }
-        // Of a file whose size is not the header's, this has been said.
+        // A size that is not the header's has been reported already.
         if (all_placed && header_.file_size == bytes_.size() && end < bytes_.size()) {
             add(IssueCode::kBytesBehind,
                 std::to_string(bytes_.size() - end) + " bytes follow the last payload", end);

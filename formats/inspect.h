@@ -1,5 +1,5 @@
-// What is wrong with a container, all of it, by numbered issues: where readContainer stops at the first
-// error, this goes on with whatever can still be read, and says what of the file may be trusted. README.md
+// All that is wrong with a container, as numbered issues. readContainer stops at the first error; this goes on
+// with whatever can still be read, and says which parts of the file may be trusted. README.md
 // beside this file, "Issues", lists the codes; they keep their meaning from version to version.
 #pragma once
 
@@ -21,8 +21,8 @@ struct MapInspection {
     PartState state = PartState::kUnreadable;
     std::optional<DepthMap> frame;  ///< without texels; set where it is valid
     std::optional<PayloadInfo> payload;
-    /// Of the texels, the share that holds a surface, 0…1; of a front-back map at least one. Set where the
-    /// texels were read.
+    /// The share of texels that hold a surface (a front-back map's: at least one), 0…1. Set where the texels
+    /// were read.
     std::optional<double> coverage;
 };
 

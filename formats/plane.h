@@ -42,9 +42,8 @@ struct TexelRay {
 
 /// The unit normal nearest to `normal` whose cosine with `viewer` is at least kPlaneGrazingMin with room for
 /// encodeNormal, so that it may be stored: `normal` itself unless that is grazing or turned away. (A plane
-/// that was turned no longer is the surface's tangent: push it outwards, or face the viewer with a depth that
-/// is.) \param normal, viewer  not zero; viewer is −direction for the nearest surface, +direction for the
-/// farthest.
+/// that was turned is no longer the surface's tangent: the caller pushes it outwards.)
+/// \param normal, viewer  not zero; viewer is −direction for the nearest surface, +direction for the farthest.
 [[nodiscard]] glm::dvec3 turnedToViewer(const glm::dvec3& normal, const glm::dvec3& viewer);
 
 }  // namespace relief

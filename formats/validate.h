@@ -19,8 +19,8 @@ inline constexpr float kUnitLengthTolerance = 1e-3F;    ///< of a float texel's 
 inline constexpr double kFrameCosineMax = 1e-4;         ///< between any two of T's rows, either sign
 inline constexpr double kObjectPerMapTolerance = 1e-3;  ///< relative, against the inverse of T
 
-// The errors of all functions: kInvalidInput, and kLimit for a map of too many texels. A message names the
-// field and its value, the functions for one map leave the map's index to the caller.
+// All functions fail with kInvalidInput, or with kLimit for a map of too many texels. A message names the field
+// and its value; the functions for one map leave the map's index to the caller.
 
 /// Bounds, unit and provenance.
 [[nodiscard]] Result<void> validateDescription(const Collider& collider);

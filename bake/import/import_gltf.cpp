@@ -18,7 +18,7 @@ using Json = nlohmann::json;
 constexpr unsigned kJsonDepthMax = 256;
 constexpr std::uint64_t kNumberMax = std::uint64_t{1} << 53;
 
-// Of extensionsRequired: these change no position, or assimp decodes them (Draco).
+// Required extensions that change no position, or that assimp decodes (Draco).
 constexpr std::array<std::string_view, 8> kHarmless = {
     "KHR_draco_mesh_compression", "KHR_texture_transform", "KHR_technique_webgl", "KHR_techniques_webgl",
     "KHR_texture_basisu",         "KHR_lights_punctual",   "EXT_texture_webp",    "MSFT_texture_dds"};

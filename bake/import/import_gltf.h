@@ -1,4 +1,5 @@
-// What assimp does not check in glTF 2.0 files, or reads wrongly without a word: looked at before assimp is.
+// Checks of glTF 2.0 files that assimp does not make, and refusals of what it reads wrongly without a word. They run
+// before assimp does.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +13,10 @@ namespace relief {
 
 /// Looks through the JSON of a .gltf or .glb file: version, required extensions, compressed and quantised
 /// attributes, that every accessor lies in its view and every view in its buffer, that nodes form trees, and
-/// that buffers name files relative to the mesh. \param shown  the file's name for messages. \return
-/// warnings, without the file's name. Errors: kUnsupported, kInvalidInput, kLimit.
+/// that buffers name files relative to the mesh.
+/// \param shown  the file's name for messages.
+/// \return warnings, without the file's name.
+/// Errors: kUnsupported, kInvalidInput, kLimit.
 [[nodiscard]] Result<std::vector<std::string>> checkGltf(std::span<const std::byte> bytes,
                                                          const std::string& shown);
 

@@ -14,8 +14,8 @@
 namespace relief {
 
 struct ImportOptions {
-    /// Of the source's lengths: a word of lengthUnits(); the mesh is then in metres. "": what the file says,
-    /// and where it says nothing, lengths stay as they are and the mesh's unit is "".
+    /// The unit of the source's lengths, a word of lengthUnits(); the mesh is then in metres. "": what the file
+    /// says; where it says nothing, lengths stay as they are and the mesh's unit is "".
     std::string unit;
     /// The source's axis that points upwards; the mesh is turned so that this becomes +Y. None: what the file
     /// says, and where it says nothing, axes stay as they are.
@@ -37,7 +37,7 @@ struct ImportJob {
     ImportOptions options;
 };
 
-/// Reads the mesh. \return what ImportSource::finish wants. Errors: as importMesh. In Relief::import.
+/// Reads the mesh, in the library bake_assimp. \return what ImportSource::finish wants. Errors: as importMesh.
 [[nodiscard]] Result<TriangleMesh> importRaw(const ImportJob& job);
 
 }  // namespace relief

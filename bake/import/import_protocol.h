@@ -11,9 +11,8 @@ namespace relief {
 
 inline constexpr int kImportMeshFd = 3;    ///< the mesh file's bytes, sealed, memfd
 inline constexpr int kImportFolderFd = 4;  ///< its folder, O_PATH; /dev/null if there is none
-inline constexpr int kImportResultFd =
-    5;                                    ///< memfd of a size for the largest message; cut to size and sealed
-inline constexpr int kImportAliveFd = 6;  ///< a pipe's writing end: closes as the worker ends
+inline constexpr int kImportResultFd = 5;  ///< memfd, large enough for any message; cut to size and sealed
+inline constexpr int kImportAliveFd = 6;   ///< a pipe's writing end: closes as the worker ends
 
 inline constexpr int kImportExitMessage = 0;     ///< the message is there, a mesh or an error
 inline constexpr int kImportExitMemory = 10;     ///< the memory limit is reached

@@ -12,10 +12,11 @@ struct SandboxLimits {
     std::uint32_t seconds = 1;  ///< of processor time
 };
 
-/// For this process, for good: limits of address space and processor time, no core file, no file can be
-/// written or made longer, no new privileges, no debugger, death with the parent thread; and where the kernel
-/// has Landlock, nothing in the file system can be opened but files below `folder`, for reading. \param
-/// folder  descriptor; -1 for none. Errors: kFailure.
+/// Limits this process for good: its address space and processor time; no core file, no writing or growing of
+/// files, no new privileges, no debugger; it ends with the parent thread. Where the kernel has Landlock, it can
+/// open nothing but files below `folder`, for reading.
+/// \param folder  descriptor; -1 for none.
+/// Errors: kFailure.
 [[nodiscard]] Result<void> enterSandbox(const SandboxLimits& limits, int folder);
 
 }  // namespace relief

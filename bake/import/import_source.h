@@ -34,9 +34,9 @@ class ImportSource {
     void dropBytes() { bytes_ = {}; }
 
     /// Completes what an importer made of it: the name, the hash, whole paths, and the invariants of
-    /// TriangleMesh. \param raw  positions, triangles, unit, warnings; dependencies and their hashes relative
-    /// to the folder, and
-    ///             without the mesh file itself. May be hostile.
+    /// TriangleMesh.
+    /// \param raw  positions, triangles, unit and warnings; dependencies, relative to the folder, and their
+    ///             hashes, without the mesh file itself. May be hostile.
     /// Errors: as finishMesh; kInvalidInput.
     [[nodiscard]] Result<TriangleMesh> finish(TriangleMesh raw) const;
 

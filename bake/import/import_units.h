@@ -29,7 +29,7 @@ enum class UpAxis : std::uint8_t { kPlusX, kMinusX, kPlusY, kMinusY, kPlusZ, kMi
 /// about the x axis from ±z, half a turn about x from −y.
 [[nodiscard]] glm::dmat3 turnUpwards(UpAxis up);
 
-/// What a file says of its lengths and axes, and what of that its importer has applied already.
+/// What a file says of its lengths and axes, and what its importer has already applied.
 struct SourceFrame {
     std::optional<double> metres;  ///< in one unit of the file
     std::optional<UpAxis> up;
@@ -42,8 +42,8 @@ struct FrameChange {
     double scale = 1.0;
     glm::dmat3 turn{1.0};
     std::string unit;  ///< "m", or "" where nobody says
-    std::vector<std::string>
-        warnings;  ///< what the caller says instead of the file; each without the file's name
+    /// Where the caller's word counts and the file says something else; each without the file's name.
+    std::vector<std::string> warnings;
 };
 
 /// \param unit  a word of lengthUnits(), or "" for the file's own.

@@ -1,5 +1,5 @@
-// Mesh files of every format of importFormats(), as one TriangleMesh: in a process of its own (importMeshInWorker),
-// which is what every tool does, or in this one (importMesh), for files that one trusts.
+// Mesh files of every format of importFormats(), as one TriangleMesh: imported by a process of their own
+// (importMeshInWorker), as every tool does, or in this one (importMesh), for files that one trusts.
 #pragma once
 
 #include <cstdint>
@@ -17,19 +17,20 @@ namespace relief {
 /// Reads a mesh file in a worker process (the program relief-import beside this one, or in ../libexec/relief)
 /// with limits of memory and time, without rights to write any file or to read one that is not below the
 /// mesh's folder. Whatever the worker says is checked like a file from a stranger. Blocks; leaves no process
-/// and no file behind. What the mesh means is as in importMesh. Errors, each naming the file: as importMesh;
-/// and kInvalidInput (the importer crashed), kLimit (memory or time is used up), kFailure (the worker could
+/// and no file behind. What the mesh means is as in importMesh.
+/// Errors, each naming the file: as importMesh; and kInvalidInput (the importer crashed), kLimit (memory or time is used up), kFailure (the worker could
 /// not be started, or was killed by somebody else).
 [[nodiscard]] Result<TriangleMesh> importMeshInWorker(const std::filesystem::path& path,
                                                       const ImportOptions& options = {},
                                                       const ImportLimits& limits = {});
 
-/// Reads a mesh file in this process: a hostile file may crash it. In the library Relief::import.
+/// Reads a mesh file in this process, which a hostile file may crash. In the library bake_assimp.
+///
 /// The transforms of its nodes are applied, a mesh used n times is there n times, polygons are triangulated,
 /// points and lines are left out, and where a transform mirrors, the winding is turned. Materials, cameras
 /// and animation are not looked at; skinned and morphed meshes come in the pose they were modelled in, with a
-/// warning. Only files below the mesh's folder are read, and only regular ones (import_files.h). Errors, each
-/// naming the file: kIo (missing, a folder, not readable), kUnsupported (a format, or a part of it, that is
+/// warning. Only files below the mesh's folder are read, and only regular ones (import_files.h).
+/// Errors, each naming the file: kIo (missing, a folder, not readable), kUnsupported (a format, or a part of it, that is
 /// not read), kInvalidInput (not what the format says, no triangles, or as finishMesh), kLimit.
 [[nodiscard]] Result<TriangleMesh> importMesh(const std::filesystem::path& path,
                                               const ImportOptions& options = {});

@@ -1,5 +1,5 @@
-// Programs run beside this one, several at once: each in a process group of its own, with nothing of ours but
-// what it is given, so that whatever happens to it happens to it alone.
+// This program run again, several times at once: each in a process group of its own, with nothing of ours but what it
+// is given, so that whatever happens to it happens to it alone.
 #pragma once
 
 #include <sys/types.h>
@@ -41,9 +41,11 @@ class ChildProcesses {
     /// Ends what still runs, as endAll().
     ~ChildProcesses();
 
-    /// Runs this same program again. Its standard input is empty; should this process die, it is ended too;
-    /// and where memory runs out, the system ends it before others. \param arguments  without the program's
-    /// name. \param seconds_max  of wall time; 0: any. Errors: kFailure: no process, or no pipe.
+    /// Runs this same program again. Its standard input is empty. If this process dies, it is ended too; where
+    /// memory runs out, the system ends it before others.
+    /// \param arguments    without the program's name.
+    /// \param seconds_max  of wall time; 0: any.
+    /// Errors: kFailure: no process, or no pipe.
     [[nodiscard]] Result<void> startSelf(const std::vector<std::string>& arguments, double seconds_max,
                                          std::size_t tag);
 

@@ -1,4 +1,4 @@
-// For programs, at the start of main(): what a signal that ends them leaves behind.
+// For programs, at the start of main(): a signal that ends them leaves no temporary file behind.
 #pragma once
 
 namespace relief {

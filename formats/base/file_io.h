@@ -1,4 +1,5 @@
-// Whole files in and out. The only file of formats/ that touches a file system.
+// Whole files in and out. Libraries and tools read and write through this file, so that limits, messages and the
+// promise of whole outputs are the same everywhere. (Below it lies temporary_file.h.)
 #pragma once
 
 #include <cstddef>
@@ -21,11 +22,13 @@ namespace relief {
 
 /// Replaces a file, all or nothing: writes a temporary file in the same folder (temporary_file.h), fsync,
 /// rename, fsync of the folder. On any error before the rename the older file stays as it was and no
-/// temporary file is left; should only the last fsync fail, the message says that the new file is in place. A
-/// new file has the permissions that the umask leaves; an older file's permission bits are kept, its owner,
-/// ACLs and other names (hard links) are not. Where the path is a symbolic link, what it points to is
-/// replaced and not the link. "-" writes standard output; /dev/stdout, /dev/fd/N and a path that exists and
-/// is no regular file (a pipe, /dev/full) are written in place. Errors: kIo, with the system's words.
+/// temporary file is left. If only the last fsync fails, the message says that the new file is in place.
+///
+/// A new file has the permissions that the umask leaves. An older file's permission bits are kept; its owner,
+/// ACLs and other names (hard links) are not. A symbolic link stays, and the file that it points to is
+/// replaced. "-" writes standard output; /dev/stdout, /dev/fd/N and a path that exists and is no regular file
+/// (a pipe, /dev/full) are written in place.
+/// Errors: kIo, with the system's words.
 [[nodiscard]] Result<void> writeFile(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
 /// A path for a message: in single quotes, control characters as \xNN so that the message stays one line.

@@ -1,7 +1,6 @@
-// For a file whose templates call libm: there acos, cos and sin become the functions of portable_math.h, by
-// the names that the linker sees. Must be included before any other header, and the file be compiled with
-// -fno-builtin: sine and cosine of one angle would become one call of libm. portable_math.cpp holds what is
-// called.
+// For a file whose templates call libm: the linker gives it portable_math.h's acos, cos and sin instead. Include it
+// before any other header, and compile the file with -fno-builtin, or the compiler makes sine and cosine of one angle
+// one call of libm. portable_math.cpp defines the functions.
 #pragma once
 
 extern "C" {

@@ -1,5 +1,5 @@
-// Where the paths that a scene file names lead: inside the scene's folder, and nowhere else, so that a scene
-// from elsewhere cannot have files read that are none of its own.
+// Paths that a scene file names lead inside the scene's folder and nowhere else, so that a scene from elsewhere
+// reads no files but its own.
 #pragma once
 
 #include <filesystem>
@@ -12,10 +12,10 @@ namespace relief {
 /// A path of a scene file, ready to be opened: `folder` / `text`. That something lies there is not checked.
 /// \param folder  of the scene file; empty for the current one.
 /// \param text    as the file has it; may be hostile.
-/// Errors: kInvalidInput for what is empty, holds a zero byte, is absolute, or leaves the folder by `..` or
-/// by a symbolic link, dangling ones included. The message goes on from the key's name: "'/x' is …; the
-/// cure".
 /// \param owner   whose folder it is, for the message.
+/// Errors: kInvalidInput for a path that is empty, holds a zero byte, is absolute, or leaves the folder by
+/// `..` or by a symbolic link, dangling ones included. The message continues the key's name: "'/x' is …; the
+/// cure".
 [[nodiscard]] Result<std::filesystem::path> resolveInside(const std::filesystem::path& folder,
                                                           std::string_view text,
                                                           std::string_view owner = "scene");

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 static_assert(std::endian::native == std::endian::little,
               "raw flows are little-endian and copied as they are");
 
-// Of one image: 512 x 512 pixels take no more than 12 MiB, however many other channels may come along.
+// The largest image. 512 x 512 pixels take no more than 12 MiB; other channels may come along.
 constexpr std::uint64_t kImageBytesMax = std::uint64_t{64} << 20U;
 
 class MemoryStream final : public Imf::IStream {
@@ -120,7 +120,7 @@ Result<Slice> readImage(const fs::path& path) {
     }
 }
 
-/// Of the number in a name: where it begins, behind where it ends, and how wide it is.
+/// The number in a file name: its first byte, the byte behind it, and its width.
 struct SliceNumber {
     std::size_t begin;
     std::size_t end;

@@ -1,0 +1,33 @@
+#include "formats/base/csv_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace relief {
+namespace {
+
+TEST(CsvReader, PassesOverWhatHoldsNothing) {
+    CsvReader reader("\xef\xbb\xbf# a comment\r\n\n a ,\tb,,\r\n  \nlast");
+    ASSERT_TRUE(reader.next());
+    EXPECT_EQ(reader.number(), 3U);
+    EXPECT_EQ(reader.line(), "a ,\tb,,");
+    ASSERT_EQ(reader.fields().size(), 4U);
+    EXPECT_EQ(reader.fields()[1], "b");
+    EXPECT_EQ(reader.fields()[3], "");
+    ASSERT_TRUE(reader.next());
+    EXPECT_EQ(reader.number(), 5U);
+    EXPECT_EQ(reader.fields()[0], "last");
+    EXPECT_FALSE(reader.next());
+    EXPECT_FALSE(CsvReader("").next());
+}
+
+TEST(CsvReader, ALineOfMillionsOfFieldsIsCutShort) {
+    const std::string commas(1 << 20, ',');
+    CsvReader reader(commas);
+    ASSERT_TRUE(reader.next());
+    EXPECT_EQ(reader.fields().size(), CsvReader::kFieldsMax + 1);
+}
+
+}  // namespace
+}  // namespace relief
