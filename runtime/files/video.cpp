@@ -17,6 +17,7 @@
 #include "formats/base/descriptor.h"
 #include "formats/base/file_io.h"
 #include "formats/base/process.h"
+#include "formats/base/text.h"
 
 namespace relief {
 namespace {
@@ -150,34 +151,15 @@ struct VideoWriter::Impl {
         // protocol is named, or a colon or dash in the name would be read as one.
         ProcessStart start;
         start.program = "ffmpeg";
-        start.arguments = {"ffmpeg",
-                           "-hide_banner",
-                           "-loglevel",
-                           "error",
-                           "-nostdin",
-                           "-y",
-                           "-f",
-                           "rawvideo",
-                           "-pix_fmt",
-                           "rgb24",
-                           "-s",
-                           size,
-                           "-r",
-                           rate,
-                           "-i",
-                           "pipe:0",
-                           "-an",
-                           "-vf",
-                           "pad=ceil(iw/2)*2:ceil(ih/2)*2",
-                           "-pix_fmt",
-                           "yuv420p",
-                           "-map_metadata",
-                           "-1",
-                           "-fflags",
-                           "+bitexact",
-                           "-flags:v",
-                           "+bitexact",
-                           "file:" + temporary.native()};
+        start.arguments = {"ffmpeg"};
+        const std::string words = "-hide_banner -loglevel error -nostdin -y -f rawvideo -pix_fmt rgb24 -s " +
+                                  size + " -r " + rate +
+                                  " -i pipe:0 -an -vf pad=ceil(iw/2)*2:ceil(ih/2)*2 -pix_fmt yuv420p "
+                                  "-map_metadata -1 -fflags +bitexact -flags:v +bitexact";
+        for (const std::string_view word : split(words, ' ')) {
+            start.arguments.emplace_back(word);
+        }
+        start.arguments.push_back("file:" + temporary.native());
         Descriptor frames;
         if (const int code = makePipe(frames, pipe)) {
             return code;
