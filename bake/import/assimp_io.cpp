@@ -69,7 +69,7 @@ class Listener final : public Assimp::Logger {
         if (errors == nullptr || errors->size() >= kErrorsMax) {
             return;
         }
-        const std::string line = oneLine(message);
+        const std::string line = oneCleanLine(message);
         // About what an import leaves out anyway.
         for (const char* other : {"aterial", "exture", "nimation", "angent", "inormal"}) {
             if (line.find(other) != std::string::npos) {

@@ -144,7 +144,7 @@ Result<const aiScene*> readScene(const ImportJob& job, ImportFiles& files, const
             // Its words follow.
         }
     }
-    const std::string words = oneLine(importer.GetErrorString());
+    const std::string words = oneCleanLine(importer.GetErrorString());
     // What it says once points and lines are removed.
     return unreadable(
         job, words.starts_with("No meshes remaining") ? "no triangles, but points or lines" : words, files);
@@ -189,7 +189,7 @@ struct Import {
         } catch (const std::bad_alloc&) {
             result.emplace(fail(ErrorCode::kLimit, where + "out of memory; simplify it"));
         } catch (const std::exception& e) {
-            result.emplace(fail(ErrorCode::kInvalidInput, where + oneLine(e.what()) + "; export it again"));
+            result.emplace(fail(ErrorCode::kInvalidInput, where + oneCleanLine(e.what()) + "; export it again"));
         } catch (...) {
             result.emplace(fail(ErrorCode::kInvalidInput, where + "the importer gave up; export it again"));
         }

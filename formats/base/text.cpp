@@ -196,7 +196,7 @@ std::string cleanUtf8(std::string_view bytes, std::size_t size_max) {
     return text;
 }
 
-std::string oneLine(std::string_view text) {
+std::string oneCleanLine(std::string_view text) {
     std::string line(trimmed(text));
     std::replace_if(
         line.begin(), line.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');

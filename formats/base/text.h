@@ -47,6 +47,6 @@ void appendShortest(std::string& out, float value);
 /// \param size_max  bytes: the text ends before the character that would exceed it.
 [[nodiscard]] std::string cleanUtf8(std::string_view bytes, std::size_t size_max = std::string::npos);
 /// Words of another program for a message: cleanUtf8, with spaces for control characters, and none at both ends.
-[[nodiscard]] std::string oneLine(std::string_view text);
+[[nodiscard]] std::string oneCleanLine(std::string_view text);
 
 }  // namespace relief

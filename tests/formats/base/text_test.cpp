@@ -72,7 +72,7 @@ TEST(Words, LinesAndWordsAreCutOff) {
     EXPECT_EQ(takeWord(text), "");
     EXPECT_EQ(takeLine(text), "");
     EXPECT_EQ(lowerCase("\xc3\x84.OBJ-Z@[z"), "\xc3\x84.obj-z@[z");
-    EXPECT_EQ(oneLine(" a\nb\x1b \xff\t"), "a b  \xef\xbf\xbd");
+    EXPECT_EQ(oneCleanLine(" a\nb\x1b \xff\t"), "a b  \xef\xbf\xbd");
     EXPECT_EQ(parseDouble("+1e300"), 1e300);
     EXPECT_EQ(parseDouble("-inf"), -std::numeric_limits<double>::infinity());
     for (const char* wrong : {"", "+", "+-1", " 1", "1x", "1e999"}) {
