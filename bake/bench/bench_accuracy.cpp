@@ -2,7 +2,6 @@
 // scripts/accuracy.sh runs it on its list of meshes.
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -23,22 +22,13 @@
 #include "bake/report/points_csv.h"
 #include "bake/report/report.h"
 #include "formats/base/file_io.h"
+#include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
 
 namespace relief {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-class Stopwatch {
-  public:
-    [[nodiscard]] double seconds() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    }
-
-  private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 // --- who takes part ---
 
@@ -94,12 +84,11 @@ Result<Baked> bakePaper(const TriangleMesh& mesh, std::uint64_t bytes) {
 
 /// What `relief bake --budget` makes.
 Result<Baked> bakeOurs(const TriangleMesh& open_mesh, std::uint64_t bytes) {
-    const TriangleMesh closed = RELIEF_TRY(closeHoles(open_mesh));
-    const TriangleMesh& mesh = closed;
+    const PreparedMesh mesh = RELIEF_TRY(closeHoles(open_mesh));
     const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
     PlanOptions plan_options;
     plan_options.budget_bytes = bytes;
-    const Plan plan = RELIEF_TRY(planViews(mesh, query, plan_options));
+    const Plan plan = RELIEF_TRY(planViews(query, plan_options));
     BakeOptions options;
     options.maps = specsOf(plan);
     return bake(mesh, options);

@@ -4,10 +4,10 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
-#include <chrono>
 #include <functional>
 
 #include "bake/mesh/embree_config.h"
+#include "formats/base/stopwatch.h"
 
 namespace relief {
 
@@ -17,7 +17,7 @@ struct BareLoop::Impl {
 };
 
 BareLoop::BareLoop(const TriangleMesh& mesh) : impl_(std::make_unique<Impl>()) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     impl_->device = rtcNewDevice(kEmbreeConfig);
     impl_->scene = rtcNewScene(impl_->device);
     RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -31,7 +31,7 @@ BareLoop::BareLoop(const TriangleMesh& mesh) : impl_(std::make_unique<Impl>()) {
     rtcReleaseGeometry(geometry);
     rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
     rtcCommitScene(impl_->scene);
-    build_ms_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    build_ms_ = watch.ms();
 }
 
 BareLoop::~BareLoop() {

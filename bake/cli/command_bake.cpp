@@ -3,7 +3,6 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -29,22 +28,13 @@
 #include "formats/base/byte_count.h"
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
+#include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
 
 namespace relief {
 namespace {
 
 constexpr std::uint64_t kBudgetDefault = 1'000'000;  // bytes
-
-class Stopwatch {
-  public:
-    [[nodiscard]] double ms() const {
-        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
-    }
-
-  private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// Every file that the collider was made from, the mesh first.
 std::vector<InputFile> inputsOf(const BakeCommand& command, const TriangleMesh& mesh,
@@ -81,8 +71,8 @@ Result<PlanReport> planMaps(const MeshQuery& query, BakeSettings& settings) {
     report.budget = settings.budget.value_or(kBudgetDefault);
     PlanOptions options;
     options.budget_bytes = report.budget;
-    options.prefer = settings.bake.prefer;
-    Plan plan = RELIEF_TRY(planViews(query.mesh(), query, options));
+    options.views.prefer = settings.bake.prefer;
+    Plan plan = RELIEF_TRY(planViews(query, options));
     report.plan = std::move(plan);
     settings.bake.maps = specsOf(report.plan);
     return report;
@@ -107,8 +97,8 @@ Result<Baked> searchBudget(const MeshQuery& query, const MeshQuery& truth, const
     return std::move(found.baked);
 }
 
-Result<Baked> bakeMaps(const BakeCommand& command, const TriangleMesh& mesh, BakeSettings& settings) {
-    ProgressBar bar("baking " + mesh.name, !command.common.quiet);
+Result<Baked> bakeMaps(const BakeCommand& command, const PreparedMesh& mesh, BakeSettings& settings) {
+    ProgressBar bar("baking " + mesh->name, !command.common.quiet);
     settings.bake.progress = [&bar](double share) { bar.set(share); };
     Result<Baked> baked = bake(mesh, settings.bake);
     if (!baked && settings.source == MapSource::kPlanFile) {
@@ -123,20 +113,17 @@ Result<Baked> bakeMaps(const BakeCommand& command, const TriangleMesh& mesh, Bak
 /// Chooses the maps and bakes them.
 /// \param imported  the mesh as it came, whose points --max-error is about.
 /// \param mesh      the same, its holes closed where it is nearly closed.
-Result<Baked> makeCollider(const BakeCommand& command, const TriangleMesh& imported, const TriangleMesh& mesh,
+Result<Baked> makeCollider(const BakeCommand& command, const PreparedMesh& imported, const PreparedMesh& mesh,
                            BakeSettings& settings, std::optional<PlanReport>& plan, BakeTimes& times) {
     if (settings.source == MapSource::kPlanner) {
         const Stopwatch watch;
         const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
         if (settings.max_error) {
-            std::optional<Result<MeshQuery>> open;
-            if (mesh.closed_holes > 0 || !command.care.repair.empty()) {
-                open = MeshQuery::build(imported);
-                if (!*open) {
-                    return forward(*open);
-                }
+            MeshQuery truth = query;
+            if (mesh->closed_holes > 0 || !command.care.repair.empty()) {
+                truth = RELIEF_TRY(MeshQuery::build(imported));
             }
-            Result<Baked> baked = searchBudget(query, open ? **open : query, settings, plan);
+            Result<Baked> baked = searchBudget(query, truth, settings, plan);
             times.search_ms = watch.ms();
             return baked;
         }
@@ -219,33 +206,27 @@ Result<void> runBake(const BakeCommand& command) {
 
     BakeTimes times;
     const Stopwatch import_watch;
-    Result<TriangleMesh> mesh = importByArguments(command.mesh, command.import);
+    TriangleMesh loaded = RELIEF_TRY(importByArguments(command.mesh, command.import));
     times.import_ms = import_watch.ms();
-    if (!mesh) {
-        return forward(mesh);
-    }
-    spdlog::debug("{}: {} triangles, {} vertices, XXH3-128 {}", mesh->name, mesh->triangles.size(),
-                  mesh->positions.size(), mesh->content_hash);
-    if (mesh->dropped_triangles > 0) {
-        spdlog::debug("{}: {} triangles without area dropped", mesh->name, mesh->dropped_triangles);
+    spdlog::debug("{}: {} triangles, {} vertices, XXH3-128 {}", loaded.name, loaded.triangles.size(),
+                  loaded.positions.size(), loaded.content_hash);
+    if (loaded.dropped_triangles > 0) {
+        spdlog::debug("{}: {} triangles without area dropped", loaded.name, loaded.dropped_triangles);
     }
 
-    std::optional<TriangleMesh> imported;  // only --max-error looks back
+    std::optional<PreparedMesh> imported;  // only --max-error looks back
     if (settings.max_error && (command.holes == "close" || !command.care.repair.empty())) {
-        imported = *mesh;
+        imported = loaded;
     }
     MeshCareOptions care_options = command.care;
     care_options.report = command.json || !command.common.quiet;
-    CaredMesh cared = RELIEF_TRY(careFor(std::move(*mesh), care_options));
-    mesh = std::move(cared.mesh);
+    CaredMesh cared = RELIEF_TRY(careFor(std::move(loaded), care_options));
+    PreparedMesh mesh = std::move(cared.mesh);
     if (command.holes == "close") {
-        mesh = closeHoles(std::move(*mesh));
-        if (!mesh) {
-            return forward(mesh);
-        }
+        mesh = RELIEF_TRY(closeHoles(mesh));
     }
     std::optional<PlanReport> plan;
-    Result<Baked> baked = makeCollider(command, imported ? *imported : *mesh, *mesh, settings, plan, times);
+    Result<Baked> baked = makeCollider(command, imported.value_or(mesh), mesh, settings, plan, times);
     if (backend.raster) {
         backend.gl.watchdog->rest();
     }

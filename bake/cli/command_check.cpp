@@ -106,10 +106,10 @@ Result<void> runCheck(const CheckCommand& command) {
         }
     }
     const Collider collider = RELIEF_TRY(loadCollider(command.file));
-    const TriangleMesh imported = RELIEF_TRY(importByArguments(command.mesh, command.import));
+    TriangleMesh imported = RELIEF_TRY(importByArguments(command.mesh, command.import));
     // As baked: where solids overlap, their winding decides what is inside.
-    const Winding winding = RELIEF_TRY(windOutwards(imported));
-    const TriangleMesh* const mesh = &winding.mesh;
+    const Winding winding = RELIEF_TRY(windOutwards(std::move(imported)));
+    const PreparedMesh& mesh = winding.mesh;
     RELIEF_TRY(checkSameMesh(collider, *mesh));
     const bool same_file = collider.provenance.mesh_hash == mesh->content_hash;
     std::vector<std::string> warnings = mesh->warnings;
@@ -123,7 +123,7 @@ Result<void> runCheck(const CheckCommand& command) {
     for (const std::string& warning : warnings) {
         spdlog::warn(warning);
     }
-    const MeshQuery query = RELIEF_TRY(MeshQuery::build(*mesh));
+    const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
     const TruthSamples samples = sampleTruth(query, settings.accuracy);
     const ColliderAccuracy accuracy = measureCollider(samples, query, collider);
     spdlog::debug("truth {:.2f} s, field {:.2f} s", samples.seconds, accuracy.field.seconds);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <set>
 #include <span>
 #include <thread>
@@ -16,6 +15,7 @@
 #include "bake/report/recipe_report.h"
 #include "bake/report/report.h"
 #include "formats/base/file_io.h"
+#include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
 
 namespace relief {
@@ -239,10 +239,7 @@ Result<void> checkOneBake(const CLI::App& verb) {
 
 Result<void> runRecipeCommand(const RecipeOptionsOfBake& options, const RecipeCall& call) {
     startLogging(call.common);
-    const auto start = std::chrono::steady_clock::now();
-    const auto elapsed = [&start] {
-        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-    };
+    const Stopwatch watch;
     Result<RecipeRun> run = runOf(options, call);
     const Result<Shard> shard = parseShard(options.shard);
     for (const Result<void>& check : {checkOptions(call), run ? Result<void>() : Result<void>(forward(run)),
@@ -315,7 +312,7 @@ Result<void> runRecipeCommand(const RecipeOptionsOfBake& options, const RecipeCa
         return forward(result);
     }
     const RecipeCounts counts = countAssets(result->assets);
-    const double ms = elapsed();
+    const double ms = watch.ms();
     Json summary = {{"event", "summary"}};
     summary.update(jsonCounts(counts));
     summary["ms"] = ms;

@@ -4,7 +4,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "formats/base/portable_math.h"
+#include "formats/base/stopwatch.h"
 
 namespace relief {
 namespace {
@@ -203,7 +203,7 @@ Field fieldOf(const Collider& collider) {
 }
 
 FieldAccuracy measureField(const TruthSamples& samples, const Field& field) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     FieldAccuracy accuracy;
     {
         const std::vector<std::optional<FieldValue>> values = evaluateAt(samples.near, field);
@@ -212,7 +212,7 @@ FieldAccuracy measureField(const TruthSamples& samples, const Field& field) {
     }
     accuracy.uniform = wrongShare(samples.uniform, evaluateAt(samples.uniform, field));
     measureNormals(samples.surface, field, accuracy);
-    accuracy.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    accuracy.seconds = watch.seconds();
     return accuracy;
 }
 

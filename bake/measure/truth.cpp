@@ -3,12 +3,11 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "bake/mesh/triangle_plane.h"
 #include "formats/base/portable_math.h"
+#include "formats/base/stopwatch.h"
 
 namespace relief {
 namespace {
@@ -50,94 +49,94 @@ class SplitMixRandom {
     std::uint64_t state_;
 };
 
-/// Draws points of a mesh, every part of its area as likely as any other.
-class AreaSampler {
-  public:
-    explicit AreaSampler(const TriangleMesh& mesh) : mesh_(mesh) {
-        area_up_to_.reserve(mesh.triangles.size());
-        double sum = 0.0;
-        for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-            const TrianglePlane plane = planeOf(mesh, i);
-            sum += std::sqrt(dot(plane.normal, plane.normal));
-            area_up_to_.push_back(sum);
-        }
-    }
-
-    struct Point {
-        glm::dvec3 position;
-        std::uint32_t triangle;
-    };
-    [[nodiscard]] Point draw(SplitMixRandom& random) const {
-        const double at = random.uniform() * area_up_to_.back();
-        const auto found = std::upper_bound(area_up_to_.begin(), area_up_to_.end() - 1, at);
-        const auto triangle = static_cast<std::uint32_t>(found - area_up_to_.begin());
-        double u = random.uniform();
-        double v = random.uniform();
-        if (u + v > 1.0) {
-            u = 1.0 - u;
-            v = 1.0 - v;
-        }
-        const glm::uvec3& t = mesh_.triangles[triangle];
-        const glm::dvec3 a = mesh_.positions[t.x];
-        return {a + u * (glm::dvec3(mesh_.positions[t.y]) - a) + v * (glm::dvec3(mesh_.positions[t.z]) - a),
-                triangle};
-    }
-
-  private:
-    const TriangleMesh& mesh_;
-    std::vector<double> area_up_to_;  // twice the area, up to and including each triangle
-};
-
 constexpr std::uint64_t kSurfaceKind = 1;
 constexpr std::uint64_t kNearKind = 2;
 constexpr std::uint64_t kUniformKind = 3;
 
+/// Draws the i-th sample of each kind.
+class Sampler {
+  public:
+    Sampler(const MeshQuery& query, const AccuracyOptions& options)
+        : query_(query),
+          mesh_(query.mesh()),
+          areas_(query.prepared().areas()),
+          winding_(query.prepared().orientation()),
+          options_(options),
+          longest_side_(static_cast<double>(mesh_.bounds.longestSide())),
+          low_(mesh_.bounds.min),
+          size_(glm::dvec3(mesh_.bounds.max) - low_) {}
+
+    [[nodiscard]] SurfacePoint onSurface(std::uint32_t i) const {
+        SplitMixRandom random(options_.seed, kSurfaceKind, i);
+        const auto [position, triangle] = draw(random);
+        const double step = kSurfaceStep * longest_side_;
+        glm::dvec3 normal = planeOf(mesh_, triangle).normal;
+        normal *= winding_ / std::sqrt(dot(normal, normal));
+        const bool front_inside = query_.inside(position + step * normal);
+        const bool back_inside = query_.inside(position - step * normal);
+        if (front_inside && !back_inside) {
+            normal = -normal;
+        }
+        return {position, normal, front_inside && back_inside};
+    }
+
+    [[nodiscard]] TruthPoint nearSurface(std::uint32_t i) const {
+        SplitMixRandom random(options_.seed, kNearKind, i);
+        const glm::dvec3 from = draw(random).position;
+        const glm::vec3 near = from + options_.sigma_share * longest_side_ * random.gaussian();
+        return {near, static_cast<float>(query_.signedDistance(near))};
+    }
+
+    [[nodiscard]] TruthPoint inBox(std::uint32_t i) const {
+        SplitMixRandom random(options_.seed, kUniformKind, i);
+        const double x = random.uniform();
+        const double y = random.uniform();
+        const double z = random.uniform();
+        const glm::vec3 p = low_ + size_ * glm::dvec3(x, y, z);
+        return {p, query_.inside(p) ? -1.0F : 1.0F};
+    }
+
+  private:
+    struct Draw {
+        glm::dvec3 position;
+        std::uint32_t triangle;
+    };
+    [[nodiscard]] Draw draw(SplitMixRandom& random) const {
+        const std::uint32_t triangle = areas_.triangleAt(random.uniform());
+        const double u = random.uniform();
+        const double v = random.uniform();
+        return {pointOn(mesh_, triangle, u, v), triangle};
+    }
+
+    const MeshQuery& query_;
+    const TriangleMesh& mesh_;
+    const AreaTable& areas_;
+    double winding_;
+    const AccuracyOptions& options_;
+    double longest_side_;
+    glm::dvec3 low_;
+    glm::dvec3 size_;
+};
+
 }  // namespace
 
 TruthSamples sampleTruth(const MeshQuery& query, const AccuracyOptions& options) {
-    const auto start = std::chrono::steady_clock::now();
-    const TriangleMesh& mesh = query.mesh();
+    const Stopwatch watch;
     TruthSamples samples;
     samples.options = options;
-    samples.longest_side = static_cast<double>(mesh.bounds.longestSide());
+    samples.longest_side = static_cast<double>(query.mesh().bounds.longestSide());
     samples.near.resize(options.samples);
     samples.uniform.resize(options.samples);
     samples.surface.resize(options.samples);
-
-    const AreaSampler area(mesh);
-    const double winding = orientation(mesh);
-    const double sigma = options.sigma_share * samples.longest_side;
-    const double step = kSurfaceStep * samples.longest_side;
-    const glm::dvec3 low = mesh.bounds.min;
-    const glm::dvec3 size = glm::dvec3(mesh.bounds.max) - low;
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, options.samples, 256),
-                      [&](const tbb::blocked_range<std::uint32_t>& range) {
-                          for (std::uint32_t i = range.begin(); i != range.end(); ++i) {
-                              SplitMixRandom surface_random(options.seed, kSurfaceKind, i);
-                              const AreaSampler::Point on = area.draw(surface_random);
-                              glm::dvec3 normal = planeOf(mesh, on.triangle).normal;
-                              normal *= winding / std::sqrt(dot(normal, normal));
-                              const bool front_inside = query.inside(on.position + step * normal);
-                              const bool back_inside = query.inside(on.position - step * normal);
-                              if (front_inside && !back_inside) {
-                                  normal = -normal;
-                              }
-                              samples.surface[i] = {on.position, normal, front_inside && back_inside};
-
-                              SplitMixRandom near_random(options.seed, kNearKind, i);
-                              const glm::dvec3 from = area.draw(near_random).position;
-                              const glm::vec3 near = from + sigma * near_random.gaussian();
-                              samples.near[i] = {near, static_cast<float>(query.signedDistance(near))};
-
-                              SplitMixRandom uniform_random(options.seed, kUniformKind, i);
-                              const double x = uniform_random.uniform();
-                              const double y = uniform_random.uniform();
-                              const double z = uniform_random.uniform();
-                              const glm::vec3 uniform = low + size * glm::dvec3(x, y, z);
-                              samples.uniform[i] = {uniform, query.inside(uniform) ? -1.0F : 1.0F};
-                          }
-                      });
-    samples.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const Sampler sampler(query, options);
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, options.samples, 256), [&](const auto& range) {
+        for (std::uint32_t i = range.begin(); i != range.end(); ++i) {
+            samples.surface[i] = sampler.onSurface(i);
+            samples.near[i] = sampler.nearSurface(i);
+            samples.uniform[i] = sampler.inBox(i);
+        }
+    });
+    samples.seconds = watch.seconds();
     return samples;
 }
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "bake/mesh/mesh_edges.h"
 #include "bake/mesh/triangle_plane.h"
 
 namespace relief {
@@ -40,7 +39,8 @@ int crosses(const glm::dvec3& a, const glm::dvec3& edge1, const glm::dvec3& edge
 
 }  // namespace
 
-bool insideByParity(const TriangleMesh& mesh, const glm::vec3& point) {
+bool insideByParity(const PreparedMesh& prepared, const glm::vec3& point) {
+    const TriangleMesh& mesh = *prepared;
     const glm::dvec3 origin = point;
     const auto count = [&](const tbb::blocked_range<std::size_t>& range, Crossings crossings) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
@@ -74,7 +74,7 @@ bool insideByParity(const TriangleMesh& mesh, const glm::vec3& point) {
     const bool odd = by_parity > kDirections / 2;
     const bool wound = by_winding > kDirections / 2;
     // Only where they disagree does it matter whose word counts, which takes longer to find out.
-    return odd == wound || !mesh.wound_outwards || !isSeveralShells(edgesOf(mesh)) ? odd : wound;
+    return odd == wound || !prepared.woundShells() ? odd : wound;
 }
 
 }  // namespace relief

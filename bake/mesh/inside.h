@@ -4,11 +4,11 @@
 #include <array>
 #include <glm/vec3.hpp>
 
-#include "bake/mesh/mesh.h"
+#include "bake/mesh/prepared_mesh.h"
 
 namespace relief {
 
-/// Of the rays whose crossings are counted; about unit length.
+/// Directions of the rays whose crossings are counted; about unit length.
 inline constexpr std::array<glm::dvec3, 7> kParityDirections = {{{0.5773, 0.6137, 0.5386},
                                                                  {-0.7351, 0.3119, 0.6019},
                                                                  {0.2677, -0.8713, 0.4111},
@@ -17,10 +17,10 @@ inline constexpr std::array<glm::dvec3, 7> kParityDirections = {{{0.5773, 0.6137
                                                                  {0.8819, -0.2749, -0.3829},
                                                                  {-0.6131, 0.7717, -0.1693}}};
 
-/// The majority over seven fixed directions, none of them special to any model, of the parity of the number
-/// of surfaces that a ray from `point` crosses; of a mesh that windOutwards has seen to, as
-/// MeshQuery::inside, of whether its shells wind round the point. The winding of other meshes does not
-/// matter, and a few holes do not either. Cost: all triangles, in double precision, on all cores.
-[[nodiscard]] bool insideByParity(const TriangleMesh& mesh, const glm::vec3& point);
+/// Seven rays from `point` vote: each says "inside" if it crosses the surface an odd number of times. No model
+/// is built along their directions. If PreparedMesh::woundShells, a ray says "inside" if the shells wind round
+/// the point; otherwise the winding does not matter. A few holes do not matter either. Looks at all triangles,
+/// in double precision, on all cores; needs no tree.
+[[nodiscard]] bool insideByParity(const PreparedMesh& prepared, const glm::vec3& point);
 
 }  // namespace relief

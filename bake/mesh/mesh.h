@@ -33,8 +33,6 @@ struct TriangleMesh {
     std::vector<std::string> dependencies;
     std::vector<std::string> dependency_hashes;  ///< XXH3-128 of each file's bytes, in the same order
     std::vector<std::string> warnings;           ///< what its importer has to say; one line each
-    /// windOutwards (winding.h) has seen to it: hollows are wound against the surface about them.
-    bool wound_outwards = false;
 
     [[nodiscard]] std::uint64_t sourceTriangles() const { return triangles.size() - cap_triangles; }
 };

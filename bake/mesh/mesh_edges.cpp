@@ -2,12 +2,10 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <bit>
-#include <functional>
 #include <numeric>
 #include <span>
 #include <tuple>
@@ -27,8 +25,8 @@ std::uint64_t mixed(std::uint64_t z) {
     return z ^ (z >> 31);
 }
 
-/// The same for equal positions and salts.
-std::uint64_t hashOf(const glm::vec3& p, std::uint64_t salt = 0) {
+/// The same for equal positions.
+std::uint64_t hashOf(const glm::vec3& p, std::uint64_t salt) {
     // −0 equals 0, and plus 0 is the same bits.
     const auto bits = [](float value) { return std::uint64_t{std::bit_cast<std::uint32_t>(value + 0.0F)}; };
     return mixed(mixed((bits(p.x) << 32 | bits(p.y)) ^ salt) + bits(p.z));
@@ -108,23 +106,6 @@ MeshEdges edgesOf(const TriangleMesh& mesh) {
     return edges;
 }
 
-bool edgesAreEven(const TriangleMesh& mesh) {
-    std::vector<std::uint64_t> hashes(mesh.positions.size());
-    std::transform(mesh.positions.begin(), mesh.positions.end(), hashes.begin(),
-                   [](const glm::vec3& p) { return hashOf(p); });
-    // Equal edges cancel out in pairs.
-    const auto sum = [&](const tbb::blocked_range<std::size_t>& range, std::uint64_t odd) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            const glm::uvec3& t = mesh.triangles[i];
-            odd ^= mixed(hashes[t.x] + hashes[t.y]) ^ mixed(hashes[t.y] + hashes[t.z]) ^
-                   mixed(hashes[t.z] + hashes[t.x]);
-        }
-        return odd;
-    };
-    return tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, mesh.triangles.size(), 4096),
-                                std::uint64_t{0}, sum, std::bit_xor<>()) == 0;
-}
-
 bool isSeveralShells(const MeshEdges& edges) {
     DisjointSets triangles(edges.uses.size() / 3);
     std::size_t groups = edges.uses.size() / 3;
@@ -153,10 +134,6 @@ std::vector<OddEdge> oddEdges(const MeshEdges& edges) {
         }
     });
     return odd;
-}
-
-std::vector<OddEdge> oddEdges(const TriangleMesh& mesh) {
-    return oddEdges(edgesOf(mesh));
 }
 
 }  // namespace relief

@@ -19,7 +19,7 @@ struct OddEdge {
     friend bool operator==(const OddEdge&, const OddEdge&) = default;
 };
 
-/// Of each vertex the lowest index of an equal position.
+/// For each vertex, the lowest index of an equal position.
 [[nodiscard]] std::vector<std::uint32_t> weldedVertices(const TriangleMesh& mesh);
 
 /// One side of a triangle, between vertices as welded.
@@ -79,15 +79,10 @@ void forEachEdge(const std::vector<EdgeUse>& uses, const Visit& visit) {
 /// In ascending order of the lower and then of the higher vertex. None: any ray from a point meets the
 /// surface as often, modulo 2, as any other.
 [[nodiscard]] std::vector<OddEdge> oddEdges(const MeshEdges& edges);
-[[nodiscard]] std::vector<OddEdge> oddEdges(const TriangleMesh& mesh);
 
 /// Several closed surfaces, each wound consistently: every edge runs as often one way as the other, and the
 /// triangles fall into groups that share no edge. Such surfaces may overlap; how often they wind round a
 /// point, not the parity of a ray's crossings, says then whether it lies in one of them.
 [[nodiscard]] bool isSeveralShells(const MeshEdges& edges);
-
-/// Whether there is no odd edge, without sorting: by a sum of 64-bit hashes of the edges. Wrong for one open
-/// mesh in 2⁶⁴, which then seems closed.
-[[nodiscard]] bool edgesAreEven(const TriangleMesh& mesh);
 
 }  // namespace relief

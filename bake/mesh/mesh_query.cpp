@@ -9,7 +9,6 @@
 
 #include "bake/mesh/embree_mesh.h"
 #include "bake/mesh/inside.h"
-#include "bake/mesh/mesh_edges.h"
 #include "bake/mesh/triangle_plane.h"
 
 namespace relief {
@@ -127,91 +126,63 @@ double depthAt(const TriangleMesh& mesh, std::uint32_t triangle, const glm::dvec
     return std::max(0.0, depth >= low ? std::min(depth, high) : low);
 }
 
-}  // namespace
+CrossingCounter countCrossings(const EmbreeMesh& tree, const glm::vec3& p, const glm::dvec3& direction) {
+    CrossingCounter counter;
+    RTCRayHit query = rayHit(tree.toLocal(p), direction, std::numeric_limits<float>::infinity());
+    rtcIntersect1(tree.scene.get(), &counter.context, &query);
+    return counter;
+}
 
-struct MeshQuery::Impl {
-    const TriangleMesh* mesh = nullptr;
-    EmbreeMesh tree;
-    bool watertight = false;
-    bool shells = false;  // isSeveralShells
+/// One search for the closest point; in Embree's units.
+struct Search {
+    const TriangleMesh& mesh;
+    const EmbreeMesh& tree;
+    glm::dvec3 p;
+    float slack;  // added to the search radius: Embree's boxes and the query are floats
+    double best_squared = std::numeric_limits<double>::infinity();
+    std::uint32_t triangle = RTC_INVALID_GEOMETRY_ID;
+    glm::dvec3 point{0.0};
 
-    [[nodiscard]] CrossingCounter count(const glm::vec3& p, const glm::dvec3& direction) const {
-        CrossingCounter counter;
-        RTCRayHit query = rayHit(tree.toLocal(p), direction, std::numeric_limits<float>::infinity());
-        rtcIntersect1(tree.scene.get(), &counter.context, &query);
-        return counter;
-    }
+    [[nodiscard]] float radius() const { return static_cast<float>(std::sqrt(best_squared)) + slack; }
 
-    /// One search for the closest point; local space.
-    struct Search {
-        const Impl* impl;
-        glm::dvec3 p;
-        float slack;  // added to the search radius: Embree's boxes and the query are floats
-        double best_squared = std::numeric_limits<double>::infinity();
-        std::uint32_t triangle = RTC_INVALID_GEOMETRY_ID;
-        glm::dvec3 point{0.0};
-
-        [[nodiscard]] float radius() const { return static_cast<float>(std::sqrt(best_squared)) + slack; }
-
-        /// \return true if the triangle is closer than the best so far.
-        bool add(std::uint32_t index) {
-            const std::vector<glm::vec3>& positions = impl->mesh->positions;
-            const glm::uvec3& t = impl->mesh->triangles[index];
-            const glm::dvec3 closest =
-                closestOnTriangle(p, impl->tree.toLocal(positions[t.x]), impl->tree.toLocal(positions[t.y]),
-                                  impl->tree.toLocal(positions[t.z]));
-            const glm::dvec3 offset = closest - p;
-            const double squared = dot(offset, offset);
-            // Of equals the lowest index: the order of the visits must not matter.
-            if (squared < best_squared || (squared == best_squared && index < triangle)) {
-                best_squared = squared;
-                triangle = index;
-                point = closest;
-                return true;
-            }
-            return false;
-        }
-
-        static bool visit(RTCPointQueryFunctionArguments* args) {
-            auto* self = static_cast<Search*>(args->userPtr);
-            if (!self->add(args->primID)) {
-                return false;
-            }
-            args->query->radius = self->radius();
+    /// \return true if the triangle is closer than the best so far.
+    bool add(std::uint32_t index) {
+        const glm::uvec3& t = mesh.triangles[index];
+        const glm::dvec3 closest =
+            closestOnTriangle(p, tree.toLocal(mesh.positions[t.x]), tree.toLocal(mesh.positions[t.y]),
+                              tree.toLocal(mesh.positions[t.z]));
+        const glm::dvec3 offset = closest - p;
+        const double squared = dot(offset, offset);
+        // Of equals the lowest index: the order of the visits must not matter.
+        if (squared < best_squared || (squared == best_squared && index < triangle)) {
+            best_squared = squared;
+            triangle = index;
+            point = closest;
             return true;
         }
-    };
+        return false;
+    }
+
+    static bool visit(RTCPointQueryFunctionArguments* args) {
+        auto* self = static_cast<Search*>(args->userPtr);
+        if (!self->add(args->primID)) {
+            return false;
+        }
+        args->query->radius = self->radius();
+        return true;
+    }
 };
 
-MeshQuery::MeshQuery(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
-MeshQuery::MeshQuery(MeshQuery&&) noexcept = default;
-MeshQuery& MeshQuery::operator=(MeshQuery&&) noexcept = default;
-MeshQuery::~MeshQuery() = default;
+}  // namespace
 
-const TriangleMesh& MeshQuery::mesh() const {
-    return *impl_->mesh;
-}
-
-bool MeshQuery::watertight() const {
-    return impl_->watertight;
-}
-
-Result<MeshQuery> MeshQuery::build(const TriangleMesh& mesh) {
-    auto impl = std::make_unique<Impl>();
-    impl->mesh = &mesh;
-    {
-        const MeshEdges edges = edgesOf(mesh);
-        impl->watertight = oddEdges(edges).empty();
-        impl->shells = impl->watertight && mesh.wound_outwards && isSeveralShells(edges);
-    }
-    EmbreeMesh tree = RELIEF_TRY(EmbreeMesh::build(mesh));
-    impl->tree = std::move(tree);
-    return MeshQuery(std::move(impl));
+Result<MeshQuery> MeshQuery::build(PreparedMesh mesh) {
+    const EmbreeMesh* const tree = RELIEF_TRY(mesh.tree());
+    return MeshQuery(std::move(mesh), *tree);
 }
 
 bool MeshQuery::inside(const glm::vec3& p) const {
-    const glm::vec3& low = impl_->mesh->bounds.min;
-    const glm::vec3& high = impl_->mesh->bounds.max;
+    const glm::vec3& low = mesh().bounds.min;
+    const glm::vec3& high = mesh().bounds.max;
     for (int i = 0; i < 3; ++i) {
         // Written so that NaN is outside.
         if (!(p[i] >= low[i] && p[i] <= high[i])) {
@@ -221,8 +192,8 @@ bool MeshQuery::inside(const glm::vec3& p) const {
     constexpr std::size_t kMajority = kParityDirections.size() / 2 + 1;
     std::size_t votes[2] = {0, 0};
     for (const glm::dvec3& direction : kParityDirections) {
-        const CrossingCounter counter = impl_->count(p, direction);
-        const bool inside = impl_->shells ? counter.winding != 0 : counter.count % 2 == 1;
+        const CrossingCounter counter = countCrossings(*tree_, p, direction);
+        const bool inside = shells_ ? counter.winding != 0 : counter.count % 2 == 1;
         if (++votes[inside ? 1 : 0] == kMajority) {
             break;
         }
@@ -231,13 +202,13 @@ bool MeshQuery::inside(const glm::vec3& p) const {
 }
 
 unsigned MeshQuery::crossings(const glm::vec3& p, const glm::dvec3& direction) const {
-    return impl_->count(p, direction).count;
+    return countCrossings(*tree_, p, direction).count;
 }
 
 ClosestPoint MeshQuery::closest(const glm::vec3& p, std::optional<std::uint32_t> hint) const {
-    const glm::dvec3 local = impl_->tree.toLocal(p);
+    const glm::dvec3 local = tree_->toLocal(p);
     const double size = std::max({std::abs(local.x), std::abs(local.y), std::abs(local.z)});
-    Impl::Search search{impl_.get(), local, static_cast<float>(2e-6 * (1.0 + size))};
+    Search search{mesh(), *tree_, local, static_cast<float>(2e-6 * (1.0 + size))};
     if (hint) {
         search.add(*hint);
     }
@@ -249,9 +220,9 @@ ClosestPoint MeshQuery::closest(const glm::vec3& p, std::optional<std::uint32_t>
     query.y = at.y;
     query.z = at.z;
     query.radius = search.radius();
-    rtcPointQuery(impl_->tree.scene.get(), &query, &context, Impl::Search::visit, &search);
-    return {std::sqrt(search.best_squared) / impl_->tree.scale, search.triangle,
-            search.point / impl_->tree.scale + impl_->tree.center};
+    rtcPointQuery(tree_->scene.get(), &query, &context, Search::visit, &search);
+    return {std::sqrt(search.best_squared) / tree_->scale, search.triangle,
+            search.point / tree_->scale + tree_->center};
 }
 
 double MeshQuery::signedDistance(const glm::vec3& p) const {
@@ -263,21 +234,21 @@ bool MeshQuery::segmentIsFree(const glm::dvec3& from, const glm::dvec3& to) cons
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRay ray{};
-    setRay(ray, impl_->tree.toLocal(from), (to - from) * impl_->tree.scale, 1.0F);
-    rtcOccluded1(impl_->tree.scene.get(), &context, &ray);
+    setRay(ray, tree_->toLocal(from), (to - from) * tree_->scale, 1.0F);
+    rtcOccluded1(tree_->scene.get(), &context, &ray);
     return ray.tfar >= 0.0F;
 }
 
 std::optional<FirstHit> MeshQuery::firstHit(const glm::dvec3& origin, const glm::dvec3& direction) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    RTCRayHit query = rayHit(impl_->tree.toLocal(origin), direction * impl_->tree.scale,
-                             std::numeric_limits<float>::infinity());
-    rtcIntersect1(impl_->tree.scene.get(), &context, &query);
+    RTCRayHit query =
+        rayHit(tree_->toLocal(origin), direction * tree_->scale, std::numeric_limits<float>::infinity());
+    rtcIntersect1(tree_->scene.get(), &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
         return std::nullopt;
     }
-    return FirstHit{depthAt(*impl_->mesh, query.hit.primID, origin, direction), query.hit.primID};
+    return FirstHit{depthAt(mesh(), query.hit.primID, origin, direction), query.hit.primID};
 }
 
 }  // namespace relief

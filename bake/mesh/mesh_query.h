@@ -4,10 +4,9 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
-#include <memory>
 #include <optional>
 
-#include "bake/mesh/mesh.h"
+#include "bake/mesh/prepared_mesh.h"
 #include "formats/base/result.h"
 
 namespace relief {
@@ -25,24 +24,20 @@ struct FirstHit {
     std::uint32_t triangle = 0;
 };
 
-/// A mesh in an acceleration structure of its own. All questions may be asked from any thread, and their
-/// answers depend neither on the number of threads nor on the order of the questions.
+/// All questions may be asked from any thread, and their answers depend neither on the number of threads nor
+/// on the order of the questions.
 class MeshQuery {
   public:
-    /// \param mesh  borrowed; must outlive the query.
-    /// Errors: kFailure with Embree's words; kUnsupported; kLimit when out of memory.
-    [[nodiscard]] static Result<MeshQuery> build(const TriangleMesh& mesh);
-    MeshQuery(MeshQuery&&) noexcept;
-    MeshQuery& operator=(MeshQuery&&) noexcept;
-    ~MeshQuery();
+    /// Shares the mesh's tree. Errors: those of EmbreeMesh::build.
+    [[nodiscard]] static Result<MeshQuery> build(PreparedMesh mesh);
 
-    [[nodiscard]] const TriangleMesh& mesh() const;
+    [[nodiscard]] const PreparedMesh& prepared() const { return mesh_; }
+    [[nodiscard]] const TriangleMesh& mesh() const { return *mesh_; }
 
-    /// The majority over the directions of inside.h of the parity of the number of surfaces that a ray from
-    /// `p` crosses. One traversal a ray counts them all. The winding of the triangles does not matter; where
-    /// the mesh is open, most directions still pass its holes by. Once windOutwards (winding.h) has seen to
-    /// the mesh, and it is of several closed surfaces, the winding number decides: where two solids overlap
-    /// is inside.
+    /// Seven rays from `p` vote, as insideByParity (inside.h) has it; one traversal a ray counts all crossings.
+    /// The winding of the triangles does not matter. Where the mesh is open, most rays still miss its holes.
+    /// If PreparedMesh::woundShells, the winding number decides instead, so that the overlap of two solids is
+    /// inside.
     [[nodiscard]] bool inside(const glm::vec3& p) const;
 
     /// How many triangles a ray from `p` meets.
@@ -51,7 +46,7 @@ class MeshQuery {
 
     /// Every edge belongs to an even number of triangles, where equal positions are one: inside() is then the
     /// same at both ends of any segment that meets no surface.
-    [[nodiscard]] bool watertight() const;
+    [[nodiscard]] bool watertight() const { return mesh_.closed(); }
 
     /// The lowest index of equally close triangles.
     /// \param hint  a triangle that is probably near: saves time, and does not change the distance.
@@ -68,9 +63,12 @@ class MeshQuery {
                                                    const glm::dvec3& direction) const;
 
   private:
-    struct Impl;
-    explicit MeshQuery(std::unique_ptr<Impl> impl);
-    std::unique_ptr<Impl> impl_;
+    MeshQuery(PreparedMesh mesh, const EmbreeMesh& tree)
+        : mesh_(std::move(mesh)), tree_(&tree), shells_(mesh_.woundShells()) {}
+
+    PreparedMesh mesh_;
+    const EmbreeMesh* tree_;  // mesh_ holds it
+    bool shells_;             // PreparedMesh::woundShells
 };
 
 }  // namespace relief

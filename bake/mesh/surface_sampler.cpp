@@ -20,36 +20,28 @@ struct NearDraw {
 
 }  // namespace
 
-SurfaceSampler::SurfaceSampler(const TriangleMesh& mesh)
-    : mesh_(mesh), area_before_(mesh.triangles.size() + 1, 0.0) {
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-        const glm::dvec3 n = planeOf(mesh, static_cast<std::uint32_t>(i)).normal;
-        area_before_[i + 1] = area_before_[i] + std::sqrt(dot(n, n));
-    }
-}
-
-SurfaceDraw SurfaceSampler::draw(double at, MersenneRandom& random) const {
-    const auto above =
-        std::upper_bound(area_before_.begin() + 1, area_before_.end() - 1, at * area_before_.back());
-    const auto triangle = static_cast<std::uint32_t>(above - area_before_.begin() - 1);
+SurfaceDraw drawOnSurface(const TriangleMesh& mesh, const AreaTable& areas, double at,
+                          MersenneRandom& random) {
+    const std::uint32_t triangle = areas.triangleAt(at);
     const double root = std::sqrt(random.uniform());
     const double along = random.uniform();
-    const glm::uvec3& t = mesh_.triangles[triangle];
-    const glm::dvec3 normal = planeOf(mesh_, triangle).normal;
-    return {(1.0 - root) * glm::dvec3(mesh_.positions[t.x]) +
-                root * (1.0 - along) * glm::dvec3(mesh_.positions[t.y]) +
-                root * along * glm::dvec3(mesh_.positions[t.z]),
+    const glm::uvec3& t = mesh.triangles[triangle];
+    const glm::dvec3 normal = planeOf(mesh, triangle).normal;
+    return {(1.0 - root) * glm::dvec3(mesh.positions[t.x]) +
+                root * (1.0 - along) * glm::dvec3(mesh.positions[t.y]) +
+                root * along * glm::dvec3(mesh.positions[t.z]),
             normal / std::sqrt(dot(normal, normal))};
 }
 
-std::vector<LabelledPoint> drawNearSurface(const TriangleMesh& mesh, const MeshQuery& query,
-                                           std::size_t count, double sigma, std::uint64_t seed) {
-    const SurfaceSampler sampler(mesh);
-    const double winding = orientation(mesh);
+std::vector<LabelledPoint> drawNearSurface(const MeshQuery& query, std::size_t count, double sigma,
+                                           std::uint64_t seed) {
+    const TriangleMesh& mesh = query.mesh();
+    const AreaTable& areas = query.prepared().areas();
+    const double winding = query.prepared().orientation();
     const double clear = 1e-5 * mesh.bounds.longestSide();  // of the surface itself, for rays
     const auto draw = [&](std::size_t i, std::size_t of, MersenneRandom& random) {
         const double at = (static_cast<double>(i) + random.uniform()) / static_cast<double>(of);
-        SurfaceDraw surface = sampler.draw(at, random);
+        SurfaceDraw surface = drawOnSurface(mesh, areas, at, random);
         surface.normal *= winding;
         return NearDraw{surface, sigma * random.normal()};
     };

@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "bake/mesh/area_table.h"
 #include "bake/mesh/mesh.h"
 #include "bake/mesh/mesh_query.h"
 
@@ -55,18 +56,9 @@ struct SurfaceDraw {
     glm::dvec3 normal;  ///< unit length, by the triangle's winding
 };
 
-/// Draws points spread evenly over the area.
-class SurfaceSampler {
-  public:
-    /// \param mesh  borrowed; must outlive the sampler.
-    explicit SurfaceSampler(const TriangleMesh& mesh);
-    /// \param at  in [0, 1]: the share of the area that lies before the point's triangle; stratify over it.
-    [[nodiscard]] SurfaceDraw draw(double at, MersenneRandom& random) const;
-
-  private:
-    const TriangleMesh& mesh_;
-    std::vector<double> area_before_;
-};
+/// \param at  in [0, 1]: the share of the area that lies before the point's triangle; stratify over it.
+[[nodiscard]] SurfaceDraw drawOnSurface(const TriangleMesh& mesh, const AreaTable& areas, double at,
+                                        MersenneRandom& random);
 
 /// A point near the surface, of which it is known whether it is inside.
 struct LabelledPoint {
@@ -79,7 +71,7 @@ struct LabelledPoint {
 /// \param sigma  standard deviation, object units
 /// The same for any number of threads. Where the mesh is not closed or its winding cannot be trusted, every
 /// point is asked for by rays, which takes ten times as long: `count` is divided by 4 then.
-[[nodiscard]] std::vector<LabelledPoint> drawNearSurface(const TriangleMesh& mesh, const MeshQuery& query,
-                                                         std::size_t count, double sigma, std::uint64_t seed);
+[[nodiscard]] std::vector<LabelledPoint> drawNearSurface(const MeshQuery& query, std::size_t count,
+                                                         double sigma, std::uint64_t seed);
 
 }  // namespace relief

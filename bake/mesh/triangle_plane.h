@@ -28,9 +28,4 @@ struct TrianglePlane {
     return {a, cross(glm::dvec3(mesh.positions[t.y]) - a, glm::dvec3(mesh.positions[t.z]) - a)};
 }
 
-/// −1 if the mesh is closed and its triangles are clockwise seen from outside (it is inside out), else 1.
-/// Closed is judged by the triangles' areas, which sum up to zero as vectors, and the side by the sign of the
-/// enclosed volume.
-[[nodiscard]] double orientation(const TriangleMesh& mesh);
-
 }  // namespace relief

@@ -6,7 +6,6 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <chrono>
 #include <glm/common.hpp>
 #include <optional>
 
@@ -18,6 +17,7 @@
 #include "bake/texels/rasterize.h"
 #include "bake/texels/raycast.h"
 #include "bake/texels/refine.h"
+#include "formats/base/stopwatch.h"
 #include "formats/container.h"
 
 namespace relief {
@@ -29,21 +29,6 @@ constexpr std::uint64_t kStripeTexels = std::uint64_t{1} << 20;
 /// pages (a first touch of 12 MB takes 8 ms).
 constexpr std::uint64_t kBlockTexels = std::uint64_t{1} << 13;
 
-class Stopwatch {
-  public:
-    explicit Stopwatch(double& total_ms) : total_ms_(total_ms) {}
-    Stopwatch(const Stopwatch&) = delete;
-    Stopwatch& operator=(const Stopwatch&) = delete;
-    ~Stopwatch() {
-        total_ms_ +=
-            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
-    }
-
-  private:
-    double& total_ms_;
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
 struct Job {
     MapSpec spec;  // complete
     View view;
@@ -54,7 +39,7 @@ struct Job {
     }
 };
 
-Result<std::vector<Job>> planJobs(const TriangleMesh& mesh, const BakeOptions& options) {
+Result<std::vector<Job>> planJobs(const PreparedMesh& mesh, const BakeOptions& options) {
     const std::vector<MapSpec> specs = options.maps.empty() ? paperMapSpecs() : options.maps;
     const ContainerLimits limits;
     if (specs.size() > limits.maps) {
@@ -65,7 +50,7 @@ Result<std::vector<Job>> planJobs(const TriangleMesh& mesh, const BakeOptions& o
     std::uint64_t bytes = 0;
     for (const MapSpec& spec : specs) {
         const MapSpec complete = RELIEF_TRY(completeSpec(spec, mesh, options.resolution));
-        const View view = RELIEF_TRY(makeView(complete, mesh));
+        const View view = RELIEF_TRY(makeView(complete, *mesh));
         jobs.push_back({complete, view, spec.compare.has_value()});
         bytes += jobs.back().texels() * texelSize(view.format);
     }
@@ -95,11 +80,11 @@ std::string effectiveOptions(const std::vector<Job>& jobs, const BakeOptions& op
     return text;
 }
 
-void warnAbout(const TriangleMesh& mesh, const std::vector<Job>& jobs, BakeReport& report) {
-    const glm::vec3 far_corner = glm::max(glm::abs(mesh.bounds.min), glm::abs(mesh.bounds.max));
+void warnAbout(const PreparedMesh& mesh, const std::vector<Job>& jobs, BakeReport& report) {
+    const glm::vec3 far_corner = glm::max(glm::abs(mesh->bounds.min), glm::abs(mesh->bounds.max));
     const float farthest = std::max({far_corner.x, far_corner.y, far_corner.z});
-    if (mesh.bounds.longestSide() < 1e-3F * farthest) {
-        report.warnings.push_back(mesh.name +
+    if (mesh->bounds.longestSide() < 1e-3F * farthest) {
+        report.warnings.push_back(mesh->name +
                                   " lies more than 1000 times its size away from the origin, where floats "
                                   "are coarse; move it to the origin");
     }
@@ -157,13 +142,11 @@ RefineOptions refineOptions(const BakeOptions& bake) {
 /// Bakes maps of surfaces at the texels' centres.
 class MapBaker {
   public:
-    MapBaker(const TriangleMesh& mesh, const RayScene& scene, const NormalTable& normals)
-        : mesh_(mesh), scene_(scene), normals_(normals) {}
+    MapBaker(const RayScene& scene, const NormalTable& normals) : scene_(scene), normals_(normals) {}
 
     /// \param stripeDone  called with the number of texels finished.
-    template <class StripeDone>
     DepthMap bake(const View& view, BakeReport& report, std::uint64_t& covered,
-                  const StripeDone& stripeDone) {
+                  const std::function<void(std::uint64_t)>& stripeDone) const {
         DepthMap map = view.emptyMap();
         const auto rows_of = [&](std::uint64_t texels) {
             return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(texels / view.width, 4, view.height));
@@ -189,23 +172,23 @@ class MapBaker {
     };
 
     std::uint64_t bakeStripe(const View& view, const RowRange& stripe, std::uint32_t block_rows,
-                             BakeReport& report, DepthMap& map) {
+                             BakeReport& report, DepthMap& map) const {
         double stripe_ms = 0.0;
         tbb::enumerable_thread_specific<Worker> workers;
         {
-            const Stopwatch watch(stripe_ms);
+            const TimeAdder watch(stripe_ms);
             const std::uint32_t blocks = (stripe.end - stripe.begin + block_rows - 1) / block_rows;
             tbb::parallel_for(std::uint32_t{0}, blocks, [&](std::uint32_t block) {
                 const std::uint32_t begin = stripe.begin + block * block_rows;
                 const RowRange rows{stripe.face, begin, std::min(begin + block_rows, stripe.end)};
                 Worker& worker = workers.local();
                 {
-                    const Stopwatch watch_trace(worker.trace_ms);
+                    const TimeAdder watch_trace(worker.trace_ms);
                     trace(view, RayEnd::kNear, rows, worker);
                     trace(view, RayEnd::kFar, rows, worker);
                 }
-                const Stopwatch watch_encode(worker.encode_ms);
-                worker.covered += encodeRows(mesh_, scene_.winding(), normals_, view, rows, worker.hits[0],
+                const TimeAdder watch_encode(worker.encode_ms);
+                worker.covered += encodeRows(scene_.mesh(), scene_.winding(), normals_, view, rows, worker.hits[0],
                                              worker.hits[1], map);
             });
         }
@@ -232,134 +215,136 @@ class MapBaker {
         scene_.traceRows(view, end, rows, hits);
     }
 
-    const TriangleMesh& mesh_;
     const RayScene& scene_;
     const NormalTable& normals_;
 };
 
-/// Bakes all maps on the GPU. \param stripeDone  called with the number of texels finished.
-template <class StripeDone>
-Result<void> rasterizeMaps(const TriangleMesh& mesh, const std::vector<Job>& jobs, Baked& baked,
-                           const StripeDone& stripeDone) {
-    BakeReport& report = baked.report;
-    std::optional<Result<Rasterizer>> rasterizer;
-    {
-        const Stopwatch watch(report.build_ms);
-        rasterizer.emplace(Rasterizer::create(mesh));
-    }
-    if (!*rasterizer) {
-        return forward(*rasterizer);
-    }
-    const Stopwatch watch(report.raster_ms);
-    for (const Job& job : jobs) {
-        MapReport map_report{job.spec, 0, job.texels()};
-        Result<DepthMap> map =
-            (*rasterizer)->bake(job.view, job.spec.decode, map_report.covered, [&](std::uint32_t rows) {
-                stripeDone(std::uint64_t{rows} * job.view.width);
-            });
-        if (!map) {
-            return forward(map);
-        }
-        baked.collider.maps.push_back(std::move(*map));
-        report.maps.push_back(std::move(map_report));
-    }
-    return {};
-}
+class Bake {
+  public:
+    Bake(const PreparedMesh& mesh, const BakeOptions& options) : mesh_(mesh), options_(options) {}
 
-/// Bakes all maps by rays.
-template <class StripeDone>
-Result<void> raycastMaps(const TriangleMesh& mesh, const std::vector<Job>& jobs, const BakeOptions& options,
-                         std::uint64_t texels, Baked& baked, const StripeDone& stripeDone) {
-    BakeReport& report = baked.report;
-    std::optional<Result<RayScene>> scene;
-    {
-        const Stopwatch watch(report.build_ms);
-        scene.emplace(RayScene::build(mesh));
+    Result<Baked> run() {
+        jobs_ = RELIEF_TRY(planJobs(mesh_, options_));
+        for (const Job& job : jobs_) {
+            texels_ += job.texels();
+            has_planes_ = has_planes_ || job.spec.decode == Decode::kPlane;
+        }
+        RELIEF_TRY(options_.rasterize ? rasterizeMaps() : raycastMaps());
+        RELIEF_TRY(checkCovered());
+        RELIEF_TRY(refine());
+        warnAbout(mesh_, jobs_, baked_.report);
+        baked_.collider.bounds = mesh_->bounds;
+        baked_.collider.unit = mesh_->unit;
+        baked_.collider.provenance = {mesh_->name, mesh_->content_hash, mesh_->sourceTriangles(),
+                                      "relief " RELIEF_VERSION, effectiveOptions(jobs_, options_)};
+        return std::move(baked_);
     }
-    if (!*scene) {
-        return forward(*scene);
+
+  private:
+    void finish(std::uint64_t texels) {
+        done_ += texels;
+        if (options_.progress) {
+            options_.progress(static_cast<double>(done_) / static_cast<double>(texels_));
+        }
     }
-    std::optional<NormalTable> normals;
-    {
-        const Stopwatch watch(report.encode_ms);
-        normals.emplace(mesh, (*scene)->winding(), texels);
+    [[nodiscard]] auto rowsDone(const View& view) {
+        return [this, width = view.width](std::uint32_t rows) { finish(std::uint64_t{rows} * width); };
     }
-    MapBaker baker(mesh, **scene, *normals);
-    std::optional<TriangleNormals> unit_normals;
-    for (const Job& job : jobs) {
-        MapReport map_report{job.spec, 0, job.texels()};
-        if (job.spec.decode == Decode::kPlane) {
-            const Stopwatch watch(report.fit_ms);
-            if (!unit_normals) {
-                unit_normals.emplace(mesh);
+    void add(DepthMap map, MapReport report) {
+        baked_.collider.maps.push_back(std::move(map));
+        baked_.report.maps.push_back(std::move(report));
+    }
+
+    Result<void> rasterizeMaps() {
+        std::optional<Rasterizer> rasterizer;
+        {
+            const TimeAdder watch(baked_.report.build_ms);
+            rasterizer = RELIEF_TRY(Rasterizer::create(mesh_));
+        }
+        const TimeAdder watch(baked_.report.raster_ms);
+        for (const Job& job : jobs_) {
+            MapReport report{job.spec, 0, job.texels()};
+            DepthMap map = RELIEF_TRY(
+                rasterizer->bake(job.view, job.spec.decode, report.covered, rowsDone(job.view)));
+            add(std::move(map), std::move(report));
+        }
+        return {};
+    }
+
+    Result<void> raycastMaps() {
+        std::optional<RayScene> scene;
+        {
+            const TimeAdder watch(baked_.report.build_ms);
+            scene = RELIEF_TRY(RayScene::build(mesh_));
+        }
+        std::optional<NormalTable> normals;
+        {
+            const TimeAdder watch(baked_.report.encode_ms);
+            normals.emplace(*mesh_, scene->winding(), texels_);
+        }
+        const MapBaker baker(*scene, *normals);
+        std::optional<TriangleNormals> unit_normals;
+        for (const Job& job : jobs_) {
+            MapReport report{job.spec, 0, job.texels()};
+            if (job.spec.decode != Decode::kPlane) {
+                DepthMap map = baker.bake(job.view, baked_.report, report.covered,
+                                          [this](std::uint64_t texels) { finish(texels); });
+                add(std::move(map), std::move(report));
+                continue;
             }
-            baked.collider.maps.push_back(bakeFittedMap(
-                **scene, *unit_normals, job.view, fitOptions(mesh, job.view, options), map_report.covered,
-                [&](std::uint32_t rows) { stripeDone(std::uint64_t{rows} * job.view.width); }));
-        } else {
-            baked.collider.maps.push_back(baker.bake(job.view, report, map_report.covered, stripeDone));
+            const TimeAdder watch(baked_.report.fit_ms);
+            if (!unit_normals) {
+                unit_normals.emplace(*mesh_);
+            }
+            DepthMap map =
+                bakeFittedMap(*scene, *unit_normals, job.view, fitOptions(*mesh_, job.view, options_),
+                              report.covered, rowsDone(job.view));
+            add(std::move(map), std::move(report));
         }
-        report.maps.push_back(std::move(map_report));
-    }
-    return {};
-}
-
-Result<Baked> bakeOnThisArena(const TriangleMesh& mesh, const BakeOptions& options) {
-    const std::vector<Job> jobs = RELIEF_TRY(planJobs(mesh, options));
-    std::uint64_t texels = 0;
-    bool has_planes = false;
-    for (const Job& job : jobs) {
-        texels += job.texels();
-        has_planes = has_planes || job.spec.decode == Decode::kPlane;
+        return {};
     }
 
-    Baked baked;
-    BakeReport& report = baked.report;
-    std::uint64_t done = 0;
-    const auto stripeDone = [&](std::uint64_t stripe) {
-        done += stripe;
-        if (options.progress) {
-            options.progress(static_cast<double>(done) / static_cast<double>(texels));
+    [[nodiscard]] Result<void> checkCovered() const {
+        const std::vector<MapReport>& maps = baked_.report.maps;
+        if (std::all_of(maps.begin(), maps.end(), [](const MapReport& map) { return map.covered == 0; })) {
+            return fail(
+                ErrorCode::kFailure,
+                mesh_->name +
+                    ": no map sees a surface of the mesh; raise the maps' sizes, or change their dir or box");
         }
-    };
-    RELIEF_TRY(options.rasterize ? rasterizeMaps(mesh, jobs, baked, stripeDone)
-                                 : raycastMaps(mesh, jobs, options, texels, baked, stripeDone));
-    std::uint64_t all_covered = 0;
-    for (const MapReport& map : report.maps) {
-        all_covered += map.covered;
+        return {};
     }
-    if (all_covered == 0) {
-        return fail(
-            ErrorCode::kFailure,
-            mesh.name +
-                ": no map sees a surface of the mesh; raise the maps' sizes, or change their dir or box");
-    }
-    const bool refine = options.quality != Quality::kFast || options.prefer != Prefer::kNeither;
-    if (has_planes && refine && !options.rasterize) {
-        const Stopwatch watch(report.refine_ms);
-        const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
-        refineTexels(baked.collider, mesh, query, refineOptions(options));
-    }
-    warnAbout(mesh, jobs, report);
 
-    baked.collider.bounds = mesh.bounds;
-    baked.collider.unit = mesh.unit;
-    baked.collider.provenance = {mesh.name, mesh.content_hash, mesh.sourceTriangles(),
-                                 "relief " RELIEF_VERSION, effectiveOptions(jobs, options)};
-    return baked;
-}
+    Result<void> refine() {
+        const bool wanted = options_.quality != Quality::kFast || options_.prefer != Prefer::kNeither;
+        if (has_planes_ && wanted && !options_.rasterize) {
+            const TimeAdder watch(baked_.report.refine_ms);
+            const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh_));
+            refineTexels(baked_.collider, query, refineOptions(options_));
+        }
+        return {};
+    }
+
+    const PreparedMesh& mesh_;
+    const BakeOptions& options_;
+    std::vector<Job> jobs_;
+    std::uint64_t texels_ = 0;  // of all jobs
+    std::uint64_t done_ = 0;
+    bool has_planes_ = false;
+    Baked baked_;
+};
 
 }  // namespace
 
-Result<Baked> bake(const TriangleMesh& mesh, const BakeOptions& options) {
+Result<Baked> bake(const PreparedMesh& mesh, const BakeOptions& options) {
     // A GL context is one thread's: no arena that could run it on another.
     if (options.threads == 0 || options.rasterize) {
-        return bakeOnThisArena(mesh, options);
+        return Bake(mesh, options).run();
     }
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, options.threads);
     tbb::task_arena arena(static_cast<int>(options.threads));
     std::optional<Result<Baked>> result;
-    arena.execute([&] { result.emplace(bakeOnThisArena(mesh, options)); });
+    arena.execute([&] { result.emplace(Bake(mesh, options).run()); });
     return std::move(*result);
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bake/mesh/mesh.h"
+#include "bake/mesh/prepared_mesh.h"
 #include "bake/plan/map_spec.h"
 #include "bake/plan/prefer.h"
 #include "formats/base/result.h"
@@ -51,6 +51,6 @@ struct Baked {
 
 /// Errors: kUsage and kLimit (a spec, the resolution, too many maps or texels), kFailure (Embree; no ray of
 /// any map meets the mesh); with rasterize those of rasterize.h too.
-[[nodiscard]] Result<Baked> bake(const TriangleMesh& mesh, const BakeOptions& options);
+[[nodiscard]] Result<Baked> bake(const PreparedMesh& mesh, const BakeOptions& options);
 
 }  // namespace relief

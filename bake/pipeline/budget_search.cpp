@@ -25,8 +25,12 @@ std::string percentText(double percent) {
 
 class Search {
   public:
-    Search(const MeshQuery& query, const MeshQuery& truth, const BudgetSearchOptions& options)
-        : query_(query), options_(options), truth_(sampleTruth(truth, options.accuracy)) {}
+    Search(const MeshQuery& query, const MeshQuery& truth, ViewChoice views,
+           const BudgetSearchOptions& options)
+        : query_(query),
+          options_(options),
+          views_(std::move(views)),
+          truth_(sampleTruth(truth, options.accuracy)) {}
 
     Result<BudgetSearchResult> run() {
         const std::uint64_t most = options_.budget_max;
@@ -65,13 +69,10 @@ class Search {
   private:
     /// Bakes with this budget; what keeps the promise is kept as the best so far.
     Result<bool> keeps(std::uint64_t budget) {
-        PlanOptions plan_options;
-        plan_options.budget_bytes = budget;
-        plan_options.prefer = options_.bake.prefer;
-        Plan plan = RELIEF_TRY(planViews(query_.mesh(), query_, plan_options));
+        Plan plan = RELIEF_TRY(planSizes(views_, budget));
         BakeOptions bake_options = options_.bake;
         bake_options.maps = specsOf(plan);
-        Baked baked = RELIEF_TRY(bake(query_.mesh(), bake_options));
+        Baked baked = RELIEF_TRY(bake(query_.prepared(), bake_options));
         const double wrong = measureField(truth_, fieldOf(baked.collider)).near.total();
         const BudgetTry made{budget, plan.bytes, wrong};
         tries_.push_back(made);
@@ -98,6 +99,7 @@ class Search {
 
     const MeshQuery& query_;
     const BudgetSearchOptions& options_;
+    ViewChoice views_;
     TruthSamples truth_;
     std::vector<BudgetTry> tries_;
     std::optional<BudgetSearchResult> best_;
@@ -107,7 +109,10 @@ class Search {
 
 Result<BudgetSearchResult> bakeForError(const MeshQuery& query, const MeshQuery& truth,
                                         const BudgetSearchOptions& options) {
-    return Search(query, truth, options).run();
+    ViewOptions view_options;
+    view_options.prefer = options.bake.prefer;
+    ViewChoice views = RELIEF_TRY(chooseViews(query, view_options));
+    return Search(query, truth, std::move(views), options).run();
 }
 
 }  // namespace relief

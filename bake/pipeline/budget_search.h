@@ -1,5 +1,5 @@
-// The least budget that keeps a promise: plans and bakes at growing numbers of bytes until few enough points
-// near the surface are on the wrong side, then narrows the last step down.
+// The least budget that keeps a promise: bakes at growing numbers of bytes until few enough points near the
+// surface are on the wrong side, then narrows the last step down.
 #pragma once
 
 #include <cstdint>
@@ -39,9 +39,9 @@ struct BudgetSearchResult {
 };
 
 /// Budgets grow fourfold; four bisections of the last step's logarithm then leave the budget at most 1.1
-/// times what the promise needs (as far as more bytes mean fewer wrong points). Truth is sampled once. The
-/// same for any number of threads. Errors: kDifference (not reached: the message names the best), those of
-/// planViews and bake.
+/// times what the promise needs (as far as more bytes mean fewer wrong points). Views are
+/// chosen and truth is sampled once. The same for any number of threads. Errors: kDifference (not reached: the message names the best), those of
+/// chooseViews, planSizes and bake.
 /// \param query  of the mesh that is baked, its holes closed or not.
 /// \param truth  of the mesh that the points are measured against, as `relief check` does: with its holes.
 [[nodiscard]] Result<BudgetSearchResult> bakeForError(const MeshQuery& query, const MeshQuery& truth,

@@ -223,7 +223,7 @@ glm::dvec3 defaultUp(const glm::dvec3& direction) {
     return steep ? glm::dvec3(0.0, 0.0, direction.y > 0.0 ? 1.0 : -1.0) : glm::dvec3(0.0, 1.0, 0.0);
 }
 
-Result<MapSpec> completeSpec(MapSpec spec, const TriangleMesh& mesh, std::uint32_t resolution) {
+Result<MapSpec> completeSpec(MapSpec spec, const PreparedMesh& mesh, std::uint32_t resolution) {
     const bool cube = spec.format == MapFormat::kCube8;
     // −0 becomes 0, so that equal settings have one text.
     spec.direction += 0.0F;
@@ -250,7 +250,7 @@ Result<MapSpec> completeSpec(MapSpec spec, const TriangleMesh& mesh, std::uint32
         }
     }
     if (cube && !spec.center && !spec.box) {
-        spec.center = mesh.bounds.center();
+        spec.center = mesh->bounds.center();
     }
     if (!isFrontBack(spec.format) && !spec.compare) {
         const bool outwards = cube && insideByParity(mesh, spec.center ? *spec.center : spec.box->center());

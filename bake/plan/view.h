@@ -19,7 +19,7 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 
-#include "bake/mesh/mesh.h"
+#include "bake/mesh/prepared_mesh.h"
 #include "bake/plan/map_spec.h"
 #include "formats/base/result.h"
 #include "formats/depth_map.h"
@@ -75,7 +75,7 @@ inline constexpr double kDepthSlack = 1e-6;
 
 /// The settings of a spec that were left open, decided for this mesh: size, a cube's centre, and compare.
 /// Errors: kUsage, kLimit (as checkMapSize).
-[[nodiscard]] Result<MapSpec> completeSpec(MapSpec spec, const TriangleMesh& mesh, std::uint32_t resolution);
+[[nodiscard]] Result<MapSpec> completeSpec(MapSpec spec, const PreparedMesh& mesh, std::uint32_t resolution);
 
 /// \param spec  complete.
 /// Errors: kUsage: a box that lies where floats cannot tell its texels apart; up along the direction.

@@ -55,8 +55,9 @@ struct PlanPoint {
     glm::dvec3 normal;  ///< of the surface, towards the point
 };
 
-std::vector<PlanPoint> drawPoints(const TriangleMesh& mesh, const MeshQuery& query, std::uint64_t seed) {
-    const SurfaceSampler sampler(mesh);
+std::vector<PlanPoint> drawPoints(const MeshQuery& query, std::uint64_t seed) {
+    const TriangleMesh& mesh = query.mesh();
+    const AreaTable& areas = query.prepared().areas();
     struct Draw {
         PlanPoint point;
         bool free = false;
@@ -67,7 +68,7 @@ std::vector<PlanPoint> drawPoints(const TriangleMesh& mesh, const MeshQuery& que
         MersenneRandom random(seed * 0x9e3779b97f4a7c15ULL + i);
         // Stratified over the area.
         const double at = (static_cast<double>(i) + random.uniform()) / static_cast<double>(kPoints);
-        const auto [surface, normal] = sampler.draw(at, random);
+        const auto [surface, normal] = drawOnSurface(mesh, areas, at, random);
         const double offset = side * std::max(5e-5, kSpread * std::abs(random.normal()));
         // Winding is not trusted: the free side is the one that is not inside; of two free sides, the front.
         for (const double sign : {1.0, -1.0}) {
@@ -188,18 +189,26 @@ std::string text(const char* format, double a, double b = 0.0, double c = 0.0, d
 
 class Planner {
   public:
-    Planner(const TriangleMesh& mesh, const MeshQuery& query, const PlanOptions& options)
-        : mesh_(mesh),
+    Planner(const MeshQuery& query, const ViewOptions& options)
+        : mesh_(query.mesh()),
           query_(query),
           options_(options),
-          side_(mesh.bounds.longestSide()),
-          points_(drawPoints(mesh, query, options.seed)),
-          served_(points_.size(), 0.0F) {}
+          side_(mesh_.bounds.longestSide()),
+          points_(drawPoints(query, options.seed)),
+          served_(points_.size(), 0.0F) {
+        choice_.mesh_name = mesh_.name;
+    }
 
-    Result<Plan> run() {
-        RELIEF_TRY(addOuterViews());
+    Result<ViewChoice> run() {
+        std::vector<OuterView> views = RELIEF_TRY(outerViews());
+        rateViews(views);
+        addOuterViews(views);
         addCavityCubes();
-        return finish();
+        const auto unseen = std::count_if(served_.begin(), served_.end(), [](float v) { return v <= 0.0F; });
+        choice_.unseen_percent =
+            points_.empty() ? 100.0
+                            : 100.0 * static_cast<double>(unseen) / static_cast<double>(points_.size());
+        return std::move(choice_);
     }
 
   private:
@@ -207,18 +216,11 @@ class Planner {
         MapSpec spec;
         double width = 0.0;  ///< object units
         double height = 0.0;
-        std::vector<float> service;
+        std::vector<float> service;  ///< of each point
     };
 
-    /// Bytes of a chosen map for texels of side 1.
-    struct Chosen {
-        PlannedMap map;
-        double width = 0.0;  ///< in object units; of a cube the mean width of its volume
-        double height = 0.0;
-        double area = 0.0;  ///< bytes · texel side²
-    };
-
-    Result<void> addOuterViews() {
+    /// All candidates, not rated yet.
+    [[nodiscard]] Result<std::vector<OuterView>> outerViews() const {
         std::vector<OuterView> views;
         for (const Candidate& candidate : outerCandidates(mesh_, options_.oriented_box)) {
             OuterView view;
@@ -235,6 +237,11 @@ class Planner {
             view.height = length(frame.axis[1]) * 62.0 / 64.0;
             views.push_back(std::move(view));
         }
+        return views;
+    }
+
+    /// How well each view serves each point.
+    void rateViews(std::vector<OuterView>& views) const {
         tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
             const glm::dvec3 along(views[v].spec.direction);
             views[v].service.resize(points_.size());
@@ -248,10 +255,13 @@ class Planner {
                         ++free;
                     }
                 }
-
                 views[v].service[i] = free == 2 ? std::max(best, kSilhouette) : best;
             }
         });
+    }
+
+    /// Takes views while one more serves a worthwhile share of the points.
+    void addOuterViews(const std::vector<OuterView>& views) {
         const auto count = static_cast<double>(points_.size());
         double served = 0.0;
         for (;;) {
@@ -273,29 +283,39 @@ class Planner {
             const bool enough = served >= kEnoughService * count && options_.prefer != Prefer::kOutside;
             const double least = enough ? kOuterGainLater : kOuterGain;
             const bool worthwhile = best_gain >= least * count;
-            if (best == nullptr || (!worthwhile && !chosen_.empty())) {
-                return {};
+            if (best == nullptr || (!worthwhile && !choice_.views.empty())) {
+                return;
             }
             served += best_gain;
-            std::size_t sees = 0;
-            for (std::size_t i = 0; i < points_.size(); ++i) {
-                served_[i] = std::max(served_[i], best->service[i]);
-                sees += best->service[i] > 0.0F ? 1U : 0U;
-            }
-            Chosen chosen;
-            chosen.map.spec = best->spec;
-            chosen.map.serves = best_gain / count;
-            const glm::vec3& d = best->spec.direction;
-            chosen.map.reason = text("both sides along (%.3g, %.3g, %.3g)", d.x, d.y, d.z) +
-                                text(" see %.1f %% of the surface; service +%.1f %%",
-                                     100.0 * static_cast<double>(sees) / count, 100.0 * best_gain / count);
-            chosen.width = best->width;
-            chosen.height = best->height;
-            chosen.area = 8.0 * best->width * best->height;
-            area_ += chosen.area;
-            outer_area_ = area_;
-            chosen_.push_back(std::move(chosen));
+            take(*best, best_gain);
         }
+    }
+
+    /// \param gain  in the service of all points.
+    void take(const OuterView& view, double gain) {
+        std::size_t sees = 0;
+        for (std::size_t i = 0; i < points_.size(); ++i) {
+            served_[i] = std::max(served_[i], view.service[i]);
+            sees += view.service[i] > 0.0F ? 1U : 0U;
+        }
+        const auto count = static_cast<double>(points_.size());
+        ViewChoice::Chosen chosen;
+        chosen.map.spec = view.spec;
+        chosen.map.serves = gain / count;
+        const glm::vec3& d = view.spec.direction;
+        chosen.map.reason = text("both sides along (%.3g, %.3g, %.3g)", d.x, d.y, d.z) +
+                            text(" see %.1f %% of the surface; service +%.1f %%",
+                                 100.0 * static_cast<double>(sees) / count, 100.0 * gain / count);
+        chosen.width = view.width;
+        chosen.height = view.height;
+        chosen.area = 8.0 * view.width * view.height;
+        add(std::move(chosen));
+        outer_area_ = choice_.area;
+    }
+
+    void add(ViewChoice::Chosen chosen) {
+        choice_.area += chosen.area;
+        choice_.views.push_back(std::move(chosen));
     }
 
     struct Cavity {
@@ -309,7 +329,7 @@ class Planner {
     void addCavityCubes() {
         const double total = static_cast<double>(points_.size());
         int idle_rounds = 0;
-        for (std::uint64_t round = 0; chosen_.size() < kCavityMapsMax && idle_rounds < 4; ++round) {
+        for (std::uint64_t round = 0; choice_.views.size() < kCavityMapsMax && idle_rounds < 4; ++round) {
             std::vector<std::size_t> unserved;
             for (std::size_t i = 0; i < points_.size(); ++i) {
                 if (served_[i] < kUnserved) {
@@ -335,19 +355,20 @@ class Planner {
                 }
             }
             // Its bytes are taken from all other maps, whose texels grow: it must be worth that.
-            if (best == nullptr || best->gain / total < 0.02 * best->area / area_) {
+            if (best == nullptr || best->gain / total < 0.02 * best->area / choice_.area) {
                 ++idle_rounds;
                 continue;
             }
-            take(*best, total);
+            take(*best);
         }
     }
 
-    void take(const Cavity& cavity, double total) {
+    void take(const Cavity& cavity) {
         for (const auto& [i, value] : cavity.service) {
             served_[i] = std::max(served_[i], value);
         }
-        Chosen chosen;
+        const auto total = static_cast<double>(points_.size());
+        ViewChoice::Chosen chosen;
         chosen.map.spec.format = MapFormat::kCube8;
         chosen.map.spec.decode = Decode::kPlane;
         chosen.map.spec.compare = Compare::kLess;
@@ -358,8 +379,7 @@ class Planner {
                                  cavity.center.y, cavity.center.z, 100.0 * cavity.gain / total);
         chosen.width = chosen.height = cubeWidth(cavity.half);
         chosen.area = cavity.area;
-        area_ += chosen.area;
-        chosen_.push_back(std::move(chosen));
+        add(std::move(chosen));
     }
 
     static double cubeWidth(const glm::dvec3& half) {
@@ -397,58 +417,43 @@ class Planner {
         return cavity;
     }
 
-    Result<Plan> finish() {
-        Plan plan;
-        const double budget = static_cast<double>(options_.budget_bytes);
-        // The border of orthographic maps takes bytes too: shrink until all fit.
-        for (double texel = std::sqrt(area_ / budget);; texel *= 1.002) {
-            plan = {};
-            plan.texel = texel;
-            bool smallest = true;
-            for (const Chosen& chosen : chosen_) {
-                PlannedMap map = chosen.map;
-                const bool cube = map.spec.format == MapFormat::kCube8;
-                const auto texels = [&](double extent) {
-                    const double count = extent / texel + (cube ? 0.0 : 2.0);
-                    return static_cast<std::uint32_t>(
-                        std::clamp(count, cube ? 2.0 : 3.0, double{kMapSizeMax}));
-                };
-                map.spec.width = texels(chosen.width);
-                map.spec.height = cube ? map.spec.width : texels(chosen.height);
-                smallest = smallest && map.spec.width <= 3 && map.spec.height <= 3;
-                plan.bytes += std::uint64_t{map.spec.width} * map.spec.height * (cube ? 24U : 8U);
-                plan.maps.push_back(std::move(map));
-            }
-            if (plan.bytes <= options_.budget_bytes) {
-                break;
-            }
-            if (smallest) {
-                return fail(ErrorCode::kUsage, "a budget of " + std::to_string(options_.budget_bytes) +
-                                                   " bytes is too small for the " +
-                                                   std::to_string(chosen_.size()) + " maps that " +
-                                                   mesh_.name + " needs; raise --budget");
-            }
-        }
-        std::size_t unseen = 0;
-        for (const float value : served_) {
-            unseen += value <= 0.0F ? 1U : 0U;
-        }
-        plan.unseen_percent = points_.empty()
-                                  ? 100.0
-                                  : 100.0 * static_cast<double>(unseen) / static_cast<double>(points_.size());
-        return plan;
-    }
-
     const TriangleMesh& mesh_;
     const MeshQuery& query_;
-    const PlanOptions& options_;
+    const ViewOptions& options_;
     double side_;
     std::vector<PlanPoint> points_;
     std::vector<float> served_;  // of each point, 0…1
-    std::vector<Chosen> chosen_;
-    double area_ = 0.0;
+    ViewChoice choice_;
     double outer_area_ = 0.0;
 };
+
+Result<void> checkBudget(std::uint64_t bytes) {
+    if (bytes < kPlanBudgetMin) {
+        return fail(ErrorCode::kUsage, "a budget of " + std::to_string(bytes) +
+                                           " bytes is below the least of " + std::to_string(kPlanBudgetMin));
+    }
+    return {};
+}
+
+/// The maps with texels of this size, as far as maps may be so small or so large.
+Plan sizedPlan(const ViewChoice& choice, double texel) {
+    Plan plan;
+    plan.texel = texel;
+    plan.unseen_percent = choice.unseen_percent;
+    for (const ViewChoice::Chosen& view : choice.views) {
+        PlannedMap map = view.map;
+        const bool cube = map.spec.format == MapFormat::kCube8;
+        const auto texels = [&](double extent) {
+            const double count = extent / texel + (cube ? 0.0 : 2.0);
+            return static_cast<std::uint32_t>(std::clamp(count, cube ? 2.0 : 3.0, double{kMapSizeMax}));
+        };
+        map.spec.width = texels(view.width);
+        map.spec.height = cube ? map.spec.width : texels(view.height);
+        plan.bytes += std::uint64_t{map.spec.width} * map.spec.height * (cube ? 24U : 8U);
+        plan.maps.push_back(std::move(map));
+    }
+    return plan;
+}
 
 }  // namespace
 
@@ -460,19 +465,41 @@ std::vector<MapSpec> specsOf(const Plan& plan) {
     return specs;
 }
 
-Result<Plan> planViews(const TriangleMesh& mesh, const MeshQuery& query, const PlanOptions& options) {
-    if (options.budget_bytes < kPlanBudgetMin) {
-        return fail(ErrorCode::kUsage, "a budget of " + std::to_string(options.budget_bytes) +
-                                           " bytes is below the least of " + std::to_string(kPlanBudgetMin));
-    }
-    Result<Plan> plan = Planner(mesh, query, options).run();
-    if (plan && plan->maps.empty()) {
+Result<ViewChoice> chooseViews(const MeshQuery& query, const ViewOptions& options) {
+    ViewChoice choice = RELIEF_TRY(Planner(query, options).run());
+    if (choice.views.empty()) {
         return fail(ErrorCode::kFailure,
-                    mesh.name +
+                    choice.mesh_name +
                         ": no free space was found beside the surface, so that no view can "
                         "be planned; name the maps by --map");
     }
-    return plan;
+    return choice;
+}
+
+Result<Plan> planSizes(const ViewChoice& choice, std::uint64_t budget_bytes) {
+    RELIEF_TRY(checkBudget(budget_bytes));
+    // The border of orthographic maps takes bytes too: shrink until all fit.
+    for (double texel = std::sqrt(choice.area / static_cast<double>(budget_bytes));; texel *= 1.002) {
+        Plan plan = sizedPlan(choice, texel);
+        if (plan.bytes <= budget_bytes) {
+            return plan;
+        }
+        const bool smallest = std::all_of(plan.maps.begin(), plan.maps.end(), [](const PlannedMap& map) {
+            return map.spec.width <= 3 && map.spec.height <= 3;
+        });
+        if (smallest) {
+            return fail(ErrorCode::kUsage, "a budget of " + std::to_string(budget_bytes) +
+                                               " bytes is too small for the " +
+                                               std::to_string(choice.views.size()) + " maps that " +
+                                               choice.mesh_name + " needs; raise --budget");
+        }
+    }
+}
+
+Result<Plan> planViews(const MeshQuery& query, const PlanOptions& options) {
+    RELIEF_TRY(checkBudget(options.budget_bytes));
+    const ViewChoice choice = RELIEF_TRY(chooseViews(query, options.views));
+    return planSizes(choice, options.budget_bytes);
 }
 
 }  // namespace relief

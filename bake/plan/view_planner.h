@@ -1,4 +1,4 @@
-// Which maps a mesh needs: directions, places and sizes, chosen for a budget of bytes.
+// Which maps a mesh needs: directions and places, and sizes for a budget of bytes.
 //
 // Points just outside the surface are drawn. A view serves a point if it sees it; less so at a grazing angle,
 // where a texel covers much surface. Maps are added greedily, each time the one that serves most for its
@@ -10,14 +10,14 @@
 //   2. for what no outer direction sees (cavities, armpits, insides of holes), small cubes in free space that
 //      keep the nearest surface, placed where they see most of it.
 //
-// Sizes follow from the budget: one texel size for all maps, so that the error is even.
+// None of this depends on the budget. Sizes alone follow from it: one texel size for all maps, so that the
+// error is even.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "bake/mesh/mesh.h"
 #include "bake/mesh/mesh_query.h"
 #include "bake/plan/map_spec.h"
 #include "bake/plan/prefer.h"
@@ -25,20 +25,37 @@
 
 namespace relief {
 
-struct PlanOptions {
-    std::uint64_t budget_bytes = std::uint64_t{1} << 20;  ///< of all texels together, at least kPlanBudgetMin
+struct ViewOptions {
     std::uint64_t seed = 1;
     Prefer prefer = Prefer::kNeither;  ///< kOutside: more views, so that less free space is doubtful
     bool oriented_box = true;  ///< false: do without the axes of the oriented box, to see what they are worth
 };
 
-inline constexpr std::uint64_t kPlanBudgetMin = 4096;
-
 struct PlannedMap {
-    MapSpec spec;         ///< complete but for compare, which is set for cubes
+    MapSpec spec;         ///< complete but for compare, which is set for cubes; without sizes in a ViewChoice
     double serves = 0.0;  ///< share of the points that this map serves and none before it does
     std::string reason;   ///< for people: "front-back along (0, 1, 0): sees 61.2 % of the surface"
 };
+
+/// The views of a mesh, for any budget.
+struct ViewChoice {
+    struct Chosen {
+        PlannedMap map;
+        double width = 0.0;  ///< object units; of a cube the mean width of its volume
+        double height = 0.0;
+        double area = 0.0;  ///< bytes for texels of side 1
+    };
+    std::vector<Chosen> views;
+    double area = 0.0;            ///< of all views
+    double unseen_percent = 0.0;  ///< of the surface's area: no view sees it
+    std::string mesh_name;
+};
+
+/// The same mesh and options give the same views, for any number of threads.
+/// Errors: kFailure (no free space beside the surface), those of makeView.
+[[nodiscard]] Result<ViewChoice> chooseViews(const MeshQuery& query, const ViewOptions& options);
+
+inline constexpr std::uint64_t kPlanBudgetMin = 4096;
 
 struct Plan {
     std::vector<PlannedMap> maps;
@@ -50,10 +67,16 @@ struct Plan {
 /// What bake() takes of a plan.
 [[nodiscard]] std::vector<MapSpec> specsOf(const Plan& plan);
 
-/// The same mesh and options give the same plan, for any number of threads.
-/// Errors: kUsage (a budget below kPlanBudgetMin or too small for the maps), kFailure (no free space beside
-/// the surface), those of makeView.
-[[nodiscard]] Result<Plan> planViews(const TriangleMesh& mesh, const MeshQuery& query,
-                                     const PlanOptions& options);
+/// \param budget_bytes  of all texels together, at least kPlanBudgetMin
+/// Errors: kUsage (a budget below kPlanBudgetMin or too small for the views).
+[[nodiscard]] Result<Plan> planSizes(const ViewChoice& choice, std::uint64_t budget_bytes);
+
+struct PlanOptions {
+    std::uint64_t budget_bytes = std::uint64_t{1} << 20;  ///< as planSizes has it
+    ViewOptions views;
+};
+
+/// Views and sizes. Errors: those of chooseViews and planSizes.
+[[nodiscard]] Result<Plan> planViews(const MeshQuery& query, const PlanOptions& options);
 
 }  // namespace relief

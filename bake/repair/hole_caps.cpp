@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 #include <optional>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "bake/mesh/inside.h"
@@ -57,28 +58,14 @@ glm::dvec3 spread(std::size_t i) {
 /// The votes on both sides of points of the surface.
 std::vector<std::array<Vote, 2>> voteAtSurface(const MeshQuery& query) {
     const TriangleMesh& mesh = query.mesh();
-    std::vector<double> area_up_to;
-    area_up_to.reserve(mesh.triangles.size());
-    double sum = 0.0;
-    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-        const glm::dvec3 normal = planeOf(mesh, i).normal;
-        sum += std::sqrt(dot(normal, normal));
-        area_up_to.push_back(sum);
-    }
+    const AreaTable& areas = query.prepared().areas();
     std::vector<std::array<Vote, 2>> votes(kProbes);
     const double step = kSurfaceStep * static_cast<double>(mesh.bounds.longestSide());
     tbb::parallel_for(std::size_t{0}, kProbes, [&](std::size_t i) {
-        const double at = (static_cast<double>(i) + 0.5) / static_cast<double>(kProbes) * sum;
-        const auto found = std::upper_bound(area_up_to.begin(), area_up_to.end() - 1, at);
-        const auto triangle = static_cast<std::uint32_t>(found - area_up_to.begin());
-        glm::dvec3 weight = spread(i);
-        if (weight.x + weight.y > 1.0) {
-            weight = 1.0 - weight;
-        }
-        const glm::uvec3& t = mesh.triangles[triangle];
-        const glm::dvec3 a = mesh.positions[t.x];
-        const glm::dvec3 on = a + weight.x * (glm::dvec3(mesh.positions[t.y]) - a) +
-                              weight.y * (glm::dvec3(mesh.positions[t.z]) - a);
+        const std::uint32_t triangle =
+            areas.triangleAt((static_cast<double>(i) + 0.5) / static_cast<double>(kProbes));
+        const glm::dvec3 weight = spread(i);
+        const glm::dvec3 on = pointOn(mesh, triangle, weight.x, weight.y);
         glm::dvec3 normal = planeOf(mesh, triangle).normal;
         normal *= step / std::sqrt(dot(normal, normal));
         votes[i] = {voteAt(query, on + normal), voteAt(query, on - normal)};
@@ -285,31 +272,14 @@ double turnedShare(const std::vector<Vote>& votes, const MeshQuery& closed) {
     return static_cast<double>(turned) / static_cast<double>(std::max<std::size_t>(inside, 1));
 }
 
-/// \param edges  the mesh's, not empty.
-Result<TriangleMesh> closeOpenMesh(const TriangleMesh& mesh, const MeshQuery& query,
-                                   const std::vector<OddEdge>& edges) {
-    const std::vector<std::array<Vote, 2>> votes = voteAtSurface(query);
-    const Enclosure enclosure = enclosureOf(votes);
-    if (enclosure.one_sided < kOneSided || enclosure.agreement < kAgreement ||
-        mesh.triangles.size() + edges.size() > kTriangleMax) {
-        return mesh;
-    }
-    TriangleMesh closed = mesh;
-    Capper capper(closed);
-    for (const Loop& loop : loopsOf(edges)) {
-        capper.close(loop);
-    }
-    const MeshQuery closed_query = RELIEF_TRY(MeshQuery::build(closed));
-    // On the surface and off it: the caps of patches whose seams do not meet cross the inside.
+/// On the surface and off it: the caps of patches whose seams do not meet cross the inside.
+bool turnsSides(const std::vector<std::array<Vote, 2>>& votes, const MeshQuery& open,
+                const MeshQuery& closed) {
     std::vector<Vote> sides;
     for (const auto& [front, back] : votes) {
         sides.insert(sides.end(), {front, back});
     }
-    if (turnedShare(sides, closed_query) > kTurnedMax ||
-        turnedShare(voteInBox(query), closed_query) > kTurnedMax) {
-        return mesh;
-    }
-    return closed;
+    return turnedShare(sides, closed) > kTurnedMax || turnedShare(voteInBox(open), closed) > kTurnedMax;
 }
 
 }  // namespace
@@ -318,19 +288,25 @@ Enclosure measureEnclosure(const MeshQuery& query) {
     return enclosureOf(voteAtSurface(query));
 }
 
-Result<TriangleMesh> closeHoles(const TriangleMesh& mesh, const MeshQuery& query) {
-    if (query.watertight()) {
-        return mesh;
-    }
-    return closeOpenMesh(mesh, query, oddEdges(mesh));
-}
-
-Result<TriangleMesh> closeHoles(TriangleMesh mesh) {
-    if (edgesAreEven(mesh)) {
+Result<PreparedMesh> closeHoles(const PreparedMesh& mesh) {
+    if (mesh.closed()) {
         return mesh;
     }
     const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
-    return closeHoles(mesh, query);
+    const auto votes = voteAtSurface(query);
+    const Enclosure enclosure = enclosureOf(votes);
+    if (enclosure.one_sided < kOneSided || enclosure.agreement < kAgreement ||
+        mesh->triangles.size() + mesh.oddEdges().size() > kTriangleMax) {
+        return mesh;
+    }
+    TriangleMesh with_caps = *mesh;
+    Capper capper(with_caps);
+    for (const Loop& loop : loopsOf(mesh.oddEdges())) {
+        capper.close(loop);
+    }
+    const PreparedMesh closed = mesh.capped(std::move(with_caps));
+    const MeshQuery closed_query = RELIEF_TRY(MeshQuery::build(closed));
+    return turnsSides(votes, query, closed_query) ? mesh : closed;
 }
 
 }  // namespace relief

@@ -3,8 +3,8 @@
 // free.
 #pragma once
 
-#include "bake/mesh/mesh.h"
 #include "bake/mesh/mesh_query.h"
+#include "bake/mesh/prepared_mesh.h"
 #include "formats/base/result.h"
 
 namespace relief {
@@ -21,7 +21,7 @@ struct Enclosure {
 
 [[nodiscard]] Enclosure measureEnclosure(const MeshQuery& query);
 
-/// The mesh with fans of triangles over its holes, wound as their neighbours, at the end of its triangles,
+/// \return the mesh with fans of triangles over its holes, wound as their neighbours, at the end of its triangles,
 /// and counted in cap_triangles and closed_holes. MeshQuery::watertight is then true, unless a hole is too
 /// small for a fan of floats. Name, hash and bounds stay. A hole is a loop of odd edges (mesh_edges.h) that
 /// comes to no vertex twice.
@@ -29,11 +29,7 @@ struct Enclosure {
 /// The mesh comes back as it is if it is closed, if it is not nearly closed (terrains, sheets, bowls without
 /// thickness up to half a sphere: about one ray in seven may lead out by a hole), or if the caps would turn
 /// parts of the inside to the outside or back (patches whose seams do not meet).
-/// \param query  of the mesh.
 /// Errors: those of MeshQuery::build.
-[[nodiscard]] Result<TriangleMesh> closeHoles(const TriangleMesh& mesh, const MeshQuery& query);
-
-/// The same, and cheap for a closed mesh: only one that is open is put into a query.
-[[nodiscard]] Result<TriangleMesh> closeHoles(TriangleMesh mesh);
+[[nodiscard]] Result<PreparedMesh> closeHoles(const PreparedMesh& mesh);
 
 }  // namespace relief

@@ -4,7 +4,6 @@
 #include <string_view>
 #include <utility>
 
-#include "bake/mesh/triangle_plane.h"
 #include "bake/repair/mesh_repair.h"
 #include "bake/repair/winding.h"
 #include "formats/base/text.h"
@@ -75,10 +74,17 @@ Result<TriangleMesh> repaired(const TriangleMesh& mesh, const Repair& repair, Me
     return mesh;
 }
 
-void turnInsideOut(TriangleMesh& mesh) {
-    for (glm::uvec3& t : mesh.triangles) {
-        std::swap(t.y, t.z);
+/// Looks at the mesh again, and at whether it became what was asked for.
+Result<void> checkRepaired(const PreparedMesh& mesh, const Repair& repair, const MeshCareOptions& options,
+                           MeshCare& care) {
+    care.repaired = RELIEF_TRY(inspectMesh(mesh, {options.check_intersections}));
+    mesh.freeEdges();
+    if (repair.method == Method::kWrap && !care.repaired->isSolid()) {
+        return fail(ErrorCode::kFailure,
+                    mesh->name + ": wrapping it left " + faultsText(*care.repaired) +
+                        "; move the mesh to the origin, or try another --repair wrap=ALPHA");
     }
+    return options.strict ? requireSolid(*care.repaired, mesh->name) : Result<void>();
 }
 
 }  // namespace
@@ -88,48 +94,30 @@ Result<void> checkMeshCare(const MeshCareOptions& options) {
     return repair ? Result<void>() : forward(repair);
 }
 
-Result<CaredMesh> careFor(TriangleMesh mesh, const MeshCareOptions& options) {
-    const Result<std::optional<Repair>> repair = parseRepair(options.repair);
-    if (!repair) {
-        return forward(repair);
+Result<CaredMesh> careFor(PreparedMesh mesh, const MeshCareOptions& options) {
+    const std::optional<Repair> repair = RELIEF_TRY(parseRepair(options.repair));
+    MeshCare care;
+    if (options.report || options.strict || options.check_intersections || repair) {
+        care.health = RELIEF_TRY(inspectMesh(mesh, {options.check_intersections}));
     }
-    CaredMesh cared;
-    MeshCare& care = cared.care;
-    MeshEdges edges = edgesOf(mesh);
-    if (options.report || options.strict || options.check_intersections || *repair) {
-        MeshHealth health = RELIEF_TRY(inspectMesh(mesh, edges, {options.check_intersections}));
-        care.health = std::move(health);
+    if (options.strict && !repair) {
+        RELIEF_TRY(requireSolid(*care.health, mesh->name));
     }
-    if (options.strict && !*repair) {
-        RELIEF_TRY(requireSolid(*care.health, mesh.name));
+    if (repair) {
+        care.repair = repair->text();
+        mesh.freeEdges();
+        mesh = RELIEF_TRY(repaired(*mesh, *repair, care));
     }
-    if (*repair) {
-        care.repair = (*repair)->text();
-        edges = {};
-        TriangleMesh other = RELIEF_TRY(repaired(mesh, **repair, care));
-        mesh = std::move(other);
-        edges = edgesOf(mesh);
-    }
-    Winding winding = RELIEF_TRY(windOutwards(std::move(mesh), std::move(edges)));
-    cared.mesh = std::move(winding.mesh);
+    Winding winding = RELIEF_TRY(windOutwards(std::move(mesh)));
+    mesh = std::move(winding.mesh);
     care.turned = winding.turned;
-    if (!*repair) {
-        return cared;
+    if (repair) {
+        if (mesh.orientation() < 0.0) {
+            mesh = std::move(mesh).woundOutwards(std::vector<bool>(mesh->triangles.size(), true));
+        }
+        RELIEF_TRY(checkRepaired(mesh, *repair, options, care));
     }
-    if (orientation(cared.mesh) < 0.0) {
-        turnInsideOut(cared.mesh);
-    }
-    MeshHealth after = RELIEF_TRY(inspectMesh(cared.mesh, {options.check_intersections}));
-    care.repaired = std::move(after);
-    if ((*repair)->method == Method::kWrap && !care.repaired->isSolid()) {
-        return fail(ErrorCode::kFailure,
-                    cared.mesh.name + ": wrapping it left " + faultsText(*care.repaired) +
-                        "; move the mesh to the origin, or try another --repair wrap=ALPHA");
-    }
-    if (options.strict) {
-        RELIEF_TRY(requireSolid(*care.repaired, cared.mesh.name));
-    }
-    return cared;
+    return CaredMesh{std::move(mesh), std::move(care)};
 }
 
 std::string careOptionsText(const MeshCare& care) {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "bake/mesh/mesh.h"
+#include "bake/mesh/prepared_mesh.h"
 #include "bake/repair/mesh_health.h"
 #include "formats/base/result.h"
 
@@ -32,13 +32,13 @@ struct MeshCare {
 };
 
 struct CaredMesh {
-    TriangleMesh mesh;
+    PreparedMesh mesh;
     MeshCare care;
 };
 
 /// Errors: as checkMeshCare; kInvalidInput (--strict, and those of fillHoles), kFailure (a repair failed),
 /// kLimit.
-[[nodiscard]] Result<CaredMesh> careFor(TriangleMesh mesh, const MeshCareOptions& options);
+[[nodiscard]] Result<CaredMesh> careFor(PreparedMesh mesh, const MeshCareOptions& options);
 
 /// " --repair wrap=0.01", or "": for the options that a container records.
 [[nodiscard]] std::string careOptionsText(const MeshCare& care);

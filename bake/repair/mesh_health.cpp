@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "bake/mesh/mesh_edges.h"
 #include "bake/mesh/triangle_plane.h"
 #include "bake/repair/mesh_repair.h"
 #include "formats/base/text.h"
@@ -16,7 +15,7 @@
 namespace relief {
 namespace {
 
-/// Of vertices and triangles the lowest that shows a fault.
+/// Counts a kind of fault, and keeps the place of the first.
 struct First {
     std::uint64_t count = 0;
     glm::vec3 at{0.0F};
@@ -30,13 +29,14 @@ struct First {
 
 class Inspection {
   public:
-    Inspection(const TriangleMesh& mesh, const MeshEdges& edges)
-        : mesh_(mesh),
-          welded_(edges.welded),
-          component_of_(mesh.triangles.size()),
+    explicit Inspection(const PreparedMesh& mesh)
+        : mesh_(*mesh),
+          inside_out_(mesh.orientation() < 0.0),
+          welded_(mesh.edges().welded),
+          component_of_(mesh->triangles.size()),
           // Three corners a triangle: those that share an edge at their vertex are joined.
-          corners_(3 * mesh.triangles.size()),
-          uses_(edges.uses) {}
+          corners_(3 * mesh->triangles.size()),
+          uses_(mesh.edges().uses) {}
 
     void run() {
         forEachEdge(uses_, [&](std::size_t begin, std::size_t end) { visitEdge(begin, end); });
@@ -56,7 +56,7 @@ class Inspection {
         health.components = components_;
         health.closed_components = closed_components_;
         health.closed = closed_components_ == components_;
-        health.inside_out = orientation(mesh_) < 0.0;
+        health.inside_out = inside_out_;
         for (const auto& [what, first] :
              {std::pair{"a boundary edge", &boundary_},
               std::pair{"an edge of three or more triangles", &nonmanifold_},
@@ -162,6 +162,7 @@ class Inspection {
     }
 
     const TriangleMesh& mesh_;
+    bool inside_out_;
     const std::vector<std::uint32_t>& welded_;
     DisjointSets component_of_;
     DisjointSets corners_;
@@ -182,18 +183,13 @@ std::string counted(std::uint64_t count, const std::string& one, const std::stri
 
 }  // namespace
 
-Result<MeshHealth> inspectMesh(const TriangleMesh& mesh, const MeshHealthOptions& options) {
-    return inspectMesh(mesh, edgesOf(mesh), options);
-}
-
-Result<MeshHealth> inspectMesh(const TriangleMesh& mesh, const MeshEdges& edges,
-                               const MeshHealthOptions& options) {
+Result<MeshHealth> inspectMesh(const PreparedMesh& mesh, const MeshHealthOptions& options) {
     MeshHealth health;
-    Inspection inspection(mesh, edges);
+    Inspection inspection(mesh);
     inspection.run();
     inspection.write(health);
     if (options.intersections) {
-        const SelfIntersections found = RELIEF_TRY(selfIntersections(mesh));
+        const SelfIntersections found = RELIEF_TRY(selfIntersections(*mesh));
         health.self_intersections = found.pairs;
         if (found.pairs > 0 && !health.first_fault) {
             health.first_fault =

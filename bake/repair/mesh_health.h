@@ -7,8 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "bake/mesh/mesh.h"
-#include "bake/mesh/mesh_edges.h"
+#include "bake/mesh/prepared_mesh.h"
 #include "formats/base/result.h"
 
 namespace relief {
@@ -22,7 +21,7 @@ struct MeshFault {
 struct MeshHealth {
     std::uint64_t triangles = 0;
     std::uint64_t degenerate_triangles = 0;  ///< without area; left out by the importer
-    /// Of the same three vertices as an earlier triangle, whatever their order.
+    /// They have the same three vertices as an earlier triangle, in any order.
     std::uint64_t duplicate_triangles = 0;
     std::uint64_t boundary_edges = 0;      ///< of one triangle
     std::uint64_t nonmanifold_edges = 0;   ///< of three triangles or more
@@ -52,10 +51,7 @@ struct MeshHealthOptions {
 
 /// The same for any number of threads.
 /// Errors: those of selfIntersections (mesh_repair.h); none without options.intersections.
-[[nodiscard]] Result<MeshHealth> inspectMesh(const TriangleMesh& mesh, const MeshHealthOptions& options = {});
-/// \param edges  edgesOf(mesh)
-[[nodiscard]] Result<MeshHealth> inspectMesh(const TriangleMesh& mesh, const MeshEdges& edges,
-                                             const MeshHealthOptions& options);
+[[nodiscard]] Result<MeshHealth> inspectMesh(const PreparedMesh& mesh, const MeshHealthOptions& options = {});
 
 /// "closed" or "12 boundary edges, 3 non-manifold vertices, inside out": what keeps it from being a solid.
 [[nodiscard]] std::string faultsText(const MeshHealth& health);

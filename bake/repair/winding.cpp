@@ -38,20 +38,21 @@ struct Patch {
 
 class Winder {
   public:
-    Winder(TriangleMesh& mesh, MeshEdges edges)
-        : mesh_(mesh), edges_(std::move(edges)), turn_(mesh.triangles.size(), 0) {}
+    explicit Winder(const PreparedMesh& mesh)
+        : prepared_(mesh), mesh_(*mesh), turn_(mesh->triangles.size(), 0) {}
 
-    Result<std::uint64_t> run() {
+    /// For each triangle, whether it must be turned.
+    Result<std::vector<bool>> run() {
         findNeighbours();
-        edges_ = {};
+        prepared_.freeEdges();
         findPatches();
         const bool consistent = std::all_of(patches_.begin(), patches_.end(),
                                             [](const Patch& patch) { return patch.turned == 0; });
         if (consistent && patches_.size() == 1) {
-            return std::uint64_t{0};
+            return std::vector<bool>(turn_.size(), false);
         }
         // Parity does not care about the winding: asked before anything is turned.
-        const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh_));
+        const MeshQuery query = RELIEF_TRY(MeshQuery::build(prepared_));
         tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t i) {
             Patch& patch = patches_[i];
             // Breadth first is no order to spread samples over.
@@ -62,20 +63,13 @@ class Winder {
                 }
             }
         });
-        std::uint64_t turned = 0;
-        for (std::size_t i = 0; i < turn_.size(); ++i) {
-            if (turn_[i] != 0) {
-                std::swap(mesh_.triangles[i].y, mesh_.triangles[i].z);
-                ++turned;
-            }
-        }
-        return turned;
+        return std::vector<bool>(turn_.begin(), turn_.end());
     }
 
   private:
     void findNeighbours() {
         neighbours_.resize(3 * mesh_.triangles.size());
-        const std::vector<EdgeUse>& uses = edges_.uses;
+        const std::vector<EdgeUse>& uses = prepared_.edges().uses;
         forEachEdge(uses, [&](std::size_t begin, std::size_t end) {
             if (end - begin == 2) {
                 const EdgeUse& a = uses[begin];
@@ -139,11 +133,8 @@ class Winder {
 
     /// Whether the point a little in front of and the one a little behind a triangle are inside.
     [[nodiscard]] std::array<bool, 2> ask(std::uint32_t triangle, const MeshQuery& query) const {
-        const glm::uvec3& t = mesh_.triangles[triangle];
         // Off the middle, which lies on lines of symmetry more often.
-        const glm::dvec3 a = mesh_.positions[t.x];
-        const glm::dvec3 on =
-            a + 0.37 * (glm::dvec3(mesh_.positions[t.y]) - a) + 0.29 * (glm::dvec3(mesh_.positions[t.z]) - a);
+        const glm::dvec3 on = pointOn(mesh_, triangle, 0.37, 0.29);
         glm::dvec3 normal = normalOf(triangle);
         normal *=
             kSurfaceStep * static_cast<double>(mesh_.bounds.longestSide()) / std::sqrt(dot(normal, normal));
@@ -182,8 +173,8 @@ class Winder {
         return sum > kClearShare * static_cast<double>(asked);
     }
 
-    TriangleMesh& mesh_;
-    MeshEdges edges_;
+    const PreparedMesh& prepared_;
+    const TriangleMesh& mesh_;
     std::vector<std::uint8_t> turn_;  // 1: against the order of the file
     std::vector<Neighbour> neighbours_;
     std::vector<Patch> patches_;
@@ -191,18 +182,10 @@ class Winder {
 
 }  // namespace
 
-Result<Winding> windOutwards(TriangleMesh mesh) {
-    MeshEdges edges = edgesOf(mesh);
-    return windOutwards(std::move(mesh), std::move(edges));
-}
-
-Result<Winding> windOutwards(TriangleMesh mesh, MeshEdges edges) {
-    Winding winding;
-    winding.mesh = std::move(mesh);
-    const std::uint64_t turned = RELIEF_TRY(Winder(winding.mesh, std::move(edges)).run());
-    winding.turned = turned;
-    winding.mesh.wound_outwards = true;
-    return winding;
+Result<Winding> windOutwards(PreparedMesh mesh) {
+    const std::vector<bool> turn = RELIEF_TRY(Winder(mesh).run());
+    const auto turned = static_cast<std::uint64_t>(std::count(turn.begin(), turn.end(), true));
+    return Winding{std::move(mesh).woundOutwards(turn), turned};
 }
 
 }  // namespace relief

@@ -4,14 +4,13 @@
 
 #include <cstdint>
 
-#include "bake/mesh/mesh.h"
-#include "bake/mesh/mesh_edges.h"
+#include "bake/mesh/prepared_mesh.h"
 #include "formats/base/result.h"
 
 namespace relief {
 
 struct Winding {
-    TriangleMesh mesh;         ///< the same triangles in the same order
+    PreparedMesh mesh;         ///< the same triangles in the same order
     std::uint64_t turned = 0;  ///< triangles whose second and third corner changed places
 };
 
@@ -24,8 +23,7 @@ struct Winding {
 /// A mesh of one patch that is wound consistently stays as it is, inside out or not: orientation() tells.
 /// The same for any number of threads.
 /// Errors: those of MeshQuery::build.
-[[nodiscard]] Result<Winding> windOutwards(TriangleMesh mesh);
-/// \param edges  edgesOf(mesh); freed as soon as it can be, for it takes more memory than the mesh.
-[[nodiscard]] Result<Winding> windOutwards(TriangleMesh mesh, MeshEdges edges);
+/// \param mesh  move it: a mesh that is shared is copied.
+[[nodiscard]] Result<Winding> windOutwards(PreparedMesh mesh);
 
 }  // namespace relief

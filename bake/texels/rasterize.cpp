@@ -33,9 +33,8 @@ std::uint64_t copyRow(std::span<const std::byte> row, MapFormat format, std::spa
     return covered;
 }
 
-}  // namespace
-
-DepthMapFrame frameOf(const View& view, Decode decode, const TriangleMesh& mesh, double winding) {
+/// What the renderer needs to know of a view.
+DepthMapFrame frameOf(const View& view, Decode decode, const PreparedMesh& mesh) {
     DepthMapFrame frame;
     frame.format = view.format;
     frame.compare = view.compare;
@@ -46,29 +45,31 @@ DepthMapFrame frameOf(const View& view, Decode decode, const TriangleMesh& mesh,
     std::copy(std::begin(view.axis), std::end(view.axis), std::begin(frame.axis));
     frame.encloses = view.encloses;
     std::copy(std::begin(view.starts_free), std::end(view.starts_free), std::begin(frame.starts_free));
-    frame.inside_out = winding < 0.0;
+    frame.inside_out = mesh.orientation() < 0.0;
     frame.exact = true;
     // A hundredth of a texel, as the ray caster has it.
     const auto length = [&](int k) { return std::sqrt(dot(view.axis[k], view.axis[k])); };
     const double unit =
         view.projection() == Projection::kCube ? (length(0) + length(1) + length(2)) / 3.0 : length(2);
     frame.good_enough =
-        0.01 * static_cast<double>(mesh.bounds.longestSide()) / std::max(view.width, view.height) / unit;
+        0.01 * static_cast<double>(mesh->bounds.longestSide()) / std::max(view.width, view.height) / unit;
     return frame;
 }
 
-Result<Rasterizer> Rasterizer::create(const TriangleMesh& mesh) {
-    auto gpu_mesh = GpuMesh::create(mesh.positions, mesh.triangles);
+}  // namespace
+
+Result<Rasterizer> Rasterizer::create(const PreparedMesh& mesh) {
+    auto gpu_mesh = GpuMesh::create(mesh->positions, mesh->triangles);
     if (!gpu_mesh) {
-        return fail(gpu_mesh.error().code, mesh.name + ": " + gpu_mesh.error().message);
+        return fail(gpu_mesh.error().code, mesh->name + ": " + gpu_mesh.error().message);
     }
     auto renderer = RELIEF_TRY(DepthMapRenderer::create());
-    return Rasterizer(mesh, orientation(mesh), std::move(*gpu_mesh), std::move(renderer));
+    return Rasterizer(mesh, std::move(*gpu_mesh), std::move(renderer));
 }
 
 Result<DepthMap> Rasterizer::bake(const View& view, Decode decode, std::uint64_t& covered,
                                   const std::function<void(std::uint32_t)>& rowsDone) {
-    const DepthMapFrame frame = frameOf(view, decode, *mesh_, winding_);
+    const DepthMapFrame frame = frameOf(view, decode, mesh_);
     DepthMap map = view.emptyMap();
     map.decode = decode;
     const auto target = RELIEF_TRY(

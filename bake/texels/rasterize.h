@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "bake/mesh/mesh.h"
+#include "bake/mesh/prepared_mesh.h"
 #include "bake/plan/view.h"
 #include "formats/base/result.h"
 #include "formats/depth_map.h"
@@ -14,17 +14,12 @@
 
 namespace relief {
 
-/// What the renderer needs to know of a view. \param winding  orientation() of the mesh.
-[[nodiscard]] DepthMapFrame frameOf(const View& view, Decode decode, const TriangleMesh& mesh,
-                                    double winding);
-
 /// A mesh on the GPU. Made once, rendered for any number of views, all on one thread.
 class Rasterizer {
   public:
     /// Needs a current context (gl_context.h), which must outlive it.
-    /// \param mesh  borrowed; must outlive it.
     /// Errors: those of GpuMesh::create, with the mesh's name.
-    [[nodiscard]] static Result<Rasterizer> create(const TriangleMesh& mesh);
+    [[nodiscard]] static Result<Rasterizer> create(const PreparedMesh& mesh);
 
     /// Renders one map, tile by tile: a map may be larger than the GL's textures.
     /// \param covered   receives the number of texels with a surface.
@@ -34,11 +29,10 @@ class Rasterizer {
                                         const std::function<void(std::uint32_t)>& rowsDone);
 
   private:
-    Rasterizer(const TriangleMesh& mesh, double winding, GpuMesh gpu_mesh, DepthMapRenderer renderer)
-        : mesh_(&mesh), winding_(winding), gpu_mesh_(std::move(gpu_mesh)), renderer_(std::move(renderer)) {}
+    Rasterizer(PreparedMesh mesh, GpuMesh gpu_mesh, DepthMapRenderer renderer)
+        : mesh_(std::move(mesh)), gpu_mesh_(std::move(gpu_mesh)), renderer_(std::move(renderer)) {}
 
-    const TriangleMesh* mesh_;
-    double winding_;
+    PreparedMesh mesh_;
     GpuMesh gpu_mesh_;
     DepthMapRenderer renderer_;
 };

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "bake/mesh/embree_mesh.h"
-#include "bake/mesh/mesh_edges.h"
 #include "bake/mesh/triangle_plane.h"
 
 namespace relief {
@@ -66,20 +65,17 @@ struct Collector {
 
 }  // namespace
 
-struct RayScene::Impl {
-    const TriangleMesh* mesh = nullptr;
-    EmbreeMesh tree;
-    double winding = 1.0;
-    bool closed = false;  // no odd edges
-
-    class Tracer;
-};
-
 /// Traces the packets of one row of tiles.
-class RayScene::Impl::Tracer {
+class RayScene::Tracer {
   public:
-    Tracer(const Impl& impl, const View& view, RayEnd end)
-        : impl_(impl), view_(view), end_(end), inside_out_(impl.winding < 0.0) {
+    Tracer(const RayScene& scene, const View& view, RayEnd end)
+        : mesh_(scene.mesh()),
+          tree_(*scene.tree_),
+          winding_(scene.winding_),
+          closed_(scene.closed_),
+          view_(view),
+          end_(end),
+          inside_out_(scene.winding_ < 0.0) {
         rtcInitIntersectContext(&context_);
         context_.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
         for (int lane = 0; lane < kLanes; ++lane) {
@@ -102,7 +98,7 @@ class RayScene::Impl::Tracer {
             } else {
                 setCubeRays(face, x0, y0);
             }
-            rtcIntersect16(valid_, impl_.tree.scene.get(), &context_, &packet_);
+            rtcIntersect16(valid_, tree_.scene.get(), &context_, &packet_);
             prefetchCorners();
             // What mendPinholes goes by: most tiles need no second look.
             float low = std::numeric_limits<float>::max();
@@ -134,7 +130,7 @@ class RayScene::Impl::Tracer {
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
         RTCRayHit query = queryOf(segmentOf(ray));
-        rtcIntersect1(impl_.tree.scene.get(), &context, &query);
+        rtcIntersect1(tree_.scene.get(), &context, &query);
         if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
             return {};
         }
@@ -143,7 +139,7 @@ class RayScene::Impl::Tracer {
                             : cubeHit(ray, query.hit.primID);
         // Alone, a ray is doubted only where no ray from free space may get: at the inner side of a closed
         // mesh.
-        return impl_.closed && metInside(hit) ? lookAgain(face, x, y, hit) : hit;
+        return closed_ && metInside(hit) ? lookAgain(face, x, y, hit) : hit;
     }
 
   private:
@@ -165,8 +161,8 @@ class RayScene::Impl::Tracer {
     /// resolving hits was waiting for them, one after the other. Inlined by force: GCC takes a function that
     /// only prefetches for one without effect, and leaves its calls out.
     [[gnu::always_inline]] void prefetchCorners() const {
-        const glm::uvec3* const triangles = impl_.mesh->triangles.data();
-        const glm::vec3* const positions = impl_.mesh->positions.data();
+        const glm::uvec3* const triangles = mesh_.triangles.data();
+        const glm::vec3* const positions = mesh_.positions.data();
         for (int lane = 0; lane < kLanes; ++lane) {
             if (packet_.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID) {
                 __builtin_prefetch(triangles + packet_.hit.primID[lane]);
@@ -204,10 +200,10 @@ class RayScene::Impl::Tracer {
         column_step_ = view_.axis[0] / static_cast<double>(view_.width);
         row_step_ = view_.axis[1] / static_cast<double>(view_.height);
         const Segment segment = segmentOf(first_ray_);
-        local_origin_ = (segment.origin - impl_.tree.center) * impl_.tree.scale;
-        local_column_step_ = column_step_ * impl_.tree.scale;
-        local_row_step_ = row_step_ * impl_.tree.scale;
-        const glm::vec3 direction = segment.direction * impl_.tree.scale;
+        local_origin_ = (segment.origin - tree_.center) * tree_.scale;
+        local_column_step_ = column_step_ * tree_.scale;
+        local_row_step_ = row_step_ * tree_.scale;
+        const glm::vec3 direction = segment.direction * tree_.scale;
         for (int lane = 0; lane < kLanes; ++lane) {
             const glm::vec3 offset = static_cast<double>(columnOf(lane)) * local_column_step_ +
                                      static_cast<double>(rowOf(lane)) * local_row_step_;
@@ -236,8 +232,8 @@ class RayScene::Impl::Tracer {
     void setCubeRays(std::uint32_t face, std::uint32_t x0, std::uint32_t y0) {
         for (int lane = 0; lane < kLanes; ++lane) {
             const Segment segment = segmentOf(view_.ray(face, x0 + columnOf(lane), y0 + rowOf(lane)));
-            const glm::vec3 origin = impl_.tree.toLocal(segment.origin);
-            const glm::vec3 direction = segment.direction * impl_.tree.scale;
+            const glm::vec3 origin = tree_.toLocal(segment.origin);
+            const glm::vec3 direction = segment.direction * tree_.scale;
             packet_.ray.org_x[lane] = origin.x;
             packet_.ray.org_y[lane] = origin.y;
             packet_.ray.org_z[lane] = origin.z;
@@ -317,7 +313,7 @@ class RayScene::Impl::Tracer {
     Hit lookAgain(std::uint32_t face, std::uint32_t x, std::uint32_t y, const Hit& hit) {
         const TexelRay ray = view_.ray(face, x, y);
         const Segment segment = segmentOf(ray);
-        const glm::dvec3 direction = segment.direction * impl_.tree.scale;
+        const glm::dvec3 direction = segment.direction * tree_.scale;
         const double length = std::sqrt(dot(direction, direction));
         const glm::dvec3 unit = direction / length;
         const glm::dvec3 other = std::abs(unit.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
@@ -338,11 +334,11 @@ class RayScene::Impl::Tracer {
             RTCIntersectContext context;
             rtcInitIntersectContext(&context);
             Segment shifted = segment;
-            shifted.origin += (kBeside / impl_.tree.scale) * (cosine * right + sine * up);
+            shifted.origin += (kBeside / tree_.scale) * (cosine * right + sine * up);
             RTCRayHit query = queryOf(shifted);
-            rtcIntersect1(impl_.tree.scene.get(), &context, &query);
+            rtcIntersect1(tree_.scene.get(), &context, &query);
             if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID &&
-                touches((segment.origin - impl_.tree.center) * impl_.tree.scale, right, up,
+                touches((segment.origin - tree_.center) * tree_.scale, right, up,
                         query.hit.primID)) {
                 touched[count] = query.hit.primID;
                 where[count++] = query.ray.tfar;
@@ -371,12 +367,12 @@ class RayScene::Impl::Tracer {
     /// Whether a line through `origin`, square to `right` and `up`, passes a triangle within kTouching.
     [[nodiscard]] bool touches(const glm::dvec3& origin, const glm::dvec3& right, const glm::dvec3& up,
                                std::uint32_t triangle) const {
-        const glm::uvec3& t = impl_.mesh->triangles[triangle];
+        const glm::uvec3& t = mesh_.triangles[triangle];
         double x[3];
         double y[3];
         for (int i = 0; i < 3; ++i) {
             const glm::dvec3 p =
-                (glm::dvec3(impl_.mesh->positions[t[i]]) - impl_.tree.center) * impl_.tree.scale - origin;
+                (glm::dvec3(mesh_.positions[t[i]]) - tree_.center) * tree_.scale - origin;
             x[i] = dot(p, right);
             y[i] = dot(p, up);
         }
@@ -398,8 +394,8 @@ class RayScene::Impl::Tracer {
     }
 
     [[nodiscard]] RTCRayHit queryOf(const Segment& segment) const {
-        const glm::vec3 origin = impl_.tree.toLocal(segment.origin);
-        const glm::vec3 direction = segment.direction * impl_.tree.scale;
+        const glm::vec3 origin = tree_.toLocal(segment.origin);
+        const glm::vec3 direction = segment.direction * tree_.scale;
         RTCRayHit query{};
         query.ray.org_x = origin.x;
         query.ray.org_y = origin.y;
@@ -423,7 +419,7 @@ class RayScene::Impl::Tracer {
         RTCRayHit query = queryOf(segment);
         query.ray.tnear = std::max(0.0F, at - tie);
         query.ray.tfar = at + tie;
-        rtcIntersect1(impl_.tree.scene.get(), &collector_.context, &query);
+        rtcIntersect1(tree_.scene.get(), &collector_.context, &query);
 
         return bestFacing(segment, first);
     }
@@ -433,10 +429,10 @@ class RayScene::Impl::Tracer {
         std::uint32_t best = first;
         double best_score = -2.0;
         for (const std::uint32_t triangle : collector_.triangles) {
-            const TrianglePlane plane = planeOf(*impl_.mesh, triangle);
+            const TrianglePlane plane = planeOf(mesh_, triangle);
             const double length =
                 std::sqrt(dot(plane.normal, plane.normal) * dot(segment.direction, segment.direction));
-            const double facing = -impl_.winding * dot(plane.normal, segment.direction) / length;
+            const double facing = -winding_ * dot(plane.normal, segment.direction) / length;
             const double score = facing > 0.0 ? facing : -1.0 - facing;
             if (score > best_score || (score == best_score && triangle < best)) {
                 best = triangle;
@@ -472,7 +468,7 @@ class RayScene::Impl::Tracer {
     }
 
     [[nodiscard]] PlaneDepth planeDepth(std::uint32_t triangle) const {
-        const TrianglePlane plane = planeOf(*impl_.mesh, triangle);
+        const TrianglePlane plane = planeOf(mesh_, triangle);
         const double along = dot(plane.normal, first_ray_.direction);
         const double per_along = 1.0 / along;
         PlaneDepth depth;
@@ -486,7 +482,7 @@ class RayScene::Impl::Tracer {
     }
 
     [[nodiscard]] Hit cubeHit(const TexelRay& ray, std::uint32_t triangle) const {
-        const TrianglePlane plane = planeOf(*impl_.mesh, triangle);
+        const TrianglePlane plane = planeOf(mesh_, triangle);
         const double along = dot(plane.normal, ray.direction);
         double depth = dot(plane.normal, plane.point - ray.origin) / along;
         if (isGrazing(plane, ray.direction, along)) {
@@ -508,20 +504,23 @@ class RayScene::Impl::Tracer {
 
     /// A depth on a triangle seen almost edge-on, held between the depths of its corners.
     [[nodiscard]] double insideTriangle(const TexelRay& ray, std::uint32_t triangle, double depth) const {
-        const glm::uvec3& t = impl_.mesh->triangles[triangle];
+        const glm::uvec3& t = mesh_.triangles[triangle];
         const double per_depth = dot(ray.direction, ray.direction);
         double low = std::numeric_limits<double>::max();
         double high = -low;
         for (const std::uint32_t corner : {t.x, t.y, t.z}) {
             const double at =
-                dot(glm::dvec3(impl_.mesh->positions[corner]) - ray.origin, ray.direction) / per_depth;
+                dot(glm::dvec3(mesh_.positions[corner]) - ray.origin, ray.direction) / per_depth;
             low = std::min(low, at);
             high = std::max(high, at);
         }
         return depth >= low && depth <= high ? depth : std::isnan(depth) || depth < low ? low : high;
     }
 
-    const Impl& impl_;
+    const TriangleMesh& mesh_;
+    const EmbreeMesh& tree_;
+    double winding_;
+    bool closed_;
     const View& view_;
     RayEnd end_;
     bool inside_out_;
@@ -546,23 +545,9 @@ class RayScene::Impl::Tracer {
     alignas(64) RTCRayHit16 packet_{};
 };
 
-RayScene::RayScene(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
-RayScene::RayScene(RayScene&&) noexcept = default;
-RayScene& RayScene::operator=(RayScene&&) noexcept = default;
-RayScene::~RayScene() = default;
-
-Result<RayScene> RayScene::build(const TriangleMesh& mesh) {
-    auto impl = std::make_unique<Impl>();
-    impl->mesh = &mesh;
-    impl->winding = orientation(mesh);
-    impl->closed = edgesAreEven(mesh);
-    EmbreeMesh tree = RELIEF_TRY(EmbreeMesh::build(mesh));
-    impl->tree = std::move(tree);
-    return RayScene(std::move(impl));
-}
-
-double RayScene::winding() const {
-    return impl_->winding;
+Result<RayScene> RayScene::build(PreparedMesh mesh) {
+    const EmbreeMesh* const tree = RELIEF_TRY(mesh.tree());
+    return RayScene(std::move(mesh), *tree);
 }
 
 void RayScene::trace(const View& view, RayEnd end, const RowRange& rows, std::span<Hit> hits) const {
@@ -576,19 +561,19 @@ void RayScene::trace(const View& view, RayEnd end, const RowRange& rows, std::sp
 }
 
 void RayScene::traceRows(const View& view, RayEnd end, const RowRange& rows, std::span<Hit> hits) const {
-    Impl::Tracer tracer(*impl_, view, end);
+    Tracer tracer(*this, view, end);
     for (std::uint32_t y = rows.begin; y < rows.end; y += kTile) {
         tracer.traceTileRow(rows.face, y, rows.end, &hits[std::size_t{y - rows.begin} * view.width]);
     }
 }
 
 struct RayProbe::Impl {
-    explicit Impl(RayScene::Impl::Tracer started) : tracer(std::move(started)) {}
-    RayScene::Impl::Tracer tracer;
+    explicit Impl(RayScene::Tracer started) : tracer(std::move(started)) {}
+    RayScene::Tracer tracer;
 };
 
 RayProbe::RayProbe(const RayScene& scene, const View& view, RayEnd end)
-    : impl_(std::make_unique<Impl>(RayScene::Impl::Tracer(*scene.impl_, view, end))) {}
+    : impl_(std::make_unique<Impl>(RayScene::Tracer(scene, view, end))) {}
 RayProbe::~RayProbe() = default;
 
 Hit RayProbe::trace(std::uint32_t face, std::uint32_t x, std::uint32_t y) {

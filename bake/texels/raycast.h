@@ -5,7 +5,7 @@
 #include <memory>
 #include <span>
 
-#include "bake/mesh/mesh.h"
+#include "bake/mesh/prepared_mesh.h"
 #include "bake/plan/view.h"
 #include "formats/base/result.h"
 
@@ -39,18 +39,15 @@ struct RowRange {
     std::uint32_t end = 0;  ///< one behind the last
 };
 
-/// A mesh in an acceleration structure. Built once, traced for any number of views, from any thread.
+/// Traces any number of views of a mesh, from any thread.
 class RayScene {
   public:
-    /// \param mesh  borrowed; must outlive the scene.
-    /// Errors: kFailure with Embree's words; kLimit when out of memory.
-    [[nodiscard]] static Result<RayScene> build(const TriangleMesh& mesh);
-    RayScene(RayScene&&) noexcept;
-    RayScene& operator=(RayScene&&) noexcept;
-    ~RayScene();
+    /// Shares the mesh's tree. Errors: those of EmbreeMesh::build.
+    [[nodiscard]] static Result<RayScene> build(PreparedMesh mesh);
 
+    [[nodiscard]] const TriangleMesh& mesh() const { return *mesh_; }
     /// orientation() of the mesh.
-    [[nodiscard]] double winding() const;
+    [[nodiscard]] double winding() const { return winding_; }
 
     /// Traces one ray a texel for one end of a view, on all cores of the current arena.
     ///
@@ -65,9 +62,17 @@ class RayScene {
 
   private:
     friend class RayProbe;
-    struct Impl;
-    explicit RayScene(std::unique_ptr<Impl> impl);
-    std::unique_ptr<Impl> impl_;
+    class Tracer;
+    RayScene(PreparedMesh mesh, const EmbreeMesh& tree)
+        : mesh_(std::move(mesh)),
+          tree_(&tree),
+          winding_(mesh_.orientation()),
+          closed_(mesh_.closed()) {}
+
+    PreparedMesh mesh_;
+    const EmbreeMesh* tree_;  // mesh_ holds it
+    double winding_;
+    bool closed_;
 };
 
 /// Single rays of one end of a view, for a look between the texels of another. Not thread-safe.

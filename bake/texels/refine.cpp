@@ -460,8 +460,7 @@ class Refinement {
 
 }  // namespace
 
-void refineTexels(Collider& collider, const TriangleMesh& mesh, const MeshQuery& query,
-                  const RefineOptions& options) {
+void refineTexels(Collider& collider, const MeshQuery& query, const RefineOptions& options) {
     double ends = 0.0;
     for (const DepthMap& map : collider.maps) {
         ends += static_cast<double>(map.texelBytes()) / 4.0;
@@ -469,8 +468,8 @@ void refineTexels(Collider& collider, const TriangleMesh& mesh, const MeshQuery&
     const auto count = static_cast<std::size_t>(std::clamp(ends * options.points_per_texel,
                                                            static_cast<double>(kRefinePointsMin),
                                                            static_cast<double>(kRefinePointsMax)));
-    const double sigma = options.sigma_share * mesh.bounds.longestSide();
-    Refinement(collider, drawNearSurface(mesh, query, count, sigma, options.seed), options).run();
+    const double sigma = options.sigma_share * query.mesh().bounds.longestSide();
+    Refinement(collider, drawNearSurface(query, count, sigma, options.seed), options).run();
 }
 
 }  // namespace relief

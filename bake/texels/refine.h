@@ -10,7 +10,6 @@
 
 #include <cstdint>
 
-#include "bake/mesh/mesh.h"
 #include "bake/mesh/mesh_query.h"
 #include "formats/collider.h"
 
@@ -32,7 +31,6 @@ inline constexpr std::uint64_t kRefinePointsMax = 4'000'000;
 
 /// Changes texels of maps of planes whose depths are 16-bit fixed point; the others only vote. The same for
 /// any number of threads.
-void refineTexels(Collider& collider, const TriangleMesh& mesh, const MeshQuery& query,
-                  const RefineOptions& options);
+void refineTexels(Collider& collider, const MeshQuery& query, const RefineOptions& options);
 
 }  // namespace relief

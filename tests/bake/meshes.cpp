@@ -127,7 +127,7 @@ TriangleMesh reversed(TriangleMesh mesh) {
     return mesh;
 }
 
-Collider bakeSpecs(const TriangleMesh& mesh, const std::vector<std::string>& specs, std::uint32_t resolution,
+Collider bakeSpecs(const PreparedMesh& mesh, const std::vector<std::string>& specs, std::uint32_t resolution,
                    unsigned threads) {
     BakeOptions options;
     options.resolution = resolution;

@@ -32,7 +32,7 @@ namespace relief::test {
 
 /// Bakes specs, which must be right. Maps that do not say otherwise are of the paper's texels: projected,
 /// half.
-[[nodiscard]] Collider bakeSpecs(const TriangleMesh& mesh, const std::vector<std::string>& specs,
+[[nodiscard]] Collider bakeSpecs(const PreparedMesh& mesh, const std::vector<std::string>& specs,
                                  std::uint32_t resolution = 64, unsigned threads = 0);
 [[nodiscard]] DepthMap bakeMap(const TriangleMesh& mesh, const std::string& spec,
                                std::uint32_t resolution = 64);

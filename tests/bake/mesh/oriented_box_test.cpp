@@ -108,8 +108,8 @@ TEST(OrientedBox, PlannedViewsLookAlongTheWallsOfATurnedPart) {
     for (const bool oriented_box : {false, true}) {
         PlanOptions options;
         options.budget_bytes = 16'000;
-        options.oriented_box = oriented_box;
-        const Result<Plan> plan = planViews(mesh, *query, options);
+        options.views.oriented_box = oriented_box;
+        const Result<Plan> plan = planViews(*query, options);
         ASSERT_TRUE(plan) << plan.error().message;
         BakeOptions bake_options;
         bake_options.maps = specsOf(*plan);

@@ -28,7 +28,7 @@ Plan planOf(const TriangleMesh& mesh, std::uint64_t budget = kBudget) {
     PlanOptions options;
     options.budget_bytes = budget;
     const MeshQuery query = queryOf(mesh);
-    Result<Plan> plan = planViews(mesh, query, options);
+    Result<Plan> plan = planViews(query, options);
     EXPECT_TRUE(plan) << plan.error().message;
     return plan ? std::move(*plan) : Plan{};
 }
@@ -229,7 +229,7 @@ TEST(ViewPlanner, RefusesABudgetThatIsTooSmall) {
     const MeshQuery query = queryOf(mesh);
     PlanOptions options;
     options.budget_bytes = 100;
-    const Result<Plan> plan = planViews(mesh, query, options);
+    const Result<Plan> plan = planViews(query, options);
     ASSERT_FALSE(plan);
     EXPECT_EQ(plan.error().code, ErrorCode::kUsage);
 }

@@ -51,14 +51,12 @@ const fs::path& cgalMeshes() {
 TriangleMesh load(const std::string& name) {
     const fs::path path = name.find('/') != std::string::npos ? fs::path(name) : cgalMeshes() / name;
     Result<TriangleMesh> mesh = importMesh(path);
-    if (mesh) {
-        mesh = closeHoles(std::move(*mesh));
-    }
-    if (!mesh) {
-        ADD_FAILURE() << mesh.error().message;
+    const Result<PreparedMesh> closed = mesh ? closeHoles(std::move(*mesh)) : forward(mesh);
+    if (!closed) {
+        ADD_FAILURE() << closed.error().message;
         std::abort();
     }
-    return std::move(*mesh);
+    return **closed;
 }
 
 MapSpec specOf(const TriangleMesh& mesh, const std::string& text) {

@@ -191,7 +191,7 @@ TEST(Winding, GoodMeshesStay) {
         const Result<Winding> winding = windOutwards(mesh);
         ASSERT_TRUE(winding);
         EXPECT_EQ(winding->turned, 0U);
-        EXPECT_EQ(winding->mesh.triangles, mesh.triangles);
+        EXPECT_EQ(winding->mesh->triangles, mesh.triangles);
     }
 }
 
@@ -208,14 +208,14 @@ TEST(Winding, FlippedTrianglesComeBack) {
         const Result<Winding> winding = windOutwards(flipped);
         ASSERT_TRUE(winding);
         EXPECT_GT(winding->turned, mesh.triangles.size() / 3);
-        EXPECT_EQ(winding->mesh.triangles, mesh.triangles);
+        EXPECT_EQ(winding->mesh->triangles, mesh.triangles);
         expectSameTexels(bakedOutwards(flipped), truth);
     }
     // The inner ball, turned as a whole, is a hollow all the same.
     const TriangleMesh nested = joined(makeIcosphere({0, 0, 0}, 1, 3), makeIcosphere({0, 0, 0}, 0.5, 3));
     const Result<Winding> winding = windOutwards(nested);
     ASSERT_TRUE(winding);
-    EXPECT_EQ(winding->mesh.triangles, hollow.triangles);
+    EXPECT_EQ(winding->mesh->triangles, hollow.triangles);
 }
 
 TEST(Winding, OneSidedStripsBakeTheSameField) {

@@ -29,8 +29,8 @@ WrongShare wrongNear(const MeshQuery& query, const Collider& collider) {
 Collider bakePlanned(const TriangleMesh& mesh, const MeshQuery& query, Quality quality, Prefer prefer) {
     PlanOptions plan_options;
     plan_options.budget_bytes = 65536;
-    plan_options.prefer = prefer;
-    const Result<Plan> plan = planViews(mesh, query, plan_options);
+    plan_options.views.prefer = prefer;
+    const Result<Plan> plan = planViews(query, plan_options);
     EXPECT_TRUE(plan);
     BakeOptions options;
     options.quality = quality;
@@ -52,7 +52,7 @@ TEST(Refine, MakesFewerMistakesAmongPointsItNeverSaw) {
         const MeshQuery query = queryOf(mesh);
         Collider collider = bakePlanned(mesh, query, Quality::kFast, Prefer::kNeither);
         const WrongShare before = wrongNear(query, collider);
-        refineTexels(collider, mesh, query, {});
+        refineTexels(collider, query, {});
         const WrongShare after = wrongNear(query, collider);
         EXPECT_LE(after.total(), before.total());
         better += after.total() < 0.98 * before.total() ? 1 : 0;
@@ -70,7 +70,7 @@ TEST(Refine, LeavesMapsOfProjectedDepthAlone) {
     Result<Baked> baked = bake(mesh, options);
     ASSERT_TRUE(baked);
     const Collider before = baked->collider;
-    refineTexels(baked->collider, mesh, query, {});
+    refineTexels(baked->collider, query, {});
     EXPECT_EQ(before.maps, baked->collider.maps);
 }
 
@@ -93,7 +93,7 @@ TEST(Prefer, ShiftsTheMistakesToTheOtherKind) {
 void expectTrueLabels(const TriangleMesh& mesh) {
     const MeshQuery query = queryOf(mesh);
     const double sigma = 0.02 * mesh.bounds.longestSide();
-    const std::vector<LabelledPoint> points = drawNearSurface(mesh, query, 20'000, sigma, 3);
+    const std::vector<LabelledPoint> points = drawNearSurface(query, 20'000, sigma, 3);
     ASSERT_GE(points.size(), 5000U);
     std::size_t inside = 0;
     std::size_t wrong = 0;

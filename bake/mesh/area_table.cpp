@@ -1,0 +1,35 @@
+#include "bake/mesh/area_table.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bake/mesh/triangle_plane.h"
+
+namespace relief {
+
+AreaTable::AreaTable(const TriangleMesh& mesh) {
+    up_to_.reserve(mesh.triangles.size());
+    double sum = 0.0;
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+        const glm::dvec3 normal = planeOf(mesh, i).normal;
+        sum += std::sqrt(dot(normal, normal));
+        up_to_.push_back(sum);
+    }
+}
+
+std::uint32_t AreaTable::triangleAt(double share) const {
+    const auto found = std::upper_bound(up_to_.begin(), up_to_.end() - 1, share * up_to_.back());
+    return static_cast<std::uint32_t>(found - up_to_.begin());
+}
+
+glm::dvec3 pointOn(const TriangleMesh& mesh, std::uint32_t triangle, double u, double v) {
+    if (u + v > 1.0) {
+        u = 1.0 - u;
+        v = 1.0 - v;
+    }
+    const glm::uvec3& t = mesh.triangles[triangle];
+    const glm::dvec3 a = mesh.positions[t.x];
+    return a + u * (glm::dvec3(mesh.positions[t.y]) - a) + v * (glm::dvec3(mesh.positions[t.z]) - a);
+}
+
+}  // namespace relief

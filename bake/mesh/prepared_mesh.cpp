@@ -1,0 +1,132 @@
+#include "bake/mesh/prepared_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "bake/mesh/embree_mesh.h"
+#include "bake/mesh/triangle_plane.h"
+
+namespace relief {
+
+struct PreparedMesh::State {
+    explicit State(TriangleMesh of) : mesh(std::move(of)) {}
+
+    TriangleMesh mesh;
+    bool wound_outwards = false;
+    std::optional<MeshEdges> edges;
+    std::optional<std::vector<OddEdge>> odd_edges;
+    std::optional<bool> several_shells;
+    std::optional<double> orientation;
+    std::optional<AreaTable> areas;
+    std::optional<EmbreeMesh> tree;
+
+    void learnFrom(const MeshEdges& from) {
+        odd_edges = relief::oddEdges(from);
+        several_shells = odd_edges->empty() && isSeveralShells(from);
+    }
+};
+
+PreparedMesh::PreparedMesh(TriangleMesh mesh) : state_(std::make_shared<State>(std::move(mesh))) {}
+
+const TriangleMesh& PreparedMesh::operator*() const {
+    return state_->mesh;
+}
+
+const MeshEdges& PreparedMesh::edges() const {
+    if (!state_->edges) {
+        state_->edges = edgesOf(state_->mesh);
+    }
+    return *state_->edges;
+}
+
+void PreparedMesh::freeEdges() const {
+    if (state_->edges) {
+        state_->learnFrom(*state_->edges);
+        state_->edges.reset();
+    }
+}
+
+const std::vector<OddEdge>& PreparedMesh::oddEdges() const {
+    if (!state_->odd_edges) {
+        state_->learnFrom(state_->edges ? *state_->edges : edgesOf(state_->mesh));
+    }
+    return *state_->odd_edges;
+}
+
+bool PreparedMesh::woundShells() const {
+    if (!closed() || !state_->wound_outwards) {
+        return false;
+    }
+    if (!state_->several_shells) {
+        state_->learnFrom(state_->edges ? *state_->edges : edgesOf(state_->mesh));
+    }
+    return *state_->several_shells;
+}
+
+double PreparedMesh::orientation() const {
+    if (state_->orientation) {
+        return *state_->orientation;
+    }
+    const TriangleMesh& mesh = state_->mesh;
+    const glm::dvec3 center = mesh.bounds.center();
+    glm::dvec3 area_vector(0.0);
+    double area = 0.0;
+    double volume = 0.0;
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+        const TrianglePlane plane = planeOf(mesh, i);
+        area_vector += plane.normal;
+        area += std::sqrt(dot(plane.normal, plane.normal));
+        volume += dot(plane.point - center, plane.normal);
+    }
+    const bool closed = std::sqrt(dot(area_vector, area_vector)) <= 1e-5 * area;
+    state_->orientation = closed && volume < 0.0 ? -1.0 : 1.0;
+    return *state_->orientation;
+}
+
+const AreaTable& PreparedMesh::areas() const {
+    if (!state_->areas) {
+        state_->areas.emplace(state_->mesh);
+    }
+    return *state_->areas;
+}
+
+Result<const EmbreeMesh*> PreparedMesh::tree() const {
+    if (!state_->tree) {
+        EmbreeMesh tree = RELIEF_TRY(EmbreeMesh::build(state_->mesh));
+        state_->tree = std::move(tree);
+    }
+    return &*state_->tree;
+}
+
+PreparedMesh PreparedMesh::woundOutwards(const std::vector<bool>& turn) && {
+    PreparedMesh wound = state_.use_count() == 1 ? std::move(*this) : PreparedMesh(TriangleMesh(**this));
+    State& state = *wound.state_;
+    state.wound_outwards = true;
+    if (std::find(turn.begin(), turn.end(), true) == turn.end()) {
+        return wound;
+    }
+    for (std::size_t i = 0; i < turn.size(); ++i) {
+        if (turn[i]) {
+            std::swap(state.mesh.triangles[i].y, state.mesh.triangles[i].z);
+        }
+    }
+    state.edges.reset();
+    // Odd edges run as most of their triangles do. A closed mesh has none, however it is wound.
+    if (state.odd_edges && !state.odd_edges->empty()) {
+        state.odd_edges.reset();
+    }
+    state.several_shells.reset();
+    state.orientation.reset();
+    state.tree.reset();
+    return wound;
+}
+
+PreparedMesh PreparedMesh::capped(TriangleMesh mesh) const {
+    PreparedMesh with_caps(std::move(mesh));
+    with_caps.state_->wound_outwards = state_->wound_outwards;
+    return with_caps;
+}
+
+}  // namespace relief

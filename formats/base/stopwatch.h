@@ -1,0 +1,34 @@
+// How long work took, for reports; no time reaches an output.
+#pragma once
+
+#include <chrono>
+
+namespace relief {
+
+/// Runs from the moment it is made.
+class Stopwatch {
+  public:
+    [[nodiscard]] double seconds() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
+    [[nodiscard]] double ms() const { return 1000.0 * seconds(); }
+
+  private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// Adds the time for which it lives to a sum.
+class TimeAdder {
+  public:
+    /// \param total_ms  borrowed; must outlive it.
+    explicit TimeAdder(double& total_ms) : total_ms_(total_ms) {}
+    TimeAdder(const TimeAdder&) = delete;
+    TimeAdder& operator=(const TimeAdder&) = delete;
+    ~TimeAdder() { total_ms_ += watch_.ms(); }
+
+  private:
+    double& total_ms_;
+    Stopwatch watch_;
+};
+
+}  // namespace relief
