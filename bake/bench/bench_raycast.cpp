@@ -123,7 +123,7 @@ int main(int argc, char** argv) {
         times["trace"].push_back(milliseconds([&] {
             for (const View& view : views) {
                 for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
-                    scene->trace(view, end, {0, 0, kResolution}, hits);
+                    traceRows(*scene, view, end, {0, 0, kResolution}, hits);
                 }
             }
         }));
@@ -138,7 +138,7 @@ int main(int argc, char** argv) {
     std::filesystem::remove(output);
     for (const View& view : views) {
         for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
-            scene->trace(view, end, {0, 0, kResolution}, hits);
+            traceRows(*scene, view, end, {0, 0, kResolution}, hits);
             our_hits += static_cast<std::uint64_t>(
                 std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return !hit.empty(); }));
         }

@@ -188,8 +188,8 @@ class MapBaker {
                     trace(view, RayEnd::kFar, rows, worker);
                 }
                 const TimeAdder watch_encode(worker.encode_ms);
-                worker.covered += encodeRows(scene_.mesh(), scene_.winding(), normals_, view, rows, worker.hits[0],
-                                             worker.hits[1], map);
+                worker.covered += encodeRows(scene_.mesh(), scene_.winding(), normals_, view, rows,
+                                             worker.hits[0], worker.hits[1], map);
             });
         }
         Worker all;
@@ -212,7 +212,7 @@ class MapBaker {
             return;
         }
         hits.resize(std::size_t{rows.end - rows.begin} * view.width);
-        scene_.traceRows(view, end, rows, hits);
+        traceRowsAlone(scene_, view, end, rows, hits);
     }
 
     const RayScene& scene_;
@@ -264,8 +264,8 @@ class Bake {
         const TimeAdder watch(baked_.report.raster_ms);
         for (const Job& job : jobs_) {
             MapReport report{job.spec, 0, job.texels()};
-            DepthMap map = RELIEF_TRY(
-                rasterizer->bake(job.view, job.spec.decode, report.covered, rowsDone(job.view)));
+            DepthMap map =
+                RELIEF_TRY(rasterizer->bake(job.view, job.spec.decode, report.covered, rowsDone(job.view)));
             add(std::move(map), std::move(report));
         }
         return {};

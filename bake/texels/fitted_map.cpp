@@ -10,6 +10,8 @@
 
 #include "bake/mesh/triangle_plane.h"
 #include "bake/texels/plane_fit.h"
+#include "bake/texels/ray_probe.h"
+#include "bake/texels/raycast.h"
 
 namespace relief {
 namespace {
@@ -267,6 +269,97 @@ class EndFitter {
     std::vector<FootprintRay> edge_;
 };
 
+/// Fits all texels of a map, stripe by stripe.
+class MapFitter {
+  public:
+    MapFitter(const RayScene& scene, const TriangleNormals& normals, const View& view,
+              const FittedMapOptions& options)
+        : scene_(scene),
+          normals_(normals),
+          view_(view),
+          fine_(scaled(view, options.samples)),
+          finest_(scaled(fine_, kEdgeParts)),
+          options_(options),
+          map_(view.emptyMap()) {
+        map_.decode = Decode::kPlane;
+    }
+
+    DepthMap run(std::uint64_t& covered, const std::function<void(std::uint32_t)>& rowsDone) {
+        const auto stripe_rows = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(
+            kStripeRays / (std::uint64_t{fine_.width} * options_.samples), 1, view_.height));
+        covered = 0;
+        for (std::uint32_t face = 0; face < view_.faceCount(); ++face) {
+            for (std::uint32_t y = 0; y < view_.height; y += stripe_rows) {
+                const RowRange stripe{face, y, std::min(y + stripe_rows, view_.height)};
+                covered += fitStripe(stripe);
+                rowsDone(stripe.end - stripe.begin);
+            }
+        }
+        return std::move(map_);
+    }
+
+  private:
+    static View scaled(View view, std::uint32_t factor) {
+        view.width *= factor;
+        view.height *= factor;
+        return view;
+    }
+
+    /// \return the number of texels with a surface.
+    std::uint64_t fitStripe(const RowRange& stripe) {
+        // One more row on either side, for the rings about the texels.
+        const RowRange rays{stripe.face, stripe.begin * options_.samples - (stripe.begin > 0 ? 1 : 0),
+                            std::min(stripe.end * options_.samples + 1, fine_.height)};
+        for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
+            if (view_.keeps(end)) {
+                std::vector<Hit>& hits = hits_[static_cast<std::size_t>(end)];
+                hits.resize(std::size_t{rays.end - rays.begin} * fine_.width);
+                traceRows(scene_, fine_, end, rays, hits);
+            }
+        }
+        return tbb::parallel_reduce(
+            tbb::blocked_range<std::uint32_t>(stripe.begin, stripe.end), std::uint64_t{0},
+            [&](const auto& block, std::uint64_t count) {
+                return count + fitRows({stripe.face, block.begin(), block.end()}, rays.begin);
+            },
+            std::plus<>());
+    }
+
+    std::uint64_t fitRows(const RowRange& rows, std::uint32_t first_ray_row) {
+        EndFitter near_fitter(scene_, normals_, view_, fine_, finest_, RayEnd::kNear, options_);
+        EndFitter far_fitter(scene_, normals_, view_, fine_, finest_, RayEnd::kFar, options_);
+        std::uint64_t covered = 0;
+        for (std::uint32_t y = rows.begin; y != rows.end; ++y) {
+            for (std::uint32_t x = 0; x < view_.width; ++x) {
+                Texel texel;
+                if (!isBorder(view_, x, y)) {
+                    if (view_.keeps(RayEnd::kNear)) {
+                        texel.front = near_fitter.fit(rows.face, x, y, first_ray_row, hits_[0], hits_[1]);
+                    }
+                    if (view_.keeps(RayEnd::kFar)) {
+                        texel.back = far_fitter.fit(rows.face, x, y, first_ray_row, hits_[1], hits_[0]);
+                    }
+                    if (view_.compare == Compare::kGreater) {
+                        texel.front.swap(texel.back);  // a map of one surface holds it as its front
+                    }
+                }
+                encodeTexel(map_.format, texel, map_.texelAt(rows.face, x, y));
+                covered += texel.front || texel.back ? 1U : 0U;
+            }
+        }
+        return covered;
+    }
+
+    const RayScene& scene_;
+    const TriangleNormals& normals_;
+    const View& view_;
+    View fine_;    // a texel for each ray of a footprint
+    View finest_;  // and for each place between two rays where an edge is looked for
+    const FittedMapOptions& options_;
+    DepthMap map_;
+    std::array<std::vector<Hit>, 2> hits_;  // of the stripe, by RayEnd
+};
+
 }  // namespace
 
 TriangleNormals::TriangleNormals(const TriangleMesh& mesh) : normals_(mesh.triangles.size()) {
@@ -279,64 +372,7 @@ TriangleNormals::TriangleNormals(const TriangleMesh& mesh) : normals_(mesh.trian
 DepthMap bakeFittedMap(const RayScene& scene, const TriangleNormals& normals, const View& view,
                        const FittedMapOptions& options, std::uint64_t& covered,
                        const std::function<void(std::uint32_t)>& rowsDone) {
-    View fine = view;
-    fine.width *= options.samples;
-    fine.height *= options.samples;
-
-    View finest = fine;
-    finest.width *= kEdgeParts;
-    finest.height *= kEdgeParts;
-
-    DepthMap map = view.emptyMap();
-    map.decode = Decode::kPlane;
-    const auto stripe_rows = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(
-        kStripeRays / (std::uint64_t{fine.width} * options.samples), 1, view.height));
-    std::array<std::vector<Hit>, 2> hits;
-    covered = 0;
-    for (std::uint32_t face = 0; face < view.faceCount(); ++face) {
-        for (std::uint32_t y = 0; y < view.height; y += stripe_rows) {
-            const std::uint32_t y_end = std::min(y + stripe_rows, view.height);
-            // One more row on either side, for the rings about the texels.
-            const RowRange rows{face, y * options.samples - (y > 0 ? 1 : 0),
-                                std::min(y_end * options.samples + 1, fine.height)};
-            for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
-                if (view.keeps(end)) {
-                    std::vector<Hit>& end_hits = hits[static_cast<std::size_t>(end)];
-                    end_hits.resize(std::size_t{rows.end - rows.begin} * fine.width);
-                    scene.trace(fine, end, rows, end_hits);
-                }
-            }
-            const auto fitRows = [&](const tbb::blocked_range<std::uint32_t>& block, std::uint64_t count) {
-                EndFitter near_fitter(scene, normals, view, fine, finest, RayEnd::kNear, options);
-                EndFitter far_fitter(scene, normals, view, fine, finest, RayEnd::kFar, options);
-                for (std::uint32_t row = block.begin(); row != block.end(); ++row) {
-                    for (std::uint32_t x = 0; x < view.width; ++x) {
-                        Texel texel;
-                        if (isBorder(view, x, row)) {
-                            encodeTexel(map.format, texel, map.texelAt(face, x, row));
-                            continue;
-                        }
-                        if (view.keeps(RayEnd::kNear)) {
-                            texel.front = near_fitter.fit(face, x, row, rows.begin, hits[0], hits[1]);
-                        }
-                        if (view.keeps(RayEnd::kFar)) {
-                            texel.back = far_fitter.fit(face, x, row, rows.begin, hits[1], hits[0]);
-                        }
-                        if (view.compare == Compare::kGreater) {
-                            texel.front.swap(texel.back);  // a map of one surface holds it as its front
-                        }
-                        encodeTexel(map.format, texel, map.texelAt(face, x, row));
-                        count += texel.front || texel.back ? 1U : 0U;
-                    }
-                }
-                return count;
-            };
-            covered += tbb::parallel_reduce(tbb::blocked_range<std::uint32_t>(y, y_end), std::uint64_t{0},
-                                            fitRows, std::plus<>());
-            rowsDone(y_end - y);
-        }
-    }
-    return map;
+    return MapFitter(scene, normals, view, options).run(covered, rowsDone);
 }
 
 }  // namespace relief

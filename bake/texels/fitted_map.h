@@ -7,7 +7,7 @@
 
 #include "bake/mesh/mesh.h"
 #include "bake/plan/view.h"
-#include "bake/texels/raycast.h"
+#include "bake/texels/ray_scene.h"
 #include "formats/depth_map.h"
 
 namespace relief {

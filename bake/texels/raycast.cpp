@@ -5,77 +5,28 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <limits>
 #include <utility>
-#include <vector>
 
 #include "bake/mesh/embree_mesh.h"
-#include "bake/mesh/triangle_plane.h"
+#include "bake/texels/ray_probe.h"
 
 namespace relief {
 namespace {
 
 constexpr std::uint32_t kTile = 4;  // a packet is 4×4 texels
 constexpr int kLanes = 16;
-/// A hit this near to an edge, in barycentric coordinates, may as well be the neighbour's.
-constexpr float kEdgeWidth = 1e-4F;
-/// Surfaces this near along the ray, in units of its length, meet at an edge.
-constexpr float kTieDepth = 1e-5F;
-/// Below this cosine between a triangle's normal and the ray, its plane is a poor guide outside the triangle.
-constexpr double kGrazing = 1e-3;
 /// A ray this much deeper, in map depth, than those beside it may have slipped through.
 constexpr float kDepthJump = 0.08F;
-/// How far beside a ray that may have slipped through others look, and how near to it a triangle must come to
-/// count as met. Embree's units: the mesh is one to two long. Floats there are 6e-8 apart.
-constexpr double kBeside = 0x1p-17;
-constexpr double kTouching = 1e-6;
-constexpr int kBesideRays = 8;
-constexpr std::size_t kPlaneDepths = 256;
-constexpr std::uint32_t kNone = 0xffffffff;
 
-/// Sines and cosines of the places round a ray where lookAgain looks: the first two on either side, none
-/// along an edge of a grid.
-constexpr std::array<std::array<double, 2>, kBesideRays> kBesideDirections = {{{0.1951, 0.9808},
-                                                                               {-0.2588, -0.9659},
-                                                                               {0.9877, -0.1564},
-                                                                               {0.6018, -0.7986},
-                                                                               {0.8090, 0.5878},
-                                                                               {-0.7660, -0.6428},
-                                                                               {-0.9945, 0.1045},
-                                                                               {-0.6428, 0.7660}}};
-
-/// Collects the triangles that one ray meets, and lets it pass through them.
-struct Collector {
-    RTCIntersectContext context{};
-    std::vector<std::uint32_t> triangles;
-
-    static void filter(const RTCFilterFunctionNArguments* args) {
-        // RTCIntersectContext is the first member: Embree hands back the pointer it was given.
-        auto* self = reinterpret_cast<Collector*>(args->context);
-        for (unsigned i = 0; i < args->N; ++i) {
-            if (args->valid[i] != 0) {
-                self->triangles.push_back(RTCHitN_primID(args->hit, args->N, i));
-                args->valid[i] = 0;
-            }
-        }
-    }
-};
-
-}  // namespace
+/// A hit this near to an edge, in barycentric coordinates, may as well be the neighbour's.
+constexpr float kEdgeWidth = 1e-4F;
 
 /// Traces the packets of one row of tiles.
-class RayScene::Tracer {
+class TileTracer {
   public:
-    Tracer(const RayScene& scene, const View& view, RayEnd end)
-        : mesh_(scene.mesh()),
-          tree_(*scene.tree_),
-          winding_(scene.winding_),
-          closed_(scene.closed_),
-          view_(view),
-          end_(end),
-          inside_out_(scene.winding_ < 0.0) {
+    TileTracer(const RayScene& scene, const View& view, RayEnd end)
+        : mesh_(scene.mesh()), tree_(scene.tree()), view_(view), end_(end), probe_(scene, view, end) {
         rtcInitIntersectContext(&context_);
         context_.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
         for (int lane = 0; lane < kLanes; ++lane) {
@@ -115,7 +66,7 @@ class RayScene::Tracer {
                     const Hit hit = resolve(face, x0 + column, y0 + row, lane);
                     low = std::min(low, hit.depth());
                     high = std::max(high, hit.depth());
-                    outer += metInside(hit) ? 0U : 1U;
+                    outer += probe_.metInside(hit) ? 0U : 1U;
                     out[column] = hit;
                 }
             }
@@ -123,23 +74,6 @@ class RayScene::Tracer {
                 mendPinholes(face, x0, y0, columns, rows, hits);
             }
         }
-    }
-
-    Hit traceOne(std::uint32_t face, std::uint32_t x, std::uint32_t y) {
-        const TexelRay ray = view_.ray(face, x, y);
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        RTCRayHit query = queryOf(segmentOf(ray));
-        rtcIntersect1(tree_.scene.get(), &context, &query);
-        if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
-            return {};
-        }
-        const Hit hit = view_.projection() == Projection::kOrthographic
-                            ? orthographicHit(x, y, query.hit.primID)
-                            : cubeHit(ray, query.hit.primID);
-        // Alone, a ray is doubted only where no ray from free space may get: at the inner side of a closed
-        // mesh.
-        return closed_ && metInside(hit) ? lookAgain(face, x, y, hit) : hit;
     }
 
   private:
@@ -177,32 +111,11 @@ class RayScene::Tracer {
         }
     }
 
-    /// A ray as it is traced: from a little outside the volume, along or against the depth.
-    struct Segment {
-        glm::dvec3 origin;
-        glm::dvec3 direction;
-        double length;  ///< of the parameter
-    };
-    [[nodiscard]] Segment segmentOf(const TexelRay& ray) const {
-        const double depth_max = view_.depthMax(ray);
-        // A cube's rays start in its very centre.
-        const bool from_point = view_.projection() == Projection::kCube && end_ == RayEnd::kNear;
-        const double slack = from_point ? 0.0 : kDepthSlack;
-        if (end_ == RayEnd::kNear) {
-            return {ray.origin - slack * ray.direction, ray.direction, depth_max + 2.0 * slack};
-        }
-        const double back = view_.projection() == Projection::kCube ? 0.0 : slack;
-        return {ray.origin + (depth_max + slack) * ray.direction, -ray.direction, depth_max + slack + back};
-    }
-
     void prepareOrthographic() {
-        first_ray_ = view_.ray(0, 0, 0);
-        column_step_ = view_.axis[0] / static_cast<double>(view_.width);
-        row_step_ = view_.axis[1] / static_cast<double>(view_.height);
-        const Segment segment = segmentOf(first_ray_);
+        const RaySegment segment = probe_.segmentOf(view_.ray(0, 0, 0));
         local_origin_ = (segment.origin - tree_.center) * tree_.scale;
-        local_column_step_ = column_step_ * tree_.scale;
-        local_row_step_ = row_step_ * tree_.scale;
+        local_column_step_ = view_.axis[0] / static_cast<double>(view_.width) * tree_.scale;
+        local_row_step_ = view_.axis[1] / static_cast<double>(view_.height) * tree_.scale;
         const glm::vec3 direction = segment.direction * tree_.scale;
         for (int lane = 0; lane < kLanes; ++lane) {
             const glm::vec3 offset = static_cast<double>(columnOf(lane)) * local_column_step_ +
@@ -231,7 +144,8 @@ class RayScene::Tracer {
 
     void setCubeRays(std::uint32_t face, std::uint32_t x0, std::uint32_t y0) {
         for (int lane = 0; lane < kLanes; ++lane) {
-            const Segment segment = segmentOf(view_.ray(face, x0 + columnOf(lane), y0 + rowOf(lane)));
+            const RaySegment segment =
+                probe_.segmentOf(view_.ray(face, x0 + columnOf(lane), y0 + rowOf(lane)));
             const glm::vec3 origin = tree_.toLocal(segment.origin);
             const glm::vec3 direction = segment.direction * tree_.scale;
             packet_.ray.org_x[lane] = origin.x;
@@ -250,19 +164,14 @@ class RayScene::Tracer {
         const float u = packet_.hit.u[lane];
         const float v = packet_.hit.v[lane];
         if (std::min({u, v, 1.0F - u - v}) < kEdgeWidth) {
-            triangle = bestAtEdge(segmentOf(view_.ray(face, x, y)), packet_.ray.tfar[lane], triangle);
+            triangle =
+                probe_.bestAtEdge(probe_.segmentOf(view_.ray(face, x, y)), packet_.ray.tfar[lane], triangle);
         }
-        return view_.projection() == Projection::kOrthographic ? orthographicHit(x, y, triangle)
-                                                               : cubeHit(view_.ray(face, x, y), triangle);
+        return probe_.hitOf(face, x, y, triangle);
     }
 
-    // --- pinholes: robust or not, Embree lets some rays that are aimed exactly at a vertex or edge pass ---
-
-    /// The ray met the side that a closed mesh turns inwards.
-    [[nodiscard]] bool metInside(const Hit& hit) const { return hit.fromBehind() != inside_out_; }
-
     /// Looks again at the rays of a tile that met nothing, an inner side, or something far behind, although
-    /// those beside them met an outer side.
+    /// those beside them met an outer side. `hits` begins with the tile's first row.
     void mendPinholes(std::uint32_t face, std::uint32_t x0, std::uint32_t y0, std::uint32_t columns,
                       std::uint32_t rows, Hit* hits) {
         const auto at = [&](std::uint32_t column, std::uint32_t row) -> Hit& {
@@ -277,12 +186,7 @@ class RayScene::Tracer {
                 std::uint32_t before = 0;
                 const auto compare = [&](const Hit& other) {
                     ++beside;
-                    const float gap =
-                        end_ == RayEnd::kNear ? hit.depth() - other.depth() : other.depth() - hit.depth();
-                    before += !other.empty() && !metInside(other) &&
-                                      (hit.empty() || metInside(hit) || gap > kDepthJump)
-                                  ? 1U
-                                  : 0U;
+                    before += isBefore(other, hit) ? 1U : 0U;
                 };
                 if (column > 0) {
                     compare(at(column - 1, row));
@@ -304,234 +208,28 @@ class RayScene::Tracer {
         for (std::uint32_t lane = 0; doubtful != 0; ++lane, doubtful >>= 1U) {
             if ((doubtful & 1U) != 0) {
                 Hit& hit = at(lane % kTile, lane / kTile);
-                hit = lookAgain(face, x0 + lane % kTile, y0 + lane / kTile, hit);
+                hit = probe_.lookAgain(face, x0 + lane % kTile, y0 + lane / kTile, hit);
             }
         }
     }
 
-    /// By rays beside the ray: what they meet before `hit` counts if the ray itself touches it.
-    Hit lookAgain(std::uint32_t face, std::uint32_t x, std::uint32_t y, const Hit& hit) {
-        const TexelRay ray = view_.ray(face, x, y);
-        const Segment segment = segmentOf(ray);
-        const glm::dvec3 direction = segment.direction * tree_.scale;
-        const double length = std::sqrt(dot(direction, direction));
-        const glm::dvec3 unit = direction / length;
-        const glm::dvec3 other = std::abs(unit.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-        glm::dvec3 right = cross(unit, other);
-        right = right / std::sqrt(dot(right, right));
-        const glm::dvec3 up = cross(right, unit);
-
-        // Of what is touched, the nearest, and all that lies as near: where edges meet.
-        std::array<std::uint32_t, kBesideRays> touched{};
-        std::array<float, kBesideRays> where{};
-        std::size_t count = 0;
-        float nearest = std::numeric_limits<float>::max();
-        for (std::size_t i = 0; i < kBesideDirections.size(); ++i) {
-            if (i == 2 && count == 0) {
-                return hit;  // beside a silhouette: as good as all that is doubted
-            }
-            const auto& [sine, cosine] = kBesideDirections[i];
-            RTCIntersectContext context;
-            rtcInitIntersectContext(&context);
-            Segment shifted = segment;
-            shifted.origin += (kBeside / tree_.scale) * (cosine * right + sine * up);
-            RTCRayHit query = queryOf(shifted);
-            rtcIntersect1(tree_.scene.get(), &context, &query);
-            if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID &&
-                touches((segment.origin - tree_.center) * tree_.scale, right, up,
-                        query.hit.primID)) {
-                touched[count] = query.hit.primID;
-                where[count++] = query.ray.tfar;
-                nearest = std::min(nearest, query.ray.tfar);
-            }
+    /// A ray met an outer side, and one beside it got past.
+    [[nodiscard]] bool isBefore(const Hit& hit, const Hit& beside) const {
+        if (hit.empty() || probe_.metInside(hit)) {
+            return false;
         }
-        if (count == 0) {
-            return hit;
-        }
-        // Triangles beside the ray lie a little before or behind where it meets them.
-        const float tie = static_cast<float>(64.0 * kBeside / length);
-        collector_.triangles.clear();
-        for (std::size_t i = 0; i < count; ++i) {
-            if (where[i] <= nearest + tie) {
-                collector_.triangles.push_back(touched[i]);
-            }
-        }
-        const std::uint32_t best = bestFacing(segment, collector_.triangles.front());
-        const Hit found = view_.projection() == Projection::kOrthographic ? orthographicHit(x, y, best)
-                                                                          : cubeHit(ray, best);
-        const bool before = hit.empty() || (end_ == RayEnd::kNear ? found.depth() < hit.depth()
-                                                                  : found.depth() > hit.depth());
-        return before ? found : hit;
-    }
-
-    /// Whether a line through `origin`, square to `right` and `up`, passes a triangle within kTouching.
-    [[nodiscard]] bool touches(const glm::dvec3& origin, const glm::dvec3& right, const glm::dvec3& up,
-                               std::uint32_t triangle) const {
-        const glm::uvec3& t = mesh_.triangles[triangle];
-        double x[3];
-        double y[3];
-        for (int i = 0; i < 3; ++i) {
-            const glm::dvec3 p =
-                (glm::dvec3(mesh_.positions[t[i]]) - tree_.center) * tree_.scale - origin;
-            x[i] = dot(p, right);
-            y[i] = dot(p, up);
-        }
-        int sides = 0;
-        double closest = std::numeric_limits<double>::max();
-        for (int i = 0; i < 3; ++i) {
-            const int j = (i + 1) % 3;
-            const double ex = x[j] - x[i];
-            const double ey = y[j] - y[i];
-            const double side = ex * y[i] - ey * x[i];
-            sides += side > 0.0 ? 1 : side < 0.0 ? -1 : 0;
-            const double square = ex * ex + ey * ey;
-            const double along = square > 0.0 ? std::clamp(-(x[i] * ex + y[i] * ey) / square, 0.0, 1.0) : 0.0;
-            const double dx = x[i] + along * ex;
-            const double dy = y[i] + along * ey;
-            closest = std::min(closest, std::sqrt(dx * dx + dy * dy));
-        }
-        return std::abs(sides) == 3 || closest <= kTouching;
-    }
-
-    [[nodiscard]] RTCRayHit queryOf(const Segment& segment) const {
-        const glm::vec3 origin = tree_.toLocal(segment.origin);
-        const glm::vec3 direction = segment.direction * tree_.scale;
-        RTCRayHit query{};
-        query.ray.org_x = origin.x;
-        query.ray.org_y = origin.y;
-        query.ray.org_z = origin.z;
-        query.ray.dir_x = direction.x;
-        query.ray.dir_y = direction.y;
-        query.ray.dir_z = direction.z;
-        query.ray.tfar = static_cast<float>(segment.length);
-        query.ray.mask = 0xffffffff;
-        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-        return query;
-    }
-
-    /// Of the triangles that the ray meets about `at`, the one that the contract of trace() names.
-    std::uint32_t bestAtEdge(const Segment& segment, float at, std::uint32_t first) {
-        collector_.triangles.assign(1, first);
-        rtcInitIntersectContext(&collector_.context);
-        collector_.context.filter = Collector::filter;
-        const float tie = kTieDepth * static_cast<float>(segment.length);
-        RTCRayHit query = queryOf(segment);
-        query.ray.tnear = std::max(0.0F, at - tie);
-        query.ray.tfar = at + tie;
-        rtcIntersect1(tree_.scene.get(), &collector_.context, &query);
-
-        return bestFacing(segment, first);
-    }
-
-    /// Of the collected triangles; `first` is one of them. A front side always beats a back side.
-    [[nodiscard]] std::uint32_t bestFacing(const Segment& segment, std::uint32_t first) const {
-        std::uint32_t best = first;
-        double best_score = -2.0;
-        for (const std::uint32_t triangle : collector_.triangles) {
-            const TrianglePlane plane = planeOf(mesh_, triangle);
-            const double length =
-                std::sqrt(dot(plane.normal, plane.normal) * dot(segment.direction, segment.direction));
-            const double facing = -winding_ * dot(plane.normal, segment.direction) / length;
-            const double score = facing > 0.0 ? facing : -1.0 - facing;
-            if (score > best_score || (score == best_score && triangle < best)) {
-                best = triangle;
-                best_score = score;
-            }
-        }
-        return best;
-    }
-
-    /// The depth of a triangle's plane at the texels of an orthographic map: at (x, y) it is
-    /// base + x · per_column + y · per_row.
-    struct PlaneDepth {
-        std::uint32_t triangle = kNone;
-        bool from_behind = false;
-        bool grazing = false;
-        double base = 0.0;
-        double per_column = 0.0;
-        double per_row = 0.0;
-    };
-
-    Hit orthographicHit(std::uint32_t x, std::uint32_t y, std::uint32_t triangle) {
-        // Neighbouring texels mostly see the same few triangles.
-        PlaneDepth& plane = plane_depths_[triangle % kPlaneDepths];
-        if (plane.triangle != triangle) {
-            plane = planeDepth(triangle);
-        }
-        double depth =
-            plane.base + static_cast<double>(x) * plane.per_column + static_cast<double>(y) * plane.per_row;
-        if (plane.grazing) {
-            depth = insideTriangle(view_.ray(0, x, y), triangle, depth);
-        }
-        return {static_cast<float>(std::clamp(depth, 0.0, 1.0)), triangle, plane.from_behind};
-    }
-
-    [[nodiscard]] PlaneDepth planeDepth(std::uint32_t triangle) const {
-        const TrianglePlane plane = planeOf(mesh_, triangle);
-        const double along = dot(plane.normal, first_ray_.direction);
-        const double per_along = 1.0 / along;
-        PlaneDepth depth;
-        depth.triangle = triangle;
-        depth.from_behind = isFromBehind(along);
-        depth.grazing = isGrazing(plane, first_ray_.direction, along);
-        depth.base = dot(plane.normal, plane.point - first_ray_.origin) * per_along;
-        depth.per_column = -dot(plane.normal, column_step_) * per_along;
-        depth.per_row = -dot(plane.normal, row_step_) * per_along;
-        return depth;
-    }
-
-    [[nodiscard]] Hit cubeHit(const TexelRay& ray, std::uint32_t triangle) const {
-        const TrianglePlane plane = planeOf(mesh_, triangle);
-        const double along = dot(plane.normal, ray.direction);
-        double depth = dot(plane.normal, plane.point - ray.origin) / along;
-        if (isGrazing(plane, ray.direction, along)) {
-            depth = insideTriangle(ray, triangle, depth);
-        }
-        return {static_cast<float>(std::clamp(depth, 0.0, double{kCubeDepthMax})), triangle,
-                isFromBehind(along)};
-    }
-
-    /// \param along  dot(normal, direction of growing depth)
-    [[nodiscard]] bool isFromBehind(double along) const {
-        return end_ == RayEnd::kNear ? along > 0.0 : along < 0.0;
-    }
-    [[nodiscard]] static bool isGrazing(const TrianglePlane& plane, const glm::dvec3& direction,
-                                        double along) {
-        return !(along * along >
-                 kGrazing * kGrazing * dot(plane.normal, plane.normal) * dot(direction, direction));
-    }
-
-    /// A depth on a triangle seen almost edge-on, held between the depths of its corners.
-    [[nodiscard]] double insideTriangle(const TexelRay& ray, std::uint32_t triangle, double depth) const {
-        const glm::uvec3& t = mesh_.triangles[triangle];
-        const double per_depth = dot(ray.direction, ray.direction);
-        double low = std::numeric_limits<double>::max();
-        double high = -low;
-        for (const std::uint32_t corner : {t.x, t.y, t.z}) {
-            const double at =
-                dot(glm::dvec3(mesh_.positions[corner]) - ray.origin, ray.direction) / per_depth;
-            low = std::min(low, at);
-            high = std::max(high, at);
-        }
-        return depth >= low && depth <= high ? depth : std::isnan(depth) || depth < low ? low : high;
+        const float gap = end_ == RayEnd::kNear ? beside.depth() - hit.depth() : hit.depth() - beside.depth();
+        return beside.empty() || probe_.metInside(beside) || gap > kDepthJump;
     }
 
     const TriangleMesh& mesh_;
     const EmbreeMesh& tree_;
-    double winding_;
-    bool closed_;
     const View& view_;
     RayEnd end_;
-    bool inside_out_;
-    std::array<PlaneDepth, kPlaneDepths> plane_depths_;
+    RayProbe probe_;
     RTCIntersectContext context_{};
-    Collector collector_;
-    // Of an orthographic view: the ray of texel (0, 0), and from one texel's origin to the next one's.
-    TexelRay first_ray_{};
-    glm::dvec3 column_step_{0.0};
-    glm::dvec3 row_step_{0.0};
-    // The same as Embree sees it, for the traced segments.
+    // For an orthographic view, in Embree's units: where the ray of texel (0, 0) starts, and the steps from one
+    // texel's ray to the next.
     glm::dvec3 local_origin_{0.0};
     glm::dvec3 local_column_step_{0.0};
     glm::dvec3 local_row_step_{0.0};
@@ -545,39 +243,25 @@ class RayScene::Tracer {
     alignas(64) RTCRayHit16 packet_{};
 };
 
-Result<RayScene> RayScene::build(PreparedMesh mesh) {
-    const EmbreeMesh* const tree = RELIEF_TRY(mesh.tree());
-    return RayScene(std::move(mesh), *tree);
-}
+}  // namespace
 
-void RayScene::trace(const View& view, RayEnd end, const RowRange& rows, std::span<Hit> hits) const {
+void traceRows(const RayScene& scene, const View& view, RayEnd end, const RowRange& rows,
+               std::span<Hit> hits) {
     const std::uint32_t tile_rows = (rows.end - rows.begin + kTile - 1) / kTile;
     tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, tile_rows), [&](const auto& block) {
         const RowRange part{rows.face, rows.begin + block.begin() * kTile,
                             std::min(rows.begin + block.end() * kTile, rows.end)};
         const std::size_t first = std::size_t{part.begin - rows.begin} * view.width;
-        traceRows(view, end, part, hits.subspan(first));
+        traceRowsAlone(scene, view, end, part, hits.subspan(first));
     });
 }
 
-void RayScene::traceRows(const View& view, RayEnd end, const RowRange& rows, std::span<Hit> hits) const {
-    Tracer tracer(*this, view, end);
+void traceRowsAlone(const RayScene& scene, const View& view, RayEnd end, const RowRange& rows,
+                    std::span<Hit> hits) {
+    TileTracer tracer(scene, view, end);
     for (std::uint32_t y = rows.begin; y < rows.end; y += kTile) {
         tracer.traceTileRow(rows.face, y, rows.end, &hits[std::size_t{y - rows.begin} * view.width]);
     }
-}
-
-struct RayProbe::Impl {
-    explicit Impl(RayScene::Tracer started) : tracer(std::move(started)) {}
-    RayScene::Tracer tracer;
-};
-
-RayProbe::RayProbe(const RayScene& scene, const View& view, RayEnd end)
-    : impl_(std::make_unique<Impl>(RayScene::Tracer(scene, view, end))) {}
-RayProbe::~RayProbe() = default;
-
-Hit RayProbe::trace(std::uint32_t face, std::uint32_t x, std::uint32_t y) {
-    return impl_->tracer.traceOne(face, x, y);
 }
 
 }  // namespace relief

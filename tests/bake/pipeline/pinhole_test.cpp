@@ -7,6 +7,7 @@
 #include <string>
 
 #include "bake/mesh/triangle_plane.h"
+#include "bake/texels/ray_probe.h"
 #include "bake/texels/raycast.h"
 #include "tests/bake/meshes.h"
 
@@ -122,7 +123,7 @@ void expectNoLeak(const TriangleMesh& mesh, const View& view, const std::vector<
     for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
         for (std::uint32_t face = 0; face < view.faceCount(); ++face) {
             std::vector<Hit> hits(std::size_t{view.width} * view.height);
-            scene->trace(view, end, {face, 0, view.height}, hits);
+            traceRows(*scene, view, end, {face, 0, view.height}, hits);
             for (std::uint32_t y = 0; y < view.height; ++y) {
                 for (std::uint32_t x = 0; x < view.width; ++x) {
                     const TexelRay ray = view.ray(face, x, y);
@@ -254,7 +255,7 @@ TEST(Pinholes, RaysAimedAtVerticesAndEdgesAreMet) {
                     const View view = aimedAt(p, d);
                     const RayEnd end = cosine < 0.0 ? RayEnd::kNear : RayEnd::kFar;
                     std::array<Hit, 64> hits;
-                    scene->traceRows(view, end, {0, 0, 8}, hits);
+                    traceRowsAlone(*scene, view, end, {0, 0, 8}, hits);
                     for (const Hit& hit : {hits[4 * 8 + 3], RayProbe(*scene, view, end).trace(0, 3, 4)}) {
                         ++rays;
                         lost += hit.empty() ? 1U : 0U;

@@ -31,7 +31,7 @@ TEST(Encode, WritesWhatEncodeTexelWrites) {
                 for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
                     if (view->keeps(end)) {
                         hits[static_cast<std::size_t>(end)].resize(std::size_t{view->width} * view->height);
-                        scene->trace(*view, end, rows, hits[static_cast<std::size_t>(end)]);
+                        traceRows(*scene, *view, end, rows, hits[static_cast<std::size_t>(end)]);
                     }
                 }
                 covered += encodeRows(mesh, scene->winding(), normals, *view, rows, hits[0], hits[1], map);
@@ -76,13 +76,13 @@ TEST(Trace, RowsOfAnyRangeAreTheSameRows) {
         ASSERT_TRUE(view);
         const std::uint32_t face = view->faceCount() - 1;
         std::vector<Hit> whole(std::size_t{view->width} * 37);
-        scene->trace(*view, RayEnd::kNear, {face, 0, 37}, whole);
+        traceRows(*scene, *view, RayEnd::kNear, {face, 0, 37}, whole);
         std::size_t hits = 0;
         for (const std::uint32_t step : {1U, 5U, 8U}) {
             for (std::uint32_t y = 0; y < 37; y += step) {
                 const RowRange rows{face, y, std::min(y + step, 37U)};
                 std::vector<Hit> part(std::size_t{rows.end - rows.begin} * view->width);
-                scene->trace(*view, RayEnd::kNear, rows, part);
+                traceRows(*scene, *view, RayEnd::kNear, rows, part);
                 for (std::size_t i = 0; i < part.size(); ++i) {
                     const Hit& other = whole[std::size_t{y} * view->width + i];
                     ASSERT_EQ(part[i].empty(), other.empty());

@@ -1,0 +1,235 @@
+#include "bake/texels/ray_probe.h"
+
+#include <cmath>
+#include <limits>
+
+namespace relief {
+namespace {
+
+/// Surfaces this near along the ray, in units of its length, meet at an edge.
+constexpr float kTieDepth = 1e-5F;
+/// Below this cosine between a triangle's normal and the ray, its plane is a poor guide outside the triangle.
+constexpr double kGrazing = 1e-3;
+/// How far beside a ray that may have slipped through others look, and how near to it a triangle must come to
+/// count as met. Embree's units: the mesh is one to two long. Floats there are 6e-8 apart.
+constexpr double kBeside = 0x1p-17;
+constexpr double kTouching = 1e-6;
+constexpr int kBesideRays = 8;
+
+/// Sines and cosines of the places round a ray where lookAgain looks: the first two on either side, none
+/// along an edge of a grid.
+constexpr std::array<std::array<double, 2>, kBesideRays> kBesideDirections = {{{0.1951, 0.9808},
+                                                                               {-0.2588, -0.9659},
+                                                                               {0.9877, -0.1564},
+                                                                               {0.6018, -0.7986},
+                                                                               {0.8090, 0.5878},
+                                                                               {-0.7660, -0.6428},
+                                                                               {-0.9945, 0.1045},
+                                                                               {-0.6428, 0.7660}}};
+
+bool isGrazing(const TrianglePlane& plane, const glm::dvec3& direction, double along) {
+    return !(along * along >
+             kGrazing * kGrazing * dot(plane.normal, plane.normal) * dot(direction, direction));
+}
+
+}  // namespace
+
+RayProbe::RayProbe(const RayScene& scene, const View& view, RayEnd end)
+    : mesh_(scene.mesh()),
+      tree_(scene.tree()),
+      winding_(scene.winding()),
+      view_(view),
+      end_(end),
+      inside_out_(scene.winding() < 0.0),
+      closed_(scene.closed()),
+      first_ray_(view.ray(0, 0, 0)),
+      column_step_(view.axis[0] / static_cast<double>(view.width)),
+      row_step_(view.axis[1] / static_cast<double>(view.height)) {}
+
+void RayProbe::Collector::filter(const RTCFilterFunctionNArguments* args) {
+    // RTCIntersectContext is the first member: Embree hands back the pointer it was given.
+    auto* self = reinterpret_cast<Collector*>(args->context);
+    for (unsigned i = 0; i < args->N; ++i) {
+        if (args->valid[i] != 0) {
+            self->triangles.push_back(RTCHitN_primID(args->hit, args->N, i));
+            args->valid[i] = 0;
+        }
+    }
+}
+
+Hit RayProbe::trace(std::uint32_t face, std::uint32_t x, std::uint32_t y) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRayHit query = queryOf(segmentOf(view_.ray(face, x, y)));
+    rtcIntersect1(tree_.scene.get(), &context, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
+        return {};
+    }
+    const Hit hit = hitOf(face, x, y, query.hit.primID);
+    // Alone, a ray is doubted only where no ray from free space may get: at the inner side of a closed mesh.
+    return closed_ && metInside(hit) ? lookAgain(face, x, y, hit) : hit;
+}
+
+RTCRayHit RayProbe::queryOf(const RaySegment& segment) const {
+    const glm::vec3 origin = tree_.toLocal(segment.origin);
+    const glm::vec3 direction = segment.direction * tree_.scale;
+    RTCRayHit query{};
+    query.ray.org_x = origin.x;
+    query.ray.org_y = origin.y;
+    query.ray.org_z = origin.z;
+    query.ray.dir_x = direction.x;
+    query.ray.dir_y = direction.y;
+    query.ray.dir_z = direction.z;
+    query.ray.tfar = static_cast<float>(segment.length);
+    query.ray.mask = 0xffffffff;
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    return query;
+}
+
+RayProbe::PlaneDepth RayProbe::planeDepth(std::uint32_t triangle) const {
+    const TrianglePlane plane = planeOf(mesh_, triangle);
+    const double along = dot(plane.normal, first_ray_.direction);
+    const double per_along = 1.0 / along;
+    PlaneDepth depth;
+    depth.triangle = triangle;
+    depth.from_behind = isFromBehind(along);
+    depth.grazing = isGrazing(plane, first_ray_.direction, along);
+    depth.base = dot(plane.normal, plane.point - first_ray_.origin) * per_along;
+    depth.per_column = -dot(plane.normal, column_step_) * per_along;
+    depth.per_row = -dot(plane.normal, row_step_) * per_along;
+    return depth;
+}
+
+Hit RayProbe::cubeHit(const TexelRay& ray, std::uint32_t triangle) const {
+    const TrianglePlane plane = planeOf(mesh_, triangle);
+    const double along = dot(plane.normal, ray.direction);
+    double depth = dot(plane.normal, plane.point - ray.origin) / along;
+    if (isGrazing(plane, ray.direction, along)) {
+        depth = insideTriangle(ray, triangle, depth);
+    }
+    return {static_cast<float>(std::clamp(depth, 0.0, double{kCubeDepthMax})), triangle, isFromBehind(along)};
+}
+
+double RayProbe::insideTriangle(const TexelRay& ray, std::uint32_t triangle, double depth) const {
+    const glm::uvec3& t = mesh_.triangles[triangle];
+    const double per_depth = dot(ray.direction, ray.direction);
+    double low = std::numeric_limits<double>::max();
+    double high = -low;
+    for (const std::uint32_t corner : {t.x, t.y, t.z}) {
+        const double at = dot(glm::dvec3(mesh_.positions[corner]) - ray.origin, ray.direction) / per_depth;
+        low = std::min(low, at);
+        high = std::max(high, at);
+    }
+    return depth >= low && depth <= high ? depth : std::isnan(depth) || depth < low ? low : high;
+}
+
+std::uint32_t RayProbe::bestAtEdge(const RaySegment& segment, float at, std::uint32_t first) {
+    collector_.triangles.assign(1, first);
+    rtcInitIntersectContext(&collector_.context);
+    collector_.context.filter = Collector::filter;
+    const float tie = kTieDepth * static_cast<float>(segment.length);
+    RTCRayHit query = queryOf(segment);
+    query.ray.tnear = std::max(0.0F, at - tie);
+    query.ray.tfar = at + tie;
+    rtcIntersect1(tree_.scene.get(), &collector_.context, &query);
+
+    return bestFacing(segment, first);
+}
+
+std::uint32_t RayProbe::bestFacing(const RaySegment& segment, std::uint32_t first) const {
+    std::uint32_t best = first;
+    double best_score = -2.0;
+    for (const std::uint32_t triangle : collector_.triangles) {
+        const TrianglePlane plane = planeOf(mesh_, triangle);
+        const double length =
+            std::sqrt(dot(plane.normal, plane.normal) * dot(segment.direction, segment.direction));
+        const double facing = -winding_ * dot(plane.normal, segment.direction) / length;
+        const double score = facing > 0.0 ? facing : -1.0 - facing;
+        if (score > best_score || (score == best_score && triangle < best)) {
+            best = triangle;
+            best_score = score;
+        }
+    }
+    return best;
+}
+
+Hit RayProbe::lookAgain(std::uint32_t face, std::uint32_t x, std::uint32_t y, const Hit& hit) {
+    const RaySegment segment = segmentOf(view_.ray(face, x, y));
+    const glm::dvec3 direction = segment.direction * tree_.scale;
+    const double length = std::sqrt(dot(direction, direction));
+    const glm::dvec3 unit = direction / length;
+    const glm::dvec3 other = std::abs(unit.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+    glm::dvec3 right = cross(unit, other);
+    right = right / std::sqrt(dot(right, right));
+    const glm::dvec3 up = cross(right, unit);
+
+    // The nearest triangle that is touched, and all that are as near, for edges meet there.
+    std::array<std::uint32_t, kBesideRays> touched{};
+    std::array<float, kBesideRays> where{};
+    std::size_t count = 0;
+    float nearest = std::numeric_limits<float>::max();
+    for (std::size_t i = 0; i < kBesideDirections.size(); ++i) {
+        if (i == 2 && count == 0) {
+            return hit;  // beside a silhouette: as good as all that is doubted
+        }
+        const auto& [sine, cosine] = kBesideDirections[i];
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        RaySegment shifted = segment;
+        shifted.origin += (kBeside / tree_.scale) * (cosine * right + sine * up);
+        RTCRayHit query = queryOf(shifted);
+        rtcIntersect1(tree_.scene.get(), &context, &query);
+        if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID &&
+            touches((segment.origin - tree_.center) * tree_.scale, right, up, query.hit.primID)) {
+            touched[count] = query.hit.primID;
+            where[count++] = query.ray.tfar;
+            nearest = std::min(nearest, query.ray.tfar);
+        }
+    }
+    if (count == 0) {
+        return hit;
+    }
+    // Triangles beside the ray lie a little before or behind where it meets them.
+    const float tie = static_cast<float>(64.0 * kBeside / length);
+    collector_.triangles.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+        if (where[i] <= nearest + tie) {
+            collector_.triangles.push_back(touched[i]);
+        }
+    }
+    const std::uint32_t best = bestFacing(segment, collector_.triangles.front());
+    const Hit found = hitOf(face, x, y, best);
+    const bool before =
+        hit.empty() || (end_ == RayEnd::kNear ? found.depth() < hit.depth() : found.depth() > hit.depth());
+    return before ? found : hit;
+}
+
+bool RayProbe::touches(const glm::dvec3& origin, const glm::dvec3& right, const glm::dvec3& up,
+                       std::uint32_t triangle) const {
+    const glm::uvec3& t = mesh_.triangles[triangle];
+    double x[3];
+    double y[3];
+    for (int i = 0; i < 3; ++i) {
+        const glm::dvec3 p = (glm::dvec3(mesh_.positions[t[i]]) - tree_.center) * tree_.scale - origin;
+        x[i] = dot(p, right);
+        y[i] = dot(p, up);
+    }
+    int sides = 0;
+    double closest = std::numeric_limits<double>::max();
+    for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3;
+        const double ex = x[j] - x[i];
+        const double ey = y[j] - y[i];
+        const double side = ex * y[i] - ey * x[i];
+        sides += side > 0.0 ? 1 : side < 0.0 ? -1 : 0;
+        const double square = ex * ex + ey * ey;
+        const double along = square > 0.0 ? std::clamp(-(x[i] * ex + y[i] * ey) / square, 0.0, 1.0) : 0.0;
+        const double dx = x[i] + along * ex;
+        const double dy = y[i] + along * ey;
+        closest = std::min(closest, std::sqrt(dx * dx + dy * dy));
+    }
+    return std::abs(sides) == 3 || closest <= kTouching;
+}
+
+}  // namespace relief

@@ -1,0 +1,10 @@
+#include "bake/texels/ray_scene.h"
+
+namespace relief {
+
+Result<RayScene> RayScene::build(PreparedMesh mesh) {
+    const EmbreeMesh* const tree = RELIEF_TRY(mesh.tree());
+    return RayScene(std::move(mesh), *tree);
+}
+
+}  // namespace relief

@@ -1,0 +1,55 @@
+// The mesh that rays are cast at, and what a ray meets.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+
+#include "bake/mesh/prepared_mesh.h"
+#include "formats/base/result.h"
+
+namespace relief {
+
+/// What the ray of one texel meets first, from the end it starts at.
+class Hit {
+  public:
+    Hit() = default;
+    /// \param depth  map depth, in [0, 1] or [0, kCubeDepthMax]
+    /// \param from_behind  the ray met the side from which the triangle's corners run clockwise.
+    Hit(float depth, std::uint32_t triangle, bool from_behind)
+        : depth_(depth), code_(triangle << 1 | (from_behind ? 1U : 0U)) {}
+
+    [[nodiscard]] bool empty() const { return code_ == kNothing; }
+    [[nodiscard]] float depth() const { return depth_; }
+    [[nodiscard]] std::uint32_t triangle() const { return code_ >> 1; }
+    [[nodiscard]] bool fromBehind() const { return (code_ & 1U) != 0; }
+
+  private:
+    static constexpr std::uint32_t kNothing = 0xffffffff;  // no triangle: kTriangleMax is far below 2^31
+
+    float depth_ = 0.0F;
+    std::uint32_t code_ = kNothing;
+};
+
+/// A mesh to be traced, for any number of views, from any thread.
+class RayScene {
+  public:
+    /// Shares the mesh's tree. Errors: those of EmbreeMesh::build.
+    [[nodiscard]] static Result<RayScene> build(PreparedMesh mesh);
+
+    [[nodiscard]] const TriangleMesh& mesh() const { return *mesh_; }
+    /// orientation() of the mesh.
+    [[nodiscard]] double winding() const { return winding_; }
+    [[nodiscard]] bool closed() const { return closed_; }
+    [[nodiscard]] const EmbreeMesh& tree() const { return *tree_; }
+
+  private:
+    RayScene(PreparedMesh mesh, const EmbreeMesh& tree)
+        : mesh_(std::move(mesh)), tree_(&tree), winding_(mesh_.orientation()), closed_(mesh_.closed()) {}
+
+    PreparedMesh mesh_;
+    const EmbreeMesh* tree_;  // mesh_ holds it
+    double winding_;
+    bool closed_;
+};
+
+}  // namespace relief
