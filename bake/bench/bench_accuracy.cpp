@@ -11,6 +11,7 @@
 #include <span>
 
 #include "bake/bench/accuracy_summary.h"
+#include "bake/bench/accuracy_table.h"
 #include "bake/bench/distance_volume.h"
 #include "bake/import/mesh_import.h"
 #include "bake/measure/accuracy.h"
@@ -96,35 +97,9 @@ Result<Baked> bakeOurs(const TriangleMesh& open_mesh, std::uint64_t bytes) {
 
 // --- measuring ---
 
-/// One mesh, budget and method.
-struct Entry {
-    std::string mesh;
-    bool closed = false;
-    std::uint64_t budget = 0;
-    std::string method;  ///< "volume", "paper" or "ours"
-    std::string what;    ///< lattice or maps
-    std::size_t maps = 0;
-    std::uint64_t bytes = 0;
-    double build_seconds = 0.0;  ///< of maps: acceleration structure, plan, rays and fit
-    Json accuracy;               ///< of jsonFieldAccuracy or jsonColliderAccuracy
-
-    [[nodiscard]] double number(const char* group, const char* name) const {
-        return accuracy.at(group).at(name).get<double>();
-    }
-    [[nodiscard]] double wrong() const { return number("near", "wrong_percent"); }
-};
-
-Json toJson(const Entry& entry) {
-    return {{"mesh", entry.mesh},        {"closed", entry.closed},
-            {"budget", entry.budget},    {"method", entry.method},
-            {"what", entry.what},        {"maps", entry.maps},
-            {"bytes", entry.bytes},      {"build_seconds", entry.build_seconds},
-            {"accuracy", entry.accuracy}};
-}
-
 /// The best of all ways to place and to quantise the volume.
-Entry measureVolume(const MeshQuery& query, const TruthSamples& samples, std::uint64_t budget) {
-    Entry entry;
+AccuracyEntry measureVolume(const MeshQuery& query, const TruthSamples& samples, std::uint64_t budget) {
+    AccuracyEntry entry;
     entry.method = "volume";
     // Four standard deviations hold all but 6 in 100 000 of the points near the surface.
     const double reach = 4.0 * samples.options.sigma_share * samples.longest_side;
@@ -155,12 +130,12 @@ Entry measureVolume(const MeshQuery& query, const TruthSamples& samples, std::ui
     return entry;
 }
 
-Result<Entry> measureMaps(const MeshQuery& query, const TruthSamples& samples, const std::string& method,
-                          std::uint64_t budget) {
+Result<AccuracyEntry> measureMaps(const MeshQuery& query, const TruthSamples& samples,
+                                  const std::string& method, std::uint64_t budget) {
     const Stopwatch watch;
     const Baked baked =
         RELIEF_TRY(method == "paper" ? bakePaper(query.mesh(), budget) : bakeOurs(query.mesh(), budget));
-    Entry entry;
+    AccuracyEntry entry;
     entry.build_seconds = watch.seconds();
     entry.method = method;
     const ColliderAccuracy accuracy = measureCollider(samples, query, baked.collider);
@@ -197,13 +172,13 @@ class Cache {
                std::to_string(options.seed);
     }
 
-    [[nodiscard]] std::optional<Entry> find(const std::string& key) const {
+    [[nodiscard]] std::optional<AccuracyEntry> find(const std::string& key) const {
         if (!json_.contains(key)) {
             return std::nullopt;
         }
         try {
             const Json& json = json_[key];
-            Entry entry;
+            AccuracyEntry entry;
             entry.method = "volume";
             entry.what = json.at("what");
             entry.bytes = json.at("bytes");
@@ -225,7 +200,7 @@ class Cache {
         }
     }
 
-    [[nodiscard]] Result<void> add(const std::string& key, const Entry& entry) {
+    [[nodiscard]] Result<void> add(const std::string& key, const AccuracyEntry& entry) {
         if (path_.empty()) {
             return {};
         }
@@ -238,138 +213,6 @@ class Cache {
     std::string path_;
     Json json_ = Json::object();
 };
-
-// --- the table ---
-
-std::string fixedText(double value, int digits) {
-    char text[32];
-    std::snprintf(text, sizeof(text), "%.*f", digits, value);
-    return text;
-}
-
-using Rows = std::vector<std::vector<std::string>>;
-
-/// GitHub's tables; a heading that ends in '>' goes right, as in table().
-std::string markdown(const Rows& rows) {
-    std::string text;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        std::string rule = "|";
-        text += "|";
-        for (const std::string& cell : rows[i]) {
-            const bool right = i == 0 && cell.ends_with('>');
-            text += " " + (right ? cell.substr(0, cell.size() - 1) : cell) + " |";
-            rule += right ? " ---: |" : " --- |";
-        }
-        text += "\n" + (i == 0 ? rule + "\n" : "");
-    }
-    return text;
-}
-
-/// All of every entry, one a line.
-Rows detailRows(const std::vector<Entry>& entries) {
-    Rows rows = {{"mesh", "budget>", "method", "wrong %>", "in>", "out>", "box %>", "dist mean %>", "p99 %>",
-                  "normal>", "unseen %>", "bytes>", "s>", "what"}};
-    for (const Entry& entry : entries) {
-        rows.push_back({entry.mesh, budgetText(entry.budget), entry.method, fixedText(entry.wrong(), 3),
-                        fixedText(entry.number("near", "false_inside_percent"), 3),
-                        fixedText(entry.number("near", "false_outside_percent"), 3),
-                        fixedText(entry.number("uniform", "wrong_percent"), 3),
-                        fixedText(entry.number("distance_error", "mean_percent"), 4),
-                        fixedText(entry.number("distance_error", "p99_percent"), 4),
-                        fixedText(entry.number("normal_error_degrees", "mean"), 2),
-                        entry.accuracy.contains("unseen_area_percent")
-                            ? fixedText(entry.accuracy["unseen_area_percent"], 2)
-                            : "-",
-                        std::to_string(entry.bytes), fixedText(entry.build_seconds, 2), entry.what});
-    }
-    return rows;
-}
-
-/// The entries of one mesh and budget side by side; null where a method was not measured.
-struct Contest {
-    const Entry* volume = nullptr;
-    const Entry* paper = nullptr;
-    const Entry* ours = nullptr;
-
-    [[nodiscard]] const Entry& any() const { return ours ? *ours : paper ? *paper : *volume; }
-    [[nodiscard]] std::optional<double> ratio(const Entry* maps, std::uint32_t samples) const {
-        return maps && volume ? std::optional(wrongRatio(maps->wrong(), volume->wrong(), samples))
-                              : std::nullopt;
-    }
-};
-
-std::vector<Contest> contestsOf(const std::vector<Entry>& entries) {
-    std::vector<Contest> contests;
-    for (const Entry& entry : entries) {  // neighbours: they were measured one after the other
-        if (contests.empty() || contests.back().any().mesh != entry.mesh ||
-            contests.back().any().budget != entry.budget) {
-            contests.emplace_back();
-        }
-        Contest& contest = contests.back();
-        (entry.method == "volume"  ? contest.volume
-         : entry.method == "paper" ? contest.paper
-                                   : contest.ours) = &entry;
-    }
-    return contests;
-}
-
-Rows contestRows(const std::vector<Contest>& contests, std::uint32_t samples) {
-    Rows rows = {{"mesh", "budget>", "volume %>", "paper %>", "ours %>", "ours/volume>", "in %>", "out %>",
-                  "mean: volume>", "paper>", "ours>", "p99: volume>", "paper>", "ours>", "no distance %>",
-                  "bytes>", "maps>", "ms>"}};
-    for (const Contest& c : contests) {
-        const auto number = [](const Entry* entry, const char* group, const char* name, int digits) {
-            return entry ? fixedText(entry->number(group, name), digits) : std::string("-");
-        };
-        const auto wrong = [&](const Entry* entry) { return number(entry, "near", "wrong_percent", 3); };
-        const auto mean = [&](const Entry* e) { return number(e, "distance_error", "mean_percent", 4); };
-        const auto p99 = [&](const Entry* e) { return number(e, "distance_error", "p99_percent", 3); };
-        const std::optional<double> ratio = c.ratio(c.ours, samples);
-        const double no_distance = c.ours ? c.ours->accuracy.at("far_percent").get<double>() +
-                                                c.ours->accuracy.at("unknown_percent").get<double>()
-                                          : 0.0;
-        rows.push_back(
-            {c.any().mesh + (c.any().closed ? "" : " (open)"), budgetText(c.any().budget), wrong(c.volume),
-             wrong(c.paper), wrong(c.ours), ratio ? fixedText(*ratio, 3) : "-",
-             number(c.ours, "near", "false_inside_percent", 3),
-             number(c.ours, "near", "false_outside_percent", 3), mean(c.volume), mean(c.paper), mean(c.ours),
-             p99(c.volume), p99(c.paper), p99(c.ours), c.ours ? fixedText(no_distance, 2) : "-",
-             c.ours ? std::to_string(c.ours->bytes) : "-", c.ours ? std::to_string(c.ours->maps) : "-",
-             c.ours ? fixedText(1000.0 * c.ours->build_seconds, 0) : "-"});
-    }
-    return rows;
-}
-
-std::vector<AccuracyRow> summaryRows(const std::vector<Contest>& contests, std::uint32_t samples) {
-    std::vector<AccuracyRow> rows;
-    for (const Contest& c : contests) {
-        rows.push_back({c.any().mesh, c.any().closed, c.any().budget, c.ratio(c.paper, samples),
-                        c.ratio(c.ours, samples),
-                        c.ours ? std::optional(c.ours->build_seconds) : std::nullopt});
-    }
-    return rows;
-}
-
-/// \param gap  goes between the lines.
-std::string legend(const AccuracyOptions& options, const std::string& gap) {
-    const std::string lines[] = {
-        "%: points near the surface on the wrong side of it; in, out: ours, false inside and false "
-        "outside. " +
-            std::to_string(options.samples) + " points, seed " + std::to_string(options.seed) + ", " +
-            fixedText(100.0 * options.sigma_share, 1) +
-            " % of the longest side off the surface (standard deviation).",
-        "mean, p99: error of the signed distance at those points, in % of the longest side. Where maps say "
-        "outside and no more (infinitely far, or no vote) they have no distance and no error: no distance is "
-        "the share of such points in ours.",
-        "ms: one bake of ours with acceleration structure, plan, rays and fit. open: computed, some edge has "
-        "an "
-        "odd number of triangles."};
-    std::string text;
-    for (const std::string& line : lines) {
-        text += (text.empty() ? "" : gap) + line;
-    }
-    return text + "\n";
-}
 
 // --- the program ---
 
@@ -408,22 +251,6 @@ Result<void> printValues(const MeshQuery& query, std::uint64_t budget, const std
     return writeFile("-", std::as_bytes(std::span(out)));
 }
 
-Json toJson(const BudgetSummary& summary) {
-    const auto orNull = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
-    Json above = Json::array();
-    for (const NamedValue& mesh : summary.closed_above) {
-        above.push_back(mesh.mesh);
-    }
-    return {{"budget", summary.budget},
-            {"meshes", summary.meshes},
-            {"ours_over_volume", orNull(summary.our_mean)},
-            {"paper_over_volume", orNull(summary.paper_mean)},
-            {"target", targetRatio(summary.budget)},
-            {"closed_above_volume", above},
-            {"slowest_bake_seconds", summary.slowest ? Json(summary.slowest->value) : Json()},
-            {"missed", summary.missed}};
-}
-
 /// The meshes of the command line that --only names, in the command line's order.
 Result<std::vector<std::string>> chosenMeshes(const Arguments& arguments) {
     const auto stem = [](const std::string& path) { return std::filesystem::path(path).stem().string(); };
@@ -445,71 +272,84 @@ Result<std::vector<std::string>> chosenMeshes(const Arguments& arguments) {
     return chosen;
 }
 
+/// What was measured so far.
+struct Measured {
+    std::vector<AccuracyEntry> entries;
+    Json meshes = Json::array();
+};
+
+/// Measures one mesh at all budgets and with all methods.
+Result<void> measureMesh(const MeshQuery& query, const Arguments& arguments,
+                         const std::vector<std::uint64_t>& budgets, Cache& cache, Measured& measured) {
+    const TriangleMesh& mesh = query.mesh();
+    AccuracyOptions options;
+    options.samples = arguments.samples;
+    options.seed = arguments.seed;
+    const TruthSamples samples = sampleTruth(query, options);
+    Json mesh_report = jsonSamples(samples);
+    mesh_report["mesh"] = mesh.name;
+    mesh_report["mesh_hash"] = mesh.content_hash;
+    mesh_report["triangles"] = mesh.triangles.size();
+    mesh_report["watertight"] = query.watertight();
+    measured.meshes.push_back(std::move(mesh_report));
+    for (const std::uint64_t budget : budgets) {
+        for (const std::string& method : arguments.methods) {
+            AccuracyEntry entry;
+            if (method != "volume") {
+                entry = RELIEF_TRY(measureMaps(query, samples, method, budget));
+            } else if (std::optional<AccuracyEntry> known = cache.find(Cache::key(mesh, budget, options))) {
+                entry = std::move(*known);
+            } else {
+                entry = measureVolume(query, samples, budget);
+                RELIEF_TRY(cache.add(Cache::key(mesh, budget, options), entry));
+            }
+            entry.mesh = mesh.name;
+            entry.closed = query.watertight();
+            entry.budget = budget;
+            measured.entries.push_back(std::move(entry));
+        }
+    }
+    return {};
+}
+
+std::string resultText(const Measured& measured, const Arguments& arguments,
+                       const std::vector<std::uint64_t>& budgets) {
+    const std::vector<BudgetSummary> summaries =
+        summarize(summaryRows(measured.entries, arguments.samples), budgets);
+    if (!arguments.json) {
+        AccuracyTableOptions options;
+        options.accuracy.samples = arguments.samples;
+        options.accuracy.seed = arguments.seed;
+        options.details = arguments.details;
+        options.markdown = arguments.markdown;
+        return accuracyTable(measured.entries, summaries, options);
+    }
+    Json json = {{"meshes", measured.meshes}, {"results", Json::array()}, {"summaries", Json::array()}};
+    for (const AccuracyEntry& entry : measured.entries) {
+        json["results"].push_back(toJson(entry));
+    }
+    for (const BudgetSummary& summary : summaries) {
+        json["summaries"].push_back(toJson(summary));
+    }
+    return dump(json);
+}
+
 Result<void> run(const Arguments& arguments) {
     const std::vector<std::uint64_t> budgets = RELIEF_TRY(parseBudgets(arguments.budgets));
     const std::vector<std::string> paths = RELIEF_TRY(chosenMeshes(arguments));
     Cache cache(arguments.cache);
-    AccuracyOptions options;
-    options.samples = arguments.samples;
-    options.seed = arguments.seed;
-    std::vector<Entry> entries;
-    Json mesh_reports = Json::array();
+    Measured measured;
     for (const std::string& path : paths) {
         const Stopwatch watch;
-        const TriangleMesh mesh = RELIEF_TRY(importMeshInWorker(path));
-        const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
+        TriangleMesh mesh = RELIEF_TRY(importMeshInWorker(path));
+        const MeshQuery query = RELIEF_TRY(MeshQuery::build(std::move(mesh)));
         if (!arguments.values.empty()) {
             return printValues(query, budgets.front(), arguments.values);
         }
-        const TruthSamples samples = sampleTruth(query, options);
-        Json mesh_report = jsonSamples(samples);
-        mesh_report["mesh"] = mesh.name;
-        mesh_report["mesh_hash"] = mesh.content_hash;
-        mesh_report["triangles"] = mesh.triangles.size();
-        mesh_report["watertight"] = query.watertight();
-        mesh_reports.push_back(std::move(mesh_report));
-        for (const std::uint64_t budget : budgets) {
-            for (const std::string& method : arguments.methods) {
-                Entry entry;
-                if (method == "volume") {
-                    const std::string key = Cache::key(mesh, budget, options);
-                    if (std::optional<Entry> known = cache.find(key)) {
-                        entry = std::move(*known);
-                    } else {
-                        entry = measureVolume(query, samples, budget);
-                        RELIEF_TRY(cache.add(key, entry));
-                    }
-                } else {
-                    Entry measured = RELIEF_TRY(measureMaps(query, samples, method, budget));
-                    entry = std::move(measured);
-                }
-                entry.mesh = mesh.name;
-                entry.closed = query.watertight();
-                entry.budget = budget;
-                entries.push_back(std::move(entry));
-            }
-        }
-        std::fprintf(stderr, "%s: %.1f s\n", mesh.name.c_str(), watch.seconds());
+        RELIEF_TRY(measureMesh(query, arguments, budgets, cache, measured));
+        std::fprintf(stderr, "%s: %.1f s\n", query.mesh().name.c_str(), watch.seconds());
     }
-    const std::vector<Contest> contests = contestsOf(entries);
-    const std::vector<BudgetSummary> summaries = summarize(summaryRows(contests, options.samples), budgets);
-    std::string text;
-    if (arguments.json) {
-        Json json = {{"meshes", mesh_reports}, {"results", Json::array()}, {"summaries", Json::array()}};
-        for (const Entry& entry : entries) {
-            json["results"].push_back(toJson(entry));
-        }
-        for (const BudgetSummary& summary : summaries) {
-            json["summaries"].push_back(toJson(summary));
-        }
-        text = dump(json);
-    } else {
-        const Rows rows = arguments.details ? detailRows(entries) : contestRows(contests, options.samples);
-        text = arguments.markdown
-                   ? markdown(rows) + "\n" + legend(options, "<br>\n") + "\n```text\n" +
-                         summaryText(summaries) + "```\n"
-                   : table(rows) + "\n" + legend(options, "\n") + "\n" + summaryText(summaries);
-    }
+    const std::string text = resultText(measured, arguments, budgets);
     return writeFile("-", std::as_bytes(std::span(text)));
 }
 

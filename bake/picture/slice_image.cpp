@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "bake/picture/color.h"
+#include "bake/picture/contour.h"
 #include "formats/base/portable_math.h"
 #include "formats/base/text.h"
 
@@ -88,20 +89,12 @@ std::string tickText(double value, double step) {
     return (value < 0.0 ? "\xe2\x88\x92" : "") + std::string(text);  // a true minus sign
 }
 
-// --- what of the samples is drawn ---
-
-enum class Kind { kDistance, kFar, kAbstained };
-
-Kind kindOf(const FieldSample& sample) {
-    return sample.map < 0 ? Kind::kAbstained : sample.distance >= kFarOutside ? Kind::kFar : Kind::kDistance;
-}
-
 /// The largest distance that the colours tell apart: most of the inside, and as much outside.
 double colorRange(const Slice& slice) {
     std::vector<float> inside;
     std::vector<float> outside;
     for (const FieldSample& sample : slice.samples) {
-        if (kindOf(sample) == Kind::kDistance) {
+        if (kindOf(sample) == SampleKind::kDistance) {
             (sample.distance < 0.0F ? inside : outside).push_back(std::abs(sample.distance));
         }
     }
@@ -117,71 +110,6 @@ double colorRange(const Slice& slice) {
     const double range = std::max(quantile(inside, 0.995), 0.5 * quantile(outside, 0.9));
     return range > 0.0 && std::isfinite(range) ? range : slice.spacing * slice.width;
 }
-
-/// Marching squares for one level of the distance. Coordinates in samples from the centre of the first.
-class Contour {
-  public:
-    Contour(const Slice& slice, double level, double jump) : slice_(slice), level_(level), jump_(jump) {}
-
-    /// Calls segment(x0, y0, x1, y1) for every piece.
-    template <class Segment>
-    void trace(const Segment& segment) const {
-        for (std::uint32_t y = 0; y + 1 < slice_.height; ++y) {
-            for (std::uint32_t x = 0; x + 1 < slice_.width; ++x) {
-                traceCell(x, y, segment);
-            }
-        }
-    }
-
-  private:
-    using Point = std::array<double, 2>;
-
-    template <class Segment>
-    void traceCell(std::uint32_t x, std::uint32_t y, const Segment& segment) const {
-        constexpr std::array<std::array<int, 2>, 4> kCorner = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
-        std::array<double, 4> value{};
-        for (std::size_t i = 0; i < 4; ++i) {
-            const FieldSample& sample = slice_.sample(x + static_cast<std::uint32_t>(kCorner[i][0]),
-                                                      y + static_cast<std::uint32_t>(kCorner[i][1]));
-            const Kind kind = kindOf(sample);
-            // Only the zero contour borders on what is outside without a distance.
-            if (kind == Kind::kAbstained || (kind == Kind::kFar && level_ != 0.0)) {
-                return;
-            }
-            value[i] = static_cast<double>(sample.distance) - level_;
-        }
-        const auto [low, high] = std::minmax_element(value.begin(), value.end());
-        if (*low >= 0.0 || *high < 0.0 || (level_ != 0.0 && *high - *low > jump_)) {
-            return;
-        }
-        std::array<Point, 4> crossing{};
-        std::size_t count = 0;
-        for (std::size_t i = 0; i < 4; ++i) {
-            const std::size_t j = (i + 1) % 4;
-            if ((value[i] < 0.0) != (value[j] < 0.0)) {
-                // Across a jump of the field the surface may be anywhere: the middle.
-                const bool jumps = std::abs(value[i] - value[j]) > jump_;
-                const double t = jumps ? 0.5 : value[i] / (value[i] - value[j]);
-                crossing[count++] = {x + kCorner[i][0] + t * (kCorner[j][0] - kCorner[i][0]),
-                                     y + kCorner[i][1] + t * (kCorner[j][1] - kCorner[i][1])};
-            }
-        }
-        // A saddle has four crossings: the sign of the middle says which belong together.
-        const bool middle_inside = value[0] + value[1] + value[2] + value[3] < 0.0;
-        const std::size_t shift = count == 4 && (value[0] < 0.0) == middle_inside ? 1 : 0;
-        // Shift 1 joins edges 0-1 and 2-3 (corners 1 and 3 cut off); shift 0 joins 3-0 and 1-2.
-        if (count == 4 && shift == 0) {
-            std::rotate(crossing.begin(), crossing.begin() + 3, crossing.end());
-        }
-        for (std::size_t i = 0; i + 1 < count; i += 2) {
-            segment(crossing[i][0], crossing[i][1], crossing[i + 1][0], crossing[i + 1][1]);
-        }
-    }
-
-    const Slice& slice_;
-    double level_;
-    double jump_;
-};
 
 // --- the figure ---
 
@@ -342,11 +270,11 @@ class Figure {
 
     [[nodiscard]] Color sampleColor(const FieldSample& sample, bool distance) const {
         switch (kindOf(sample)) {
-            case Kind::kAbstained:
+            case SampleKind::kAbstained:
                 return kAbstainedColor;
-            case Kind::kFar:
+            case SampleKind::kFar:
                 return distance ? kFarColor : kOutsideColor;
-            case Kind::kDistance:
+            case SampleKind::kDistance:
                 break;
         }
         if (!distance) {
@@ -422,10 +350,17 @@ class Figure {
     }
 
     void drawColorBar() {
-        cairo_t* cr = context_.get();
         // Points at both ends: the colour stays the same beyond them.
         const double point = std::floor(em(0.95));
         const Rect bar{color_bar_.x, color_bar_.y + point, color_bar_.width, color_bar_.height - 2.0 * point};
+        fillColorBar(bar, point);
+        strokeColorBar(bar, point);
+        text(bar.x, color_bar_.y - em(0.7), "outside, " + withUnit(), 0.9, 0.0, false, kFaintInk);
+        text(bar.x, color_bar_.y + color_bar_.height + em(1.5), "inside", 0.9, 0.0, false, kFaintInk);
+    }
+
+    void fillColorBar(const Rect& bar, double point) {
+        cairo_t* cr = context_.get();
         for (int y = 0; y < static_cast<int>(bar.height); ++y) {
             setColor(cr, distanceColor(1.0 - 2.0 * (y + 0.5) / bar.height));
             cairo_rectangle(cr, bar.x, bar.y + y, bar.width, 1.0);
@@ -444,6 +379,12 @@ class Figure {
         triangle(bottom, bottom + point);
         setColor(cr, distanceColor(-1.0));
         cairo_fill(cr);
+    }
+
+    /// The outline, and a line and a number for each level.
+    void strokeColorBar(const Rect& bar, double point) {
+        cairo_t* cr = context_.get();
+        const double bottom = bar.y + bar.height;
         const double line = std::max(1.0, std::round(unit_));
         cairo_set_line_width(cr, line);
         setColor(cr, kInk);
@@ -466,8 +407,6 @@ class Figure {
             tick(bar.x + bar.width + line, y, em(0.3), 0.0);
             text(bar.x + bar.width + em(0.6), y + em(0.32), tickText(value, level_step_), 0.9, 0.0);
         });
-        text(bar.x, color_bar_.y - em(0.7), "outside, " + withUnit(), 0.9, 0.0, false, kFaintInk);
-        text(bar.x, color_bar_.y + color_bar_.height + em(1.5), "inside", 0.9, 0.0, false, kFaintInk);
     }
 
     void drawLegend() {
@@ -476,14 +415,14 @@ class Figure {
             std::string words;
         };
         std::vector<Entry> entries = {{kInsideColor, "inside"}, {kOutsideColor, "outside"}};
-        const auto has = [&](Kind kind) {
+        const auto has = [&](SampleKind kind) {
             return std::any_of(slice_.samples.begin(), slice_.samples.end(),
                                [&](const FieldSample& sample) { return kindOf(sample) == kind; });
         };
-        if (has(Kind::kFar)) {
+        if (has(SampleKind::kFar)) {
             entries.push_back({kFarColor, "outside, no distance known"});
         }
-        if (has(Kind::kAbstained)) {
+        if (has(SampleKind::kAbstained)) {
             entries.push_back({kAbstainedColor, "no map votes"});
         }
         cairo_t* cr = context_.get();
