@@ -24,6 +24,7 @@
 #include "bake/report/report.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
+#include "runtime/tool/json_text.h"
 
 namespace relief {
 namespace {
@@ -513,7 +514,7 @@ Result<void> run(const Arguments& arguments) {
         for (const BudgetSummary& summary : summaries) {
             json["summaries"].push_back(toJson(summary));
         }
-        text = dump(json);
+        text = jsonText(json);
     } else {
         const Rows rows = arguments.details ? detailRows(entries) : contestRows(contests, options.samples);
         text = arguments.markdown

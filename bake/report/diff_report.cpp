@@ -1,6 +1,7 @@
 #include "bake/report/diff_report.h"
 
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "bake/report/report.h"

@@ -1,7 +1,7 @@
 // What `relief diff` says of two colliders, for people and as JSON.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "formats/compare.h"

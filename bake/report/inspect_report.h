@@ -1,7 +1,7 @@
 // What `relief check FILE` says of a container alone, as text and as JSON.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "formats/inspect.h"
