@@ -1,13 +1,10 @@
 #include "bake/cli/check_file.h"
 
-#include <nlohmann/json.hpp>
-
 #include "bake/cli/command.h"
 #include "bake/report/inspect_report.h"
 #include "formats/base/file_io.h"
 #include "formats/container_parts.h"
 #include "runtime/tool/command_line.h"
-#include "runtime/tool/json_text.h"
 
 namespace relief {
 
@@ -20,7 +17,7 @@ Result<void> checkFile(const std::string& file, bool json) {
     }
     const std::string name = inputName(file);
     const Result<void> printed =
-        printOut(json ? jsonText(jsonInspection(*inspection, name)) : inspectionText(*inspection, name));
+        printOut(json ? inspectionJson(*inspection, name) : inspectionText(*inspection, name));
     if (!printed || !inspection->damaged()) {
         return printed;
     }

@@ -227,7 +227,8 @@ Result<void> prepare(BakeRun& run) {
 Result<void> readMesh(BakeRun& run) {
     const BakeCommand& command = run.command;
     const Stopwatch watch;
-    TriangleMesh mesh = RELIEF_TRY(importMeshInWorker(command.mesh, command.import.options, command.import.limits));
+    TriangleMesh mesh =
+        RELIEF_TRY(importMeshInWorker(command.mesh, command.import.options, command.import.limits));
     run.times.import_ms = watch.ms();
     spdlog::debug("{}: {} triangles, {} vertices, XXH3-128 {}", mesh.name, mesh.triangles.size(),
                   mesh.positions.size(), mesh.content_hash);

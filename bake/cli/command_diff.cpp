@@ -1,12 +1,11 @@
 // relief diff: where two colliders differ, texel by texel.
-#include <nlohmann/json.hpp>
+#include <CLI/CLI.hpp>
 
 #include "bake/cli/command.h"
 #include "bake/report/diff_report.h"
 #include "formats/base/file_io.h"
 #include "formats/container.h"
 #include "runtime/tool/command_line.h"
-#include "runtime/tool/json_text.h"
 #include "runtime/tool/option_values.h"
 
 namespace relief {
@@ -60,7 +59,7 @@ Result<void> runDiff(const DiffCommand& command) {
     const DiffSummary summary{shownInput(command.a), shownInput(command.b), a.collider, difference, limits,
                               a.bytes == b.bytes};
     if (command.json || !command.common.quiet) {
-        const std::string text = command.json ? jsonText(jsonDiff(summary)) : diffText(summary);
+        const std::string text = command.json ? diffJson(summary) : diffText(summary);
         RELIEF_TRY(printOut(text));
     }
     if (!verdict.empty()) {

@@ -1,13 +1,11 @@
 // relief info: what is in a container.
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 #include "bake/cli/command.h"
 #include "bake/report/report.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "runtime/tool/command_line.h"
-#include "runtime/tool/json_text.h"
 
 namespace relief {
 namespace {
@@ -72,7 +70,7 @@ Result<void> runInfo(const InfoCommand& command) {
     if (!info) {
         return named(info.error());
     }
-    return printOut(command.json ? jsonText(jsonCollider(*collider, *info)) : humanReport(*collider, *info));
+    return printOut(command.json ? colliderJson(*collider, *info) : humanReport(*collider, *info));
 }
 
 }  // namespace

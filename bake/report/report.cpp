@@ -68,6 +68,10 @@ Json jsonCollider(const Collider& collider, const ContainerInfo& info) {
               {"options", from.options}}}};
 }
 
+std::string colliderJson(const Collider& collider, const ContainerInfo& info) {
+    return jsonText(jsonCollider(collider, info));
+}
+
 std::string bytesText(std::uint64_t bytes) {
     constexpr const char* kUnits[] = {"B", "kB", "MB", "GB", "TB"};
     auto value = static_cast<double>(bytes);

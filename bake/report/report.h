@@ -18,6 +18,8 @@ namespace relief {
 
 /// version, file_size, bounds, unit, texel_bytes, maps, provenance.
 [[nodiscard]] nlohmann::ordered_json jsonCollider(const Collider& collider, const ContainerInfo& info);
+/// The same as text.
+[[nodiscard]] std::string colliderJson(const Collider& collider, const ContainerInfo& info);
 
 /// "12.3 MB", "640 B": powers of 1000.
 [[nodiscard]] std::string bytesText(std::uint64_t bytes);
