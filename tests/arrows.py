@@ -20,7 +20,7 @@ THIRD_PARTIES = {
     'zstd.h': ['formats'],
     'xxhash.h': ['formats/base'],
     'toml++': ['formats/config'],
-    'CLI': ['runtime/tool', 'bake/cli', 'bake/bench', 'runtime'],
+    'CLI': ['runtime/tool', 'runtime/cli', 'bake/cli', 'bake/bench'],
     'spdlog': ['bake/cli'],
     'nlohmann': ['bake/import', 'bake/recipe', 'bake/report', 'bake/cli', 'bake/bench', 'runtime/tool', 'runtime/player',
                  'runtime/bench'],

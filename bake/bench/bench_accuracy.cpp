@@ -25,6 +25,7 @@
 #include "formats/base/file_io.h"
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
+#include "runtime/tool/json_text.h"
 
 namespace relief {
 namespace {
@@ -331,7 +332,7 @@ std::string resultText(const Measured& measured, const Arguments& arguments,
     for (const BudgetSummary& summary : summaries) {
         json["summaries"].push_back(toJson(summary));
     }
-    return dump(json);
+    return jsonText(json);
 }
 
 Result<void> run(const Arguments& arguments) {

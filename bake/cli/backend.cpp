@@ -1,15 +1,11 @@
 #include "bake/cli/backend.h"
 
-#include <algorithm>
-#include <array>
+#include <CLI/CLI.hpp>
 
-#include "formats/base/file_io.h"
-#include "formats/base/text.h"
+#include "runtime/tool/option_values.h"
 
 namespace relief {
 namespace {
-
-constexpr std::array<std::string_view, 3> kBackends = {"raycast", "raster", "auto"};
 
 /// What keeps the GPU from it, and the cure; empty if nothing does.
 std::string obstacle(const BackendRequest& request) {
@@ -29,29 +25,23 @@ std::string obstacle(const BackendRequest& request) {
 
 }  // namespace
 
-void addBackendOptions(CLI::App& verb, BackendOptions& options) {
-    verb.add_option(
-            "--backend", options.backend,
-            "Who bakes maps that are named: raycast (on the CPU, default), raster (on the GPU, texels'\n"
-            "centres alone: implies --quality fast), or auto: raster where the options allow it and\n"
-            "the OpenGL is a GPU's. Only raycast gives the same bytes on every machine")
-        ->option_text("WORD");
+void addBackendOption(CLI::App& verb, BackendChoice& choice) {
+    addWords(verb, "--backend", choice,
+             WordsFor<BackendChoice>{{"raycast", BackendChoice::kRaycast},
+                                     {"raster", BackendChoice::kRaster},
+                                     {"auto", BackendChoice::kAuto}},
+             "Who bakes maps that are named: raycast (on the CPU, default), raster (on the GPU, texels'\n"
+             "centres alone: implies --quality fast), or auto: raster where the options allow it and\n"
+             "the OpenGL is a GPU's. Only raycast gives the same bytes on every machine");
 }
 
-Result<Backend> chooseBackend(const BackendOptions& options, const GlOptions& gl,
-                              const BackendRequest& request) {
-    const auto word = std::find(kBackends.begin(), kBackends.end(), options.backend);
-    if (word == kBackends.end()) {
-        return fail(ErrorCode::kUsage, "--backend is '" + cleanUtf8(options.backend) +
-                                           "' but must be one of " + listed(kBackends) +
-                                           didYouMean(options.backend, kBackends));
-    }
+Result<Backend> chooseBackend(BackendChoice choice, const GpuOptions& gpu, const BackendRequest& request) {
     Backend backend;
-    if (*word == "raycast") {
-        RELIEF_TRY(refuseGlOptions(gl, "--backend raster or auto"));
+    if (choice == BackendChoice::kRaycast) {
+        RELIEF_TRY(refuseGpuOptions(gpu, "--backend raster or auto"));
         return backend;
     }
-    const bool automatic = *word == "auto";
+    const bool automatic = choice == BackendChoice::kAuto;
     const std::string problem = obstacle(request);
     if (!problem.empty()) {
         if (!automatic) {
@@ -60,7 +50,7 @@ Result<Backend> chooseBackend(const BackendOptions& options, const GlOptions& gl
         backend.reason = problem.substr(0, problem.find(';'));
         return backend;
     }
-    Result<WatchedContext> opened = openGl(gl);
+    Result<WatchedContext> opened = openGl(gpu);
     if (!opened) {
         // A device that does not exist is a mistake, whoever bakes.
         if (opened.error().code == ErrorCode::kUsage) {

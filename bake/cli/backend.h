@@ -1,7 +1,6 @@
 // `relief bake --backend`: rays on the CPU, or triangles on the GPU.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "bake/cli/gl_options.h"
@@ -9,12 +8,14 @@
 #include "bake/plan/prefer.h"
 #include "formats/base/result.h"
 
+namespace CLI {
+class App;
+}
+
 namespace relief {
 
-struct BackendOptions {
-    std::string backend = "raycast";
-};
-void addBackendOptions(CLI::App& verb, BackendOptions& options);
+enum class BackendChoice : std::uint8_t { kRaycast, kRaster, kAuto };
+void addBackendOption(CLI::App& verb, BackendChoice& choice);
 
 /// What of a bake decides whether the GPU can do it.
 struct BackendRequest {
@@ -32,9 +33,9 @@ struct Backend {
 };
 
 /// Opens a GL only if it is asked for one.
-/// Errors: kUsage (no such word; a GL option where no GL is asked for; raster for what it cannot do; the
-/// message says what to leave out), kUnsupported (raster without a GL).
-[[nodiscard]] Result<Backend> chooseBackend(const BackendOptions& options, const GlOptions& gl,
+/// Fails with kUsage for a GPU option where no GPU is asked for, and for raster where it cannot bake what is requested
+/// (the message says what to leave out); with kUnsupported for raster without an OpenGL.
+[[nodiscard]] Result<Backend> chooseBackend(BackendChoice choice, const GpuOptions& gpu,
                                             const BackendRequest& request);
 
 }  // namespace relief

@@ -9,7 +9,6 @@
 #include "bake/cli/backend.h"
 #include "bake/cli/command.h"
 #include "bake/cli/command_recipe.h"
-#include "bake/cli/gl_options.h"
 #include "bake/cli/import_options.h"
 #include "bake/pipeline/bake.h"
 #include "bake/repair/mesh_care.h"
@@ -17,7 +16,9 @@
 
 namespace relief {
 
-/// The options of the verb, as they were written.
+enum class Holes : std::uint8_t { kClose, kKeep };
+
+/// The options of the verb.
 struct BakeCommand {
     CommonOptions common;
     std::string mesh;
@@ -26,24 +27,27 @@ struct BakeCommand {
     bool paper = false;
     std::string plan;
     std::string plan_out;
-    std::string budget;
-    std::string max_error;
-    std::string decode;
-    std::string depth;
-    std::string resolution;
-    std::string quality;
-    std::string prefer;
-    std::string threads;
-    std::string compress = "0";
-    std::string holes = "close";
-    BackendOptions backend;
-    GlOptions gl;
-    ImportArguments import;
+    std::optional<std::uint64_t> budget;  ///< bytes of texels
+    std::optional<float> max_error;       ///< percent
+    std::optional<Decode> decode;
+    std::optional<MapFormat> depth;  ///< kFrontBackHalf or kFrontBackFixed
+    std::optional<std::uint64_t> resolution;
+    std::optional<Quality> quality;
+    std::optional<Prefer> prefer;
+    std::optional<unsigned> threads;
+    int compress = 0;  ///< zstd's level; 0: none
+    Holes holes = Holes::kClose;
+    BackendChoice backend = BackendChoice::kRaycast;
+    GpuOptions gpu;
+    ImportSettings import;
     MeshCareOptions care;
     std::string depfile;
     RecipeOptionsOfBake recipe;
     bool json = false;
 };
+
+/// Adds the options to the verb. `command` must outlive it.
+void addBakeOptions(CLI::App& verb, BakeCommand& command);
 
 /// Who chooses the maps.
 enum class MapSource : std::uint8_t { kPlanner, kMaps, kPaper, kPlanFile };
@@ -52,13 +56,12 @@ enum class MapSource : std::uint8_t { kPlanner, kMaps, kPaper, kPlanFile };
 struct BakeSettings {
     MapSource source = MapSource::kPlanner;
     BakeOptions bake;
-    std::optional<std::uint64_t> budget;  ///< bytes of texels
-    std::optional<double> max_error;      ///< percent
     ContainerWriteOptions write;
     std::optional<Quality> plan_quality;  ///< of the plan file
 };
 
-/// Errors: kUsage (a value out of range, two ways to choose the maps, options that do nothing together).
+/// Fails with kUsage for two ways to choose the maps, and for options that do nothing together; as parseMapSpec and
+/// checkMapSize.
 [[nodiscard]] Result<BakeSettings> settingsOf(const BakeCommand& command);
 
 /// Whether every output can be written, and none is an input or another output.

@@ -1,5 +1,7 @@
 #include "bake/cli/care_options.h"
 
+#include <CLI/CLI.hpp>
+
 namespace relief {
 
 void addMeshCareOptions(CLI::App& verb, MeshCareOptions& options) {

@@ -1,9 +1,11 @@
 // --strict, --check-intersections and --repair of `relief bake`.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include "bake/repair/mesh_care.h"
+
+namespace CLI {
+class App;
+}
 
 namespace relief {
 

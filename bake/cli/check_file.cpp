@@ -1,27 +1,23 @@
 #include "bake/cli/check_file.h"
 
-#include <filesystem>
-
 #include "bake/cli/command.h"
 #include "bake/report/inspect_report.h"
-#include "bake/report/report.h"
 #include "formats/base/file_io.h"
-#include "formats/base/text.h"
 #include "formats/container_parts.h"
+#include "runtime/tool/command_line.h"
 
 namespace relief {
 
 Result<void> checkFile(const std::string& file, bool json) {
     const std::vector<std::byte> bytes = RELIEF_TRY(readFile(file, containerSizeMax({})));
-    const std::string quoted = file == "-" ? "standard input" : quotedPath(file);
+    const std::string quoted = shownInput(file);
     const Result<Inspection> inspection = inspectContainer(bytes);
     if (!inspection) {
         return fail(inspection.error().code, quoted + ": " + inspection.error().message);
     }
-    const std::string name =
-        file == "-" ? "standard input" : cleanUtf8(std::filesystem::path(file).filename().string());
+    const std::string name = inputName(file);
     const Result<void> printed =
-        printOut(json ? dump(jsonInspection(*inspection, name)) : inspectionText(*inspection, name));
+        printOut(json ? inspectionJson(*inspection, name) : inspectionText(*inspection, name));
     if (!printed || !inspection->damaged()) {
         return printed;
     }

@@ -2,7 +2,8 @@
 
 #include <spdlog/spdlog.h>
 
-#include <span>
+#include <CLI/CLI.hpp>
+#include <filesystem>
 
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
@@ -25,29 +26,12 @@ void startLogging(const CommonOptions& common) {
                                        : spdlog::level::info);
 }
 
-Result<std::uint64_t> parseCount(const std::string& text, const std::string& what) {
-    const std::optional<std::uint64_t> value = parseUnsigned(text);
-    if (!value) {
-        return fail(ErrorCode::kUsage, what + " is '" + cleanUtf8(text) + "' but must be a whole number");
-    }
-    return *value;
+std::string shownInput(const std::string& file) {
+    return file == "-" ? "standard input" : quotedPath(file);
 }
 
-Result<float> parsePercent(const std::string& text, const std::string& what) {
-    std::string_view number = trimmed(text);
-    if (number.ends_with('%')) {
-        number = trimmed(number.substr(0, number.size() - 1));
-    }
-    const std::optional<float> percent = parseFloat(number);
-    if (!percent || *percent < 0.0F) {
-        return fail(ErrorCode::kUsage,
-                    what + " is '" + cleanUtf8(text) + "' but must be a share in percent, such as 1.5");
-    }
-    return *percent;
-}
-
-Result<void> printOut(const std::string& text) {
-    return writeFile("-", std::as_bytes(std::span(text)));
+std::string inputName(const std::string& file) {
+    return file == "-" ? "standard input" : cleanUtf8(std::filesystem::path(file).filename().string());
 }
 
 }  // namespace relief

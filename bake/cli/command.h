@@ -1,13 +1,15 @@
-// What the verbs of `relief` share: one file a verb registers its options here and runs behind its library.
+// What the verbs of `relief` share: one file a verb defines its options and runs behind its library.
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 
 #include "formats/base/result.h"
-#include "formats/collider.h"
+
+namespace CLI {
+class App;
+}
 
 namespace relief {
 
@@ -27,17 +29,9 @@ CLI::App& addVerb(CLI::App& app, CommonOptions& common, const std::string& name,
 /// Messages of one line on standard error, "relief: warning: …"; coloured on a terminal without NO_COLOR.
 void startLogging(const CommonOptions& common);
 
-/// A whole number option.
-/// \param what  its name, for messages.
-/// Errors: kUsage.
-[[nodiscard]] Result<std::uint64_t> parseCount(const std::string& text, const std::string& what);
-
-/// A share in percent, "1.5" or "1.5%", not negative.
-/// \param what  its name, for messages.
-/// Errors: kUsage.
-[[nodiscard]] Result<float> parsePercent(const std::string& text, const std::string& what);
-
-/// Writes text that a verb reports to standard output. Errors: kIo.
-[[nodiscard]] Result<void> printOut(const std::string& text);
+/// "standard input" for "-", else the path in quotes: for messages.
+[[nodiscard]] std::string shownInput(const std::string& file);
+/// "standard input", or the name without its folder: for reports.
+[[nodiscard]] std::string inputName(const std::string& file);
 
 }  // namespace relief

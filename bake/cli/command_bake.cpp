@@ -3,17 +3,15 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
-#include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 
 #include "bake/cli/bake_settings.h"
-#include "bake/cli/care_options.h"
 #include "bake/cli/command.h"
 #include "bake/cli/command_recipe.h"
-#include "bake/cli/gl_options.h"
-#include "bake/cli/import_options.h"
 #include "bake/cli/progress.h"
 #include "bake/mesh/mesh_query.h"
 #include "bake/pipeline/bake.h"
@@ -25,11 +23,11 @@
 #include "bake/repair/mesh_care.h"
 #include "bake/report/bake_report.h"
 #include "bake/report/report.h"
-#include "formats/base/byte_count.h"
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
 #include "formats/base/stopwatch.h"
-#include "formats/base/text.h"
+#include "runtime/tool/command_line.h"
+#include "runtime/tool/json_text.h"
 
 namespace relief {
 namespace {
@@ -52,11 +50,11 @@ std::vector<InputFile> inputsOf(const BakeCommand& command, const TriangleMesh& 
 /// The maps of --plan, and its quality and preference where the command line names none.
 Result<void> readPlanFile(const BakeCommand& command, BakeSettings& settings) {
     const PlanFile plan = RELIEF_TRY(loadPlan(command.plan));
-    if (command.quality.empty()) {
+    if (!command.quality) {
         settings.bake.quality = plan.quality;
         settings.plan_quality = plan.quality;
     }
-    if (command.prefer.empty()) {
+    if (!command.prefer) {
         settings.bake.prefer = plan.prefer;
     }
     for (const PlanFileMap& map : plan.maps) {
@@ -66,9 +64,9 @@ Result<void> readPlanFile(const BakeCommand& command, BakeSettings& settings) {
 }
 
 /// Chooses the maps for the budget.
-Result<PlanReport> planMaps(const MeshQuery& query, BakeSettings& settings) {
+Result<PlanReport> planMaps(const MeshQuery& query, const BakeCommand& command, BakeSettings& settings) {
     PlanReport report;
-    report.budget = settings.budget.value_or(kBudgetDefault);
+    report.budget = command.budget.value_or(kBudgetDefault);
     PlanOptions options;
     options.budget_bytes = report.budget;
     options.views.prefer = settings.bake.prefer;
@@ -79,20 +77,18 @@ Result<PlanReport> planMaps(const MeshQuery& query, BakeSettings& settings) {
 }
 
 /// Bakes at the least budget that keeps --max-error.
-Result<Baked> searchBudget(const MeshQuery& query, const MeshQuery& truth, const BakeSettings& settings,
-                           std::optional<PlanReport>& report) {
+Result<Baked> searchBudget(const MeshQuery& query, const MeshQuery& truth, const BakeCommand& command,
+                           const BakeSettings& settings, std::optional<PlanReport>& report) {
     BudgetSearchOptions options;
-    options.max_error_percent = *settings.max_error;
-    if (settings.budget) {
-        options.budget_max = *settings.budget;
-    }
+    options.max_error_percent = double{*command.max_error};
+    options.budget_max = command.budget.value_or(options.budget_max);
     options.bake = settings.bake;
     options.tried = [](const BudgetTry& made) {
         spdlog::info("{}: {:.3g} % of the points near the surface are on the wrong side",
                      bytesText(made.budget), made.wrong_percent);
     };
     BudgetSearchResult found = RELIEF_TRY(bakeForError(query, truth, options));
-    report = PlanReport{std::move(found.plan), found.chosen.budget, settings.max_error,
+    report = PlanReport{std::move(found.plan), found.chosen.budget, options.max_error_percent,
                         found.chosen.wrong_percent, std::move(found.tries)};
     return std::move(found.baked);
 }
@@ -118,16 +114,16 @@ Result<Baked> makeCollider(const BakeCommand& command, const PreparedMesh& impor
     if (settings.source == MapSource::kPlanner) {
         const Stopwatch watch;
         const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
-        if (settings.max_error) {
+        if (command.max_error) {
             MeshQuery truth = query;
             if (mesh->closed_holes > 0 || !command.care.repair.empty()) {
                 truth = RELIEF_TRY(MeshQuery::build(imported));
             }
-            Result<Baked> baked = searchBudget(query, truth, settings, plan);
+            Result<Baked> baked = searchBudget(query, truth, command, settings, plan);
             times.search_ms = watch.ms();
             return baked;
         }
-        PlanReport planned = RELIEF_TRY(planMaps(query, settings));
+        PlanReport planned = RELIEF_TRY(planMaps(query, command, settings));
         plan = std::move(planned);
         times.plan_ms = watch.ms();
     }
@@ -169,138 +165,176 @@ nlohmann::ordered_json jsonSettings(const BakeCommand& command, const BakeSettin
             {"threads", settings.bake.threads == 0 ? tbb::info::default_concurrency()
                                                    : static_cast<int>(settings.bake.threads)},
             {"compress", settings.write.compression_level},
-            {"holes", command.holes}};
+            {"holes", command.holes == Holes::kClose ? "close" : "keep"}};
 }
 
-Result<void> runBake(const BakeCommand& command) {
-    startLogging(command.common);
-    const Stopwatch total;
-    BakeSettings settings = RELIEF_TRY(settingsOf(command));
-    for (const Result<void>& ready :
-         {checkImportArguments(command.import), checkMeshCare(command.care), preflight(command)}) {
-        if (!ready) {
-            return ready;
-        }
-    }
+/// A bake, and what its stages leave for the next.
+struct BakeRun {
+    explicit BakeRun(const BakeCommand& command_of_run) : command(command_of_run) {}
+
+    const BakeCommand& command;
+    Stopwatch total;
+    BakeTimes times;
+    BakeSettings settings;
     std::string plan_hash;
-    if (settings.source == MapSource::kPlanFile) {
+    Backend backend;
+    std::optional<PreparedMesh> imported;  ///< as it came, where --max-error looks back at it
+    CaredMesh cared;
+    std::optional<PlanReport> plan;
+    Baked baked;
+    std::vector<InputFile> inputs;
+    std::vector<std::byte> bytes;  ///< of the container
+};
+
+/// What the options and the plan file say, before anything large is read.
+Result<void> prepare(BakeRun& run) {
+    const BakeCommand& command = run.command;
+    run.settings = RELIEF_TRY(settingsOf(command));
+    RELIEF_TRY(checkMeshCare(command.care));
+    RELIEF_TRY(preflight(command));
+    if (run.settings.source == MapSource::kPlanFile) {
         // Before it is read: should it change meanwhile, the hash is that of neither, or of the older one.
         const auto plan_bytes = readFile(command.plan);
-        plan_hash = plan_bytes ? xxh3_128Hex(*plan_bytes) : "";
-        RELIEF_TRY(readPlanFile(command, settings));
+        run.plan_hash = plan_bytes ? xxh3_128Hex(*plan_bytes) : "";
+        RELIEF_TRY(readPlanFile(command, run.settings));
     }
-    const Backend backend =
-        RELIEF_TRY(chooseBackend(command.backend, command.gl,
-                                 {settings.source == MapSource::kPlanner,
-                                  !command.quality.empty() || settings.plan_quality.has_value(),
-                                  settings.bake.quality, settings.bake.prefer}));
-    settings.bake.rasterize = backend.raster;
-    if (backend.raster) {
-        settings.bake.quality = Quality::kFast;
+    BakeOptions& options = run.settings.bake;
+    run.backend = RELIEF_TRY(
+        chooseBackend(command.backend, command.gpu,
+                      {run.settings.source == MapSource::kPlanner,
+                       command.quality || run.settings.plan_quality, options.quality, options.prefer}));
+    options.rasterize = run.backend.raster;
+    if (run.backend.raster) {
+        options.quality = Quality::kFast;
     }
-    // Planning and measuring keep to --threads too.
-    std::optional<tbb::global_control> control;
-    if (settings.bake.threads != 0) {
-        control.emplace(tbb::global_control::max_allowed_parallelism, settings.bake.threads);
-    }
+    return {};
+}
 
-    BakeTimes times;
-    const Stopwatch import_watch;
-    TriangleMesh loaded = RELIEF_TRY(importByArguments(command.mesh, command.import));
-    times.import_ms = import_watch.ms();
-    spdlog::debug("{}: {} triangles, {} vertices, XXH3-128 {}", loaded.name, loaded.triangles.size(),
-                  loaded.positions.size(), loaded.content_hash);
-    if (loaded.dropped_triangles > 0) {
-        spdlog::debug("{}: {} triangles without area dropped", loaded.name, loaded.dropped_triangles);
+/// Reads the mesh and makes it fit to be baked.
+Result<void> readMesh(BakeRun& run) {
+    const BakeCommand& command = run.command;
+    const Stopwatch watch;
+    TriangleMesh mesh =
+        RELIEF_TRY(importMeshInWorker(command.mesh, command.import.options, command.import.limits));
+    run.times.import_ms = watch.ms();
+    spdlog::debug("{}: {} triangles, {} vertices, XXH3-128 {}", mesh.name, mesh.triangles.size(),
+                  mesh.positions.size(), mesh.content_hash);
+    if (mesh.dropped_triangles > 0) {
+        spdlog::debug("{}: {} triangles without area dropped", mesh.name, mesh.dropped_triangles);
     }
+    if (command.max_error && (command.holes == Holes::kClose || !command.care.repair.empty())) {
+        run.imported = mesh;
+    }
+    MeshCareOptions care = command.care;
+    care.report = command.json || !command.common.quiet;
+    run.cared = RELIEF_TRY(careFor(std::move(mesh), care));
+    if (command.holes == Holes::kClose) {
+        run.cared.mesh = RELIEF_TRY(closeHoles(run.cared.mesh));
+    }
+    return {};
+}
 
-    std::optional<PreparedMesh> imported;  // only --max-error looks back
-    if (settings.max_error && (command.holes == "close" || !command.care.repair.empty())) {
-        imported = loaded;
+/// Chooses the maps and bakes them.
+Result<void> makeCollider(BakeRun& run) {
+    const PreparedMesh& mesh = run.cared.mesh;
+    Result<Baked> baked =
+        makeCollider(run.command, run.imported.value_or(mesh), mesh, run.settings, run.plan, run.times);
+    if (run.backend.raster) {
+        run.backend.gl.watchdog->rest();
     }
-    MeshCareOptions care_options = command.care;
-    care_options.report = command.json || !command.common.quiet;
-    CaredMesh cared = RELIEF_TRY(careFor(std::move(loaded), care_options));
-    PreparedMesh mesh = std::move(cared.mesh);
-    if (command.holes == "close") {
-        mesh = RELIEF_TRY(closeHoles(mesh));
-    }
-    std::optional<PlanReport> plan;
-    Result<Baked> baked = makeCollider(command, imported.value_or(mesh), mesh, settings, plan, times);
-    if (backend.raster) {
-        backend.gl.watchdog->rest();
-    }
-    if (!baked) {
-        return forward(baked);
-    }
-    // Not before: a bake that fails has one line to say.
-    if (mesh->closed_holes > 0) {
+    run.baked = RELIEF_TRY(std::move(baked));
+    run.baked.collider.provenance.options += (run.command.holes == Holes::kKeep ? " --holes keep" : "") +
+                                             importProvenance(run.command.import.options) +
+                                             careOptionsText(run.cared.care);
+    return {};
+}
+
+/// Says what was out of the ordinary. Only now: a bake that fails has one line to say.
+void tellNotices(BakeRun& run) {
+    const TriangleMesh& mesh = *run.cared.mesh;
+    if (mesh.closed_holes > 0) {
         spdlog::info("{}: closed {} hole{} with {} triangles for baking: the mesh is nearly closed",
-                     mesh->name, mesh->closed_holes, mesh->closed_holes == 1 ? "" : "s", mesh->cap_triangles);
+                     mesh.name, mesh.closed_holes, mesh.closed_holes == 1 ? "" : "s", mesh.cap_triangles);
     }
-    if (!backend.reason.empty()) {
-        spdlog::info("backend {}: {}", backend.raster ? "raster" : "raycast", backend.reason);
+    if (!run.backend.reason.empty()) {
+        spdlog::info("backend {}: {}", run.backend.raster ? "raster" : "raycast", run.backend.reason);
     }
-    std::vector<std::string>& warnings = baked->report.warnings;
-    warnings.insert(warnings.begin(), mesh->warnings.begin(), mesh->warnings.end());
+    std::vector<std::string>& warnings = run.baked.report.warnings;
+    warnings.insert(warnings.begin(), mesh.warnings.begin(), mesh.warnings.end());
     for (const std::string& warning : warnings) {
         spdlog::warn(warning);
     }
+}
 
-    if (command.holes == "keep") {
-        baked->collider.provenance.options += " --holes keep";
-    }
-    baked->collider.provenance.options += importProvenance(command.import);
-    baked->collider.provenance.options += careOptionsText(cared.care);
-    const Stopwatch write_watch;
-    const std::vector<std::byte> bytes = RELIEF_TRY(writeContainer(baked->collider, settings.write));
-    RELIEF_TRY(writeFile(command.output, bytes));
+/// The collider, and the files beside it.
+Result<void> writeOutputs(BakeRun& run) {
+    const BakeCommand& command = run.command;
+    const Stopwatch watch;
+    run.bytes = RELIEF_TRY(writeContainer(run.baked.collider, run.settings.write));
+    RELIEF_TRY(writeFile(command.output, run.bytes));
     if (!command.plan_out.empty()) {
-        RELIEF_TRY(writePlanFile(command.plan_out, *plan, *baked, settings.bake));
+        RELIEF_TRY(writePlanFile(command.plan_out, *run.plan, run.baked, run.settings.bake));
     }
-    const std::vector<InputFile> inputs = inputsOf(command, *mesh, plan_hash);
+    run.inputs = inputsOf(command, *run.cared.mesh, run.plan_hash);
     if (!command.depfile.empty()) {
         std::vector<std::string> names;
-        for (const InputFile& input : inputs) {
+        for (const InputFile& input : run.inputs) {
             names.push_back(input.path);
         }
         RELIEF_TRY(writeDepfile(command.depfile, {command.output}, names));
     }
-    times.write_ms = write_watch.ms();
-    times.total_ms = total.ms();
+    run.times.write_ms = watch.ms();
+    run.times.total_ms = run.total.ms();
+    return {};
+}
 
-    const BakeSummary summary{*mesh, *baked, plan, times, cared.care, command.common.verbose};
+Result<void> report(const BakeRun& run) {
+    const BakeCommand& command = run.command;
+    const BakeSummary summary{*run.cared.mesh, run.baked,      run.plan,
+                              run.times,       run.cared.care, command.common.verbose};
     if (command.json) {
-        const ContainerInfo info = RELIEF_TRY(readContainerInfo(bytes));
-        auto report = jsonBake(summary, info, jsonSettings(command, settings, backend, *baked, plan));
-        for (const InputFile& input : inputs) {
-            report["inputs"].push_back({{"file", input.path}, {"hash", input.hash}});
+        const ContainerInfo info = RELIEF_TRY(readContainerInfo(run.bytes));
+        auto json =
+            jsonBake(summary, info, jsonSettings(command, run.settings, run.backend, run.baked, run.plan));
+        for (const InputFile& input : run.inputs) {
+            json["inputs"].push_back({{"file", input.path}, {"hash", input.hash}});
         }
-        return printOut(dump(report));
+        return printOut(jsonText(json));
     }
     if (!command.common.quiet) {
-        std::fputs(bakeText(summary, command.output, bytes.size()).c_str(), stderr);
+        std::fputs(bakeText(summary, command.output, run.bytes.size()).c_str(), stderr);
     }
     return {};
+}
+
+Result<void> runBake(const BakeCommand& command) {
+    startLogging(command.common);
+    BakeRun run(command);
+    RELIEF_TRY(prepare(run));
+    // Planning and measuring keep to --threads too.
+    std::optional<tbb::global_control> control;
+    if (command.threads) {
+        control.emplace(tbb::global_control::max_allowed_parallelism, *command.threads);
+    }
+    RELIEF_TRY(readMesh(run));
+    RELIEF_TRY(makeCollider(run));
+    tellNotices(run);
+    RELIEF_TRY(writeOutputs(run));
+    return report(run);
 }
 
 /// Adds the verb. \return what its options are read into.
 std::shared_ptr<BakeCommand> registerBake(CLI::App& app, Action& action);
 
 /// Whether the settings that these arguments make can be baked with.
-Result<void> checkArguments(const std::vector<std::string>& arguments) {
-    CLI::App app;
+Result<void> checkArguments(std::vector<std::string> arguments) {
+    CLI::App app("", "relief");
     Action none;
     const std::shared_ptr<BakeCommand> command = registerBake(app, none);
-    std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
-    reversed.emplace_back("bake");
-    try {
-        app.parse(std::move(reversed));
-    } catch (const CLI::ParseError& error) {
-        return fail(ErrorCode::kUsage, cleanUtf8(error.what()));
-    }
-    const Result<BakeSettings> settings = settingsOf(*command);
-    return settings ? Result<void>() : forward(settings);
+    arguments.insert(arguments.begin(), "bake");
+    RELIEF_TRY(parseCommandLine(app, std::move(arguments)));
+    RELIEF_TRY(settingsOf(*command));
+    return {};
 }
 
 std::shared_ptr<BakeCommand> registerBake(CLI::App& app, Action& action) {
@@ -317,77 +351,7 @@ std::shared_ptr<BakeCommand> registerBake(CLI::App& app, Action& action) {
         "relief bake rock.glb -o rock.relief --map cube:size=256 --map fixed8:dir=-y,size=512x256\n"
         "relief bake hall.fbx -o hall.relief --map cube:center=0/2/0,compare=less --json\n"
         "relief bake --recipe colliders.toml -j 4");
-    verb.add_option("MESH", command->mesh, "The mesh: OBJ, STL, PLY, OFF, glTF, FBX, COLLADA, 3DS and more")
-        ->type_name("");
-    verb.add_option("-o,--output", command->output, "The collider to write; - for standard output")
-        ->option_text("OUT.relief");
-    verb.add_option("--map", command->maps,
-                    "A map to bake instead of planned ones, once for each: FORMAT[:key=value,...] with\n"
-                    "FORMAT   float, fixed8, front-back or cube\n"
-                    "dir      direction the view looks in: +x -x +y -y +z -z or a/b/c\n"
-                    "up       direction that points upwards in the image: as dir\n"
-                    "size     texels, N or WxH (cube: N)\n"
-                    "compare  less or greater: keep the nearest or the farthest surface\n"
-                    "center   a/b/c, where a cube looks from\n"
-                    "depth    of front-back maps: unorm16, or half (the paper's)\n"
-                    "decode   plane: fitted to the whole texel, or projected (the paper's)\n"
-                    "box      tight, or x0/y0/z0/x1/y1/z1: the part of space to cover")
-        ->option_text("SPEC")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-        ->allow_extra_args(false);
-    verb.add_option("--decode", command->decode,
-                    "Of --map that does not say it: plane (default) or projected, the paper's")
-        ->option_text("plane|projected");
-    verb.add_option("--depth", command->depth,
-                    "Of --map front-back that does not say it: unorm16 (default) or half, the paper's")
-        ->option_text("unorm16|half");
-    verb.add_flag(
-        "--paper", command->paper,
-        "Bake the paper's maps instead of planned ones: front-back along -x, -y and -z and a cube,\n"
-        "depth=half, decode=projected");
-    verb.add_option("--resolution", command->resolution,
-                    "Texels along a side of --map without size, and of --paper; default 512")
-        ->option_text("N");
-    verb.add_option("--budget", command->budget,
-                    "Plan for this many bytes of texels; default 1MB. With --max-error: use no more")
-        ->option_text("BYTES");
-    verb.add_option(
-            "--max-error", command->max_error,
-            "Plan for the least bytes (32kB to 64MB) that leave at most this share of the points near\n"
-            "the surface, in percent, on the wrong side; measured as by relief check, on 50000 points.\n"
-            "Exit with 7, and write nothing, if none do")
-        ->option_text("PCT");
-    verb.add_option("--plan-out", command->plan_out,
-                    "Also write what was planned, as TOML, to be changed and given to --plan")
-        ->option_text("FILE");
-    verb.add_option("--plan", command->plan, "Bake the maps of such a file")->option_text("FILE");
-    verb.add_option("--quality", command->quality,
-                    "Of planes: fast (one ray a texel), normal (16 rays, default) or best (36).\n"
-                    "With --plan, the file's by default")
-        ->option_text("fast|normal|best");
-    verb.add_option("--prefer", command->prefer,
-                    "Where planes must err: inside keeps particles out of walls, outside keeps free\n"
-                    "space free, neither (default) errs least")
-        ->option_text("inside|outside|neither");
-    verb.add_option(
-            "-j,--threads", command->threads,
-            "Threads to use; default: all cores. The result is the same. With --recipe: assets at once")
-        ->option_text("N");
-    verb.add_option("--compress", command->compress, "zstd level of the texels, 0 (none, default) to 19")
-        ->option_text("LEVEL");
-    verb.add_option("--holes", command->holes,
-                    "Of a nearly closed mesh: close (bake it as a solid, default) or keep")
-        ->option_text("close|keep");
-    addBackendOptions(verb, command->backend);
-    addGlOptions(verb, command->gl);
-    addImportOptions(verb, command->import);
-    addMeshCareOptions(verb, command->care);
-    verb.add_flag("--json", command->json, "Print a report as JSON to standard output");
-    verb.add_option("--depfile", command->depfile,
-                    "Also write which files were read, for Make and Ninja: every input of the output")
-        ->option_text("FILE");
-    addRecipeOptions(verb, command->recipe);
+    addBakeOptions(verb, *command);
     verb.callback([command, &verb, &action] {
         action = [command, &verb]() -> Result<void> {
             if (!command->recipe.recipe.empty()) {
@@ -395,8 +359,11 @@ std::shared_ptr<BakeCommand> registerBake(CLI::App& app, Action& action) {
                                         {verb, command->common, command->output, command->threads,
                                          command->depfile, command->json, checkArguments});
             }
-            const Result<void> complete = checkOneBake(verb);
-            return complete ? runBake(*command) : complete;
+            if (command->mesh.empty() || command->output.empty()) {
+                return fail(ErrorCode::kUsage, std::string(command->mesh.empty() ? "MESH" : "--output") +
+                                                   " is required; see relief bake --help");
+            }
+            return runBake(*command);
         };
     });
     return command;

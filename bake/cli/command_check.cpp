@@ -1,7 +1,9 @@
 // relief check: whether a container is sound, and how well a collider keeps to its mesh.
 #include <spdlog/spdlog.h>
 
+#include <CLI/CLI.hpp>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <span>
 
 #include "bake/cli/check_file.h"
@@ -13,10 +15,12 @@
 #include "bake/repair/winding.h"
 #include "bake/report/accuracy_page.h"
 #include "bake/report/accuracy_report.h"
-#include "bake/report/report.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "formats/container.h"
+#include "runtime/tool/command_line.h"
+#include "runtime/tool/json_text.h"
+#include "runtime/tool/option_values.h"
 
 namespace relief {
 namespace {
@@ -29,38 +33,13 @@ struct CheckCommand {
     CommonOptions common;
     std::string file;
     std::string mesh;
-    std::string samples = "200000";
-    std::string seed = "1";
-    std::string max_error;
+    std::uint64_t samples = 200'000;
+    std::uint64_t seed = 1;
+    std::optional<float> max_error;  // percent
     std::string html;
-    ImportArguments import;
+    ImportSettings import;
     bool json = false;
 };
-
-struct Settings {
-    AccuracyOptions accuracy;
-    std::optional<float> max_error;  // percent
-};
-
-Result<Settings> settingsOf(const CheckCommand& command) {
-    Settings settings;
-    const std::uint64_t samples = RELIEF_TRY(parseCount(command.samples, "--samples"));
-    if (samples < 1) {
-        return fail(ErrorCode::kUsage, "--samples is 0 but must be at least 1");
-    }
-    if (samples > kSamplesMax) {
-        return fail(ErrorCode::kLimit, "--samples is " + std::to_string(samples) + "; the limit is " +
-                                           std::to_string(kSamplesMax));
-    }
-    settings.accuracy.samples = static_cast<std::uint32_t>(samples);
-    const std::uint64_t seed = RELIEF_TRY(parseCount(command.seed, "--seed"));
-    settings.accuracy.seed = seed;
-    if (!command.max_error.empty()) {
-        const float percent = RELIEF_TRY(parsePercent(command.max_error, "--max-error"));
-        settings.max_error = percent;
-    }
-    return settings;
-}
 
 Result<void> checkSameMesh(const Collider& collider, const TriangleMesh& mesh) {
     const double tolerance = (kBoundsTolerance + repairReach(collider.provenance.options)) *
@@ -82,8 +61,105 @@ Result<void> checkSameMesh(const Collider& collider, const TriangleMesh& mesh) {
     return {};
 }
 
-std::string fileName(const std::string& file) {
-    return file == "-" ? "standard input" : cleanUtf8(std::filesystem::path(file).filename().string());
+/// A check against a mesh, and what its stages leave for the next.
+struct CheckRun {
+    Collider collider;
+    PreparedMesh mesh{
+        TriangleMesh()};  ///< as baked: where solids overlap, their winding decides what is inside
+    bool same_file = false;
+    std::vector<std::string> warnings;
+    TruthSamples samples;
+    bool watertight = false;
+    ColliderAccuracy accuracy;
+    bool passed = true;
+};
+
+/// Before the long work.
+Result<void> prepare(const CheckCommand& command) {
+    if (command.samples > kSamplesMax) {
+        return fail(ErrorCode::kLimit, "--samples is " + std::to_string(command.samples) + "; the limit is " +
+                                           std::to_string(kSamplesMax));
+    }
+    if (command.html.empty()) {
+        return {};
+    }
+    if (command.html == "-") {
+        return fail(ErrorCode::kUsage, "--html cannot be standard output, where the report goes");
+    }
+    RELIEF_TRY(preflightFile(command.html));
+    RELIEF_TRY(preflightDistinct(command.file, command.html));
+    return preflightDistinct(command.mesh, command.html);
+}
+
+Result<void> readInputs(const CheckCommand& command, CheckRun& run) {
+    run.collider = RELIEF_TRY(loadCollider(command.file));
+    TriangleMesh imported =
+        RELIEF_TRY(importMeshInWorker(command.mesh, command.import.options, command.import.limits));
+    Winding winding = RELIEF_TRY(windOutwards(std::move(imported)));
+    run.mesh = std::move(winding.mesh);
+    RELIEF_TRY(checkSameMesh(run.collider, *run.mesh));
+    const Provenance& from = run.collider.provenance;
+    run.same_file = from.mesh_hash == run.mesh->content_hash;
+    run.warnings = run.mesh->warnings;
+    if (!run.same_file) {
+        run.warnings.push_back(run.mesh->name + " is not the file that the collider was baked from (" +
+                               from.mesh_name + ", XXH3-128 " +
+                               (from.mesh_hash.empty() ? "unknown" : from.mesh_hash) +
+                               "); its bounds are the same");
+    }
+    for (const std::string& warning : run.warnings) {
+        spdlog::warn(warning);
+    }
+    return {};
+}
+
+/// Measures, and writes the page that --html asks for.
+Result<void> measure(const CheckCommand& command, CheckRun& run) {
+    const MeshQuery query = RELIEF_TRY(MeshQuery::build(run.mesh));
+    AccuracyOptions options;
+    options.samples = static_cast<std::uint32_t>(command.samples);
+    options.seed = command.seed;
+    run.samples = sampleTruth(query, options);
+    run.watertight = query.watertight();
+    run.accuracy = measureCollider(run.samples, query, run.collider);
+    spdlog::debug("truth {:.2f} s, field {:.2f} s", run.samples.seconds, run.accuracy.field.seconds);
+    run.passed = !command.max_error || run.accuracy.field.near.total() <= double{*command.max_error};
+    if (command.html.empty()) {
+        return {};
+    }
+    const std::string page =
+        RELIEF_TRY(accuracyPage({inputName(command.file), run.collider, query, run.samples, run.accuracy}));
+    return writeFile(command.html, std::as_bytes(std::span(page)));
+}
+
+nlohmann::ordered_json jsonCheck(const CheckCommand& command, const CheckRun& run) {
+    nlohmann::ordered_json json = {
+        {"file", inputName(command.file)},
+        {"mesh",
+         {{"name", run.mesh->name},
+          {"hash", run.mesh->content_hash},
+          {"triangles", run.mesh->triangles.size()},
+          {"watertight", run.watertight},
+          {"baked_from_it", run.same_file}}},
+        {"unit", run.collider.unit},
+        {"sampling", jsonSamples(run.samples)},
+        {"accuracy", jsonColliderAccuracy(run.accuracy, run.samples.longest_side)},
+        {"max_error_percent", nullptr},
+        {"passed", run.passed},
+        {"warnings", run.warnings},
+        {"times_ms",
+         {{"truth", 1000.0 * run.samples.seconds}, {"field", 1000.0 * run.accuracy.field.seconds}}}};
+    if (command.max_error) {
+        json["max_error_percent"] = jsonNumber(*command.max_error);
+    }
+    return json;
+}
+
+std::string checkText(const CheckCommand& command, const CheckRun& run) {
+    return inputName(command.file) + " measured against " + run.mesh->name + ", " +
+           std::to_string(run.mesh->triangles.size()) + " triangles" +
+           (run.watertight ? "" : " (not closed)") + "\n\n" +
+           accuracyText(run.accuracy, run.samples, run.collider.unit);
 }
 
 Result<void> runCheck(const CheckCommand& command) {
@@ -91,82 +167,16 @@ Result<void> runCheck(const CheckCommand& command) {
     if (command.mesh.empty()) {
         return checkFile(command.file, command.json);
     }
-    const Settings settings = RELIEF_TRY(settingsOf(command));
-    RELIEF_TRY(checkImportArguments(command.import));
-    if (!command.html.empty()) {
-        if (command.html == "-") {
-            return fail(ErrorCode::kUsage, "--html cannot be standard output, where the report goes");
-        }
-        for (const Result<void>& ready :
-             {preflightFile(command.html), preflightDistinct(command.file, command.html),
-              preflightDistinct(command.mesh, command.html)}) {
-            if (!ready) {
-                return ready;
-            }
-        }
-    }
-    const Collider collider = RELIEF_TRY(loadCollider(command.file));
-    TriangleMesh imported = RELIEF_TRY(importByArguments(command.mesh, command.import));
-    // As baked: where solids overlap, their winding decides what is inside.
-    const Winding winding = RELIEF_TRY(windOutwards(std::move(imported)));
-    const PreparedMesh& mesh = winding.mesh;
-    RELIEF_TRY(checkSameMesh(collider, *mesh));
-    const bool same_file = collider.provenance.mesh_hash == mesh->content_hash;
-    std::vector<std::string> warnings = mesh->warnings;
-    if (!same_file) {
-        warnings.push_back(
-            mesh->name + " is not the file that the collider was baked from (" +
-            collider.provenance.mesh_name + ", XXH3-128 " +
-            (collider.provenance.mesh_hash.empty() ? "unknown" : collider.provenance.mesh_hash) +
-            "); its bounds are the same");
-    }
-    for (const std::string& warning : warnings) {
-        spdlog::warn(warning);
-    }
-    const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
-    const TruthSamples samples = sampleTruth(query, settings.accuracy);
-    const ColliderAccuracy accuracy = measureCollider(samples, query, collider);
-    spdlog::debug("truth {:.2f} s, field {:.2f} s", samples.seconds, accuracy.field.seconds);
-
-    if (!command.html.empty()) {
-        const std::string page =
-            RELIEF_TRY(accuracyPage({fileName(command.file), collider, query, samples, accuracy}));
-        RELIEF_TRY(writeFile(command.html, std::as_bytes(std::span(page))));
-    }
-    const bool passed = !settings.max_error || accuracy.field.near.total() <= double{*settings.max_error};
-    std::string text;
-    if (command.json) {
-        nlohmann::ordered_json json = {
-            {"file", fileName(command.file)},
-            {"mesh",
-             {{"name", mesh->name},
-              {"hash", mesh->content_hash},
-              {"triangles", mesh->triangles.size()},
-              {"watertight", query.watertight()},
-              {"baked_from_it", same_file}}},
-            {"unit", collider.unit},
-            {"sampling", jsonSamples(samples)},
-            {"accuracy", jsonColliderAccuracy(accuracy, samples.longest_side)},
-            {"max_error_percent", nullptr},
-            {"passed", passed},
-            {"warnings", warnings},
-            {"times_ms", {{"truth", 1000.0 * samples.seconds}, {"field", 1000.0 * accuracy.field.seconds}}}};
-        if (settings.max_error) {
-            json["max_error_percent"] = jsonNumber(*settings.max_error);
-        }
-        text = dump(json);
-    } else {
-        text = fileName(command.file) + " measured against " + mesh->name + ", " +
-               std::to_string(mesh->triangles.size()) + " triangles" +
-               (query.watertight() ? "" : " (not closed)") + "\n\n" +
-               accuracyText(accuracy, samples, collider.unit);
-    }
-    RELIEF_TRY(printOut(text));
-    if (!passed) {
-        return fail(ErrorCode::kDifference, shortNumber(accuracy.field.near.total()) +
+    CheckRun run;
+    RELIEF_TRY(prepare(command));
+    RELIEF_TRY(readInputs(command, run));
+    RELIEF_TRY(measure(command, run));
+    RELIEF_TRY(printOut(command.json ? jsonText(jsonCheck(command, run)) : checkText(command, run)));
+    if (!run.passed) {
+        return fail(ErrorCode::kDifference, shortNumber(run.accuracy.field.near.total()) +
                                                 " % of the points near the surface are on the wrong side, "
                                                 "more than --max-error " +
-                                                shortest(*settings.max_error) +
+                                                shortest(*command.max_error) +
                                                 " %; bake with larger or more maps");
     }
     return {};
@@ -192,12 +202,17 @@ void addCheck(CLI::App& app, Action& action) {
         verb.add_option("--mesh", command->mesh, "The mesh that it was baked from")->option_text("MESH");
     verb.add_option("--samples", command->samples, "Points of each kind; default 200000")
         ->option_text("N")
+        ->transform(wholeNumber(1, std::numeric_limits<std::uint64_t>::max(), "a whole number of at least 1"))
         ->needs(mesh);
-    verb.add_option("--seed", command->seed, "Of the points; default 1")->option_text("S")->needs(mesh);
+    verb.add_option("--seed", command->seed, "Of the points; default 1")
+        ->option_text("S")
+        ->transform(wholeNumber())
+        ->needs(mesh);
     verb.add_option("--max-error", command->max_error,
                     "Exit with 7 if more than this share of the points near the surface, in percent, is on "
                     "the wrong side")
         ->option_text("PCT")
+        ->transform(percent())
         ->needs(mesh);
     verb.add_option("--html", command->html,
                     "Also write a page to look at: numbers, error on the surface, slices and maps")

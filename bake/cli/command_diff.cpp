@@ -1,22 +1,26 @@
 // relief diff: where two colliders differ, texel by texel.
+#include <CLI/CLI.hpp>
+
 #include "bake/cli/command.h"
 #include "bake/report/diff_report.h"
-#include "bake/report/report.h"
 #include "formats/base/file_io.h"
-#include "formats/base/text.h"
 #include "formats/container.h"
+#include "runtime/tool/command_line.h"
+#include "runtime/tool/option_values.h"
 
 namespace relief {
 namespace {
+
+constexpr float kMost = std::numeric_limits<float>::max();
 
 struct DiffCommand {
     CommonOptions common;
     std::string a;
     std::string b;
-    std::string max_coverage = "0";
-    std::string max_depth = "0";
-    std::string max_normal = "0";
-    std::string max_texels = "0";
+    float max_coverage = 0.0F;  // percent
+    float max_depth = 0.0F;     // steps
+    float max_normal = 0.0F;    // degrees
+    float max_texels = 0.0F;    // percent
     bool strict_metadata = false;
     bool json = false;
 };
@@ -26,50 +30,25 @@ struct Loaded {
     Collider collider;
 };
 
-std::string shownName(const std::string& file) {
-    return file == "-" ? "standard input" : quotedPath(file);
-}
-
 Result<Loaded> load(const std::string& file) {
     std::vector<std::byte> bytes = RELIEF_TRY(readFile(file));
     Result<Collider> collider = readContainer(bytes);
     if (!collider) {
-        return fail(collider.error().code, shownName(file) + ": " + collider.error().message);
+        return fail(collider.error().code, shownInput(file) + ": " + collider.error().message);
     }
     return Loaded{std::move(bytes), std::move(*collider)};
 }
 
-Result<double> parseAmount(const std::string& text, const std::string& option, const char* unit) {
-    const std::optional<float> amount = parseFloat(trimmed(text));
-    if (!amount || *amount < 0.0F) {
-        return fail(ErrorCode::kUsage,
-                    option + " is '" + cleanUtf8(text) + "' but must be a number of " + unit + ", 0 or more");
-    }
-    return double{*amount};
-}
-
-Result<DiffLimits> limitsOf(const DiffCommand& command) {
-    DiffLimits limits;
-    limits.strict_metadata = command.strict_metadata;
-    const Result<float> coverage = parsePercent(command.max_coverage, "--max-coverage");
-    const Result<float> texels = parsePercent(command.max_texels, "--max-texels");
-    if (!coverage || !texels) {
-        return forward(!coverage ? coverage : texels);
-    }
-    limits.max_coverage = double{*coverage};
-    limits.max_texels = double{*texels};
-    const Result<double> depth = parseAmount(command.max_depth, "--max-depth", "steps of depth");
-    const Result<double> normal = parseAmount(command.max_normal, "--max-normal", "degrees");
-    if (!depth || !normal) {
-        return forward(!depth ? depth : normal);
-    }
-    limits.surface = {*depth, *normal};
-    return limits;
+DiffLimits limitsOf(const DiffCommand& command) {
+    return {{double{command.max_depth}, double{command.max_normal}},
+            double{command.max_coverage},
+            double{command.max_texels},
+            command.strict_metadata};
 }
 
 Result<void> runDiff(const DiffCommand& command) {
     startLogging(command.common);
-    const DiffLimits limits = RELIEF_TRY(limitsOf(command));
+    const DiffLimits limits = limitsOf(command);
     if (command.a == "-" && command.b == "-") {
         return fail(ErrorCode::kUsage, "A and B cannot both be standard input; give one of them a file");
     }
@@ -77,10 +56,10 @@ Result<void> runDiff(const DiffCommand& command) {
     const Loaded b = RELIEF_TRY(load(command.b));
     const ColliderDifference difference = compareColliders(a.collider, b.collider, limits.surface);
     const std::string verdict = diffVerdict(difference, limits);
-    const DiffSummary summary{shownName(command.a), shownName(command.b), a.collider, difference, limits,
+    const DiffSummary summary{shownInput(command.a), shownInput(command.b), a.collider, difference, limits,
                               a.bytes == b.bytes};
     if (command.json || !command.common.quiet) {
-        const std::string text = command.json ? dump(jsonDiff(summary)) : diffText(summary);
+        const std::string text = command.json ? diffJson(summary) : diffText(summary);
         RELIEF_TRY(printOut(text));
     }
     if (!verdict.empty()) {
@@ -112,14 +91,18 @@ void addDiff(CLI::App& app, Action& action) {
     verb.add_option(
             "--max-coverage", command->max_coverage,
             "Share of a map's texels, in percent, that may have a surface in one file alone; default 0")
-        ->option_text("PCT");
+        ->option_text("PCT")
+        ->transform(percent());
     verb.add_option("--max-depth", command->max_depth, "Steps by which a depth may differ; default 0")
-        ->option_text("STEPS");
+        ->option_text("STEPS")
+        ->transform(number(0.0F, kMost, "a number of steps of depth, 0 or more"));
     verb.add_option("--max-normal", command->max_normal, "Degrees by which a normal may differ; default 0")
-        ->option_text("DEG");
+        ->option_text("DEG")
+        ->transform(number(0.0F, kMost, "a number of degrees, 0 or more"));
     verb.add_option("--max-texels", command->max_texels,
                     "Share of a map's surfaces, in percent, that may differ by more than that; default 0")
-        ->option_text("PCT");
+        ->option_text("PCT")
+        ->transform(percent());
     verb.add_flag("--strict-metadata", command->strict_metadata,
                   "Mesh, tool and options of the bake count too; otherwise they are only shown");
     verb.add_flag("--json", command->json, "Print JSON");

@@ -1,6 +1,8 @@
 // relief export: every map as OpenEXR.
 #include <spdlog/spdlog.h>
 
+#include <CLI/CLI.hpp>
+
 #include "bake/cli/command.h"
 #include "bake/cli/preflight.h"
 #include "bake/picture/map_image.h"

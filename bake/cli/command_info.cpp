@@ -1,8 +1,11 @@
 // relief info: what is in a container.
+#include <CLI/CLI.hpp>
+
 #include "bake/cli/command.h"
 #include "bake/report/report.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
+#include "runtime/tool/command_line.h"
 
 namespace relief {
 namespace {
@@ -56,8 +59,7 @@ Result<void> runInfo(const InfoCommand& command) {
     startLogging(command.common);
     const std::vector<std::byte> bytes = RELIEF_TRY(readFile(command.file));
     const auto named = [&](const Error& error) {
-        return fail(error.code, (command.file == "-" ? "standard input" : quotedPath(command.file)) + ": " +
-                                    error.message);
+        return fail(error.code, shownInput(command.file) + ": " + error.message);
     };
     // The whole container is checked, payloads too: what info shows can be relied on.
     const Result<Collider> collider = readContainer(bytes);
@@ -68,7 +70,7 @@ Result<void> runInfo(const InfoCommand& command) {
     if (!info) {
         return named(info.error());
     }
-    return printOut(command.json ? dump(jsonCollider(*collider, *info)) : humanReport(*collider, *info));
+    return printOut(command.json ? colliderJson(*collider, *info) : humanReport(*collider, *info));
 }
 
 }  // namespace

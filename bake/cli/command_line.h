@@ -1,4 +1,4 @@
-// The command line of `relief`: its verbs, and what is said where it cannot be read.
+// The command line of `relief`.
 #pragma once
 
 #include "bake/cli/command.h"
@@ -6,7 +6,7 @@
 
 namespace relief {
 
-// One a verb: adds it to the command line; when it is called, `action` becomes what it does.
+// Each adds a verb. When it is called, `action` becomes what it does.
 void addBake(CLI::App& app, Action& action);
 void addCheck(CLI::App& app, Action& action);
 void addDiff(CLI::App& app, Action& action);
@@ -15,11 +15,13 @@ void addQuery(CLI::App& app, Action& action);
 void addSlice(CLI::App& app, Action& action);
 void addExport(CLI::App& app, Action& action);
 
+/// Gives an app named "relief" its verbs. `action` must outlive it.
+void defineRelief(CLI::App& app, Action& action);
+
 /// Parses the command line and does what it says.
-[[nodiscard]] Result<void> runCommandLine(int argc, char** argv);
+[[nodiscard]] Result<void> runRelief(int argc, char** argv);
 
 /// "relief: error: …" on standard error.
-/// \return the exit code.
-int reportError(const Error& error);
+void reportError(const Error& error);
 
 }  // namespace relief

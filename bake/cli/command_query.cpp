@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 #include <tbb/parallel_for.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "bake/cli/command.h"
@@ -23,7 +24,7 @@ struct QueryCommand {
     std::string points;
     std::string output;
     bool gpu = false;
-    GlOptions gl;
+    GpuOptions gpu_options;
 };
 
 std::vector<FieldSample> evaluateOnCpu(const Collider& collider, std::span<const glm::vec3> points) {
@@ -34,7 +35,7 @@ std::vector<FieldSample> evaluateOnCpu(const Collider& collider, std::span<const
 }
 
 Result<std::vector<FieldSample>> evaluateOnGpu(const Collider& collider, std::span<const glm::vec3> points,
-                                               const GlOptions& options) {
+                                               const GpuOptions& options) {
     const WatchedContext gl = RELIEF_TRY(openGl(options));
     spdlog::debug("{}", gl.context->description());
     gl.watchdog->feed("uploading the collider");
@@ -56,7 +57,7 @@ Result<std::vector<FieldSample>> evaluateOnGpu(const Collider& collider, std::sp
 Result<void> runQuery(const QueryCommand& command) {
     startLogging(command.common);
     if (!command.gpu) {
-        RELIEF_TRY(refuseGlOptions(command.gl, "--gpu"));
+        RELIEF_TRY(refuseGpuOptions(command.gpu_options, "--gpu"));
     }
     if (command.file == "-" && command.points == "-") {
         return fail(ErrorCode::kUsage,
@@ -75,7 +76,7 @@ Result<void> runQuery(const QueryCommand& command) {
         RELIEF_TRY(parsePoints({reinterpret_cast<const char*>(text.data()), text.size()},
                                command.points == "-" ? "standard input" : command.points));
     const std::vector<FieldSample> samples = RELIEF_TRY(
-        command.gpu ? evaluateOnGpu(collider, points, command.gl) : evaluateOnCpu(collider, points));
+        command.gpu ? evaluateOnGpu(collider, points, command.gpu_options) : evaluateOnCpu(collider, points));
     const std::string csv = formatSamples(points, samples);
     return writeFile(command.output, std::as_bytes(std::span(csv)));
 }
@@ -101,7 +102,7 @@ void addQuery(CLI::App& app, Action& action) {
         ->required();
     verb.add_flag("--gpu", command->gpu,
                   "Evaluate with the simulation's shader (OpenGL 3.3; llvmpipe will do)");
-    addGlOptions(verb, command->gl);
+    addGpuOptions(verb, command->gpu_options);
     verb.callback([command, &action] { action = [command] { return runQuery(*command); }; });
 }
 

@@ -2,8 +2,11 @@
 
 #include <spdlog/spdlog.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <cstdio>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <span>
 #include <thread>
@@ -17,6 +20,9 @@
 #include "formats/base/file_io.h"
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
+#include "runtime/tool/command_line.h"
+#include "runtime/tool/json_text.h"
+#include "runtime/tool/option_values.h"
 
 namespace relief {
 namespace {
@@ -24,10 +30,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr std::uint64_t kAtOnceMax = 1024;
 constexpr std::uint64_t kShardsMax = 1'000'000;
-constexpr double kTimeoutDefault = 3600.0;  // seconds
-constexpr double kTimeoutMax = 1e7;
+constexpr float kTimeoutMax = 1e7F;  // seconds
 
 /// What speaks of a whole run, and not of what an asset is: no keys of a recipe.
 constexpr std::array<std::string_view, 17> kOfTheRun = {
@@ -95,21 +99,19 @@ Result<void> checkAssets(const std::vector<RecipeAsset>& assets, const RecipeCal
     return {};
 }
 
-Result<Shard> parseShard(const std::string& text) {
-    Shard shard;
-    if (text.empty()) {
-        return shard;
-    }
+/// "2/4"
+std::optional<Shard> parseShard(const std::string& text) {
     const std::vector<std::string_view> parts = split(text, '/');
     const auto index = parts.size() == 2 ? parseUnsigned(parts[0]) : std::nullopt;
     const auto count = parts.size() == 2 ? parseUnsigned(parts[1]) : std::nullopt;
     if (!index || !count || *index < 1 || *index > *count || *count > kShardsMax) {
-        return fail(ErrorCode::kUsage,
-                    "--shard is '" + cleanUtf8(text) + "' but must be K/N with 1 <= K <= N, such as 2/4");
+        return std::nullopt;
     }
-    shard.index = *index;
-    shard.count = *count;
-    return shard;
+    return Shard{*index, *count};
+}
+
+Json jsonShard(const std::optional<Shard>& shard) {
+    return shard ? Json(std::to_string(shard->index) + "/" + std::to_string(shard->count)) : Json(nullptr);
 }
 
 Result<RecipeRun> runOf(const RecipeOptionsOfBake& options, const RecipeCall& call) {
@@ -118,23 +120,8 @@ Result<RecipeRun> runOf(const RecipeOptionsOfBake& options, const RecipeCall& ca
     run.output_folder = call.output.empty() ? recipeFolder(options.recipe) : fs::path(call.output);
     run.fail_fast = options.fail_fast;
     run.dry_run = options.dry_run;
-    run.seconds_max = kTimeoutDefault;
-    if (!options.timeout.empty()) {
-        const std::optional<float> seconds = parseFloat(options.timeout);
-        if (!seconds || *seconds < 0.0F || double{*seconds} > kTimeoutMax) {
-            return fail(ErrorCode::kUsage, "--timeout is '" + cleanUtf8(options.timeout) +
-                                               "' but must be a number of seconds, 0 for any");
-        }
-        run.seconds_max = double{*seconds};
-    }
-    run.at_once = std::max(1U, std::thread::hardware_concurrency());
-    if (!call.threads.empty()) {
-        const std::uint64_t at_once = RELIEF_TRY(parseCount(call.threads, "--threads"));
-        if (at_once < 1 || at_once > kAtOnceMax) {
-            return fail(ErrorCode::kUsage, "--threads must be 1 to " + std::to_string(kAtOnceMax));
-        }
-        run.at_once = static_cast<unsigned>(at_once);
-    }
+    run.seconds_max = double{options.timeout};
+    run.at_once = call.threads.value_or(std::max(1U, std::thread::hardware_concurrency()));
     if (call.output == "-") {
         return fail(ErrorCode::kUsage, "--output is a folder beside --recipe, and not standard output");
     }
@@ -200,6 +187,123 @@ Result<void> verdict(const std::vector<AssetResult>& assets, const RecipeCounts&
     return {};
 }
 
+/// What a run of a recipe is about.
+struct RecipeWork {
+    RecipeRun run;
+    std::vector<RecipeJob> jobs;    ///< of the shard
+    std::vector<fs::path> folders;  ///< that patterns looked through
+};
+
+/// Reads the recipe and finds out what it asks for; nothing is baked or written yet.
+Result<RecipeWork> plan(const RecipeOptionsOfBake& options, const RecipeCall& call) {
+    RecipeWork work;
+    RELIEF_TRY(checkOptions(call));
+    work.run = RELIEF_TRY(runOf(options, call));
+    const std::vector<RecipeAsset> assets = RELIEF_TRY(loadRecipe(options.recipe, recipeKeys(call.verb)));
+    RELIEF_TRY(checkAssets(assets, call));
+    RecipeJobs all = RELIEF_TRY(recipeJobs(assets, options.recipe, work.run.output_folder));
+    work.folders = std::move(all.folders);
+    const Shard shard = options.shard.value_or(Shard{});
+    std::ranges::copy_if(all.jobs, std::back_inserter(work.jobs),
+                         [&](const RecipeJob& job) { return inShard(job.output, shard); });
+    RELIEF_TRY(preflight(options, call, work.run, work.jobs));
+    const auto cores = std::max(1U, std::thread::hardware_concurrency());
+    work.run.threads = std::max(
+        1U, cores / std::max(1U, std::min(work.run.at_once, static_cast<unsigned>(work.jobs.size()))));
+    return work;
+}
+
+void writeStart(const RecipeOptionsOfBake& options, const RecipeWork& work, RecipeEvents& events) {
+    events.write({{"event", "start"},
+                  {"tool", std::string("relief ") + RELIEF_VERSION},
+                  {"recipe", options.recipe},
+                  {"assets", work.jobs.size()},
+                  {"shard", jsonShard(options.shard)},
+                  {"at_once", work.run.at_once}});
+}
+
+const char* endEvent(AssetState state) {
+    switch (state) {
+        case AssetState::kBaked:
+            return "done";
+        case AssetState::kFailed:
+            return "failed";
+        case AssetState::kUpToDate:
+            return "skipped";
+        default:
+            return "cancelled";
+    }
+}
+
+/// Bakes what is not up to date, and says so while it happens.
+Result<RecipeResult> bakeAll(RecipeWork& work, bool shown, RecipeEvents& events) {
+    RecipeDisplay display(work.jobs.size(), shown);
+    RecipeRun run = work.run;
+    const auto event = [&](const char* name, const AssetResult& asset) {
+        Json json = {{"event", name}};
+        json.update(jsonAsset(asset));
+        events.write(json);
+    };
+    run.started = [&](const AssetResult& asset) {
+        event("started", asset);
+        display.wipe();
+        spdlog::debug("{}: {}", cleanUtf8(asset.job.output), asset.reason);
+        display.started(asset);
+    };
+    run.ended = [&](const AssetResult& asset) {
+        event(endEvent(asset.state), asset);
+        display.wipe();
+        for (const std::string& warning : asset.warnings) {
+            spdlog::warn("{}: {}", cleanUtf8(asset.job.output), warning);
+        }
+        if (asset.state == AssetState::kFailed) {
+            spdlog::error("{}: {}", cleanUtf8(asset.job.output), asset.error.message);
+        }
+        display.ended(asset);
+    };
+    run.warn = [&](const std::string& warning) {
+        display.wipe();
+        spdlog::warn(warning);
+    };
+    return runRecipe(std::move(work.jobs), run);
+}
+
+void writeSummary(const RecipeResult& result, const RecipeCounts& counts, double ms, RecipeEvents& events) {
+    Json summary = {{"event", "summary"}};
+    summary.update(jsonCounts(counts));
+    summary["ms"] = ms;
+    summary["signal"] = result.signal == 0 ? Json(nullptr) : Json(result.signal);
+    events.write(summary);
+}
+
+/// What standard output is for.
+Result<void> printResult(const RecipeOptionsOfBake& options, const RecipeCall& call, const RecipeRun& run,
+                         const RecipeResult& result, double ms) {
+    if (!call.json) {
+        return options.dry_run && options.events != "-" ? printDryRun(result.assets) : Result<void>();
+    }
+    Json json = {{"recipe", options.recipe},
+                 {"output", run.output_folder.string()},
+                 {"shard", jsonShard(options.shard)},
+                 {"counts", jsonCounts(countAssets(result.assets))},
+                 {"ms", ms},
+                 {"assets", Json::array()}};
+    for (const AssetResult& asset : result.assets) {
+        json["assets"].push_back(jsonAsset(asset));
+    }
+    return printOut(jsonText(json));
+}
+
+/// The files for build systems, once everything is up to date.
+Result<void> writeFiles(const RecipeOptionsOfBake& options, const RecipeCall& call, const RecipeWork& work,
+                        const std::vector<AssetResult>& assets) {
+    if (!call.depfile.empty()) {
+        const std::vector<std::string> beside = {options.stamp, call.depfile, options.events};
+        RELIEF_TRY(writeRecipeDepfile(call.depfile, options.stamp, beside, work.run, work.folders, assets));
+    }
+    return options.stamp.empty() ? Result<void>() : writeRecipeStamp(options.stamp, assets);
+}
+
 }  // namespace
 
 void addRecipeOptions(CLI::App& verb, RecipeOptionsOfBake& options) {
@@ -208,16 +312,22 @@ void addRecipeOptions(CLI::App& verb, RecipeOptionsOfBake& options) {
         "Bake what this TOML file lists instead of MESH: only what is not up to date, -j assets at\n"
         "once, each by a process of its own; -o is a folder, the recipe's by default");
     recipe->option_text("FILE");
-    const auto add = [&](const char* name, std::string& value, const char* text, const char* words) {
-        verb.add_option(name, value, words)->option_text(text)->needs(recipe);
-    };
-    add("--shard", options.shard, "K/N",
-        "Of --recipe: only the K-th of N parts, which may run at the same time");
-    add("--events", options.events, "FILE",
-        "Of --recipe: write what happens as lines of JSON; - for standard output");
-    add("--stamp", options.stamp, "FILE",
-        "Of --recipe: write this file when everything is up to date: the target for --depfile");
-    add("--timeout", options.timeout, "SECONDS", "Of --recipe: for one asset; default 3600, 0 for any");
+    addParsed(verb, "--shard", options.shard, parseShard, "K/N with 1 <= K <= N, such as 2/4",
+              "Of --recipe: only the K-th of N parts, which may run at the same time")
+        ->option_text("K/N")
+        ->needs(recipe);
+    verb.add_option("--events", options.events,
+                    "Of --recipe: write what happens as lines of JSON; - for standard output")
+        ->option_text("FILE")
+        ->needs(recipe);
+    verb.add_option("--stamp", options.stamp,
+                    "Of --recipe: write this file when everything is up to date: the target for --depfile")
+        ->option_text("FILE")
+        ->needs(recipe);
+    verb.add_option("--timeout", options.timeout, "Of --recipe: for one asset; default 3600, 0 for any")
+        ->option_text("SECONDS")
+        ->transform(number(0.0F, kTimeoutMax, "a number of seconds, 0 for any"))
+        ->needs(recipe);
     CLI::Option* fast = verb.add_flag("--fail-fast", options.fail_fast,
                                       "Of --recipe: begin no further asset once one has failed");
     CLI::Option* going = verb.add_flag("--keep-going", options.keep_going,
@@ -228,127 +338,31 @@ void addRecipeOptions(CLI::App& verb, RecipeOptionsOfBake& options) {
         ->needs(recipe);
 }
 
-Result<void> checkOneBake(const CLI::App& verb) {
-    for (const char* name : {"MESH", "--output"}) {
-        if (verb.get_option(name)->count() == 0) {
-            return fail(ErrorCode::kUsage, std::string(name) + " is required; see relief bake --help");
-        }
-    }
-    return {};
-}
-
 Result<void> runRecipeCommand(const RecipeOptionsOfBake& options, const RecipeCall& call) {
     startLogging(call.common);
     const Stopwatch watch;
-    Result<RecipeRun> run = runOf(options, call);
-    const Result<Shard> shard = parseShard(options.shard);
-    for (const Result<void>& check : {checkOptions(call), run ? Result<void>() : Result<void>(forward(run)),
-                                      shard ? Result<void>() : Result<void>(forward(shard))}) {
-        if (!check) {
-            return check;
-        }
-    }
-    const std::vector<RecipeAsset> assets = RELIEF_TRY(loadRecipe(options.recipe, recipeKeys(call.verb)));
-    RELIEF_TRY(checkAssets(assets, call));
-    RecipeJobs all = RELIEF_TRY(recipeJobs(assets, options.recipe, run->output_folder));
-    std::vector<RecipeJob> jobs;
-    for (const RecipeJob& job : all.jobs) {
-        if (inShard(job.output, *shard)) {
-            jobs.push_back(job);
-        }
-    }
-    RELIEF_TRY(preflight(options, call, *run, jobs));
-    const auto cores = std::max(1U, std::thread::hardware_concurrency());
-    run->threads =
-        std::max(1U, cores / std::max(1U, std::min(run->at_once, static_cast<unsigned>(jobs.size()))));
-
+    RecipeWork work = RELIEF_TRY(plan(options, call));
     RecipeEvents events;
     if (!options.events.empty()) {
         RELIEF_TRY(events.open(options.events));
     }
-    events.write({{"event", "start"},
-                  {"tool", std::string("relief ") + RELIEF_VERSION},
-                  {"recipe", options.recipe},
-                  {"assets", jobs.size()},
-                  {"shard", options.shard.empty() ? Json(nullptr) : Json(options.shard)},
-                  {"at_once", run->at_once}});
-    Result<RecipeResult> result;
-    {
-        RecipeDisplay display(jobs.size(), !call.common.quiet && !options.dry_run);
-        const auto event = [&](const char* name, const AssetResult& asset) {
-            Json json = {{"event", name}};
-            json.update(jsonAsset(asset));
-            events.write(json);
-        };
-        run->started = [&](const AssetResult& asset) {
-            event("started", asset);
-            display.wipe();
-            spdlog::debug("{}: {}", cleanUtf8(asset.job.output), asset.reason);
-            display.started(asset);
-        };
-        run->ended = [&](const AssetResult& asset) {
-            const bool done = asset.state == AssetState::kBaked;
-            event(done                                   ? "done"
-                  : asset.state == AssetState::kFailed   ? "failed"
-                  : asset.state == AssetState::kUpToDate ? "skipped"
-                                                         : "cancelled",
-                  asset);
-            display.wipe();
-            for (const std::string& warning : asset.warnings) {
-                spdlog::warn("{}: {}", cleanUtf8(asset.job.output), warning);
-            }
-            if (asset.state == AssetState::kFailed) {
-                spdlog::error("{}: {}", cleanUtf8(asset.job.output), asset.error.message);
-            }
-            display.ended(asset);
-        };
-        run->warn = [&](const std::string& warning) {
-            display.wipe();
-            spdlog::warn(warning);
-        };
-        result = relief::runRecipe(std::move(jobs), *run);
-    }
-    if (!result) {
-        return forward(result);
-    }
-    const RecipeCounts counts = countAssets(result->assets);
+    writeStart(options, work, events);
+    const RecipeResult result = RELIEF_TRY(bakeAll(work, !call.common.quiet && !options.dry_run, events));
+    const RecipeCounts counts = countAssets(result.assets);
     const double ms = watch.ms();
-    Json summary = {{"event", "summary"}};
-    summary.update(jsonCounts(counts));
-    summary["ms"] = ms;
-    summary["signal"] = result->signal == 0 ? Json(nullptr) : Json(result->signal);
-    events.write(summary);
+    writeSummary(result, counts, ms, events);
     if (!call.common.quiet) {
         std::fputs((recipeSummary(counts, ms) + "\n").c_str(), stderr);
     }
-    if (result->signal != 0) {
-        ChildProcesses::endBySignal(result->signal);
+    if (result.signal != 0) {
+        ChildProcesses::endBySignal(result.signal);
     }
-    if (call.json) {
-        Json json = {{"recipe", options.recipe},
-                     {"output", run->output_folder.string()},
-                     {"shard", options.shard.empty() ? Json(nullptr) : Json(options.shard)},
-                     {"counts", jsonCounts(counts)},
-                     {"ms", ms},
-                     {"assets", Json::array()}};
-        for (const AssetResult& asset : result->assets) {
-            json["assets"].push_back(jsonAsset(asset));
-        }
-        RELIEF_TRY(printOut(dump(json)));
-    } else if (options.dry_run && options.events != "-") {
-        RELIEF_TRY(printDryRun(result->assets));
+    RELIEF_TRY(printResult(options, call, work.run, result, ms));
+    RELIEF_TRY(verdict(result.assets, counts));
+    if (options.dry_run) {
+        return {};
     }
-    if (const Result<void> fine = verdict(result->assets, counts); !fine || options.dry_run) {
-        return fine;
-    }
-    if (!call.depfile.empty()) {
-        const std::vector<std::string> beside = {options.stamp, call.depfile, options.events};
-        RELIEF_TRY(
-            writeRecipeDepfile(call.depfile, options.stamp, beside, *run, all.folders, result->assets));
-    }
-    if (!options.stamp.empty()) {
-        RELIEF_TRY(writeRecipeStamp(options.stamp, result->assets));
-    }
+    RELIEF_TRY(writeFiles(options, call, work, result.assets));
     return events.finish();
 }
 

@@ -1,21 +1,22 @@
 // relief bake --recipe: the options, and what they do.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bake/cli/command.h"
+#include "bake/recipe/recipe_jobs.h"
 
 namespace relief {
 
 struct RecipeOptionsOfBake {
     std::string recipe;
     std::string events;
-    std::string shard;
+    std::optional<Shard> shard;
     std::string stamp;
-    std::string timeout;
+    float timeout = 3600.0F;  ///< seconds for one asset; 0: any
     bool fail_fast = false;
     bool keep_going = false;
     bool dry_run = false;
@@ -25,8 +26,8 @@ struct RecipeOptionsOfBake {
 struct RecipeCall {
     const CLI::App& verb;  ///< parsed
     const CommonOptions& common;
-    const std::string& output;   ///< a folder; empty: the recipe's
-    const std::string& threads;  ///< -j
+    const std::string& output;        ///< a folder; empty: the recipe's
+    std::optional<unsigned> threads;  ///< -j
     const std::string& depfile;
     bool json;
     /// Whether `relief bake MESH -o OUT` would take these arguments.
@@ -34,9 +35,6 @@ struct RecipeCall {
 };
 
 void addRecipeOptions(CLI::App& verb, RecipeOptionsOfBake& options);
-
-/// Errors: kUsage for an option of `relief bake` that is not given where MESH and -o are needed.
-[[nodiscard]] Result<void> checkOneBake(const CLI::App& verb);
 
 /// Bakes what the recipe asks for. Ends the program by the signal that interrupted it.
 /// Errors: those of the first asset in the recipe's order that failed; kUsage, kIo.

@@ -1,4 +1,5 @@
 // relief slice: the field on a plane, as numbers or as a figure.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "bake/cli/command.h"
@@ -8,17 +9,25 @@
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "formats/container.h"
+#include "runtime/tool/option_values.h"
 
 namespace relief {
 namespace {
+
+enum class Axis : std::uint8_t { kX, kY, kZ };
+
+/// Where on the axis.
+struct Place {
+    std::optional<float> at;  // object units; none for "center"
+};
 
 struct SliceCommand {
     CommonOptions common;
     std::string file;
     std::string output;
-    std::string axis = "z";
-    std::string at = "center";
-    std::string size = "512";
+    Axis axis = Axis::kZ;
+    std::optional<Place> place;
+    std::uint64_t size = 512;
 };
 
 enum class ImageKind { kPng, kExr };
@@ -34,36 +43,27 @@ Result<ImageKind> imageKind(const std::string& output) {
     return fail(ErrorCode::kUsage, "--output " + quotedPath(output) + " must end in .png or .exr");
 }
 
-Result<SliceOptions> optionsOf(const SliceCommand& command) {
+std::optional<Place> parsePlace(const std::string& word) {
+    const Place place{parseFloat(word)};
+    return place.at || word == "center" ? std::optional(place) : std::nullopt;
+}
+
+SliceOptions optionsOf(const SliceCommand& command) {
     SliceOptions options;
-    if (command.axis != "x" && command.axis != "y" && command.axis != "z") {
-        return fail(ErrorCode::kUsage, "--axis is '" + cleanUtf8(command.axis) + "' but must be x, y or z");
-    }
-    options.axis = command.axis[0] - 'x';
-    if (command.at != "center") {
-        options.at = parseFloat(command.at);
-        if (!options.at) {
-            return fail(ErrorCode::kUsage,
-                        "--at is '" + cleanUtf8(command.at) + "' but must be a number or center");
-        }
-    }
-    const std::uint64_t size = RELIEF_TRY(parseCount(command.size, "--size"));
-    options.size = static_cast<std::uint32_t>(std::min<std::uint64_t>(size, kSliceSizeMax + 1));
+    options.axis = static_cast<int>(command.axis);
+    options.at = command.place.value_or(Place{}).at;
+    options.size = static_cast<std::uint32_t>(std::min<std::uint64_t>(command.size, kSliceSizeMax + 1));
     return options;
 }
 
 Result<void> runSlice(const SliceCommand& command) {
     startLogging(command.common);
     const ImageKind kind = RELIEF_TRY(imageKind(command.output));
-    const SliceOptions options = RELIEF_TRY(optionsOf(command));
     RELIEF_TRY(preflightFile(command.output));
     const Collider collider = RELIEF_TRY(loadCollider(command.file));
-    const Slice slice = RELIEF_TRY(evaluateSlice(collider, options));
-    const std::string name = command.file == "-"
-                                 ? "standard input"
-                                 : cleanUtf8(std::filesystem::path(command.file).filename().string());
+    const Slice slice = RELIEF_TRY(evaluateSlice(collider, optionsOf(command)));
     const std::vector<std::byte> bytes =
-        RELIEF_TRY(kind == ImageKind::kPng ? drawSlice(slice, {name, collider.unit})
+        RELIEF_TRY(kind == ImageKind::kPng ? drawSlice(slice, {inputName(command.file), collider.unit})
                                            : encodeExr(sliceImage(slice, collider.unit)));
     return writeFile(command.output, bytes);
 }
@@ -79,12 +79,14 @@ void addSlice(CLI::App& app, Action& action) {
                 "relief slice bunny.relief --axis z --at center -o slice.png\n"
                 "relief slice bunny.relief --axis y --at 0.1 --size 1024 -o slice.exr");
     verb.add_option("FILE", command->file, "The collider; - for standard input")->type_name("")->required();
-    verb.add_option("--axis", command->axis, "The plane is across this axis; default z")
-        ->option_text("x|y|z");
-    verb.add_option("--at", command->at,
-                    "Where on the axis, object units; default center, the middle of the bounds")
+    addWords(verb, "--axis", command->axis, WordsFor<Axis>{{"x", Axis::kX}, {"y", Axis::kY}, {"z", Axis::kZ}},
+             "The plane is across this axis; default z");
+    addParsed(verb, "--at", command->place, parsePlace, "a number or center",
+              "Where on the axis, object units; default center, the middle of the bounds")
         ->option_text("V");
-    verb.add_option("--size", command->size, "Samples along the longer side; default 512")->option_text("N");
+    verb.add_option("--size", command->size, "Samples along the longer side; default 512")
+        ->option_text("N")
+        ->transform(wholeNumber());
     verb.add_option("-o,--output", command->output, "OUT.png or OUT.exr; - for a PNG on standard output")
         ->option_text("OUT")
         ->required();

@@ -1,9 +1,9 @@
 #include "bake/cli/import_options.h"
 
-#include <algorithm>
+#include <CLI/CLI.hpp>
 
-#include "formats/base/byte_count.h"
 #include "formats/base/text.h"
+#include "runtime/tool/option_values.h"
 
 namespace relief {
 namespace {
@@ -12,80 +12,37 @@ constexpr std::uint64_t kMemoryMin = 64'000'000;         // bytes; a little mesh
 constexpr std::uint64_t kMemoryMax = 1'000'000'000'000;  // bytes
 constexpr std::uint64_t kSecondsMax = 86'400;
 
-struct Parsed {
-    ImportOptions options;
-    ImportLimits limits;
-};
-
-Result<Parsed> parse(const ImportArguments& arguments) {
-    Parsed parsed;
-    if (!arguments.unit.empty()) {
-        if (!metresPer(arguments.unit)) {
-            const std::vector<std::string_view> units = lengthUnits();
-            return fail(ErrorCode::kUsage, "--unit is '" + cleanUtf8(arguments.unit) +
-                                               "' but must be one of " + listed(units) +
-                                               didYouMean(arguments.unit, units));
-        }
-        parsed.options.unit = arguments.unit;
-    }
-    if (!arguments.up.empty()) {
-        const UpAxis up = RELIEF_TRY(parseUpAxis(arguments.up));
-        parsed.options.up = up;
-    }
-    if (!arguments.memory.empty()) {
-        const std::optional<std::uint64_t> memory = parseByteCount(arguments.memory);
-        if (!memory || *memory < kMemoryMin || *memory > kMemoryMax) {
-            return fail(ErrorCode::kUsage, "--import-memory is '" + cleanUtf8(arguments.memory) +
-                                               "' but must be 64MB to 1000GB");
-        }
-        parsed.limits.memory = *memory;
-    }
-    if (!arguments.seconds.empty()) {
-        const std::optional<std::uint64_t> seconds = parseUnsigned(arguments.seconds);
-        if (!seconds || *seconds < 1 || *seconds > kSecondsMax) {
-            return fail(ErrorCode::kUsage, "--import-time is '" + cleanUtf8(arguments.seconds) +
-                                               "' but must be 1 to " + std::to_string(kSecondsMax) +
-                                               " seconds");
-        }
-        parsed.limits.seconds = static_cast<std::uint32_t>(*seconds);
-    }
-    return parsed;
+std::optional<UpAxis> upAxis(const std::string& word) {
+    const Result<UpAxis> up = parseUpAxis(word);
+    return up ? std::optional(*up) : std::nullopt;
 }
 
 }  // namespace
 
-void addImportOptions(CLI::App& verb, ImportArguments& arguments) {
+void addImportOptions(CLI::App& verb, ImportSettings& settings) {
     const std::vector<std::string_view> units = lengthUnits();
-    verb.add_option("--unit", arguments.unit,
+    verb.add_option("--unit", settings.options.unit,
                     "Of the mesh's lengths: " + listed(units) + "; they become metres.\n" +
                         "Default: what the file says, or as they are")
-        ->option_text("UNIT");
-    verb.add_option("--up", arguments.up,
-                    "The mesh's axis that points upwards: +x -x +y -y +z -z; it becomes +y.\n"
-                    "Default: what the file says, or as it is")
+        ->option_text("UNIT")
+        ->check(oneOf(units));
+    addParsed(verb, "--up", settings.options.up, upAxis, "one of +x, -x, +y, -y, +z, -z",
+              "The mesh's axis that points upwards: +x -x +y -y +z -z; it becomes +y.\n"
+              "Default: what the file says, or as it is")
         ->option_text("AXIS");
-    verb.add_option("--import-memory", arguments.memory, "Memory that reading the mesh may take; default 4GB")
-        ->option_text("BYTES");
-    verb.add_option("--import-time", arguments.seconds, "Seconds that reading the mesh may take; default 60")
-        ->option_text("SECONDS");
+    verb.add_option("--import-memory", settings.limits.memory,
+                    "Memory that reading the mesh may take; default 4GB")
+        ->option_text("BYTES")
+        ->transform(byteCount(kMemoryMin, kMemoryMax, "64MB to 1000GB"));
+    verb.add_option("--import-time", settings.limits.seconds,
+                    "Seconds that reading the mesh may take; default 60")
+        ->option_text("SECONDS")
+        ->transform(wholeNumber(1, kSecondsMax, "1 to " + std::to_string(kSecondsMax) + " seconds"));
 }
 
-Result<void> checkImportArguments(const ImportArguments& arguments) {
-    const Result<Parsed> parsed = parse(arguments);
-    return parsed ? Result<void>{} : forward(parsed);
-}
-
-Result<TriangleMesh> importByArguments(const std::string& path, const ImportArguments& arguments) {
-    const Parsed parsed = RELIEF_TRY(parse(arguments));
-    return importMeshInWorker(path, parsed.options, parsed.limits);
-}
-
-std::string importProvenance(const ImportArguments& arguments) {
-    std::string text = arguments.unit.empty() ? "" : " --unit " + arguments.unit;
-    if (const Result<UpAxis> up = parseUpAxis(arguments.up); up) {
-        text.append(" --up ").append(upAxisName(*up));
-    }
-    return text;
+std::string importProvenance(const ImportOptions& options) {
+    return (options.unit.empty() ? "" : " --unit " + options.unit) +
+           (options.up ? " --up " + std::string(upAxisName(*options.up)) : "");
 }
 
 }  // namespace relief

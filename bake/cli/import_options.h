@@ -1,33 +1,25 @@
-// The command line of every verb that reads a mesh.
+// The options of every verb that reads a mesh.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "bake/import/mesh_import.h"
-#include "formats/base/result.h"
+
+namespace CLI {
+class App;
+}
 
 namespace relief {
 
-/// As they were typed.
-struct ImportArguments {
-    std::string unit;
-    std::string up;
-    std::string memory;
-    std::string seconds;
+struct ImportSettings {
+    ImportOptions options;
+    ImportLimits limits;
 };
 
 /// Adds --unit, --up, --import-memory and --import-time.
-void addImportOptions(CLI::App& verb, ImportArguments& arguments);
-
-/// Errors: kUsage; nothing is read. For before the long work.
-[[nodiscard]] Result<void> checkImportArguments(const ImportArguments& arguments);
-
-/// Imports a mesh in a worker, as the arguments say. Errors: kUsage, and as importMeshInWorker.
-[[nodiscard]] Result<TriangleMesh> importByArguments(const std::string& path,
-                                                     const ImportArguments& arguments);
+void addImportOptions(CLI::App& verb, ImportSettings& settings);
 
 /// " --unit mm --up +z" for the provenance: those that change the mesh; "" by default.
-[[nodiscard]] std::string importProvenance(const ImportArguments& arguments);
+[[nodiscard]] std::string importProvenance(const ImportOptions& options);
 
 }  // namespace relief

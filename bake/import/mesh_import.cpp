@@ -189,7 +189,8 @@ struct Import {
         } catch (const std::bad_alloc&) {
             result.emplace(fail(ErrorCode::kLimit, where + "out of memory; simplify it"));
         } catch (const std::exception& e) {
-            result.emplace(fail(ErrorCode::kInvalidInput, where + oneCleanLine(e.what()) + "; export it again"));
+            result.emplace(
+                fail(ErrorCode::kInvalidInput, where + oneCleanLine(e.what()) + "; export it again"));
         } catch (...) {
             result.emplace(fail(ErrorCode::kInvalidInput, where + "the importer gave up; export it again"));
         }

@@ -32,7 +32,7 @@ struct MeshCare {
 };
 
 struct CaredMesh {
-    PreparedMesh mesh;
+    PreparedMesh mesh{TriangleMesh()};
     MeshCare care;
 };
 

@@ -1,6 +1,7 @@
 #include "bake/report/accuracy_report.h"
 
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "bake/report/report.h"
 

@@ -1,7 +1,7 @@
 // Measured accuracy as JSON, and as words for people.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "bake/measure/accuracy.h"

@@ -1,11 +1,13 @@
 #include "bake/report/bake_report.h"
 
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "bake/report/accuracy_report.h"
 #include "bake/report/care_report.h"
 #include "bake/report/report.h"
 #include "formats/base/file_io.h"
+#include "runtime/tool/json_text.h"
 
 namespace relief {
 namespace {

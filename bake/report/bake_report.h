@@ -1,7 +1,7 @@
 // What `relief bake` says when it is done: which maps, why these, and where the time went.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>

@@ -1,7 +1,10 @@
 #include "bake/report/care_report.h"
 
+#include <nlohmann/json.hpp>
+
 #include "bake/report/report.h"
 #include "formats/base/text.h"
+#include "runtime/tool/json_text.h"
 
 namespace relief {
 namespace {
@@ -28,9 +31,7 @@ Json jsonHealth(const std::optional<MeshHealth>& health) {
                   health->self_intersections ? Json(*health->self_intersections) : Json(nullptr)},
                  {"first_fault", nullptr}};
     if (const std::optional<MeshFault>& fault = health->first_fault) {
-        json["first_fault"] = {
-            {"what", fault->what},
-            {"at", {jsonNumber(fault->at.x), jsonNumber(fault->at.y), jsonNumber(fault->at.z)}}};
+        json["first_fault"] = {{"what", fault->what}, {"at", jsonVector(fault->at)}};
     }
     return json;
 }

@@ -1,7 +1,7 @@
 // What a bake found out about its mesh, and did to it.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "bake/repair/mesh_care.h"

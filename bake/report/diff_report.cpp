@@ -1,9 +1,11 @@
 #include "bake/report/diff_report.h"
 
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "bake/report/report.h"
+#include "runtime/tool/json_text.h"
 
 namespace relief {
 namespace {
@@ -157,7 +159,7 @@ std::string diffText(const DiffSummary& summary) {
     return text;
 }
 
-Json jsonDiff(const DiffSummary& summary) {
+std::string diffJson(const DiffSummary& summary) {
     const ColliderDifference& difference = summary.difference;
     const DiffLimits& limits = summary.limits;
     Json maps = Json::array();
@@ -173,21 +175,21 @@ Json jsonDiff(const DiffSummary& summary) {
                         {"front", compared(jsonEnd(map.front))},
                         {"back", isFrontBack(format) ? compared(jsonEnd(map.back)) : Json(nullptr)}});
     }
-    return {{"a", summary.a},
-            {"b", summary.b},
-            {"identical", summary.same_bytes},
-            {"same_collider", sameCollider(summary)},
-            {"within_limits", diffVerdict(difference, limits).empty()},
-            {"limits",
-             {{"max_coverage", limits.max_coverage},
-              {"max_depth", limits.surface.max_depth},
-              {"max_normal", limits.surface.max_normal},
-              {"max_texels", limits.max_texels},
-              {"strict_metadata", limits.strict_metadata}}},
-            {"structure", jsonDifferences(difference.structure)},
-            {"provenance", jsonDifferences(difference.provenance)},
-            {"maps", maps},
-            {"total", jsonEnd(difference.total)}};
+    return jsonText({{"a", summary.a},
+                     {"b", summary.b},
+                     {"identical", summary.same_bytes},
+                     {"same_collider", sameCollider(summary)},
+                     {"within_limits", diffVerdict(difference, limits).empty()},
+                     {"limits",
+                      {{"max_coverage", limits.max_coverage},
+                       {"max_depth", limits.surface.max_depth},
+                       {"max_normal", limits.surface.max_normal},
+                       {"max_texels", limits.max_texels},
+                       {"strict_metadata", limits.strict_metadata}}},
+                     {"structure", jsonDifferences(difference.structure)},
+                     {"provenance", jsonDifferences(difference.provenance)},
+                     {"maps", maps},
+                     {"total", jsonEnd(difference.total)}});
 }
 
 }  // namespace relief

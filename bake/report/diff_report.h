@@ -1,7 +1,6 @@
 // What `relief diff` says of two colliders, for people and as JSON.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "formats/compare.h"
@@ -36,6 +35,6 @@ struct DiffSummary {
 /// texels_differing, front, back}], `back` null but for front-back maps, depth_unit to back null unless
 /// compared; total: an end. An end: {ends, both, only_a, only_b, coverage_percent, beyond, beyond_percent,
 /// depth, normal_degrees}, the last two {differing, max, mean, percentile_99}.
-[[nodiscard]] nlohmann::ordered_json jsonDiff(const DiffSummary& summary);
+[[nodiscard]] std::string diffJson(const DiffSummary& summary);
 
 }  // namespace relief

@@ -1,8 +1,10 @@
 #include "bake/report/inspect_report.h"
 
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "bake/report/report.h"
+#include "runtime/tool/json_text.h"
 
 namespace relief {
 namespace {
@@ -89,7 +91,7 @@ std::string inspectionText(const Inspection& inspection, const std::string& name
     return text + trustText(inspection);
 }
 
-Json jsonInspection(const Inspection& inspection, const std::string& name) {
+std::string inspectionJson(const Inspection& inspection, const std::string& name) {
     Json issues = Json::array();
     for (const Issue& issue : inspection.issues) {
         issues.push_back({{"code", issue.id()},
@@ -112,19 +114,19 @@ Json jsonInspection(const Inspection& inspection, const std::string& name) {
                         {"coverage", map.coverage ? Json(*map.coverage) : Json(nullptr)}});
     }
     const bool known = inspection.major != 0;
-    return {
-        {"file", name},
-        {"file_size", inspection.file_size},
-        {"version", known ? Json(std::to_string(inspection.major) + "." + std::to_string(inspection.minor))
-                          : Json(nullptr)},
-        {"verdict", verdict(inspection)},
-        {"fatal", inspection.count(Severity::kFatal)},
-        {"errors", inspection.count(Severity::kError)},
-        {"warnings", inspection.count(Severity::kWarning)},
-        {"header", partStateName(inspection.header)},
-        {"metadata", partStateName(inspection.metadata)},
-        {"issues", issues},
-        {"maps", maps}};
+    return jsonText(
+        {{"file", name},
+         {"file_size", inspection.file_size},
+         {"version", known ? Json(std::to_string(inspection.major) + "." + std::to_string(inspection.minor))
+                           : Json(nullptr)},
+         {"verdict", verdict(inspection)},
+         {"fatal", inspection.count(Severity::kFatal)},
+         {"errors", inspection.count(Severity::kError)},
+         {"warnings", inspection.count(Severity::kWarning)},
+         {"header", partStateName(inspection.header)},
+         {"metadata", partStateName(inspection.metadata)},
+         {"issues", issues},
+         {"maps", maps}});
 }
 
 }  // namespace relief

@@ -1,7 +1,6 @@
 // What `relief check FILE` says of a container alone, as text and as JSON.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "formats/inspect.h"
@@ -13,6 +12,6 @@ namespace relief {
 [[nodiscard]] std::string inspectionText(const Inspection& inspection, const std::string& name);
 
 /// formats/schemas/check-file.schema.json.
-[[nodiscard]] nlohmann::ordered_json jsonInspection(const Inspection& inspection, const std::string& name);
+[[nodiscard]] std::string inspectionJson(const Inspection& inspection, const std::string& name);
 
 }  // namespace relief

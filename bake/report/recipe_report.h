@@ -1,7 +1,7 @@
 // What a run of a recipe says: events for machines while it runs, a display for people, and both at its end.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>

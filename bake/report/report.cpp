@@ -1,19 +1,15 @@
 #include "bake/report/report.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
-#include "formats/base/text.h"
+#include "runtime/tool/json_text.h"
 
 namespace relief {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json jsonVector(const glm::vec3& v) {
-    return {jsonNumber(v.x), jsonNumber(v.y), jsonNumber(v.z)};
-}
 
 /// Characters, where each is one column wide: continuation bytes of UTF-8 do not count.
 std::size_t columns(const std::string& text) {
@@ -25,13 +21,6 @@ std::size_t columns(const std::string& text) {
 }
 
 }  // namespace
-
-Json jsonNumber(float value) {
-    double number = 0.0;
-    const std::string text = shortest(value);
-    std::from_chars(text.data(), text.data() + text.size(), number);
-    return number;
-}
 
 Json jsonBounds(const Bounds& bounds) {
     return {{"min", jsonVector(bounds.min)}, {"max", jsonVector(bounds.max)}};
@@ -79,8 +68,8 @@ Json jsonCollider(const Collider& collider, const ContainerInfo& info) {
               {"options", from.options}}}};
 }
 
-std::string dump(const Json& json) {
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+std::string colliderJson(const Collider& collider, const ContainerInfo& info) {
+    return jsonText(jsonCollider(collider, info));
 }
 
 std::string bytesText(std::uint64_t bytes) {

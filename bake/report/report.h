@@ -1,16 +1,13 @@
 // What `bake` and `info` say of a collider: the same JSON, and the same tables for people.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "formats/collider.h"
 #include "formats/container.h"
 
 namespace relief {
-
-/// A float as the shortest number that reads back as the same float.
-[[nodiscard]] nlohmann::ordered_json jsonNumber(float value);
 
 [[nodiscard]] nlohmann::ordered_json jsonBounds(const Bounds& bounds);
 
@@ -21,9 +18,8 @@ namespace relief {
 
 /// version, file_size, bounds, unit, texel_bytes, maps, provenance.
 [[nodiscard]] nlohmann::ordered_json jsonCollider(const Collider& collider, const ContainerInfo& info);
-
-/// With a newline at the end; bytes that are not UTF-8 are replaced.
-[[nodiscard]] std::string dump(const nlohmann::ordered_json& json);
+/// The same as text.
+[[nodiscard]] std::string colliderJson(const Collider& collider, const ContainerInfo& info);
 
 /// "12.3 MB", "640 B": powers of 1000.
 [[nodiscard]] std::string bytesText(std::uint64_t bytes);

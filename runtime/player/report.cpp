@@ -6,51 +6,32 @@
 
 #include "formats/base/file_io.h"
 #include "runtime/player/report_air.h"
-#include "runtime/player/report_number.h"
 #include "runtime/player/stage_json.h"
+#include "runtime/tool/json_text.h"
 
 namespace relief {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-}  // namespace
-
-Json shortestJson(float value) {
-    char text[32];
-    for (int digits = 6; digits <= 9; ++digits) {
-        std::snprintf(text, sizeof(text), "%.*g", digits, static_cast<double>(value));
-        if (std::strtof(text, nullptr) == value) {
-            break;
-        }
-    }
-    return std::strtod(text, nullptr);
-}
-
-Json triple(const glm::vec3& v) {
-    return Json::array({shortestJson(v.x), shortestJson(v.y), shortestJson(v.z)});
-}
-
-namespace {
-
 void addPlace(const SceneEmitter& emitter, Json& json) {
     static constexpr const char* kShapes[] = {"box", "sphere", "shell", "disc", "points"};
     json["shape"] = kShapes[static_cast<std::size_t>(emitter.shape)];
     switch (emitter.shape) {
         case EmitterShape::kBox:
-            json["box_min"] = triple(*emitter.box_min);
-            json["box_max"] = triple(*emitter.box_max);
+            json["box_min"] = jsonVector(*emitter.box_min);
+            json["box_max"] = jsonVector(*emitter.box_max);
             return;
         case EmitterShape::kPoints:
             json["points"] = emitter.points.native();
             return;
         case EmitterShape::kDisc:
-            json["normal"] = triple(emitter.normal);
+            json["normal"] = jsonVector(emitter.normal);
             [[fallthrough]];
         case EmitterShape::kSphere:
         case EmitterShape::kShell:
-            json["center"] = triple(emitter.center);
-            json["radius"] = shortestJson(emitter.radius);
+            json["center"] = jsonVector(emitter.center);
+            json["radius"] = jsonNumber(emitter.radius);
             return;
     }
 }
@@ -66,18 +47,18 @@ Json emitterSettings(const SceneEmitter& emitter) {
         json["burst_every"] = emitter.burst_every;
     }
     if (emitter.aimed) {
-        json["direction"] = emitter.direction ? triple(*emitter.direction) : Json();
-        json["cone"] = shortestJson(emitter.cone);
-        json["speed"] = {shortestJson(*emitter.speed_min), shortestJson(*emitter.speed_max)};
+        json["direction"] = emitter.direction ? jsonVector(*emitter.direction) : Json();
+        json["cone"] = jsonNumber(emitter.cone);
+        json["speed"] = {jsonNumber(*emitter.speed_min), jsonNumber(*emitter.speed_max)};
         if (emitter.speed_deviation > 0.0F) {
-            json["speed"] = {{"mean", shortestJson(*emitter.speed_min)},
-                             {"deviation", shortestJson(emitter.speed_deviation)}};
+            json["speed"] = {{"mean", jsonNumber(*emitter.speed_min)},
+                             {"deviation", jsonNumber(emitter.speed_deviation)}};
         }
     } else {
-        json["velocity"] = triple(*emitter.velocity);
+        json["velocity"] = jsonVector(*emitter.velocity);
     }
-    json["velocity_spread"] = triple(*emitter.velocity_spread);
-    json["lifetime"] = {shortestJson(emitter.lifetime_min), shortestJson(emitter.lifetime_max)};
+    json["velocity_spread"] = jsonVector(*emitter.velocity_spread);
+    json["lifetime"] = {jsonNumber(emitter.lifetime_min), jsonNumber(emitter.lifetime_max)};
     json["type"] = emitter.type;
     json["seed"] = emitter.seed;
     json["spread"] = emitter.spread;
@@ -88,7 +69,7 @@ template <class T, class Value>
 Json overAge(const AgeTrack<T>& track, const Value& value) {
     Json keys = Json::array();
     for (const AgeKey<T>& key : track) {
-        Json one = Json::array({shortestJson(key.age)});
+        Json one = Json::array({jsonNumber(key.age)});
         for (const Json& number : value(key.value)) {
             one.push_back(number);
         }
@@ -99,7 +80,7 @@ Json overAge(const AgeTrack<T>& track, const Value& value) {
 
 /// A look as its [[type]]; what it leaves open is left out, for it is [render]'s.
 Json lookJson(const ParticleLook& look) {
-    const auto number = [](float value) { return Json::array({shortestJson(value)}); };
+    const auto number = [](float value) { return Json::array({jsonNumber(value)}); };
     Json json = Json::object();
     const auto add = [&](const char* key, const AgeTrack<float>& track) {
         if (!track.empty()) {
@@ -108,38 +89,38 @@ Json lookJson(const ParticleLook& look) {
     };
     add("size", look.size);
     if (!look.color.empty()) {
-        json["color"] = overAge(look.color, triple);
+        json["color"] = overAge(look.color, jsonVector);
     }
     add("opacity", look.opacity);
     add("rotation", look.rotation);
-    json["turn"] = shortestJson(look.turn);
-    json["spin"] = shortestJson(look.spin);
+    json["turn"] = jsonNumber(look.turn);
+    json["spin"] = jsonNumber(look.spin);
     if (look.cell_first) {
         json["cell"] = {*look.cell_first, look.cell_last};
     }
     json["lit"] = look.lit;
     if (look.fade_in && look.fade_out) {
-        json["fade"] = {shortestJson(*look.fade_in), shortestJson(*look.fade_out)};
+        json["fade"] = {jsonNumber(*look.fade_in), jsonNumber(*look.fade_out)};
     }
     return json;
 }
 
 Json physicsSettings(const ParticleType& type) {
     static constexpr const char* kOnCollision[] = {"bounce", "stop", "slide", "die"};
-    return {{"mass", shortestJson(type.mass)},
-            {"radius", shortestJson(type.radius)},
-            {"restitution", shortestJson(type.restitution)},
-            {"friction", shortestJson(type.friction)},
-            {"friction_threshold", shortestJson(type.friction_threshold)},
+    return {{"mass", jsonNumber(type.mass)},
+            {"radius", jsonNumber(type.radius)},
+            {"restitution", jsonNumber(type.restitution)},
+            {"friction", jsonNumber(type.friction)},
+            {"friction_threshold", jsonNumber(type.friction_threshold)},
             {"on_collision", kOnCollision[static_cast<std::size_t>(type.on_collision)]},
-            {"lifetime_loss", shortestJson(type.lifetime_loss)}};
+            {"lifetime_loss", jsonNumber(type.lifetime_loss)}};
 }
 
 void addPictures(const Scene& scene, Json& json) {
     Json& render = json["render"];
     render["sprite"] = scene.render.sprite == Sprite::kQuad ? "quad" : "point";
     render["blend"] = scene.render.blend == Blend::kAdditive ? "additive" : "alpha";
-    render["soft"] = shortestJson(scene.render.soft);
+    render["soft"] = jsonNumber(scene.render.soft);
     if (!scene.render.atlas.empty()) {
         render["atlas"] = scene.render.atlas.native();
         render["atlas_cells"] = {scene.render.atlas_columns, scene.render.atlas_rows};
@@ -163,17 +144,17 @@ void addPictures(const Scene& scene, Json& json) {
     camera["path"] = scene.camera.curve == CameraCurve::kSmooth ? "smooth" : "linear";
     for (const SceneCameraKey& key : scene.camera.keys) {
         camera["key"].push_back({{"time", key.time},
-                                 {"eye", triple(key.eye)},
-                                 {"target", triple(key.target.value_or(*scene.camera.target))},
-                                 {"fov", shortestJson(key.fov.value_or(scene.camera.fov))}});
+                                 {"eye", jsonVector(key.eye)},
+                                 {"target", jsonVector(key.target.value_or(*scene.camera.target))},
+                                 {"fov", jsonNumber(key.fov.value_or(scene.camera.fov))}});
     }
 }
 
 void addPose(const Pose& pose, Json& json) {
-    json["position"] = triple(pose.position);
+    json["position"] = jsonVector(pose.position);
     const glm::vec3 axis = glm::axis(pose.rotation);
-    json["axis"] = triple(axis);
-    json["angle"] = shortestJson(glm::degrees(glm::angle(pose.rotation)));
+    json["axis"] = jsonVector(axis);
+    json["angle"] = jsonNumber(glm::degrees(glm::angle(pose.rotation)));
 }
 
 Json colliderSettings(const SceneCollider& collider) {
@@ -183,17 +164,17 @@ Json colliderSettings(const SceneCollider& collider) {
         constexpr const char* kKinds[] = {"bend", "twist", "wobble"};
         const float amplitude = d.kind == DeformKind::kWobble ? d.amplitude : glm::degrees(d.amplitude);
         json["deform"] = {{"kind", kKinds[static_cast<int>(d.kind)]},
-                          {"amplitude", shortestJson(amplitude)},
-                          {"frequency", shortestJson(d.frequency)}};
+                          {"amplitude", jsonNumber(amplitude)},
+                          {"frequency", jsonNumber(d.frequency)}};
         json["resolution"] = collider.live->resolution;
     }
     if (!collider.posed) {
         return json;
     }
     addPose(collider.pose, json);
-    json["scale"] = shortestJson(collider.pose.scale);
-    json["restitution"] = shortestJson(collider.restitution);
-    json["friction"] = shortestJson(collider.friction);
+    json["scale"] = jsonNumber(collider.pose.scale);
+    json["restitution"] = jsonNumber(collider.restitution);
+    json["friction"] = jsonNumber(collider.friction);
     for (const SceneColliderKey& key : collider.keys) {
         Json one{{"time", key.time}};
         addPose(key.pose, one);
@@ -210,7 +191,7 @@ Json settings(const Scene& scene) {
     if (scene.colliders.size() == 1) {
         json["collider"] = colliderSettings(scene.colliders.front());
     }
-    json["time"] = {{"dt", shortestJson(scene.dt)},
+    json["time"] = {{"dt", jsonNumber(scene.dt)},
                     {"steps", scene.steps},
                     {"integrator", scene.integrator == Integrator::kVerlet ? "verlet" : "euler"}};
     json["particles"] = {{"capacity", scene.capacity}};
@@ -220,25 +201,25 @@ Json settings(const Scene& scene) {
     if (scene.emitters.size() == 1) {
         json["emitter"] = emitterSettings(scene.emitters.front());
     }
-    json["forces"] = {{"gravity", triple(*scene.forces.gravity)},
-                      {"wind", triple(scene.forces.wind)},
-                      {"drag", shortestJson(scene.forces.drag)}};
-    json["collision"] = {{"restitution", shortestJson(scene.collision.restitution)},
-                         {"friction", shortestJson(scene.collision.friction)},
-                         {"friction_threshold", shortestJson(scene.collision.friction_threshold)},
-                         {"sweep", shortestJson(scene.sweep)}};
+    json["forces"] = {{"gravity", jsonVector(*scene.forces.gravity)},
+                      {"wind", jsonVector(scene.forces.wind)},
+                      {"drag", jsonNumber(scene.forces.drag)}};
+    json["collision"] = {{"restitution", jsonNumber(scene.collision.restitution)},
+                         {"friction", jsonNumber(scene.collision.friction)},
+                         {"friction_threshold", jsonNumber(scene.collision.friction_threshold)},
+                         {"sweep", jsonNumber(scene.sweep)}};
     json["ground"]["enabled"] = scene.ground.enabled;
     if (scene.ground.enabled) {
-        json["ground"]["height"] = shortestJson(*scene.ground.height);
+        json["ground"]["height"] = jsonNumber(*scene.ground.height);
     }
-    json["camera"] = {{"eye", triple(*scene.camera.eye)},
-                      {"target", triple(*scene.camera.target)},
-                      {"fov", shortestJson(scene.camera.fov)}};
+    json["camera"] = {{"eye", jsonVector(*scene.camera.eye)},
+                      {"target", jsonVector(*scene.camera.target)},
+                      {"fov", jsonNumber(scene.camera.fov)}};
     json["render"] = {{"size", {scene.render.width, scene.render.height}},
-                      {"point_size", shortestJson(*scene.render.point_size)},
-                      {"color", triple(scene.render.color)},
-                      {"opacity", shortestJson(scene.render.opacity)},
-                      {"background", triple(scene.render.background)},
+                      {"point_size", jsonNumber(*scene.render.point_size)},
+                      {"color", jsonVector(scene.render.color)},
+                      {"opacity", jsonNumber(scene.render.opacity)},
+                      {"background", jsonVector(scene.render.background)},
                       {"every", scene.render.every},
                       {"sort_frames", scene.render.sort_frames}};
     addAirSettings(scene, json);
@@ -266,7 +247,7 @@ std::string reportJson(const PlayerReport& report) {
     json["frames"] = report.frames_written;
     json["dumps"] = report.dumps_written;
     // A file name that is no UTF-8 must not end the program.
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return jsonText(json);
 }
 
 std::string reportText(const PlayerReport& report) {

@@ -3,7 +3,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "runtime/player/report_number.h"
+#include "runtime/tool/json_text.h"
 
 namespace relief {
 namespace {
@@ -18,10 +18,10 @@ Json flowSettings(const FlowFile& flow) {
         json["size"] = flow.size;
         json["components"] = flow.components;
     }
-    json["box_min"] = triple(flow.box_min);
-    json["box_max"] = triple(flow.box_max);
+    json["box_min"] = jsonVector(flow.box_min);
+    json["box_max"] = jsonVector(flow.box_max);
     json["outside"] = flow.outside == FlowOutside::kEdge ? "edge" : "zero";
-    json["gain"] = shortestJson(flow.gain);
+    json["gain"] = jsonNumber(flow.gain);
     return json;
 }
 
@@ -31,33 +31,33 @@ void addAirSettings(const Scene& scene, Json& settings) {
     const AirSettings& air = scene.air;
     if (air.viscosity) {
         settings["forces"].erase("drag");  // the viscosity takes its place
-        settings["forces"]["viscosity"] = shortestJson(*air.viscosity);
+        settings["forces"]["viscosity"] = jsonNumber(*air.viscosity);
     }
     for (const Attractor& one : air.attractors) {
-        Json json = {{"position", triple(one.position)},
-                     {"strength", shortestJson(one.strength)},
-                     {"radius", shortestJson(one.radius)},
+        Json json = {{"position", jsonVector(one.position)},
+                     {"strength", jsonNumber(one.strength)},
+                     {"radius", jsonNumber(one.radius)},
                      {"falloff", one.falloff}};
         if (one.reach < std::numeric_limits<float>::max()) {
-            json["reach"] = shortestJson(one.reach);
+            json["reach"] = jsonNumber(one.reach);
         }
         settings["attractor"].push_back(std::move(json));
     }
     for (const Vortex& one : air.vortices) {
-        settings["vortex"].push_back({{"center", triple(one.center)},
-                                      {"axis", triple(one.axis)},
-                                      {"strength", shortestJson(one.strength)},
-                                      {"radius", shortestJson(one.radius)},
+        settings["vortex"].push_back({{"center", jsonVector(one.center)},
+                                      {"axis", jsonVector(one.axis)},
+                                      {"strength", jsonNumber(one.strength)},
+                                      {"radius", jsonNumber(one.radius)},
                                       {"falloff", one.falloff}});
     }
     if (scene.flow) {
         settings["flow"] = flowSettings(*scene.flow);
     }
     if (air.curl_noise) {
-        settings["curl_noise"] = {{"amplitude", shortestJson(air.curl_noise->amplitude)},
-                                  {"scale", shortestJson(air.curl_noise->scale)},
+        settings["curl_noise"] = {{"amplitude", jsonNumber(air.curl_noise->amplitude)},
+                                  {"scale", jsonNumber(air.curl_noise->scale)},
                                   {"octaves", air.curl_noise->octaves},
-                                  {"drift", shortestJson(air.curl_noise->drift)},
+                                  {"drift", jsonNumber(air.curl_noise->drift)},
                                   {"seed", air.curl_noise->seed}};
     }
 }

@@ -7,6 +7,7 @@
 #include "formats/container.h"
 #include "runtime/picture/frame.h"
 #include "runtime/scene/scene_pictures.h"
+#include "runtime/tool/json_text.h"
 
 namespace relief {
 namespace {
@@ -18,11 +19,6 @@ CheckedFile checkedFile(const fs::path& path, const char* kind) {
     std::error_code error;  // read a moment ago; a pipe has no size
     const std::uintmax_t bytes = fs::file_size(path, error);
     return {path, kind, error ? 0 : static_cast<std::uint64_t>(bytes)};
-}
-
-std::string dump(const Json& json) {
-    // A file name that is no UTF-8 must not end the program.
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace
@@ -80,11 +76,11 @@ std::string checkJson(const CheckReport& report) {
     for (const CheckedFile& file : report.files) {
         json["files"].push_back({{"file", file.path.native()}, {"kind", file.kind}, {"bytes", file.bytes}});
     }
-    return dump(json);
+    return jsonText(json);
 }
 
 std::string checkJson(const Error& error) {
-    return dump({{"valid", false}, {"code", static_cast<int>(error.code)}, {"error", error.message}});
+    return jsonText({{"valid", false}, {"code", static_cast<int>(error.code)}, {"error", error.message}});
 }
 
 }  // namespace relief

@@ -67,6 +67,48 @@ std::string bashValue(const CliOption& option) {
     return "COMPREPLY=()";
 }
 
+/// Cases of $verb:$prev: what may follow an option.
+std::string bashValues(const std::string& verb, const CliCommand& command) {
+    std::string text;
+    for (const CliOption& option : command.options) {
+        if (option.positional || option.value.empty()) {
+            continue;
+        }
+        std::vector<std::string> patterns;
+        for (const std::string& name : option.names) {
+            patterns.push_back(verb + ":" + name);
+        }
+        text += "    " + joined(patterns, " | ") + ")\n        " + bashValue(option) +
+                "\n        return\n        ;;\n";
+    }
+    return text;
+}
+
+/// A case of $verb: its options, its verbs or files.
+std::string bashNames(const std::string& verb, const CliCommand& command,
+                      const std::vector<std::string>& verbs) {
+    std::vector<std::string> names;
+    bool positional = false;
+    for (const CliOption& option : command.options) {
+        positional = positional || option.positional;
+        if (!option.positional) {
+            names.insert(names.end(), option.names.begin(), option.names.end());
+        }
+    }
+    std::string text =
+        "    " + (verb.empty() ? "''" : verb) + ")\n        if [ \"${cur:0:1}\" = - ]; then\n" +
+        "            mapfile -t COMPREPLY < <(compgen -W " + quoted(joined(names, " ")) + " -- \"$cur\")\n";
+    if (verb.empty() && !verbs.empty()) {
+        text += "        else\n            mapfile -t COMPREPLY < <(compgen -W " +
+                quoted(joined(verbs, " ")) + " -- \"$cur\")\n";
+    } else if (positional) {
+        text +=
+            "        else\n            compopt -o filenames 2>/dev/null\n"
+            "            mapfile -t COMPREPLY < <(compgen -f -- \"$cur\")\n";
+    }
+    return text + "        fi\n        ;;\n";
+}
+
 /// One alternative of _arguments a name: "(-o --output)"{-o,--output}"[text]:value:action".
 std::string zshOption(const CliOption& option) {
     const auto plain = [](const std::string& text) {  // what _arguments gives a meaning to
@@ -142,41 +184,14 @@ std::string bashCompletion(const CliProgram& program) {
             joined(verbs, " | ") + ") verb=$word && break ;;\n        esac\n    done\n";
     }
     text += "    case $verb:$prev in\n";
-    std::string names_of_verbs = "    case $verb in\n";
     for (const auto& [verb, command] : commands) {
-        std::vector<std::string> names;
-        const CliOption* positional = nullptr;
-        for (const CliOption& option : command->options) {
-            if (option.positional) {
-                positional = &option;
-                continue;
-            }
-            names.insert(names.end(), option.names.begin(), option.names.end());
-            if (!option.value.empty()) {
-                std::vector<std::string> patterns;
-                for (const std::string& name : option.names) {
-                    patterns.push_back(verb + ":" + name);
-                }
-                text += "    " + joined(patterns, " | ") + ")\n        " + bashValue(option) +
-                        "\n        return\n        ;;\n";
-            }
-        }
-        names_of_verbs += "    " + (verb.empty() ? "''" : verb) +
-                          ")\n        if [ \"${cur:0:1}\" = - ]; then\n" +
-                          "            mapfile -t COMPREPLY < <(compgen -W " + quoted(joined(names, " ")) +
-                          " -- \"$cur\")\n";
-        if (verb.empty() && !verbs.empty()) {
-            names_of_verbs += "        else\n            mapfile -t COMPREPLY < <(compgen -W " +
-                              quoted(joined(verbs, " ")) + " -- \"$cur\")\n";
-        } else if (positional != nullptr) {
-            names_of_verbs +=
-                "        else\n            compopt -o filenames 2>/dev/null\n"
-                "            mapfile -t COMPREPLY < <(compgen -f -- \"$cur\")\n";
-        }
-        names_of_verbs += "        fi\n        ;;\n";
+        text += bashValues(verb, *command);
     }
-    return text + "    esac\n" + names_of_verbs + "    esac\n}\ncomplete -F " + function + " " +
-           program.name + "\n";
+    text += "    esac\n    case $verb in\n";
+    for (const auto& [verb, command] : commands) {
+        text += bashNames(verb, *command, verbs);
+    }
+    return text + "    esac\n}\ncomplete -F " + function + " " + program.name + "\n";
 }
 
 std::string zshCompletion(const CliProgram& program) {

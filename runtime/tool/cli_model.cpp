@@ -1,14 +1,12 @@
 #include "runtime/tool/cli_model.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string_view>
 
 namespace relief {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::vector<std::string> linesOf(const std::string& text) {
     std::vector<std::string> lines;
@@ -99,60 +97,10 @@ CliCommand readCommand(const CLI::App& app, const std::string& name) {
     return command;
 }
 
-Json jsonOptions(const CliCommand& command) {
-    Json options = Json::array();
-    for (const CliOption& option : command.options) {
-        options.push_back({{"names", option.names},
-                           {"value", option.value.empty() ? Json(nullptr) : Json(option.value)},
-                           {"words", option.words},
-                           {"positional", option.positional},
-                           {"required", option.required},
-                           {"repeatable", option.repeatable},
-                           {"description", option.description}});
-    }
-    return options;
-}
-
 }  // namespace
 
-CliProgram readProgram(const CLI::App& app, const std::string& name, const std::string& version) {
-    return {name, version, readCommand(app, name)};
-}
-
-std::string cliJson(const CliProgram& program) {
-    Json verbs = Json::array();
-    for (const CliCommand& verb : program.command.verbs) {
-        verbs.push_back({{"name", verb.name.substr(program.name.size() + 1)},
-                         {"summary", verb.summary},
-                         {"options", jsonOptions(verb)}});
-    }
-    const Json json = {{"program", program.name},
-                       {"version", program.version},
-                       {"options", jsonOptions(program.command)},
-                       {"verbs", verbs}};
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-std::optional<std::string> dumpedCommandLine(const CliProgram& program, int argc, const char* const* argv) {
-    if (argc != 3 || std::string_view(argv[1]) != "--dump-cli") {
-        return std::nullopt;
-    }
-    const std::string_view format = argv[2];
-    if (format == "json") {
-        return cliJson(program);
-    }
-    if (format == "man") {
-        return manPage(program, nullptr);
-    }
-    for (const CliCommand& verb : program.command.verbs) {
-        if (format == "man:" + verb.name.substr(program.name.size() + 1)) {
-            return manPage(program, &verb);
-        }
-    }
-    return format == "bash"   ? std::optional(bashCompletion(program))
-           : format == "zsh"  ? std::optional(zshCompletion(program))
-           : format == "fish" ? std::optional(fishCompletion(program))
-                              : std::nullopt;
+CliProgram readProgram(const CLI::App& app, const std::string& version) {
+    return {app.get_name(), version, readCommand(app, app.get_name())};
 }
 
 }  // namespace relief

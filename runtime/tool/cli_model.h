@@ -1,11 +1,13 @@
-// The command line of an executable as data, read off its CLI::App: what the manual pages and the completions
-// are made of, so that they say what the program takes. For executables; no part of the libraries.
+// The command line of an executable as data, read off its CLI::App. The manual pages and the completions are made of it,
+// so that they say what the program takes.
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <optional>
 #include <string>
 #include <vector>
+
+namespace CLI {
+class App;
+}
 
 namespace relief {
 
@@ -32,28 +34,15 @@ struct CliCommand {
     std::vector<CliCommand> verbs;
 };
 
-/// What the program is, beside what its CLI::App knows.
 struct CliProgram {
     std::string name;
     std::string version;
     CliCommand command;
 };
 
-/// \param app       its description's first line is the summary; its footer, by lines, the examples, unless
-///                  `examples` are given. Options of the group "" are hidden, here too.
-[[nodiscard]] CliProgram readProgram(const CLI::App& app, const std::string& name,
-                                     const std::string& version);
-
-/// `PROGRAM --dump-cli FORMAT`, which is in no help: json, man, man:VERB, bash, zsh or fish. To be asked
-/// before the command line is parsed. \return what to print; nullopt where the command line is another one,
-/// or FORMAT unknown.
-[[nodiscard]] std::optional<std::string> dumpedCommandLine(const CliProgram& program, int argc,
-                                                           const char* const* argv);
-
-// The formats, one file each; dumpedCommandLine chooses.
-
-/// What cmake reads: {"program", "version", "verbs": [{"name", "options": [{…}]}], "options": […]}.
-[[nodiscard]] std::string cliJson(const CliProgram& program);
+/// \param app  its name is the program's, its description's first line the summary, its footer, by lines, the examples.
+///             Options of the group "" are hidden, here too.
+[[nodiscard]] CliProgram readProgram(const CLI::App& app, const std::string& version);
 
 /// A page of section 1 in man(7) macros, without a date.
 /// \param verb  nullptr for the program's own page.

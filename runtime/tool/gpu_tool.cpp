@@ -8,7 +8,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "formats/base/file_io.h"
+#include "runtime/tool/json_text.h"
+#include "runtime/tool/option_values.h"
 
 namespace relief {
 namespace {
@@ -21,6 +22,17 @@ Json orNull(const std::string& text) {
     return text.empty() ? Json(nullptr) : Json(text);
 }
 
+std::optional<std::chrono::milliseconds> parseTimeout(const std::string& text) {
+    double seconds = 0.0;
+    const char* end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data(), end, seconds);
+    if (error != std::errc() || rest != end || !(seconds >= 0.0 && seconds <= kTimeoutMax)) {
+        return std::nullopt;
+    }
+    // Rounded up, for 0 means never.
+    return std::chrono::milliseconds(static_cast<std::int64_t>(std::ceil(seconds * 1000.0)));
+}
+
 std::string secondsText(std::chrono::milliseconds time) {
     std::array<char, 32> text{};
     std::snprintf(text.data(), text.size(), "%g", static_cast<double>(time.count()) / 1000.0);
@@ -29,27 +41,30 @@ std::string secondsText(std::chrono::milliseconds time) {
 
 }  // namespace
 
-Result<std::size_t> parseDevice(const std::string& text) {
-    std::size_t device = 0;
-    const char* end = text.data() + text.size();
-    const auto [rest, error] = std::from_chars(text.data(), end, device);
-    if (error != std::errc() || rest != end) {
-        return fail(ErrorCode::kUsage, "--device " + quotedPath(text) +
-                                           " is not the number of a device; --list-devices names them");
-    }
-    return device;
+void addGpuOptions(CLI::App& app, GpuOptions& options) {
+    app.add_option("--device", options.device,
+                   "Use this GPU, by its number in --list-devices; default: EGL's choice")
+        ->option_text("N")
+        ->transform(wholeNumber(0, std::numeric_limits<std::uint32_t>::max(),
+                                "the number of a device; --list-devices names them"));
+    addParsed(
+        app, "--gpu-timeout", options.timeout, parseTimeout, "a number of seconds from 0 (never) to 1000000",
+        "Give up, with exit code 4, when the GPU does not answer for so long; default 60, on a software "
+        "renderer 600; 0: never")
+        ->option_text("SECONDS");
+    // CLI11 runs callbacks before it looks for what is required, as it does for --help.
+    app.add_flag_callback(
+        "--list-devices",
+        [&app, &options] {
+            const CLI::Option* json = app.get_option_no_throw("--json");
+            throw ListDevices{options.api, json != nullptr && json->count() > 0};
+        },
+        "Print the GPUs that EGL knows, by their number, and exit; with --json as JSON");
 }
 
-Result<std::chrono::milliseconds> parseGpuTimeout(const std::string& text) {
-    double seconds = 0.0;
-    const char* end = text.data() + text.size();
-    const auto [rest, error] = std::from_chars(text.data(), end, seconds);
-    if (error != std::errc() || rest != end || !(seconds >= 0.0 && seconds <= kTimeoutMax)) {
-        return fail(ErrorCode::kUsage, "--gpu-timeout " + quotedPath(text) +
-                                           " is not a number of seconds from 0 (never) to 1000000");
-    }
-    // Rounded up, for 0 means never.
-    return std::chrono::milliseconds(static_cast<std::int64_t>(std::ceil(seconds * 1000.0)));
+Result<std::string> devicesAnswer(const ListDevices& what) {
+    const std::vector<GlDevice> devices = RELIEF_TRY(listGlDevices(what.api));
+    return what.json ? devicesJson(devices) : devicesText(devices);
 }
 
 std::chrono::milliseconds defaultGpuTimeout(bool software) {
@@ -86,7 +101,7 @@ std::string devicesJson(const std::vector<GlDevice>& devices) {
                         {"software", device.software},
                         {"problem", orNull(device.problem)}});
     }
-    return Json{{"devices", list}}.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return jsonText({{"devices", list}});
 }
 
 Watchdog::Starved endProcess(const std::string& program) {

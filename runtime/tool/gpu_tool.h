@@ -10,21 +10,34 @@
 #include "runtime/gl/gl_device.h"
 #include "runtime/tool/watchdog.h"
 
+namespace CLI {
+class App;
+}
+
 namespace relief {
 
-inline constexpr const char* kDeviceHelp =
-    "Use this GPU, by its number in --list-devices; default: EGL's choice";
-inline constexpr const char* kListDevicesHelp =
-    "Print the GPUs that EGL knows, by their number, and exit; with --json as JSON";
-inline constexpr const char* kGpuTimeoutHelp =
-    "Give up, with exit code 4, when the GPU does not answer for so long; default 60, on a software renderer "
-    "600; 0: never";
+/// What the options are read into.
+struct GpuOptions {
+    GlApi api = GlApi::kGl33Core;       ///< whose devices --list-devices lists
+    std::optional<std::size_t> device;  ///< whether there is such a device shows when a context is made
+    std::optional<std::chrono::milliseconds> timeout;
 
-/// "--device". Whether there is such a device shows when a context is made. Errors: kUsage.
-[[nodiscard]] Result<std::size_t> parseDevice(const std::string& text);
+    /// The first option that is given, or nullptr.
+    [[nodiscard]] const char* given() const {
+        return device ? "--device" : timeout ? "--gpu-timeout" : nullptr;
+    }
+};
 
-/// "--gpu-timeout": seconds, 0 to 10⁶, fractions too. Errors: kUsage.
-[[nodiscard]] Result<std::chrono::milliseconds> parseGpuTimeout(const std::string& text);
+/// --list-devices is answered by parseCommandLine(), so that it needs no other argument.
+void addGpuOptions(CLI::App& app, GpuOptions& options);
+
+/// What --list-devices throws out of CLI::App::parse.
+struct ListDevices {
+    GlApi api;
+    bool json;  ///< there is a --json, and it is given
+};
+/// The text to print. Fails as listGlDevices.
+[[nodiscard]] Result<std::string> devicesAnswer(const ListDevices& what);
 
 /// What --gpu-timeout is where it is not given. A software renderer does not hang, it takes its time.
 [[nodiscard]] std::chrono::milliseconds defaultGpuTimeout(bool software);

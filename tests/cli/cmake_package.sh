@@ -14,6 +14,7 @@ for file in bin/relief bin/relief-sim share/man/man1/relief.1 share/man/man1/rel
 done
 ! grep -rIlF "$RELIEF_SOURCE" "$prefix" --include='*.cmake' --include='*.pc' --include='*.h' --include='*.1' ||
     die "the installed tree knows where it was built"
+[ ! -e "$prefix/bin/relief-pages" ] || die "a program of the build is installed"
 
 # Every link of an installed page to another page, or to a picture, leads there.
 (cd "$prefix/share/doc/relief" && grep -roE '\]\([^):]+\.(md|jpg)\)' . | sort -u) >links

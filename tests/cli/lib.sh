@@ -35,7 +35,7 @@ expect_error() {
         cat "$work/stderr" >&2
         die "not one line of error: $*"
     }
-    grep -qE '^relief(-sim)?: error: ' "$work/stderr" || die "error without the program's name: $(cat "$work/stderr")"
+    grep -qE '^relief(-sim|-pages)?: error: ' "$work/stderr" || die "error without the program's name: $(cat "$work/stderr")"
     grep -qiE -- "$pattern" "$work/stderr" || die "'$(cat "$work/stderr")' does not match '$pattern'"
     [ ! -s "$work/stdout" ] || die "output on stdout beside an error: $*"
 }

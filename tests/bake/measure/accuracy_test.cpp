@@ -8,6 +8,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
 #include <random>
 
 #include "bake/bench/distance_volume.h"

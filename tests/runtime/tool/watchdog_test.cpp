@@ -4,10 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <CLI/CLI.hpp>
 #include <atomic>
 #include <future>
 #include <thread>
 
+#include "runtime/tool/command_line.h"
 #include "runtime/tool/gpu_tool.h"
 
 namespace relief {
@@ -65,19 +67,29 @@ TEST(Watchdog, ALimitGivenLaterCounts) {
     said.get_future().get();
 }
 
+/// What a command line makes of one option.
+Result<GpuOptions> gpuOptions(const std::string& option, const std::string& word) {
+    CLI::App app("", "tool");
+    GpuOptions options;
+    addGpuOptions(app, options);
+    const Result<bool> parsed = parseCommandLine(app, {option + "=" + word});
+    return parsed ? Result<GpuOptions>(options) : forward(parsed);
+}
+
 TEST(GpuTool, OptionsAndTheirErrors) {
-    EXPECT_EQ(*parseDevice("0"), 0U);
-    EXPECT_EQ(*parseDevice("12"), 12U);
-    for (const char* word : {"", "-1", "one", "1x", " 1", "99999999999999999999999"}) {
-        ASSERT_FALSE(parseDevice(word)) << word;
-        EXPECT_EQ(parseDevice(word).error().code, ErrorCode::kUsage);
+    EXPECT_EQ(gpuOptions("--device", "0")->device, 0U);
+    EXPECT_EQ(gpuOptions("--device", "12")->device, 12U);
+    EXPECT_EQ(gpuOptions("--device", "012")->device, 12U) << "not octal";
+    for (const char* word : {"", "-1", "one", "1x", "0x1", " 1", "99999999999999999999999"}) {
+        ASSERT_FALSE(gpuOptions("--device", word)) << word;
+        EXPECT_EQ(gpuOptions("--device", word).error().code, ErrorCode::kUsage);
     }
-    EXPECT_EQ(*parseGpuTimeout("0"), 0ms);
-    EXPECT_EQ(*parseGpuTimeout("2.5"), 2500ms);
-    EXPECT_EQ(*parseGpuTimeout("0.0001"), 1ms) << "not never";
+    EXPECT_EQ(gpuOptions("--gpu-timeout", "0")->timeout, 0ms);
+    EXPECT_EQ(gpuOptions("--gpu-timeout", "2.5")->timeout, 2500ms);
+    EXPECT_EQ(gpuOptions("--gpu-timeout", "0.0001")->timeout, 1ms) << "not never";
     for (const char* word : {"", "-1", "nan", "inf", "1e7", "soon", "5s"}) {
-        ASSERT_FALSE(parseGpuTimeout(word)) << word;
-        EXPECT_EQ(parseGpuTimeout(word).error().code, ErrorCode::kUsage);
+        ASSERT_FALSE(gpuOptions("--gpu-timeout", word)) << word;
+        EXPECT_EQ(gpuOptions("--gpu-timeout", word).error().code, ErrorCode::kUsage);
     }
     EXPECT_GT(defaultGpuTimeout(true), defaultGpuTimeout(false));
 }

@@ -1,0 +1,178 @@
+#include "runtime/cli/sim.h"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "formats/base/text.h"
+#include "runtime/player/report.h"
+#include "runtime/player/scene_check.h"
+#include "runtime/tool/command_line.h"
+#include "runtime/tool/option_values.h"
+
+namespace relief {
+namespace {
+
+constexpr std::uint32_t kStepsMax = 10'000'000;
+constexpr std::uint64_t kSeedMax = std::uint64_t{1} << 53;  // what JSON's numbers hold
+
+/// "640x480"
+std::optional<FrameSize> parseFrameSize(std::string_view text) {
+    const std::vector<std::string_view> sides = split(text, 'x');
+    std::uint32_t size[2] = {0, 0};
+    for (std::size_t i = 0; i < 2 && sides.size() == 2; ++i) {
+        const std::optional<std::uint64_t> side = parseUnsigned(sides[i]);
+        size[i] = side && *side <= std::numeric_limits<std::uint32_t>::max()
+                      ? static_cast<std::uint32_t>(*side)
+                      : 0;
+    }
+    return size[0] > 0 && size[1] > 0 ? std::optional(FrameSize{size[0], size[1]}) : std::nullopt;
+}
+
+/// What is written, and how often.
+void addOutputs(CLI::App& app, SimCommand& command) {
+    PlayerOptions& player = command.player;
+    app.add_option(
+           "--frames", player.frames,
+           "Write frame_0000.png and so on into this folder, made if missing. Frames of an earlier run are "
+           "overwritten one by one; any beyond this run's last stay")
+        ->option_text("DIR");
+    addParsed(app, "--size", command.size, parseFrameSize, "a size such as 960x720, each side at least 1",
+              "Size of the frames in pixels, instead of the scene's")
+        ->option_text("WxH");
+    app.add_option("--seed", player.overrides.seed, "Seed of the births, instead of the scene's")
+        ->option_text("S")
+        ->transform(wholeNumber(0, kSeedMax));
+    app.add_option("--dump", player.dump, "Write the final particles as PLY; - for standard output")
+        ->option_text("OUT.ply");
+    app.add_option("--dump-frames", player.dump_frames,
+                   "Write particles_0000.ply and so on into this folder, made if missing, as often as frames")
+        ->option_text("DIR");
+    app.add_option(
+           "--video", player.video,
+           "Write the frames as a video (.mp4, .mkv, .mov or .webm) in the scene's time; needs ffmpeg")
+        ->option_text("OUT.mp4");
+    app.add_option("--stats", player.stats,
+                   "Write statistics while playing, a line of JSON each; - for standard output")
+        ->option_text("OUT.jsonl");
+    app.add_option("--stats-every", player.stats_every,
+                   "Steps from line to line of --stats, instead of the scene's render.every")
+        ->option_text("N")
+        ->transform(wholeNumber(1, kStepsMax));
+}
+
+/// Options that do nothing together, and outputs that would share standard output.
+Result<void> checkTogether(const SimCommand& command) {
+    const PlayerOptions& player = command.player;
+    const auto usage = [](const std::string& message) { return fail(ErrorCode::kUsage, message); };
+    if (player.input.empty()) {
+        return usage("name a scene (.toml) or a collider (.relief); see relief-sim --help");
+    }
+    if (command.check && !(player.frames.empty() && player.dump.empty() && player.dump_frames.empty() &&
+                           player.video.empty() && player.stats.empty())) {
+        return usage("--check plays nothing and writes nothing; remove it, or the outputs");
+    }
+    if (command.check && command.gpu.given() != nullptr) {
+        return usage(std::string(command.gpu.given()) +
+                     " does nothing with --check, which needs no GPU; leave it out");
+    }
+    if (command.size && player.frames.empty() && player.video.empty()) {
+        return usage("--size does nothing without --frames or --video; add --frames DIR");
+    }
+    if (player.stats_every && player.stats.empty()) {
+        return usage("--stats-every does nothing without --stats; add --stats OUT.jsonl");
+    }
+    if (command.json && player.dump == "-") {
+        return usage("--json and --dump - both write standard output; dump to a file");
+    }
+    if (player.stats == "-" && (command.json || player.dump == "-")) {
+        return usage(std::string("--stats - and ") + (command.json ? "--json" : "--dump -") +
+                     " both write standard output; write the statistics to a file");
+    }
+    return {};
+}
+
+/// --check. With --json the object comes in either case.
+Result<void> check(const SimCommand& command) {
+    const Result<CheckReport> checked = checkScene(command.player);
+    if (command.json) {
+        RELIEF_TRY(printOut(checked ? checkJson(*checked) : checkJson(checked.error())));
+    } else if (checked && !command.quiet) {
+        RELIEF_TRY(printOut(checkText(*checked)));
+    }
+    return checked ? Result<void>() : forward(checked);
+}
+
+void showProgress(std::uint32_t step, std::uint32_t steps) {
+    constexpr int kWidth = 40;
+    const int done = steps == 0 ? kWidth : static_cast<int>(std::uint64_t{kWidth} * step / steps);
+    std::fprintf(stderr, "\r[%s%s] %u/%u%s", std::string(static_cast<std::size_t>(done), '#').c_str(),
+                 std::string(static_cast<std::size_t>(kWidth - done), '.').c_str(), step, steps,
+                 step >= steps ? "\n" : "");
+}
+
+Result<void> playScene(SimCommand& command) {
+    PlayerOptions& player = command.player;
+    player.api = command.gpu.api;
+    player.device = command.gpu.device;
+    player.count_collisions = command.json;
+    player.time_stages = command.json;
+    if (!command.quiet && ::isatty(STDERR_FILENO) != 0) {
+        player.progress = showProgress;
+    }
+    Watchdog watchdog(command.gpu.timeout.value_or(defaultGpuTimeout(false)), endProcess("relief-sim"));
+    player.watchdog = &watchdog;
+    player.default_timeout = !command.gpu.timeout;
+    const PlayerReport played = RELIEF_TRY(play(player));
+    if (command.json) {
+        return printOut(reportJson(played));
+    }
+    if (!command.quiet && (player.dump == "-" || player.stats == "-")) {
+        std::fputs(reportText(played).c_str(), stderr);  // they have standard output to themselves
+        return {};
+    }
+    return command.quiet ? Result<void>() : printOut(reportText(played));
+}
+
+}  // namespace
+
+void defineSim(CLI::App& app, SimCommand& command) {
+    setUpHelp(app);
+    app.description(
+        "Plays a scene against a baked collider\n\n"
+        "Headless: particles fall, collide and rest. Given a collider alone it lets snow fall on it.");
+    app.footer("relief-sim bunny_in_the_snow.toml --frames frames --dump snow.ply");
+    app.add_option("INPUT", command.player.input, "Scene (.toml) or collider (.relief)")
+        ->type_name("SCENE.toml|COLLIDER.relief");
+    app.add_option("--steps", command.player.overrides.steps, "Steps to play, instead of the scene's")
+        ->option_text("N")
+        ->transform(wholeNumber(0, kStepsMax));
+    addOutputs(app, command);
+    app.add_flag("--check", command.check,
+                 "Only check the scene and what it names, without a GPU: one line, or the first mistake");
+    addWords(app, "--api", command.gpu.api,
+             WordsFor<GlApi>{{"gl", GlApi::kGl33Core}, {"gles", GlApi::kGles30}},
+             "gl for OpenGL 3.3 (default), gles for OpenGL ES 3.0");
+    addGpuOptions(app, command.gpu);
+    app.add_flag("--json", command.json, "Print the report, or what --check finds, as JSON");
+    app.add_flag("-q,--quiet", command.quiet,
+                 "No progress and no summary; errors still, and what --json asks for");
+}
+
+Result<void> runSim(int argc, char** argv) {
+    CLI::App app("", "relief-sim");
+    SimCommand command;
+    defineSim(app, command);
+    if (!RELIEF_TRY(parseCommandLine(app, argumentsOf(argc, argv)))) {
+        return {};
+    }
+    RELIEF_TRY(checkTogether(command));
+    if (command.size) {
+        command.player.overrides.width = command.size->width;
+        command.player.overrides.height = command.size->height;
+    }
+    return command.check ? check(command) : playScene(command);
+}
+
+}  // namespace relief

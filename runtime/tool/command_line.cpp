@@ -1,0 +1,200 @@
+#include "runtime/tool/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <span>
+#include <sstream>
+
+#include "formats/base/ending_signals.h"
+#include "formats/base/file_io.h"
+#include "formats/base/text.h"
+#include "runtime/tool/gpu_tool.h"
+
+namespace relief {
+namespace {
+
+std::string exitCodes() {
+    std::string text = "\nExit codes: 0 success";
+    for (int code = 1; code <= static_cast<int>(ErrorCode::kDifference); ++code) {
+        text += ", " + std::to_string(code) + " " + errorCodeName(static_cast<ErrorCode>(code));
+    }
+    return text + "\n";
+}
+
+/// Help that begins with examples: CLI11's footer, moved to the top.
+class ExampleFormatter : public CLI::Formatter {
+  public:
+    std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
+        if (mode == CLI::AppFormatMode::Sub) {
+            return Formatter::make_help(app, name, mode);
+        }
+        const std::string examples = app->get_footer();
+        std::string text = "Examples:\n";
+        for (const std::string_view line : split(examples, '\n')) {
+            text.append("  ").append(line).append("\n");
+        }
+        return text + "\n" + make_description(app) + make_usage(app, name) + make_positionals(app) +
+               make_groups(app, mode) + make_subcommands(app, mode) +
+               (app->get_parent() == nullptr ? exitCodes() : "");
+    }
+    /// In the list of verbs: the first line of the description.
+    std::string make_subcommand(const CLI::App* sub) const override {
+        const std::string description = sub->get_description();
+        std::stringstream out;
+        CLI::detail::format_help(out, sub->get_name(), description.substr(0, description.find('\n')),
+                                 column_width_);
+        return out.str();
+    }
+};
+
+/// The verb that is called, or the program.
+const CLI::App& calledOf(const CLI::App& app) {
+    const std::vector<CLI::App*> called = app.get_subcommands();
+    return called.empty() ? app : *called.front();
+}
+
+std::string helpText(const CLI::App& app) {
+    const CLI::App& called = calledOf(app);
+    return &called == &app ? app.help() : called.help(app.get_name());
+}
+
+std::vector<std::string> optionNames(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options()) {
+        names.insert(names.end(), option->get_lnames().begin(), option->get_lnames().end());
+    }
+    return names;
+}
+
+std::vector<std::string> verbNames(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+        names.push_back(verb->get_name());
+    }
+    return names;
+}
+
+std::string unknownOption(const CLI::App& app, const std::string& word, const std::string& help) {
+    const std::size_t start = std::min(word.find_first_not_of('-'), word.size());
+    const std::string_view name = std::string_view(word).substr(start);
+    const std::vector<std::string> names = optionNames(app);
+    const std::vector<std::string_view> known(names.begin(), names.end());
+    const std::string guess(nearest(name.substr(0, name.find('=')), known));
+    return "unknown option " + cleanUtf8(word) +
+           (guess.empty() ? "; " + help : "; did you mean '--" + guess + "'?");
+}
+
+std::string noVerb(const CLI::App& app, const std::vector<std::string>& words, const std::string& help) {
+    const std::vector<std::string> names = verbNames(app);
+    const std::vector<std::string_view> known(names.begin(), names.end());
+    if (words.empty()) {
+        return "no verb; use one of " + listed(known) + ", or " + help;
+    }
+    const std::string guess = didYouMean(words.front(), known);
+    return "unknown verb '" + cleanUtf8(words.front()) + "'" +
+           (guess.empty() ? "; use one of " + listed(known) : guess);
+}
+
+/// The message for a command line that CLI11 did not take.
+std::string parseErrorMessage(const CLI::App& app, const CLI::ParseError& error) {
+    const CLI::App& called = calledOf(app);
+    const std::string name = app.get_name() + (&called == &app ? "" : " " + called.get_name());
+    const std::string help = "see " + name + " --help";
+    if (error.get_name() == "ValidationError") {
+        // CLI11 writes "--option: message". Ours are sentences that begin with the option, and they hold the cure.
+        std::string text = error.what();
+        text.replace(text.find(": "), 2, " ");
+        return text;
+    }
+    const std::vector<std::string> unknown = called.remaining();
+    for (const std::string& word : unknown) {
+        if (word.size() > 1 && word[0] == '-') {
+            return unknownOption(called, word, help);
+        }
+    }
+    if (&called == &app && !verbNames(app).empty()) {
+        return noVerb(app, unknown, help);
+    }
+    if (!unknown.empty()) {
+        return "unexpected argument '" + cleanUtf8(unknown.front()) + "'; " + help;
+    }
+    return cleanUtf8(error.what()) + "; " + help;
+}
+
+/// An empty word is a variable of a script that was not set.
+Result<void> refuseEmptyValues(const CLI::App& app) {
+    for (const CLI::Option* option : app.get_options()) {
+        const std::vector<std::string>& words = option->results();
+        if (option->get_expected_max() > 0 && std::ranges::find(words, "") != words.end()) {
+            return fail(ErrorCode::kUsage,
+                        option->get_name() + " is given without a value; leave it out, or give it one");
+        }
+    }
+    return {};
+}
+
+Result<bool> answer(const std::string& text) {
+    RELIEF_TRY(printOut(text));
+    return false;
+}
+
+}  // namespace
+
+void setUpHelp(CLI::App& app, const std::string& help) {
+    app.formatter(std::make_shared<ExampleFormatter>());
+    app.set_help_flag("-h,--help", help);
+    app.set_version_flag("--version", app.get_name() + " " RELIEF_VERSION, "Print the version and exit");
+}
+
+Result<bool> parseCommandLine(CLI::App& app, std::vector<std::string> arguments) {
+    std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
+    try {
+        app.parse(std::move(arguments));
+    } catch (const CLI::CallForHelp&) {
+        return answer(helpText(app));
+    } catch (const CLI::CallForVersion& version) {
+        return answer(std::string(version.what()) + "\n");
+    } catch (const ListDevices& what) {
+        return answer(RELIEF_TRY(devicesAnswer(what)));
+    } catch (const CLI::ParseError& error) {
+        // Whoever asks for help gets it, whatever is wrong beside it.
+        const CLI::Option* help = calledOf(app).get_help_ptr();
+        if (help != nullptr && help->count() > 0) {
+            return answer(helpText(app));
+        }
+        return fail(ErrorCode::kUsage, parseErrorMessage(app, error));
+    }
+    RELIEF_TRY(refuseEmptyValues(calledOf(app)));
+    return true;
+}
+
+std::vector<std::string> argumentsOf(int argc, char** argv) {
+    return {argv + std::min(argc, 1), argv + argc};
+}
+
+Result<void> printOut(const std::string& text) {
+    return writeFile("-", std::as_bytes(std::span(text)));
+}
+
+int runProgram(const std::function<Result<void>()>& run, const std::function<void(const Error&)>& report,
+               const Error& out_of_memory) {
+    endCleanlyOnSignals();
+    Error error{ErrorCode::kFailure, ""};
+    try {
+        const Result<void> done = run();
+        if (done) {
+            return 0;
+        }
+        error = done.error();
+    } catch (const std::bad_alloc&) {
+        error = out_of_memory;
+    } catch (const std::exception& thrown) {
+        error.message = thrown.what();
+    }
+    report(error);
+    return static_cast<int>(error.code);
+}
+
+}  // namespace relief

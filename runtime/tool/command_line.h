@@ -1,0 +1,39 @@
+// What the command lines of both executables share: help, version and devices are answered here, and so is what cannot
+// be read.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "formats/base/result.h"
+
+namespace CLI {
+class App;
+}
+
+namespace relief {
+
+/// Gives a program its --help and --version, before it gets its options and verbs. Help begins with the examples: the
+/// lines of the footer. \param help  what the help says of --help.
+void setUpHelp(CLI::App& app, const std::string& help = "Print this help and exit");
+
+/// Parses the command line. Prints what --help, --version and --list-devices ask for.
+/// \param arguments  without the program's name.
+/// \return whether there is anything left to do.
+/// Fails with kUsage and one line that names the option and the cure; with kIo if the answer cannot be printed.
+[[nodiscard]] Result<bool> parseCommandLine(CLI::App& app, std::vector<std::string> arguments);
+
+/// All arguments but the program's name.
+[[nodiscard]] std::vector<std::string> argumentsOf(int argc, char** argv);
+
+/// Writes to standard output. Fails with kIo.
+[[nodiscard]] Result<void> printOut(const std::string& text);
+
+/// The body of main(). Exceptions become errors; signals remove temporary files.
+/// \param report  prints an error.
+/// \return the exit code.
+int runProgram(const std::function<Result<void>()>& run, const std::function<void(const Error&)>& report,
+               const Error& out_of_memory);
+
+}  // namespace relief

@@ -1,0 +1,84 @@
+// The values of options: validators and transformers for CLI11 that stand in front of a typed field. Those of CLI11
+// would take 0x10, -1 for a large number, and nan, and their messages name no cure.
+//
+// Each turns the word into one that CLI11 converts, or says "is 'x' but must be …"; parseCommandLine() puts the name of
+// the option in front.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace relief {
+
+/// Decimal digits alone, from `least` to `most`.
+/// \param must  what the value must be; empty: "a whole number from … to …".
+[[nodiscard]] CLI::Validator wholeNumber(std::uint64_t least = 0,
+                                         std::uint64_t most = std::numeric_limits<std::uint64_t>::max(),
+                                         const std::string& must = {});
+/// A finite float from `least` to `most`. \param must  "a number of degrees, 0 or more".
+[[nodiscard]] CLI::Validator number(float least, float most, const std::string& must);
+/// "1.5" or "1.5%", 0 or more; for a float field.
+[[nodiscard]] CLI::Validator percent();
+/// "1MB" and such, as parseByteCount, from `least` to `most` bytes.
+[[nodiscard]] CLI::Validator byteCount(std::uint64_t least = 1,
+                                       std::uint64_t most = std::numeric_limits<std::uint64_t>::max(),
+                                       const std::string& must = "a number of bytes, such as 1MB or 512KiB");
+
+/// "is 'x' but must be MUST"
+[[nodiscard]] std::string butMustBe(std::string_view word, const std::string& must);
+/// "is 'x' but must be one of a, b, c; did you mean 'a'?", or "but must be a or b".
+[[nodiscard]] std::string butMustBeOneOf(std::string_view word, const std::vector<std::string_view>& words);
+
+/// One of some words, for a field that holds text.
+[[nodiscard]] CLI::Validator oneOf(std::vector<std::string_view> words);
+
+template <class Enum>
+using WordsFor = std::vector<std::pair<std::string_view, Enum>>;
+
+/// An option that takes one of some words; the help shows them as a|b|c.
+template <class Field, class Enum>
+CLI::Option* addWords(CLI::App& app, const std::string& names, Field& field, const WordsFor<Enum>& words,
+                      const std::string& help) {
+    std::string shown;
+    for (const auto& [word, value] : words) {
+        shown.append(shown.empty() ? "" : "|").append(word);
+    }
+    return app.add_option(names, field, help)
+        ->option_text(shown)
+        ->transform(CLI::Validator(
+            [words](std::string& text) -> std::string {
+                std::vector<std::string_view> known;
+                for (const auto& [word, value] : words) {
+                    if (text == word) {
+                        text = std::to_string(static_cast<unsigned>(value));
+                        return {};
+                    }
+                    known.push_back(word);
+                }
+                return butMustBeOneOf(text, known);
+            },
+            ""));
+}
+
+/// An option of a form of its own. \param parse  std::string to std::optional<T>; nullopt: not of this form.
+template <class T, class Parse>
+CLI::Option* addParsed(CLI::App& app, const std::string& names, std::optional<T>& field, const Parse& parse,
+                       const std::string& must, const std::string& help) {
+    const std::string name = names.substr(names.rfind(',') + 1);
+    const CLI::callback_t read = [&field, parse, must, name](const CLI::results_t& words) {
+        field = parse(words.back());
+        if (!field) {
+            throw CLI::ValidationError(name, butMustBe(words.back(), must));
+        }
+        return true;
+    };
+    return app.add_option(names, read, help);
+}
+
+}  // namespace relief

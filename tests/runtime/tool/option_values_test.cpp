@@ -1,0 +1,113 @@
+// What options take, and what they say of what they do not take.
+#include "runtime/tool/option_values.h"
+
+#include <gtest/gtest.h>
+
+#include "runtime/tool/command_line.h"
+
+namespace relief {
+namespace {
+
+enum class Fruit { kApple, kPear, kPlum };
+
+struct Values {
+    std::uint32_t count = 0;
+    float degrees = 0.0F;
+    float share = 0.0F;
+    std::uint64_t bytes = 0;
+    std::string color;
+    std::optional<Fruit> fruit;
+    std::optional<char> letter;
+    std::string text;
+};
+
+void define(CLI::App& app, Values& values) {
+    app.add_option("--count", values.count)->transform(wholeNumber(1, 4'000'000'000));
+    app.add_option("--degrees", values.degrees)->transform(number(0.0F, 360.0F, "degrees, 0 to 360"));
+    app.add_option("--share", values.share)->transform(percent());
+    app.add_option("--bytes", values.bytes)->transform(byteCount());
+    app.add_option("--color", values.color)->check(oneOf({"red", "blue"}));
+    addWords(app, "--fruit", values.fruit,
+             WordsFor<Fruit>{{"apple", Fruit::kApple}, {"pear", Fruit::kPear}, {"plum", Fruit::kPlum}}, "");
+    addParsed(
+        app, "-l,--letter", values.letter,
+        [](const std::string& word) { return word.size() == 1 ? std::optional(word[0]) : std::nullopt; },
+        "a letter", "");
+    app.add_option("--text", values.text);
+}
+
+Values taken(const std::string& option, const std::string& word) {
+    CLI::App app("", "tool");
+    Values values;
+    define(app, values);
+    const Result<bool> parsed = parseCommandLine(app, {option, word});
+    EXPECT_TRUE(parsed && *parsed) << option << ' ' << word << ": " << (parsed ? "" : parsed.error().message);
+    return values;
+}
+
+std::string refused(const std::string& option, const std::string& word) {
+    CLI::App app("", "tool");
+    Values values;
+    define(app, values);
+    const Result<bool> parsed = parseCommandLine(app, {option + "=" + word});
+    EXPECT_FALSE(parsed) << option << ' ' << word;
+    EXPECT_TRUE(!parsed && parsed.error().code == ErrorCode::kUsage);
+    return parsed ? "" : parsed.error().message;
+}
+
+TEST(OptionValues, AreTakenExactly) {
+    EXPECT_EQ(taken("--count", "4000000000").count, 4'000'000'000U);
+    EXPECT_EQ(taken("--count", "010").count, 10U) << "not octal";
+    EXPECT_EQ(taken("--degrees", "0.1").degrees, 0.1F);
+    EXPECT_EQ(taken("--degrees", "+1e-2").degrees, 0.01F);
+    EXPECT_EQ(taken("--share", "1.5%").share, 1.5F);
+    EXPECT_EQ(taken("--share", " 33.3333333 % ").share, 33.3333333F);
+    EXPECT_EQ(taken("--bytes", "1.5MB").bytes, 1'500'000U);
+    EXPECT_EQ(taken("--bytes", "1KiB").bytes, 1024U);
+    EXPECT_EQ(taken("--color", "blue").color, "blue");
+    EXPECT_EQ(taken("--fruit", "plum").fruit, Fruit::kPlum);
+    EXPECT_EQ(taken("--letter", "x").letter, 'x');
+}
+
+TEST(OptionValues, SayWhatToWriteInstead) {
+    const std::string must = "but must be a whole number from 1 to 4000000000";
+    for (const char* word :
+         {"0", "-1", "0x10", "1e3", " 1", "4000000001", "99999999999999999999999", "one"}) {
+        EXPECT_EQ(refused("--count", word), "--count is '" + std::string(word) + "' " + must);
+    }
+    for (const char* word : {"nan", "inf", "-0.1", "361", "0x1p3", "1e39", "much"}) {
+        EXPECT_EQ(refused("--degrees", word),
+                  "--degrees is '" + std::string(word) + "' but must be degrees, 0 to 360");
+    }
+    for (const char* word : {"-1", "%", "nan%", "1%%", "few"}) {
+        EXPECT_EQ(refused("--share", word),
+                  "--share is '" + std::string(word) + "' but must be a share in percent, such as 1.5");
+    }
+    EXPECT_EQ(refused("--bytes", "1XB"),
+              "--bytes is '1XB' but must be a number of bytes, such as 1MB or 512KiB");
+    EXPECT_EQ(refused("--color", "green"), "--color is 'green' but must be red or blue");
+    EXPECT_EQ(refused("--fruit", "aple"),
+              "--fruit is 'aple' but must be one of apple, pear, plum; did you mean 'apple'?");
+    EXPECT_EQ(refused("--fruit", "1"), "--fruit is '1' but must be one of apple, pear, plum");
+    EXPECT_EQ(refused("--letter", "xy"), "--letter is 'xy' but must be a letter");
+}
+
+/// The error of a command line.
+std::string error(const std::vector<std::string>& arguments) {
+    CLI::App app("", "tool");
+    Values values;
+    define(app, values);
+    const Result<bool> parsed = parseCommandLine(app, arguments);
+    return parsed ? "" : parsed.error().message;
+}
+
+TEST(CommandLine, WhatCannotBeReadIsNamedWithACure) {
+    EXPECT_EQ(error({"--cuont", "1"}), "unknown option --cuont; did you mean '--count'?");
+    EXPECT_EQ(error({"--nothing-like-it"}), "unknown option --nothing-like-it; see tool --help");
+    EXPECT_EQ(error({"word"}), "unexpected argument 'word'; see tool --help");
+    EXPECT_EQ(error({"--text", ""}), "--text is given without a value; leave it out, or give it one");
+    EXPECT_EQ(error({"--count", "1"}), "");
+}
+
+}  // namespace
+}  // namespace relief
