@@ -92,8 +92,7 @@ Result<Json> bench(const std::string& path, std::uint32_t count) {
     if (!textures || !particles) {
         return !textures ? forward(textures) : forward(particles);
     }
-    const ColliderInstance instance{&*textures};
-    RELIEF_TRY(particles->setColliders({&instance, 1}));
+    RELIEF_TRY(particles->setCollider(&*textures));
     BenchScene scene = makeBenchScene(live->frames(), count);
     for (Birth& birth : scene.births) {
         birth.lifetime = 1e6F;

@@ -193,14 +193,9 @@ Result<void> ParticleSystem::setSweep(float length) {
     return remakeStepIfNeeded();
 }
 
-Result<void> ParticleSystem::setColliders(std::span<const ColliderInstance> colliders) {
-    if (colliders.size() > 1) {
-        return fail(ErrorCode::kUnsupported, "a particle system takes one collider, not " +
-                                                 std::to_string(colliders.size()) +
-                                                 "; bake them into one collider");
-    }
+Result<void> ParticleSystem::setCollider(const ColliderTextures* collider) {
     const PassState state;
-    return remakeStep(colliders.empty() ? nullptr : colliders.front().textures);
+    return remakeStep(collider);
 }
 
 Result<void> ParticleSystem::setAir(const AirSettings& air) {

@@ -42,12 +42,6 @@ struct Collision {
     float friction_threshold = 0.0F;
 };
 
-/// Colliders among the particles: one in its own object space, or bodies in a world, which the particles then
-/// live in. It must outlive its use by the system.
-struct ColliderInstance {
-    const ColliderTextures* textures = nullptr;
-};
-
 /// How positions follow from velocities; both are of first order, and alike but for rounding.
 enum class Integrator : std::uint8_t {
     kEuler,   ///< semi-implicit: v' = v + dt a, P' = P + dt v'
@@ -105,10 +99,11 @@ class ParticleSystem {
     /// Errors: kUsage (capacity, epoch), kLimit (above what this GL takes), kUnsupported, kFailure.
     [[nodiscard]] static Result<ParticleSystem> create(const ParticleSystemOptions& options = {});
 
-    /// What the particles collide with from the next step on; compiles the step for it. One instance at most,
-    /// which may hold several bodies.
-    /// Errors: kUnsupported (more than one), kFailure (the driver's compiler).
-    [[nodiscard]] Result<void> setColliders(std::span<const ColliderInstance> colliders);
+    /// What the particles collide with from the next step on; compiles the step for it. The particles live in
+    /// the object space of a single collider, or in the world of several bodies.
+    /// \param collider  must outlive its use by the system; null: nothing.
+    /// Errors: kFailure (the driver's compiler).
+    [[nodiscard]] Result<void> setCollider(const ColliderTextures* collider);
     void setForces(const Forces& forces) { forces_ = forces; }
     /// One type of particles, without radius, that bounces.
     void setCollision(const Collision& collision);

@@ -119,8 +119,7 @@ class LiveColliderGlTest : public CollisionTest {
     void particlesOf(const ParticleSystemOptions& options, const ParticleType& type) {
         make(options);
         setType(type);
-        const std::array<ColliderInstance, 1> instances{ColliderInstance{textures_.get()}};
-        const auto set = particles_->setColliders(instances);
+        const auto set = particles_->setCollider(textures_.get());
         ASSERT_TRUE(set) << set.error().message;
     }
     [[nodiscard]] std::vector<FieldSample> field(std::span<const glm::vec3> points) const {
