@@ -7,6 +7,7 @@
 //
 // With RELIEF_LIT the collider shades the particles, as particle_light.frag says; else they lie in the open.
 //!include look.glsl
+//!include sky.glsl
 
 uniform highp sampler2D u_position;
 uniform highp sampler2D u_birth;
@@ -55,8 +56,8 @@ void nothing() {  // beyond the far plane
 
 void main() {
 #ifdef RELIEF_QUADS
-    int index = gl_VertexID / 6;
-    int corner = gl_VertexID - 6 * index;
+    int index = gl_VertexID / RELIEF_QUAD_VERTICES;
+    int corner = gl_VertexID - RELIEF_QUAD_VERTICES * index;
 #else
     int index = gl_VertexID;
 #endif
@@ -107,12 +108,11 @@ void main() {
 
 #ifdef RELIEF_LIT
     vec4 light = texelFetch(u_light, texel, 0);
-    v_sun = vec3(1.02, 0.97, 0.88) * light.x;
+    v_sun = SUN_COLOR * light.x;
     v_above = light.yzw;
-    v_below = vec3(0.25, 0.26, 0.28);
 #else
-    v_sun = vec3(1.02, 0.97, 0.88);
-    v_above = vec3(0.40, 0.46, 0.56);
-    v_below = vec3(0.25, 0.26, 0.28);
+    v_sun = SUN_COLOR;
+    v_above = SKY_COLOR;
 #endif
+    v_below = FLOOR_COLOR;
 }

@@ -24,8 +24,6 @@ constexpr int kLanes = 16;
 constexpr float kEdgeWidth = 1e-4F;
 /// Surfaces this near along the ray, in units of its length, meet at an edge.
 constexpr float kTieDepth = 1e-5F;
-/// Below this cosine between a triangle's normal and the ray, its plane is a poor guide outside the triangle.
-constexpr double kGrazing = 1e-3;
 /// A ray this much deeper, in map depth, than those beside it may have slipped through.
 constexpr float kDepthJump = 0.08F;
 /// How far beside a ray that may have slipped through others look, and how near to it a triangle must come to
@@ -503,7 +501,7 @@ class RayScene::Impl::Tracer {
     [[nodiscard]] static bool isGrazing(const TrianglePlane& plane, const glm::dvec3& direction,
                                         double along) {
         return !(along * along >
-                 kGrazing * kGrazing * dot(plane.normal, plane.normal) * dot(direction, direction));
+                 kGrazingCosine * kGrazingCosine * dot(plane.normal, plane.normal) * dot(direction, direction));
     }
 
     /// A depth on a triangle seen almost edge-on, held between the depths of its corners.

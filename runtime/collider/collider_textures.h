@@ -15,6 +15,7 @@
 // its texels moves: a rectangle for the front and one above it for the back, or six for a cube's faces.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -23,6 +24,8 @@
 
 #include "formats/base/result.h"
 #include "formats/collider.h"
+#include "runtime/collider/collider_block.h"
+#include "runtime/collider/map_layout.h"
 #include "runtime/collider/pose.h"
 #include "runtime/gl/gl_object.h"
 
@@ -92,36 +95,18 @@ class ColliderTextures {
     [[nodiscard]] const std::string& defines() const { return defines_; }
 
   private:
-    /// A body's share of the block, std140.
-    struct BlockBody {
-        glm::vec4 row[3];
-        glm::vec4 before[3];
-        glm::vec4 response;
-        std::int32_t maps[4];
-    };
-    static_assert(sizeof(BlockBody) == 128);
-
-    /// A map of the block, and where its body wants it.
-    struct PlacedMap {
-        const DepthMap* map = nullptr;
-        bool live = false;
-    };
     [[nodiscard]] static Result<ColliderTextures> upload(std::span<const PlacedMap> maps,
                                                          std::vector<BlockBody> bodies);
-    [[nodiscard]] const GlTexture& textureOf(std::size_t layout) const;
+    void makeTextures(const MapLayout& layout);
+    void uploadStored(const DepthMap& map, const MapPlace& place, const MapLayout& layout);
+    /// A live map before its first update: nothing on any ray, and nothing moves.
+    void clearLive(const DepthMap& map, const MapPlace& place);
+    void makeBlock(std::span<const std::byte> bytes);
 
-    /// Of each map: the layout, and where its texels and its motion begin; of live ones alone.
-    struct LivePlace {
-        std::size_t layout = 0;
-        GLint x = 0, y = 0, motion_x = 0, motion_y = 0;
-    };
-    std::vector<LivePlace> live_places_;
-
+    std::vector<MapPlace> places_;  // of the maps
     std::vector<BlockBody> bodies_;
     std::uint64_t revision_ = 0;
-    GlTexture float_maps_;
-    GlTexture fixed_maps_;
-    GlTexture front_back_maps_;
+    std::array<GlTexture, kTexelKinds> textures_;
     GlBuffer block_;
     int map_count_ = 0;
     std::size_t bytes_ = 0;

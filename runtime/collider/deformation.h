@@ -15,16 +15,14 @@
 //     clamped
 #pragma once
 
-#include <cstdint>
 #include <glm/vec3.hpp>
 #include <span>
 
 #include "formats/base/result.h"
 #include "formats/collider.h"
+#include "shaders/shader_constants.h"
 
 namespace relief {
-
-enum class DeformKind : std::uint8_t { kBend = 0, kTwist = 1, kWobble = 2 };
 
 struct Deformation {
     DeformKind kind = DeformKind::kTwist;

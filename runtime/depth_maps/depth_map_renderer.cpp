@@ -13,10 +13,6 @@
 namespace relief {
 namespace {
 
-/// Surfaces this much of the depth range outside the volume are drawn, and their depth clamped: one in a face
-/// of the volume is met in spite of rounding. As kDepthSlack of bake/plan/view.h.
-constexpr const char* kSlack = "#define RELIEF_SLACK 1e-6\n";
-
 constexpr GLint kPositionUnit = 0;
 constexpr GLint kPlaneUnit = 1;
 constexpr GLint kCornerUnit = 2;
@@ -103,7 +99,7 @@ Result<void> checkWindow(const DepthMapFrame& frame, const TexelWindow& window, 
 
 /// What a program is compiled for.
 std::string definesOf(const DepthMapFrame& frame, bool motion) {
-    std::string defines = kSlack;
+    std::string defines;
     const auto define = [&](const char* name) { defines.append("#define ").append(name).append(" 1\n"); };
     switch (frame.format) {
         case MapFormat::kFloat32:

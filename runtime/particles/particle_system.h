@@ -62,13 +62,6 @@ struct ParticleCounts {
     std::uint32_t extent = 0;  ///< the largest live index + 1
 };
 
-enum class Contact : std::uint8_t {
-    kNone = 0,
-    kCollided = 1,
-    kCaught = 2,
-    kStopped = 3,  ///< at rest for good (OnCollision::kStop)
-};
-
 /// One live particle, read back.
 struct ParticleState {
     std::uint32_t id = 0;     ///< births before its own, modulo 2^32
