@@ -52,7 +52,7 @@ struct AirSettings {
     std::optional<float> viscosity;
 };
 
-/// Errors: kUsage (a number out of the range given above, too many), those of checkFlow.
+/// Fails as checkFlow does, and with kUsage (a number out of the range given above, too many).
 [[nodiscard]] Result<void> checkAir(const AirSettings& air);
 
 /// Wind, flow and noise together at point p, object units a second.

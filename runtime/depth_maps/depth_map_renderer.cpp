@@ -190,6 +190,29 @@ void clearTexels(const DepthMapTarget& target) {
     }
 }
 
+/// Viewport and scissor round the window at (x, y) of the target, which is cleared.
+void beginWindow(const DepthMapFrame& frame, const TexelWindow& window, const DepthMapTarget& target,
+                 std::uint32_t x, std::uint32_t y) {
+    const auto corner_x = static_cast<GLint>(x);
+    const auto corner_y = static_cast<GLint>(y);
+    const auto width = static_cast<GLsizei>(window.width);
+    const auto height = static_cast<GLsizei>(window.height);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer());
+    glViewport(corner_x, corner_y, width, height);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(corner_x, corner_y, width, height);
+    clearTexels(target);
+    if (!isCube(frame) && frame.decode == Decode::kPlane) {
+        // Planes leave the border empty.
+        const std::uint32_t left = std::max(window.x, 1U);
+        const std::uint32_t below = std::max(window.y, 1U);
+        const std::uint32_t right = std::max(std::min(window.x + window.width, frame.width - 1), left);
+        const std::uint32_t above = std::max(std::min(window.y + window.height, frame.height - 1), below);
+        glScissor(static_cast<GLint>(x + (left - window.x)), static_cast<GLint>(y + (below - window.y)),
+                  static_cast<GLsizei>(right - left), static_cast<GLsizei>(above - below));
+    }
+}
+
 }  // namespace
 
 Result<DepthMapRenderer> DepthMapRenderer::create() {
@@ -307,22 +330,7 @@ Result<void> DepthMapRenderer::render(GpuMesh& mesh, const DepthMapFrame& frame,
     if (motion) {
         useTexture(kPreviousUnit, mesh.previousPositions());
     }
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer());
-    glViewport(static_cast<GLint>(x), static_cast<GLint>(y), static_cast<GLsizei>(window.width),
-               static_cast<GLsizei>(window.height));
-    glEnable(GL_SCISSOR_TEST);
-    glScissor(static_cast<GLint>(x), static_cast<GLint>(y), static_cast<GLsizei>(window.width),
-              static_cast<GLsizei>(window.height));
-    clearTexels(target);
-    if (!isCube(frame) && frame.decode == Decode::kPlane) {
-        // Planes leave the border empty.
-        const std::uint32_t left = std::max(window.x, 1U);
-        const std::uint32_t below = std::max(window.y, 1U);
-        const std::uint32_t right = std::max(std::min(window.x + window.width, frame.width - 1), left);
-        const std::uint32_t above = std::max(std::min(window.y + window.height, frame.height - 1), below);
-        glScissor(static_cast<GLint>(x + (left - window.x)), static_cast<GLint>(y + (below - window.y)),
-                  static_cast<GLsizei>(right - left), static_cast<GLsizei>(above - below));
-    }
+    beginWindow(frame, window, target, x, y);
     glUseProgram(program->program.name());
     setUniforms(*program, mesh, frame, window, x, y);
     glEnable(GL_DEPTH_TEST);

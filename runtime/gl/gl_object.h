@@ -94,7 +94,8 @@ using GlRenderbuffer = GlName<gl_detail::deleteRenderbuffer>;
 
 /// A program of a vertex shader alone, whose outputs transform feedback writes, interleaved in their order.
 /// \param appended  GLSL of the caller's that is put behind the vertex shader; the log's lines count from its
-///                  beginning. Errors: those of makeProgram.
+///                  beginning.
+/// Fails as makeProgram does.
 [[nodiscard]] Result<GlProgram> makeFeedbackProgram(std::string_view vertex,
                                                     std::span<const char* const> outputs,
                                                     std::string_view defines = {},

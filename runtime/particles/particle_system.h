@@ -107,19 +107,18 @@ class ParticleSystem {
     [[nodiscard]] Result<void> setTypes(std::span<const ParticleType> types);
     /// Above 0 a step tests its way in pieces no longer than this, world units, and never ends inside what it
     /// did not begin in: nothing crosses a body at rest that is thicker than this. What moves farther than
-    /// StepPass::kSweepPieces of them in a step is slowed down. 0: only both ends are tested, as in the
-    /// paper. Errors: kUsage, kFailure (the driver's compiler).
+    /// StepPass::kSweepPieces of them in a step is slowed down. 0: only both ends are tested, as in the paper.
+    /// Errors: kUsage, kFailure (the driver's compiler).
     [[nodiscard]] Result<void> setSweep(float length);
-    /// Moving air and fields. Its wind takes the place of Forces::wind; its viscosity is not used: Forces has
-    /// its own.
-    /// Errors: those of AirBlock::create, kFailure (the driver's compiler).
+    /// Moving air and fields. Its wind takes the place of Forces::wind; its viscosity is ignored, as Forces has
+    /// one. Fails as AirBlock::create does, and with kFailure (the driver's compiler).
     [[nodiscard]] Result<void> setAir(const AirSettings& air);
     /// A floor: everything below this height is solid, in union with the collider. nullopt: none.
     void setGround(std::optional<float> height) { ground_ = height; }
 
     /// Gives birth at the start of the next step; what has an age then has moved freely, under the forces,
-    /// since its own birth. Texels without a particle are taken in ascending order. \return how many found a
-    /// place; the rest are refused and counted.
+    /// since its own birth. Texels without a particle are taken in ascending order.
+    /// \return how many found a place; the rest are refused and counted.
     std::size_t spawn(std::span<const Birth> births);
 
     /// Moves everything by `dt` seconds, > 0. Restores the GL state that it touches (runtime/INTEGRATE.md).

@@ -16,20 +16,20 @@
 namespace relief {
 
 struct PlayerOptions {
-    std::filesystem::path
-        input;  ///< a scene (.toml) or a collider (.relief), for which the default scene is played
+    /// A scene (.toml) or a collider (.relief), for which the default scene is played.
+    std::filesystem::path input;
     SceneOverrides overrides;
-    std::filesystem::path
-        frames;                  ///< folder for frame_0000.png and so on, made if missing; empty: no pictures
+    /// Folder for frame_0000.png and so on, made if missing; empty: no pictures.
+    std::filesystem::path frames;
     std::filesystem::path dump;  ///< PLY of the final particles, "-" for standard output; empty: none
-    std::filesystem::path
-        dump_frames;  ///< folder for particles_0000.ply and so on, as often as frames; empty: none
+    /// Folder for particles_0000.ply and so on, as often as frames; empty: none.
+    std::filesystem::path dump_frames;
     std::filesystem::path video;  ///< of the frames, through ffmpeg (video.h); empty: none
     std::filesystem::path stats;  ///< lines of JSON (statistics_log.h), "-" for standard output; empty: none
     std::optional<std::uint32_t> stats_every;  ///< steps from line to line, ≥ 1; nullopt: render.every
     bool time_stages = false;                  ///< for the report; with stats they are timed anyway
-    bool count_collisions =
-        false;  ///< reads the state back at the end for the report's collisions and contacts
+    /// Reads the state back at the end for the report's collisions and contacts.
+    bool count_collisions = false;
     GlApi api = GlApi::kGl33Core;
     std::optional<std::size_t> device;  ///< as of GlContextOptions
     Watchdog* watchdog = nullptr;       ///< fed while the GPU works; or null
@@ -43,8 +43,8 @@ struct PlayerReport {
     std::size_t collider_maps = 0;
     std::size_t collider_bytes = 0;  ///< of textures on the GPU
     ParticleCounts counts;
-    std::optional<std::uint64_t>
-        collisions;  ///< steps in contact, summed over the particles alive at the end
+    /// Steps in contact, summed over the particles alive at the end.
+    std::optional<std::uint64_t> collisions;
     std::optional<std::uint32_t> in_contact;  ///< alive particles that touched something in the last step
     double ms_per_step = 0.0;  ///< wall clock, births and waiting for the GPU included; 0 without steps
     /// The same, as the median over stretches of up to 16 steps: without the first, in which a driver still
@@ -56,7 +56,7 @@ struct PlayerReport {
 };
 
 /// Frames, of every kind, are written after every scene.render.every steps and after the last one.
-/// Errors: those of its parts; a failed frame or dump ends the run.
+/// Fails as loadAll, makeEmitters, GlContext, Simulation and Outputs do; a failed frame or dump ends the run.
 [[nodiscard]] Result<PlayerReport> play(const PlayerOptions& options);
 
 }  // namespace relief
