@@ -9,7 +9,7 @@
 #include "formats/base/result.h"
 #include "runtime/files/video.h"
 #include "runtime/gl/gpu_timer.h"
-#include "runtime/player/player.h"
+#include "runtime/player/player_options.h"
 #include "runtime/player/scene_picture.h"
 #include "runtime/player/statistics_log.h"
 
