@@ -12,8 +12,6 @@
 namespace relief {
 namespace {
 
-constexpr float kCodesPerDepth = 65534.0F;
-
 std::string shortestText(float value) {
     char text[32];
     const auto [end, error] = std::to_chars(text, text + sizeof(text), value);
@@ -219,11 +217,11 @@ class MapComparison {
         const Texel decoded_b = decodeTexel(a_.format, texel_b);
         const Surface& a = end == 0 ? *decoded_a.front : *decoded_a.back;
         const Surface& b = end == 0 ? *decoded_b.front : *decoded_b.back;
-        const double depth = a_.format == MapFormat::kFloat32
-                                 ? std::abs(static_cast<double>(a.depth) - static_cast<double>(b.depth)) *
-                                       static_cast<double>(kCodesPerDepth)
-                                 : std::abs(static_cast<double>(depthCode(a_.format, texel_a, end)) -
-                                            static_cast<double>(depthCode(a_.format, texel_b, end)));
+        const double depth =
+            a_.format == MapFormat::kFloat32
+                ? std::abs(static_cast<double>(a.depth) - static_cast<double>(b.depth)) * double{kDepthSteps}
+                : std::abs(static_cast<double>(depthCode(a_.format, texel_a, end)) -
+                           static_cast<double>(depthCode(a_.format, texel_b, end)));
         const double normal = degreesBetween(a.normal, b.normal);
         if (depth > 0.0) {
             amounts.depth.push_back(static_cast<float>(depth));

@@ -56,6 +56,14 @@ struct Affine {
 /// view sees edge-on, and a silhouette, pass through a texel where they are, not along its edges.
 inline constexpr float kStandingCosine = 1.0F / 32.0F;
 
+/// Writers of maps draw surfaces that lie up to this share of the depth range outside the volume, and clamp
+/// their depths to it: a surface in a face of the volume is met in spite of rounding.
+inline constexpr double kDepthSlack = 1e-6;
+
+/// Writers of maps hold a depth between those of the triangle's corners where the |cosine| of its normal with
+/// the ray is no larger than this: its plane is a poor guide outside the triangle.
+inline constexpr double kGrazingCosine = 1e-3;
+
 /// The largest offset of a standing plane, object units, a little more than a texel: depth d of a texel
 /// stands for n·(P − O) = (2·d/d_max − 1) · standingRange, with O where its ray has depth 0.
 /// \param object_per_map, width, height  as a DepthMap has them.

@@ -7,7 +7,8 @@
 namespace relief {
 namespace {
 
-constexpr float kHalfRange = 127.0F;
+constexpr auto kHalfRange = static_cast<float>(kNormalHalfRange);
+constexpr int kLast = 2 * kNormalHalfRange;
 
 /// The fold of equation 3: swaps the corners of the square (lower octants) with the inner diamond's outside.
 float signNotZero(float value) {
@@ -17,8 +18,8 @@ float signNotZero(float value) {
 }  // namespace
 
 glm::vec3 decodeNormal(NormalIndex index) {
-    const float s = (static_cast<float>(std::min<int>(index.s, 254)) - kHalfRange) / kHalfRange;
-    const float t = (static_cast<float>(std::min<int>(index.t, 254)) - kHalfRange) / kHalfRange;
+    const float s = (static_cast<float>(std::min<int>(index.s, kLast)) - kHalfRange) / kHalfRange;
+    const float t = (static_cast<float>(std::min<int>(index.t, kLast)) - kHalfRange) / kHalfRange;
     glm::vec3 v(s, t, 1.0F - std::abs(s) - std::abs(t));
     if (v.z < 0.0F) {
         v.x = signNotZero(s) * (1.0F - std::abs(t));
@@ -41,8 +42,10 @@ NormalIndex encodeNormal(const glm::vec3& normal) {
         s = folded_s;
         t = folded_t;
     }
-    const int low_s = std::clamp(static_cast<int>(std::floor(s * 127.0)) + 127, 0, 253);
-    const int low_t = std::clamp(static_cast<int>(std::floor(t * 127.0)) + 127, 0, 253);
+    const int low_s =
+        std::clamp(static_cast<int>(std::floor(s * kNormalHalfRange)) + kNormalHalfRange, 0, kLast - 1);
+    const int low_t =
+        std::clamp(static_cast<int>(std::floor(t * kNormalHalfRange)) + kNormalHalfRange, 0, kLast - 1);
 
     NormalIndex best;
     double best_cosine = -std::numeric_limits<double>::infinity();

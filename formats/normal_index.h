@@ -6,6 +6,9 @@
 
 namespace relief {
 
+/// Steps of an index from 0 to 1.
+inline constexpr int kNormalHalfRange = 127;
+
 /// A normal as the pair of 8-bit indices (s, t) into the 256×256 table of normals.
 ///
 /// Index i stands for the coordinate (i − 127)/127 in [−1, 1], so that 0 is a value and the six axis

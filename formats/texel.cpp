@@ -106,11 +106,11 @@ const char* depthEncodingName(MapFormat format) {
 
 std::uint16_t encodeFixedDepth(float depth, float depth_max) {
     const double unit = std::clamp(static_cast<double>(depth) / depth_max, 0.0, 1.0);
-    return static_cast<std::uint16_t>(1 + static_cast<int>(std::floor(unit * 65534.0 + 0.5)));
+    return static_cast<std::uint16_t>(1 + static_cast<int>(std::floor(unit * kDepthSteps + 0.5)));
 }
 
 float decodeFixedDepth(std::uint16_t code, float depth_max) {
-    return (static_cast<float>(code) - 1.0F) * (depth_max / 65534.0F);
+    return (static_cast<float>(code) - 1.0F) * (depth_max / static_cast<float>(kDepthSteps));
 }
 
 std::uint16_t encodeHalfDepth(float depth) {

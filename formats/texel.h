@@ -77,7 +77,10 @@ struct Texel {
 /// The largest depth of a cube texel, √3 rounded up to a float: a corner of the normalised volume.
 inline constexpr float kCubeDepthMax = 1.7320509F;
 
-/// 16-bit fixed point with 0 kept for "empty": code c in 1…65535 is the depth (c − 1)/65534 · depth_max.
+/// Steps of a 16-bit fixed-point depth: 0 is kept for "empty".
+inline constexpr int kDepthSteps = 65534;
+
+/// 16-bit fixed point: code c in 1…65535 is the depth (c − 1)/kDepthSteps · depth_max.
 /// \param depth  clamped to [0, depth_max].
 [[nodiscard]] std::uint16_t encodeFixedDepth(float depth, float depth_max);
 /// \param code  not 0.

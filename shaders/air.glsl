@@ -10,8 +10,6 @@
 #endif
 
 #ifdef RELIEF_HAS_AIR
-const int AIR_MAX = 8;
-
 layout(std140) uniform ReliefAir {
     vec4 air_wind;         // xyz
     ivec4 air_count;       // attractors, vortices, octaves of noise, the noise's seed as bits
@@ -19,8 +17,8 @@ layout(std140) uniform ReliefAir {
     vec4 air_flow_min;     // xyz; w: gain
     vec4 air_flow_max;     // xyz; w: 1 if the edge goes on outside, else 0
     vec4 air_flow_scale;   // xyz: nodes per object unit
-    vec4 air_attractor[2 * AIR_MAX];  // position, strength; radius, falloff, reach
-    vec4 air_vortex[3 * AIR_MAX];     // centre, strength; unit axis, radius; falloff
+    vec4 air_attractor[2 * RELIEF_AIR_FIELDS_MAX];  // position, strength; radius, falloff, reach
+    vec4 air_vortex[3 * RELIEF_AIR_FIELDS_MAX];     // centre, strength; unit axis, radius; falloff
 };
 #endif
 
@@ -102,7 +100,6 @@ vec3 fieldAcceleration(vec3 p, vec3 v, float t) {
     return sum;
 }
 
-// 6 pi viscosity radius / mass
 float stokesRate(float viscosity, float radius, float mass) {
-    return 18.849556 * viscosity * radius / mass;
+    return RELIEF_SIX_PI * viscosity * radius / mass;
 }

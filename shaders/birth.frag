@@ -1,4 +1,4 @@
-// Births: the first state of a particle (step.glsl says what the fourth components mean).
+// Births: the first state of a particle (step_state.glsl says what the fourth components mean).
 flat in vec3 v_position;
 flat in vec3 v_velocity;
 flat in vec4 v_birth;

@@ -1,7 +1,7 @@
 // The method's core: what the depth maps of a collider say of a point. formats/depth_map.cpp and
 // formats/collider.cpp are the same in C++, formats/README.md in words; all three change together.
 //
-// Needs RELIEF_MAP_CAPACITY, the length of the block's array; ColliderTextures gives it, and binds all below.
+// ColliderTextures compiles it (collider_block.h: RELIEF_MAP_CAPACITY and so on) and binds all below.
 //
 //     P ──T_i──▶ P'    orthographic                       cube
 //                      z'                                        ╲  dist  ╱
@@ -25,7 +25,7 @@ struct ReliefMap {
     vec4 object_per_map;   // xyz; z is z_scale of an orthographic map, xyz the paper's s of a cube; w: the
                            // largest product of an orthographic ray and the normal of a plane along it
     ivec4 place;           // index of texel (0,0) of face 0; from row to row; from face to face; width
-    ivec4 info;            // height; format; flags: the sum of RELIEF_KEEPS_FARTHEST…; of a live map the index of the
+    ivec4 info;            // height; format; flags: the sum of MapFlag; of a live map the index of the
                            // texel (0,0) of its motion, in u_relief_float, whose rows are as wide as that texture
 };
 
@@ -61,22 +61,6 @@ layout(std140) uniform ReliefCollider {
 uniform highp sampler2D u_relief_float;
 uniform highp sampler2D u_relief_fixed;
 uniform highp usampler2D u_relief_front_back;
-
-const int RELIEF_FLOAT32 = 0;
-const int RELIEF_FIXED8 = 1;
-const int RELIEF_FRONT_BACK_HALF = 2;
-const int RELIEF_CUBE8 = 3;
-const int RELIEF_FRONT_BACK_FIXED = 4;
-
-const int RELIEF_KEEPS_FARTHEST = 1;
-const int RELIEF_ENCLOSES = 2;
-const int RELIEF_EMPTY_IS_OUTSIDE = 4;
-const int RELIEF_PLANE = 8;
-
-const float RELIEF_FAR_INSIDE = -3.4028235e38;
-const float RELIEF_FAR_OUTSIDE = 1e30;
-const float RELIEF_CUBE_DEPTH_MAX = 1.7320509;
-const float RELIEF_STANDING_COSINE = 0.03125;
 
 // Whether a texel of planes may hold a front without a back or the other way round. ColliderTextures gives the empty end
 // of a stored one the plane of the other, which changes no vote; the maps of live bodies are as they are drawn.
@@ -116,7 +100,7 @@ bool reliefIsPlane(ivec4 info) {
 #if !defined(RELIEF_HAS_PLANE)
     return false;
 #elif defined(RELIEF_HAS_PROJECTED)
-    return (info.z & RELIEF_PLANE) != 0;
+    return (info.z & RELIEF_DECODES_PLANE) != 0;
 #else
     return true;
 #endif
@@ -150,10 +134,10 @@ bool reliefReplaces(float vote, float best) {
 }
 
 // Equation 3: indices 0…254 in each direction to the octahedron, of which the sphere's point is reliefUnit(). In steps
-// of the index, so that all of it is exact. ColliderTextures leaves no index 255.
+// of the index, so that all of it is exact. shaderTexels() leaves no index 255.
 vec3 reliefOctahedron(vec2 index) {
-    vec2 st = index - 127.0;
-    float z = 127.0 - abs(st.x) - abs(st.y);
+    vec2 st = index - float(RELIEF_NORMAL_HALF_RANGE);
+    float z = float(RELIEF_NORMAL_HALF_RANGE) - abs(st.x) - abs(st.y);
     // Below the equator both come back by as much as they are beyond it.
     uint beyond = floatBitsToUint(max(-z, 0.0));
     return vec3(st.x - uintBitsToFloat(beyond | (floatBitsToUint(st.x) & 0x80000000u)),
@@ -249,7 +233,7 @@ float reliefFrontBackDepth(int format, uint code) {
 #if !defined(RELIEF_HAS_FRONT_BACK_FIXED)
     return reliefHalf(code);
 #else
-    float fixed_point = (float(code) - 1.0) * (1.0 / 65534.0);
+    float fixed_point = (float(code) - 1.0) * (1.0 / RELIEF_DEPTH_STEPS);
 #if defined(RELIEF_HAS_FRONT_BACK_HALF)
     return format == RELIEF_FRONT_BACK_HALF ? reliefHalf(code) : fixed_point;
 #else
@@ -266,7 +250,7 @@ ivec2 reliefTexel(int index, int log2_width) {
 bool reliefFixedTexel(int index, float depth_max, out float depth, out vec2 normal) {
     vec4 bytes = floor(texelFetch(u_relief_fixed, reliefTexel(index, u_relief_count.z), 0) * 255.0 + 0.5);
     float code = bytes.b * 256.0 + bytes.a;
-    depth = (code - 1.0) * (depth_max / 65534.0);
+    depth = (code - 1.0) * (depth_max / RELIEF_DEPTH_STEPS);
     normal = bytes.rg;
     return code > 0.0;
 }
@@ -310,6 +294,73 @@ float reliefEmpty(ivec4 info) {
 
 // Of the functions that every particle runs through none returns early: a GL may make a loop of each.
 
+// Where a point of an orthographic map lies beside the ray through its texel's centre.
+struct ReliefSight {
+    int texel;
+    float z;     // depth of the point
+    bool plane;  // how the map decodes
+    vec3 from;   // as reliefPlane() takes them
+    vec3 ray;
+    float standing;
+    float scale;  // z_scale
+};
+
+float reliefSightPlane(int i, vec3 along_normal, float depth, ReliefSight sight) {
+    return reliefOctahedralPlane(i, along_normal, depth, 0.5, sight.from, sight.ray, sight.standing);
+}
+
+float reliefSightProjected(ivec4 info, float depth, ReliefSight sight) {
+    return sight.scale * ((info.z & RELIEF_KEEPS_FARTHEST) != 0 ? sight.z - depth : depth - sight.z);
+}
+
+// The votes of a texel of each kind; what they say where none is found is not looked at.
+
+// Two surfaces, the nearer in front, the farther in back.
+ReliefVote reliefVoteFrontBack(int i, ivec4 info, ReliefSight sight, bool whole, out bool found) {
+    uvec4 words = texelFetch(u_relief_front_back, reliefTexel(sight.texel, u_relief_count.w), 0);
+    found = words.b != 0u || words.a != 0u && (!sight.plane || RELIEF_HALF_EMPTY);
+    float front = reliefFrontBackDepth(info.y, words.b);
+    float back = reliefFrontBackDepth(info.y, words.a);
+    if (sight.plane) {
+        front = reliefSightPlane(i, reliefOctahedron(words.r), front, sight);
+        back = reliefSightPlane(i, reliefOctahedron(words.g), back, sight);
+    } else {
+        front = sight.scale * (front - sight.z);
+        back = sight.scale * (sight.z - back);
+    }
+    if (!sight.plane || RELIEF_HALF_EMPTY) {
+        front = words.b != 0u ? front : RELIEF_FAR_INSIDE;
+        back = words.a != 0u ? back : RELIEF_FAR_INSIDE;
+    }
+    bool take_back = whole ? reliefReplaces(back, front) : back > front;
+    return ReliefVote(take_back ? back : front, reliefCode(take_back ? words.g : words.r));
+}
+
+ReliefVote reliefVoteFixed(int i, ivec4 info, ReliefSight sight, out bool found) {
+    float depth;
+    vec2 index;
+    found = reliefFixedTexel(sight.texel, 1.0, depth, index);
+    float distance = sight.plane ? reliefSightPlane(i, reliefOctahedron(index), depth, sight)
+                                 : reliefSightProjected(info, depth, sight);
+    return ReliefVote(distance, reliefCode(index));
+}
+
+#if defined(RELIEF_HAS_FLOAT)
+// A float map's normals count as they are.
+ReliefVote reliefVoteFloat(int i, ivec4 info, ReliefSight sight, out bool found) {
+    vec4 values = texelFetch(u_relief_float, reliefTexel(sight.texel, u_relief_count.y), 0);
+    found = values.a >= 0.0;
+    float distance = sight.plane ? reliefPlane(i, values.rgb, 1.0, values.a, 0.5, sight.from, sight.ray, sight.standing)
+                                 : reliefSightProjected(info, values.a, sight);
+    return ReliefVote(distance, values.rgb);
+}
+#else
+ReliefVote reliefVoteFloat(int i, ivec4 info, ReliefSight sight, out bool found) {
+    found = false;
+    return ReliefVote(RELIEF_FAR_INSIDE, RELIEF_NO_CODE);
+}
+#endif
+
 // Without `whole` any distance that is not below 0 stands for all of them.
 ReliefVote reliefVoteOrthographic(int i, vec3 p, ivec4 place, ivec4 info, bool whole) {
     bool encloses = reliefHas(info, RELIEF_ENCLOSES);
@@ -320,57 +371,17 @@ ReliefVote reliefVoteOrthographic(int i, vec3 p, ivec4 place, ivec4 info, bool w
     bool sees_beyond = encloses && (whole || !reliefHas(info, RELIEF_EMPTY_IS_OUTSIDE));
     if (in_window && (in_depth || sees_beyond)) {
         ivec2 at = ivec2(p.xy);
-        int texel = place.x + at.y * place.y + at.x;
-        // One texel holds one surface or, front-back, two: the nearer in front, the farther in back.
-        bool plane = reliefIsPlane(info);
-        // From the ray of the texel's centre.
-        vec3 from = reliefFromMap(i, vec3(p.xy - (vec2(at) + 0.5), p.z));
-        vec3 ray = u_relief_maps[i].column[2].xyz;
-        float standing = u_relief_maps[i].object_per_map.w;
-        float scale = u_relief_maps[i].object_per_map.z;
+        ReliefSight sight = ReliefSight(place.x + at.y * place.y + at.x, p.z, reliefIsPlane(info),
+                                        reliefFromMap(i, vec3(p.xy - (vec2(at) + 0.5), p.z)),
+                                        u_relief_maps[i].column[2].xyz, u_relief_maps[i].object_per_map.w,
+                                        u_relief_maps[i].object_per_map.z);
         bool found;
         if (reliefIsFrontBack(info)) {
-            uvec4 words = texelFetch(u_relief_front_back, reliefTexel(texel, u_relief_count.w), 0);
-            found = words.b != 0u || words.a != 0u && (!plane || RELIEF_HALF_EMPTY);
-            float front = reliefFrontBackDepth(info.y, words.b);
-            float back = reliefFrontBackDepth(info.y, words.a);
-            if (plane) {
-                front = reliefOctahedralPlane(i, reliefOctahedron(words.r), front, 0.5, from, ray, standing);
-                back = reliefOctahedralPlane(i, reliefOctahedron(words.g), back, 0.5, from, ray, standing);
-            } else {
-                front = scale * (front - p.z);
-                back = scale * (p.z - back);
-            }
-            if (!plane || RELIEF_HALF_EMPTY) {
-                front = words.b != 0u ? front : RELIEF_FAR_INSIDE;
-                back = words.a != 0u ? back : RELIEF_FAR_INSIDE;
-            }
-            bool take_back = whole ? reliefReplaces(back, front) : back > front;
-            vote = ReliefVote(take_back ? back : front, reliefCode(take_back ? words.g : words.r));
+            vote = reliefVoteFrontBack(i, info, sight, whole, found);
+        } else if (reliefIsFloat(info)) {
+            vote = reliefVoteFloat(i, info, sight, found);
         } else {
-            float depth;
-            vec3 along_normal;
-            float per_length = 1.0;  // a float map's normals count as they are
-            if (reliefIsFloat(info)) {
-                vec4 values = texelFetch(u_relief_float, reliefTexel(texel, u_relief_count.y), 0);
-                depth = values.a;
-                found = depth >= 0.0;
-                along_normal = values.rgb;
-#if defined(RELIEF_HAS_FLOAT)
-                vote.normal = values.rgb;
-#endif
-            } else {
-                vec2 index;
-                found = reliefFixedTexel(texel, 1.0, depth, index);
-                along_normal = reliefOctahedron(index);
-                per_length = inversesqrt(reliefDot(along_normal, along_normal));
-                vote.normal = reliefCode(index);
-            }
-            if (plane) {
-                vote.distance = reliefPlane(i, along_normal, per_length, depth, 0.5, from, ray, standing);
-            } else {
-                vote.distance = scale * ((info.z & RELIEF_KEEPS_FARTHEST) != 0 ? p.z - depth : depth - p.z);
-            }
+            vote = reliefVoteFixed(i, info, sight, found);
         }
         if (sees_beyond && !in_depth && !(vote.distance >= 0.0)) {  // nothing of the collider remains there
             vote.distance = RELIEF_FAR_OUTSIDE;
@@ -525,8 +536,7 @@ ReliefField reliefSolid(vec3 p) {
         reliefJoin(best, i, p, false);
     }
 #endif
-    bool inside = best.map >= 0 && best.distance < 0.0;
-    return ReliefField(best.distance, inside ? reliefDecode(best.normal) : vec3(0.0), best.map);
+    return reliefFieldOf(best);
 }
 
 // reliefInside(reliefSolid(p)), by asking map `first` before the others: the map that decides what is inside nearby knows
@@ -647,7 +657,7 @@ vec3 reliefMotion(int i, vec3 p, vec3 normal) {
     return texelFetch(u_relief_float, reliefTexel(texel, u_relief_count.y), 0).xyz;
 }
 
-// The same of a body; zero of one that is not live. q: object space at the end of the step; normal: in the world.
+// The same of a body; zero of one that is not live. q: its object space at the end of the step; normal: in the world.
 vec3 reliefBodyMotion(int body, int map, vec3 q, vec3 normal) {
     if (u_relief_bodies[body].maps.z == 0 || map < 0) {
         return vec3(0.0);
@@ -658,9 +668,12 @@ vec3 reliefBodyMotion(int body, int map, vec3 q, vec3 normal) {
     return reliefMotion(map, q, in_body);
 }
 
-// What rests on a live body goes with the surface that is nearest. Of each map alone: where one sees nothing near a
-// silhouette, another one does.
+// What rests on a live body goes with the surface that is nearest; zero on one that is not live. Each map is asked
+// alone: where one sees nothing near a silhouette, another one does.
 vec3 reliefNearestMotion(int body, vec3 q) {
+    if (u_relief_bodies[body].maps.z == 0) {
+        return vec3(0.0);
+    }
     ReliefField nearest = ReliefField(RELIEF_FAR_OUTSIDE, vec3(0.0), -1);
     int first = u_relief_bodies[body].maps.x;
     for (int i = first; i < first + u_relief_bodies[body].maps.y; ++i) {
@@ -670,6 +683,16 @@ vec3 reliefNearestMotion(int body, vec3 q) {
         }
     }
     return nearest.map >= 0 ? reliefMotion(nearest.map, q, nearest.normal) : vec3(0.0);
+}
+
+#else
+
+vec3 reliefBodyMotion(int body, int map, vec3 q, vec3 normal) {
+    return vec3(0.0);
+}
+
+vec3 reliefNearestMotion(int body, vec3 q) {
+    return vec3(0.0);
 }
 
 #endif

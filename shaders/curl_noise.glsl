@@ -1,10 +1,6 @@
 // Turbulence without divergence: the C++ twin is runtime/air/curl_noise.cpp, which says how it works. Casts
 // between int and uint keep the bits; uint arithmetic wraps at 2^32.
 
-// Beyond, floats no longer resolve a cell.
-const float CURL_CELL_MAX = 1048576.0;
-const int CURL_PATTERNS = 128;
-
 uint curlHash(uint x) {
     x ^= x >> 16u;
     x *= 0x9E3779B1u;
@@ -21,7 +17,7 @@ vec3 curlGradient(uint h) {
 // The curl of one octave's potential. q: the point in lattice cells; share: of the pattern of `key` and of the
 // one that follows it.
 vec3 curlOctave(vec3 q, uint key, uint next_key, vec2 share) {
-    q = clamp(q, -CURL_CELL_MAX, CURL_CELL_MAX);
+    q = clamp(q, -RELIEF_CURL_CELL_MAX, RELIEF_CURL_CELL_MAX);
     vec3 low = floor(q);
     uvec3 cell = uvec3(ivec3(low));
     vec3 f = q - low;
@@ -70,7 +66,7 @@ vec3 curlVelocity(vec3 p, float t, vec3 curl, int octaves, uint seed) {
         float twice = float(1 << o);
         float now = t * (curl.z * twice);
         float pattern = floor(now);
-        uint mask = uint((CURL_PATTERNS << o) - 1);
+        uint mask = uint((RELIEF_CURL_PATTERNS << o) - 1);
         uint index = uint(int(pattern));
         uint base = curlHash(seed + uint(o) * 0x632BE5ABu);
         float s = now - pattern;

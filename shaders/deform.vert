@@ -22,10 +22,7 @@ vec3 deformed(vec3 p) {
 
 #else
 
-const int RELIEF_BEND = 0;
-const int RELIEF_TWIST = 1;
-
-uniform int u_kind;
+uniform int u_kind;  // DeformKind
 uniform float u_angle;      // radians, at this moment
 uniform vec3 u_phases;      // of the waves of a wobble
 uniform float u_amplitude;  // of a wobble, object units

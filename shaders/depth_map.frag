@@ -1,9 +1,13 @@
 // One texel of a depth map: of the triangle that the rasteriser found, the depth of its plane at the texel's
 // centre and its normal, as the container stores them (formats/README.md).
 //
-// Defined by DepthMapRenderer: RELIEF_FLOAT, RELIEF_BYTES or RELIEF_WORDS (with RELIEF_HALF or without), the
-// texel; RELIEF_CUBE; RELIEF_PLANE, decode; RELIEF_BOUNDED, a cube whose volume does not hold the mesh;
-// RELIEF_MOTION; RELIEF_EXACT, for depth_map_exact.vert.
+// DepthMapRenderer compiles it for what differs, each in one place below:
+//
+//     texel        RELIEF_FLOAT, RELIEF_BYTES or RELIEF_WORDS, with RELIEF_HALF or without
+//     decode       RELIEF_PLANE or projected
+//     projection   RELIEF_CUBE, with RELIEF_BOUNDED where its volume does not hold the mesh, or orthographic
+//     coverage     RELIEF_EXACT, for depth_map_exact.vert, or the rasteriser's
+//     motion       RELIEF_MOTION or none
 //!include normal_index.glsl
 uniform highp sampler2D u_positions;
 uniform highp usampler2D u_corners;
@@ -22,72 +26,98 @@ uniform bool u_inside_out;
 uniform vec3 u_ray;           // orthographic: along growing depth, unit length
 uniform float u_range;        // of standing planes, object units
 uniform float u_good_enough;  // see DepthMapFrame
-#ifdef RELIEF_EXACT
-uniform vec2 u_window;  // texels of the window
-uniform vec2 u_corner;  // of gl_FragCoord: where it starts
-flat in vec3 v_a;
-flat in vec3 v_b;
-flat in vec3 v_c;
-#endif
 
 flat in vec4 v_at;
 flat in vec2 v_slope;
 flat in uvec2 v_triangle;
 
-#ifdef RELIEF_WORDS
-layout(location = 0) out uvec4 o_texel;
-#else
-layout(location = 0) out vec4 o_texel;
-#endif
-#ifdef RELIEF_MOTION
-in vec3 v_motion;
-layout(location = 1) out vec4 o_motion_xy;
-layout(location = 2) out vec4 o_motion_z;
-#endif
-
-#ifdef RELIEF_CUBE
-const float kDepthMax = 1.7320509;
-#else
-const float kDepthMax = 1.0;
-#endif
-const float kCodes = 65534.0;
-const float kGrazing = 1e-3;           // as in bake/texels/raycast.cpp
-const float kStandingCosine = 1.0 / 32.0;  // formats/depth_map.h
 const float kStandingMargin = 1e-4;
 
-// The texel's ray: object units for one unit of depth.
-vec3 texelRay() {
+vec3 position(uint vertex) {
+    int i = int(vertex);
+    return texelFetch(u_positions, ivec2(i & ((1 << u_shift.x) - 1), i >> u_shift.x), 0).xyz - u_center;
+}
+
+ivec2 ownTexel() {
+    int i = int(v_triangle.x);
+    return ivec2(i & ((1 << u_shift.y) - 1), i >> u_shift.y);
+}
+
+// Projection. texelRay(): the texel's ray, object units for one unit of depth; meet(): where it meets the plane of the
+// triangle, and under which cosine; cornerDepth(): how deep a corner is; outsideVolume(): of a depth.
+
 #ifdef RELIEF_CUBE
-    vec2 st = 2.0 * (gl_FragCoord.xy - u_origin) / u_width - 1.0;
-    return u_scale * (u_object * normalize(vec3(st, 1.0)));
-#else
-    return u_ray * u_scale.z;
-#endif
+
+const float kDepthMax = RELIEF_CUBE_DEPTH_MAX;
+
+vec2 onFace() {
+    return 2.0 * (gl_FragCoord.xy - u_origin) / u_width - 1.0;
+}
+
+vec3 texelRay() {
+    return u_scale * (u_object * normalize(vec3(onFace(), 1.0)));
+}
+
+void meet(vec3 ray, out float cosine, out float depth) {
+    float along = dot(v_at.xyz, ray);
+    cosine = along / length(ray);
+    depth = v_slope.x / along;
 }
 
 float cornerDepth(uint vertex, vec3 ray) {
-    int i = int(vertex);
-    vec3 p = texelFetch(u_positions, ivec2(i & ((1 << u_shift.x) - 1), i >> u_shift.x), 0).xyz - u_center;
-#ifdef RELIEF_CUBE
-    return dot(p + u_residual, ray) / dot(ray, ray);
+    return dot(position(vertex) + u_residual, ray) / dot(ray, ray);
+}
+
+bool outsideVolume(float depth) {
+#ifdef RELIEF_BOUNDED
+    float leaves = u_far ? length(vec3(abs(onFace()), 1.0)) * (1.0 + RELIEF_DEPTH_SLACK) : kDepthMax;
+    return depth > leaves;
 #else
-    return dot(u_row[2].xyz, p) + u_row[2].w;
+    return false;
 #endif
 }
 
+#else
+
+const float kDepthMax = 1.0;
+
+vec3 texelRay() {
+    return u_ray * u_scale.z;
+}
+
+void meet(vec3 ray, out float cosine, out float depth) {
+    cosine = v_at.w;
+    depth = v_at.z + dot(v_slope, gl_FragCoord.xy - u_origin - v_at.xy);
+}
+
+float cornerDepth(uint vertex, vec3 ray) {
+    return dot(u_row[2].xyz, position(vertex)) + u_row[2].w;
+}
+
+bool outsideVolume(float depth) {
+#ifdef RELIEF_EXACT
+    return depth < -RELIEF_DEPTH_SLACK || depth > 1.0 + RELIEF_DEPTH_SLACK;
+#else
+    return false;  // clipped
+#endif
+}
+
+#endif
+
 // The plane of a triangle seen almost edge-on says little: no further than its corners.
 float insideTriangle(vec3 ray, float depth) {
-    int i = int(v_triangle.x);
-    uvec3 corners = texelFetch(u_corners, ivec2(i & ((1 << u_shift.y) - 1), i >> u_shift.y), 0).xyz;
+    uvec3 corners = texelFetch(u_corners, ownTexel(), 0).xyz;
     vec3 at = vec3(cornerDepth(corners.x, ray), cornerDepth(corners.y, ray), cornerDepth(corners.z, ray));
     float low = min(at.x, min(at.y, at.z));
     float high = max(at.x, max(at.y, at.z));
     return depth >= low && depth <= high ? depth : depth > high ? high : low;
 }
 
+// Codes of depths.
+
 // 1 … 65535
 uint fixedCode(float depth) {
-    return 1u + uint(floor(clamp(depth / kDepthMax, 0.0, 1.0) * kCodes + 0.5));
+    return 1u + uint(floor(clamp(depth / kDepthMax, 0.0, 1.0) * RELIEF_DEPTH_STEPS + 0.5));
 }
 
 // Nearest, ties upwards, as formats/texel.cpp rounds; within the normal halves.
@@ -98,43 +128,6 @@ uint halfCode(float depth) {
 
 float ofHalf(uint code) {
     return uintBitsToFloat((code + (112u << 10)) << 13);
-}
-
-// What a texel stores of a surface.
-struct Stored {
-    uint normal;
-    uint code;  // of depth, 0…65534; RELIEF_PLANE alone
-    bool stands;
-};
-
-#ifdef RELIEF_PLANE
-// The plane through the surface point on the centre's ray as decode=plane stores it (bake/texels/plane_fit.cpp with
-// one ray a texel): pushed towards the viewer to the next code; standing where it is steep; facing the viewer
-// where neither can be stored.
-Stored storedPlane(uint normal, vec3 ray, float depth) {
-    float u = u_far ? kDepthMax - depth : depth;  // from where the ray starts
-    vec3 onwards = u_far ? -ray : ray;
-    float length_ray = length(ray);
-    vec3 n = reliefUnpackNormal(normal);
-    float along = dot(n, onwards);
-    float cosine = along / length_ray;
-    float facing_code = clamp(floor(u / kDepthMax * kCodes), 0.0, kCodes);
-    bool stands = abs(cosine) < kStandingCosine - kStandingMargin;
-    if (stands) {
-        // One that leans away must not cut what lies behind the surface that the ray meets.
-        float offset = (along > 0.0 ? kDepthMax : u) * along;
-        float from_zero = u_far ? -kDepthMax * along : 0.0;
-        float code = ceil(((offset + from_zero) / u_range + 1.0) * 0.5 * kCodes);
-        float stored = (2.0 * code / kCodes - 1.0) * u_range - from_zero;
-        float free = along > 0.0 ? min(u, stored / along) : u - max(0.0, stored / along);
-        float facing_free = u - facing_code / kCodes * kDepthMax;
-        if (code >= 0.0 && code <= kCodes && (free <= u_good_enough || free <= facing_free)) {
-            return Stored(normal, uint(code), true);
-        }
-    } else if (cosine <= -(kStandingCosine + kStandingMargin)) {
-        return Stored(normal, uint(u_far ? kCodes - facing_code : facing_code), false);
-    }
-    return Stored(reliefPackNormal(-onwards / length_ray), uint(u_far ? kCodes - facing_code : facing_code), false);
 }
 
 // On the viewer's side of the depth.
@@ -149,9 +142,151 @@ uint outwardHalf(float depth, bool outwards_is_less) {
     }
     return nearest;
 }
+
+// Decode. stored(): what a texel stores of a surface; floatNormal() and halfDepth(): as those texels have it.
+
+struct Stored {
+    uint normal;
+    float depth;
+    uint code;    // of depth in fixed point, 1…65535
+    bool stands;  // of a plane: along the ray
+};
+
+#ifdef RELIEF_PLANE
+
+Stored storedCode(uint normal, uint steps, bool stands) {
+    return Stored(normal, float(steps) / RELIEF_DEPTH_STEPS, 1u + steps, stands);
+}
+
+// The plane through the surface point on the centre's ray as decode=plane stores it (bake/texels/plane_fit.cpp with
+// one ray a texel): pushed towards the viewer to the next code; standing where it is steep; facing the viewer
+// where neither can be stored.
+Stored stored(uint normal, vec3 ray, float depth) {
+    float u = u_far ? kDepthMax - depth : depth;  // from where the ray starts
+    vec3 onwards = u_far ? -ray : ray;
+    float length_ray = length(ray);
+    vec3 n = reliefUnpackNormal(normal);
+    float along = dot(n, onwards);
+    float cosine = along / length_ray;
+    float facing_code = clamp(floor(u / kDepthMax * RELIEF_DEPTH_STEPS), 0.0, RELIEF_DEPTH_STEPS);
+    bool stands = abs(cosine) < RELIEF_STANDING_COSINE - kStandingMargin;
+    if (stands) {
+        // One that leans away must not cut what lies behind the surface that the ray meets.
+        float offset = (along > 0.0 ? kDepthMax : u) * along;
+        float from_zero = u_far ? -kDepthMax * along : 0.0;
+        float code = ceil(((offset + from_zero) / u_range + 1.0) * 0.5 * RELIEF_DEPTH_STEPS);
+        float kept = (2.0 * code / RELIEF_DEPTH_STEPS - 1.0) * u_range - from_zero;
+        float free = along > 0.0 ? min(u, kept / along) : u - max(0.0, kept / along);
+        float facing_free = u - facing_code / RELIEF_DEPTH_STEPS * kDepthMax;
+        if (code >= 0.0 && code <= RELIEF_DEPTH_STEPS && (free <= u_good_enough || free <= facing_free)) {
+            return storedCode(normal, uint(code), true);
+        }
+    } else if (cosine <= -(RELIEF_STANDING_COSINE + kStandingMargin)) {
+        return storedCode(normal, uint(u_far ? RELIEF_DEPTH_STEPS - facing_code : facing_code), false);
+    }
+    return storedCode(reliefPackNormal(-onwards / length_ray),
+                      uint(u_far ? RELIEF_DEPTH_STEPS - facing_code : facing_code), false);
+}
+
+vec3 floatNormal(Stored surface, bool behind) {
+    return reliefUnpackNormal(surface.normal);
+}
+
+uint halfDepth(Stored surface) {
+    return outwardHalf(surface.depth, !u_far && !surface.stands);
+}
+
+#else
+
+Stored stored(uint normal, vec3 ray, float depth) {
+    return Stored(normal, depth, fixedCode(depth), false);
+}
+
+vec3 floatNormal(Stored surface, bool behind) {
+    vec3 n = uintBitsToFloat(texelFetch(u_planes, ownTexel(), 0).xyz);
+    return behind ? -n : n;
+}
+
+uint halfDepth(Stored surface) {
+    return halfCode(surface.depth);
+}
+
 #endif
 
+// Texel.
+
+#if defined(RELIEF_FLOAT)
+
+layout(location = 0) out vec4 o_texel;
+
+void writeTexel(Stored surface, bool behind) {
+    vec3 n = floatNormal(surface, behind);
+    // No -0; compilers leave out an addition of 0.
+    o_texel = vec4(n.x == 0.0 ? 0.0 : n.x, n.y == 0.0 ? 0.0 : n.y, n.z == 0.0 ? 0.0 : n.z, surface.depth);
+}
+
+void writeNothing() {
+    o_texel = vec4(0.0, 0.0, 0.0, -1.0);
+}
+
+#elif defined(RELIEF_WORDS)
+
+layout(location = 0) out uvec4 o_texel;
+
+void writeTexel(Stored surface, bool behind) {
+#ifdef RELIEF_HALF
+    uint code = halfDepth(surface);
+#else
+    uint code = surface.code;
+#endif
+    o_texel = uvec4(surface.normal, surface.normal, code, code);
+}
+
+void writeNothing() {
+    o_texel = uvec4(0u);
+}
+
+#else
+
+layout(location = 0) out vec4 o_texel;
+
+void writeTexel(Stored surface, bool behind) {
+    o_texel = vec4(uvec4(surface.normal >> 8, surface.normal & 255u, surface.code >> 8, surface.code & 255u)) / 255.0;
+}
+
+void writeNothing() {
+    o_texel = vec4(0.0);
+}
+
+#endif
+
+// Motion, in all channels that either end may keep.
+
+#ifdef RELIEF_MOTION
+in vec3 v_motion;
+layout(location = 1) out vec4 o_motion_xy;
+layout(location = 2) out vec4 o_motion_z;
+
+void writeMotion(bool any) {
+    vec3 motion = any ? v_motion : vec3(0.0);
+    o_motion_xy = motion.xxyy;
+    o_motion_z = motion.zzzz;
+}
+#else
+void writeMotion(bool any) {
+}
+#endif
+
+// Coverage.
+
 #ifdef RELIEF_EXACT
+
+uniform vec2 u_window;  // texels of the window
+uniform vec2 u_corner;  // of gl_FragCoord: where it starts
+flat in vec3 v_a;
+flat in vec3 v_b;
+flat in vec3 v_c;
+
 // Whether the triangle's projection holds the texel's centre, its edges included. Corners count from the centre,
 // so that a shared edge gives both its triangles the same numbers; the slack is what their products may be
 // rounded by: rather both hold it than neither.
@@ -165,98 +300,39 @@ bool holdsCentre() {
     float turn = dot(side, vec3(v_a.z, v_b.z, v_c.z));
     return turn >= 0.0 ? all(greaterThanEqual(side, -slack)) : all(lessThanEqual(side, slack));
 }
-#endif
 
-void writeEmpty() {
-#ifdef RELIEF_FLOAT
-    o_texel = vec4(0.0, 0.0, 0.0, -1.0);
-#elif defined(RELIEF_WORDS)
-    o_texel = uvec4(0u);
 #else
-    o_texel = vec4(0.0);
-#endif
-#ifdef RELIEF_MOTION
-    o_motion_xy = vec4(0.0);
-    o_motion_z = vec4(0.0);
-#endif
+
+bool holdsCentre() {
+    return true;
 }
 
+#endif
+
 void main() {
-#ifdef RELIEF_EXACT
     if (!holdsCentre()) {
         discard;
     }
-#endif
     vec3 ray = texelRay();
-#ifdef RELIEF_CUBE
-    float along = dot(v_at.xyz, ray);
-    float cosine = along / length(ray);
-    float depth = v_slope.x / along;
-#else
-    float cosine = v_at.w;
-    float depth = v_at.z + dot(v_slope, gl_FragCoord.xy - u_origin - v_at.xy);
-#endif
-    if (!(abs(cosine) > kGrazing)) {
+    float cosine, depth;
+    meet(ray, cosine, depth);
+    if (!(abs(cosine) > RELIEF_GRAZING)) {
         depth = insideTriangle(ray, depth);
     }
-#ifdef RELIEF_BOUNDED
-    vec2 st = abs(2.0 * (gl_FragCoord.xy - u_origin) / u_width - 1.0);
-    float leaves = u_far ? length(vec3(st, 1.0)) * (1.0 + RELIEF_SLACK) : kDepthMax;
-    if (depth > leaves) {
+    if (outsideVolume(depth)) {
         discard;
     }
-#endif
-#if defined(RELIEF_EXACT) && !defined(RELIEF_CUBE)
-    if (depth < -RELIEF_SLACK || depth > 1.0 + RELIEF_SLACK) {
-        discard;  // outside of the volume
-    }
-#endif
     depth = clamp(depth, 0.0, kDepthMax);
 #if defined(RELIEF_CUBE) || defined(RELIEF_EXACT)
-    gl_FragDepth = depth / kDepthMax;
+    gl_FragDepth = depth / kDepthMax;  // otherwise the rasteriser's will do
 #endif
     bool behind = u_far ? cosine < 0.0 : cosine > 0.0;
     if (!u_starts_free && behind != u_inside_out) {
-        writeEmpty();  // the ray started inside: what lies before this surface is not free
-        return;
+        // The ray started inside: what lies before this surface is not free.
+        writeNothing();
+        writeMotion(false);
+    } else {
+        writeTexel(stored(behind ? v_triangle.y >> 16 : v_triangle.y & 0xffffu, ray, depth), behind);
+        writeMotion(true);
     }
-    uint normal = behind ? v_triangle.y >> 16 : v_triangle.y & 0xffffu;
-#ifdef RELIEF_PLANE
-    Stored stored = storedPlane(normal, ray, depth);
-    normal = stored.normal;
-    depth = float(stored.code) / kCodes;
-#endif
-#ifdef RELIEF_FLOAT
-#ifdef RELIEF_PLANE
-    vec3 n = reliefUnpackNormal(normal);
-#else
-    int i = int(v_triangle.x);
-    vec3 n = uintBitsToFloat(texelFetch(u_planes, ivec2(i & ((1 << u_shift.y) - 1), i >> u_shift.y), 0).xyz);
-    n = behind ? -n : n;
-#endif
-    // No -0; compilers leave out an addition of 0.
-    o_texel = vec4(n.x == 0.0 ? 0.0 : n.x, n.y == 0.0 ? 0.0 : n.y, n.z == 0.0 ? 0.0 : n.z, depth);
-#else
-#ifdef RELIEF_PLANE
-    uint code = 1u + stored.code;
-#else
-    uint code = fixedCode(depth);
-#endif
-#ifdef RELIEF_WORDS
-#ifdef RELIEF_HALF
-#ifdef RELIEF_PLANE
-    code = outwardHalf(depth, !u_far && !stored.stands);
-#else
-    code = halfCode(depth);
-#endif
-#endif
-    o_texel = uvec4(normal, normal, code, code);
-#else
-    o_texel = vec4(uvec4(normal >> 8, normal & 255u, code >> 8, code & 255u)) / 255.0;
-#endif
-#endif
-#ifdef RELIEF_MOTION
-    o_motion_xy = v_motion.xxyy;
-    o_motion_z = v_motion.zzzz;
-#endif
 }

@@ -45,7 +45,7 @@ void main() {
     vec3 m = n * u_object;
     v_at = vec4(q, m.z / length(u_object[2]));
     v_slope = -m.xy / m.z;
-    // RELIEF_SLACK of the depth range outside it is drawn too.
-    gl_Position = vec4(2.0 * q.xy / u_window - 1.0, (2.0 * q.z - 1.0) / (1.0 + 2.0 * RELIEF_SLACK), 1.0);
+    // RELIEF_DEPTH_SLACK of the depth range outside it is drawn too.
+    gl_Position = vec4(2.0 * q.xy / u_window - 1.0, (2.0 * q.z - 1.0) / (1.0 + 2.0 * RELIEF_DEPTH_SLACK), 1.0);
 #endif
 }

@@ -1,5 +1,6 @@
 // The light that a point among collider and floor receives: a sun of some width, and a sky, both hidden by the
 // collider's own field. Shared by the collider's picture and by the particles. Needs collider.glsl.
+//!include sky.glsl
 
 uniform vec3 u_bounds_min;    // of the collider, with a small margin
 uniform vec3 u_bounds_max;
@@ -7,10 +8,7 @@ uniform float u_scale;        // longest side of the bounds
 uniform float u_texel;        // object units of the finest texel
 uniform vec3 u_sun;           // unit vector towards it
 
-const vec3 SUN_COLOR = vec3(1.02, 0.97, 0.88);
-const vec3 SKY_COLOR = vec3(0.40, 0.46, 0.56);
-const vec3 FLOOR_COLOR = vec3(0.25, 0.26, 0.28);  // what comes back from below
-const float SUN_WIDTH = 0.10;                     // radius of the sun's disc at distance 1
+const float SUN_WIDTH = 0.10;  // radius of the sun's disc at distance 1
 const float TWO_PI = 6.2831853;
 
 // Uniform in [0, 1), different for every seed (PCG's output permutation).

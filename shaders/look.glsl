@@ -18,6 +18,10 @@ float particleRandom(float id, uint salt) {
     return float(((word >> 22) ^ word) >> 8) / 8388608.0 - 1.0;
 }
 
+int keyTexel(int key) {
+    return RELIEF_LOOK_HEAD_TEXELS + RELIEF_LOOK_KEY_TEXELS * key;
+}
+
 // `birth` is the particle's texel: time of birth, time of death, type, id.
 Look lookOf(vec4 birth, float now) {
     int row = clamp(int(birth.z + 0.5), 0, textureSize(u_looks, 0).y - 1);
@@ -29,12 +33,12 @@ Look lookOf(vec4 birth, float now) {
 
     int count = int(light.w);
     int low = 0;
-    while (low + 1 < count && texelFetch(u_looks, ivec2(4 + 2 * low, row), 0).x <= part) {
+    while (low + 1 < count && texelFetch(u_looks, ivec2(keyTexel(low + 1), row), 0).x <= part) {
         ++low;
     }
     int high = min(low + 1, count - 1);
-    vec4 before = texelFetch(u_looks, ivec2(2 + 2 * low, row), 0);
-    vec4 after = texelFetch(u_looks, ivec2(2 + 2 * high, row), 0);
+    vec4 before = texelFetch(u_looks, ivec2(keyTexel(low), row), 0);
+    vec4 after = texelFetch(u_looks, ivec2(keyTexel(high), row), 0);
     float share = high > low ? clamp((part - before.x) / (after.x - before.x), 0.0, 1.0) : 0.0;
     vec4 values = mix(before, after, share);
 
@@ -43,8 +47,8 @@ Look lookOf(vec4 birth, float now) {
     float fade = clamp(age / max(light.y, 1e-6), 0.0, 1.0) * clamp(left / max(light.z, 1e-6), 0.0, 1.0);
     look.opacity = values.z * fade;
     look.rotation = values.w + cells.x * particleRandom(birth.w, 0u) + cells.y * particleRandom(birth.w, 1u) * age;
-    look.color = mix(texelFetch(u_looks, ivec2(3 + 2 * low, row), 0).rgb,
-                     texelFetch(u_looks, ivec2(3 + 2 * high, row), 0).rgb, share);
+    look.color = mix(texelFetch(u_looks, ivec2(keyTexel(low) + 1, row), 0).rgb,
+                     texelFetch(u_looks, ivec2(keyTexel(high) + 1, row), 0).rgb, share);
     look.cell = cells.z < 0.0 ? -1.0 : cells.z + min(floor(part * cells.w), cells.w - 1.0);
     look.lit = light.x;
     return look;

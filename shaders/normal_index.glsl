@@ -1,7 +1,9 @@
 // Packed normals, as formats/normal_index.cpp has them: 256 * s + t.
 
 vec3 reliefUnpackNormal(uint code) {
-    vec2 st = (vec2(float(min(code >> 8, 254u)), float(min(code & 255u, 254u))) - 127.0) / 127.0;
+    const float half_range = float(RELIEF_NORMAL_HALF_RANGE);
+    const uint last = uint(2 * RELIEF_NORMAL_HALF_RANGE);
+    vec2 st = (vec2(float(min(code >> 8, last)), float(min(code & 255u, last))) - half_range) / half_range;
     vec3 v = vec3(st, 1.0 - abs(st.x) - abs(st.y));
     if (v.z < 0.0) {
         v.x = (st.x < 0.0 ? -1.0 : 1.0) * (1.0 - abs(st.y));
@@ -17,7 +19,8 @@ uint reliefPackNormal(vec3 n) {
     if (n.z < 0.0) {
         st = vec2((n.x < 0.0 ? -1.0 : 1.0) * (1.0 - abs(st.y)), (n.y < 0.0 ? -1.0 : 1.0) * (1.0 - abs(st.x)));
     }
-    ivec2 low = clamp(ivec2(floor(st * 127.0)) + 127, ivec2(0), ivec2(253));
+    ivec2 low = clamp(ivec2(floor(st * float(RELIEF_NORMAL_HALF_RANGE))) + RELIEF_NORMAL_HALF_RANGE, ivec2(0),
+                      ivec2(2 * RELIEF_NORMAL_HALF_RANGE - 1));
     uint best = 0u;
     float best_distance = 8.0;
     for (int dt = 0; dt <= 1; ++dt) {

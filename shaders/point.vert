@@ -7,6 +7,7 @@
 //
 // With RELIEF_LIT the collider shades the particles, as particle_light.frag says; else they lie in the open.
 //!include look.glsl
+//!include sky.glsl
 
 uniform highp sampler2D u_position;
 uniform highp sampler2D u_birth;
@@ -53,17 +54,42 @@ void nothing() {  // beyond the far plane
 #endif
 }
 
+// The particle of the i-th sprite; -1: none.
+int particleOf(int i) {
+    int width = textureSize(u_order, 0).x;
+    uvec4 rank = texelFetch(u_order, ivec2(i % width, i / width), 0);
+    return rank.y != 0u ? int(min(rank.x, 2147483647u)) : -1;
+}
+
+// How much nearer than its centre a grain's front is, as a share of the view distance. The depth is that of the front,
+// so that grains on a surface are not half sunk into it; the place on the picture that of the centre. A large sprite's
+// front does not pass the near plane before its centre does.
+float nearerShare(float size, float distance) {
+    float near = -u_depth.y / u_depth.x;
+    return max(1.0 - 0.5 * size / distance, clamp(1.01 * near / distance, 0.05, 1.0));
+}
+
+void receiveLight(ivec2 texel) {
+#ifdef RELIEF_LIT
+    vec4 light = texelFetch(u_light, texel, 0);
+    v_sun = SUN_COLOR * light.x;
+    v_above = light.yzw;
+#else
+    v_sun = SUN_COLOR;
+    v_above = SKY_COLOR;
+#endif
+    v_below = FLOOR_COLOR;
+}
+
 void main() {
 #ifdef RELIEF_QUADS
-    int index = gl_VertexID / 6;
-    int corner = gl_VertexID - 6 * index;
+    int index = gl_VertexID / RELIEF_QUAD_VERTICES;
+    int corner = gl_VertexID - RELIEF_QUAD_VERTICES * index;
 #else
     int index = gl_VertexID;
 #endif
     if (u_ordered) {
-        int width = textureSize(u_order, 0).x;
-        uvec4 rank = texelFetch(u_order, ivec2(index % width, index / width), 0);
-        index = rank.y != 0u ? int(min(rank.x, 2147483647u)) : -1;
+        index = particleOf(index);
     }
     if (index < 0 || index >= u_extent) {
         nothing();
@@ -77,13 +103,10 @@ void main() {
     }
     vec4 birth = texelFetch(u_birth, texel, 0);
     Look look = lookOf(birth, u_now);
-    // The depth is that of the grain's front, so that grains on a surface are not half sunk into it; the place
-    // on the picture that of its centre. A large sprite's front does not pass the near plane before its centre does.
     vec4 in_view = u_view * vec4(position.xyz, 1.0);
     gl_Position = u_projection * in_view;
     float distance = max(-in_view.z, 1e-6);
-    float near = -u_depth.y / u_depth.x;
-    float nearer = max(1.0 - 0.5 * look.size / distance, clamp(1.01 * near / distance, 0.05, 1.0));
+    float nearer = nearerShare(look.size, distance);
     vec4 front = u_projection * vec4(in_view.xyz * nearer, 1.0);
     gl_Position.z = front.z / front.w * gl_Position.w;
     v_front = nearer * distance;
@@ -105,14 +128,5 @@ void main() {
     gl_PointSize = v_pixels;
 #endif
 
-#ifdef RELIEF_LIT
-    vec4 light = texelFetch(u_light, texel, 0);
-    v_sun = vec3(1.02, 0.97, 0.88) * light.x;
-    v_above = light.yzw;
-    v_below = vec3(0.25, 0.26, 0.28);
-#else
-    v_sun = vec3(1.02, 0.97, 0.88);
-    v_above = vec3(0.40, 0.46, 0.56);
-    v_below = vec3(0.25, 0.26, 0.28);
-#endif
+    receiveLight(texel);
 }

@@ -1,7 +1,7 @@
-// Sums over 4 x 4 texels, one fragment each: what reduce_state.frag and reduce_sum.frag share.
+// Sums over squares of texels, one fragment each: what reduce_state.frag and reduce_sum.frag share.
 //
 //     counts   x particles alive   y collided   z caught   w half the sum of |v|^2
-//     sums     x, y collisions = x + 4096 y, x below 4096   z greatest |v|^2   w 0
+//     sums     x, y collisions = x + RELIEF_COLLISIONS_HIGH y   z greatest |v|^2   w 0
 //
 // Counts are whole numbers below 2^24, which floats hold exactly. The collisions of all particles go beyond; in
 // two parts they are exact up to 2^36.
@@ -20,13 +20,13 @@ struct Sums {
 Sums sumsAt(ivec2 texel);
 
 void main() {
-    ivec2 corner = 4 * ivec2(gl_FragCoord.xy);
+    ivec2 corner = RELIEF_REDUCED_SIDE * ivec2(gl_FragCoord.xy);
     vec4 counts = vec4(0.0);
     vec4 sums = vec4(0.0);
-    for (int y = 0; y < 4; ++y) {
+    for (int y = 0; y < RELIEF_REDUCED_SIDE; ++y) {
         // A row first, then the rows: fewer roundings in a chain.
         vec4 row = vec4(0.0);
-        for (int x = 0; x < 4; ++x) {
+        for (int x = 0; x < RELIEF_REDUCED_SIDE; ++x) {
             ivec2 texel = corner + ivec2(x, y);
             if (texel.x < u_size.x && texel.y < u_size.y) {
                 Sums one = sumsAt(texel);
@@ -37,7 +37,7 @@ void main() {
         }
         counts += row;
     }
-    float carry = floor(sums.x / 4096.0);
+    float carry = floor(sums.x / RELIEF_COLLISIONS_HIGH);
     o_counts = counts;
-    o_sums = vec4(sums.x - 4096.0 * carry, sums.y + carry, sums.z, 0.0);
+    o_sums = vec4(sums.x - RELIEF_COLLISIONS_HIGH * carry, sums.y + carry, sums.z, 0.0);
 }

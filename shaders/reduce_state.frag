@@ -1,4 +1,4 @@
-// The first pass of the statistics: 16 particles of the state textures.
+// The first pass of the statistics: a square of the state textures.
 //!include reduce.glsl
 
 uniform highp sampler2D u_position;
@@ -12,14 +12,15 @@ Sums sumsAt(ivec2 texel) {
         return Sums(vec4(0.0), vec4(0.0));
     }
     vec4 velocity = texelFetch(u_velocity, texel, 0);
-    if (u_rate_before > 0.0) {  // Verlet: step.glsl
+    if (u_rate_before > 0.0) {  // Verlet: step_state.glsl
         float collisions = floor(position.w);
-        velocity = vec4((position.xyz - velocity.xyz) * u_rate_before, 16.0 * (position.w - collisions));
+        velocity = vec4((position.xyz - velocity.xyz) * u_rate_before, RELIEF_CONTACT_PARTS * (position.w - collisions));
         position.w = collisions;
     }
     float speed2 = dot(velocity.xyz, velocity.xyz);
     float contact = velocity.w;
-    float high = floor(position.w / 4096.0);
-    return Sums(vec4(1.0, contact == 1.0 || contact >= 3.0 ? 1.0 : 0.0, contact == 2.0 ? 1.0 : 0.0, 0.5 * speed2),
-                vec4(position.w - 4096.0 * high, high, speed2, 0.0));
+    float high = floor(position.w / RELIEF_COLLISIONS_HIGH);
+    return Sums(vec4(1.0, contact == RELIEF_COLLIDED || contact >= RELIEF_STOPPED ? 1.0 : 0.0,
+                     contact == RELIEF_CAUGHT ? 1.0 : 0.0, 0.5 * speed2),
+                vec4(position.w - RELIEF_COLLISIONS_HIGH * high, high, speed2, 0.0));
 }

@@ -1,4 +1,4 @@
-// A further pass of the statistics: 16 texels of the pass before.
+// A further pass of the statistics: a square of the pass before.
 //!include reduce.glsl
 
 uniform highp sampler2D u_counts;

@@ -66,10 +66,6 @@ struct View {
     [[nodiscard]] DepthMap emptyMap() const;
 };
 
-/// Rays start, and end, this much of the depth range outside an orthographic volume or a GREATER cube's, and
-/// depths are clamped to it: a surface in a face of the volume is met in spite of rounding.
-inline constexpr double kDepthSlack = 1e-6;
-
 /// What an orthographic view along a unit direction has upwards if its spec names no `up`.
 [[nodiscard]] glm::dvec3 defaultUp(const glm::dvec3& direction);
 

@@ -3,13 +3,13 @@
 #include <cmath>
 #include <limits>
 
+#include "formats/depth_map.h"
+
 namespace relief {
 namespace {
 
 /// Surfaces this near along the ray, in units of its length, meet at an edge.
 constexpr float kTieDepth = 1e-5F;
-/// Below this cosine between a triangle's normal and the ray, its plane is a poor guide outside the triangle.
-constexpr double kGrazing = 1e-3;
 /// How far beside a ray that may have slipped through others look, and how near to it a triangle must come to
 /// count as met. Embree's units: the mesh is one to two long. Floats there are 6e-8 apart.
 constexpr double kBeside = 0x1p-17;
@@ -29,7 +29,7 @@ constexpr std::array<std::array<double, 2>, kBesideRays> kBesideDirections = {{{
 
 bool isGrazing(const TrianglePlane& plane, const glm::dvec3& direction, double along) {
     return !(along * along >
-             kGrazing * kGrazing * dot(plane.normal, plane.normal) * dot(direction, direction));
+             kGrazingCosine * kGrazingCosine * dot(plane.normal, plane.normal) * dot(direction, direction));
 }
 
 }  // namespace

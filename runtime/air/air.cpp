@@ -121,7 +121,6 @@ float airTime(const AirSettings& air, double seconds) {
 }
 
 float stokesRate(float viscosity, float radius, float mass) {
-    constexpr float kSixPi = 18.849556F;
     return kSixPi * viscosity * radius / mass;
 }
 

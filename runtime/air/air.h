@@ -13,6 +13,7 @@
 #include "formats/base/result.h"
 #include "runtime/air/curl_noise.h"
 #include "runtime/air/flow_field.h"
+#include "shaders/shader_constants.h"
 
 namespace relief {
 
@@ -38,8 +39,8 @@ struct Vortex {
 };
 
 struct AirSettings {
-    static constexpr std::size_t kAttractorsMax = 8;
-    static constexpr std::size_t kVorticesMax = 8;
+    static constexpr std::size_t kAttractorsMax = kAirFieldsMax;
+    static constexpr std::size_t kVorticesMax = kAirFieldsMax;
 
     glm::vec3 wind{0.0F};                   ///< object units a second, everywhere
     std::shared_ptr<const FlowField> flow;  ///< may be null; shared, for it may be large
@@ -51,7 +52,7 @@ struct AirSettings {
     std::optional<float> viscosity;
 };
 
-/// Errors: kUsage (a number out of the range given above, too many), those of checkFlow.
+/// Fails as checkFlow does, and with kUsage (a number out of the range given above, too many).
 [[nodiscard]] Result<void> checkAir(const AirSettings& air);
 
 /// Wind, flow and noise together at point p, object units a second.

@@ -20,12 +20,12 @@ class AirBlock {
 
     /// Uploads settings. Needs a current context. Without any wind, flow, noise, attractor or vortex it makes
     /// nothing, and bind() and attach() do nothing.
-    /// Errors: those of checkAir, kLimit (a flow larger than this GL takes, or out of memory).
+    /// Fails as checkAir does, and with kLimit (a flow larger than this GL takes, or out of memory).
     [[nodiscard]] static Result<AirBlock> create(const AirSettings& air);
 
     /// Changes all but the flow, for draws to come; waits for nothing. Programs stay as they are.
     /// \param air  of the same kinds as at creation, or fewer; its flow is ignored.
-    /// Errors: those of checkAir, kUsage (a kind that the programs were compiled without).
+    /// Fails as checkAir does, and with kUsage (a kind that the programs were compiled without).
     [[nodiscard]] Result<void> update(const AirSettings& air);
 
     /// Connects a program that includes air.glsl: sampler, block binding. Once after linking; leaves the

@@ -5,11 +5,10 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 
+#include "shaders/shader_constants.h"
+
 namespace relief {
 namespace {
-
-// Beyond, floats no longer resolve a cell; casts to int stay defined.
-constexpr float kCellMax = 1048576.0F;
 
 // 1 / root mean square of the curl of one octave of potential whose gradients have components of ±1, ±3, ±5,
 // ±7, which have variance 21: the mean over a cell of Σ over its corners of |∂(weight · offset)/∂x|² is
@@ -47,7 +46,8 @@ glm::vec3 octave(const glm::vec3& point, std::uint32_t key, std::uint32_t next_k
     glm::vec3 weight[2];
     glm::vec3 slope[2];
     for (int axis = 0; axis < 3; ++axis) {
-        const float q = point[axis] > -kCellMax ? std::fmin(point[axis], kCellMax) : -kCellMax;
+        // NaN becomes a number, and casts to int stay defined.
+        const float q = point[axis] > -kCurlCellMax ? std::fmin(point[axis], kCurlCellMax) : -kCurlCellMax;
         const float low = std::floor(q);
         cell[axis] = static_cast<std::uint32_t>(static_cast<std::int32_t>(low));
         const float x = q - low;
@@ -96,8 +96,7 @@ float curlTime(const CurlNoise& noise, double seconds) {
     if (!(noise.drift > 0.0F)) {
         return 0.0F;
     }
-    const double period =
-        CurlNoise::kPatterns * static_cast<double>(noise.scale) / static_cast<double>(noise.drift);
+    const double period = kCurlPatterns * static_cast<double>(noise.scale) / static_cast<double>(noise.drift);
     return static_cast<float>(std::fmod(seconds, period));
 }
 
@@ -110,7 +109,7 @@ glm::vec3 curlVelocity(const CurlNoise& noise, const glm::vec3& p, float t) {
         const auto twice = static_cast<float>(1 << o);
         const float now = t * (rate * twice);
         const float pattern = std::floor(now);
-        const auto mask = static_cast<std::uint32_t>((static_cast<int>(CurlNoise::kPatterns) << o) - 1);
+        const auto mask = static_cast<std::uint32_t>((kCurlPatterns << o) - 1);
         const auto index = static_cast<std::uint32_t>(static_cast<std::int32_t>(pattern));
         const std::uint32_t base = hash(noise.seed + static_cast<std::uint32_t>(o) * 0x632BE5ABU);
         const float s = fade(now - pattern);

@@ -14,15 +14,14 @@ namespace relief {
 
 struct CurlNoise {
     static constexpr int kOctavesMax = 4;
-    static constexpr double kPatterns = 128.0;  ///< of the first octave, before they repeat
     static constexpr float kRateMax = 1000.0F;  ///< of drift / scale, patterns a second
 
     float amplitude = 0.0F;  ///< root mean square speed, object units a second, ≥ 0; 0: no noise
-    float scale =
-        1.0F;         ///< side of a lattice cell, about the radius of the largest eddies: object units, > 0
+    /// Side of a lattice cell, about the radius of the largest eddies: object units, > 0.
+    float scale = 1.0F;
     int octaves = 2;  ///< 1 … kOctavesMax; each is half as large, half as fast and half as long-lived
-    float drift =
-        0.0F;  ///< object units a second, ≥ 0: an eddy gives way to another every size / drift seconds
+    /// Object units a second, ≥ 0: an eddy gives way to another every size / drift seconds.
+    float drift = 0.0F;
     std::uint32_t seed = 1;
 };
 

@@ -34,13 +34,13 @@ struct FlowField {
     std::vector<glm::vec3> nodes;  ///< object units a second; x fastest, then y, then z
 };
 
-/// Whether a grid of this size may be: a message without names of files.
+/// Checks the size of a grid. Messages name no file.
 /// Errors: kLimit (kSideMax or kNodesMax exceeded), kInvalidInput (an axis without nodes).
 [[nodiscard]] Result<void> checkFlowSize(const std::array<std::uint64_t, 3>& size);
 
-/// Everything else that a FlowField must be.
-/// Errors: those of checkFlowSize, kInvalidInput (too few or too many nodes, an empty box, NaN or infinity,
-/// the message naming the first such node).
+/// Checks a whole field.
+/// Fails as checkFlowSize does, and with kInvalidInput (too few or too many nodes, an empty box, NaN or
+/// infinity: the message names the first such node).
 [[nodiscard]] Result<void> checkFlow(const FlowField& flow);
 
 /// The velocity at p, object units a second, by the operations of the shader in their order.

@@ -85,11 +85,69 @@ struct Cost {
     std::vector<double> emit, spawn, step, drawn;
 };
 
+/// Births a step that a capacity bears in its steady state.
+std::uint32_t steadyBirths(std::uint32_t capacity, std::uint32_t per_step) {
+    return std::min(per_step, capacity / 4);
+}
+
+/// The mean life that keeps nine of ten places taken, seconds.
+float steadyLife(std::uint32_t capacity, std::uint32_t per_step) {
+    return 0.9F * static_cast<float>(capacity) / (60.0F * static_cast<float>(per_step));
+}
+
+/// On to the steady state, in steps long enough to pass 1.5 lives in 32 of them.
+void fill(relief::ParticleSystem& particles, Emitter& emitter, float life) {
+    std::vector<Birth> births;
+    const double skip = 1.5 * static_cast<double>(life) / 32.0;
+    for (int i = 0; i < 32; ++i) {
+        births.clear();
+        emitter.emit(skip, particles.room(), births);
+        particles.spawn(births);
+        particles.step(static_cast<float>(skip));
+    }
+    glFinish();
+}
+
+/// Times a step, its call and its end.
+void timeStep(relief::ParticleSystem& particles, float dt, Cost& cost) {
+    const Clock::time_point step_begun = Clock::now();
+    const Cpu::time_point begun = Cpu::now();
+    particles.step(dt);
+    cost.step.push_back(msSince(begun));
+    glFinish();
+    cost.drawn.push_back(msSince(step_begun));
+}
+
+Cost costWithBirths(relief::ParticleSystem& particles, Emitter& emitter) {
+    Cost cost;
+    std::vector<Birth> births;
+    for (int i = 0; i < 24; ++i) {
+        births.clear();
+        Cpu::time_point begun = Cpu::now();
+        emitter.emit(static_cast<double>(kDt), particles.room(), births);
+        cost.emit.push_back(msSince(begun));
+        begun = Cpu::now();
+        particles.spawn(births);
+        cost.spawn.push_back(msSince(begun));
+        timeStep(particles, kDt, cost);
+    }
+    return cost;
+}
+
+/// The same steps without births: the difference is the births' own.
+Cost costWithout(relief::ParticleSystem& particles) {
+    Cost cost;
+    for (int i = 0; i < 12; ++i) {
+        timeStep(particles, 1e-6F, cost);
+    }
+    return cost;
+}
+
 Json benchCapacity(std::uint32_t capacity, std::uint32_t per_step) {
-    per_step = std::min(per_step, capacity / 4);
+    per_step = steadyBirths(capacity, per_step);
     EmitterSettings settings = fountain(60.0 * per_step);
-    // The mean life that keeps nine of ten places taken, spread so that indices come back in disorder.
-    const float life = 0.9F * static_cast<float>(capacity) / (60.0F * static_cast<float>(per_step));
+    // Spread so that indices come back in disorder.
+    const float life = steadyLife(capacity, per_step);
     settings.lifetime_min = 0.5F * life;
     settings.lifetime_max = 1.5F * life;
     auto particles = relief::ParticleSystem::create({.capacity = capacity});
@@ -97,54 +155,21 @@ Json benchCapacity(std::uint32_t capacity, std::uint32_t per_step) {
         return {{"capacity", capacity}, {"error", particles.error().message}};
     }
     Emitter emitter(settings, 1);
-    std::vector<Birth> births;
-    // As far as the steady state the CPU alone goes: in steps long enough to pass 1.5 lives in 32 of them.
-    const double skip = 1.5 * static_cast<double>(life) / 32.0;
-    for (int i = 0; i < 32; ++i) {
-        births.clear();
-        emitter.emit(skip, particles->room(), births);
-        particles->spawn(births);
-        particles->step(static_cast<float>(skip));
-    }
-    glFinish();
-    Cost cost;
-    for (int i = 0; i < 24; ++i) {
-        births.clear();
-        Cpu::time_point begun = Cpu::now();
-        emitter.emit(static_cast<double>(kDt), particles->room(), births);
-        cost.emit.push_back(msSince(begun));
-        begun = Cpu::now();
-        particles->spawn(births);
-        cost.spawn.push_back(msSince(begun));
-        const Clock::time_point step_begun = Clock::now();
-        begun = Cpu::now();
-        particles->step(kDt);
-        cost.step.push_back(msSince(begun));
-        glFinish();
-        cost.drawn.push_back(msSince(step_begun));
-    }
-    // The same steps without births: the difference is the births' own.
-    std::vector<double> step_without;
-    std::vector<double> drawn_without;
-    for (int i = 0; i < 12; ++i) {
-        const Clock::time_point step_begun = Clock::now();
-        const Cpu::time_point begun = Cpu::now();
-        particles->step(1e-6F);
-        step_without.push_back(msSince(begun));
-        glFinish();
-        drawn_without.push_back(msSince(step_begun));
-    }
+    fill(*particles, emitter, life);
+    const Cost cost = costWithBirths(*particles, emitter);
+    const Cost without = costWithout(*particles);
+    const double draw = median(cost.drawn) - median(without.drawn);
     Json json;
     json["capacity"] = capacity;
     json["births_per_step"] = per_step;
     json["alive"] = particles->counts().alive;
     json["ms_per_step"] = {{"emit", median(cost.emit)},
                            {"spawn", median(cost.spawn)},
-                           {"free_and_upload", median(cost.step) - median(step_without)},
-                           {"draw", median(cost.drawn) - median(drawn_without)}};
+                           {"free_and_upload", median(cost.step) - median(without.step)},
+                           {"draw", draw}};
     json["births_per_ms"] = {{"emit", per_step / median(cost.emit)},
                              {"spawn", per_step / median(cost.spawn)},
-                             {"draw", per_step / std::max(median(cost.drawn) - median(drawn_without), 1e-6)}};
+                             {"draw", per_step / std::max(draw, 1e-6)}};
     json["worst_ms"] = {{"emit", *std::max_element(cost.emit.begin(), cost.emit.end())},
                         {"spawn", *std::max_element(cost.spawn.begin(), cost.spawn.end())}};
     return json;
@@ -152,8 +177,8 @@ Json benchCapacity(std::uint32_t capacity, std::uint32_t per_step) {
 
 /// The bookkeeping of deaths alone, in its steady state: ns for a death pushed and popped.
 Json benchDeaths(std::uint32_t capacity, std::uint32_t per_step) {
-    per_step = std::min(per_step, capacity / 4);
-    const float life = 0.9F * static_cast<float>(capacity) / (60.0F * static_cast<float>(per_step));
+    per_step = steadyBirths(capacity, per_step);
+    const float life = steadyLife(capacity, per_step);
     relief::IndexAllocator allocator(capacity);
     relief::DeathQueue queue(capacity);
     relief::Pcg32 random(1);

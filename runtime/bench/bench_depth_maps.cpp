@@ -288,10 +288,7 @@ Result<Json> benchSet(const MapSet& set, Decode decode, const PictureMesh& mesh,
 Result<Json> bench(const char* path) {
     const auto context = RELIEF_TRY(GlContext::create());
     const auto mesh = RELIEF_TRY(loadPictureMesh(path));
-    std::vector<glm::uvec3> triangles;
-    for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) {
-        triangles.emplace_back(mesh.triangles[i], mesh.triangles[i + 1], mesh.triangles[i + 2]);
-    }
+    const std::vector<glm::uvec3> triangles = trianglesOf(mesh);
     auto gpu_mesh = GpuMesh::create(mesh.positions, triangles);
     auto renderer = DepthMapRenderer::create();
     const auto bare = BareMesh::create(mesh);

@@ -57,66 +57,66 @@ Result<void> measure(std::vector<Part>& parts) {
     return {};
 }
 
-Result<Json> bench(const std::string& path, std::uint32_t count) {
-    auto file = loadPictureMesh(path);
-    auto context = GlContext::create({});
-    if (!file || !context) {
-        return file ? forward(context) : forward(file);
-    }
-    const PictureMesh mesh = withNormals(*file, 4.0F);
-    std::vector<glm::uvec3> triangles;
-    for (std::size_t i = 0; i + 2 < mesh.triangles.size(); i += 3) {
-        triangles.emplace_back(mesh.triangles[i], mesh.triangles[i + 1], mesh.triangles[i + 2]);
-    }
-    Bounds bounds{mesh.positions.front(), mesh.positions.front()};
+/// A twist about the upright through the mesh's middle.
+Deformation twistOf(const PictureMesh& mesh) {
+    Bounds bounds;
     for (const glm::vec3& p : mesh.positions) {
-        bounds = {glm::min(bounds.min, p), glm::max(bounds.max, p)};
+        bounds.add(p);
     }
     Deformation twist;
     twist.amplitude = 0.3F;
     twist.center = bounds.center();
     twist.range_low = bounds.min.y - twist.center.y;
     twist.range_high = bounds.max.y - twist.center.y;
-    auto frames = RELIEF_TRY(liveFrames(deformedBounds(twist, mesh.positions)));
-    auto live = LiveCollider::create(mesh.positions, triangles, frames);
-    auto pass = DeformPass::create(twist, mesh.positions, mesh.normals);
-    auto gpu_mesh = GpuMesh::create(mesh.positions, triangles, {.keep_previous = true});
-    if (!live || !pass || !gpu_mesh) {
-        return !live ? forward(live) : !pass ? forward(pass) : forward(gpu_mesh);
-    }
-    ColliderBody body;
-    body.collider = &live->frames();
-    body.live = true;
-    auto textures = ColliderTextures::create({&body, 1});
-    auto particles = ParticleSystem::create({.capacity = count});
-    if (!textures || !particles) {
-        return !textures ? forward(textures) : forward(particles);
-    }
-    const ColliderInstance instance{&*textures};
-    RELIEF_TRY(particles->setColliders({&instance, 1}));
-    BenchScene scene = makeBenchScene(live->frames(), count);
+    return twist;
+}
+
+/// Everybody born in the collider's box, and for good.
+Result<ParticleSystem> makeParticles(const Collider& frames, const ColliderTextures& textures,
+                                     std::uint32_t count) {
+    auto particles = RELIEF_TRY(ParticleSystem::create({.capacity = count}));
+    RELIEF_TRY(particles.setCollider(&textures));
+    BenchScene scene = makeBenchScene(frames, count);
     for (Birth& birth : scene.births) {
         birth.lifetime = 1e6F;
     }
-    particles->setForces(scene.forces);
-    particles->spawn(scene.births);
+    particles.setForces(scene.forces);
+    particles.spawn(scene.births);
+    return particles;
+}
+
+Result<Json> bench(const std::string& path, std::uint32_t count) {
+    const auto file = RELIEF_TRY(loadPictureMesh(path));
+    const auto context = RELIEF_TRY(GlContext::create({}));
+    const PictureMesh mesh = withNormals(file, 4.0F);
+    const std::vector<glm::uvec3> triangles = trianglesOf(mesh);
+    const Deformation twist = twistOf(mesh);
+    auto frames = RELIEF_TRY(liveFrames(deformedBounds(twist, mesh.positions)));
+    auto live = RELIEF_TRY(LiveCollider::create(mesh.positions, triangles, frames));
+    auto pass = RELIEF_TRY(DeformPass::create(twist, mesh.positions, mesh.normals));
+    auto gpu_mesh = RELIEF_TRY(GpuMesh::create(mesh.positions, triangles, {.keep_previous = true}));
+    ColliderBody body;
+    body.collider = &live.frames();
+    body.live = true;
+    auto textures = RELIEF_TRY(ColliderTextures::create({&body, 1}));
+    auto particles = RELIEF_TRY(makeParticles(live.frames(), textures, count));
 
     double time = 0.0;
     const auto deform = [&]() -> Result<void> {
-        pass->run(time += kBenchDt);
+        pass.run(time += kBenchDt);
         return {};
     };
     std::vector<Part> parts{{"deform", deform, {}},
-                            {"positions", [&] { return gpu_mesh->setPositions(pass->buffer().name()); }, {}},
+                            {"positions", [&] { return gpu_mesh.setPositions(pass.buffer().name()); }, {}},
                             {"update",
                              [&]() -> Result<void> {
-                                 RELIEF_TRY(live->setPositions(pass->buffer().name()));
-                                 return live->update(*textures, 0);
+                                 RELIEF_TRY(live.setPositions(pass.buffer().name()));
+                                 return live.update(textures, 0);
                              },
                              {}},
                             {"step",
                              [&]() -> Result<void> {
-                                 particles->step(kBenchDt);
+                                 particles.step(kBenchDt);
                                  return {};
                              },
                              {}},
@@ -128,7 +128,7 @@ Result<Json> bench(const std::string& path, std::uint32_t count) {
         return {};
     };
     RELIEF_TRY(measure(parts));
-    Json json{{"device", (*context)->description()},
+    Json json{{"device", context->description()},
               {"triangles", triangles.size()},
               {"vertices", mesh.positions.size()},
               {"particles", count}};

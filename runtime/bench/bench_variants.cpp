@@ -53,8 +53,7 @@ Result<BenchSystem> makeSystem(const BenchScene& scene, Solids solids, Integrato
     }
     auto textures = RELIEF_TRY(makeTextures(scene, solids));
     system.textures = std::make_unique<ColliderTextures>(std::move(textures));
-    const ColliderInstance instance{system.textures.get()};
-    RELIEF_TRY(system.particles->setColliders({&instance, 1}));
+    RELIEF_TRY(system.particles->setCollider(system.textures.get()));
     return system;
 }
 

@@ -3,8 +3,7 @@
 //
 // Maps of one texel layout share a 2-D texture: RGBA32F for float, RGBA8 for fixed8 and cube, RGBA16UI for
 // front-back of either depth. Their texels, as shaderTexels() makes them, follow each other as they do in the
-// container, wrapped at the texture's width, so that the textures take the maps' bytes and, each, less than a
-// row more:
+// container, wrapped at the texture's width. So a texture takes the bytes of its maps and less than a row more:
 //
 //     bytes on the GPU < Σ texel bytes + Σ over the textures: width · texel size
 //
@@ -15,6 +14,7 @@
 // its texels moves: a rectangle for the front and one above it for the back, or six for a cube's faces.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -23,6 +23,8 @@
 
 #include "formats/base/result.h"
 #include "formats/collider.h"
+#include "runtime/collider/collider_block.h"
+#include "runtime/collider/map_layout.h"
 #include "runtime/collider/pose.h"
 #include "runtime/gl/gl_object.h"
 
@@ -33,8 +35,8 @@ struct ColliderBody {
     const Collider* collider = nullptr;  ///< for create() alone
     Pose pose;
     float restitution = 1.0F;  ///< factor of the particle's own, 0…1
-    float friction =
-        0.0F;  ///< ν, 0…1: what is left of the tangential speed is (1 − ν) of the particle's share
+    /// ν, 0…1: what is left of the tangential speed is (1 − ν) of the particle's share.
+    float friction = 0.0F;
     bool live = false;  ///< the collider's maps say where they look; their texels are drawn later
 };
 
@@ -62,7 +64,7 @@ class ColliderTextures {
     /// numbers), kUnsupported (no maps).
     [[nodiscard]] static Result<ColliderTextures> create(const Collider& collider);
     /// Uploads up to kBodiesMax of them, which share a world. The maps of those that are live are empty at
-    /// first. Errors: those above, kLimit (more bodies), kUsage (a scale that is not above 0).
+    /// first. Fails as above, and with kLimit (more bodies) and kUsage (a scale that is not above 0).
     [[nodiscard]] static Result<ColliderTextures> create(std::span<const ColliderBody> bodies);
 
     /// The poses at the end of the next step; those of the call before become those at its beginning. Call it
@@ -70,8 +72,8 @@ class ColliderTextures {
     /// bodies. Scales may not change.
     void setPoses(std::span<const Pose> poses);
 
-    /// Of the maps of a live body, in their order; none of another. The textures are this object's: ask again
-    /// after it has been moved.
+    /// One slot for each map of a live body, in their order; none for another body. The textures are this
+    /// object's: ask again after it has been moved.
     [[nodiscard]] std::vector<LiveSlot> liveSlots(std::size_t body) const;
     /// Says that the texels of a live body have changed.
     void noteLiveUpdate() { ++revision_; }
@@ -88,40 +90,22 @@ class ColliderTextures {
     [[nodiscard]] std::uint64_t revision() const { return revision_; }
     [[nodiscard]] int mapCount() const { return map_count_; }
     [[nodiscard]] std::size_t bytes() const { return bytes_; }
-    /// "#define RELIEF_MAP_CAPACITY n\n" for makeProgram: the length of the block's array.
+    /// Lines for makeProgram (collider_block.h).
     [[nodiscard]] const std::string& defines() const { return defines_; }
 
   private:
-    /// A body's share of the block, std140.
-    struct BlockBody {
-        glm::vec4 row[3];
-        glm::vec4 before[3];
-        glm::vec4 response;
-        std::int32_t maps[4];
-    };
-    static_assert(sizeof(BlockBody) == 128);
-
-    /// A map of the block, and where its body wants it.
-    struct PlacedMap {
-        const DepthMap* map = nullptr;
-        bool live = false;
-    };
     [[nodiscard]] static Result<ColliderTextures> upload(std::span<const PlacedMap> maps,
                                                          std::vector<BlockBody> bodies);
-    [[nodiscard]] const GlTexture& textureOf(std::size_t layout) const;
+    void makeTextures(const MapLayout& layout);
+    void uploadStored(const DepthMap& map, const MapPlace& place, const MapLayout& layout);
+    /// A live map before its first update: nothing on any ray, and nothing moves.
+    void clearLive(const DepthMap& map, const MapPlace& place);
+    void makeBlock(std::span<const std::byte> bytes);
 
-    /// Of each map: the layout, and where its texels and its motion begin; of live ones alone.
-    struct LivePlace {
-        std::size_t layout = 0;
-        GLint x = 0, y = 0, motion_x = 0, motion_y = 0;
-    };
-    std::vector<LivePlace> live_places_;
-
+    std::vector<MapPlace> places_;  // of the maps
     std::vector<BlockBody> bodies_;
     std::uint64_t revision_ = 0;
-    GlTexture float_maps_;
-    GlTexture fixed_maps_;
-    GlTexture front_back_maps_;
+    std::array<GlTexture, kTexelKinds> textures_;
     GlBuffer block_;
     int map_count_ = 0;
     std::size_t bytes_ = 0;

@@ -25,8 +25,7 @@ class DeformPass {
 
     /// Needs a current context, as run() does.
     /// \param positions  at rest, object units, finite; at least one.
-    /// \param normals    as many, of length 1 or zero; or none where neither a wobble nor
-    /// kPositionsAndNormals
+    /// \param normals    as many, of length 1 or zero; or none where neither a wobble nor kPositionsAndNormals
     ///                   needs them.
     /// Errors: kUsage (checkDeformation; normals that are missing; no vertex), kFailure (the driver's
     /// compiler).
@@ -36,15 +35,16 @@ class DeformPass {
                                                    Output output = Output::kPositions);
     /// A deformation of the caller's own.
     /// \param glsl  GLSL ES 3.00 that defines `vec3 reliefDeform(vec3 p, float time)`: where the point p of
-    /// the
-    ///              mesh at rest is at a time in seconds. Errors: as above; the driver's log.
+    ///              the mesh at rest is at a time in seconds.
+    /// Fails as above; the driver's log counts lines from the beginning of `glsl`.
     [[nodiscard]] static Result<DeformPass> create(const std::string& glsl,
                                                    std::span<const glm::vec3> positions,
                                                    std::span<const glm::vec3> normals,
                                                    Output output = Output::kPositions);
 
     /// Writes all vertices as they are at `time`, in seconds, into buffer(). Does not wait. Restores the GL
-    /// state; no transform feedback of the caller's may be active. \param pose  comes after the deformation.
+    /// state; no transform feedback of the caller's may be active.
+    /// \param pose  comes after the deformation.
     void run(double time, const Pose& pose = {});
 
     /// Of bytes(), rewritten by every run().

@@ -3,28 +3,24 @@
 //
 //     twist   p turns about the line (center, axis) by angle · share(s)         s = (p − center)·axis
 //     bend    the beam along `along` is wound, over the range of s, on a circle about an axis parallel to
-//     `axis`;
-//             s = (p − center)·along. What lies beyond the range goes on straight. Lengths on the line
-//             through `center` stay (Barr, Global and Local Deformations of Solid Primitives, SIGGRAPH 1984,
-//             section 3.4)
-//     wobble  p + n · amplitude/3 · Σ_k sin(2π (p_k / wavelength − r_k frequency·t) + phase + k), k = 0, 1, 2
-//     for
-//             x, y, z; r = (1, 1.25, 0.8); n the normal of the vertex
+//             `axis`; s = (p − center)·along. What lies beyond the range goes on straight. Lengths on the
+//             line through `center` stay (Barr, Global and Local Deformations of Solid Primitives, SIGGRAPH
+//             1984, section 3.4)
+//     wobble  p + n · amplitude/3 · Σ_k sin(2π (p_k / wavelength − r_k frequency·t) + phase + k), for
+//             k = 0, 1, 2 of x, y, z; r = (1, 1.25, 0.8); n the normal of the vertex
 //
-//     angle = amplitude · sin(2π frequency·t + phase)      share: from 0 at range_low to 1 at range_high,
-//     clamped
+//     angle = amplitude · sin(2π frequency·t + phase)
+//     share   from 0 at range_low to 1 at range_high, clamped
 #pragma once
 
-#include <cstdint>
 #include <glm/vec3.hpp>
 #include <span>
 
 #include "formats/base/result.h"
 #include "formats/collider.h"
+#include "shaders/shader_constants.h"
 
 namespace relief {
-
-enum class DeformKind : std::uint8_t { kBend = 0, kTwist = 1, kWobble = 2 };
 
 struct Deformation {
     DeformKind kind = DeformKind::kTwist;

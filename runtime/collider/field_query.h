@@ -17,14 +17,15 @@ namespace relief {
 class FieldQuery {
   public:
     /// Needs a current context, of any GlApi; uploads the collider.
-    /// Errors: those of ColliderTextures::create, makeProgram and makeFramebuffer.
+    /// Fails as ColliderTextures::create and makeProgram do.
     [[nodiscard]] static Result<FieldQuery> create(const Collider& collider);
 
-    /// The same of textures that there are: of one collider, or of bodies in their world, some of which may
-    /// be live. They must outlive this. Errors: those of makeProgram and makeFramebuffer.
+    /// Uses textures that are there already: of one collider, or of bodies in their world, some of which may be
+    /// live. They must outlive this. Fails as makeProgram does.
     [[nodiscard]] static Result<FieldQuery> create(const ColliderTextures& textures);
 
-    /// One sample a point, in order. Blocks until the GPU is done.
+    /// One sample a point, in order. Waits for the GPU.
+    /// Errors: kLimit (no room on the GPU), kUnsupported, kFailure.
     [[nodiscard]] Result<std::vector<FieldSample>> evaluate(std::span<const glm::vec3> points) const;
 
   private:

@@ -7,9 +7,8 @@
 //     ColliderTextures textures = *ColliderTextures::create({&body, 1});   // static bodies may stand beside
 //     it each step:  live.setPositions(…);  live.update(textures, 0);  particles.step(dt);
 //
-//     bytes on the GPU = those of GpuMesh and of ColliderTextures, and a target for each size and format of
-//     maps:
-//                        44 to 56 a texel
+//     bytes on the GPU = those of GpuMesh and of ColliderTextures, and 44 to 56 a texel of a target for each
+//                        size and format of maps
 #pragma once
 
 #include <cstdint>
@@ -35,12 +34,12 @@ namespace relief {
 class LiveCollider {
   public:
     /// Needs a current context, as every call does; every call restores the GL state that it touches, and
-    /// none waits. \param positions, triangles  as GpuMesh::create wants them: the mesh before its first
-    /// change. \param frames  what maps to render: format, compare, decode, size and place of each; texels
-    /// are not looked at.
-    ///                A map's box must hold the mesh at all times: what leaves it is cut off, and where the
-    ///                map says that it encloses everything, it says of what is cut off that it is free.
-    /// Errors: those of GpuMesh, DepthMapTarget and DepthMapRenderer; kUsage (no map).
+    /// none waits.
+    /// \param positions, triangles  as GpuMesh::create wants them: the mesh before its first change.
+    /// \param frames  what maps to render: format, compare, decode, size and place of each; their texels are
+    ///                ignored. A map's box must hold the mesh at all times: what leaves it is cut off, and a
+    ///                map that encloses everything then calls that free.
+    /// Fails as GpuMesh, DepthMapTarget and DepthMapRenderer do, and with kUsage (no map).
     [[nodiscard]] static Result<LiveCollider> create(std::span<const glm::vec3> positions,
                                                      std::span<const glm::uvec3> triangles, Collider frames);
 

@@ -4,10 +4,12 @@
 #include <cstring>
 #include <span>
 
+#include "formats/normal_index.h"
+
 namespace relief {
 namespace {
 
-constexpr std::byte kLastIndex{254};
+constexpr std::byte kLastIndex{2 * kNormalHalfRange};
 
 void clampIndices(std::span<std::byte> normal) {
     for (std::byte& index : normal) {
@@ -19,6 +21,9 @@ void clampIndices(std::span<std::byte> normal) {
 
 std::vector<std::byte> shaderTexels(const DepthMap& map) {
     std::vector<std::byte> texels = map.texels;
+    if (map.format == MapFormat::kFloat32) {  // whose normals are no indices
+        return texels;
+    }
     const std::size_t size = texelSize(map.format);
     for (std::size_t at = 0; at + size <= texels.size(); at += size) {
         const std::span<std::byte> texel(texels.data() + at, size);

@@ -8,12 +8,12 @@
 
 namespace relief {
 
-/// The map's texels, where they let the shader skip a test that every particle would pay for. No vote
-/// changes:
+/// The map's texels, changed where that spares every particle a test in the shader. No vote changes:
 ///
 /// - a normal index 255, which reads as 254, is 254;
 /// - in a front-back map of planes, an end that is empty beside one that is not has the other's plane: two
-///   equal votes are one.
+///   equal votes are one;
+/// - texels of a float map are as they were.
 [[nodiscard]] std::vector<std::byte> shaderTexels(const DepthMap& map);
 
 }  // namespace relief

@@ -13,10 +13,6 @@
 namespace relief {
 namespace {
 
-/// Surfaces this much of the depth range outside the volume are drawn, and their depth clamped: one in a face
-/// of the volume is met in spite of rounding. As kDepthSlack of bake/plan/view.h.
-constexpr const char* kSlack = "#define RELIEF_SLACK 1e-6\n";
-
 constexpr GLint kPositionUnit = 0;
 constexpr GLint kPlaneUnit = 1;
 constexpr GLint kCornerUnit = 2;
@@ -103,7 +99,7 @@ Result<void> checkWindow(const DepthMapFrame& frame, const TexelWindow& window, 
 
 /// What a program is compiled for.
 std::string definesOf(const DepthMapFrame& frame, bool motion) {
-    std::string defines = kSlack;
+    std::string defines;
     const auto define = [&](const char* name) { defines.append("#define ").append(name).append(" 1\n"); };
     switch (frame.format) {
         case MapFormat::kFloat32:
@@ -191,6 +187,29 @@ void clearTexels(const DepthMapTarget& target) {
         const GLfloat still[4] = {0.0F, 0.0F, 0.0F, 0.0F};
         glClearBufferfv(GL_COLOR, 1, still);
         glClearBufferfv(GL_COLOR, 2, still);
+    }
+}
+
+/// Viewport and scissor round the window at (x, y) of the target, which is cleared.
+void beginWindow(const DepthMapFrame& frame, const TexelWindow& window, const DepthMapTarget& target,
+                 std::uint32_t x, std::uint32_t y) {
+    const auto corner_x = static_cast<GLint>(x);
+    const auto corner_y = static_cast<GLint>(y);
+    const auto width = static_cast<GLsizei>(window.width);
+    const auto height = static_cast<GLsizei>(window.height);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer());
+    glViewport(corner_x, corner_y, width, height);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(corner_x, corner_y, width, height);
+    clearTexels(target);
+    if (!isCube(frame) && frame.decode == Decode::kPlane) {
+        // Planes leave the border empty.
+        const std::uint32_t left = std::max(window.x, 1U);
+        const std::uint32_t below = std::max(window.y, 1U);
+        const std::uint32_t right = std::max(std::min(window.x + window.width, frame.width - 1), left);
+        const std::uint32_t above = std::max(std::min(window.y + window.height, frame.height - 1), below);
+        glScissor(static_cast<GLint>(x + (left - window.x)), static_cast<GLint>(y + (below - window.y)),
+                  static_cast<GLsizei>(right - left), static_cast<GLsizei>(above - below));
     }
 }
 
@@ -311,22 +330,7 @@ Result<void> DepthMapRenderer::render(GpuMesh& mesh, const DepthMapFrame& frame,
     if (motion) {
         useTexture(kPreviousUnit, mesh.previousPositions());
     }
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer());
-    glViewport(static_cast<GLint>(x), static_cast<GLint>(y), static_cast<GLsizei>(window.width),
-               static_cast<GLsizei>(window.height));
-    glEnable(GL_SCISSOR_TEST);
-    glScissor(static_cast<GLint>(x), static_cast<GLint>(y), static_cast<GLsizei>(window.width),
-              static_cast<GLsizei>(window.height));
-    clearTexels(target);
-    if (!isCube(frame) && frame.decode == Decode::kPlane) {
-        // Planes leave the border empty.
-        const std::uint32_t left = std::max(window.x, 1U);
-        const std::uint32_t below = std::max(window.y, 1U);
-        const std::uint32_t right = std::max(std::min(window.x + window.width, frame.width - 1), left);
-        const std::uint32_t above = std::max(std::min(window.y + window.height, frame.height - 1), below);
-        glScissor(static_cast<GLint>(x + (left - window.x)), static_cast<GLint>(y + (below - window.y)),
-                  static_cast<GLsizei>(right - left), static_cast<GLsizei>(above - below));
-    }
+    beginWindow(frame, window, target, x, y);
     glUseProgram(program->program.name());
     setUniforms(*program, mesh, frame, window, x, y);
     glEnable(GL_DEPTH_TEST);

@@ -31,14 +31,16 @@ class DepthMapTarget {
     [[nodiscard]] GLuint texels() const { return texels_.name(); }
     /// How far the surface has moved between the mesh's previous and its present positions, object units. Of
     /// end e (0: the surface of maps that keep one, and the front; 1: the back) x is component e of texture
-    /// 0, y component 2 + e of it, z component e of texture 1. 0 where the texel is empty. \param i  0 or 1;
-    /// name 0 in a target without motion.
+    /// 0, y component 2 + e of it, z component e of texture 1. 0 where the texel is empty.
+    /// \param i  0 or 1.
+    /// \return name 0 in a target without motion.
     [[nodiscard]] GLuint motion(int i) const { return motion_[i].name(); }
     /// All attachments; to read from, and to draw to by the renderer.
     [[nodiscard]] GLuint framebuffer() const { return framebuffer_.name(); }
 
     /// Reads a rectangle back, rows from y on, tightly packed, as the container stores them. Waits for the
-    /// GPU. \param bytes  width · height · texelSize(format()).
+    /// GPU.
+    /// \param bytes  width · height · texelSize(format()).
     [[nodiscard]] Result<void> read(std::uint32_t x, std::uint32_t y, std::uint32_t width,
                                     std::uint32_t height, std::span<std::byte> bytes) const;
 

@@ -196,8 +196,8 @@ Result<void> GpuMesh::createTextures(std::span<const glm::uvec3> triangles) {
     return {};
 }
 
-/// Fills the texture of the present positions. \param data  in memory, or, with a pixel unpack buffer bound,
-/// an offset into it.
+/// Fills the texture of the present positions.
+/// \param data  in memory, or, with a pixel unpack buffer bound, an offset into it.
 void GpuMesh::upload(const void* data) {
     const std::uint32_t width = 1U << vertex_shift_;
     const std::uint32_t rows = vertex_count_ >> vertex_shift_;

@@ -39,7 +39,8 @@ class GpuMesh {
                                                 std::span<const glm::uvec3> triangles,
                                                 const GpuMeshOptions& options = {});
 
-    /// Moves the vertices. \param positions  finite, as many as at first.
+    /// Moves the vertices.
+    /// \param positions  finite, as many as at first.
     /// Errors: kUsage (another number), kInvalidInput (not finite); the mesh then stays as it was.
     [[nodiscard]] Result<void> setPositions(std::span<const glm::vec3> positions);
     /// The same from a buffer of the GPU: tightly packed triples of floats from `offset` bytes on, a multiple

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "runtime/gl/gl_fault.h"
+#include "shaders/shader_constants.h"
 #include "shaders/shader_sources.h"
 
 namespace relief {
@@ -28,11 +29,7 @@ Result<std::string> resolveIncludes(std::string_view name, std::vector<std::stri
             continue;
         }
         const std::string child(line.substr(kDirective.size()));
-        bool seen = false;
-        for (const std::string& other : included) {
-            seen = seen || other == child;
-        }
-        if (!seen) {
+        if (std::find(included.begin(), included.end(), child) == included.end()) {
             included.push_back(child);
             std::string nested = RELIEF_TRY(resolveIncludes(child, included));
             text += nested;
@@ -59,6 +56,7 @@ Result<GLuint> compile(GLenum stage, std::string_view file, std::string_view def
     const std::string body = RELIEF_TRY(resolveIncludes(file, included));
     // highp everywhere: state and depth are 32-bit floats, and ES 3.0 requires highp in fragment shaders.
     std::string source = isGles() ? "#version 300 es\n" : "#version 330 core\n";
+    source += shaderConstants();
     source += defines;
     source +=
         "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n"

@@ -84,17 +84,18 @@ using GlRenderbuffer = GlName<gl_detail::deleteRenderbuffer>;
 [[nodiscard]] Result<GlFramebuffer> makeFramebuffer(std::span<const GLuint> color_textures,
                                                     GLuint depth_texture = 0);
 
-/// Compiles and links a program from GLSL ES 3.00 subset sources. The version line and precision statements
-/// are put in front by what the current context is: `#version 330 core` or `#version 300 es`.
+/// Compiles and links a program from GLSL ES 3.00 subset sources. In front come the version line of the current
+/// context, `#version 330 core` or `#version 300 es`, shaderConstants() and precision statements.
 /// \param vertex, fragment  file names in shaders/, for example "quad.vert".
-/// \param defines  lines put behind the version line, such as "#define RELIEF_X 1\n".
-/// Errors: kFailure with the driver's log and the file's name.
+/// \param defines  lines put behind the constants, such as "#define RELIEF_X 1\n".
+/// Fails with kFailure, the driver's log and the file's name.
 [[nodiscard]] Result<GlProgram> makeProgram(std::string_view vertex, std::string_view fragment,
                                             std::string_view defines = {});
 
 /// A program of a vertex shader alone, whose outputs transform feedback writes, interleaved in their order.
 /// \param appended  GLSL of the caller's that is put behind the vertex shader; the log's lines count from its
-///                  beginning. Errors: those of makeProgram.
+///                  beginning.
+/// Fails as makeProgram does.
 [[nodiscard]] Result<GlProgram> makeFeedbackProgram(std::string_view vertex,
                                                     std::span<const char* const> outputs,
                                                     std::string_view defines = {},

@@ -22,8 +22,8 @@ using StageTimes = std::array<StageTime, kStageCount>;
 
 class GpuTimer : public StageTimer {
   public:
-    static constexpr int kQueries =
-        64;  ///< runs whose result may be outstanding; beyond it only the CPU's is taken
+    /// Runs whose result may be outstanding; beyond it only the CPU's is taken.
+    static constexpr int kQueries = 64;
 
     /// Needs a current context, as every call does. Without GL_TIME_ELAPSED (GL ES without
     /// EXT_disjoint_timer_query, or a GL whose counter has no bits) only the CPU's times are taken.

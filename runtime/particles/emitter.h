@@ -58,9 +58,9 @@ struct EmitterSettings {
 
     double start = 0.0;  ///< seconds before anything is born, ≥ 0
     double rate = 0.0;   ///< births a second, ≥ 0
-    double duration =
-        std::numeric_limits<double>::infinity();  ///< seconds from the start until no more births come, > 0
-    std::uint64_t burst = 0;                      ///< births at the very start, on top of the rate
+    /// Seconds from the start until no more births come, > 0.
+    double duration = std::numeric_limits<double>::infinity();
+    std::uint64_t burst = 0;   ///< births at the very start, on top of the rate
     double burst_every = 0.0;  ///< seconds from burst to burst, ≥ 0; 0: only the one at the start
 
     glm::vec3 velocity{0.0F};         ///< of every birth
@@ -88,9 +88,10 @@ class Emitter {
     /// The births of the next `dt` seconds, in the order of time, births by rate before a burst of the same
     /// moment: after time t, with s = min(t − start, duration), burst (1 + ⌊s / burst_every⌋) + ⌊rate · s⌋
     /// births have been asked for in all, however t was cut into steps (a burst at the end of the duration is
-    /// not). The n-th birth that is made is the same but for its age, too. \param room    at most so many are
-    /// made: what the particle system has place for. \param births  they are added at its end. \return how
-    /// many were asked for but found no room; they are not made up for later.
+    /// not). The n-th birth that is made is the same but for its age, too.
+    /// \param room    at most so many are made: what the particle system has place for.
+    /// \param births  they are added at its end.
+    /// \return how many were asked for but found no room; they are not made up for later.
     std::uint64_t emit(double dt, std::uint64_t room, std::vector<Birth>& births);
 
     [[nodiscard]] const EmitterSettings& settings() const { return settings_; }
@@ -114,7 +115,8 @@ class Emitter {
     std::uint64_t bursts_ = 0;
 };
 
-/// emit() of each in turn: where there is too little room, the earlier ones take it. \return the sum.
+/// emit() of each in turn: where there is too little room, the earlier ones take it.
+/// \return the sum.
 std::uint64_t emitAll(std::span<Emitter> emitters, double dt, std::uint64_t room, std::vector<Birth>& births);
 
 }  // namespace relief

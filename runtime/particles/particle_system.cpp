@@ -12,8 +12,8 @@
 namespace relief {
 namespace {
 
-// A dead particle, as step.glsl writes it.
-constexpr std::array<float, 4> kDeadPosition{0.0F, -1e30F, 0.0F, -1.0F};
+// A dead particle, as step_state.glsl writes it.
+constexpr std::array<float, 4> kDeadPosition{0.0F, kDeadHeight, 0.0F, kDeadCollisions};
 constexpr std::array<float, 4> kZero{};
 
 // Below every floor and every particle, and yet finite when a height is subtracted from it.
@@ -193,14 +193,9 @@ Result<void> ParticleSystem::setSweep(float length) {
     return remakeStepIfNeeded();
 }
 
-Result<void> ParticleSystem::setColliders(std::span<const ColliderInstance> colliders) {
-    if (colliders.size() > 1) {
-        return fail(ErrorCode::kUnsupported, "a particle system takes one collider, not " +
-                                                 std::to_string(colliders.size()) +
-                                                 "; bake them into one collider");
-    }
+Result<void> ParticleSystem::setCollider(const ColliderTextures* collider) {
     const PassState state;
-    return remakeStep(colliders.empty() ? nullptr : colliders.front().textures);
+    return remakeStep(collider);
 }
 
 Result<void> ParticleSystem::setAir(const AirSettings& air) {
@@ -372,14 +367,14 @@ Result<RawState> ParticleSystem::readRaw() const {
             return forward(done);
         }
     }
-    // What the shader would take: step.glsl.
+    // What the shader would take: step_state.glsl.
     for (std::size_t i = 0; verlet() && i < raw.position.size(); i += 4) {
         const float rate = rateBefore();
         for (std::size_t k = i; k < i + 3; ++k) {
             raw.velocity[k] = (raw.position[k] - raw.velocity[k]) * rate;
         }
         const float collisions = std::floor(raw.position[i + 3]);
-        raw.velocity[i + 3] = 16.0F * (raw.position[i + 3] - collisions);
+        raw.velocity[i + 3] = kContactParts * (raw.position[i + 3] - collisions);
         raw.position[i + 3] = collisions;
     }
     return raw;

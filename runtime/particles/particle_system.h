@@ -42,12 +42,6 @@ struct Collision {
     float friction_threshold = 0.0F;
 };
 
-/// Colliders among the particles: one in its own object space, or bodies in a world, which the particles then
-/// live in. It must outlive its use by the system.
-struct ColliderInstance {
-    const ColliderTextures* textures = nullptr;
-};
-
 /// How positions follow from velocities; both are of first order, and alike but for rounding.
 enum class Integrator : std::uint8_t {
     kEuler,   ///< semi-implicit: v' = v + dt a, P' = P + dt v'
@@ -66,13 +60,6 @@ struct ParticleCounts {
     std::uint64_t refused = 0;  ///< births without a free index
     std::uint32_t alive = 0;
     std::uint32_t extent = 0;  ///< the largest live index + 1
-};
-
-enum class Contact : std::uint8_t {
-    kNone = 0,
-    kCollided = 1,
-    kCaught = 2,
-    kStopped = 3,  ///< at rest for good (OnCollision::kStop)
 };
 
 /// One live particle, read back.
@@ -105,10 +92,11 @@ class ParticleSystem {
     /// Errors: kUsage (capacity, epoch), kLimit (above what this GL takes), kUnsupported, kFailure.
     [[nodiscard]] static Result<ParticleSystem> create(const ParticleSystemOptions& options = {});
 
-    /// What the particles collide with from the next step on; compiles the step for it. One instance at most,
-    /// which may hold several bodies.
-    /// Errors: kUnsupported (more than one), kFailure (the driver's compiler).
-    [[nodiscard]] Result<void> setColliders(std::span<const ColliderInstance> colliders);
+    /// What the particles collide with from the next step on; compiles the step for it. The particles live in
+    /// the object space of a single collider, or in the world of several bodies.
+    /// \param collider  must outlive its use by the system; null: nothing.
+    /// Errors: kFailure (the driver's compiler).
+    [[nodiscard]] Result<void> setCollider(const ColliderTextures* collider);
     void setForces(const Forces& forces) { forces_ = forces; }
     /// One type of particles, without radius, that bounces.
     void setCollision(const Collision& collision);
@@ -119,19 +107,18 @@ class ParticleSystem {
     [[nodiscard]] Result<void> setTypes(std::span<const ParticleType> types);
     /// Above 0 a step tests its way in pieces no longer than this, world units, and never ends inside what it
     /// did not begin in: nothing crosses a body at rest that is thicker than this. What moves farther than
-    /// StepPass::kSweepPieces of them in a step is slowed down. 0: only both ends are tested, as in the
-    /// paper. Errors: kUsage, kFailure (the driver's compiler).
+    /// StepPass::kSweepPieces of them in a step is slowed down. 0: only both ends are tested, as in the paper.
+    /// Errors: kUsage, kFailure (the driver's compiler).
     [[nodiscard]] Result<void> setSweep(float length);
-    /// Moving air and fields. Its wind takes the place of Forces::wind; its viscosity is not used: Forces has
-    /// its own.
-    /// Errors: those of AirBlock::create, kFailure (the driver's compiler).
+    /// Moving air and fields. Its wind takes the place of Forces::wind; its viscosity is ignored, as Forces has
+    /// one. Fails as AirBlock::create does, and with kFailure (the driver's compiler).
     [[nodiscard]] Result<void> setAir(const AirSettings& air);
     /// A floor: everything below this height is solid, in union with the collider. nullopt: none.
     void setGround(std::optional<float> height) { ground_ = height; }
 
     /// Gives birth at the start of the next step; what has an age then has moved freely, under the forces,
-    /// since its own birth. Texels without a particle are taken in ascending order. \return how many found a
-    /// place; the rest are refused and counted.
+    /// since its own birth. Texels without a particle are taken in ascending order.
+    /// \return how many found a place; the rest are refused and counted.
     std::size_t spawn(std::span<const Birth> births);
 
     /// Moves everything by `dt` seconds, > 0. Restores the GL state that it touches (runtime/INTEGRATE.md).

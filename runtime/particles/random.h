@@ -37,7 +37,8 @@ class Pcg32 {
         // This form cannot overflow where high − low would, and the clamp keeps rounding inside.
         return std::clamp((1.0F - t) * low + t * high, low, high);
     }
-    /// Uniform in 0 … count − 1, without bias (Lemire 2019). \param count  at least 1.
+    /// Uniform in 0 … count − 1, without bias (Lemire 2019).
+    /// \param count  at least 1.
     std::uint32_t below(std::uint32_t count);
 
   private:

@@ -20,7 +20,7 @@ constexpr GLuint64 kPatience = 10'000'000'000;  // nanoseconds
 
 /// Texels after a pass over so many.
 std::uint32_t reduced(std::uint32_t side) {
-    return (side + 3) / 4;
+    return (side + kReducedSide - 1) / kReducedSide;
 }
 
 void useTexture(int unit, const GlTexture& texture) {
@@ -184,7 +184,8 @@ std::optional<StatisticsSample> Statistics::collect() {
     sample.in_contact = static_cast<std::uint32_t>(values[1] + values[2]);
     sample.caught = static_cast<std::uint32_t>(values[2]);
     sample.energy = static_cast<double>(values[3]);
-    sample.collisions = static_cast<std::uint64_t>(values[4]) + 4096 * static_cast<std::uint64_t>(values[5]);
+    sample.collisions =
+        static_cast<std::uint64_t>(values[4]) + kCollisionsHigh * static_cast<std::uint64_t>(values[5]);
     sample.max_speed = std::sqrt(values[6]);
     return sample;
 }

@@ -1,5 +1,5 @@
-// The mesh that a collider was baked from, on the GPU, for the collider's picture: it has the detail that
-// depth maps leave out.
+// The mesh that a collider was baked from, on the GPU, for the collider's picture: it has the detail that depth maps
+// leave out.
 //
 //     bytes on the GPU = 24 · vertices + 12 · triangles
 #pragma once

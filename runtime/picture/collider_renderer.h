@@ -32,7 +32,7 @@ class ColliderRenderer {
                                                          const ColliderMesh* mesh = nullptr);
 
     /// Fills the target's colour, in linear light, and its depth.
-    /// Errors: kUnsupported, kLimit (the target's size).
+    /// Errors: kUnsupported, kLimit (the target's size, no room), kFailure.
     [[nodiscard]] Result<void> draw(const Camera& camera, const ColliderStyle& style,
                                     const RenderTarget& target);
 
@@ -50,7 +50,7 @@ class ColliderRenderer {
         ColliderStyle style;
         GLsizei width = 0;
         GLsizei height = 0;
-        std::uint64_t revision = 0;  // of the poses
+        std::uint64_t revision = 0;  // ColliderTextures::revision()
         friend bool operator==(const Drawn&, const Drawn&) = default;
     };
 

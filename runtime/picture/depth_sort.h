@@ -2,8 +2,7 @@
 // odd-even merge sort in fragment passes, spread over as many frames as one likes (paper, section 3.4).
 // Nothing is read back and nothing waits for the GPU.
 //
-//     bytes on the GPU = 16 · texels, texels = capacity rounded up to a power of two (and whole rows of
-//     kWidth):
+//     bytes on the GPU = 16 · texels, texels = capacity rounded up to a power of two (and to whole rows of kWidth):
 //         order  2 × RG32UI (double-buffered)    index of a particle, key
 //
 // What is sorted. The ranks 0…count()−1 of order(), a power of two, hold every index 0…count()−1 once:
@@ -56,12 +55,10 @@ class DepthSorter {
     /// Computes the keys afresh, then makes the next passes of the sequence; after its last pass the next one
     /// begins. To be called after every step of the particles that is drawn. Restores the GL state that it
     /// touches.
-    /// \param positions  RGBA32F, particle i at texel (i mod width, i / width): xyz in object space, w < 0
-    /// for
+    /// \param positions  RGBA32F, particle i at texel (i mod width, i / width): xyz in object space, w < 0 for
     ///                   the dead. Not kept.
     /// \param width      texels in a row of `positions`, > 0.
-    /// \param extent     the particles are those of the indices below it. At most the capacity; what is
-    /// beyond
+    /// \param extent     the particles are those of the indices below it. At most the capacity; what is beyond
     ///                   that is left out.
     /// \param eye        object space.
     /// \param passes     any number; 0 refreshes the keys alone. See passesPerFrame().

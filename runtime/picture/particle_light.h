@@ -17,8 +17,9 @@ class ParticleLight {
     [[nodiscard]] static Result<ParticleLight> create(const ColliderView& collider);
 
     /// Fills texture() for the particles below the extent. Called within a PassState of the caller's: binds
-    /// units 0–5, the framebuffer and the viewport, and leaves them so. \param looks  the texture that
-    /// shaders/look.glsl reads. Errors: kUnsupported (float textures that cannot be drawn to).
+    /// units 0–5, the framebuffer and the viewport, and leaves them so.
+    /// \param looks  the texture that shaders/look.glsl reads.
+    /// Errors: kLimit (no room), kUnsupported (float textures that cannot be drawn to).
     [[nodiscard]] Result<void> update(const ParticleSystem& particles, const GlTexture& looks);
 
     /// x: the share of the sun seen; yzw: the sky's light. Particle i lies where it does in the state

@@ -98,10 +98,10 @@ void packRow(const ParticleLook& look, const LookDefaults& defaults, glm::vec4* 
     row[1] = {look.lit ? 1.0F : 0.0F, look.fade_in.value_or(defaults.fade_in),
               look.fade_out.value_or(defaults.fade_out), static_cast<float>(ages.size())};
     for (std::size_t k = 0; k < ages.size(); ++k) {
-        row[2 + 2 * k] = {ages[k], valueAt(look.size, ages[k], defaults.size),
-                          valueAt(look.opacity, ages[k], defaults.opacity),
-                          valueAt(look.rotation, ages[k], 0.0F)};
-        row[3 + 2 * k] = glm::vec4(valueAt(color, ages[k], plain), 0.0F);
+        glm::vec4* const key = row + kLookHeadTexels + kLookKeyTexels * k;
+        key[0] = {ages[k], valueAt(look.size, ages[k], defaults.size),
+                  valueAt(look.opacity, ages[k], defaults.opacity), valueAt(look.rotation, ages[k], 0.0F)};
+        key[1] = glm::vec4(valueAt(color, ages[k], plain), 0.0F);
     }
 }
 

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "formats/base/result.h"
+#include "shaders/shader_constants.h"
 
 namespace relief {
 
@@ -62,8 +63,8 @@ struct LookDefaults {
 
 inline constexpr std::size_t kLooksMax = 16;
 inline constexpr std::size_t kLookKeysMax = 8;  ///< of one track
-/// Texels of a row: two, and two for each age that any of the four tracks can have.
-inline constexpr std::size_t kLookTexels = 2 + 2 * 4 * kLookKeysMax;
+/// Texels of a row: the head, and those of a key for each age that any of the four tracks can have.
+inline constexpr std::size_t kLookTexels = kLookHeadTexels + kLookKeyTexels * 4 * kLookKeysMax;
 
 /// A track at an age; `otherwise` where it is empty.
 template <class T>

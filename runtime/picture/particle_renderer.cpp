@@ -18,8 +18,6 @@ constexpr std::array<const char*, 7> kSamplers{"u_position", "u_birth", "u_looks
 // A smaller sprite would miss the centres of most pixels.
 constexpr float kPixelsMin = 1.5F;
 
-constexpr GLsizei kQuadVertices = 6;
-
 Result<GlProgram> makeSpriteProgram(const std::string& defines) {
     auto program = makeProgram("point.vert", "point.frag", defines);
     if (!program) {

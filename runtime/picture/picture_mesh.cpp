@@ -66,6 +66,15 @@ Fans fansOf(const PictureMesh& mesh) {
 
 }  // namespace
 
+std::vector<glm::uvec3> trianglesOf(const PictureMesh& mesh) {
+    std::vector<glm::uvec3> triangles;
+    triangles.reserve(mesh.triangles.size() / 3);
+    for (std::size_t i = 0; i + 2 < mesh.triangles.size(); i += 3) {
+        triangles.emplace_back(mesh.triangles[i], mesh.triangles[i + 1], mesh.triangles[i + 2]);
+    }
+    return triangles;
+}
+
 Result<void> checkMesh(const PictureMesh& mesh) {
     if (mesh.triangles.empty() || mesh.triangles.size() % 3 != 0) {
         return fail(ErrorCode::kInvalidInput, "a mesh without whole triangles shows nothing");

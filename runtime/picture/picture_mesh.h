@@ -16,13 +16,18 @@ struct PictureMesh {
     std::vector<std::uint32_t> triangles;  ///< three indices each, anticlockwise seen from outside
 };
 
+/// Its triangles, one by one.
+[[nodiscard]] std::vector<glm::uvec3> trianglesOf(const PictureMesh& mesh);
+
 /// Errors: kInvalidInput (no triangle, an index beyond the vertices, numbers of things that do not match, a
 /// position that is not finite).
 [[nodiscard]] Result<void> checkMesh(const PictureMesh& mesh);
 
 /// The same triangles with normals: each corner has the mean of the triangles round its vertex, weighted by
 /// their angles there, but of those alone that lie within `crease` of its own triangle. Vertices on a crease
-/// are doubled. \param mesh    as checkMesh wants it; its normals are replaced. \param crease  radians.
+/// are doubled.
+/// \param mesh    as checkMesh wants it; its normals are replaced.
+/// \param crease  radians.
 [[nodiscard]] PictureMesh withNormals(const PictureMesh& mesh, float crease = 1.0F);
 
 }  // namespace relief

@@ -1,7 +1,5 @@
 #include "runtime/player/live_bodies.h"
 
-#include <glm/vec3.hpp>
-
 namespace relief {
 
 Result<LiveBodies> LiveBodies::create(const LoadedScene& loaded) {
@@ -11,12 +9,7 @@ Result<LiveBodies> LiveBodies::create(const LoadedScene& loaded) {
             continue;
         }
         const LiveMesh& live = *loaded.live[i];
-        std::vector<glm::uvec3> triangles;
-        for (std::size_t t = 0; t + 2 < live.mesh.triangles.size(); t += 3) {
-            triangles.emplace_back(live.mesh.triangles[t], live.mesh.triangles[t + 1],
-                                   live.mesh.triangles[t + 2]);
-        }
-        auto collider = LiveCollider::create(live.mesh.positions, triangles, live.frames);
+        auto collider = LiveCollider::create(live.mesh.positions, trianglesOf(live.mesh), live.frames);
         if (!collider) {
             return fail(collider.error().code,
                         loaded.scene.colliders[i].origin + ": collider.mesh: " + collider.error().message);

@@ -17,12 +17,12 @@ namespace relief {
 class LiveBodies {
   public:
     /// Needs a current context; empty without live colliders.
-    /// Errors: those of LiveCollider and DeformPass, with the scene's place.
+    /// Fails as LiveCollider and DeformPass do; messages begin with the place in the scene.
     [[nodiscard]] static Result<LiveBodies> create(const LoadedScene& loaded);
 
     [[nodiscard]] bool empty() const { return bodies_.empty(); }
     /// Deforms all of them to a time, in seconds, and renders their maps. Before each step, for its end.
-    /// Errors: those of LiveCollider::update.
+    /// Fails as LiveCollider::update does.
     [[nodiscard]] Result<void> show(double time, ColliderTextures& textures);
 
   private:
@@ -37,7 +37,7 @@ class LiveBodies {
 /// The picture of a collider that deforms: of its mesh at a time.
 class LivePicture {
   public:
-    /// Errors: those of ColliderMesh and DeformPass.
+    /// Fails as ColliderMesh and DeformPass do.
     [[nodiscard]] static Result<LivePicture> create(const LiveMesh& live);
     void show(double time);
     [[nodiscard]] const ColliderMesh& mesh() const { return *mesh_; }

@@ -1,33 +1,22 @@
 #include "runtime/player/player.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
-#include <cstdio>
-#include <limits>
-#include <memory>
-#include <span>
-#include <system_error>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "formats/base/file_io.h"
 #include "runtime/files/ply.h"
-#include "runtime/files/png.h"
-#include "runtime/files/video.h"
 #include "runtime/gl/gl_fault.h"
-#include "runtime/picture/collider_renderer.h"
-#include "runtime/picture/depth_sort.h"
-#include "runtime/picture/frame.h"
-#include "runtime/picture/particle_renderer.h"
-#include "runtime/player/live_bodies.h"
-#include "runtime/player/statistics_log.h"
-#include "runtime/scene/scene_pictures.h"
+#include "runtime/player/outputs.h"
+#include "runtime/player/simulation.h"
+#include "runtime/player/watched.h"
 #include "runtime/tool/gpu_tool.h"
 
 namespace relief {
 namespace {
 
-namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 // Steps between two calls of PlayerOptions::progress, and between two waits for the GPU: without them a
@@ -36,237 +25,8 @@ constexpr std::uint32_t kStepsAtOnce = 16;
 // A stretch of steps that takes longer is halved: progress moves, and no watchdog takes it for a hang.
 constexpr std::chrono::seconds kStretchMax{4};
 
-/// Tells the watchdog, if there is one, what the GPU is about to do; and the other way round.
-void feed(const PlayerOptions& options, const std::string& what) {
-    if (options.watchdog != nullptr) {
-        options.watchdog->feed(what);
-    }
-}
-void rest(const PlayerOptions& options) {
-    if (options.watchdog != nullptr) {
-        options.watchdog->rest();
-    }
-}
-
-/// Makes the folder, and sees early that it can be written: a run may take long.
-Result<void> prepareFolder(const fs::path& folder, const char* option) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error || !fs::is_directory(folder, error)) {
-        return fail(ErrorCode::kIo, "cannot make the folder " + quotedPath(folder) + " for frames: " +
-                                        (error ? error.message() : "a file of that name is in the way") +
-                                        "; choose another with " + option);
-    }
-    return {};
-}
-
-Result<void> checkDumpFolder(const fs::path& dump) {
-    std::error_code error;
-    const fs::path folder = dump.has_parent_path() ? dump.parent_path() : fs::path(".");
-    if (dump != "-" && !fs::is_directory(folder, error)) {
-        return fail(ErrorCode::kIo, "cannot write " + quotedPath(dump) + ": there is no folder " +
-                                        quotedPath(folder) +
-                                        "; make it, or choose another place with --dump");
-    }
-    if (fs::is_directory(dump, error)) {
-        return fail(ErrorCode::kIo,
-                    "cannot write " + quotedPath(dump) + ": it is a folder; name a file with --dump");
-    }
-    return {};
-}
-
-/// Everything that draws, made only where frames are wanted.
-class Picture {
-  public:
-    static Result<Picture> create(const Scene& scene, const LoadedScene& loaded,
-                                  const ColliderTextures& textures) {
-        float texel = std::numeric_limits<float>::max();
-        for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
-            texel = std::min(texel, scene.colliders[i].pose.scale * finestTexel(loaded.colliders[i]));
-        }
-        const ColliderView view{&textures, loaded.bounds, texel};
-        auto frame = RELIEF_TRY(Frame::create(scene.render.width, scene.render.height));
-        auto atlas = RELIEF_TRY(loadAtlas(scene));
-        std::optional<LivePicture> live;
-        if (!scene.render.mesh.empty() && loaded.live.front()) {
-            auto made = RELIEF_TRY(LivePicture::create(*loaded.live.front()));
-            live.emplace(std::move(made));
-        }
-        auto mesh = RELIEF_TRY(live ? Result<std::unique_ptr<ColliderMesh>>{}
-                                    : loadColliderMesh(scene, loaded.bounds));
-        auto collider_renderer =
-            RELIEF_TRY(ColliderRenderer::create(view, live ? &live->mesh() : mesh.get()));
-        auto particle_renderer = RELIEF_TRY(ParticleRenderer::create(view));
-        Picture picture{std::move(frame), std::move(collider_renderer), std::move(particle_renderer)};
-        picture.scene_ = &scene;
-        if (scene.render.sort_frames > 0) {
-            auto sorter = RELIEF_TRY(DepthSorter::create(scene.capacity));
-            picture.sorter_.emplace(std::move(sorter));
-        }
-        picture.bounds_ = loaded.bounds;
-        if (scene.ground.enabled) {
-            picture.collider_style_.ground = scene.ground.height;
-        }
-        picture.collider_style_.background = scene.render.background;
-        picture.particle_style_ = particleStyle(scene, atlas.get());
-        picture.atlas_ = std::move(atlas);
-        picture.mesh_ = std::move(mesh);
-        picture.live_ = std::move(live);
-        return picture;
-    }
-
-    /// 3 · width · height bytes sRGB, the top row first.
-    Result<std::vector<std::uint8_t>> draw(const ParticleSystem& particles, StageTimer* stages) {
-        const Camera camera = sceneCamera(*scene_, bounds_, particles.time());
-        ParticleOrder order;
-        if (sorter_) {
-            const StageScope scope(stages, Stage::kSort);
-            sorter_->update(particles.positions(), particles.textureWidth(), particles.extent(), camera.eye,
-                            DepthSorter::passesPerFrame(particles.extent(), scene_->render.sort_frames));
-            order = {&sorter_->order(), sorter_->count()};
-        }
-        const StageScope scope(stages, Stage::kDraw);
-        if (live_) {
-            live_->show(particles.time());
-        }
-        RELIEF_TRY(collider_.draw(camera, collider_style_, frame_.target()));
-        RELIEF_TRY(
-            particles_.draw(particles, camera, particle_style_, frame_.target(), order, &collider_.depth()));
-        std::vector<std::uint8_t> rgb = frame_.read();
-        RELIEF_TRY(checkGpu("drawing a picture"));
-        return rgb;
-    }
-
-  private:
-    Picture(Frame frame, ColliderRenderer collider, ParticleRenderer particles)
-        : frame_(std::move(frame)), collider_(std::move(collider)), particles_(std::move(particles)) {}
-
-    const Scene* scene_ = nullptr;  // outlives the picture
-    Bounds bounds_;
-    std::unique_ptr<SpriteAtlas> atlas_;
-    std::unique_ptr<ColliderMesh> mesh_;
-    std::optional<LivePicture> live_;  // instead
-    Frame frame_;
-    ColliderRenderer collider_;
-    ParticleRenderer particles_;
-    ColliderStyle collider_style_;
-    ParticleStyle particle_style_;
-    std::optional<DepthSorter> sorter_;
-};
-
-/// "frame_", 7, ".png" -> folder/frame_0007.png
-fs::path numberedPath(const fs::path& folder, const char* head, std::uint32_t number, const char* ending) {
-    std::array<char, 48> name{};
-    std::snprintf(name.data(), name.size(), "%s%04u%s", head, number, ending);
-    return folder / name.data();
-}
-
-/// What is made while the run goes on; each only where it is wanted.
-struct Outputs {
-    std::optional<Picture> picture;
-    std::unique_ptr<VideoWriter> video;
-    std::optional<GpuTimer> timer;
-    std::optional<StatisticsLog> log;
-
-    [[nodiscard]] StageTimer* stages() { return timer ? &*timer : nullptr; }
-};
-
-/// The rate at which a video plays in the scene's time, as far as eyes and players go along.
-double videoRate(const Scene& scene) {
-    return std::clamp(1.0 / (static_cast<double>(scene.dt) * scene.render.every), 1.0, 120.0);
-}
-
-Result<void> openOutputs(const PlayerOptions& options, const Scene& scene, const LoadedScene& loaded,
-                         const ColliderTextures& textures, Outputs& outputs) {
-    if (!options.frames.empty() || !options.video.empty()) {
-        feed(options, "the shaders of pictures");
-        auto made = Picture::create(scene, loaded, textures);
-        rest(options);
-        if (!made) {
-            return forward(made);
-        }
-        outputs.picture.emplace(std::move(*made));
-    }
-    if (!options.video.empty()) {
-        auto video = RELIEF_TRY(
-            VideoWriter::create(options.video, {scene.render.width, scene.render.height, videoRate(scene)}));
-        outputs.video = std::move(video);
-        if (options.watchdog != nullptr) {
-            options.watchdog->setCleanUp([writer = outputs.video.get()] { writer->abandon(); });
-        }
-    }
-    if (options.time_stages || !options.stats.empty()) {
-        outputs.timer.emplace();
-    }
-    if (!options.stats.empty()) {
-        auto log = RELIEF_TRY(StatisticsLog::create(options.stats, scene.capacity, *outputs.timer));
-        outputs.log.emplace(std::move(log));
-    }
-    for (const auto& [folder, option] :
-         {std::pair(options.frames, "--frames"), {options.dump_frames, "--dump-frames"}}) {
-        if (folder.empty()) {
-            continue;
-        }
-        RELIEF_TRY(prepareFolder(folder, option));
-    }
-    return {};
-}
-
-/// A frame of every kind that is wanted, all of the same step.
-Result<void> writeFrame(const PlayerOptions& options, const ParticleSystem& particles, Outputs& outputs,
-                        PlayerReport& report) {
-    if (outputs.picture) {
-        feed(options, "picture " + std::to_string(report.frames_written));
-        const auto rgb = outputs.picture->draw(particles, outputs.stages());
-        rest(options);
-        if (!rgb) {
-            return forward(rgb);
-        }
-        if (!options.frames.empty()) {
-            const auto png =
-                RELIEF_TRY(encodePng(*rgb, report.scene.render.width, report.scene.render.height));
-            const fs::path path = numberedPath(options.frames, "frame_", report.frames_written, ".png");
-            RELIEF_TRY(writeFile(path, png));
-        }
-        if (outputs.video) {
-            RELIEF_TRY(outputs.video->add(*rgb));
-        }
-        ++report.frames_written;
-    }
-    if (!options.dump_frames.empty()) {
-        feed(options, "reading particles back");
-        const auto state = particles.readState();
-        rest(options);
-        if (!state) {
-            return forward(state);
-        }
-        const fs::path path = numberedPath(options.dump_frames, "particles_", report.dumps_written, ".ply");
-        RELIEF_TRY(writeFile(path, encodePly(*state)));
-        ++report.dumps_written;
-    }
-    return {};
-}
-
-Result<ParticleSystem> makeParticles(const Scene& scene, const ColliderTextures& textures) {
-    auto particles = ParticleSystem::create({.capacity = scene.capacity, .integrator = scene.integrator});
-    if (!particles) {
-        return particles;
-    }
-    const std::array<ColliderInstance, 1> colliders{ColliderInstance{&textures}};
-    RELIEF_TRY(particles->setColliders(colliders));
-    particles->setForces({*scene.forces.gravity, scene.forces.wind,
-                          scene.air.viscosity ? 0.0F : scene.forces.drag,
-                          scene.air.viscosity.value_or(0.0F)});
-    particles->setCollision(scene.collision);
-    if (!scene.types.empty()) {
-        RELIEF_TRY(particles->setTypes(scene.types));
-    }
-    if (scene.sweep > 0.0F) {
-        RELIEF_TRY(particles->setSweep(scene.sweep));
-    }
-    RELIEF_TRY(particles->setAir(scene.air));
-    particles->setGround(scene.ground.enabled ? scene.ground.height : std::nullopt);
-    return particles;
+double milliseconds(Clock::duration time) {
+    return std::chrono::duration<double, std::milli>(time).count();
 }
 
 /// The lower of the two middle ones where their number is even; 0 of none.
@@ -279,190 +39,145 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
-std::vector<Pose> posesAt(const Scene& scene, double time) {
-    std::vector<Pose> poses;
-    for (const SceneCollider& collider : scene.colliders) {
-        poses.push_back(poseAt(collider, time));
-    }
-    return poses;
-}
-
-/// The colliders on the GPU: a single one without a pose in its own space, others in the world.
-Result<ColliderTextures> makeTextures(const Scene& scene, std::span<const Collider> colliders) {
-    if (colliders.size() == 1 && !scene.colliders.front().posed && !scene.colliders.front().live) {
-        return ColliderTextures::create(colliders.front());
-    }
-    std::vector<ColliderBody> bodies;
-    for (std::size_t i = 0; i < colliders.size(); ++i) {
-        const SceneCollider& from = scene.colliders[i];
-        bodies.push_back(
-            {&colliders[i], poseAt(from, 0.0), from.restitution, from.friction, from.live.has_value()});
-    }
-    return ColliderTextures::create(bodies);
-}
-
-/// What the watchdog would clean up does not outlive the run.
-class WithoutCleanUp {
+/// The run itself: stretches of steps and, between them, frames.
+class Run {
   public:
-    explicit WithoutCleanUp(Watchdog* watchdog) : watchdog_(watchdog) {}
-    WithoutCleanUp(const WithoutCleanUp&) = delete;
-    WithoutCleanUp& operator=(const WithoutCleanUp&) = delete;
-    ~WithoutCleanUp() {
-        if (watchdog_ != nullptr) {
-            watchdog_->rest();
-            watchdog_->setCleanUp({});
+    Run(const PlayerOptions& options, Simulation& simulation, Outputs& outputs, PlayerReport& report)
+        : options_(options),
+          scene_(report.scene),
+          simulation_(simulation),
+          outputs_(outputs),
+          report_(report),
+          stats_every_(options.stats_every.value_or(scene_.render.every)) {}
+
+    Result<void> play() {
+        if (scene_.steps == 0 && outputs_.hasFrames()) {
+            RELIEF_TRY(afterStretch());  // the only frame
         }
+        while (step_ < scene_.steps) {
+            RELIEF_TRY(playStretch(stretchEnd()));
+            RELIEF_TRY(afterStretch());
+        }
+        if (step_ > 0) {
+            report_.ms_per_step = milliseconds(spent_) / step_;
+        }
+        report_.ms_per_step_median = median(std::move(stretches_));
+        report_.counts = simulation_.particles().counts();
+        report_.counts.refused += simulation_.refused();
+        RELIEF_TRY(outputs_.finish());
+        if (outputs_.timer() != nullptr) {
+            report_.stage_times = outputs_.timer()->times();
+        }
+        return {};
     }
 
   private:
-    Watchdog* watchdog_;
-};
+    /// The step that the next stretch ends with: at a frame, if not before.
+    [[nodiscard]] std::uint32_t stretchEnd() const {
+        const std::uint32_t every = scene_.render.every;
+        const std::uint32_t next_frame = outputs_.hasFrames() ? step_ + every - step_ % every : scene_.steps;
+        return std::min({scene_.steps, next_frame, step_ + at_once_});
+    }
 
-/// The run itself: steps and, between them, frames.
-Result<void> run(const PlayerOptions& options, std::span<Emitter> emitters, ColliderTextures& textures,
-                 LiveBodies& live, ParticleSystem& particles, Outputs& outputs, PlayerReport& report) {
-    const Scene& scene = report.scene;
-    const bool has_frames = outputs.picture || !options.dump_frames.empty();
-    const std::uint32_t stats_every = options.stats_every.value_or(scene.render.every);
-    const bool moves = std::any_of(scene.colliders.begin(), scene.colliders.end(),
-                                   [](const SceneCollider& c) { return !c.keys.empty(); });
-    std::vector<Birth> births;
-    std::uint64_t refused = 0;
-    Clock::duration spent{};
-    std::vector<double> stretches;  // ms per step of each
-    std::uint32_t step = 0;
-    std::uint32_t at_once = kStepsAtOnce;
-    while (step < scene.steps || (step == 0 && has_frames)) {
-        const std::uint32_t next_frame =
-            has_frames ? step + scene.render.every - step % scene.render.every : scene.steps;
-        const std::uint32_t end = std::min({scene.steps, next_frame, step + at_once});
-        const Clock::time_point begun = Clock::now();
-        const std::uint32_t first = step;
+    /// Steps as far as `end`, waits for them, and measures.
+    Result<void> playStretch(std::uint32_t end) {
+        const std::uint32_t first = step_;
         const std::string steps = "steps " + std::to_string(first + 1) + " to " + std::to_string(end);
-        feed(options, steps);
-        while (step < end) {
-            {
-                const StageScope scope(outputs.stages(), Stage::kBirths);
-                births.clear();
-                refused += emitAll(emitters, static_cast<double>(scene.dt), particles.room(), births);
-                particles.spawn(births);
-            }
-            {
-                const StageScope scope(outputs.stages(), Stage::kStep);
-                const double end_time = particles.time() + static_cast<double>(scene.dt);
-                if (moves) {
-                    textures.setPoses(posesAt(scene, end_time));
-                }
-                RELIEF_TRY(live.show(end_time, textures));
-                particles.step(scene.dt);
-            }
-            ++step;
-            if (outputs.log && (step % stats_every == 0 || step == scene.steps)) {
-                RELIEF_TRY(outputs.log->request(particles, step, refused));
+        const Clock::time_point begun = Clock::now();
+        RELIEF_TRY(watched(options_.watchdog, steps, [&] { return playSteps(end, steps); }));
+        const Clock::duration stretch = Clock::now() - begun;
+        if (stretch > kStretchMax) {
+            at_once_ = std::max(at_once_ / 2, 1U);
+        }
+        spent_ += stretch;
+        stretches_.push_back(milliseconds(stretch) / (step_ - first));
+        return {};
+    }
+
+    Result<void> playSteps(std::uint32_t end, const std::string& steps) {
+        while (step_ < end) {
+            RELIEF_TRY(simulation_.step(outputs_.timer()));
+            ++step_;
+            if (outputs_.log() != nullptr && (step_ % stats_every_ == 0 || step_ == scene_.steps)) {
+                RELIEF_TRY(outputs_.log()->request(simulation_.particles(), step_, simulation_.refused()));
             }
         }
         RELIEF_TRY(waitForGpu(steps));
         // A step has no result of its own: births that found no room would be missing in silence.
-        RELIEF_TRY(checkAllocated(steps, "choose a smaller capacity"));
-        rest(options);
-        const Clock::duration stretch = Clock::now() - begun;
-        if (stretch > kStretchMax) {
-            at_once = std::max(at_once / 2, 1U);
-        }
-        spent += stretch;
-        if (step > first) {
-            stretches.push_back(std::chrono::duration<double, std::milli>(stretch).count() / (step - first));
-        }
-        if (outputs.log) {
-            RELIEF_TRY(outputs.log->poll());
-        }
-        if (options.progress) {
-            options.progress(step, scene.steps);
-        }
-        if (has_frames && (step % scene.render.every == 0 || step == scene.steps)) {
-            RELIEF_TRY(writeFrame(options, particles, outputs, report));
-        }
-        if (scene.steps == 0) {
-            break;
-        }
+        return checkAllocated(steps, "choose a smaller capacity");
     }
-    if (step > 0) {
-        report.ms_per_step = std::chrono::duration<double, std::milli>(spent).count() / step;
+
+    /// Tells how far the run is, and writes a frame where one is due.
+    Result<void> afterStretch() {
+        if (outputs_.log() != nullptr) {
+            RELIEF_TRY(outputs_.log()->poll());
+        }
+        if (options_.progress) {
+            options_.progress(step_, scene_.steps);
+        }
+        const bool due = step_ % scene_.render.every == 0 || step_ == scene_.steps;
+        return due && outputs_.hasFrames() ? outputs_.writeFrame(simulation_.particles(), report_)
+                                           : Result<void>{};
     }
-    report.ms_per_step_median = median(std::move(stretches));
-    report.counts = particles.counts();
-    report.counts.refused += refused;
-    if (outputs.log) {
-        feed(options, "the statistics");
-        RELIEF_TRY(outputs.log->finish());
-        rest(options);
+
+    const PlayerOptions& options_;
+    const Scene& scene_;
+    Simulation& simulation_;
+    Outputs& outputs_;
+    PlayerReport& report_;
+    std::uint32_t stats_every_;
+    std::uint32_t step_ = 0;  // steps taken
+    std::uint32_t at_once_ = kStepsAtOnce;
+    Clock::duration spent_{};
+    std::vector<double> stretches_;  // ms per step of each
+};
+
+Result<std::unique_ptr<GlContext>> makeContext(const PlayerOptions& options) {
+    auto context = watched(options.watchdog, "making a context", [&] {
+        return GlContext::create({options.api, GlPlatform::kAny, options.device});
+    });
+    if (context && options.watchdog != nullptr && options.default_timeout) {
+        options.watchdog->setLimit(defaultGpuTimeout((*context)->software()));
     }
-    if (outputs.timer) {
-        report.stage_times = outputs.timer->times();
-    }
-    return outputs.video ? outputs.video->finish() : Result<void>{};
+    return context;
 }
 
 Result<void> readBack(const PlayerOptions& options, const ParticleSystem& particles, PlayerReport& report) {
-    feed(options, "reading particles back");
-    const auto state = particles.readState();
-    rest(options);
-    if (!state) {
-        return forward(state);
-    }
+    const auto state = RELIEF_TRY(
+        watched(options.watchdog, "reading particles back", [&] { return particles.readState(); }));
     std::uint64_t collisions = 0;
     std::uint32_t in_contact = 0;
-    for (const ParticleState& particle : *state) {
+    for (const ParticleState& particle : state) {
         collisions += particle.collisions;
         in_contact += particle.contact == Contact::kNone ? 0 : 1;
     }
     report.collisions = collisions;
     report.in_contact = in_contact;
-    return options.dump.empty() ? Result<void>{} : writeFile(options.dump, encodePly(*state));
+    return options.dump.empty() ? Result<void>{} : writeFile(options.dump, encodePly(state));
 }
 
 }  // namespace
 
 Result<PlayerReport> play(const PlayerOptions& options) {
     // What can fail cheaply comes first.
-    auto loaded = RELIEF_TRY(loadAll(options.input, options.overrides));
+    const auto loaded = RELIEF_TRY(loadAll(options.input, options.overrides));
     auto emitters = RELIEF_TRY(makeEmitters(loaded.scene.emitters));
     if (!options.dump.empty()) {
-        RELIEF_TRY(checkDumpFolder(options.dump));
+        RELIEF_TRY(checkDump(options.dump));
     }
+    const auto context = RELIEF_TRY(makeContext(options));
+    auto simulation = RELIEF_TRY(Simulation::create(loaded, std::move(emitters), options.watchdog));
+    Outputs outputs(options, loaded, simulation.textures());
+    RELIEF_TRY(outputs.open());
 
-    feed(options, "making a context");
-    auto context = GlContext::create({options.api, GlPlatform::kAny, options.device});
-    rest(options);
-    if (!context) {
-        return forward(context);
-    }
-    if (options.watchdog != nullptr && options.default_timeout) {
-        options.watchdog->setLimit(defaultGpuTimeout((*context)->software()));
-    }
     PlayerReport report;
     report.scene = loaded.scene;
-    report.device = (*context)->description();
-    feed(options, "uploading the collider");
-    auto textures = makeTextures(report.scene, loaded.colliders);
-    if (!textures) {
-        return fail(textures.error().code,
-                    quotedPath(report.scene.colliders.front().path) + ": " + textures.error().message);
-    }
-    report.collider_maps = static_cast<std::size_t>(textures->mapCount());
-    report.collider_bytes = textures->bytes();
-    feed(options, "the shaders of colliders");
-    auto live = RELIEF_TRY(LiveBodies::create(loaded));
-    RELIEF_TRY(live.show(0.0, *textures));
-    feed(options, "the shaders of particles");
-    auto particles = RELIEF_TRY(makeParticles(report.scene, *textures));
-    rest(options);
-    Outputs outputs;
-    const WithoutCleanUp at_end(options.watchdog);  // before the video goes
-    RELIEF_TRY(openOutputs(options, report.scene, loaded, *textures, outputs));
-    RELIEF_TRY(run(options, emitters, *textures, live, particles, outputs, report));
+    report.device = context->description();
+    report.collider_maps = static_cast<std::size_t>(simulation.textures().mapCount());
+    report.collider_bytes = simulation.textures().bytes();
+    RELIEF_TRY(Run(options, simulation, outputs, report).play());
     if (options.count_collisions || !options.dump.empty()) {
-        RELIEF_TRY(readBack(options, particles, report));
+        RELIEF_TRY(readBack(options, simulation.particles(), report));
     }
     return report;
 }

@@ -1,62 +1,13 @@
 // Plays a scene without a window: what relief-sim does between its command line and its report.
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
-#include <functional>
-#include <optional>
-#include <string>
-
 #include "formats/base/result.h"
-#include "runtime/gl/gl_context.h"
-#include "runtime/gl/gpu_timer.h"
-#include "runtime/scene/loaded_scene.h"
-#include "runtime/tool/watchdog.h"
+#include "runtime/player/player_options.h"
 
 namespace relief {
 
-struct PlayerOptions {
-    std::filesystem::path
-        input;  ///< a scene (.toml) or a collider (.relief), for which the default scene is played
-    SceneOverrides overrides;
-    std::filesystem::path
-        frames;                  ///< folder for frame_0000.png and so on, made if missing; empty: no pictures
-    std::filesystem::path dump;  ///< PLY of the final particles, "-" for standard output; empty: none
-    std::filesystem::path
-        dump_frames;  ///< folder for particles_0000.ply and so on, as often as frames; empty: none
-    std::filesystem::path video;  ///< of the frames, through ffmpeg (video.h); empty: none
-    std::filesystem::path stats;  ///< lines of JSON (statistics_log.h), "-" for standard output; empty: none
-    std::optional<std::uint32_t> stats_every;  ///< steps from line to line, ≥ 1; nullopt: render.every
-    bool time_stages = false;                  ///< for the report; with stats they are timed anyway
-    bool count_collisions =
-        false;  ///< reads the state back at the end for the report's collisions and contacts
-    GlApi api = GlApi::kGl33Core;
-    std::optional<std::size_t> device;  ///< as of GlContextOptions
-    Watchdog* watchdog = nullptr;       ///< fed while the GPU works; or null
-    bool default_timeout = false;       ///< its limit becomes that of the context, defaultGpuTimeout
-    std::function<void(std::uint32_t step, std::uint32_t steps)> progress;  ///< now and then; may be empty
-};
-
-struct PlayerReport {
-    Scene scene;         ///< as played: overridden by the options, every default filled in
-    std::string device;  ///< GlContext::description()
-    std::size_t collider_maps = 0;
-    std::size_t collider_bytes = 0;  ///< of textures on the GPU
-    ParticleCounts counts;
-    std::optional<std::uint64_t>
-        collisions;  ///< steps in contact, summed over the particles alive at the end
-    std::optional<std::uint32_t> in_contact;  ///< alive particles that touched something in the last step
-    double ms_per_step = 0.0;  ///< wall clock, births and waiting for the GPU included; 0 without steps
-    /// The same, as the median over stretches of up to 16 steps: without the first, in which a driver still
-    /// compiles, wherever there are three or more. 0 without steps.
-    double ms_per_step_median = 0.0;
-    std::optional<StageTimes> stage_times;
-    std::uint32_t frames_written = 0;  ///< pictures, in files or in the video
-    std::uint32_t dumps_written = 0;   ///< of dump_frames
-};
-
 /// Frames, of every kind, are written after every scene.render.every steps and after the last one.
-/// Errors: those of its parts; a failed frame or dump ends the run.
+/// Fails as loadAll, makeEmitters, GlContext, Simulation and Outputs do; a failed frame or dump ends the run.
 [[nodiscard]] Result<PlayerReport> play(const PlayerOptions& options);
 
 }  // namespace relief

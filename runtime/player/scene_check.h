@@ -27,8 +27,8 @@ struct CheckReport {
     std::uint32_t capacity = 0;
 };
 
-/// loadAll(), and what else a run would refuse whatever the GPU.
-/// Errors: those of loadAll, kLimit (a picture above Frame::kPixelsMax).
+/// Loads everything and checks what else a run would refuse whatever the GPU.
+/// Fails as loadAll, makeEmitters and checkPictures do, and with kLimit (a picture above Frame::kPixelsMax).
 [[nodiscard]] Result<CheckReport> checkScene(const PlayerOptions& options);
 
 /// "scene.toml is valid: …", one line with a newline.

@@ -32,7 +32,7 @@ struct LoadedScene {
 
 /// Reads a scene (.toml) or a collider (.relief), for which the default scene is made, and every file that it
 /// names. Needs no context.
-/// Errors: those of the files; a scene's name the scene's line and column.
+/// Fails as the readers of these files do; errors of files that a scene names begin with its line and column.
 [[nodiscard]] Result<LoadedScene> loadAll(const std::filesystem::path& input,
                                           const SceneOverrides& overrides);
 

@@ -1,4 +1,4 @@
-// [collider], or [[collider]] as often as wanted; and what [[type]] says of how particles move.
+// [collider], or [[collider]] as often as wanted.
 #include <algorithm>
 #include <cmath>
 
@@ -107,16 +107,6 @@ std::vector<SceneCollider> readColliders(SceneTable& top, std::string_view file,
         top.failAt(*node, "a scene needs a [collider]");
     }
     return colliders;
-}
-
-void readPhysics(SceneTable& table, ParticleType& type) {
-    table.number("mass", {0.0, 1e9, false}, type.mass);
-    table.number("radius", {0.0, kLengthMax}, type.radius);
-    table.number("restitution", {0.0, 1.0}, type.restitution);
-    table.number("friction", {0.0, 1.0}, type.friction);
-    table.number("friction_threshold", {0.0, kSpeedMax}, type.friction_threshold);
-    table.word("on_collision", {"bounce", "stop", "slide", "die"}, type.on_collision);
-    table.number("lifetime_loss", {0.0, kSecondsMax}, type.lifetime_loss);
 }
 
 }  // namespace relief

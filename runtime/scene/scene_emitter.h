@@ -54,7 +54,8 @@ struct SceneEmitter {
 inline constexpr std::uint32_t kEmitterTypeMax = 15;
 inline constexpr std::size_t kEmittersMax = 64;
 
-/// Turns names of types into indices. \param names  of the types there are, in order.
+/// Turns names of types into indices.
+/// \param names  of the types there are, in order.
 /// Errors: kInvalidInput, "file:line:column: …", for a name or an index that is not among them; where `names`
 /// is empty, for a name alone.
 [[nodiscard]] Result<void> resolveEmitterTypes(std::span<SceneEmitter> emitters,
@@ -62,14 +63,14 @@ inline constexpr std::size_t kEmittersMax = 64;
 
 /// Fills every optional: boxes above the collider, from which snow falls.
 /// \param bounds, scale  of the collider; scale > 0, its size.
-/// \param seconds, capacity  of the run: emitters that say no rate share, evenly, what the others leave of
-/// it. Errors: kInvalidInput if they leave nothing.
+/// \param seconds, capacity  of the run: emitters without a rate share evenly what the others leave of it.
+/// Errors: kInvalidInput if they leave nothing.
 [[nodiscard]] Result<void> completeEmitters(std::span<SceneEmitter> emitters, const Bounds& bounds,
                                             float scale, double seconds, std::uint32_t capacity);
 
 /// Ready to give birth; reads the files of points. Emitter i draws from stream i.
 /// \param emitters  complete.
-/// Errors: those of loadPointList, with the place of the key; kInvalidInput (points without normals and
+/// Fails as loadPointList does, with the place of the key, and with kInvalidInput (points without normals and
 /// without a direction).
 [[nodiscard]] Result<std::vector<Emitter>> makeEmitters(std::span<const SceneEmitter> emitters);
 

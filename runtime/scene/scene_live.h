@@ -23,8 +23,8 @@ struct LiveMesh {
 };
 
 /// Reads the mesh, completes its deformation, and chooses maps that hold its whole motion.
-/// \param from  with `live`. Errors: those of loadPictureMesh, and kInvalidInput (a mesh without extent), all with
-/// the place in the scene.
+/// \param from  with `live`.
+/// Fails as loadPictureMesh does, and with kInvalidInput (a mesh without extent); messages begin with the place in the scene.
 [[nodiscard]] Result<LiveMesh> loadLiveMesh(const SceneCollider& from);
 
 }  // namespace relief

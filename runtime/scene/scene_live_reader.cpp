@@ -94,6 +94,33 @@ void readWobble(SceneTable& table, const toml::source_position& at, SceneLive& l
     d.wavelength = std::max(d.wavelength, std::numeric_limits<float>::min());
 }
 
+/// The table collider.deform.
+SceneLive readDeform(const SceneTable& table, const toml::node& node, std::string_view file) {
+    SceneLive live;
+    const toml::source_position at = node.source().begin;
+    if (!node.is_table()) {
+        table.wrongType(node, "deform", "a table, as { kind = \"twist\", amplitude = 40, frequency = 0.5 }");
+    }
+    SceneTable keys(node.as_table(), "collider.deform", file);
+    Deformation& d = live.deformation;
+    if (!keys.word("kind", {"bend", "twist", "wobble"}, d.kind)) {
+        table.failAt(at, "collider.deform needs a kind: \"bend\", \"twist\" or \"wobble\"");
+    }
+    if (!keys.number("frequency", {0.0, kHertzMax}, d.frequency)) {
+        table.failAt(at, "collider.deform needs a frequency, in 1/s");
+    }
+    float degrees = 0.0F;
+    keys.number("phase", symmetric(1e6), degrees);
+    d.phase = glm::radians(degrees);
+    if (d.kind == DeformKind::kWobble) {
+        readWobble(keys, at, live);
+    } else {
+        readAngles(keys, at, live);
+    }
+    keys.finish();
+    return live;
+}
+
 }  // namespace
 
 bool readLive(SceneTable& table, std::string_view file, const std::filesystem::path& folder,
@@ -125,32 +152,8 @@ bool readLive(SceneTable& table, std::string_view file, const std::filesystem::p
     }
     collider.path = std::move(*inside);
     collider.origin = table.place(node.source().begin);
-
-    SceneLive live;
-    const toml::source_position at = deform->source().begin;
-    if (!deform->is_table()) {
-        table.wrongType(*deform, "deform",
-                        "a table, as { kind = \"twist\", amplitude = 40, frequency = 0.5 }");
-    }
-    SceneTable keys(deform->as_table(), "collider.deform", file);
-    Deformation& d = live.deformation;
-    if (!keys.word("kind", {"bend", "twist", "wobble"}, d.kind)) {
-        table.failAt(at, "collider.deform needs a kind: \"bend\", \"twist\" or \"wobble\"");
-    }
-    if (!keys.number("frequency", {0.0, kHertzMax}, d.frequency)) {
-        table.failAt(at, "collider.deform needs a frequency, in 1/s");
-    }
-    float degrees = 0.0F;
-    keys.number("phase", symmetric(1e6), degrees);
-    d.phase = glm::radians(degrees);
-    if (d.kind == DeformKind::kWobble) {
-        readWobble(keys, at, live);
-    } else {
-        readAngles(keys, at, live);
-    }
-    keys.finish();
-    table.integer("resolution", {kLiveSizeMin, kLiveSizeMax}, live.resolution);
-    collider.live = live;
+    collider.live = readDeform(table, *deform, file);
+    table.integer("resolution", {kLiveSizeMin, kLiveSizeMax}, collider.live->resolution);
     return true;
 }
 

@@ -1,5 +1,4 @@
-// [[type]] and the sprites of [render].
-#include <cmath>
+// What particles look like: keys of [[type]], and the sprites of [render].
 #include <string>
 
 #include "formats/config/confined_path.h"
@@ -141,41 +140,6 @@ void readLook(SceneTable& table, std::uint32_t cells, ParticleLook& look) {
         }
         look.fade_in = static_cast<float>(table.numberOf(*both->get(0), "fade", {0.0, kSecondsMax}));
         look.fade_out = static_cast<float>(table.numberOf(*both->get(1), "fade", {0.0, kSecondsMax}));
-    }
-}
-
-void readTypes(SceneTable& top, std::string_view file, Scene& scene) {
-    const auto& render = scene.render;
-    const std::uint32_t cells = render.atlas.empty() ? 0 : render.atlas_columns * render.atlas_rows;
-    bool cell = false;
-    for (const toml::table* one : arrayOfTables(top, "type", kLooksMax)) {
-        SceneTable table(one, "type", file);
-        ParticleLook look;
-        readLook(table, cells, look);
-        ParticleType type;
-        type.restitution = scene.collision.restitution;
-        type.friction = scene.collision.friction;
-        type.friction_threshold = scene.collision.friction_threshold;
-        readPhysics(table, type);
-        std::string name;
-        if (table.text("name", name)) {
-            const bool taken =
-                std::find(scene.type_names.begin(), scene.type_names.end(), name) != scene.type_names.end();
-            if (name.empty() || taken) {
-                table.failAt(*table.find("name"),
-                             "type.name is " + std::string(taken ? "taken; choose another" : "empty"));
-            }
-        }
-        table.finish();
-        scene.types.push_back(type);
-        scene.type_names.push_back(std::move(name));
-        cell = cell || look.cell_first.has_value();
-        scene.render.looks.push_back(std::move(look));
-    }
-    if (cells > 0 && !cell) {
-        throw SceneError{render.atlas_origin +
-                         ": render.atlas does nothing while no [[type]] has a cell; give one " +
-                         "'cell = 0', or remove the atlas"};
     }
 }
 

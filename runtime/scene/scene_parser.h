@@ -15,7 +15,7 @@ namespace relief {
 /// Errors: kInvalidInput, one line "file:line:column: what is wrong; the cure".
 [[nodiscard]] Result<Scene> parseScene(std::string_view text, const std::filesystem::path& path);
 
-/// readFile and parseScene. Errors: theirs, kLimit above 1 MiB.
+/// Reads a file and parses it. Fails as readFile and parseScene do, and with kLimit above 1 MiB.
 [[nodiscard]] Result<Scene> loadScene(const std::filesystem::path& path);
 
 }  // namespace relief

@@ -13,16 +13,17 @@
 namespace relief {
 
 /// Reads what the pictures of a complete scene need, and needs no GPU.
-/// Errors: those of loadAtlas and loadColliderMesh but for a GPU's limits.
+/// Fails as loadAtlas and loadColliderMesh do, but for a GPU's limits.
 [[nodiscard]] Result<void> checkPictures(const Scene& scene, const Bounds& bounds);
 
 /// render.atlas on the GPU; null if the scene has none.
-/// Errors: those of reading it, with the place in the scene.
+/// Fails as readFile, decodePng and SpriteAtlas do; messages begin with the place in the scene.
 [[nodiscard]] Result<std::unique_ptr<SpriteAtlas>> loadAtlas(const Scene& scene);
 
 /// render.mesh on the GPU; null if the scene has none.
 /// \param bounds  of the collider, which the mesh must meet.
-/// Errors: those of reading it, with the place in the scene; kInvalidInput (it lies elsewhere).
+/// Fails as loadPictureMesh and ColliderMesh do, and with kInvalidInput (it lies elsewhere); messages begin with the place
+/// in the scene.
 [[nodiscard]] Result<std::unique_ptr<ColliderMesh>> loadColliderMesh(const Scene& scene,
                                                                      const Bounds& bounds);
 

@@ -1,4 +1,5 @@
-// Readers of parts of a scene that have files of their own; parseScene calls them. All throw SceneError.
+// The readers that parseScene calls for parts of a scene. All throw SceneError. Those that get a table which is not
+// `top` leave its finish() to the caller.
 #pragma once
 
 #include <cstdint>
@@ -12,45 +13,52 @@
 
 namespace relief {
 
-/// The keys of [render] that say how particles are sorted (scene_sort.cpp). Throws SceneError.
-void readSort(SceneTable& table, Scene& scene);
+// scene_sort.cpp
+
+/// The keys of [render] that say how particles are sorted.
+void readSort(SceneTable& render, Scene& scene);
+
+// scene_air.cpp
+
 /// Makes the tables of readAir known to `top`; call before its finish().
 void nameAirTables(SceneTable& top);
 /// [[attractor]], [[vortex]], [flow] and [curl_noise]; call when scene.forces is read.
+/// \param folder  of the scene, as for the readers below.
 void readAir(SceneTable& top, const std::filesystem::path& folder, Scene& scene);
-/// forces.viscosity; `forces` is the table of that name.
+/// forces.viscosity.
 void readViscosity(SceneTable& forces, Scene& scene);
+
+// scene_emitter_reader.cpp
+
 /// [emitter], or [[emitter]] as often as wanted; one emitter with every default where there is neither.
-/// \param folder  of the scene. \param capacity  of the particles.
+/// \param capacity  of the particles.
 [[nodiscard]] std::vector<SceneEmitter> readEmitters(SceneTable& top, std::string_view file,
                                                      const std::filesystem::path& folder,
                                                      std::uint32_t capacity);
+
 // scene_collider_reader.cpp
 
 /// [collider], or [[collider]] as often as wanted.
-/// \param folder  of the scene.
 [[nodiscard]] std::vector<SceneCollider> readColliders(SceneTable& top, std::string_view file,
                                                        const std::filesystem::path& folder);
+
 // scene_live_reader.cpp
 
-/// collider.mesh, collider.deform and collider.resolution: sets path, origin and live. Leaves finish() to the
-/// caller. \return whether the collider deforms; else it needs a file.
-[[nodiscard]] bool readLive(SceneTable& table, std::string_view file, const std::filesystem::path& folder,
-                            SceneCollider& collider);
+/// collider.mesh, collider.deform and collider.resolution: sets path, origin and live.
+/// \return whether the collider deforms; else it needs a file.
+[[nodiscard]] bool readLive(SceneTable& collider, std::string_view file, const std::filesystem::path& folder,
+                            SceneCollider& out);
 
-// scene_collider_reader.cpp
+// scene_types.cpp
 
-/// What a [[type]] says of its motion: mass, radius, restitution, friction, friction_threshold, on_collision,
-/// lifetime_loss. Leaves finish() to the caller. \param type  holds the defaults.
-void readPhysics(SceneTable& table, ParticleType& type);
+/// [[type]]. After [render] and [collision].
+void readTypes(SceneTable& top, std::string_view file, Scene& scene);
 
 // scene_looks.cpp
 
-/// What a [[type]] says of its look: size, color, opacity, rotation, turn, spin, cell, lit, fade. Leaves
-/// finish() to the caller. \param cells  of the atlas; 0: there is none.
-void readLook(SceneTable& table, std::uint32_t cells, ParticleLook& look);
-/// [[type]]. After [render] and [collision].
-void readTypes(SceneTable& top, std::string_view file, Scene& scene);
+/// What a [[type]] says of its look: size, color, opacity, rotation, turn, spin, cell, lit, fade.
+/// \param cells  of the atlas; 0: there is none.
+void readLook(SceneTable& type, std::uint32_t cells, ParticleLook& look);
 /// What [render] says of sprites and of the collider's mesh.
 void readSprites(SceneTable& render, const std::filesystem::path& folder, Scene& scene);
 

@@ -1,5 +1,4 @@
-// One table of a scene file: typed access that names file, line and column of what is wrong. For the readers
-// of scene.cpp alone: it needs toml++.
+// One table of a file in TOML: typed access that names file, line and column of what is wrong. It needs toml++.
 #pragma once
 
 #include <algorithm>
@@ -49,8 +48,7 @@ constexpr SceneRange symmetric(double limit) {
 /// throw SceneError.
 class SceneTable {
   public:
-    /// \param table  null for a table that the file does not have: every key then is absent. It, name and
-    /// file
+    /// \param table  null for a table that the file does not have: every key then is absent. It, name and file
     ///               must outlive this.
     SceneTable(const toml::table* table, std::string_view name, std::string_view file)
         : table_(table), name_(name), file_(file) {}

@@ -41,8 +41,7 @@ class Snow {
           particles(need(relief::ParticleSystem::create({.capacity = 10'000}))),
           body_picture(need(relief::ColliderRenderer::create(view()))),
           snow_picture(need(relief::ParticleRenderer::create(view()))) {
-        const relief::ColliderInstance instance{&textures};
-        need(particles.setColliders({&instance, 1}));
+        need(particles.setCollider(&textures));
         particles.setForces({.gravity = {0.0F, -3.0F * size(), 0.0F}, .drag = 2.5F});
         particles.setCollision({.restitution = 0.0F, .friction = 1.0F});
         camera.target = body.bounds.center();

@@ -119,8 +119,7 @@ class LiveColliderGlTest : public CollisionTest {
     void particlesOf(const ParticleSystemOptions& options, const ParticleType& type) {
         make(options);
         setType(type);
-        const std::array<ColliderInstance, 1> instances{ColliderInstance{textures_.get()}};
-        const auto set = particles_->setColliders(instances);
+        const auto set = particles_->setCollider(textures_.get());
         ASSERT_TRUE(set) << set.error().message;
     }
     [[nodiscard]] std::vector<FieldSample> field(std::span<const glm::vec3> points) const {
@@ -129,6 +128,31 @@ class LiveColliderGlTest : public CollisionTest {
         auto samples = query->evaluate(points);
         EXPECT_TRUE(samples);
         return samples.value_or(std::vector<FieldSample>{});
+    }
+
+    /// A live plate, and a particle at rest above its top, y = 0.05.
+    void makePlateAndParticle(const Mesh& plate, Collider frames, const ParticleType& type,
+                              const glm::vec3& start, Integrator integrator = Integrator::kEuler) {
+        makeLive(plate, std::move(frames));
+        update();
+        particlesOf({.capacity = 16, .integrator = integrator}, type);
+        spawnOne({start, glm::vec3(0.0F), 100.0F, 0});
+    }
+    /// A step in which the plate goes to where it is at rest and `by` from there.
+    void stepWith(const Mesh& plate, const glm::vec3& by, bool shows_motion = true) {
+        ASSERT_TRUE(live_->setPositions(moved(plate, by)));
+        if (!shows_motion) {
+            live_->settle();
+        }
+        update();
+        particles_->step(kDt);
+    }
+    /// The one particle has been thrown upwards by a surface that rises with `speed`.
+    void expectThrown(float restitution, float speed) const {
+        const ParticleState after = state().at(0);
+        EXPECT_EQ(after.contact, Contact::kCollided);
+        EXPECT_NEAR(after.velocity.y, (1.0F + restitution) * speed, 0.01F * speed);
+        EXPECT_NEAR(after.velocity.x, 0.0F, 1e-3F);
     }
 
     std::optional<LiveCollider> live_;
@@ -228,18 +252,11 @@ TEST_P(LiveColliderGlTest, MapsOfEveryFormatThrow) {
         for (const Decode decode : kDecodes) {
             SCOPED_TRACE(std::string(mapFormatName(format)) + " " + depthEncodingName(format) + " " +
                          decodeName(decode));
-            makeLive(plate, framesOf(format, decode, 0.6F, 128));
-            update();
             ParticleType type;
             type.restitution = 0.5F;
-            particlesOf({.capacity = 16}, type);
-            spawnOne({{0.1F, 0.055F, -0.07F}, glm::vec3(0.0F), 100.0F, 0});
-            ASSERT_TRUE(live_->setPositions(moved(plate, {0.0F, kRise, 0.0F})));
-            update();
-            particles_->step(kDt);
-            const ParticleState after = state().at(0);
-            EXPECT_EQ(after.contact, Contact::kCollided);
-            EXPECT_NEAR(after.velocity.y, 1.5F * kRise / kDt, 0.01F * kRise / kDt);
+            makePlateAndParticle(plate, framesOf(format, decode, 0.6F, 128), type, {0.1F, 0.055F, -0.07F});
+            stepWith(plate, {0.0F, kRise, 0.0F});
+            expectThrown(type.restitution, kRise / kDt);
         }
     }
 }
@@ -256,31 +273,20 @@ TEST_P(LiveColliderGlTest, ARisingPlateThrowsWhatItMeets) {
     for (const auto& [restitution, integrator, shows_motion] :
          {Case{0.0F, Integrator::kEuler, true}, Case{0.5F, Integrator::kEuler, true},
           Case{1.0F, Integrator::kVerlet, true}, Case{0.5F, Integrator::kEuler, false}}) {
-        makeLive(plate, cube(0.6F), 128);
-        update();
         ParticleType type;
         type.restitution = restitution;
-        particlesOf({.capacity = 16, .integrator = integrator}, type);
-        spawnOne({{0.1F, 0.104F, -0.07F}, glm::vec3(0.0F), 100.0F, 0});
+        makePlateAndParticle(plate, *liveFrames(cube(0.6F), 128), type, {0.1F, 0.104F, -0.07F}, integrator);
         bool met = false;
         for (int step = 1; step <= 12 && !met; ++step) {
-            ASSERT_TRUE(
-                live_->setPositions(moved(plate, {0.0F, kSpeed * kDt * static_cast<float>(step), 0.0F})));
-            if (!shows_motion) {
-                live_->settle();
-            }
-            update();
-            particles_->step(kDt);
+            stepWith(plate, {0.0F, kSpeed * kDt * static_cast<float>(step), 0.0F}, shows_motion);
             met = state().at(0).collisions > 0;
             EXPECT_EQ(met, step == 6) << step;
         }
         ASSERT_TRUE(met);
-        const ParticleState after = state().at(0);
         if (shows_motion) {
-            EXPECT_EQ(after.contact, Contact::kCollided);
-            EXPECT_NEAR(after.velocity.y, (1.0F + restitution) * kSpeed, 0.01F * kSpeed);
-            EXPECT_NEAR(after.velocity.x, 0.0F, 1e-3F);
+            expectThrown(restitution, kSpeed);
         } else {
+            const ParticleState after = state().at(0);
             // Without its motion the same plate has caught the particle and moves it nowhere.
             EXPECT_EQ(after.contact, Contact::kCaught);
             EXPECT_NEAR(after.velocity.y, 0.0F, 1e-6F);

@@ -261,7 +261,7 @@ TEST_P(CollisionCornersGlTest, BlocksAndVolumesOfTheCallerStayBound) {
     check("create");
     const ColliderBody body{&box, {}, 1.0F, 0.0F};
     collideWith(ColliderTextures::create(std::span(&body, 1)));
-    check("setColliders");
+    check("setCollider");
     AirSettings air;
     air.wind = {1.0F, 0.0F, 0.0F};
     auto flow = std::make_shared<FlowField>();

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -26,8 +25,7 @@ class CollisionTest : public GlTest {
     void collideWith(Result<ColliderTextures> textures) {
         ASSERT_TRUE(textures) << textures.error().message;
         textures_ = std::make_unique<ColliderTextures>(std::move(*textures));
-        const std::array<ColliderInstance, 1> instances{ColliderInstance{textures_.get()}};
-        ASSERT_TRUE(particles_->setColliders(instances));
+        ASSERT_TRUE(particles_->setCollider(textures_.get()));
     }
     void setType(const ParticleType& type) { ASSERT_TRUE(particles_->setTypes(std::span(&type, 1))); }
     [[nodiscard]] std::vector<ParticleState> state() const {

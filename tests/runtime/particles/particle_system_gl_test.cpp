@@ -39,8 +39,7 @@ struct World {
         auto uploaded = ColliderTextures::create(collider);
         ASSERT_TRUE(uploaded) << uploaded.error().message;
         textures = std::make_unique<ColliderTextures>(std::move(*uploaded));
-        const std::array<ColliderInstance, 1> instances{ColliderInstance{textures.get()}};
-        const auto set = particles->setColliders(instances);
+        const auto set = particles->setCollider(textures.get());
         ASSERT_TRUE(set) << set.error().message;
     }
 
@@ -623,10 +622,7 @@ TEST_P(ParticleSystemGlTest, OptionsOutOfRangeAreErrors) {
     }
     auto made = ParticleSystem::create({.capacity = 1});
     ASSERT_TRUE(made);
-    const std::array<ColliderInstance, 2> two{};
-    const auto set = made->setColliders(two);
-    ASSERT_FALSE(set);
-    EXPECT_EQ(set.error().code, ErrorCode::kUnsupported);
+    ASSERT_TRUE(made->setCollider(nullptr));
     made->step(0.1F);  // nobody there
     EXPECT_EQ(made->counts().alive, 0U);
 }

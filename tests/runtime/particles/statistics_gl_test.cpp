@@ -82,8 +82,7 @@ TEST_P(StatisticsGlTest, SumsEqualThoseOfTheStateReadBack) {
     for (const std::uint32_t capacity : {1U, 3U, 4U, 17U, 1000U, 1024U, 1025U, 5000U, 70'000U}) {
         SCOPED_TRACE(capacity);
         ParticleSystem particles = makeParticles(capacity);
-        const std::array<ColliderInstance, 1> instances{ColliderInstance{&*textures}};
-        ASSERT_TRUE(particles.setColliders(instances));
+        ASSERT_TRUE(particles.setCollider(&*textures));
         particles.setForces({{0.0F, -3.0F, 0.0F}, {}, 0.1F});
         particles.setCollision({0.6F, 0.1F, 0.0F});
         particles.setGround(-0.9F);

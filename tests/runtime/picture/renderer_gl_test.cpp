@@ -397,9 +397,8 @@ TEST_P(RendererGlTest, TheCallersStateIsKeptAndDoesNoHarm) {
     const auto run = [&](const std::function<void(const char*)>& check) {
         auto particles = ParticleSystem::create({.capacity = 2000, .epoch_seconds = 0.5});
         check("ParticleSystem::create");
-        const std::array<ColliderInstance, 1> instances{ColliderInstance{&*textures_}};
-        EXPECT_TRUE(particles->setColliders(instances));
-        check("setColliders");
+        EXPECT_TRUE(particles->setCollider(&*textures_));
+        check("setCollider");
         particles->setForces({{0.0F, -1.0F, 0.0F}, {}, 0.0F});
         particles->spawn(births);
         for (int step = 0; step < 40; ++step) {  // sets the clock back on its way

@@ -1,0 +1,120 @@
+#include "runtime/collider/collider_block.h"
+
+#include <algorithm>
+#include <cstring>
+#include <glm/glm.hpp>
+
+#include "shaders/shader_constants.h"
+
+namespace relief {
+namespace {
+
+/// The shader's ReliefMap, std140.
+struct BlockMap {
+    glm::vec4 row[3];
+    glm::vec4 column[3];
+    glm::vec4 object_per_map;
+    std::int32_t place[4];
+    std::int32_t info[4];
+};
+static_assert(sizeof(BlockMap) == 144);
+
+std::int32_t flagsOf(const DepthMap& map) {
+    return (map.compare == Compare::kGreater ? kKeepsFarthest : 0) | (map.encloses ? kEncloses : 0) |
+           (map.empty_is_outside ? kEmptyIsOutside : 0) | (map.decode == Decode::kPlane ? kDecodesPlane : 0);
+}
+
+BlockMap blockMap(const DepthMap& map, const MapPlace& at) {
+    BlockMap block{};
+    const bool cube = map.projection() == Projection::kCube;
+    const glm::vec3 size = cube ? glm::vec3(1.0F) : glm::vec3(map.width, map.height, 1.0F);
+    const float range = standingRange(map.projection(), map.object_per_map, map.width, map.height);
+    const float last[3] = {range * (2.0F / (cube ? kCubeDepthMax : 1.0F)), static_cast<float>(map.width - 1),
+                           static_cast<float>(map.height - 1)};
+    for (int i = 0; i < 3; ++i) {
+        // The rows are orthogonal and as long as the inverse of object_per_map.
+        const glm::vec3 row(map.object_to_map.row[i]);
+        block.row[i] = map.object_to_map.row[i] * size[i];
+        block.column[i] = glm::vec4(row * map.object_per_map[i] * map.object_per_map[i] / size[i], last[i]);
+    }
+    block.object_per_map = glm::vec4(map.object_per_map, kStandingCosine * map.object_per_map.z);
+    const auto width = static_cast<std::int32_t>(map.width);
+    const auto height = static_cast<std::int32_t>(map.height);
+    const std::int32_t place[4] = {static_cast<std::int32_t>(at.first), at.pitch, at.pitch * height, width};
+    const std::int32_t info[4] = {height, static_cast<std::int32_t>(map.format), flagsOf(map),
+                                  static_cast<std::int32_t>(at.motion_first)};
+    std::memcpy(block.place, place, sizeof(place));
+    std::memcpy(block.info, info, sizeof(info));
+    return block;
+}
+
+}  // namespace
+
+std::size_t mapsInBlock(std::size_t block_bytes, std::size_t bodies) {
+    return (block_bytes - kBlockHead - bodies * sizeof(BlockBody)) / sizeof(BlockMap);
+}
+
+void writeRows(const Pose& pose, glm::vec4 (&rows)[3]) {
+    const glm::mat3 rotation = glm::mat3_cast(pose.rotation);
+    for (int i = 0; i < 3; ++i) {
+        // Column i of the rotation is the body's axis i in the world.
+        const glm::vec3 row = rotation[i] / pose.scale;
+        rows[i] = glm::vec4(row, -glm::dot(row, pose.position));
+    }
+}
+
+std::vector<std::byte> colliderBlock(std::span<const BlockBody> bodies, std::span<const PlacedMap> maps,
+                                     const MapLayout& layout) {
+    std::vector<std::byte> block;
+    const auto append = [&](const void* data, std::size_t size) {
+        const auto* const bytes = static_cast<const std::byte*>(data);
+        block.insert(block.end(), bytes, bytes + size);
+    };
+    const std::int32_t counts[4] = {
+        static_cast<std::int32_t>(maps.size()), layout.textures[kFloatTexels].log2Width(),
+        layout.textures[kFixedTexels].log2Width(), layout.textures[kFrontBackTexels].log2Width()};
+    static_assert(sizeof(counts) == kBlockHead);
+    append(counts, sizeof(counts));
+    append(bodies.data(), bodies.size_bytes());
+    for (std::size_t m = 0; m < maps.size(); ++m) {
+        const BlockMap map = blockMap(*maps[m].map, layout.places[m]);
+        append(&map, sizeof(map));
+    }
+    return block;
+}
+
+std::string colliderDefines(std::size_t bodies, std::span<const PlacedMap> maps) {
+    std::string defines;
+    const auto define = [&](const std::string& name, const std::string& value = {}) {
+        defines += "#define RELIEF_" + name + " " + value + "\n";
+    };
+    define("MAP_CAPACITY", std::to_string(maps.size()));
+    if (std::any_of(maps.begin(), maps.end(), [](const PlacedMap& one) { return one.live; })) {
+        define("LIVE", "1");
+    }
+    if (bodies > 0) {
+        define("BODIES", std::to_string(bodies));
+    }
+    std::int32_t all = ~0;
+    for (const PlacedMap& one : maps) {
+        all &= flagsOf(*one.map);
+    }
+    define("ALL", std::to_string(all));
+    const auto defineIf = [&](const char* name, auto&& needed) {
+        if (std::any_of(maps.begin(), maps.end(), [&](const PlacedMap& one) { return needed(*one.map); })) {
+            define(std::string("HAS_") + name);
+        }
+    };
+    defineIf("FLOAT", [](const DepthMap& map) { return map.format == MapFormat::kFloat32; });
+    defineIf("FIXED", [](const DepthMap& map) { return map.format == MapFormat::kFixed8; });
+    defineIf("CUBE", [](const DepthMap& map) { return map.format == MapFormat::kCube8; });
+    defineIf("FRONT_BACK", [](const DepthMap& map) { return isFrontBack(map.format); });
+    defineIf("FRONT_BACK_HALF", [](const DepthMap& map) { return map.format == MapFormat::kFrontBackHalf; });
+    defineIf("FRONT_BACK_FIXED",
+             [](const DepthMap& map) { return map.format == MapFormat::kFrontBackFixed; });
+    defineIf("PLANE", [](const DepthMap& map) { return map.decode == Decode::kPlane; });
+    defineIf("PROJECTED", [](const DepthMap& map) { return map.decode == Decode::kProjected; });
+    return defines;
+}
+
+}  // namespace relief

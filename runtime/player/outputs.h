@@ -1,0 +1,59 @@
+// What a run writes while it goes on: pictures, a video, dumps, statistics; each only where it is wanted.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "formats/base/result.h"
+#include "runtime/files/video.h"
+#include "runtime/gl/gpu_timer.h"
+#include "runtime/player/player_options.h"
+#include "runtime/player/scene_picture.h"
+#include "runtime/player/statistics_log.h"
+
+namespace relief {
+
+/// Whether --dump can be written, as far as that shows before the run. Fails with kIo.
+[[nodiscard]] Result<void> checkDump(const std::filesystem::path& dump);
+
+class Outputs {
+  public:
+    /// \param options, loaded, textures  must outlive this.
+    Outputs(const PlayerOptions& options, const LoadedScene& loaded, const ColliderTextures& textures)
+        : options_(options), loaded_(loaded), textures_(textures) {}
+    /// The video goes, and with it what the watchdog would clean up.
+    ~Outputs();
+    Outputs(const Outputs&) = delete;
+    Outputs& operator=(const Outputs&) = delete;
+
+    /// Makes what is wanted. Fails as ScenePicture, VideoWriter and StatisticsLog do; kIo for folders.
+    [[nodiscard]] Result<void> open();
+
+    /// Whether pictures or dumps are written between steps.
+    [[nodiscard]] bool hasFrames() const { return picture_ || !options_.dump_frames.empty(); }
+    /// A frame of every kind that is wanted, all of the same step; counts them in the report.
+    [[nodiscard]] Result<void> writeFrame(const ParticleSystem& particles, PlayerReport& report);
+    /// Null without statistics.
+    [[nodiscard]] StatisticsLog* log() { return log_ ? &*log_ : nullptr; }
+    /// Null where stages are not timed.
+    [[nodiscard]] GpuTimer* timer() { return timer_ ? &*timer_ : nullptr; }
+    /// Ends the statistics and the video.
+    [[nodiscard]] Result<void> finish();
+
+  private:
+    [[nodiscard]] Result<void> openVideo();
+    [[nodiscard]] Result<void> writePicture(const ParticleSystem& particles, PlayerReport& report);
+    [[nodiscard]] Result<void> writeParticles(const ParticleSystem& particles, PlayerReport& report);
+
+    const PlayerOptions& options_;
+    const LoadedScene& loaded_;
+    const ColliderTextures& textures_;
+    std::optional<ScenePicture> picture_;
+    std::unique_ptr<VideoWriter> video_;
+    std::optional<GpuTimer> timer_;
+    std::optional<StatisticsLog> log_;
+};
+
+}  // namespace relief

@@ -1,0 +1,84 @@
+#include "runtime/player/scene_picture.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "runtime/gl/gl_fault.h"
+#include "runtime/scene/scene_pictures.h"
+
+namespace relief {
+namespace {
+
+ColliderView viewOf(const LoadedScene& loaded, const ColliderTextures& textures) {
+    float texel = std::numeric_limits<float>::max();
+    for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
+        texel = std::min(texel, loaded.scene.colliders[i].pose.scale * finestTexel(loaded.colliders[i]));
+    }
+    return {&textures, loaded.bounds, texel};
+}
+
+ColliderStyle colliderStyle(const Scene& scene) {
+    ColliderStyle style;
+    style.ground = scene.ground.enabled ? scene.ground.height : std::nullopt;
+    style.background = scene.render.background;
+    return style;
+}
+
+}  // namespace
+
+Result<ScenePicture> ScenePicture::create(const LoadedScene& loaded, const ColliderTextures& textures) {
+    const Scene& scene = loaded.scene;
+    const ColliderView view = viewOf(loaded, textures);
+    auto frame = RELIEF_TRY(Frame::create(scene.render.width, scene.render.height));
+    auto atlas = RELIEF_TRY(loadAtlas(scene));
+    std::optional<LivePicture> live;
+    std::unique_ptr<ColliderMesh> mesh;
+    if (!scene.render.mesh.empty() && loaded.live.front()) {
+        auto made = RELIEF_TRY(LivePicture::create(*loaded.live.front()));
+        live.emplace(std::move(made));
+    } else {
+        auto made = RELIEF_TRY(loadColliderMesh(scene, loaded.bounds));
+        mesh = std::move(made);
+    }
+    auto collider = RELIEF_TRY(ColliderRenderer::create(view, live ? &live->mesh() : mesh.get()));
+    auto particles = RELIEF_TRY(ParticleRenderer::create(view));
+    ScenePicture picture(loaded, std::move(frame), std::move(collider), std::move(particles));
+    if (scene.render.sort_frames > 0) {
+        auto sorter = RELIEF_TRY(DepthSorter::create(scene.capacity));
+        picture.sorter_.emplace(std::move(sorter));
+    }
+    picture.collider_style_ = colliderStyle(scene);
+    picture.particle_style_ = particleStyle(scene, atlas.get());
+    picture.atlas_ = std::move(atlas);
+    picture.mesh_ = std::move(mesh);
+    picture.live_ = std::move(live);
+    return picture;
+}
+
+Result<std::vector<std::uint8_t>> ScenePicture::draw(const ParticleSystem& particles, StageTimer* stages) {
+    const Camera camera = sceneCamera(loaded_->scene, loaded_->bounds, particles.time());
+    ParticleOrder order;
+    if (sorter_) {
+        const StageScope scope(stages, Stage::kSort);
+        order = sort(particles, camera.eye);
+    }
+    const StageScope scope(stages, Stage::kDraw);
+    if (live_) {
+        live_->show(particles.time());
+    }
+    RELIEF_TRY(collider_.draw(camera, collider_style_, frame_.target()));
+    RELIEF_TRY(
+        particles_.draw(particles, camera, particle_style_, frame_.target(), order, &collider_.depth()));
+    std::vector<std::uint8_t> rgb = frame_.read();
+    RELIEF_TRY(checkGpu("drawing a picture"));
+    return rgb;
+}
+
+ParticleOrder ScenePicture::sort(const ParticleSystem& particles, const glm::vec3& eye) {
+    const std::uint32_t passes =
+        DepthSorter::passesPerFrame(particles.extent(), loaded_->scene.render.sort_frames);
+    sorter_->update(particles.positions(), particles.textureWidth(), particles.extent(), eye, passes);
+    return {&sorter_->order(), sorter_->count()};
+}
+
+}  // namespace relief

@@ -1,0 +1,53 @@
+// The pictures of a run: everything that draws a scene, made only where frames are wanted.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "formats/base/result.h"
+#include "runtime/gl/stage_timer.h"
+#include "runtime/picture/collider_renderer.h"
+#include "runtime/picture/depth_sort.h"
+#include "runtime/picture/frame.h"
+#include "runtime/picture/particle_renderer.h"
+#include "runtime/player/live_bodies.h"
+#include "runtime/scene/loaded_scene.h"
+
+namespace relief {
+
+class ScenePicture {
+  public:
+    /// Needs a current context, as draw() does.
+    /// \param loaded, textures  must outlive this.
+    /// Fails as loadAtlas, loadColliderMesh and the renderers do.
+    [[nodiscard]] static Result<ScenePicture> create(const LoadedScene& loaded,
+                                                     const ColliderTextures& textures);
+
+    /// The particles as they are now: 3 · width · height bytes sRGB, the top row first. Waits for the GPU.
+    /// \param stages  times sort and draw; may be null.
+    [[nodiscard]] Result<std::vector<std::uint8_t>> draw(const ParticleSystem& particles, StageTimer* stages);
+
+  private:
+    ScenePicture(const LoadedScene& loaded, Frame frame, ColliderRenderer collider,
+                 ParticleRenderer particles)
+        : loaded_(&loaded),
+          frame_(std::move(frame)),
+          collider_(std::move(collider)),
+          particles_(std::move(particles)) {}
+    [[nodiscard]] ParticleOrder sort(const ParticleSystem& particles, const glm::vec3& eye);
+
+    const LoadedScene* loaded_;
+    std::unique_ptr<SpriteAtlas> atlas_;
+    std::unique_ptr<ColliderMesh> mesh_;
+    std::optional<LivePicture> live_;  // instead of mesh_
+    Frame frame_;
+    ColliderRenderer collider_;
+    ParticleRenderer particles_;
+    ColliderStyle collider_style_;
+    ParticleStyle particle_style_;
+    std::optional<DepthSorter> sorter_;
+};
+
+}  // namespace relief

@@ -1,0 +1,84 @@
+#include "shaders/shader_constants.h"
+
+#include <array>
+#include <charconv>
+
+#include "formats/depth_map.h"
+
+namespace relief {
+namespace {
+
+/// As short as reads back as the same float.
+std::string literal(float value) {
+    std::array<char, 32> digits{};
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+    std::string text(digits.data(), end);
+    return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+std::string literal(int value) {
+    return std::to_string(value);
+}
+
+/// A code that shaders keep in a float texture or uniform.
+template <class Code>
+float asFloat(Code code) {
+    return static_cast<float>(code);
+}
+
+std::string makeConstants() {
+    std::string lines;
+    const auto define = [&](const char* name, auto value) {
+        lines.append("#define RELIEF_").append(name).append(" (").append(literal(value)).append(")\n");
+    };
+    define("FLOAT32", static_cast<int>(MapFormat::kFloat32));
+    define("FRONT_BACK_HALF", static_cast<int>(MapFormat::kFrontBackHalf));
+    define("CUBE8", static_cast<int>(MapFormat::kCube8));
+    define("FRONT_BACK_FIXED", static_cast<int>(MapFormat::kFrontBackFixed));
+    define("KEEPS_FARTHEST", static_cast<int>(kKeepsFarthest));
+    define("ENCLOSES", static_cast<int>(kEncloses));
+    define("EMPTY_IS_OUTSIDE", static_cast<int>(kEmptyIsOutside));
+    define("DECODES_PLANE", static_cast<int>(kDecodesPlane));
+    define("FAR_INSIDE", Vote{}.distance);
+    define("FAR_OUTSIDE", kFarOutside);
+    define("CUBE_DEPTH_MAX", kCubeDepthMax);
+    define("DEPTH_STEPS", static_cast<float>(kDepthSteps));
+    define("DEPTH_SLACK", static_cast<float>(kDepthSlack));
+    define("GRAZING", static_cast<float>(kGrazingCosine));
+    define("STANDING_COSINE", kStandingCosine);
+    define("NORMAL_HALF_RANGE", kNormalHalfRange);
+
+    define("BOUNCE", asFloat(OnCollision::kBounce));
+    define("STOP", asFloat(OnCollision::kStop));
+    define("SLIDE", asFloat(OnCollision::kSlide));
+    define("DIE", asFloat(OnCollision::kDie));
+    define("FREE", asFloat(Contact::kNone));
+    define("COLLIDED", asFloat(Contact::kCollided));
+    define("CAUGHT", asFloat(Contact::kCaught));
+    define("STOPPED", asFloat(Contact::kStopped));
+    define("CONTACT_PARTS", kContactParts);
+    define("VERLET_COLLISIONS_MAX", kVerletCollisionsMax);
+    define("DEAD_HEIGHT", kDeadHeight);
+    define("DEAD_COLLISIONS", kDeadCollisions);
+    define("REDUCED_SIDE", kReducedSide);
+    define("COLLISIONS_HIGH", static_cast<float>(kCollisionsHigh));
+
+    define("AIR_FIELDS_MAX", kAirFieldsMax);
+    define("SIX_PI", kSixPi);
+    define("CURL_CELL_MAX", kCurlCellMax);
+    define("CURL_PATTERNS", kCurlPatterns);
+    define("BEND", static_cast<int>(DeformKind::kBend));
+    define("TWIST", static_cast<int>(DeformKind::kTwist));
+    define("LOOK_HEAD_TEXELS", kLookHeadTexels);
+    define("LOOK_KEY_TEXELS", kLookKeyTexels);
+    define("QUAD_VERTICES", kQuadVertices);
+    return lines;
+}
+
+}  // namespace
+
+const std::string& shaderConstants() {
+    static const std::string lines = makeConstants();
+    return lines;
+}
+
+}  // namespace relief

@@ -1,0 +1,70 @@
+// The numbers that C++ and GLSL share: each is defined here or, where containers know it too, in formats/, and every
+// shader is compiled with all of them as #defines. So no shader has a number of its own that C++ must agree with.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace relief {
+
+/// Flags of a map in the block of collider.glsl: their sum.
+enum MapFlag : std::int32_t {
+    kKeepsFarthest = 1,
+    kEncloses = 2,
+    kEmptyIsOutside = 4,
+    kDecodesPlane = 8,
+};
+
+/// What a collision does to a particle; one that is caught inside always leaves first.
+enum class OnCollision : std::uint8_t {
+    kBounce = 0,  ///< the paper's reaction, by restitution and friction
+    kStop = 1,    ///< stays where it touches, and goes with what it touched (snow)
+    kSlide = 2,   ///< keeps the tangential part of its velocity alone
+    kDie = 3,     ///< out of sight at once; its place is free again at the end of its lifetime
+};
+
+/// What the last step did to a particle. The state texture holds kStopped for the floor and kStopped + 1 + b for
+/// body b.
+enum class Contact : std::uint8_t {
+    kNone = 0,
+    kCollided = 1,
+    kCaught = 2,
+    kStopped = 3,  ///< at rest for good (OnCollision::kStop)
+};
+
+/// With Verlet one float holds both counts of a particle: collisions + contact / kContactParts. Beyond the largest
+/// number of collisions it would lose the parts.
+inline constexpr float kContactParts = 16.0F;
+inline constexpr float kVerletCollisionsMax = 524287.0F;  // 2^19 - 1
+
+/// Where the dead are, out of everybody's sight, and how many collisions they have.
+inline constexpr float kDeadHeight = -1e30F;
+inline constexpr float kDeadCollisions = -1.0F;
+
+/// A pass of the statistics sums squares of so many texels a side.
+inline constexpr int kReducedSide = 4;
+/// Sums of collisions are kept as low + kCollisionsHigh · high.
+inline constexpr int kCollisionsHigh = 4096;
+
+/// The most attractors, and the most vortices, in the block of air.glsl.
+inline constexpr int kAirFieldsMax = 8;
+/// 6π, of Stokes drag.
+inline constexpr float kSixPi = 18.849556F;
+/// Beyond so many lattice cells from the origin floats no longer resolve a cell of curl noise.
+inline constexpr float kCurlCellMax = 1048576.0F;
+/// Patterns of curl noise, of the first octave, before they repeat.
+inline constexpr int kCurlPatterns = 128;
+
+enum class DeformKind : std::uint8_t { kBend = 0, kTwist = 1, kWobble = 2 };
+
+/// Texels before the keys in a row of looks, and texels of a key.
+inline constexpr int kLookHeadTexels = 2;
+inline constexpr int kLookKeyTexels = 2;
+
+/// Vertices of a sprite that is a quad.
+inline constexpr int kQuadVertices = 6;
+
+/// "#define RELIEF_BOUNCE 0.0\n" and so on. makeProgram puts them before every shader.
+[[nodiscard]] const std::string& shaderConstants();
+
+}  // namespace relief
