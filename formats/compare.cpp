@@ -6,7 +6,6 @@
 #include <cstring>
 #include <glm/geometric.hpp>
 #include <numbers>
-#include <optional>
 #include <span>
 
 namespace relief {

@@ -255,8 +255,7 @@ Result<void> readTexels(std::span<const std::byte> bytes, const StoredPayload& p
                             std::to_string(payload.info.offset) + " is wrong");
     }
     if (payload.info.compressed) {
-        std::vector<std::byte> raw = RELIEF_TRY(unpackPayload(stored, payload.info.raw_size));
-        map.texels = std::move(raw);
+        map.texels = RELIEF_TRY(unpackPayload(stored, payload.info.raw_size));
     } else {
         map.texels.assign(stored.begin(), stored.end());
     }

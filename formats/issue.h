@@ -2,7 +2,6 @@
 // meaning from version to version.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <glm/gtc/packing.hpp>
 
+#include "formats/normal_index.h"
+
 namespace relief {
 namespace {
 

@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "formats/depth_map.h"
+#include "formats/normal_index.h"
 
 namespace relief {
 namespace {

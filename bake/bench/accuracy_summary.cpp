@@ -1,7 +1,6 @@
 #include "bake/bench/accuracy_summary.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 
 #include "formats/base/byte_count.h"

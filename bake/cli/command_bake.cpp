@@ -123,8 +123,7 @@ Result<Baked> makeCollider(const BakeCommand& command, const PreparedMesh& impor
             times.search_ms = watch.ms();
             return baked;
         }
-        PlanReport planned = RELIEF_TRY(planMaps(query, command, settings));
-        plan = std::move(planned);
+        plan = RELIEF_TRY(planMaps(query, command, settings));
         times.plan_ms = watch.ms();
     }
     return bakeMaps(command, mesh, settings);

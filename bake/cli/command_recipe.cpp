@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <span>
 #include <thread>
 
 #include "bake/cli/preflight.h"

@@ -3,8 +3,6 @@
 
 #include <string>
 
-#include "bake/import/mesh_import.h"
-
 namespace CLI {
 class App;
 }

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "formats/base/text.h"
-#include "formats/validate.h"
 #include "import_message_generated.h"
 
 namespace relief {

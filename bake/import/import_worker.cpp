@@ -14,7 +14,6 @@
 #include <cstring>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "bake/import/import_message.h"
 #include "bake/import/import_protocol.h"

@@ -2,13 +2,9 @@
 // (importMeshInWorker), as every tool does, or in this one (importMesh), for files that one trusts.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <optional>
-#include <string>
 
 #include "bake/import/import_job.h"
-#include "bake/import/import_units.h"
 #include "bake/mesh/mesh.h"
 #include "formats/base/result.h"
 

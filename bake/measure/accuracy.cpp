@@ -8,7 +8,6 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
-#include <limits>
 #include <vector>
 
 #include "formats/base/portable_math.h"

@@ -3,8 +3,6 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
-#include <algorithm>
-
 #include "bake/mesh/triangle_plane.h"
 
 namespace relief {

@@ -2,7 +2,6 @@
 // tree that rays search.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <vector>
 

@@ -1,6 +1,5 @@
 #include "bake/picture/map_image.h"
 
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 

@@ -18,7 +18,6 @@
 #include "bake/texels/raycast.h"
 #include "bake/texels/refine.h"
 #include "formats/base/stopwatch.h"
-#include "formats/container.h"
 
 namespace relief {
 namespace {

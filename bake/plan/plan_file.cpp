@@ -1,13 +1,12 @@
 #include "bake/plan/plan_file.h"
 
-#include <algorithm>
 #include <array>
 #include <exception>
 
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "formats/config/toml.h"
-#include "formats/container.h"
+#include "formats/container_limits.h"
 
 namespace relief {
 namespace {

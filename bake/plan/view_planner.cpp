@@ -11,7 +11,6 @@
 #include <glm/vec2.hpp>
 #include <limits>
 #include <optional>
-#include <random>
 
 #include "bake/mesh/oriented_box.h"
 #include "bake/mesh/surface_sampler.h"

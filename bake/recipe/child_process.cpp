@@ -10,8 +10,6 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <cstdlib>
-#include <system_error>
 #include <utility>
 
 namespace relief {

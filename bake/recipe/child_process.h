@@ -6,7 +6,6 @@
 
 #include <chrono>
 #include <csignal>
-#include <cstdint>
 #include <string>
 #include <vector>
 

@@ -1,6 +1,5 @@
 #include "bake/recipe/depfile.h"
 
-#include <algorithm>
 #include <set>
 #include <span>
 

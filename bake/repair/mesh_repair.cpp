@@ -349,8 +349,7 @@ Result<HoleFill> fillHoles(const TriangleMesh& mesh) {
             ++(patch.empty() ? fill.left : fill.filled);
             fill.triangles += patch.size();
         }
-        TriangleMesh filled = RELIEF_TRY(meshOf(mesh, soup, surface));
-        fill.mesh = std::move(filled);
+        fill.mesh = RELIEF_TRY(meshOf(mesh, soup, surface));
         return fill;
     });
 }

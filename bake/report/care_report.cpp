@@ -2,7 +2,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bake/report/report.h"
 #include "formats/base/text.h"
 #include "runtime/tool/json_text.h"
 

@@ -12,7 +12,6 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <span>
-#include <system_error>
 
 #include "bake/report/report.h"
 #include "formats/base/file_io.h"

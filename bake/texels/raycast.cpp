@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <utility>
 
 #include "bake/mesh/embree_mesh.h"
 #include "bake/texels/ray_probe.h"

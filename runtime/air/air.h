@@ -3,7 +3,6 @@
 // puts the settings there.
 #pragma once
 
-#include <array>
 #include <glm/vec3.hpp>
 #include <limits>
 #include <memory>

@@ -1,7 +1,6 @@
 #include "runtime/air/air_block.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <glm/geometric.hpp>
 #include <iterator>

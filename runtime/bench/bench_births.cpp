@@ -14,7 +14,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
-#include <string>
 #include <vector>
 
 #include "runtime/gl/gl_context.h"

@@ -20,7 +20,6 @@
 #include <cstdio>
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -131,8 +130,7 @@ class Copy {
                 std::array<GLuint, 2>{copy.state_[i][0].name(), copy.state_[i][1].name()}));
             copy.target_[i] = std::move(target);
         }
-        auto program = RELIEF_TRY(relief::makeProgram("quad.vert", "copy_state.frag"));
-        copy.program_ = std::move(program);
+        copy.program_ = RELIEF_TRY(relief::makeProgram("quad.vert", "copy_state.frag"));
         copy.array_ = relief::makeVertexArray();
         glUseProgram(copy.program_.name());
         glUniform1i(relief::uniformLocation(copy.program_, "u_velocity"), 1);

@@ -1,6 +1,5 @@
 #include "runtime/bench/bench_variants.h"
 
-#include <array>
 #include <glm/gtc/quaternion.hpp>
 #include <utility>
 

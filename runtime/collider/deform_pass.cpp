@@ -113,8 +113,7 @@ Result<DeformPass> DeformPass::make(const std::string& defines, const std::strin
     pass.array_ = makeVertexArray();
     pass.pixel_ = makeTexture2D(GL_RGBA8, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE);
     const std::array<GLuint, 1> colors{pass.pixel_.name()};
-    auto target = RELIEF_TRY(makeFramebuffer(colors));
-    pass.target_ = std::move(target);
+    pass.target_ = RELIEF_TRY(makeFramebuffer(colors));
     glBindVertexArray(pass.array_.name());
     glBindBuffer(GL_ARRAY_BUFFER, pass.output_.name());
     glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(pass.bytes()), nullptr, GL_DYNAMIC_COPY);

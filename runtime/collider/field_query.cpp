@@ -29,8 +29,7 @@ Result<FieldQuery> FieldQuery::create(const ColliderTextures& textures) {
     const PassState state;
     FieldQuery query;
     query.textures_ = &textures;
-    GlProgram program = RELIEF_TRY(makeProgram("quad.vert", "query.frag", textures.defines()));
-    query.program_ = std::move(program);
+    query.program_ = RELIEF_TRY(makeProgram("quad.vert", "query.frag", textures.defines()));
     textures.attach(query.program_, kBinding);
     glUniform1i(uniformLocation(query.program_, "u_points"), 0);
     query.no_attributes_ = makeVertexArray();

@@ -1,7 +1,6 @@
 #include "runtime/collider/live_collider.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <string>
@@ -100,8 +99,7 @@ Result<LiveCollider> LiveCollider::create(std::span<const glm::vec3> positions,
     LiveCollider live(std::move(mesh), std::move(renderer), std::move(frames));
     RELIEF_TRY(live.createTargets());
     const PassState state;
-    auto program = RELIEF_TRY(makeProgram("quad.vert", "live_motion.frag"));
-    live.motion_program_ = std::move(program);
+    live.motion_program_ = RELIEF_TRY(makeProgram("quad.vert", "live_motion.frag"));
     glUseProgram(live.motion_program_.name());
     glUniform1i(uniformLocation(live.motion_program_, "u_motion_xy"), kMotionXyUnit);
     glUniform1i(uniformLocation(live.motion_program_, "u_motion_z"), kMotionZUnit);

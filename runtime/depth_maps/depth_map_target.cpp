@@ -69,8 +69,7 @@ Result<DepthMapTarget> DepthMapTarget::create(MapFormat format, std::uint32_t wi
         target.motion_[i] = makeTexture2D(GL_RGBA32F, w, h, GL_RGBA, GL_FLOAT);
         colors.push_back(target.motion_[i].name());
     }
-    auto framebuffer = RELIEF_TRY(makeFramebuffer(colors, target.depth_.name()));
-    target.framebuffer_ = std::move(framebuffer);
+    target.framebuffer_ = RELIEF_TRY(makeFramebuffer(colors, target.depth_.name()));
     return target;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -170,10 +169,8 @@ Result<void> GpuMesh::createTextures(std::span<const glm::uvec3> triangles) {
                              texels.data());
     planes_ = makeTexture2D(GL_RGBA32UI, 1 << triangle_shift_, rows, GL_RGBA_INTEGER, GL_UNSIGNED_INT);
     const std::array<GLuint, 1> planes{planes_.name()};
-    auto target = RELIEF_TRY(makeFramebuffer(planes));
-    planes_target_ = std::move(target);
-    auto program = RELIEF_TRY(makeProgram("quad.vert", "triangle_plane.frag"));
-    planes_program_ = std::move(program);
+    planes_target_ = RELIEF_TRY(makeFramebuffer(planes));
+    planes_program_ = RELIEF_TRY(makeProgram("quad.vert", "triangle_plane.frag"));
     glUseProgram(planes_program_.name());
     glUniform1i(uniformLocation(planes_program_, "u_positions"), 0);
     glUniform1i(uniformLocation(planes_program_, "u_corners"), 1);

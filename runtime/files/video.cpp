@@ -8,11 +8,9 @@
 #include <array>
 #include <cerrno>
 #include <cstdio>
-#include <cstdlib>
 #include <string>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include "formats/base/descriptor.h"
 #include "formats/base/file_io.h"

@@ -101,10 +101,6 @@ GlBuffer makeBuffer() {
 GlVertexArray makeVertexArray() {
     return GlVertexArray(generate([](GLsizei n, GLuint* out) { glGenVertexArrays(n, out); }));
 }
-GlRenderbuffer makeRenderbuffer() {
-    return GlRenderbuffer(generate([](GLsizei n, GLuint* out) { glGenRenderbuffers(n, out); }));
-}
-
 GlTexture makeTexture2D(GLenum internal_format, GLsizei width, GLsizei height, GLenum format, GLenum type,
                         const void* pixels) {
     GlTexture texture(generate([](GLsizei n, GLuint* out) { glGenTextures(n, out); }));

@@ -4,10 +4,8 @@
 
 #include <epoxy/gl.h>
 
-#include <cstddef>
 #include <memory>
 #include <span>
-#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -72,7 +70,6 @@ using GlRenderbuffer = GlName<gl_detail::deleteRenderbuffer>;
 [[nodiscard]] GlFramebuffer makeFramebuffer();
 [[nodiscard]] GlBuffer makeBuffer();
 [[nodiscard]] GlVertexArray makeVertexArray();
-[[nodiscard]] GlRenderbuffer makeRenderbuffer();
 
 /// A 2-D texture of one level, nearest filter, clamped to its edge; contents undefined unless given.
 /// \param format, type  of `pixels`, tightly packed rows from y = 0; used for allocation alone if it is null.

@@ -145,8 +145,7 @@ StepFeatures ParticleSystem::featuresFor(const ColliderTextures* collider) const
 }
 
 Result<void> ParticleSystem::remakeStep(const ColliderTextures* collider) {
-    auto made = RELIEF_TRY(StepPass::create(featuresFor(collider)));
-    step_ = std::move(made);
+    step_ = RELIEF_TRY(StepPass::create(featuresFor(collider)));
     return {};
 }
 

@@ -1,6 +1,5 @@
 #include "runtime/particles/point_list.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>

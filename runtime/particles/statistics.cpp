@@ -53,8 +53,7 @@ Result<Statistics> Statistics::create(std::uint32_t capacity) {
         RELIEF_TRY(checkAllocated("the statistics of " + std::to_string(capacity) + " particles",
                                   "choose a smaller capacity"));
         const std::array<GLuint, 2> textures{level.counts.name(), level.sums.name()};
-        auto target = RELIEF_TRY(makeFramebuffer(textures));
-        level.target = std::move(target);
+        level.target = RELIEF_TRY(makeFramebuffer(textures));
         statistics.levels_.push_back(std::move(level));
     } while (width > 1 || height > 1);
 

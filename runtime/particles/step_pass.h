@@ -2,7 +2,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "formats/base/result.h"
 #include "runtime/air/air_block.h"

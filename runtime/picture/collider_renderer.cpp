@@ -158,8 +158,7 @@ Result<void> ColliderRenderer::trace(const Camera& camera, const ColliderStyle& 
     ColliderMesh::View of_mesh;
     GlTexture coarse;
     if (mesh_ != nullptr) {
-        auto seen = RELIEF_TRY(mesh_->view(camera, width, height));
-        of_mesh = std::move(seen);
+        of_mesh = RELIEF_TRY(mesh_->view(camera, width, height));
         glActiveTexture(GL_TEXTURE0 + kMeshNormalUnit);
         glBindTexture(GL_TEXTURE_2D, of_mesh.normal.name());
         glActiveTexture(GL_TEXTURE0 + kMeshDepthUnit);

@@ -52,8 +52,7 @@ Result<void> ParticleLight::update(const ParticleSystem& particles, const GlText
         light_ = makeTexture2D(GL_RGBA32F, width_, height_, GL_RGBA, GL_FLOAT);
         RELIEF_TRY(checkAllocated(what, kCure));
         const std::array<GLuint, 1> colors{light_.name()};
-        auto target = RELIEF_TRY(makeFramebuffer(colors));
-        target_ = std::move(target);
+        target_ = RELIEF_TRY(makeFramebuffer(colors));
     }
     glUseProgram(program_.name());
     glUniform1i(uniformLocation(program_, "u_extent"), extent);

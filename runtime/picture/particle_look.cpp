@@ -1,7 +1,6 @@
 #include "runtime/picture/particle_look.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "runtime/picture/collider_view.h"

@@ -36,8 +36,7 @@ Result<ParticleRenderer> ParticleRenderer::create(const std::optional<ColliderVi
     const PassState state;
     ParticleRenderer renderer;
     if (collider) {
-        auto light = RELIEF_TRY(ParticleLight::create(*collider));
-        renderer.light_ = std::move(light);
+        renderer.light_ = RELIEF_TRY(ParticleLight::create(*collider));
     }
     const std::string defines = collider ? "#define RELIEF_LIT 1\n" : "";
     auto points = makeSpriteProgram(defines);

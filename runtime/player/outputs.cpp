@@ -91,9 +91,8 @@ Result<void> Outputs::open() {
 
 Result<void> Outputs::openVideo() {
     const Scene& scene = loaded_.scene;
-    auto video = RELIEF_TRY(
+    video_ = RELIEF_TRY(
         VideoWriter::create(options_.video, {scene.render.width, scene.render.height, videoRate(scene)}));
-    video_ = std::move(video);
     if (options_.watchdog != nullptr) {
         options_.watchdog->setCleanUp([writer = video_.get()] { writer->abandon(); });
     }

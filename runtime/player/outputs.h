@@ -1,7 +1,6 @@
 // What a run writes while it goes on: pictures, a video, dumps, statistics; each only where it is wanted.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>

@@ -3,13 +3,11 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "formats/base/result.h"
 #include "formats/collider.h"
-#include "runtime/player/player.h"
 #include "runtime/scene/scene.h"
 
 namespace relief {

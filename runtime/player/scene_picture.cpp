@@ -37,8 +37,7 @@ Result<ScenePicture> ScenePicture::create(const LoadedScene& loaded, const Colli
         auto made = RELIEF_TRY(LivePicture::create(*loaded.live.front()));
         live.emplace(std::move(made));
     } else {
-        auto made = RELIEF_TRY(loadColliderMesh(scene, loaded.bounds));
-        mesh = std::move(made);
+        mesh = RELIEF_TRY(loadColliderMesh(scene, loaded.bounds));
     }
     auto collider = RELIEF_TRY(ColliderRenderer::create(view, live ? &live->mesh() : mesh.get()));
     auto particles = RELIEF_TRY(ParticleRenderer::create(view));

@@ -3,7 +3,6 @@
 #include <cerrno>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <system_error>
 
 #include "formats/base/file_io.h"
 #include "runtime/player/stage_json.h"

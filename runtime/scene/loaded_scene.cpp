@@ -48,8 +48,7 @@ Result<LoadedScene> loadAll(const fs::path& input, const SceneOverrides& overrid
     for (const SceneCollider& from : scene.colliders) {
         loaded.live.emplace_back();
         if (from.live) {
-            auto mesh = RELIEF_TRY(loadLiveMesh(from));
-            loaded.live.back() = std::move(mesh);
+            loaded.live.back() = RELIEF_TRY(loadLiveMesh(from));
         }
         auto collider =
             RELIEF_TRY(from.live ? Result<Collider>(loaded.live.back()->frames) : openCollider(from));

@@ -1,6 +1,5 @@
 // [[camera.key]]: the camera's path.
 #include <cmath>
-#include <string>
 
 #include "runtime/scene/scene_array.h"
 #include "runtime/scene/scene_readers.h"

@@ -1,11 +1,6 @@
 // A scene's collider that deforms: a mesh instead of a container, how it moves, and what its maps are.
 #pragma once
 
-#include <cstdint>
-#include <glm/vec3.hpp>
-#include <optional>
-#include <vector>
-
 #include "formats/base/result.h"
 #include "formats/collider.h"
 #include "runtime/collider/deformation.h"

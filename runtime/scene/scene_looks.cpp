@@ -2,7 +2,6 @@
 #include <string>
 
 #include "formats/config/confined_path.h"
-#include "runtime/scene/scene_array.h"
 #include "runtime/scene/scene_readers.h"
 
 namespace relief {

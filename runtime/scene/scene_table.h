@@ -1,7 +1,6 @@
 // One table of a file in TOML: typed access that names file, line and column of what is wrong. It needs toml++.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <optional>

@@ -10,7 +10,6 @@
 #include <cstdio>
 #include <map>
 #include <stdexcept>
-#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>

@@ -11,6 +11,7 @@
 #include <numbers>
 #include <random>
 
+#include "formats/normal_index.h"
 #include "tests/formats/analytic_shapes.h"
 #include "tests/formats/sample_colliders.h"
 

@@ -14,6 +14,7 @@
 #include <string>
 
 #include "formats/collider.h"
+#include "formats/normal_index.h"
 #include "formats/validate.h"
 #include "tests/formats/analytic_shapes.h"
 

@@ -1,5 +1,6 @@
 // Programs that are started: what they get of this process, and how their end is told.
 #include "formats/base/process.h"
+#include "formats/base/descriptor.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
