@@ -22,6 +22,8 @@
 #include <optional>
 #include <span>
 
+#include "formats/normal_index.h"
+
 namespace relief {
 
 enum class MapFormat : std::uint8_t {

@@ -21,6 +21,7 @@
 #include "bake/repair/hole_caps.h"
 #include "bake/report/accuracy_report.h"
 #include "bake/report/points_csv.h"
+#include "bake/report/report.h"
 #include "formats/base/file_io.h"
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"

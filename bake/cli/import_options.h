@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "bake/import/mesh_import.h"
+
 namespace CLI {
 class App;
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "formats/base/text.h"
+#include "formats/validate.h"
 #include "import_message_generated.h"
 
 namespace relief {

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "bake/import/import_job.h"
+#include "bake/import/import_units.h"
 #include "bake/mesh/mesh.h"
 #include "formats/base/result.h"
 

@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "bake/mesh/mesh.h"
 #include "bake/mesh/mesh_query.h"
 #include "bake/mesh/surface_sampler.h"
 

@@ -18,6 +18,7 @@
 #include "bake/texels/raycast.h"
 #include "bake/texels/refine.h"
 #include "formats/base/stopwatch.h"
+#include "formats/container.h"
 
 namespace relief {
 namespace {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "bake/measure/accuracy.h"
 #include "bake/pipeline/bake.h"
 #include "bake/plan/view_planner.h"
 #include "formats/base/result.h"

@@ -6,6 +6,7 @@
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "formats/config/toml.h"
+#include "formats/container.h"
 #include "formats/container_limits.h"
 
 namespace relief {

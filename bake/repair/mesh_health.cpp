@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "bake/mesh/triangle_plane.h"
 #include "bake/repair/mesh_repair.h"
 #include "formats/base/text.h"
 

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bake/report/report.h"
 #include "formats/base/text.h"
 #include "runtime/tool/json_text.h"
 

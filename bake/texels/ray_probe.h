@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bake/mesh/embree_mesh.h"
+#include "bake/mesh/triangle_plane.h"
 #include "bake/plan/view.h"
 #include "bake/texels/ray_scene.h"
 

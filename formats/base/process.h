@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "formats/base/descriptor.h"
+
 namespace relief {
 
 /// What a program is started with. It has this process's environment and working folder, and handles no signal.

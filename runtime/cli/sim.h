@@ -2,6 +2,7 @@
 #pragma once
 
 #include "formats/base/result.h"
+#include "runtime/player/player.h"
 #include "runtime/tool/gpu_tool.h"
 
 namespace relief {

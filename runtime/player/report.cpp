@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "formats/base/file_io.h"
 #include "runtime/player/report_air.h"
 #include "runtime/player/stage_json.h"
 #include "runtime/tool/json_text.h"

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "runtime/player/player.h"
+
 namespace relief {
 
 /// One JSON object, indented, with a trailing newline. Keys: README.md beside this file, "The report".

@@ -8,6 +8,7 @@
 
 #include "formats/base/result.h"
 #include "formats/collider.h"
+#include "runtime/player/player.h"
 #include "runtime/scene/scene.h"
 
 namespace relief {

@@ -2,6 +2,7 @@
 #include <string>
 
 #include "formats/config/confined_path.h"
+#include "runtime/scene/scene_array.h"
 #include "runtime/scene/scene_readers.h"
 
 namespace relief {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "formats/base/file_io.h"
+#include "formats/config/confined_path.h"
 #include "runtime/scene/scene_readers.h"
 #include "runtime/scene/scene_table.h"
 
