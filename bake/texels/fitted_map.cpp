@@ -12,13 +12,14 @@
 #include "bake/texels/plane_fit.h"
 #include "bake/texels/ray_probe.h"
 #include "bake/texels/raycast.h"
+#include "formats/texel.h"
 
 namespace relief {
 namespace {
 
 /// Rays traced before their texels are fitted: bounds the memory for hits to 64 MiB whatever a map's size.
 constexpr std::uint64_t kStripeRays = std::uint64_t{1} << 22;
-constexpr double kDepthCodes = 65534.0;
+constexpr double kDepthCodes = kDepthSteps;
 /// Parts of the way between two rays of a footprint to which the edge of a surface is found; odd.
 constexpr std::uint32_t kEdgeParts = 63;
 

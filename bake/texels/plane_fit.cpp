@@ -7,11 +7,12 @@
 
 #include "bake/mesh/triangle_plane.h"
 #include "formats/plane.h"
+#include "formats/texel.h"
 
 namespace relief {
 namespace {
 
-constexpr double kDepthCodes = 65534.0;
+constexpr double kDepthCodes = kDepthSteps;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Below this cosine a plane cuts off what lies between the outermost ray that meets a surface and the
 /// surface's edge: the edge itself has to support it. Others pass over it, and lose more by that than they

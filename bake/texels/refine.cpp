@@ -14,11 +14,12 @@
 #include "bake/mesh/triangle_plane.h"
 #include "bake/texels/plane_fit.h"
 #include "formats/plane.h"
+#include "formats/texel.h"
 
 namespace relief {
 namespace {
 
-constexpr double kDepthCodes = 65534.0;
+constexpr double kDepthCodes = kDepthSteps;
 /// Points: a change must be worth as many of them; with few points a texel, less is noise.
 constexpr double kMargin = 3.0;
 /// Planes steeper than this reach deep into the solid, where no points are drawn; only the fit, which has
