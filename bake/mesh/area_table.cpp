@@ -8,9 +8,9 @@
 namespace relief {
 
 AreaTable::AreaTable(const TriangleMesh& mesh) {
-    up_to_.reserve(mesh.triangles.size());
+    up_to_.reserve(mesh.surfaceTriangles());
     double sum = 0.0;
-    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    for (std::uint32_t i = 0; i < mesh.surfaceTriangles(); ++i) {
         const glm::dvec3 normal = planeOf(mesh, i).normal;
         sum += std::sqrt(dot(normal, normal));
         up_to_.push_back(sum);

@@ -9,7 +9,7 @@
 
 namespace relief {
 
-/// Finds triangles by their share of the area.
+/// Finds triangles by their share of the area. Caps have no part in it (TriangleMesh::cap_triangles).
 class AreaTable {
   public:
     explicit AreaTable(const TriangleMesh& mesh);

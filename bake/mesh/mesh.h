@@ -23,9 +23,12 @@ struct TriangleMesh {
     std::vector<glm::vec3> positions;   ///< object space
     std::vector<glm::uvec3> triangles;  ///< counter-clockwise seen from outside, if the source keeps to that
     std::uint64_t dropped_triangles = 0;  ///< without area, left out
-    /// The last of `triangles` are not the source's: they close this many holes (hole_caps.h).
+    /// The last of `triangles` are no surface of the source's: caps over holes (hole_caps.h), the rims of shells and the
+    /// ground below terrains (bake/shape). Nothing is measured on them.
     std::uint64_t cap_triangles = 0;
     std::uint64_t closed_holes = 0;
+    std::uint64_t source_triangles =
+        0;          ///< of the file, where `triangles` without caps are not those; 0: they are
     Bounds bounds;  ///< of positions
     /// Files that it was read from: first its own, as its path was given, then whatever that refers to,
     /// sorted.
@@ -33,7 +36,10 @@ struct TriangleMesh {
     std::vector<std::string> dependency_hashes;  ///< XXH3-128 of each file's bytes, in the same order
     std::vector<std::string> warnings;           ///< what its importer has to say; one line each
 
-    [[nodiscard]] std::uint64_t sourceTriangles() const { return triangles.size() - cap_triangles; }
+    [[nodiscard]] std::uint64_t surfaceTriangles() const { return triangles.size() - cap_triangles; }
+    [[nodiscard]] std::uint64_t sourceTriangles() const {
+        return source_triangles > 0 ? source_triangles : surfaceTriangles();
+    }
 };
 
 /// Turns raw positions and triangles into a mesh that keeps the invariants above: drops triangles without

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "bake/mesh/embree_mesh.h"
 #include "bake/mesh/inside.h"
@@ -13,6 +14,15 @@
 
 namespace relief {
 namespace {
+
+/// Which way the i-th ray crosses the surface it met: 1 out of it, −1 into it.
+int wayOf(const RTCFilterFunctionNArguments* args, unsigned i) {
+    const double along =
+        static_cast<double>(RTCHitN_Ng_x(args->hit, args->N, i)) * RTCRayN_dir_x(args->ray, args->N, i) +
+        static_cast<double>(RTCHitN_Ng_y(args->hit, args->N, i)) * RTCRayN_dir_y(args->ray, args->N, i) +
+        static_cast<double>(RTCHitN_Ng_z(args->hit, args->N, i)) * RTCRayN_dir_z(args->ray, args->N, i);
+    return along < 0.0 ? -1 : 1;
+}
 
 /// Counts the surfaces on a ray, and lets it pass through them.
 struct CrossingCounter {
@@ -31,13 +41,42 @@ struct CrossingCounter {
         for (unsigned i = 0; i < args->N; ++i) {
             if (args->valid[i] != 0) {
                 ++self->count;
-                const double along = static_cast<double>(RTCHitN_Ng_x(args->hit, args->N, i)) *
-                                         RTCRayN_dir_x(args->ray, args->N, i) +
-                                     static_cast<double>(RTCHitN_Ng_y(args->hit, args->N, i)) *
-                                         RTCRayN_dir_y(args->ray, args->N, i) +
-                                     static_cast<double>(RTCHitN_Ng_z(args->hit, args->N, i)) *
-                                         RTCRayN_dir_z(args->ray, args->N, i);
-                self->winding += along < 0.0 ? -1 : 1;
+                self->winding += wayOf(args, i);
+                args->valid[i] = 0;
+            }
+        }
+    }
+};
+
+/// How a ray crosses the bodies of a union, one by one.
+struct BodyCounter {
+    RTCIntersectContext context{};
+    std::span<const std::uint32_t> bodies;
+    int winding = 0;
+    std::vector<std::uint32_t> odd;  ///< bodies crossed an odd number of times so far, but for body 0
+
+    explicit BodyCounter(std::span<const std::uint32_t> of) : bodies(of) {
+        rtcInitIntersectContext(&context);
+        context.filter = filter;
+    }
+
+    [[nodiscard]] bool inside() const { return winding != 0 || !odd.empty(); }
+
+    void cross(std::uint32_t body, int way) {
+        if (body == 0) {
+            winding += way;
+        } else if (const auto found = std::find(odd.begin(), odd.end(), body); found != odd.end()) {
+            odd.erase(found);
+        } else {
+            odd.push_back(body);
+        }
+    }
+
+    static void filter(const RTCFilterFunctionNArguments* args) {
+        auto* self = reinterpret_cast<BodyCounter*>(args->context);
+        for (unsigned i = 0; i < args->N; ++i) {
+            if (args->valid[i] != 0) {
+                self->cross(self->bodies[RTCHitN_primID(args->hit, args->N, i)], wayOf(args, i));
                 args->valid[i] = 0;
             }
         }
@@ -189,6 +228,9 @@ bool MeshQuery::inside(const glm::vec3& p) const {
             return false;
         }
     }
+    if (!bodies_.empty()) {
+        return insideUnion(p);
+    }
     constexpr std::size_t kMajority = kParityDirections.size() / 2 + 1;
     std::size_t votes[2] = {0, 0};
     for (const glm::dvec3& direction : kParityDirections) {
@@ -199,6 +241,21 @@ bool MeshQuery::inside(const glm::vec3& p) const {
         }
     }
     return votes[1] >= kMajority;
+}
+
+bool MeshQuery::insideUnion(const glm::vec3& p) const {
+    // Closed surfaces give every ray the same answer, but for one that passes through an edge. Those that are decided by
+    // parity may be open.
+    const std::size_t rays = shells_ ? 3 : kParityDirections.size();
+    std::size_t votes[2] = {0, 0};
+    for (std::size_t i = 0; votes[0] <= rays / 2 && votes[1] <= rays / 2; ++i) {
+        BodyCounter counter(bodies_);
+        RTCRayHit query =
+            rayHit(tree_->toLocal(p), kParityDirections[i], std::numeric_limits<float>::infinity());
+        rtcIntersect1(tree_->scene.get(), &counter.context, &query);
+        ++votes[counter.inside() ? 1 : 0];
+    }
+    return votes[1] > rays / 2;
 }
 
 unsigned MeshQuery::crossings(const glm::vec3& p, const glm::dvec3& direction) const {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <span>
 
 #include "bake/mesh/prepared_mesh.h"
 #include "formats/base/result.h"
@@ -37,7 +38,7 @@ class MeshQuery {
     /// Seven rays from `p` vote, as insideByParity (inside.h) has it; one traversal a ray counts all crossings.
     /// The winding of the triangles does not matter. Where the mesh is open, most rays still miss its holes.
     /// If PreparedMesh::woundShells, the winding number decides instead, so that the overlap of two solids is
-    /// inside.
+    /// inside. Of a union (PreparedMesh::unionOf) each body decides for itself, and of three rays two.
     [[nodiscard]] bool inside(const glm::vec3& p) const;
 
     /// How many triangles a ray from `p` meets.
@@ -64,11 +65,14 @@ class MeshQuery {
 
   private:
     MeshQuery(PreparedMesh mesh, const EmbreeMesh& tree)
-        : mesh_(std::move(mesh)), tree_(&tree), shells_(mesh_.woundShells()) {}
+        : mesh_(std::move(mesh)), tree_(&tree), shells_(mesh_.woundShells()), bodies_(mesh_.bodies()) {}
+
+    [[nodiscard]] bool insideUnion(const glm::vec3& p) const;
 
     PreparedMesh mesh_;
-    const EmbreeMesh* tree_;  // mesh_ holds it
-    bool shells_;             // PreparedMesh::woundShells
+    const EmbreeMesh* tree_;                 // mesh_ holds it
+    bool shells_;                            // PreparedMesh::woundShells
+    std::span<const std::uint32_t> bodies_;  // mesh_ holds them
 };
 
 }  // namespace relief

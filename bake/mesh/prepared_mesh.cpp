@@ -21,6 +21,7 @@ struct PreparedMesh::State {
     std::optional<double> orientation;
     std::optional<AreaTable> areas;
     std::optional<EmbreeMesh> tree;
+    std::vector<std::uint32_t> bodies;
 
     void learnFrom(const MeshEdges& from) {
         odd_edges = relief::oddEdges(from);
@@ -56,6 +57,10 @@ const std::vector<OddEdge>& PreparedMesh::oddEdges() const {
 }
 
 bool PreparedMesh::woundShells() const {
+    if (!state_->bodies.empty()) {
+        return std::all_of(state_->bodies.begin(), state_->bodies.end(),
+                           [](std::uint32_t body) { return body == 0; });
+    }
     if (!closed() || !state_->wound_outwards) {
         return false;
     }
@@ -121,6 +126,18 @@ PreparedMesh PreparedMesh::woundOutwards(const std::vector<bool>& turn) && {
     state.orientation.reset();
     state.tree.reset();
     return wound;
+}
+
+PreparedMesh PreparedMesh::unionOf(TriangleMesh mesh, std::vector<std::uint32_t> bodies) {
+    PreparedMesh whole(std::move(mesh));
+    whole.state_->wound_outwards = true;
+    whole.state_->orientation = 1.0;
+    whole.state_->bodies = std::move(bodies);
+    return whole;
+}
+
+const std::vector<std::uint32_t>& PreparedMesh::bodies() const {
+    return state_->bodies;
 }
 
 PreparedMesh PreparedMesh::capped(TriangleMesh mesh) const {

@@ -46,6 +46,13 @@ class PreparedMesh {
     /// The mesh as windOutwards leaves it. What no turn can change is kept; without a turn, all is.
     /// \param turn  for each triangle, whether its second and third corner change places.
     [[nodiscard]] PreparedMesh woundOutwards(const std::vector<bool>& turn) &&;
+    /// Parts that each enclose something; inside is what lies in any of them.
+    /// \param bodies  for each triangle: 0 if how often those of body 0 wind round a point decides, outwards all; else
+    ///     a number whose triangles decide by the parity of a ray's crossings.
+    [[nodiscard]] static PreparedMesh unionOf(TriangleMesh mesh, std::vector<std::uint32_t> bodies);
+    /// As unionOf has them; empty for other meshes.
+    [[nodiscard]] const std::vector<std::uint32_t>& bodies() const;
+
     /// Another mesh, with caps, that is wound as this one is.
     [[nodiscard]] PreparedMesh capped(TriangleMesh mesh) const;
 

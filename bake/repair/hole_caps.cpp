@@ -20,10 +20,6 @@ namespace relief {
 namespace {
 
 constexpr std::size_t kProbes = 512;
-/// Least Enclosure of a nearly closed mesh. Half a sphere has an agreement of 0.8, a cube without lid 0.9, a
-/// head cut off at its neck 0.88.
-constexpr double kOneSided = 0.9;
-constexpr double kAgreement = 0.85;
 /// Points whose side the caps may change, over the points that are inside.
 constexpr double kTurnedMax = 0.05;
 

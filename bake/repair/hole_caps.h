@@ -19,6 +19,11 @@ struct Enclosure {
     double agreement = 0.0;
 };
 
+/// Least Enclosure of a nearly closed mesh. Half a sphere has an agreement of 0.8, a cube without lid 0.9, a
+/// head cut off at its neck 0.88.
+inline constexpr double kOneSided = 0.9;
+inline constexpr double kAgreement = 0.85;
+
 [[nodiscard]] Enclosure measureEnclosure(const MeshQuery& query);
 
 /// \return the mesh with fans of triangles over its holes, wound as their neighbours, at the end of its triangles,

@@ -1,0 +1,71 @@
+// What a mesh is, part by part, and the solid that stands for it. A part hangs together by edges, where equal positions
+// are one vertex:
+//
+//   solid             closed: its inside is what it encloses
+//   solid with holes  open, but hardly any ray leads out from behind its surface: the holes are closed
+//   sheet             both sides are seen from outside: it becomes a shell of a given thickness (sheet.h)
+//   terrain           a height field that covers its rectangle: it becomes the ground below it
+//
+// Coincident triangles count once. What a point is inside of is the union of all parts: solids that overlap, shells that
+// cross a solid, and a sheet within a solid, which is never met.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "bake/mesh/prepared_mesh.h"
+#include "formats/base/result.h"
+
+namespace relief {
+
+/// What the parts are taken for.
+enum class ShapeAs : std::uint8_t { kAuto, kSolid, kShell, kTerrain };
+
+[[nodiscard]] const char* shapeAsName(ShapeAs as);  ///< "auto", "solid", "shell" or "terrain"
+
+struct ShapeOptions {
+    /// kSolid: every part is a solid, with or without holes. kShell: every part is a sheet. kTerrain: every open part is
+    /// a height field, along its flattest axis if none is better.
+    ShapeAs as = ShapeAs::kAuto;
+    double thickness = 0.0;  ///< of shells, object units, above 0: see defaultThickness
+};
+
+/// A texel and a half of a planned bake of a box like this: a wall that fills its texels.
+/// \param budget_bytes  of all texels.
+[[nodiscard]] double defaultThickness(const Bounds& bounds, std::uint64_t budget_bytes);
+
+/// The least and the largest --thickness, in units of the longest side.
+inline constexpr double kThicknessMin = 1e-4;
+inline constexpr double kThicknessMax = 0.5;
+
+struct ShapeReport {
+    ShapeAs as = ShapeAs::kAuto;
+    std::uint64_t solids = 0;
+    std::uint64_t solids_with_holes = 0;
+    std::uint64_t sheets = 0;
+    std::uint64_t terrains = 0;
+    std::uint64_t coincident_triangles = 0;  ///< left out of sheets, and of solids without volume
+    double thickness = 0.0;                  ///< of the shells, object units; 0: there are none
+
+    /// "2 solids, 1 sheet"
+    [[nodiscard]] std::string text() const;
+};
+
+/// " --as shell --thickness 0.01", or less: for the options that a container records.
+[[nodiscard]] std::string shapeOptionsText(const ShapeReport& report);
+/// What a container was made with. Words that are missing or that make no sense are left as they are in `otherwise`.
+[[nodiscard]] ShapeOptions shapeOptionsOf(const std::string& container_options,
+                                          const ShapeOptions& otherwise);
+
+struct ShapedMesh {
+    PreparedMesh mesh;  ///< the mesh that came if it is solid already
+    ShapeReport report;
+};
+
+/// \param mesh  as windOutwards leaves it.
+/// The same for any number of threads.
+/// Errors: those of MeshQuery::build; kLimit (kTriangleMax).
+[[nodiscard]] Result<ShapedMesh> shapeMesh(const PreparedMesh& mesh, const ShapeOptions& options);
+
+}  // namespace relief

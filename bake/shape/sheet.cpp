@@ -1,0 +1,343 @@
+#include "bake/shape/sheet.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/matrix.hpp>
+#include <utility>
+
+#include "bake/mesh/mesh_edges.h"
+#include "bake/mesh/triangle_plane.h"
+
+namespace relief {
+namespace {
+
+/// The longest mitre, in units of half the thickness: that of kFoldCosine.
+constexpr double kMitreMax = 2.0;
+/// What keeps the search for a mitre defined where all normals are alike, in units of their number.
+constexpr double kMitreDamping = 1e-4;
+
+glm::dvec3 unitNormal(const std::vector<glm::vec3>& positions, const glm::uvec3& t) {
+    const glm::dvec3 a = positions[t.x];
+    const glm::dvec3 n = cross(glm::dvec3(positions[t.y]) - a, glm::dvec3(positions[t.z]) - a);
+    return n / std::sqrt(dot(n, n));
+}
+
+bool hasArea(const std::vector<glm::vec3>& positions, const glm::uvec3& t) {
+    const glm::dvec3 a = positions[t.x];
+    return cross(glm::dvec3(positions[t.y]) - a, glm::dvec3(positions[t.z]) - a) != glm::dvec3(0.0);
+}
+
+/// All sides of a sheet's triangles, sorted by edge.
+std::vector<EdgeUse> sidesOf(const std::vector<glm::uvec3>& triangles) {
+    std::vector<EdgeUse> sides;
+    sides.reserve(3 * triangles.size());
+    for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+        for (std::uint8_t side = 0; side < 3; ++side) {
+            const std::uint32_t a = triangles[i][side];
+            const std::uint32_t b = triangles[i][(side + 1) % 3];
+            sides.push_back({std::min(a, b), std::max(a, b), i, side, a > b});
+        }
+    }
+    std::sort(sides.begin(), sides.end(), [](const EdgeUse& a, const EdgeUse& b) {
+        return std::tie(a.low, a.high, a.triangle, a.side) < std::tie(b.low, b.high, b.triangle, b.side);
+    });
+    return sides;
+}
+
+/// Winds neighbours against each other along their common edges, and cuts the joints where that cannot be done.
+void windConsistently(Sheet& sheet) {
+    std::vector<std::uint8_t> state(sheet.triangles.size(), 0);  // 1: as it is, 2: turned
+    std::vector<std::uint32_t> queue;
+    const auto runsAlong = [&](std::uint32_t a, std::uint32_t side, std::uint32_t b) {
+        const glm::uvec3& t = sheet.triangles[a];
+        const glm::uvec3& u = sheet.triangles[b];
+        const auto [from, to] = std::pair{t[side], t[(side + 1) % 3]};
+        for (int i = 0; i < 3; ++i) {
+            if (u[i] == from && u[(i + 1) % 3] == to) {
+                return true;
+            }
+        }
+        return false;
+    };
+    for (std::uint32_t first = 0; first < sheet.triangles.size(); ++first) {
+        if (state[first] != 0) {
+            continue;
+        }
+        state[first] = 1;
+        queue.assign(1, first);
+        for (std::size_t at = 0; at < queue.size(); ++at) {
+            const std::uint32_t here = queue[at];
+            for (std::uint32_t side = 0; side < 3; ++side) {
+                const std::uint32_t next = sheet.neighbours[here][side];
+                if (next == Sheet::kNoTriangle) {
+                    continue;
+                }
+                const bool turn = runsAlong(here, side, next) != (state[here] == 2);
+                const std::uint8_t wanted = turn ? 2 : 1;
+                if (state[next] == 0) {
+                    state[next] = wanted;
+                    queue.push_back(next);
+                } else if (state[next] != wanted) {  // one-sided
+                    for (int i = 0; i < 3; ++i) {
+                        if (sheet.neighbours[next][i] == here) {
+                            sheet.neighbours[next][i] = Sheet::kNoTriangle;
+                        }
+                    }
+                    sheet.neighbours[here][side] = Sheet::kNoTriangle;
+                }
+            }
+        }
+        // What most of the patch's triangles say.
+        const auto turned = static_cast<std::size_t>(std::count_if(
+            queue.begin(), queue.end(), [&](std::uint32_t triangle) { return state[triangle] == 2; }));
+        for (const std::uint32_t triangle : queue) {
+            if ((state[triangle] == 2) != (2 * turned > queue.size())) {
+                std::swap(sheet.triangles[triangle].y, sheet.triangles[triangle].z);
+                std::swap(sheet.neighbours[triangle].x, sheet.neighbours[triangle].z);
+            }
+        }
+    }
+}
+
+/// Joins triangles across edges of two, and cuts the folds. Folds are known only once neighbours are wound alike.
+void joinEdges(Sheet& sheet) {
+    sheet.neighbours.assign(sheet.triangles.size(), glm::uvec3(Sheet::kNoTriangle));
+    const std::vector<EdgeUse> sides = sidesOf(sheet.triangles);
+    forEachEdge(sides, [&](std::size_t begin, std::size_t end) {
+        if (end - begin == 2) {
+            const EdgeUse& a = sides[begin];
+            const EdgeUse& b = sides[begin + 1];
+            sheet.neighbours[a.triangle][a.side] = b.triangle;
+            sheet.neighbours[b.triangle][b.side] = a.triangle;
+        }
+    });
+    windConsistently(sheet);
+    for (std::uint32_t i = 0; i < sheet.triangles.size(); ++i) {
+        for (int side = 0; side < 3; ++side) {
+            const std::uint32_t next = sheet.neighbours[i][side];
+            if (next != Sheet::kNoTriangle &&
+                dot(unitNormal(sheet.positions, sheet.triangles[i]),
+                    unitNormal(sheet.positions, sheet.triangles[next])) < kFoldCosine) {
+                sheet.neighbours[i][side] = Sheet::kNoTriangle;
+            }
+        }
+    }
+}
+
+/// The sum of n·nᵀ and of n over the normals at a corner, whose mitre m has n·m = 1 for each of them, as nearly as can
+/// be.
+struct Mitre {
+    glm::dmat3 squares{0.0};
+    glm::dvec3 sum{0.0};
+    double weight = 0.0;
+
+    void add(const glm::dvec3& normal, double by) {
+        for (int column = 0; column < 3; ++column) {
+            squares[column] += by * normal[column] * normal;
+        }
+        sum += by * normal;
+        weight += by;
+    }
+
+    [[nodiscard]] glm::dvec3 solve() const {
+        const double damping = kMitreDamping * weight;
+        const glm::dmat3 damped = squares + damping * glm::dmat3(1.0);
+        glm::dvec3 mitre = (1.0 + kMitreDamping) * (glm::inverse(damped) * sum);
+        const double length = std::sqrt(dot(mitre, mitre));
+        return length > kMitreMax ? mitre * (kMitreMax / length) : mitre;
+    }
+};
+
+double angleAt(const std::vector<glm::vec3>& positions, const glm::uvec3& t, int corner) {
+    const glm::dvec3 at = positions[t[corner]];
+    const glm::dvec3 a = glm::dvec3(positions[t[(corner + 1) % 3]]) - at;
+    const glm::dvec3 b = glm::dvec3(positions[t[(corner + 2) % 3]]) - at;
+    const double size = std::sqrt(dot(a, a) * dot(b, b));
+    // Any weight will do that grows with the angle and needs no arc cosine.
+    return size > 0.0 ? 1.0 - std::clamp(dot(a, b) / size, -1.0, 1.0) + 1e-3 : 1e-3;
+}
+
+/// Corners of a sheet's triangles, those about one vertex that hang together by joined edges as one.
+std::vector<std::uint32_t> joinedCorners(const Sheet& sheet) {
+    DisjointSets corners(3 * sheet.triangles.size());
+    for (std::uint32_t i = 0; i < sheet.triangles.size(); ++i) {
+        for (std::uint32_t side = 0; side < 3; ++side) {
+            const std::uint32_t next = sheet.neighbours[i][side];
+            if (next == Sheet::kNoTriangle) {
+                continue;
+            }
+            for (const std::uint32_t mine : {side, (side + 1) % 3}) {
+                for (std::uint32_t theirs = 0; theirs < 3; ++theirs) {
+                    if (sheet.triangles[next][theirs] == sheet.triangles[i][mine]) {
+                        corners.join(3 * i + mine, 3 * next + theirs);
+                    }
+                }
+            }
+        }
+    }
+    std::vector<std::uint32_t> roots(3 * sheet.triangles.size());
+    for (std::uint32_t i = 0; i < roots.size(); ++i) {
+        roots[i] = corners.find(i);
+    }
+    return roots;
+}
+
+/// Adds triangles that have an area.
+class PartBuilder {
+  public:
+    std::uint32_t addPosition(const glm::dvec3& p) {
+        part_.positions.emplace_back(p);
+        return static_cast<std::uint32_t>(part_.positions.size() - 1);
+    }
+    void addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+        const glm::uvec3 t(a, b, c);
+        if (hasArea(part_.positions, t)) {
+            part_.triangles.push_back(t);
+        }
+    }
+    /// Below the side from a to b of a triangle that is seen from above.
+    void addWall(const std::array<std::uint32_t, 2>& a, const std::array<std::uint32_t, 2>& b) {
+        addTriangle(b[0], a[0], a[1]);
+        addTriangle(b[0], a[1], b[1]);
+    }
+    void endSurface() { part_.surface_triangles = part_.triangles.size(); }
+    SolidPart take() { return std::move(part_); }
+
+  private:
+    SolidPart part_;
+};
+
+}  // namespace
+
+Sheet sheetOf(const TriangleMesh& mesh, std::span<const std::uint32_t> welded,
+              std::span<const std::uint32_t> triangles) {
+    Sheet sheet;
+    std::vector<std::uint32_t> used;
+    for (const std::uint32_t i : triangles) {
+        for (int corner = 0; corner < 3; ++corner) {
+            used.push_back(welded[mesh.triangles[i][corner]]);
+        }
+    }
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    const auto indexOf = [&](std::uint32_t vertex) {
+        const auto found = std::lower_bound(used.begin(), used.end(), welded[vertex]);
+        return static_cast<std::uint32_t>(found - used.begin());
+    };
+    for (const std::uint32_t vertex : used) {
+        sheet.positions.push_back(mesh.positions[vertex]);
+    }
+    // By their sorted corners, the first of equals first.
+    struct Keyed {
+        std::array<std::uint32_t, 3> corners;
+        std::uint32_t source;
+        glm::uvec3 triangle;
+    };
+    std::vector<Keyed> keyed;
+    for (const std::uint32_t i : triangles) {
+        const glm::uvec3& t = mesh.triangles[i];
+        const glm::uvec3 triangle(indexOf(t.x), indexOf(t.y), indexOf(t.z));
+        if (hasArea(sheet.positions, triangle)) {
+            std::array<std::uint32_t, 3> corners = {triangle.x, triangle.y, triangle.z};
+            std::sort(corners.begin(), corners.end());
+            keyed.push_back({corners, i, triangle});
+        }
+    }
+    const auto less = [](const Keyed& a, const Keyed& b) {
+        return std::tie(a.corners, a.source) < std::tie(b.corners, b.source);
+    };
+    std::sort(keyed.begin(), keyed.end(), less);
+    const auto end = std::unique(keyed.begin(), keyed.end(),
+                                 [](const Keyed& a, const Keyed& b) { return a.corners == b.corners; });
+    sheet.duplicates = static_cast<std::uint64_t>(keyed.end() - end);
+    keyed.erase(end, keyed.end());
+    std::sort(keyed.begin(), keyed.end(), [](const Keyed& a, const Keyed& b) { return a.source < b.source; });
+    for (const Keyed& k : keyed) {
+        sheet.triangles.push_back(k.triangle);
+        sheet.sources.push_back(k.source);
+    }
+    joinEdges(sheet);
+    return sheet;
+}
+
+SolidPart thickened(const Sheet& sheet, double thickness) {
+    const std::vector<std::uint32_t> roots = joinedCorners(sheet);
+    std::vector<Mitre> mitres(roots.size());
+    for (std::uint32_t i = 0; i < sheet.triangles.size(); ++i) {
+        const glm::dvec3 normal = unitNormal(sheet.positions, sheet.triangles[i]);
+        for (int corner = 0; corner < 3; ++corner) {
+            mitres[roots[3 * i + static_cast<std::uint32_t>(corner)]].add(
+                normal, angleAt(sheet.positions, sheet.triangles[i], corner));
+        }
+    }
+    PartBuilder builder;
+    std::vector<std::array<std::uint32_t, 2>> ends(roots.size());  // above and below, of each root
+    for (std::uint32_t i = 0; i < roots.size(); ++i) {
+        if (roots[i] == i) {
+            const glm::dvec3 at = sheet.positions[sheet.triangles[i / 3][static_cast<int>(i % 3)]];
+            const glm::dvec3 offset = 0.5 * thickness * mitres[i].solve();
+            ends[i] = {builder.addPosition(at + offset), builder.addPosition(at - offset)};
+        }
+    }
+    const auto endsOf = [&](std::uint32_t triangle, std::uint32_t corner) {
+        return ends[roots[3 * triangle + corner]];
+    };
+    for (std::uint32_t i = 0; i < sheet.triangles.size(); ++i) {
+        const auto [a, b, c] = std::array{endsOf(i, 0), endsOf(i, 1), endsOf(i, 2)};
+        builder.addTriangle(a[0], b[0], c[0]);
+        builder.addTriangle(a[1], c[1], b[1]);
+    }
+    builder.endSurface();
+    for (std::uint32_t i = 0; i < sheet.triangles.size(); ++i) {
+        for (std::uint32_t side = 0; side < 3; ++side) {
+            if (sheet.neighbours[i][static_cast<int>(side)] == Sheet::kNoTriangle) {
+                builder.addWall(endsOf(i, side), endsOf(i, (side + 1) % 3));
+            }
+        }
+    }
+    return builder.take();
+}
+
+SolidPart extruded(const Sheet& sheet, int axis, bool up, float bottom) {
+    PartBuilder builder;
+    const auto count = static_cast<std::uint32_t>(sheet.positions.size());
+    for (const glm::vec3& p : sheet.positions) {
+        builder.addPosition(p);
+    }
+    for (glm::vec3 p : sheet.positions) {
+        p[axis] = bottom;
+        builder.addPosition(p);
+    }
+    // The sheet looks up whichever way it is wound.
+    double facing = 0.0;
+    for (const glm::uvec3& t : sheet.triangles) {
+        const glm::dvec3 a = sheet.positions[t.x];
+        facing += cross(glm::dvec3(sheet.positions[t.y]) - a, glm::dvec3(sheet.positions[t.z]) - a)[axis];
+    }
+    const bool turn = (facing > 0.0) != up;
+    const auto corners = [&](std::uint32_t i) {
+        const glm::uvec3& t = sheet.triangles[i];
+        return turn ? glm::uvec3(t.x, t.z, t.y) : t;
+    };
+    for (std::uint32_t i = 0; i < sheet.triangles.size(); ++i) {
+        const glm::uvec3 t = corners(i);
+        builder.addTriangle(t.x, t.y, t.z);
+    }
+    builder.endSurface();
+    for (std::uint32_t i = 0; i < sheet.triangles.size(); ++i) {
+        const glm::uvec3 t = corners(i);
+        builder.addTriangle(count + t.x, count + t.z, count + t.y);
+        for (int side = 0; side < 3; ++side) {
+            if (sheet.neighbours[i][side] == Sheet::kNoTriangle) {
+                const glm::uvec3& s = sheet.triangles[i];
+                const auto [from, to] = std::pair{s[side], s[(side + 1) % 3]};
+                const auto [a, b] = turn ? std::pair{to, from} : std::pair{from, to};
+                builder.addWall({a, count + a}, {b, count + b});
+            }
+        }
+    }
+    return builder.take();
+}
+
+}  // namespace relief
