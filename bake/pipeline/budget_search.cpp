@@ -111,6 +111,7 @@ Result<BudgetSearchResult> bakeForError(const MeshQuery& query, const MeshQuery&
                                         const BudgetSearchOptions& options) {
     ViewOptions view_options;
     view_options.prefer = options.bake.prefer;
+    view_options.max_maps = options.max_maps;
     ViewChoice views = RELIEF_TRY(chooseViews(query, view_options));
     return Search(query, truth, std::move(views), options).run();
 }

@@ -28,18 +28,25 @@ constexpr double kFullCosine = 0.7;
 /// How well a point is served that a view sees from both sides: it is off a silhouette, through which a
 /// standing plane passes (plane_fit.h).
 constexpr float kSilhouette = 0.9F;
-/// An outer view must raise the mean service by this much,
-constexpr double kOuterGain = 0.004;
-/// and by this much once the mean service is kEnoughService: every map more costs each step of a simulation,
-/// and takes bytes from the others.
-constexpr double kOuterGainLater = 0.03;
-constexpr double kEnoughService = 0.96;
-/// Points served less than this are looked at from within.
-constexpr double kUnserved = 0.25;
-constexpr std::size_t kCavityMapsMax = 32;
+/// Service under the flattest angle.
+constexpr double kLeastService = 0.15;
+/// An outer view that raises the mean service by this much is taken before places within are looked at.
+constexpr double kClearGain = 0.03;
+/// What every map costs, in mean service: a step of a simulation looks at each in turn. Eight front-back maps take about
+/// three times as long as the paper's two.
+constexpr double kMapPrice = 0.003;
+/// What a map costs that takes as many bytes as all before it: they are taken from those, whose texels grow.
+constexpr double kBytePrice = 0.02;
+/// Where free space must be kept free, price is no object.
+constexpr double kOutsidePriceShare = 0.2;
+/// Points served less than this are looked at from within, while they are more than kCavityShare of all.
+constexpr double kUnserved = 0.5;
+constexpr double kCavityShare = 0.002;
+/// Rounds in a row in which no place within is worth its price.
+constexpr int kIdleRounds = 3;
 constexpr int kCavityCandidates = 100;
 /// Cubes reach this far at most, in units of the longest side.
-constexpr double kCavityReach = 0.3;
+constexpr double kCavityReach = 0.5;
 /// Texels of a cube across the mean width of its volume: its faces are nearer to the centre than to the
 /// corners.
 constexpr double kCubeDensity = 0.775;
@@ -89,7 +96,8 @@ std::vector<PlanPoint> drawPoints(const MeshQuery& query, std::uint64_t seed) {
 
 /// How well a point is served by a view that sees it under this cosine.
 float service(double cosine) {
-    return static_cast<float>(std::min(1.0, 0.3 + 0.7 * std::max(cosine, 0.05) / kFullCosine));
+    return static_cast<float>(
+        std::min(1.0, kLeastService + (1.0 - kLeastService) * std::max(cosine, 0.05) / kFullCosine));
 }
 
 /// A direction to look along, and how its image is turned; nullopt: by the rule of view.h.
@@ -201,8 +209,7 @@ class Planner {
     Result<ViewChoice> run() {
         std::vector<OuterView> views = RELIEF_TRY(outerViews());
         rateViews(views);
-        addOuterViews(views);
-        addCavityCubes();
+        addViews(views);
         const auto unseen = std::count_if(served_.begin(), served_.end(), [](float v) { return v <= 0.0F; });
         choice_.unseen_percent =
             points_.empty() ? 100.0
@@ -259,35 +266,69 @@ class Planner {
         });
     }
 
-    /// Takes views while one more serves a worthwhile share of the points.
-    void addOuterViews(const std::vector<OuterView>& views) {
-        const auto count = static_cast<double>(points_.size());
-        double served = 0.0;
-        for (;;) {
-            const OuterView* best = nullptr;
-            double best_score = 0.0;
-            double best_gain = 0.0;
-            for (const OuterView& view : views) {
-                double gain = 0.0;
-                for (std::size_t i = 0; i < points_.size(); ++i) {
-                    gain += std::max(0.0F, view.service[i] - served_[i]);
-                }
-                const double score = gain / (view.width * view.height);
-                if (score > best_score) {
-                    best = &view;
-                    best_score = score;
-                    best_gain = gain;
-                }
+    /// Takes views, from outside and from within, while one more is worth its price.
+    void addViews(const std::vector<OuterView>& views) {
+        int idle_rounds = 0;
+        for (std::uint64_t round = 0; idle_rounds < kIdleRounds; ++round) {
+            const OuterChoice outer = bestOuterView(views);
+            const bool full = choice_.views.size() >= options_.max_maps;
+            if (!full && outer.view != nullptr && (outer.gain >= kClearGain || choice_.views.empty())) {
+                take(*outer.view, outer.gain * total());
+                continue;
             }
-            const bool enough = served >= kEnoughService * count && options_.prefer != Prefer::kOutside;
-            const double least = enough ? kOuterGainLater : kOuterGain;
-            const bool worthwhile = best_gain >= least * count;
-            if (best == nullptr || (!worthwhile && !choice_.views.empty())) {
+            const std::optional<Cavity> cavity = bestCavity(round);
+            const double cavity_gain = cavity ? cavity->gain / total() : 0.0;
+            const double outer_value =
+                outer.view == nullptr ? 0.0
+                                      : valueOf(outer.gain, 8.0 * outer.view->width * outer.view->height);
+            const double cavity_value = cavity ? valueOf(cavity_gain, cavity->area) : 0.0;
+            if (full) {
+                choice_.next_gain = std::max(outer.gain, cavity_gain);
                 return;
             }
-            served += best_gain;
-            take(*best, best_gain);
+            if (outer_value <= 0.0 && cavity_value <= 0.0) {
+                choice_.next_gain = std::max({choice_.next_gain, outer.gain, cavity_gain});
+                idle_rounds = cavity ? idle_rounds + 1 : kIdleRounds;  // places within are tried at random
+                continue;
+            }
+            choice_.next_gain = 0.0;
+            if (cavity_value > outer_value) {
+                take(*cavity);
+            } else {
+                take(*outer.view, outer.gain * total());
+            }
         }
+    }
+
+    [[nodiscard]] double total() const { return static_cast<double>(points_.size()); }
+
+    /// What a map is worth that raises the mean service by `gain` and takes `area` from all others.
+    [[nodiscard]] double valueOf(double gain, double area) const {
+        const double share = options_.prefer == Prefer::kOutside ? kOutsidePriceShare : 1.0;
+        return gain - share * (kBytePrice * area / choice_.area + kMapPrice);
+    }
+
+    struct OuterChoice {
+        const OuterView* view = nullptr;
+        double gain = 0.0;  ///< in the mean service
+    };
+    [[nodiscard]] OuterChoice bestOuterView(const std::vector<OuterView>& views) const {
+        OuterChoice best;
+        double best_score = 0.0;
+        for (const OuterView& view : views) {
+            double gain = 0.0;
+            for (std::size_t i = 0; i < points_.size(); ++i) {
+                gain += std::max(0.0F, view.service[i] - served_[i]);
+            }
+            // By the root of its bytes: an image of half the size, seen at a slant, has texels as large on the surface,
+            // and silhouettes as long.
+            const double score = gain / std::sqrt(view.width * view.height);
+            if (score > best_score) {
+                best = {&view, gain / total()};
+                best_score = score;
+            }
+        }
+        return best;
     }
 
     /// \param gain  in the service of all points.
@@ -325,41 +366,33 @@ class Planner {
         double area = 0.0;
     };
 
-    void addCavityCubes() {
-        const double total = static_cast<double>(points_.size());
-        int idle_rounds = 0;
-        for (std::uint64_t round = 0; choice_.views.size() < kCavityMapsMax && idle_rounds < 4; ++round) {
-            std::vector<std::size_t> unserved;
-            for (std::size_t i = 0; i < points_.size(); ++i) {
-                if (served_[i] < kUnserved) {
-                    unserved.push_back(i);
-                }
+    /// Of some places near points that are served badly.
+    [[nodiscard]] std::optional<Cavity> bestCavity(std::uint64_t round) const {
+        std::vector<std::size_t> unserved;
+        for (std::size_t i = 0; i < points_.size(); ++i) {
+            if (served_[i] < kUnserved) {
+                unserved.push_back(i);
             }
-            if (static_cast<double>(unserved.size()) < 0.0005 * total) {
-                return;
-            }
-            std::vector<Cavity> candidates(kCavityCandidates);
-            tbb::parallel_for(0, kCavityCandidates, [&](int k) {
-                candidates[static_cast<std::size_t>(k)] =
-                    lookFromWithin(unserved, options_.seed * 1'000'003 + round * kCavityCandidates +
-                                                 static_cast<std::uint64_t>(k));
-            });
-            const Cavity* best = nullptr;
-            double best_score = 0.0;
-            for (const Cavity& candidate : candidates) {
-                const double score = candidate.gain / (candidate.area + 0.002 * outer_area_);
-                if (score > best_score) {
-                    best = &candidate;
-                    best_score = score;
-                }
-            }
-            // Its bytes are taken from all other maps, whose texels grow: it must be worth that.
-            if (best == nullptr || best->gain / total < 0.02 * best->area / choice_.area) {
-                ++idle_rounds;
-                continue;
-            }
-            take(*best);
         }
+        if (static_cast<double>(unserved.size()) < kCavityShare * total()) {
+            return std::nullopt;
+        }
+        std::vector<Cavity> candidates(kCavityCandidates);
+        tbb::parallel_for(0, kCavityCandidates, [&](int k) {
+            candidates[static_cast<std::size_t>(k)] =
+                lookFromWithin(unserved, options_.seed * 1'000'003 + round * kCavityCandidates +
+                                             static_cast<std::uint64_t>(k));
+        });
+        const Cavity* best = nullptr;
+        double best_score = 0.0;
+        for (const Cavity& candidate : candidates) {
+            const double score = candidate.gain / (candidate.area + 0.02 * outer_area_);
+            if (score > best_score) {
+                best = &candidate;
+                best_score = score;
+            }
+        }
+        return best == nullptr ? std::nullopt : std::optional(*best);
     }
 
     void take(const Cavity& cavity) {
@@ -439,6 +472,7 @@ Plan sizedPlan(const ViewChoice& choice, double texel) {
     Plan plan;
     plan.texel = texel;
     plan.unseen_percent = choice.unseen_percent;
+    plan.next_gain = choice.next_gain;
     for (const ViewChoice::Chosen& view : choice.views) {
         PlannedMap map = view.map;
         const bool cube = map.spec.format == MapFormat::kCube8;

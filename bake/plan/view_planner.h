@@ -1,14 +1,13 @@
 // Which maps a mesh needs: directions and places, and sizes for a budget of bytes.
 //
 // Points just outside the surface are drawn. A view serves a point if it sees it; less so at a grazing angle,
-// where a texel covers much surface. Maps are added greedily, each time the one that serves most for its
-// bytes:
+// where a texel covers much surface. Maps are added greedily while one more is worth its price: the bytes that it takes
+// from the others, and the time that it takes of every step of a simulation. There are two kinds:
 //
-//   1. front-back maps of the whole mesh, along directions spread over the sphere and the axes of its box and
-//      of its oriented box (oriented_box.h), each turned so that its rectangle is small, while one more
-//      serves a worthwhile share of the points;
-//   2. for what no outer direction sees (cavities, armpits, insides of holes), small cubes in free space that
-//      keep the nearest surface, placed where they see most of it.
+//   front-back maps of the whole mesh, along directions spread over the sphere and the axes of its box and of its
+//   oriented box (oriented_box.h), each turned so that its rectangle is small;
+//   for what these see badly (cavities, armpits, insides of holes), small cubes in free space that keep the nearest
+//   surface, placed where they see most of it.
 //
 // None of this depends on the budget. Sizes alone follow from it: one texel size for all maps, so that the
 // error is even.
@@ -25,9 +24,13 @@
 
 namespace relief {
 
+/// Maps of a plan, unless more are allowed: a step of a simulation looks at each in turn.
+inline constexpr std::uint32_t kPlannedMapsMax = 8;
+
 struct ViewOptions {
     std::uint64_t seed = 1;
-    Prefer prefer = Prefer::kNeither;  ///< kOutside: more views, so that less free space is doubtful
+    Prefer prefer = Prefer::kNeither;          ///< kOutside: more views, so that less free space is doubtful
+    std::uint32_t max_maps = kPlannedMapsMax;  ///< at least 1
     bool oriented_box = true;  ///< false: do without the axes of the oriented box, to see what they are worth
 };
 
@@ -48,6 +51,7 @@ struct ViewChoice {
     std::vector<Chosen> views;
     double area = 0.0;            ///< of all views
     double unseen_percent = 0.0;  ///< of the surface's area: no view sees it
+    double next_gain = 0.0;  ///< what the best view that was left out would have served: 0 to 1, as `serves`
     std::string mesh_name;
 };
 
@@ -61,6 +65,7 @@ struct Plan {
     std::vector<PlannedMap> maps;
     double texel = 0.0;           ///< side of a texel, object units
     double unseen_percent = 0.0;  ///< of the surface's area: no chosen map sees it
+    double next_gain = 0.0;       ///< as ViewChoice has it
     std::uint64_t bytes = 0;      ///< of all texels
 };
 
