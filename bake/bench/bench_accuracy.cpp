@@ -18,10 +18,12 @@
 #include "bake/pipeline/bake.h"
 #include "bake/plan/view.h"
 #include "bake/plan/view_planner.h"
-#include "bake/repair/hole_caps.h"
+#include "bake/repair/winding.h"
 #include "bake/report/accuracy_report.h"
 #include "bake/report/points_csv.h"
 #include "bake/report/report.h"
+#include "bake/report/shape_report.h"
+#include "bake/shape/shape.h"
 #include "formats/base/file_io.h"
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
@@ -85,9 +87,8 @@ Result<Baked> bakePaper(const TriangleMesh& mesh, std::uint64_t bytes) {
 }
 
 /// What `relief bake --budget` makes.
-Result<Baked> bakeOurs(const TriangleMesh& open_mesh, std::uint64_t bytes) {
-    const PreparedMesh mesh = RELIEF_TRY(closeHoles(open_mesh));
-    const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
+Result<Baked> bakeOurs(const MeshQuery& query, std::uint64_t bytes) {
+    const PreparedMesh& mesh = query.prepared();
     PlanOptions plan_options;
     plan_options.budget_bytes = bytes;
     const Plan plan = RELIEF_TRY(planViews(query, plan_options));
@@ -135,7 +136,7 @@ Result<AccuracyEntry> measureMaps(const MeshQuery& query, const TruthSamples& sa
                                   const std::string& method, std::uint64_t budget) {
     const Stopwatch watch;
     const Baked baked =
-        RELIEF_TRY(method == "paper" ? bakePaper(query.mesh(), budget) : bakeOurs(query.mesh(), budget));
+        RELIEF_TRY(method == "paper" ? bakePaper(query.mesh(), budget) : bakeOurs(query, budget));
     AccuracyEntry entry;
     entry.build_seconds = watch.seconds();
     entry.method = method;
@@ -167,10 +168,11 @@ class Cache {
         }
     }
 
-    static std::string key(const TriangleMesh& mesh, std::uint64_t budget, const AccuracyOptions& options) {
+    static std::string key(const TriangleMesh& mesh, const ShapeReport& shape, std::uint64_t budget,
+                           const AccuracyOptions& options) {
         return "volume " + std::to_string(kDistanceVolumeVersion) + ", mesh " + mesh.content_hash + ", " +
-               std::to_string(budget) + " bytes, " + std::to_string(options.samples) + " samples, seed " +
-               std::to_string(options.seed);
+               shape.text() + shapeOptionsText(shape) + ", " + std::to_string(budget) + " bytes, " +
+               std::to_string(options.samples) + " samples, seed " + std::to_string(options.seed);
     }
 
     [[nodiscard]] std::optional<AccuracyEntry> find(const std::string& key) const {
@@ -279,36 +281,38 @@ struct Measured {
     Json meshes = Json::array();
 };
 
-/// Measures one mesh at all budgets and with all methods.
-Result<void> measureMesh(const MeshQuery& query, const Arguments& arguments,
-                         const std::vector<std::uint64_t>& budgets, Cache& cache, Measured& measured) {
-    const TriangleMesh& mesh = query.mesh();
+/// Measures one mesh at one budget with all methods.
+Result<void> measureBudget(const PreparedMesh& imported, const Arguments& arguments, std::uint64_t budget,
+                           Cache& cache, Measured& measured) {
+    const auto shaped =
+        RELIEF_TRY(shapeMesh(imported, {ShapeAs::kAuto, defaultThickness(imported->bounds, budget)}));
+    const MeshQuery query = RELIEF_TRY(MeshQuery::build(shaped.mesh));
     AccuracyOptions options;
     options.samples = arguments.samples;
     options.seed = arguments.seed;
     const TruthSamples samples = sampleTruth(query, options);
     Json mesh_report = jsonSamples(samples);
-    mesh_report["mesh"] = mesh.name;
-    mesh_report["mesh_hash"] = mesh.content_hash;
-    mesh_report["triangles"] = mesh.triangles.size();
-    mesh_report["watertight"] = query.watertight();
+    mesh_report["mesh"] = imported->name;
+    mesh_report["mesh_hash"] = imported->content_hash;
+    mesh_report["budget"] = budget;
+    mesh_report["triangles"] = imported->triangles.size();
+    mesh_report["shape"] = jsonShape(shaped.report);
     measured.meshes.push_back(std::move(mesh_report));
-    for (const std::uint64_t budget : budgets) {
-        for (const std::string& method : arguments.methods) {
-            AccuracyEntry entry;
-            if (method != "volume") {
-                entry = RELIEF_TRY(measureMaps(query, samples, method, budget));
-            } else if (std::optional<AccuracyEntry> known = cache.find(Cache::key(mesh, budget, options))) {
-                entry = std::move(*known);
-            } else {
-                entry = measureVolume(query, samples, budget);
-                RELIEF_TRY(cache.add(Cache::key(mesh, budget, options), entry));
-            }
-            entry.mesh = mesh.name;
-            entry.closed = query.watertight();
-            entry.budget = budget;
-            measured.entries.push_back(std::move(entry));
+    for (const std::string& method : arguments.methods) {
+        AccuracyEntry entry;
+        const std::string key = Cache::key(*imported, shaped.report, budget, options);
+        if (method != "volume") {
+            entry = RELIEF_TRY(measureMaps(query, samples, method, budget));
+        } else if (std::optional<AccuracyEntry> known = cache.find(key)) {
+            entry = std::move(*known);
+        } else {
+            entry = measureVolume(query, samples, budget);
+            RELIEF_TRY(cache.add(key, entry));
         }
+        entry.mesh = imported->name;
+        entry.closed = shaped.report.solids_with_holes + shaped.report.sheets + shaped.report.terrains == 0;
+        entry.budget = budget;
+        measured.entries.push_back(std::move(entry));
     }
     return {};
 }
@@ -343,12 +347,15 @@ Result<void> run(const Arguments& arguments) {
     for (const std::string& path : paths) {
         const Stopwatch watch;
         TriangleMesh mesh = RELIEF_TRY(importMeshInWorker(path));
-        const MeshQuery query = RELIEF_TRY(MeshQuery::build(std::move(mesh)));
         if (!arguments.values.empty()) {
+            const MeshQuery query = RELIEF_TRY(MeshQuery::build(std::move(mesh)));
             return printValues(query, budgets.front(), arguments.values);
         }
-        RELIEF_TRY(measureMesh(query, arguments, budgets, cache, measured));
-        std::fprintf(stderr, "%s: %.1f s\n", query.mesh().name.c_str(), watch.seconds());
+        const auto winding = RELIEF_TRY(windOutwards(std::move(mesh)));
+        for (const std::uint64_t budget : budgets) {
+            RELIEF_TRY(measureBudget(winding.mesh, arguments, budget, cache, measured));
+        }
+        std::fprintf(stderr, "%s: %.1f s\n", winding.mesh->name.c_str(), watch.seconds());
     }
     const std::string text = resultText(measured, arguments, budgets);
     return writeFile("-", std::as_bytes(std::span(text)));

@@ -58,6 +58,13 @@ void addPlanOptions(CLI::App& verb, BakeCommand& command) {
             "Exit with 7, and write nothing, if none do")
         ->option_text("PCT")
         ->transform(percent());
+    verb.add_option("--max-maps", command.max_maps,
+                    "Plan at most this many maps, each of which every step of a simulation looks at;\n"
+                    "default " +
+                        std::to_string(kPlannedMapsMax) + ", at most " +
+                        std::to_string(ContainerLimits{}.maps))
+        ->option_text("N")
+        ->transform(wholeNumber(1, ContainerLimits{}.maps));
     verb.add_option("--plan-out", command.plan_out,
                     "Also write what was planned, as TOML, to be changed and given to --plan")
         ->option_text("FILE");
@@ -87,7 +94,20 @@ void addTexelOptions(CLI::App& verb, BakeCommand& command) {
                                 "0 (none) to " + std::to_string(kCompressionMax) + " (smallest)"));
     addWords(verb, "--holes", command.holes,
              WordsFor<Holes>{{"close", Holes::kClose}, {"keep", Holes::kKeep}},
-             "Of a nearly closed mesh: close (bake it as a solid, default) or keep");
+             "close (default): make solids of what --as says; keep: bake the surface as it is");
+    addWords(verb, "--as", command.as,
+             WordsFor<ShapeAs>{{"auto", ShapeAs::kAuto},
+                               {"solid", ShapeAs::kSolid},
+                               {"shell", ShapeAs::kShell},
+                               {"terrain", ShapeAs::kTerrain}},
+             "What the parts of the mesh are: auto (default: each is judged by what rays see),\n"
+             "solid (holes are closed), shell (a wall with two sides) or terrain (solid below)");
+    verb.add_option("--thickness", command.thickness,
+                    "Of shells, in the collider's units; default: a texel and a half")
+        ->option_text("LENGTH")
+        ->transform(number(1e-15F, 1e15F, "a length above 0, in the collider's units"));
+    verb.add_flag("!--no-check", command.self_check,
+                  "Do not measure what was planned (a few percent of the time)");
     addBackendOption(verb, command.backend);
     addGpuOptions(verb, command.gpu);
 }

@@ -11,7 +11,9 @@
 #include "bake/cli/command_recipe.h"
 #include "bake/cli/import_options.h"
 #include "bake/pipeline/bake.h"
+#include "bake/plan/view_planner.h"
 #include "bake/repair/mesh_care.h"
+#include "bake/shape/shape.h"
 #include "formats/container.h"
 
 namespace relief {
@@ -29,6 +31,7 @@ struct BakeCommand {
     std::string plan_out;
     std::optional<std::uint64_t> budget;  ///< bytes of texels
     std::optional<float> max_error;       ///< percent
+    std::uint32_t max_maps = kPlannedMapsMax;
     std::optional<Decode> decode;
     std::optional<MapFormat> depth;  ///< kFrontBackHalf or kFrontBackFixed
     std::optional<std::uint64_t> resolution;
@@ -37,6 +40,9 @@ struct BakeCommand {
     std::optional<unsigned> threads;
     int compress = 0;  ///< zstd's level; 0: none
     Holes holes = Holes::kClose;
+    bool self_check = true;
+    ShapeAs as = ShapeAs::kAuto;
+    std::optional<float> thickness;  ///< of shells, object units
     BackendChoice backend = BackendChoice::kRaycast;
     GpuOptions gpu;
     ImportSettings import;

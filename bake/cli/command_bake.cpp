@@ -13,19 +13,21 @@
 #include "bake/cli/command.h"
 #include "bake/cli/command_recipe.h"
 #include "bake/cli/progress.h"
+#include "bake/measure/accuracy.h"
 #include "bake/mesh/mesh_query.h"
 #include "bake/pipeline/bake.h"
 #include "bake/pipeline/budget_search.h"
 #include "bake/plan/plan_file.h"
 #include "bake/plan/view_planner.h"
 #include "bake/recipe/depfile.h"
-#include "bake/repair/hole_caps.h"
 #include "bake/repair/mesh_care.h"
+#include "bake/report/accuracy_report.h"
 #include "bake/report/bake_report.h"
 #include "bake/report/report.h"
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
 #include "formats/base/stopwatch.h"
+#include "formats/base/text.h"
 #include "runtime/tool/command_line.h"
 #include "runtime/tool/json_text.h"
 
@@ -33,6 +35,10 @@ namespace relief {
 namespace {
 
 constexpr std::uint64_t kBudgetDefault = 1'000'000;  // bytes
+/// Points that a planned bake measures itself at: one in a hundred is then known to a sixth of that.
+constexpr std::uint32_t kSelfCheckPoints = 4000;
+/// Percent of them on the wrong side, above which the bake warns.
+constexpr double kSelfCheckWarns = 5.0;
 
 /// Every file that the collider was made from, the mesh first.
 std::vector<InputFile> inputsOf(const BakeCommand& command, const TriangleMesh& mesh,
@@ -70,6 +76,7 @@ Result<PlanReport> planMaps(const MeshQuery& query, const BakeCommand& command, 
     PlanOptions options;
     options.budget_bytes = report.budget;
     options.views.prefer = settings.bake.prefer;
+    options.views.max_maps = command.max_maps;
     Plan plan = RELIEF_TRY(planViews(query, options));
     report.plan = std::move(plan);
     settings.bake.maps = specsOf(report.plan);
@@ -83,6 +90,7 @@ Result<Baked> searchBudget(const MeshQuery& query, const MeshQuery& truth, const
     options.max_error_percent = double{*command.max_error};
     options.budget_max = command.budget.value_or(options.budget_max);
     options.bake = settings.bake;
+    options.max_maps = command.max_maps;
     options.tried = [](const BudgetTry& made) {
         spdlog::info("{}: {:.3g} % of the points near the surface are on the wrong side",
                      bytesText(made.budget), made.wrong_percent);
@@ -107,8 +115,8 @@ Result<Baked> bakeMaps(const BakeCommand& command, const PreparedMesh& mesh, Bak
 }
 
 /// Chooses the maps and bakes them.
-/// \param imported  the mesh as it came, whose points --max-error is about.
-/// \param mesh      the same, its holes closed where it is nearly closed.
+/// \param imported  the mesh whose points --max-error is about: as it came, if it was repaired.
+/// \param mesh      the solid that is baked.
 Result<Baked> makeCollider(const BakeCommand& command, const PreparedMesh& imported, const PreparedMesh& mesh,
                            BakeSettings& settings, std::optional<PlanReport>& plan, BakeTimes& times) {
     if (settings.source == MapSource::kPlanner) {
@@ -116,7 +124,7 @@ Result<Baked> makeCollider(const BakeCommand& command, const PreparedMesh& impor
         const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
         if (command.max_error) {
             MeshQuery truth = query;
-            if (mesh->closed_holes > 0 || !command.care.repair.empty()) {
+            if (!command.care.repair.empty()) {
                 truth = RELIEF_TRY(MeshQuery::build(imported));
             }
             Result<Baked> baked = searchBudget(query, truth, command, settings, plan);
@@ -177,10 +185,12 @@ struct BakeRun {
     BakeSettings settings;
     std::string plan_hash;
     Backend backend;
-    std::optional<PreparedMesh> imported;  ///< as it came, where --max-error looks back at it
+    std::optional<PreparedMesh> imported;  ///< as it came, where --max-error looks back at it after a repair
     CaredMesh cared;
+    ShapeReport shape;
     std::optional<PlanReport> plan;
     Baked baked;
+    std::optional<WrongShare> wrong;  ///< near the surface; of a planned bake
     std::vector<InputFile> inputs;
     std::vector<std::byte> bytes;  ///< of the container
 };
@@ -209,6 +219,30 @@ Result<void> prepare(BakeRun& run) {
     return {};
 }
 
+/// Makes a solid of what is none.
+Result<void> shape(BakeRun& run) {
+    const BakeCommand& command = run.command;
+    const Bounds& bounds = run.cared.mesh->bounds;
+    ShapeOptions options;
+    options.as = command.as;
+    options.thickness =
+        command.thickness
+            ? double{*command.thickness}
+            : defaultThickness(bounds,
+                               command.max_error ? kBudgetDefault : command.budget.value_or(kBudgetDefault));
+    const double share = options.thickness / double{bounds.longestSide()};
+    if (!(share >= kThicknessMin && share <= kThicknessMax)) {
+        return fail(ErrorCode::kUsage, "--thickness is " + shortest(*command.thickness) + " but " +
+                                           run.cared.mesh->name + " is " + shortest(bounds.longestSide()) +
+                                           " long; give between " + shortest(float(kThicknessMin)) + " and " +
+                                           shortest(float(kThicknessMax)) + " of that");
+    }
+    ShapedMesh shaped = RELIEF_TRY(shapeMesh(run.cared.mesh, options));
+    run.cared.mesh = std::move(shaped.mesh);
+    run.shape = std::move(shaped.report);
+    return {};
+}
+
 /// Reads the mesh and makes it fit to be baked.
 Result<void> readMesh(BakeRun& run) {
     const BakeCommand& command = run.command;
@@ -221,16 +255,13 @@ Result<void> readMesh(BakeRun& run) {
     if (mesh.dropped_triangles > 0) {
         spdlog::debug("{}: {} triangles without area dropped", mesh.name, mesh.dropped_triangles);
     }
-    if (command.max_error && (command.holes == Holes::kClose || !command.care.repair.empty())) {
+    if (command.max_error && !command.care.repair.empty()) {
         run.imported = mesh;
     }
     MeshCareOptions care = command.care;
     care.report = command.json || !command.common.quiet;
     run.cared = RELIEF_TRY(careFor(std::move(mesh), care));
-    if (command.holes == Holes::kClose) {
-        run.cared.mesh = RELIEF_TRY(closeHoles(run.cared.mesh));
-    }
-    return {};
+    return command.holes == Holes::kClose ? shape(run) : Result<void>();
 }
 
 /// Chooses the maps and bakes them.
@@ -244,17 +275,48 @@ Result<void> makeCollider(BakeRun& run) {
     run.baked = RELIEF_TRY(std::move(baked));
     run.baked.collider.provenance.options += (run.command.holes == Holes::kKeep ? " --holes keep" : "") +
                                              importProvenance(run.command.import.options) +
-                                             careOptionsText(run.cared.care);
+                                             careOptionsText(run.cared.care) + shapeOptionsText(run.shape);
+    return {};
+}
+
+/// What may help a bake that is wrong in many places.
+std::string cureOf(const BakeRun& run) {
+    const std::uint64_t budget = run.command.budget.value_or(kBudgetDefault);
+    const std::string more = "--budget " + std::to_string(4 * budget / 1000) + "kB";
+    if (run.shape.sheets > 0 && run.shape.as == ShapeAs::kAuto) {
+        return "try " + more + ", or a larger --thickness for its sheets (now " +
+               shortNumber(run.shape.thickness) + ")";
+    }
+    if (run.plan->plan.unseen_percent > 5.0) {
+        return shortNumber(run.plan->plan.unseen_percent) + " % of the surface is seen by no map; try " +
+               more + ", --as shell if it is walls, or --repair wrap=0.01 if its insides do not matter";
+    }
+    return "try " + more;
+}
+
+/// A planned bake measures itself: whoever names the maps may want what looks wrong.
+Result<void> checkItself(BakeRun& run) {
+    if (run.settings.source != MapSource::kPlanner || !run.command.self_check) {
+        return {};
+    }
+    const Stopwatch watch;
+    const MeshQuery query = RELIEF_TRY(MeshQuery::build(run.cared.mesh));
+    AccuracyOptions options;
+    options.samples = kSelfCheckPoints;
+    run.wrong = measureNear(sampleNear(query, options), fieldOf(run.baked.collider));
+    run.times.check_ms = watch.ms();
+    if (run.wrong->total() > kSelfCheckWarns) {
+        run.baked.report.warnings.push_back(run.cared.mesh->name + ": " + shortNumber(run.wrong->total()) +
+                                            " % of the points near the surface are on the "
+                                            "wrong side; " +
+                                            cureOf(run));
+    }
     return {};
 }
 
 /// Says what was out of the ordinary. Only now: a bake that fails has one line to say.
 void tellNotices(BakeRun& run) {
     const TriangleMesh& mesh = *run.cared.mesh;
-    if (mesh.closed_holes > 0) {
-        spdlog::info("{}: closed {} hole{} with {} triangles for baking: the mesh is nearly closed",
-                     mesh.name, mesh.closed_holes, mesh.closed_holes == 1 ? "" : "s", mesh.cap_triangles);
-    }
     if (!run.backend.reason.empty()) {
         spdlog::info("backend {}: {}", run.backend.raster ? "raster" : "raycast", run.backend.reason);
     }
@@ -289,8 +351,8 @@ Result<void> writeOutputs(BakeRun& run) {
 
 Result<void> report(const BakeRun& run) {
     const BakeCommand& command = run.command;
-    const BakeSummary summary{*run.cared.mesh, run.baked,      run.plan,
-                              run.times,       run.cared.care, command.common.verbose};
+    const BakeSummary summary{*run.cared.mesh, run.baked, run.plan,  run.times,
+                              run.cared.care,  run.shape, run.wrong, command.common.verbose};
     if (command.json) {
         const ContainerInfo info = RELIEF_TRY(readContainerInfo(run.bytes));
         auto json =
@@ -317,6 +379,7 @@ Result<void> runBake(const BakeCommand& command) {
     }
     RELIEF_TRY(readMesh(run));
     RELIEF_TRY(makeCollider(run));
+    RELIEF_TRY(checkItself(run));
     tellNotices(run);
     RELIEF_TRY(writeOutputs(run));
     return report(run);

@@ -15,6 +15,8 @@
 #include "bake/repair/winding.h"
 #include "bake/report/accuracy_page.h"
 #include "bake/report/accuracy_report.h"
+#include "bake/report/shape_report.h"
+#include "bake/shape/shape.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "formats/container.h"
@@ -66,6 +68,7 @@ struct CheckRun {
     Collider collider;
     PreparedMesh mesh{
         TriangleMesh()};  ///< as baked: where solids overlap, their winding decides what is inside
+    ShapeReport shape;
     bool same_file = false;
     std::vector<std::string> warnings;
     TruthSamples samples;
@@ -97,6 +100,14 @@ Result<void> readInputs(const CheckCommand& command, CheckRun& run) {
         RELIEF_TRY(importMeshInWorker(command.mesh, command.import.options, command.import.limits));
     Winding winding = RELIEF_TRY(windOutwards(std::move(imported)));
     run.mesh = std::move(winding.mesh);
+    const std::string& options = run.collider.provenance.options;
+    if (options.find(" --holes keep") == std::string::npos) {
+        ShapedMesh shaped = RELIEF_TRY(shapeMesh(
+            run.mesh,
+            shapeOptionsOf(options, {ShapeAs::kAuto, defaultThickness(run.mesh->bounds, 1'000'000)})));
+        run.mesh = std::move(shaped.mesh);
+        run.shape = std::move(shaped.report);
+    }
     RELIEF_TRY(checkSameMesh(run.collider, *run.mesh));
     const Provenance& from = run.collider.provenance;
     run.same_file = from.mesh_hash == run.mesh->content_hash;
@@ -138,8 +149,9 @@ nlohmann::ordered_json jsonCheck(const CheckCommand& command, const CheckRun& ru
         {"mesh",
          {{"name", run.mesh->name},
           {"hash", run.mesh->content_hash},
-          {"triangles", run.mesh->triangles.size()},
+          {"triangles", run.mesh->sourceTriangles()},
           {"watertight", run.watertight},
+          {"shape", jsonShape(run.shape)},
           {"baked_from_it", run.same_file}}},
         {"unit", run.collider.unit},
         {"sampling", jsonSamples(run.samples)},
@@ -157,8 +169,8 @@ nlohmann::ordered_json jsonCheck(const CheckCommand& command, const CheckRun& ru
 
 std::string checkText(const CheckCommand& command, const CheckRun& run) {
     return inputName(command.file) + " measured against " + run.mesh->name + ", " +
-           std::to_string(run.mesh->triangles.size()) + " triangles" +
-           (run.watertight ? "" : " (not closed)") + "\n\n" +
+           std::to_string(run.mesh->sourceTriangles()) + " triangles" +
+           (run.watertight ? "" : " (not closed)") + "\n" + shapeText(run.shape, run.collider.unit) + "\n" +
            accuracyText(run.accuracy, run.samples, run.collider.unit);
 }
 

@@ -201,6 +201,10 @@ Field fieldOf(const Collider& collider) {
     };
 }
 
+WrongShare measureNear(const std::vector<TruthPoint>& points, const Field& field) {
+    return wrongShare(points, evaluateAt(points, field));
+}
+
 FieldAccuracy measureField(const TruthSamples& samples, const Field& field) {
     const Stopwatch watch;
     FieldAccuracy accuracy;

@@ -49,6 +49,9 @@ struct FieldAccuracy {
     double seconds = 0.0;            ///< for evaluating the field at all points, on all cores
 };
 
+/// \param points  as sampleNear draws them.
+[[nodiscard]] WrongShare measureNear(const std::vector<TruthPoint>& points, const Field& field);
+
 /// The same for any number of threads, but for `seconds`.
 [[nodiscard]] FieldAccuracy measureField(const TruthSamples& samples, const Field& field);
 

@@ -80,11 +80,18 @@ class Sampler {
         return {position, normal, front_inside && back_inside};
     }
 
-    [[nodiscard]] TruthPoint nearSurface(std::uint32_t i) const {
+    [[nodiscard]] glm::vec3 positionNear(std::uint32_t i) const {
         SplitMixRandom random(options_.seed, kNearKind, i);
         const glm::dvec3 from = draw(random).position;
-        const glm::vec3 near = from + options_.sigma_share * longest_side_ * random.gaussian();
+        return from + options_.sigma_share * longest_side_ * random.gaussian();
+    }
+    [[nodiscard]] TruthPoint nearSurface(std::uint32_t i) const {
+        const glm::vec3 near = positionNear(i);
         return {near, static_cast<float>(query_.signedDistance(near))};
+    }
+    [[nodiscard]] TruthPoint signNear(std::uint32_t i) const {
+        const glm::vec3 near = positionNear(i);
+        return {near, query_.inside(near) ? -1.0F : 1.0F};
     }
 
     [[nodiscard]] TruthPoint inBox(std::uint32_t i) const {
@@ -119,6 +126,17 @@ class Sampler {
 };
 
 }  // namespace
+
+std::vector<TruthPoint> sampleNear(const MeshQuery& query, const AccuracyOptions& options) {
+    std::vector<TruthPoint> points(options.samples);
+    const Sampler sampler(query, options);
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, options.samples, 64), [&](const auto& range) {
+        for (std::uint32_t i = range.begin(); i != range.end(); ++i) {
+            points[i] = sampler.signNear(i);
+        }
+    });
+    return points;
+}
 
 TruthSamples sampleTruth(const MeshQuery& query, const AccuracyOptions& options) {
     const Stopwatch watch;

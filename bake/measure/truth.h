@@ -45,6 +45,9 @@ struct TruthSamples {
     double seconds = 0.0;               ///< spent here
 };
 
+/// Points near the surface alone, whose distance is ±1: the sign is known. A fifth of the time of sampleTruth.
+[[nodiscard]] std::vector<TruthPoint> sampleNear(const MeshQuery& query, const AccuracyOptions& options);
+
 /// The same mesh and options give the same samples, for any number of threads.
 /// Inside is the parity of MeshQuery::inside; a point of a surface both of whose sides are outside (an open
 /// mesh) takes the side of its triangle's winding.

@@ -6,6 +6,7 @@
 #include "bake/report/accuracy_report.h"
 #include "bake/report/care_report.h"
 #include "bake/report/report.h"
+#include "bake/report/shape_report.h"
 #include "formats/base/file_io.h"
 #include "runtime/tool/json_text.h"
 
@@ -33,7 +34,10 @@ std::string planLine(const PlanReport& report, const std::string& unit) {
     const Plan& plan = report.plan;
     std::string line = "planned for " + bytesText(report.budget) + ": texels of " + shortNumber(plan.texel) +
                        " " + (unit.empty() ? "object units" : unit) + "; " +
-                       shortNumber(plan.unseen_percent) + " % of the surface is seen by no map";
+                       shortNumber(plan.unseen_percent) +
+                       " % of the surface is seen by no map; one more map would have "
+                       "served " +
+                       shortNumber(100.0 * plan.next_gain) + " % more";
     if (report.max_error) {
         line += "; " + shortNumber(report.wrong_percent) +
                 " % of the points near the surface are on the wrong side, found by " +
@@ -62,6 +66,7 @@ Json jsonPlan(const PlanReport& report) {
             {"bytes", report.plan.bytes},
             {"texel", report.plan.texel},
             {"unseen_percent", report.plan.unseen_percent},
+            {"next_map_serves", report.plan.next_gain},
             {"maps", maps},
             {"search", search}};
 }
@@ -75,7 +80,7 @@ std::string bakeText(const BakeSummary& summary, const std::string& output, std:
     if (summary.mesh.dropped_triangles > 0) {
         text += ", " + std::to_string(summary.mesh.dropped_triangles) + " without area dropped";
     }
-    text += "\n" + careText(summary.care, summary.verbose);
+    text += "\n" + careText(summary.care, summary.verbose) + shapeText(summary.shape, summary.mesh.unit);
     if (summary.plan) {
         text += planLine(*summary.plan, summary.mesh.unit);
     }
@@ -109,6 +114,9 @@ std::string bakeText(const BakeSummary& summary, const std::string& output, std:
                   baked.report.trace_ms, baked.report.encode_ms, baked.report.fit_ms, baked.report.refine_ms,
                   times.search_ms > 0.0 ? ";" : ",", times.write_ms);
     text += line;
+    if (summary.wrong) {
+        text += "wrong near the surface: " + shortNumber(summary.wrong->total()) + " %\n";
+    }
     return text + (output == "-" ? "standard output" : quotedPath(output)) + ": " + bytesText(file_size) +
            "\n";
 }
@@ -122,6 +130,8 @@ Json jsonBake(const BakeSummary& summary, const ContainerInfo& info, const Json&
     }
     json["settings"] = settings;
     json["plan"] = summary.plan ? jsonPlan(*summary.plan) : Json(nullptr);
+    json["shape"] = jsonShape(summary.shape);
+    json["wrong_percent"] = summary.wrong ? Json(summary.wrong->total()) : Json(nullptr);
     json["closed_holes"] = summary.mesh.closed_holes;
     json["cap_triangles"] = summary.mesh.cap_triangles;
     json["dropped_triangles"] = summary.mesh.dropped_triangles;
@@ -129,7 +139,7 @@ Json jsonBake(const BakeSummary& summary, const ContainerInfo& info, const Json&
         {"import", times.import_ms}, {"plan", times.plan_ms},      {"search", times.search_ms},
         {"build", report.build_ms},  {"trace", report.trace_ms},   {"encode", report.encode_ms},
         {"fit", report.fit_ms},      {"raster", report.raster_ms}, {"refine", report.refine_ms},
-        {"write", times.write_ms},   {"total", times.total_ms}};
+        {"check", times.check_ms},   {"write", times.write_ms},    {"total", times.total_ms}};
     addCareJson(summary.care, json);
     json["warnings"] = report.warnings;
     return json;

@@ -6,11 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "bake/measure/accuracy.h"
 #include "bake/mesh/mesh.h"
 #include "bake/pipeline/bake.h"
 #include "bake/pipeline/budget_search.h"
 #include "bake/plan/view_planner.h"
 #include "bake/repair/mesh_care.h"
+#include "bake/shape/shape.h"
 #include "formats/container.h"
 
 namespace relief {
@@ -19,6 +21,7 @@ struct BakeTimes {
     double import_ms = 0.0;
     double plan_ms = 0.0;    ///< views, the tree that they are chosen by included
     double search_ms = 0.0;  ///< of --max-error: all its plans, bakes and measurements
+    double check_ms = 0.0;   ///< of a planned bake that measures itself
     double write_ms = 0.0;
     double total_ms = 0.0;
 };
@@ -38,6 +41,8 @@ struct BakeSummary {
     const std::optional<PlanReport>& plan;
     const BakeTimes& times;
     const MeshCare& care;
+    const ShapeReport& shape;
+    const std::optional<WrongShare>& wrong;  ///< near the surface, as a planned bake measures itself
     bool verbose = false;
 };
 

@@ -1,0 +1,39 @@
+#include "bake/report/shape_report.h"
+
+#include <nlohmann/json.hpp>
+
+#include "bake/report/accuracy_report.h"
+#include "runtime/tool/json_text.h"
+
+namespace relief {
+
+std::string shapeText(const ShapeReport& report, const std::string& unit) {
+    std::string text = report.text();
+    if (text.empty()) {
+        return text;
+    }
+    if (report.thickness > 0.0) {
+        text += "; sheets are " + shortNumber(report.thickness) + " " +
+                (unit.empty() ? "object units" : unit) + " thick";
+    }
+    if (report.coincident_triangles > 0) {
+        text += "; " + std::to_string(report.coincident_triangles) + " coincident triangles count once";
+    }
+    return "shape: " + text + "\n";
+}
+
+nlohmann::ordered_json jsonShape(const ShapeReport& report) {
+    if (report.text().empty()) {
+        return nullptr;
+    }
+    return {
+        {"as", shapeAsName(report.as)},
+        {"solids", report.solids},
+        {"solids_with_holes", report.solids_with_holes},
+        {"sheets", report.sheets},
+        {"terrains", report.terrains},
+        {"coincident_triangles", report.coincident_triangles},
+        {"thickness", report.thickness > 0.0 ? jsonNumber(static_cast<float>(report.thickness)) : nullptr}};
+}
+
+}  // namespace relief
