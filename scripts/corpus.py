@@ -107,8 +107,8 @@ def measure(name, path, bin, folder, options):
     baked = json.loads(checked([f'{bin}/relief', 'bake', path, '-o', ours, '--budget', '1MB', '--threads', '2',
                                 '--json', '-q']))
     seconds = time.perf_counter() - start
-    command = [f'{bin}/relief-accuracy', path, '--budget', '1MB', '--methods', 'volume,ours', '--samples',
-               str(options.samples), '--json']
+    command = [f'{bin}/relief-accuracy', path, '--budget', '1MB', '--methods', 'volume,ours', '--collider', ours,
+               '--samples', str(options.samples), '--json']
     if options.cache:
         command += ['--cache', options.cache]
     report = json.loads(checked(command))

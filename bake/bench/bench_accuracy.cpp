@@ -19,12 +19,15 @@
 #include "bake/plan/view.h"
 #include "bake/plan/view_planner.h"
 #include "bake/repair/hole_caps.h"
+#include "bake/repair/winding.h"
 #include "bake/report/accuracy_report.h"
 #include "bake/report/points_csv.h"
 #include "bake/report/report.h"
 #include "formats/base/file_io.h"
+#include "formats/base/hash.h"
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
+#include "formats/container.h"
 #include "runtime/tool/json_text.h"
 
 namespace relief {
@@ -77,15 +80,15 @@ Result<std::vector<MapSpec>> threeMaps(const TriangleMesh& mesh, std::uint64_t b
 }
 
 /// The paper's projected depth in the paper's front-back format.
-Result<Baked> bakePaper(const TriangleMesh& mesh, std::uint64_t bytes) {
-    std::vector<MapSpec> specs = RELIEF_TRY(threeMaps(mesh, bytes));
+Result<Baked> bakePaper(const PreparedMesh& mesh, std::uint64_t bytes) {
+    std::vector<MapSpec> specs = RELIEF_TRY(threeMaps(*mesh, bytes));
     BakeOptions options;
     options.maps = std::move(specs);
     return bake(mesh, options);
 }
 
 /// What `relief bake --budget` makes.
-Result<Baked> bakeOurs(const TriangleMesh& open_mesh, std::uint64_t bytes) {
+Result<Baked> bakeOurs(const PreparedMesh& open_mesh, std::uint64_t bytes) {
     const PreparedMesh mesh = RELIEF_TRY(closeHoles(open_mesh));
     const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
     PlanOptions plan_options;
@@ -131,27 +134,45 @@ AccuracyEntry measureVolume(const MeshQuery& query, const TruthSamples& samples,
     return entry;
 }
 
-Result<AccuracyEntry> measureMaps(const MeshQuery& query, const TruthSamples& samples,
-                                  const std::string& method, std::uint64_t budget) {
-    const Stopwatch watch;
-    const Baked baked =
-        RELIEF_TRY(method == "paper" ? bakePaper(query.mesh(), budget) : bakeOurs(query.mesh(), budget));
+AccuracyEntry measureMaps(const MeshQuery& query, const TruthSamples& samples, const std::string& method,
+                          const Collider& collider) {
     AccuracyEntry entry;
-    entry.build_seconds = watch.seconds();
     entry.method = method;
-    const ColliderAccuracy accuracy = measureCollider(samples, query, baked.collider);
-    for (const DepthMap& map : baked.collider.maps) {
+    const ColliderAccuracy accuracy = measureCollider(samples, query, collider);
+    for (const DepthMap& map : collider.maps) {
         entry.what += (entry.what.empty() ? "" : " ") + std::to_string(map.width) + "x" +
                       std::to_string(map.height) + (map.faceCount() == 6 ? "x6" : "");
     }
-    entry.maps = baked.collider.maps.size();
+    entry.maps = collider.maps.size();
     entry.bytes = accuracy.gpu_bytes;
     entry.accuracy = jsonColliderAccuracy(accuracy, samples.longest_side);
     return entry;
 }
 
+Result<AccuracyEntry> bakeAndMeasure(const MeshQuery& query, const TruthSamples& samples,
+                                     const std::string& method, std::uint64_t budget) {
+    const Stopwatch watch;
+    const Baked baked = RELIEF_TRY(method == "paper" ? bakePaper(query.prepared(), budget)
+                                                     : bakeOurs(query.prepared(), budget));
+    const double seconds = watch.seconds();
+    AccuracyEntry entry = measureMaps(query, samples, method, baked.collider);
+    entry.build_seconds = seconds;
+    return entry;
+}
+
+/// What `relief bake` has written, by whatever options.
+Result<AccuracyEntry> loadAndMeasure(const MeshQuery& query, const TruthSamples& samples,
+                                     const std::string& path) {
+    const Collider collider = RELIEF_TRY(loadCollider(path));
+    if (collider.provenance.mesh_hash != query.mesh().content_hash) {
+        return fail(ErrorCode::kInvalidInput, quotedPath(path) + " was not baked from " + query.mesh().name +
+                                                  "; give --collider what relief bake makes of it");
+    }
+    return measureMaps(query, samples, "ours", collider);
+}
+
 /// Measured volumes, kept between runs in a file for those who work on the maps: the volume's figures change
-/// with the key alone.
+/// with the key alone, which changes with the truth.
 class Cache {
   public:
     explicit Cache(std::string path) : path_(std::move(path)) {
@@ -167,10 +188,12 @@ class Cache {
         }
     }
 
-    static std::string key(const TriangleMesh& mesh, std::uint64_t budget, const AccuracyOptions& options) {
-        return "volume " + std::to_string(kDistanceVolumeVersion) + ", mesh " + mesh.content_hash + ", " +
-               std::to_string(budget) + " bytes, " + std::to_string(options.samples) + " samples, seed " +
-               std::to_string(options.seed);
+    /// \param truth  stands for the mesh, the points, and what counts as inside.
+    static std::string key(const TruthSamples& truth, std::uint64_t budget) {
+        static_assert(sizeof(TruthPoint) == 4 * sizeof(float), "no padding, whose bytes could be anything");
+        return "volume " + std::to_string(kDistanceVolumeVersion) + ", " + std::to_string(budget) +
+               " bytes, truth near " + xxh3_128Hex(std::as_bytes(std::span(truth.near))) + ", uniform " +
+               xxh3_128Hex(std::as_bytes(std::span(truth.uniform)));
     }
 
     [[nodiscard]] std::optional<AccuracyEntry> find(const std::string& key) const {
@@ -224,6 +247,7 @@ struct Arguments {
     std::uint64_t seed = AccuracyOptions{}.seed;
     std::vector<std::string> methods = {"volume", "paper", "ours"};
     std::vector<std::string> only;  ///< stems of meshes; empty: all
+    std::string collider;
     std::string cache;
     std::string values;
     bool details = false;
@@ -296,13 +320,15 @@ Result<void> measureMesh(const MeshQuery& query, const Arguments& arguments,
     for (const std::uint64_t budget : budgets) {
         for (const std::string& method : arguments.methods) {
             AccuracyEntry entry;
-            if (method != "volume") {
-                entry = RELIEF_TRY(measureMaps(query, samples, method, budget));
-            } else if (std::optional<AccuracyEntry> known = cache.find(Cache::key(mesh, budget, options))) {
+            if (method == "ours" && !arguments.collider.empty()) {
+                entry = RELIEF_TRY(loadAndMeasure(query, samples, arguments.collider));
+            } else if (method != "volume") {
+                entry = RELIEF_TRY(bakeAndMeasure(query, samples, method, budget));
+            } else if (std::optional<AccuracyEntry> known = cache.find(Cache::key(samples, budget))) {
                 entry = std::move(*known);
             } else {
                 entry = measureVolume(query, samples, budget);
-                RELIEF_TRY(cache.add(Cache::key(mesh, budget, options), entry));
+                RELIEF_TRY(cache.add(Cache::key(samples, budget), entry));
             }
             entry.mesh = mesh.name;
             entry.closed = query.watertight();
@@ -338,12 +364,17 @@ std::string resultText(const Measured& measured, const Arguments& arguments,
 Result<void> run(const Arguments& arguments) {
     const std::vector<std::uint64_t> budgets = RELIEF_TRY(parseBudgets(arguments.budgets));
     const std::vector<std::string> paths = RELIEF_TRY(chosenMeshes(arguments));
+    if (!arguments.collider.empty() && (paths.size() != 1 || budgets.size() != 1)) {
+        return fail(ErrorCode::kUsage, "--collider is of one mesh; give one MESH and one --budget");
+    }
     Cache cache(arguments.cache);
     Measured measured;
     for (const std::string& path : paths) {
         const Stopwatch watch;
         TriangleMesh mesh = RELIEF_TRY(importMeshInWorker(path));
-        const MeshQuery query = RELIEF_TRY(MeshQuery::build(std::move(mesh)));
+        // As `relief bake` and `relief check` do: where solids overlap, winding says what is inside.
+        Winding winding = RELIEF_TRY(windOutwards(std::move(mesh)));
+        const MeshQuery query = RELIEF_TRY(MeshQuery::build(std::move(winding.mesh)));
         if (!arguments.values.empty()) {
             return printValues(query, budgets.front(), arguments.values);
         }
@@ -378,6 +409,9 @@ int main(int argc, char** argv) {
     app.add_option("--methods", arguments.methods, "volume, paper or ours; default: all")
         ->delimiter(',')
         ->check(CLI::IsMember({"volume", "paper", "ours"}));
+    app.add_option(
+        "--collider", arguments.collider,
+        "Measure this file of `relief bake` as ours, and bake nothing; for one mesh and one budget");
     app.add_option("--cache", arguments.cache, "Keep the volume's figures in this file (for development)");
     app.add_option("--values", arguments.values,
                    "Only print x,y,z, exact distance, volume's distance for the points of this CSV file");
