@@ -42,10 +42,10 @@ def listed():
 def unpack(folder, thirteen):
     """All models: a path for each name."""
     paths = {os.path.basename(path).rsplit('.', 1)[0]: path for path in thirteen}
-    sources = os.path.join(HERE, '..', 'samples', 'meshes.py')
+    shapes = os.path.join(HERE, '../samples/meshes.py')
     for name in 'torus', 'basin', 'terrain':
         paths['samples/' + name] = f'{folder}/{name}.obj'
-        subprocess.run([sys.executable, sources, name, f'{folder}/{name}.obj'], check=True)
+        subprocess.run([sys.executable, shapes, name, f'{folder}/{name}.obj'], check=True)
     for archive in 'KatorLegaz', 'Scopia':
         with zipfile.ZipFile(f'{FURNITURE}/{archive}.sh3f') as file:
             for entry in sorted(file.namelist()):
@@ -55,31 +55,31 @@ def unpack(folder, thirteen):
                         paths[os.path.dirname(entry)] = path
     for names in listed().values():
         for name in names:
-            maker, _, rest = name.partition('/')
-            if maker == 'cgal':
+            package, _, rest = name.partition('/')
+            if package == 'cgal':
                 paths[name] = f'{folder}/data/meshes/{rest}'
-            elif maker == 'assimp':
+            elif package == 'assimp':
                 paths[name] = f'{ASSIMP}/{rest}'
     return paths
 
 
-def run(command):
-    return subprocess.run(command, capture_output=True, text=True, errors='replace', timeout=1800)
+class Unmeasured(Exception):
+    """What a program said instead of measuring; `broken` if it had no right to."""
+
+    def __init__(self, what, broken):
+        super().__init__(what)
+        self.broken = broken
 
 
-def last_line(result):
-    lines = result.stderr.strip().splitlines()
-    return lines[-1] if lines else f'exit code {result.returncode}'
-
-
-class Refused(Exception):
-    """What a program said instead of measuring."""
-
-
-def checked(command):
-    result = run(command)
+def checked(command, refusals=()):
+    """Standard output. `refusals` are the exit codes of one who was given a mesh that cannot be read."""
+    try:
+        result = subprocess.run(command, capture_output=True, text=True, errors='replace', timeout=1800)
+    except subprocess.TimeoutExpired as error:
+        raise Unmeasured(f'{os.path.basename(command[0])} takes more than {error.timeout} s', True) from None
     if result.returncode != 0:
-        raise Refused(last_line(result))
+        said = result.stderr.strip().splitlines() or [f'exit code {result.returncode}']
+        raise Unmeasured(said[-1], result.returncode not in refusals)
     return result.stdout
 
 
@@ -105,7 +105,7 @@ def measure(name, path, bin, folder, options):
     ours = f'{folder}/ours.relief'
     start = time.perf_counter()
     baked = json.loads(checked([f'{bin}/relief', 'bake', path, '-o', ours, '--budget', '1MB', '--threads', '2',
-                                '--json', '-q']))
+                                '--json', '-q'], refusals=(3, 5, 6)))
     seconds = time.perf_counter() - start
     command = [f'{bin}/relief-accuracy', path, '--budget', '1MB', '--methods', 'volume,ours', '--collider', ours,
                '--samples', str(options.samples), '--json']
@@ -117,69 +117,105 @@ def measure(name, path, bin, folder, options):
     row = {'model': name, 'triangles': mesh['triangles'], 'kind': 'closed' if mesh['watertight'] else 'open',
            'volume': f"{wrong['volume']:.4g}", 'ours': f"{wrong['ours']:.4g}",
            'ratio': f"{max(wrong['ours'], LEAST) / max(wrong['volume'], LEAST):.3f}",
-           'maps': len(baked['maps']), 'bake_s': f'{seconds:.2f}', 'step': ''}
+           'maps': len(baked['maps']), 'bake_s': f'{seconds:.2f}', 'step': '',
+           'warned': any('wrong near the surface' in warning for warning in baked['warnings'])}
     if options.steps:
         checked([f'{bin}/relief', 'bake', path, '-o', f'{folder}/paper.relief', '-q', *PAPER])
         row['step'] = f"{step_ratio(bin, folder, baked['bounds']):.2f}"
     return row
 
 
-def summary(rows, refused):
+def summary(rows):
     """What the models come to, line by line."""
     lines = []
     for kind in ['all', *sorted({row['kind'] for row in rows})]:
         of = [row for row in rows if kind in ('all', row['kind'])]
         ratios = [float(row['ratio']) for row in of]
-        share = lambda test: 100 * sum(map(test, of)) / len(of)
-        lines.append(f"{kind}: {len(of)} models; ours/volume {math.exp(statistics.fmean(map(math.log, ratios))):.3f} "
-                     f"(geometric mean; less than {LEAST} % counts as {LEAST} %), "
-                     f"worse than the volume on {share(lambda row: float(row['ratio']) > 1):.0f} %, "
-                     f"above 10 % wrong on {share(lambda row: float(row['ours']) > 10):.0f} %")
-    for column, what, unit in ('bake_s', 'bake', ' s'), ('step', 'step, of the paper\'s two maps', ''):
+        worse = [row for row in of if float(row['ratio']) > 1]
+        bad = [row for row in of if float(row['ours']) > 10]
+        silent = sum(not row['warned'] for row in bad)
+        lines.append(f'{kind}: {len(of)} models, ours/volume {math.exp(statistics.fmean(map(math.log, ratios))):.3f} '
+                     f'(geometric mean), above the volume {100 * len(worse) / len(of):.0f} %, more than 10 % wrong '
+                     f'{100 * len(bad) / len(of):.0f} % ({silent} of {len(bad)} without a warning)')
+    for column, what, unit in ('bake_s', 'bake', ' s'), ('step', "step, of the paper's", ''):
         known = [row for row in rows if row[column]]
         if known:
             worst = max(known, key=lambda row: float(row[column]))
-            lines.append(f"{what}: median {statistics.median(float(row[column]) for row in known):.2f}{unit}, "
-                         f"worst {worst[column]}{unit} ({worst['model']})")
-    lines += [f'not measured: {name}: {why}' for name, why in refused]
+            lines.append(f'{what}: median {statistics.median(float(row[column]) for row in known):.2f}{unit}, '
+                         f'worst {worst[column]}{unit} ({worst["model"]})')
     return lines
+
+
+def page(rows, lines, command):
+    """bake/measure/accuracy_corpus.md"""
+    headings = ['model', 'triangles', 'kind', 'volume %', 'ours %', 'ours/volume', 'maps', 'bake s', 'step']
+    table = [headings, ['---' if h in ('model', 'kind') else '---:' for h in headings],
+             *[[str(row[column]) or '-' for column in COLUMNS] for row in rows]]
+    return f"""# Meshes as artists make them
+
+Written by `{command}`, on a machine whose cores are shared: believe no single time. At 1 MB, for each
+model: the points near the surface on whose side a distance volume and what `relief bake` writes are wrong; the maps;
+the seconds of the whole `relief bake` on two threads; and the time of a particle step on llvmpipe over that with the
+paper's two maps. In ratios less than {LEAST} % counts as {LEAST} %.
+
+""" + ''.join(f'- {line}\n' for line in lines) + '\n' + ''.join(f'| {" | ".join(row)} |\n' for row in table)
+
+
+def chosen(paths, options):
+    """The names to measure, in the order of `paths` or of the list."""
+    if not options.only:
+        return list(paths) if options.all else listed()['sixty']
+    names = []
+    for wanted in options.only.split(','):
+        found = [name for name in paths
+                 if wanted in (name, os.path.basename(name), os.path.splitext(os.path.basename(name))[0])]
+        if not found:
+            sys.exit(f"accuracy.sh: --only has '{wanted}', but no model is called so; see scripts/corpus.txt and --all")
+        names += found
+    return names
+
+
+def arguments(words):
+    parser = argparse.ArgumentParser(prog='accuracy.sh --corpus', description='Sixty models at 1 MB: scripts/corpus.txt')
+    parser.add_argument('--all', action='store_true', help='every model: hours')
+    parser.add_argument('--only', metavar='A,B', help='these models, by name or by what follows its last slash')
+    parser.add_argument('--samples', type=int, default=20000, metavar='N', help='points of each kind; default 20000')
+    parser.add_argument('--steps', action='store_true', help="also time steps against the paper's maps: slow")
+    parser.add_argument('--csv', metavar='FILE', help='write rows to this file, as they come')
+    parser.add_argument('--cache', metavar='FILE', help="keep the volumes' figures in this file, for the next run")
+    parser.add_argument('--markdown', action='store_true', help='write bake/measure/accuracy_corpus.md')
+    options = parser.parse_args(words)
+    if options.markdown and (options.all or options.only):
+        parser.error('--markdown is for the sixty; leave out --all and --only')
+    return options
 
 
 def main():
     split = sys.argv.index('--')
     bin, folder, *thirteen = sys.argv[1:split]
-    parser = argparse.ArgumentParser(prog='accuracy.sh --corpus')
-    parser.add_argument('--all', action='store_true', help='every model, not sixty: hours')
-    parser.add_argument('--only', metavar='A,B', help='these models, by their names or what follows the slash')
-    parser.add_argument('--samples', type=int, default=20000, metavar='N', help='points near each surface')
-    parser.add_argument('--steps', action='store_true', help='also time steps of relief-sim: slow')
-    parser.add_argument('--csv', metavar='FILE', help='write the rows as they come')
-    parser.add_argument('--cache', metavar='FILE', help="keep the volume's figures here between runs")
-    parser.add_argument('--markdown', action='store_true', help='write bake/measure/accuracy_corpus.md')
-    options = parser.parse_args(sys.argv[split + 1:])
-
+    words = sys.argv[split + 1:]
+    options = arguments(words)
     paths = unpack(folder, thirteen)
-    names = list(paths) if options.all or options.only else listed()['sixty']
-    if options.only:
-        wanted = options.only.split(',')
-        names = [name for name in names if name in wanted or name.split('/')[-1].split('.')[0] in wanted]
-    rows, refused = [], []
-    table = open(options.csv, 'w', encoding='utf-8', newline='') if options.csv else None
-    writers = [csv.DictWriter(file, COLUMNS) for file in (sys.stdout, table) if file]
-    for writer in writers:
+    names = chosen(paths, options)
+    rows, unmeasured = [], []
+    with open(options.csv or 1, 'w', encoding='utf-8', newline='', closefd=bool(options.csv)) as file:
+        writer = csv.DictWriter(file, COLUMNS, extrasaction='ignore')
         writer.writeheader()
-    for name in names:
-        try:
-            rows.append(measure(name, paths[name], bin, folder, options))
-        except (Refused, subprocess.TimeoutExpired) as error:
-            refused.append((name, str(error)))
-            continue
-        for writer in writers:
-            writer.writerow(rows[-1])
-        for file in filter(None, (sys.stdout, table)):
+        for name in names:
+            try:
+                rows.append(measure(name, paths[name], bin, folder, options))
+            except Unmeasured as error:
+                unmeasured.append((name, error))
+            else:
+                writer.writerow(rows[-1])
             file.flush()
-    lines = summary(rows, refused) if rows else []
-    print('\n'.join(lines))
+    lines = summary(rows) if rows else []
+    print(*lines, *(f'not measured: {name}: {error}' for name, error in unmeasured), sep='\n')
+    if options.markdown:
+        with open(os.path.join(HERE, '../bake/measure/accuracy_corpus.md'), 'w', encoding='utf-8') as file:
+            file.write(page(rows, lines, ' '.join(['scripts/accuracy.sh --corpus', *words])))
+    # A mesh that is refused is no failure; of the sixty none is.
+    sys.exit(any(error.broken for _, error in unmeasured) or (bool(unmeasured) and not options.all))
 
 
 main()

@@ -206,7 +206,7 @@ class Cache {
             entry.method = "volume";
             entry.what = json.at("what");
             entry.bytes = json.at("bytes");
-            entry.build_seconds = json.at("build_seconds");
+            entry.build_seconds = json.at("build_seconds").get<double>();
             entry.accuracy = json.at("accuracy");
             // Everything that the tables read, so that a file of another version is measured again.
             for (const char* name : {"wrong_percent", "false_inside_percent", "false_outside_percent"}) {
