@@ -7,8 +7,8 @@
 #   scripts/accuracy.sh                  the table
 #   scripts/accuracy.sh --markdown       the same as Markdown
 #   scripts/accuracy.sh --page           writes it to bake/measure/accuracy.md, whose figures README.md and bake/measure/README.md cite
-#   scripts/accuracy.sh --corpus         sixty meshes as artists make them, at 1 MB, one row each (corpus.txt): --all takes
-#                                        536; --only, --csv FILE, --steps, --markdown and others: --corpus --help
+#   scripts/accuracy.sh --corpus         sixty meshes as artists make them (corpus.txt), at 1 MB, one row each; with
+#                                        --all 536 of them; --help has --only, --csv, --steps, --markdown and others
 #   scripts/accuracy.sh --cross-check    compares the volume with OpenVDB's mesh2ls, on the bunny
 #
 # The cross-check samples the level set that Debian's vdb_tool (libopenvdb-tools) makes of the bunny at 128

@@ -144,12 +144,12 @@ def summary(rows):
         above = sum(float(row['ratio']) > 1 for row in of)
         bad = [row for row in of if float(row['ours']) > 10]
         silent = sum(not row['warned'] for row in bad)
-        lines.append(f'{kind}, {len(of)}: ours/volume {mean:.3f} in the geometric mean (at most 0.333), above the volume '
-                     f'{percent(above, len(of))} (at most 5 %), more than 10 % wrong {percent(len(bad), len(of))}, '
+        lines.append(f'{kind}, {len(of)}: ours/volume {mean:.3f} in the geometric mean (at most 0.333), above the '
+                     f'volume {percent(above, len(of))} (at most 5 %), more than 10 % wrong {percent(len(bad), len(of))}, '
                      f'without a warning {percent(silent, len(of))} (none)')
     small = [row for row in rows if row['triangles'] <= 100_000]
     for column, what, of, aims in (('bake_s', 'seconds of a bake, up to 100,000 triangles', small, (1, 3)),
-                                   ('step', "step over that with the paper's maps", rows, (1.5, 3))):
+                                   ('step', "step over one with the paper's maps", rows, (1.5, 3))):
         known = [row for row in of if row[column]]
         if known:
             worst = max(known, key=lambda row: float(row[column]))
@@ -161,15 +161,15 @@ def summary(rows):
 
 def page(rows, lines, command):
     """bake/measure/accuracy_corpus.md"""
-    headings = ['model', 'triangles', 'kind', 'volume %', 'ours %', 'ours/volume', 'maps', 'bake s', 'step', 'bake CPU s']
+    headings = ['model', 'triangles', 'kind', 'volume %', 'ours %', 'ours/volume', 'maps', 'bake s', 'step', 'CPU s']
     table = [headings, ['---' if h in ('model', 'kind') else '---:' for h in headings],
              *[[str(row[column]) or '-' for column in COLUMNS] for row in rows]]
     return f"""# Meshes as artists make them
 
-Written by `{command}`, on a machine whose cores are shared, so that the times are
-an upper bound. At 1 MB, for each model: the share of the points near the surface on whose side a distance volume and what
-`relief bake` writes are wrong; the maps; the seconds of the whole `relief bake` on two threads; the time of a particle
-step on llvmpipe over that with the paper's two maps; and the processor's seconds of the bake, on both threads together.
+Written by `{command}`. At 1 MB, for each model: the share of the points near the
+surface on whose side a distance volume and what `relief bake` writes are wrong; the maps; the seconds of the whole
+`relief bake` on two threads; the time of a particle step on llvmpipe over one with the paper's two maps; and the
+processor's seconds of the bake, both threads together. Other work on the machine makes single times rough.
 In ratios less than {LEAST} % counts as {LEAST} %.
 
 """ + ''.join(f'- {line}\n' for line in lines) + '\n' + ''.join(f'| {" | ".join(row)} |\n' for row in table)
@@ -190,7 +190,7 @@ def chosen(paths, options):
 
 
 def arguments(words):
-    parser = argparse.ArgumentParser(prog='accuracy.sh --corpus', description='Sixty models at 1 MB: scripts/corpus.txt')
+    parser = argparse.ArgumentParser(prog='accuracy.sh --corpus', description='The sixty of corpus.txt at 1 MB')
     parser.add_argument('--all', action='store_true', help='every model: hours')
     parser.add_argument('--only', metavar='A,B', help='these models, by name or by what follows its last slash')
     parser.add_argument('--samples', type=int, default=20000, metavar='N', help='points of each kind; default 20000')

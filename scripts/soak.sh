@@ -10,7 +10,7 @@
 #   package a build without the baker, from nothing, installs a runtime that samples/embed builds with.
 #   headers a build without precompiled headers: every file includes what it uses, and no warning of GCC is off.
 #   bytes   204 bakes of ten meshes in surroundings that must not matter give one hash each (scripts/determinism.sh)
-#   corpus  536 meshes as artists make them are baked at 1 MB and measured, or refused in one line; hours (scripts/corpus.py)
+#   corpus  536 meshes as artists make them are baked at 1 MB and measured, or refused in one line. An hour or so.
 #   fuzz    libFuzzer looks at containers, scenes, plans, recipes, points and import messages, ten minutes each (scripts/fuzz.sh)
 #   outputs 20 rounds of kills, errors, signals and eight writers leave no torn file (scripts/all_or_nothing.sh)
 set -euo pipefail
