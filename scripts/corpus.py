@@ -145,7 +145,7 @@ def summary(rows):
         bad = [row for row in of if float(row['ours']) > 10]
         silent = sum(not row['warned'] for row in bad)
         lines.append(f'{kind}, {len(of)}: ours/volume {mean:.3f} in the geometric mean (at most 0.333), above the '
-                     f'volume {percent(above, len(of))} (at most 5 %), more than 10 % wrong {percent(len(bad), len(of))}, '
+                     f'volume {percent(above, len(of))} (at most 5 %), above 10 % wrong {percent(len(bad), len(of))}, '
                      f'without a warning {percent(silent, len(of))} (none)')
     small = [row for row in rows if row['triangles'] <= 100_000]
     for column, what, of, aims in (('bake_s', 'seconds of a bake, up to 100,000 triangles', small, (1, 3)),
