@@ -7,6 +7,8 @@
 #   scripts/accuracy.sh                  the table
 #   scripts/accuracy.sh --markdown       the same as Markdown
 #   scripts/accuracy.sh --page           writes it to bake/measure/accuracy.md, whose figures README.md and bake/measure/README.md cite
+#   scripts/accuracy.sh --corpus         sixty meshes as artists make them (corpus.txt), at 1 MB, one row each; with
+#                                        --all 536 of them; --help has --only, --csv, --steps, --markdown and others
 #   scripts/accuracy.sh --cross-check    compares the volume with OpenVDB's mesh2ls, on the bunny
 #
 # The cross-check samples the level set that Debian's vdb_tool (libopenvdb-tools) makes of the bunny at 128
@@ -22,8 +24,13 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 bunny=/usr/share/glmark2/models/bunny.obj
-scripts/setup.sh
-bin=$(scripts/build.sh release relief-accuracy)
+if [ "${1:-}" = --corpus ]; then
+    scripts/setup.sh sweethome3d-furniture
+    bin=$(scripts/build.sh release relief relief-accuracy relief-sim)
+else
+    scripts/setup.sh
+    bin=$(scripts/build.sh release relief-accuracy)
+fi
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
@@ -78,6 +85,11 @@ done
 models=/usr/share/assimp/models
 meshes+=("$models/Collada/duck.dae" "$models/BLEND/HUMAN.blend")
 
+if [ "${1:-}" = --corpus ]; then
+    shift
+    python3 scripts/corpus.py "$bin" "$folder" "${meshes[@]}" -- "$@"
+    exit 0
+fi
 if [ "${1:-}" = --page ]; then
     shift
     {

@@ -10,13 +10,14 @@
 #   package a build without the baker, from nothing, installs a runtime that samples/embed builds with.
 #   headers a build without precompiled headers: every file includes what it uses, and no warning of GCC is off.
 #   bytes   204 bakes of ten meshes in surroundings that must not matter give one hash each (scripts/determinism.sh)
+#   corpus  536 meshes as artists make them are baked at 1 MB and measured, or refused in one line. An hour or so.
 #   fuzz    libFuzzer looks at containers, scenes, plans, recipes, points and import messages, ten minutes each (scripts/fuzz.sh)
 #   outputs 20 rounds of kills, errors, signals and eight writers leave no torn file (scripts/all_or_nothing.sh)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/setup.sh
-all_runs=(sweep rest import mutants package headers bytes outputs fuzz)
+all_runs=(sweep rest import mutants package headers bytes outputs corpus fuzz)
 runs=("$@")
 [ ${#runs[@]} -gt 0 ] || runs=("${all_runs[@]}")
 work=$(mktemp -d)
@@ -120,6 +121,8 @@ bytes() { scripts/determinism.sh; }
 mutants() { scripts/mutants.sh 2000; }
 
 outputs() { scripts/all_or_nothing.sh; }
+
+corpus() { scripts/accuracy.sh --corpus --all --csv "$work/corpus.csv" | sed 's/^/corpus: /'; }
 
 fuzz() { scripts/fuzz.sh 600; }
 

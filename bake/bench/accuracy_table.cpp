@@ -15,6 +15,10 @@ std::string fixedText(double value, int digits) {
     return text;
 }
 
+Json orNull(const std::optional<double>& value) {
+    return value ? Json(*value) : Json();
+}
+
 using Rows = std::vector<std::vector<std::string>>;
 
 /// GitHub's tables; a heading that ends in '>' goes right, as in table().
@@ -48,7 +52,8 @@ Rows detailRows(const std::vector<AccuracyEntry>& entries) {
                         entry.accuracy.contains("unseen_area_percent")
                             ? fixedText(entry.accuracy["unseen_area_percent"], 2)
                             : "-",
-                        std::to_string(entry.bytes), fixedText(entry.build_seconds, 2), entry.what});
+                        std::to_string(entry.bytes),
+                        entry.build_seconds ? fixedText(*entry.build_seconds, 2) : "-", entry.what});
     }
     return rows;
 }
@@ -109,7 +114,7 @@ Rows contestRows(const std::vector<AccuracyEntry>& entries, std::uint32_t sample
              number(c.ours, "near", "false_outside_percent", 3), mean(c.volume), mean(c.paper), mean(c.ours),
              p99(c.volume), p99(c.paper), p99(c.ours), c.ours ? fixedText(no_distance, 2) : "-",
              c.ours ? std::to_string(c.ours->bytes) : "-", c.ours ? std::to_string(c.ours->maps) : "-",
-             c.ours ? fixedText(1000.0 * c.ours->build_seconds, 0) : "-"});
+             c.ours && c.ours->build_seconds ? fixedText(1000.0 * *c.ours->build_seconds, 0) : "-"});
     }
     return rows;
 }
@@ -141,12 +146,11 @@ Json toJson(const AccuracyEntry& entry) {
     return {{"mesh", entry.mesh},        {"closed", entry.closed},
             {"budget", entry.budget},    {"method", entry.method},
             {"what", entry.what},        {"maps", entry.maps},
-            {"bytes", entry.bytes},      {"build_seconds", entry.build_seconds},
+            {"bytes", entry.bytes},      {"build_seconds", orNull(entry.build_seconds)},
             {"accuracy", entry.accuracy}};
 }
 
 Json toJson(const BudgetSummary& summary) {
-    const auto orNull = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
     Json above = Json::array();
     for (const NamedValue& mesh : summary.closed_above) {
         above.push_back(mesh.mesh);
@@ -165,8 +169,7 @@ std::vector<AccuracyRow> summaryRows(const std::vector<AccuracyEntry>& entries, 
     std::vector<AccuracyRow> rows;
     for (const Contest& c : contestsOf(entries)) {
         rows.push_back({c.any().mesh, c.any().closed, c.any().budget, c.ratio(c.paper, samples),
-                        c.ratio(c.ours, samples),
-                        c.ours ? std::optional(c.ours->build_seconds) : std::nullopt});
+                        c.ratio(c.ours, samples), c.ours ? c.ours->build_seconds : std::nullopt});
     }
     return rows;
 }

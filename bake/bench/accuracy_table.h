@@ -20,8 +20,8 @@ struct AccuracyEntry {
     std::string what;    ///< lattice or maps
     std::size_t maps = 0;
     std::uint64_t bytes = 0;
-    double build_seconds = 0.0;       ///< of maps: acceleration structure, plan, rays and fit
-    nlohmann::ordered_json accuracy;  ///< of jsonFieldAccuracy or jsonColliderAccuracy
+    std::optional<double> build_seconds;  ///< of maps: acceleration structure, plan, rays and fit
+    nlohmann::ordered_json accuracy;      ///< of jsonFieldAccuracy or jsonColliderAccuracy
 
     [[nodiscard]] double number(const char* group, const char* name) const {
         return accuracy.at(group).at(name).get<double>();

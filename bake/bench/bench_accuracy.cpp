@@ -25,8 +25,10 @@
 #include "bake/report/shape_report.h"
 #include "bake/shape/shape.h"
 #include "formats/base/file_io.h"
+#include "formats/base/hash.h"
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
+#include "formats/container.h"
 #include "runtime/tool/json_text.h"
 
 namespace relief {
@@ -79,8 +81,8 @@ Result<std::vector<MapSpec>> threeMaps(const TriangleMesh& mesh, std::uint64_t b
 }
 
 /// The paper's projected depth in the paper's front-back format.
-Result<Baked> bakePaper(const TriangleMesh& mesh, std::uint64_t bytes) {
-    std::vector<MapSpec> specs = RELIEF_TRY(threeMaps(mesh, bytes));
+Result<Baked> bakePaper(const PreparedMesh& mesh, std::uint64_t bytes) {
+    std::vector<MapSpec> specs = RELIEF_TRY(threeMaps(*mesh, bytes));
     BakeOptions options;
     options.maps = std::move(specs);
     return bake(mesh, options);
@@ -132,27 +134,45 @@ AccuracyEntry measureVolume(const MeshQuery& query, const TruthSamples& samples,
     return entry;
 }
 
-Result<AccuracyEntry> measureMaps(const MeshQuery& query, const TruthSamples& samples,
-                                  const std::string& method, std::uint64_t budget) {
-    const Stopwatch watch;
-    const Baked baked =
-        RELIEF_TRY(method == "paper" ? bakePaper(query.mesh(), budget) : bakeOurs(query, budget));
+AccuracyEntry measureMaps(const MeshQuery& query, const TruthSamples& samples, const std::string& method,
+                          const Collider& collider) {
     AccuracyEntry entry;
-    entry.build_seconds = watch.seconds();
     entry.method = method;
-    const ColliderAccuracy accuracy = measureCollider(samples, query, baked.collider);
-    for (const DepthMap& map : baked.collider.maps) {
+    const ColliderAccuracy accuracy = measureCollider(samples, query, collider);
+    for (const DepthMap& map : collider.maps) {
         entry.what += (entry.what.empty() ? "" : " ") + std::to_string(map.width) + "x" +
                       std::to_string(map.height) + (map.faceCount() == 6 ? "x6" : "");
     }
-    entry.maps = baked.collider.maps.size();
+    entry.maps = collider.maps.size();
     entry.bytes = accuracy.gpu_bytes;
     entry.accuracy = jsonColliderAccuracy(accuracy, samples.longest_side);
     return entry;
 }
 
+Result<AccuracyEntry> bakeAndMeasure(const MeshQuery& query, const TruthSamples& samples,
+                                     const std::string& method, std::uint64_t budget) {
+    const Stopwatch watch;
+    const Baked baked =
+        RELIEF_TRY(method == "paper" ? bakePaper(query.prepared(), budget) : bakeOurs(query, budget));
+    const double seconds = watch.seconds();
+    AccuracyEntry entry = measureMaps(query, samples, method, baked.collider);
+    entry.build_seconds = seconds;
+    return entry;
+}
+
+/// What `relief bake` has written, by whatever options.
+Result<AccuracyEntry> loadAndMeasure(const MeshQuery& query, const TruthSamples& samples,
+                                     const std::string& path) {
+    const Collider collider = RELIEF_TRY(loadCollider(path));
+    if (collider.provenance.mesh_hash != query.mesh().content_hash) {
+        return fail(ErrorCode::kInvalidInput, quotedPath(path) + " was not baked from " + query.mesh().name +
+                                                  "; give --collider what relief bake makes of it");
+    }
+    return measureMaps(query, samples, "ours", collider);
+}
+
 /// Measured volumes, kept between runs in a file for those who work on the maps: the volume's figures change
-/// with the key alone.
+/// with the key alone, which changes with the truth.
 class Cache {
   public:
     explicit Cache(std::string path) : path_(std::move(path)) {
@@ -168,11 +188,12 @@ class Cache {
         }
     }
 
-    static std::string key(const TriangleMesh& mesh, const ShapeReport& shape, std::uint64_t budget,
-                           const AccuracyOptions& options) {
-        return "volume " + std::to_string(kDistanceVolumeVersion) + ", mesh " + mesh.content_hash + ", " +
-               shape.text() + shapeOptionsText(shape) + ", " + std::to_string(budget) + " bytes, " +
-               std::to_string(options.samples) + " samples, seed " + std::to_string(options.seed);
+    /// \param truth  stands for the mesh, the points, and what counts as inside.
+    static std::string key(const TruthSamples& truth, std::uint64_t budget) {
+        static_assert(sizeof(TruthPoint) == 4 * sizeof(float), "no padding, whose bytes could be anything");
+        return "volume " + std::to_string(kDistanceVolumeVersion) + ", " + std::to_string(budget) +
+               " bytes, truth near " + xxh3_128Hex(std::as_bytes(std::span(truth.near))) + ", uniform " +
+               xxh3_128Hex(std::as_bytes(std::span(truth.uniform)));
     }
 
     [[nodiscard]] std::optional<AccuracyEntry> find(const std::string& key) const {
@@ -185,7 +206,7 @@ class Cache {
             entry.method = "volume";
             entry.what = json.at("what");
             entry.bytes = json.at("bytes");
-            entry.build_seconds = json.at("build_seconds");
+            entry.build_seconds = json.at("build_seconds").get<double>();
             entry.accuracy = json.at("accuracy");
             // Everything that the tables read, so that a file of another version is measured again.
             for (const char* name : {"wrong_percent", "false_inside_percent", "false_outside_percent"}) {
@@ -226,6 +247,7 @@ struct Arguments {
     std::uint64_t seed = AccuracyOptions{}.seed;
     std::vector<std::string> methods = {"volume", "paper", "ours"};
     std::vector<std::string> only;  ///< stems of meshes; empty: all
+    std::string collider;
     std::string cache;
     std::string values;
     bool details = false;
@@ -284,8 +306,12 @@ struct Measured {
 /// Measures one mesh at one budget with all methods.
 Result<void> measureBudget(const PreparedMesh& imported, const Arguments& arguments, std::uint64_t budget,
                            Cache& cache, Measured& measured) {
-    const auto shaped =
-        RELIEF_TRY(shapeMesh(imported, {ShapeAs::kAuto, defaultThickness(imported->bounds, budget)}));
+    ShapeOptions shape{ShapeAs::kAuto, defaultThickness(imported->bounds, budget)};
+    if (!arguments.collider.empty()) {
+        const Collider collider = RELIEF_TRY(loadCollider(arguments.collider));
+        shape = shapeOptionsOf(collider.provenance.options, shape);
+    }
+    const ShapedMesh shaped = RELIEF_TRY(shapeMesh(imported, shape));
     const MeshQuery query = RELIEF_TRY(MeshQuery::build(shaped.mesh));
     AccuracyOptions options;
     options.samples = arguments.samples;
@@ -300,9 +326,11 @@ Result<void> measureBudget(const PreparedMesh& imported, const Arguments& argume
     measured.meshes.push_back(std::move(mesh_report));
     for (const std::string& method : arguments.methods) {
         AccuracyEntry entry;
-        const std::string key = Cache::key(*imported, shaped.report, budget, options);
-        if (method != "volume") {
-            entry = RELIEF_TRY(measureMaps(query, samples, method, budget));
+        const std::string key = Cache::key(samples, budget);
+        if (method == "ours" && !arguments.collider.empty()) {
+            entry = RELIEF_TRY(loadAndMeasure(query, samples, arguments.collider));
+        } else if (method != "volume") {
+            entry = RELIEF_TRY(bakeAndMeasure(query, samples, method, budget));
         } else if (std::optional<AccuracyEntry> known = cache.find(key)) {
             entry = std::move(*known);
         } else {
@@ -342,6 +370,9 @@ std::string resultText(const Measured& measured, const Arguments& arguments,
 Result<void> run(const Arguments& arguments) {
     const std::vector<std::uint64_t> budgets = RELIEF_TRY(parseBudgets(arguments.budgets));
     const std::vector<std::string> paths = RELIEF_TRY(chosenMeshes(arguments));
+    if (!arguments.collider.empty() && (paths.size() != 1 || budgets.size() != 1)) {
+        return fail(ErrorCode::kUsage, "--collider is of one mesh; give one MESH and one --budget");
+    }
     Cache cache(arguments.cache);
     Measured measured;
     for (const std::string& path : paths) {
@@ -385,6 +416,9 @@ int main(int argc, char** argv) {
     app.add_option("--methods", arguments.methods, "volume, paper or ours; default: all")
         ->delimiter(',')
         ->check(CLI::IsMember({"volume", "paper", "ours"}));
+    app.add_option(
+        "--collider", arguments.collider,
+        "Measure this file of `relief bake` as ours, and bake nothing; for one mesh and one budget");
     app.add_option("--cache", arguments.cache, "Keep the volume's figures in this file (for development)");
     app.add_option("--values", arguments.values,
                    "Only print x,y,z, exact distance, volume's distance for the points of this CSV file");

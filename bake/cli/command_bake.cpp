@@ -307,9 +307,7 @@ Result<void> checkItself(BakeRun& run) {
     run.times.check_ms = watch.ms();
     if (run.wrong->total() > kSelfCheckWarns) {
         run.baked.report.warnings.push_back(run.cared.mesh->name + ": " + shortNumber(run.wrong->total()) +
-                                            " % of the points near the surface are on the "
-                                            "wrong side; " +
-                                            cureOf(run));
+                                            " % wrong near the surface; " + cureOf(run));
     }
     return {};
 }

@@ -1,0 +1,243 @@
+#!/usr/bin/env python3
+"""How wrong `relief bake` is on meshes as artists make them: what scripts/accuracy.sh --corpus runs.
+
+corpus.py BIN FOLDER THIRTEEN... -- [OPTION]...
+
+BIN has relief, relief-accuracy and relief-sim; FOLDER is for temporary files, and has CGAL's meshes in data/meshes.
+One model after another is baked as `relief bake --budget 1MB` bakes it, and what was written is measured against a
+distance volume of as many bytes, with the same truth.
+"""
+import argparse
+import csv
+import json
+import math
+import os
+import resource
+import statistics
+import subprocess
+import sys
+import time
+import zipfile
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+FURNITURE = '/usr/share/sweethome3d/furniture'
+ASSIMP = '/usr/share/assimp/models'
+COLUMNS = ['model', 'triangles', 'kind', 'volume', 'ours', 'ratio', 'maps', 'bake_s', 'step', 'cpu_s']
+LEAST = 0.01  # percent: what a share of no wrong points counts as in a ratio
+PAPER = ['--map', 'front-back:dir=-z,size=512,depth=half,decode=projected', '--map', 'cube:size=512,decode=projected']
+PARTICLES, STEPS, REPEATS = 65536, 12, 3
+
+
+def listed():
+    """The names of corpus.txt by section."""
+    sections = {}
+    for line in open(os.path.join(HERE, 'corpus.txt'), encoding='ascii'):
+        line = line.split('#')[0].strip()
+        if line.startswith('['):
+            names = sections[line.strip('[]')] = []
+        elif line:
+            names.append(line)
+    return sections
+
+
+def unpack(folder, thirteen):
+    """All models: a path for each name."""
+    paths = {os.path.basename(path).rsplit('.', 1)[0]: path for path in thirteen}
+    shapes = os.path.join(HERE, '../samples/meshes.py')
+    for name in 'torus', 'basin', 'terrain':
+        paths['samples/' + name] = f'{folder}/{name}.obj'
+        subprocess.run([sys.executable, shapes, name, f'{folder}/{name}.obj'], check=True)
+    for archive in 'KatorLegaz', 'Scopia':
+        with zipfile.ZipFile(f'{FURNITURE}/{archive}.sh3f') as file:
+            for entry in sorted(file.namelist()):
+                if entry.endswith(('.obj', '.mtl')):
+                    path = file.extract(entry, folder + '/furniture')
+                    if entry.endswith('.obj'):
+                        paths[os.path.dirname(entry)] = path
+    for names in listed().values():
+        for name in names:
+            package, _, rest = name.partition('/')
+            if package == 'cgal':
+                paths[name] = f'{folder}/data/meshes/{rest}'
+            elif package == 'assimp':
+                paths[name] = f'{ASSIMP}/{rest}'
+    return paths
+
+
+class Unmeasured(Exception):
+    """What a program said instead of measuring; `broken` if it had no right to."""
+
+    def __init__(self, what, broken):
+        super().__init__(what)
+        self.broken = broken
+
+
+def checked(command, refusals=()):
+    """Standard output. `refusals` are the exit codes of one who was given a mesh that cannot be read."""
+    try:
+        result = subprocess.run(command, capture_output=True, text=True, errors='replace', timeout=1800)
+    except subprocess.TimeoutExpired as error:
+        raise Unmeasured(f'{os.path.basename(command[0])} takes more than {error.timeout} s', True) from None
+    if result.returncode != 0:
+        said = result.stderr.strip().splitlines() or [f'exit code {result.returncode}']
+        raise Unmeasured(said[-1], result.returncode not in refusals)
+    return result.stdout
+
+
+def processor_seconds():
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def step_ratio(bin, folder, bounds):
+    """A step against planned maps over one against the paper's two: the least of some runs each, in turns."""
+    low, high = bounds['min'], bounds['max']
+    side = max(h - l for l, h in zip(low, high))
+    for name in 'ours', 'paper':
+        with open(f'{folder}/{name}.toml', 'w', encoding='ascii') as scene:
+            scene.write(f'[collider]\nfile = "{name}.relief"\n[particles]\ncapacity = {PARTICLES}\n[emitter]\n'
+                        f'burst = {PARTICLES}\nrate = 0.0\nbox_min = {low}\nbox_max = {high}\n[forces]\ndrag = 2.5\n'
+                        f'wind = [{0.125 * side}, 0.0, {0.05 * side}]\n')
+    least = {'ours': math.inf, 'paper': math.inf}
+    for _ in range(REPEATS):
+        for name in least:
+            text = checked([f'{bin}/relief-sim', f'{folder}/{name}.toml', '--steps', str(STEPS), '--json', '-q'])
+            least[name] = min(least[name], json.loads(text)['ms_per_step_median'])
+    return least['ours'] / least['paper']
+
+
+def kind_of(shape):
+    """The kind of the part that is furthest from a solid."""
+    for kind, name in ('terrains', 'terrain'), ('sheets', 'sheets'), ('solids_with_holes', 'holes'):
+        if shape[kind]:
+            return name
+    return 'solid'
+
+
+def measure(name, path, bin, folder, options):
+    """One row."""
+    ours = f'{folder}/ours.relief'
+    start, cpu_start = time.perf_counter(), processor_seconds()
+    baked = json.loads(checked([f'{bin}/relief', 'bake', path, '-o', ours, '--budget', '1MB', '--threads', '2',
+                                '--json', '-q'], refusals=(3, 5, 6)))
+    seconds, cpu = time.perf_counter() - start, processor_seconds() - cpu_start
+    command = [f'{bin}/relief-accuracy', path, '--budget', '1MB', '--methods', 'volume,ours', '--collider', ours,
+               '--samples', str(options.samples), '--json']
+    if options.cache:
+        command += ['--cache', options.cache]
+    report = json.loads(checked(command))
+    mesh = report['meshes'][0]
+    wrong = {entry['method']: entry['accuracy']['near']['wrong_percent'] for entry in report['results']}
+    row = {'model': name, 'triangles': mesh['triangles'], 'kind': kind_of(mesh['shape']),
+           'volume': f"{wrong['volume']:.4g}", 'ours': f"{wrong['ours']:.4g}",
+           'ratio': f"{max(wrong['ours'], LEAST) / max(wrong['volume'], LEAST):.3f}",
+           'maps': len(baked['maps']), 'bake_s': f'{seconds:.2f}', 'step': '', 'cpu_s': f'{cpu:.2f}',
+           'warned': any('wrong near the surface' in warning for warning in baked['warnings'])}
+    if options.steps:
+        checked([f'{bin}/relief', 'bake', path, '-o', f'{folder}/paper.relief', '-q', *PAPER])
+        row['step'] = f"{step_ratio(bin, folder, baked['bounds']):.2f}"
+    return row
+
+
+def percent(part, whole):
+    return f'{100 * part / whole:.0f} %'
+
+
+def summary(rows):
+    """What the models come to, line by line, with what is aimed at."""
+    lines = []
+    for kind in ['all', *sorted({row['kind'] for row in rows})]:
+        of = [row for row in rows if kind in ('all', row['kind'])]
+        mean = math.exp(statistics.fmean(math.log(float(row['ratio'])) for row in of))
+        above = sum(float(row['ratio']) > 1 for row in of)
+        bad = [row for row in of if float(row['ours']) > 10]
+        silent = sum(not row['warned'] for row in bad)
+        lines.append(f'{kind}, {len(of)}: ours/volume {mean:.3f} in the geometric mean (at most 0.333), above the '
+                     f'volume {percent(above, len(of))} (at most 5 %), above 10 % wrong {percent(len(bad), len(of))}, '
+                     f'without a warning {percent(silent, len(of))} (none)')
+    small = [row for row in rows if row['triangles'] <= 100_000]
+    for column, what, of, aims in (('bake_s', 'seconds of a bake, up to 100,000 triangles', small, (1, 3)),
+                                   ('step', "step over one with the paper's maps", rows, (1.5, 3))):
+        known = [row for row in of if row[column]]
+        if known:
+            worst = max(known, key=lambda row: float(row[column]))
+            median = statistics.median(float(row[column]) for row in known)
+            lines.append(f'{what}: median {median:.2f} (at most {aims[0]}), '
+                         f'worst {worst[column]} (at most {aims[1]}; {worst["model"]})')
+    return lines
+
+
+def page(rows, lines, command):
+    """bake/measure/accuracy_corpus.md"""
+    headings = ['model', 'triangles', 'kind', 'volume %', 'ours %', 'ours/volume', 'maps', 'bake s', 'step', 'CPU s']
+    table = [headings, ['---' if h in ('model', 'kind') else '---:' for h in headings],
+             *[[str(row[column]) or '-' for column in COLUMNS] for row in rows]]
+    return f"""# Meshes as artists make them
+
+Written by `{command}`. At 1 MB, for each model: the share of the points near the
+surface on whose side a distance volume and what `relief bake` writes are wrong; the maps; the seconds of the whole
+`relief bake` on two threads; the time of a particle step on llvmpipe over one with the paper's two maps; and the
+processor's seconds of the bake, both threads together. Other work on the machine makes single times rough.
+In ratios less than {LEAST} % counts as {LEAST} %.
+
+""" + ''.join(f'- {line}\n' for line in lines) + '\n' + ''.join(f'| {" | ".join(row)} |\n' for row in table)
+
+
+def chosen(paths, options):
+    """The names to measure, in the order of `paths` or of the list."""
+    if not options.only:
+        return list(paths) if options.all else listed()['sixty']
+    names = []
+    for wanted in options.only.split(','):
+        found = [name for name in paths
+                 if wanted in (name, os.path.basename(name), os.path.splitext(os.path.basename(name))[0])]
+        if not found:
+            sys.exit(f"accuracy.sh: --only has '{wanted}', but no model is called so; see scripts/corpus.txt and --all")
+        names += found
+    return names
+
+
+def arguments(words):
+    parser = argparse.ArgumentParser(prog='accuracy.sh --corpus', description='The sixty of corpus.txt at 1 MB')
+    parser.add_argument('--all', action='store_true', help='every model: hours')
+    parser.add_argument('--only', metavar='A,B', help='these models, by name or by what follows its last slash')
+    parser.add_argument('--samples', type=int, default=20000, metavar='N', help='points of each kind; default 20000')
+    parser.add_argument('--steps', action='store_true', help="also time steps against the paper's maps: slow")
+    parser.add_argument('--csv', metavar='FILE', help='write rows to this file, as they come')
+    parser.add_argument('--cache', metavar='FILE', help="keep the volumes' figures in this file, for the next run")
+    parser.add_argument('--markdown', action='store_true', help='write bake/measure/accuracy_corpus.md')
+    options = parser.parse_args(words)
+    if options.markdown and (options.all or options.only):
+        parser.error('--markdown is for the sixty; leave out --all and --only')
+    return options
+
+
+def main():
+    split = sys.argv.index('--')
+    bin, folder, *thirteen = sys.argv[1:split]
+    words = sys.argv[split + 1:]
+    options = arguments(words)
+    paths = unpack(folder, thirteen)
+    names = chosen(paths, options)
+    rows, unmeasured = [], []
+    with open(options.csv or 1, 'w', encoding='utf-8', newline='', closefd=bool(options.csv)) as file:
+        writer = csv.DictWriter(file, COLUMNS, extrasaction='ignore')
+        writer.writeheader()
+        for name in names:
+            try:
+                rows.append(measure(name, paths[name], bin, folder, options))
+            except Unmeasured as error:
+                unmeasured.append((name, error))
+            else:
+                writer.writerow(rows[-1])
+            file.flush()
+    lines = summary(rows) if rows else []
+    print(*lines, *(f'not measured: {name}: {error}' for name, error in unmeasured), sep='\n')
+    if options.markdown:
+        with open(os.path.join(HERE, '../bake/measure/accuracy_corpus.md'), 'w', encoding='utf-8') as file:
+            file.write(page(rows, lines, ' '.join(['scripts/accuracy.sh --corpus', *words])))
+    # A mesh that is refused is no failure; of the sixty none is.
+    sys.exit(any(error.broken for _, error in unmeasured) or (bool(unmeasured) and not options.all))
+
+
+main()
