@@ -141,8 +141,7 @@ class Copy {
         const std::size_t next = 1 - current_;
         glBindFramebuffer(GL_FRAMEBUFFER, target_[next].name());
         for (std::size_t i = 0; i < 2; ++i) {
-            glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(i));
-            glBindTexture(GL_TEXTURE_2D, state_[current_][i].name());
+            relief::useTexture(static_cast<int>(i), state_[current_][i]);
         }
         glUseProgram(program_.name());
         glViewport(0, 0, kWidth, rows_);

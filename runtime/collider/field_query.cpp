@@ -62,8 +62,7 @@ Result<std::vector<FieldSample>> FieldQuery::evaluate(std::span<const glm::vec3>
         glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer.name());
         glViewport(0, 0, kWidth, height);
         glUseProgram(program_.name());
-        glActiveTexture(GL_TEXTURE0);
-        glBindTexture(GL_TEXTURE_2D, input.name());
+        useTexture(0, input);
         textures_->bind(kBinding);
         glBindVertexArray(no_attributes_.name());
         glDrawArrays(GL_TRIANGLES, 0, 3);

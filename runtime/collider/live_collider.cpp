@@ -210,10 +210,8 @@ void LiveCollider::copyTexels(const DepthMapTarget& target, const DepthMap& map,
 void LiveCollider::copyMotion(const DepthMapTarget& target, const DepthMap& map, const LiveSlot& slot) const {
     glBindFramebuffer(GL_FRAMEBUFFER, motion_target_.name());
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, slot.motion->name(), 0);
-    glActiveTexture(GL_TEXTURE0 + kMotionXyUnit);
-    glBindTexture(GL_TEXTURE_2D, target.motion(0));
-    glActiveTexture(GL_TEXTURE0 + kMotionZUnit);
-    glBindTexture(GL_TEXTURE_2D, target.motion(1));
+    useTexture(kMotionXyUnit, target.motion(0));
+    useTexture(kMotionZUnit, target.motion(1));
     glUseProgram(motion_program_.name());
     glBindVertexArray(no_attributes_.name());
     const auto width = static_cast<GLsizei>(map.width);

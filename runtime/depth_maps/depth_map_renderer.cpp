@@ -133,11 +133,6 @@ std::string definesOf(const DepthMapFrame& frame, bool motion) {
     return defines;
 }
 
-void useTexture(GLint unit, GLuint texture) {
-    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-    glBindTexture(GL_TEXTURE_2D, texture);
-}
-
 void setVector(GLint location, const glm::dvec3& v) {
     glUniform3f(location, static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
 }

@@ -112,11 +112,6 @@ Result<void> checkSize(std::size_t vertices, std::size_t triangles) {
     return {};
 }
 
-void useTexture(GLenum unit, GLuint texture) {
-    glActiveTexture(GL_TEXTURE0 + unit);
-    glBindTexture(GL_TEXTURE_2D, texture);
-}
-
 }  // namespace
 
 Result<GpuMesh> GpuMesh::create(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
@@ -199,8 +194,7 @@ void GpuMesh::upload(const void* data) {
     const std::uint32_t width = 1U << vertex_shift_;
     const std::uint32_t rows = vertex_count_ >> vertex_shift_;
     const std::uint32_t rest = vertex_count_ - rows * width;
-    glActiveTexture(GL_TEXTURE0);
-    glBindTexture(GL_TEXTURE_2D, positions_[current_].name());
+    useTexture(0, positions_[current_]);
     if (rows > 0) {
         glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, static_cast<GLsizei>(width), static_cast<GLsizei>(rows),
                         GL_RGB, GL_FLOAT, data);

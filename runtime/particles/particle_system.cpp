@@ -21,11 +21,6 @@ constexpr float kNoGround = -1e30F;
 
 constexpr std::uint32_t kIdMask = (1U << 24) - 1;  // what a float counts exactly
 
-void useTexture(int unit, const GlTexture& texture) {
-    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-    glBindTexture(GL_TEXTURE_2D, texture.name());
-}
-
 GlTexture makeStateTexture(std::uint32_t width, std::uint32_t height) {
     return makeTexture2D(GL_RGBA32F, static_cast<GLsizei>(width), static_cast<GLsizei>(height), GL_RGBA,
                          GL_FLOAT);

@@ -23,11 +23,6 @@ std::uint32_t reduced(std::uint32_t side) {
     return (side + kReducedSide - 1) / kReducedSide;
 }
 
-void useTexture(int unit, const GlTexture& texture) {
-    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-    glBindTexture(GL_TEXTURE_2D, texture.name());
-}
-
 }  // namespace
 
 Result<Statistics> Statistics::create(std::uint32_t capacity) {

@@ -120,10 +120,8 @@ Result<void> ColliderRenderer::draw(const Camera& camera, const ColliderStyle& s
     glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
     glViewport(0, 0, target.width, target.height);
     glUseProgram(copy_program_.name());
-    glActiveTexture(GL_TEXTURE0 + kColorUnit);
-    glBindTexture(GL_TEXTURE_2D, color_.name());
-    glActiveTexture(GL_TEXTURE0 + kDepthUnit);
-    glBindTexture(GL_TEXTURE_2D, depth_.name());
+    useTexture(kColorUnit, color_);
+    useTexture(kDepthUnit, depth_);
     // Depth is written only while its test is on.
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_ALWAYS);
@@ -159,14 +157,11 @@ Result<void> ColliderRenderer::trace(const Camera& camera, const ColliderStyle& 
     GlTexture coarse;
     if (mesh_ != nullptr) {
         of_mesh = RELIEF_TRY(mesh_->view(camera, width, height));
-        glActiveTexture(GL_TEXTURE0 + kMeshNormalUnit);
-        glBindTexture(GL_TEXTURE_2D, of_mesh.normal.name());
-        glActiveTexture(GL_TEXTURE0 + kMeshDepthUnit);
-        glBindTexture(GL_TEXTURE_2D, of_mesh.depth.name());
+        useTexture(kMeshNormalUnit, of_mesh.normal);
+        useTexture(kMeshDepthUnit, of_mesh.depth);
     } else {
         RELIEF_TRY(traceCoarse(width, height, coarse));
-        glActiveTexture(GL_TEXTURE0 + kCoarseUnit);
-        glBindTexture(GL_TEXTURE_2D, coarse.name());
+        useTexture(kCoarseUnit, coarse);
     }
 
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());

@@ -14,11 +14,6 @@ namespace {
 constexpr int kOrderUnit = 0;
 constexpr int kPositionUnit = 1;
 
-void useTexture(int unit, const GlTexture& texture) {
-    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-    glBindTexture(GL_TEXTURE_2D, texture.name());
-}
-
 std::uint32_t regionFor(std::uint32_t extent) {
     return extent == 0 ? 0 : std::bit_ceil(extent);
 }

@@ -72,8 +72,7 @@ std::vector<std::uint8_t> Frame::read() const {
     glBindFramebuffer(GL_FRAMEBUFFER, small_.name());
     glViewport(0, 0, width, height);
     glUseProgram(program_.name());
-    glActiveTexture(GL_TEXTURE0);
-    glBindTexture(GL_TEXTURE_2D, color_.name());
+    useTexture(0, color_);
     glBindVertexArray(no_attributes_.name());
     glDrawArrays(GL_TRIANGLES, 0, 3);
 

@@ -58,12 +58,9 @@ Result<void> ParticleLight::update(const ParticleSystem& particles, const GlText
     glUniform1i(uniformLocation(program_, "u_extent"), extent);
     glUniform1f(uniformLocation(program_, "u_now"), particles.clock());
     collider_.textures->bind(kColliderBinding);
-    glActiveTexture(GL_TEXTURE0 + kPositionUnit);
-    glBindTexture(GL_TEXTURE_2D, particles.positions().name());
-    glActiveTexture(GL_TEXTURE0 + kBirthUnit);
-    glBindTexture(GL_TEXTURE_2D, particles.births().name());
-    glActiveTexture(GL_TEXTURE0 + kLooksUnit);
-    glBindTexture(GL_TEXTURE_2D, looks.name());
+    useTexture(kPositionUnit, particles.positions());
+    useTexture(kBirthUnit, particles.births());
+    useTexture(kLooksUnit, looks);
     glBindFramebuffer(GL_FRAMEBUFFER, target_.name());
     glViewport(0, 0, width, rows);
     glBindVertexArray(no_attributes_.name());

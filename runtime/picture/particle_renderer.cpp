@@ -133,8 +133,7 @@ Result<void> ParticleRenderer::draw(const ParticleSystem& particles, const Camer
         order.texture != nullptr ? order.texture : &no_order_,
         behind != nullptr ? behind : &nothing_};
     for (std::size_t unit = 0; unit < textures.size(); ++unit) {
-        glActiveTexture(static_cast<GLenum>(GL_TEXTURE0 + unit));
-        glBindTexture(GL_TEXTURE_2D, textures[unit]->name());
+        useTexture(static_cast<int>(unit), *textures[unit]);
     }
     glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
     glViewport(0, 0, target.width, target.height);
