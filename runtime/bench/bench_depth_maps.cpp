@@ -113,9 +113,8 @@ class BareMesh {
     static Result<BareMesh> create(const PictureMesh& mesh) {
         BareMesh bare;
         for (int words = 0; words < 2; ++words) {
-            auto program = RELIEF_TRY(makeProgram("bare_draw.vert", "bare_draw.frag",
-                                                  words == 0 ? "" : "#define RELIEF_WORDS 1\n"));
-            bare.program_[words] = std::move(program);
+            bare.program_[words] = RELIEF_TRY(makeProgram("bare_draw.vert", "bare_draw.frag",
+                                                          words == 0 ? "" : "#define RELIEF_WORDS 1\n"));
         }
         bare.corners_ = static_cast<GLsizei>(mesh.triangles.size());
         bare.positions_ = makeBuffer();

@@ -126,9 +126,8 @@ class Copy {
                 texture =
                     relief::makeTexture2D(GL_RGBA32F, kWidth, copy.rows_, GL_RGBA, GL_FLOAT, texels.data());
             }
-            auto target = RELIEF_TRY(relief::makeFramebuffer(
+            copy.target_[i] = RELIEF_TRY(relief::makeFramebuffer(
                 std::array<GLuint, 2>{copy.state_[i][0].name(), copy.state_[i][1].name()}));
-            copy.target_[i] = std::move(target);
         }
         copy.program_ = RELIEF_TRY(relief::makeProgram("quad.vert", "copy_state.frag"));
         copy.array_ = relief::makeVertexArray();

@@ -220,10 +220,9 @@ Result<const DepthMapRenderer::Program*> DepthMapRenderer::programFor(const Dept
     if (found != programs_.end()) {
         return &found->second;
     }
-    auto made = RELIEF_TRY(
-        makeProgram(frame.exact ? "depth_map_exact.vert" : "depth_map.vert", "depth_map.frag", defines));
     Program program;
-    program.program = std::move(made);
+    program.program = RELIEF_TRY(
+        makeProgram(frame.exact ? "depth_map_exact.vert" : "depth_map.vert", "depth_map.frag", defines));
     const auto at = [&](const char* name) { return uniformLocation(program.program, name); };
     program.shift = at("u_shift");
     program.center = at("u_center");

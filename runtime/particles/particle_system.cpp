@@ -78,13 +78,8 @@ Result<void> ParticleSystem::createTextures() {
         // Verlet reads the two positions before, and a birth writes both.
         const GlTexture& second = verlet() ? position_[(i + 2) % 3] : velocity_[i];
         const std::array<GLuint, 3> textures{position_[i].name(), second.name(), birth_.name()};
-        auto step_target = makeFramebuffer(std::span(textures).first(verlet() ? 1 : 2));
-        auto birth_target = makeFramebuffer(textures);
-        if (!step_target || !birth_target) {
-            return forward(!step_target ? step_target : birth_target);
-        }
-        step_target_[i] = std::move(*step_target);
-        birth_target_[i] = std::move(*birth_target);
+        step_target_[i] = RELIEF_TRY(makeFramebuffer(std::span(textures).first(verlet() ? 1 : 2)));
+        birth_target_[i] = RELIEF_TRY(makeFramebuffer(textures));
     }
     for (int i = 0; i < buffers; ++i) {
         glBindFramebuffer(GL_FRAMEBUFFER, birth_target_[i].name());
@@ -110,17 +105,13 @@ Result<void> ParticleSystem::createTextures() {
 }
 
 Result<void> ParticleSystem::createPrograms() {
-    auto birth = makeProgram("birth.vert", "birth.frag", verlet() ? "#define RELIEF_VERLET\n" : "");
-    auto rebase = makeProgram("quad.vert", "rebase.frag");
-    if (!birth || !rebase) {
-        return forward(!birth ? birth : rebase);
-    }
-    birth_program_ = std::move(*birth);
+    birth_program_ =
+        RELIEF_TRY(makeProgram("birth.vert", "birth.frag", verlet() ? "#define RELIEF_VERLET\n" : ""));
+    rebase_program_ = RELIEF_TRY(makeProgram("quad.vert", "rebase.frag"));
     glUseProgram(birth_program_.name());
     glUniform2i(uniformLocation(birth_program_, "u_size"), static_cast<GLint>(width_),
                 static_cast<GLint>(height_));
     birth_dt_ = glGetUniformLocation(birth_program_.name(), "u_dt_before");
-    rebase_program_ = std::move(*rebase);
     glUseProgram(rebase_program_.name());
     glUniform1i(uniformLocation(rebase_program_, "u_birth"), StepPass::kBirthUnit);
     rebase_shift_ = uniformLocation(rebase_program_, "u_shift");

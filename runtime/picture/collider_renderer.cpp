@@ -74,20 +74,15 @@ void drawInBands(GLsizei width, GLsizei height) {
 
 Result<ColliderRenderer> ColliderRenderer::create(const ColliderView& view, const ColliderMesh* mesh) {
     const PassState state;
-    const std::string mesh_define = mesh != nullptr ? "#define RELIEF_MESH 1\n" : "";
-    auto trace = makeProgram("quad.vert", "collider_view.frag", mesh_define + view.textures->defines());
-    auto coarse = makeProgram("quad.vert", "collider_view.frag",
-                              "#define RELIEF_COARSE 1\n" + view.textures->defines());
-    auto copy = makeProgram("quad.vert", "copy_view.frag");
-    if (!trace || !coarse || !copy) {
-        return forward(!trace ? trace : (!coarse ? coarse : copy));
-    }
     ColliderRenderer renderer;
     renderer.view_ = view;
     renderer.mesh_ = mesh;
-    renderer.trace_program_ = std::move(*trace);
-    renderer.coarse_program_ = std::move(*coarse);
-    renderer.copy_program_ = std::move(*copy);
+    const std::string mesh_define = mesh != nullptr ? "#define RELIEF_MESH 1\n" : "";
+    renderer.trace_program_ =
+        RELIEF_TRY(makeProgram("quad.vert", "collider_view.frag", mesh_define + view.textures->defines()));
+    renderer.coarse_program_ = RELIEF_TRY(makeProgram(
+        "quad.vert", "collider_view.frag", "#define RELIEF_COARSE 1\n" + view.textures->defines()));
+    renderer.copy_program_ = RELIEF_TRY(makeProgram("quad.vert", "copy_view.frag"));
     renderer.no_attributes_ = makeVertexArray();
     for (const GlProgram* program : {&renderer.trace_program_, &renderer.coarse_program_}) {
         view.textures->attach(*program, kColliderBinding);

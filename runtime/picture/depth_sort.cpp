@@ -51,8 +51,7 @@ Result<void> DepthSorter::createTextures() {
         RELIEF_TRY(checkAllocated("sorting " + std::to_string(capacity_) + " particles",
                                   "choose a smaller capacity"));
         const std::array<GLuint, 1> textures{order_[i].name()};
-        auto target = RELIEF_TRY(makeFramebuffer(textures));
-        target_[i] = std::move(target);
+        target_[i] = RELIEF_TRY(makeFramebuffer(textures));
     }
     no_attributes_ = makeVertexArray();
     return {};
@@ -60,12 +59,8 @@ Result<void> DepthSorter::createTextures() {
 
 Result<void> DepthSorter::createPrograms() {
     const std::string defines = "#define RELIEF_ORDER_WIDTH " + std::to_string(kWidth) + "\n";
-    auto keys = makeProgram("quad.vert", "sort_keys.frag", defines);
-    auto pass = makeProgram("quad.vert", "sort_pass.frag", defines);
-    if (!keys || !pass) {
-        return forward(!keys ? keys : pass);
-    }
-    keys_.program = std::move(*keys);
+    keys_.program = RELIEF_TRY(makeProgram("quad.vert", "sort_keys.frag", defines));
+    pass_.program = RELIEF_TRY(makeProgram("quad.vert", "sort_pass.frag", defines));
     keys_.kept = uniformLocation(keys_.program, "u_kept");
     keys_.width = uniformLocation(keys_.program, "u_width");
     keys_.extent = uniformLocation(keys_.program, "u_extent");
@@ -74,7 +69,6 @@ Result<void> DepthSorter::createPrograms() {
     glUniform1i(uniformLocation(keys_.program, "u_order"), kOrderUnit);
     glUniform1i(uniformLocation(keys_.program, "u_position"), kPositionUnit);
 
-    pass_.program = std::move(*pass);
     pass_.block = uniformLocation(pass_.program, "u_block");
     pass_.stride = uniformLocation(pass_.program, "u_stride");
     glUseProgram(pass_.program.name());

@@ -21,10 +21,10 @@ constexpr LightRays kLightRays{.sun = 1, .sky = 2, .sun_steps = 16, .sky_steps =
 
 Result<ParticleLight> ParticleLight::create(const ColliderView& collider) {
     const PassState state;
-    auto program = RELIEF_TRY(makeProgram("quad.vert", "particle_light.frag", collider.textures->defines()));
     ParticleLight light;
     light.collider_ = collider;
-    light.program_ = std::move(program);
+    light.program_ =
+        RELIEF_TRY(makeProgram("quad.vert", "particle_light.frag", collider.textures->defines()));
     light.no_attributes_ = makeVertexArray();
     collider.textures->attach(light.program_, kColliderBinding);
     setLightUniforms(light.program_, collider, kLightRays);

@@ -39,13 +39,8 @@ Result<ParticleRenderer> ParticleRenderer::create(const std::optional<ColliderVi
         renderer.light_ = RELIEF_TRY(ParticleLight::create(*collider));
     }
     const std::string defines = collider ? "#define RELIEF_LIT 1\n" : "";
-    auto points = makeSpriteProgram(defines);
-    auto quads = makeSpriteProgram("#define RELIEF_QUADS 1\n" + defines);
-    if (!points || !quads) {
-        return forward(!points ? points : quads);
-    }
-    renderer.point_program_ = std::move(*points);
-    renderer.quad_program_ = std::move(*quads);
+    renderer.point_program_ = RELIEF_TRY(makeSpriteProgram(defines));
+    renderer.quad_program_ = RELIEF_TRY(makeSpriteProgram("#define RELIEF_QUADS 1\n" + defines));
     renderer.no_attributes_ = makeVertexArray();
     forgetGlErrors();
     const std::array<GLubyte, 4> zero{};

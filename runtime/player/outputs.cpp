@@ -68,9 +68,8 @@ Outputs::~Outputs() {
 Result<void> Outputs::open() {
     const Scene& scene = loaded_.scene;
     if (!options_.frames.empty() || !options_.video.empty()) {
-        auto picture = RELIEF_TRY(watched(options_.watchdog, "the shaders of pictures",
-                                          [&] { return ScenePicture::create(loaded_, textures_); }));
-        picture_.emplace(std::move(picture));
+        picture_ = RELIEF_TRY(watched(options_.watchdog, "the shaders of pictures",
+                                      [&] { return ScenePicture::create(loaded_, textures_); }));
     }
     if (!options_.video.empty()) {
         RELIEF_TRY(openVideo());
@@ -79,8 +78,7 @@ Result<void> Outputs::open() {
         timer_.emplace();
     }
     if (!options_.stats.empty()) {
-        auto log = RELIEF_TRY(StatisticsLog::create(options_.stats, scene.capacity, *timer_));
-        log_.emplace(std::move(log));
+        log_ = RELIEF_TRY(StatisticsLog::create(options_.stats, scene.capacity, *timer_));
     }
     if (!options_.frames.empty()) {
         RELIEF_TRY(prepareFolder(options_.frames, "--frames"));

@@ -71,9 +71,8 @@ Result<Simulation> Simulation::create(const LoadedScene& loaded, std::vector<Emi
                     quotedPath(scene.colliders.front().path) + ": " + textures.error().message);
     }
     made.textures_ = std::make_unique<ColliderTextures>(std::move(*textures));
-    auto live =
+    made.live_ =
         RELIEF_TRY(watched(watchdog, "the shaders of colliders", [&] { return LiveBodies::create(loaded); }));
-    made.live_ = std::move(live);
     RELIEF_TRY(watched(watchdog, "the colliders' first maps",
                        [&] { return made.live_.show(0.0, *made.textures_); }));
     auto particles = RELIEF_TRY(
