@@ -17,11 +17,6 @@ std::string eglErrorText() {
     return text;
 }
 
-std::string glText(GLenum what) {
-    const GLubyte* text = glGetString(what);
-    return text == nullptr ? std::string() : reinterpret_cast<const char*>(text);
-}
-
 /// Whether a context that tells of resets can be asked for, and by which name.
 std::vector<EGLint> resetAttributes(EGLDisplay display, bool es) {
     if (es) {

@@ -128,13 +128,8 @@ Result<void> ColliderRenderer::draw(const Camera& camera, const ColliderStyle& s
 
 Result<void> ColliderRenderer::trace(const Camera& camera, const ColliderStyle& style, GLsizei width,
                                      GLsizei height) {
-    GLint side_max = 0;
-    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side_max);
-    if (std::max(width, height) > side_max) {
-        return fail(ErrorCode::kLimit, "a picture of " + std::to_string(width) + "x" +
-                                           std::to_string(height) + " pixels is larger than this GL takes (" +
-                                           std::to_string(side_max) + " along a side)");
-    }
+    RELIEF_TRY(checkTextureSize(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height),
+                                "the collider's pictures", kSmallerPicture));
     forgetGlErrors();
     color_ = makeTexture2D(GL_RGBA16F, width, height, GL_RGBA, GL_HALF_FLOAT);
     depth_ = makeTexture2D(GL_DEPTH_COMPONENT32F, width, height, GL_DEPTH_COMPONENT, GL_FLOAT);

@@ -27,14 +27,8 @@ Result<DepthSorter> DepthSorter::create(std::uint32_t capacity) {
                                            std::to_string(kCapacityMax));
     }
     const std::uint32_t rows = std::max(regionFor(capacity) / kWidth, 1U);
-    GLint side_max = 0;
-    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side_max);
-    if (std::max(rows, kWidth) > static_cast<std::uint32_t>(side_max)) {
-        return fail(ErrorCode::kLimit, "sorting " + std::to_string(capacity) +
-                                           " particles needs a texture of " + std::to_string(kWidth) + " x " +
-                                           std::to_string(rows) + " texels; this GL takes at most " +
-                                           std::to_string(side_max) + " along a side");
-    }
+    RELIEF_TRY(checkTextureSize(kWidth, rows, "the ranks of " + std::to_string(capacity) + " particles",
+                                "choose a smaller capacity"));
     const PassState state;
     DepthSorter sorter(capacity);
     RELIEF_TRY(sorter.createTextures());
