@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "formats/base/descriptor.h"
+#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
 #include "formats/base/text.h"
@@ -153,12 +154,8 @@ Result<BakeCacheEntries> loadBakeCache(const fs::path& output_folder) {
         return fail(ErrorCode::kInvalidInput, quotedPath(path) + ": it is not a regular file");
     }
     const auto bytes = RELIEF_TRY(readFile(path, kCacheBytesMax));
-    Result<BakeCacheEntries> entries =
-        parseBakeCache({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-    if (!entries) {
-        return fail(entries.error().code, quotedPath(path) + ": " + entries.error().message);
-    }
-    return entries;
+    return inFront(quotedPath(path),
+                   parseBakeCache({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
 }
 
 Result<void> updateBakeCache(const fs::path& output_folder, const BakeCacheEntries& entries) {

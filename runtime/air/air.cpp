@@ -79,9 +79,7 @@ Result<void> checkAir(const AirSettings& air) {
         }
     }
     if (air.curl_noise) {
-        if (auto checked = checkNoise(*air.curl_noise); !checked) {
-            return checked;
-        }
+        RELIEF_TRY(checkNoise(*air.curl_noise));
     }
     return air.flow ? checkFlow(*air.flow) : Result<void>{};
 }

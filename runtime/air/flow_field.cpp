@@ -42,9 +42,7 @@ Result<void> checkFlowSize(const std::array<std::uint64_t, 3>& size) {
 
 Result<void> checkFlow(const FlowField& flow) {
     const std::array<std::uint64_t, 3> size{flow.size[0], flow.size[1], flow.size[2]};
-    if (auto sized = checkFlowSize(size); !sized) {
-        return sized;
-    }
+    RELIEF_TRY(checkFlowSize(size));
     if (flow.nodes.size() != size[0] * size[1] * size[2]) {
         return fail(ErrorCode::kInvalidInput, "a flow of " + sizeText(size) + " nodes comes with " +
                                                   std::to_string(flow.nodes.size()) + " velocities");

@@ -19,13 +19,10 @@ constexpr std::array<const char*, 7> kSamplers{"u_position", "u_birth", "u_looks
 constexpr float kPixelsMin = 1.5F;
 
 Result<GlProgram> makeSpriteProgram(const std::string& defines) {
-    auto program = makeProgram("point.vert", "point.frag", defines);
-    if (!program) {
-        return program;
-    }
-    glUseProgram(program->name());
+    auto program = RELIEF_TRY(makeProgram("point.vert", "point.frag", defines));
+    glUseProgram(program.name());
     for (std::size_t unit = 0; unit < kSamplers.size(); ++unit) {
-        glUniform1i(uniformLocation(*program, kSamplers[unit]), static_cast<GLint>(unit));
+        glUniform1i(uniformLocation(program, kSamplers[unit]), static_cast<GLint>(unit));
     }
     return program;
 }
