@@ -98,32 +98,25 @@ Result<BakeSettings> settingsOf(const BakeCommand& command) {
 }
 
 Result<void> preflight(const BakeCommand& command) {
-    std::vector<Result<void>> checks = {preflightFile(command.output),
-                                        preflightDistinct(command.mesh, command.output)};
+    if (!command.depfile.empty() && (command.depfile == "-" || command.output == "-")) {
+        return fail(ErrorCode::kUsage, "--depfile needs files, and not standard output; name them");
+    }
+    RELIEF_TRY(preflightFile(command.output));
+    RELIEF_TRY(preflightDistinct(command.mesh, command.output));
     if (!command.plan.empty()) {
-        checks.push_back(preflightDistinct(command.plan, command.output));
+        RELIEF_TRY(preflightDistinct(command.plan, command.output));
     }
     if (!command.plan_out.empty()) {
-        checks.push_back(preflightFile(command.plan_out));
-        checks.push_back(preflightDistinct(command.mesh, command.plan_out));
-        checks.push_back(preflightTwoOutputs(command.output, command.plan_out));
+        RELIEF_TRY(preflightFile(command.plan_out));
+        RELIEF_TRY(preflightDistinct(command.mesh, command.plan_out));
+        RELIEF_TRY(preflightTwoOutputs(command.output, command.plan_out));
     }
     if (!command.depfile.empty()) {
-        if (command.depfile == "-" || command.output == "-") {
-            return fail(ErrorCode::kUsage, "--depfile needs files, and not standard output; name them");
-        }
-        checks.push_back(preflightFile(command.depfile));
-        for (const std::string* other : {&command.mesh, &command.plan}) {
-            checks.push_back(preflightDistinct(*other, command.depfile));
-        }
-        for (const std::string* other : {&command.output, &command.plan_out}) {
-            checks.push_back(preflightTwoOutputs(*other, command.depfile));
-        }
-    }
-    for (const Result<void>& check : checks) {
-        if (!check) {
-            return check;
-        }
+        RELIEF_TRY(preflightFile(command.depfile));
+        RELIEF_TRY(preflightDistinct(command.mesh, command.depfile));
+        RELIEF_TRY(preflightDistinct(command.plan, command.depfile));
+        RELIEF_TRY(preflightTwoOutputs(command.output, command.depfile));
+        RELIEF_TRY(preflightTwoOutputs(command.plan_out, command.depfile));
     }
     return {};
 }

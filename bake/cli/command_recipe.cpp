@@ -145,19 +145,15 @@ Result<void> preflight(const RecipeOptionsOfBake& options, const RecipeCall& cal
         if (file == "-") {
             return fail(ErrorCode::kUsage, "--stamp and --depfile cannot be standard output; name files");
         }
-        std::vector<Result<void>> checks = {preflightFile(file), preflightDistinct(options.recipe, file),
-                                            preflightTwoOutputs(run.output_folder / kBakeCacheName, file)};
+        RELIEF_TRY(preflightFile(file));
+        RELIEF_TRY(preflightDistinct(options.recipe, file));
+        RELIEF_TRY(preflightTwoOutputs(run.output_folder / kBakeCacheName, file));
         for (const RecipeJob& job : jobs) {
-            checks.push_back(preflightDistinct(job.mesh_path, file));
-            checks.push_back(preflightTwoOutputs(job.output_path, file));
+            RELIEF_TRY(preflightDistinct(job.mesh_path, file));
+            RELIEF_TRY(preflightTwoOutputs(job.output_path, file));
         }
         for (const std::string& other : files) {
-            checks.push_back(preflightTwoOutputs(other, file));
-        }
-        for (const Result<void>& check : checks) {
-            if (!check) {
-                return check;
-            }
+            RELIEF_TRY(preflightTwoOutputs(other, file));
         }
         files.push_back(file);
     }

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr unsigned kJsonDepthMax = 256;
+constexpr int kJsonDepthMax = 256;
 constexpr std::uint64_t kNumberMax = std::uint64_t{1} << 53;
 
 // Required extensions that change no position, or that assimp decodes (Draco).
@@ -54,26 +54,13 @@ std::string_view jsonText(std::span<const std::byte> bytes) {
     return text.substr(sizeof(header), header[3]);
 }
 
-/// Brackets within brackets: parsers and the documents that they make recurse.
-void checkDepth(std::string_view text) {
-    unsigned depth = 0;
-    bool in_string = false;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const char c = text[i];
-        if (in_string) {
-            i += c == '\\' ? 1 : 0;
-            in_string = c != '"';
-        } else if (c == '"') {
-            in_string = true;
-        } else if (c == '[' || c == '{') {
-            if (++depth > kJsonDepthMax) {
-                throw Refusal{ErrorCode::kLimit,
-                              "its JSON is nested more than " + std::to_string(kJsonDepthMax) + " deep"};
-            }
-        } else if ((c == ']' || c == '}') && depth > 0) {
-            --depth;
-        }
+/// A parser's callback. Brackets within brackets: parsers and the documents that they make recurse.
+bool checkDepth(int depth, Json::parse_event_t /*event*/, Json& /*parsed*/) {
+    if (depth >= kJsonDepthMax) {
+        throw Refusal{ErrorCode::kLimit,
+                      "its JSON is nested more than " + std::to_string(kJsonDepthMax) + " deep"};
     }
+    return true;
 }
 
 class GltfCheck {
@@ -365,8 +352,7 @@ Result<std::vector<std::string>> checkGltf(std::span<const std::byte> bytes, con
     };
     try {
         const std::string_view text = jsonText(bytes);
-        checkDepth(text);
-        Json document = Json::parse(text.begin(), text.end(), nullptr, false);
+        Json document = Json::parse(text.begin(), text.end(), checkDepth, false);
         if (document.is_discarded()) {
             return refused(ErrorCode::kInvalidInput, "it is no valid JSON");
         }

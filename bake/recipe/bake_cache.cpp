@@ -37,44 +37,19 @@ class FolderLock {
     Descriptor folder_;
 };
 
-const std::string* textOf(const Json& object, const char* key) {
-    const auto found = object.find(key);
-    return found == object.end() ? nullptr : found->get_ptr<const std::string*>();
-}
-
-std::optional<BakeCacheEntry> entryOf(const Json& json) {
+/// Throws Json::exception where a member is missing or of another type.
+BakeCacheEntry entryOf(const Json& json) {
     BakeCacheEntry entry;
-    if (!json.is_object()) {
-        return std::nullopt;
+    entry.tool = json.at("tool").get<std::string>();
+    entry.output_hash = json.at("output_hash").get<std::string>();
+    entry.output_bytes = json.at("output_bytes").get_ref<const Json::number_unsigned_t&>();
+    entry.options = json.at("options").get<std::vector<std::string>>();
+    const Json& inputs = json.at("inputs");
+    static_cast<void>(inputs.at(0));  // an entry without inputs would hold for ever
+    for (const Json& input : inputs) {
+        entry.inputs.push_back({input.at("file").get<std::string>(), input.at("hash").get<std::string>()});
     }
-    const std::string* tool = textOf(json, "tool");
-    const std::string* hash = textOf(json, "output_hash");
-    const auto bytes = json.find("output_bytes");
-    const auto options = json.find("options");
-    const auto inputs = json.find("inputs");
-    if (tool == nullptr || hash == nullptr || bytes == json.end() || !bytes->is_number_unsigned() ||
-        options == json.end() || !options->is_array() || inputs == json.end() || !inputs->is_array()) {
-        return std::nullopt;
-    }
-    entry.tool = *tool;
-    entry.output_hash = *hash;
-    entry.output_bytes = bytes->get<std::uint64_t>();
-    for (const Json& option : *options) {
-        if (!option.is_string()) {
-            return std::nullopt;
-        }
-        entry.options.push_back(option.get<std::string>());
-    }
-    for (const Json& input : *inputs) {
-        const std::string* file = input.is_object() ? textOf(input, "file") : nullptr;
-        const std::string* content = input.is_object() ? textOf(input, "hash") : nullptr;
-        if (file == nullptr || content == nullptr) {
-            return std::nullopt;
-        }
-        entry.inputs.push_back({*file, *content});
-    }
-    // An entry without inputs would hold for ever.
-    return entry.inputs.empty() ? std::nullopt : std::optional(entry);
+    return entry;
 }
 
 }  // namespace
@@ -102,29 +77,19 @@ std::optional<std::string> hashOfFile(const fs::path& path) {
 }
 
 Result<BakeCacheEntries> parseBakeCache(std::string_view text) {
-    const auto invalid = [] {
-        return fail(ErrorCode::kInvalidInput, "its contents are not those of a cache");
-    };
-    const Json json = Json::parse(text, nullptr, false);
-    if (json.is_discarded() || !json.is_object()) {
-        return invalid();
-    }
-    const std::string* format = textOf(json, "format");
-    const auto version = json.find("version");
-    const auto outputs = json.find("outputs");
-    if (format == nullptr || *format != kFormat || version == json.end() || *version != kVersion ||
-        outputs == json.end() || !outputs->is_object()) {
-        return invalid();
-    }
-    BakeCacheEntries entries;
-    for (const auto& [name, value] : outputs->items()) {
-        std::optional<BakeCacheEntry> entry = entryOf(value);
-        if (!entry) {
-            return invalid();
+    try {
+        const Json json = Json::parse(text);
+        if (json.at("format") == kFormat && json.at("version") == kVersion) {
+            BakeCacheEntries entries;
+            for (const auto& [name, value] : json.at("outputs").get_ref<const Json::object_t&>()) {
+                entries.insert_or_assign(name, entryOf(value));
+            }
+            return entries;
         }
-        entries.insert_or_assign(name, std::move(*entry));
+    } catch (const Json::exception&) {
+        // what it lacks is of no use to anyone: a new one is written
     }
-    return entries;
+    return fail(ErrorCode::kInvalidInput, "its contents are not those of a cache");
 }
 
 std::string bakeCacheText(const BakeCacheEntries& entries) {
