@@ -38,7 +38,7 @@ class Inspector {
     }
 
     Inspection run() {
-        if (inspectHeader() && inspectMetadata()) {
+        if (inspectVersion() && inspectSizes() && inspectMetadata()) {
             inspectDescription();
             inspectMaps();
         }
@@ -57,8 +57,9 @@ class Inspector {
         result_.issues.push_back({code, map, offset, std::move(message)});
     }
 
-    /// \return whether the metadata can be looked at.
-    bool inspectHeader() {
+    /// The header's signature, checksum and version, and what version 1 fixes.
+    /// \return whether the rest of the header can be understood.
+    bool inspectVersion() {
         if (bytes_.size() < sizeof(header_)) {
             add(IssueCode::kTooShort, std::to_string(bytes_.size()) + " bytes, where the header alone has " +
                                           std::to_string(sizeof(header_)));
@@ -72,8 +73,8 @@ class Inspector {
         }
         result_.major = header_.major;
         result_.minor = header_.minor;
-        const bool checksum = header_.header_hash == header_.computeHash();
-        if (!checksum) {
+        header_intact_ = header_.header_hash == header_.computeHash();
+        if (!header_intact_) {
             add(IssueCode::kHeaderChecksum, "the checksum of the header is wrong", 56);
         }
         if (header_.major != kContainerMajor) {
@@ -90,6 +91,12 @@ class Inspector {
             header_.metadata_offset = expected.metadata_offset;
         }
         result_.header = result_.damaged() ? PartState::kDamaged : PartState::kSound;
+        return true;
+    }
+
+    /// What the header says of the sizes of the file and of the metadata.
+    /// \return whether the metadata can be looked at.
+    bool inspectSizes() {
         if (header_.file_size > bytes_.size()) {
             add(IssueCode::kTruncated,
                 "truncated: " + std::to_string(bytes_.size()) + " of " + std::to_string(header_.file_size) +
@@ -99,7 +106,7 @@ class Inspector {
             add(IssueCode::kTrailingBytes,
                 std::to_string(bytes_.size() - header_.file_size) + " bytes more than the header says", 24);
         }
-        if (checksum && header_.minor > kContainerMinor) {
+        if (header_intact_ && header_.minor > kContainerMinor) {
             add(IssueCode::kLaterMinor,
                 "container version " + std::to_string(header_.major) + "." + std::to_string(header_.minor) +
                     ", this program knows " + std::to_string(kContainerMajor) + "." +
@@ -380,6 +387,7 @@ class Inspector {
     ContainerLimits limits_;
     ContainerHeader header_;
     ParsedMetadata parsed_;
+    bool header_intact_ = false;
     bool metadata_intact_ = false;
     bool bounds_valid_ = false;
     std::vector<IntactMap> intact_;

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
+#include "formats/base/finite.h"
 #include "formats/base/text.h"
 
 namespace relief {
@@ -21,10 +22,6 @@ std::string number(double value) {
     char text[32];
     std::snprintf(text, sizeof(text), "%.9g", value);
     return text;
-}
-
-bool isFinite(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
 std::string words(const glm::vec3& v) {

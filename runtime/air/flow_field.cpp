@@ -5,15 +5,13 @@
 #include <glm/common.hpp>
 #include <string>
 
+#include "formats/base/finite.h"
+
 namespace relief {
 namespace {
 
 std::string sizeText(const std::array<std::uint64_t, 3>& size) {
     return std::to_string(size[0]) + "x" + std::to_string(size[1]) + "x" + std::to_string(size[2]);
-}
-
-bool finite(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
 }  // namespace
@@ -47,7 +45,7 @@ Result<void> checkFlow(const FlowField& flow) {
         return fail(ErrorCode::kInvalidInput, "a flow of " + sizeText(size) + " nodes comes with " +
                                                   std::to_string(flow.nodes.size()) + " velocities");
     }
-    if (!finite(flow.box_min) || !finite(flow.box_max) || !finite(flow.box_max - flow.box_min) ||
+    if (!isFinite(flow.box_min) || !isFinite(flow.box_max) || !isFinite(flow.box_max - flow.box_min) ||
         !std::isfinite(flow.gain)) {
         return fail(ErrorCode::kInvalidInput, "a flow's box and gain must be finite");
     }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/base/finite.h"
 #include "runtime/gl/pass_state.h"
 
 namespace relief {
@@ -31,7 +32,7 @@ GLsizei rowsFor(std::uint32_t count, int shift) {
 Result<void> checkFinite(std::span<const glm::vec3> positions) {
     for (std::size_t i = 0; i < positions.size(); ++i) {
         const glm::vec3& p = positions[i];
-        if (!(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z))) {
+        if (!isFinite(p)) {
             return fail(ErrorCode::kInvalidInput, "position " + std::to_string(i) +
                                                       " of a mesh is not finite; repair the mesh or the "
                                                       "program that moves it");

@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "formats/base/finite.h"
+
 namespace relief {
 namespace {
 
@@ -16,10 +18,6 @@ constexpr double kEarly = 1e-12;
 
 std::uint64_t wholeCount(double count) {
     return count > 0.0 ? static_cast<std::uint64_t>(std::min(count, kCountMax)) : 0;  // 0 for NaN
-}
-
-bool isFinite(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
 const char* problemOfAim(const EmitterSettings& s) {

@@ -6,6 +6,8 @@
 #include <span>
 #include <string>
 
+#include "formats/base/finite.h"
+
 namespace relief {
 namespace {
 
@@ -91,7 +93,7 @@ Result<void> checkMesh(const PictureMesh& mesh) {
         }
     }
     for (const glm::vec3& p : mesh.positions) {
-        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+        if (!isFinite(p)) {
             return fail(ErrorCode::kInvalidInput, "a vertex of the mesh is not finite");
         }
     }
