@@ -27,12 +27,7 @@ constexpr int kNamesTried = 1000;       // of temporary files
 constexpr std::size_t kWordsMax = 400;  // bytes of ffmpeg's errors that a message takes
 
 bool knownEnding(const fs::path& path) {
-    for (const char* ending : kEndings) {
-        if (path.extension() == ending) {
-            return true;
-        }
-    }
-    return false;
+    return std::ranges::find(kEndings, path.extension()) != kEndings.end();
 }
 
 /// Writes all of it, and never raises SIGPIPE: a program that embeds this has its own idea of that signal.

@@ -5,8 +5,6 @@
 namespace relief {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 // The extension of GL ES has entry points of its own; the numbers of the enumerations are the same.
 GLint queryProperty(bool gles, GLenum what) {
     GLint value = 0;
@@ -49,13 +47,13 @@ void GpuTimer::begin(Stage stage) {
             (gles_ ? glBeginQueryEXT : glBeginQuery)(GL_TIME_ELAPSED, queries_[next]);
         }
     }
-    begun_ = Clock::now();
+    stage_watch_ = Stopwatch();
 }
 
 void GpuTimer::end() {
     StageTime& time = times_[static_cast<std::size_t>(stage_)];
     ++time.runs;
-    time.cpu_ms += std::chrono::duration<double, std::milli>(Clock::now() - begun_).count();
+    time.cpu_ms += stage_watch_.ms();
     if (open_) {
         (gles_ ? glEndQueryEXT : glEndQuery)(GL_TIME_ELAPSED);
         ++outstanding_;

@@ -178,14 +178,10 @@ void SceneTable::finish() const {
     }
     for (const toml::key* key : keysInOrder(*table_)) {
         if (std::find(known_.begin(), known_.end(), key->str()) == known_.end()) {
-            std::string list;
-            for (const std::string_view known : known_) {
-                list += (list.empty() ? "" : ", ") + std::string(known);
-            }
             const std::string hint = didYouMean(key->str(), known_);
             failAt(key->source().begin, "unknown " + std::string(name_.empty() ? "table" : "key") + " '" +
                                             oneLine(full(key->str())) + "'" +
-                                            (hint.empty() ? "; known are " + list : hint));
+                                            (hint.empty() ? "; known are " + listed(known_) : hint));
         }
     }
 }

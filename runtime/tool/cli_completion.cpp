@@ -6,14 +6,6 @@
 namespace relief {
 namespace {
 
-std::string joined(const std::vector<std::string>& words, const char* separator) {
-    std::string text;
-    for (const std::string& word : words) {
-        text += (text.empty() ? "" : separator) + word;
-    }
-    return text;
-}
-
 /// The first line: completions have room for one.
 std::string shortText(const std::string& description) {
     return description.substr(0, description.find('\n'));
