@@ -55,7 +55,7 @@ Result<void> checkFlow(const FlowField& flow) {
                         "a flow's box is empty on the " + std::string(1, "xyz"[axis]) + " axis");
         }
     }
-    const auto bad = std::find_if_not(flow.nodes.begin(), flow.nodes.end(), finite);
+    const auto bad = std::find_if_not(flow.nodes.begin(), flow.nodes.end(), isFinite);
     if (bad != flow.nodes.end()) {
         const auto index = static_cast<std::size_t>(bad - flow.nodes.begin());
         return fail(ErrorCode::kInvalidInput, "the velocity at node " + std::to_string(index % size[0]) +

@@ -11,6 +11,7 @@
 #include <glm/mat4x4.hpp>
 #include <vector>
 
+#include "formats/collider.h"
 #include "runtime/bench/bench_tool.h"
 #include "runtime/depth_maps/depth_map_renderer.h"
 #include "runtime/files/mesh_file.h"
