@@ -36,7 +36,7 @@ std::string sizeText(const DepthMap& map) {
     return std::to_string(map.width) + "x" + std::to_string(map.height);
 }
 
-/// Notes what differs, in the order in which it is asked.
+/// Collects differences in the order of the checks.
 class Differences {
   public:
     template <class T, class Text>

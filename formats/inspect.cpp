@@ -42,7 +42,7 @@ class Inspector {
             inspectDescription();
             inspectMaps();
         }
-        // The reader has the last word, should it see what is not looked at above.
+        // The reader has the last word: it may refuse what the checks above miss.
         if (!result_.damaged()) {
             if (const Result<Collider> read = readContainer(bytes_, limits_); !read) {
                 add(IssueCode::kRefused, read.error().message);
@@ -57,7 +57,7 @@ class Inspector {
         result_.issues.push_back({code, map, offset, std::move(message)});
     }
 
-    /// The header's signature, checksum and version, and what version 1 fixes.
+    /// Checks the header's signature, checksum and version, and the fields that version 1 fixes.
     /// \return whether the rest of the header can be understood.
     bool inspectVersion() {
         if (bytes_.size() < sizeof(header_)) {
@@ -94,7 +94,7 @@ class Inspector {
         return true;
     }
 
-    /// What the header says of the sizes of the file and of the metadata.
+    /// Checks what the header says of the sizes of the file and of the metadata.
     /// \return whether the metadata can be looked at.
     bool inspectSizes() {
         if (header_.file_size > bytes_.size()) {
@@ -132,7 +132,7 @@ class Inspector {
     /// \return whether its maps can be looked at.
     bool inspectMetadata() {
         const auto metadata = bytes_.subspan(header_.metadata_offset, header_.metadata_size);
-        // A checksum that is right vouches for the metadata whatever else the header has wrong.
+        // A right checksum vouches for the metadata, whatever else is wrong with the header.
         metadata_intact_ = header_.metadata_hash == xxh3_64(metadata);
         result_.metadata = metadata_intact_ ? PartState::kSound : PartState::kDamaged;
         if (!metadata_intact_) {
@@ -205,7 +205,7 @@ class Inspector {
             const bool placed = inspectPlace(payload, index, end);
             all_placed = all_placed && placed;
             if (placed || payload.offset == alignPayload(end)) {
-                // In a file that was cut off, too, the next payload has its place.
+                // The next payload has its place even in a file that was cut off.
                 constexpr std::uint64_t kFar = std::uint64_t{1} << 60;  // their sum does not wrap
                 end = std::min(payload.offset, kFar) + std::min(payload.stored_size, kFar);
             }
@@ -302,7 +302,7 @@ class Inspector {
         TexelInspection texels = inspectTexels(map.frame, bounds_valid_ ? &parsed_.collider.bounds : nullptr);
         state.coverage = texels.coverage;
         if (!intact) {
-            return;  // what looks suspicious is the damage
+            return;  // anything suspicious comes from the damage
         }
         for (Issue& issue : texels.issues) {
             issue.map = index;
@@ -312,7 +312,7 @@ class Inspector {
         state.state = PartState::kSound;
     }
 
-    /// What no map shows by itself.
+    /// Checks what no map shows by itself.
     void compareMaps() {
         for (std::size_t i = 0; i < intact_.size(); ++i) {
             for (std::size_t k = 0; k < i; ++k) {
@@ -332,7 +332,7 @@ class Inspector {
         }
     }
 
-    /// Every map is compared with every other: of many maps, fewer points each.
+    /// Compares every map with every other, with fewer points each where there are many maps.
     void thinOut() {
         const std::size_t keep = std::max<std::size_t>(1, kComparedPoints / (intact_.size() + 1));
         for (IntactMap& map : intact_) {

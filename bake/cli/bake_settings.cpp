@@ -8,7 +8,7 @@
 namespace relief {
 namespace {
 
-/// What --decode and --depth make of maps that do not say it themselves.
+/// Applies --decode and --depth to the maps that do not set their own.
 Result<MapSpecDefaults> mapDefaults(const BakeCommand& command) {
     if (command.maps.empty() && (command.decode || command.depth)) {
         return fail(ErrorCode::kUsage, std::string(command.decode ? "--decode" : "--depth") +
@@ -20,7 +20,7 @@ Result<MapSpecDefaults> mapDefaults(const BakeCommand& command) {
     return defaults;
 }
 
-/// Who chooses the maps; one alone may.
+/// The options that choose the maps; only one may be given.
 Result<MapSource> sourceOf(const BakeCommand& command) {
     const char* planning = command.budget ? "--budget" : "--max-error";
     struct Way {

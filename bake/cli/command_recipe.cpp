@@ -32,7 +32,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::uint64_t kShardsMax = 1'000'000;
 constexpr float kTimeoutMax = 1e7F;  // seconds
 
-/// What speaks of a whole run, and not of what an asset is: no keys of a recipe.
+/// Options of a whole run, not of an asset: they are no keys of a recipe.
 constexpr std::array<std::string_view, 17> kOfTheRun = {
     "list-devices", "help",   "quiet", "verbose", "output",  "threads",   "json",       "depfile", "plan-out",
     "recipe",       "events", "shard", "stamp",   "timeout", "fail-fast", "keep-going", "dry-run"};
@@ -182,14 +182,14 @@ Result<void> verdict(const std::vector<AssetResult>& assets, const RecipeCounts&
     return {};
 }
 
-/// What a run of a recipe is about.
+/// What a run of a recipe works on.
 struct RecipeWork {
     RecipeRun run;
     std::vector<RecipeJob> jobs;    ///< of the shard
     std::vector<fs::path> folders;  ///< that patterns looked through
 };
 
-/// Reads the recipe and finds out what it asks for; nothing is baked or written yet.
+/// Reads the recipe and plans the run; bakes and writes nothing.
 Result<RecipeWork> plan(const RecipeOptionsOfBake& options, const RecipeCall& call) {
     RecipeWork work;
     RELIEF_TRY(checkOptions(call));
@@ -230,7 +230,7 @@ const char* endEvent(AssetState state) {
     }
 }
 
-/// Bakes what is not up to date, and says so while it happens.
+/// Bakes what is not up to date, and shows progress.
 Result<RecipeResult> bakeAll(RecipeWork& work, bool shown, RecipeEvents& events) {
     RecipeDisplay display(work.jobs.size(), shown);
     RecipeRun run = work.run;
@@ -271,7 +271,7 @@ void writeSummary(const RecipeResult& result, const RecipeCounts& counts, double
     events.write(summary);
 }
 
-/// What standard output is for.
+/// Chooses what standard output carries.
 Result<void> printResult(const RecipeOptionsOfBake& options, const RecipeCall& call, const RecipeRun& run,
                          const RecipeResult& result, double ms) {
     if (!call.json) {

@@ -54,7 +54,7 @@ std::string_view jsonText(std::span<const std::byte> bytes) {
     return text.substr(sizeof(header), header[3]);
 }
 
-/// A parser's callback. Brackets within brackets: parsers and the documents that they make recurse.
+/// A callback of the parser that refuses deep nesting: freeing such a document could overflow the stack.
 bool checkDepth(int depth, Json::parse_event_t /*event*/, Json& /*parsed*/) {
     if (depth >= kJsonDepthMax) {
         throw Refusal{ErrorCode::kLimit,
@@ -254,7 +254,7 @@ class GltfCheck {
         const bool draco = primitive.contains("extensions") && primitive["extensions"].is_object() &&
                            primitive["extensions"].contains("KHR_draco_mesh_compression");
         if (draco) {
-            return;  // its accessors only say what the decoder will find
+            return;  // its accessors only describe what the decoder will find
         }
         const std::optional<std::uint64_t> positions = number(primitive["attributes"], "POSITION");
         if (!positions) {
@@ -300,7 +300,7 @@ class GltfCheck {
                 }
             }
         }
-        // Each has one parent at most: what no root leads to goes round in a ring.
+        // Each node has at most one parent, so a node that no root leads to is part of a ring.
         std::vector<std::uint64_t> open;
         for (std::uint64_t i = 0; i < parents.size(); ++i) {
             if (parents[i] == 0) {

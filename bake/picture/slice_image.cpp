@@ -46,7 +46,7 @@ cairo_status_t append(void* png, const unsigned char* data, unsigned length) {
     return CAIRO_STATUS_SUCCESS;
 }
 
-/// Of the size of the picture, with its pixels; or one whose status says what failed.
+/// A surface with the picture's pixels; its status says if it could not be made.
 Surface surfaceOf(const RgbImage& image) {
     Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(image.width),
                                                static_cast<int>(image.height)));
@@ -341,7 +341,7 @@ class Figure {
     template <class Visit>
     static void forTicks(double from, double length, double step, const Visit& visit) {
         const double first = std::ceil(from / step - 1e-9);
-        // By count, so that huge coordinates with a tiny step cannot loop for ever.
+        // Counted, so that huge coordinates with a tiny step cannot loop for ever.
         for (int i = 0; i < 40; ++i) {
             const double value = (first + i) * step;
             if (!(value <= from + length)) {
@@ -361,7 +361,7 @@ class Figure {
     }
 
     void drawColorBar() {
-        // Points at both ends: the colour stays the same beyond them.
+        // The points at both ends say that the colour stays the same beyond them.
         const double point = std::floor(em(0.95));
         const Rect bar{color_bar_.x, color_bar_.y + point, color_bar_.width, color_bar_.height - 2.0 * point};
         fillColorBar(bar, point);

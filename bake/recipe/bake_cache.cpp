@@ -24,7 +24,7 @@ constexpr std::uint64_t kCacheBytesMax = std::uint64_t{256} << 20;
 constexpr const char* kFormat = "relief-cache";
 constexpr int kVersion = 1;
 
-/// Holds the lock of a folder. Without one where the file system knows none.
+/// Holds the lock of a folder, or none where the file system has no locks.
 class FolderLock {
   public:
     explicit FolderLock(const fs::path& folder)
@@ -58,7 +58,7 @@ Result<std::string> toolIdentity() {
     const fs::path self = "/proc/self/exe";
     const auto bytes = RELIEF_TRY(readFile(self));
     std::string identity = std::string("relief ") + RELIEF_VERSION + " " + xxh3_128Hex(bytes);
-    // The program that reads meshes for it, where that lies beside it.
+    // The worker that reads meshes, if it lies beside this program.
     std::error_code error;
     const fs::path importer = fs::read_symlink(self, error).parent_path() / "relief-import";
     if (const std::optional<std::string> hash = hashOfFile(importer); hash) {
@@ -87,7 +87,7 @@ Result<BakeCacheEntries> parseBakeCache(std::string_view text) {
             return entries;
         }
     } catch (const Json::exception&) {
-        // what it lacks is of no use to anyone: a new one is written
+        // What exactly is wrong does not matter: the file is written anew.
     }
     return fail(ErrorCode::kInvalidInput, "its contents are not those of a cache");
 }
@@ -125,7 +125,7 @@ Result<BakeCacheEntries> loadBakeCache(const fs::path& output_folder) {
 
 Result<void> updateBakeCache(const fs::path& output_folder, const BakeCacheEntries& entries) {
     const FolderLock lock(output_folder);
-    // What cannot be read is replaced.
+    // A cache that cannot be read is replaced.
     BakeCacheEntries all = loadBakeCache(output_folder).value_or(BakeCacheEntries{});
     for (const auto& [name, entry] : entries) {
         all.insert_or_assign(name, entry);

@@ -89,7 +89,7 @@ glm::vec3 flowVelocity(const FlowField& flow, const glm::vec3& p) {
         const auto last = static_cast<float>(flow.size[a] - 1);
         const float u = (p[axis] - flow.box_min[axis]) * scale[axis];
         const float in = u > 0.0F ? std::min(u, last) : 0.0F;  // 0 for NaN too
-        // The last node has no neighbour beyond: there the cell before it is taken, at its far end.
+        // The last node has no neighbour beyond it, so the far end of the cell before it is used.
         low[a] =
             std::min(static_cast<std::size_t>(in), static_cast<std::size_t>(std::max(flow.size[a], 2U)) - 2);
         high[a] = std::min(low[a] + 1, static_cast<std::size_t>(flow.size[a]) - 1);

@@ -1,8 +1,8 @@
 // What a birth costs: relief-bench-births [BIRTHS_PER_STEP [CAPACITY…]] prints JSON. Nothing here is a test:
 // machines are shared and noisy.
 //
-// Each capacity is run in its steady state, where every step so many die as are born (a quarter of it at
-// most): what a long run pays, and not what an empty system pays. `emit` samples; `spawn` takes indices and
+// Each capacity is run in its steady state, where each step as many die as are born (at most a quarter of the
+// capacity): what a long run pays, not what an empty system pays. `emit` samples; `spawn` takes indices and
 // files the deaths; `free_and_upload` is what births and deaths add to the call of a step: indices given
 // back, and the births handed to the driver; `draw` is what they add to a step until it is finished: the
 // GPU's work, and the CPU's where that plays the GPU. All but `draw` is CPU time of the one
@@ -21,12 +21,12 @@ namespace {
 
 constexpr float kDt = 1.0F / 60.0F;
 
-/// Time that this thread computes.
+/// Times what this thread computes.
 CpuStopwatch threadStopwatch() {
     return CpuStopwatch(CLOCK_THREAD_CPUTIME_ID);
 }
 
-/// A fountain: the dearest shape and law of speed.
+/// A fountain has the most expensive shape and law of speed.
 EmitterSettings fountain(double rate) {
     EmitterSettings settings;
     settings.shape = EmitterShape::kSphere;
@@ -54,7 +54,7 @@ struct Cost {
     std::vector<double> emit, spawn, step, drawn;
 };
 
-/// Births a step that a capacity bears in its steady state.
+/// Births per step that a capacity can sustain.
 std::uint32_t steadyBirths(std::uint32_t capacity, std::uint32_t per_step) {
     return std::min(per_step, capacity / 4);
 }
@@ -64,7 +64,7 @@ float steadyLife(std::uint32_t capacity, std::uint32_t per_step) {
     return 0.9F * static_cast<float>(capacity) / (60.0F * static_cast<float>(per_step));
 }
 
-/// On to the steady state, in steps long enough to pass 1.5 lives in 32 of them.
+/// Goes to the steady state: 32 steps that together last 1.5 lives.
 void fill(ParticleSystem& particles, Emitter& emitter, float life) {
     std::vector<Birth> births;
     const double skip = 1.5 * static_cast<double>(life) / 32.0;
@@ -77,7 +77,7 @@ void fill(ParticleSystem& particles, Emitter& emitter, float life) {
     glFinish();
 }
 
-/// Times a step, its call and its end.
+/// Times the call of a step, and the step until it is finished.
 void timeStep(ParticleSystem& particles, float dt, Cost& cost) {
     const Stopwatch whole;
     const CpuStopwatch watch = threadStopwatch();

@@ -25,10 +25,10 @@ namespace {
 constexpr std::uint32_t kSize = 512;
 constexpr int kRepeatsLeast = 5;
 constexpr int kRepeatsMost = 200;
-constexpr double kSeconds = 1.0;  // repeats of one measurement go on for so long
+constexpr double kSeconds = 1.0;  // of repeats for one measurement
 
 struct Times {
-    double gpu_ms = 0.0;  ///< 0: this GL does not say
+    double gpu_ms = 0.0;  ///< 0: this GL does not measure it
     double wall_ms = 0.0;
 };
 

@@ -132,7 +132,7 @@ class Copy {
     GlVertexArray array_;
 };
 
-/// Who touches at the end of a block.
+/// Counts who touches the collider at the end of a block.
 Json touching(const BenchSystem& system, int steps_taken) {
     const auto state = system.particles->readState();
     if (!state || state->empty()) {
@@ -167,7 +167,7 @@ Result<void> benchSteps(const BenchScene& scene, const Sizes& sizes, Json& json)
     copy.step();  // the driver compiles
     for (int round = 0; round < sizes.rounds; ++round) {
         copied.measure(sizes.steps, [&] { copy.step(); });
-        glUseProgram(0);  // whoever saves the state of the GL shall find nothing that goes with the copy
+        glUseProgram(0);  // PassState must not save a program of the copy's
         for (std::size_t i = 0; i < variants.size(); ++i) {
             systems[i].begin(scene);
             times[i].measure(sizes.steps, [&] { systems[i].step(); });

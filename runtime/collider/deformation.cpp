@@ -109,7 +109,7 @@ Bounds deformedBounds(const Deformation& d, std::span<const glm::vec3> positions
         bounds.max += std::abs(d.amplitude);
         return bounds;
     }
-    // Between two samples of the angle a point is no farther from one of them than half of its way.
+    // Between two samples of the angle a point is at most half of its way from one of them.
     constexpr int kSamples = 64;
     float way = 0.0F;
     bounds = {};

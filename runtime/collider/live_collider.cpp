@@ -13,7 +13,7 @@ namespace {
 constexpr int kMotionXyUnit = 0;
 constexpr int kMotionZUnit = 1;
 
-// As tight boxes have it that are baked: a little free space, and a least thickness, in longest sides.
+// As in baked tight boxes: a little free space and a least thickness, in longest sides.
 constexpr float kPadding = 1e-4F;
 constexpr float kThinnest = 1e-2F;
 
@@ -165,7 +165,7 @@ Result<void> LiveCollider::setPositions(GLuint buffer, std::size_t offset) {
 
 void LiveCollider::settle() {
     mesh_.settle();
-    // What is where it was no longer moves, but must be shown where it is.
+    // A mesh that stays where it was no longer moves, but its maps must show where it is.
     shown_ = shown_ && !moved_;
 }
 

@@ -88,7 +88,7 @@ tl::unexpected<Error> tooLarge(const std::string& what, std::uint64_t count, std
                                        "; simplify the mesh");
 }
 
-/// So many vertices and triangles have room in this GL's textures and draws.
+/// Whether this GL's textures and draws have room for so many vertices and triangles.
 Result<void> checkSize(std::size_t vertices, std::size_t triangles) {
     GLint side = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side);
@@ -105,7 +105,7 @@ Result<void> checkSize(std::size_t vertices, std::size_t triangles) {
     if (triangles > most) {
         return tooLarge("triangles", triangles, most);
     }
-    // Slots are counted when they are known; this bounds the memory for finding out.
+    // The slots are not known yet; this bounds the memory for finding them.
     if (index_max > 0 && triangles > static_cast<std::uint64_t>(index_max)) {
         return tooLarge("triangles", triangles, static_cast<std::uint64_t>(index_max));
     }

@@ -173,7 +173,7 @@ Result<void> readSlices(const FlowFile& file, FlowField& flow) {
     while (count <= FlowField::kSideMax && fileExists(slicePath(file.path, first + count))) {
         ++count;
     }
-    // A slice that got lost must not pass for the end.
+    // A missing slice must not be taken for the end.
     for (std::uint32_t i = first + count + 1; i <= first + FlowField::kSideMax; ++i) {
         if (fileExists(slicePath(file.path, i))) {
             return fail(ErrorCode::kInvalidInput, quotedPath(slicePath(file.path, first + count)) +

@@ -30,7 +30,7 @@ bool knownEnding(const fs::path& path) {
     return std::ranges::find(kEndings, path.extension()) != kEndings.end();
 }
 
-/// Writes all of it, and never raises SIGPIPE: a program that embeds this has its own idea of that signal.
+/// Writes everything, and never raises SIGPIPE, which belongs to the program that embeds this.
 /// \return 0 or an errno.
 int writePipe(int fd, std::span<const std::uint8_t> bytes) {
     sigset_t pipe_signal;
@@ -59,7 +59,7 @@ int writePipe(int fd, std::span<const std::uint8_t> bytes) {
     return code;
 }
 
-/// The last line that ffmpeg has said: by then it has come to the point.
+/// The last line that ffmpeg printed, which names the cause.
 std::string lastWords(std::FILE* errors) {
     std::fseek(errors, 0, SEEK_END);
     const long size = std::ftell(errors);
@@ -174,7 +174,7 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::create(const fs::path& path, c
                     quotedPath(path) + " is no name for a video; let it end in .mp4, .mkv, .mov or .webm");
     }
     std::error_code error;
-    // What a link points to is replaced, and not the link.
+    // The target of a link is replaced, not the link.
     const fs::path followed = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : path;
     const fs::path folder = followed.has_parent_path() ? followed.parent_path() : fs::path(".");
     if (!fs::is_directory(folder, error)) {

@@ -14,7 +14,7 @@ struct Switch {
     bool wanted;
 };
 
-// Off during a pass, but for point sizes, which come from the vertex shader (as they always do on GL ES).
+// All are off during a pass, except that point sizes come from the vertex shader (as always on GL ES).
 constexpr Switch kSwitches[] = {
     {GL_BLEND, false, false},
     {GL_DEPTH_TEST, false, false},
@@ -38,7 +38,7 @@ struct PixelStore {
     GLint wanted;
 };
 
-// Tight rows, and no part of a picture that transfers step over; GL ES 3.0 has them all.
+// Transfers have tight rows and skip nothing. GL ES 3.0 has all of these.
 constexpr PixelStore kPixelStores[] = {
     {GL_PACK_ALIGNMENT, 1},     {GL_PACK_ROW_LENGTH, 0},    {GL_PACK_SKIP_ROWS, 0},
     {GL_PACK_SKIP_PIXELS, 0},   {GL_UNPACK_ALIGNMENT, 1},   {GL_UNPACK_ROW_LENGTH, 0},

@@ -189,7 +189,7 @@ Result<void> ParticleSystem::setAir(const AirSettings& air) {
     std::unique_ptr<AirBlock> old = std::move(air_);
     air_ = block.defines().empty() ? nullptr : std::make_unique<AirBlock>(std::move(block));
     if (auto done = remakeStep(step_.features().collider); !done) {
-        air_ = std::move(old);  // the step that there is points to it
+        air_ = std::move(old);  // the present step points to it
         return done;
     }
     air_settings_ = air;
@@ -207,14 +207,14 @@ std::size_t ParticleSystem::spawn(std::span<const Birth> births) {
         }
         const float born = now - birth.age;
         const float death = born + birth.lifetime;
-        // What the step does in free flight, for as long as it has lived.
+        // The same free flight as a step's, for as long as the particle has lived.
         const float drag = dragRate(forces_, types_[std::min<std::size_t>(birth.type, types_.size() - 1)]);
         const glm::vec3 velocity = (birth.velocity + birth.age * (forces_.gravity + drag * wind)) *
                                    (1.0F / (1.0F + birth.age * drag));
         const auto id = static_cast<std::uint32_t>(born_ + accepted);
         ids_[*index] = id;
         deaths_.push(death, *index);
-        // Member by member: a vertex that is put together first is copied before its parts have arrived.
+        // Written member by member: a copy of a whole vertex would wait for its parts.
         BirthVertex& vertex = newborn_.emplace_back();
         vertex.index = *index;
         vertex.position = birth.position + birth.age * velocity;
@@ -310,7 +310,7 @@ void ParticleSystem::setEpochForward() {
         birth_spare_ = makeStateTexture(width_, height_);
         rebase_target_ = makeFramebuffer();
     }
-    // By hand, for a step has nobody to report an error to: this is the combination that create() has tried.
+    // Made by hand, because a step cannot report an error: create() has tried this combination.
     glBindFramebuffer(GL_FRAMEBUFFER, rebase_target_.name());
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, birth_spare_.name(), 0);
     glUseProgram(rebase_program_.name());
@@ -383,7 +383,7 @@ Result<std::vector<ParticleState>> ParticleSystem::readState() const {
         const float* position = &raw.position[std::size_t{4} * index];
         const float* velocity = &raw.velocity[std::size_t{4} * index];
         const float* birth = &raw.birth[std::size_t{4} * index];
-        if (position[3] < 0.0F) {  // by a collision, of which the CPU does not know
+        if (position[3] < 0.0F) {  // killed by a collision, which the CPU does not know of
             continue;
         }
         ParticleState& particle = particles.emplace_back();

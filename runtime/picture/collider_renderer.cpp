@@ -20,7 +20,7 @@ constexpr int kMeshDepthUnit = 4;
 // Every kCoarseStride-th pixel of a row or column is traced first; collider_view.frag says why.
 constexpr GLsizei kCoarseStride = 4;
 
-// A ray's step in texels: what is two texels thick is met.
+// A ray's step in texels: it hits whatever is two texels thick.
 constexpr float kStepTexels = 1.5F;
 
 // Across the diagonal of a box whose finest texel is 1/2048 of its longest side, with room for the
@@ -32,7 +32,7 @@ constexpr int kNormals = 13;
 // For one of the four samples of a pixel.
 constexpr LightRays kLightRays{.sun = 2, .sky = 6, .sun_steps = 32, .sky_steps = 5};
 
-// Rows drawn at a time: a driver may take a draw of seconds for a hang.
+// Rows per draw: a driver may take a draw of several seconds for a hang.
 constexpr GLsizei kBandRows = 64;
 
 constexpr const char* kSmallerPicture = "choose a smaller size";
@@ -142,7 +142,7 @@ Result<void> ColliderRenderer::trace(const Camera& camera, const ColliderStyle& 
 
     glBindVertexArray(no_attributes_.name());
 
-    // What the second pass samples: the mesh's picture, or the coarse pass.
+    // The second pass samples the mesh's picture, or the coarse pass.
     ColliderMesh::View of_mesh;
     GlTexture coarse;
     if (mesh_ != nullptr) {

@@ -129,7 +129,7 @@ void DepthSorter::drawNext() {
 }
 
 void DepthSorter::endSequence(std::uint32_t extent) {
-    // Sound at the end of a whole sequence alone: see the header.
+    // Valid only at the end of a whole sequence: see the header.
     count_ = regionFor(peak_);
     restart();
     peak_ = extent;

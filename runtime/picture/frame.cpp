@@ -67,7 +67,7 @@ std::vector<std::uint8_t> Frame::read() const {
     glBindVertexArray(no_attributes_.name());
     glDrawArrays(GL_TRIANGLES, 0, 3);
 
-    // RGBA is the combination that every GL ES reads; rows come from below.
+    // Every GL ES reads RGBA; its rows start at the bottom.
     std::vector<std::uint8_t> rgba(std::size_t{4} * width_ * height_);
     glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
     std::vector<std::uint8_t> rgb(std::size_t{3} * width_ * height_);

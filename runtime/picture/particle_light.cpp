@@ -14,7 +14,7 @@ constexpr int kPositionUnit = 3;  // after the collider's three
 constexpr int kBirthUnit = 4;
 constexpr int kLooksUnit = 5;
 
-// A few for each grain, each with its own noise: neighbours make up for it.
+// A few rays for each grain, with noise of its own: neighbours even it out.
 constexpr LightRays kLightRays{.sun = 1, .sky = 2, .sun_steps = 16, .sky_steps = 3};
 
 }  // namespace
@@ -39,7 +39,7 @@ Result<void> ParticleLight::update(const ParticleSystem& particles, const GlText
     const auto extent = static_cast<GLsizei>(particles.extent());
     const GLsizei rows = (extent + width - 1) / width;
     if (!target_ || width_ != width || height_ < rows) {
-        // For all that the system may ever hold, so that it is made once.
+        // Large enough for the full capacity, so that it is made once.
         const auto capacity = static_cast<GLsizei>(particles.capacity());
         target_ = GlFramebuffer();
         width_ = width;

@@ -11,8 +11,8 @@
 namespace relief {
 namespace {
 
-// Round a vertex of more corners than this they are not compared one by one: the time would grow by their
-// square.
+// Around a vertex with more corners than this they are not compared one by one: the time would grow with
+// their square.
 constexpr std::size_t kFanMax = 64;
 
 glm::vec3 unitOrZero(const glm::vec3& v) {

@@ -33,7 +33,7 @@ Result<void> LiveBodies::show(double time, ColliderTextures& textures) {
 }
 
 Result<LivePicture> LivePicture::create(const LiveMesh& live) {
-    // Doubled vertices would come apart along a crease where each goes along its own normal.
+    // Doubled vertices would come apart along a crease if each moved along its own normal.
     const bool smooth = live.deformation.kind == DeformKind::kWobble;
     const PictureMesh creased = smooth ? PictureMesh{} : withNormals(live.mesh);
     const PictureMesh& drawn = smooth ? live.mesh : creased;

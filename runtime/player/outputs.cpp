@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Makes the folder, and sees early that it can be written: a run may take long.
+/// Makes the folder, and checks early that it can be written: a run may take long.
 Result<void> prepareFolder(const fs::path& folder, const char* option) {
     std::error_code error;
     fs::create_directories(folder, error);
@@ -36,7 +36,7 @@ fs::path numberedPath(const fs::path& folder, const char* head, std::uint32_t nu
     return folder / name.data();
 }
 
-/// The rate at which a video plays in the scene's time, as far as eyes and players go along.
+/// The frame rate at which a video plays in the scene's time, within what players can show.
 double videoRate(const Scene& scene) {
     return std::clamp(1.0 / (static_cast<double>(scene.dt) * scene.render.every), 1.0, 120.0);
 }

@@ -97,7 +97,7 @@ class Run {
             }
         }
         RELIEF_TRY(waitForGpu(steps));
-        // A step has no result of its own: births that found no room would be missing in silence.
+        // A step returns no error, so births that found no room would go unnoticed.
         return checkAllocated(steps, "choose a smaller capacity");
     }
 
@@ -153,7 +153,7 @@ Result<void> readBack(const PlayerOptions& options, const ParticleSystem& partic
 }  // namespace
 
 Result<PlayerReport> play(const PlayerOptions& options) {
-    // What can fail cheaply comes first.
+    // Cheap checks come first.
     const auto loaded = RELIEF_TRY(loadAll(options.input, options.overrides));
     auto emitters = RELIEF_TRY(makeEmitters(loaded.scene.emitters));
     if (!options.dump.empty()) {

@@ -27,7 +27,7 @@ bool length(SceneTable& table, std::string_view key, float& out) {
     table.failAt(at, table.full(key) + " is missing; " + std::string(cure));
 }
 
-// What both kinds have beside their place.
+/// The keys that attractors and vortices share.
 void readStrength(SceneTable& table, const toml::node& at, float& strength, float& radius, int& falloff) {
     if (!table.number("strength", symmetric(kAccelerationMax), strength)) {
         failMissing(table, at, "strength", "give the acceleration at the radius");
@@ -65,7 +65,7 @@ void readVortices(SceneTable& top, std::string_view file, Scene& scene) {
             failMissing(table, *at, "center", "give a point [x, y, z] of its axis");
         }
         if (table.vector("axis", symmetric(kLengthMax), vortex.axis)) {
-            // Tiny axes are as good as long ones, where a float still has their squares.
+            // Tiny axes are as good as long ones, as long as a float can hold their squares.
             const float longest =
                 std::max({std::abs(vortex.axis.x), std::abs(vortex.axis.y), std::abs(vortex.axis.z)});
             if (!(longest >= 1e-30F)) {

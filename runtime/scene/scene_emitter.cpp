@@ -24,7 +24,7 @@ double burstBirths(const SceneEmitter& emitter, double seconds) {
     return emitter.burst * (1.0 + again);
 }
 
-/// What is left of the capacity goes to those without a rate: used up at the end of the run, never before.
+/// Emitters without a rate share the rest of the capacity: it is used up at the end of the run, never before.
 Result<void> shareRates(std::span<SceneEmitter> emitters, double run, std::uint32_t capacity) {
     double room = capacity;
     double sharing = 0.0;

@@ -19,7 +19,7 @@ constexpr double kBurstEveryMin = 1e-4;
 const std::vector<std::string_view> kShapes{"box", "sphere", "shell", "disc", "points", "point"};
 constexpr std::size_t kPoint = 5;
 
-/// A float of it is not 0.
+/// As a float that is not 0.
 float positive(double value) {
     return std::max(static_cast<float>(value), std::numeric_limits<float>::min());
 }
@@ -84,7 +84,7 @@ bool readDirection(SceneTable& table, std::string_view key, T& out) {
 }
 
 void readPlace(SceneTable& table, const fs::path& folder, SceneEmitter& emitter) {
-    // Without the word the place says what it is.
+    // Without `shape`, the keys of the place tell the shape.
     std::size_t shape = table.find("points") != nullptr  ? static_cast<std::size_t>(EmitterShape::kPoints)
                         : table.find("point") != nullptr ? kPoint
                                                          : 0;
@@ -203,7 +203,7 @@ void readLife(SceneTable& table, SceneEmitter& emitter) {
     if (const toml::node* node = table.find("lifetime"); node != nullptr) {
         const Span span = readSpan(table, *node, "lifetime", {0.0, kSecondsMax, false},
                                    "a number of seconds, or two [least, most]");
-        // A lifetime below the smallest float would be none.
+        // A lifetime below the smallest float would be 0.
         emitter.lifetime_min = positive(span.least);
         emitter.lifetime_max = positive(span.most);
     }

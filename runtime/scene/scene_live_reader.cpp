@@ -36,7 +36,7 @@ bool readRange(SceneTable& table, float& low, float& high) {
     return found;
 }
 
-/// Keys that a kind does not have do nothing.
+/// Refuses keys that a kind of deformation does not have.
 void refuse(SceneTable& table, std::initializer_list<std::string_view> keys, const char* kind) {
     for (const std::string_view key : keys) {
         if (table.find(key) != nullptr) {
@@ -64,7 +64,7 @@ void readAngles(SceneTable& table, const toml::source_position& at, SceneLive& l
     if (!readDirection(table, "along", d.along)) {
         table.failAt(at, "a bend needs collider.deform.along, the direction of what it bends");
     }
-    // As across as a person writes it.
+    // A person need not write a direction that is exactly across.
     const glm::vec3 across = d.along - glm::dot(d.along, d.axis) * d.axis;
     if (!(glm::length(across) > 0.7F)) {
         table.failAt(*table.find("along"),

@@ -95,7 +95,7 @@ void readLook(SceneTable& table, std::uint32_t cells, ParticleLook& look) {
     table.number("spin", {0.0, kRadiansMax}, look.spin);
     readCells(table, cells, look);
     table.boolean("lit", look.lit);
-    if (look.opacity.size() > 1) {  // says itself how it begins and ends
+    if (look.opacity.size() > 1) {  // it says how the particle begins and ends
         look.fade_in = 0.0F;
         look.fade_out = 0.0F;
     }
@@ -114,7 +114,7 @@ void readSprites(SceneTable& render, const std::filesystem::path& folder, Scene&
         render.failUseless("atlas_cells", "without render.atlas; name a PNG there, or remove it");
     }
     if (render.path("mesh", folder, out.mesh, out.mesh_origin)) {
-        // A mesh is drawn in its own space, and there is one.
+        // The mesh is drawn in its own space, and only once.
         const SceneCollider& first = scene.colliders.front();
         if (scene.colliders.size() > 1 || !first.keys.empty() || !(first.pose == Pose{})) {
             throw SceneError{out.mesh_origin +

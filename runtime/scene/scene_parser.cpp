@@ -78,7 +78,7 @@ void readRender(SceneTable table, const fs::path& folder, Scene& scene) {
     table.vector("background", {0.0, 1.0}, render.background);
     table.integer("every", {1.0, kStepsMax}, render.every);
     table.integer("sort_frames", {0.0, kSortFramesMax}, render.sort_frames);
-    // A whole sequence each frame is what the spreading is there to avoid.
+    // 1 would be a whole sequence each frame, which spreading over frames is there to avoid.
     if (render.sort_frames == 1) {
         table.failAt(*table.find("sort_frames"),
                      table.full("sort_frames") + " = 1 is out of range; choose 0, for no sort, or 2 to 200");

@@ -6,7 +6,7 @@
 namespace relief {
 namespace {
 
-/// The first line: completions have room for one.
+/// The first line: completions have no room for more.
 std::string shortText(const std::string& description) {
     return description.substr(0, description.find('\n'));
 }
