@@ -55,8 +55,9 @@ std::string_view jsonText(std::span<const std::byte> bytes) {
 }
 
 /// A callback of the parser that refuses deep nesting: freeing such a document could overflow the stack.
-bool checkDepth(int depth, Json::parse_event_t /*event*/, Json& /*parsed*/) {
-    if (depth >= kJsonDepthMax) {
+bool checkDepth(int depth, Json::parse_event_t event, Json& /*parsed*/) {
+    using Event = Json::parse_event_t;
+    if (depth >= kJsonDepthMax && (event == Event::object_start || event == Event::array_start)) {
         throw Refusal{ErrorCode::kLimit,
                       "its JSON is nested more than " + std::to_string(kJsonDepthMax) + " deep"};
     }

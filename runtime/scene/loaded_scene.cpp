@@ -29,7 +29,8 @@ Result<Scene> openScene(const fs::path& input) {
 
 Result<Collider> openCollider(const SceneCollider& from) {
     auto collider = loadCollider(from.path);
-    return from.origin.empty() ? collider : inFront(from.origin + ": collider.file", std::move(collider));
+    return from.origin.empty() ? std::move(collider)
+                               : inFront(from.origin + ": collider.file", std::move(collider));
 }
 
 }  // namespace
