@@ -54,7 +54,7 @@ std::string_view jsonText(std::span<const std::byte> bytes) {
     return text.substr(sizeof(header), header[3]);
 }
 
-/// A callback of the parser that refuses deep nesting: freeing such a document could overflow the stack.
+/// The callback of the parser. It refuses deep nesting, because other parsers, and documents, recurse.
 bool checkDepth(int depth, Json::parse_event_t event, Json& /*parsed*/) {
     using Event = Json::parse_event_t;
     if (depth >= kJsonDepthMax && (event == Event::object_start || event == Event::array_start)) {
