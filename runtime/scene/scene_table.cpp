@@ -90,7 +90,8 @@ std::vector<const toml::table*> SceneTable::tables(std::string_view key, std::si
             wrongType(one, key, wanted);
         }
         if (tables.size() == most) {
-            failAt(one, "more than " + std::to_string(most) + " of [[" + full(key) + "]]; remove some");
+            failAt(one, "there are " + std::to_string(node->as_array()->size()) + " of [[" + full(key) +
+                            "]], more than " + std::to_string(most) + "; remove some");
         }
         tables.push_back(one.as_table());
     }
