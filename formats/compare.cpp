@@ -1,24 +1,19 @@
 #include "formats/compare.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <span>
 
+#include "formats/base/text.h"
+
 namespace relief {
 namespace {
 
-std::string shortestText(float value) {
-    char text[32];
-    const auto [end, error] = std::to_chars(text, text + sizeof(text), value);
-    return {text, end};
-}
-
 std::string vectorText(const glm::vec3& v) {
-    return "(" + shortestText(v.x) + ", " + shortestText(v.y) + ", " + shortestText(v.z) + ")";
+    return "(" + shortest(v.x) + ", " + shortest(v.y) + ", " + shortest(v.z) + ")";
 }
 
 std::string boundsText(const Bounds& bounds) {
@@ -26,8 +21,7 @@ std::string boundsText(const Bounds& bounds) {
 }
 
 std::string rowText(const glm::vec4& row) {
-    return shortestText(row.x) + " " + shortestText(row.y) + " " + shortestText(row.z) + " " +
-           shortestText(row.w);
+    return shortest(row.x) + " " + shortest(row.y) + " " + shortest(row.z) + " " + shortest(row.w);
 }
 
 std::string quoted(const std::string& text) {
@@ -42,7 +36,7 @@ std::string sizeText(const DepthMap& map) {
     return std::to_string(map.width) + "x" + std::to_string(map.height);
 }
 
-/// Notes what differs, in the order in which it is asked.
+/// Collects differences in the order of the checks.
 class Differences {
   public:
     template <class T, class Text>

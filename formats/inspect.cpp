@@ -38,11 +38,11 @@ class Inspector {
     }
 
     Inspection run() {
-        if (inspectHeader() && inspectMetadata()) {
+        if (inspectVersion() && inspectSizes() && inspectMetadata()) {
             inspectDescription();
             inspectMaps();
         }
-        // The reader has the last word, should it see what is not looked at above.
+        // The reader has the last word: it may refuse what the checks above miss.
         if (!result_.damaged()) {
             if (const Result<Collider> read = readContainer(bytes_, limits_); !read) {
                 add(IssueCode::kRefused, read.error().message);
@@ -57,8 +57,9 @@ class Inspector {
         result_.issues.push_back({code, map, offset, std::move(message)});
     }
 
-    /// \return whether the metadata can be looked at.
-    bool inspectHeader() {
+    /// Checks the header's signature, checksum and version, and the fields that version 1 fixes.
+    /// \return whether the rest of the header can be understood.
+    bool inspectVersion() {
         if (bytes_.size() < sizeof(header_)) {
             add(IssueCode::kTooShort, std::to_string(bytes_.size()) + " bytes, where the header alone has " +
                                           std::to_string(sizeof(header_)));
@@ -72,8 +73,8 @@ class Inspector {
         }
         result_.major = header_.major;
         result_.minor = header_.minor;
-        const bool checksum = header_.header_hash == header_.computeHash();
-        if (!checksum) {
+        header_intact_ = header_.header_hash == header_.computeHash();
+        if (!header_intact_) {
             add(IssueCode::kHeaderChecksum, "the checksum of the header is wrong", 56);
         }
         if (header_.major != kContainerMajor) {
@@ -90,6 +91,12 @@ class Inspector {
             header_.metadata_offset = expected.metadata_offset;
         }
         result_.header = result_.damaged() ? PartState::kDamaged : PartState::kSound;
+        return true;
+    }
+
+    /// Checks what the header says of the sizes of the file and of the metadata.
+    /// \return whether the metadata can be looked at.
+    bool inspectSizes() {
         if (header_.file_size > bytes_.size()) {
             add(IssueCode::kTruncated,
                 "truncated: " + std::to_string(bytes_.size()) + " of " + std::to_string(header_.file_size) +
@@ -99,7 +106,7 @@ class Inspector {
             add(IssueCode::kTrailingBytes,
                 std::to_string(bytes_.size() - header_.file_size) + " bytes more than the header says", 24);
         }
-        if (checksum && header_.minor > kContainerMinor) {
+        if (header_intact_ && header_.minor > kContainerMinor) {
             add(IssueCode::kLaterMinor,
                 "container version " + std::to_string(header_.major) + "." + std::to_string(header_.minor) +
                     ", this program knows " + std::to_string(kContainerMajor) + "." +
@@ -125,7 +132,7 @@ class Inspector {
     /// \return whether its maps can be looked at.
     bool inspectMetadata() {
         const auto metadata = bytes_.subspan(header_.metadata_offset, header_.metadata_size);
-        // A checksum that is right vouches for the metadata whatever else the header has wrong.
+        // A right checksum vouches for the metadata, whatever else is wrong with the header.
         metadata_intact_ = header_.metadata_hash == xxh3_64(metadata);
         result_.metadata = metadata_intact_ ? PartState::kSound : PartState::kDamaged;
         if (!metadata_intact_) {
@@ -198,7 +205,7 @@ class Inspector {
             const bool placed = inspectPlace(payload, index, end);
             all_placed = all_placed && placed;
             if (placed || payload.offset == alignPayload(end)) {
-                // In a file that was cut off, too, the next payload has its place.
+                // The next payload has its place even in a file that was cut off.
                 constexpr std::uint64_t kFar = std::uint64_t{1} << 60;  // their sum does not wrap
                 end = std::min(payload.offset, kFar) + std::min(payload.stored_size, kFar);
             }
@@ -295,7 +302,7 @@ class Inspector {
         TexelInspection texels = inspectTexels(map.frame, bounds_valid_ ? &parsed_.collider.bounds : nullptr);
         state.coverage = texels.coverage;
         if (!intact) {
-            return;  // what looks suspicious is the damage
+            return;  // anything suspicious comes from the damage
         }
         for (Issue& issue : texels.issues) {
             issue.map = index;
@@ -305,7 +312,7 @@ class Inspector {
         state.state = PartState::kSound;
     }
 
-    /// What no map shows by itself.
+    /// Checks what no map shows by itself.
     void compareMaps() {
         for (std::size_t i = 0; i < intact_.size(); ++i) {
             for (std::size_t k = 0; k < i; ++k) {
@@ -325,7 +332,7 @@ class Inspector {
         }
     }
 
-    /// Every map is compared with every other: of many maps, fewer points each.
+    /// Compares every map with every other, with fewer points each where there are many maps.
     void thinOut() {
         const std::size_t keep = std::max<std::size_t>(1, kComparedPoints / (intact_.size() + 1));
         for (IntactMap& map : intact_) {
@@ -380,6 +387,7 @@ class Inspector {
     ContainerLimits limits_;
     ContainerHeader header_;
     ParsedMetadata parsed_;
+    bool header_intact_ = false;
     bool metadata_intact_ = false;
     bool bounds_valid_ = false;
     std::vector<IntactMap> intact_;

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
+#include "formats/base/finite.h"
 #include "formats/base/text.h"
 
 namespace relief {
@@ -21,10 +22,6 @@ std::string number(double value) {
     char text[32];
     std::snprintf(text, sizeof(text), "%.9g", value);
     return text;
-}
-
-bool isFinite(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
 std::string words(const glm::vec3& v) {
@@ -68,8 +65,8 @@ Result<void> validateSize(const DepthMap& map) {
     return {};
 }
 
-/// T's rows must be orthogonal, for the vote of a plane inverts T by that, and object_per_map must say what T
-/// says: its entries are the lengths of the columns of T's inverse, here one over those of T's rows.
+/// T's rows must be orthogonal: the vote of a plane inverts T by that. object_per_map must agree with T:
+/// its entries are the lengths of the columns of T's inverse, here one over those of T's rows.
 Result<void> validateTransform(const DepthMap& map) {
     std::array<glm::dvec3, 3> row;  // of unit length
     std::array<double, 3> length{};

@@ -10,12 +10,6 @@ RELIEF_BIN=$(scripts/build.sh release relief)
 export RELIEF_BIN RELIEF_SOURCE=$PWD RELIEF_ATOMIC_PAGE=$counts RELIEF_ATOMIC_ROUNDS=${RELIEF_ATOMIC_ROUNDS:-20}
 bash tests/cli/atomic_outputs.sh
 if [ "${1:-}" = --page ]; then
-    python3 - "$counts" <<'P'
-import sys
-page = open('bake/measure/trust.md').read()
-begin, end = '<!-- all or nothing -->\n', '<!-- /all or nothing -->'
-head, rest = page.split(begin)
-body = 'Written by `scripts/all_or_nothing.sh --page`.\n\n' + open(sys.argv[1]).read()
-open('bake/measure/trust.md', 'w').write(head + begin + body + end + rest.split(end, 1)[1])
-P
+    printf 'Written by `scripts/all_or_nothing.sh --page`.\n\n' | cat - "$counts" |
+        scripts/page_part.sh bake/measure/trust.md 'all or nothing'
 fi

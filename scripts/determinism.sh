@@ -143,7 +143,7 @@ else
     done
 fi
 
-python3 - "$work/rows" "$mode" <<'P'
+python3 - "$work/rows" "$mode" "$work/page" <<'P'
 import collections, sys
 rows = [line.rstrip('\n').split('|') for line in open(sys.argv[1])]
 table = collections.OrderedDict()
@@ -160,9 +160,7 @@ print('\n'.join(lines + ['', summary]))
 if sys.argv[2] == '--page':
     body = '\n'.join(['Written by `scripts/determinism.sh --page`; “planned” is `--budget 100kB`, “paper” is `--paper --resolution 128`.',
                       '', summary, '', 'Surroundings: ' + '; '.join(cells) + '.', ''] + lines)
-    page = open('bake/measure/trust.md').read()
-    begin, end = '<!-- determinism -->\n', '<!-- /determinism -->'
-    head, rest = page.split(begin)
-    open('bake/measure/trust.md', 'w').write(head + begin + body + '\n' + end + rest.split(end, 1)[1])
+    open(sys.argv[3], 'w').write(body + '\n')
 P
+[ "$mode" != --page ] || scripts/page_part.sh bake/measure/trust.md determinism <"$work/page"
 [ "$failed" = 0 ] || exit 7

@@ -24,13 +24,7 @@ export RELIEF_MUTANTS_MODELS=/usr/share/assimp/models
 status=0
 bash tests/cli/mutants.sh || status=$?
 if [ -n "$page" ] && [ -s "$counts" ]; then
-    python3 - "$counts" "$count" <<'P'
-import sys
-page = open('bake/measure/trust.md').read()
-begin, end = '<!-- mutants -->\n', '<!-- /mutants -->'
-head, rest = page.split(begin)
-body = f'Written by `scripts/mutants.sh {sys.argv[2]} --page`.\n\n' + open(sys.argv[1]).read()
-open('bake/measure/trust.md', 'w').write(head + begin + body + end + rest.split(end, 1)[1])
-P
+    printf 'Written by `scripts/mutants.sh %s --page`.\n\n' "$count" | cat - "$counts" |
+        scripts/page_part.sh bake/measure/trust.md mutants
 fi
 exit $status

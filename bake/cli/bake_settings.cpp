@@ -8,7 +8,7 @@
 namespace relief {
 namespace {
 
-/// What --decode and --depth make of maps that do not say it themselves.
+/// Applies --decode and --depth to the maps that do not set their own.
 Result<MapSpecDefaults> mapDefaults(const BakeCommand& command) {
     if (command.maps.empty() && (command.decode || command.depth)) {
         return fail(ErrorCode::kUsage, std::string(command.decode ? "--decode" : "--depth") +
@@ -20,7 +20,7 @@ Result<MapSpecDefaults> mapDefaults(const BakeCommand& command) {
     return defaults;
 }
 
-/// Who chooses the maps; one alone may.
+/// The options that choose the maps; only one may be given.
 Result<MapSource> sourceOf(const BakeCommand& command) {
     const char* planning = command.budget ? "--budget" : "--max-error";
     struct Way {
@@ -98,32 +98,25 @@ Result<BakeSettings> settingsOf(const BakeCommand& command) {
 }
 
 Result<void> preflight(const BakeCommand& command) {
-    std::vector<Result<void>> checks = {preflightFile(command.output),
-                                        preflightDistinct(command.mesh, command.output)};
+    if (!command.depfile.empty() && (command.depfile == "-" || command.output == "-")) {
+        return fail(ErrorCode::kUsage, "--depfile needs files, and not standard output; name them");
+    }
+    RELIEF_TRY(preflightFile(command.output));
+    RELIEF_TRY(preflightDistinct(command.mesh, command.output));
     if (!command.plan.empty()) {
-        checks.push_back(preflightDistinct(command.plan, command.output));
+        RELIEF_TRY(preflightDistinct(command.plan, command.output));
     }
     if (!command.plan_out.empty()) {
-        checks.push_back(preflightFile(command.plan_out));
-        checks.push_back(preflightDistinct(command.mesh, command.plan_out));
-        checks.push_back(preflightTwoOutputs(command.output, command.plan_out));
+        RELIEF_TRY(preflightFile(command.plan_out));
+        RELIEF_TRY(preflightDistinct(command.mesh, command.plan_out));
+        RELIEF_TRY(preflightTwoOutputs(command.output, command.plan_out));
     }
     if (!command.depfile.empty()) {
-        if (command.depfile == "-" || command.output == "-") {
-            return fail(ErrorCode::kUsage, "--depfile needs files, and not standard output; name them");
-        }
-        checks.push_back(preflightFile(command.depfile));
-        for (const std::string* other : {&command.mesh, &command.plan}) {
-            checks.push_back(preflightDistinct(*other, command.depfile));
-        }
-        for (const std::string* other : {&command.output, &command.plan_out}) {
-            checks.push_back(preflightTwoOutputs(*other, command.depfile));
-        }
-    }
-    for (const Result<void>& check : checks) {
-        if (!check) {
-            return check;
-        }
+        RELIEF_TRY(preflightFile(command.depfile));
+        RELIEF_TRY(preflightDistinct(command.mesh, command.depfile));
+        RELIEF_TRY(preflightDistinct(command.plan, command.depfile));
+        RELIEF_TRY(preflightTwoOutputs(command.output, command.depfile));
+        RELIEF_TRY(preflightTwoOutputs(command.plan_out, command.depfile));
     }
     return {};
 }

@@ -2,6 +2,7 @@
 
 #include "bake/cli/command.h"
 #include "bake/report/inspect_report.h"
+#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "formats/container_parts.h"
 #include "runtime/tool/command_line.h"
@@ -11,21 +12,18 @@ namespace relief {
 Result<void> checkFile(const std::string& file, bool json) {
     const std::vector<std::byte> bytes = RELIEF_TRY(readFile(file, containerSizeMax({})));
     const std::string quoted = shownInput(file);
-    const Result<Inspection> inspection = inspectContainer(bytes);
-    if (!inspection) {
-        return fail(inspection.error().code, quoted + ": " + inspection.error().message);
-    }
+    const Inspection inspection = RELIEF_TRY(inFront(quoted, inspectContainer(bytes)));
     const std::string name = inputName(file);
     const Result<void> printed =
-        printOut(json ? inspectionJson(*inspection, name) : inspectionText(*inspection, name));
-    if (!printed || !inspection->damaged()) {
+        printOut(json ? inspectionJson(inspection, name) : inspectionText(inspection, name));
+    if (!printed || !inspection.damaged()) {
         return printed;
     }
-    for (const Issue& issue : inspection->issues) {
+    for (const Issue& issue : inspection.issues) {
         if (issue.severity() != Severity::kWarning) {
             const std::string map = issue.map >= 0 ? "map " + std::to_string(issue.map) + ": " : "";
-            return fail(inspection->errorCode(), quoted + " cannot be used: " + issue.id() + ", " + map +
-                                                     issue.message + "; copy it again, or bake it again");
+            return fail(inspection.errorCode(), quoted + " cannot be used: " + issue.id() + ", " + map +
+                                                    issue.message + "; copy it again, or bake it again");
         }
     }
     return {};

@@ -3,6 +3,7 @@
 
 #include "bake/cli/command.h"
 #include "bake/report/diff_report.h"
+#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "formats/container.h"
 #include "runtime/tool/command_line.h"
@@ -32,11 +33,8 @@ struct Loaded {
 
 Result<Loaded> load(const std::string& file) {
     std::vector<std::byte> bytes = RELIEF_TRY(readFile(file));
-    Result<Collider> collider = readContainer(bytes);
-    if (!collider) {
-        return fail(collider.error().code, shownInput(file) + ": " + collider.error().message);
-    }
-    return Loaded{std::move(bytes), std::move(*collider)};
+    auto collider = RELIEF_TRY(inFront(shownInput(file), readContainer(bytes)));
+    return Loaded{std::move(bytes), std::move(collider)};
 }
 
 DiffLimits limitsOf(const DiffCommand& command) {

@@ -63,13 +63,9 @@ Result<void> runQuery(const QueryCommand& command) {
         return fail(ErrorCode::kUsage,
                     "FILE and --points cannot both be standard input; give one of them a file");
     }
-    for (const Result<void>& ready :
-         {preflightFile(command.output), preflightDistinct(command.file, command.output),
-          preflightDistinct(command.points, command.output)}) {
-        if (!ready) {
-            return ready;
-        }
-    }
+    RELIEF_TRY(preflightFile(command.output));
+    RELIEF_TRY(preflightDistinct(command.file, command.output));
+    RELIEF_TRY(preflightDistinct(command.points, command.output));
     const Collider collider = RELIEF_TRY(loadCollider(command.file));
     const std::vector<std::byte> text = RELIEF_TRY(readFile(command.points));
     const std::vector<glm::vec3> points =

@@ -32,7 +32,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::uint64_t kShardsMax = 1'000'000;
 constexpr float kTimeoutMax = 1e7F;  // seconds
 
-/// What speaks of a whole run, and not of what an asset is: no keys of a recipe.
+/// Options of a whole run, not of an asset: they are no keys of a recipe.
 constexpr std::array<std::string_view, 17> kOfTheRun = {
     "list-devices", "help",   "quiet", "verbose", "output",  "threads",   "json",       "depfile", "plan-out",
     "recipe",       "events", "shard", "stamp",   "timeout", "fail-fast", "keep-going", "dry-run"};
@@ -145,19 +145,15 @@ Result<void> preflight(const RecipeOptionsOfBake& options, const RecipeCall& cal
         if (file == "-") {
             return fail(ErrorCode::kUsage, "--stamp and --depfile cannot be standard output; name files");
         }
-        std::vector<Result<void>> checks = {preflightFile(file), preflightDistinct(options.recipe, file),
-                                            preflightTwoOutputs(run.output_folder / kBakeCacheName, file)};
+        RELIEF_TRY(preflightFile(file));
+        RELIEF_TRY(preflightDistinct(options.recipe, file));
+        RELIEF_TRY(preflightTwoOutputs(run.output_folder / kBakeCacheName, file));
         for (const RecipeJob& job : jobs) {
-            checks.push_back(preflightDistinct(job.mesh_path, file));
-            checks.push_back(preflightTwoOutputs(job.output_path, file));
+            RELIEF_TRY(preflightDistinct(job.mesh_path, file));
+            RELIEF_TRY(preflightTwoOutputs(job.output_path, file));
         }
         for (const std::string& other : files) {
-            checks.push_back(preflightTwoOutputs(other, file));
-        }
-        for (const Result<void>& check : checks) {
-            if (!check) {
-                return check;
-            }
+            RELIEF_TRY(preflightTwoOutputs(other, file));
         }
         files.push_back(file);
     }
@@ -186,14 +182,14 @@ Result<void> verdict(const std::vector<AssetResult>& assets, const RecipeCounts&
     return {};
 }
 
-/// What a run of a recipe is about.
+/// What a run of a recipe works on.
 struct RecipeWork {
     RecipeRun run;
     std::vector<RecipeJob> jobs;    ///< of the shard
     std::vector<fs::path> folders;  ///< that patterns looked through
 };
 
-/// Reads the recipe and finds out what it asks for; nothing is baked or written yet.
+/// Reads the recipe and plans the run; bakes and writes nothing.
 Result<RecipeWork> plan(const RecipeOptionsOfBake& options, const RecipeCall& call) {
     RecipeWork work;
     RELIEF_TRY(checkOptions(call));
@@ -234,7 +230,7 @@ const char* endEvent(AssetState state) {
     }
 }
 
-/// Bakes what is not up to date, and says so while it happens.
+/// Bakes what is not up to date, and shows progress.
 Result<RecipeResult> bakeAll(RecipeWork& work, bool shown, RecipeEvents& events) {
     RecipeDisplay display(work.jobs.size(), shown);
     RecipeRun run = work.run;
@@ -275,7 +271,7 @@ void writeSummary(const RecipeResult& result, const RecipeCounts& counts, double
     events.write(summary);
 }
 
-/// What standard output is for.
+/// Chooses what standard output carries.
 Result<void> printResult(const RecipeOptionsOfBake& options, const RecipeCall& call, const RecipeRun& run,
                          const RecipeResult& result, double ms) {
     if (!call.json) {

@@ -1,5 +1,6 @@
 #include "bake/cli/response_file.h"
 
+#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 
 namespace relief {
@@ -106,12 +107,9 @@ struct Expander {
                                                std::to_string(kResponseDepthMax) +
                                                " deep; break the circle, or write @@ for a real @");
         }
-        const auto bytes = readFile(path, kResponseBytesMax);
-        if (!bytes) {
-            return fail(bytes.error().code, "response file: " + bytes.error().message);
-        }
+        const auto bytes = RELIEF_TRY(inFront("response file", readFile(path, kResponseBytesMax)));
         const std::vector<std::string> words =
-            RELIEF_TRY(responseWords({reinterpret_cast<const char*>(bytes->data()), bytes->size()},
+            RELIEF_TRY(responseWords({reinterpret_cast<const char*>(bytes.data()), bytes.size()},
                                      quoted.substr(1, quoted.size() - 2)));
         total += words.size();
         if (total > kResponseWordsMax) {

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr unsigned kJsonDepthMax = 256;
+constexpr int kJsonDepthMax = 256;
 constexpr std::uint64_t kNumberMax = std::uint64_t{1} << 53;
 
 // Required extensions that change no position, or that assimp decodes (Draco).
@@ -54,26 +54,14 @@ std::string_view jsonText(std::span<const std::byte> bytes) {
     return text.substr(sizeof(header), header[3]);
 }
 
-/// Brackets within brackets: parsers and the documents that they make recurse.
-void checkDepth(std::string_view text) {
-    unsigned depth = 0;
-    bool in_string = false;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const char c = text[i];
-        if (in_string) {
-            i += c == '\\' ? 1 : 0;
-            in_string = c != '"';
-        } else if (c == '"') {
-            in_string = true;
-        } else if (c == '[' || c == '{') {
-            if (++depth > kJsonDepthMax) {
-                throw Refusal{ErrorCode::kLimit,
-                              "its JSON is nested more than " + std::to_string(kJsonDepthMax) + " deep"};
-            }
-        } else if ((c == ']' || c == '}') && depth > 0) {
-            --depth;
-        }
+/// The callback of the parser. It refuses deep nesting, because other parsers, and documents, recurse.
+bool checkDepth(int depth, Json::parse_event_t event, Json& /*parsed*/) {
+    using Event = Json::parse_event_t;
+    if (depth >= kJsonDepthMax && (event == Event::object_start || event == Event::array_start)) {
+        throw Refusal{ErrorCode::kLimit,
+                      "its JSON is nested more than " + std::to_string(kJsonDepthMax) + " deep"};
     }
+    return true;
 }
 
 class GltfCheck {
@@ -267,7 +255,7 @@ class GltfCheck {
         const bool draco = primitive.contains("extensions") && primitive["extensions"].is_object() &&
                            primitive["extensions"].contains("KHR_draco_mesh_compression");
         if (draco) {
-            return;  // its accessors only say what the decoder will find
+            return;  // its accessors only describe what the decoder will find
         }
         const std::optional<std::uint64_t> positions = number(primitive["attributes"], "POSITION");
         if (!positions) {
@@ -313,7 +301,7 @@ class GltfCheck {
                 }
             }
         }
-        // Each has one parent at most: what no root leads to goes round in a ring.
+        // Each node has at most one parent, so a node that no root leads to is part of a ring.
         std::vector<std::uint64_t> open;
         for (std::uint64_t i = 0; i < parents.size(); ++i) {
             if (parents[i] == 0) {
@@ -365,8 +353,7 @@ Result<std::vector<std::string>> checkGltf(std::span<const std::byte> bytes, con
     };
     try {
         const std::string_view text = jsonText(bytes);
-        checkDepth(text);
-        Json document = Json::parse(text.begin(), text.end(), nullptr, false);
+        Json document = Json::parse(text.begin(), text.end(), checkDepth, false);
         if (document.is_discarded()) {
             return refused(ErrorCode::kInvalidInput, "it is no valid JSON");
         }

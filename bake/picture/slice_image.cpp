@@ -46,6 +46,23 @@ cairo_status_t append(void* png, const unsigned char* data, unsigned length) {
     return CAIRO_STATUS_SUCCESS;
 }
 
+/// A surface with the picture's pixels; its status says if it could not be made.
+Surface surfaceOf(const RgbImage& image) {
+    Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(image.width),
+                                               static_cast<int>(image.height)));
+    if (cairo_surface_status(surface.get()) == CAIRO_STATUS_SUCCESS) {
+        cairo_surface_flush(surface.get());
+        unsigned char* to = cairo_image_surface_get_data(surface.get());
+        const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(surface.get()));
+        for (std::uint32_t y = 0; y < image.height; ++y) {
+            std::memcpy(to + y * stride, &image.pixels[std::size_t{y} * image.width],
+                        image.width * sizeof(std::uint32_t));
+        }
+        cairo_surface_mark_dirty(surface.get());
+    }
+    return surface;
+}
+
 // --- numbers ---
 
 double log10(double value) {
@@ -241,21 +258,16 @@ class Figure {
     void drawSamples(const Rect& panel, bool distance) {
         const auto width = static_cast<int>(slice_.width);
         const auto height = static_cast<int>(slice_.height);
-        const Surface image(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height));
+        RgbImage samples{slice_.width, slice_.height, {}};
+        for (std::uint32_t y = slice_.height; y-- > 0;) {
+            for (std::uint32_t x = 0; x < slice_.width; ++x) {
+                samples.pixels.push_back(toPixel(sampleColor(slice_.sample(x, y), distance)));
+            }
+        }
+        const Surface image = surfaceOf(samples);
         if (cairo_surface_status(image.get()) != CAIRO_STATUS_SUCCESS) {
             return;
         }
-        cairo_surface_flush(image.get());
-        unsigned char* pixels = cairo_image_surface_get_data(image.get());
-        const int stride = cairo_image_surface_get_stride(image.get());
-        for (std::uint32_t y = 0; y < slice_.height; ++y) {
-            unsigned char* row = pixels + std::ptrdiff_t{stride} * (height - 1 - static_cast<int>(y));
-            for (std::uint32_t x = 0; x < slice_.width; ++x) {
-                const std::uint32_t pixel = toPixel(sampleColor(slice_.sample(x, y), distance));
-                std::memcpy(row + std::size_t{4} * x, &pixel, sizeof(pixel));
-            }
-        }
-        cairo_surface_mark_dirty(image.get());
         cairo_t* cr = context_.get();
         cairo_save(cr);
         cairo_translate(cr, panel.x, panel.y);
@@ -329,7 +341,7 @@ class Figure {
     template <class Visit>
     static void forTicks(double from, double length, double step, const Visit& visit) {
         const double first = std::ceil(from / step - 1e-9);
-        // By count, so that huge coordinates with a tiny step cannot loop for ever.
+        // Counted, so that huge coordinates with a tiny step cannot loop for ever.
         for (int i = 0; i < 40; ++i) {
             const double value = (first + i) * step;
             if (!(value <= from + length)) {
@@ -349,7 +361,7 @@ class Figure {
     }
 
     void drawColorBar() {
-        // Points at both ends: the colour stays the same beyond them.
+        // The points at both ends say that the colour stays the same beyond them.
         const double point = std::floor(em(0.95));
         const Rect bar{color_bar_.x, color_bar_.y + point, color_bar_.width, color_bar_.height - 2.0 * point};
         fillColorBar(bar, point);
@@ -463,21 +475,8 @@ class Figure {
 }  // namespace
 
 Result<std::vector<std::byte>> encodePng(const RgbImage& image) {
-    const std::unique_ptr<cairo_surface_t, SurfaceDestroy> surface(cairo_image_surface_create(
-        CAIRO_FORMAT_RGB24, static_cast<int>(image.width), static_cast<int>(image.height)));
     std::vector<std::byte> png;
-    cairo_status_t status = cairo_surface_status(surface.get());
-    if (status == CAIRO_STATUS_SUCCESS) {
-        cairo_surface_flush(surface.get());
-        unsigned char* to = cairo_image_surface_get_data(surface.get());
-        const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(surface.get()));
-        for (std::uint32_t y = 0; y < image.height; ++y) {
-            std::memcpy(to + y * stride, &image.pixels[std::size_t{y} * image.width],
-                        image.width * sizeof(std::uint32_t));
-        }
-        cairo_surface_mark_dirty(surface.get());
-        status = cairo_surface_write_to_png_stream(surface.get(), append, &png);
-    }
+    const cairo_status_t status = cairo_surface_write_to_png_stream(surfaceOf(image).get(), append, &png);
     if (status != CAIRO_STATUS_SUCCESS) {
         return fail(ErrorCode::kFailure,
                     std::string("cannot make a picture: ") + cairo_status_to_string(status));

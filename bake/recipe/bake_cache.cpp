@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "formats/base/descriptor.h"
+#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
 #include "formats/base/text.h"
@@ -23,7 +24,7 @@ constexpr std::uint64_t kCacheBytesMax = std::uint64_t{256} << 20;
 constexpr const char* kFormat = "relief-cache";
 constexpr int kVersion = 1;
 
-/// Holds the lock of a folder. Without one where the file system knows none.
+/// Holds the lock of a folder, or none where the file system has no locks.
 class FolderLock {
   public:
     explicit FolderLock(const fs::path& folder)
@@ -36,44 +37,19 @@ class FolderLock {
     Descriptor folder_;
 };
 
-const std::string* textOf(const Json& object, const char* key) {
-    const auto found = object.find(key);
-    return found == object.end() ? nullptr : found->get_ptr<const std::string*>();
-}
-
-std::optional<BakeCacheEntry> entryOf(const Json& json) {
+/// Throws Json::exception where a member is missing or of another type.
+BakeCacheEntry entryOf(const Json& json) {
     BakeCacheEntry entry;
-    if (!json.is_object()) {
-        return std::nullopt;
+    entry.tool = json.at("tool").get<std::string>();
+    entry.output_hash = json.at("output_hash").get<std::string>();
+    entry.output_bytes = json.at("output_bytes").get_ref<const Json::number_unsigned_t&>();
+    entry.options = json.at("options").get<std::vector<std::string>>();
+    const Json& inputs = json.at("inputs");
+    static_cast<void>(inputs.at(0));  // an entry without inputs would hold for ever
+    for (const Json& input : inputs) {
+        entry.inputs.push_back({input.at("file").get<std::string>(), input.at("hash").get<std::string>()});
     }
-    const std::string* tool = textOf(json, "tool");
-    const std::string* hash = textOf(json, "output_hash");
-    const auto bytes = json.find("output_bytes");
-    const auto options = json.find("options");
-    const auto inputs = json.find("inputs");
-    if (tool == nullptr || hash == nullptr || bytes == json.end() || !bytes->is_number_unsigned() ||
-        options == json.end() || !options->is_array() || inputs == json.end() || !inputs->is_array()) {
-        return std::nullopt;
-    }
-    entry.tool = *tool;
-    entry.output_hash = *hash;
-    entry.output_bytes = bytes->get<std::uint64_t>();
-    for (const Json& option : *options) {
-        if (!option.is_string()) {
-            return std::nullopt;
-        }
-        entry.options.push_back(option.get<std::string>());
-    }
-    for (const Json& input : *inputs) {
-        const std::string* file = input.is_object() ? textOf(input, "file") : nullptr;
-        const std::string* content = input.is_object() ? textOf(input, "hash") : nullptr;
-        if (file == nullptr || content == nullptr) {
-            return std::nullopt;
-        }
-        entry.inputs.push_back({*file, *content});
-    }
-    // An entry without inputs would hold for ever.
-    return entry.inputs.empty() ? std::nullopt : std::optional(entry);
+    return entry;
 }
 
 }  // namespace
@@ -82,7 +58,7 @@ Result<std::string> toolIdentity() {
     const fs::path self = "/proc/self/exe";
     const auto bytes = RELIEF_TRY(readFile(self));
     std::string identity = std::string("relief ") + RELIEF_VERSION + " " + xxh3_128Hex(bytes);
-    // The program that reads meshes for it, where that lies beside it.
+    // The worker that reads meshes, if it lies beside this program.
     std::error_code error;
     const fs::path importer = fs::read_symlink(self, error).parent_path() / "relief-import";
     if (const std::optional<std::string> hash = hashOfFile(importer); hash) {
@@ -101,29 +77,19 @@ std::optional<std::string> hashOfFile(const fs::path& path) {
 }
 
 Result<BakeCacheEntries> parseBakeCache(std::string_view text) {
-    const auto invalid = [] {
-        return fail(ErrorCode::kInvalidInput, "its contents are not those of a cache");
-    };
-    const Json json = Json::parse(text, nullptr, false);
-    if (json.is_discarded() || !json.is_object()) {
-        return invalid();
-    }
-    const std::string* format = textOf(json, "format");
-    const auto version = json.find("version");
-    const auto outputs = json.find("outputs");
-    if (format == nullptr || *format != kFormat || version == json.end() || *version != kVersion ||
-        outputs == json.end() || !outputs->is_object()) {
-        return invalid();
-    }
-    BakeCacheEntries entries;
-    for (const auto& [name, value] : outputs->items()) {
-        std::optional<BakeCacheEntry> entry = entryOf(value);
-        if (!entry) {
-            return invalid();
+    try {
+        const Json json = Json::parse(text);
+        if (json.at("format") == kFormat && json.at("version") == kVersion) {
+            BakeCacheEntries entries;
+            for (const auto& [name, value] : json.at("outputs").get_ref<const Json::object_t&>()) {
+                entries.insert_or_assign(name, entryOf(value));
+            }
+            return entries;
         }
-        entries.insert_or_assign(name, std::move(*entry));
+    } catch (const Json::exception&) {
+        // What exactly is wrong does not matter: the file is written anew.
     }
-    return entries;
+    return fail(ErrorCode::kInvalidInput, "its contents are not those of a cache");
 }
 
 std::string bakeCacheText(const BakeCacheEntries& entries) {
@@ -153,17 +119,13 @@ Result<BakeCacheEntries> loadBakeCache(const fs::path& output_folder) {
         return fail(ErrorCode::kInvalidInput, quotedPath(path) + ": it is not a regular file");
     }
     const auto bytes = RELIEF_TRY(readFile(path, kCacheBytesMax));
-    Result<BakeCacheEntries> entries =
-        parseBakeCache({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-    if (!entries) {
-        return fail(entries.error().code, quotedPath(path) + ": " + entries.error().message);
-    }
-    return entries;
+    return inFront(quotedPath(path),
+                   parseBakeCache({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
 }
 
 Result<void> updateBakeCache(const fs::path& output_folder, const BakeCacheEntries& entries) {
     const FolderLock lock(output_folder);
-    // What cannot be read is replaced.
+    // A cache that cannot be read is replaced.
     BakeCacheEntries all = loadBakeCache(output_folder).value_or(BakeCacheEntries{});
     for (const auto& [name, entry] : entries) {
         all.insert_or_assign(name, entry);

@@ -4,12 +4,10 @@
 #include <glm/geometric.hpp>
 #include <string>
 
+#include "formats/base/finite.h"
+
 namespace relief {
 namespace {
-
-bool finite(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 bool positive(float x) {
     return x > 0.0F && std::isfinite(x);
@@ -47,7 +45,7 @@ Result<void> checkNoise(const CurlNoise& noise) {
 }  // namespace
 
 Result<void> checkAir(const AirSettings& air) {
-    if (!finite(air.wind)) {
+    if (!isFinite(air.wind)) {
         return fail(ErrorCode::kUsage, "the wind must be finite");
     }
     if (air.viscosity && !(*air.viscosity >= 0.0F && std::isfinite(*air.viscosity))) {
@@ -61,7 +59,7 @@ Result<void> checkAir(const AirSettings& air) {
     }
     for (std::size_t i = 0; i < air.attractors.size(); ++i) {
         const Attractor& one = air.attractors[i];
-        if (!finite(one.position) || !std::isfinite(one.strength)) {
+        if (!isFinite(one.position) || !std::isfinite(one.strength)) {
             return wrong("attractor", i, "needs a finite position and strength");
         }
         if (!positive(one.radius) || !positive(one.reach) || !knownFalloff(one.falloff)) {
@@ -71,7 +69,7 @@ Result<void> checkAir(const AirSettings& air) {
     for (std::size_t i = 0; i < air.vortices.size(); ++i) {
         const Vortex& one = air.vortices[i];
         const float length = glm::length(one.axis);
-        if (!finite(one.center) || !std::isfinite(one.strength) || !positive(length)) {
+        if (!isFinite(one.center) || !std::isfinite(one.strength) || !positive(length)) {
             return wrong("vortex", i, "needs a finite center and strength, and an axis other than 0");
         }
         if (!positive(one.radius) || !knownFalloff(one.falloff)) {
@@ -79,9 +77,7 @@ Result<void> checkAir(const AirSettings& air) {
         }
     }
     if (air.curl_noise) {
-        if (auto checked = checkNoise(*air.curl_noise); !checked) {
-            return checked;
-        }
+        RELIEF_TRY(checkNoise(*air.curl_noise));
     }
     return air.flow ? checkFlow(*air.flow) : Result<void>{};
 }

@@ -5,15 +5,13 @@
 #include <glm/common.hpp>
 #include <string>
 
+#include "formats/base/finite.h"
+
 namespace relief {
 namespace {
 
 std::string sizeText(const std::array<std::uint64_t, 3>& size) {
     return std::to_string(size[0]) + "x" + std::to_string(size[1]) + "x" + std::to_string(size[2]);
-}
-
-bool finite(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
 }  // namespace
@@ -42,14 +40,12 @@ Result<void> checkFlowSize(const std::array<std::uint64_t, 3>& size) {
 
 Result<void> checkFlow(const FlowField& flow) {
     const std::array<std::uint64_t, 3> size{flow.size[0], flow.size[1], flow.size[2]};
-    if (auto sized = checkFlowSize(size); !sized) {
-        return sized;
-    }
+    RELIEF_TRY(checkFlowSize(size));
     if (flow.nodes.size() != size[0] * size[1] * size[2]) {
         return fail(ErrorCode::kInvalidInput, "a flow of " + sizeText(size) + " nodes comes with " +
                                                   std::to_string(flow.nodes.size()) + " velocities");
     }
-    if (!finite(flow.box_min) || !finite(flow.box_max) || !finite(flow.box_max - flow.box_min) ||
+    if (!isFinite(flow.box_min) || !isFinite(flow.box_max) || !isFinite(flow.box_max - flow.box_min) ||
         !std::isfinite(flow.gain)) {
         return fail(ErrorCode::kInvalidInput, "a flow's box and gain must be finite");
     }
@@ -59,7 +55,7 @@ Result<void> checkFlow(const FlowField& flow) {
                         "a flow's box is empty on the " + std::string(1, "xyz"[axis]) + " axis");
         }
     }
-    const auto bad = std::find_if_not(flow.nodes.begin(), flow.nodes.end(), finite);
+    const auto bad = std::find_if_not(flow.nodes.begin(), flow.nodes.end(), isFinite);
     if (bad != flow.nodes.end()) {
         const auto index = static_cast<std::size_t>(bad - flow.nodes.begin());
         return fail(ErrorCode::kInvalidInput, "the velocity at node " + std::to_string(index % size[0]) +
@@ -93,7 +89,7 @@ glm::vec3 flowVelocity(const FlowField& flow, const glm::vec3& p) {
         const auto last = static_cast<float>(flow.size[a] - 1);
         const float u = (p[axis] - flow.box_min[axis]) * scale[axis];
         const float in = u > 0.0F ? std::min(u, last) : 0.0F;  // 0 for NaN too
-        // The last node has no neighbour beyond: there the cell before it is taken, at its far end.
+        // The last node has no neighbour beyond it, so the far end of the cell before it is used.
         low[a] =
             std::min(static_cast<std::size_t>(in), static_cast<std::size_t>(std::max(flow.size[a], 2U)) - 2);
         high[a] = std::min(low[a] + 1, static_cast<std::size_t>(flow.size[a]) - 1);

@@ -1,68 +1,38 @@
 // What a birth costs: relief-bench-births [BIRTHS_PER_STEP [CAPACITY…]] prints JSON. Nothing here is a test:
 // machines are shared and noisy.
 //
-// Each capacity is run in its steady state, where every step so many die as are born (a quarter of it at
-// most): what a long run pays, and not what an empty system pays. `emit` samples; `spawn` takes indices and
+// Each capacity is run in its steady state, where each step as many die as are born (at most a quarter of the
+// capacity): what a long run pays, not what an empty system pays. `emit` samples; `spawn` takes indices and
 // files the deaths; `free_and_upload` is what births and deaths add to the call of a step: indices given
 // back, and the births handed to the driver; `draw` is what they add to a step until it is finished: the
 // GPU's work, and the CPU's where that plays the GPU. All but `draw` is CPU time of the one
 // thread. `bookkeeping` is indices and deaths alone, without GL.
-#include <time.h>
-
 #include <algorithm>
-#include <chrono>
-#include <cstdio>
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 #include <vector>
 
+#include "runtime/bench/bench_tool.h"
 #include "runtime/gl/gl_context.h"
 #include "runtime/particles/death_queue.h"
 #include "runtime/particles/particle_system.h"
 
+namespace relief {
 namespace {
-
-using relief::Birth;
-using relief::Emitter;
-using relief::EmitterSettings;
-using relief::EmitterShape;
-using Json = nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
-
-/// Time that this thread has computed: others on the machine do not count.
-struct Cpu {
-    using duration = std::chrono::nanoseconds;
-    using time_point = std::chrono::time_point<Cpu>;
-    using rep = duration::rep;
-    using period = duration::period;
-    static constexpr bool is_steady = true;
-    static time_point now() {
-        timespec t{};
-        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-        return time_point(duration(std::chrono::seconds(t.tv_sec)) + duration(t.tv_nsec));
-    }
-};
 
 constexpr float kDt = 1.0F / 60.0F;
 
-template <class C>
-double msSince(std::chrono::time_point<C> begun) {
-    return std::chrono::duration<double, std::milli>(C::now() - begun).count();
+/// Times what this thread computes.
+CpuStopwatch threadStopwatch() {
+    return CpuStopwatch(CLOCK_THREAD_CPUTIME_ID);
 }
 
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
-/// A fountain: the dearest shape and law of speed.
+/// A fountain has the most expensive shape and law of speed.
 EmitterSettings fountain(double rate) {
     EmitterSettings settings;
     settings.shape = EmitterShape::kSphere;
     settings.radius = 1.0F;
     settings.rate = rate;
-    settings.aim = relief::EmitterAim{glm::vec3(0.0F, 1.0F, 0.0F), 20.0F, 3.0F, 3.0F, 0.5F};
+    settings.aim = EmitterAim{glm::vec3(0.0F, 1.0F, 0.0F), 20.0F, 3.0F, 3.0F, 0.5F};
     return settings;
 }
 
@@ -73,9 +43,9 @@ double emitRate(const EmitterSettings& settings, std::size_t births_per_step) {
     std::vector<double> times;
     for (int step = 0; step < 60; ++step) {
         births.clear();
-        const Cpu::time_point begun = Cpu::now();
+        const CpuStopwatch watch = threadStopwatch();
         emitter.emit(1.0 / 60.0, births_per_step, births);
-        times.push_back(msSince(begun));
+        times.push_back(watch.ms());
     }
     return static_cast<double>(births_per_step) / median(times);
 }
@@ -84,7 +54,7 @@ struct Cost {
     std::vector<double> emit, spawn, step, drawn;
 };
 
-/// Births a step that a capacity bears in its steady state.
+/// Births per step that a capacity can sustain.
 std::uint32_t steadyBirths(std::uint32_t capacity, std::uint32_t per_step) {
     return std::min(per_step, capacity / 4);
 }
@@ -94,8 +64,8 @@ float steadyLife(std::uint32_t capacity, std::uint32_t per_step) {
     return 0.9F * static_cast<float>(capacity) / (60.0F * static_cast<float>(per_step));
 }
 
-/// On to the steady state, in steps long enough to pass 1.5 lives in 32 of them.
-void fill(relief::ParticleSystem& particles, Emitter& emitter, float life) {
+/// Goes to the steady state: 32 steps that together last 1.5 lives.
+void fill(ParticleSystem& particles, Emitter& emitter, float life) {
     std::vector<Birth> births;
     const double skip = 1.5 * static_cast<double>(life) / 32.0;
     for (int i = 0; i < 32; ++i) {
@@ -107,34 +77,34 @@ void fill(relief::ParticleSystem& particles, Emitter& emitter, float life) {
     glFinish();
 }
 
-/// Times a step, its call and its end.
-void timeStep(relief::ParticleSystem& particles, float dt, Cost& cost) {
-    const Clock::time_point step_begun = Clock::now();
-    const Cpu::time_point begun = Cpu::now();
+/// Times the call of a step, and the step until it is finished.
+void timeStep(ParticleSystem& particles, float dt, Cost& cost) {
+    const Stopwatch whole;
+    const CpuStopwatch watch = threadStopwatch();
     particles.step(dt);
-    cost.step.push_back(msSince(begun));
+    cost.step.push_back(watch.ms());
     glFinish();
-    cost.drawn.push_back(msSince(step_begun));
+    cost.drawn.push_back(whole.ms());
 }
 
-Cost costWithBirths(relief::ParticleSystem& particles, Emitter& emitter) {
+Cost costWithBirths(ParticleSystem& particles, Emitter& emitter) {
     Cost cost;
     std::vector<Birth> births;
     for (int i = 0; i < 24; ++i) {
         births.clear();
-        Cpu::time_point begun = Cpu::now();
+        CpuStopwatch watch = threadStopwatch();
         emitter.emit(static_cast<double>(kDt), particles.room(), births);
-        cost.emit.push_back(msSince(begun));
-        begun = Cpu::now();
+        cost.emit.push_back(watch.ms());
+        watch = threadStopwatch();
         particles.spawn(births);
-        cost.spawn.push_back(msSince(begun));
+        cost.spawn.push_back(watch.ms());
         timeStep(particles, kDt, cost);
     }
     return cost;
 }
 
 /// The same steps without births: the difference is the births' own.
-Cost costWithout(relief::ParticleSystem& particles) {
+Cost costWithout(ParticleSystem& particles) {
     Cost cost;
     for (int i = 0; i < 12; ++i) {
         timeStep(particles, 1e-6F, cost);
@@ -149,7 +119,7 @@ Json benchCapacity(std::uint32_t capacity, std::uint32_t per_step) {
     const float life = steadyLife(capacity, per_step);
     settings.lifetime_min = 0.5F * life;
     settings.lifetime_max = 1.5F * life;
-    auto particles = relief::ParticleSystem::create({.capacity = capacity});
+    auto particles = ParticleSystem::create({.capacity = capacity});
     if (!particles) {
         return {{"capacity", capacity}, {"error", particles.error().message}};
     }
@@ -178,23 +148,23 @@ Json benchCapacity(std::uint32_t capacity, std::uint32_t per_step) {
 Json benchDeaths(std::uint32_t capacity, std::uint32_t per_step) {
     per_step = steadyBirths(capacity, per_step);
     const float life = steadyLife(capacity, per_step);
-    relief::IndexAllocator allocator(capacity);
-    relief::DeathQueue queue(capacity);
-    relief::Pcg32 random(1);
+    IndexAllocator allocator(capacity);
+    DeathQueue queue(capacity);
+    Pcg32 random(1);
     std::vector<std::uint32_t> dead;
     std::vector<double> push;
     std::vector<double> pop;
     const int warm_up = static_cast<int>(90.0F * life) + 1;
     for (int step = 0; step < warm_up + 60; ++step) {
         const float now = static_cast<float>(step) * kDt;
-        Cpu::time_point begun = Cpu::now();
+        CpuStopwatch watch = threadStopwatch();
         for (std::uint32_t i = 0; i < per_step; ++i) {
             if (const auto index = allocator.acquire(); index) {
                 queue.push(now + random.between(0.5F * life, 1.5F * life), *index);
             }
         }
-        const double pushed = msSince(begun);
-        begun = Cpu::now();
+        const double pushed = watch.ms();
+        watch = threadStopwatch();
         dead.clear();
         queue.popUntil(now + kDt, dead);
         for (const std::uint32_t index : dead) {
@@ -202,7 +172,7 @@ Json benchDeaths(std::uint32_t capacity, std::uint32_t per_step) {
         }
         if (step >= warm_up) {
             push.push_back(pushed);
-            pop.push_back(msSince(begun));
+            pop.push_back(watch.ms());
         }
     }
     const double all = 1e6 / per_step;
@@ -211,9 +181,7 @@ Json benchDeaths(std::uint32_t capacity, std::uint32_t per_step) {
             {"worst_ms_per_step", *std::max_element(pop.begin(), pop.end())}};
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+Result<Json> bench(int argc, char** argv) {
     const auto number = [&](int i) { return static_cast<std::uint32_t>(std::strtoul(argv[i], nullptr, 10)); };
     const std::uint32_t per_step = std::max(argc > 1 ? number(1) : 16667U, 1U);
     std::vector<std::uint32_t> capacities;
@@ -223,13 +191,9 @@ int main(int argc, char** argv) {
     if (capacities.empty()) {
         capacities = {1U << 16, 1U << 18, 1U << 20, 1U << 22};
     }
-    auto context = relief::GlContext::create(relief::GlApi::kGl33Core);
-    if (!context) {
-        std::fprintf(stderr, "relief-bench-births: error: %s\n", context.error().message.c_str());
-        return static_cast<int>(context.error().code);
-    }
+    const auto context = RELIEF_TRY(GlContext::create(GlApi::kGl33Core));
     Json json;
-    json["device"] = (*context)->description();
+    json["device"] = context->description();
     EmitterSettings box = fountain(60.0 * per_step);
     box.shape = EmitterShape::kBox;
     box.aim.reset();
@@ -240,6 +204,12 @@ int main(int argc, char** argv) {
         one["bookkeeping"] = benchDeaths(capacity, per_step);
         json["capacities"].push_back(std::move(one));
     }
-    std::puts(json.dump(2).c_str());
-    return 0;
+    return json;
+}
+
+}  // namespace
+}  // namespace relief
+
+int main(int argc, char** argv) {
+    return relief::finishBench("relief-bench-births", relief::bench(argc, argv));
 }

@@ -5,15 +5,14 @@
 // positions have changed before it, upload of them excluded.
 #include <algorithm>
 #include <array>
-#include <chrono>
-#include <cstdio>
 #include <functional>
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/mat4x4.hpp>
-#include <nlohmann/json.hpp>
 #include <vector>
 
+#include "formats/collider.h"
+#include "runtime/bench/bench_tool.h"
 #include "runtime/depth_maps/depth_map_renderer.h"
 #include "runtime/files/mesh_file.h"
 #include "runtime/gl/gl_context.h"
@@ -26,27 +25,16 @@ namespace {
 constexpr std::uint32_t kSize = 512;
 constexpr int kRepeatsLeast = 5;
 constexpr int kRepeatsMost = 200;
-constexpr double kSeconds = 1.0;  // repeats of one measurement go on for so long
-
-using Json = nlohmann::ordered_json;
+constexpr double kSeconds = 1.0;  // of repeats for one measurement
 
 struct Times {
-    double gpu_ms = 0.0;  ///< 0: this GL does not say
+    double gpu_ms = 0.0;  ///< 0: this GL does not measure it
     double wall_ms = 0.0;
 };
-
-double medianOf(std::vector<double>& all) {
-    if (all.empty()) {
-        return 0.0;
-    }
-    std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end());
-    return all[all.size() / 2];
-}
 
 /// \param before  done before each run, not measured.
 Times measure(
     const std::function<void()>& work, const std::function<void()>& before = [] {}) {
-    using Clock = std::chrono::steady_clock;
     GpuTimer timer;
     std::vector<double> gpu;
     std::vector<double> wall;
@@ -55,12 +43,12 @@ Times measure(
     for (int i = 0; i < kRepeatsMost && (i < kRepeatsLeast || sum < 1000.0 * kSeconds); ++i) {
         before();
         glFinish();
-        const auto start = Clock::now();
+        const Stopwatch watch;
         timer.begin(Stage::kDraw);
         work();
         timer.end();
         glFinish();
-        const double ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+        const double ms = watch.ms();
         const StageTime& time = timer.times()[static_cast<std::size_t>(Stage::kDraw)];
         sum += ms;
         if (i > 0) {  // in the first the driver compiles
@@ -71,31 +59,18 @@ Times measure(
         }
         gpu_before = time.gpu_ms;
     }
-    return {medianOf(gpu), medianOf(wall)};
-}
-
-struct Box {
-    glm::dvec3 min, max;
-};
-
-Box boxOf(const PictureMesh& mesh) {
-    Box box{glm::dvec3(mesh.positions[0]), glm::dvec3(mesh.positions[0])};
-    for (const glm::vec3& p : mesh.positions) {
-        box.min = glm::min(box.min, glm::dvec3(p));
-        box.max = glm::max(box.max, glm::dvec3(p));
-    }
-    return box;
+    return {median(gpu), median(wall)};
 }
 
 /// A view along one axis, or a cube, round the whole box.
-DepthMapFrame frameFor(const Box& box, MapFormat format, Compare compare, Decode decode, int along) {
+DepthMapFrame frameFor(const Bounds& box, MapFormat format, Compare compare, Decode decode, int along) {
     DepthMapFrame frame;
     frame.format = format;
     frame.compare = compare;
     frame.decode = decode;
     frame.width = frame.height = kSize;
-    const glm::dvec3 size = 1.02 * (box.max - box.min);
-    const glm::dvec3 middle = 0.5 * (box.min + box.max);
+    const glm::dvec3 size = 1.02 * glm::dvec3(box.max - box.min);
+    const glm::dvec3 middle = glm::dvec3(box.center());
     const bool cube = format == MapFormat::kCube8;
     frame.origin = cube ? middle : middle - 0.5 * size;
     for (int k = 0; k < 3; ++k) {
@@ -113,9 +88,8 @@ class BareMesh {
     static Result<BareMesh> create(const PictureMesh& mesh) {
         BareMesh bare;
         for (int words = 0; words < 2; ++words) {
-            auto program = RELIEF_TRY(makeProgram("bare_draw.vert", "bare_draw.frag",
-                                                  words == 0 ? "" : "#define RELIEF_WORDS 1\n"));
-            bare.program_[words] = std::move(program);
+            bare.program_[words] = RELIEF_TRY(makeProgram("bare_draw.vert", "bare_draw.frag",
+                                                          words == 0 ? "" : "#define RELIEF_WORDS 1\n"));
         }
         bare.corners_ = static_cast<GLsizei>(mesh.triangles.size());
         bare.positions_ = makeBuffer();
@@ -243,7 +217,10 @@ double ratio(double ours, double bare) {
 
 Result<Json> benchSet(const MapSet& set, Decode decode, const PictureMesh& mesh, const BareMesh& bare,
                       GpuMesh& gpu_mesh, DepthMapRenderer& renderer) {
-    const Box box = boxOf(mesh);
+    Bounds box;
+    for (const glm::vec3& p : mesh.positions) {
+        box.add(p);
+    }
     std::vector<DepthMapFrame> frames;
     std::vector<DepthMapTarget> targets;
     for (int view = 0; view < set.views; ++view) {
@@ -310,19 +287,14 @@ Result<Json> bench(const char* path) {
     return json;
 }
 
+Result<Json> bench(int argc, char** argv) {
+    return argc == 2 ? bench(argv[1])
+                     : fail(ErrorCode::kUsage, "usage: relief-bench-depth-maps MESH (.obj or .ply)");
+}
+
 }  // namespace
 }  // namespace relief
 
 int main(int argc, char** argv) {
-    if (argc != 2) {
-        std::fputs("usage: relief-bench-depth-maps MESH (.obj or .ply)\n", stderr);
-        return 1;
-    }
-    const relief::Result<nlohmann::ordered_json> json = relief::bench(argv[1]);
-    if (!json) {
-        std::fprintf(stderr, "relief-bench-depth-maps: error: %s\n", json.error().message.c_str());
-        return static_cast<int>(json.error().code);
-    }
-    std::printf("%s\n", json->dump(2).c_str());
-    return 0;
+    return relief::finishBench("relief-bench-depth-maps", relief::bench(argc, argv));
 }

@@ -2,15 +2,12 @@
 //
 // A twist moves the mesh; its three front-back maps of 256² are rendered before each step. Each part is timed
 // alone, as some runs of it between two glFinish, by the clock on the wall; parts take turns.
-#include <algorithm>
-#include <chrono>
-#include <cstdio>
 #include <cstdlib>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "runtime/bench/bench_tool.h"
 #include "runtime/bench/bench_variants.h"
 #include "runtime/collider/deform_pass.h"
 #include "runtime/collider/live_collider.h"
@@ -21,17 +18,8 @@
 namespace relief {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-using Json = nlohmann::ordered_json;
-
 constexpr int kRuns = 16;
 constexpr int kRounds = 9;
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 struct Part {
     std::string name;
@@ -43,12 +31,12 @@ Result<void> measure(std::vector<Part>& parts) {
     for (int round = -1; round < kRounds; ++round) {  // the first for the driver, which compiles
         for (Part& part : parts) {
             glFinish();
-            const Clock::time_point begun = Clock::now();
+            const Stopwatch watch;
             for (int i = 0; i < kRuns; ++i) {
                 RELIEF_TRY(part.run());
             }
             glFinish();
-            const double ms = std::chrono::duration<double, std::milli>(Clock::now() - begun).count();
+            const double ms = watch.ms();
             if (round >= 0) {
                 part.ms.push_back(ms / kRuns);
             }
@@ -138,24 +126,20 @@ Result<Json> bench(const std::string& path, std::uint32_t count) {
     return json;
 }
 
+Result<Json> bench(int argc, char** argv) {
+    if (argc != 2 && argc != 3) {
+        return fail(ErrorCode::kUsage, "usage: relief-bench-live MESH (.obj or .ply) [PARTICLES]");
+    }
+    const long count = argc == 3 ? std::strtol(argv[2], nullptr, 10) : 1L << 18;
+    if (count < 1 || count > 1L << 24) {
+        return fail(ErrorCode::kUsage, "PARTICLES must be from 1 to 16777216");
+    }
+    return bench(argv[1], static_cast<std::uint32_t>(count));
+}
+
 }  // namespace
 }  // namespace relief
 
 int main(int argc, char** argv) {
-    if (argc != 2 && argc != 3) {
-        std::fputs("usage: relief-bench-live MESH (.obj or .ply) [PARTICLES]\n", stderr);
-        return 1;
-    }
-    const long count = argc == 3 ? std::strtol(argv[2], nullptr, 10) : 1L << 18;
-    if (count < 1 || count > 1L << 24) {
-        std::fputs("relief-bench-live: error: PARTICLES must be from 1 to 16777216\n", stderr);
-        return 1;
-    }
-    const auto json = relief::bench(argv[1], static_cast<std::uint32_t>(count));
-    if (!json) {
-        std::fprintf(stderr, "relief-bench-live: error: %s\n", json.error().message.c_str());
-        return static_cast<int>(json.error().code);
-    }
-    std::puts(json->dump(2).c_str());
-    return 0;
+    return relief::finishBench("relief-bench-live", relief::bench(argc, argv));
 }

@@ -12,19 +12,15 @@
 // reads the 16 of the birth texture besides.
 //
 // Sizes suit llvmpipe where that is the renderer, unless --large asks for a GPU's.
-#include <time.h>
-
 #include <algorithm>
 #include <array>
-#include <chrono>
-#include <cstdio>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "formats/container.h"
+#include "runtime/bench/bench_tool.h"
 #include "runtime/bench/bench_variants.h"
 #include "runtime/gl/gl_context.h"
 #include "runtime/particles/random.h"
@@ -32,16 +28,8 @@
 #include "runtime/picture/collider_view.h"
 #include "runtime/picture/particle_renderer.h"
 
+namespace relief {
 namespace {
-
-using relief::BenchScene;
-using relief::BenchSystem;
-using relief::BenchVariant;
-using relief::GlFramebuffer;
-using relief::GlTexture;
-using relief::Result;
-using Clock = std::chrono::steady_clock;
-using Json = nlohmann::ordered_json;
 
 constexpr GLsizei kPictureWidth = 1280;
 constexpr GLsizei kPictureHeight = 720;
@@ -62,19 +50,7 @@ Sizes sizesFor(bool software, bool large) {
         return large ? Sizes{true, 1U << 20, 4, 5, all, 1, 3}
                      : Sizes{true, 1U << 17, 4, 5, {1U << 16, 1U << 18}, 1, 3};
     }
-    return {false, 1U << 20, relief::kBenchStepsMost, 11, all, relief::kBenchStepsMost, 7};
-}
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
-double cpuMilliseconds() {
-    timespec t{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
+    return {false, 1U << 20, kBenchStepsMost, 11, all, kBenchStepsMost, 7};
 }
 
 /// Milliseconds of each block, a step of it.
@@ -84,19 +60,16 @@ struct Times {
     std::vector<double> cpu;  // of all threads
 
     void measure(int steps, const std::function<void()>& step) {
-        const auto per_step = [steps](Clock::duration time) {
-            return std::chrono::duration<double, std::milli>(time).count() / steps;
-        };
         glFinish();
-        const double cpu_begun = cpuMilliseconds();
-        const Clock::time_point begun = Clock::now();
+        const CpuStopwatch cpu_watch(CLOCK_PROCESS_CPUTIME_ID);
+        const Stopwatch watch;
         for (int i = 0; i < steps; ++i) {
             step();
         }
-        calls.push_back(per_step(Clock::now() - begun));
+        calls.push_back(watch.ms() / steps);
         glFinish();
-        all.push_back(per_step(Clock::now() - begun));
-        cpu.push_back((cpuMilliseconds() - cpu_begun) / steps);
+        all.push_back(watch.ms() / steps);
+        cpu.push_back(cpu_watch.ms() / steps);
     }
 };
 
@@ -117,23 +90,21 @@ class Copy {
   public:
     static Result<Copy> create(std::uint32_t particles) {
         Copy copy;
-        copy.rows_ = static_cast<GLsizei>(particles / relief::ParticleSystem::kStateWidth);
-        relief::Pcg32 random(1);
+        copy.rows_ = static_cast<GLsizei>(particles / ParticleSystem::kStateWidth);
+        Pcg32 random(1);
         std::vector<float> texels(std::size_t{4} * particles);  // that no driver can compress
         std::generate(texels.begin(), texels.end(), [&] { return random.uniform(); });
         for (std::size_t i = 0; i < 2; ++i) {
             for (GlTexture& texture : copy.state_[i]) {
-                texture =
-                    relief::makeTexture2D(GL_RGBA32F, kWidth, copy.rows_, GL_RGBA, GL_FLOAT, texels.data());
+                texture = makeTexture2D(GL_RGBA32F, kWidth, copy.rows_, GL_RGBA, GL_FLOAT, texels.data());
             }
-            auto target = RELIEF_TRY(relief::makeFramebuffer(
-                std::array<GLuint, 2>{copy.state_[i][0].name(), copy.state_[i][1].name()}));
-            copy.target_[i] = std::move(target);
+            copy.target_[i] = RELIEF_TRY(
+                makeFramebuffer(std::array<GLuint, 2>{copy.state_[i][0].name(), copy.state_[i][1].name()}));
         }
-        copy.program_ = RELIEF_TRY(relief::makeProgram("quad.vert", "copy_state.frag"));
-        copy.array_ = relief::makeVertexArray();
+        copy.program_ = RELIEF_TRY(makeProgram("quad.vert", "copy_state.frag"));
+        copy.array_ = makeVertexArray();
         glUseProgram(copy.program_.name());
-        glUniform1i(relief::uniformLocation(copy.program_, "u_velocity"), 1);
+        glUniform1i(uniformLocation(copy.program_, "u_velocity"), 1);
         glUseProgram(0);
         return copy;
     }
@@ -141,8 +112,7 @@ class Copy {
         const std::size_t next = 1 - current_;
         glBindFramebuffer(GL_FRAMEBUFFER, target_[next].name());
         for (std::size_t i = 0; i < 2; ++i) {
-            glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(i));
-            glBindTexture(GL_TEXTURE_2D, state_[current_][i].name());
+            useTexture(static_cast<int>(i), state_[current_][i]);
         }
         glUseProgram(program_.name());
         glViewport(0, 0, kWidth, rows_);
@@ -152,17 +122,17 @@ class Copy {
     }
 
   private:
-    static constexpr auto kWidth = static_cast<GLsizei>(relief::ParticleSystem::kStateWidth);
+    static constexpr auto kWidth = static_cast<GLsizei>(ParticleSystem::kStateWidth);
 
     GLsizei rows_ = 0;
     std::size_t current_ = 0;
     std::array<std::array<GlTexture, 2>, 2> state_;  // position and velocity
     std::array<GlFramebuffer, 2> target_;
-    relief::GlProgram program_;
-    relief::GlVertexArray array_;
+    GlProgram program_;
+    GlVertexArray array_;
 };
 
-/// Who touches at the end of a block.
+/// Counts who touches the collider at the end of a block.
 Json touching(const BenchSystem& system, int steps_taken) {
     const auto state = system.particles->readState();
     if (!state || state->empty()) {
@@ -171,9 +141,9 @@ Json touching(const BenchSystem& system, int steps_taken) {
     std::uint64_t in_contact = 0;
     std::uint64_t caught = 0;
     std::uint64_t collisions = 0;
-    for (const relief::ParticleState& particle : *state) {
-        in_contact += particle.contact != relief::Contact::kNone ? 1 : 0;
-        caught += particle.contact == relief::Contact::kCaught ? 1 : 0;
+    for (const ParticleState& particle : *state) {
+        in_contact += particle.contact != Contact::kNone ? 1 : 0;
+        caught += particle.contact == Contact::kCaught ? 1 : 0;
         collisions += particle.collisions;
     }
     const double steps = static_cast<double>(state->size()) * steps_taken;
@@ -184,7 +154,7 @@ Json touching(const BenchSystem& system, int steps_taken) {
 }
 
 Result<void> benchSteps(const BenchScene& scene, const Sizes& sizes, Json& json) {
-    const std::vector<BenchVariant> variants = relief::benchVariants();
+    const std::vector<BenchVariant> variants = benchVariants();
     std::vector<BenchSystem> systems;
     for (const BenchVariant& variant : variants) {
         auto made = RELIEF_TRY(variant.make(scene));
@@ -197,7 +167,7 @@ Result<void> benchSteps(const BenchScene& scene, const Sizes& sizes, Json& json)
     copy.step();  // the driver compiles
     for (int round = 0; round < sizes.rounds; ++round) {
         copied.measure(sizes.steps, [&] { copy.step(); });
-        glUseProgram(0);  // whoever saves the state of the GL shall find nothing that goes with the copy
+        glUseProgram(0);  // PassState must not save a program of the copy's
         for (std::size_t i = 0; i < variants.size(); ++i) {
             systems[i].begin(scene);
             times[i].measure(sizes.steps, [&] { systems[i].step(); });
@@ -230,28 +200,25 @@ Result<void> benchSteps(const BenchScene& scene, const Sizes& sizes, Json& json)
 }
 
 /// A step alone, a step and a picture of points, a step and one of quads.
-Result<void> benchFrames(const relief::Collider& collider, std::uint32_t particles, const Sizes& sizes,
-                         Json& json) {
-    const BenchScene scene = relief::makeBenchScene(collider, particles);
-    auto system = RELIEF_TRY(relief::makeColliderSystem(scene));
-    auto renderer = RELIEF_TRY(relief::ParticleRenderer::create(
-        relief::ColliderView{system.textures.get(), collider.bounds, relief::finestTexel(collider)}));
-    const GlTexture color =
-        relief::makeTexture2D(GL_RGBA16F, kPictureWidth, kPictureHeight, GL_RGBA, GL_HALF_FLOAT);
-    const GlTexture depth = relief::makeTexture2D(GL_DEPTH_COMPONENT32F, kPictureWidth, kPictureHeight,
-                                                  GL_DEPTH_COMPONENT, GL_FLOAT);
-    const auto framebuffer =
-        RELIEF_TRY(relief::makeFramebuffer(std::array<GLuint, 1>{color.name()}, depth.name()));
-    const relief::RenderTarget target{framebuffer.name(), kPictureWidth, kPictureHeight};
-    relief::Camera camera;
+Result<void> benchFrames(const Collider& collider, std::uint32_t particles, const Sizes& sizes, Json& json) {
+    const BenchScene scene = makeBenchScene(collider, particles);
+    auto system = RELIEF_TRY(makeColliderSystem(scene));
+    auto renderer = RELIEF_TRY(ParticleRenderer::create(
+        ColliderView{system.textures.get(), collider.bounds, finestTexel(collider)}));
+    const GlTexture color = makeTexture2D(GL_RGBA16F, kPictureWidth, kPictureHeight, GL_RGBA, GL_HALF_FLOAT);
+    const GlTexture depth =
+        makeTexture2D(GL_DEPTH_COMPONENT32F, kPictureWidth, kPictureHeight, GL_DEPTH_COMPONENT, GL_FLOAT);
+    const auto framebuffer = RELIEF_TRY(makeFramebuffer(std::array<GLuint, 1>{color.name()}, depth.name()));
+    const RenderTarget target{framebuffer.name(), kPictureWidth, kPictureHeight};
+    Camera camera;
     camera.target = collider.bounds.center();
-    camera.eye = relief::defaultEye(camera.target, 0.5F * glm::length(collider.bounds.size()), camera.fov);
-    relief::setClipPlanes(camera, collider.bounds);
+    camera.eye = defaultEye(camera.target, 0.5F * glm::length(collider.bounds.size()), camera.fov);
+    setClipPlanes(camera, collider.bounds);
     // As relief-sim draws unless told otherwise, but nobody fades: they live too short.
-    relief::ParticleStyle style{.diameter = 0.0065F * scene.side, .fade_in = 0.0F, .fade_out = 0.0F};
+    ParticleStyle style{.diameter = 0.0065F * scene.side, .fade_in = 0.0F, .fade_out = 0.0F};
 
     Result<void> drawn;
-    const auto frame = [&](relief::Sprite sprite) {
+    const auto frame = [&](Sprite sprite) {
         system.step();
         glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -273,8 +240,8 @@ Result<void> benchFrames(const relief::Collider& collider, std::uint32_t particl
             step = points = quads = {};
         }
         block(step, [&] { system.step(); });
-        block(points, [&] { frame(relief::Sprite::kPoint); });
-        block(quads, [&] { frame(relief::Sprite::kQuad); });
+        block(points, [&] { frame(Sprite::kPoint); });
+        block(quads, [&] { frame(Sprite::kQuad); });
     }
     if (!drawn) {
         return drawn;
@@ -287,48 +254,33 @@ Result<void> benchFrames(const relief::Collider& collider, std::uint32_t particl
     return {};
 }
 
-int failure(const relief::Error& error) {
-    std::fprintf(stderr, "relief-bench-step: error: %s\n", error.message.c_str());
-    return static_cast<int>(error.code);
+Result<Json> bench(int argc, char** argv) {
+    const bool large = argc == 3 && std::string_view(argv[2]) == "--large";
+    if (argc != 2 && !large) {
+        return fail(ErrorCode::kUsage, "usage: relief-bench-step COLLIDER.relief [--large]");
+    }
+    const auto collider = RELIEF_TRY(loadCollider(argv[1]));
+    const auto context = RELIEF_TRY(GlContext::create(GlApi::kGl33Core));
+    const Sizes sizes = sizesFor(context->software(), large);
+    Json json;
+    json["device"] = context->description();
+    json["renderer"] = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    json["software"] = sizes.software;
+    json["ratios_of"] = sizes.software ? "CPU time" : "wall clock";
+    json["collider"] = {{"maps", collider.maps.size()}};
+    RELIEF_TRY(benchSteps(makeBenchScene(collider, sizes.particles), sizes, json));
+    for (const std::uint32_t particles : sizes.frames) {
+        RELIEF_TRY(benchFrames(collider, particles, sizes, json));
+    }
+    if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
+        return fail(ErrorCode::kFailure, "the GL reports error " + std::to_string(error));
+    }
+    return json;
 }
 
 }  // namespace
+}  // namespace relief
 
 int main(int argc, char** argv) {
-    const bool large = argc == 3 && std::string_view(argv[2]) == "--large";
-    if (argc != 2 && !large) {
-        return failure({relief::ErrorCode::kUsage, "usage: relief-bench-step COLLIDER.relief [--large]"});
-    }
-    const auto collider = relief::loadCollider(argv[1]);
-    if (!collider) {
-        return failure(collider.error());
-    }
-    const auto context = relief::GlContext::create(relief::GlApi::kGl33Core);
-    if (!context) {
-        return failure(context.error());
-    }
-    const std::string renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-    const bool software =
-        renderer.find("llvmpipe") != std::string::npos || renderer.find("softpipe") != std::string::npos;
-    const Sizes sizes = sizesFor(software, large);
-    Json json;
-    json["device"] = (*context)->description();
-    json["renderer"] = renderer;
-    json["software"] = software;
-    json["ratios_of"] = software ? "CPU time" : "wall clock";
-    json["collider"] = {{"maps", collider->maps.size()}};
-    if (const auto done = benchSteps(relief::makeBenchScene(*collider, sizes.particles), sizes, json);
-        !done) {
-        return failure(done.error());
-    }
-    for (const std::uint32_t particles : sizes.frames) {
-        if (const auto done = benchFrames(*collider, particles, sizes, json); !done) {
-            return failure(done.error());
-        }
-    }
-    if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
-        return failure({relief::ErrorCode::kFailure, "the GL reports error " + std::to_string(error)});
-    }
-    std::puts(json.dump(2).c_str());
-    return 0;
+    return relief::finishBench("relief-bench-step", relief::bench(argc, argv));
 }

@@ -222,8 +222,7 @@ void ColliderTextures::attach(const GlProgram& program, const Binding& binding) 
 
 void ColliderTextures::bind(const Binding& binding) const {
     for (std::size_t kind = 0; kind < kTexelKinds; ++kind) {
-        glActiveTexture(static_cast<GLenum>(GL_TEXTURE0 + binding.first_unit + static_cast<int>(kind)));
-        glBindTexture(GL_TEXTURE_2D, textures_[kind].name());
+        useTexture(binding.first_unit + static_cast<int>(kind), textures_[kind]);
     }
     glBindBufferBase(GL_UNIFORM_BUFFER, static_cast<GLuint>(binding.uniform_block), block_.name());
 }

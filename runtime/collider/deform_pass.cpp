@@ -100,14 +100,13 @@ Result<DeformPass> DeformPass::make(const std::string& defines, const std::strin
 
     const PassState state;
     constexpr std::array<const char*, 2> kOutputs{"v_position", "v_normal"};
-    auto program = RELIEF_TRY(
-        makeFeedbackProgram("deform.vert", std::span(kOutputs).first(wants_normals ? 2 : 1),
-                            (wants_normals ? "#define RELIEF_DEFORM_NORMALS 1\n" : "") + defines, glsl));
     DeformPass pass;
     pass.what_ = output;
     pass.vertices_ = static_cast<GLsizei>(positions.size());
     pass.inch_ = std::max(kInch * bounds.longestSide(), std::numeric_limits<float>::min());
-    pass.program_ = std::move(program);
+    pass.program_ = RELIEF_TRY(
+        makeFeedbackProgram("deform.vert", std::span(kOutputs).first(wants_normals ? 2 : 1),
+                            (wants_normals ? "#define RELIEF_DEFORM_NORMALS 1\n" : "") + defines, glsl));
     pass.rest_ = makeBuffer();
     pass.output_ = makeBuffer();
     pass.array_ = makeVertexArray();

@@ -5,18 +5,16 @@
 #include <glm/glm.hpp>
 #include <numbers>
 
+#include "formats/base/finite.h"
+
 namespace relief {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kRates[3] = {1.0, 1.25, 0.8};
 
-bool finite(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
 bool isUnit(const glm::vec3& v) {
-    return finite(v) && std::abs(glm::length(v) - 1.0F) < 1e-3F;
+    return isFinite(v) && std::abs(glm::length(v) - 1.0F) < 1e-3F;
 }
 
 /// sin(x)/x
@@ -46,7 +44,7 @@ glm::vec3 bend(const Deformation& d, float angle, const glm::vec3& q) {
 
 Result<void> checkDeformation(const Deformation& d) {
     const bool numbers = std::isfinite(d.amplitude) && std::isfinite(d.frequency) && std::isfinite(d.phase) &&
-                         d.frequency >= 0.0F && finite(d.center);
+                         d.frequency >= 0.0F && isFinite(d.center);
     if (!numbers) {
         return fail(ErrorCode::kUsage, "a deformation needs finite numbers and a frequency of at least 0");
     }
@@ -111,7 +109,7 @@ Bounds deformedBounds(const Deformation& d, std::span<const glm::vec3> positions
         bounds.max += std::abs(d.amplitude);
         return bounds;
     }
-    // Between two samples of the angle a point is no farther from one of them than half of its way.
+    // Between two samples of the angle a point is at most half of its way from one of them.
     constexpr int kSamples = 64;
     float way = 0.0F;
     bounds = {};

@@ -62,20 +62,16 @@ Result<std::vector<FieldSample>> FieldQuery::evaluate(std::span<const glm::vec3>
         glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer.name());
         glViewport(0, 0, kWidth, height);
         glUseProgram(program_.name());
-        glActiveTexture(GL_TEXTURE0);
-        glBindTexture(GL_TEXTURE_2D, input.name());
+        useTexture(0, input);
         textures_->bind(kBinding);
         glBindVertexArray(no_attributes_.name());
         glDrawArrays(GL_TRIANGLES, 0, 3);
 
-        const Result<std::vector<float>> fields = readTextureFloats(normal_distance, kWidth, height);
-        const Result<std::vector<float>> maps = readTextureFloats(map, kWidth, height);
-        if (!fields || !maps) {
-            return forward(!fields ? fields : maps);
-        }
+        const auto fields = RELIEF_TRY(readTextureFloats(normal_distance, kWidth, height));
+        const auto maps = RELIEF_TRY(readTextureFloats(map, kWidth, height));
         for (std::size_t i = 0; i < batch.size(); ++i) {
-            const float* field = &(*fields)[4 * i];
-            samples.push_back({field[3], {field[0], field[1], field[2]}, static_cast<int>((*maps)[4 * i])});
+            const float* field = &fields[4 * i];
+            samples.push_back({field[3], {field[0], field[1], field[2]}, static_cast<int>(maps[4 * i])});
         }
     }
     return samples;

@@ -13,7 +13,7 @@ namespace {
 constexpr int kMotionXyUnit = 0;
 constexpr int kMotionZUnit = 1;
 
-// As tight boxes have it that are baked: a little free space, and a least thickness, in longest sides.
+// As in baked tight boxes: a little free space and a least thickness, in longest sides.
 constexpr float kPadding = 1e-4F;
 constexpr float kThinnest = 1e-2F;
 
@@ -165,7 +165,7 @@ Result<void> LiveCollider::setPositions(GLuint buffer, std::size_t offset) {
 
 void LiveCollider::settle() {
     mesh_.settle();
-    // What is where it was no longer moves, but must be shown where it is.
+    // A mesh that stays where it was no longer moves, but its maps must show where it is.
     shown_ = shown_ && !moved_;
 }
 
@@ -210,10 +210,8 @@ void LiveCollider::copyTexels(const DepthMapTarget& target, const DepthMap& map,
 void LiveCollider::copyMotion(const DepthMapTarget& target, const DepthMap& map, const LiveSlot& slot) const {
     glBindFramebuffer(GL_FRAMEBUFFER, motion_target_.name());
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, slot.motion->name(), 0);
-    glActiveTexture(GL_TEXTURE0 + kMotionXyUnit);
-    glBindTexture(GL_TEXTURE_2D, target.motion(0));
-    glActiveTexture(GL_TEXTURE0 + kMotionZUnit);
-    glBindTexture(GL_TEXTURE_2D, target.motion(1));
+    useTexture(kMotionXyUnit, target.motion(0));
+    useTexture(kMotionZUnit, target.motion(1));
     glUseProgram(motion_program_.name());
     glBindVertexArray(no_attributes_.name());
     const auto width = static_cast<GLsizei>(map.width);

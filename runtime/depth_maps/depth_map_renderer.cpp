@@ -133,11 +133,6 @@ std::string definesOf(const DepthMapFrame& frame, bool motion) {
     return defines;
 }
 
-void useTexture(GLint unit, GLuint texture) {
-    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-    glBindTexture(GL_TEXTURE_2D, texture);
-}
-
 void setVector(GLint location, const glm::dvec3& v) {
     glUniform3f(location, static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
 }
@@ -225,10 +220,9 @@ Result<const DepthMapRenderer::Program*> DepthMapRenderer::programFor(const Dept
     if (found != programs_.end()) {
         return &found->second;
     }
-    auto made = RELIEF_TRY(
-        makeProgram(frame.exact ? "depth_map_exact.vert" : "depth_map.vert", "depth_map.frag", defines));
     Program program;
-    program.program = std::move(made);
+    program.program = RELIEF_TRY(
+        makeProgram(frame.exact ? "depth_map_exact.vert" : "depth_map.vert", "depth_map.frag", defines));
     const auto at = [&](const char* name) { return uniformLocation(program.program, name); };
     program.shift = at("u_shift");
     program.center = at("u_center");

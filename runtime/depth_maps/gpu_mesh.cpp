@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
 
+#include "formats/base/finite.h"
 #include "runtime/gl/pass_state.h"
 
 namespace relief {
@@ -31,7 +31,7 @@ GLsizei rowsFor(std::uint32_t count, int shift) {
 Result<void> checkFinite(std::span<const glm::vec3> positions) {
     for (std::size_t i = 0; i < positions.size(); ++i) {
         const glm::vec3& p = positions[i];
-        if (!(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z))) {
+        if (!isFinite(p)) {
             return fail(ErrorCode::kInvalidInput, "position " + std::to_string(i) +
                                                       " of a mesh is not finite; repair the mesh or the "
                                                       "program that moves it");
@@ -88,7 +88,7 @@ tl::unexpected<Error> tooLarge(const std::string& what, std::uint64_t count, std
                                        "; simplify the mesh");
 }
 
-/// So many vertices and triangles have room in this GL's textures and draws.
+/// Whether this GL's textures and draws have room for so many vertices and triangles.
 Result<void> checkSize(std::size_t vertices, std::size_t triangles) {
     GLint side = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side);
@@ -105,16 +105,11 @@ Result<void> checkSize(std::size_t vertices, std::size_t triangles) {
     if (triangles > most) {
         return tooLarge("triangles", triangles, most);
     }
-    // Slots are counted when they are known; this bounds the memory for finding out.
+    // The slots are not known yet; this bounds the memory for finding them.
     if (index_max > 0 && triangles > static_cast<std::uint64_t>(index_max)) {
         return tooLarge("triangles", triangles, static_cast<std::uint64_t>(index_max));
     }
     return {};
-}
-
-void useTexture(GLenum unit, GLuint texture) {
-    glActiveTexture(GL_TEXTURE0 + unit);
-    glBindTexture(GL_TEXTURE_2D, texture);
 }
 
 }  // namespace
@@ -199,8 +194,7 @@ void GpuMesh::upload(const void* data) {
     const std::uint32_t width = 1U << vertex_shift_;
     const std::uint32_t rows = vertex_count_ >> vertex_shift_;
     const std::uint32_t rest = vertex_count_ - rows * width;
-    glActiveTexture(GL_TEXTURE0);
-    glBindTexture(GL_TEXTURE_2D, positions_[current_].name());
+    useTexture(0, positions_[current_]);
     if (rows > 0) {
         glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, static_cast<GLsizei>(width), static_cast<GLsizei>(rows),
                         GL_RGB, GL_FLOAT, data);

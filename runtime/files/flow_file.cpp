@@ -14,6 +14,7 @@
 #include <system_error>
 #include <vector>
 
+#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 
 namespace relief {
@@ -64,9 +65,7 @@ Result<Slice> decode(const std::vector<std::byte>& bytes, const std::string& nam
     Slice slice;
     slice.width = static_cast<std::uint64_t>(std::int64_t{window.max.x} - window.min.x + 1);
     slice.height = static_cast<std::uint64_t>(std::int64_t{window.max.y} - window.min.y + 1);
-    if (auto checked = checkFlowSize({slice.width, slice.height, 1}); !checked) {
-        return fail(checked.error().code, name + ": " + checked.error().message);
-    }
+    RELIEF_TRY(inFront(name, checkFlowSize({slice.width, slice.height, 1})));
     const Imf::ChannelList& channels = header.channels();
     if (channels.findChannel("R") == nullptr || channels.findChannel("G") == nullptr) {
         return fail(ErrorCode::kInvalidInput,
@@ -174,7 +173,7 @@ Result<void> readSlices(const FlowFile& file, FlowField& flow) {
     while (count <= FlowField::kSideMax && fileExists(slicePath(file.path, first + count))) {
         ++count;
     }
-    // A slice that got lost must not pass for the end.
+    // A missing slice must not be taken for the end.
     for (std::uint32_t i = first + count + 1; i <= first + FlowField::kSideMax; ++i) {
         if (fileExists(slicePath(file.path, i))) {
             return fail(ErrorCode::kInvalidInput, quotedPath(slicePath(file.path, first + count)) +
@@ -192,9 +191,7 @@ Result<void> readSlices(const FlowFile& file, FlowField& flow) {
         if (i == 0) {
             flow.size = {static_cast<std::uint32_t>(slice.width), static_cast<std::uint32_t>(slice.height),
                          count};
-            if (auto checked = checkFlowSize({slice.width, slice.height, count}); !checked) {
-                return fail(checked.error().code, quotedPath(path) + ": " + checked.error().message);
-            }
+            RELIEF_TRY(inFront(quotedPath(path), checkFlowSize({slice.width, slice.height, count})));
         } else if (slice.width != flow.size[0] || slice.height != flow.size[1]) {
             return fail(ErrorCode::kInvalidInput,
                         quotedPath(path) + " is " + std::to_string(slice.width) + "x" +
@@ -212,9 +209,7 @@ Result<void> readRaw(const FlowFile& file, FlowField& flow) {
     if (file.components != 2 && file.components != 3) {
         return fail(ErrorCode::kUsage, name + ": a node has 2 or 3 components");
     }
-    if (auto checked = checkFlowSize({file.size[0], file.size[1], file.size[2]}); !checked) {
-        return fail(checked.error().code, name + ": " + checked.error().message);
-    }
+    RELIEF_TRY(inFront(name, checkFlowSize({file.size[0], file.size[1], file.size[2]})));
     const std::size_t nodes = std::size_t{file.size[0]} * file.size[1] * file.size[2];
     const std::size_t expected = nodes * file.components * sizeof(float);
     const auto bytes = RELIEF_TRY(readFile(file.path, FlowField::kNodesMax * 3 * sizeof(float)));
@@ -256,25 +251,17 @@ Result<FlowField> load(const FlowFile& file) {
     flow.box_max = file.box_max;
     flow.outside = file.outside;
     flow.gain = file.gain;
-    Result<void> read;
     if (file.kind == FlowFileKind::kRaw) {
-        read = readRaw(file, flow);
+        RELIEF_TRY(readRaw(file, flow));
     } else if (file.kind == FlowFileKind::kSlices) {
-        read = readSlices(file, flow);
+        RELIEF_TRY(readSlices(file, flow));
     } else {
         auto image = RELIEF_TRY(readImage(file.path));
         flow.size = {static_cast<std::uint32_t>(image.width), static_cast<std::uint32_t>(image.height), 1};
         flow.nodes = std::move(image.nodes);
     }
-    if (read) {
-        read = checkSpeeds(file, flow);
-    }
-    if (!read) {
-        return forward(read);
-    }
-    if (auto checked = checkFlow(flow); !checked) {
-        return fail(checked.error().code, quotedPath(file.path) + ": " + checked.error().message);
-    }
+    RELIEF_TRY(checkSpeeds(file, flow));
+    RELIEF_TRY(inFront(quotedPath(file.path), checkFlow(flow)));
     return flow;
 }
 

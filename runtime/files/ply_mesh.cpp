@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/base/error_context.h"
 #include "formats/base/ply_reader.h"
 #include "runtime/files/mesh_file.h"
 
@@ -202,11 +203,7 @@ Result<PictureMesh> readMesh(std::string_view data) {
 }  // namespace
 
 Result<PictureMesh> parsePlyMesh(std::span<const std::byte> bytes, std::string_view name) {
-    Result<PictureMesh> mesh = readMesh({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-    if (!mesh) {
-        mesh.error().message.insert(0, std::string(name) + ": ");
-    }
-    return mesh;
+    return inFront(std::string(name), readMesh({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
 }
 
 }  // namespace relief

@@ -1,4 +1,4 @@
-// Pictures as PNG bytes. The only files that use libpng are png.cpp and png_read.cpp.
+// Pictures as PNG bytes. The only file that uses libpng is png.cpp.
 #pragma once
 
 #include <cstddef>

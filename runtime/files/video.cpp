@@ -27,15 +27,10 @@ constexpr int kNamesTried = 1000;       // of temporary files
 constexpr std::size_t kWordsMax = 400;  // bytes of ffmpeg's errors that a message takes
 
 bool knownEnding(const fs::path& path) {
-    for (const char* ending : kEndings) {
-        if (path.extension() == ending) {
-            return true;
-        }
-    }
-    return false;
+    return std::ranges::find(kEndings, path.extension()) != kEndings.end();
 }
 
-/// Writes all of it, and never raises SIGPIPE: a program that embeds this has its own idea of that signal.
+/// Writes everything, and never raises SIGPIPE, which belongs to the program that embeds this.
 /// \return 0 or an errno.
 int writePipe(int fd, std::span<const std::uint8_t> bytes) {
     sigset_t pipe_signal;
@@ -64,7 +59,7 @@ int writePipe(int fd, std::span<const std::uint8_t> bytes) {
     return code;
 }
 
-/// The last line that ffmpeg has said: by then it has come to the point.
+/// The last line that ffmpeg printed, which names the cause.
 std::string lastWords(std::FILE* errors) {
     std::fseek(errors, 0, SEEK_END);
     const long size = std::ftell(errors);
@@ -179,7 +174,7 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::create(const fs::path& path, c
                     quotedPath(path) + " is no name for a video; let it end in .mp4, .mkv, .mov or .webm");
     }
     std::error_code error;
-    // What a link points to is replaced, and not the link.
+    // The target of a link is replaced, not the link.
     const fs::path followed = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : path;
     const fs::path folder = followed.has_parent_path() ? followed.parent_path() : fs::path(".");
     if (!fs::is_directory(folder, error)) {

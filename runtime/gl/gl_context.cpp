@@ -17,12 +17,7 @@ std::string eglErrorText() {
     return text;
 }
 
-std::string glText(GLenum what) {
-    const GLubyte* text = glGetString(what);
-    return text == nullptr ? std::string() : reinterpret_cast<const char*>(text);
-}
-
-/// Whether a context that tells of resets can be asked for, and by which name.
+/// The attributes that ask for a context which reports resets; none if it cannot.
 std::vector<EGLint> resetAttributes(EGLDisplay display, bool es) {
     if (es) {
         return epoxy_has_egl_extension(display, "EGL_EXT_create_context_robustness")

@@ -3,8 +3,6 @@
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
-#include <string_view>
-
 #include "runtime/gl/gl_display.h"
 
 namespace relief {
@@ -35,24 +33,9 @@ class CurrentContext {
     EGLSurface read_ = eglGetCurrentSurface(EGL_READ);
 };
 
-bool hasWord(const std::string& words, std::string_view word) {
-    for (std::size_t at = words.find(word); at != std::string::npos; at = words.find(word, at + 1)) {
-        const std::size_t end = at + word.size();
-        if ((at == 0 || words[at - 1] == ' ') && (end == words.size() || words[end] == ' ')) {
-            return true;
-        }
-    }
-    return false;
-}
-
 std::string deviceString(EGLDeviceEXT device, EGLint what) {
     const char* text = eglQueryDeviceStringEXT(device, what);
     return text == nullptr ? "" : text;
-}
-
-std::string glText(GLenum what) {
-    const GLubyte* text = glGetString(what);
-    return text == nullptr ? std::string() : reinterpret_cast<const char*>(text);
 }
 
 GlDevice describe(EGLDeviceEXT device, std::size_t index, GlApi api) {
@@ -61,11 +44,11 @@ GlDevice describe(EGLDeviceEXT device, std::size_t index, GlApi api) {
     if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_query") ||
         epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_base")) {
         const std::string extensions = deviceString(device, EGL_EXTENSIONS);
-        result.software = hasWord(extensions, "EGL_MESA_device_software");
-        if (hasWord(extensions, "EGL_EXT_device_query_name")) {
+        result.software = epoxy_extension_in_string(extensions.c_str(), "EGL_MESA_device_software");
+        if (epoxy_extension_in_string(extensions.c_str(), "EGL_EXT_device_query_name")) {
             result.name = deviceString(device, kRenderer);
         }
-        if (hasWord(extensions, "EGL_EXT_device_drm")) {
+        if (epoxy_extension_in_string(extensions.c_str(), "EGL_EXT_device_drm")) {
             result.drm_device = deviceString(device, EGL_DRM_DEVICE_FILE_EXT);
         }
     }

@@ -1,6 +1,7 @@
 #include "runtime/gl/gl_display.h"
 
 #include <dlfcn.h>
+#include <epoxy/gl.h>
 
 namespace relief {
 namespace {
@@ -60,6 +61,11 @@ EGLDisplay deviceDisplay(EGLDeviceEXT device) {
 
 EGLDisplay defaultDisplay() {
     return eglGetDisplay(EGL_DEFAULT_DISPLAY);
+}
+
+std::string glText(unsigned what) {
+    const GLubyte* text = glGetString(what);
+    return text == nullptr ? std::string() : reinterpret_cast<const char*>(text);
 }
 
 }  // namespace relief

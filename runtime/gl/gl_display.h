@@ -23,4 +23,7 @@ namespace relief {
 [[nodiscard]] EGLDisplay deviceDisplay(EGLDeviceEXT device);
 [[nodiscard]] EGLDisplay defaultDisplay();
 
+/// What glGetString says; "" where it says nothing.
+[[nodiscard]] std::string glText(unsigned what);
+
 }  // namespace relief

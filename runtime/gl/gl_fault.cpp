@@ -60,9 +60,7 @@ Result<void> checkAllocated(const std::string& what, const std::string& cure) {
         return {};
     }
     forgetGlErrors();
-    if (auto alive = checkGpu("making room for " + what); !alive) {
-        return alive;
-    }
+    RELIEF_TRY(checkGpu("making room for " + what));
     if (error == GL_OUT_OF_MEMORY) {
         return fail(ErrorCode::kLimit, what + ": no room on the GPU; " + cure);
     }
@@ -87,9 +85,7 @@ Result<void> waitForGpu(const std::string& what) {
     fence.insert();
     while (!fence.passed(kAtOnce)) {
         if (fence.failed()) {
-            if (auto alive = checkGpu("waiting for " + what); !alive) {
-                return alive;
-            }
+            RELIEF_TRY(checkGpu("waiting for " + what));
             return fail(ErrorCode::kFailure, "the GL cannot wait for " + what +
                                                  "; try another driver, or another device with --device");
         }

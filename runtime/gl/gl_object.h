@@ -4,7 +4,6 @@
 
 #include <epoxy/gl.h>
 
-#include <memory>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -55,9 +54,6 @@ inline void deleteVertexArray(GLuint name) {
 inline void deleteProgram(GLuint name) {
     glDeleteProgram(name);
 }
-inline void deleteRenderbuffer(GLuint name) {
-    glDeleteRenderbuffers(1, &name);
-}
 }  // namespace gl_detail
 
 using GlTexture = GlName<gl_detail::deleteTexture>;
@@ -65,7 +61,6 @@ using GlFramebuffer = GlName<gl_detail::deleteFramebuffer>;
 using GlBuffer = GlName<gl_detail::deleteBuffer>;
 using GlVertexArray = GlName<gl_detail::deleteVertexArray>;
 using GlProgram = GlName<gl_detail::deleteProgram>;
-using GlRenderbuffer = GlName<gl_detail::deleteRenderbuffer>;
 
 [[nodiscard]] GlFramebuffer makeFramebuffer();
 [[nodiscard]] GlBuffer makeBuffer();
@@ -108,22 +103,13 @@ using GlRenderbuffer = GlName<gl_detail::deleteRenderbuffer>;
 [[nodiscard]] Result<std::vector<float>> readTextureFloats(const GlTexture& texture, GLsizei width,
                                                            GLsizei height);
 
-/// Saves, on construction, the GL state that Relief's passes touch, sets what they count on (no blending,
-/// tests or masks, tight pixel rows), and restores it on destruction: current program, vertex array,
-/// array/uniform/pixel-unpack buffer, draw and read framebuffer, viewport, scissor, active texture unit and
-/// the 2-D textures of the first `kUnits` units, blend, depth, cull and scissor switches, blend
-/// functions, depth function and mask, colour mask, clear colour, pixel store alignment.
-class GlStateGuard {
-  public:
-    static constexpr int kUnits = 8;
-    GlStateGuard();
-    ~GlStateGuard();
-    GlStateGuard(const GlStateGuard&) = delete;
-    GlStateGuard& operator=(const GlStateGuard&) = delete;
-
-  private:
-    struct Saved;
-    std::unique_ptr<Saved> saved_;
-};
+/// Binds a 2-D texture to texture unit `unit` and leaves that unit active.
+inline void useTexture(int unit, GLuint texture) {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    glBindTexture(GL_TEXTURE_2D, texture);
+}
+inline void useTexture(int unit, const GlTexture& texture) {
+    useTexture(unit, texture.name());
+}
 
 }  // namespace relief

@@ -5,8 +5,6 @@
 namespace relief {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 // The extension of GL ES has entry points of its own; the numbers of the enumerations are the same.
 GLint queryProperty(bool gles, GLenum what) {
     GLint value = 0;
@@ -49,13 +47,13 @@ void GpuTimer::begin(Stage stage) {
             (gles_ ? glBeginQueryEXT : glBeginQuery)(GL_TIME_ELAPSED, queries_[next]);
         }
     }
-    begun_ = Clock::now();
+    stage_watch_ = Stopwatch();
 }
 
 void GpuTimer::end() {
     StageTime& time = times_[static_cast<std::size_t>(stage_)];
     ++time.runs;
-    time.cpu_ms += std::chrono::duration<double, std::milli>(Clock::now() - begun_).count();
+    time.cpu_ms += stage_watch_.ms();
     if (open_) {
         (gles_ ? glEndQueryEXT : glEndQuery)(GL_TIME_ELAPSED);
         ++outstanding_;
@@ -83,8 +81,8 @@ void GpuTimer::collect() {
         (gles_ ? glGetQueryObjectui64vEXT : glGetQueryObjectui64v)(
             query, GL_QUERY_RESULT, &nanoseconds[static_cast<std::size_t>(arrived)]);
     }
-    // The clock has jumped (the GPU changed its speed, say): what lies behind and what runs now is worth
-    // nothing.
+    // The clock has jumped (the GPU changed its speed, say): all results so far and the running ones are
+    // worthless.
     GLint disjoint = 0;
     if (gles_) {
         glGetIntegerv(GL_GPU_DISJOINT_EXT, &disjoint);

@@ -4,9 +4,9 @@
 
 #include <epoxy/gl.h>
 #include <array>
-#include <chrono>
 #include <cstdint>
 
+#include "formats/base/stopwatch.h"
 #include "runtime/gl/stage_timer.h"
 
 namespace relief {
@@ -50,7 +50,7 @@ class GpuTimer : public StageTimer {
     bool gles_ = false;
     bool open_ = false;  // a query runs
     Stage stage_ = Stage::kBirths;
-    std::chrono::steady_clock::time_point begun_;
+    Stopwatch stage_watch_;
     std::array<GLuint, kQueries> queries_{};
     std::array<Stage, kQueries> stages_{};
     int oldest_ = 0;

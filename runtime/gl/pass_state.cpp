@@ -1,6 +1,9 @@
 #include "runtime/gl/pass_state.h"
 
+#include <array>
 #include <iterator>
+
+#include "runtime/gl/gl_object.h"
 
 namespace relief {
 namespace {
@@ -11,8 +14,12 @@ struct Switch {
     bool wanted;
 };
 
-// Off during a pass, but for point sizes, which come from the vertex shader (as they always do on GL ES).
+// All are off during a pass, except that point sizes come from the vertex shader (as always on GL ES).
 constexpr Switch kSwitches[] = {
+    {GL_BLEND, false, false},
+    {GL_DEPTH_TEST, false, false},
+    {GL_CULL_FACE, false, false},
+    {GL_SCISSOR_TEST, false, false},
     {GL_STENCIL_TEST, false, false},
     {GL_DITHER, false, false},
     {GL_SAMPLE_ALPHA_TO_COVERAGE, false, false},
@@ -26,10 +33,27 @@ constexpr Switch kSwitches[] = {
     {GL_PROGRAM_POINT_SIZE, true, true},
 };
 
-// The parts of a picture that transfers step over; GL ES 3.0 has them all.
-constexpr GLenum kWindows[] = {GL_PACK_ROW_LENGTH,     GL_PACK_SKIP_ROWS,    GL_PACK_SKIP_PIXELS,
-                               GL_UNPACK_ROW_LENGTH,   GL_UNPACK_SKIP_ROWS,  GL_UNPACK_SKIP_PIXELS,
-                               GL_UNPACK_IMAGE_HEIGHT, GL_UNPACK_SKIP_IMAGES};
+struct PixelStore {
+    GLenum name;
+    GLint wanted;
+};
+
+// Transfers have tight rows and skip nothing. GL ES 3.0 has all of these.
+constexpr PixelStore kPixelStores[] = {
+    {GL_PACK_ALIGNMENT, 1},     {GL_PACK_ROW_LENGTH, 0},    {GL_PACK_SKIP_ROWS, 0},
+    {GL_PACK_SKIP_PIXELS, 0},   {GL_UNPACK_ALIGNMENT, 1},   {GL_UNPACK_ROW_LENGTH, 0},
+    {GL_UNPACK_SKIP_ROWS, 0},   {GL_UNPACK_SKIP_PIXELS, 0}, {GL_UNPACK_IMAGE_HEIGHT, 0},
+    {GL_UNPACK_SKIP_IMAGES, 0},
+};
+
+struct Unit {
+    GLint texture_2d, texture_3d, sampler;
+};
+
+struct Block {
+    GLint buffer;
+    GLint64 offset, size;
+};
 
 void set(GLenum name, bool on) {
     if (on) {
@@ -48,77 +72,133 @@ bool known(const Switch& one, bool gles) {
 
 }  // namespace
 
-PassState::PassState() {
-    static_assert(std::size(kSwitches) == kSwitchCount);
+struct PassState::Saved {
+    GLint program, vertex_array, array_buffer, uniform_buffer, pack_buffer, unpack_buffer;
+    GLint draw_framebuffer, read_framebuffer;
+    std::array<GLint, 4> viewport, scissor;
+    GLint active_texture;
+    std::array<Unit, kUnits> units;
+    std::array<Block, 2> blocks;
+    std::array<GLboolean, std::size(kSwitches)> switches;
+    std::array<GLint, std::size(kPixelStores)> pixel_stores;
+    GLint blend_source_rgb, blend_destination_rgb, blend_source_alpha, blend_destination_alpha;
+    GLint blend_equation_rgb, blend_equation_alpha;
+    GLint depth_function;
+    GLboolean depth_mask;
+    std::array<GLboolean, 4> color_mask;
+    std::array<GLfloat, 4> clear_color;
+    GLint polygon_mode, point_origin;
+};
+
+PassState::PassState() : saved_(std::make_unique<Saved>()) {
+    Saved& s = *saved_;
     const bool gles = isGles();
-    for (int i = 0; i < kSwitchCount; ++i) {
+    glGetIntegerv(GL_CURRENT_PROGRAM, &s.program);
+    glGetIntegerv(GL_VERTEX_ARRAY_BINDING, &s.vertex_array);
+    glGetIntegerv(GL_ARRAY_BUFFER_BINDING, &s.array_buffer);
+    glGetIntegerv(GL_UNIFORM_BUFFER_BINDING, &s.uniform_buffer);
+    glGetIntegerv(GL_PIXEL_PACK_BUFFER_BINDING, &s.pack_buffer);
+    glGetIntegerv(GL_PIXEL_UNPACK_BUFFER_BINDING, &s.unpack_buffer);
+    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &s.draw_framebuffer);
+    glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &s.read_framebuffer);
+    glGetIntegerv(GL_VIEWPORT, s.viewport.data());
+    glGetIntegerv(GL_SCISSOR_BOX, s.scissor.data());
+    glGetIntegerv(GL_ACTIVE_TEXTURE, &s.active_texture);
+    for (GLuint i = 0; i < s.units.size(); ++i) {
+        glActiveTexture(GL_TEXTURE0 + i);
+        glGetIntegerv(GL_TEXTURE_BINDING_2D, &s.units[i].texture_2d);
+        glGetIntegerv(GL_TEXTURE_BINDING_3D, &s.units[i].texture_3d);
+        glGetIntegerv(GL_SAMPLER_BINDING, &s.units[i].sampler);
+        glBindSampler(i, 0);
+    }
+    glActiveTexture(static_cast<GLenum>(s.active_texture));
+    for (GLuint i = 0; i < s.blocks.size(); ++i) {
+        glGetIntegeri_v(GL_UNIFORM_BUFFER_BINDING, i, &s.blocks[i].buffer);
+        glGetInteger64i_v(GL_UNIFORM_BUFFER_START, i, &s.blocks[i].offset);
+        glGetInteger64i_v(GL_UNIFORM_BUFFER_SIZE, i, &s.blocks[i].size);
+    }
+    for (std::size_t i = 0; i < s.switches.size(); ++i) {
         if (known(kSwitches[i], gles)) {
-            switches_[i] = glIsEnabled(kSwitches[i].name);
+            s.switches[i] = glIsEnabled(kSwitches[i].name);
             set(kSwitches[i].name, kSwitches[i].wanted);
         }
     }
-    GLint active = 0;
-    glGetIntegerv(GL_ACTIVE_TEXTURE, &active);
-    for (int i = 0; i < GlStateGuard::kUnits; ++i) {
-        glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(i));
-        glGetIntegerv(GL_SAMPLER_BINDING, &samplers_[i]);
-        glBindSampler(static_cast<GLuint>(i), 0);
-        glGetIntegerv(GL_TEXTURE_BINDING_3D, &textures_3d_[i]);
+    for (std::size_t i = 0; i < s.pixel_stores.size(); ++i) {
+        glGetIntegerv(kPixelStores[i].name, &s.pixel_stores[i]);
+        glPixelStorei(kPixelStores[i].name, kPixelStores[i].wanted);
     }
-    glActiveTexture(static_cast<GLenum>(active));
+    glGetIntegerv(GL_BLEND_SRC_RGB, &s.blend_source_rgb);
+    glGetIntegerv(GL_BLEND_DST_RGB, &s.blend_destination_rgb);
+    glGetIntegerv(GL_BLEND_SRC_ALPHA, &s.blend_source_alpha);
+    glGetIntegerv(GL_BLEND_DST_ALPHA, &s.blend_destination_alpha);
+    glGetIntegerv(GL_BLEND_EQUATION_RGB, &s.blend_equation_rgb);
+    glGetIntegerv(GL_BLEND_EQUATION_ALPHA, &s.blend_equation_alpha);
+    glGetIntegerv(GL_DEPTH_FUNC, &s.depth_function);
+    glGetBooleanv(GL_DEPTH_WRITEMASK, &s.depth_mask);
+    glGetBooleanv(GL_COLOR_WRITEMASK, s.color_mask.data());
+    glGetFloatv(GL_COLOR_CLEAR_VALUE, s.clear_color.data());
     if (!gles) {
         GLint modes[2] = {};  // some drivers of compatibility contexts answer for front and back
         glGetIntegerv(GL_POLYGON_MODE, modes);
-        polygon_mode_ = modes[0];
+        s.polygon_mode = modes[0];
         glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
-        glGetIntegerv(GL_POINT_SPRITE_COORD_ORIGIN, &point_origin_);
+        glGetIntegerv(GL_POINT_SPRITE_COORD_ORIGIN, &s.point_origin);
         glPointParameteri(GL_POINT_SPRITE_COORD_ORIGIN, GL_UPPER_LEFT);
     }
-    static_assert(std::size(kWindows) == kWindowCount);
-    for (int i = 0; i < kWindowCount; ++i) {
-        glGetIntegerv(kWindows[i], &windows_[i]);
-        glPixelStorei(kWindows[i], 0);
-    }
-    glGetIntegerv(GL_PIXEL_PACK_BUFFER_BINDING, &pack_buffer_);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
-    for (int i = 0; i < kBlockCount; ++i) {
-        const auto binding = static_cast<GLuint>(i);
-        glGetIntegeri_v(GL_UNIFORM_BUFFER_BINDING, binding, &block_buffer_[i]);
-        glGetInteger64i_v(GL_UNIFORM_BUFFER_START, binding, &block_offset_[i]);
-        glGetInteger64i_v(GL_UNIFORM_BUFFER_SIZE, binding, &block_size_[i]);
-    }
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDepthMask(GL_TRUE);
 }
 
 PassState::~PassState() {
+    const Saved& s = *saved_;
     const bool gles = isGles();
-    for (int i = 0; i < kSwitchCount; ++i) {
+    const auto name = [](GLint value) { return static_cast<GLuint>(value); };
+    const auto word = [](GLint value) { return static_cast<GLenum>(value); };
+    glUseProgram(name(s.program));
+    glBindVertexArray(name(s.vertex_array));
+    glBindBuffer(GL_ARRAY_BUFFER, name(s.array_buffer));
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, name(s.pack_buffer));
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, name(s.unpack_buffer));
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, name(s.draw_framebuffer));
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, name(s.read_framebuffer));
+    glViewport(s.viewport[0], s.viewport[1], s.viewport[2], s.viewport[3]);
+    glScissor(s.scissor[0], s.scissor[1], s.scissor[2], s.scissor[3]);
+    for (GLuint i = 0; i < s.units.size(); ++i) {
+        useTexture(static_cast<int>(i), name(s.units[i].texture_2d));
+        glBindTexture(GL_TEXTURE_3D, name(s.units[i].texture_3d));
+        glBindSampler(i, name(s.units[i].sampler));
+    }
+    glActiveTexture(word(s.active_texture));
+    for (GLuint i = 0; i < s.blocks.size(); ++i) {
+        const auto& [buffer, offset, size] = s.blocks[i];
+        if (size > 0) {
+            glBindBufferRange(GL_UNIFORM_BUFFER, i, name(buffer), static_cast<GLintptr>(offset),
+                              static_cast<GLsizeiptr>(size));
+        } else {  // the whole buffer, or none
+            glBindBufferBase(GL_UNIFORM_BUFFER, i, name(buffer));
+        }
+    }
+    glBindBuffer(GL_UNIFORM_BUFFER, name(s.uniform_buffer));  // binding a block sets it too
+    for (std::size_t i = 0; i < s.switches.size(); ++i) {
         if (known(kSwitches[i], gles)) {
-            set(kSwitches[i].name, switches_[i] == GL_TRUE);
+            set(kSwitches[i].name, s.switches[i] == GL_TRUE);
         }
     }
-    for (int i = 0; i < GlStateGuard::kUnits; ++i) {
-        glBindSampler(static_cast<GLuint>(i), static_cast<GLuint>(samplers_[i]));
-        glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(i));  // GlStateGuard restores which is active
-        glBindTexture(GL_TEXTURE_3D, static_cast<GLuint>(textures_3d_[i]));
+    for (std::size_t i = 0; i < s.pixel_stores.size(); ++i) {
+        glPixelStorei(kPixelStores[i].name, s.pixel_stores[i]);
     }
-    for (int i = 0; i < kWindowCount; ++i) {
-        glPixelStorei(kWindows[i], windows_[i]);
-    }
-    glBindBuffer(GL_PIXEL_PACK_BUFFER, static_cast<GLuint>(pack_buffer_));
-    // Size 0 stands for "the whole buffer" or for none. GlStateGuard then restores the plain binding.
-    for (int i = 0; i < kBlockCount; ++i) {
-        const auto binding = static_cast<GLuint>(i);
-        const auto buffer = static_cast<GLuint>(block_buffer_[i]);
-        if (block_size_[i] > 0) {
-            glBindBufferRange(GL_UNIFORM_BUFFER, binding, buffer, static_cast<GLintptr>(block_offset_[i]),
-                              static_cast<GLsizeiptr>(block_size_[i]));
-        } else {
-            glBindBufferBase(GL_UNIFORM_BUFFER, binding, buffer);
-        }
-    }
+    glBlendFuncSeparate(word(s.blend_source_rgb), word(s.blend_destination_rgb), word(s.blend_source_alpha),
+                        word(s.blend_destination_alpha));
+    glBlendEquationSeparate(word(s.blend_equation_rgb), word(s.blend_equation_alpha));
+    glDepthFunc(word(s.depth_function));
+    glDepthMask(s.depth_mask);
+    glColorMask(s.color_mask[0], s.color_mask[1], s.color_mask[2], s.color_mask[3]);
+    glClearColor(s.clear_color[0], s.clear_color[1], s.clear_color[2], s.clear_color[3]);
     if (!gles) {
-        glPolygonMode(GL_FRONT_AND_BACK, static_cast<GLenum>(polygon_mode_));
-        glPointParameteri(GL_POINT_SPRITE_COORD_ORIGIN, point_origin_);
+        glPolygonMode(GL_FRONT_AND_BACK, word(s.polygon_mode));
+        glPointParameteri(GL_POINT_SPRITE_COORD_ORIGIN, s.point_origin);
     }
 }
 

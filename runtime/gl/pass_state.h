@@ -1,41 +1,30 @@
 // The GL state in which a pass of Relief runs, whatever the caller's was.
 #pragma once
 
-#include "runtime/gl/gl_object.h"
+#include <memory>
 
 namespace relief {
 
-/// On construction: saves what GlStateGuard saves and, on top of it, what else could spoil a pass (stencil
-/// test, dithering, alpha-to-coverage, rasterizer discard, sampler objects, polygon offset, primitive
-/// restart, uniform block bindings 0 and 1, 3-D textures, pack buffer and pack/unpack windows; on desktop GL
-/// also polygon mode, logic operation, program point size, point sprite origin, sRGB conversion), and
-/// switches all of it, blending, depth, cull and scissor test off, so that a draw writes what its shader says
-/// and a transfer is tightly packed. On destruction: puts everything back.
+/// On construction: saves all GL state that a pass of Relief sets or that could spoil one, and sets what the
+/// passes count on, so that a draw writes what its shader says and a transfer is tightly packed. On
+/// destruction: puts everything back. That is: current program and vertex array; array, pack and unpack buffer,
+/// uniform buffer and uniform block bindings 0 and 1; draw and read framebuffer; viewport and scissor box;
+/// active texture unit and, of the first kUnits units, 2-D texture, 3-D texture and sampler object; blending,
+/// depth, cull, scissor and stencil test, dithering, alpha-to-coverage, rasterizer discard, polygon offset and
+/// primitive restart (all off in a pass); blend functions and equations, depth function and mask, colour mask,
+/// clear colour; pixel store alignments and windows; on desktop GL also polygon mode, logic operation, program
+/// point size, point sprite origin and sRGB conversion.
 class PassState {
   public:
+    static constexpr int kUnits = 8;
     PassState();
     ~PassState();
     PassState(const PassState&) = delete;
     PassState& operator=(const PassState&) = delete;
 
   private:
-    static constexpr int kSwitchCount = 11;
-
-    GlStateGuard guard_;
-    GLboolean switches_[kSwitchCount] = {};
-    static constexpr int kWindowCount = 8;
-
-    GLint windows_[kWindowCount] = {};
-    GLint pack_buffer_ = 0;
-    static constexpr int kBlockCount = 2;
-
-    GLint block_buffer_[kBlockCount] = {};
-    GLint64 block_offset_[kBlockCount] = {};
-    GLint64 block_size_[kBlockCount] = {};
-    GLint textures_3d_[GlStateGuard::kUnits] = {};
-    GLint samplers_[GlStateGuard::kUnits] = {};
-    GLint polygon_mode_ = 0;
-    GLint point_origin_ = 0;
+    struct Saved;
+    std::unique_ptr<Saved> saved_;
 };
 
 }  // namespace relief

@@ -5,10 +5,12 @@
 #include <string>
 #include <utility>
 
+#include "formats/base/finite.h"
+
 namespace relief {
 namespace {
 
-// Births asked for in all stay below this: beyond it a double no longer counts one by one.
+// The most births in all: beyond it a double no longer counts one by one.
 constexpr double kCountMax = 9007199254740992.0;  // 2^53
 
 // Keeps 60 steps of 1/60 s from missing the last birth of a second by rounding.
@@ -16,10 +18,6 @@ constexpr double kEarly = 1e-12;
 
 std::uint64_t wholeCount(double count) {
     return count > 0.0 ? static_cast<std::uint64_t>(std::min(count, kCountMax)) : 0;  // 0 for NaN
-}
-
-bool isFinite(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
 const char* problemOfAim(const EmitterSettings& s) {
@@ -117,7 +115,7 @@ std::uint64_t Emitter::burstsDue(double active) const {
     if (!(every > 0.0)) {
         return 1;
     }
-    // Burst j is due at j · every, a product that is the same whoever asks.
+    // Burst j is due at j · every: always the same product.
     const auto due = [&](double j) { return j * every <= active && j * every < settings_.duration; };
     double last = std::floor(std::min({active / every, settings_.duration / every, kCountMax}));
     while (last > 0.0 && !due(last)) {

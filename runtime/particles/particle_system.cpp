@@ -21,11 +21,6 @@ constexpr float kNoGround = -1e30F;
 
 constexpr std::uint32_t kIdMask = (1U << 24) - 1;  // what a float counts exactly
 
-void useTexture(int unit, const GlTexture& texture) {
-    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-    glBindTexture(GL_TEXTURE_2D, texture.name());
-}
-
 GlTexture makeStateTexture(std::uint32_t width, std::uint32_t height) {
     return makeTexture2D(GL_RGBA32F, static_cast<GLsizei>(width), static_cast<GLsizei>(height), GL_RGBA,
                          GL_FLOAT);
@@ -83,13 +78,8 @@ Result<void> ParticleSystem::createTextures() {
         // Verlet reads the two positions before, and a birth writes both.
         const GlTexture& second = verlet() ? position_[(i + 2) % 3] : velocity_[i];
         const std::array<GLuint, 3> textures{position_[i].name(), second.name(), birth_.name()};
-        auto step_target = makeFramebuffer(std::span(textures).first(verlet() ? 1 : 2));
-        auto birth_target = makeFramebuffer(textures);
-        if (!step_target || !birth_target) {
-            return forward(!step_target ? step_target : birth_target);
-        }
-        step_target_[i] = std::move(*step_target);
-        birth_target_[i] = std::move(*birth_target);
+        step_target_[i] = RELIEF_TRY(makeFramebuffer(std::span(textures).first(verlet() ? 1 : 2)));
+        birth_target_[i] = RELIEF_TRY(makeFramebuffer(textures));
     }
     for (int i = 0; i < buffers; ++i) {
         glBindFramebuffer(GL_FRAMEBUFFER, birth_target_[i].name());
@@ -115,17 +105,13 @@ Result<void> ParticleSystem::createTextures() {
 }
 
 Result<void> ParticleSystem::createPrograms() {
-    auto birth = makeProgram("birth.vert", "birth.frag", verlet() ? "#define RELIEF_VERLET\n" : "");
-    auto rebase = makeProgram("quad.vert", "rebase.frag");
-    if (!birth || !rebase) {
-        return forward(!birth ? birth : rebase);
-    }
-    birth_program_ = std::move(*birth);
+    birth_program_ =
+        RELIEF_TRY(makeProgram("birth.vert", "birth.frag", verlet() ? "#define RELIEF_VERLET\n" : ""));
+    rebase_program_ = RELIEF_TRY(makeProgram("quad.vert", "rebase.frag"));
     glUseProgram(birth_program_.name());
     glUniform2i(uniformLocation(birth_program_, "u_size"), static_cast<GLint>(width_),
                 static_cast<GLint>(height_));
     birth_dt_ = glGetUniformLocation(birth_program_.name(), "u_dt_before");
-    rebase_program_ = std::move(*rebase);
     glUseProgram(rebase_program_.name());
     glUniform1i(uniformLocation(rebase_program_, "u_birth"), StepPass::kBirthUnit);
     rebase_shift_ = uniformLocation(rebase_program_, "u_shift");
@@ -203,7 +189,7 @@ Result<void> ParticleSystem::setAir(const AirSettings& air) {
     std::unique_ptr<AirBlock> old = std::move(air_);
     air_ = block.defines().empty() ? nullptr : std::make_unique<AirBlock>(std::move(block));
     if (auto done = remakeStep(step_.features().collider); !done) {
-        air_ = std::move(old);  // the step that there is points to it
+        air_ = std::move(old);  // the present step points to it
         return done;
     }
     air_settings_ = air;
@@ -221,14 +207,14 @@ std::size_t ParticleSystem::spawn(std::span<const Birth> births) {
         }
         const float born = now - birth.age;
         const float death = born + birth.lifetime;
-        // What the step does in free flight, for as long as it has lived.
+        // The same free flight as a step's, for as long as the particle has lived.
         const float drag = dragRate(forces_, types_[std::min<std::size_t>(birth.type, types_.size() - 1)]);
         const glm::vec3 velocity = (birth.velocity + birth.age * (forces_.gravity + drag * wind)) *
                                    (1.0F / (1.0F + birth.age * drag));
         const auto id = static_cast<std::uint32_t>(born_ + accepted);
         ids_[*index] = id;
         deaths_.push(death, *index);
-        // Member by member: a vertex that is put together first is copied before its parts have arrived.
+        // Written member by member: a copy of a whole vertex would wait for its parts.
         BirthVertex& vertex = newborn_.emplace_back();
         vertex.index = *index;
         vertex.position = birth.position + birth.age * velocity;
@@ -324,7 +310,7 @@ void ParticleSystem::setEpochForward() {
         birth_spare_ = makeStateTexture(width_, height_);
         rebase_target_ = makeFramebuffer();
     }
-    // By hand, for a step has nobody to report an error to: this is the combination that create() has tried.
+    // Made by hand, because a step cannot report an error: create() has tried this combination.
     glBindFramebuffer(GL_FRAMEBUFFER, rebase_target_.name());
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, birth_spare_.name(), 0);
     glUseProgram(rebase_program_.name());
@@ -397,7 +383,7 @@ Result<std::vector<ParticleState>> ParticleSystem::readState() const {
         const float* position = &raw.position[std::size_t{4} * index];
         const float* velocity = &raw.velocity[std::size_t{4} * index];
         const float* birth = &raw.birth[std::size_t{4} * index];
-        if (position[3] < 0.0F) {  // by a collision, of which the CPU does not know
+        if (position[3] < 0.0F) {  // killed by a collision, which the CPU does not know of
             continue;
         }
         ParticleState& particle = particles.emplace_back();

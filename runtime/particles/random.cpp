@@ -3,6 +3,8 @@
 #include <bit>
 #include <cmath>
 
+#include "formats/base/finite.h"
+
 namespace relief {
 namespace {
 
@@ -95,7 +97,7 @@ glm::vec3 inCone(Pcg32& random, float opening) {
 
 glm::vec3 unitVector(const glm::vec3& v) {
     const float largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-    if (!(largest > 0.0F && std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z))) {
+    if (!(largest > 0.0F && isFinite(v))) {
         return glm::vec3(0.0F);
     }
     const glm::vec3 scaled = v / largest;

@@ -23,11 +23,6 @@ std::uint32_t reduced(std::uint32_t side) {
     return (side + kReducedSide - 1) / kReducedSide;
 }
 
-void useTexture(int unit, const GlTexture& texture) {
-    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-    glBindTexture(GL_TEXTURE_2D, texture.name());
-}
-
 }  // namespace
 
 Result<Statistics> Statistics::create(std::uint32_t capacity) {
@@ -65,19 +60,14 @@ Result<Statistics> Statistics::create(std::uint32_t capacity) {
     RELIEF_TRY(checkAllocated("the statistics' buffers", "choose a smaller capacity"));
     statistics.no_attributes_ = makeVertexArray();
 
-    auto state_program = makeProgram("quad.vert", "reduce_state.frag");
-    auto sum_program = makeProgram("quad.vert", "reduce_sum.frag");
-    if (!state_program || !sum_program) {
-        return forward(!state_program ? state_program : sum_program);
-    }
-    statistics.state_program_ = std::move(*state_program);
+    statistics.state_program_ = RELIEF_TRY(makeProgram("quad.vert", "reduce_state.frag"));
+    statistics.sum_program_ = RELIEF_TRY(makeProgram("quad.vert", "reduce_sum.frag"));
     glUseProgram(statistics.state_program_.name());
     glUniform1i(uniformLocation(statistics.state_program_, "u_position"), kCountsUnit);
     glUniform1i(uniformLocation(statistics.state_program_, "u_velocity"), kSumsUnit);
     statistics.state_size_ = uniformLocation(statistics.state_program_, "u_size");
     statistics.state_rate_ = uniformLocation(statistics.state_program_, "u_rate_before");
     statistics.state_extent_ = uniformLocation(statistics.state_program_, "u_extent");
-    statistics.sum_program_ = std::move(*sum_program);
     glUseProgram(statistics.sum_program_.name());
     glUniform1i(uniformLocation(statistics.sum_program_, "u_counts"), kCountsUnit);
     glUniform1i(uniformLocation(statistics.sum_program_, "u_sums"), kSumsUnit);

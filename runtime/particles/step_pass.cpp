@@ -21,13 +21,12 @@ Result<StepPass> StepPass::create(const StepFeatures& features) {
     if (features.air != nullptr) {
         defines += features.air->defines();
     }
-    auto program =
+    StepPass pass;
+    pass.features_ = features;
+    pass.program_ =
         RELIEF_TRY(features.collider != nullptr
                        ? makeProgram("quad.vert", "step.frag", defines + features.collider->defines())
                        : makeProgram("quad.vert", "step_free.frag", defines));
-    StepPass pass;
-    pass.features_ = features;
-    pass.program_ = std::move(program);
     const auto at = [&](const char* name) { return glGetUniformLocation(pass.program_.name(), name); };
     pass.now_ = at("u_now");
     pass.dt_ = at("u_dt");

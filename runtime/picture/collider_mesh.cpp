@@ -37,10 +37,9 @@ Result<ColliderMesh> ColliderMesh::create(const PictureMesh& mesh) {
         vertices[i] = {full.positions[i], full.normals[i]};
     }
     const PassState state;
-    auto program = RELIEF_TRY(makeProgram("mesh.vert", "mesh.frag"));
     forgetGlErrors();
     ColliderMesh out;
-    out.program_ = std::move(program);
+    out.program_ = RELIEF_TRY(makeProgram("mesh.vert", "mesh.frag"));
     out.vertex_bytes_ = static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex));
     out.corners_ = static_cast<GLsizei>(full.triangles.size());
     out.vertices_ = makeBuffer();

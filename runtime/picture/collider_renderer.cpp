@@ -20,7 +20,7 @@ constexpr int kMeshDepthUnit = 4;
 // Every kCoarseStride-th pixel of a row or column is traced first; collider_view.frag says why.
 constexpr GLsizei kCoarseStride = 4;
 
-// A ray's step in texels: what is two texels thick is met.
+// A ray's step in texels: it hits whatever is two texels thick.
 constexpr float kStepTexels = 1.5F;
 
 // Across the diagonal of a box whose finest texel is 1/2048 of its longest side, with room for the
@@ -32,7 +32,7 @@ constexpr int kNormals = 13;
 // For one of the four samples of a pixel.
 constexpr LightRays kLightRays{.sun = 2, .sky = 6, .sun_steps = 32, .sky_steps = 5};
 
-// Rows drawn at a time: a driver may take a draw of seconds for a hang.
+// Rows per draw: a driver may take a draw of several seconds for a hang.
 constexpr GLsizei kBandRows = 64;
 
 constexpr const char* kSmallerPicture = "choose a smaller size";
@@ -74,20 +74,15 @@ void drawInBands(GLsizei width, GLsizei height) {
 
 Result<ColliderRenderer> ColliderRenderer::create(const ColliderView& view, const ColliderMesh* mesh) {
     const PassState state;
-    const std::string mesh_define = mesh != nullptr ? "#define RELIEF_MESH 1\n" : "";
-    auto trace = makeProgram("quad.vert", "collider_view.frag", mesh_define + view.textures->defines());
-    auto coarse = makeProgram("quad.vert", "collider_view.frag",
-                              "#define RELIEF_COARSE 1\n" + view.textures->defines());
-    auto copy = makeProgram("quad.vert", "copy_view.frag");
-    if (!trace || !coarse || !copy) {
-        return forward(!trace ? trace : (!coarse ? coarse : copy));
-    }
     ColliderRenderer renderer;
     renderer.view_ = view;
     renderer.mesh_ = mesh;
-    renderer.trace_program_ = std::move(*trace);
-    renderer.coarse_program_ = std::move(*coarse);
-    renderer.copy_program_ = std::move(*copy);
+    const std::string mesh_define = mesh != nullptr ? "#define RELIEF_MESH 1\n" : "";
+    renderer.trace_program_ =
+        RELIEF_TRY(makeProgram("quad.vert", "collider_view.frag", mesh_define + view.textures->defines()));
+    renderer.coarse_program_ = RELIEF_TRY(makeProgram(
+        "quad.vert", "collider_view.frag", "#define RELIEF_COARSE 1\n" + view.textures->defines()));
+    renderer.copy_program_ = RELIEF_TRY(makeProgram("quad.vert", "copy_view.frag"));
     renderer.no_attributes_ = makeVertexArray();
     for (const GlProgram* program : {&renderer.trace_program_, &renderer.coarse_program_}) {
         view.textures->attach(*program, kColliderBinding);
@@ -120,10 +115,8 @@ Result<void> ColliderRenderer::draw(const Camera& camera, const ColliderStyle& s
     glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
     glViewport(0, 0, target.width, target.height);
     glUseProgram(copy_program_.name());
-    glActiveTexture(GL_TEXTURE0 + kColorUnit);
-    glBindTexture(GL_TEXTURE_2D, color_.name());
-    glActiveTexture(GL_TEXTURE0 + kDepthUnit);
-    glBindTexture(GL_TEXTURE_2D, depth_.name());
+    useTexture(kColorUnit, color_);
+    useTexture(kDepthUnit, depth_);
     // Depth is written only while its test is on.
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_ALWAYS);
@@ -135,13 +128,8 @@ Result<void> ColliderRenderer::draw(const Camera& camera, const ColliderStyle& s
 
 Result<void> ColliderRenderer::trace(const Camera& camera, const ColliderStyle& style, GLsizei width,
                                      GLsizei height) {
-    GLint side_max = 0;
-    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side_max);
-    if (std::max(width, height) > side_max) {
-        return fail(ErrorCode::kLimit, "a picture of " + std::to_string(width) + "x" +
-                                           std::to_string(height) + " pixels is larger than this GL takes (" +
-                                           std::to_string(side_max) + " along a side)");
-    }
+    RELIEF_TRY(checkTextureSize(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height),
+                                "the collider's pictures", kSmallerPicture));
     forgetGlErrors();
     color_ = makeTexture2D(GL_RGBA16F, width, height, GL_RGBA, GL_HALF_FLOAT);
     depth_ = makeTexture2D(GL_DEPTH_COMPONENT32F, width, height, GL_DEPTH_COMPONENT, GL_FLOAT);
@@ -154,19 +142,16 @@ Result<void> ColliderRenderer::trace(const Camera& camera, const ColliderStyle& 
 
     glBindVertexArray(no_attributes_.name());
 
-    // What the second pass samples: the mesh's picture, or the coarse pass.
+    // The second pass samples the mesh's picture, or the coarse pass.
     ColliderMesh::View of_mesh;
     GlTexture coarse;
     if (mesh_ != nullptr) {
         of_mesh = RELIEF_TRY(mesh_->view(camera, width, height));
-        glActiveTexture(GL_TEXTURE0 + kMeshNormalUnit);
-        glBindTexture(GL_TEXTURE_2D, of_mesh.normal.name());
-        glActiveTexture(GL_TEXTURE0 + kMeshDepthUnit);
-        glBindTexture(GL_TEXTURE_2D, of_mesh.depth.name());
+        useTexture(kMeshNormalUnit, of_mesh.normal);
+        useTexture(kMeshDepthUnit, of_mesh.depth);
     } else {
         RELIEF_TRY(traceCoarse(width, height, coarse));
-        glActiveTexture(GL_TEXTURE0 + kCoarseUnit);
-        glBindTexture(GL_TEXTURE_2D, coarse.name());
+        useTexture(kCoarseUnit, coarse);
     }
 
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());

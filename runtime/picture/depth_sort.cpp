@@ -14,11 +14,6 @@ namespace {
 constexpr int kOrderUnit = 0;
 constexpr int kPositionUnit = 1;
 
-void useTexture(int unit, const GlTexture& texture) {
-    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-    glBindTexture(GL_TEXTURE_2D, texture.name());
-}
-
 std::uint32_t regionFor(std::uint32_t extent) {
     return extent == 0 ? 0 : std::bit_ceil(extent);
 }
@@ -32,14 +27,8 @@ Result<DepthSorter> DepthSorter::create(std::uint32_t capacity) {
                                            std::to_string(kCapacityMax));
     }
     const std::uint32_t rows = std::max(regionFor(capacity) / kWidth, 1U);
-    GLint side_max = 0;
-    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side_max);
-    if (std::max(rows, kWidth) > static_cast<std::uint32_t>(side_max)) {
-        return fail(ErrorCode::kLimit, "sorting " + std::to_string(capacity) +
-                                           " particles needs a texture of " + std::to_string(kWidth) + " x " +
-                                           std::to_string(rows) + " texels; this GL takes at most " +
-                                           std::to_string(side_max) + " along a side");
-    }
+    RELIEF_TRY(checkTextureSize(kWidth, rows, "the ranks of " + std::to_string(capacity) + " particles",
+                                "choose a smaller capacity"));
     const PassState state;
     DepthSorter sorter(capacity);
     RELIEF_TRY(sorter.createTextures());
@@ -56,8 +45,7 @@ Result<void> DepthSorter::createTextures() {
         RELIEF_TRY(checkAllocated("sorting " + std::to_string(capacity_) + " particles",
                                   "choose a smaller capacity"));
         const std::array<GLuint, 1> textures{order_[i].name()};
-        auto target = RELIEF_TRY(makeFramebuffer(textures));
-        target_[i] = std::move(target);
+        target_[i] = RELIEF_TRY(makeFramebuffer(textures));
     }
     no_attributes_ = makeVertexArray();
     return {};
@@ -65,12 +53,8 @@ Result<void> DepthSorter::createTextures() {
 
 Result<void> DepthSorter::createPrograms() {
     const std::string defines = "#define RELIEF_ORDER_WIDTH " + std::to_string(kWidth) + "\n";
-    auto keys = makeProgram("quad.vert", "sort_keys.frag", defines);
-    auto pass = makeProgram("quad.vert", "sort_pass.frag", defines);
-    if (!keys || !pass) {
-        return forward(!keys ? keys : pass);
-    }
-    keys_.program = std::move(*keys);
+    keys_.program = RELIEF_TRY(makeProgram("quad.vert", "sort_keys.frag", defines));
+    pass_.program = RELIEF_TRY(makeProgram("quad.vert", "sort_pass.frag", defines));
     keys_.kept = uniformLocation(keys_.program, "u_kept");
     keys_.width = uniformLocation(keys_.program, "u_width");
     keys_.extent = uniformLocation(keys_.program, "u_extent");
@@ -79,7 +63,6 @@ Result<void> DepthSorter::createPrograms() {
     glUniform1i(uniformLocation(keys_.program, "u_order"), kOrderUnit);
     glUniform1i(uniformLocation(keys_.program, "u_position"), kPositionUnit);
 
-    pass_.program = std::move(*pass);
     pass_.block = uniformLocation(pass_.program, "u_block");
     pass_.stride = uniformLocation(pass_.program, "u_stride");
     glUseProgram(pass_.program.name());
@@ -146,7 +129,7 @@ void DepthSorter::drawNext() {
 }
 
 void DepthSorter::endSequence(std::uint32_t extent) {
-    // Sound at the end of a whole sequence alone: see the header.
+    // Valid only at the end of a whole sequence: see the header.
     count_ = regionFor(peak_);
     restart();
     peak_ = extent;

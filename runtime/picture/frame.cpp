@@ -42,18 +42,9 @@ Result<Frame> Frame::create(std::uint32_t width, std::uint32_t height) {
     RELIEF_TRY(checkAllocated("a picture of " + size + " pixels", "choose a smaller size"));
     const std::array<GLuint, 1> color{frame.color_.name()};
     const std::array<GLuint, 1> finished{frame.finished_.name()};
-    auto large_target = makeFramebuffer(color, frame.depth_.name());
-    auto small_target = makeFramebuffer(finished);
-    auto program = makeProgram("quad.vert", "resolve.frag");
-    if (!large_target || !small_target) {
-        return forward(!large_target ? large_target : small_target);
-    }
-    if (!program) {
-        return forward(program);
-    }
-    frame.large_ = std::move(*large_target);
-    frame.small_ = std::move(*small_target);
-    frame.program_ = std::move(*program);
+    frame.large_ = RELIEF_TRY(makeFramebuffer(color, frame.depth_.name()));
+    frame.small_ = RELIEF_TRY(makeFramebuffer(finished));
+    frame.program_ = RELIEF_TRY(makeProgram("quad.vert", "resolve.frag"));
     frame.no_attributes_ = makeVertexArray();
     glUseProgram(frame.program_.name());
     glUniform1i(uniformLocation(frame.program_, "u_color"), 0);
@@ -72,12 +63,11 @@ std::vector<std::uint8_t> Frame::read() const {
     glBindFramebuffer(GL_FRAMEBUFFER, small_.name());
     glViewport(0, 0, width, height);
     glUseProgram(program_.name());
-    glActiveTexture(GL_TEXTURE0);
-    glBindTexture(GL_TEXTURE_2D, color_.name());
+    useTexture(0, color_);
     glBindVertexArray(no_attributes_.name());
     glDrawArrays(GL_TRIANGLES, 0, 3);
 
-    // RGBA is the combination that every GL ES reads; rows come from below.
+    // Every GL ES reads RGBA; its rows start at the bottom.
     std::vector<std::uint8_t> rgba(std::size_t{4} * width_ * height_);
     glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
     std::vector<std::uint8_t> rgb(std::size_t{3} * width_ * height_);

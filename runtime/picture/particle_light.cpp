@@ -14,17 +14,17 @@ constexpr int kPositionUnit = 3;  // after the collider's three
 constexpr int kBirthUnit = 4;
 constexpr int kLooksUnit = 5;
 
-// A few for each grain, each with its own noise: neighbours make up for it.
+// A few rays for each grain, with noise of its own: neighbours even it out.
 constexpr LightRays kLightRays{.sun = 1, .sky = 2, .sun_steps = 16, .sky_steps = 3};
 
 }  // namespace
 
 Result<ParticleLight> ParticleLight::create(const ColliderView& collider) {
     const PassState state;
-    auto program = RELIEF_TRY(makeProgram("quad.vert", "particle_light.frag", collider.textures->defines()));
     ParticleLight light;
     light.collider_ = collider;
-    light.program_ = std::move(program);
+    light.program_ =
+        RELIEF_TRY(makeProgram("quad.vert", "particle_light.frag", collider.textures->defines()));
     light.no_attributes_ = makeVertexArray();
     collider.textures->attach(light.program_, kColliderBinding);
     setLightUniforms(light.program_, collider, kLightRays);
@@ -39,7 +39,7 @@ Result<void> ParticleLight::update(const ParticleSystem& particles, const GlText
     const auto extent = static_cast<GLsizei>(particles.extent());
     const GLsizei rows = (extent + width - 1) / width;
     if (!target_ || width_ != width || height_ < rows) {
-        // For all that the system may ever hold, so that it is made once.
+        // Large enough for the full capacity, so that it is made once.
         const auto capacity = static_cast<GLsizei>(particles.capacity());
         target_ = GlFramebuffer();
         width_ = width;
@@ -58,12 +58,9 @@ Result<void> ParticleLight::update(const ParticleSystem& particles, const GlText
     glUniform1i(uniformLocation(program_, "u_extent"), extent);
     glUniform1f(uniformLocation(program_, "u_now"), particles.clock());
     collider_.textures->bind(kColliderBinding);
-    glActiveTexture(GL_TEXTURE0 + kPositionUnit);
-    glBindTexture(GL_TEXTURE_2D, particles.positions().name());
-    glActiveTexture(GL_TEXTURE0 + kBirthUnit);
-    glBindTexture(GL_TEXTURE_2D, particles.births().name());
-    glActiveTexture(GL_TEXTURE0 + kLooksUnit);
-    glBindTexture(GL_TEXTURE_2D, looks.name());
+    useTexture(kPositionUnit, particles.positions());
+    useTexture(kBirthUnit, particles.births());
+    useTexture(kLooksUnit, looks);
     glBindFramebuffer(GL_FRAMEBUFFER, target_.name());
     glViewport(0, 0, width, rows);
     glBindVertexArray(no_attributes_.name());

@@ -19,13 +19,10 @@ constexpr std::array<const char*, 7> kSamplers{"u_position", "u_birth", "u_looks
 constexpr float kPixelsMin = 1.5F;
 
 Result<GlProgram> makeSpriteProgram(const std::string& defines) {
-    auto program = makeProgram("point.vert", "point.frag", defines);
-    if (!program) {
-        return program;
-    }
-    glUseProgram(program->name());
+    auto program = RELIEF_TRY(makeProgram("point.vert", "point.frag", defines));
+    glUseProgram(program.name());
     for (std::size_t unit = 0; unit < kSamplers.size(); ++unit) {
-        glUniform1i(uniformLocation(*program, kSamplers[unit]), static_cast<GLint>(unit));
+        glUniform1i(uniformLocation(program, kSamplers[unit]), static_cast<GLint>(unit));
     }
     return program;
 }
@@ -39,13 +36,8 @@ Result<ParticleRenderer> ParticleRenderer::create(const std::optional<ColliderVi
         renderer.light_ = RELIEF_TRY(ParticleLight::create(*collider));
     }
     const std::string defines = collider ? "#define RELIEF_LIT 1\n" : "";
-    auto points = makeSpriteProgram(defines);
-    auto quads = makeSpriteProgram("#define RELIEF_QUADS 1\n" + defines);
-    if (!points || !quads) {
-        return forward(!points ? points : quads);
-    }
-    renderer.point_program_ = std::move(*points);
-    renderer.quad_program_ = std::move(*quads);
+    renderer.point_program_ = RELIEF_TRY(makeSpriteProgram(defines));
+    renderer.quad_program_ = RELIEF_TRY(makeSpriteProgram("#define RELIEF_QUADS 1\n" + defines));
     renderer.no_attributes_ = makeVertexArray();
     forgetGlErrors();
     const std::array<GLubyte, 4> zero{};
@@ -133,8 +125,7 @@ Result<void> ParticleRenderer::draw(const ParticleSystem& particles, const Camer
         order.texture != nullptr ? order.texture : &no_order_,
         behind != nullptr ? behind : &nothing_};
     for (std::size_t unit = 0; unit < textures.size(); ++unit) {
-        glActiveTexture(static_cast<GLenum>(GL_TEXTURE0 + unit));
-        glBindTexture(GL_TEXTURE_2D, textures[unit]->name());
+        useTexture(static_cast<int>(unit), *textures[unit]);
     }
     glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
     glViewport(0, 0, target.width, target.height);

@@ -6,11 +6,13 @@
 #include <span>
 #include <string>
 
+#include "formats/base/finite.h"
+
 namespace relief {
 namespace {
 
-// Round a vertex of more corners than this they are not compared one by one: the time would grow by their
-// square.
+// Around a vertex with more corners than this they are not compared one by one: the time would grow with
+// their square.
 constexpr std::size_t kFanMax = 64;
 
 glm::vec3 unitOrZero(const glm::vec3& v) {
@@ -91,7 +93,7 @@ Result<void> checkMesh(const PictureMesh& mesh) {
         }
     }
     for (const glm::vec3& p : mesh.positions) {
-        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+        if (!isFinite(p)) {
             return fail(ErrorCode::kInvalidInput, "a vertex of the mesh is not finite");
         }
     }

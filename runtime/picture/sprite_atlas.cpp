@@ -68,8 +68,7 @@ Result<SpriteAtlas> SpriteAtlas::create(std::span<const std::uint8_t> rgba, std:
     std::vector<glm::vec4> level = premultiplied(rgba);
     atlas.texture_ = makeTexture2D(GL_RGBA16F, static_cast<GLsizei>(width), static_cast<GLsizei>(height),
                                    GL_RGBA, GL_FLOAT, level.data());
-    glActiveTexture(GL_TEXTURE0);
-    glBindTexture(GL_TEXTURE_2D, atlas.texture_.name());
+    useTexture(0, atlas.texture_);
     std::uint32_t cell_width = width / columns;
     std::uint32_t cell_height = height / rows;
     while (cell_width % 2 == 0 && cell_height % 2 == 0) {

@@ -1,5 +1,7 @@
 #include "runtime/player/live_bodies.h"
 
+#include "formats/base/error_context.h"
+
 namespace relief {
 
 Result<LiveBodies> LiveBodies::create(const LoadedScene& loaded) {
@@ -9,17 +11,14 @@ Result<LiveBodies> LiveBodies::create(const LoadedScene& loaded) {
             continue;
         }
         const LiveMesh& live = *loaded.live[i];
-        auto collider = LiveCollider::create(live.mesh.positions, trianglesOf(live.mesh), live.frames);
-        if (!collider) {
-            return fail(collider.error().code,
-                        loaded.scene.colliders[i].origin + ": collider.mesh: " + collider.error().message);
-        }
-        auto pass = DeformPass::create(live.deformation, live.mesh.positions, live.mesh.normals);
-        if (!pass) {
-            return fail(pass.error().code,
-                        loaded.scene.colliders[i].origin + ": collider.deform: " + pass.error().message);
-        }
-        out.bodies_.push_back({i, std::move(*collider), std::move(*pass)});
+        const std::string& origin = loaded.scene.colliders[i].origin;
+        auto collider = RELIEF_TRY(
+            inFront(origin + ": collider.mesh",
+                    LiveCollider::create(live.mesh.positions, trianglesOf(live.mesh), live.frames)));
+        auto pass =
+            RELIEF_TRY(inFront(origin + ": collider.deform",
+                               DeformPass::create(live.deformation, live.mesh.positions, live.mesh.normals)));
+        out.bodies_.push_back({i, std::move(collider), std::move(pass)});
     }
     return out;
 }
@@ -34,7 +33,7 @@ Result<void> LiveBodies::show(double time, ColliderTextures& textures) {
 }
 
 Result<LivePicture> LivePicture::create(const LiveMesh& live) {
-    // Doubled vertices would come apart along a crease where each goes along its own normal.
+    // Doubled vertices would come apart along a crease if each moved along its own normal.
     const bool smooth = live.deformation.kind == DeformKind::kWobble;
     const PictureMesh creased = smooth ? PictureMesh{} : withNormals(live.mesh);
     const PictureMesh& drawn = smooth ? live.mesh : creased;

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Makes the folder, and sees early that it can be written: a run may take long.
+/// Makes the folder, and checks early that it can be written: a run may take long.
 Result<void> prepareFolder(const fs::path& folder, const char* option) {
     std::error_code error;
     fs::create_directories(folder, error);
@@ -36,7 +36,7 @@ fs::path numberedPath(const fs::path& folder, const char* head, std::uint32_t nu
     return folder / name.data();
 }
 
-/// The rate at which a video plays in the scene's time, as far as eyes and players go along.
+/// The frame rate at which a video plays in the scene's time, within what players can show.
 double videoRate(const Scene& scene) {
     return std::clamp(1.0 / (static_cast<double>(scene.dt) * scene.render.every), 1.0, 120.0);
 }
@@ -68,9 +68,8 @@ Outputs::~Outputs() {
 Result<void> Outputs::open() {
     const Scene& scene = loaded_.scene;
     if (!options_.frames.empty() || !options_.video.empty()) {
-        auto picture = RELIEF_TRY(watched(options_.watchdog, "the shaders of pictures",
-                                          [&] { return ScenePicture::create(loaded_, textures_); }));
-        picture_.emplace(std::move(picture));
+        picture_ = RELIEF_TRY(watched(options_.watchdog, "the shaders of pictures",
+                                      [&] { return ScenePicture::create(loaded_, textures_); }));
     }
     if (!options_.video.empty()) {
         RELIEF_TRY(openVideo());
@@ -79,8 +78,7 @@ Result<void> Outputs::open() {
         timer_.emplace();
     }
     if (!options_.stats.empty()) {
-        auto log = RELIEF_TRY(StatisticsLog::create(options_.stats, scene.capacity, *timer_));
-        log_.emplace(std::move(log));
+        log_ = RELIEF_TRY(StatisticsLog::create(options_.stats, scene.capacity, *timer_));
     }
     if (!options_.frames.empty()) {
         RELIEF_TRY(prepareFolder(options_.frames, "--frames"));

@@ -1,12 +1,12 @@
 #include "runtime/player/player.h"
 
 #include <algorithm>
-#include <chrono>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "formats/base/file_io.h"
+#include "formats/base/stopwatch.h"
 #include "runtime/files/ply.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/player/outputs.h"
@@ -17,17 +17,11 @@
 namespace relief {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 // Steps between two calls of PlayerOptions::progress, and between two waits for the GPU: without them a
 // driver would be handed a whole run at once.
 constexpr std::uint32_t kStepsAtOnce = 16;
 // A stretch of steps that takes longer is halved: progress moves, and no watchdog takes it for a hang.
-constexpr std::chrono::seconds kStretchMax{4};
-
-double milliseconds(Clock::duration time) {
-    return std::chrono::duration<double, std::milli>(time).count();
-}
+constexpr double kStretchMsMax = 4000.0;
 
 /// The lower of the two middle ones where their number is even; 0 of none.
 double median(std::vector<double> values) {
@@ -59,7 +53,7 @@ class Run {
             RELIEF_TRY(afterStretch());
         }
         if (step_ > 0) {
-            report_.ms_per_step = milliseconds(spent_) / step_;
+            report_.ms_per_step = spent_ms_ / step_;
         }
         report_.ms_per_step_median = median(std::move(stretches_));
         report_.counts = simulation_.particles().counts();
@@ -83,14 +77,14 @@ class Run {
     Result<void> playStretch(std::uint32_t end) {
         const std::uint32_t first = step_;
         const std::string steps = "steps " + std::to_string(first + 1) + " to " + std::to_string(end);
-        const Clock::time_point begun = Clock::now();
+        const Stopwatch watch;
         RELIEF_TRY(watched(options_.watchdog, steps, [&] { return playSteps(end, steps); }));
-        const Clock::duration stretch = Clock::now() - begun;
-        if (stretch > kStretchMax) {
+        const double ms = watch.ms();
+        if (ms > kStretchMsMax) {
             at_once_ = std::max(at_once_ / 2, 1U);
         }
-        spent_ += stretch;
-        stretches_.push_back(milliseconds(stretch) / (step_ - first));
+        spent_ms_ += ms;
+        stretches_.push_back(ms / (step_ - first));
         return {};
     }
 
@@ -103,7 +97,7 @@ class Run {
             }
         }
         RELIEF_TRY(waitForGpu(steps));
-        // A step has no result of its own: births that found no room would be missing in silence.
+        // A step returns no error, so births that found no room would go unnoticed.
         return checkAllocated(steps, "choose a smaller capacity");
     }
 
@@ -128,7 +122,7 @@ class Run {
     std::uint32_t stats_every_;
     std::uint32_t step_ = 0;  // steps taken
     std::uint32_t at_once_ = kStepsAtOnce;
-    Clock::duration spent_{};
+    double spent_ms_ = 0.0;
     std::vector<double> stretches_;  // ms per step of each
 };
 
@@ -159,7 +153,7 @@ Result<void> readBack(const PlayerOptions& options, const ParticleSystem& partic
 }  // namespace
 
 Result<PlayerReport> play(const PlayerOptions& options) {
-    // What can fail cheaply comes first.
+    // Cheap checks come first.
     const auto loaded = RELIEF_TRY(loadAll(options.input, options.overrides));
     auto emitters = RELIEF_TRY(makeEmitters(loaded.scene.emitters));
     if (!options.dump.empty()) {

@@ -34,8 +34,7 @@ Result<ScenePicture> ScenePicture::create(const LoadedScene& loaded, const Colli
     std::optional<LivePicture> live;
     std::unique_ptr<ColliderMesh> mesh;
     if (!scene.render.mesh.empty() && loaded.live.front()) {
-        auto made = RELIEF_TRY(LivePicture::create(*loaded.live.front()));
-        live.emplace(std::move(made));
+        live = RELIEF_TRY(LivePicture::create(*loaded.live.front()));
     } else {
         mesh = RELIEF_TRY(loadColliderMesh(scene, loaded.bounds));
     }
@@ -43,8 +42,7 @@ Result<ScenePicture> ScenePicture::create(const LoadedScene& loaded, const Colli
     auto particles = RELIEF_TRY(ParticleRenderer::create(view));
     ScenePicture picture(loaded, std::move(frame), std::move(collider), std::move(particles));
     if (scene.render.sort_frames > 0) {
-        auto sorter = RELIEF_TRY(DepthSorter::create(scene.capacity));
-        picture.sorter_.emplace(std::move(sorter));
+        picture.sorter_ = RELIEF_TRY(DepthSorter::create(scene.capacity));
     }
     picture.collider_style_ = colliderStyle(scene);
     picture.particle_style_ = particleStyle(scene, atlas.get());

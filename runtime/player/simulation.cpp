@@ -4,6 +4,7 @@
 #include <span>
 #include <utility>
 
+#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "runtime/player/watched.h"
 
@@ -26,23 +27,20 @@ Result<ColliderTextures> makeTextures(const Scene& scene, std::span<const Collid
 }
 
 Result<ParticleSystem> makeParticles(const Scene& scene, const ColliderTextures& textures) {
-    auto particles = ParticleSystem::create({.capacity = scene.capacity, .integrator = scene.integrator});
-    if (!particles) {
-        return particles;
-    }
-    RELIEF_TRY(particles->setCollider(&textures));
-    particles->setForces({*scene.forces.gravity, scene.forces.wind,
-                          scene.air.viscosity ? 0.0F : scene.forces.drag,
-                          scene.air.viscosity.value_or(0.0F)});
-    particles->setCollision(scene.collision);
+    auto particles =
+        RELIEF_TRY(ParticleSystem::create({.capacity = scene.capacity, .integrator = scene.integrator}));
+    RELIEF_TRY(particles.setCollider(&textures));
+    particles.setForces({*scene.forces.gravity, scene.forces.wind,
+                         scene.air.viscosity ? 0.0F : scene.forces.drag, scene.air.viscosity.value_or(0.0F)});
+    particles.setCollision(scene.collision);
     if (!scene.types.empty()) {
-        RELIEF_TRY(particles->setTypes(scene.types));
+        RELIEF_TRY(particles.setTypes(scene.types));
     }
     if (scene.sweep > 0.0F) {
-        RELIEF_TRY(particles->setSweep(scene.sweep));
+        RELIEF_TRY(particles.setSweep(scene.sweep));
     }
-    RELIEF_TRY(particles->setAir(scene.air));
-    particles->setGround(scene.ground.enabled ? scene.ground.height : std::nullopt);
+    RELIEF_TRY(particles.setAir(scene.air));
+    particles.setGround(scene.ground.enabled ? scene.ground.height : std::nullopt);
     return particles;
 }
 
@@ -64,16 +62,12 @@ Result<Simulation> Simulation::create(const LoadedScene& loaded, std::vector<Emi
     made.emitters_ = std::move(emitters);
     made.poses_change_ = std::any_of(scene.colliders.begin(), scene.colliders.end(),
                                      [](const SceneCollider& c) { return !c.keys.empty(); });
-    auto textures =
-        watched(watchdog, "uploading the collider", [&] { return makeTextures(scene, loaded.colliders); });
-    if (!textures) {
-        return fail(textures.error().code,
-                    quotedPath(scene.colliders.front().path) + ": " + textures.error().message);
-    }
-    made.textures_ = std::make_unique<ColliderTextures>(std::move(*textures));
-    auto live =
+    auto textures = RELIEF_TRY(inFront(
+        quotedPath(scene.colliders.front().path),
+        watched(watchdog, "uploading the collider", [&] { return makeTextures(scene, loaded.colliders); })));
+    made.textures_ = std::make_unique<ColliderTextures>(std::move(textures));
+    made.live_ =
         RELIEF_TRY(watched(watchdog, "the shaders of colliders", [&] { return LiveBodies::create(loaded); }));
-    made.live_ = std::move(live);
     RELIEF_TRY(watched(watchdog, "the colliders' first maps",
                        [&] { return made.live_.show(0.0, *made.textures_); }));
     auto particles = RELIEF_TRY(

@@ -1,5 +1,6 @@
 #include "runtime/scene/loaded_scene.h"
 
+#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "formats/container.h"
@@ -28,10 +29,8 @@ Result<Scene> openScene(const fs::path& input) {
 
 Result<Collider> openCollider(const SceneCollider& from) {
     auto collider = loadCollider(from.path);
-    if (!collider && !from.origin.empty()) {
-        return fail(collider.error().code, from.origin + ": collider.file: " + collider.error().message);
-    }
-    return collider;
+    return from.origin.empty() ? std::move(collider)
+                               : inFront(from.origin + ": collider.file", std::move(collider));
 }
 
 }  // namespace
@@ -61,15 +60,11 @@ Result<LoadedScene> loadAll(const fs::path& input, const SceneOverrides& overrid
         loaded.bounds.max = glm::max(loaded.bounds.max, bounds.max);
         loaded.colliders.push_back(std::move(collider));
     }
-    auto complete = withDefaults(std::move(scene), loaded.bounds);
-    if (!complete) {
-        return fail(complete.error().code, quotedPath(input) + ": " + complete.error().message);
+    loaded.scene = RELIEF_TRY(inFront(quotedPath(input), withDefaults(std::move(scene), loaded.bounds)));
+    if (loaded.scene.flow) {
+        auto flow = RELIEF_TRY(loadFlow(*loaded.scene.flow));
+        loaded.scene.air.flow = std::make_shared<const FlowField>(std::move(flow));
     }
-    if (complete->flow) {
-        auto flow = RELIEF_TRY(loadFlow(*complete->flow));
-        complete->air.flow = std::make_shared<const FlowField>(std::move(flow));
-    }
-    loaded.scene = std::move(*complete);
     return loaded;
 }
 

@@ -4,7 +4,6 @@
 #include <glm/geometric.hpp>
 #include <string>
 
-#include "formats/config/confined_path.h"
 #include "runtime/scene/scene_readers.h"
 
 namespace relief {
@@ -28,32 +27,7 @@ bool length(SceneTable& table, std::string_view key, float& out) {
     table.failAt(at, table.full(key) + " is missing; " + std::string(cure));
 }
 
-/// Calls `read` for every table of [[name]].
-template <class Read>
-void eachTable(SceneTable& top, std::string_view name, std::size_t most, Read&& read) {
-    const toml::node* node = top.find(name);
-    if (node == nullptr) {
-        return;
-    }
-    const toml::array* all = node->as_array();
-    const std::string wanted = "tables, each headed [[" + std::string(name) + "]]";
-    if (all == nullptr) {
-        top.wrongType(*node, name, wanted);
-    }
-    for (std::size_t i = 0; i < all->size(); ++i) {
-        const toml::node& one = *all->get(i);
-        if (!one.is_table()) {
-            top.wrongType(one, name, wanted);
-        }
-        if (i == most) {
-            top.failAt(one, "there are " + std::to_string(all->size()) + " of [[" + std::string(name) +
-                                "]]; remove all but " + std::to_string(most));
-        }
-        read(*one.as_table(), one);
-    }
-}
-
-// What both kinds have beside their place.
+/// The keys that attractors and vortices share.
 void readStrength(SceneTable& table, const toml::node& at, float& strength, float& radius, int& falloff) {
     if (!table.number("strength", symmetric(kAccelerationMax), strength)) {
         failMissing(table, at, "strength", "give the acceleration at the radius");
@@ -68,31 +42,30 @@ void readStrength(SceneTable& table, const toml::node& at, float& strength, floa
 }
 
 void readAttractors(SceneTable& top, std::string_view file, Scene& scene) {
-    eachTable(top, "attractor", AirSettings::kAttractorsMax,
-              [&](const toml::table& from, const toml::node& at) {
-                  SceneTable table(&from, "attractor", file);
-                  Attractor attractor;
-                  if (!table.vector("position", symmetric(kLengthMax), attractor.position)) {
-                      failMissing(table, at, "position", "give a point [x, y, z]");
-                  }
-                  readStrength(table, at, attractor.strength, attractor.radius, attractor.falloff);
-                  if (table.find("reach") != nullptr) {
-                      length(table, "reach", attractor.reach);
-                  }
-                  table.finish();
-                  scene.air.attractors.push_back(attractor);
-              });
+    for (const toml::table* at : top.tables("attractor", AirSettings::kAttractorsMax)) {
+        SceneTable table(at, "attractor", file);
+        Attractor attractor;
+        if (!table.vector("position", symmetric(kLengthMax), attractor.position)) {
+            failMissing(table, *at, "position", "give a point [x, y, z]");
+        }
+        readStrength(table, *at, attractor.strength, attractor.radius, attractor.falloff);
+        if (table.find("reach") != nullptr) {
+            length(table, "reach", attractor.reach);
+        }
+        table.finish();
+        scene.air.attractors.push_back(attractor);
+    }
 }
 
 void readVortices(SceneTable& top, std::string_view file, Scene& scene) {
-    eachTable(top, "vortex", AirSettings::kVorticesMax, [&](const toml::table& from, const toml::node& at) {
-        SceneTable table(&from, "vortex", file);
+    for (const toml::table* at : top.tables("vortex", AirSettings::kVorticesMax)) {
+        SceneTable table(at, "vortex", file);
         Vortex vortex;
         if (!table.vector("center", symmetric(kLengthMax), vortex.center)) {
-            failMissing(table, at, "center", "give a point [x, y, z] of its axis");
+            failMissing(table, *at, "center", "give a point [x, y, z] of its axis");
         }
         if (table.vector("axis", symmetric(kLengthMax), vortex.axis)) {
-            // Tiny axes are as good as long ones, where a float still has their squares.
+            // Tiny axes are as good as long ones, as long as a float can hold their squares.
             const float longest =
                 std::max({std::abs(vortex.axis.x), std::abs(vortex.axis.y), std::abs(vortex.axis.z)});
             if (!(longest >= 1e-30F)) {
@@ -100,10 +73,10 @@ void readVortices(SceneTable& top, std::string_view file, Scene& scene) {
             }
             vortex.axis = glm::normalize(vortex.axis / longest);
         }
-        readStrength(table, at, vortex.strength, vortex.radius, vortex.falloff);
+        readStrength(table, *at, vortex.strength, vortex.radius, vortex.falloff);
         table.finish();
         scene.air.vortices.push_back(vortex);
-    });
+    }
 }
 
 void readFlowBox(SceneTable& table, const toml::node& at, FlowFile& flow) {
@@ -133,13 +106,10 @@ void readRawShape(SceneTable& table, const toml::node& at, FlowFile& flow) {
     if (size == nullptr) {
         failMissing(table, at, "size", "a raw volume does not say it: give [nx, ny, nz]");
     }
-    const toml::array* sides = size->as_array();
-    if (sides == nullptr || sides->size() != 3) {
-        table.wrongType(*size, "size", "three whole numbers [nx, ny, nz]");
-    }
+    const toml::array& sides = table.arrayOf(*size, "size", 3, "three whole numbers [nx, ny, nz]");
     for (std::size_t i = 0; i < 3; ++i) {
         flow.size[i] =
-            static_cast<std::uint32_t>(table.integerOf(*sides->get(i), "size", {1.0, FlowField::kSideMax}));
+            static_cast<std::uint32_t>(table.integerOf(*sides.get(i), "size", {1.0, FlowField::kSideMax}));
     }
     if (auto checked = checkFlowSize({flow.size[0], flow.size[1], flow.size[2]}); !checked) {
         table.failAt(*size, "flow.size: " + checked.error().message);
@@ -154,23 +124,16 @@ void readFlow(SceneTable table, const toml::node* at, const fs::path& folder, Sc
     std::string_view source;
     constexpr std::array<std::string_view, 3> kSources = {"file", "files", "raw"};  // as in FlowFileKind
     for (std::size_t i = 0; i < kSources.size(); ++i) {
-        std::string text;
-        if (!table.text(kSources[i], text)) {
-            continue;
-        }
-        const toml::node& node = *table.find(kSources[i]);
-        if (!source.empty()) {
+        const toml::node* node = table.find(kSources[i]);
+        if (node != nullptr && !source.empty()) {
             table.failAt(
-                node, table.full(kSources[i]) + " and " + table.full(source) + " are two flows; remove one");
+                *node, table.full(kSources[i]) + " and " + table.full(source) + " are two flows; remove one");
         }
-        auto inside = resolveInside(folder, text);
-        if (!inside) {
-            table.failAt(node, table.full(kSources[i]) + " = " + inside.error().message);
+        if (table.path(kSources[i], folder, flow.path, flow.origin)) {
+            source = kSources[i];
+            flow.kind = static_cast<FlowFileKind>(i);
+            flow.origin += ": " + table.full(source) + ": ";
         }
-        source = kSources[i];
-        flow.path = std::move(*inside);
-        flow.kind = static_cast<FlowFileKind>(i);
-        flow.origin = table.place(node.source().begin) + ": " + table.full(source) + ": ";
     }
     if (source.empty()) {
         failMissing(table, *at, "file",
@@ -245,15 +208,11 @@ void readAir(SceneTable& top, const fs::path& folder, Scene& scene) {
 }
 
 void readViscosity(SceneTable& forces, Scene& scene) {
-    float viscosity = 0.0F;
-    if (!forces.number("viscosity", {0.0, kViscosityMax}, viscosity)) {
-        return;
-    }
-    if (forces.find("drag") != nullptr) {
+    if (forces.number("viscosity", {0.0, kViscosityMax}, scene.air.viscosity) &&
+        forces.find("drag") != nullptr) {
         forces.failAt(*forces.find("viscosity"),
                       "forces.viscosity and forces.drag are two drags; remove one");
     }
-    scene.air.viscosity = viscosity;
 }
 
 }  // namespace relief

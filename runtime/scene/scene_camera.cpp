@@ -1,7 +1,6 @@
 // [[camera.key]]: the camera's path.
 #include <cmath>
 
-#include "runtime/scene/scene_array.h"
 #include "runtime/scene/scene_readers.h"
 
 namespace relief {
@@ -14,16 +13,13 @@ constexpr std::size_t kKeysMax = 10'000;
 void readCameraPath(SceneTable& camera, std::string_view file, Scene& scene) {
     auto& out = scene.camera;
     double before = -1.0;
-    for (const toml::table* one : arrayOfTables(camera, "key", kKeysMax)) {
+    for (const toml::table* one : camera.tables("key", kKeysMax)) {
         SceneTable table(one, "camera.key", file);
         SceneCameraKey key;
         const bool time = table.number("time", {0.0, kSecondsMax * 10.0}, key.time);
         const bool eye = table.vector("eye", symmetric(kLengthMax), key.eye);
         table.vector("target", symmetric(kLengthMax), key.target);
-        float fov = 0.0F;
-        if (table.number("fov", {1.0, 170.0}, fov)) {
-            key.fov = fov;
-        }
+        table.number("fov", {1.0, 170.0}, key.fov);
         table.finish();
         if (!time || !eye) {
             table.failAt(*one, "a [[camera.key]] needs " + table.full(time ? "eye" : "time"));

@@ -2,8 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "formats/config/confined_path.h"
-#include "runtime/scene/scene_array.h"
 #include "runtime/scene/scene_readers.h"
 
 namespace relief {
@@ -37,7 +35,7 @@ bool readPlace(SceneTable& table, Pose& pose) {
 }
 
 void readKeys(SceneTable& table, std::string_view file, SceneCollider& collider) {
-    for (const toml::table* one : arrayOfTables(table, "key", kKeysMax)) {
+    for (const toml::table* one : table.tables("key", kKeysMax)) {
         SceneTable key_table(one, "collider.key", file);
         SceneColliderKey key;
         key.pose = collider.pose;
@@ -65,13 +63,7 @@ void readFileName(SceneTable& table, const toml::source_position& at, const std:
         table.failAt(
             at, "a scene needs collider.file, the .relief file to collide with; bake one with 'relief bake'");
     }
-    const toml::node& node = *table.find("file");
-    auto inside = resolveInside(folder, name);
-    if (!inside) {
-        table.failAt(node, "collider.file = " + inside.error().message);
-    }
-    collider.path = std::move(*inside);
-    collider.origin = table.place(node.source().begin);
+    table.path("file", folder, collider.path, collider.origin);
 }
 
 SceneCollider readCollider(SceneTable table, const toml::source_position& at, std::string_view file,
@@ -100,7 +92,7 @@ std::vector<SceneCollider> readColliders(SceneTable& top, std::string_view file,
         return {readCollider(top.sub("collider"), at, file, folder)};
     }
     std::vector<SceneCollider> colliders;
-    for (const toml::table* one : arrayOfTables(top, "collider", ColliderTextures::kBodiesMax)) {
+    for (const toml::table* one : top.tables("collider", ColliderTextures::kBodiesMax)) {
         colliders.push_back(readCollider({one, "collider", file}, one->source().begin, file, folder));
     }
     if (colliders.empty()) {

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "runtime/scene/scene_table.h"
@@ -23,7 +24,7 @@ double burstBirths(const SceneEmitter& emitter, double seconds) {
     return emitter.burst * (1.0 + again);
 }
 
-/// What is left of the capacity goes to those without a rate: used up at the end of the run, never before.
+/// Emitters without a rate share the rest of the capacity: it is used up at the end of the run, never before.
 Result<void> shareRates(std::span<SceneEmitter> emitters, double run, std::uint32_t capacity) {
     double room = capacity;
     double sharing = 0.0;
@@ -72,12 +73,7 @@ Result<EmitterSettings> settingsOf(const SceneEmitter& from) {
                             from.speed_max.value_or(0.0F), from.speed_deviation};
     }
     if (from.shape == EmitterShape::kPoints) {
-        auto points = loadPointList(from.points);
-        if (!points) {
-            return fail(points.error().code,
-                        from.points_origin + ": emitter.points: " + points.error().message);
-        }
-        to.points = std::move(*points);
+        to.points = RELIEF_TRY(inFront(from.points_origin + ": emitter.points", loadPointList(from.points)));
         if (from.aimed && !from.direction && to.points.normals.empty()) {
             return fail(ErrorCode::kInvalidInput,
                         from.points_origin + ": emitter.points: " + quotedPath(from.points) +

@@ -3,7 +3,6 @@
 #include <limits>
 #include <string>
 
-#include "formats/config/confined_path.h"
 #include "runtime/particles/particle_system.h"
 #include "runtime/scene/scene_readers.h"
 
@@ -20,7 +19,7 @@ constexpr double kBurstEveryMin = 1e-4;
 const std::vector<std::string_view> kShapes{"box", "sphere", "shell", "disc", "points", "point"};
 constexpr std::size_t kPoint = 5;
 
-/// A float of it is not 0.
+/// As a float that is not 0.
 float positive(double value) {
     return std::max(static_cast<float>(value), std::numeric_limits<float>::min());
 }
@@ -85,7 +84,7 @@ bool readDirection(SceneTable& table, std::string_view key, T& out) {
 }
 
 void readPlace(SceneTable& table, const fs::path& folder, SceneEmitter& emitter) {
-    // Without the word the place says what it is.
+    // Without `shape`, the keys of the place tell the shape.
     std::size_t shape = table.find("points") != nullptr  ? static_cast<std::size_t>(EmitterShape::kPoints)
                         : table.find("point") != nullptr ? kPoint
                                                          : 0;
@@ -122,33 +121,21 @@ void readPlace(SceneTable& table, const fs::path& folder, SceneEmitter& emitter)
         }
     }
     if (emitter.shape == EmitterShape::kPoints) {
-        const toml::node& node = *table.find("points");
-        auto inside = resolveInside(folder, file);
-        if (!inside) {
-            table.failAt(node, "emitter.points = " + inside.error().message);
-        }
-        emitter.points = std::move(*inside);
-        emitter.points_origin = table.place(node.source().begin);
+        table.path("points", folder, emitter.points, emitter.points_origin);
     }
 }
 
 void readMoments(SceneTable& table, std::uint32_t capacity, SceneEmitter& emitter) {
     table.number("start", {0.0, kSecondsMax}, emitter.start);
-    double rate = 0.0;
-    if (table.number("rate", {0.0, kRateMax}, rate)) {
-        emitter.rate = rate;
-    }
+    table.number("rate", {0.0, kRateMax}, emitter.rate);
     const bool burst = table.integer("burst", {0.0, ParticleSystem::kCapacityMax}, emitter.burst);
     const bool again = table.number("burst_every", {kBurstEveryMin, kSecondsMax}, emitter.burst_every);
     if (again && emitter.burst == 0) {
         table.failUseless("burst_every", "without emitter.burst; say how many, or remove it");
     }
-    double duration = 0.0;
-    if (table.number("duration", {0.0, kSecondsMax, false}, duration)) {
-        emitter.duration = duration;
-        if (emitter.rate == 0.0 && !again) {
-            table.failUseless("duration", "while emitter.rate is 0; raise the rate or remove it");
-        }
+    if (table.number("duration", {0.0, kSecondsMax, false}, emitter.duration) && emitter.rate == 0.0 &&
+        !again) {
+        table.failUseless("duration", "while emitter.rate is 0; raise the rate or remove it");
     }
     if (emitter.rate == 0.0 && emitter.burst == 0) {
         table.failAt(*table.find(burst ? "burst" : "rate"),
@@ -216,7 +203,7 @@ void readLife(SceneTable& table, SceneEmitter& emitter) {
     if (const toml::node* node = table.find("lifetime"); node != nullptr) {
         const Span span = readSpan(table, *node, "lifetime", {0.0, kSecondsMax, false},
                                    "a number of seconds, or two [least, most]");
-        // A lifetime below the smallest float would be none.
+        // A lifetime below the smallest float would be 0.
         emitter.lifetime_min = positive(span.least);
         emitter.lifetime_max = positive(span.most);
     }

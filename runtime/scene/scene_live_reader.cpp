@@ -4,7 +4,6 @@
 #include <glm/glm.hpp>
 #include <numbers>
 
-#include "formats/config/confined_path.h"
 #include "runtime/scene/scene_readers.h"
 
 namespace relief {
@@ -30,23 +29,14 @@ bool readDirection(SceneTable& table, std::string_view key, glm::vec3& out) {
 }
 
 bool readRange(SceneTable& table, float& low, float& high) {
-    const toml::node* node = table.find("range");
-    if (node == nullptr) {
-        return false;
+    const bool found = table.pair("range", symmetric(kLengthMax), "two numbers [low, high]", low, high);
+    if (found && !(low < high)) {
+        table.failAt(*table.find("range"), table.full("range") + " does not rise; give the lower end first");
     }
-    const toml::array* both = node->as_array();
-    if (both == nullptr || both->size() != 2) {
-        table.wrongType(*node, "range", "two numbers [low, high]");
-    }
-    low = static_cast<float>(table.numberOf(*both->get(0), "range", symmetric(kLengthMax)));
-    high = static_cast<float>(table.numberOf(*both->get(1), "range", symmetric(kLengthMax)));
-    if (!(low < high)) {
-        table.failAt(*node, table.full("range") + " does not rise; give the lower end first");
-    }
-    return true;
+    return found;
 }
 
-/// Keys that a kind does not have do nothing.
+/// Refuses keys that a kind of deformation does not have.
 void refuse(SceneTable& table, std::initializer_list<std::string_view> keys, const char* kind) {
     for (const std::string_view key : keys) {
         if (table.find(key) != nullptr) {
@@ -74,7 +64,7 @@ void readAngles(SceneTable& table, const toml::source_position& at, SceneLive& l
     if (!readDirection(table, "along", d.along)) {
         table.failAt(at, "a bend needs collider.deform.along, the direction of what it bends");
     }
-    // As across as a person writes it.
+    // A person need not write a direction that is exactly across.
     const glm::vec3 across = d.along - glm::dot(d.along, d.axis) * d.axis;
     if (!(glm::length(across) > 0.7F)) {
         table.failAt(*table.find("along"),
@@ -141,17 +131,12 @@ bool readLive(SceneTable& table, std::string_view file, const std::filesystem::p
     if (table.find("file") != nullptr) {
         table.failAt(node, "collider.mesh and collider.file are both given; remove one of them");
     }
-    auto inside = resolveInside(folder, name);
-    if (!inside) {
-        table.failAt(node, "collider.mesh = " + inside.error().message);
-    }
+    table.path("mesh", folder, collider.path, collider.origin);
     if (deform == nullptr) {
         table.failAt(node,
                      "collider.mesh needs collider.deform; for a mesh at rest give collider.file, baked with "
                      "'relief bake'");
     }
-    collider.path = std::move(*inside);
-    collider.origin = table.place(node.source().begin);
     collider.live = readDeform(table, *deform, file);
     table.integer("resolution", {kLiveSizeMin, kLiveSizeMax}, collider.live->resolution);
     return true;

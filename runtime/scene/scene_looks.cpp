@@ -1,8 +1,6 @@
 // What particles look like: keys of [[type]], and the sprites of [render].
 #include <string>
 
-#include "formats/config/confined_path.h"
-#include "runtime/scene/scene_array.h"
 #include "runtime/scene/scene_readers.h"
 
 namespace relief {
@@ -84,38 +82,6 @@ void readCells(SceneTable& table, std::uint32_t cells, ParticleLook& look) {
     }
 }
 
-/// Two whole numbers; false if the key is absent.
-bool readPair(SceneTable& table, std::string_view key, std::uint32_t& first, std::uint32_t& second) {
-    const toml::node* node = table.find(key);
-    if (node == nullptr) {
-        return false;
-    }
-    const toml::array* both = node->as_array();
-    if (both == nullptr || both->size() != 2) {
-        table.wrongType(*node, key, "two whole numbers [columns, rows]");
-    }
-    first = static_cast<std::uint32_t>(table.integerOf(*both->get(0), key, {1.0, kCellsMax}));
-    second = static_cast<std::uint32_t>(table.integerOf(*both->get(1), key, {1.0, kCellsMax}));
-    return true;
-}
-
-/// A path, resolved, and where it stands; false if the key is absent.
-bool readPath(SceneTable& table, std::string_view key, const std::filesystem::path& folder,
-              std::filesystem::path& path, std::string& origin) {
-    std::string text;
-    if (!table.text(key, text)) {
-        return false;
-    }
-    const toml::node& node = *table.find(key);
-    auto inside = resolveInside(folder, text);
-    if (!inside) {
-        table.failAt(node, table.full(key) + " = " + inside.error().message);
-    }
-    path = std::move(*inside);
-    origin = table.place(node.source().begin);
-    return true;
-}
-
 }  // namespace
 
 void readLook(SceneTable& table, std::uint32_t cells, ParticleLook& look) {
@@ -129,18 +95,11 @@ void readLook(SceneTable& table, std::uint32_t cells, ParticleLook& look) {
     table.number("spin", {0.0, kRadiansMax}, look.spin);
     readCells(table, cells, look);
     table.boolean("lit", look.lit);
-    if (look.opacity.size() > 1) {  // says itself how it begins and ends
+    if (look.opacity.size() > 1) {  // it says how the particle begins and ends
         look.fade_in = 0.0F;
         look.fade_out = 0.0F;
     }
-    if (const toml::node* node = table.find("fade"); node != nullptr) {
-        const toml::array* both = node->as_array();
-        if (both == nullptr || both->size() != 2) {
-            table.wrongType(*node, "fade", "two numbers of seconds [in, out]");
-        }
-        look.fade_in = static_cast<float>(table.numberOf(*both->get(0), "fade", {0.0, kSecondsMax}));
-        look.fade_out = static_cast<float>(table.numberOf(*both->get(1), "fade", {0.0, kSecondsMax}));
-    }
+    table.pair("fade", {0.0, kSecondsMax}, "two numbers of seconds [in, out]", look.fade_in, look.fade_out);
 }
 
 void readSprites(SceneTable& render, const std::filesystem::path& folder, Scene& scene) {
@@ -148,12 +107,14 @@ void readSprites(SceneTable& render, const std::filesystem::path& folder, Scene&
     render.word("sprite", {"point", "quad"}, out.sprite);
     render.word("blend", {"alpha", "additive"}, out.blend);
     render.number("soft", {0.0, kLengthMax}, out.soft);
-    const bool atlas = readPath(render, "atlas", folder, out.atlas, out.atlas_origin);
-    if (readPair(render, "atlas_cells", out.atlas_columns, out.atlas_rows) && !atlas) {
+    const bool atlas = render.path("atlas", folder, out.atlas, out.atlas_origin);
+    const bool cells = render.pair("atlas_cells", {1.0, kCellsMax}, "two whole numbers [columns, rows]",
+                                   out.atlas_columns, out.atlas_rows);
+    if (cells && !atlas) {
         render.failUseless("atlas_cells", "without render.atlas; name a PNG there, or remove it");
     }
-    if (readPath(render, "mesh", folder, out.mesh, out.mesh_origin)) {
-        // A mesh is drawn in its own space, and there is one.
+    if (render.path("mesh", folder, out.mesh, out.mesh_origin)) {
+        // The mesh is drawn in its own space, and only once.
         const SceneCollider& first = scene.colliders.front();
         if (scene.colliders.size() > 1 || !first.keys.empty() || !(first.pose == Pose{})) {
             throw SceneError{out.mesh_origin +

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "formats/base/file_io.h"
-#include "formats/config/confined_path.h"
 #include "runtime/scene/scene_readers.h"
 #include "runtime/scene/scene_table.h"
 
@@ -18,6 +17,7 @@ constexpr std::uint64_t kSceneBytesMax = std::uint64_t{1} << 20;
 
 constexpr double kStepsMax = 1e7;
 constexpr double kPixelsMax = 65535;
+constexpr double kSortFramesMax = 200;
 
 void readForces(SceneTable table, Scene& scene) {
     auto& forces = scene.forces;
@@ -46,14 +46,10 @@ void readCollision(SceneTable table, Scene& scene) {
 
 void readGround(SceneTable table, Scene& scene) {
     table.boolean("enabled", scene.ground.enabled);
-    float height = 0.0F;
-    const bool found = table.number("height", symmetric(kLengthMax), height);
+    const bool found = table.number("height", symmetric(kLengthMax), scene.ground.height);
     table.finish();
     if (found && !scene.ground.enabled) {
         table.failUseless("height", "while ground.enabled is false; remove one of them");
-    }
-    if (found) {
-        scene.ground.height = height;
     }
 }
 
@@ -73,23 +69,20 @@ void readCamera(SceneTable table, std::string_view file, Scene& scene) {
 
 void readRender(SceneTable table, const fs::path& folder, Scene& scene) {
     auto& render = scene.render;
-    if (const toml::node* node = table.find("size"); node != nullptr) {
-        const toml::array* both = node->as_array();
-        if (both == nullptr || both->size() != 2) {
-            table.wrongType(*node, "size", "two whole numbers [width, height]");
-        }
-        render.width = static_cast<std::uint32_t>(table.integerOf(*both->get(0), "size", {1.0, kPixelsMax}));
-        render.height = static_cast<std::uint32_t>(table.integerOf(*both->get(1), "size", {1.0, kPixelsMax}));
-    }
-    float point_size = 0.0F;
-    if (table.number("point_size", {0.0, kLengthMax, false}, point_size)) {
-        render.point_size = std::max(point_size, std::numeric_limits<float>::min());
+    table.pair("size", {1.0, kPixelsMax}, "two whole numbers [width, height]", render.width, render.height);
+    if (table.number("point_size", {0.0, kLengthMax, false}, render.point_size)) {
+        render.point_size = std::max(*render.point_size, std::numeric_limits<float>::min());
     }
     table.vector("color", {0.0, 1.0}, render.color);
     table.number("opacity", {0.0, 1.0, false}, render.opacity);
     table.vector("background", {0.0, 1.0}, render.background);
     table.integer("every", {1.0, kStepsMax}, render.every);
-    readSort(table, scene);
+    table.integer("sort_frames", {0.0, kSortFramesMax}, render.sort_frames);
+    // 1 would be a whole sequence each frame, which spreading over frames is there to avoid.
+    if (render.sort_frames == 1) {
+        table.failAt(*table.find("sort_frames"),
+                     table.full("sort_frames") + " = 1 is out of range; choose 0, for no sort, or 2 to 200");
+    }
     readSprites(table, folder, scene);
     table.finish();
 }

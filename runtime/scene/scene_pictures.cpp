@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "runtime/files/mesh_file.h"
 #include "runtime/files/png.h"
@@ -18,26 +19,17 @@ tl::unexpected<Error> failAt(const std::string& origin, const char* key, const E
 
 Result<RgbaPicture> readAtlas(const Scene& scene) {
     const auto& render = scene.render;
-    const auto bytes = readFile(render.atlas, kAtlasBytesMax);
-    if (!bytes) {
-        return failAt(render.atlas_origin, "render.atlas", bytes.error());
-    }
-    auto picture = decodePng(*bytes, quotedPath(render.atlas));
-    if (!picture) {
-        return failAt(render.atlas_origin, "render.atlas", picture.error());
-    }
-    return picture;
+    const std::string origin = render.atlas_origin + ": render.atlas";
+    const auto bytes = RELIEF_TRY(inFront(origin, readFile(render.atlas, kAtlasBytesMax)));
+    return inFront(origin, decodePng(bytes, quotedPath(render.atlas)));
 }
 
 Result<PictureMesh> readMesh(const Scene& scene, const Bounds& bounds) {
     const auto& render = scene.render;
-    auto mesh = loadPictureMesh(render.mesh);
-    if (!mesh) {
-        return failAt(render.mesh_origin, "render.mesh", mesh.error());
-    }
+    auto mesh = RELIEF_TRY(inFront(render.mesh_origin + ": render.mesh", loadPictureMesh(render.mesh)));
     Bounds box;
-    for (const std::uint32_t v : mesh->triangles) {
-        box.add(mesh->positions[v]);
+    for (const std::uint32_t v : mesh.triangles) {
+        box.add(mesh.positions[v]);
     }
     bool apart = false;
     for (int i = 0; i < 3; ++i) {
@@ -88,11 +80,8 @@ Result<std::unique_ptr<ColliderMesh>> loadColliderMesh(const Scene& scene, const
         return nullptr;
     }
     const auto mesh = RELIEF_TRY(readMesh(scene, bounds));
-    auto drawn = ColliderMesh::create(mesh);
-    if (!drawn) {
-        return failAt(render.mesh_origin, "render.mesh", drawn.error());
-    }
-    return std::make_unique<ColliderMesh>(std::move(*drawn));
+    auto drawn = RELIEF_TRY(inFront(render.mesh_origin + ": render.mesh", ColliderMesh::create(mesh)));
+    return std::make_unique<ColliderMesh>(std::move(drawn));
 }
 
 ParticleStyle particleStyle(const Scene& scene, const SpriteAtlas* atlas) {

@@ -13,11 +13,6 @@
 
 namespace relief {
 
-// scene_sort.cpp
-
-/// The keys of [render] that say how particles are sorted.
-void readSort(SceneTable& render, Scene& scene);
-
 // scene_air.cpp
 
 /// Makes the tables of readAir known to `top`; call before its finish().

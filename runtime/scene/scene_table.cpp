@@ -1,19 +1,12 @@
 #include "runtime/scene/scene_table.h"
 
 #include <cstdio>
-#include <filesystem>
 
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
+#include "formats/config/confined_path.h"
 
 namespace relief {
-namespace {
-
-bool before(const toml::source_position& a, const toml::source_position& b) {
-    return a.line != b.line ? a.line < b.line : a.column < b.column;
-}
-
-}  // namespace
 
 std::string numberText(double value) {
     char text[40];
@@ -51,48 +44,75 @@ const toml::node* SceneTable::find(std::string_view key) {
 }
 
 bool SceneTable::boolean(std::string_view key, bool& out) {
-    const toml::node* node = find(key);
-    if (node == nullptr) {
-        return false;
-    }
-    if (!node->is_boolean()) {
-        wrongType(*node, key, "true or false");
-    }
-    out = *node->value_exact<bool>();
-    return true;
+    return take(key, out, [&](const toml::node& node) {
+        if (!node.is_boolean()) {
+            wrongType(node, key, "true or false");
+        }
+        return *node.value_exact<bool>();
+    });
 }
 bool SceneTable::text(std::string_view key, std::string& out) {
-    const toml::node* node = find(key);
-    if (node == nullptr) {
+    return take(key, out, [&](const toml::node& node) {
+        if (!node.is_string()) {
+            wrongType(node, key, "a string");
+        }
+        return *node.value_exact<std::string>();
+    });
+}
+bool SceneTable::path(std::string_view key, const std::filesystem::path& folder, std::filesystem::path& out,
+                      std::string& origin) {
+    std::string name;
+    if (!text(key, name)) {
         return false;
     }
-    if (!node->is_string()) {
-        wrongType(*node, key, "a string");
+    const toml::node& node = *find(key);
+    auto inside = resolveInside(folder, name);
+    if (!inside) {
+        failAt(node, full(key) + " = " + inside.error().message);
     }
-    out = *node->value_exact<std::string>();
+    out = std::move(*inside);
+    origin = place(node.source().begin);
     return true;
 }
-bool SceneTable::vector(std::string_view key, const SceneRange& range, glm::vec3& out) {
+
+std::vector<const toml::table*> SceneTable::tables(std::string_view key, std::size_t most) {
+    std::vector<const toml::table*> tables;
     const toml::node* node = find(key);
     if (node == nullptr) {
-        return false;
+        return tables;
     }
-    const toml::array* values = node->as_array();
-    if (values == nullptr || values->size() != 3) {
-        wrongType(*node, key, "three numbers [x, y, z]");
+    const std::string wanted = "tables, each as in [[" + full(key) + "]]";
+    if (!node->is_array()) {
+        wrongType(*node, key, wanted);
     }
+    for (const toml::node& one : *node->as_array()) {
+        if (!one.is_table()) {
+            wrongType(one, key, wanted);
+        }
+        if (tables.size() == most) {
+            failAt(one, "there are " + std::to_string(node->as_array()->size()) + " of [[" + full(key) +
+                            "]], more than " + std::to_string(most) + "; remove some");
+        }
+        tables.push_back(one.as_table());
+    }
+    return tables;
+}
+
+const toml::array& SceneTable::arrayOf(const toml::node& node, std::string_view key, std::size_t size,
+                                       std::string_view wanted) const {
+    const toml::array* values = node.as_array();
+    if (values == nullptr || values->size() != size) {
+        wrongType(node, key, wanted);
+    }
+    return *values;
+}
+glm::vec3 SceneTable::vectorOf(const toml::node& node, std::string_view key, const SceneRange& range) const {
+    const toml::array& values = arrayOf(node, key, 3, "three numbers [x, y, z]");
+    glm::vec3 out{0.0F};
     for (int i = 0; i < 3; ++i) {
-        out[i] = static_cast<float>(numberOf(*values->get(static_cast<std::size_t>(i)), key, range));
+        out[i] = static_cast<float>(numberOf(*values.get(static_cast<std::size_t>(i)), key, range));
     }
-    return true;
-}
-bool SceneTable::vector(std::string_view key, const SceneRange& range, std::optional<glm::vec3>& out) {
-    glm::vec3 value{0.0F};
-    const bool found = vector(key, range, value);
-    if (found) {
-        out = value;
-    }
-    return found;
+    return out;
 }
 double SceneTable::numberOf(const toml::node& node, std::string_view key, const SceneRange& range) const {
     if (!node.is_number()) {
@@ -157,24 +177,13 @@ void SceneTable::finish() const {
     if (table_ == nullptr) {
         return;
     }
-    // In the order of the file, so that the first mistake is the one reported.
-    const toml::key* first = nullptr;
-    for (const auto& [key, node] : *table_) {
-        const bool known = std::find(known_.begin(), known_.end(), key.str()) != known_.end();
-        if (!known && (first == nullptr || before(key.source().begin, first->source().begin))) {
-            first = &key;
+    for (const toml::key* key : keysInOrder(*table_)) {
+        if (std::find(known_.begin(), known_.end(), key->str()) == known_.end()) {
+            const std::string hint = didYouMean(key->str(), known_);
+            failAt(key->source().begin, "unknown " + std::string(name_.empty() ? "table" : "key") + " '" +
+                                            oneLine(full(key->str())) + "'" +
+                                            (hint.empty() ? "; known are " + listed(known_) : hint));
         }
     }
-    if (first == nullptr) {
-        return;
-    }
-    std::string list;
-    for (const std::string_view key : known_) {
-        list += (list.empty() ? "" : ", ") + std::string(key);
-    }
-    const std::string hint = didYouMean(first->str(), known_);
-    failAt(first->source().begin, "unknown " + std::string(name_.empty() ? "table" : "key") + " '" +
-                                      oneLine(full(first->str())) + "'" +
-                                      (hint.empty() ? "; known are " + list : hint));
 }
 }  // namespace relief

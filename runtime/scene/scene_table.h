@@ -2,10 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <glm/vec3.hpp>
-#include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "formats/config/toml.h"
@@ -62,41 +63,62 @@ class SceneTable {
     /// The value of a key; null if absent.
     [[nodiscard]] const toml::node* find(std::string_view key);
 
-    // Each reads a key into `out` if it is there, and says whether it is.
+    // Each reads a key into `out`, which may be optional, if it is there, and says whether it is.
     template <class T>
     bool number(std::string_view key, const SceneRange& range, T& out) {
-        const toml::node* node = find(key);
-        if (node != nullptr) {
-            out = static_cast<T>(numberOf(*node, key, range));
-        }
-        return node != nullptr;
+        return take(key, out, [&](const toml::node& node) { return numberOf(node, key, range); });
     }
     template <class T>
     bool integer(std::string_view key, const SceneRange& range, T& out) {
-        const toml::node* node = find(key);
-        if (node != nullptr) {
-            out = static_cast<T>(integerOf(*node, key, range));
-        }
-        return node != nullptr;
+        return take(key, out, [&](const toml::node& node) { return integerOf(node, key, range); });
     }
-    bool boolean(std::string_view key, bool& out);
-    bool text(std::string_view key, std::string& out);
-    bool vector(std::string_view key, const SceneRange& range, glm::vec3& out);
-    bool vector(std::string_view key, const SceneRange& range, std::optional<glm::vec3>& out);
+    template <class T>
+    bool vector(std::string_view key, const SceneRange& range, T& out) {
+        return take(key, out, [&](const toml::node& node) { return vectorOf(node, key, range); });
+    }
     /// One of `words`; `out` is its index.
     template <class T>
     bool word(std::string_view key, const std::vector<std::string_view>& words, T& out) {
+        return take(key, out, [&](const toml::node& node) { return wordOf(node, key, words); });
+    }
+    bool boolean(std::string_view key, bool& out);
+    bool text(std::string_view key, std::string& out);
+    /// Two whole numbers, or two numbers, as the type of `first` is.
+    /// \param wanted  what the value must be, in words.
+    template <class T, class U>
+    bool pair(std::string_view key, const SceneRange& range, std::string_view wanted, T& first, U& second) {
         const toml::node* node = find(key);
         if (node != nullptr) {
-            out = static_cast<T>(wordOf(*node, key, words));
+            const toml::array& both = arrayOf(*node, key, 2, wanted);
+            const auto value = [&](std::size_t i) {
+                if constexpr (std::is_integral_v<T>) {
+                    return integerOf(*both.get(i), key, range);
+                } else {
+                    return numberOf(*both.get(i), key, range);
+                }
+            };
+            first = static_cast<T>(value(0));
+            second = static_cast<U>(value(1));
         }
         return node != nullptr;
     }
+    /// A path, resolved, and its place in the file.
+    /// \param folder  of the scene, as everywhere.
+    bool path(std::string_view key, const std::filesystem::path& folder, std::filesystem::path& out,
+              std::string& origin);
 
+    /// The tables of the array `key`; none if it is absent.
+    [[nodiscard]] std::vector<const toml::table*> tables(std::string_view key, std::size_t most);
+
+    /// An array of so many.
+    [[nodiscard]] const toml::array& arrayOf(const toml::node& node, std::string_view key, std::size_t size,
+                                             std::string_view wanted) const;
     [[nodiscard]] double numberOf(const toml::node& node, std::string_view key,
                                   const SceneRange& range) const;
     [[nodiscard]] std::int64_t integerOf(const toml::node& node, std::string_view key,
                                          const SceneRange& range) const;
+    [[nodiscard]] glm::vec3 vectorOf(const toml::node& node, std::string_view key,
+                                     const SceneRange& range) const;
     [[nodiscard]] std::size_t wordOf(const toml::node& node, std::string_view key,
                                      const std::vector<std::string_view>& words) const;
 
@@ -113,6 +135,15 @@ class SceneTable {
     void finish() const;
 
   private:
+    template <class T, class Read>
+    bool take(std::string_view key, T& out, const Read& read) {
+        const toml::node* node = find(key);
+        if (node != nullptr) {
+            out = static_cast<T>(read(*node));
+        }
+        return node != nullptr;
+    }
+
     const toml::table* table_;
     std::string_view name_;
     std::string_view file_;

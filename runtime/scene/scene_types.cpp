@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <string>
 
-#include "runtime/scene/scene_array.h"
 #include "runtime/scene/scene_readers.h"
 
 namespace relief {
@@ -26,7 +25,7 @@ void readTypes(SceneTable& top, std::string_view file, Scene& scene) {
     const auto& render = scene.render;
     const std::uint32_t cells = render.atlas.empty() ? 0 : render.atlas_columns * render.atlas_rows;
     bool cell = false;
-    for (const toml::table* one : arrayOfTables(top, "type", kLooksMax)) {
+    for (const toml::table* one : top.tables("type", kLooksMax)) {
         SceneTable table(one, "type", file);
         ParticleLook look;
         readLook(table, cells, look);

@@ -6,15 +6,7 @@
 namespace relief {
 namespace {
 
-std::string joined(const std::vector<std::string>& words, const char* separator) {
-    std::string text;
-    for (const std::string& word : words) {
-        text += (text.empty() ? "" : separator) + word;
-    }
-    return text;
-}
-
-/// The first line: completions have room for one.
+/// The first line: completions have no room for more.
 std::string shortText(const std::string& description) {
     return description.substr(0, description.find('\n'));
 }

@@ -49,18 +49,10 @@ std::string paragraphs(const std::string& text) {
     return out;
 }
 
-std::string joinedNames(const CliOption& option) {
-    std::string names;
-    for (const std::string& name : option.names) {
-        names += (names.empty() ? "" : ", ") + name;
-    }
-    return names;
-}
-
 std::string optionEntry(const CliOption& option) {
-    std::string head = ".BR " + argument(joinedNames(option));
+    std::string head = ".BR " + argument(joined(option.names, ", "));
     if (!option.value.empty() && !option.positional) {
-        head = ".BI " + argument(joinedNames(option) + " ") + " " + argument(option.value);
+        head = ".BI " + argument(joined(option.names, ", ") + " ") + " " + argument(option.value);
     }
     std::string text = ".TP\n" + head + "\n";
     // Descriptions of several lines are tables for the terminal: their lines stay lines.

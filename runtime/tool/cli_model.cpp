@@ -103,4 +103,12 @@ CliProgram readProgram(const CLI::App& app, const std::string& version) {
     return {app.get_name(), version, readCommand(app, app.get_name())};
 }
 
+std::string joined(const std::vector<std::string>& words, const char* separator) {
+    std::string text;
+    for (const std::string& word : words) {
+        text += (text.empty() ? "" : separator) + word;
+    }
+    return text;
+}
+
 }  // namespace relief

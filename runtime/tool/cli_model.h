@@ -44,6 +44,8 @@ struct CliProgram {
 ///             Options of the group "" are hidden, here too.
 [[nodiscard]] CliProgram readProgram(const CLI::App& app, const std::string& version);
 
+[[nodiscard]] std::string joined(const std::vector<std::string>& words, const char* separator);
+
 /// A page of section 1 in man(7) macros, without a date.
 /// \param verb  nullptr for the program's own page.
 [[nodiscard]] std::string manPage(const CliProgram& program, const CliCommand* verb);

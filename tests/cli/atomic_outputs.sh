@@ -1,5 +1,5 @@
-# A file that relief writes is the older one or the new one, whole: after SIGKILL at any system call of the writing,
-# after any error there, on a full disk, with many writers at once, and after signals at any time.
+# Every file that relief writes is whole, the old one or the new one: after SIGKILL or an error at any system call of
+# the writing, on a full disk, with many writers at once, and after signals at any time.
 #   RELIEF_ATOMIC_PAGE=FILE  also writes what was counted, for bake/measure/trust.md
 #   RELIEF_ATOMIC_ROUNDS=N   rounds of writers and of signals (1)
 . "$(dirname "$0")/lib.sh"
@@ -42,8 +42,8 @@ new=$(hash_of new.relief) old=$(hash_of old.relief)
 
 # --- every system call of the writing, killed and failed ---
 
-# write_phase: the main thread's calls from the look for stale files to the end, as "SYSCALL N", N counting the calls
-# of that name by all threads as strace's when= does for each; only the main thread's own count.
+# `calls`: the main thread's system calls from the search for stale files to the end, as "SYSCALL N WHAT". N counts the
+# calls of that name in the main thread alone, as strace's when= does for each thread.
 cp old.relief out/a.relief
 strace -o trace "${bake[@]}" out/a.relief --resolution 8
 [ "$(hash_of out/a.relief)" = "$new" ] || die "a traced bake gives another file"
@@ -56,10 +56,10 @@ for line in open('trace'):
         continue
     name = match[1]
     seen[name] = seen.get(name, 0) + 1
-    # From where the target is looked at for the last time before a temporary file comes to be.
     calls.append((name, seen[name], line))
 first = next(i for i, (name, _, line) in enumerate(calls) if 'O_CREAT' in line and '.relief-' in line)
 last = max(i for i, (name, _, _) in enumerate(calls) if name in ('rename', 'renameat', 'fsync', 'close'))
+# The writing begins at the last look at the target before the temporary file is made.
 while first > 0 and calls[first - 1][0] in ('rt_sigprocmask', 'getpid', 'getrandom', 'getdents64', 'fstat', 'newfstatat', 'close', 'openat', 'readlink', 'flock', 'fcntl', 'brk'):
     first -= 1
 names = {'openat', 'open', 'write', 'pwrite64', 'fsync', 'fdatasync', 'close', 'rename', 'renameat', 'renameat2', 'fchmod', 'fcntl',
@@ -91,7 +91,7 @@ temporary_files() { find out -name '.relief-*' | wc -l; }
 while read -r name number _; do
     cp old.relief out/a.relief
     code=0
-    # In braces: bash itself says "Killed".
+    # The braces catch what bash itself says: "Killed".
     { strace -o /dev/null -e "inject=$name:signal=KILL:when=$number" "${bake[@]}" out/a.relief --resolution 8; } \
         >/dev/null 2>&1 || code=$?
     [ "$code" -eq 137 ] || die "SIGKILL at $name $number: exit code $code"
@@ -103,7 +103,7 @@ done <calls
 "${bake[@]}" out/a.relief --resolution 8
 [ "$(temporary_files)" -eq 0 ] || die "the next writer leaves what killed ones left: $(ls -A out)"
 
-# fails NAME NUMBER ERRNO: the error is named, the older file stays, nothing is left; or the call is one that may fail.
+# fails NAME NUMBER ERRNO: either the call may fail, or the error is named, the old file stays and nothing is left.
 fails() {
     local name=$1 number=$2 errno=$3 code=0 words
     cp old.relief out/a.relief
@@ -138,7 +138,7 @@ while read -r name number _; do
         fails "$name" "$number" "$errno"
     done
 done <calls
-# What must not be taken for success, at least once each; and what must be tried again.
+# Each error must be noticed at least once; interrupted calls must be repeated.
 for pair in 'openat ENOSPC' 'openat EACCES' 'write ENOSPC' 'write EIO' 'write EDQUOT' 'fsync ENOSPC' 'fsync EIO' 'fsync EDQUOT' \
     'close EIO' 'close ENOSPC' 'close EDQUOT' 'rename EACCES' 'rename EIO' 'fchmod EIO'; do
     grep -qx "$pair" reported || die "no call reported: $pair"
@@ -248,7 +248,7 @@ for i in range(16 * rounds):
     assert code == 0 or took < 2.0, f'{took:.1f} s after signal {number}'
     left = [name for name in os.listdir('out') if name.startswith('.relief-')]
     assert not left, left
-    while True:  # the kernel ends the importer when its parent is gone, in its own time
+    while True:  # the kernel takes its time to end the importer of a parent that is gone
         try:
             os.killpg(child.pid, 0)
         except ProcessLookupError:
@@ -260,7 +260,7 @@ assert ended >= 4 * rounds, f'only {ended} signals came in time'
 print(16 * rounds)
 P
 signals=$(python3 interrupt.py "$relief" "$rounds" "$bunny") || die "signals: see above"
-# In the middle of the writing: strace delivers them at its calls.
+# Signals in the middle of the writing: strace delivers them at its calls.
 while read -r name number _; do
     for word in INT TERM HUP QUIT; do
         cp old.relief out/a.relief

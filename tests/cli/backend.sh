@@ -1,5 +1,5 @@
-# `relief bake --backend`: who bakes, what the report and the container say of it, and what a machine without any
-# OpenGL does.
+# `relief bake --backend`: which backend bakes, what the report and the container say about it, and what happens without
+# OpenGL.
 . "$(dirname "$0")/lib.sh"
 
 maps=(--map front-back:size=96,dir=-x --map float:size=64,decode=projected --map cube:size=48)
@@ -10,7 +10,7 @@ json raster.json "d['settings']['backend'] == 'raster' and d['settings']['device
 json raster.json "d['settings']['quality'] == 'fast' and d['times_ms']['trace'] == 0"
 "$relief" info raster.relief | matches -- '--backend raster' || die "the container does not say who baked it"
 cmp -s rays.relief raster.relief && die "both bakes are the same to the byte: the GPU was not asked"
-# As right as the ray caster's with one ray a texel, on the bunny's own points.
+# The rasterizer is as accurate as one ray per texel, on the bunny's own points.
 for name in rays raster; do
     "$relief" check $name.relief --mesh "$bunny" --json >$name.check.json
 done
@@ -29,7 +29,7 @@ sed -i 's/^quality.*/quality = "normal"/' plan.toml
 expect_error 1 'quality normal.*--quality fast' "$relief" bake "$bunny" -o x.relief --plan plan.toml --backend raster
 expect 0 "$relief" bake "$bunny" -o again.relief --plan plan.toml --quality fast --backend raster
 
-# What rays alone can do, and the cure.
+# Options that need rays are refused, and the message names the cure.
 expect_error 1 "'vulkan'.*raycast" "$relief" bake "$bunny" -o x.relief --backend vulkan "${maps[@]}"
 expect_error 1 'did you mean' "$relief" bake "$bunny" -o x.relief --backend rastr "${maps[@]}"
 expect_error 1 'planning.*--map' "$relief" bake "$bunny" -o x.relief --backend raster
@@ -39,7 +39,7 @@ expect_error 1 '--prefer inside.*leave --prefer out' \
     "$relief" bake "$bunny" -o x.relief --backend raster --prefer inside "${maps[@]}"
 [ ! -e x.relief ] || die "a failed bake left a file"
 
-# auto says what it took, and why: rays for what is planned, wherever it runs.
+# auto says what it chose and why: rays for planned maps, on every machine.
 expect 0 "$relief" bake "$bunny" -o auto.relief --backend auto --budget 20kB --quality fast
 grep -q 'backend raycast: planning' stderr || die "auto does not say why"
 cmp auto.relief planned.relief || die "auto planned other maps"

@@ -1,5 +1,5 @@
-# Whatever is wrong: one clear line that names the file and the cure, the right exit code, and an older output
-# as it was.
+# Every mistake gets one clear line that names the file and the cure, and the right exit code; an older output stays as
+# it was.
 . "$(dirname "$0")/lib.sh"
 
 cat >good.obj <<'O'

@@ -18,7 +18,7 @@ f 2 3 7 6
 f 1 5 8 4
 O
 
-# The paper's set: three orthogonal front-back maps and one cube, in a container that says where it comes from.
+# The paper's set is three orthogonal front-back maps and one cube; the container says where it comes from.
 expect 0 "$relief" bake box.obj -o box.relief --paper --resolution 64 -q
 [ ! -s stderr ] || die "-q is not quiet"
 expect 0 "$relief" info box.relief --json
@@ -32,7 +32,7 @@ json info.json "d['maps'][3]['compare'] == 'greater' and d['maps'][3]['width'] =
 expect 0 "$relief" info box.relief
 grep -q 'front-back' stdout || die "info does not list the maps"
 
-# A nearly closed mesh is baked as a solid, and the report says so; what it was made from stays named.
+# A nearly closed mesh is baked as a solid, and the report says so; the container still names the mesh.
 grep -v '^f 4 3 2 1' box.obj >open.obj
 expect 0 "$relief" bake open.obj -o open.relief --map cube:size=16 --json
 grep -q 'open.obj: closed 1 hole with 4 triangles for baking: the mesh is nearly closed' stderr ||
@@ -47,7 +47,7 @@ json report.json "d['provenance']['options'].endswith(' --holes keep')"
 cmp -s open.relief kept.relief && die "--holes keep closes holes"
 expect_error 1 'holes.*close or keep' "$relief" bake open.obj -o bad.relief --holes fill
 
-# Every format, projection and compare by hand; the effective settings are echoed.
+# --map takes every format, projection and compare; the effective settings are printed.
 expect 0 "$relief" bake box.obj -o all.relief --resolution 32 --json \
     --map float:dir=+x --map float:dir=-y,compare=greater --map fixed8:dir=1/2/3,size=48x24 \
     --map front-back:dir=-z --map cube:size=16 --map cube:center=5/0/0,compare=less
@@ -57,7 +57,7 @@ cp stdout info.json
 json info.json "[(m['format'], m['compare']) for m in d['maps']] == [('float', 'less'), ('float', 'greater'), ('fixed8', 'less'), ('front-back', 'both'), ('cube', 'greater'), ('cube', 'less')]"
 json info.json "(d['maps'][2]['width'], d['maps'][2]['height']) == (48, 24)"
 
-# --decode and --depth speak for the maps that do not say it themselves.
+# --decode and --depth apply to maps that do not set their own.
 expect 0 "$relief" bake box.obj -o all.relief --resolution 16 --json --map front-back --map front-back:depth=unorm16 \
     --map cube:decode=plane --decode projected --depth half
 json stdout "['half' in m for m in d['settings']['maps']] == [True, False, False]"
@@ -65,7 +65,7 @@ json stdout "['projected' in m for m in d['settings']['maps']] == [True, True, F
 expect 0 "$relief" bake box.obj -o all.relief --resolution 16 --json --map front-back --map float:dir=+x,up=-z
 json stdout "d['settings']['maps'] == ['front-back:dir=-z,size=16x16,depth=unorm16,decode=plane,box=tight', 'float:dir=+x,up=-z,size=16x16,compare=less,decode=plane,box=tight']"
 
-# The same bytes whatever the number of threads, the folder and the name of the output; compressed ones too.
+# Threads, folder and output name do not change the bytes, compressed or not.
 for threads in 1 2 5; do
     expect 0 "$relief" bake "$bunny" -o "t$threads.relief" --threads $threads -q
 done

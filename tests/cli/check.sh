@@ -1,4 +1,4 @@
-# A collider measured against its mesh: report, JSON, page and exit codes.
+# relief check, with a mesh and without: report, JSON, page and exit codes.
 . "$(dirname "$0")/lib.sh"
 
 "$relief" bake "$bunny" -o b.relief --paper --resolution 64 -q
@@ -11,7 +11,7 @@ json report.json '0 < d["accuracy"]["near"]["wrong_percent"] < 30'
 json report.json 'd["accuracy"]["gpu_bytes"] == 3 * 64 * 64 * 8 + 6 * 64 * 64 * 4'
 json report.json 'd["sampling"]["samples"] == 5000 and d["sampling"]["seed"] == 1 and d["passed"]'
 
-# The same seed measures the same, another one something near it; the page is the same bytes.
+# The same seed gives the same numbers and the same page, another seed nearly the same numbers.
 for i in 1 2; do
     "$relief" check b.relief --mesh "$bunny" --samples 5000 --seed 7 --json --html $i.html |
         grep -v -e '"truth"' -e '"field"' >$i.json
@@ -22,7 +22,7 @@ cmp 1.html 2.html || die "two pages differ"
 grep -q 'src="data:image/png;base64,iVBOR' 1.html || die "the page has no pictures"
 [ "$(grep -o '<img' 1.html | wc -l)" -eq $((4 + 3 + 3 * 4 + 6 * 2)) ] || die "heat maps, slices and maps are not all there"
 
-# --max-error: the report is printed, and the exit code is that of a difference.
+# --max-error: the report is printed, and the exit code says "difference".
 expect 7 "$relief" check b.relief --mesh "$bunny" --samples 5000 --max-error 0.01 --json
 json stdout 'd["max_error_percent"] == 0.01 and not d["passed"]'
 grep -q 'max-error' stderr || die "no reason given: $(cat stderr)"
@@ -46,7 +46,7 @@ for option in '--samples 5' '--seed 5' '--max-error 5' '--html page.html'; do
     expect_error 1 '--mesh' "$relief" check b.relief $option
 done
 
-# Alone: what is wrong with the file, every issue by its code, and what is left.
+# Without a mesh: every issue of the file is listed by its code, with what is left of the file.
 expect 0 "$relief" check b.relief
 [ ! -s stderr ] && grep -q '^b.relief: sound$' stdout || die "a sound file: $(cat stdout stderr)"
 expect 0 "$relief" check b.relief --json
@@ -72,7 +72,7 @@ cp b.relief later.relief
 printf '\2' | dd of=later.relief bs=1 seek=12 conv=notrunc status=none
 expect 5 "$relief" check later.relief
 
-# What is baked has nothing suspicious, boxes whose faces lie at the end of their maps included.
+# Fresh bakes have no issues, not even boxes whose faces lie at the end of their maps.
 tar -xzf /usr/share/doc/libcgal-dev/data.tar.gz data/meshes/P.off data/meshes/cube.off
 for mesh in data/meshes/*.off "$models/OBJ/box.obj"; do
     for options in '--budget 60kB' '--paper --resolution 32' \

@@ -1,5 +1,6 @@
-# The installed tree from outside: the pages' links lead somewhere; the CMake project of scripts/install/README.md builds,
-# runs, and bakes again exactly what changed; the sample of embedding builds by pkg-config alone; a build without the baker installs the runtime.
+# The installed tree from outside: the links of its pages work; the CMake project of scripts/install/README.md builds, runs,
+# and bakes again exactly what changed; the embedding sample builds by pkg-config alone; a build without the baker installs
+# the runtime.
 . "$(dirname "$0")/lib.sh"
 build="$RELIEF_BIN/.."
 prefix="$work/a prefix"
@@ -16,7 +17,7 @@ done
     die "the installed tree knows where it was built"
 [ ! -e "$prefix/bin/relief-pages" ] || die "a program of the build is installed"
 
-# Every link of an installed page to another page, or to a picture, leads there.
+# Every link of an installed page to another page or a picture works.
 (cd "$prefix/share/doc/relief" && grep -roE '\]\([^):]+\.(md|jpg)\)' . | sort -u) >links
 [ "$(wc -l <links)" -ge 20 ] || die "only $(wc -l <links) links in the installed pages"
 while IFS=: read -r page link; do
@@ -24,7 +25,7 @@ while IFS=: read -r page link; do
     [ -f "$prefix/share/doc/relief/$(dirname "$page")/${target%)}" ] || die "$page links to ${target%)}, which is not installed"
 done <links
 
-# Every header includes nothing that is not installed, or that is the player's.
+# Installed headers include only installed headers, and none of the player's.
 (cd "$prefix/include/relief" && grep -rhoE '#include "[^"]+"' . | sort -u | sed 's/.*"\(.*\)"/\1/') >includes
 while read -r header; do
     [ -f "$prefix/include/relief/$header" ] || die "a header includes $header, which is not installed"
@@ -58,7 +59,7 @@ grep -qE '^[0-9]+ maps, [0-9]+ bytes on the GPU$' stdout || die "the program say
 expect 0 "$relief" check out/box.relief
 
 no_work() { cmake --build out | matches 'no work to do' || die "$1, and there is work to do"; }
-# bakes FILES TOUCHED…: touching them bakes exactly FILES again.
+# bakes FILES TOUCHED…: touching TOUCHED bakes exactly FILES again.
 bakes() {
     local wanted=$1
     shift
@@ -75,7 +76,7 @@ bakes 'Baking box.relief ' consumer/box.obj
 bakes 'Baking bunny.relief ' consumer/bunny.obj
 bakes 'Baking box.relief ' consumer/box.mtl
 
-# Mistakes are named when the project is configured.
+# Mistakes are reported when the project is configured.
 refused() { # PATTERN LINES
     mkdir -p wrong
     printf 'cmake_minimum_required(VERSION 3.25)\nproject(wrong LANGUAGES CXX)\n%s\n' "$2" >wrong/CMakeLists.txt
@@ -114,7 +115,7 @@ eval "g++ -std=c++20 $(pkg-config --cflags relief-runtime)" \
 expect 0 ./embed out/bunny.relief
 grep -q 'GL state as it was' stdout || die "samples/embed says: $(cat stdout)"
 
-# Without the baker. What both builds compile alike stands in for a second compile (scripts/soak.sh package does it).
+# Without the baker. What both builds compile alike is copied, not compiled again (scripts/soak.sh package does that).
 cmake -G Ninja -S "$RELIEF_SOURCE" -B runtime_only -DRELIEF_BUILD_BAKE=OFF -DRELIEF_BUILD_TESTS=OFF \
     -DRELIEF_BUILD_BENCHMARKS=OFF >log 2>&1 || die "does not configure without the baker: $(tail -20 log)"
 for file in formats/librelief_formats.a runtime/librelief_runtime.a bin/relief-sim \

@@ -1,8 +1,8 @@
-# Depfiles, as Ninja, Make and CMake read them: the second build does nothing, and a change of any file that a
-# mesh refers to bakes it again.
+# Ninja, Make and CMake read the depfiles: a second build does nothing, and a change of any file that a mesh refers to
+# bakes it again.
 . "$(dirname "$0")/lib.sh"
 
-# A tetrahedron as glTF whose numbers lie in a file beside it, in a folder with all that needs an escape.
+# The mesh is a glTF tetrahedron with a buffer file, in a folder whose name needs every escape.
 odd='a b#c$d:e'
 mkdir -p "$odd" rocks
 python3 - "$odd" <<'P'

@@ -13,7 +13,7 @@ json stdout 'list(d["maps"][0]["front"]) == ["ends", "both", "only_a", "only_b",
 json stdout '[m["depth_unit"] for m in d["maps"]] == ["ulp"] * 3 + ["1/65534"] and d["maps"][3]["back"] is None'
 json stdout 'd["total"]["ends"] == 3 * 2 * 48 * 48 + 6 * 48 * 48 and d["total"]["both"] > 1000'
 
-# Compressed: other bytes, the same collider. Other options: said, and a difference only where asked for.
+# Compression changes the bytes and not the collider. Other options are reported, but count only where asked for.
 bake packed.relief 48 --compress 19
 expect 0 "$relief" diff a.relief packed.relief
 grep -q 'the same collider, stored differently' stdout || die "said: $(cat stdout)"
@@ -24,7 +24,7 @@ grep -q 'mesh_hash' stdout || die "the other mesh is not named: $(cat stdout)"
 expect 7 "$relief" diff a.relief touched.relief --strict-metadata
 grep -q 'strict-metadata' stderr || die "no reason given: $(cat stderr)"
 
-# A moved vertex: texels differ by something; limits above it let it pass, and the other way round it is the same.
+# A moved vertex changes texels; limits above that change let it pass, and the order of the two files does not matter.
 awk '/^v / && !done { $2 += 0.02; done = 1 } { print }' "$bunny" >moved.obj
 "$relief" bake moved.obj -o moved.relief -q --paper --resolution 48
 expect 7 "$relief" diff a.relief moved.relief --json
@@ -50,7 +50,7 @@ expect 0 "$relief" diff a.relief moved.relief --max-coverage 100% --max-depth 70
 expect 7 "$relief" diff a.relief moved.relief --max-coverage 100 --max-depth 70000
 expect 7 "$relief" diff a.relief moved.relief --max-coverage 100 --max-normal 180
 
-# What cannot be compared is said, and is a difference whatever the limits.
+# Maps that cannot be compared are named, and are a difference whatever the limits.
 bake larger.relief 50
 expect 7 "$relief" diff a.relief larger.relief --max-coverage 100 --max-texels 100
 grep -q 'map 0: size: 48x48 and 50x50' stdout || die "said: $(cat stdout)"
@@ -60,13 +60,13 @@ expect 7 "$relief" diff a.relief one.relief --json
 json stdout 'd["structure"][0] == {"what": "maps", "a": "4", "b": "1"} and not d["maps"][0]["compared"]'
 json stdout 'd["maps"][0]["texels"] is None and d["maps"][0]["front"] is None'
 
-# One of the two from standard input.
+# One of the two files may be standard input.
 "$relief" diff - again.relief <a.relief >said || die "standard input as A"
 grep -q "standard input and 'again.relief' are identical" said || die "said: $(cat said)"
 "$relief" diff a.relief - <again.relief >said || die "standard input as B"
 [ -z "$("$relief" diff a.relief again.relief -q)" ] || die "-q says something"
 
-# Files that lie, and words that are wrong.
+# Damaged files and wrong options.
 head -c 1000 a.relief >truncated.relief
 cp a.relief altered.relief
 printf '\x55' | dd of=altered.relief bs=1 seek=1700 conv=notrunc status=none

@@ -1,11 +1,11 @@
-# Devices, and GPUs that are missing or never finish.
+# GPU devices: listed, chosen, missing, and hanging.
 . "$(dirname "$0")/lib.sh"
 
 "$relief" bake "$bunny" -o bunny.relief -q --paper --resolution 32
 echo "0,0,0" >points.csv
 echo "older" >out.csv
 
-# Each device has a number, and both executables tell the same of it.
+# Both executables list the same devices under the same numbers.
 expect 0 "$relief_sim" --list-devices --json
 cp stdout devices.json
 json devices.json 'len(d["devices"]) >= 1 and [x["index"] for x in d["devices"]] == list(range(len(d["devices"])))'
@@ -17,7 +17,7 @@ expect 0 "$relief" query --list-devices
 [ "$(wc -l <stdout)" -eq "$(grep -c '"index"' devices.json)" ] || die "not a line a device: $(cat stdout)"
 grep -qE '^[0-9]+  llvmpipe.*, software' stdout || die "no software device: $(cat stdout)"
 
-# One chosen is the one used; one that does not exist is not.
+# --device is obeyed; a device that does not exist is refused.
 number=$(python3 -c 'import json; print(next(x["index"] for x in json.load(open("devices.json"))["devices"] if x["software"]))')
 expect 0 "$relief_sim" bunny.relief --steps 3 --device "$number" --json
 json stdout 'd["device"].endswith(", device '"$number"'")'
@@ -36,7 +36,7 @@ expect_error 1 'gpu-timeout does nothing' "$relief" bake "$bunny" -o x.relief --
 expect_error 1 'device does nothing' "$relief_sim" bunny.relief --check --device 0
 [ "$(cat out.csv)" = older ] && [ ! -e x.relief ] || die "something was written"
 
-# Without a driver, and without EGL's or the GL's library: one line and 5; what needs no GPU works.
+# Without a driver, or without the library of EGL or the GL: one line and exit code 5; what needs no GPU works.
 mkdir no_egl no_gl
 : >no_egl/libEGL.so.1
 : >no_gl/libOpenGL.so.0
@@ -69,7 +69,7 @@ stall_fails read 'points 1 to 1' "$relief" query bunny.relief --points points.cs
 [ -z "$(find empty -type f)" ] || die "left behind: $(find empty -type f)"
 cat >ffmpeg <<'F'
 #!/bin/sh
-# Takes the last word as its output, as ffmpeg does, and never ends by itself while the pipe is open.
+# This ffmpeg takes its last argument as the output and never ends while the pipe is open.
 echo $$ >"$FFMPEG_PID"
 for last; do :; done
 echo started >"${last#file:}"
@@ -83,7 +83,7 @@ if [ -s pid ]; then
     ! kill -0 "$(cat pid)" 2>/dev/null || die "ffmpeg still runs"
 fi
 
-# No limit where none is wanted: the timeout of `timeout` ends it, and not the watchdog.
+# Without a limit the watchdog stays silent: `timeout` ends the run.
 code=0
 timeout 2 "${stalled[@]}" RELIEF_TEST_STALL=wait "$relief_sim" bunny.relief --steps 3 --gpu-timeout 0 >stdout 2>stderr || code=$?
 [ "$code" -eq 124 ] || die "code $code instead of an endless wait"

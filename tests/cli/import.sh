@@ -1,4 +1,4 @@
-# Meshes are read by a worker: its limits, its death, its parent's death; units and axes end up in the container.
+# A worker reads meshes: its limits, its death, its parent's death; units and axes reach the container.
 . "$(dirname "$0")/lib.sh"
 export TMPDIR="$work/tmp"
 mkdir "$TMPDIR"
@@ -28,7 +28,7 @@ expect_error 1 "up.*'z'.*\+z" "$relief" bake good.stl -o x.relief --up z
 expect_error 1 'import-memory.*64MB' "$relief" bake good.stl -o x.relief --import-memory 1kB
 expect_error 1 'import-time.*seconds' "$relief" bake good.stl -o x.relief --import-time 0
 
-# Memory: what a header of a few bytes asks for, and what a mesh of honest size takes.
+# Memory: a header of a few bytes may ask for too much, and a mesh of honest size must fit.
 printf 'ply\nformat binary_little_endian 1.0\nelement vertex 99999999999\nproperty float x\nend_header\n' >count.ply
 expect_error 6 'count\.ply.*import-memory' "$relief" bake count.ply -o x.relief
 expect_error 6 'OutOfMemory\.off.*import-memory' "$relief" bake "$models/invalid/OutOfMemory.off" -o x.relief
@@ -39,7 +39,7 @@ with open('large.obj', 'w') as file:
 P
 expect_error 6 'large\.obj.*more than 64000000 bytes' "$relief" bake large.obj -o x.relief --import-memory 64MB
 
-# A COLLADA document of nodes that stand for two of the next each: 2⁴⁰ in all, which the importer begins to unfold.
+# A COLLADA document whose nodes each stand for two of the next: 2⁴⁰ in all, which the importer begins to unfold.
 python3 - <<'P'
 nodes = ''.join(f'<node id="n{i}"><instance_node url="#n{i + 1}"/><instance_node url="#n{i + 1}"/></node>'
                 for i in range(40))
@@ -102,7 +102,7 @@ wait "$parent" || true
 kill -CONT "$worker" 2>/dev/null || true
 gone "$worker" || die "a worker outlived its parent"
 
-# What unfolds without end meets one limit or the other.
+# A document that unfolds without end hits the limit of time or of memory.
 expect_error 6 'unfold\.dae.*import-(time|memory)' "$relief" bake unfold.dae -o x.relief --import-time 2
 
 [ ! -e x.relief ] || die "an output beside an error"

@@ -40,14 +40,13 @@ expect_error() {
     [ ! -s "$work/stdout" ] || die "output on stdout beside an error: $*"
 }
 
-# COMMAND | matches PATTERN…: as grep -q, but reads to the end: a command that writes on would fail by SIGPIPE, and with
-# it the pipeline.
+# COMMAND | matches PATTERN…: as grep -q, but reads to the end, so that COMMAND never fails by SIGPIPE.
 matches() {
     grep "$@" >/dev/null
 }
 
-# same_field RELIEF A B: two outputs of relief query say the same of the same points, but for the last places of floats: a GPU
-# need not round as the CPU does. Distances to 4e-6 of the longest side, normals to 4e-6; all else to the letter.
+# same_field RELIEF A B: two outputs of relief query agree: distances within 4e-6 of the longest side, normals within 4e-6,
+# all else to the letter. A GPU need not round as the CPU does.
 same_field() {
     "$relief" info "$1" --json >"$work/info.json" || return 1
     python3 - "$work/info.json" "$2" "$3" <<'P'

@@ -1,4 +1,4 @@
-# Scenes whose collider deforms: relief-sim plays one without any baked file, and refuses what makes no sense in a line.
+# Scenes whose collider deforms: relief-sim plays them without a baked file, and refuses nonsense in one line.
 . "$(dirname "$0")/lib.sh"
 
 python3 "$RELIEF_SOURCE/samples/meshes.py" torus torus.obj
@@ -26,7 +26,7 @@ twist='deform = { kind = "twist", axis = [1, 0, 0], amplitude = 60, frequency = 
 bend='deform = { kind = "bend", axis = [0, 0, 1], along = [1, 0, 0], amplitude = 60, frequency = 1 }'
 wobble='deform = { kind = "wobble", amplitude = 0.1, frequency = 2 }'
 
-# Each kind moves the mesh in a way of its own, so that the particles end elsewhere; the same scene ends the same.
+# Each kind moves the mesh its own way, so the particles end elsewhere; the same scene ends the same.
 for kind in twist bend wobble; do
     scene 'mesh = "torus.obj"' "${!kind}" 'resolution = 64'
     expect 0 "$relief_sim" scene.toml --check
@@ -42,13 +42,13 @@ done
 cmp wobble.ply again.ply || die "the same scene ends in another way"
 "$relief_sim" scene.toml --dump es.ply --api gles -q || die "not in OpenGL ES"
 
-# The picture shows the mesh as it is deformed, and is another one some steps later.
+# Pictures show the deformed mesh, and change with it.
 printf '[render]\nmesh = "torus.obj"\nsize = [160, 120]\nevery = 15\n' >>scene.toml
 expect 0 "$relief_sim" scene.toml --frames frames --steps 30
 [ "$(identify -format '%k' frames/frame_0001.png)" -gt 100 ] || die "a frame shows nothing"
 ! cmp -s frames/frame_0000.png frames/frame_0001.png || die "two frames are the same"
 
-# One line, which names the place.
+# Mistakes get one line, which names the place.
 scene 'mesh = "torus.obj"' 'deform = { kind = "melt", amplitude = 1, frequency = 1 }'
 expect_error 3 'scene.toml:3:19: .*melt' "$relief_sim" scene.toml
 scene 'mesh = "none.obj"' "$twist"

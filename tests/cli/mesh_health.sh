@@ -46,7 +46,7 @@ json stdout "d['repair']['method'] == 'holes' and d['repair']['filled_holes'] ==
 json stdout "d['mesh_health']['boundary_edges'] == 7 and d['repair']['mesh_health']['solid']"
 json stdout "d['provenance']['options'].endswith(' --repair holes')"
 
-# Turned triangles: the same maps as without.
+# Turned triangles do not change the maps.
 expect 0 "$relief" bake turned.obj -o turned.relief "${small[@]}"
 grep -q '^turned 86 triangles to look outwards$' stderr || die "the report says: $(cat stderr)"
 "$relief" export ball.relief -o a -q
@@ -56,7 +56,7 @@ expect_error 3 'turned\.obj: not a closed solid: [0-9]+ edges wound inconsistent
     "$relief" bake turned.obj -o strict.relief "${small[@]}" --strict
 expect 0 "$relief" bake turned.obj -o oriented.relief "${small[@]}" --repair orient --strict
 
-# A wrap: a solid, recorded, the same bytes each time, and measured against the mesh that it came from.
+# A wrap is a solid, is recorded, has the same bytes each time, and is measured against the original mesh.
 expect 0 "$relief" bake holed.obj -o wrap.relief "${small[@]}" --repair wrap=0.1 --strict --check-intersections --json
 json stdout "d['repair']['method'] == 'wrap=0.1' and d['repair']['mesh_health']['solid']"
 json stdout "d['repair']['mesh_health']['self_intersections'] == 0"

@@ -2,7 +2,7 @@
 . "$(dirname "$0")/lib.sh"
 run=(python3 -B "$RELIEF_SOURCE/tests/cli/mutants.py")
 
-# What watches them is not blind: each of these programs is found out.
+# The checks themselves are checked: each of these bad programs is caught.
 # suspect PATTERN COMMANDS: a `relief` of these shell commands fails by a line that matches PATTERN.
 suspect() {
     printf '#!/bin/bash\n%s\n' "$2" >suspect

@@ -1,5 +1,5 @@
-# relief-sim's checks and what it writes while it plays: dumps, videos, statistics; each read by a reader that
-# shares no code with it.
+# relief-sim --check, and what relief-sim writes while it plays: dumps, videos, statistics. Readers that share no code
+# with it read each of them.
 . "$(dirname "$0")/lib.sh"
 
 "$relief" bake "$bunny" -o bunny.relief --paper --resolution 64 -q
@@ -18,7 +18,7 @@ size = [33, 21]
 every = 10
 S
 
-# --check: no GPU, no display, no driver: any attempt at a context fails with 5.
+# --check needs no GPU, display or driver: here any attempt to open a context fails with 5.
 no_gl=(env LIBGL_DRIVERS_PATH=/nonexistent __EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent/egl.json)
 expect 5 "${no_gl[@]}" "$relief_sim" scene.toml --steps 1
 expect 0 "${no_gl[@]}" "$relief_sim" scene.toml --check
@@ -121,7 +121,7 @@ expect_error 2 'nowhere' "$relief_sim" scene.toml --stats nowhere/s.jsonl
 expect_error 2 '/dev/full' "$relief_sim" scene.toml --stats /dev/full
 expect_error 2 'scene\.toml.*--dump-frames' "$relief_sim" scene.toml --dump-frames scene.toml
 
-# Videos, through an ffmpeg that counts what it is given.
+# Videos go through an ffmpeg that counts what it gets.
 mkdir bin
 cat >bin/ffmpeg <<'F'
 #!/bin/sh
@@ -135,7 +135,7 @@ expect 0 env PATH="$PWD/bin:$PATH" "$relief_sim" scene.toml --video film.mp4 --j
 grep -q -- '-f rawvideo -pix_fmt rgb24 -s 33x21 -r 6 -i pipe:0' arguments || die "arguments: $(cat arguments)"
 json stdout "d['frames'] == 3 and 'draw' in d['ms_per_stage']"
 [ -z "$(find . -maxdepth 1 -name '.relief-*')" ] || die "a temporary file is left"
-# The same pixels as the pictures.
+# Videos have the same pixels as the pictures.
 printf '#!/bin/sh\nfor out; do :; done\ncat >"${out#file:}"\n' >bin/ffmpeg
 PATH="$PWD/bin:$PATH" "$relief_sim" scene.toml --video film.mov --frames frames -q
 convert frames/frame_*.png -depth 8 rgb:- | cmp - film.mov || die "the video has other pixels than the pictures"

@@ -1,5 +1,5 @@
-# Manual pages and completions, made from the command line's definition: no formatter or shell finds fault, every option
-# of every --help is in each, and bash and fish complete verbs, options and their values.
+# Manual pages and completions, made from the definition of the command line: formatters and shells accept them, each has
+# every option of every --help, and bash and fish complete verbs, options and values.
 . "$(dirname "$0")/lib.sh"
 
 "$RELIEF_BIN/relief-pages" pages
@@ -8,18 +8,18 @@ diff -r pages again || die "the pages are not the same twice"
 expect_error 1 'FOLDER' "$RELIEF_BIN/relief-pages"
 cp pages/*/man/man1/*.1 .
 for tool in relief relief-sim; do
-    # The build has made the same, to be installed.
+    # The build makes the same page, to be installed.
     diff -r pages/$tool "$RELIEF_BIN/../install/pages/$tool" || die "the build has other pages"
     cp pages/$tool/bash-completion/completions/$tool $tool.bash
     cp pages/$tool/zsh/site-functions/_$tool $tool.zsh
     cp pages/$tool/fish/vendor_completions.d/$tool.fish .
-    # Pages are no business of what is installed.
+    # The installed programs do not make pages.
     expect 1 "$RELIEF_BIN/$tool" --dump-cli man
 done
 mapfile -t verbs < <("$relief" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z]*\) .*/\1/p')
 [ ${#verbs[@]} -ge 6 ] || die "verbs: ${verbs[*]}"
 
-# Every option of the helps, as a reader of the helps finds them.
+# Every option, as a person finds it in --help.
 for page in relief relief-sim "${verbs[@]/#/relief-}"; do
     case $page in
     relief | relief-sim) command=("$RELIEF_BIN/$page") tool=$page verb='' ;;

@@ -1,4 +1,4 @@
-# Planned bakes: the report, plan files there and back, --max-error, and which options go together.
+# Planned bakes: the report, writing and reading plan files, --max-error, and which options go together.
 . "$(dirname "$0")/lib.sh"
 
 mesh=$models/OBJ/spider.obj
@@ -20,7 +20,7 @@ for time in import plan tree rays texels planes writing; do
     grep -q "ms: .*$time [0-9]" stderr || die "the report does not say how long $time took: $(cat stderr)"
 done
 
-# The same plan, by its file: the same bytes; the quality is the file's.
+# A plan file gives the same bytes as its plan; the quality is the file's.
 expect 0 "$relief" bake "$mesh" -o again.relief --plan default.toml -q
 cmp default.relief again.relief || die "the plan's file bakes other bytes than the plan"
 for quality in fast best; do
@@ -48,7 +48,7 @@ expect 0 "$relief" info edited.relief --json
 json stdout '(d["maps"][0]["width"], d["maps"][0]["height"]) == (33, 44)'
 json stdout '"size=33x44,depth=half," in d["provenance"]["options"]'
 
-# Wrong plans, wrong places; an older output stays as it was.
+# Wrong plans are refused at their line; an older output stays as it was.
 echo precious >old.relief
 echo precious >old.toml
 bake_fails() {
@@ -79,7 +79,7 @@ expect_error 1 'is the input' "$relief" bake mesh.obj --plan default.toml -o def
 bake_fails 2 'missing' -o old.relief --plan-out missing/plan.toml
 bake_fails 1 'standard output' -o old.relief --plan-out -
 
-# --max-error: kept as relief check measures it, on other points; and if it cannot be, nothing is written.
+# --max-error holds as relief check measures it, on other points; if it cannot, nothing is written.
 expect 0 "$relief" bake "$bunny" -o b.relief --max-error 2% --plan-out b.toml --json
 json stdout 'd["plan"]["search"]["wrong_percent"] <= 2 and d["texel_bytes"] < 250000'
 json stdout 'len(d["plan"]["search"]["tries"]) >= 3 and d["plan"]["search"]["max_error_percent"] == 2'
@@ -91,7 +91,7 @@ expect_error 7 'max-error.*best is .* bytes' "$relief" bake "$bunny" -o old.reli
     --quality fast -q --plan-out old.toml
 [ "$(cat old.relief old.toml)" = "$(printf 'precious\nprecious')" ] || die "an older output was touched"
 
-# One way alone chooses the maps.
+# Only one option may choose the maps.
 bake_fails 1 '--map and --budget' -o old.relief --map float --budget 1MB
 bake_fails 1 '--map and --paper' -o old.relief --map float --paper
 bake_fails 1 '--paper and --plan' -o old.relief --plan default.toml --paper

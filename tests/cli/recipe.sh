@@ -1,5 +1,5 @@
-# Recipes: what is baked and what is not, one bad asset among good ones, the same bytes however many at once,
-# shards, interruptions, and caches that cannot be trusted.
+# Recipes: what is baked and what is not, one bad asset among good ones, parallel runs, shards, interruptions, and caches
+# that cannot be trusted.
 . "$(dirname "$0")/lib.sh"
 
 # tetrahedron FILE SIZE
@@ -54,7 +54,7 @@ touch in/rocks/*.obj in/r.toml
 expect 0 "$relief" bake --recipe in/r.toml -q
 [ ! -s stderr ] || die "-q is not quiet"
 
-# rebakes NAMES…: what a run bakes, and nothing else; all bytes are then as at first, but for an option's change.
+# rebakes NAMES…: a run bakes these and nothing else; afterwards all bytes are as at first, unless an option changed.
 rebakes() {
     expect 0 "$relief" bake --recipe in/r.toml --json -q
     json stdout "sorted(a['asset'] for a in d['assets'] if a['state'] == 'baked') == sorted('baked/%s.relief' % n for n in '$*'.split())"
@@ -73,7 +73,7 @@ sed -i 's/size=32/size=16/' in/r.toml
 rebakes d hill r1 r2 r3
 rebakes ''
 
-# A cache that is corrupt, or of somebody else: a warning, and everything again.
+# A corrupt or foreign cache gives a warning, and everything is baked again.
 for text in '' '{' '[]' '{"format": "relief-cache", "version": 9, "outputs": {}}'; do
     printf '%s' "$text" >in/.relief-cache.json
     expect 0 "$relief" bake --recipe in/r.toml
@@ -82,7 +82,7 @@ for text in '' '{' '[]' '{"format": "relief-cache", "version": 9, "outputs": {}}
 done
 rebakes ''
 
-# One asset fails, by a damaged mesh; it is named, its older output stays, the others are done.
+# An asset with a damaged mesh fails: it is named, its older output stays, and the others are baked.
 rm -r in && cp -r pristine in
 mkdir in/baked
 echo precious >in/baked/r2.relief
@@ -103,7 +103,7 @@ rm -r in && cp -r pristine in
 expect 3 "$relief" bake --recipe in/r.toml -j 1 --fail-fast
 grep -q '1 failed, 4 not baked' stderr || die "--fail-fast goes on: $(cat stderr)"
 
-# A bake that takes too long is ended, and its exit code is that of a limit.
+# A bake that takes too long is ended, and the exit code says "limit".
 cat >slow.toml <<'T'
 version = 1
 [[asset]]
@@ -116,7 +116,7 @@ cp "$bunny" bunny.obj
 expect 6 "$relief" bake --recipe slow.toml --timeout 0.2
 grep -q 'bunny.relief: .*--timeout' stderr || die "the timeout is not told: $(cat stderr)"
 
-# One that crashes takes nothing with it: the other is done, and no temporary file is left.
+# A bake that crashes harms nothing else: the other asset is baked, and no temporary file is left.
 tetrahedron small.obj 1
 printf '%s\n' '[[asset]]' 'mesh = "small.obj"' 'output = "small.relief"' 'map = "cube:size=16"' >>slow.toml
 python3 - "$relief" <<'P' || die "a crash is not told as one"
@@ -139,7 +139,7 @@ assert [e['asset'] for e in events if e['event'] == 'done'] == ['small.relief'],
 assert not os.path.exists(f'.relief-{child}-0-00000000.tmp'), 'a temporary file is left'
 P
 
-# The same bytes one at a time, two at a time, and by four shards at the same time into one folder.
+# One bake at a time, two at a time, and four shards at once into one folder give the same bytes.
 for at_once in 1 2; do
     expect 0 "$relief" bake --recipe pristine/r.toml -o "out$at_once" -j $at_once
     hashes "out$at_once" | cmp - first || die "-j $at_once gives other bytes"
@@ -155,7 +155,7 @@ hashes shards | cmp - first || die "four shards give other bytes"
 expect 0 "$relief" bake --recipe pristine/r.toml -o shards
 [ "$(cat stderr)" = "5 assets up to date" ] || die "the shards' cache is not whole: $(cat stderr)"
 
-# Interrupted: ends by the signal within 2 s, leaves no child and no temporary file; what was done stays done.
+# An interrupted run ends by the signal within 2 s and leaves no child and no temporary file; what was done stays done.
 mkdir many && cp bunny.obj many/
 for i in 1 2 3 4; do cp bunny.obj many/b$i.obj; done
 tetrahedron many/a.obj 1
@@ -225,7 +225,7 @@ for _ in range(100):
 sys.exit(1)
 P
 
-# What is wrong in a recipe is told at its place, before anything is baked.
+# Mistakes in a recipe are reported with their place, before anything is baked.
 recipe_fails() {
     local code=$1 pattern=$2
     printf 'version = 1\n%s\n' "$3" >pristine/wrong.toml
@@ -250,7 +250,7 @@ expect_error 1 'output is required' "$relief" bake bunny.obj
 expect_error 1 'is the input' "$relief" bake --recipe pristine/r.toml --events pristine/r.toml
 expect_error 2 'nowhere' "$relief" bake --recipe pristine/r.toml --stamp nowhere/stamp
 
-# A reader of events that goes away does not end the run; but it is told.
+# A reader of events that goes away does not end the run, but the run reports it.
 rm -r out1
 python3 - "$relief" <<'P' || die "without a reader of its events a run does not end with 2"
 import os, subprocess, sys
@@ -262,7 +262,7 @@ assert run.returncode == 2 and 'cannot write events' in run.stderr, run
 P
 hashes out1 | cmp - first || die "not everything was baked behind a closed pipe"
 
-# The example of the page, and the sample, are recipes.
+# The page's example and the sample are valid recipes.
 python3 - "$RELIEF_SOURCE/bake/recipe/README.md" >example.toml <<'P'
 import re, sys
 print(re.search(r'```toml\n(.*?)```', open(sys.argv[1]).read(), re.S)[1])

@@ -1,5 +1,5 @@
-# The samples' own scenes with a fortieth of their particles: every scene is valid, something is seen, and particles
-# are where bodies let them be, by the formulas that the bodies were made from.
+# The samples' scenes with a fortieth of their particles: every scene is valid, pictures show something, and particles are
+# outside the bodies, by the formulas that the bodies were made from.
 . "$(dirname "$0")/lib.sh"
 
 samples=$RELIEF_SOURCE/samples
@@ -17,13 +17,13 @@ cp "$samples/linked_tori.csv" .
 "$relief" bake torus.obj -o torus.relief --budget 200kB -q
 "$relief" bake terrain.obj -o terrain.relief --map fixed8:dir=-y,size=256x256,box=-4/-1.5/-4/4/1.5/4 --quality fast -q
 
-# Meshes are the same bytes each time, and wrong words are refused.
+# Meshes have the same bytes each time, and wrong arguments are refused.
 mesh torus.obj
 python3 "$samples/meshes.py" torus again.obj
 cmp torus.obj again.obj || die "meshes.py makes another torus each time"
 ! python3 "$samples/meshes.py" cube cube.obj 2>/dev/null || die "meshes.py makes what it does not know"
 
-# Every scene there is passes, so that none is forgotten.
+# Every scene in the folder passes --check, so that none is forgotten.
 for scene in "$samples"/*.toml; do
     name=$(basename "$scene" .toml)
     cp "$scene" .
@@ -80,7 +80,7 @@ lying = [p for p, v, _ in flakes if v == (0, 0, 0)]
 assert len(lying) > 0.9 * len(flakes), len(lying)
 on_bunny = sum(p[1] > floor + 0.3 and abs(p[0]) < 1.05 and abs(p[2]) < 0.8 for p in lying)
 assert on_bunny > 0.15 * len(flakes), on_bunny
-# A type stops its radius above the floor, and within a step's way (speed 2.4, 1/60 s) of there.
+# A type stops at its radius above the floor, give or take the way of one step (speed 2.4, 1/60 s).
 for radius, kind in ((0.0, 0), (0.012, 1), (0.026, 2)):
     lowest = min(p[1] for p, v, t in flakes if t == kind and v == (0, 0, 0)) - floor
     assert radius - 1e-4 <= lowest <= radius + 0.04, (kind, lowest)

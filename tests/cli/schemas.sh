@@ -1,5 +1,5 @@
-# The JSON Schemas of formats/schemas: valid themselves, closed, with a description of everything; real outputs of each verb
-# keep to them, and documents with something more, less or else do not.
+# The JSON Schemas of formats/schemas are valid and closed, and describe everything; real outputs of each verb satisfy
+# them, and documents with anything added, missing or changed do not.
 . "$(dirname "$0")/lib.sh"
 
 cat >validate.py <<'P'
@@ -67,7 +67,7 @@ for entry in sys.argv[2:]:
         assert not validator.is_valid(with_change(document, (), lambda at: at.pop(key))), f'{file} without {key}'
     assert mutations > 4, file
 
-# diff's documents are there where the verb is.
+# diff's documents exist only where the verb does.
 missing = set(schemas) - used - ({'diff'} if 'diff:diff.json' not in sys.argv else set())
 assert not missing, f'no output is held against {missing}'
 P

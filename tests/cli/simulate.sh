@@ -1,7 +1,7 @@
 # relief-sim from outside: its dependencies, its outputs, its repeatability.
 . "$(dirname "$0")/lib.sh"
 
-# The player reads flows as EXR images; what embeds the runtime needs nothing but GL and the formats.
+# The player reads flows as EXR images; a program that embeds the runtime needs only the GL and the formats.
 for library in assimp embree CGAL gmp mpfr tbb; do
     ! ldd "$relief_sim" | matches -i "$library" || die "relief-sim needs $library"
 done
@@ -18,7 +18,7 @@ first=$(find frames -name '*.png' | sort | head -1)
 [ "$(identify -format '%wx%h' "$first")" = 160x120 ] || die "frames are not 160x120"
 [ "$(identify -format '%k' "$first")" -gt 50 ] || die "a frame of fewer than 50 colours shows nothing"
 
-# The same seed gives the same run, another seed another one.
+# The same seed gives the same run, another seed a different one.
 "$relief_sim" bunny.relief --steps 40 --dump b.ply --seed 3 -q
 cmp a.ply b.ply || die "the same seed gives another run"
 "$relief_sim" bunny.relief --steps 40 --dump c.ply --seed 4 -q
@@ -28,7 +28,7 @@ cmp a.ply b.ply || die "the same seed gives another run"
 "$relief_sim" bunny.relief --steps 40 --dump es.ply --seed 3 --api gles -q
 
 python3 - <<'P'
-# The PLY is what its header says, and every number is finite.
+# The PLY matches its header, and every number is finite.
 import math, struct
 for name in ('a.ply', 'es.ply'):
     data = open(name, 'rb').read()

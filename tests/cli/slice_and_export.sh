@@ -19,11 +19,11 @@ for word in 'Z,' ZBack N.X N.Y N.Z worldToCamera worldToNDC; do
     grep -q "$word" header || die "$front_back lacks $word: $(cat header)"
 done
 
-# From run to run the same bytes.
+# Every run gives the same bytes.
 "$relief" slice b.relief --axis z --at center --size 200 -o again.exr
 cmp s.exr again.exr || die "two slices differ"
 "$relief" slice b.relief --axis z --at center --size 200 -o again.png
 cmp s.png again.png || die "two pictures differ"
 
-# An outside-only plane is a picture too.
+# A plane wholly outside also gives a picture.
 "$relief" slice b.relief --axis x --at 1000 --size 32 -o far.png

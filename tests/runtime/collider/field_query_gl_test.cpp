@@ -16,6 +16,7 @@
 #include <random>
 #include <span>
 
+#include "runtime/gl/pass_state.h"
 #include "tests/runtime/gl/gl_test.h"
 
 namespace relief {
@@ -263,7 +264,7 @@ TEST_P(FieldQueryGlTest, ExtremePointsGiveAnAnswerAndNoNan) {
 /// reliefSolid at every point, one a fragment.
 std::vector<InsideSample> insideByGpu(const Collider& collider, std::span<const glm::vec3> points) {
     constexpr GLsizei kWidth = 1024;
-    const GlStateGuard guard;
+    const PassState guard;
     std::vector<InsideSample> samples;
     const auto height = static_cast<GLsizei>((points.size() + kWidth - 1) / kWidth);
     std::vector<float> texels(std::size_t{4} * kWidth * static_cast<std::size_t>(height), 0.0F);
