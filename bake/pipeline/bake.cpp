@@ -105,6 +105,9 @@ void warnAbout(const PreparedMesh& mesh, const std::vector<Job>& jobs, BakeRepor
     }
 }
 
+/// What a shell's point called outside costs: two in a row, and a particle is through.
+const double kShellFalseOutside = getenv("SH") ? atof(getenv("SH")) : 4.0;
+
 FittedMapOptions fitOptions(const TriangleMesh& mesh, const View& view, const BakeOptions& bake) {
     const Quality quality = bake.quality;
     const double side = mesh.bounds.longestSide();
@@ -119,8 +122,11 @@ FittedMapOptions fitOptions(const TriangleMesh& mesh, const View& view, const Ba
     return options;
 }
 
-RefineOptions refineOptions(const BakeOptions& bake) {
+RefineOptions refineOptions(const TriangleMesh& mesh, const BakeOptions& bake) {
     RefineOptions options;
+    if (mesh.shell_thickness > 0.0) {
+        options.false_outside = kShellFalseOutside;
+    }
     switch (bake.prefer) {
         case Prefer::kNeither:
             break;
@@ -320,7 +326,7 @@ class Bake {
         if (has_planes_ && wanted && !options_.rasterize) {
             const TimeAdder watch(baked_.report.refine_ms);
             const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh_));
-            refineTexels(baked_.collider, query, refineOptions(options_));
+            refineTexels(baked_.collider, query, refineOptions(*mesh_, options_));
         }
         return {};
     }

@@ -28,8 +28,12 @@ constexpr double kFullCosine = 0.7;
 /// How well a point is served that a view sees from both sides: it is off a silhouette, through which a
 /// standing plane passes (plane_fit.h).
 constexpr float kSilhouette = 0.9F;
-/// Service under the flattest angle.
+/// Service under the flattest angle that is not edge-on.
 constexpr double kLeastService = 0.15;
+/// Views whose rectangle is smaller than this share of the largest look at a flat mesh edge-on.
+constexpr double kSmallestView = 0.1;
+constexpr double kEdgeOn = 0.05;
+constexpr float kEdgeOnService = 0.01F;
 /// An outer view that raises the mean service by this much is taken before places within are looked at.
 constexpr double kClearGain = 0.03;
 /// What every map costs, in mean service: a step of a simulation looks at each in turn. Eight front-back maps take about
@@ -94,10 +98,11 @@ std::vector<PlanPoint> drawPoints(const MeshQuery& query, std::uint64_t seed) {
     return points;
 }
 
-/// How well a point is served by a view that sees it under this cosine.
+/// How well a point is served by a view that sees it under this cosine: hardly, edge-on.
 float service(double cosine) {
-    return static_cast<float>(
-        std::min(1.0, kLeastService + (1.0 - kLeastService) * std::max(cosine, 0.05) / kFullCosine));
+    return cosine < kEdgeOn ? kEdgeOnService
+                            : static_cast<float>(
+                                  std::min(1.0, kLeastService + (1.0 - kLeastService) * cosine / kFullCosine));
 }
 
 /// A direction to look along, and how its image is turned; nullopt: by the rule of view.h.
@@ -225,7 +230,7 @@ class Planner {
         std::vector<float> service;  ///< of each point
     };
 
-    /// All candidates, not rated yet.
+    /// All candidates but those that see a flat mesh edge-on, not rated yet.
     [[nodiscard]] Result<std::vector<OuterView>> outerViews() const {
         std::vector<OuterView> views;
         for (const Candidate& candidate : outerCandidates(mesh_, options_.oriented_box)) {
@@ -243,6 +248,12 @@ class Planner {
             view.height = length(frame.axis[1]) * 62.0 / 64.0;
             views.push_back(std::move(view));
         }
+        const auto area = [](const OuterView& view) { return view.width * view.height; };
+        double largest = 0.0;
+        for (const OuterView& view : views) {
+            largest = std::max(largest, area(view));
+        }
+        std::erase_if(views, [&](const OuterView& view) { return area(view) < kSmallestView * largest; });
         return views;
     }
 

@@ -132,7 +132,7 @@ class Union {
     }
     void countHoles(std::uint64_t holes) { holes_ += holes; }
 
-    Result<PreparedMesh> finish() {
+    Result<PreparedMesh> finish(double thickness) {
         TriangleMesh mesh;
         mesh.name = source_.name;
         mesh.content_hash = source_.content_hash;
@@ -147,6 +147,7 @@ class Union {
         mesh.triangles.insert(mesh.triangles.end(), caps_.triangles.begin(), caps_.triangles.end());
         mesh.cap_triangles = caps_.triangles.size();
         mesh.closed_holes = holes_;
+        mesh.shell_thickness = thickness;
         std::vector<std::uint32_t> bodies = std::move(surface_.bodies);
         bodies.insert(bodies.end(), caps_.bodies.begin(), caps_.bodies.end());
         mesh = RELIEF_TRY(finishMesh(std::move(mesh)));
@@ -243,7 +244,7 @@ class Shaper {
         RELIEF_TRY(sortOpenParts());
         RELIEF_TRY(closeParts());
         addSheets();
-        return ShapedMesh{RELIEF_TRY(union_.finish()), report_};
+        return ShapedMesh{RELIEF_TRY(union_.finish(report_.thickness)), report_};
     }
 
   private:

@@ -1,0 +1,410 @@
+// What parts of a mesh are taken for, and the solids that stand for them: promises of shape.h and sheet.h.
+#include "bake/shape/shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+#include "bake/measure/accuracy.h"
+#include "bake/mesh/surface_sampler.h"
+#include "bake/pipeline/bake.h"
+#include "bake/plan/view_planner.h"
+#include "bake/repair/winding.h"
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+namespace {
+
+constexpr double kThickness = 0.05;
+
+ShapedMesh shaped(const TriangleMesh& mesh, ShapeAs as = ShapeAs::kAuto, double thickness = kThickness) {
+    Result<Winding> winding = windOutwards(mesh);
+    EXPECT_TRUE(winding);
+    Result<ShapedMesh> shape = shapeMesh(winding->mesh, {as, thickness});
+    EXPECT_TRUE(shape) << shape.error().message;
+    return std::move(*shape);
+}
+
+MeshQuery queryOf(const PreparedMesh& mesh) {
+    Result<MeshQuery> query = MeshQuery::build(mesh);
+    EXPECT_TRUE(query) << query.error().message;
+    return std::move(*query);
+}
+
+TriangleMesh joined(const std::vector<TriangleMesh>& meshes) {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec3> triangles;
+    for (const TriangleMesh& mesh : meshes) {
+        for (const glm::uvec3& t : mesh.triangles) {
+            triangles.push_back(t + static_cast<std::uint32_t>(positions.size()));
+        }
+        positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
+    }
+    return finished(positions, triangles);
+}
+
+/// Without the triangles whose middle `gone` says so of.
+template <class Gone>
+TriangleMesh without(const TriangleMesh& mesh, const Gone& gone) {
+    std::vector<glm::uvec3> kept;
+    for (const glm::uvec3& t : mesh.triangles) {
+        if (!gone((mesh.positions[t.x] + mesh.positions[t.y] + mesh.positions[t.z]) / 3.0F)) {
+            kept.push_back(t);
+        }
+    }
+    return finished(mesh.positions, kept);
+}
+
+/// A box of half sides 1 with a face missing: its lid, at y = 1.
+TriangleMesh makeOpenBox() {
+    return without(makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0)),
+                   [](const glm::vec3& p) { return p.y > 0.99F; });
+}
+
+/// A tube round the y axis, of radius 0.7 from y = −1 to 1, closed below.
+TriangleMesh makeCup() {
+    constexpr int kSides = 64;
+    std::vector<glm::vec3> positions = {{0, -1, 0}};
+    std::vector<glm::uvec3> triangles;
+    for (int i = 0; i < kSides; ++i) {
+        const double a = 2.0 * std::numbers::pi * i / kSides;
+        positions.emplace_back(0.7 * std::cos(a), -1.0, 0.7 * std::sin(a));
+        positions.emplace_back(0.7 * std::cos(a), 1.0, 0.7 * std::sin(a));
+    }
+    for (std::uint32_t i = 0; i < kSides; ++i) {
+        const std::uint32_t a = 1 + 2 * i;
+        const std::uint32_t b = 1 + 2 * ((i + 1) % kSides);
+        triangles.insert(triangles.end(), {{a, a + 1, b}, {b, a + 1, b + 1}, {0, a, b}});
+    }
+    return finished(positions, triangles);
+}
+
+/// y = height(x, z) over [−1, 1]².
+template <class Height>
+TriangleMesh makeHeights(const Height& height) {
+    TriangleMesh mesh = makePlane(0.0F, 24);
+    for (glm::vec3& p : mesh.positions) {
+        p.y = static_cast<float>(height(p.x, p.z));
+    }
+    return finished(mesh.positions, mesh.triangles);
+}
+
+double hills(double x, double z) {
+    return 0.15 * std::sin(3.0 * x) * std::cos(2.0 * z);
+}
+
+void expectKinds(const ShapeReport& report, std::uint64_t solids, std::uint64_t holed, std::uint64_t sheets,
+                 std::uint64_t terrains) {
+    EXPECT_EQ(report.solids, solids);
+    EXPECT_EQ(report.solids_with_holes, holed);
+    EXPECT_EQ(report.sheets, sheets);
+    EXPECT_EQ(report.terrains, terrains);
+}
+
+/// Checks against the distance to the open mesh itself, which knows nothing of shells. Points within `skip` of the
+/// border do not count: the shell ends flat there.
+template <class AtBorder>
+void expectShell(const TriangleMesh& sheet, const ShapedMesh& shape, const AtBorder& at_border) {
+    const MeshQuery open = queryOf(sheet);
+    const MeshQuery shell = queryOf(shape.mesh);
+    EXPECT_TRUE(shell.watertight());
+    MersenneRandom random(7);
+    int inside = 0;
+    int outside = 0;
+    const glm::dvec3 low = sheet.bounds.min;
+    const glm::dvec3 size = sheet.bounds.size();
+    for (int i = 0; i < 200'000; ++i) {
+        const glm::dvec3 share{random.uniform(), random.uniform(), random.uniform()};
+        const glm::vec3 p = low - 0.1 + (size + 0.2) * share;
+        const double distance = open.closest(p).distance;
+        if (at_border(p)) {
+            continue;
+        }
+        if (distance < 0.48 * kThickness) {
+            ++inside;
+            ASSERT_TRUE(shell.inside(p)) << p.x << ' ' << p.y << ' ' << p.z << ": " << distance;
+        } else if (distance > 0.5 * std::numbers::sqrt3 * kThickness + 1e-4) {  // a corner's mitre
+            ++outside;
+            ASSERT_FALSE(shell.inside(p)) << p.x << ' ' << p.y << ' ' << p.z << ": " << distance;
+        }
+    }
+    EXPECT_GT(inside, 1000);
+    EXPECT_GT(outside, 10'000);
+}
+
+Collider plannedBake(const ShapedMesh& shape, std::uint64_t budget) {
+    const Result<Plan> plan = planViews(queryOf(shape.mesh), {budget, {}});
+    EXPECT_TRUE(plan) << plan.error().message;
+    BakeOptions options;
+    options.maps = specsOf(*plan);
+    Result<Baked> baked = bake(shape.mesh, options);
+    EXPECT_TRUE(baked) << baked.error().message;
+    return std::move(baked->collider);
+}
+
+double wrongPercent(const ShapedMesh& shape, const Collider& collider) {
+    AccuracyOptions options;
+    options.samples = 20'000;
+    return measureNear(sampleNear(queryOf(shape.mesh), options), fieldOf(collider)).total();
+}
+
+/// Flies straight on from `from`, in steps of this length from a random start. \return whether it was stopped.
+bool isStopped(const Collider& collider, const glm::dvec3& from, const glm::dvec3& along, double step,
+               double start, double length) {
+    for (double at = start * step; at < length; at += step) {
+        if (evaluateInside(collider, glm::vec3(from + at * along)).inside) {
+            return true;
+        }
+    }
+    return false;
+}
+
+TEST(Shape, ASolidStaysAsItIs) {
+    const TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 3);
+    const ShapedMesh shape = shaped(ball);
+    expectKinds(shape.report, 1, 0, 0, 0);
+    EXPECT_EQ(shape.mesh->triangles, ball.triangles);
+    EXPECT_EQ(shape.mesh->positions, ball.positions);
+    EXPECT_EQ(shape.report.thickness, 0.0);
+    EXPECT_EQ(shapeOptionsText(shape.report), "");
+}
+
+TEST(Shape, AMissingTriangleIsAHole) {
+    const TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 3);
+    const TriangleMesh holed = finished(ball.positions, {ball.triangles.begin() + 1, ball.triangles.end()});
+    const ShapedMesh shape = shaped(holed);
+    expectKinds(shape.report, 0, 1, 0, 0);
+    EXPECT_TRUE(queryOf(shape.mesh).inside(glm::vec3(0.0F)));
+    EXPECT_EQ(shape.mesh->sourceTriangles(), holed.triangles.size());
+    EXPECT_EQ(shape.mesh->closed_holes, 1U);
+}
+
+TEST(Shape, WhatIsSeenFromBothSidesIsASheet) {
+    for (const TriangleMesh& mesh : {makeOpenBox(), makeCup(), makePlane(0.0F, 1)}) {
+        const ShapedMesh shape = shaped(mesh);
+        expectKinds(shape.report, 0, 0, 1, 0);
+        EXPECT_EQ(shape.report.thickness, kThickness);
+        EXPECT_EQ(shapeOptionsText(shape.report), " --thickness 0.05");
+    }
+}
+
+TEST(Shape, AShellIsAllThatIsNearItsSheet) {
+    const TriangleMesh box = makeOpenBox();
+    expectShell(box, shaped(box), [](const glm::vec3& p) { return p.y > 0.95F; });
+    const TriangleMesh cup = makeCup();
+    expectShell(cup, shaped(cup), [](const glm::vec3& p) { return p.y > 0.95F; });
+}
+
+TEST(Shape, WindingDoesNotMatterToAShell) {
+    TriangleMesh box = makeOpenBox();
+    for (std::size_t i = 0; i < box.triangles.size(); i += 2) {
+        std::swap(box.triangles[i].y, box.triangles[i].z);
+    }
+    expectShell(box, shaped(box), [](const glm::vec3& p) { return p.y > 0.95F; });
+}
+
+TEST(Shape, ASheetWithTwoSidesIsOneSheet) {
+    const TriangleMesh plane = makePlane(0.0F, 4);
+    const ShapedMesh shape = shaped(joined({plane, reversed(plane)}));
+    expectKinds(shape.report, 0, 0, 1, 0);
+    EXPECT_EQ(shape.report.coincident_triangles, plane.triangles.size());
+    const MeshQuery query = queryOf(shape.mesh);
+    EXPECT_TRUE(query.inside({0.1F, 0.02F, 0.2F}));
+    EXPECT_TRUE(query.inside({0.1F, -0.02F, 0.2F}));
+    EXPECT_FALSE(query.inside({0.1F, 0.03F, 0.2F}));
+}
+
+TEST(Shape, PanelsThatDoNotMeetEncloseTogether) {
+    // The faces of a cube, each a little smaller than it should be.
+    const TriangleMesh cube = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0));
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec3> triangles;
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const float side : {-1.0F, 1.0F}) {
+            const auto first = static_cast<std::uint32_t>(positions.size());
+            for (const glm::vec2 corner :
+                 {glm::vec2(-1, -1), glm::vec2(1, -1), glm::vec2(1, 1), glm::vec2(-1, 1)}) {
+                glm::vec3 p(0.0F);
+                p[axis] = side;
+                p[(axis + 1) % 3] = 0.9995F * corner.x;
+                p[(axis + 2) % 3] = 0.9995F * corner.y;
+                positions.push_back(p);
+            }
+            triangles.insert(triangles.end(), {glm::uvec3(0, 1, 2) + first, glm::uvec3(0, 2, 3) + first});
+        }
+    }
+    const ShapedMesh shape = shaped(finished(positions, triangles));
+    expectKinds(shape.report, 0, 1, 0, 0);
+    const MeshQuery query = queryOf(shape.mesh);
+    const MeshQuery whole = queryOf(cube);
+    MersenneRandom random(3);
+    int differ = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        const glm::dvec3 share{random.uniform(), random.uniform(), random.uniform()};
+        const glm::vec3 p = 2.4 * share - 1.2;
+        differ += query.inside(p) != whole.inside(p) ? 1 : 0;
+    }
+    EXPECT_LT(differ, 20);
+}
+
+TEST(Shape, PartsAreAUnion) {
+    // Two boxes that overlap, and a sheet that sticks out of one of them.
+    TriangleMesh sheet = makePlane(0.0F, 2);
+    for (glm::vec3& p : sheet.positions) {
+        p.x += 1.0F;
+    }
+    const ShapedMesh shape =
+        shaped(joined({makeBoxMesh({0, 0, 0}, glm::dvec3(1.0)), makeBoxMesh({0.5, 0.5, 0}, glm::dvec3(1.0)),
+                       finished(sheet.positions, sheet.triangles)}));
+    expectKinds(shape.report, 2, 0, 1, 0);
+    const MeshQuery query = queryOf(shape.mesh);
+    EXPECT_TRUE(query.inside({0.2F, 0.2F, 0.1F}));   // in both boxes
+    EXPECT_TRUE(query.inside({0.6F, 0.01F, 0.1F}));  // and in the sheet
+    EXPECT_TRUE(query.inside({1.9F, 0.02F, 0.1F}));  // in the sheet alone
+    EXPECT_FALSE(query.inside({1.9F, 0.03F, 0.1F}));
+}
+
+TEST(Shape, AHeightFieldIsTheGroundBelowIt) {
+    const TriangleMesh terrain = makeHeights(hills);
+    for (const TriangleMesh& mesh : {terrain, reversed(terrain)}) {
+        const ShapedMesh shape = shaped(mesh);
+        expectKinds(shape.report, 0, 0, 0, 1);
+        const MeshQuery query = queryOf(shape.mesh);
+        EXPECT_TRUE(query.watertight());
+        MersenneRandom random(5);
+        for (int i = 0; i < 2000; ++i) {
+            const double x = 1.98 * random.uniform() - 0.99;
+            const double z = 1.98 * random.uniform() - 0.99;
+            const double y = hills(x, z);
+            EXPECT_FALSE(query.inside(glm::vec3(x, y + 0.01, z)));
+            EXPECT_TRUE(query.inside(glm::vec3(x, y - 0.01, z)));
+        }
+    }
+}
+
+TEST(Shape, NoDropFallsThroughATerrain) {
+    const ShapedMesh shape = shaped(makeHeights(hills));
+    const Collider collider = plannedBake(shape, 262'144);
+    EXPECT_LT(wrongPercent(shape, collider), 2.2);
+    MersenneRandom random(9);
+    int fallen = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        const double x = 1.99 * random.uniform() - 0.995;
+        const double z = 1.99 * random.uniform() - 0.995;
+        fallen += isStopped(collider, {x, 0.5, z}, {0, -1, 0}, 0.02, random.uniform(), 1.0) ? 0 : 1;
+    }
+    EXPECT_EQ(fallen, 0);
+}
+
+TEST(Shape, ASmallOrSlantedSheetIsNoTerrain) {
+    // An overhang, and a sheet whose outline is a disc.
+    const TriangleMesh overhang = makeHeights([](double x, double) { return x < 0.0 ? 0.0 : 0.3; });
+    TriangleMesh folded = overhang;
+    for (glm::vec3& p : folded.positions) {
+        p.x += p.y > 0.1F ? -0.3F : 0.0F;
+    }
+    expectKinds(shaped(finished(folded.positions, folded.triangles)).report, 0, 0, 1, 0);
+    const TriangleMesh disc =
+        without(makeHeights(hills), [](const glm::vec3& p) { return p.x * p.x + p.z * p.z > 0.9F; });
+    expectKinds(shaped(disc).report, 0, 0, 1, 0);
+}
+
+TEST(Shape, AsOverrulesWhatRaysSee) {
+    const TriangleMesh box = makeOpenBox();
+    EXPECT_TRUE(queryOf(shaped(box, ShapeAs::kSolid).mesh).inside(glm::vec3(0.0F)));
+    expectKinds(shaped(box, ShapeAs::kSolid).report, 0, 1, 0, 0);
+    // A room: the walls of a closed box.
+    const ShapedMesh room = shaped(makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0)), ShapeAs::kShell);
+    expectKinds(room.report, 0, 0, 1, 0);
+    EXPECT_FALSE(queryOf(room.mesh).inside(glm::vec3(0.0F)));
+    EXPECT_TRUE(queryOf(room.mesh).inside({0.99F, 0.3F, 0.2F}));
+    const ShapedMesh ground = shaped(makePlane(0.0F, 2), ShapeAs::kTerrain);
+    expectKinds(ground.report, 0, 0, 0, 1);
+    EXPECT_TRUE(queryOf(ground.mesh).inside({0.3F, -0.05F, 0.2F}));
+    EXPECT_FALSE(queryOf(ground.mesh).inside({0.3F, 0.01F, 0.2F}));
+}
+
+TEST(Shape, AContainerTellsHowItWasShaped) {
+    const ShapeReport report = shaped(makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0)), ShapeAs::kShell).report;
+    EXPECT_EQ(shapeOptionsText(report), " --as shell --thickness 0.05");
+    const ShapeOptions read = shapeOptionsOf("--map x" + shapeOptionsText(report), {ShapeAs::kAuto, 1.0});
+    EXPECT_EQ(read.as, ShapeAs::kShell);
+    EXPECT_FLOAT_EQ(static_cast<float>(read.thickness), 0.05F);
+    const ShapeOptions hostile = shapeOptionsOf(" --as sponge --thickness -inf", {ShapeAs::kSolid, 1.0});
+    EXPECT_EQ(hostile.as, ShapeAs::kSolid);
+    EXPECT_EQ(hostile.thickness, 1.0);
+}
+
+/// A sheet in the plane of the other two axes, a thin box, and a single triangle.
+class Flat : public testing::TestWithParam<int> {};
+
+TEST_P(Flat, IsBakedFaceOn) {
+    const int axis = GetParam();
+    const auto turned = [&](TriangleMesh mesh) {
+        for (glm::vec3& p : mesh.positions) {
+            const glm::vec3 q = p;
+            p[axis] = q.y;
+            p[(axis + 1) % 3] = q.z;
+            p[(axis + 2) % 3] = q.x;
+        }
+        return finished(mesh.positions, mesh.triangles);
+    };
+    TriangleMesh triangle;
+    triangle.positions = {{-1, 0, -1}, {1, 0, -0.8F}, {0.2F, 0, 1}};
+    triangle.triangles = {{0, 1, 2}};
+    for (const TriangleMesh& mesh : {makePlane(0.0F, 1), makePlane(0.0F, 16),
+                                     makeBoxMesh(glm::dvec3(0.0), {1.0, 1e-5, 1.0}), triangle}) {
+        const ShapedMesh shape = shaped(turned(mesh), ShapeAs::kAuto, 0.02);
+        const Collider collider = plannedBake(shape, 65'536);
+        EXPECT_LT(wrongPercent(shape, collider), 1.0) << shape.report.text();
+        // No map looks along it.
+        for (const DepthMap& map : collider.maps) {
+            if (map.projection() == Projection::kOrthographic) {
+                EXPECT_GT(std::abs(map.object_to_map.row[2][axis]),
+                          0.1F * glm::length(glm::vec3(map.object_to_map.row[2])));
+            }
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Axes, Flat, testing::Values(0, 1, 2));
+
+/// Nothing that is slower than the shell is thick gets through it, from either side.
+TEST(Shape, NothingSlowerThanItsThicknessPassesAShell) {
+    constexpr int kParticles = 250'000;
+    constexpr double kSpeed = 0.5 * kThickness;
+    struct Target {
+        const char* name;
+        TriangleMesh mesh;
+        glm::dvec3 low;  ///< of the points that are aimed at, on the sheet
+        glm::dvec3 high;
+        glm::dvec3 through;  ///< the direction of flight, and against it
+    };
+    const std::vector<Target> targets = {
+        {"sheet", makePlane(0.0F, 1), {-0.97, 0, -0.97}, {0.97, 0, 0.97}, {0, 1, 0}},
+        {"floor of a box without lid", makeOpenBox(), {-0.97, -1, -0.97}, {0.97, -1, 0.97}, {0, 1, 0}},
+        {"wall of a box without lid", makeOpenBox(), {1, -0.97, -0.97}, {1, 0.97, 0.97}, {1, 0, 0}},
+        {"bottom of a cup", makeCup(), {-0.45, -1, -0.45}, {0.45, -1, 0.45}, {0, 1, 0}},
+    };
+    for (const Target& target : targets) {
+        const Collider collider = plannedBake(shaped(target.mesh), 1'000'000);
+        MersenneRandom random(11);
+        int passed = 0;
+        for (int i = 0; i < kParticles; ++i) {
+            const glm::dvec3 share{random.uniform(), random.uniform(), random.uniform()};
+            const glm::dvec3 at = target.low + share * (target.high - target.low);
+            const glm::dvec3 slant = 0.3 * random.direction() * (1.0 - glm::abs(target.through));
+            glm::dvec3 along = glm::normalize((i % 2 == 0 ? 1.0 : -1.0) * target.through + slant);
+            // Two thicknesses before the sheet to two behind it.
+            passed += isStopped(collider, at - 2.0 * kThickness * along, along, kSpeed, random.uniform(),
+                                4.0 * kThickness)
+                          ? 0
+                          : 1;
+        }
+        EXPECT_EQ(passed, 0) << target.name << ", of " << kParticles;
+    }
+}
+
+}  // namespace
+}  // namespace relief::test
