@@ -245,10 +245,6 @@ class GltfCheck {
             !primitive["attributes"].is_object()) {
             invalid("a primitive has no attributes");
         }
-        const std::uint64_t mode = number(primitive, "mode").value_or(4);
-        if (mode < 4) {
-            warn("points and lines are left out");
-        }
         if (!list(primitive, "targets").empty()) {
             warn("it is morphed; baked as it is modelled, without its targets");
         }

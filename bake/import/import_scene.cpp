@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <map>
+#include <span>
 #include <utility>
+
+#include "formats/base/hash.h"
 
 namespace relief {
 namespace {
@@ -103,6 +107,41 @@ bool indicesExist(const aiScene& scene) {
         }
     }
     return true;
+}
+
+MeshParts partsOf(const aiScene& scene) {
+    constexpr std::uint8_t kByPolygon = 1;
+    constexpr std::uint8_t kByOther = 2;
+    MeshParts parts;
+    // The meshes of a glTF file often share one list of vertices, of which each uses a part; assimp gives each a copy.
+    std::map<std::string, std::vector<std::uint8_t>> uses;
+    for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+        const aiMesh& mesh = *scene.mMeshes[m];
+        if (!mesh.HasPositions()) {
+            continue;
+        }
+        const std::span vertices(mesh.mVertices, mesh.mNumVertices);
+        std::vector<std::uint8_t>& used =
+            uses[scene.mNumMeshes == 1 ? std::string() : xxh3_128Hex(std::as_bytes(vertices))];
+        used.resize(vertices.size());
+        for (const aiFace& face : std::span(mesh.mFaces, mesh.mNumFaces)) {
+            const bool polygon = face.mNumIndices >= 3;
+            parts.polygons += polygon ? 1 : 0;
+            parts.lines += face.mNumIndices == 2 ? 1 : 0;
+            parts.points += face.mNumIndices == 1 ? 1 : 0;
+            for (const unsigned index : std::span(face.mIndices, face.mNumIndices)) {
+                used[index] |= polygon ? kByPolygon : kByOther;
+            }
+        }
+    }
+    for (const auto& [hash, used] : uses) {
+        parts.vertices += used.size();
+        for (const std::uint8_t use : used) {
+            parts.unused += (use & kByPolygon) == 0 ? 1 : 0;
+            parts.loose += use == 0 ? 1 : 0;
+        }
+    }
+    return parts;
 }
 
 void warnOfScene(const aiScene& scene, std::vector<std::string>& warnings) {

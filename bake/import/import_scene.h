@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bake/import/import_parts.h"
 #include "bake/mesh/mesh.h"
 #include "formats/base/result.h"
 
@@ -18,6 +19,9 @@ namespace relief {
 
 /// Warns of what the scene holds that a rigid surface is not: bones, and targets of a morph.
 void warnOfScene(const aiScene& scene, std::vector<std::string>& warnings);
+
+/// \param scene  one whose indices exist. Vertices that several meshes share count once.
+[[nodiscard]] MeshParts partsOf(const aiScene& scene);
 
 /// Adds every use of every mesh to `mesh`, with the transforms of its nodes applied and then `linear`.
 /// \param shown  the file's name for messages.
