@@ -161,6 +161,12 @@ Result<const aiScene*> readScene(const ImportJob& job, ImportFiles& files, const
         (!indicesExist(*scene) || logged.say("out of range") || logged.say("out-of-range"))) {
         return unreadable(job, "a face uses a vertex that does not exist", files);
     }
+    if (logged.say("Faces with zero indices")) {
+        return fail(ErrorCode::kInvalidInput,
+                    "cannot read the mesh " + job.shown +
+                        ": it has faces of no corners or of more than 9, which are not read from OFF; "
+                        "triangulate it, or save it as OBJ or PLY");
+    }
     parts = partsOfFile(job, scene);
     if (const std::optional<std::string> refusal = partsRefusal(parts)) {
         return fail(ErrorCode::kInvalidInput, "cannot read the mesh " + job.shown + ": " + *refusal);

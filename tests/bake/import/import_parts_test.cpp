@@ -152,6 +152,23 @@ TEST(ImportParts, FreeFormSurfacesAreNamed) {
                   "1 free-form curve or surface");
 }
 
+TEST(ImportParts, LargePolygonsOfOff) {
+    // assimp reads polygons of up to 9 corners, and the file without the others.
+    const auto disc = [](int corners) {
+        std::string text = "OFF\n" + std::to_string(corners + 1) + " 2 0\n0 0 1\n";
+        std::string face = std::to_string(corners);
+        for (int i = 0; i < corners; ++i) {
+            text += std::to_string(i) + " " + std::to_string(i * i) + " 0\n";  // on a parabola: convex
+            face += " " + std::to_string(i + 1);
+        }
+        return text + "3 0 1 2\n" + face + "\n";
+    };
+    const Result<TriangleMesh> nine = load("nine.off", disc(9));
+    EXPECT_EQ(warningsOf(nine), Lines());
+    EXPECT_EQ(nine->triangles.size(), 8U);
+    expectRefused(load("ten.off", disc(10)), "more than 9");
+}
+
 TEST(ImportParts, IndicesOutOfRangeAreRefusedInGltfToo) {
     // assimp drops such faces, and says so in a warning.
     std::string buffer = tetrahedronBuffer();
