@@ -44,6 +44,10 @@ void warnOfParts(const MeshParts& parts, std::vector<std::string>& warnings) {
     if (const std::string others = othersText(parts); !others.empty()) {
         warnings.push_back("left out " + others + ": only polygons have a surface");
     }
+    if (parts.unplaced > 0) {
+        warnings.push_back("left out " + std::to_string(parts.unplaced) + " of its " +
+                           std::to_string(parts.meshes) + " meshes: no node of its scene places them");
+    }
     if (parts.loose > parts.vertices / kLooseShare) {
         warnings.push_back(std::to_string(parts.loose) + " of its " + std::to_string(parts.vertices) +
                            (parts.loose == 1 ? " vertices belongs" : " vertices belong") +

@@ -19,12 +19,14 @@ struct MeshParts {
     std::uint64_t vertices = 0;
     std::uint64_t unused = 0;  ///< vertices that no polygon uses
     std::uint64_t loose = 0;   ///< and neither a line nor a point
+    std::uint64_t meshes = 0;
+    std::uint64_t unplaced = 0;  ///< meshes that no node of the scene places
 };
 
 /// What to do about a file that has vertices or lines, but no polygon. \return nullopt for all others.
 [[nodiscard]] std::optional<std::string> partsRefusal(const MeshParts& parts);
 
-/// Lines, points and free forms that are left out, and many loose vertices: each a line without the file's name.
+/// Lines, points, free forms and meshes that are left out, and many loose vertices: each a line without the file's name.
 void warnOfParts(const MeshParts& parts, std::vector<std::string>& warnings);
 
 }  // namespace relief

@@ -70,6 +70,11 @@ bool isGltf(const ImportJob& job) {
     return job.extension == "gltf" || job.extension == "glb";
 }
 
+/// RAW has no nodes, but groups; assimp's reader makes a node of each, and keeps the last alone.
+bool isRaw(const ImportJob& job) {
+    return job.extension == "raw";
+}
+
 SourceFrame frameOf(const ImportJob& job, const aiScene& scene) {
     if (isGltf(job)) {
         return {1.0, UpAxis::kPlusY, false, false};
@@ -141,8 +146,11 @@ MeshParts partsOfFile(const ImportJob& job, const aiScene* scene) {
         obj.polygons = scene != nullptr ? parts.polygons : obj.polygons;
         obj.lines = parts.lines;
         obj.points = parts.points;
+        obj.meshes = parts.meshes;
+        obj.unplaced = parts.unplaced;
         parts = obj;
     }
+    parts.unplaced = isRaw(job) ? 0 : parts.unplaced;
     return parts;
 }
 
@@ -218,7 +226,8 @@ Result<TriangleMesh> importWithAssimp(const ImportJob& job) {
         mesh.dependencies.push_back(file.path);
         mesh.dependency_hashes.push_back(file.hash);
     }
-    return flatten(*scene, change.scale * change.turn, job.shown, std::move(mesh));
+    return flatten(*scene, change.scale * change.turn, job.shown,
+                   isRaw(job) ? Unplaced::kAtRoot : Unplaced::kLeaveOut, std::move(mesh));
 }
 
 // --- a thread with a deep stack ---

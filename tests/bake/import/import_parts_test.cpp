@@ -50,6 +50,8 @@ TEST(ImportParts, WordsForEachCount) {
     EXPECT_EQ(
         warning({.polygons = 1, .lines = 2, .points = 1, .free_forms = 3}),
         Lines{"left out 2 lines, 1 point and 3 free-form curves or surfaces: only polygons have a surface"});
+    EXPECT_EQ(warning({.polygons = 1, .meshes = 3, .unplaced = 2}),
+              Lines{"left out 2 of its 3 meshes: no node of its scene places them"});
     // A tenth of the vertices may lie loose; those of lines are none of them.
     EXPECT_EQ(warning({.polygons = 9, .vertices = 100, .unused = 90, .loose = 10}), Lines());
     EXPECT_EQ(warning({.polygons = 9, .vertices = 100, .unused = 11, .loose = 11}).size(), 1U);
@@ -150,6 +152,26 @@ TEST(ImportParts, FreeFormSurfacesAreNamed) {
               Lines{"left out 1 free-form curve or surface: only polygons have a surface"});
     expectRefused(load("s.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n" + patch),
                   "1 free-form curve or surface");
+}
+
+TEST(ImportParts, MeshesThatNoNodePlaces) {
+    // glTF shows what its scene names; the rest is told. RAW has no scene: all its groups are the surface.
+    const std::string second =
+        R"(}]},{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],"accessors")";
+    std::string gltf = tetrahedronGltf();
+    gltf.replace(gltf.find(R"(}]}],"accessors")"), 16, second);
+    EXPECT_EQ(warningsOf(load("two.gltf", gltf)),
+              Lines{"left out 1 of its 2 meshes: its scene does not show them"});
+    EXPECT_EQ(warningsOf(
+                  load("all.gltf", gltf.replace(gltf.find(R"({"mesh":0})"), 10,
+                                                R"({"children":[1]},{"mesh":1,"children":[2]},{"mesh":0})"))),
+              Lines());
+    const Result<TriangleMesh> raw =
+        load("groups.raw",
+             "a\n0 0 0 1 0 0 0 1 0\nb\n0 0 1 1 0 1 0 1 1\n0 0 2 1 0 2 0 1 2\nc\n0 0 3 1 0 3 0 1 3\n");
+    EXPECT_EQ(warningsOf(raw), Lines());
+    EXPECT_EQ(raw->triangles.size(), 4U);
+    EXPECT_EQ(raw->bounds.max, glm::vec3(1, 1, 3));
 }
 
 TEST(ImportParts, LargePolygonsOfOff) {
