@@ -65,7 +65,7 @@ TEST(ImportParts, WordsForEachCount) {
 TEST(ImportParts, ObjStatementsAreCounted) {
     const MeshParts parts = obj(
         "# v 0 0 0\nv 0 0 0\n  v 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nv 5 5 5\nv 6 6 6\nv 7 7 7 \\\n 1\n"
-        "f 1/1/1 2//1 \\\n 3/1\nl 4 -1\nf -6 2 3\nf 99 0 -99 2 x\ncurv 0 1 1 2\nsurf 0 1 0 1 1 2\nvp 0 0\n");
+        "f 1/1/1 2//1 \\\n 3/1\nl 4 -1\nf -6 2 1\nf 99 0 -99 2 x\ncurv 0 1 1 2\nsurf 0 1 0 1 1 2\nvp 0 0\n");
     EXPECT_EQ(parts.vertices, 6U);
     EXPECT_EQ(parts.unused, 3U);
     EXPECT_EQ(parts.loose, 1U);  // 5: neither the line's 4 and 6 nor the faces' 1, 2 and 3
