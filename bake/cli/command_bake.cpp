@@ -186,6 +186,7 @@ struct BakeRun {
     std::string plan_hash;
     Backend backend;
     std::optional<PreparedMesh> imported;  ///< as it came, where --max-error looks back at it after a repair
+    std::uint64_t unused_vertices = 0;     ///< of the mesh file: a repaired mesh knows them no more
     CaredMesh cared;
     ShapeReport shape;
     std::optional<PlanReport> plan;
@@ -250,6 +251,7 @@ Result<void> readMesh(BakeRun& run) {
     TriangleMesh mesh =
         RELIEF_TRY(importMeshInWorker(command.mesh, command.import.options, command.import.limits));
     run.times.import_ms = watch.ms();
+    run.unused_vertices = mesh.unused_vertices;
     spdlog::debug("{}: {} triangles, {} vertices, XXH3-128 {}", mesh.name, mesh.triangles.size(),
                   mesh.positions.size(), mesh.content_hash);
     if (mesh.dropped_triangles > 0) {
@@ -349,8 +351,9 @@ Result<void> writeOutputs(BakeRun& run) {
 
 Result<void> report(const BakeRun& run) {
     const BakeCommand& command = run.command;
-    const BakeSummary summary{*run.cared.mesh, run.baked, run.plan,  run.times,
-                              run.cared.care,  run.shape, run.wrong, command.common.verbose};
+    const BakeSummary summary{*run.cared.mesh, run.baked,           run.plan,
+                              run.times,       run.cared.care,      run.shape,
+                              run.wrong,       run.unused_vertices, command.common.verbose};
     if (command.json) {
         const ContainerInfo info = RELIEF_TRY(readContainerInfo(run.bytes));
         auto json =

@@ -1,5 +1,6 @@
 #include "bake/import/assimp_io.h"
 
+#include <array>
 #include <assimp/DefaultLogger.hpp>
 #include <assimp/IOStream.hpp>
 #include <cstring>
@@ -53,6 +54,12 @@ class MemoryStream final : public Assimp::IOStream {
 
 thread_local std::vector<std::string>* errors_of_thread = nullptr;
 
+/// Words of the warnings of its readers (BLEND, LWO, NFF, FBX, DXF, ASE, glTF) that a part of the surface is left out.
+constexpr std::array<std::string_view, 10> kLeftOut = {
+    "type is unsupported",     "unsupported primitive chunk", "unknown polygon type", "unsupported ID",
+    "unrecognized geometry",   "INSERT within a BLOCK",       "more than 4 indices",  "not enough vertices",
+    "unexpected vertex setup", "faces were dropped"};
+
 class Listener final : public Assimp::Logger {
   public:
     bool attachStream(Assimp::LogStream* /*stream*/, unsigned /*severity*/) override { return false; }
@@ -62,8 +69,18 @@ class Listener final : public Assimp::Logger {
     void OnVerboseDebug(const char* /*message*/) override {}
     void OnDebug(const char* /*message*/) override {}
     void OnInfo(const char* /*message*/) override {}
-    void OnWarn(const char* /*message*/) override {}
-    void OnError(const char* message) override {
+    void OnWarn(const char* message) override {
+        const std::string_view words(message);
+        if (std::any_of(kLeftOut.begin(), kLeftOut.end(), [words](std::string_view part) {
+                return words.find(part) != std::string_view::npos;
+            })) {
+            keep(message);
+        }
+    }
+    void OnError(const char* message) override { keep(message); }
+
+  private:
+    static void keep(const char* message) {
         constexpr std::size_t kErrorsMax = 4;
         std::vector<std::string>* const errors = errors_of_thread;
         if (errors == nullptr || errors->size() >= kErrorsMax) {

@@ -30,8 +30,9 @@ class ReadOnlyFiles final : public Assimp::IOSystem {
     ImportFiles& files_;
 };
 
-/// The errors that assimp logs on this thread while this lives. Where one of its readers mends a file, such as an index
-/// out of range, that is all it says. Use one at a time on a thread.
+/// The errors that assimp logs on this thread while this lives, and the warnings that say that it leaves a part of the
+/// surface out. Where one of its readers mends a file, such as an index out of range, that is all it says. Use one at a
+/// time on a thread.
 class LoggedErrors {
   public:
     LoggedErrors();

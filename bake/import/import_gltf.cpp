@@ -74,6 +74,7 @@ class GltfCheck {
         checkBuffers();
         checkMeshes();
         checkNodes();
+        warnOfUnplacedMeshes();
         return std::move(warnings_);
     }
 
@@ -245,10 +246,6 @@ class GltfCheck {
             !primitive["attributes"].is_object()) {
             invalid("a primitive has no attributes");
         }
-        const std::uint64_t mode = number(primitive, "mode").value_or(4);
-        if (mode < 4) {
-            warn("points and lines are left out");
-        }
         if (!list(primitive, "targets").empty()) {
             warn("it is morphed; baked as it is modelled, without its targets");
         }
@@ -336,6 +333,36 @@ class GltfCheck {
             if (std::adjacent_find(roots.begin(), roots.end()) != roots.end()) {
                 invalid("a scene names a node twice");
             }
+        }
+    }
+
+    /// assimp reads what the scene shows, and no other mesh. Nodes form trees: checkNodes.
+    void warnOfUnplacedMeshes() {
+        const Json& nodes = list(document_, "nodes");
+        const Json& scenes = list(document_, "scenes");
+        const std::uint64_t shown = number(document_, "scene").value_or(0);
+        if (shown >= scenes.size()) {
+            return;
+        }
+        std::vector<bool> placed(list(document_, "meshes").size(), false);
+        std::vector<std::uint64_t> open;
+        const auto open_all = [&open](const Json& indices) {
+            for (const Json& index : indices) {
+                open.push_back(index.get<std::uint64_t>());
+            }
+        };
+        open_all(list(scenes[shown], "nodes"));
+        while (!open.empty()) {
+            const Json& node = nodes[open.back()];
+            open.pop_back();
+            if (const auto mesh = number(node, "mesh"); mesh && *mesh < placed.size()) {
+                placed[*mesh] = true;
+            }
+            open_all(list(node, "children"));
+        }
+        if (const auto left = std::count(placed.begin(), placed.end(), false); left > 0) {
+            warn("left out " + std::to_string(left) + " of its " + std::to_string(placed.size()) +
+                 " meshes: its scene does not show them");
         }
     }
 

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <string>
 
+#include "bake/import/import_files.h"
 #include "formats/base/text.h"
 #include "formats/validate.h"
 #include "import_message_generated.h"
@@ -65,6 +66,7 @@ ImportMessage makeImportMessage(const Result<TriangleMesh>& raw) {
         message.add_files(files);
         message.add_positions(raw->positions.size());
         message.add_triangles(raw->triangles.size());
+        message.add_unused_vertices(raw->unused_vertices);
         import_fb::FinishMessageBuffer(builder, message.Finish());
         arrays = 12 * (raw->positions.size() + raw->triangles.size());
     }
@@ -118,11 +120,13 @@ Result<TriangleMesh> readImportMessage(std::span<const std::byte> bytes) {
     }
     // Each bounded before they are added up.
     if (message.positions() > 3 * kTriangleMax || message.triangles() > kTriangleMax ||
+        message.unused_vertices() > kImportBytesMax ||  // a vertex takes more than a byte
         head + 12 * (message.positions() + message.triangles()) != bytes.size()) {
         return noMessage();
     }
     TriangleMesh raw;
     raw.unit = textOf(message.unit());
+    raw.unused_vertices = message.unused_vertices();
     if (const auto* warnings = message.warnings(); warnings != nullptr) {
         if (warnings->size() > kWarningsMax) {
             return noMessage();

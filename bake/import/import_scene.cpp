@@ -3,7 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <map>
+#include <set>
+#include <span>
 #include <utility>
+
+#include "formats/base/hash.h"
 
 namespace relief {
 namespace {
@@ -69,6 +74,23 @@ bool forEachUse(const aiScene& scene, const Transform& root, const Visit& visit)
     return true;
 }
 
+std::vector<const aiMesh*> unplacedMeshes(const aiScene& scene) {
+    std::set<const aiMesh*> placed;
+    if (scene.mRootNode != nullptr) {
+        forEachUse(scene, {}, [&](const aiMesh& mesh, const Transform& /*transform*/) {
+            placed.insert(&mesh);
+            return true;
+        });
+    }
+    std::vector<const aiMesh*> others;
+    for (const aiMesh* mesh : std::span(scene.mMeshes, scene.mNumMeshes)) {
+        if (mesh->HasPositions() && mesh->mNumFaces > 0 && placed.count(mesh) == 0) {
+            others.push_back(mesh);
+        }
+    }
+    return others;
+}
+
 void appendMesh(const aiMesh& source, const Transform& transform, TriangleMesh& mesh) {
     const auto base = static_cast<std::uint32_t>(mesh.positions.size());
     for (unsigned i = 0; i < source.mNumVertices; ++i) {
@@ -105,6 +127,43 @@ bool indicesExist(const aiScene& scene) {
     return true;
 }
 
+MeshParts partsOf(const aiScene& scene) {
+    constexpr std::uint8_t kByPolygon = 1;
+    constexpr std::uint8_t kByOther = 2;
+    MeshParts parts;
+    parts.meshes = scene.mNumMeshes;
+    parts.unplaced = unplacedMeshes(scene).size();
+    // The meshes of a glTF file often share one list of vertices, of which each uses a part; assimp gives each a copy.
+    std::map<std::string, std::vector<std::uint8_t>> uses;
+    for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+        const aiMesh& mesh = *scene.mMeshes[m];
+        if (!mesh.HasPositions()) {
+            continue;
+        }
+        const std::span vertices(mesh.mVertices, mesh.mNumVertices);
+        std::vector<std::uint8_t>& used =
+            uses[scene.mNumMeshes == 1 ? std::string() : xxh3_128Hex(std::as_bytes(vertices))];
+        used.resize(vertices.size());
+        for (const aiFace& face : std::span(mesh.mFaces, mesh.mNumFaces)) {
+            const bool polygon = face.mNumIndices >= 3;
+            parts.polygons += polygon ? 1 : 0;
+            parts.lines += face.mNumIndices == 2 ? 1 : 0;
+            parts.points += face.mNumIndices == 1 ? 1 : 0;
+            for (const unsigned index : std::span(face.mIndices, face.mNumIndices)) {
+                used[index] |= polygon ? kByPolygon : kByOther;
+            }
+        }
+    }
+    for (const auto& [hash, used] : uses) {
+        parts.vertices += used.size();
+        for (const std::uint8_t use : used) {
+            parts.unused += (use & kByPolygon) == 0 ? 1 : 0;
+            parts.loose += use == 0 ? 1 : 0;
+        }
+    }
+    return parts;
+}
+
 void warnOfScene(const aiScene& scene, std::vector<std::string>& warnings) {
     bool skinned = false;
     bool morphed = false;
@@ -122,13 +181,20 @@ void warnOfScene(const aiScene& scene, std::vector<std::string>& warnings) {
 }
 
 Result<TriangleMesh> flatten(const aiScene& scene, const glm::dmat3& linear, const std::string& shown,
-                             TriangleMesh mesh) {
+                             Unplaced unplaced, TriangleMesh mesh) {
     const Transform root{linear, glm::dvec3(0.0)};
+    const std::vector<const aiMesh*> others =
+        unplaced == Unplaced::kAtRoot ? unplacedMeshes(scene) : std::vector<const aiMesh*>();
+    const auto for_each_use = [&](const auto& visit) {
+        return forEachUse(scene, root, visit) &&
+               std::all_of(others.begin(), others.end(),
+                           [&](const aiMesh* other) { return visit(*other, root); });
+    };
     // Counted before anything is allocated: a small file can name one mesh very often.
     std::uint64_t faces = 0;
     std::uint64_t vertices = 0;
     std::uint64_t flat = 0;
-    const bool fits = forEachUse(scene, root, [&](const aiMesh& source, const Transform& transform) {
+    const bool fits = for_each_use([&](const aiMesh& source, const Transform& transform) {
         faces += source.mNumFaces;
         vertices += source.mNumVertices;
         flat += transform.flattens() ? 1 : 0;
@@ -140,7 +206,7 @@ Result<TriangleMesh> flatten(const aiScene& scene, const glm::dmat3& linear, con
     }
     mesh.positions.reserve(vertices);
     mesh.triangles.reserve(faces);
-    forEachUse(scene, root, [&](const aiMesh& source, const Transform& transform) {
+    for_each_use([&](const aiMesh& source, const Transform& transform) {
         appendMesh(source, transform, mesh);
         return true;
     });

@@ -3,10 +3,12 @@
 
 #include <assimp/scene.h>
 
+#include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <string>
 #include <vector>
 
+#include "bake/import/import_parts.h"
 #include "bake/mesh/mesh.h"
 #include "formats/base/result.h"
 
@@ -19,10 +21,16 @@ namespace relief {
 /// Warns of what the scene holds that a rigid surface is not: bones, and targets of a morph.
 void warnOfScene(const aiScene& scene, std::vector<std::string>& warnings);
 
+/// \param scene  one whose indices exist. Vertices that several meshes share count once.
+[[nodiscard]] MeshParts partsOf(const aiScene& scene);
+
+/// What becomes of meshes that no node places.
+enum class Unplaced : std::uint8_t { kLeaveOut, kAtRoot };
+
 /// Adds every use of every mesh to `mesh`, with the transforms of its nodes applied and then `linear`.
 /// \param shown  the file's name for messages.
 /// Errors: kLimit (more than kTriangleMax triangles), kInvalidInput (none).
 [[nodiscard]] Result<TriangleMesh> flatten(const aiScene& scene, const glm::dmat3& linear,
-                                           const std::string& shown, TriangleMesh mesh);
+                                           const std::string& shown, Unplaced unplaced, TriangleMesh mesh);
 
 }  // namespace relief

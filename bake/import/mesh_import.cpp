@@ -14,8 +14,12 @@
 #include <vector>
 
 #include "bake/import/assimp_io.h"
+#include "bake/import/assimp_ply.h"
 #include "bake/import/import_files.h"
 #include "bake/import/import_gltf.h"
+#include "bake/import/import_obj.h"
+#include "bake/import/import_parts.h"
+#include "bake/import/import_ply.h"
 #include "bake/import/import_scene.h"
 #include "bake/import/import_source.h"
 #include "formats/base/file_io.h"
@@ -66,6 +70,11 @@ bool isGltf(const ImportJob& job) {
     return job.extension == "gltf" || job.extension == "glb";
 }
 
+/// RAW has no nodes, but groups; assimp's reader makes a node of each, and keeps the last alone.
+bool isRaw(const ImportJob& job) {
+    return job.extension == "raw";
+}
+
 SourceFrame frameOf(const ImportJob& job, const aiScene& scene) {
     if (isGltf(job)) {
         return {1.0, UpAxis::kPlusY, false, false};
@@ -87,13 +96,15 @@ SourceFrame frameOf(const ImportJob& job, const aiScene& scene) {
 
 // --- the importer ---
 
-/// Leaves only the readers that claim the extension: which one reads a file does not depend on its contents.
+/// Leaves only the readers that claim the extension: which one reads a file does not depend on its contents. Of PLY,
+/// none: it is read by import_ply.h.
 void keepReadersOf(const std::string& extension, Assimp::Importer& importer) {
     std::vector<Assimp::BaseImporter*> others;
     for (std::size_t i = 0; i < importer.GetImporterCount(); ++i) {
         const std::string_view claimed = importer.GetImporterInfo(i)->mFileExtensions;
         const std::vector<std::string_view> extensions = split(claimed, ' ');
-        if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end()) {
+        if (extension == "ply" ||
+            std::find(extensions.begin(), extensions.end(), extension) == extensions.end()) {
             others.push_back(importer.GetImporter(i));
         }
     }
@@ -101,6 +112,19 @@ void keepReadersOf(const std::string& extension, Assimp::Importer& importer) {
         importer.UnregisterLoader(other);
         delete other;
     }
+}
+
+/// Chooses the reader. PLY is read here already. \param warnings  what that has to say is added.
+/// Errors: as readPly.
+Result<void> chooseReader(const ImportJob& job, Assimp::Importer& importer,
+                          std::vector<std::string>& warnings) {
+    keepReadersOf(job.extension, importer);
+    if (job.extension == "ply") {
+        PlyMesh ply = RELIEF_TRY(readPly(job.bytes, job.shown));
+        warnings.insert(warnings.end(), ply.warnings.begin(), ply.warnings.end());
+        importer.RegisterLoader(new PlyLoader(std::move(ply)));  // owned by the importer
+    }
+    return {};
 }
 
 /// The error of a file that assimp does not read, with the files that it was not given.
@@ -113,19 +137,47 @@ tl::unexpected<Error> unreadable(const ImportJob& job, const std::string& words,
     return fail(ErrorCode::kInvalidInput, text + "; repair the file or export it again");
 }
 
+/// What the file holds, whether or not assimp hands it on. \param scene  null if it was not read.
+MeshParts partsOfFile(const ImportJob& job, const aiScene* scene) {
+    MeshParts parts = scene != nullptr ? partsOf(*scene) : MeshParts();
+    if (job.extension == "obj") {
+        // assimp hands on a vertex for each corner, and none that has no use.
+        MeshParts obj = objPartsOf(job.bytes);
+        obj.polygons = scene != nullptr ? parts.polygons : obj.polygons;
+        obj.lines = parts.lines;
+        obj.points = parts.points;
+        obj.meshes = parts.meshes;
+        obj.unplaced = parts.unplaced;
+        parts = obj;
+    }
+    parts.unplaced = isRaw(job) ? 0 : parts.unplaced;
+    return parts;
+}
+
 /// Reads the file; the importer owns the scene.
+/// \param parts  set to what the file holds.
 /// Errors: kInvalidInput. Throws std::bad_alloc where assimp has run out of memory.
 Result<const aiScene*> readScene(const ImportJob& job, ImportFiles& files, const LoggedErrors& logged,
-                                 Assimp::Importer& importer) {
-    keepReadersOf(job.extension, importer);
+                                 Assimp::Importer& importer, MeshParts& parts) {
     importer.SetIOHandler(new ReadOnlyFiles(files));  // owned by the importer
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     // Without it, files that hold bones alone get a made-up mesh.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);  // turned here
     const aiScene* scene = importer.ReadFile(job.file_name, 0);
-    if (scene != nullptr && (!indicesExist(*scene) || logged.say("out of range"))) {
+    if (scene != nullptr &&
+        (!indicesExist(*scene) || logged.say("out of range") || logged.say("out-of-range"))) {
         return unreadable(job, "a face uses a vertex that does not exist", files);
+    }
+    if (logged.say("Faces with zero indices")) {
+        return fail(ErrorCode::kInvalidInput,
+                    "cannot read the mesh " + job.shown +
+                        ": it has faces of no corners or of more than 9, which are not read from OFF; "
+                        "triangulate it, or save it as OBJ or PLY");
+    }
+    parts = partsOfFile(job, scene);
+    if (const std::optional<std::string> refusal = partsRefusal(parts)) {
+        return fail(ErrorCode::kInvalidInput, "cannot read the mesh " + job.shown + ": " + *refusal);
     }
     if (scene != nullptr) {
         scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType);
@@ -144,10 +196,7 @@ Result<const aiScene*> readScene(const ImportJob& job, ImportFiles& files, const
             // Its words follow.
         }
     }
-    const std::string words = oneCleanLine(importer.GetErrorString());
-    // What it says once points and lines are removed.
-    return unreadable(
-        job, words.starts_with("No meshes remaining") ? "no triangles, but points or lines" : words, files);
+    return unreadable(job, oneCleanLine(importer.GetErrorString()), files);
 }
 
 Result<TriangleMesh> importWithAssimp(const ImportJob& job) {
@@ -158,7 +207,11 @@ Result<TriangleMesh> importWithAssimp(const ImportJob& job) {
     ImportFiles files(job.folder, job.file_name, job.bytes);
     const LoggedErrors logged;
     Assimp::Importer importer;
-    const aiScene* const scene = RELIEF_TRY(readScene(job, files, logged, importer));
+    MeshParts parts;
+    RELIEF_TRY(chooseReader(job, importer, mesh.warnings));
+    const aiScene* const scene = RELIEF_TRY(readScene(job, files, logged, importer, parts));
+    mesh.unused_vertices = parts.unused;
+    warnOfParts(parts, mesh.warnings);
     warnOfScene(*scene, mesh.warnings);
     const FrameChange change = changeOf(frameOf(job, *scene), job.options.unit, job.options.up);
     mesh.unit = change.unit;
@@ -173,7 +226,8 @@ Result<TriangleMesh> importWithAssimp(const ImportJob& job) {
         mesh.dependencies.push_back(file.path);
         mesh.dependency_hashes.push_back(file.hash);
     }
-    return flatten(*scene, change.scale * change.turn, job.shown, std::move(mesh));
+    return flatten(*scene, change.scale * change.turn, job.shown,
+                   isRaw(job) ? Unplaced::kAtRoot : Unplaced::kLeaveOut, std::move(mesh));
 }
 
 // --- a thread with a deep stack ---

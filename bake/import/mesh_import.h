@@ -24,7 +24,7 @@ namespace relief {
 /// Reads a mesh file in this process, which a hostile file may crash. In the library bake_assimp.
 ///
 /// The transforms of its nodes are applied, a mesh used n times is there n times, polygons are triangulated,
-/// points and lines are left out, and where a transform mirrors, the winding is turned. Materials, cameras
+/// points and lines are left out with a warning (import_parts.h), and where a transform mirrors, the winding is turned. Materials, cameras
 /// and animation are not looked at; skinned and morphed meshes come in the pose they were modelled in, with a
 /// warning. Only files below the mesh's folder are read, and only regular ones (import_files.h).
 /// Errors, each naming the file: kIo (missing, a folder, not readable), kUnsupported (a format, or a part of it, that is

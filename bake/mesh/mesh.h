@@ -23,6 +23,7 @@ struct TriangleMesh {
     std::vector<glm::vec3> positions;   ///< object space
     std::vector<glm::uvec3> triangles;  ///< counter-clockwise seen from outside, if the source keeps to that
     std::uint64_t dropped_triangles = 0;  ///< without area, left out
+    std::uint64_t unused_vertices = 0;    ///< of the source, that no triangle of it uses; left out
     /// The last of `triangles` are no surface of the source's: caps over holes (hole_caps.h), the rims of shells and the
     /// ground below terrains (bake/shape). Nothing is measured on them.
     std::uint64_t cap_triangles = 0;

@@ -80,6 +80,10 @@ std::string bakeText(const BakeSummary& summary, const std::string& output, std:
     if (summary.mesh.dropped_triangles > 0) {
         text += ", " + std::to_string(summary.mesh.dropped_triangles) + " without area dropped";
     }
+    if (summary.unused_vertices > 0) {
+        text += ", " + std::to_string(summary.unused_vertices) +
+                (summary.unused_vertices == 1 ? " vertex" : " vertices") + " of no triangle";
+    }
     text += "\n" + careText(summary.care, summary.verbose) + shapeText(summary.shape, summary.mesh.unit);
     if (summary.plan) {
         text += planLine(*summary.plan, summary.mesh.unit);
@@ -135,6 +139,7 @@ Json jsonBake(const BakeSummary& summary, const ContainerInfo& info, const Json&
     json["closed_holes"] = summary.mesh.closed_holes;
     json["cap_triangles"] = summary.mesh.cap_triangles;
     json["dropped_triangles"] = summary.mesh.dropped_triangles;
+    json["unused_vertices"] = summary.unused_vertices;
     json["times_ms"] = {
         {"import", times.import_ms}, {"plan", times.plan_ms},      {"search", times.search_ms},
         {"build", report.build_ms},  {"trace", report.trace_ms},   {"encode", report.encode_ms},

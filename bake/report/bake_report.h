@@ -43,6 +43,7 @@ struct BakeSummary {
     const MeshCare& care;
     const ShapeReport& shape;
     const std::optional<WrongShare>& wrong;  ///< near the surface, as a planned bake measures itself
+    std::uint64_t unused_vertices = 0;       ///< of the mesh file (TriangleMesh)
     bool verbose = false;
 };
 
@@ -50,7 +51,7 @@ struct BakeSummary {
 [[nodiscard]] std::string bakeText(const BakeSummary& summary, const std::string& output,
                                    std::size_t file_size);
 
-/// jsonCollider's object, with coverage, plan, dropped_triangles, the mesh's health, times_ms and warnings.
+/// jsonCollider's object, with coverage, plan, dropped_triangles, unused_vertices, the mesh's health, times_ms and warnings.
 /// \param settings  put in beside them.
 [[nodiscard]] nlohmann::ordered_json jsonBake(const BakeSummary& summary, const ContainerInfo& info,
                                               const nlohmann::ordered_json& settings);

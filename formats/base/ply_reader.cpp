@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 #include <charconv>
+#include <cmath>
 #include <span>
 #include <utility>
 
@@ -53,6 +54,28 @@ std::optional<std::uint64_t> parseCount(std::string_view word) {
     return error == std::errc() && end == word.data() + word.size() ? std::optional(count) : std::nullopt;
 }
 
+Result<void> addElement(const PlyHeaderLine& line, PlyHeader& header) {
+    if (!line.count || header.elements.size() == kPlyElementsMax) {
+        return invalidInput("an element of its header is not understood");
+    }
+    header.elements.push_back({line.name, *line.count, {}});
+    return {};
+}
+
+Result<void> addProperty(const PlyHeaderLine& line, PlyHeader& header) {
+    if (header.elements.empty() || header.elements.back().properties.size() == kPlyPropertiesMax) {
+        return invalidInput("a property of its header belongs to no element, or to a crowded one");
+    }
+    if (line.name.empty()) {
+        return invalidInput("a property of its header is not understood");
+    }
+    if (!line.type || (line.list && !line.length_type)) {
+        return invalidInput("a property of its header has an unknown type");
+    }
+    header.elements.back().properties.push_back({line.name, *line.type, line.length_type});
+    return {};
+}
+
 }  // namespace
 
 std::optional<PlyHeaderLine> takePlyHeaderLine(std::string_view& data) {
@@ -81,6 +104,37 @@ std::optional<PlyHeaderLine> takePlyHeaderLine(std::string_view& data) {
         }
     }
     return line;
+}
+
+Result<PlyHeader> takePlyHeader(std::string_view& data) {
+    using Kind = PlyHeaderLine::Kind;
+    PlyHeader header;
+    std::optional<PlyEncoding> encoding;
+    for (bool first = true;; first = false) {
+        const std::optional<PlyHeaderLine> line = takePlyHeaderLine(data);
+        if (!line) {
+            return invalidInput("its header does not end");
+        }
+        if (first && line->kind != Kind::kPly) {
+            return invalidInput("it is no PLY file");
+        }
+        if (line->kind == Kind::kEnd) {
+            break;
+        }
+        if (line->kind == Kind::kFormat) {
+            encoding = line->encoding;
+        } else if (line->kind == Kind::kElement) {
+            RELIEF_TRY(addElement(*line, header));
+        } else if (line->kind == Kind::kProperty) {
+            RELIEF_TRY(addProperty(*line, header));
+        }
+    }
+    if (!encoding) {
+        return invalidInput(
+            "its header names no format that is known: ascii, binary_little_endian or binary_big_endian");
+    }
+    header.encoding = *encoding;
+    return header;
 }
 
 std::optional<double> PlyNumbers::next(PlyType type) {
@@ -118,6 +172,21 @@ std::optional<double> PlyNumbers::nextBytes(PlyType type) {
         default:
             return static_cast<double>(bits);
     }
+}
+
+tl::unexpected<Error> plyNumberError(const PlyNumbers& numbers) {
+    return invalidInput(numbers.ended() ? "it ends too early" : "a word among its numbers is none");
+}
+
+Result<std::uint64_t> takePlyLength(PlyNumbers& numbers, PlyType type) {
+    const std::optional<double> length = numbers.next(type);
+    if (!length) {
+        return plyNumberError(numbers);
+    }
+    if (!(*length >= 0.0 && *length <= 4294967295.0 && *length == std::floor(*length))) {
+        return invalidInput("a list has a length that cannot be");
+    }
+    return static_cast<std::uint64_t>(*length);
 }
 
 }  // namespace relief

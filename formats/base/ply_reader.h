@@ -5,14 +5,18 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <vector>
+
+#include "formats/base/result.h"
 
 namespace relief {
 
 enum class PlyEncoding : std::uint8_t { kAscii, kLittle, kBig };
 enum class PlyType : std::uint8_t { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
 
-/// Properties of one element that a reader takes: more than any program writes.
+/// Properties of one element that a reader takes, and elements of one file: more than any program writes.
 inline constexpr std::size_t kPlyPropertiesMax = 256;
+inline constexpr std::size_t kPlyElementsMax = 64;
 
 /// One line of a header. It borrows from the file's bytes.
 struct PlyHeaderLine {
@@ -31,6 +35,30 @@ struct PlyHeaderLine {
 /// \return nullopt at the end of the data.
 [[nodiscard]] std::optional<PlyHeaderLine> takePlyHeaderLine(std::string_view& data);
 
+struct PlyProperty {
+    std::string_view name;
+    PlyType type = PlyType::kInt8;       ///< of a list: of its items
+    std::optional<PlyType> length_type;  ///< of a list
+
+    [[nodiscard]] bool isList() const { return length_type.has_value(); }
+};
+
+struct PlyElement {
+    std::string_view name;
+    std::uint64_t count = 0;  ///< what the header says; the file may hold fewer
+    std::vector<PlyProperty> properties;
+};
+
+/// It borrows from the file's bytes.
+struct PlyHeader {
+    PlyEncoding encoding = PlyEncoding::kAscii;
+    std::vector<PlyElement> elements;
+};
+
+/// Cuts the whole header off `data`, a file from its start.
+/// Errors, naming no file: kInvalidInput.
+[[nodiscard]] Result<PlyHeader> takePlyHeader(std::string_view& data);
+
 /// The numbers behind a header, one after the other, as words or as bytes.
 class PlyNumbers {
   public:
@@ -41,6 +69,8 @@ class PlyNumbers {
     [[nodiscard]] std::optional<double> next(PlyType type);
     /// After next() has failed: whether the data have ended.
     [[nodiscard]] bool ended() const { return ended_; }
+    /// What comes after the last number.
+    [[nodiscard]] std::string_view rest() const { return data_; }
 
   private:
     std::optional<double> nextBytes(PlyType type);
@@ -49,5 +79,11 @@ class PlyNumbers {
     PlyEncoding encoding_;
     bool ended_ = false;
 };
+
+/// The error of a next() that failed; it names no file.
+[[nodiscard]] tl::unexpected<Error> plyNumberError(const PlyNumbers& numbers);
+
+/// The length of a list. Errors: as plyNumberError; kInvalidInput for what is no length.
+[[nodiscard]] Result<std::uint64_t> takePlyLength(PlyNumbers& numbers, PlyType type);
 
 }  // namespace relief

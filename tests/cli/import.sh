@@ -28,9 +28,42 @@ expect_error 1 "up.*'z'.*\+z" "$relief" bake good.stl -o x.relief --up z
 expect_error 1 'import-memory.*64MB' "$relief" bake good.stl -o x.relief --import-memory 1kB
 expect_error 1 'import-time.*seconds' "$relief" bake good.stl -o x.relief --import-time 0
 
+# What is no triangle is told; and a box by strips, which -1 ends, is the box by triangles.
+python3 - <<'P'
+corners = ''.join('%d %d %d\n' % (i & 1, i & 2, 3 * (i >> 2)) for i in range(8))
+head = 'ply\nformat ascii 1.0\nelement vertex %d\n' + ''.join('property float %s\n' % axis for axis in 'xyz')
+strips = [[0, 1, 4, 5, 6, 7, 2], [2, 7, 3], [2, 3, 0, 1], [0, 4, 2, 6], [1, 3, 5, 7]]
+flat = ' -1 '.join(' '.join(map(str, strip)) for strip in strips)
+faces = ''.join('3 %d %d %d\n' % (s[k + k % 2], s[k + 1 - k % 2], s[k + 2]) for s in strips for k in range(len(s) - 2))
+lists = 'element %s %d\nproperty list int int vertex_indices\nend_header\n'
+open('strips.ply', 'w').write(head % 8 + lists % ('tristrips', 1) + corners + '%d %s\n' % (len(flat.split()), flat))
+open('faces.ply', 'w').write(head % 8 + lists % ('face', 12) + corners + faces)
+open('loose.ply', 'w').write(head % 9 + lists % ('face', 12) + corners + '5 5 5\n' + faces)
+open('cloud.ply', 'w').write(head % 8 + 'end_header\n' + corners)
+P
+for mesh in strips faces; do
+    expect 0 "$relief" bake $mesh.ply -o $mesh.relief --map float:size=16 --json
+    json stdout "d['provenance']['triangles'] == 12 and d['unused_vertices'] == 0 and d['warnings'] == []"
+    json stdout "d['mesh_health']['solid']"
+    "$relief" export $mesh.relief -o $mesh -q
+done
+diff -r strips faces || die "strips are baked to other maps than their triangles"
+expect 0 "$relief" bake loose.ply -o loose.relief --map float:size=16
+grep -q '^loose.ply: 12 triangles, 1 vertex of no triangle$' stderr || die "the report says: $(cat stderr)"
+grep -q 'warning: .*1 of its 9 vertices belongs to no polygon' stderr || die "no warning: $(cat stderr)"
+expect 0 "$relief" bake loose.ply -o loose.relief --map float:size=16 --repair holes --json
+json stdout "d['unused_vertices'] == 1"
+expect_error 3 'cloud\.ply.*8 vertices but no faces' "$relief" bake cloud.ply -o x.relief
+
 # Memory: a header of a few bytes may ask for too much, and a mesh of honest size must fit.
-printf 'ply\nformat binary_little_endian 1.0\nelement vertex 99999999999\nproperty float x\nend_header\n' >count.ply
-expect_error 6 'count\.ply.*import-memory' "$relief" bake count.ply -o x.relief
+ply() {
+    printf 'ply\nformat binary_little_endian 1.0\nelement vertex %s\nproperty float x\nproperty float y\n' "$1"
+    printf 'property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n'
+}
+ply 99999999999 >count.ply
+expect_error 6 'count\.ply.*announces 99999999999 vertices' "$relief" bake count.ply -o x.relief
+ply 300000000 >count.ply
+expect_error 3 'count\.ply.*ends too early' "$relief" bake count.ply -o x.relief --import-memory 64MB
 expect_error 6 'OutOfMemory\.off.*import-memory' "$relief" bake "$models/invalid/OutOfMemory.off" -o x.relief
 python3 - <<'P'
 with open('large.obj', 'w') as file:

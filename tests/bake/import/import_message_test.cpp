@@ -23,6 +23,7 @@ TriangleMesh rawTriangle() {
     raw.dependencies = {"b/x.mtl"};
     raw.dependency_hashes = {std::string(32, 'a')};
     raw.warnings = {"something"};
+    raw.unused_vertices = 7;
     return raw;
 }
 
@@ -43,6 +44,11 @@ TEST(ImportMessage, CarriesMeshesAndErrors) {
     EXPECT_EQ(read->dependencies, raw.dependencies);
     EXPECT_EQ(read->dependency_hashes, raw.dependency_hashes);
     EXPECT_EQ(read->warnings, raw.warnings);
+    EXPECT_EQ(read->unused_vertices, raw.unused_vertices);
+
+    TriangleMesh lie = rawTriangle();
+    lie.unused_vertices = std::numeric_limits<std::uint64_t>::max();
+    EXPECT_FALSE(readImportMessage(bytesOf(lie))) << "no file holds so many";
 
     const Result<TriangleMesh> error = readImportMessage(bytesOf(fail(ErrorCode::kLimit, "two\nlines \x1b")));
     ASSERT_FALSE(error);

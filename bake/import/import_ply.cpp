@@ -1,0 +1,285 @@
+#include "bake/import/import_ply.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "bake/mesh/mesh.h"
+#include "formats/base/ply_reader.h"
+#include "formats/base/text.h"
+
+namespace relief {
+namespace {
+
+constexpr std::size_t kNameMax = 40;  // bytes of a name in a message
+constexpr std::size_t kUnreadMax = 8;
+
+bool isVertexList(const PlyProperty& property) {
+    return property.isList() && (property.name == "vertex_indices" || property.name == "vertex_index");
+}
+
+bool isSurface(const PlyElement& element) {
+    return (element.name == "face" || element.name == "tristrips") && element.count > 0 &&
+           std::any_of(element.properties.begin(), element.properties.end(), isVertexList);
+}
+
+/// Whether an element that is not read may hold faces. Range grids hold points in rows and columns, no faces.
+bool looksLikeFaces(const PlyElement& element) {
+    const auto says = [](std::string_view name, auto words) {
+        const std::string lower = lowerCase(name);
+        return std::any_of(words.begin(), words.end(),
+                           [&](const char* word) { return lower.find(word) != std::string::npos; });
+    };
+    constexpr std::array<const char*, 6> kElements = {"face", "poly", "strip", "triang", "quad", "patch"};
+    constexpr std::array<const char*, 3> kLists = {"vert", "index", "indic"};
+    constexpr std::array<const char*, 2> kOthers = {"texture", "range_grid"};
+    if (element.count == 0 || element.name == "vertex" || says(element.name, kOthers)) {
+        return false;
+    }
+    return says(element.name, kElements) ||
+           std::any_of(element.properties.begin(), element.properties.end(),
+                       [&](const PlyProperty& list) { return list.isList() && says(list.name, kLists); });
+}
+
+/// "its element 'polygon' is not read, …"
+std::string unreadText(const PlyElement& element) {
+    const std::string name = "its element '" + cleanUtf8(element.name, kNameMax) + "' ";
+    return element.name == "face" || element.name == "tristrips"
+               ? name + "has no list vertex_indices or vertex_index"
+               : name +
+                     "is not read: faces are those of 'face' and 'tristrips', by their list vertex_indices";
+}
+
+// Errors of this class do not name the file: readPly does.
+class PlyImport {
+  public:
+    Result<PlyMesh> run(std::string_view data) {
+        const PlyHeader header = RELIEF_TRY(takePlyHeader(data));
+        RELIEF_TRY(checkVertices(header));
+        if (std::none_of(header.elements.begin(), header.elements.end(), isSurface)) {
+            return noFaces(header);
+        }
+        PlyNumbers numbers(data, header.encoding);
+        for (const PlyElement& element : header.elements) {
+            RELIEF_TRY(readElement(element, numbers));
+        }
+        RELIEF_TRY(checkRest(numbers.rest(), header.encoding));
+        if (mesh_.sizes.empty()) {
+            return noFaces(header);
+        }
+        for (const PlyElement& element : unread_) {
+            mesh_.warnings.push_back("left out " + std::to_string(element.count) +
+                                     " faces or the like: " + unreadText(element));
+        }
+        return std::move(mesh_);
+    }
+
+  private:
+    Result<void> checkVertices(const PlyHeader& header) {
+        const auto is_vertex = [](const PlyElement& element) { return element.name == "vertex"; };
+        if (std::count_if(header.elements.begin(), header.elements.end(), is_vertex) != 1) {
+            return invalidInput("its header does not have the element 'vertex' once");
+        }
+        const PlyElement& element = *std::find_if(header.elements.begin(), header.elements.end(), is_vertex);
+        for (const char axis : {'x', 'y', 'z'}) {
+            const auto is_axis = [axis](const PlyProperty& property) {
+                return !property.isList() && property.name == std::string_view(&axis, 1);
+            };
+            if (std::count_if(element.properties.begin(), element.properties.end(), is_axis) != 1) {
+                return invalidInput("its vertices do not have x, y and z");
+            }
+        }
+        vertices_ = element.count;
+        return vertices_ <= 3 * kTriangleMax
+                   ? Result<void>()
+                   : fail(ErrorCode::kLimit, "its header announces " + std::to_string(vertices_) +
+                                                 " vertices, more than the limit of " +
+                                                 std::to_string(3 * kTriangleMax) + "; simplify the mesh");
+    }
+
+    Result<void> readElement(const PlyElement& element, PlyNumbers& numbers) {
+        if (element.properties.empty()) {
+            return {};
+        }
+        if (element.name == "vertex") {
+            return readVertices(element, numbers);
+        }
+        const bool surface = isSurface(element);
+        if (!surface && looksLikeFaces(element) && unread_.size() < kUnreadMax) {
+            unread_.push_back(element);
+        }
+        const bool strip = element.name == "tristrips";
+        for (std::uint64_t i = 0; i < element.count; ++i) {
+            for (const PlyProperty& property : element.properties) {
+                if (!surface || !isVertexList(property)) {
+                    RELIEF_TRY(pass(property, numbers));
+                } else if (strip) {
+                    RELIEF_TRY(readStrips(property, i, numbers));
+                } else {
+                    RELIEF_TRY(readFace(property, i, numbers));
+                }
+            }
+        }
+        return {};
+    }
+
+    Result<void> readVertices(const PlyElement& element, PlyNumbers& numbers) {
+        for (std::uint64_t i = 0; i < element.count; ++i) {
+            glm::vec3 position{0.0F};
+            for (const PlyProperty& property : element.properties) {
+                const bool axis = !property.isList() && property.name.size() == 1 &&
+                                  property.name[0] >= 'x' && property.name[0] <= 'z';
+                if (!axis) {
+                    RELIEF_TRY(pass(property, numbers));
+                    continue;
+                }
+                const std::optional<double> value = numbers.next(property.type);
+                if (!value) {
+                    return plyNumberError(numbers);
+                }
+                position[property.name[0] - 'x'] = static_cast<float>(*value);
+            }
+            mesh_.positions.push_back(position);
+        }
+        return {};
+    }
+
+    /// Reads a property that nobody needs.
+    static Result<void> pass(const PlyProperty& property, PlyNumbers& numbers) {
+        std::uint64_t length = 1;
+        if (property.isList()) {
+            length = RELIEF_TRY(takePlyLength(numbers, *property.length_type));
+        }
+        for (std::uint64_t k = 0; k < length; ++k) {
+            if (!numbers.next(property.type)) {
+                return plyNumberError(numbers);
+            }
+        }
+        return {};
+    }
+
+    Result<void> readFace(const PlyProperty& property, std::uint64_t index, PlyNumbers& numbers) {
+        const std::uint64_t length = RELIEF_TRY(takePlyLength(numbers, *property.length_type));
+        for (std::uint64_t k = 0; k < length; ++k) {
+            const std::optional<double> value = numbers.next(property.type);
+            if (!value) {
+                return plyNumberError(numbers);
+            }
+            if (!isVertex(*value)) {
+                return noVertex("face", index, *value);
+            }
+            mesh_.corners.push_back(static_cast<std::uint32_t>(*value));
+        }
+        if (length == 0) {
+            return {};
+        }
+        mesh_.sizes.push_back(static_cast<std::uint32_t>(length));
+        return countTriangles(length < 3 ? 0 : length - 2);
+    }
+
+    Result<void> readStrips(const PlyProperty& property, std::uint64_t index, PlyNumbers& numbers) {
+        // The largest number of 32 bits is -1 to who wrote it as a signed one.
+        const double other_end = property.type == PlyType::kUint32 ? 4294967295.0 : -1.0;
+        const std::uint64_t length = RELIEF_TRY(takePlyLength(numbers, *property.length_type));
+        std::uint32_t before_last = 0;
+        std::uint32_t last = 0;
+        std::uint64_t in_strip = 0;
+        for (std::uint64_t k = 0; k < length; ++k) {
+            const std::optional<double> value = numbers.next(property.type);
+            if (!value) {
+                return plyNumberError(numbers);
+            }
+            if (*value == -1.0 || *value == other_end) {
+                in_strip = 0;
+                continue;
+            }
+            if (!isVertex(*value)) {
+                return noVertex("tristrips", index, *value);
+            }
+            const auto corner = static_cast<std::uint32_t>(*value);
+            // Where corners repeat, the strip only moves on to its next part.
+            if (in_strip >= 2 && before_last != last && last != corner && corner != before_last) {
+                const bool turned = in_strip % 2 == 1;
+                mesh_.corners.insert(mesh_.corners.end(),
+                                     {turned ? last : before_last, turned ? before_last : last, corner});
+                mesh_.sizes.push_back(3);
+                RELIEF_TRY(countTriangles(1));
+            }
+            before_last = std::exchange(last, corner);
+            ++in_strip;
+        }
+        return {};
+    }
+
+    [[nodiscard]] bool isVertex(double value) const {
+        return value >= 0.0 && value < static_cast<double>(vertices_) && value == std::floor(value);
+    }
+
+    [[nodiscard]] tl::unexpected<Error> noVertex(const char* element, std::uint64_t index,
+                                                 double value) const {
+        return invalidInput(std::string("element ") + element + " " + std::to_string(index) +
+                            " names the vertex " + shortest(static_cast<float>(value)) + ", but there are " +
+                            std::to_string(vertices_));
+    }
+
+    Result<void> countTriangles(std::uint64_t more) {
+        triangles_ += more;
+        return triangles_ <= kTriangleMax
+                   ? Result<void>()
+                   : fail(ErrorCode::kLimit, "it has more than " + std::to_string(kTriangleMax) +
+                                                 " triangles; simplify the mesh");
+    }
+
+    /// In text, a line of more numbers than its element has shifts all behind it: that must not pass for a mesh.
+    Result<void> checkRest(std::string_view rest, PlyEncoding encoding) {
+        if (encoding == PlyEncoding::kAscii && !takeWord(rest).empty()) {
+            return invalidInput("it holds more numbers than its header announces");
+        }
+        const bool padding = rest.find_first_not_of(std::string_view("\0 \t\r\n", 5)) == rest.npos;
+        if (encoding != PlyEncoding::kAscii && !padding) {
+            mesh_.warnings.push_back(std::to_string(rest.size()) +
+                                     " bytes behind the last element of its header are left out");
+        }
+        return {};
+    }
+
+    [[nodiscard]] tl::unexpected<Error> noFaces(const PlyHeader& header) const {
+        const auto unread = std::find_if(
+            header.elements.begin(), header.elements.end(),
+            [](const PlyElement& element) { return !isSurface(element) && looksLikeFaces(element); });
+        if (unread != header.elements.end()) {
+            return invalidInput(unreadText(*unread) + "; rename it, or export the mesh again as polygons");
+        }
+        const bool edges = std::any_of(
+            header.elements.begin(), header.elements.end(),
+            [](const PlyElement& element) { return element.name == "edge" && element.count > 0; });
+        return invalidInput(
+            "it has " + std::to_string(vertices_) + " vertices " + (edges ? "and edges " : "") +
+            "but no faces" +
+            (edges ? "; export the surface as polygons"
+                   : "; if it is a scan, make a surface of its points first, for example in MeshLab"));
+    }
+
+    PlyMesh mesh_;
+    std::uint64_t vertices_ = 0;  // the header's count: faces may come first
+    std::uint64_t triangles_ = 0;
+    std::vector<PlyElement> unread_;  // that look like faces
+};
+
+}  // namespace
+
+Result<PlyMesh> readPly(std::span<const std::byte> bytes, const std::string& shown) {
+    Result<PlyMesh> mesh = PlyImport().run({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    if (mesh) {
+        return mesh;
+    }
+    const Error& error = mesh.error();
+    const bool cured = error.message.find(';') != std::string::npos;
+    return fail(error.code, "cannot read the mesh " + shown + ": " + error.message +
+                                (cured ? "" : "; repair the file or export it again"));
+}
+
+}  // namespace relief

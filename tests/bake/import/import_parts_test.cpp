@@ -1,0 +1,205 @@
+// What a mesh file holds beside triangles: counted, named or refused; never left out without a word.
+#include "bake/import/import_parts.h"
+
+#include <gtest/gtest.h>
+
+#include "bake/import/import_obj.h"
+#include "bake/import/mesh_import.h"
+#include "tests/bake/import/import_meshes.h"
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+namespace {
+
+Result<TriangleMesh> load(const std::string& name, std::string_view contents) {
+    const TemporaryFolder folder;
+    return importMeshInWorker(folder.write(name, contents));
+}
+
+MeshParts obj(std::string_view text) {
+    return objPartsOf(std::as_bytes(std::span(text)));
+}
+
+/// The warnings, each without "NAME: ".
+std::vector<std::string> warningsOf(const Result<TriangleMesh>& mesh) {
+    EXPECT_TRUE(mesh) << mesh.error().message;
+    std::vector<std::string> warnings;
+    for (const std::string& warning : mesh ? mesh->warnings : std::vector<std::string>()) {
+        warnings.push_back(warning.substr(warning.find(": ") + 2));
+    }
+    return warnings;
+}
+
+void expectRefused(const Result<TriangleMesh>& mesh, const std::string& says) {
+    ASSERT_FALSE(mesh) << says;
+    EXPECT_EQ(mesh.error().code, ErrorCode::kInvalidInput);
+    EXPECT_NE(mesh.error().message.find(says), std::string::npos) << mesh.error().message;
+    EXPECT_NE(mesh.error().message.find("; "), std::string::npos) << "no cure: " << mesh.error().message;
+}
+
+using Lines = std::vector<std::string>;
+
+TEST(ImportParts, WordsForEachCount) {
+    const auto warning = [](const MeshParts& parts) {
+        Lines warnings;
+        warnOfParts(parts, warnings);
+        return warnings;
+    };
+    EXPECT_EQ(warning({.polygons = 1, .vertices = 3}), Lines());
+    EXPECT_EQ(warning({.polygons = 1, .lines = 1}), Lines{"left out 1 line: only polygons have a surface"});
+    EXPECT_EQ(
+        warning({.polygons = 1, .lines = 2, .points = 1, .free_forms = 3}),
+        Lines{"left out 2 lines, 1 point and 3 free-form curves or surfaces: only polygons have a surface"});
+    EXPECT_EQ(warning({.polygons = 1, .meshes = 3, .unplaced = 2}),
+              Lines{"left out 2 of its 3 meshes: no node of its scene places them"});
+    // A tenth of the vertices may lie loose; those of lines are none of them.
+    EXPECT_EQ(warning({.polygons = 9, .vertices = 100, .unused = 90, .loose = 10}), Lines());
+    EXPECT_EQ(warning({.polygons = 9, .vertices = 100, .unused = 11, .loose = 11}).size(), 1U);
+    EXPECT_FALSE(partsRefusal({.polygons = 1, .lines = 1}));
+    EXPECT_FALSE(partsRefusal({}));
+    EXPECT_EQ(partsRefusal({.points = 2}), "no triangles, but 2 points; export the surface as polygons");
+    EXPECT_TRUE(
+        partsRefusal({.vertices = 1, .unused = 1, .loose = 1})->starts_with("1 vertex but no faces; "));
+}
+
+TEST(ImportParts, ObjStatementsAreCounted) {
+    const MeshParts parts = obj(
+        "# v 0 0 0\nv 0 0 0\n  v 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nv 5 5 5\nv 6 6 6\nv 7 7 7 \\\n 1\n"
+        "f 1/1/1 2//1 \\\n 3/1\nl 4 -1\nf -6 2 1\nf 99 0 -99 2 x\ncurv 0 1 1 2\nsurf 0 1 0 1 1 2\nvp 0 0\n");
+    EXPECT_EQ(parts.vertices, 6U);
+    EXPECT_EQ(parts.unused, 3U);
+    EXPECT_EQ(parts.loose, 1U);  // 5: neither the line's 4 and 6 nor the faces' 1, 2 and 3
+    EXPECT_EQ(parts.polygons, 3U);
+    EXPECT_EQ(parts.free_forms, 2U);
+    EXPECT_EQ(obj("f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n").unused, 0U) << "faces may come first";
+    EXPECT_EQ(obj("f -1 -2 -9223372036854775808 9223372036854775807 99999999999999999999\nv 0 0 0\n").unused,
+              1U);
+    EXPECT_EQ(obj("").vertices, 0U);
+    EXPECT_EQ(obj("v 1 2 3\\").vertices, 1U);
+}
+
+TEST(ImportParts, UnusedVerticesOfEachFormat) {
+    const std::string more = "v 9 9 9\n";
+    EXPECT_EQ(load("a.obj", tetrahedronObj())->unused_vertices, 0U);
+    const Result<TriangleMesh> loose = load("b.obj", tetrahedronObj() + more + more);
+    EXPECT_EQ(
+        warningsOf(loose),
+        Lines{
+            "2 of its 6 vertices belong to no polygon: faces may be missing; compare the count of triangles "
+            "with that of the program that wrote it"});
+    EXPECT_EQ(loose->unused_vertices, 2U);
+    EXPECT_EQ(loose->bounds.max, glm::vec3(1, 2, 3)) << "an unused vertex widens the box";
+
+    std::string ply = tetrahedronPly();
+    ply.replace(ply.find("vertex 4"), 8, "vertex 6");
+    ply.replace(ply.find("3 0 2 1"), 0, "8 8 8\n9 9 9\n");
+    const Result<TriangleMesh> of_ply = load("a.ply", ply);
+    EXPECT_EQ(warningsOf(of_ply).size(), 1U);
+    EXPECT_EQ(of_ply->unused_vertices, 2U);
+    EXPECT_EQ(of_ply->positions.size(), 4U);
+    EXPECT_EQ(of_ply->bounds.max, glm::vec3(1, 2, 3));
+
+    // The first three of the twelve indices: one corner of four has no triangle.
+    const Result<TriangleMesh> of_gltf = load(
+        "a.gltf",
+        tetrahedronGltf({.indices = R"("bufferView":1,"componentType":5123,"count":3,"type":"SCALAR")"}));
+    EXPECT_EQ(warningsOf(of_gltf).size(), 1U);
+    EXPECT_EQ(of_gltf->unused_vertices, 1U);
+}
+
+TEST(ImportParts, VerticesThatPrimitivesShareAreUsedByAny) {
+    // Two primitives with one list of vertices, as many exporters write them: each leaves the other's alone.
+    const std::string half = R"("bufferView":1,"componentType":5123,"count":3,"type":"SCALAR")";
+    const Result<TriangleMesh> mesh =
+        load("shared.gltf",
+             tetrahedronGltf(
+                 {.primitive =
+                      R"("attributes":{"POSITION":0},"indices":1},{"attributes":{"POSITION":0},"indices":2)",
+                  .indices =
+                      half +
+                      R"(},{"bufferView":1,"byteOffset":6,"componentType":5123,"count":3,"type":"SCALAR")"}));
+    EXPECT_EQ(warningsOf(mesh), Lines());
+    EXPECT_EQ(mesh->triangles.size(), 2U);
+    EXPECT_EQ(mesh->unused_vertices, 0U);
+}
+
+TEST(ImportParts, LinesAndPointsAreCountedOrRefused) {
+    const Result<TriangleMesh> mixed = load("m.obj", tetrahedronObj() + "v 5 5 5\nv 6 6 6\nl 5 6 1\np 5 6\n");
+    EXPECT_EQ(warningsOf(mixed), Lines{"left out 2 lines and 2 points: only polygons have a surface"});
+    EXPECT_EQ(mixed->triangles.size(), 4U);
+    EXPECT_EQ(mixed->unused_vertices, 2U);
+    const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    expectRefused(load("l.obj", corners + "l 1 2 3\n"), "no triangles, but 2 lines");
+    expectRefused(load("p.obj", corners + "p 1 2 3\n"), "no triangles, but 3 points");
+    expectRefused(load("v.obj", corners), "3 vertices but no faces");
+
+    const auto gltf = [](const std::string& primitives) {
+        return load("p.gltf", tetrahedronGltf({.primitive = primitives}));
+    };
+    const std::string whole = R"("attributes":{"POSITION":0},"indices":1)";
+    const std::string part = R"("attributes":{"POSITION":0},"mode":)";
+    EXPECT_EQ(warningsOf(gltf(whole + "},{" + part + "0")),
+              Lines{"left out 4 points: only polygons have a surface"});
+    EXPECT_EQ(warningsOf(gltf(whole + "},{" + part + "1},{" + part + "2},{" + part + "3")),
+              Lines{"left out 9 lines: only polygons have a surface"});
+    expectRefused(gltf(part + "0"), "no triangles, but 4 points");
+    expectRefused(gltf(part + "3"), "no triangles, but 3 lines");
+}
+
+TEST(ImportParts, FreeFormSurfacesAreNamed) {
+    const std::string patch = "cstype bezier\ndeg 1 1\nsurf 0 1 0 1 1 2 3 4\nparm u 0 1\nparm v 0 1\nend\n";
+    EXPECT_EQ(warningsOf(load("f.obj", tetrahedronObj() + patch)),
+              Lines{"left out 1 free-form curve or surface: only polygons have a surface"});
+    expectRefused(load("s.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n" + patch),
+                  "1 free-form curve or surface");
+}
+
+TEST(ImportParts, MeshesThatNoNodePlaces) {
+    // glTF shows what its scene names; the rest is told. RAW has no scene: all its groups are the surface.
+    const std::string second =
+        R"(}]},{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],"accessors")";
+    std::string gltf = tetrahedronGltf();
+    gltf.replace(gltf.find(R"(}]}],"accessors")"), 16, second);
+    EXPECT_EQ(warningsOf(load("two.gltf", gltf)),
+              Lines{"left out 1 of its 2 meshes: its scene does not show them"});
+    EXPECT_EQ(warningsOf(
+                  load("all.gltf", gltf.replace(gltf.find(R"({"mesh":0})"), 10,
+                                                R"({"children":[1]},{"mesh":1,"children":[2]},{"mesh":0})"))),
+              Lines());
+    const Result<TriangleMesh> raw =
+        load("groups.raw",
+             "a\n0 0 0 1 0 0 0 1 0\nb\n0 0 1 1 0 1 0 1 1\n0 0 2 1 0 2 0 1 2\nc\n0 0 3 1 0 3 0 1 3\n");
+    EXPECT_EQ(warningsOf(raw), Lines());
+    EXPECT_EQ(raw->triangles.size(), 4U);
+    EXPECT_EQ(raw->bounds.max, glm::vec3(1, 1, 3));
+}
+
+TEST(ImportParts, LargePolygonsOfOff) {
+    // assimp reads polygons of up to 9 corners, and the file without the others.
+    const auto disc = [](int corners) {
+        std::string text = "OFF\n" + std::to_string(corners + 1) + " 2 0\n0 0 1\n";
+        std::string face = std::to_string(corners);
+        for (int i = 0; i < corners; ++i) {
+            text += std::to_string(i) + " " + std::to_string(i * i) + " 0\n";  // on a parabola: convex
+            face += " " + std::to_string(i + 1);
+        }
+        return text + "3 0 1 2\n" + face + "\n";
+    };
+    const Result<TriangleMesh> nine = load("nine.off", disc(9));
+    EXPECT_EQ(warningsOf(nine), Lines());
+    EXPECT_EQ(nine->triangles.size(), 8U);
+    expectRefused(load("ten.off", disc(10)), "more than 9");
+}
+
+TEST(ImportParts, IndicesOutOfRangeAreRefusedInGltfToo) {
+    // assimp drops such faces, and says so in a warning.
+    std::string buffer = tetrahedronBuffer();
+    buffer[48] = 9;
+    const TemporaryFolder folder;
+    folder.write("b.bin", buffer);
+    expectRefused(importMeshInWorker(folder.write("i.gltf", tetrahedronGltf({.uri = "b.bin"}))),
+                  "a vertex that does not exist");
+}
+
+}  // namespace
+}  // namespace relief::test

@@ -1,0 +1,333 @@
+// PLY files whose surface is known in closed form: faces, strips, and what is neither.
+#include "bake/import/import_ply.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+
+#include "bake/import/mesh_import.h"
+#include "bake/mesh/triangle_plane.h"
+#include "tests/bake/import/import_meshes.h"
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+namespace {
+
+constexpr std::array kEncodings = {"ascii", "binary_little_endian", "binary_big_endian"};
+
+/// A PLY file, item by item, in one of the encodings.
+class PlyWriter {
+  public:
+    explicit PlyWriter(std::string encoding) : encoding_(std::move(encoding)) {
+        text_ = "ply\nformat " + encoding_ + " 1.0\n";
+    }
+    PlyWriter& line(const std::string& words) {
+        text_ += words + "\n";
+        return *this;
+    }
+    template <class T>
+    PlyWriter& put(T value) {
+        if (encoding_ == "ascii") {
+            text_ += std::to_string(value) + " ";
+            return *this;
+        }
+        std::array<char, sizeof(T)> bytes{};
+        std::memcpy(bytes.data(), &value, sizeof(T));
+        if (encoding_ == "binary_big_endian") {
+            std::reverse(bytes.begin(), bytes.end());
+        }
+        text_.append(bytes.data(), bytes.size());
+        return *this;
+    }
+    template <class Length, class Item>
+    PlyWriter& list(const std::vector<std::int64_t>& items) {
+        put(static_cast<Length>(items.size()));
+        for (const std::int64_t item : items) {
+            put(static_cast<Item>(item));
+        }
+        return *this;
+    }
+    [[nodiscard]] const std::string& text() const { return text_; }
+
+  private:
+    std::string encoding_;
+    std::string text_;
+};
+
+// A box of 1 × 2 × 3 from the origin; bit 0 of a corner's index is x, bit 1 y, bit 2 z.
+constexpr const char* kBoxHeader =
+    "element vertex 8\nproperty float x\nproperty uchar red\nproperty double y\nproperty float z";
+
+PlyWriter& putBoxCorners(PlyWriter& ply) {
+    for (int i = 0; i < 8; ++i) {
+        ply.put(static_cast<float>(i & 1)).put(std::uint8_t{7}).put(static_cast<double>(i & 2));
+        ply.put(i < 4 ? 0.0F : 3.0F);
+    }
+    return ply;
+}
+
+// Its sides in three strips, its ends in two. The first two are of odd length: a turn that outlives its strip would wind
+// the next inwards.
+const std::vector<std::int64_t> kBoxStrip = {0, 1, 4, 5,  6, 7, 2, -1, 2,  7, 3, -1, 2,
+                                             3, 0, 1, -1, 0, 4, 2, 6,  -1, 1, 3, 5,  7};
+
+std::string boxOfTriangles() {
+    // The same triangles in the same order, each written out.
+    const std::vector<std::vector<std::int64_t>> triangles = {{0, 1, 4}, {4, 1, 5}, {4, 5, 6}, {6, 5, 7},
+                                                              {6, 7, 2}, {2, 7, 3}, {2, 3, 0}, {0, 3, 1},
+                                                              {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {5, 3, 7}};
+    PlyWriter ply("binary_little_endian");
+    ply.line(kBoxHeader).line("element face 12\nproperty list uchar int vertex_indices").line("end_header");
+    putBoxCorners(ply);
+    for (const std::vector<std::int64_t>& triangle : triangles) {
+        ply.list<std::uint8_t, std::int32_t>(triangle);
+    }
+    return ply.text();
+}
+
+std::string boxOfStrips(const std::string& encoding) {
+    PlyWriter ply(encoding);
+    ply.line("obj_info a box").line(kBoxHeader);
+    ply.line("element tristrips 1\nproperty list int int vertex_indices").line("end_header");
+    putBoxCorners(ply).list<std::int32_t, std::int32_t>(kBoxStrip);
+    return ply.text();
+}
+
+double signedVolume(const TriangleMesh& mesh) {
+    double volume = 0.0;
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+        const TrianglePlane plane = planeOf(mesh, i);
+        volume += dot(plane.point, plane.normal) / 6.0;
+    }
+    return volume;
+}
+
+Result<PlyMesh> read(const std::string& text) {
+    return readPly(std::as_bytes(std::span(text)), "'a.ply'");
+}
+
+void expectError(const Result<PlyMesh>& mesh, const std::string& says,
+                 ErrorCode code = ErrorCode::kInvalidInput) {
+    ASSERT_FALSE(mesh) << says;
+    const std::string& message = mesh.error().message;
+    EXPECT_EQ(mesh.error().code, code) << message;
+    EXPECT_NE(message.find(says), std::string::npos) << message;
+    EXPECT_TRUE(message.starts_with("cannot read the mesh 'a.ply': ")) << message;
+    EXPECT_NE(message.find("; "), std::string::npos) << "no cure: " << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+}
+
+// Three corners in a plane, in text.
+const std::string kHead =
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
+const std::string kCorners = "0 0 0\n1 0 0\n0 1 0\n1 1 1\n";
+
+std::string strips(const std::string& element, const std::string& lists,
+                   const std::string& type = "list int int") {
+    return kHead + element + "\nproperty " + type + " vertex_indices\nend_header\n" + kCorners + lists;
+}
+
+TEST(ImportPly, AStripBakesAsItsTrianglesDo) {
+    const TemporaryFolder folder;
+    const Result<TriangleMesh> truth = importMesh(folder.write("triangles.ply", boxOfTriangles()));
+    ASSERT_TRUE(truth) << truth.error().message;
+    EXPECT_NEAR(signedVolume(*truth), 6.0, 1e-12);
+    const DepthMap expected = bakeMap(*truth, "float:dir=-z,size=32");
+    for (const char* encoding : kEncodings) {
+        SCOPED_TRACE(encoding);
+        const Result<TriangleMesh> mesh =
+            importMeshInWorker(folder.write(std::string(encoding) + ".ply", boxOfStrips(encoding)));
+        ASSERT_TRUE(mesh) << mesh.error().message;
+        EXPECT_EQ(mesh->positions, truth->positions);
+        EXPECT_EQ(mesh->triangles, truth->triangles);
+        EXPECT_NEAR(signedVolume(*mesh), 6.0, 1e-12);
+        EXPECT_EQ(mesh->unused_vertices, 0U);
+        EXPECT_TRUE(mesh->warnings.empty());
+        EXPECT_EQ(bakeMap(*mesh, "float:dir=-z,size=32").texels, expected.texels);
+    }
+}
+
+TEST(ImportPly, StripsBeginEndAndTurn) {
+    using Corners = std::vector<std::uint32_t>;
+    const auto corners = [](const std::string& text) {
+        const Result<PlyMesh> mesh = read(text);
+        EXPECT_TRUE(mesh) << mesh.error().message;
+        return mesh ? mesh->corners : Corners();
+    };
+    EXPECT_EQ(corners(strips("element tristrips 1", "4 0 1 2 3\n")), (Corners{0, 1, 2, 2, 1, 3}));
+    // A strip of one triangle, ends without strips, and strips too short for a triangle: each begins unturned.
+    EXPECT_EQ(corners(strips("element tristrips 1", "13 -1 0 1 2 -1 -1 1 3 -1 3 1 2 0\n")),
+              (Corners{0, 1, 2, 3, 1, 2, 2, 1, 0}));
+    // One list each.
+    EXPECT_EQ(corners(strips("element tristrips 3", "3 0 1 2\n0\n4 3 1 2 -1\n")),
+              (Corners{0, 1, 2, 3, 1, 2}));
+    // Repeated corners lead from one part to the next: nothing for each, but the turn goes on.
+    EXPECT_EQ(corners(strips("element tristrips 1", "8 0 1 2 2 3 3 1 0\n")), (Corners{0, 1, 2, 1, 3, 0}));
+    // What -1 is where lists are unsigned, and in text.
+    EXPECT_EQ(corners(strips("element tristrips 1", "7 0 1 2 4294967295 3 1 2\n", "list uint uint")),
+              (Corners{0, 1, 2, 3, 1, 2}));
+    EXPECT_EQ(corners(strips("element tristrips 1", "7 0 1 2 -1 3 1 2\n", "list uint uint")),
+              (Corners{0, 1, 2, 3, 1, 2}));
+    // Faces beside them; a file may name its vertices last.
+    const std::string both =
+        "ply\nformat ascii 1.0\nelement tristrips 1\nproperty list int int vertex_index\n"
+        "element face 1\nproperty list uchar int vertex_indices\nproperty uchar red\n" +
+        kHead.substr(kHead.find("element")) + "end_header\n3 0 1 2\n4 3 2 1 0 255\n" + kCorners;
+    const Result<PlyMesh> mesh = read(both);
+    ASSERT_TRUE(mesh) << mesh.error().message;
+    EXPECT_EQ(mesh->corners, (Corners{0, 1, 2, 3, 2, 1, 0}));
+    EXPECT_EQ(mesh->sizes, (std::vector<std::uint32_t>{3, 4}));
+    EXPECT_EQ(mesh->positions.size(), 4U);
+    EXPECT_EQ(mesh->positions[3], glm::vec3(1));
+}
+
+TEST(ImportPly, HostileStripsAreRefused) {
+    for (const char* list :
+         {"3 0 1 4\n", "3 0 1 -2\n", "4 0 1 2 2147483647\n", "3 0 1 0.5\n", "3 0 1 nan\n"}) {
+        SCOPED_TRACE(list);
+        expectError(read(strips("element tristrips 1", list)), "names the vertex");
+    }
+    expectError(read(strips("element tristrips 1", "3 0 1 4294967295\n")), "names the vertex");
+    expectError(read(strips("element tristrips 1", "-3 0 1 2\n")), "length that cannot be");
+    expectError(read(strips("element tristrips 1", "2147483647 0 1 2\n")), "ends too early");
+    expectError(read(strips("element tristrips 4000000000", "3 0 1 2\n")), "ends too early");
+    expectError(read(strips("element tristrips 18446744073709551615", "3 0 1 2\n")), "ends too early");
+    expectError(read(strips("element tristrips 18446744073709551616", "3 0 1 2\n")), "not understood");
+    expectError(read(strips("element tristrips -1", "3 0 1 2\n")), "not understood");
+    expectError(read(strips("element tristrips 1", "3 0 one 2\n")), "a word among its numbers");
+    expectError(read(strips("element tristrips 1", "4 0 0 1 1\n")), "no faces");
+    expectError(
+        read("ply\nformat ascii 1.0\nelement vertex 99999999999\nproperty float x\nproperty float y\n"
+             "property float z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n"),
+        "announces 99999999999 vertices", ErrorCode::kLimit);
+    expectError(
+        read("ply\nformat ascii 1.0\nelement vertex 200000000\nproperty float x\nproperty float y\n"
+             "property float z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n"),
+        "ends too early");
+}
+
+TEST(ImportPly, EveryTruncationIsRefused) {
+    for (const char* encoding : kEncodings) {
+        const std::string whole = boxOfStrips(encoding);
+        ASSERT_TRUE(read(whole));
+        // In text, the last number alone may lose digits; here it has one, and a space behind it.
+        const std::size_t last = encoding == std::string("ascii") ? whole.size() - 1 : whole.size();
+        for (std::size_t size = 0; size < last; ++size) {
+            ASSERT_FALSE(read(whole.substr(0, size))) << encoding << ", " << size << " bytes";
+        }
+    }
+}
+
+TEST(ImportPly, WhatComesBehindTheLastElement) {
+    // A line with a number too many shifts all that follows: four columns for three.
+    expectError(read(strips("element face 1", "3 0 1 2 9\n", "list uchar int")), "more numbers");
+    const std::string binary = boxOfStrips("binary_little_endian");
+    for (const std::string& padding : {std::string("\n"), std::string("\r\n"), std::string(3, '\0')}) {
+        const Result<PlyMesh> padded = read(binary + padding);
+        ASSERT_TRUE(padded) << padded.error().message;
+        EXPECT_TRUE(padded->warnings.empty());
+    }
+    const Result<PlyMesh> mesh = read(binary + "more");
+    ASSERT_TRUE(mesh) << mesh.error().message;
+    ASSERT_EQ(mesh->warnings.size(), 1U);
+    EXPECT_NE(mesh->warnings[0].find("4 bytes"), std::string::npos) << mesh->warnings[0];
+}
+
+TEST(ImportPly, HeadersThatNobodyWrites) {
+    expectError(read(""), "header does not end");
+    expectError(read("solid t\nend_header\n"), "no PLY");
+    expectError(read("ply\nelement vertex 1\nend_header\n"), "no format");
+    expectError(read("ply\nformat ascii 1.0\nend_header\n"), "'vertex' once");
+    expectError(read(kHead + "element vertex 1\nproperty float x\nend_header\n"), "'vertex' once");
+    for (const char* z : {"w", "x", "y"}) {
+        expectError(
+            read("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                 "property float " +
+                 std::string(z) + "\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"),
+            "x, y and z");
+    }
+    expectError(read("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                     "property list uchar float z\nend_header\n"),
+                "x, y and z");
+}
+
+TEST(ImportPly, FacesOfOtherNamesAreRefusedOrNamed) {
+    const std::string polygon = "element polygon 1\nproperty list uchar int vertex_indices\n";
+    const std::string face = "element face 1\nproperty list uchar int vertex_indices\n";
+    expectError(read(kHead + polygon + "end_header\n" + kCorners + "3 0 1 2\n"), "'polygon' is not read");
+    expectError(read(kHead + "element tri_strips 1\nproperty list int int strip\nend_header\n" + kCorners +
+                     "3 0 1 2\n"),
+                "'tri_strips' is not read");
+    expectError(read(kHead + "element cells 1\nproperty list uchar int vertexIndex\nend_header\n" + kCorners +
+                     "3 0 1 2\n"),
+                "'cells' is not read");
+    expectError(read(kHead + "element face 1\nproperty list uchar int corners\nend_header\n" + kCorners +
+                     "3 0 1 2\n"),
+                "'face' has no list vertex_indices");
+    const Result<PlyMesh> part =
+        read(kHead + face + polygon + "end_header\n" + kCorners + "3 0 1 2\n3 1 2 3\n");
+    ASSERT_TRUE(part) << part.error().message;
+    EXPECT_EQ(part->sizes.size(), 1U);
+    ASSERT_EQ(part->warnings.size(), 1U);
+    EXPECT_NE(part->warnings[0].find("'polygon' is not read"), std::string::npos) << part->warnings[0];
+    // What programs put beside their faces is no reason to warn.
+    const Result<PlyMesh> whole =
+        read(kHead + face +
+             "property list uchar float texcoord\nproperty int material_index\nelement edge 1\n"
+             "property int vertex1\nproperty int vertex2\nelement multi_texture_face 1\n"
+             "property list uchar int texture_vertex_indices\nelement material 1\nproperty float shininess\n"
+             "end_header\n" +
+             kCorners + "3 0 1 2 6 0 0 1 0 0 1 5\n0 1\n3 0 1 2\n0.5\n");
+    ASSERT_TRUE(whole) << whole.error().message;
+    EXPECT_TRUE(whole->warnings.empty()) << whole->warnings[0];
+}
+
+TEST(ImportPly, PointsAndEdgesAreNoSurface) {
+    expectError(read(kHead + "end_header\n" + kCorners), "it has 4 vertices but no faces; if it is a scan");
+    // Said of a cloud that is cut off, too: more points would not help.
+    expectError(read(kHead + "end_header\n0 0 0\n"), "if it is a scan");
+    expectError(
+        read(kHead + "element face 0\nproperty list uchar int vertex_indices\nend_header\n" + kCorners),
+        "if it is a scan");
+    expectError(read(kHead + "element range_grid 4\nproperty list uchar int vertex_indices\nend_header\n" +
+                     kCorners + "1 0\n1 1\n0\n1 2\n"),
+                "if it is a scan");
+    expectError(read(kHead + "element edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n" +
+                     kCorners + "0 1\n"),
+                "4 vertices and edges but no faces; export");
+}
+
+TEST(ImportPly, CoordinatesAreTheNearestFloats) {
+    const Result<PlyMesh> mesh = read(
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+        "0.1 7.941797 -0.927566\n16777217 1e-3 +3.4028235e38\n0 1 0\n3 0 1 2\n");
+    ASSERT_TRUE(mesh) << mesh.error().message;
+    EXPECT_EQ(mesh->positions[0], glm::vec3(0.1F, 7.941797F, -0.927566F));
+    EXPECT_EQ(mesh->positions[1], glm::vec3(16777216.0F, 0.001F, std::numeric_limits<float>::max()));
+}
+
+TEST(ImportPly, ConcavePolygonsStayConcave) {
+    // An L of six corners, area 3: a fan round its first corner would have triangles turned over.
+    const TemporaryFolder folder;
+    const Result<TriangleMesh> mesh = importMesh(folder.write(
+        "l.ply",
+        "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+        "2 1 0\n1 1 0\n1 2 0\n0 2 0\n0 0 0\n2 0 0\n6 0 1 2 3 4 5\n"));
+    ASSERT_TRUE(mesh) << mesh.error().message;
+    ASSERT_EQ(mesh->triangles.size(), 4U);
+    double area = 0.0;
+    for (std::uint32_t i = 0; i < 4; ++i) {
+        const TrianglePlane plane = planeOf(*mesh, i);
+        EXPECT_GT(plane.normal.z, 0.0);
+        area += plane.normal.z / 2.0;
+    }
+    EXPECT_DOUBLE_EQ(area, 3.0);
+}
+
+}  // namespace
+}  // namespace relief::test
