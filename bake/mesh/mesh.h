@@ -29,8 +29,9 @@ struct TriangleMesh {
     std::uint64_t cap_triangles = 0;
     std::uint64_t closed_holes = 0;
     std::uint64_t source_triangles =
-        0;          ///< of the file, where `triangles` without caps are not those; 0: they are
-    double shell_thickness = 0.0;        ///< of the shells among its parts (bake/shape), object units; 0: there are none
+        0;  ///< of the file, where `triangles` without caps are not those; 0: they are
+    double shell_thickness =
+        0.0;        ///< of the shells among its parts (bake/shape), object units; 0: there are none
     Bounds bounds;  ///< of positions
     /// Files that it was read from: first its own, as its path was given, then whatever that refers to,
     /// sorted.

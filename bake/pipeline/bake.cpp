@@ -105,8 +105,8 @@ void warnAbout(const PreparedMesh& mesh, const std::vector<Job>& jobs, BakeRepor
     }
 }
 
-/// What a shell's point called outside costs: two in a row, and a particle is through.
-const double kShellFalseOutside = getenv("SH") ? atof(getenv("SH")) : 4.0;
+/// What a mistake costs where there are shells: a few points in a row called outside, and a particle is through.
+constexpr double kShellFalseOutside = 4.0;
 
 FittedMapOptions fitOptions(const TriangleMesh& mesh, const View& view, const BakeOptions& bake) {
     const Quality quality = bake.quality;

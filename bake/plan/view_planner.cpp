@@ -38,7 +38,7 @@ constexpr float kEdgeOnService = 0.01F;
 constexpr double kClearGain = 0.03;
 /// What every map costs, in mean service: a step of a simulation looks at each in turn. Eight front-back maps take about
 /// three times as long as the paper's two.
-constexpr double kMapPrice = 0.003;
+constexpr double kMapPrice = 0.002;
 /// What a map costs that takes as many bytes as all before it: they are taken from those, whose texels grow.
 constexpr double kBytePrice = 0.02;
 /// Where free space must be kept free, price is no object.
@@ -101,8 +101,8 @@ std::vector<PlanPoint> drawPoints(const MeshQuery& query, std::uint64_t seed) {
 /// How well a point is served by a view that sees it under this cosine: hardly, edge-on.
 float service(double cosine) {
     return cosine < kEdgeOn ? kEdgeOnService
-                            : static_cast<float>(
-                                  std::min(1.0, kLeastService + (1.0 - kLeastService) * cosine / kFullCosine));
+                            : static_cast<float>(std::min(
+                                  1.0, kLeastService + (1.0 - kLeastService) * cosine / kFullCosine));
 }
 
 /// A direction to look along, and how its image is turned; nullopt: by the rule of view.h.
