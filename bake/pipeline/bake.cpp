@@ -106,7 +106,7 @@ void warnAbout(const PreparedMesh& mesh, const std::vector<Job>& jobs, BakeRepor
 }
 
 /// What a mistake costs where there are shells: a few points in a row called outside, and a particle is through.
-constexpr double kShellFalseOutside = 4.0;
+constexpr double kShellFalseOutside = 8.0;
 
 FittedMapOptions fitOptions(const TriangleMesh& mesh, const View& view, const BakeOptions& bake) {
     const Quality quality = bake.quality;

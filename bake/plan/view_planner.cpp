@@ -50,7 +50,7 @@ constexpr double kCavityShare = 0.002;
 constexpr int kIdleRounds = 3;
 constexpr int kCavityCandidates = 100;
 /// Cubes reach this far at most, in units of the longest side.
-constexpr double kCavityReach = 0.5;
+constexpr double kCavityReach = 0.65;
 /// Texels of a cube across the mean width of its volume: its faces are nearer to the centre than to the
 /// corners.
 constexpr double kCubeDensity = 0.775;

@@ -370,10 +370,10 @@ TEST_P(Flat, IsBakedFaceOn) {
 
 INSTANTIATE_TEST_SUITE_P(Axes, Flat, testing::Values(0, 1, 2));
 
-/// What takes at least three steps through a shell does not get through it, from either side.
-TEST(Shape, NothingSlowerThanAThirdOfItsThicknessPassesAShell) {
+/// What takes at least two steps through a shell does not get through it, from either side.
+TEST(Shape, NothingSlowerThanAHalfOfItsThicknessPassesAShell) {
     constexpr int kParticles = 250'000;
-    constexpr double kSpeed = kThickness / 3.0;
+    constexpr double kSpeed = kThickness / 2.0;
     struct Target {
         const char* name;
         TriangleMesh mesh;
