@@ -33,19 +33,38 @@ expect 0 "$relief" info box.relief
 grep -q 'front-back' stdout || die "info does not list the maps"
 
 # A nearly closed mesh is baked as a solid, and the report says so; the container still names the mesh.
-grep -v '^f 4 3 2 1' box.obj >open.obj
+sed 's/^f 4 3 2 1$/f 4 3 2/' box.obj >open.obj
 expect 0 "$relief" bake open.obj -o open.relief --map cube:size=16 --json
-grep -q 'open.obj: closed 1 hole with 4 triangles for baking: the mesh is nearly closed' stderr ||
+grep -q 'open.obj: closed 1 hole for baking: the mesh is nearly closed' stderr ||
     die "closing a hole is not reported: $(cat stderr)"
 cp stdout report.json
-json report.json "(d['closed_holes'], d['cap_triangles'], d['settings']['holes']) == (1, 4, 'close')"
-json report.json "d['provenance']['triangles'] == 10 and '--holes' not in d['provenance']['options']"
+json report.json "(d['closed_holes'], d['cap_triangles'], d['settings']['holes']) == (1, 1, 'close')"
+json report.json "d['shape']['solids_with_holes'] == 1 and d['shape']['sheets'] == 0 and d['shape']['thickness'] is None"
+json report.json "d['provenance']['triangles'] == 11 and '--holes' not in d['provenance']['options']"
 expect 0 "$relief" bake open.obj -o kept.relief --map cube:size=16 --json --holes keep
 cp stdout report.json
-json report.json "(d['closed_holes'], d['cap_triangles'], d['settings']['holes']) == (0, 0, 'keep')"
+json report.json "(d['closed_holes'], d['cap_triangles'], d['settings']['holes'], d['shape']) == (0, 0, 'keep', None)"
 json report.json "d['provenance']['options'].endswith(' --holes keep')"
 cmp -s open.relief kept.relief && die "--holes keep closes holes"
 expect_error 1 'holes.*close or keep' "$relief" bake open.obj -o bad.relief --holes fill
+
+# A box without a bottom is walls with two sides, unless --as says otherwise; the container remembers how thick they are.
+grep -v '^f 4 3 2 1' box.obj >walls.obj
+expect 0 "$relief" bake walls.obj -o walls.relief --budget 100kB --thickness 0.2 --json
+cp stdout report.json
+json report.json "d['shape']['sheets'] == 1 and abs(d['shape']['thickness'] - 0.2) < 1e-6 and d['wrong_percent'] < 5"
+json report.json "d['provenance']['options'].endswith(' --thickness 0.2') and d['provenance']['triangles'] == 10"
+json report.json "len(d['maps']) <= 8"
+expect 0 "$relief" check walls.relief --mesh walls.obj --samples 2000 --max-error 5 --json
+cp stdout report.json
+json report.json "d['mesh']['shape']['sheets'] == 1 and abs(d['mesh']['shape']['thickness'] - 0.2) < 1e-6"
+expect 0 "$relief" bake walls.obj -o solid.relief --budget 100kB --as solid --no-check --max-maps 2 --json
+cp stdout report.json
+json report.json "d['shape']['solids_with_holes'] == 1 and d['wrong_percent'] is None and len(d['maps']) <= 2"
+json report.json "' --as solid' in d['provenance']['options']"
+expect_error 1 'thickness.*walls.obj is 6 long' "$relief" bake walls.obj -o bad.relief --thickness 100
+expect_error 1 'thickness.*a length above 0' "$relief" bake walls.obj -o bad.relief --thickness -1
+expect_error 1 'as.*must be one of auto, solid, shell, terrain' "$relief" bake walls.obj -o bad.relief --as sheet
 
 # --map takes every format, projection and compare; the effective settings are printed.
 expect 0 "$relief" bake box.obj -o all.relief --resolution 32 --json \
