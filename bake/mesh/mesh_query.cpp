@@ -288,10 +288,18 @@ double MeshQuery::signedDistance(const glm::vec3& p) const {
 }
 
 bool MeshQuery::segmentIsFree(const glm::dvec3& from, const glm::dvec3& to) const {
+    return isFree(from, to - from, 1.0F);
+}
+
+bool MeshQuery::rayIsFree(const glm::dvec3& origin, const glm::dvec3& direction) const {
+    return isFree(origin, direction, std::numeric_limits<float>::infinity());
+}
+
+bool MeshQuery::isFree(const glm::dvec3& origin, const glm::dvec3& direction, float end) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRay ray{};
-    setRay(ray, tree_->toLocal(from), (to - from) * tree_->scale, 1.0F);
+    setRay(ray, tree_->toLocal(origin), direction * tree_->scale, end);
     rtcOccluded1(tree_->scene.get(), &context, &ray);
     return ray.tfar >= 0.0F;
 }

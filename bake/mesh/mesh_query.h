@@ -59,6 +59,9 @@ class MeshQuery {
     /// No triangle meets the open segment between two points.
     [[nodiscard]] bool segmentIsFree(const glm::dvec3& from, const glm::dvec3& to) const;
 
+    /// No triangle meets the ray. \param direction  of any length but 0.
+    [[nodiscard]] bool rayIsFree(const glm::dvec3& origin, const glm::dvec3& direction) const;
+
     /// \param direction  of any length but 0.
     [[nodiscard]] std::optional<FirstHit> firstHit(const glm::dvec3& origin,
                                                    const glm::dvec3& direction) const;
@@ -68,6 +71,8 @@ class MeshQuery {
         : mesh_(std::move(mesh)), tree_(&tree), shells_(mesh_.woundShells()), bodies_(mesh_.bodies()) {}
 
     [[nodiscard]] bool insideUnion(const glm::vec3& p) const;
+    /// \param end  in units of the direction.
+    [[nodiscard]] bool isFree(const glm::dvec3& origin, const glm::dvec3& direction, float end) const;
 
     PreparedMesh mesh_;
     const EmbreeMesh* tree_;                 // mesh_ holds it

@@ -20,7 +20,7 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t kPoints = 12'000;
+constexpr std::size_t kPoints = 8'000;
 /// Spread of the points off the surface, in units of the longest side: where particles are looked up.
 constexpr double kSpread = 0.005;
 /// Cosine of incidence from which on a point is served in full.
@@ -267,7 +267,7 @@ class Planner {
                 int free = 0;
                 for (const double sign : {1.0, -1.0}) {
                     const float value = service(sign * dot(points_[i].normal, along));
-                    if (!query_.firstHit(points_[i].position, sign * along)) {
+                    if (query_.rayIsFree(points_[i].position, sign * along)) {
                         best = std::max(best, value);
                         ++free;
                     }
