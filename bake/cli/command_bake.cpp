@@ -318,8 +318,8 @@ Result<void> checkItself(BakeRun& run) {
 void tellNotices(BakeRun& run) {
     const TriangleMesh& mesh = *run.cared.mesh;
     if (mesh.closed_holes > 0) {
-        spdlog::info("{}: closed {} hole{} for baking: the mesh is nearly closed", mesh.name, mesh.closed_holes,
-                     mesh.closed_holes == 1 ? "" : "s");
+        spdlog::info("{}: closed {} hole{} for baking: the mesh is nearly closed", mesh.name,
+                     mesh.closed_holes, mesh.closed_holes == 1 ? "" : "s");
     }
     if (!run.backend.reason.empty()) {
         spdlog::info("backend {}: {}", run.backend.raster ? "raster" : "raycast", run.backend.reason);

@@ -6,15 +6,19 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "bake/cli/check_advice.h"
 #include "bake/cli/check_file.h"
 #include "bake/cli/command.h"
 #include "bake/cli/import_options.h"
 #include "bake/cli/preflight.h"
+#include "bake/cli/recorded_bake.h"
 #include "bake/measure/accuracy.h"
+#include "bake/measure/worst_places.h"
 #include "bake/repair/mesh_care.h"
 #include "bake/repair/winding.h"
 #include "bake/report/accuracy_page.h"
 #include "bake/report/accuracy_report.h"
+#include "bake/report/places_report.h"
 #include "bake/report/shape_report.h"
 #include "bake/shape/shape.h"
 #include "formats/base/file_io.h"
@@ -63,18 +67,33 @@ Result<void> checkSameMesh(const Collider& collider, const TriangleMesh& mesh) {
     return {};
 }
 
+/// The truth of a mesh, and how far the collider is from it.
+struct Measured {
+    TruthSamples samples;
+    ColliderAccuracy accuracy;
+};
+
 /// A check against a mesh, and what its stages leave for the next.
 struct CheckRun {
     Collider collider;
-    PreparedMesh mesh{
-        TriangleMesh()};  ///< as baked: where solids overlap, their winding decides what is inside
+    PreparedMesh imported{TriangleMesh()};  ///< wound outwards
+    /// The solid that stands for it: where solids overlap, their winding decides what is inside.
+    PreparedMesh mesh{TriangleMesh()};
     ShapeReport shape;
+    RecordedBake recorded;
+    PreparedMesh baked{TriangleMesh()};  ///< the same of the repaired mesh; `mesh` without a repair
     bool same_file = false;
     std::vector<std::string> warnings;
-    TruthSamples samples;
     bool watertight = false;
-    ColliderAccuracy accuracy;
+    Measured original;
+    std::optional<Measured> repaired;  ///< if the collider is of a repaired mesh
+    std::vector<WorstPlace> places;
+    std::vector<Advice> advice;
     bool passed = true;
+
+    /// Against the mesh that was baked.
+    [[nodiscard]] const Measured& judged() const { return repaired ? *repaired : original; }
+    [[nodiscard]] double wrongPercent() const { return judged().accuracy.field.near.total(); }
 };
 
 /// Before the long work.
@@ -99,15 +118,11 @@ Result<void> readInputs(const CheckCommand& command, CheckRun& run) {
     TriangleMesh imported =
         RELIEF_TRY(importMeshInWorker(command.mesh, command.import.options, command.import.limits));
     Winding winding = RELIEF_TRY(windOutwards(std::move(imported)));
-    run.mesh = std::move(winding.mesh);
-    const std::string& options = run.collider.provenance.options;
-    if (options.find(" --holes keep") == std::string::npos) {
-        ShapedMesh shaped = RELIEF_TRY(shapeMesh(
-            run.mesh,
-            shapeOptionsOf(options, {ShapeAs::kAuto, defaultThickness(run.mesh->bounds, 1'000'000)})));
-        run.mesh = std::move(shaped.mesh);
-        run.shape = std::move(shaped.report);
-    }
+    run.imported = std::move(winding.mesh);
+    run.recorded = recordedBake(run.collider.provenance.options);
+    ShapedMesh shaped = RELIEF_TRY(shapedMesh(run.recorded, run.imported));
+    run.mesh = std::move(shaped.mesh);
+    run.shape = std::move(shaped.report);
     RELIEF_TRY(checkSameMesh(run.collider, *run.mesh));
     const Provenance& from = run.collider.provenance;
     run.same_file = from.mesh_hash == run.mesh->content_hash;
@@ -118,32 +133,86 @@ Result<void> readInputs(const CheckCommand& command, CheckRun& run) {
                                (from.mesh_hash.empty() ? "unknown" : from.mesh_hash) +
                                "); its bounds are the same");
     }
-    for (const std::string& warning : run.warnings) {
-        spdlog::warn(warning);
-    }
     return {};
+}
+
+/// The mesh as it was baked, or as it came if the repair cannot be made again.
+void makeBakedMesh(CheckRun& run) {
+    run.baked = run.mesh;
+    if (run.recorded.repair.empty()) {
+        return;
+    }
+    std::string reason = "it is not the same file";
+    if (run.same_file) {
+        Result<ShapedMesh> baked = repairedMesh(run.recorded, run.imported);
+        if (baked) {
+            run.baked = std::move(baked->mesh);
+            run.shape = std::move(baked->report);
+            return;
+        }
+        reason = baked.error().message;
+    }
+    run.warnings.push_back("the collider is of a mesh repaired by " + run.recorded.repair +
+                           ", which is not made again (" + reason + "); all is measured against " +
+                           run.mesh->name + " as it came");
+}
+
+/// Where the collider is wrong most, and what to do about it.
+void lookCloser(const CheckCommand& command, const MeshQuery& query, CheckRun& run) {
+    const Sights sights(run.collider.maps, query);
+    run.places = worstPlaces(run.judged().samples, query, sights, run.collider);
+    if (run.passed && run.wrongPercent() <= kGoodPercent) {
+        return;
+    }
+    const std::string output = command.file == "-" ? "out.relief" : command.file;
+    run.advice = adviceFor({command.mesh, output, run.collider, run.recorded, run.imported, run.baked,
+                            run.shape, query, run.judged().samples, run.places, run.wrongPercent()});
 }
 
 /// Measures, and writes the page that --html asks for.
 Result<void> measure(const CheckCommand& command, CheckRun& run) {
+    makeBakedMesh(run);
+    for (const std::string& warning : run.warnings) {
+        spdlog::warn(warning);
+    }
     const MeshQuery query = RELIEF_TRY(MeshQuery::build(run.mesh));
+    const MeshQuery baked = RELIEF_TRY(MeshQuery::build(run.baked));
     AccuracyOptions options;
     options.samples = static_cast<std::uint32_t>(command.samples);
     options.seed = command.seed;
-    run.samples = sampleTruth(query, options);
     run.watertight = query.watertight();
-    run.accuracy = measureCollider(run.samples, query, run.collider);
-    spdlog::debug("truth {:.2f} s, field {:.2f} s", run.samples.seconds, run.accuracy.field.seconds);
-    run.passed = !command.max_error || run.accuracy.field.near.total() <= double{*command.max_error};
+    run.original.samples = sampleTruth(query, options);
+    run.original.accuracy = measureCollider(run.original.samples, query, run.collider);
+    const bool is_repaired = run.baked->triangles != run.mesh->triangles;
+    if (is_repaired) {
+        run.repaired = Measured{sampleTruth(baked, options), {}};
+        run.repaired->accuracy = measureCollider(run.repaired->samples, baked, run.collider);
+    }
+    spdlog::debug("truth {:.2f} s, field {:.2f} s", run.original.samples.seconds,
+                  run.original.accuracy.field.seconds);
+    run.passed = !command.max_error || run.original.accuracy.field.near.total() <= double{*command.max_error};
+    const MeshQuery& judged = is_repaired ? baked : query;
+    lookCloser(command, judged, run);
     if (command.html.empty()) {
         return {};
     }
     const std::string page =
-        RELIEF_TRY(accuracyPage({inputName(command.file), run.collider, query, run.samples, run.accuracy}));
+        RELIEF_TRY(accuracyPage({inputName(command.file), run.collider, judged, run.judged().samples,
+                                 run.judged().accuracy, run.places, run.advice}));
     return writeFile(command.html, std::as_bytes(std::span(page)));
 }
 
+nlohmann::ordered_json jsonRepaired(const CheckRun& run) {
+    if (!run.repaired) {
+        return nullptr;
+    }
+    return {{"repair", run.recorded.repair},
+            {"triangles", run.baked->triangles.size()},
+            {"accuracy", jsonColliderAccuracy(run.repaired->accuracy, run.repaired->samples.longest_side)}};
+}
+
 nlohmann::ordered_json jsonCheck(const CheckCommand& command, const CheckRun& run) {
+    const auto& [samples, accuracy] = run.original;
     nlohmann::ordered_json json = {
         {"file", inputName(command.file)},
         {"mesh",
@@ -154,13 +223,16 @@ nlohmann::ordered_json jsonCheck(const CheckCommand& command, const CheckRun& ru
           {"shape", jsonShape(run.shape)},
           {"baked_from_it", run.same_file}}},
         {"unit", run.collider.unit},
-        {"sampling", jsonSamples(run.samples)},
-        {"accuracy", jsonColliderAccuracy(run.accuracy, run.samples.longest_side)},
+        {"verdict", {{"wrong_percent", run.wrongPercent()}, {"grade", gradeOf(run.wrongPercent())}}},
+        {"worst_places", jsonPlaces(run.places, run.collider)},
+        {"advice", jsonAdvice(run.advice)},
+        {"sampling", jsonSamples(samples)},
+        {"accuracy", jsonColliderAccuracy(accuracy, samples.longest_side)},
+        {"repaired", jsonRepaired(run)},
         {"max_error_percent", nullptr},
         {"passed", run.passed},
         {"warnings", run.warnings},
-        {"times_ms",
-         {{"truth", 1000.0 * run.samples.seconds}, {"field", 1000.0 * run.accuracy.field.seconds}}}};
+        {"times_ms", {{"truth", 1000.0 * samples.seconds}, {"field", 1000.0 * accuracy.field.seconds}}}};
     if (command.max_error) {
         json["max_error_percent"] = jsonNumber(*command.max_error);
     }
@@ -168,10 +240,22 @@ nlohmann::ordered_json jsonCheck(const CheckCommand& command, const CheckRun& ru
 }
 
 std::string checkText(const CheckCommand& command, const CheckRun& run) {
-    return inputName(command.file) + " measured against " + run.mesh->name + ", " +
-           std::to_string(run.mesh->sourceTriangles()) + " triangles" +
-           (run.watertight ? "" : " (not closed)") + "\n" + shapeText(run.shape, run.collider.unit) + "\n" +
-           accuracyText(run.accuracy, run.samples, run.collider.unit);
+    const auto& [samples, accuracy] = run.judged();
+    std::string text = inputName(command.file) + ": " + verdictText(run.wrongPercent()) + "\n";
+    if (run.repaired) {
+        text += "That is against the mesh repaired by " + run.recorded.repair + ", " +
+                std::to_string(run.baked->triangles.size()) + " triangles; against " + run.mesh->name +
+                " as it came: " + shortNumber(run.original.accuracy.field.near.total()) + " %\n";
+    }
+    for (const std::string& part :
+         {placesText(run.places, run.collider), adviceText(run.advice, run.wrongPercent())}) {
+        text += part.empty() ? "" : "\n" + part;
+    }
+    return text + "\nMeasured against " + run.mesh->name + (run.repaired ? " repaired, " : ", ") +
+           std::to_string((run.repaired ? run.baked : run.mesh)->sourceTriangles()) + " triangles" +
+           (run.watertight || run.repaired ? "" : " (not closed)") + "\n" +
+           shapeText(run.shape, run.collider.unit) + "\n" +
+           accuracyText(accuracy, samples, run.collider.unit);
 }
 
 Result<void> runCheck(const CheckCommand& command) {
@@ -185,10 +269,10 @@ Result<void> runCheck(const CheckCommand& command) {
     RELIEF_TRY(measure(command, run));
     RELIEF_TRY(printOut(command.json ? jsonText(jsonCheck(command, run)) : checkText(command, run)));
     if (!run.passed) {
-        return fail(ErrorCode::kDifference, shortNumber(run.accuracy.field.near.total()) +
-                                                " % of the points near the surface are on the wrong side, "
-                                                "more than --max-error " +
-                                                shortest(*command.max_error) +
+        return fail(ErrorCode::kDifference, shortNumber(run.original.accuracy.field.near.total()) +
+                                                " % of the points near the surface are on the wrong side" +
+                                                (run.repaired ? " of the mesh as it came" : "") +
+                                                ", more than --max-error " + shortest(*command.max_error) +
                                                 " %; bake with larger or more maps");
     }
     return {};
@@ -201,10 +285,12 @@ void addCheck(CLI::App& app, Action& action) {
     CLI::App& verb = addVerb(
         app, command->common, "check",
         "Checks a container, or measures a collider against its mesh\n\nWithout --mesh: every issue of the "
-        "file by its code (formats/README.md), and what of a damaged file can be trusted.\nWith --mesh: the "
-        "share of points on the wrong side, near the "
-        "surface and anywhere in the box, the errors of distance and normal,\nand the share of the "
-        "surface that no map sees. Truth is the parity of rays through the mesh, whatever the maps say.",
+        "file by its code (formats/README.md), and what of a damaged file can be trusted.\nWith --mesh: a "
+        "verdict, the three worst places and why they are wrong, commands that help, each tried in memory\n"
+        "before it is advised; and the share of points on the wrong side, near the surface and anywhere in "
+        "the box,\nthe errors of distance and normal, and the share of the surface that no map sees. Truth "
+        "is the parity of\nrays through the mesh, whatever the maps say; of a collider that was baked with "
+        "--repair, the repaired mesh too.",
         "relief check bunny.relief\n"
         "relief check bunny.relief --mesh bunny.obj\n"
         "relief check bunny.relief --mesh bunny.obj --html bunny.html\n"

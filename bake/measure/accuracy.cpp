@@ -7,9 +7,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
-#include <glm/matrix.hpp>
 #include <vector>
 
+#include "bake/measure/sight.h"
 #include "formats/base/portable_math.h"
 #include "formats/base/stopwatch.h"
 
@@ -113,85 +113,6 @@ void measureNormals(const std::vector<SurfacePoint>& points, const Field& field,
     accuracy.normal_p99 = spread.p99;
 }
 
-/// The lines of sight of one map.
-class Sight {
-  public:
-    Sight(const DepthMap& map, const MeshQuery& query) : map_(map), query_(query) {
-        const Affine& t = map.object_to_map;
-        for (int i = 0; i < 3; ++i) {
-            rows_[i] = {t.row[i].x, t.row[i].y, t.row[i].z};
-            offset_[i] = t.row[i].w;
-        }
-        // The transposed matrix of rows has them as its columns.
-        to_object_ = glm::inverse(glm::transpose(glm::dmat3(rows_[0], rows_[1], rows_[2])));
-    }
-
-    /// \param p  a point a little off the surface, object space.
-    [[nodiscard]] bool sees(const glm::dvec3& p, const glm::dvec3& normal) const {
-        const glm::dvec3 in_map(glm::dot(rows_[0], p) + offset_.x, glm::dot(rows_[1], p) + offset_.y,
-                                glm::dot(rows_[2], p) + offset_.z);
-        return map_.projection() == Projection::kCube ? cubeSees(p, in_map, normal)
-                                                      : orthographicSees(p, in_map, normal);
-    }
-
-  private:
-    [[nodiscard]] bool isFree(const glm::dvec3& p, const glm::dvec3& sight, const glm::dvec3& normal) const {
-        return glm::dot(sight, normal) > 0.0 && query_.segmentIsFree(p, p + sight);
-    }
-
-    [[nodiscard]] bool orthographicSees(const glm::dvec3& p, const glm::dvec3& in_map,
-                                        const glm::dvec3& normal) const {
-        const double x = in_map.x * map_.width;
-        const double y = in_map.y * map_.height;
-        if (!(x >= 1.0 && y >= 1.0 && x < map_.width - 1.0 && y < map_.height - 1.0 && in_map.z >= 0.0 &&
-              in_map.z <= 1.0)) {
-            return false;
-        }
-        const glm::dvec3& along = to_object_[2];
-        return (map_.compare != Compare::kGreater && isFree(p, -in_map.z * along, normal)) ||
-               (map_.compare != Compare::kLess && isFree(p, (1.0 - in_map.z) * along, normal));
-    }
-
-    [[nodiscard]] bool cubeSees(const glm::dvec3& p, const glm::dvec3& in_map,
-                                const glm::dvec3& normal) const {
-        const double reach = std::max({std::abs(in_map.x), std::abs(in_map.y), std::abs(in_map.z)});
-        if (!(reach <= 1.0 && reach > 0.0)) {
-            return false;
-        }
-        // To the centre, or away from it to the face of the volume.
-        const double share = map_.compare == Compare::kLess ? -1.0 : 1.0 / reach - 1.0;
-        return isFree(p, to_object_ * (share * in_map), normal);
-    }
-
-    const DepthMap& map_;
-    const MeshQuery& query_;
-    glm::dvec3 rows_[3];
-    glm::dvec3 offset_{0.0};
-    glm::dmat3 to_object_{1.0};
-};
-
-double unseenPercent(const TruthSamples& samples, const MeshQuery& query, const Collider& collider) {
-    std::vector<Sight> sights;
-    for (const DepthMap& map : collider.maps) {
-        sights.emplace_back(map, query);
-    }
-    const double step = kSurfaceStep * samples.longest_side;
-    std::vector<char> unseen(samples.surface.size(), 0);
-    forEachIndex(samples.surface.size(), [&](std::size_t i) {
-        const SurfacePoint& point = samples.surface[i];
-        const glm::dvec3 normal = point.normal;
-        const glm::dvec3 p = glm::dvec3(point.position) + step * normal;
-        unseen[i] = !point.buried && std::none_of(sights.begin(), sights.end(),
-                                                  [&](const Sight& s) { return s.sees(p, normal); })
-                        ? 1
-                        : 0;
-    });
-    const auto counted =
-        static_cast<std::uint64_t>(std::count_if(samples.surface.begin(), samples.surface.end(),
-                                                 [](const SurfacePoint& point) { return !point.buried; }));
-    return percent(static_cast<std::uint64_t>(std::count(unseen.begin(), unseen.end(), 1)), counted);
-}
-
 }  // namespace
 
 Field fieldOf(const Collider& collider) {
@@ -223,7 +144,7 @@ ColliderAccuracy measureCollider(const TruthSamples& samples, const MeshQuery& q
                                  const Collider& collider) {
     ColliderAccuracy accuracy;
     accuracy.field = measureField(samples, fieldOf(collider));
-    accuracy.unseen_percent = unseenPercent(samples, query, collider);
+    accuracy.unseen_percent = Sights(collider.maps, query).unseenPercent(samples.surface);
     accuracy.buried_percent = percent(
         static_cast<std::uint64_t>(std::count_if(samples.surface.begin(), samples.surface.end(),
                                                  [](const SurfacePoint& point) { return point.buried; })),

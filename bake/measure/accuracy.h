@@ -57,9 +57,7 @@ struct FieldAccuracy {
 
 struct ColliderAccuracy {
     FieldAccuracy field;
-    /// Share of the surface's area, buried surface left out, that no map sees: neither end that a map keeps
-    /// has, in the map's volume, a free line of sight to the front of the surface, kSurfaceStep above it.
-    /// Percent.
+    /// Share of the surface's area, buried surface left out, that no map sees (sight.h). Percent.
     double unseen_percent = 0.0;
     double buried_percent = 0.0;  ///< share of all surface area
     std::uint64_t gpu_bytes = 0;

@@ -158,4 +158,15 @@ TruthSamples sampleTruth(const MeshQuery& query, const AccuracyOptions& options)
     return samples;
 }
 
+std::vector<SurfacePoint> sampleSurface(const MeshQuery& query, const AccuracyOptions& options) {
+    std::vector<SurfacePoint> points(options.samples);
+    const Sampler sampler(query, options);
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, options.samples, 256), [&](const auto& range) {
+        for (std::uint32_t i = range.begin(); i != range.end(); ++i) {
+            points[i] = sampler.onSurface(i);
+        }
+    });
+    return points;
+}
+
 }  // namespace relief

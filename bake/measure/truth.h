@@ -53,4 +53,7 @@ struct TruthSamples {
 /// mesh) takes the side of its triangle's winding.
 [[nodiscard]] TruthSamples sampleTruth(const MeshQuery& query, const AccuracyOptions& options);
 
+/// The points on the surface alone: sampleTruth(…).surface.
+[[nodiscard]] std::vector<SurfacePoint> sampleSurface(const MeshQuery& query, const AccuracyOptions& options);
+
 }  // namespace relief

@@ -11,6 +11,9 @@ struct Color {
     double r, g, b;
 };
 
+inline constexpr Color kInsideColor{0.23, 0.29, 0.38};
+inline constexpr Color kOutsideColor{0.94, 0.945, 0.95};
+
 /// Ottosson, "A perceptual color space for image processing" (2020). Hue in degrees; what sRGB does not hold
 /// is clamped.
 [[nodiscard]] Color fromOklch(double lightness, double chroma, double hue);

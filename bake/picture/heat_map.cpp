@@ -24,23 +24,63 @@ Color colorOf(const std::optional<FieldValue>& value, double range) {
     return distanceColor(static_cast<double>(value->distance) / range);
 }
 
+/// Where a picture looks from.
+class Frame {
+  public:
+    Frame(const TriangleMesh& mesh, const HeatMapOptions& options)
+        : size_(options.size),
+          forward_(glm::normalize(options.direction)),
+          right_(glm::normalize(glm::cross(forward_, glm::dvec3(0.0, 1.0, 0.0)))),
+          up_(glm::cross(right_, forward_)),
+          center_(0.5 * (glm::dvec3(mesh.bounds.min) + glm::dvec3(mesh.bounds.max))) {
+        double reach = 0.0;  // of the mesh, to the sides
+        for (const glm::vec3& p : mesh.positions) {
+            const glm::dvec3 offset = glm::dvec3(p) - center_;
+            reach = std::max({reach, std::abs(glm::dot(offset, right_)), std::abs(glm::dot(offset, up_))});
+            radius_ = std::max(radius_, glm::length(offset));
+        }
+        pixel_ = 2.06 * reach / size_;
+    }
+
+    [[nodiscard]] const glm::dvec3& forward() const { return forward_; }
+    /// Before the mesh. \param x, y  pixels from the left and the top.
+    [[nodiscard]] glm::dvec3 origin(double x, double y) const {
+        return center_ - 1.01 * radius_ * forward_ + (x - 0.5 * size_) * pixel_ * right_ -
+               (y - 0.5 * size_) * pixel_ * up_;
+    }
+    [[nodiscard]] HeatMapPlace place(const glm::dvec3& p) const {
+        const glm::dvec3 offset = (p - center_) / pixel_;
+        return {0.5 * size_ + glm::dot(offset, right_), 0.5 * size_ - glm::dot(offset, up_), false};
+    }
+
+  private:
+    double size_;
+    glm::dvec3 forward_;
+    glm::dvec3 right_;
+    glm::dvec3 up_;
+    glm::dvec3 center_;
+    double radius_ = 0.0;  // of the mesh, all round
+    double pixel_ = 1.0;
+};
+
 }  // namespace
+
+HeatMapPlace placeOnHeatMap(const MeshQuery& query, const HeatMapOptions& options, const glm::vec3& p) {
+    const Frame frame(query.mesh(), options);
+    HeatMapPlace place = frame.place(p);
+    const glm::dvec3 origin = frame.origin(place.x, place.y);
+    // From the surface beside it: the point itself may lie inside.
+    const double depth = glm::dot(query.closest(p).point - origin, frame.forward());
+    const std::optional<FirstHit> hit = query.firstHit(origin, frame.forward());
+    const double slack = 0.01 * static_cast<double>(query.mesh().bounds.longestSide());
+    place.hidden = hit && hit->along < depth - slack;
+    return place;
+}
 
 RgbImage drawHeatMap(const MeshQuery& query, const Field& field, const HeatMapOptions& options) {
     const TriangleMesh& mesh = query.mesh();
-    const glm::dvec3 forward = glm::normalize(options.direction);
-    const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(0.0, 1.0, 0.0)));
-    const glm::dvec3 up = glm::cross(right, forward);
-    const glm::dvec3 center = 0.5 * (glm::dvec3(mesh.bounds.min) + glm::dvec3(mesh.bounds.max));
-    double reach = 0.0;   // of the mesh, to the sides
-    double radius = 0.0;  // and all round
-    for (const glm::vec3& p : mesh.positions) {
-        const glm::dvec3 offset = glm::dvec3(p) - center;
-        reach = std::max({reach, std::abs(glm::dot(offset, right)), std::abs(glm::dot(offset, up))});
-        radius = std::max(radius, glm::length(offset));
-    }
-    const double pixel = 2.06 * reach / options.size;
-
+    const Frame frame(mesh, options);
+    const glm::dvec3& forward = frame.forward();
     RgbImage image{options.size, options.size, {}};
     image.pixels.resize(std::size_t{image.width} * image.height);
     tbb::parallel_for(std::uint32_t{0}, image.height, [&](std::uint32_t y) {
@@ -49,9 +89,7 @@ RgbImage drawHeatMap(const MeshQuery& query, const Field& field, const HeatMapOp
             for (int ray = 0; ray < kRaysAcross * kRaysAcross; ++ray) {
                 const double sub_x = (ray % kRaysAcross + 0.5) / kRaysAcross;
                 const double sub_y = (ray / kRaysAcross + 0.5) / kRaysAcross;
-                const glm::dvec3 origin = center - 1.01 * radius * forward +
-                                          (x + sub_x - 0.5 * image.width) * pixel * right -
-                                          (y + sub_y - 0.5 * image.height) * pixel * up;
+                const glm::dvec3 origin = frame.origin(x + sub_x, y + sub_y);
                 Color color = kBackground;
                 if (const std::optional<FirstHit> hit = query.firstHit(origin, forward)) {
                     const glm::vec3 p = origin + hit->along * forward;

@@ -22,4 +22,13 @@ inline constexpr Color kHeatUnknownColor{0.35, 0.35, 0.37};  ///< the field does
 /// f / range, shaded by the triangles' normals.
 [[nodiscard]] RgbImage drawHeatMap(const MeshQuery& query, const Field& field, const HeatMapOptions& options);
 
+/// Where such a picture shows a point.
+struct HeatMapPlace {
+    double x = 0.0;       ///< pixels from the left
+    double y = 0.0;       ///< pixels from the top
+    bool hidden = false;  ///< by the mesh
+};
+[[nodiscard]] HeatMapPlace placeOnHeatMap(const MeshQuery& query, const HeatMapOptions& options,
+                                          const glm::vec3& p);
+
 }  // namespace relief

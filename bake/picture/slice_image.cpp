@@ -30,8 +30,6 @@ using Context = std::unique_ptr<cairo_t, ContextDestroy>;
 constexpr Color kPaper{1.0, 1.0, 1.0};
 constexpr Color kInk{0.13, 0.14, 0.16};
 constexpr Color kFaintInk{0.42, 0.44, 0.47};
-constexpr Color kInsideColor{0.23, 0.29, 0.38};
-constexpr Color kOutsideColor{0.94, 0.945, 0.95};
 constexpr Color kFarColor{0.865, 0.87, 0.86};
 constexpr Color kAbstainedColor{0.80, 0.70, 0.82};
 

@@ -12,6 +12,7 @@
 #include <limits>
 #include <optional>
 
+#include "bake/measure/sight.h"
 #include "bake/mesh/oriented_box.h"
 #include "bake/mesh/surface_sampler.h"
 #include "bake/mesh/triangle_plane.h"
@@ -21,6 +22,8 @@ namespace relief {
 namespace {
 
 constexpr std::size_t kPoints = 8'000;
+/// Points on the surface, to say how much of it no map sees.
+constexpr std::uint32_t kSurfacePoints = 4'000;
 /// Spread of the points off the surface, in units of the longest side: where particles are looked up.
 constexpr double kSpread = 0.005;
 /// Cosine of incidence from which on a point is served in full.
@@ -215,10 +218,7 @@ class Planner {
         std::vector<OuterView> views = RELIEF_TRY(outerViews());
         rateViews(views);
         addViews(views);
-        const auto unseen = std::count_if(served_.begin(), served_.end(), [](float v) { return v <= 0.0F; });
-        choice_.unseen_percent =
-            points_.empty() ? 100.0
-                            : 100.0 * static_cast<double>(unseen) / static_cast<double>(points_.size());
+        choice_.unseen_percent = RELIEF_TRY(unseenPercent());
         return std::move(choice_);
     }
 
@@ -255,6 +255,19 @@ class Planner {
         }
         std::erase_if(views, [&](const OuterView& view) { return area(view) < kSmallestView * largest; });
         return views;
+    }
+
+    /// As `relief check` has it of the baked maps.
+    [[nodiscard]] Result<double> unseenPercent() const {
+        std::vector<DepthMap> maps;
+        for (const ViewChoice::Chosen& chosen : choice_.views) {
+            MapSpec spec = chosen.map.spec;
+            spec.width = spec.height = 64;  // any: what a view sees does not depend on it
+            const View view = RELIEF_TRY(makeView(spec, mesh_));
+            maps.push_back(view.emptyMap());
+            maps.back().decode = spec.decode;
+        }
+        return Sights(maps, query_).unseenPercent(sampleSurface(query_, {.samples = kSurfacePoints}));
     }
 
     /// How well each view serves each point.

@@ -50,7 +50,7 @@ struct ViewChoice {
     };
     std::vector<Chosen> views;
     double area = 0.0;            ///< of all views
-    double unseen_percent = 0.0;  ///< of the surface's area: no view sees it
+    double unseen_percent = 0.0;  ///< of the surface's area: no view sees it (bake/measure/sight.h)
     double next_gain = 0.0;  ///< what the best view that was left out would have served: 0 to 1, as `serves`
     std::string mesh_name;
 };
@@ -64,7 +64,7 @@ inline constexpr std::uint64_t kPlanBudgetMin = 4096;
 struct Plan {
     std::vector<PlannedMap> maps;
     double texel = 0.0;           ///< side of a texel, object units
-    double unseen_percent = 0.0;  ///< of the surface's area: no chosen map sees it
+    double unseen_percent = 0.0;  ///< as ViewChoice has it
     double next_gain = 0.0;       ///< as ViewChoice has it
     std::uint64_t bytes = 0;      ///< of all texels
 };

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <glm/geometric.hpp>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "bake/picture/close_up.h"
 #include "bake/picture/color.h"
 #include "bake/picture/heat_map.h"
 #include "bake/picture/map_image.h"
@@ -22,6 +24,7 @@ constexpr std::uint32_t kMapPictureMax = 252;  // pixels along a side
 constexpr std::size_t kMapsShownMax = 64;
 constexpr std::uint32_t kHeatMapSize = 440;
 constexpr std::uint32_t kSliceSize = 360;
+constexpr std::uint32_t kCloseUpSize = 280;
 
 constexpr const char* kStyle = R"css(
 :root { color-scheme: light }
@@ -57,6 +60,20 @@ img { display: block; max-width: 100%; height: auto; margin: 0 auto }
 figure { margin: 0 }
 .pictures img { border: 1px solid #e1e3e8; image-rendering: pixelated }
 figcaption { color: #6b7078; font-size: 12px; margin-top: 3px }
+.verdict { font-size: 19px; color: #21242a; margin: 14px 0 0 }
+.verdict b { border-radius: 6px; padding: 1px 10px; margin-left: 6px; font-weight: 600 }
+.good { background: #d9ead6 } .fair { background: #fbeccb } .poor { background: #f6d3cd }
+.place { display: grid; grid-template-columns: 1fr auto auto; gap: 8px 18px; margin-bottom: 12px }
+.place h3 { font-size: 15px; margin: 0 0 6px; font-weight: 600 }
+.place p { margin: 0 0 8px }
+.place figure { position: relative; width: 280px }
+.ring { position: absolute; border: 2px solid #fff; outline: 2px solid #21242a; border-radius: 50%; box-sizing: border-box; transform: translate(-50%, -50%) }
+.pin { display: inline-block; background: #21242a; color: #fff; border: 2px solid #fff; border-radius: 50%; width: 22px; height: 22px; line-height: 22px; text-align: center; font-size: 13px; font-weight: 600; box-sizing: content-box }
+.seen { position: relative; width: fit-content; margin: 0 auto }
+.seen .pin { position: absolute; transform: translate(-50%, -50%) }
+.seen .ghost { background: #fff; color: #21242a; border: 2px dashed #21242a; opacity: 0.75 }
+pre { background: #f4f5f7; border: 1px solid #e1e3e8; border-radius: 6px; padding: 8px 12px; margin: 0 0 4px; white-space: pre-wrap; overflow-wrap: anywhere; font-size: 13px }
+@media (max-width: 900px) { .place { grid-template-columns: auto auto } .place > div { grid-column: 1 / -1 } }
 @media (max-width: 720px) { .tiles { grid-template-columns: repeat(2, 1fr) } }
 )css";
 
@@ -138,8 +155,8 @@ class Page {
                 " measured</title>\n<meta name=viewport content=\"width=device-width\">\n<style>" + kStyle +
                 "</style>\n<main>\n";
         addHead();
-        addNumbers();
-        for (const Result<void>& added : {addHeatMaps(), addSlices(), addMaps()}) {
+        // In braces, which have an order.
+        for (const Result<void>& added : {addPlaces(), addNumbers(), addHeatMaps(), addSlices(), addMaps()}) {
             if (!added) {
                 return forward(added);
             }
@@ -154,13 +171,21 @@ class Page {
         return percentText(100.0 * value / input_.samples.longest_side);
     }
 
+    [[nodiscard]] std::string verdict() const {
+        const double wrong = input_.accuracy.field.near.total();
+        const std::string text = verdictText(wrong);
+        const std::string grade = gradeOf(wrong);
+        return text.substr(0, text.size() - grade.size()) + "<b class=" + grade + ">" + grade + "</b>";
+    }
+
     void addHead() {
         const Provenance& from = input_.collider.provenance;
         const FieldAccuracy& field = input_.accuracy.field;
         html_ += "<h1>" + escaped(input_.file_name) + "</h1>\n<p>measured against " +
                  escaped(input_.query.mesh().name) + ", " +
-                 std::to_string(input_.query.mesh().triangles.size()) + " triangles; baked by " +
-                 escaped(from.tool_version) + "</p>\n<div class=tiles>\n";
+                 std::to_string(input_.query.mesh().sourceTriangles()) + " triangles; baked by " +
+                 escaped(from.tool_version) + "</p>\n<p class=verdict>" + verdict() +
+                 "</p>\n<div class=tiles>\n";
         const auto tile = [&](const std::string& number, const char* words) {
             html_ += "<div class=tile><b>" + number + "</b><span>" + words + "</span></div>\n";
         };
@@ -171,10 +196,89 @@ class Page {
         html_ += "</div>\n";
     }
 
-    void addNumbers() {
+    /// Pictures round each of the worst places, and what to do about them.
+    Result<void> addPlaces() {
+        if (input_.places.empty()) {
+            return {};
+        }
+        html_ +=
+            "<h2>The worst places</h2>\n<p>Each on a plane through it: the solid as the mesh has it, and as "
+            "the "
+            "collider has it. The ring is as wide as the place.</p>\n";
+        for (std::size_t i = 0; i < input_.places.size(); ++i) {
+            RELIEF_TRY(addPlace(input_.places[i], i + 1));
+        }
+        html_ += "<div class=legend>";
+        const auto key = [&](const Color& color, const char* words) {
+            html_ += "<div class=key><i style=\"background:" + cssColor(color) + "\"></i>" + words + "</div>";
+        };
+        key(kInsideColor, "inside");
+        key(kOutsideColor, "outside");
+        key(kFalseInsideColor, "outside, but called inside");
+        key(kFalseOutsideColor, "inside, but called outside");
+        html_ += "</div>\n";
+        addAdvice();
+        return {};
+    }
+
+    Result<void> addPlace(const WorstPlace& place, std::size_t number) {
+        const glm::vec3& p = place.position;
+        const glm::dvec3 closest = input_.query.closest(p).point;
+        CloseUpOptions options;
+        options.center = p;
+        options.axis = axisAlong(glm::dvec3(p) - closest);
+        const double side = input_.samples.longest_side;
+        options.half = std::clamp(std::max(0.8 * place.size(), 3.0 * place.texel), 0.02 * side, 0.6 * side);
+        options.size = kCloseUpSize;
+        const CloseUp picture = drawCloseUp(input_.query, input_.collider, options);
+        const std::vector<std::byte> truth = RELIEF_TRY(encodePng(picture.truth));
+        const std::vector<std::byte> collider = RELIEF_TRY(encodePng(picture.collider));
+        const std::string n = std::to_string(number);
+        html_ += "<div class=\"card place\"><div><h3><span class=pin>" + n + "</span> " + positionText(p) +
+                 "</h3>\n<p>" + escaped(placeText(place, input_.collider.unit)) + "</p>\n<p>" +
+                 escaped(causeText(place, input_.collider)) + "</p>\n<p>Plane " + axisName(options.axis) +
+                 " = " + shortNumber(double{p[options.axis]}) + ", " + length(2.0 * options.half) +
+                 " wide; " + (options.axis == 0 ? "z" : "x") + " to the right, " +
+                 (options.axis == 1 ? "z" : "y") + " upwards</p></div>\n";
+        const std::string ring =
+            "<span class=ring style=\"left:50%;top:140px;width:" + ringWidth(place, options) +
+            "px;height:" + ringWidth(place, options) + "px\"></span>";
+        html_ += "<figure>" + imageTag(truth, "the mesh at place " + n) + ring +
+                 "<figcaption>the mesh</figcaption></figure>\n";
+        html_ += "<figure>" + imageTag(collider, "the collider at place " + n) + ring +
+                 "<figcaption>the collider</figcaption></figure></div>\n";
+        return {};
+    }
+
+    static std::string ringWidth(const WorstPlace& place, const CloseUpOptions& options) {
+        const double share = std::clamp(place.size() / (2.0 * options.half), 0.06, 0.98);
+        return std::to_string(std::lround(share * kCloseUpSize));
+    }
+
+    void addAdvice() {
+        if (input_.advice.empty()) {
+            return;
+        }
+        html_ += "<h2>What to do</h2>\n<div class=card>\n";
+        const double wrong = input_.accuracy.field.near.total();
+        for (const Advice& advice : input_.advice) {
+            const std::string left = advice.wrong_percent ? percentText(*advice.wrong_percent) : "";
+            if (advice.wrong_percent && !advice.helps) {
+                html_ += "<p>Tried, and of no help: " + escaped(advice.about) + " (" + left + ")</p>\n";
+                continue;
+            }
+            html_ += "<pre>" + escaped(advice.command) + "</pre>\n<p>" + escaped(advice.about) + "; " +
+                     (advice.wrong_percent ? "tried: " + left + " wrong instead of " + percentText(wrong)
+                                           : "not tried: " + escaped(advice.untried)) +
+                     "</p>\n";
+        }
+        html_ += "</div>\n";
+    }
+
+    Result<void> addNumbers() {
         const FieldAccuracy& field = input_.accuracy.field;
         const TruthSamples& samples = input_.samples;
-        html_ += "<div class=tables><div class=card><table>\n";
+        html_ += "<h2>Numbers</h2>\n<div class=tables><div class=card><table>\n";
         html_ += row({"points on the wrong side", "all", "false inside", "false outside"}, true);
         const auto wrong = [&](const char* where, const WrongShare& share) {
             html_ += row({where, percentText(share.total()), percentText(share.false_inside),
@@ -201,6 +305,7 @@ class Page {
                  percentText(100.0 * samples.options.sigma_share) + " of the longest side, which is " +
                  length(samples.longest_side) +
                  ". Truth is the parity of rays through the mesh, by majority.</p>\n";
+        return {};
     }
 
     Result<void> addHeatMaps() {
@@ -208,17 +313,21 @@ class Page {
         html_ +=
             "<h2>Error on the surface</h2>\n<p>The collider's signed distance at points of the mesh's "
             "surface, where it should be 0. Blue: the collider reaches beyond the mesh. Orange: it stays "
-            "behind the mesh.</p>\n<div class=card><div class=views>\n";
+            "behind the mesh. The numbers are the worst places; those with a dashed rim lie behind what the "
+            "picture "
+            "shows.</p>\n<div class=card><div class=views>\n";
         constexpr std::pair<glm::vec3, const char*> kViews[] = {
             {{-1.0F, -0.6F, -1.0F}, "from +x, +y and +z"},
             {{1.0F, -0.6F, 1.0F}, "from -x, +y and -z"},
             {{1.0F, 0.9F, -1.0F}, "from below, -x and +z"},
             {{-1.0F, 0.9F, 1.0F}, "from below, +x and -z"}};
         for (const auto& [direction, words] : kViews) {
-            const RgbImage image = drawHeatMap(input_.query, field_, {direction, kHeatMapSize, range});
+            const HeatMapOptions options{direction, kHeatMapSize, range};
+            const RgbImage image = drawHeatMap(input_.query, field_, options);
             const std::vector<std::byte> png = RELIEF_TRY(encodePng(image));
-            html_ +=
-                "<figure>" + imageTag(png, std::string("error of the surface seen ") + words) + "</figure>\n";
+            html_ += "<figure class=seen>" +
+                     imageTag(png, std::string("error of the surface seen ") + words) + pins(options) +
+                     "</figure>\n";
         }
         html_ += "</div>\n<div class=legend><div class=bar><i style=\"background:linear-gradient(90deg";
         for (int i = -10; i <= 10; ++i) {
@@ -233,10 +342,29 @@ class Page {
         return {};
     }
 
+    /// The worst places on a heat map.
+    [[nodiscard]] std::string pins(const HeatMapOptions& options) const {
+        std::string html;
+        // The worst on top.
+        for (std::size_t i = input_.places.size(); i-- > 0;) {
+            const HeatMapPlace at = placeOnHeatMap(input_.query, options, input_.places[i].position);
+            const auto share = [](double pixels) { return shortNumber(100.0 * pixels / kHeatMapSize) + "%"; };
+            html += std::string("<span class=\"pin") + (at.hidden ? " ghost" : "") +
+                    "\" style=\"left:" + share(at.x) + ";top:" + share(at.y) + "\">" + std::to_string(i + 1) +
+                    "</span>";
+        }
+        return html;
+    }
+
     Result<void> addSlices() {
         html_ +=
             "<h2>Slices</h2>\n<p>The collider's field on the three planes through the middle of its "
-            "bounds.</p>\n<div class=slices>\n";
+            "bounds.</p>\n<p>White stripes away from the surface are no surface. A texel holds a plane; at a "
+            "silhouette, and where a wall runs along the line of sight, the plane stands along that line, "
+            "and all "
+            "along it the distance to the plane is near 0. The side is right there, so that nothing collides "
+            "with a "
+            "stripe; what reads distances finds them too small.</p>\n<div class=slices>\n";
         for (int axis = 0; axis < 3; ++axis) {
             SliceOptions options;
             options.axis = axis;

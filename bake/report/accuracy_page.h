@@ -1,9 +1,12 @@
 // A collider measured against its mesh, as one page to look at: `relief check --html`.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "bake/measure/accuracy.h"
+#include "bake/measure/worst_places.h"
+#include "bake/report/places_report.h"
 #include "formats/base/result.h"
 #include "formats/collider.h"
 
@@ -15,6 +18,8 @@ struct AccuracyPageInput {
     const MeshQuery& query;
     const TruthSamples& samples;
     const ColliderAccuracy& accuracy;
+    std::span<const WorstPlace> places;
+    std::span<const Advice> advice;
 };
 
 /// HTML with everything in it: no script, no file and no address but data: URIs. The same input gives the

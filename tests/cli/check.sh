@@ -20,7 +20,100 @@ cmp 1.json 2.json || die "two runs measure differently"
 cmp 1.html 2.html || die "two pages differ"
 ! grep -qE '(src|href)="?(http|file|/)|@import|<script' 1.html || die "the page refers to something outside it"
 grep -q 'src="data:image/png;base64,iVBOR' 1.html || die "the page has no pictures"
-[ "$(grep -o '<img' 1.html | wc -l)" -eq $((4 + 3 + 3 * 4 + 6 * 2)) ] || die "heat maps, slices and maps are not all there"
+[ "$(grep -o '<img' 1.html | wc -l)" -eq $((3 * 2 + 4 + 3 + 3 * 4 + 6 * 2)) ] || die "places, heat maps, slices and maps are not all there"
+[ "$(grep -oE 'class="?pin' 1.html | wc -l)" -eq $((3 + 4 * 3)) ] || die "the places are not marked on the heat maps"
+grep -q 'White stripes' 1.html && grep -q 'class=verdict' 1.html && grep -q 'What to do' 1.html || die "the page does not say what to do"
+
+# A verdict in the first line, the worst places, and what to do about them: tried, and as good as was said.
+head -1 <(expect 0 "$relief" check b.relief --mesh "$bunny" --samples 5000 && cat stdout) >first
+grep -qxE 'b\.relief: [0-9.]+ % wrong near the surface: (good|fair|poor)' first || die "no verdict: $(cat first)"
+grep -q '^The worst places:$' stdout || die "no places: $(cat stdout)"
+grep -qE '^  relief bake .*bunny.obj -o b.relief --budget [0-9.]+[kM]B$' stdout || die "no advice: $(cat stdout)"
+json report.json '[len(d["worst_places"]), d["verdict"]["grade"]] == [3, "poor"]'
+json report.json 'd["verdict"]["wrong_percent"] == d["accuracy"]["near"]["wrong_percent"] and d["repaired"] is None'
+json report.json 'all(0 < p["size"] < 0.6 and 0 <= p["map"] < 4 and p["share_percent"] > 0.5 for p in d["worst_places"])'
+json report.json 'd["advice"][0]["helps"] and d["advice"][0]["wrong_percent"] < d["verdict"]["wrong_percent"] / 2'
+advised() { # REPORT: runs the first command that it advises
+    bash -c "$(python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["advice"][0]["command"])' "$1" |
+        sed "s#^relief#'$relief'#") -q"
+}
+keeps_promise() { # REPORT AFTER: what the second measures is what the first promised
+    python3 - "$1" "$2" <<'P' || die "the advice of $1 is not worth what it says"
+import json, sys
+before, after = (json.load(open(f)) for f in sys.argv[1:])
+said, found = before["advice"][0]["wrong_percent"], after["verdict"]["wrong_percent"]
+print(said, found)
+sys.exit(0 if abs(said - found) <= 0.15 * said + 0.2 else 1)
+P
+}
+"$relief" bake "$bunny" -o few.relief --budget 20kB -q
+"$relief" check few.relief --mesh "$bunny" --samples 20000 --json >few.json
+json few.json '{p["cause"] for p in d["worst_places"]} == {"texel"} and d["advice"][0]["command"].endswith("--budget 40kB")'
+advised few.json
+"$relief" check few.relief --mesh "$bunny" --samples 20000 --json >more.json
+keeps_promise few.json more.json
+
+# A cavity that no map sees: a ball in a box. A cube at each place helps.
+python3 - >hollow.obj <<'P'
+import math
+points = [(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]
+faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+first, n = len(points), 32
+for j in range(n + 1):
+    for i in range(n):
+        t, p = math.pi * j / n, 2 * math.pi * i / n
+        points.append((0.2 + 0.5 * math.sin(t) * math.cos(p), 0.5 * math.cos(t), 0.5 * math.sin(t) * math.sin(p)))
+for j in range(n):
+    for i in range(n):
+        a, b = first + j * n + i, first + j * n + (i + 1) % n
+        faces.append((a, b, b + n, a + n))
+for p in points:
+    print('v', *(round(c, 6) + 0.0 for c in p))
+for f in faces:
+    print('f', *(v + 1 for v in f))
+P
+"$relief" bake hollow.obj -o h.relief -q --map front-back:dir=-x,size=64 --map front-back:dir=-y,size=64 --map front-back:dir=-z,size=64
+"$relief" check h.relief --mesh hollow.obj --samples 20000 --max-error 0.1 --json >hollow.json || [ $? -eq 7 ]
+json hollow.json '{p["cause"] for p in d["worst_places"]} == {"unseen"} and d["accuracy"]["unseen_area_percent"] > 9'
+json hollow.json 'all(abs(math.dist(p["position"], (0.2, 0, 0)) - 0.5) < 0.06 for p in d["worst_places"])'
+json hollow.json 'any(a["helps"] and a["command"].count("--map cube") == 3 for a in d["advice"])'
+python3 - <<'P' >cubes.json
+import json
+d = json.load(open('hollow.json'))
+d['advice'] = [a for a in d['advice'] if '--map cube' in a['command']]
+print(json.dumps(d))
+P
+advised cubes.json
+"$relief" check h.relief --mesh hollow.obj --samples 20000 --json >cured.json
+keeps_promise cubes.json cured.json
+json hollow.json 'all(a["tried"] and a["untried"] is None for a in d["advice"])'
+
+# An open mesh that was to stay open: a solid helps.
+tar -xzf /usr/share/doc/libcgal-dev/data.tar.gz data/meshes/mushroom.off data/meshes/joint.off data/meshes/cheese.off
+mv data/meshes/mushroom.off "a mesh's.off"
+"$relief" bake "a mesh's.off" -o m.relief --budget 100kB --holes keep -q 2>/dev/null
+"$relief" check m.relief --mesh "a mesh's.off" --samples 20000 --json >open.json 2>/dev/null
+json open.json 'd["verdict"]["grade"] == "poor" and d["worst_places"][0]["cause"] == "open"'
+json open.json 'd["advice"][0]["helps"] and "--holes" not in d["advice"][0]["command"]'
+advised open.json 2>/dev/null
+"$relief" check m.relief --mesh "a mesh's.off" --samples 20000 --json >solid.json 2>/dev/null
+keeps_promise open.json solid.json
+
+# The collider of a repaired mesh is measured against that, and against the original.
+"$relief" bake "a mesh's.off" -o m.relief --budget 100kB --repair wrap=0.05 -q 2>/dev/null
+"$relief" check m.relief --mesh "a mesh's.off" --samples 20000 --json >wrapped.json 2>/dev/null
+json wrapped.json 'd["repaired"]["repair"] == "wrap=0.05" and d["repaired"]["triangles"] != d["mesh"]["triangles"]'
+json wrapped.json 'd["verdict"]["wrong_percent"] == d["repaired"]["accuracy"]["near"]["wrong_percent"] < 3'
+json wrapped.json 'd["accuracy"]["near"]["wrong_percent"] > d["verdict"]["wrong_percent"] + 1'
+"$relief" check m.relief --mesh "a mesh's.off" --samples 5000 2>/dev/null | matches 'repaired by wrap=0.05.*as it came: ' || die "no word of the repair"
+
+# Bake and check agree on how much of the surface no map sees, walls along the lines of sight included.
+for mesh in joint cheese; do
+    "$relief" bake data/meshes/$mesh.off -o seen.relief --budget 250kB --json >plan.json
+    "$relief" check seen.relief --mesh data/meshes/$mesh.off --samples 20000 --json >seen.json
+    planned=$(python3 -c 'import json; print(json.load(open("plan.json"))["plan"]["unseen_percent"])')
+    json seen.json "abs(d['accuracy']['unseen_area_percent'] - $planned) < 0.5"
+done
 
 # --max-error: the report is printed, and the exit code says "difference".
 expect 7 "$relief" check b.relief --mesh "$bunny" --samples 5000 --max-error 0.01 --json
@@ -73,6 +166,7 @@ printf '\2' | dd of=later.relief bs=1 seek=12 conv=notrunc status=none
 expect 5 "$relief" check later.relief
 
 # Fresh bakes have no issues, not even boxes whose faces lie at the end of their maps.
+rm data/meshes/*.off
 tar -xzf /usr/share/doc/libcgal-dev/data.tar.gz data/meshes/P.off data/meshes/cube.off
 for mesh in data/meshes/*.off "$models/OBJ/box.obj"; do
     for options in '--budget 60kB' '--paper --resolution 32' \

@@ -68,7 +68,7 @@ P
 # json FILE EXPRESSION: evaluates a Python expression over the document `d`; must be true.
 json() {
     python3 - "$1" "$2" <<'P' || die "not true of $1: $2"
-import json, sys
+import json, math, sys
 d = json.load(open(sys.argv[1]))
 sys.exit(0 if eval(sys.argv[2]) else 1)
 P

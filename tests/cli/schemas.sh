@@ -96,7 +96,9 @@ outputs+=(info:info.json info:paper_info.json)
 "$relief" check b.relief --mesh "$models/OBJ/box.obj" --samples 500 --json >check.json
 expect 7 "$relief" check p.relief --mesh "$models/OBJ/box.obj" --samples 500 --max-error 0 --json
 cp stdout failed.json
-outputs+=(check:check.json check:failed.json)
+"$relief" bake "$models/OBJ/box.obj" -o r.relief --budget 20kB --repair wrap=0.3 -q
+"$relief" check r.relief --mesh "$models/OBJ/box.obj" --samples 500 --json >repaired.json
+outputs+=(check:check.json check:failed.json check:repaired.json)
 "$relief" check b.relief --json >sound.json
 cp p.relief damaged.relief
 printf 'DAMAGE' | dd of=damaged.relief bs=1 seek=1000 conv=notrunc status=none

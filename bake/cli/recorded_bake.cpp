@@ -1,0 +1,132 @@
+#include "bake/cli/recorded_bake.h"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include "bake/repair/mesh_care.h"
+#include "formats/base/file_io.h"
+#include "formats/base/text.h"
+
+namespace relief {
+namespace {
+
+/// A wrap finer than this takes minutes.
+constexpr float kWrapAlphaLeast = 0.005F;
+/// Of the default thickness, where none is recorded because there are no sheets: bytes.
+constexpr std::uint64_t kBudgetOfThickness = 1'000'000;
+
+bool isPlain(std::string_view word) {
+    constexpr std::string_view kPlain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._=+/:,%-";
+    return !word.empty() && word.size() <= 200 && word.find_first_not_of(kPlain) == std::string_view::npos;
+}
+
+/// \return whether the option is known, and its value one that it can have.
+bool take(std::string_view option, std::string_view value, RecordedBake& bake) {
+    if (option == "--map") {
+        const Result<MapSpec> spec = parseMapSpec(value);
+        if (spec) {
+            bake.maps.push_back(*spec);
+        }
+        return spec.has_value();
+    }
+    if (option == "--quality") {
+        for (const Quality quality : {Quality::kFast, Quality::kNormal, Quality::kBest}) {
+            if (value == qualityName(quality)) {
+                bake.quality = quality;
+                return true;
+            }
+        }
+        return false;
+    }
+    if (option == "--prefer") {
+        for (const Prefer prefer : {Prefer::kNeither, Prefer::kInside, Prefer::kOutside}) {
+            if (value == preferName(prefer)) {
+                bake.prefer = prefer;
+                return true;
+            }
+        }
+        return false;
+    }
+    if (option == "--holes") {
+        bake.keeps_holes = value == "keep";
+        return true;
+    }
+    if (option == "--repair") {
+        bake.repair = value;
+        return checkMeshCare({.repair = bake.repair}).has_value();
+    }
+    if (option == "--as" || option == "--thickness") {
+        bake.shape = shapeOptionsOf(" " + std::string(option) + " " + std::string(value), bake.shape);
+        return option == "--as" ? value == shapeAsName(bake.shape.as) : bake.shape.thickness > 0.0;
+    }
+    // Those of the import are read from the command line of the check; planned maps need no backend.
+    return option == "--unit" || option == "--up" || option == "--backend";
+}
+
+}  // namespace
+
+RecordedBake recordedBake(const std::string& options) {
+    RecordedBake bake;
+    std::string_view rest = options;
+    for (std::string_view option = takeWord(rest); !option.empty(); option = takeWord(rest)) {
+        const std::string_view value = takeWord(rest);
+        if (!isPlain(option) || !isPlain(value)) {
+            bake.understood = false;
+            continue;
+        }
+        bake.understood = take(option, value, bake) && bake.understood;
+        const bool is_default = option == "--quality" && bake.quality == Quality::kNormal;
+        if (option != "--map" && option != "--backend" && !is_default) {
+            bake.options.emplace_back(option, value);
+        }
+    }
+    return bake;
+}
+
+std::string RecordedBake::words(std::string_view without) const {
+    std::string text;
+    for (const auto& [option, value] : options) {
+        if (option != without) {
+            text.append(" ").append(option).append(" ").append(value);
+        }
+    }
+    return text;
+}
+
+Result<ShapedMesh> shapedMesh(const RecordedBake& recorded, const PreparedMesh& mesh) {
+    if (recorded.keeps_holes) {
+        return ShapedMesh{mesh, {}};
+    }
+    ShapeOptions options = recorded.shape;
+    if (!(options.thickness > 0.0)) {
+        options.thickness = defaultThickness(mesh->bounds, kBudgetOfThickness);
+    }
+    return shapeMesh(mesh, options);
+}
+
+Result<ShapedMesh> repairedMesh(const RecordedBake& recorded, const PreparedMesh& mesh) {
+    const std::size_t equals = recorded.repair.find('=');
+    if (equals != std::string::npos &&
+        parseFloat(std::string_view(recorded.repair).substr(equals + 1)).value_or(0.0F) < kWrapAlphaLeast) {
+        return fail(ErrorCode::kUnsupported, "--repair " + recorded.repair + " takes long");
+    }
+    const CaredMesh cared = RELIEF_TRY(careFor(mesh, {.repair = recorded.repair, .report = false}));
+    return shapedMesh(recorded, cared.mesh);
+}
+
+std::string shellWord(const std::string& path) {
+    // A path may begin with a dash.
+    const std::string word = path.starts_with("-") ? "./" + path : path;
+    if (isPlain(word)) {
+        return word;
+    }
+    std::string quoted = "'";
+    for (const char c : cleanUtf8(word)) {
+        quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    }
+    return quoted + "'";
+}
+
+}  // namespace relief

@@ -1,0 +1,177 @@
+#include "bake/measure/sight.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <utility>
+
+#include "bake/mesh/triangle_plane.h"
+
+namespace relief {
+
+Sight::Sight(const DepthMap& map, const MeshQuery& query)
+    : map_(map), query_(query), side_(query.mesh().bounds.longestSide()) {
+    const Affine& t = map.object_to_map;
+    for (int i = 0; i < 3; ++i) {
+        rows_[i] = {t.row[i].x, t.row[i].y, t.row[i].z};
+        offset_[i] = t.row[i].w;
+    }
+    // The transposed matrix of rows has them as its columns.
+    to_object_ = glm::inverse(glm::transpose(glm::dmat3(rows_[0], rows_[1], rows_[2])));
+}
+
+glm::dvec3 Sight::inMap(const glm::dvec3& p) const {
+    return glm::dvec3(glm::dot(rows_[0], p), glm::dot(rows_[1], p), glm::dot(rows_[2], p)) + offset_;
+}
+
+bool Sight::isInVolume(const glm::dvec3& in_map) const {
+    if (map_.projection() == Projection::kCube) {
+        const double reach = std::max({std::abs(in_map.x), std::abs(in_map.y), std::abs(in_map.z)});
+        return reach <= 1.0 && reach > 0.0;
+    }
+    const double x = in_map.x * map_.width;
+    const double y = in_map.y * map_.height;
+    return x >= 1.0 && y >= 1.0 && x < map_.width - 1.0 && y < map_.height - 1.0 && in_map.z >= 0.0 &&
+           in_map.z <= 1.0;
+}
+
+Sight::Lines Sight::linesTo(const glm::dvec3& p, const glm::dvec3& in_map) const {
+    Lines lines;
+    const auto add = [&](const glm::dvec3& line, bool parallel) {
+        lines.line[lines.count++] = {p + line, parallel};
+    };
+    if (map_.projection() == Projection::kCube) {
+        const double reach = std::max({std::abs(in_map.x), std::abs(in_map.y), std::abs(in_map.z)});
+        // From the centre, or from the face of the volume behind p.
+        const double share = map_.compare == Compare::kLess ? -1.0 : 1.0 / reach - 1.0;
+        add(to_object_ * (share * in_map), false);
+        return lines;
+    }
+    if (map_.compare != Compare::kGreater) {
+        add(-in_map.z * to_object_[2], true);
+    }
+    if (map_.compare != Compare::kLess) {
+        add((1.0 - in_map.z) * to_object_[2], true);
+    }
+    return lines;
+}
+
+bool Sight::sees(const SurfacePoint& point) const {
+    const glm::dvec3 normal = point.normal;
+    const glm::dvec3 position = point.position;
+    const glm::dvec3 p = position + kSurfaceStep * side_ * normal;
+    const glm::dvec3 in_map = inMap(p);
+    if (!isInVolume(in_map)) {
+        return false;
+    }
+    const Lines lines = linesTo(p, in_map);
+    for (std::size_t i = 0; i < lines.count; ++i) {
+        const auto& [start, parallel] = lines.line[i];
+        const glm::dvec3 sight = start - p;
+        const double cosine = glm::dot(sight, normal) / glm::length(sight);
+        const bool stands = map_.decode == Decode::kPlane && std::abs(cosine) < double{kStandingCosine};
+        if ((cosine > 0.0 || stands) && query_.segmentIsFree(p, start)) {
+            return true;
+        }
+        const glm::dvec3 above = position + kWallStep * side_ * normal;
+        if (stands && query_.segmentIsFree(above, parallel ? above + sight : start)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+std::optional<glm::dvec3> Sight::reaches(const glm::dvec3& p) const {
+    const glm::dvec3 in_map = inMap(p);
+    if (!isInVolume(in_map)) {
+        return map_.encloses ? std::optional(p) : std::nullopt;
+    }
+    const Lines lines = linesTo(p, in_map);
+    for (std::size_t i = 0; i < lines.count; ++i) {
+        if (query_.segmentIsFree(p, lines.line[i].start)) {
+            return lines.line[i].start;
+        }
+    }
+    return std::nullopt;
+}
+
+Sight::Ray Sight::texelRay(const glm::dvec3& in_map, double across, double along) const {
+    const auto within = [](double at, std::uint32_t texels, double offset) {
+        return (std::floor(at * texels) + 0.5 + offset) / texels;
+    };
+    if (map_.projection() == Projection::kCube) {
+        const CubeCoordinates at = cubeCoordinates(glm::vec3(in_map));
+        const glm::vec3 direction =
+            cubeDirection({at.face, static_cast<float>(within(double{at.s}, map_.width, across)),
+                           static_cast<float>(within(double{at.t}, map_.width, along))});
+        return {to_object_ * -offset_, to_object_ * (glm::dvec3(direction) - offset_)};
+    }
+    const glm::dvec3 start(within(in_map.x, map_.width, across), within(in_map.y, map_.height, along), 0.0);
+    const glm::dvec3 from = to_object_ * (start - offset_);
+    return {from, from + to_object_[2]};
+}
+
+bool Sight::isFlat(const std::array<Ray, 9>& rays, bool from_far_end, double tolerance) const {
+    const auto hitOf = [&](const Ray& ray) {
+        const glm::dvec3& from = from_far_end ? ray.to : ray.from;
+        const glm::dvec3 sight = (from_far_end ? ray.from : ray.to) - from;
+        const std::optional<FirstHit> hit = query_.firstHit(from, sight);
+        return hit && hit->along <= 1.0 ? std::optional(std::pair(from + hit->along * sight, hit->triangle))
+                                        : std::nullopt;
+    };
+    const auto middle = hitOf(rays[4]);
+    glm::dvec3 normal(0.0);
+    if (middle) {
+        normal = planeOf(query_.mesh(), middle->second).normal;
+        normal /= glm::length(normal);
+    }
+    return std::all_of(rays.begin(), rays.end(), [&](const Ray& ray) {
+        const auto hit = hitOf(ray);
+        return hit.has_value() == middle.has_value() &&
+               (!hit || std::abs(glm::dot(normal, hit->first - middle->first)) <= tolerance);
+    });
+}
+
+bool Sight::isFlatRound(const glm::dvec3& p, double tolerance) const {
+    const glm::dvec3 in_map = inMap(p);
+    if (!isInVolume(in_map)) {
+        return false;
+    }
+    std::array<Ray, 9> rays;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        rays[i] = texelRay(in_map, 0.5 * (static_cast<double>(i % 3) - 1.0),
+                           0.5 * (static_cast<double>(i / 3) - 1.0));
+    }
+    return (map_.compare == Compare::kGreater || isFlat(rays, false, tolerance)) &&
+           (map_.compare == Compare::kLess || isFlat(rays, true, tolerance));
+}
+
+Sights::Sights(std::span<const DepthMap> maps, const MeshQuery& query) {
+    for (const DepthMap& map : maps) {
+        sights_.emplace_back(map, query);
+    }
+}
+
+bool Sights::see(const SurfacePoint& point) const {
+    return std::any_of(sights_.begin(), sights_.end(), [&](const Sight& sight) { return sight.sees(point); });
+}
+
+double Sights::unseenPercent(std::span<const SurfacePoint> points) const {
+    std::vector<char> unseen(points.size(), 0);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), 256), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            unseen[i] = !points[i].buried && !see(points[i]) ? 1 : 0;
+        }
+    });
+    const auto counted =
+        std::count_if(points.begin(), points.end(), [](const SurfacePoint& point) { return !point.buried; });
+    return counted == 0 ? 0.0
+                        : 100.0 * static_cast<double>(std::count(unseen.begin(), unseen.end(), 1)) /
+                              static_cast<double>(counted);
+}
+
+}  // namespace relief

@@ -1,0 +1,199 @@
+// The worst places against closed forms: where maps are tampered with, what no map sees, what is finer than a texel, what
+// lies behind another part, sheets and open meshes.
+#include "bake/measure/worst_places.h"
+
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+namespace {
+
+constexpr const char* kPlanes = ",decode=plane,depth=unorm16";
+
+struct Measured {
+    std::vector<WorstPlace> places;
+    double unseen_percent = 0.0;
+};
+
+Measured measured(const TriangleMesh& mesh, const Collider& collider, std::uint32_t samples = 40'000) {
+    const Result<MeshQuery> query = MeshQuery::build(mesh);
+    EXPECT_TRUE(query);
+    const TruthSamples truth = sampleTruth(*query, {.samples = samples});
+    const Sights sights(collider.maps, *query);
+    return {worstPlaces(truth, *query, sights, collider), sights.unseenPercent(truth.surface)};
+}
+
+void append(TriangleMesh& mesh, const TriangleMesh& other) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
+    for (const glm::uvec3& t : other.triangles) {
+        mesh.triangles.push_back(t + first);
+    }
+    mesh = finished(mesh.positions, mesh.triangles);
+}
+
+std::vector<std::string> threeViews(const std::string& size) {
+    std::vector<std::string> specs;
+    for (const char* axis : {"x", "y", "z"}) {
+        specs.push_back(std::string("front-back:dir=-") + axis + ",size=" + size + kPlanes);
+    }
+    return specs;
+}
+
+TEST(WorstPlaces, AreWhereAMapWasTamperedWith) {
+    const TriangleMesh sphere = makeIcosphere({1, 2, 3}, 1.0, 5);
+    Collider collider = bakeSpecs(sphere, threeViews("64"));
+    const Measured sound = measured(sphere, collider);
+    // A block of 10 × 10 texels of the map along y, of the 62 that cover the sphere, has no surface any more: its map
+    // calls what it looks at outside, at both ends.
+    DepthMap& map = collider.maps[1];
+    for (std::uint32_t y = 20; y < 30; ++y) {
+        for (std::uint32_t x = 36; x < 46; ++x) {
+            const std::span<std::byte> texel = map.texelAt(0, x, y);
+            std::memcpy(texel.data(), map.texelAt(0, 0, 0).data(), texel.size());
+        }
+    }
+    const Measured found = measured(sphere, collider);
+    ASSERT_GE(found.places.size(), 2U);
+    // The map looks down: x to the right, and −z upwards.
+    const double texel = 2.0 / 62.0;
+    const double x = 1.0 + texel * (41.0 - 32.0);
+    const double z = 3.0 - texel * (25.0 - 32.0);
+    const double height = std::sqrt(1.0 - (x - 1.0) * (x - 1.0) - (z - 3.0) * (z - 3.0));
+    bool above = false;
+    bool below = false;
+    for (std::size_t i = 0; i < 2; ++i) {
+        const WorstPlace& place = found.places[i];
+        EXPECT_EQ(place.map, 1);
+        EXPECT_GT(place.map_percent, 95.0);
+        EXPECT_EQ(place.cause, WrongCause::kOther) << wrongCauseName(place.cause);
+        EXPECT_LT(place.inside_percent, 5.0);
+        EXPECT_NEAR(place.texel, texel, 1e-4);
+        EXPECT_NEAR(double{place.position.x}, x, 5.0 * texel);
+        EXPECT_NEAR(double{place.position.z}, z, 5.0 * texel);
+        EXPECT_NEAR(std::abs(double{place.position.y} - 2.0), height, 0.12);
+        EXPECT_NEAR(place.size(), 10.0 * texel, 2.5 * texel);
+        (place.position.y > 2.0F ? above : below) = true;
+        // About half of the points near the block, which is 0.83 % of the sphere, are inside.
+        EXPECT_GT(static_cast<double>(place.points), 0.3 * 40'000 * 0.0083);
+        EXPECT_GT(static_cast<double>(place.points),
+                  5.0 * static_cast<double>(sound.places.empty() ? 0 : sound.places[0].points));
+    }
+    EXPECT_TRUE(above && below);
+    EXPECT_GT(found.places[0].share_percent + found.places[1].share_percent, 30.0);
+}
+
+TEST(WorstPlaces, OfTooFewTexelsAreBelowTheTexel) {
+    const TriangleMesh torus = makeTorusMesh(1.0, 0.3, 128, 64);
+    const Measured found = measured(torus, bakeSpecs(torus, threeViews("12")));
+    ASSERT_EQ(found.places.size(), 3U);
+    for (const WorstPlace& place : found.places) {
+        EXPECT_EQ(place.cause, WrongCause::kTexel) << wrongCauseName(place.cause);
+        ASSERT_GE(place.map, 0);
+        EXPECT_GT(place.texel, 0.05);
+        EXPECT_GT(place.size(), 0.0);
+        EXPECT_LT(place.size(), 0.25 * 2.6);
+    }
+    EXPECT_GE(found.places[0].points, found.places[1].points);
+    EXPECT_GE(found.places[1].points, found.places[2].points);
+}
+
+TEST(WorstPlaces, OfACavityAreUnseenAndACubeInItCuresThem) {
+    TriangleMesh mesh = makeBoxMesh({0, 0, 0}, {1, 1, 1});
+    append(mesh, makeIcosphere({0.2, 0, 0}, 0.5, 4));
+    std::vector<std::string> specs = threeViews("32");
+    const Measured found = measured(mesh, bakeSpecs(mesh, specs));
+    ASSERT_EQ(found.places.size(), 3U);
+    for (const WorstPlace& place : found.places) {
+        EXPECT_EQ(place.cause, WrongCause::kUnseen) << wrongCauseName(place.cause);
+        // But for texels that were chosen to be right in the cavity, and are wrong before it.
+        EXPECT_GT(place.inside_percent, 60.0);
+        EXPECT_NEAR(double{glm::length(place.position - glm::vec3(0.2F, 0.0F, 0.0F))}, 0.5, 0.05);
+    }
+    specs.push_back(std::string("cube:compare=less,size=64,box=-0.4/-0.6/-0.6/0.8/0.6/0.6,decode=plane"));
+    const Measured cured = measured(mesh, bakeSpecs(mesh, specs));
+    const std::uint64_t left = cured.places.empty() ? 0 : cured.places[0].points;
+    EXPECT_LT(left, found.places[0].points / 10);
+    EXPECT_LT(cured.unseen_percent, 0.1);
+}
+
+TEST(WorstPlaces, BehindAPlateAreBehindASilhouette) {
+    // A plate 0.1 thick hovers 0.02 above a block. The view from above does not see into the gap; of the view from the
+    // side, a texel of 0.25 holds it.
+    TriangleMesh mesh = makeBoxMesh({0, -0.5, 0}, {1, 0.5, 1});
+    append(mesh, makeBoxMesh({0, 0.07, 0}, {1, 0.05, 1}));
+    const Measured found =
+        measured(mesh, bakeSpecs(mesh, {std::string("front-back:dir=-y,size=64") + kPlanes,
+                                        std::string("front-back:dir=-x,size=10") + kPlanes}));
+    ASSERT_FALSE(found.places.empty());
+    EXPECT_EQ(found.places[0].cause, WrongCause::kSilhouette) << wrongCauseName(found.places[0].cause);
+    EXPECT_EQ(found.places[0].map, 0);
+    EXPECT_GT(found.places[0].inside_percent, 95.0);
+    EXPECT_NEAR(double{found.places[0].position.y}, 0.01, 0.011);
+}
+
+TEST(WorstPlaces, OfASheetAndOfAnOpenShellAreCalledSo) {
+    const TriangleMesh sheet = makePlane(0.0F, 8);
+    const Measured flat =
+        measured(sheet, bakeSpecs(sheet, {"fixed8:dir=-y,size=32", "fixed8:dir=+y,size=32"}));
+    if (!flat.places.empty()) {
+        EXPECT_EQ(flat.places[0].cause, WrongCause::kSheet) << wrongCauseName(flat.places[0].cause);
+    }
+    // A sphere that has lost its cap: most rays still find its inside, but the view from above looks in.
+    TriangleMesh sphere = makeIcosphere({0, 0, 0}, 1.0, 4);
+    std::erase_if(sphere.triangles, [&](const glm::uvec3& t) { return sphere.positions[t.x].y > 0.8F; });
+    sphere = finished(sphere.positions, sphere.triangles);
+    const Measured open =
+        measured(sphere, bakeSpecs(sphere, {std::string("front-back:dir=-y,size=64") + kPlanes}));
+    ASSERT_FALSE(open.places.empty());
+    EXPECT_EQ(open.places[0].cause, WrongCause::kOpen) << wrongCauseName(open.places[0].cause);
+    EXPECT_EQ(open.places[0].map, 0);
+}
+
+TEST(WorstPlaces, AreTheSameForAnyNumberOfThreads) {
+    const TriangleMesh torus = makeTorusMesh(1.0, 0.3, 64, 32);
+    const Collider collider = bakeSpecs(torus, threeViews("16"));
+    std::vector<WorstPlace> first;
+    for (const unsigned threads : {1U, 2U, 7U}) {
+        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+        tbb::task_arena arena(static_cast<int>(threads));
+        std::vector<WorstPlace> places;
+        arena.execute([&] { places = measured(torus, collider, 5000).places; });
+        if (first.empty()) {
+            first = places;
+        }
+        ASSERT_EQ(places.size(), first.size());
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            EXPECT_EQ(places[i].position, first[i].position);
+            EXPECT_EQ(places[i].points, first[i].points);
+            EXPECT_EQ(places[i].cause, first[i].cause);
+            EXPECT_EQ(places[i].map, first[i].map);
+        }
+    }
+}
+
+TEST(WorstPlaces, ThereAreNoneWhereNothingIsWrong) {
+    // One sample, far from all edges of the box.
+    const TriangleMesh box = makeBoxMesh({0, 0, 0}, {1, 0.5, 2});
+    EXPECT_TRUE(measured(box, bakeSpecs(box, threeViews("32")), 1).places.empty());
+}
+
+TEST(Sights, AWallAlongTheLinesOfSightIsSeenByPlanesAlone) {
+    // Four of a box's six faces stand along the one view. Planes hold them, flat texels do not.
+    const TriangleMesh box = makeBoxMesh({0, 0, 0}, {1, 1, 1});
+    EXPECT_EQ(
+        measured(box, bakeSpecs(box, {std::string("front-back:dir=-z,size=32") + kPlanes})).unseen_percent,
+        0.0);
+    EXPECT_NEAR(measured(box, bakeSpecs(box, {"front-back:dir=-z,size=32"})).unseen_percent,
+                100.0 * 4.0 / 6.0, 1.0);
+}
+
+}  // namespace
+}  // namespace relief::test
