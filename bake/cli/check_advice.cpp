@@ -75,6 +75,7 @@ class Advisor {
         }
         if (any({WrongCause::kSilhouette, WrongCause::kUnseen})) {
             tryCubes();
+            tryMoreMaps();
         }
         if ((open || sheet) && input_.recorded.repair.empty()) {
             trySolid();
@@ -133,11 +134,13 @@ class Advisor {
         return measureField(truth, fieldOf(baked.collider)).near.total();
     }
     [[nodiscard]] Result<double> wrongOfPlan(const PreparedMesh& mesh, std::uint64_t budget,
-                                             const TruthSamples& truth) const {
+                                             const TruthSamples& truth,
+                                             std::uint32_t max_maps = kPlannedMapsMax) const {
         const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
         PlanOptions plan_options;
         plan_options.budget_bytes = budget;
         plan_options.views.prefer = input_.recorded.prefer;
+        plan_options.views.max_maps = max_maps;
         const Plan plan = RELIEF_TRY(planViews(query, plan_options));
         BakeOptions options = bakeOptions();
         options.maps = specsOf(plan);
@@ -158,6 +161,19 @@ class Advisor {
     void tryBudget(std::uint64_t budget, const char* about) {
         attempt(command() + " --budget " + budgetWord(budget) + input_.recorded.words(), about, budget,
                 [&] { return wrongOfPlan(input_.baked, budget, truth_); });
+    }
+
+    /// More maps than a plan has by default, where there are as many.
+    void tryMoreMaps() {
+        if (input_.collider.maps.size() != kPlannedMapsMax) {
+            return;
+        }
+        const std::uint64_t budget = roundBudget(input_.collider.texelBytes());
+        constexpr std::uint32_t kMaps = 2 * kPlannedMapsMax;
+        attempt(command() + " --budget " + budgetWord(budget) + " --max-maps " + std::to_string(kMaps) +
+                    input_.recorded.words(),
+                "more maps of as many bytes, which make each step slower", budget,
+                [&] { return wrongOfPlan(input_.baked, budget, truth_, kMaps); });
     }
 
     /// A cube in the free space before a place, as far as its size and no wall reach. nullopt: there is none.

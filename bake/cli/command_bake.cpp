@@ -39,6 +39,8 @@ constexpr std::uint64_t kBudgetDefault = 1'000'000;  // bytes
 constexpr std::uint32_t kSelfCheckPoints = 4000;
 /// Percent of them on the wrong side, above which the bake warns.
 constexpr double kSelfCheckWarns = 5.0;
+/// What one more map would have served, from which on the warning speaks of more maps.
+constexpr double kMoreMapsHelp = 0.005;
 
 /// Every file that the collider was made from, the mesh first.
 std::vector<InputFile> inputsOf(const BakeCommand& command, const TriangleMesh& mesh,
@@ -284,7 +286,10 @@ Result<void> makeCollider(BakeRun& run) {
 /// What may help a bake that is wrong in many places.
 std::string cureOf(const BakeRun& run) {
     const std::uint64_t budget = run.command.budget.value_or(kBudgetDefault);
-    const std::string more = "--budget " + std::to_string(4 * budget / 1000) + "kB";
+    std::string more = "--budget " + std::to_string(4 * budget / 1000) + "kB";
+    if (run.plan->plan.maps.size() >= run.command.max_maps && run.plan->plan.next_gain > kMoreMapsHelp) {
+        more += " --max-maps " + std::to_string(2 * run.plan->plan.maps.size());
+    }
     if (run.shape.sheets > 0 && run.shape.as == ShapeAs::kAuto) {
         return "try " + more + ", or a larger --thickness for its sheets (now " +
                shortNumber(run.shape.thickness) + ")";
