@@ -19,7 +19,6 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t kProbes = 512;
 /// Points whose side the caps may change, over the points that are inside.
 constexpr double kTurnedMax = 0.05;
 
@@ -52,14 +51,14 @@ glm::dvec3 spread(std::size_t i) {
 }
 
 /// The votes on both sides of points of the surface.
-std::vector<std::array<Vote, 2>> voteAtSurface(const MeshQuery& query) {
+std::vector<std::array<Vote, 2>> voteAtSurface(const MeshQuery& query, std::size_t probes) {
     const TriangleMesh& mesh = query.mesh();
     const AreaTable& areas = query.prepared().areas();
-    std::vector<std::array<Vote, 2>> votes(kProbes);
+    std::vector<std::array<Vote, 2>> votes(probes);
     const double step = kSurfaceStep * static_cast<double>(mesh.bounds.longestSide());
-    tbb::parallel_for(std::size_t{0}, kProbes, [&](std::size_t i) {
+    tbb::parallel_for(std::size_t{0}, probes, [&](std::size_t i) {
         const std::uint32_t triangle =
-            areas.triangleAt((static_cast<double>(i) + 0.5) / static_cast<double>(kProbes));
+            areas.triangleAt((static_cast<double>(i) + 0.5) / static_cast<double>(probes));
         const glm::dvec3 weight = spread(i);
         const glm::dvec3 on = pointOn(mesh, triangle, weight.x, weight.y);
         glm::dvec3 normal = planeOf(mesh, triangle).normal;
@@ -69,10 +68,10 @@ std::vector<std::array<Vote, 2>> voteAtSurface(const MeshQuery& query) {
     return votes;
 }
 
-std::vector<Vote> voteInBox(const MeshQuery& query) {
+std::vector<Vote> voteInBox(const MeshQuery& query, std::size_t probes) {
     const Bounds& bounds = query.mesh().bounds;
-    std::vector<Vote> votes(kProbes);
-    tbb::parallel_for(std::size_t{0}, kProbes, [&](std::size_t i) {
+    std::vector<Vote> votes(probes);
+    tbb::parallel_for(std::size_t{0}, probes, [&](std::size_t i) {
         votes[i] = voteAt(query, glm::dvec3(bounds.min) + spread(i) * glm::dvec3(bounds.size()));
     });
     return votes;
@@ -275,21 +274,22 @@ bool turnsSides(const std::vector<std::array<Vote, 2>>& votes, const MeshQuery& 
     for (const auto& [front, back] : votes) {
         sides.insert(sides.end(), {front, back});
     }
-    return turnedShare(sides, closed) > kTurnedMax || turnedShare(voteInBox(open), closed) > kTurnedMax;
+    return turnedShare(sides, closed) > kTurnedMax ||
+           turnedShare(voteInBox(open, votes.size()), closed) > kTurnedMax;
 }
 
 }  // namespace
 
 Enclosure measureEnclosure(const MeshQuery& query) {
-    return enclosureOf(voteAtSurface(query));
+    return enclosureOf(voteAtSurface(query, kEnclosureProbes));
 }
 
-Result<PreparedMesh> closeHoles(const PreparedMesh& mesh) {
+Result<PreparedMesh> closeHoles(const PreparedMesh& mesh, std::size_t probes) {
     if (mesh.closed()) {
         return mesh;
     }
     const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
-    const auto votes = voteAtSurface(query);
+    const auto votes = voteAtSurface(query, probes);
     const Enclosure enclosure = enclosureOf(votes);
     if (enclosure.one_sided < kOneSided || enclosure.agreement < kAgreement ||
         mesh->triangles.size() + mesh.oddEdges().size() > kTriangleMax) {

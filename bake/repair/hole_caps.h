@@ -3,13 +3,18 @@
 // free.
 #pragma once
 
+#include <cstddef>
+
 #include "bake/mesh/mesh_query.h"
 #include "bake/mesh/prepared_mesh.h"
 #include "formats/base/result.h"
 
 namespace relief {
 
-/// How well a mesh encloses its inside: by the parity of the crossings of rays from both sides of 512 points,
+/// Points of the surface that are asked by default.
+inline constexpr std::size_t kEnclosureProbes = 512;
+
+/// How well a mesh encloses its inside: by the parity of the crossings of rays from both sides of kEnclosureProbes points,
 /// evenly spread over the surface. The rays go in opposite pairs.
 struct Enclosure {
     /// Share of the points whose inside, by the majority of the rays, is on exactly one side; 0 to 1.
@@ -35,6 +40,8 @@ inline constexpr double kAgreement = 0.85;
 /// thickness up to half a sphere: about one ray in seven may lead out by a hole), or if the caps would turn
 /// parts of the inside to the outside or back (patches whose seams do not meet).
 /// Errors: those of MeshQuery::build.
-[[nodiscard]] Result<PreparedMesh> closeHoles(const PreparedMesh& mesh);
+/// \param probes  points of the surface, and as many of its box, that are asked: fewer will do for a small part of a mesh.
+[[nodiscard]] Result<PreparedMesh> closeHoles(const PreparedMesh& mesh,
+                                              std::size_t probes = kEnclosureProbes);
 
 }  // namespace relief

@@ -25,7 +25,9 @@ namespace {
 
 /// Points of all open parts that are asked what they see, and of each at least.
 constexpr std::size_t kSightPoints = 4096;
-constexpr std::size_t kSightPointsMin = 24;
+constexpr std::size_t kSightPointsMin = 8;
+/// Probes of a small part whose holes are to be closed.
+constexpr std::size_t kPartProbesMin = 64;
 /// A part is a sheet if more than this share of the rays from its darker side lead out.
 constexpr double kSheetSight = 0.1;
 /// A part is seen from outside at all if more than this share of the rays from its lighter side lead out.
@@ -348,7 +350,8 @@ class Shaper {
 
     /// \return nothing in it if its holes cannot be closed, or it encloses nothing then.
     [[nodiscard]] Result<Closed> close(const TriangleMesh& open) const {
-        const PreparedMesh closed = RELIEF_TRY(closeHoles(open));
+        const std::size_t probes = std::clamp(open.triangles.size() / 8, kPartProbesMin, kEnclosureProbes);
+        const PreparedMesh closed = RELIEF_TRY(closeHoles(open, probes));
         if (!closed.closed()) {
             return Closed{};
         }
