@@ -25,7 +25,7 @@
 namespace relief {
 
 /// Maps of a plan, unless more are allowed: a step of a simulation looks at each in turn.
-inline constexpr std::uint32_t kPlannedMapsMax = 10;
+inline constexpr std::uint32_t kPlannedMapsMax = 8;
 
 struct ViewOptions {
     std::uint64_t seed = 1;
