@@ -530,5 +530,25 @@ TEST(ByteCount, ReadsWhatPeopleWrite) {
     }
 }
 
+TEST(Accuracy, NearPointsAloneAreThoseOfTheWholeTruth) {
+    const MeshQuery query = queryOf(makeIcosphere({0, 0, 0}, 1.0, 3));
+    AccuracyOptions options;
+    options.samples = 3000;
+    const TruthSamples all = sampleTruth(query, options);
+    const std::vector<TruthPoint> near = sampleNear(query, options);
+    ASSERT_EQ(near.size(), all.near.size());
+    for (std::size_t i = 0; i < near.size(); ++i) {
+        EXPECT_EQ(near[i].position, all.near[i].position);
+        EXPECT_EQ(near[i].inside(), all.near[i].inside());
+    }
+    const Field smaller_ball = [](const glm::vec3& p) {
+        return std::optional(FieldValue{glm::length(p) - 0.99F, glm::vec3(0.0F)});
+    };
+    const WrongShare wrong = measureNear(near, smaller_ball);
+    EXPECT_EQ(wrong.total(), measureField(all, smaller_ball).near.total());
+    EXPECT_GT(wrong.false_outside, 10.0);
+    EXPECT_EQ(wrong.false_inside, 0.0);
+}
+
 }  // namespace
 }  // namespace relief::test

@@ -224,6 +224,21 @@ TEST(ViewPlanner, PutsACubeIntoACavity) {
     EXPECT_TRUE(evaluate(collider, {0.9F, -0.5F, 0.0F}).inside());
 }
 
+TEST(ViewPlanner, KeepsToItsMapsAndSaysWhatOneMoreWouldServe) {
+    const MeshQuery query = queryOf(makeJar());
+    PlanOptions options;
+    options.views.max_maps = 1;
+    const Result<Plan> one = planViews(query, options);
+    ASSERT_TRUE(one);
+    EXPECT_EQ(one->maps.size(), 1U);
+    EXPECT_GT(one->next_gain, 0.1);  // the cavity
+    options.views.max_maps = 64;
+    const Result<Plan> all = planViews(query, options);
+    ASSERT_TRUE(all);
+    EXPECT_GT(all->maps.size(), 1U);
+    EXPECT_LT(all->next_gain, 0.01);
+}
+
 TEST(ViewPlanner, RefusesABudgetThatIsTooSmall) {
     const TriangleMesh mesh = makeIcosphere({0, 0, 0}, 1.0, 2);
     const MeshQuery query = queryOf(mesh);
