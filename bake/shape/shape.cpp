@@ -240,12 +240,14 @@ class Shaper {
         }
         prepared_.freeEdges();
         addSolids();
-        if (sheets_.empty()) {
+        if (sheets_.empty() && report_.coincident_triangles == 0) {
             return ShapedMesh{prepared_, report_};
         }
-        RELIEF_TRY(sortOpenParts());
-        RELIEF_TRY(closeParts());
-        addSheets();
+        if (!sheets_.empty()) {
+            RELIEF_TRY(sortOpenParts());
+            RELIEF_TRY(closeParts());
+            addSheets();
+        }
         return ShapedMesh{RELIEF_TRY(union_.finish(report_.thickness)), report_};
     }
 
@@ -266,12 +268,42 @@ class Shaper {
             }
         }
         sheets_.resize(open.size());
-        kinds_.resize(open.size(), Kind::kSheet);
         tbb::parallel_for(std::size_t{0}, open.size(),
                           [&](std::size_t i) { sheets_[i] = sheetOf(mesh_, welded_, open[i]->triangles); });
         for (const Sheet& sheet : sheets_) {
             report_.coincident_triangles += sheet.duplicates;
         }
+        if (options_.as != ShapeAs::kShell) {
+            std::erase_if(sheets_, [&](const Sheet& sheet) { return addSolidOf(sheet); });
+        }
+        kinds_.assign(sheets_.size(), Kind::kSheet);
+    }
+
+    /// Adds a part that is closed once its coincident triangles count once, as copies of a solid are.
+    bool addSolidOf(const Sheet& sheet) {
+        if (sheet.duplicates == 0 || !sheet.closed) {
+            return false;
+        }
+        double area = 0.0;
+        double volume = 0.0;
+        const glm::dvec3 center = mesh_.bounds.center();
+        for (const glm::uvec3& t : sheet.triangles) {
+            const glm::dvec3 a = glm::dvec3(sheet.positions[t.x]) - center;
+            const glm::dvec3 n = cross(glm::dvec3(sheet.positions[t.y]) - center - a,
+                                       glm::dvec3(sheet.positions[t.z]) - center - a);
+            area += 0.5 * std::sqrt(dot(n, n));
+            volume += dot(a, n) / 6.0;
+        }
+        if (std::abs(volume) < kVolumeMin * area * std::sqrt(area)) {
+            return false;
+        }
+        std::vector<glm::uvec3> triangles = sheet.triangles;
+        for (glm::uvec3& t : triangles) {
+            t = volume < 0.0 ? glm::uvec3(t.x, t.z, t.y) : t;
+        }
+        union_.add(sheet.positions, triangles, triangles.size(), 0);
+        ++report_.solids;
+        return true;
     }
 
     /// Closed, but without a volume, as a sheet with two sides is.

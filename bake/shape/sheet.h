@@ -27,6 +27,8 @@ struct Sheet {
     /// kFoldCosine).
     std::vector<glm::uvec3> neighbours;
     std::vector<std::uint32_t> sources;  ///< for each triangle, its index in the mesh it came from
+    bool closed =
+        false;  ///< every edge is one of two triangles, which are wound against each other; folds do not matter
     std::uint64_t duplicates = 0;  ///< triangles that were left out, as an earlier one has the same vertices
 
     static constexpr std::uint32_t kNoTriangle = 0xffffffff;

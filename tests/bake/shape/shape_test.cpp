@@ -215,6 +215,36 @@ TEST(Shape, ASheetWithTwoSidesIsOneSheet) {
     EXPECT_FALSE(query.inside({0.1F, 0.03F, 0.2F}));
 }
 
+TEST(Shape, CopiesOfASolidAreOneSolid) {
+    const TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 3);
+    TriangleMesh half = ball;
+    half.triangles.resize(half.triangles.size() / 2);
+    const TriangleMesh other_half = finished(half.positions, half.triangles);
+    struct Case {
+        const char* name;
+        TriangleMesh mesh;
+        std::uint64_t copies;
+    };
+    const std::vector<Case> cases = {
+        {"twice", joined({ball, ball}), ball.triangles.size()},
+        {"with its back", joined({ball, reversed(ball)}), ball.triangles.size()},
+        {"four times", joined({ball, ball, reversed(ball), ball}), 3 * ball.triangles.size()},
+        {"half of it twice", joined({ball, other_half}), other_half.triangles.size()}};
+    const MeshQuery truth = queryOf(ball);
+    for (const Case& c : cases) {
+        const ShapedMesh shape = shaped(c.mesh);
+        expectKinds(shape.report, 1, 0, 0, 0);
+        EXPECT_EQ(shape.report.coincident_triangles, c.copies) << c.name;
+        const MeshQuery query = queryOf(shape.mesh);
+        MersenneRandom random(3);
+        for (int i = 0; i < 5000; ++i) {
+            const glm::dvec3 share{random.uniform(), random.uniform(), random.uniform()};
+            const glm::vec3 p = 2.4 * share - 1.2;
+            ASSERT_EQ(query.inside(p), truth.inside(p)) << c.name;
+        }
+    }
+}
+
 TEST(Shape, PanelsThatDoNotMeetEncloseTogether) {
     // The faces of a cube, each a little smaller than it should be.
     const TriangleMesh cube = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0));
