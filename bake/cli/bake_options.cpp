@@ -106,7 +106,7 @@ void addTexelOptions(CLI::App& verb, BakeCommand& command) {
                     "Of shells, in the collider's units; default: a texel and a half")
         ->option_text("LENGTH")
         ->transform(number(1e-15F, 1e15F, "a length above 0, in the collider's units"));
-    verb.add_flag("!--no-check", command.self_check,
+    verb.add_flag("--no-check", command.no_check,
                   "Do not measure what was planned (a few percent of the time)");
     addBackendOption(verb, command.backend);
     addGpuOptions(verb, command.gpu);

@@ -40,7 +40,7 @@ struct BakeCommand {
     std::optional<unsigned> threads;
     int compress = 0;  ///< zstd's level; 0: none
     Holes holes = Holes::kClose;
-    bool self_check = true;
+    bool no_check = false;
     ShapeAs as = ShapeAs::kAuto;
     std::optional<float> thickness;  ///< of shells, object units
     BackendChoice backend = BackendChoice::kRaycast;

@@ -303,7 +303,7 @@ std::string cureOf(const BakeRun& run) {
 
 /// A planned bake measures itself: whoever names the maps may want what looks wrong.
 Result<void> checkItself(BakeRun& run) {
-    if (run.settings.source != MapSource::kPlanner || !run.command.self_check) {
+    if (run.settings.source != MapSource::kPlanner || run.command.no_check) {
         return {};
     }
     const Stopwatch watch;
