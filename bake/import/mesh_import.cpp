@@ -170,10 +170,10 @@ Result<const aiScene*> readScene(const ImportJob& job, ImportFiles& files, const
         return unreadable(job, "a face uses a vertex that does not exist", files);
     }
     if (logged.say("Faces with zero indices")) {
-        return fail(ErrorCode::kInvalidInput,
-                    "cannot read the mesh " + job.shown +
-                        ": it has faces of no corners or of more than 9, which are not read from OFF; "
-                        "triangulate it, or save it as OBJ or PLY");
+        return fail(ErrorCode::kInvalidInput, "cannot read the mesh " + job.shown +
+                                                  ": it has comments after its counts, or faces of no "
+                                                  "corners or of more than 9, which are not read from OFF; "
+                                                  "triangulate it, or save it as OBJ or PLY");
     }
     parts = partsOfFile(job, scene);
     if (const std::optional<std::string> refusal = partsRefusal(parts)) {

@@ -153,6 +153,10 @@ class Union {
         std::vector<std::uint32_t> bodies = std::move(surface_.bodies);
         bodies.insert(bodies.end(), caps_.bodies.begin(), caps_.bodies.end());
         mesh = RELIEF_TRY(finishMesh(std::move(mesh)));
+        if (mesh.triangles.size() != bodies.size()) {
+            return fail(ErrorCode::kFailure,
+                        mesh.name + ": a shell has triangles without area; give another --thickness");
+        }
         return PreparedMesh::unionOf(std::move(mesh), std::move(bodies));
     }
 
@@ -420,7 +424,9 @@ class Shaper {
         std::vector<Result<Closed>> closed(holed.size(), Closed{});
         tbb::parallel_for(std::size_t{0}, holed.size(), [&](std::size_t i) {
             const Result<TriangleMesh> mesh = meshOf(sheets_[holed[i]], mesh_.name);
-            closed[i] = mesh ? close(*mesh) : forward(mesh);
+            if (mesh) {  // else it is too small for a mesh of its own
+                closed[i] = close(*mesh);
+            }
         });
         TriangleMesh rest;
         rest.name = mesh_.name;
