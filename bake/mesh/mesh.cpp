@@ -11,20 +11,6 @@ namespace {
 constexpr float kCoordinateMax = 1e15F;
 constexpr float kSizeMin = 1e-15F;
 
-/// \return true if the corners span an area that a float normal can be computed from.
-bool hasArea(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-    const double ux = double{b.x} - a.x;
-    const double uy = double{b.y} - a.y;
-    const double uz = double{b.z} - a.z;
-    const double vx = double{c.x} - a.x;
-    const double vy = double{c.y} - a.y;
-    const double vz = double{c.z} - a.z;
-    const double nx = uy * vz - uz * vy;
-    const double ny = uz * vx - ux * vz;
-    const double nz = ux * vy - uy * vx;
-    return nx != 0.0 || ny != 0.0 || nz != 0.0;
-}
-
 }  // namespace
 
 Result<TriangleMesh> finishMesh(TriangleMesh mesh) {
@@ -50,7 +36,7 @@ Result<TriangleMesh> finishMesh(TriangleMesh mesh) {
                                 " has a coordinate that is not a number or beyond 1e15; repair the mesh");
             }
         }
-        if (hasArea(mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z])) {
+        if (hasArea(planeOf(mesh.positions, t))) {
             mesh.triangles[kept++] = t;
         }
     }

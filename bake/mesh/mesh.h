@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bake/mesh/triangle_plane.h"
 #include "formats/base/result.h"
 #include "formats/collider.h"
 
@@ -50,5 +51,10 @@ struct TriangleMesh {
 /// Errors, naming mesh.name: kInvalidInput (index out of range, coordinate that is not finite or beyond 1e15,
 /// no triangle with an area), kLimit (kTriangleMax).
 [[nodiscard]] Result<TriangleMesh> finishMesh(TriangleMesh mesh);
+
+/// Of a triangle that has an area. \param triangle  index into mesh.triangles.
+[[nodiscard]] inline TrianglePlane planeOf(const TriangleMesh& mesh, std::uint32_t triangle) {
+    return planeOf(mesh.positions, mesh.triangles[triangle]);
+}
 
 }  // namespace relief

@@ -69,22 +69,25 @@ std::vector<std::uint32_t> weldedVertices(const TriangleMesh& mesh) {
     return welded;
 }
 
-MeshEdges edgesOf(const TriangleMesh& mesh) {
-    MeshEdges edges{weldedVertices(mesh), std::vector<EdgeUse>(3 * mesh.triangles.size())};
-    const std::vector<std::uint32_t>& welded = edges.welded;
-    std::vector<EdgeUse>& uses = edges.uses;
+namespace {
+
+/// \param vertexOf  what the corners of triangles stand for.
+template <class VertexOf>
+std::vector<EdgeUse> sortedUses(const std::vector<glm::uvec3>& triangles, std::size_t vertices,
+                                const VertexOf& vertexOf) {
+    std::vector<EdgeUse> uses(3 * triangles.size());
     const auto forEachSide = [&](auto&& visit) {
-        for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-            const glm::uvec3& t = mesh.triangles[i];
+        for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+            const glm::uvec3& t = triangles[i];
             for (std::uint8_t side = 0; side < 3; ++side) {
-                const std::uint32_t a = welded[t[side]];
-                const std::uint32_t b = welded[t[(side + 1) % 3]];
+                const std::uint32_t a = vertexOf(t[side]);
+                const std::uint32_t b = vertexOf(t[(side + 1) % 3]);
                 visit(EdgeUse{std::min(a, b), std::max(a, b), i, side, a > b});
             }
         }
     };
     // Into a bucket for each lower vertex, where few are left to sort.
-    std::vector<std::uint32_t> first(mesh.positions.size() + 1, 0);
+    std::vector<std::uint32_t> first(vertices + 1, 0);
     forEachSide([&](const EdgeUse& use) { ++first[use.low + 1]; });
     std::partial_sum(first.begin(), first.end(), first.begin());
     std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
@@ -103,6 +106,19 @@ MeshEdges edgesOf(const TriangleMesh& mesh) {
             }
         }
     });
+    return uses;
+}
+
+}  // namespace
+
+std::vector<EdgeUse> edgeUses(const std::vector<glm::uvec3>& triangles, std::size_t vertices) {
+    return sortedUses(triangles, vertices, [](std::uint32_t vertex) { return vertex; });
+}
+
+MeshEdges edgesOf(const TriangleMesh& mesh) {
+    MeshEdges edges{weldedVertices(mesh), {}};
+    edges.uses = sortedUses(mesh.triangles, mesh.positions.size(),
+                            [&](std::uint32_t vertex) { return edges.welded[vertex]; });
     return edges;
 }
 

@@ -31,6 +31,10 @@ struct EdgeUse {
     bool down = false;      ///< from high to low
 };
 
+/// All sides of triangles that name each position once: by edge, then triangle, then side.
+/// \param vertices  how many there are.
+[[nodiscard]] std::vector<EdgeUse> edgeUses(const std::vector<glm::uvec3>& triangles, std::size_t vertices);
+
 /// Welding and sorting take longer than most questions that are asked of them: once for several.
 struct MeshEdges {
     std::vector<std::uint32_t> welded;  ///< weldedVertices

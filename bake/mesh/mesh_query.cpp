@@ -165,11 +165,11 @@ double depthAt(const TriangleMesh& mesh, std::uint32_t triangle, const glm::dvec
     return std::max(0.0, depth >= low ? std::min(depth, high) : low);
 }
 
-CrossingCounter countCrossings(const EmbreeMesh& tree, const glm::vec3& p, const glm::dvec3& direction) {
-    CrossingCounter counter;
+/// Shows the counter all that a ray meets.
+template <class Counter>
+void trace(const EmbreeMesh& tree, const glm::vec3& p, const glm::dvec3& direction, Counter& counter) {
     RTCRayHit query = rayHit(tree.toLocal(p), direction, std::numeric_limits<float>::infinity());
     rtcIntersect1(tree.scene.get(), &counter.context, &query);
-    return counter;
 }
 
 /// One search for the closest point; in Embree's units.
@@ -228,38 +228,31 @@ bool MeshQuery::inside(const glm::vec3& p) const {
             return false;
         }
     }
-    if (!bodies_.empty()) {
-        return insideUnion(p);
-    }
-    constexpr std::size_t kMajority = kParityDirections.size() / 2 + 1;
-    std::size_t votes[2] = {0, 0};
-    for (const glm::dvec3& direction : kParityDirections) {
-        const CrossingCounter counter = countCrossings(*tree_, p, direction);
-        const bool inside = shells_ ? counter.winding != 0 : counter.count % 2 == 1;
-        if (++votes[inside ? 1 : 0] == kMajority) {
-            break;
-        }
-    }
-    return votes[1] >= kMajority;
-}
-
-bool MeshQuery::insideUnion(const glm::vec3& p) const {
-    // Closed surfaces give every ray the same answer, but for one that passes through an edge. Those that are decided by
-    // parity may be open.
-    const std::size_t rays = shells_ ? 3 : kParityDirections.size();
+    // Closed surfaces of a union give every ray the same answer, but for one that passes through an edge. Parity may be
+    // asked of open ones, and of meshes whose winding nobody has seen to.
+    const std::size_t rays = !bodies_.empty() && shells_ ? 3 : kParityDirections.size();
     std::size_t votes[2] = {0, 0};
     for (std::size_t i = 0; votes[0] <= rays / 2 && votes[1] <= rays / 2; ++i) {
-        BodyCounter counter(bodies_);
-        RTCRayHit query =
-            rayHit(tree_->toLocal(p), kParityDirections[i], std::numeric_limits<float>::infinity());
-        rtcIntersect1(tree_->scene.get(), &counter.context, &query);
-        ++votes[counter.inside() ? 1 : 0];
+        ++votes[rayIsInside(p, kParityDirections[i]) ? 1 : 0];
     }
     return votes[1] > rays / 2;
 }
 
+bool MeshQuery::rayIsInside(const glm::vec3& p, const glm::dvec3& direction) const {
+    if (bodies_.empty() || shells_) {
+        CrossingCounter counter;
+        trace(*tree_, p, direction, counter);
+        return shells_ ? counter.winding != 0 : counter.count % 2 == 1;
+    }
+    BodyCounter counter(bodies_);
+    trace(*tree_, p, direction, counter);
+    return counter.inside();
+}
+
 unsigned MeshQuery::crossings(const glm::vec3& p, const glm::dvec3& direction) const {
-    return countCrossings(*tree_, p, direction).count;
+    CrossingCounter counter;
+    trace(*tree_, p, direction, counter);
+    return counter.count;
 }
 
 ClosestPoint MeshQuery::closest(const glm::vec3& p, std::optional<std::uint32_t> hint) const {

@@ -70,7 +70,7 @@ class MeshQuery {
     MeshQuery(PreparedMesh mesh, const EmbreeMesh& tree)
         : mesh_(std::move(mesh)), tree_(&tree), shells_(mesh_.woundShells()), bodies_(mesh_.bodies()) {}
 
-    [[nodiscard]] bool insideUnion(const glm::vec3& p) const;
+    [[nodiscard]] bool rayIsInside(const glm::vec3& p, const glm::dvec3& direction) const;
     /// \param end  in units of the direction.
     [[nodiscard]] bool isFree(const glm::dvec3& origin, const glm::dvec3& direction, float end) const;
 

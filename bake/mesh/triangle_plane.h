@@ -4,8 +4,7 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
-
-#include "bake/mesh/mesh.h"
+#include <vector>
 
 namespace relief {
 
@@ -17,15 +16,21 @@ namespace relief {
 }
 
 struct TrianglePlane {
-    glm::dvec3 point;   ///< first corner, object space
-    glm::dvec3 normal;  ///< of length twice the triangle's area, by the right-hand rule; never zero
+    glm::dvec3 point;  ///< first corner, object space
+    /// Of length twice the triangle's area, by the right-hand rule; zero without hasArea().
+    glm::dvec3 normal;
 };
 
-/// \param triangle  index into mesh.triangles.
-[[nodiscard]] inline TrianglePlane planeOf(const TriangleMesh& mesh, std::uint32_t triangle) {
-    const glm::uvec3& t = mesh.triangles[triangle];
-    const glm::dvec3 a = mesh.positions[t.x];
-    return {a, cross(glm::dvec3(mesh.positions[t.y]) - a, glm::dvec3(mesh.positions[t.z]) - a)};
+[[nodiscard]] inline TrianglePlane planeOf(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    return {a, cross(b - a, c - a)};
+}
+[[nodiscard]] inline TrianglePlane planeOf(const std::vector<glm::vec3>& positions, const glm::uvec3& t) {
+    return planeOf(positions[t.x], positions[t.y], positions[t.z]);
+}
+
+/// Of corners that need not span a plane: whether they do, so that a float normal can be computed.
+[[nodiscard]] inline bool hasArea(const TrianglePlane& plane) {
+    return plane.normal != glm::dvec3(0.0);
 }
 
 }  // namespace relief

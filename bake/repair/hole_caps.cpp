@@ -169,10 +169,6 @@ std::vector<Loop> loopsOf(const std::vector<OddEdge>& edges) {
 
 // --- caps ---
 
-bool hasArea(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-    return cross(b - a, c - a) != glm::dvec3(0.0);
-}
-
 /// Closes one hole after the other at the end of a mesh.
 class Capper {
   public:
@@ -182,7 +178,7 @@ class Capper {
     /// mesh's promise, and leaving them out the parity of the edges.
     void close(const Loop& loop) {
         const std::size_t before = mesh_.triangles.size();
-        if (loop.size() == 3 && hasArea(at(loop[0].from), at(loop[1].from), at(loop[2].from))) {
+        if (loop.size() == 3 && hasArea(planeOf(at(loop[0].from), at(loop[1].from), at(loop[2].from)))) {
             const auto against =
                 std::count_if(loop.begin(), loop.end(), [](const Step& s) { return s.against; });
             const glm::uvec3 t(loop[0].from, loop[1].from, loop[2].from);
@@ -246,7 +242,7 @@ class Capper {
         // Rounded, it might leave the box.
         const glm::vec3 apex = glm::clamp(glm::vec3(point), mesh_.bounds.min, mesh_.bounds.max);
         const bool good = std::all_of(loop.begin(), loop.end(), [&](const Step& step) {
-            return hasArea(at(step.from), at(step.to), apex);
+            return hasArea(planeOf(at(step.from), at(step.to), apex));
         });
         return good ? std::optional(apex) : std::nullopt;
     }
