@@ -18,6 +18,8 @@
 
 namespace relief {
 
+inline constexpr std::uint64_t kBudgetDefault = 1'000'000;  ///< bytes; where none is recorded too
+
 enum class Holes : std::uint8_t { kClose, kKeep };
 
 /// The options of the verb.

@@ -34,7 +34,6 @@
 namespace relief {
 namespace {
 
-constexpr std::uint64_t kBudgetDefault = 1'000'000;  // bytes
 /// Points that a planned bake measures itself at: one in a hundred is then known to a sixth of that.
 constexpr std::uint32_t kSelfCheckPoints = 4000;
 /// Percent of them on the wrong side, above which the bake warns.

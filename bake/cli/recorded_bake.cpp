@@ -4,6 +4,7 @@
 #include <string_view>
 #include <utility>
 
+#include "bake/cli/bake_settings.h"
 #include "bake/repair/mesh_care.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
@@ -13,8 +14,6 @@ namespace {
 
 /// A wrap finer than this takes minutes.
 constexpr float kWrapAlphaLeast = 0.005F;
-/// Of the default thickness, where none is recorded because there are no sheets: bytes.
-constexpr std::uint64_t kBudgetOfThickness = 1'000'000;
 
 bool isPlain(std::string_view word) {
     constexpr std::string_view kPlain =
@@ -57,9 +56,14 @@ bool take(std::string_view option, std::string_view value, RecordedBake& bake) {
         bake.repair = value;
         return checkMeshCare({.repair = bake.repair}).has_value();
     }
-    if (option == "--as" || option == "--thickness") {
-        bake.shape = shapeOptionsOf(" " + std::string(option) + " " + std::string(value), bake.shape);
-        return option == "--as" ? value == shapeAsName(bake.shape.as) : bake.shape.thickness > 0.0;
+    if (option == "--as") {
+        const std::optional<ShapeAs> as = parseShapeAs(value);
+        bake.shape.as = as.value_or(bake.shape.as);
+        return as.has_value();
+    }
+    if (option == "--thickness") {
+        bake.shape.thickness = double{std::max(parseFloat(value).value_or(0.0F), 0.0F)};
+        return bake.shape.thickness > 0.0;
     }
     // Those of the import are read from the command line of the check; planned maps need no backend.
     return option == "--unit" || option == "--up" || option == "--backend";
@@ -101,7 +105,7 @@ Result<ShapedMesh> shapedMesh(const RecordedBake& recorded, const PreparedMesh& 
     }
     ShapeOptions options = recorded.shape;
     if (!(options.thickness > 0.0)) {
-        options.thickness = defaultThickness(mesh->bounds, kBudgetOfThickness);
+        options.thickness = defaultThickness(mesh->bounds, kBudgetDefault);
     }
     return shapeMesh(mesh, options);
 }

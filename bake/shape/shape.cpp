@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <glm/common.hpp>
-#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -17,7 +16,9 @@
 #include "bake/mesh/surface_sampler.h"
 #include "bake/mesh/triangle_plane.h"
 #include "bake/repair/hole_caps.h"
+#include "bake/shape/parts.h"
 #include "bake/shape/sheet.h"
+#include "bake/shape/solid_union.h"
 #include "formats/base/text.h"
 
 namespace relief {
@@ -32,8 +33,6 @@ constexpr std::size_t kPartProbesMin = 64;
 constexpr double kSheetSight = 0.1;
 /// A part is seen from outside at all if more than this share of the rays from its lighter side lead out.
 constexpr double kSeen = 0.02;
-/// A closed part with less volume, in units of its area to the power of 3/2, encloses nothing. Of a sphere it is 0.094.
-constexpr double kVolumeMin = 1e-5;
 /// Share of the area of a closed part that lies twice in the same place: a sheet with two sides.
 constexpr double kTwice = 0.9;
 /// A terrain covers this share of its rectangle, has as many triangles, and is this part of the mesh's extent.
@@ -43,172 +42,23 @@ constexpr double kTerrainExtent = 0.8;
 /// The ground below a terrain, in units of the longest side.
 constexpr double kGround = 0.05;
 
-constexpr std::array<const char*, 4> kAsNames = {"auto", "solid", "shell", "terrain"};
+constexpr std::array<std::string_view, 4> kAsNames = {"auto", "solid", "shell", "terrain"};
 const std::string kAsOption = " --as ";
 const std::string kThicknessOption = " --thickness ";
 
-/// Triangles that hang together by edges.
-struct Part {
-    std::vector<std::uint32_t> triangles;
-    bool closed = true;
-    bool balanced = true;  ///< every edge runs as often one way as the other
-};
-
-std::vector<Part> partsOf(const TriangleMesh& mesh, const MeshEdges& edges) {
-    DisjointSets sets(mesh.triangles.size());
-    forEachEdge(edges.uses, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin + 1; i < end; ++i) {
-            sets.join(edges.uses[begin].triangle, edges.uses[i].triangle);
-        }
-    });
-    std::vector<std::uint32_t> part_of(mesh.triangles.size());
-    std::vector<Part> parts;
-    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-        const std::uint32_t root = sets.find(i);
-        if (root == i) {
-            part_of[i] = static_cast<std::uint32_t>(parts.size());
-            parts.emplace_back();
-        }
-        part_of[i] = part_of[root];
-        parts[part_of[i]].triangles.push_back(i);
-    }
-    forEachEdge(edges.uses, [&](std::size_t begin, std::size_t end) {
-        Part& part = parts[part_of[edges.uses[begin].triangle]];
-        std::size_t down = 0;
-        for (std::size_t i = begin; i < end; ++i) {
-            down += edges.uses[i].down ? 1U : 0U;
-        }
-        part.closed = part.closed && (end - begin) % 2 == 0;
-        part.balanced = part.balanced && 2 * down == end - begin;
-    });
-    return parts;
-}
-
-double areaOf(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles) {
-    double area = 0.0;
-    for (const std::uint32_t i : triangles) {
-        const glm::dvec3 n = planeOf(mesh, i).normal;
-        area += 0.5 * std::sqrt(dot(n, n));
-    }
-    return area;
-}
-
-double volumeOf(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles) {
-    const glm::dvec3 center = mesh.bounds.center();
-    double volume = 0.0;
-    for (const std::uint32_t i : triangles) {
-        const TrianglePlane plane = planeOf(mesh, i);
-        volume += dot(plane.point - center, plane.normal) / 6.0;
-    }
-    return volume;
-}
-
-/// The closed surfaces that take the mesh's place.
-class Union {
-  public:
-    explicit Union(const TriangleMesh& source) : source_(source) {}
-
-    /// \param body  0: the winding counts; else triangles of one number enclose by parity.
-    void add(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles, std::size_t surface,
-             std::uint32_t body) {
-        const auto first = static_cast<std::uint32_t>(positions_.size());
-        positions_.insert(positions_.end(), positions.begin(), positions.end());
-        for (std::size_t i = 0; i < triangles.size(); ++i) {
-            Half& half = i < surface ? surface_ : caps_;
-            half.triangles.push_back(triangles[i] + first);
-            half.bodies.push_back(body);
-        }
-    }
-    void add(const SolidPart& part) { add(part.positions, part.triangles, part.surface_triangles, 0); }
-    /// Triangles of the source, as they are.
-    void addSource(const std::vector<std::uint32_t>& triangles, std::uint32_t body) {
-        if (!has_source_) {
-            has_source_ = true;
-            source_first_ = static_cast<std::uint32_t>(positions_.size());
-            positions_.insert(positions_.end(), source_.positions.begin(), source_.positions.end());
-        }
-        for (const std::uint32_t i : triangles) {
-            surface_.triangles.push_back(source_.triangles[i] + source_first_);
-            surface_.bodies.push_back(body);
-        }
-    }
-    void countHoles(std::uint64_t holes) { holes_ += holes; }
-
-    Result<PreparedMesh> finish(double thickness) {
-        TriangleMesh mesh;
-        mesh.name = source_.name;
-        mesh.content_hash = source_.content_hash;
-        mesh.unit = source_.unit;
-        mesh.dropped_triangles = source_.dropped_triangles;
-        mesh.dependencies = source_.dependencies;
-        mesh.dependency_hashes = source_.dependency_hashes;
-        mesh.warnings = source_.warnings;
-        mesh.source_triangles = source_.sourceTriangles();
-        mesh.positions = std::move(positions_);
-        mesh.triangles = std::move(surface_.triangles);
-        mesh.triangles.insert(mesh.triangles.end(), caps_.triangles.begin(), caps_.triangles.end());
-        mesh.cap_triangles = caps_.triangles.size();
-        mesh.closed_holes = holes_;
-        mesh.shell_thickness = thickness;
-        std::vector<std::uint32_t> bodies = std::move(surface_.bodies);
-        bodies.insert(bodies.end(), caps_.bodies.begin(), caps_.bodies.end());
-        mesh = RELIEF_TRY(finishMesh(std::move(mesh)));
-        if (mesh.triangles.size() != bodies.size()) {
-            return fail(ErrorCode::kFailure,
-                        mesh.name + ": a shell has triangles without area; give another --thickness");
-        }
-        return PreparedMesh::unionOf(std::move(mesh), std::move(bodies));
-    }
-
-  private:
-    struct Half {
-        std::vector<glm::uvec3> triangles;
-        std::vector<std::uint32_t> bodies;
-    };
-
-    const TriangleMesh& source_;
-    std::vector<glm::vec3> positions_;
-    Half surface_;
-    Half caps_;
-    std::uint64_t holes_ = 0;
-    bool has_source_ = false;
-    std::uint32_t source_first_ = 0;
-};
-
-/// A sheet as a mesh of its own.
-Result<TriangleMesh> meshOf(const Sheet& sheet, const std::string& name) {
+/// A sheet as a mesh of its own, not finished.
+TriangleMesh meshOf(const Sheet& sheet, const std::string& name) {
     TriangleMesh mesh;
     mesh.name = name;
     mesh.positions = sheet.positions;
     mesh.triangles = sheet.triangles;
-    return finishMesh(std::move(mesh));
-}
-
-/// Six of the axes' directions add up to this over a sheet's triangles: twice the area as each axis sees it, where the
-/// two sides cancel out, and where they do not.
-struct Facing {
-    glm::dvec3 signed_area{0.0};
-    glm::dvec3 absolute{0.0};
-};
-
-Facing facingOf(const Sheet& sheet) {
-    Facing facing;
-    for (const glm::uvec3& t : sheet.triangles) {
-        const glm::dvec3 a = sheet.positions[t.x];
-        const glm::dvec3 n =
-            cross(glm::dvec3(sheet.positions[t.y]) - a, glm::dvec3(sheet.positions[t.z]) - a);
-        facing.signed_area += n;
-        facing.absolute += glm::abs(n);
-    }
-    return facing;
+    return mesh;
 }
 
 /// Share of the rays that lead out of the mesh, from either side of a sheet of it.
 std::array<double, 2> sightOf(const Sheet& sheet, std::size_t asked, const MeshQuery& query) {
     const double side = query.mesh().bounds.longestSide();
-    TriangleMesh mesh;
-    mesh.positions = sheet.positions;
-    mesh.triangles = sheet.triangles;
+    const TriangleMesh mesh = meshOf(sheet, "");
     const AreaTable areas(mesh);
     MersenneRandom random(1);
     std::array<double, 2> out{};
@@ -243,12 +93,22 @@ class Shaper {
             welded_ = edges.welded;
         }
         prepared_.freeEdges();
-        addSolids();
-        if (sheets_.empty() && report_.coincident_triangles == 0) {
+        std::vector<const Part*> solids;
+        std::vector<const Part*> others;
+        for (const Part& part : parts_) {
+            (isSolid(part) ? solids : others).push_back(&part);
+        }
+        if (others.empty()) {
+            report_.solids = solids.size();
             return ShapedMesh{prepared_, report_};
         }
+        for (const Part* part : solids) {
+            union_.addSource(part->triangles, part->balanced ? 0 : ++bodies_);
+        }
+        report_.solids = solids.size();
+        makeSheets(others);
         if (!sheets_.empty()) {
-            RELIEF_TRY(sortOpenParts());
+            RELIEF_TRY(sortSheets());
             RELIEF_TRY(closeParts());
             addSheets();
         }
@@ -257,68 +117,31 @@ class Shaper {
 
   private:
     enum class Kind : std::uint8_t { kHoled, kSheet, kTerrain };
+    struct Role {
+        Kind kind = Kind::kSheet;
+        int axis = 1;  ///< of a terrain's heights
+    };
 
-    /// Adds the closed parts; the others become sheets for the time being.
-    void addSolids() {
-        std::vector<const Part*> open;
-        for (const Part& part : parts_) {
-            const bool solid = part.closed && options_.as != ShapeAs::kShell &&
-                               (options_.as == ShapeAs::kSolid || !isFlat(part));
-            if (solid) {
-                union_.addSource(part.triangles, part.balanced ? 0 : ++bodies_);
-                ++report_.solids;
-            } else {
-                open.push_back(&part);
-            }
-        }
-        sheets_.resize(open.size());
-        tbb::parallel_for(std::size_t{0}, open.size(),
-                          [&](std::size_t i) { sheets_[i] = sheetOf(mesh_, welded_, open[i]->triangles); });
-        for (const Sheet& sheet : sheets_) {
-            report_.coincident_triangles += sheet.duplicates;
-        }
-        if (options_.as != ShapeAs::kShell) {
-            std::erase_if(sheets_, [&](const Sheet& sheet) { return addSolidOf(sheet); });
-        }
-        kinds_.assign(sheets_.size(), Kind::kSheet);
+    [[nodiscard]] bool isSolid(const Part& part) const {
+        return part.closed && options_.as != ShapeAs::kShell &&
+               (options_.as == ShapeAs::kSolid || !isFlat(part));
     }
 
-    /// Adds a part that is closed once its coincident triangles count once, as copies of a solid are.
-    bool addSolidOf(const Sheet& sheet) {
-        if (sheet.duplicates == 0 || !sheet.closed) {
-            return false;
-        }
-        double area = 0.0;
-        double volume = 0.0;
-        const glm::dvec3 center = mesh_.bounds.center();
-        for (const glm::uvec3& t : sheet.triangles) {
-            const glm::dvec3 a = glm::dvec3(sheet.positions[t.x]) - center;
-            const glm::dvec3 n = cross(glm::dvec3(sheet.positions[t.y]) - center - a,
-                                       glm::dvec3(sheet.positions[t.z]) - center - a);
-            area += 0.5 * std::sqrt(dot(n, n));
-            volume += dot(a, n) / 6.0;
-        }
-        if (std::abs(volume) < kVolumeMin * area * std::sqrt(area)) {
-            return false;
-        }
-        std::vector<glm::uvec3> triangles = sheet.triangles;
-        for (glm::uvec3& t : triangles) {
-            t = volume < 0.0 ? glm::uvec3(t.x, t.z, t.y) : t;
-        }
-        union_.add(sheet.positions, triangles, triangles.size(), 0);
-        ++report_.solids;
-        return true;
-    }
-
-    /// Closed, but without a volume, as a sheet with two sides is.
+    /// Closed, but without a volume, as a sheet with two sides is; or copies of a surface.
     [[nodiscard]] bool isFlat(const Part& part) const {
-        const double area = areaOf(mesh_, part.triangles);
-        if (std::abs(volumeOf(mesh_, part.triangles)) < kVolumeMin * area * std::sqrt(area)) {
+        std::vector<glm::uvec3> triangles;
+        triangles.reserve(part.triangles.size());
+        for (const std::uint32_t i : part.triangles) {
+            triangles.push_back(mesh_.triangles[i]);
+        }
+        if (!enclosedVolume(mesh_.positions, triangles, mesh_.bounds.center())) {
             return true;
         }
+        if (part.manifold) {
+            return false;  // two triangles in one place have their edges to themselves, and enclose nothing
+        }
         std::vector<std::array<std::uint32_t, 3>> corners;
-        for (const std::uint32_t i : part.triangles) {
-            const glm::uvec3& t = mesh_.triangles[i];
+        for (const glm::uvec3& t : triangles) {
             corners.push_back({welded_[t.x], welded_[t.y], welded_[t.z]});
             std::sort(corners.back().begin(), corners.back().end());
         }
@@ -328,10 +151,48 @@ class Shaper {
         return 2.0 * (all - once) > kTwice * all;
     }
 
-    Result<void> sortOpenParts() {
-        if (options_.as == ShapeAs::kShell || options_.as == ShapeAs::kTerrain) {
-            std::fill(kinds_.begin(), kinds_.end(),
-                      options_.as == ShapeAs::kShell ? Kind::kSheet : Kind::kTerrain);
+    /// The parts as sheets for the time being, but for those that are solids once coincident triangles count once.
+    void makeSheets(const std::vector<const Part*>& parts) {
+        sheets_.resize(parts.size());
+        tbb::parallel_for(std::size_t{0}, parts.size(),
+                          [&](std::size_t i) { sheets_[i] = sheetOf(mesh_, welded_, parts[i]->triangles); });
+        for (const Sheet& sheet : sheets_) {
+            report_.coincident_triangles += sheet.duplicates;
+        }
+        if (options_.as != ShapeAs::kShell) {
+            std::erase_if(sheets_, [&](const Sheet& sheet) { return addSolidOf(sheet); });
+        }
+        roles_.assign(sheets_.size(), {});
+    }
+
+    /// Adds a part that is closed once its coincident triangles count once, as copies of a solid are.
+    bool addSolidOf(const Sheet& sheet) {
+        if (sheet.duplicates == 0 || !sheet.closed) {
+            return false;
+        }
+        const std::optional<double> volume =
+            enclosedVolume(sheet.positions, sheet.triangles, mesh_.bounds.center());
+        if (!volume) {
+            return false;
+        }
+        std::vector<glm::uvec3> triangles = sheet.triangles;
+        for (glm::uvec3& t : triangles) {
+            t = *volume < 0.0 ? glm::uvec3(t.x, t.z, t.y) : t;
+        }
+        union_.add(sheet.positions, triangles, triangles.size(), 0);
+        ++report_.solids;
+        return true;
+    }
+
+    /// Which of the sheets are solids with holes, and which terrains.
+    Result<void> sortSheets() {
+        if (options_.as == ShapeAs::kShell) {
+            return {};
+        }
+        if (options_.as == ShapeAs::kTerrain) {
+            for (std::size_t i = 0; i < sheets_.size(); ++i) {
+                roles_[i] = {Kind::kTerrain, terrainAxis(sheets_[i]).value_or(flattestAxis(sheets_[i]))};
+            }
             return {};
         }
         const MeshQuery query = RELIEF_TRY(MeshQuery::build(prepared_));
@@ -340,9 +201,9 @@ class Shaper {
             const std::array<double, 2> sight = sightOf(sheets_[i], asked, query);
             const auto [dark, light] = std::minmax(sight[0], sight[1]);
             if (options_.as == ShapeAs::kSolid || (dark <= kSheetSight && light > kSeen)) {
-                kinds_[i] = Kind::kHoled;
-            } else if (terrainAxis(sheets_[i])) {
-                kinds_[i] = Kind::kTerrain;
+                roles_[i].kind = Kind::kHoled;
+            } else if (const std::optional<int> axis = terrainAxis(sheets_[i])) {
+                roles_[i] = {Kind::kTerrain, *axis};
             }
         });
         return {};
@@ -359,7 +220,7 @@ class Shaper {
         }
         const glm::dvec3 size = bounds.size();
         const glm::dvec3 whole = mesh_.bounds.size();
-        const Facing facing = facingOf(sheet);
+        const Shadow shadow = shadowOf(sheet);
         // Where the file says its unit, the importer has turned +y upwards. Elsewhere +z may point there as well.
         for (const int axis : {1, 2}) {
             const int across = (axis + 1) % 3;
@@ -369,13 +230,19 @@ class Shaper {
                                 size[across] >= kTerrainExtent * whole[across] &&
                                 size[along] >= kTerrainExtent * whole[along];
             // All of it looks one way, and so covers nothing twice.
-            const bool heights = std::abs(facing.signed_area[axis]) >= 0.9999 * facing.absolute[axis] &&
-                                 0.5 * facing.absolute[axis] >= kTerrainCover * rectangle;
+            const bool heights = std::abs(shadow.signed_area[axis]) >= 0.9999 * shadow.area[axis] &&
+                                 0.5 * shadow.area[axis] >= kTerrainCover * rectangle;
             if (ground && heights && (axis == 1 || (mesh_.unit.empty() && parts_.size() == 1))) {
                 return axis;
             }
         }
         return std::nullopt;
+    }
+
+    /// The axis that sees most of a sheet.
+    static int flattestAxis(const Sheet& sheet) {
+        const glm::dvec3 area = glm::abs(shadowOf(sheet).signed_area);
+        return area.y >= std::max(area.x, area.z) ? 1 : area.z >= area.x ? 2 : 0;
     }
 
     /// A part with holes, closed.
@@ -391,11 +258,9 @@ class Shaper {
         if (!closed.closed()) {
             return Closed{};
         }
-        std::vector<std::uint32_t> all(closed->triangles.size());
-        std::iota(all.begin(), all.end(), 0U);
-        const double area = areaOf(*closed, all);
-        const double volume = volumeOf(*closed, all);
-        if (std::abs(volume) < kVolumeMin * area * std::sqrt(area)) {
+        const std::optional<double> volume =
+            enclosedVolume(closed->positions, closed->triangles, closed->bounds.center());
+        if (!volume) {
             return Closed{};
         }
         bool balanced = true;
@@ -403,7 +268,7 @@ class Shaper {
             balanced = balanced && part.balanced;
         }
         closed.freeEdges();
-        std::vector<bool> turn(all.size(), volume < 0.0);
+        const std::vector<bool> turn(closed->triangles.size(), *volume < 0.0);
         return Closed{PreparedMesh(closed).woundOutwards(turn), balanced};
     }
 
@@ -417,13 +282,13 @@ class Shaper {
     Result<void> closeParts() {
         std::vector<std::uint32_t> holed;
         for (std::uint32_t i = 0; i < sheets_.size(); ++i) {
-            if (kinds_[i] == Kind::kHoled) {
+            if (roles_[i].kind == Kind::kHoled) {
                 holed.push_back(i);
             }
         }
         std::vector<Result<Closed>> closed(holed.size(), Closed{});
         tbb::parallel_for(std::size_t{0}, holed.size(), [&](std::size_t i) {
-            const Result<TriangleMesh> mesh = meshOf(sheets_[holed[i]], mesh_.name);
+            const Result<TriangleMesh> mesh = finishMesh(meshOf(sheets_[holed[i]], mesh_.name));
             if (mesh) {  // else it is too small for a mesh of its own
                 closed[i] = close(*mesh);
             }
@@ -466,35 +331,29 @@ class Shaper {
             return {};
         }
         for (const std::uint32_t i : parts) {
-            kinds_[i] = Kind::kSheet;
+            roles_[i].kind = Kind::kSheet;
         }
         return {};
     }
 
     void addSheets() {
         for (std::size_t i = 0; i < sheets_.size(); ++i) {
-            if (kinds_[i] == Kind::kSheet) {
+            if (roles_[i].kind == Kind::kSheet) {
                 union_.add(thickened(sheets_[i], options_.thickness));
                 report_.thickness = options_.thickness;
                 ++report_.sheets;
-            } else if (kinds_[i] == Kind::kTerrain) {
-                addTerrain(sheets_[i]);
+            } else if (roles_[i].kind == Kind::kTerrain) {
+                addTerrain(sheets_[i], roles_[i].axis);
             }
         }
     }
 
-    void addTerrain(const Sheet& sheet) {
-        int axis = terrainAxis(sheet).value_or(-1);
-        if (axis < 0) {  // --as terrain
-            const glm::dvec3 area = glm::abs(facingOf(sheet).signed_area);
-            axis = area.y >= std::max(area.x, area.z) ? 1 : area.z >= area.x ? 2 : 0;
-        }
+    void addTerrain(const Sheet& sheet, int axis) {
         float low = sheet.positions.front()[axis];
         for (const glm::vec3& p : sheet.positions) {
             low = std::min(low, p[axis]);
         }
-        union_.add(
-            extruded(sheet, axis, true, low - static_cast<float>(kGround) * mesh_.bounds.longestSide()));
+        union_.add(extruded(sheet, axis, low - static_cast<float>(kGround) * mesh_.bounds.longestSide()));
         ++report_.terrains;
     }
 
@@ -504,9 +363,9 @@ class Shaper {
     std::vector<std::uint32_t> welded_;
     std::vector<Part> parts_;
     std::vector<Sheet> sheets_;  // of the parts that are not solid as they are
-    std::vector<Kind> kinds_;    // of each of them
+    std::vector<Role> roles_;    // of each of them
     std::uint32_t bodies_ = 1;   // 1: the parts that enclose something together, by parity
-    Union union_;
+    SolidUnion union_;
     ShapeReport report_;
 };
 
@@ -518,12 +377,18 @@ void append(std::string& text, std::uint64_t count, const char* one, const char*
 
 }  // namespace
 
-const char* shapeAsName(ShapeAs as) {
+std::string_view shapeAsName(ShapeAs as) {
     return kAsNames[static_cast<std::size_t>(as)];
 }
 
+std::optional<ShapeAs> parseShapeAs(std::string_view name) {
+    const auto found = std::find(kAsNames.begin(), kAsNames.end(), name);
+    return found == kAsNames.end() ? std::nullopt
+                                   : std::optional(static_cast<ShapeAs>(found - kAsNames.begin()));
+}
+
 std::string shapeOptionsText(const ShapeReport& report) {
-    return (report.as == ShapeAs::kAuto ? "" : std::string(kAsOption) + shapeAsName(report.as)) +
+    return (report.as == ShapeAs::kAuto ? "" : kAsOption + std::string(shapeAsName(report.as))) +
            (report.thickness > 0.0 ? kThicknessOption + shortest(static_cast<float>(report.thickness)) : "");
 }
 
@@ -534,10 +399,7 @@ ShapeOptions shapeOptionsOf(const std::string& container_options, const ShapeOpt
         return rest.substr(0, rest.find(' '));
     };
     ShapeOptions options = otherwise;
-    const auto name = std::find(kAsNames.begin(), kAsNames.end(), valueOf(kAsOption));
-    if (name != kAsNames.end()) {
-        options.as = static_cast<ShapeAs>(name - kAsNames.begin());
-    }
+    options.as = parseShapeAs(valueOf(kAsOption)).value_or(options.as);
     const std::optional<float> thickness = parseFloat(valueOf(kThicknessOption));
     if (thickness && *thickness > 0.0F) {
         options.thickness = double{*thickness};

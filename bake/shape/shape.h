@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "bake/mesh/prepared_mesh.h"
 #include "formats/base/result.h"
@@ -22,7 +23,8 @@ namespace relief {
 /// What the parts are taken for.
 enum class ShapeAs : std::uint8_t { kAuto, kSolid, kShell, kTerrain };
 
-[[nodiscard]] const char* shapeAsName(ShapeAs as);  ///< "auto", "solid", "shell" or "terrain"
+[[nodiscard]] std::string_view shapeAsName(ShapeAs as);  ///< "auto", "solid", "shell" or "terrain"
+[[nodiscard]] std::optional<ShapeAs> parseShapeAs(std::string_view name);
 
 struct ShapeOptions {
     /// kSolid: every part is a solid, with or without holes. kShell: every part is a sheet. kTerrain: every open part is

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/matrix.hpp>
 #include <utility>
 
@@ -18,31 +19,8 @@ constexpr double kMitreMax = 2.0;
 constexpr double kMitreDamping = 1e-4;
 
 glm::dvec3 unitNormal(const std::vector<glm::vec3>& positions, const glm::uvec3& t) {
-    const glm::dvec3 a = positions[t.x];
-    const glm::dvec3 n = cross(glm::dvec3(positions[t.y]) - a, glm::dvec3(positions[t.z]) - a);
+    const glm::dvec3 n = planeOf(positions, t).normal;
     return n / std::sqrt(dot(n, n));
-}
-
-bool hasArea(const std::vector<glm::vec3>& positions, const glm::uvec3& t) {
-    const glm::dvec3 a = positions[t.x];
-    return cross(glm::dvec3(positions[t.y]) - a, glm::dvec3(positions[t.z]) - a) != glm::dvec3(0.0);
-}
-
-/// All sides of a sheet's triangles, sorted by edge.
-std::vector<EdgeUse> sidesOf(const std::vector<glm::uvec3>& triangles) {
-    std::vector<EdgeUse> sides;
-    sides.reserve(3 * triangles.size());
-    for (std::uint32_t i = 0; i < triangles.size(); ++i) {
-        for (std::uint8_t side = 0; side < 3; ++side) {
-            const std::uint32_t a = triangles[i][side];
-            const std::uint32_t b = triangles[i][(side + 1) % 3];
-            sides.push_back({std::min(a, b), std::max(a, b), i, side, a > b});
-        }
-    }
-    std::sort(sides.begin(), sides.end(), [](const EdgeUse& a, const EdgeUse& b) {
-        return std::tie(a.low, a.high, a.triangle, a.side) < std::tie(b.low, b.high, b.triangle, b.side);
-    });
-    return sides;
 }
 
 /// Winds neighbours against each other along their common edges, and cuts the joints where that cannot be done.
@@ -103,7 +81,7 @@ void windConsistently(Sheet& sheet) {
 /// Joins triangles across edges of two, and cuts the folds. Folds are known only once neighbours are wound alike.
 void joinEdges(Sheet& sheet) {
     sheet.neighbours.assign(sheet.triangles.size(), glm::uvec3(Sheet::kNoTriangle));
-    const std::vector<EdgeUse> sides = sidesOf(sheet.triangles);
+    const std::vector<EdgeUse> sides = edgeUses(sheet.triangles, sheet.positions.size());
     forEachEdge(sides, [&](std::size_t begin, std::size_t end) {
         if (end - begin == 2) {
             const EdgeUse& a = sides[begin];
@@ -195,7 +173,7 @@ class PartBuilder {
     }
     void addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
         const glm::uvec3 t(a, b, c);
-        if (hasArea(part_.positions, t)) {
+        if (hasArea(planeOf(part_.positions, t))) {
             part_.triangles.push_back(t);
         }
     }
@@ -241,7 +219,7 @@ Sheet sheetOf(const TriangleMesh& mesh, std::span<const std::uint32_t> welded,
     for (const std::uint32_t i : triangles) {
         const glm::uvec3& t = mesh.triangles[i];
         const glm::uvec3 triangle(indexOf(t.x), indexOf(t.y), indexOf(t.z));
-        if (hasArea(sheet.positions, triangle)) {
+        if (hasArea(planeOf(sheet.positions, triangle))) {
             std::array<std::uint32_t, 3> corners = {triangle.x, triangle.y, triangle.z};
             std::sort(corners.begin(), corners.end());
             keyed.push_back({corners, i, triangle});
@@ -258,7 +236,6 @@ Sheet sheetOf(const TriangleMesh& mesh, std::span<const std::uint32_t> welded,
     std::sort(keyed.begin(), keyed.end(), [](const Keyed& a, const Keyed& b) { return a.source < b.source; });
     for (const Keyed& k : keyed) {
         sheet.triangles.push_back(k.triangle);
-        sheet.sources.push_back(k.source);
     }
     joinEdges(sheet);
     return sheet;
@@ -302,7 +279,17 @@ SolidPart thickened(const Sheet& sheet, double thickness) {
     return builder.take();
 }
 
-SolidPart extruded(const Sheet& sheet, int axis, bool up, float bottom) {
+Shadow shadowOf(const Sheet& sheet) {
+    Shadow shadow;
+    for (const glm::uvec3& t : sheet.triangles) {
+        const glm::dvec3 n = planeOf(sheet.positions, t).normal;
+        shadow.signed_area += n;
+        shadow.area += glm::abs(n);
+    }
+    return shadow;
+}
+
+SolidPart extruded(const Sheet& sheet, int axis, float bottom) {
     PartBuilder builder;
     const auto count = static_cast<std::uint32_t>(sheet.positions.size());
     for (const glm::vec3& p : sheet.positions) {
@@ -313,12 +300,7 @@ SolidPart extruded(const Sheet& sheet, int axis, bool up, float bottom) {
         builder.addPosition(p);
     }
     // The sheet looks up whichever way it is wound.
-    double facing = 0.0;
-    for (const glm::uvec3& t : sheet.triangles) {
-        const glm::dvec3 a = sheet.positions[t.x];
-        facing += cross(glm::dvec3(sheet.positions[t.y]) - a, glm::dvec3(sheet.positions[t.z]) - a)[axis];
-    }
-    const bool turn = (facing > 0.0) != up;
+    const bool turn = !(shadowOf(sheet).signed_area[axis] > 0.0);
     const auto corners = [&](std::uint32_t i) {
         const glm::uvec3& t = sheet.triangles[i];
         return turn ? glm::uvec3(t.x, t.z, t.y) : t;

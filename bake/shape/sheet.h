@@ -26,7 +26,6 @@ struct Sheet {
     /// the border, where three or more triangles meet, at a one-sided strip's seam, and at folds sharper than
     /// kFoldCosine).
     std::vector<glm::uvec3> neighbours;
-    std::vector<std::uint32_t> sources;  ///< for each triangle, its index in the mesh it came from
     bool closed =
         false;  ///< every edge is one of two triangles, which are wound against each other; folds do not matter
     std::uint64_t duplicates = 0;  ///< triangles that were left out, as an earlier one has the same vertices
@@ -55,10 +54,16 @@ struct SolidPart {
 /// \param thickness  object units, above 0.
 [[nodiscard]] SolidPart thickened(const Sheet& sheet, double thickness);
 
+/// Twice the areas of a sheet's shadows along the axes. A height field's are the same, up to the sign.
+struct Shadow {
+    glm::dvec3 signed_area{0.0};  ///< triangles that look along the axis less those that look against it
+    glm::dvec3 area{0.0};
+};
+[[nodiscard]] Shadow shadowOf(const Sheet& sheet);
+
 /// The ground below a height field: walls down from its border, and a flat bottom.
-/// \param axis    0, 1 or 2: of the heights.
+/// \param axis    0, 1 or 2: of the heights, which grow with the coordinate.
 /// \param bottom  coordinate of the bottom along the axis, object units.
-/// \param up      whether heights grow with the coordinate.
-[[nodiscard]] SolidPart extruded(const Sheet& sheet, int axis, bool up, float bottom);
+[[nodiscard]] SolidPart extruded(const Sheet& sheet, int axis, float bottom);
 
 }  // namespace relief

@@ -1,0 +1,30 @@
+// A mesh taken apart: triangles that hang together by edges, where equal positions are one vertex.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <vector>
+
+#include "bake/mesh/mesh.h"
+#include "bake/mesh/mesh_edges.h"
+
+namespace relief {
+
+struct Part {
+    std::vector<std::uint32_t> triangles;  ///< indices, ascending
+    bool closed = true;                    ///< no edge is one of an odd number of triangles
+    bool balanced = true;                  ///< every edge runs as often one way as the other
+    bool manifold = true;                  ///< every edge is one of two triangles
+};
+
+/// In the order of their lowest triangles.
+[[nodiscard]] std::vector<Part> partsOf(const TriangleMesh& mesh, const MeshEdges& edges);
+
+/// What closed triangles enclose, negative if they look inwards. nullopt: nothing, as a sheet with two sides does.
+/// \param center  of the mesh, where sums lose least.
+[[nodiscard]] std::optional<double> enclosedVolume(const std::vector<glm::vec3>& positions,
+                                                   const std::vector<glm::uvec3>& triangles,
+                                                   const glm::dvec3& center);
+
+}  // namespace relief
