@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "formats/row_spans.h"
+
 namespace relief {
 
 void Bounds::add(const glm::vec3& p) {
@@ -18,6 +20,14 @@ std::size_t Collider::texelBytes() const {
     std::size_t bytes = 0;
     for (const DepthMap& map : maps) {
         bytes += map.texelBytes();
+    }
+    return bytes;
+}
+
+std::uint64_t Collider::gpuBytes() const {
+    std::uint64_t bytes = 0;
+    for (const DepthMap& map : maps) {
+        bytes += relief::gpuBytes(map);
     }
     return bytes;
 }

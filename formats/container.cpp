@@ -13,6 +13,7 @@
 #include "formats/base/hash.h"
 #include "formats/container_header.h"
 #include "formats/container_parts.h"
+#include "formats/row_spans.h"
 #include "formats/validate.h"
 
 namespace relief {
@@ -23,8 +24,8 @@ constexpr int kZstdLevelMax = 19;
 /// All of a file but its texels.
 struct Description {
     ContainerHeader header;
-    Collider collider;  ///< its maps have no texels
-    std::vector<StoredPayload> payloads;
+    Collider collider;            ///< without maps
+    std::vector<ParsedMap> maps;  ///< their frames are valid
 };
 
 tl::unexpected<Error> invalidMap(std::size_t index, const std::string& message) {
@@ -33,16 +34,28 @@ tl::unexpected<Error> invalidMap(std::size_t index, const std::string& message) 
 
 // --- write ---
 
-/// A map's payload as it will lie in the file: `compressed`, or the map's own texels where that is empty.
+/// A map's payload as it will lie in the file: `packed`, or the map's own texels where that is empty.
 struct PackedPayload {
-    std::vector<std::byte> compressed;
+    Packing packing = Packing::kNone;
+    std::vector<std::byte> packed;
     std::span<const std::byte> stored;
+
+    void take(Packing how, std::vector<std::byte> bytes) {
+        packing = how;
+        packed = std::move(bytes);
+        stored = packed;
+    }
 };
 
 Result<PackedPayload> pack(const DepthMap& map, int level) {
     PackedPayload packed;
     packed.stored = map.texels;
     if (level == 0) {
+        if (isFrontBack(map.format)) {
+            if (std::vector<std::byte> rows = packRows(map); rows.size() < map.texels.size()) {
+                packed.take(Packing::kRows, std::move(rows));
+            }
+        }
         return packed;
     }
     std::vector<std::byte> bytes(ZSTD_compressBound(map.texels.size()));
@@ -55,8 +68,7 @@ Result<PackedPayload> pack(const DepthMap& map, int level) {
     if (size < map.texels.size()) {
         bytes.resize(size);
         bytes.shrink_to_fit();
-        packed.compressed = std::move(bytes);
-        packed.stored = packed.compressed;
+        packed.take(Packing::kZstd, std::move(bytes));
     }
     return packed;
 }
@@ -70,23 +82,23 @@ fb::Row toFb(const glm::vec4& r) {
 }
 
 flatbuffers::Offset<fb::Map> addMap(flatbuffers::FlatBufferBuilder& builder, const DepthMap& map,
-                                    const fb::Payload& payload) {
+                                    const fb::Payload& payload, Packing packing) {
     const fb::Transform transform(toFb(map.object_to_map.row[0]), toFb(map.object_to_map.row[1]),
                                   toFb(map.object_to_map.row[2]));
     const fb::Vec3 object_per_map = toFb(map.object_per_map);
-    const bool compressed = payload.stored_size() != payload.raw_size();
     return fb::CreateMap(builder, static_cast<fb::Format>(map.format), static_cast<fb::Compare>(map.compare),
                          map.width, map.height, &transform, &object_per_map, map.encloses,
-                         map.empty_is_outside, compressed ? fb::Compression::Zstd : fb::Compression::None,
-                         &payload, static_cast<fb::Decode>(map.decode));
+                         map.empty_is_outside, static_cast<fb::Compression>(packing), &payload,
+                         static_cast<fb::Decode>(map.decode));
 }
 
 /// \param payloads  one a map. Their offsets do not change the size of the answer.
-std::vector<std::byte> writeMetadata(const Collider& collider, std::span<const fb::Payload> payloads) {
+std::vector<std::byte> writeMetadata(const Collider& collider, std::span<const fb::Payload> payloads,
+                                     std::span<const PackedPayload> packed) {
     flatbuffers::FlatBufferBuilder builder;
     std::vector<flatbuffers::Offset<fb::Map>> maps;
     for (std::size_t i = 0; i < collider.maps.size(); ++i) {
-        maps.push_back(addMap(builder, collider.maps[i], payloads[i]));
+        maps.push_back(addMap(builder, collider.maps[i], payloads[i], packed[i].packing));
     }
     const Provenance& from = collider.provenance;
     // One by one: a compiler chooses in which order it evaluates the arguments of a call, and each string is
@@ -144,13 +156,17 @@ Result<std::vector<std::byte>> writeChecked(const Collider& collider, const Cont
                               xxh3_64(packed[i].stored));
     }
     ContainerHeader header;
-    header.metadata_size = writeMetadata(collider, payloads).size();
+    // The lowest version that holds it.
+    const bool rows =
+        std::ranges::any_of(packed, [](const PackedPayload& one) { return one.packing == Packing::kRows; });
+    header.minor = rows ? 1 : 0;
+    header.metadata_size = writeMetadata(collider, payloads, packed).size();
     std::uint64_t end = header.metadata_offset + header.metadata_size;
     for (fb::Payload& payload : payloads) {
         payload = fb::Payload(alignPayload(end), payload.stored_size(), payload.raw_size(), payload.xxh3());
         end = payload.offset() + payload.stored_size();
     }
-    const std::vector<std::byte> metadata = writeMetadata(collider, payloads);
+    const std::vector<std::byte> metadata = writeMetadata(collider, payloads, packed);
     if (metadata.size() != header.metadata_size || metadata.size() > kContainerMetadataMax) {
         return fail(ErrorCode::kLimit, "the metadata does not fit into the container; use fewer maps");
     }
@@ -189,8 +205,7 @@ Result<void> readMaps(ParsedMetadata&& parsed, const ContainerLimits& limits, De
                                                ": with it, the texels take more than the limit of " +
                                                std::to_string(limits.texel_bytes) + " bytes");
         }
-        into.collider.maps.push_back(std::move(map.frame));
-        into.payloads.push_back(map.payload);
+        into.maps.push_back(std::move(map));
     }
     return {};
 }
@@ -207,8 +222,8 @@ Result<void> readMetadata(std::span<const std::byte> bytes, const ContainerLimit
 /// Payloads lie one after the other, each at the next multiple of 64, zeros between, and nothing behind.
 Result<void> checkLayout(std::span<const std::byte> bytes, const Description& description) {
     std::uint64_t end = description.header.metadata_offset + description.header.metadata_size;
-    for (std::size_t i = 0; i < description.payloads.size(); ++i) {
-        const PayloadInfo& info = description.payloads[i].info;
+    for (std::size_t i = 0; i < description.maps.size(); ++i) {
+        const PayloadInfo& info = description.maps[i].payload.info;
         const std::uint64_t expected = alignPayload(end);
         if (info.offset != expected) {
             return invalidMap(i, "its payload's offset is " + std::to_string(info.offset) +
@@ -248,27 +263,25 @@ Result<Description> readDescription(std::span<const std::byte> bytes, const Cont
     return description;
 }
 
-Result<void> readTexels(std::span<const std::byte> bytes, const StoredPayload& payload, DepthMap& map) {
+Result<void> readTexels(std::span<const std::byte> bytes, ParsedMap& map) {
+    const StoredPayload& payload = map.payload;
     const auto stored = bytes.subspan(payload.info.offset, payload.info.stored_size);
     if (payload.hash != xxh3_64(stored)) {
         return invalidInput("damaged: the checksum of its payload at byte " +
                             std::to_string(payload.info.offset) + " is wrong");
     }
-    if (payload.info.compressed) {
-        map.texels = RELIEF_TRY(unpackPayload(stored, payload.info.raw_size));
-    } else {
-        map.texels.assign(stored.begin(), stored.end());
-    }
-    return validateTexels(map);
+    map.frame.texels = RELIEF_TRY(unpackPayload(stored, map));
+    return validateTexels(map.frame);
 }
 
 Result<Collider> readCollider(std::span<const std::byte> bytes, const ContainerLimits& limits) {
     Description description = RELIEF_TRY(readDescription(bytes, limits));
-    for (std::size_t i = 0; i < description.payloads.size(); ++i) {
-        if (const Result<void> ok = readTexels(bytes, description.payloads[i], description.collider.maps[i]);
-            !ok) {
+    for (std::size_t i = 0; i < description.maps.size(); ++i) {
+        ParsedMap& map = description.maps[i];
+        if (const Result<void> ok = readTexels(bytes, map); !ok) {
             return tl::unexpected<Error>(inMap(i, ok.error()));
         }
+        description.collider.maps.push_back(std::move(map.frame));
     }
     return std::move(description.collider);
 }
@@ -302,8 +315,8 @@ Result<ContainerInfo> readContainerInfo(std::span<const std::byte> bytes, const 
         const Description description = RELIEF_TRY(readDescription(bytes, limits));
         const ContainerHeader& header = description.header;
         ContainerInfo info{header.major, header.minor, header.file_size, {}};
-        for (const StoredPayload& payload : description.payloads) {
-            info.payloads.push_back(payload.info);
+        for (const ParsedMap& map : description.maps) {
+            info.payloads.push_back(map.payload.info);
         }
         return info;
     });

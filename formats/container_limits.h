@@ -6,7 +6,7 @@
 namespace relief {
 
 inline constexpr std::uint16_t kContainerMajor = 1;
-inline constexpr std::uint16_t kContainerMinor = 0;
+inline constexpr std::uint16_t kContainerMinor = 1;
 
 struct ContainerLimits {
     std::uint32_t maps = 1024;
@@ -14,11 +14,20 @@ struct ContainerLimits {
 };
 
 /// How each payload lies in a file; for `relief info`.
+/// How a map's texels lie in a file.
+enum class Packing : std::uint8_t {
+    kNone = 0,  ///< as they are
+    kZstd = 1,  ///< a zstd frame
+    kRows = 2,  ///< rows without their empty ends (row_spans.h); since version 1.1
+};
+
+[[nodiscard]] const char* packingName(Packing packing);  ///< "none", "zstd" or "rows"
+
 struct PayloadInfo {
     std::uint64_t offset = 0;
     std::uint64_t stored_size = 0;
     std::uint64_t raw_size = 0;
-    bool compressed = false;
+    Packing packing = Packing::kNone;
 };
 
 }  // namespace relief

@@ -10,11 +10,13 @@
 
 #include "collider_generated.h"
 #include "formats/container_header.h"
+#include "formats/row_spans.h"
 
 namespace relief {
 namespace {
 
-/// zstd packs at most a block of 128 KiB into four bytes, so a payload that claims more is a lie.
+/// zstd packs at most a block of 128 KiB into four bytes, and an empty row of kMapSizeMax texels takes four, so a payload
+/// that claims more is a lie.
 constexpr std::uint64_t kZstdRatioMax = 32768;
 constexpr flatbuffers::uoffset_t kMetadataDepthMax = 4;  // collider, map or provenance
 
@@ -77,38 +79,45 @@ Result<ParsedMetadata> parseMetadata(std::span<const std::byte> bytes, std::uint
     for (flatbuffers::uoffset_t i = 0; i < maps.size(); ++i) {
         const fb::Map& map = *maps.Get(i);
         const fb::Payload& payload = *map.payload();
-        const bool zstd = map.compression() == fb::Compression::Zstd;
-        parsed.maps.push_back(
-            {readFrame(map),
-             {{payload.offset(), payload.stored_size(), payload.raw_size(), zstd}, payload.xxh3()},
-             static_cast<std::uint8_t>(map.compression())});
+        parsed.maps.push_back({readFrame(map),
+                               {{payload.offset(), payload.stored_size(), payload.raw_size(),
+                                 static_cast<Packing>(map.compression())},
+                                payload.xxh3()}});
     }
     return parsed;
 }
 
 Result<void> validatePayloadSizes(const ParsedMap& map) {
     const PayloadInfo& info = map.payload.info;
-    if (!info.compressed && map.compression != static_cast<std::uint8_t>(fb::Compression::None)) {
-        return invalidInput("its compression " + std::to_string(map.compression) + " is unknown");
+    if (info.packing > Packing::kRows) {
+        return invalidInput("its compression " + std::to_string(static_cast<int>(info.packing)) +
+                            " is unknown");
+    }
+    if (info.packing == Packing::kRows && !isFrontBack(map.frame.format)) {
+        return invalidInput(std::string("its compression \"rows\" does not go with its format \"") +
+                            mapFormatName(map.frame.format) + "\"");
     }
     if (info.raw_size != map.frame.texelBytes()) {
         return invalidInput("its raw_size is " + std::to_string(info.raw_size) +
                             " where its size and format need " + std::to_string(map.frame.texelBytes()) +
                             " bytes");
     }
-    if (info.compressed ? info.stored_size >= info.raw_size : info.stored_size != info.raw_size) {
+    const bool packed = info.packing != Packing::kNone;
+    if (packed ? info.stored_size >= info.raw_size : info.stored_size != info.raw_size) {
         return invalidInput("its stored_size " + std::to_string(info.stored_size) +
                             " does not go with its raw_size " + std::to_string(info.raw_size) +
                             " and its compression");
     }
-    if (info.compressed && info.raw_size / kZstdRatioMax > info.stored_size) {
+    if (packed && info.raw_size / kZstdRatioMax > info.stored_size) {
         return invalidInput("its " + std::to_string(info.stored_size) + " stored bytes cannot hold the " +
                             std::to_string(info.raw_size) + " that they claim");
     }
     return {};
 }
 
-Result<std::vector<std::byte>> unpackPayload(std::span<const std::byte> stored, std::uint64_t raw_size) {
+namespace {
+
+Result<std::vector<std::byte>> decompress(std::span<const std::byte> stored, std::uint64_t raw_size) {
     if (ZSTD_getFrameContentSize(stored.data(), stored.size()) != raw_size) {
         return invalidInput("its payload is no zstd frame that states a content of " +
                             std::to_string(raw_size) + " bytes");
@@ -126,6 +135,32 @@ Result<std::vector<std::byte>> unpackPayload(std::span<const std::byte> stored, 
                             std::to_string(raw_size));
     }
     return raw;
+}
+
+}  // namespace
+
+const char* packingName(Packing packing) {
+    switch (packing) {
+        case Packing::kNone:
+            return "none";
+        case Packing::kZstd:
+            return "zstd";
+        case Packing::kRows:
+            return "rows";
+    }
+    return "unknown";
+}
+
+Result<std::vector<std::byte>> unpackPayload(std::span<const std::byte> stored, const ParsedMap& map) {
+    switch (map.payload.info.packing) {
+        case Packing::kZstd:
+            return decompress(stored, map.payload.info.raw_size);
+        case Packing::kRows:
+            return unpackRows(stored, map.frame);
+        case Packing::kNone:
+            break;
+    }
+    return std::vector<std::byte>(stored.begin(), stored.end());
 }
 
 }  // namespace relief

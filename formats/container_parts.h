@@ -31,9 +31,8 @@ struct StoredPayload {
 
 /// A map as the metadata has it; no value has been checked.
 struct ParsedMap {
-    DepthMap frame;  ///< no texels; its enums may be out of range
+    DepthMap frame;  ///< no texels; its enums, and the payload's packing, may be out of range
     StoredPayload payload;
-    std::uint8_t compression = 0;  ///< fb::Compression, perhaps unknown; info.compressed: it is zstd
 };
 
 /// Metadata that is a table of a collider; no value has been checked.
@@ -51,10 +50,10 @@ struct ParsedMetadata {
 /// Errors: kInvalidInput, without the map's index.
 [[nodiscard]] Result<void> validatePayloadSizes(const ParsedMap& map);
 
-/// The texels of a zstd payload.
-/// \param raw_size  by validatePayloadSizes: this much memory is taken.
+/// The texels of a payload: all of them, whatever its packing.
+/// \param map  passed validateFrame and validatePayloadSizes: raw_size bytes are taken.
 /// Errors: kInvalidInput, without the map's index. Throws std::bad_alloc.
 [[nodiscard]] Result<std::vector<std::byte>> unpackPayload(std::span<const std::byte> stored,
-                                                           std::uint64_t raw_size);
+                                                           const ParsedMap& map);
 
 }  // namespace relief

@@ -285,16 +285,12 @@ class Inspector {
         if (!intact) {
             add(IssueCode::kPayloadChecksum, "the checksum of its payload is wrong", payload.offset, index);
         }
-        if (payload.compressed) {
-            Result<std::vector<std::byte>> raw = unpackPayload(stored, payload.raw_size);
-            if (!raw) {
-                add(IssueCode::kPayloadZstd, raw.error().message, payload.offset, index);
-                return;
-            }
-            map.frame.texels = std::move(*raw);
-        } else {
-            map.frame.texels.assign(stored.begin(), stored.end());
+        Result<std::vector<std::byte>> unpacked = unpackPayload(stored, map);
+        if (!unpacked) {
+            add(IssueCode::kPayloadUnpack, unpacked.error().message, payload.offset, index);
+            return;
         }
+        map.frame.texels = std::move(*unpacked);
         if (const Result<void> ok = validateTexels(map.frame); !ok) {
             add(IssueCode::kTexels, ok.error().message, payload.offset, index);
             return;

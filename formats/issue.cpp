@@ -33,7 +33,7 @@ constexpr std::array kKinds = {
     IssueKind{IssueCode::kPadding, Severity::kError, "padding is not zero"},
     IssueKind{IssueCode::kBytesBehind, Severity::kError, "bytes follow the last payload"},
     IssueKind{IssueCode::kPayloadChecksum, Severity::kError, "the checksum of a payload is wrong"},
-    IssueKind{IssueCode::kPayloadZstd, Severity::kError, "a payload does not decompress to its texels"},
+    IssueKind{IssueCode::kPayloadUnpack, Severity::kError, "a payload does not unpack to its texels"},
     IssueKind{IssueCode::kTexels, Severity::kError, "a texel holds what no texel may hold"},
     IssueKind{IssueCode::kRefused, Severity::kError, "the reader refuses the file for another reason"},
     IssueKind{IssueCode::kLaterMinor, Severity::kWarning,

@@ -44,7 +44,7 @@ enum class IssueCode : std::uint16_t {
     kPadding = 1405,
     kBytesBehind = 1406,
     kPayloadChecksum = 1407,
-    kPayloadZstd = 1408,
+    kPayloadUnpack = 1408,
     kTexels = 1501,
     kRefused = 1901,
     kLaterMinor = 2001,

@@ -24,7 +24,8 @@ struct ReliefMap {
                            // unit of depth moves a standing plane; width - 1; height - 1
     vec4 object_per_map;   // xyz; z is z_scale of an orthographic map, xyz the paper's s of a cube; w: the
                            // largest product of an orthographic ray and the normal of a plane along it
-    ivec4 place;           // index of texel (0,0) of face 0; from row to row; from face to face; width
+    ivec4 place;           // index of texel (0,0) of face 0; from row to row; from face to face; width. With
+                           // RELIEF_HAS_ROWS a texel for each row comes first, which says where those of the row are
     ivec4 info;            // height; format; flags: the sum of MapFlag; of a live map the index of the
                            // texel (0,0) of its motion, in u_relief_float, whose rows are as wide as that texture
 };
@@ -255,6 +256,17 @@ bool reliefFixedTexel(int index, float depth_max, out float depth, out vec2 norm
     return code > 0.0;
 }
 
+// The index of a texel of a front-back map, −1 where its row has none: a silhouette leaves the ends of rows empty.
+int reliefFrontBackIndex(ivec4 place, ivec4 info, ivec2 at) {
+    int index = place.x + at.y * place.y + at.x;
+    if (reliefHas(info, RELIEF_HAS_ROWS)) {
+        uvec4 row = texelFetch(u_relief_front_back, reliefTexel(place.x + at.y, u_relief_count.w), 0);
+        bool within = uint(at.x) >= row.r && uint(at.x) < row.g;
+        index = within ? place.x + int(row.b | (row.a << 16)) + at.x : -1;
+    }
+    return index;
+}
+
 // A normal as a texel holds it: of all that are fetched only the deciding one is ever made a vector.
 #if defined(RELIEF_HAS_FLOAT)
 #define RELIEF_CODE vec3
@@ -296,7 +308,7 @@ float reliefEmpty(ivec4 info) {
 
 // Where a point of an orthographic map lies beside the ray through its texel's centre.
 struct ReliefSight {
-    int texel;
+    int texel;   // its index; −1: it is empty
     float z;     // depth of the point
     bool plane;  // how the map decodes
     vec3 from;   // as reliefPlane() takes them
@@ -317,8 +329,8 @@ float reliefSightProjected(ivec4 info, float depth, ReliefSight sight) {
 
 // Two surfaces, the nearer in front, the farther in back.
 ReliefVote reliefVoteFrontBack(int i, ivec4 info, ReliefSight sight, bool whole, out bool found) {
-    uvec4 words = texelFetch(u_relief_front_back, reliefTexel(sight.texel, u_relief_count.w), 0);
-    found = words.b != 0u || words.a != 0u && (!sight.plane || RELIEF_HALF_EMPTY);
+    uvec4 words = texelFetch(u_relief_front_back, reliefTexel(max(sight.texel, 0), u_relief_count.w), 0);
+    found = sight.texel >= 0 && (words.b != 0u || words.a != 0u && (!sight.plane || RELIEF_HALF_EMPTY));
     float front = reliefFrontBackDepth(info.y, words.b);
     float back = reliefFrontBackDepth(info.y, words.a);
     if (sight.plane) {
@@ -371,7 +383,8 @@ ReliefVote reliefVoteOrthographic(int i, vec3 p, ivec4 place, ivec4 info, bool w
     bool sees_beyond = encloses && (whole || !reliefHas(info, RELIEF_EMPTY_IS_OUTSIDE));
     if (in_window && (in_depth || sees_beyond)) {
         ivec2 at = ivec2(p.xy);
-        ReliefSight sight = ReliefSight(place.x + at.y * place.y + at.x, p.z, reliefIsPlane(info),
+        int texel = reliefIsFrontBack(info) ? reliefFrontBackIndex(place, info, at) : place.x + at.y * place.y + at.x;
+        ReliefSight sight = ReliefSight(texel, p.z, reliefIsPlane(info),
                                         reliefFromMap(i, vec3(p.xy - (vec2(at) + 0.5), p.z)),
                                         u_relief_maps[i].column[2].xyz, u_relief_maps[i].object_per_map.w,
                                         u_relief_maps[i].object_per_map.z);

@@ -13,6 +13,7 @@ enum MapFlag : std::int32_t {
     kEncloses = 2,
     kEmptyIsOutside = 4,
     kDecodesPlane = 8,
+    kHasRows = 16,  ///< front-back: a texel for each row says which of its texels there are
 };
 
 /// What a collision does to a particle; one that is caught inside always leaves first.

@@ -65,10 +65,10 @@ class Advisor {
         const bool sheet = any({WrongCause::kSheet});
         const bool open = any({WrongCause::kOpen});
         if (any({WrongCause::kTexel, WrongCause::kSilhouette, WrongCause::kUnseen})) {
-            tryBudget(roundBudget(2 * input_.collider.texelBytes()), "planned maps of twice the bytes");
+            tryBudget(roundBudget(2 * input_.collider.gpuBytes()), "planned maps of twice the bytes");
         }
         if (any({WrongCause::kOther})) {
-            tryBudget(roundBudget(input_.collider.texelBytes()), "planned maps of as many bytes");
+            tryBudget(roundBudget(input_.collider.gpuBytes()), "planned maps of as many bytes");
         }
         if (input_.shape.sheets > 0 && input_.shape.thickness > 0.0) {
             tryThicker();
@@ -107,7 +107,7 @@ class Advisor {
         return "relief bake " + shellWord(input_.mesh_file) + " -o " + shellWord(input_.output);
     }
     [[nodiscard]] std::string plannedBudget() const {
-        return " --budget " + budgetWord(roundBudget(input_.collider.texelBytes())) + input_.recorded.words();
+        return " --budget " + budgetWord(roundBudget(input_.collider.gpuBytes())) + input_.recorded.words();
     }
 
     /// Why a bake is not tried; empty: it is.
@@ -168,7 +168,7 @@ class Advisor {
         if (input_.collider.maps.size() != kPlannedMapsMax) {
             return;
         }
-        const std::uint64_t budget = roundBudget(input_.collider.texelBytes());
+        const std::uint64_t budget = roundBudget(input_.collider.gpuBytes());
         constexpr std::uint32_t kMaps = 2 * kPlannedMapsMax;
         attempt(command() + " --budget " + budgetWord(budget) + " --max-maps " + std::to_string(kMaps) +
                     input_.recorded.words(),
@@ -214,7 +214,7 @@ class Advisor {
     void tryCubes() {
         BakeOptions options = bakeOptions();
         options.maps = input_.recorded.maps;
-        std::uint64_t bytes = input_.collider.texelBytes();
+        std::uint64_t bytes = input_.collider.gpuBytes();
         for (const WorstPlace& place : input_.places) {
             if (place.cause != WrongCause::kUnseen && place.cause != WrongCause::kSilhouette) {
                 continue;
@@ -240,7 +240,7 @@ class Advisor {
     Result<double> wrongOfShape(const RecordedBake& recorded) const {
         const ShapedMesh shaped = RELIEF_TRY(shapedMesh(recorded, input_.imported));
         const MeshQuery query = RELIEF_TRY(MeshQuery::build(shaped.mesh));
-        return wrongOfPlan(shaped.mesh, roundBudget(input_.collider.texelBytes()),
+        return wrongOfPlan(shaped.mesh, roundBudget(input_.collider.gpuBytes()),
                            sampleTruth(query, truth_.options));
     }
 
@@ -251,7 +251,7 @@ class Advisor {
         }
         RecordedBake recorded = input_.recorded;
         recorded.keeps_holes = false;
-        const std::uint64_t budget = roundBudget(input_.collider.texelBytes());
+        const std::uint64_t budget = roundBudget(input_.collider.gpuBytes());
         recorded.shape.thickness = defaultThickness(input_.imported->bounds, budget);
         attempt(command() + " --budget " + budgetWord(budget) + recorded.words("--holes"),
                 "holes closed, and sheets made shells", budget, [&] { return wrongOfShape(recorded); });
@@ -264,7 +264,7 @@ class Advisor {
         }
         const float thickness = rounded(2.0 * input_.shape.thickness);
         recorded.shape.thickness = double{thickness};
-        const std::uint64_t budget = roundBudget(input_.collider.texelBytes());
+        const std::uint64_t budget = roundBudget(input_.collider.gpuBytes());
         attempt(command() + " --budget " + budgetWord(budget) + recorded.words("--thickness") +
                     " --thickness " + shortest(thickness),
                 "sheets twice as thick", budget, [&] { return wrongOfShape(recorded); });

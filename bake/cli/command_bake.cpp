@@ -276,6 +276,9 @@ Result<void> makeCollider(BakeRun& run) {
         run.backend.gl.watchdog->rest();
     }
     run.baked = RELIEF_TRY(std::move(baked));
+    if (run.plan) {
+        run.plan->plan.bytes = run.baked.collider.gpuBytes();
+    }
     run.baked.collider.provenance.options += (run.command.holes == Holes::kKeep ? " --holes keep" : "") +
                                              importProvenance(run.command.import.options) +
                                              careOptionsText(run.cared.care) + shapeOptionsText(run.shape);

@@ -38,12 +38,15 @@ std::string humanReport(const Collider& collider, const ContainerInfo& info) {
     for (std::size_t i = 0; i < collider.maps.size(); ++i) {
         const DepthMap& map = collider.maps[i];
         const std::string size = std::to_string(map.width) + "x" + std::to_string(map.height);
-        rows.push_back(
-            {std::to_string(i), mapFormatName(map.format),
-             map.projection() == Projection::kCube ? "cube" : "orthographic", compareName(map.compare),
-             map.faceCount() == 1 ? size : "6x" + size, bytesText(info.payloads[i].raw_size),
-             bytesText(info.payloads[i].stored_size) + (info.payloads[i].compressed ? " zstd" : ""),
-             map.encloses ? "yes" : "no", map.empty_is_outside ? "outside" : "unknown"});
+        rows.push_back({std::to_string(i), mapFormatName(map.format),
+                        map.projection() == Projection::kCube ? "cube" : "orthographic",
+                        compareName(map.compare), map.faceCount() == 1 ? size : "6x" + size,
+                        bytesText(info.payloads[i].raw_size),
+                        bytesText(info.payloads[i].stored_size) +
+                            (info.payloads[i].packing == Packing::kNone
+                                 ? ""
+                                 : std::string(" ") + packingName(info.payloads[i].packing)),
+                        map.encloses ? "yes" : "no", map.empty_is_outside ? "outside" : "unknown"});
     }
     text += table(rows);
     for (std::size_t i = 0; i < collider.maps.size(); ++i) {

@@ -149,7 +149,7 @@ ColliderAccuracy measureCollider(const TruthSamples& samples, const MeshQuery& q
         static_cast<std::uint64_t>(std::count_if(samples.surface.begin(), samples.surface.end(),
                                                  [](const SurfacePoint& point) { return point.buried; })),
         samples.surface.size());
-    accuracy.gpu_bytes = collider.texelBytes();
+    accuracy.gpu_bytes = collider.gpuBytes();
     return accuracy;
 }
 

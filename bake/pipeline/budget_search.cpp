@@ -74,6 +74,7 @@ class Search {
         bake_options.maps = specsOf(plan);
         Baked baked = RELIEF_TRY(bake(query_.prepared(), bake_options));
         const double wrong = measureField(truth_, fieldOf(baked.collider)).near.total();
+        plan.bytes = baked.collider.gpuBytes();
         const BudgetTry made{budget, plan.bytes, wrong};
         tries_.push_back(made);
         if (options_.tried) {

@@ -15,7 +15,7 @@ namespace relief {
 
 struct BudgetTry {
     std::uint64_t budget = 0;    ///< bytes
-    std::uint64_t bytes = 0;     ///< of all texels, at most the budget
+    std::uint64_t bytes = 0;     ///< on the GPU, at most the budget
     double wrong_percent = 0.0;  ///< of the points near the surface (FieldAccuracy::near)
 };
 

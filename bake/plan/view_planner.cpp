@@ -3,19 +3,15 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/vec2.hpp>
-#include <limits>
 #include <optional>
 
 #include "bake/measure/sight.h"
-#include "bake/mesh/oriented_box.h"
 #include "bake/mesh/surface_sampler.h"
 #include "bake/mesh/triangle_plane.h"
+#include "bake/plan/outer_views.h"
 #include "bake/plan/view.h"
 
 namespace relief {
@@ -33,8 +29,6 @@ constexpr double kFullCosine = 0.7;
 constexpr float kSilhouette = 0.9F;
 /// Service under the flattest angle that is not edge-on.
 constexpr double kLeastService = 0.15;
-/// Views whose rectangle is smaller than this share of the largest look at a flat mesh edge-on.
-constexpr double kSmallestView = 0.1;
 constexpr double kEdgeOn = 0.05;
 constexpr float kEdgeOnService = 0.01F;
 /// An outer view that raises the mean service by this much is taken before places within are looked at.
@@ -108,99 +102,15 @@ float service(double cosine) {
                                   1.0, kLeastService + (1.0 - kLeastService) * cosine / kFullCosine));
 }
 
-/// A direction to look along, and how its image is turned; nullopt: by the rule of view.h.
-struct Candidate {
-    glm::dvec3 direction;
-    std::optional<glm::dvec3> up;
-};
-
-/// Directions of the octahedron's lattice, one of each opposite pair, and the diagonals of the box.
-std::vector<glm::dvec3> outerDirections(const Bounds& bounds) {
-    std::vector<glm::dvec3> directions = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    const glm::dvec3 size = bounds.size();
-    for (const double y : {-1.0, 1.0}) {
-        for (const double z : {-1.0, 1.0}) {
-            directions.emplace_back(size.x, y * size.y, z * size.z);
-        }
-    }
-    constexpr int kLattice = 4;
-    for (int j = -kLattice; j <= kLattice; ++j) {
-        for (int i = -kLattice; i <= kLattice; ++i) {
-            const int k = kLattice - std::abs(i) - std::abs(j);
-            const bool opposite_comes = k == 0 && (j < 0 || (j == 0 && i < 0));
-            const bool axis = (i == 0) + (j == 0) + (k == 0) == 2;
-            if (k >= 0 && !opposite_comes && !axis) {
-                directions.emplace_back(i, j, k);
-            }
-        }
-    }
-    const double least = 1e-6 * length(size);
-    std::erase_if(directions, [&](const glm::dvec3& d) { return !(length(d) > std::min(least, 0.5)); });
-    for (glm::dvec3& direction : directions) {
-        direction /= length(direction);
-    }
-    return directions;
-}
-
-/// Area of the rectangle round the points as a view with this frame shows them.
-double rectangleArea(const std::vector<glm::dvec3>& points, const glm::dvec3& direction,
-                     const glm::dvec3& up) {
-    const glm::dvec3 right = cross(direction, up) / length(cross(direction, up));
-    const glm::dvec3 upwards = cross(right, direction);
-    glm::dvec2 low(std::numeric_limits<double>::max());
-    glm::dvec2 high(std::numeric_limits<double>::lowest());
-    for (const glm::dvec3& p : points) {
-        const glm::dvec2 at(dot(p, right), dot(p, upwards));
-        low = glm::min(low, at);
-        high = glm::max(high, at);
-    }
-    return (high.x - low.x) * (high.y - low.y);
-}
-
-/// The outer directions and the axes of the oriented box, each turned by the axis of that box that makes its
-/// rectangle clearly smaller than the rule of view.h does.
-std::vector<Candidate> outerCandidates(const TriangleMesh& mesh, bool oriented_box) {
-    std::vector<Candidate> candidates;
-    for (const glm::dvec3& direction : outerDirections(mesh.bounds)) {
-        candidates.push_back({direction, std::nullopt});
-    }
-    if (!oriented_box) {
-        return candidates;
-    }
-    const std::vector<glm::dvec3> corners = extremeVertices(mesh);
-    const std::optional<std::array<glm::dvec3, 3>> axes = orientedBoxAxes(corners);
-    if (!axes) {
-        return candidates;
-    }
-    for (const glm::dvec3& axis : *axes) {
-        const bool known = std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& candidate) {
-            return std::abs(dot(candidate.direction, axis)) > 1.0 - 1e-9;
-        });
-        if (!known) {
-            candidates.push_back({axis, std::nullopt});
-        }
-    }
-    for (Candidate& candidate : candidates) {
-        double least = 0.99 * rectangleArea(corners, candidate.direction, defaultUp(candidate.direction));
-        for (const glm::dvec3& axis : *axes) {
-            if (std::abs(dot(candidate.direction, axis)) > 0.9) {
-                continue;
-            }
-            const double area = rectangleArea(corners, candidate.direction, axis);
-            if (area < least) {
-                least = 0.999999 * area;  // of equals, as of opposite faces of a cube, the first
-                candidate.up = axis;
-            }
-        }
-    }
-    return candidates;
-}
-
 std::string text(const char* format, double a, double b = 0.0, double c = 0.0, double d = 0.0) {
     char buffer[160];
     std::snprintf(buffer, sizeof(buffer), format, a, b, c, d);
     return buffer;
 }
+
+struct RatedView : OuterView {
+    std::vector<float> service;  ///< of each point
+};
 
 class Planner {
   public:
@@ -215,48 +125,23 @@ class Planner {
     }
 
     Result<ViewChoice> run() {
-        std::vector<OuterView> views = RELIEF_TRY(outerViews());
+        std::vector<glm::dvec3> positions;
+        for (const PlanPoint& point : points_) {
+            positions.push_back(point.position);
+        }
+        const std::vector<OuterView> outer = RELIEF_TRY(outerViews(mesh_, positions, options_.oriented_box));
+        std::vector<RatedView> views;
+        for (const OuterView& view : outer) {
+            views.push_back({view, {}});
+        }
         rateViews(views);
         addViews(views);
+        RELIEF_TRY(addSilhouettes());
         choice_.unseen_percent = RELIEF_TRY(unseenPercent());
         return std::move(choice_);
     }
 
   private:
-    struct OuterView {
-        MapSpec spec;
-        double width = 0.0;  ///< object units
-        double height = 0.0;
-        std::vector<float> service;  ///< of each point
-    };
-
-    /// All candidates but those that see a flat mesh edge-on, not rated yet.
-    [[nodiscard]] Result<std::vector<OuterView>> outerViews() const {
-        std::vector<OuterView> views;
-        for (const Candidate& candidate : outerCandidates(mesh_, options_.oriented_box)) {
-            OuterView view;
-            view.spec.format = MapFormat::kFrontBackFixed;
-            view.spec.decode = Decode::kPlane;
-            view.spec.direction = glm::vec3(candidate.direction) + 0.0F;  // no −0, for the reason
-            if (candidate.up) {
-                view.spec.up = glm::vec3(*candidate.up);
-            }
-            view.spec.width = view.spec.height = 64;  // any: the extents do not depend on it
-            const View frame = RELIEF_TRY(makeView(view.spec, mesh_));
-            // The inner 62 of 64 texels cover the mesh.
-            view.width = length(frame.axis[0]) * 62.0 / 64.0;
-            view.height = length(frame.axis[1]) * 62.0 / 64.0;
-            views.push_back(std::move(view));
-        }
-        const auto area = [](const OuterView& view) { return view.width * view.height; };
-        double largest = 0.0;
-        for (const OuterView& view : views) {
-            largest = std::max(largest, area(view));
-        }
-        std::erase_if(views, [&](const OuterView& view) { return area(view) < kSmallestView * largest; });
-        return views;
-    }
-
     /// As `relief check` has it of the baked maps.
     [[nodiscard]] Result<double> unseenPercent() const {
         std::vector<DepthMap> maps;
@@ -270,8 +155,19 @@ class Planner {
         return Sights(maps, query_).unseenPercent(sampleSurface(query_, {.samples = kSurfacePoints}));
     }
 
+    [[nodiscard]] Result<void> addSilhouettes() {
+        for (ViewChoice::Chosen& chosen : choice_.views) {
+            if (chosen.map.spec.format != MapFormat::kCube8) {
+                MapSpec spec = chosen.map.spec;
+                spec.width = spec.height = 64;  // any: its outline does not depend on it
+                chosen.silhouette.emplace(mesh_, RELIEF_TRY(makeView(spec, mesh_)));
+            }
+        }
+        return {};
+    }
+
     /// How well each view serves each point.
-    void rateViews(std::vector<OuterView>& views) const {
+    void rateViews(std::vector<RatedView>& views) const {
         tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
             const glm::dvec3 along(views[v].spec.direction);
             views[v].service.resize(points_.size());
@@ -291,7 +187,7 @@ class Planner {
     }
 
     /// Takes views, from outside and from within, while one more is worth its price.
-    void addViews(const std::vector<OuterView>& views) {
+    void addViews(const std::vector<RatedView>& views) {
         int idle_rounds = 0;
         for (std::uint64_t round = 0; idle_rounds < kIdleRounds; ++round) {
             const OuterChoice outer = bestOuterView(views);
@@ -303,8 +199,7 @@ class Planner {
             const std::optional<Cavity> cavity = bestCavity(round);
             const double cavity_gain = cavity ? cavity->gain / total() : 0.0;
             const double outer_value =
-                outer.view == nullptr ? 0.0
-                                      : valueOf(outer.gain, 8.0 * outer.view->width * outer.view->height);
+                outer.view == nullptr ? 0.0 : valueOf(outer.gain, 8.0 * outer.view->area);
             const double cavity_value = cavity ? valueOf(cavity_gain, cavity->area) : 0.0;
             if (full) {
                 choice_.next_gain = std::max(outer.gain, cavity_gain);
@@ -333,20 +228,20 @@ class Planner {
     }
 
     struct OuterChoice {
-        const OuterView* view = nullptr;
+        const RatedView* view = nullptr;
         double gain = 0.0;  ///< in the mean service
     };
-    [[nodiscard]] OuterChoice bestOuterView(const std::vector<OuterView>& views) const {
+    [[nodiscard]] OuterChoice bestOuterView(const std::vector<RatedView>& views) const {
         OuterChoice best;
         double best_score = 0.0;
-        for (const OuterView& view : views) {
+        for (const RatedView& view : views) {
             double gain = 0.0;
             for (std::size_t i = 0; i < points_.size(); ++i) {
                 gain += std::max(0.0F, view.service[i] - served_[i]);
             }
             // By the root of its bytes: an image of half the size, seen at a slant, has texels as large on the surface,
             // and silhouettes as long.
-            const double score = gain / std::sqrt(view.width * view.height);
+            const double score = gain / std::sqrt(view.area);
             if (score > best_score) {
                 best = {&view, gain / total()};
                 best_score = score;
@@ -356,7 +251,7 @@ class Planner {
     }
 
     /// \param gain  in the service of all points.
-    void take(const OuterView& view, double gain) {
+    void take(const RatedView& view, double gain) {
         std::size_t sees = 0;
         for (std::size_t i = 0; i < points_.size(); ++i) {
             served_[i] = std::max(served_[i], view.service[i]);
@@ -372,7 +267,7 @@ class Planner {
                                  100.0 * static_cast<double>(sees) / count, 100.0 * gain / count);
         chosen.width = view.width;
         chosen.height = view.height;
-        chosen.area = 8.0 * view.width * view.height;
+        chosen.area = 8.0 * view.area;
         add(std::move(chosen));
         outer_area_ = choice_.area;
     }
@@ -506,7 +401,8 @@ Plan sizedPlan(const ViewChoice& choice, double texel) {
         };
         map.spec.width = texels(view.width);
         map.spec.height = cube ? map.spec.width : texels(view.height);
-        plan.bytes += std::uint64_t{map.spec.width} * map.spec.height * (cube ? 24U : 8U);
+        plan.bytes += view.silhouette ? view.silhouette->gpuBytes(map.spec.width, map.spec.height)
+                                      : std::uint64_t{24} * map.spec.width * map.spec.height;
         plan.maps.push_back(std::move(map));
     }
     return plan;
@@ -535,8 +431,8 @@ Result<ViewChoice> chooseViews(const MeshQuery& query, const ViewOptions& option
 
 Result<Plan> planSizes(const ViewChoice& choice, std::uint64_t budget_bytes) {
     RELIEF_TRY(checkBudget(budget_bytes));
-    // The border of orthographic maps takes bytes too: shrink until all fit.
-    for (double texel = std::sqrt(choice.area / static_cast<double>(budget_bytes));; texel *= 1.002) {
+    // Partial texels at the ends of rows take bytes too: shrink until all fit.
+    for (double texel = 0.8 * std::sqrt(choice.area / static_cast<double>(budget_bytes));; texel *= 1.002) {
         Plan plan = sizedPlan(choice, texel);
         if (plan.bytes <= budget_bytes) {
             return plan;

@@ -14,12 +14,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bake/mesh/mesh_query.h"
 #include "bake/plan/map_spec.h"
 #include "bake/plan/prefer.h"
+#include "bake/plan/silhouette.h"
 #include "formats/base/result.h"
 
 namespace relief {
@@ -46,7 +48,8 @@ struct ViewChoice {
         PlannedMap map;
         double width = 0.0;  ///< object units; of a cube the mean width of its volume
         double height = 0.0;
-        double area = 0.0;  ///< bytes for texels of side 1
+        double area = 0.0;                     ///< bytes for texels of side 1
+        std::optional<Silhouette> silhouette;  ///< not of cubes
     };
     std::vector<Chosen> views;
     double area = 0.0;            ///< of all views
@@ -66,13 +69,13 @@ struct Plan {
     double texel = 0.0;           ///< side of a texel, object units
     double unseen_percent = 0.0;  ///< as ViewChoice has it
     double next_gain = 0.0;       ///< as ViewChoice has it
-    std::uint64_t bytes = 0;      ///< of all texels
+    std::uint64_t bytes = 0;      ///< of all maps on the GPU; at most, until they are baked
 };
 
 /// What bake() takes of a plan.
 [[nodiscard]] std::vector<MapSpec> specsOf(const Plan& plan);
 
-/// \param budget_bytes  of all texels together, at least kPlanBudgetMin
+/// \param budget_bytes  of all maps together on the GPU (Collider::gpuBytes), at least kPlanBudgetMin
 /// Errors: kUsage (a budget below kPlanBudgetMin or too small for the views).
 [[nodiscard]] Result<Plan> planSizes(const ViewChoice& choice, std::uint64_t budget_bytes);
 

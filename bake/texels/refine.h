@@ -27,7 +27,7 @@ struct RefineOptions {
 };
 
 inline constexpr std::uint64_t kRefinePointsMin = 200'000;
-inline constexpr std::uint64_t kRefinePointsMax = 4'000'000;
+inline constexpr std::uint64_t kRefinePointsMax = 6'000'000;
 
 /// Changes texels of maps of planes whose depths are 16-bit fixed point; the others only vote. The same for
 /// any number of threads.

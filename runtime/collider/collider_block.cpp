@@ -19,12 +19,15 @@ struct BlockMap {
 };
 static_assert(sizeof(BlockMap) == 144);
 
-std::int32_t flagsOf(const DepthMap& map) {
-    return (map.compare == Compare::kGreater ? kKeepsFarthest : 0) | (map.encloses ? kEncloses : 0) |
+std::int32_t flagsOf(const PlacedMap& placed) {
+    const DepthMap& map = *placed.map;
+    return (isFrontBack(map.format) && !placed.live ? kHasRows : 0) |
+           (map.compare == Compare::kGreater ? kKeepsFarthest : 0) | (map.encloses ? kEncloses : 0) |
            (map.empty_is_outside ? kEmptyIsOutside : 0) | (map.decode == Decode::kPlane ? kDecodesPlane : 0);
 }
 
-BlockMap blockMap(const DepthMap& map, const MapPlace& at) {
+BlockMap blockMap(const PlacedMap& placed, const MapPlace& at) {
+    const DepthMap& map = *placed.map;
     BlockMap block{};
     const bool cube = map.projection() == Projection::kCube;
     const glm::vec3 size = cube ? glm::vec3(1.0F) : glm::vec3(map.width, map.height, 1.0F);
@@ -41,7 +44,7 @@ BlockMap blockMap(const DepthMap& map, const MapPlace& at) {
     const auto width = static_cast<std::int32_t>(map.width);
     const auto height = static_cast<std::int32_t>(map.height);
     const std::int32_t place[4] = {static_cast<std::int32_t>(at.first), at.pitch, at.pitch * height, width};
-    const std::int32_t info[4] = {height, static_cast<std::int32_t>(map.format), flagsOf(map),
+    const std::int32_t info[4] = {height, static_cast<std::int32_t>(map.format), flagsOf(placed),
                                   static_cast<std::int32_t>(at.motion_first)};
     std::memcpy(block.place, place, sizeof(place));
     std::memcpy(block.info, info, sizeof(info));
@@ -77,7 +80,7 @@ std::vector<std::byte> colliderBlock(std::span<const BlockBody> bodies, std::spa
     append(counts, sizeof(counts));
     append(bodies.data(), bodies.size_bytes());
     for (std::size_t m = 0; m < maps.size(); ++m) {
-        const BlockMap map = blockMap(*maps[m].map, layout.places[m]);
+        const BlockMap map = blockMap(maps[m], layout.places[m]);
         append(&map, sizeof(map));
     }
     return block;
@@ -97,7 +100,7 @@ std::string colliderDefines(std::size_t bodies, std::span<const PlacedMap> maps)
     }
     std::int32_t all = ~0;
     for (const PlacedMap& one : maps) {
-        all &= flagsOf(*one.map);
+        all &= flagsOf(one);
     }
     define("ALL", std::to_string(all));
     const auto defineIf = [&](const char* name, auto&& needed) {

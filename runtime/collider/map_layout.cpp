@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "formats/row_spans.h"
+
 namespace relief {
 namespace {
 
@@ -15,7 +17,7 @@ GLsizei motionHeight(const DepthMap& map) {
 }
 
 std::size_t texelCount(const DepthMap& map) {
-    return std::size_t{map.width} * map.height * map.faceCount();
+    return gpuBytes(map) / texelSize(map.format);
 }
 
 Result<void> reserve(std::span<const PlacedMap> maps, GLint side_max,

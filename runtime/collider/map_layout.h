@@ -27,8 +27,10 @@ inline constexpr std::size_t kTexelKinds = 3;
 /// Where one map lies.
 struct MapPlace {
     TexelKind kind = kFloatTexels;
-    std::size_t first = 0;  ///< index of its texel (0, 0), counted row by row of the texture
-    GLint pitch = 0;        ///< texels from one of its rows to the next
+    std::size_t first =
+        0;  ///< index of its texel (0, 0), or of its first row's span (shader_texels.h), counted row by
+            ///< row of the texture
+    GLint pitch = 0;        ///< texels from one of its rows to the next; of no use where rows have spans
     TexelRectangle texels;  ///< of a live map: where it is drawn to
     TexelRectangle motion;  ///< of a live map: where its motion is drawn to, in the float texture
     std::size_t motion_first = 0;

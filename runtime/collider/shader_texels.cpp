@@ -1,10 +1,13 @@
 #include "runtime/collider/shader_texels.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <cstring>
 #include <span>
 
 #include "formats/normal_index.h"
+#include "formats/row_spans.h"
 
 namespace relief {
 namespace {
@@ -15,6 +18,30 @@ void clampIndices(std::span<std::byte> normal) {
     for (std::byte& index : normal) {
         index = std::min(index, kLastIndex);
     }
+}
+
+/// The spans of a front-back map's rows, and then their texels.
+std::vector<std::byte> withRows(const DepthMap& map, std::span<const std::byte> texels) {
+    const std::vector<RowSpan> spans = rowSpans(map);
+    const std::size_t size = texelSize(map.format);
+    std::vector<std::byte> bytes;
+    bytes.reserve((spans.size() + texelsOf(spans)) * size);
+    auto next = static_cast<std::uint32_t>(spans.size());
+    for (const RowSpan& span : spans) {
+        // Less than 0 for the first rows of maps that are wider than high: modulo 2^32, as the shader adds.
+        const std::uint32_t origin = next - span.first;
+        const std::array<std::uint16_t, 4> words = {span.first, span.end,
+                                                    static_cast<std::uint16_t>(origin & 0xffffU),
+                                                    static_cast<std::uint16_t>(origin >> 16U)};
+        const auto row = std::as_bytes(std::span(words));
+        bytes.insert(bytes.end(), row.begin(), row.end());
+        next += span.texels();
+    }
+    for (std::size_t y = 0; y < spans.size(); ++y) {
+        const auto row = texels.subspan((y * map.width + spans[y].first) * size, spans[y].texels() * size);
+        bytes.insert(bytes.end(), row.begin(), row.end());
+    }
+    return bytes;
 }
 
 }  // namespace
@@ -43,7 +70,7 @@ std::vector<std::byte> shaderTexels(const DepthMap& map) {
             }
         }
     }
-    return texels;
+    return isFrontBack(map.format) ? withRows(map, texels) : texels;
 }
 
 }  // namespace relief

@@ -14,6 +14,10 @@ namespace relief {
 /// - in a front-back map of planes, an end that is empty beside one that is not has the other's plane: two
 ///   equal votes are one;
 /// - texels of a float map are as they were.
+///
+/// Of a front-back map they are those of its rows' spans (row_spans.h), one after the other, and before them a texel for
+/// each row from y = 0: first, end, and the low and the high word of what the index of a texel in this answer is less its
+/// x. gpuBytes(map) in all.
 [[nodiscard]] std::vector<std::byte> shaderTexels(const DepthMap& map);
 
 }  // namespace relief

@@ -15,6 +15,7 @@
 #include "formats/base/hash.h"
 #include "formats/container.h"
 #include "formats/container_header.h"
+#include "formats/row_spans.h"
 #include "formats/validate.h"
 #include "tests/formats/sample_colliders.h"
 
@@ -242,7 +243,7 @@ TEST(Crafted, Versions) {
                       r.header = [](ContainerHeader& h) { h.major = 256; };
                       r.bytes = [](std::vector<std::byte>& b) { b[60] ^= std::byte{1}; };
                   }),
-                  "container version 256.0", ErrorCode::kUnsupported);
+                  "container version 256.1", ErrorCode::kUnsupported);
 }
 
 TEST(Crafted, HeaderFields) {
@@ -313,7 +314,9 @@ TEST(Crafted, Frames) {
     expectRefused(with([](Recipe& r) { r.maps[1].compare = 3; }), "map 1: its compare 3 is unknown");
     expectRefused(with([](Recipe& r) { r.maps[1].compare = 2; }),
                   "\"both\" does not go with its format \"fixed8\"");
-    expectRefused(with([](Recipe& r) { r.maps[1].compression = 2; }), "map 1: its compression 2 is unknown");
+    expectRefused(with([](Recipe& r) { r.maps[1].compression = 3; }), "map 1: its compression 3 is unknown");
+    expectRefused(with([](Recipe& r) { r.maps[1].compression = 2; }),
+                  "map 1: its compression \"rows\" does not go with its format \"fixed8\"");
     expectRefused(with([](Recipe& r) { r.maps[1].width = 0; }), "map 1: its size 0x16 is below");
     expectRefused(with([](Recipe& r) { r.maps[1].height = 2; }), "map 1: its size 16x2 is below");
     expectRefused(with([](Recipe& r) { r.maps[1].width = 0xffffffff; }), "4294967295x16 is beyond",
@@ -467,6 +470,57 @@ TEST(Crafted, ZstdFrames) {
     // A frame that is longer than what it holds is stored for no reason.
     expectRefused(with([](Recipe& r) { r.maps[1].compression = 1; }),
                   "stored_size 1024 does not go with its raw_size");
+}
+
+/// The second map of two, 16 x 16 front-back texels, in rows: the texels of one span of row 3, and what is wrong with it.
+Recipe rowsRecipe(const std::function<void(std::vector<std::byte>&)>& spoil) {
+    return with([&](Recipe& r) {
+        std::vector<std::byte> stored(16 * 4);
+        stored[3 * 4] = std::byte{5};
+        stored[3 * 4 + 2] = std::byte{7};
+        stored.resize(16 * 4 + 2 * 8, std::byte{1});
+        spoil(stored);
+        r.maps[1].format = 4;
+        r.maps[1].compare = 2;
+        r.maps[1].compression = 2;
+        r.maps[1].raw_size = 16 * 16 * 8;
+        r.maps[1].stored = stored;
+    });
+}
+
+TEST(Crafted, Rows) {
+    const Result<Collider> sound = readContainer(fileOf(rowsRecipe([](auto&) {})));
+    ASSERT_TRUE(sound) << sound.error().message;
+    EXPECT_EQ(texelsOf(rowSpans(sound->maps[1])), 2U);
+    EXPECT_EQ(sound->maps[1].texelAt(0, 5, 3)[7], std::byte{1});
+
+    const char* sizes = "its rows have 16 bytes of texels, its payload ";
+    expectRefused(rowsRecipe([](auto& b) { b.pop_back(); }), sizes);
+    expectRefused(rowsRecipe([](auto& b) { b.resize(b.size() + 8, std::byte{1}); }), sizes);
+    expectRefused(rowsRecipe([](auto& b) { b.resize(16 * 4); }), sizes);
+    expectRefused(rowsRecipe([](auto& b) { b.resize(16 * 4 - 1); }), "cannot hold its 16 rows");
+    expectRefused(rowsRecipe([](auto& b) { b.clear(); }), "cannot hold its 16 rows");
+    expectRefused(rowsRecipe([](auto& b) { b[3 * 4] = std::byte{8}; }),
+                  "row 3 of its packed texels goes from 8 to 7");
+    expectRefused(rowsRecipe([](auto& b) { b[3 * 4 + 2] = std::byte{17}; }), "goes from 5 to 17 of 16");
+    expectRefused(rowsRecipe([](auto& b) { b[4 * 4] = b[4 * 4 + 2] = std::byte{9}; }),
+                  "goes from 9 to 9 of 16");
+    const char* empty = "row 3 of its packed texels begins or ends with an empty texel";
+    expectRefused(rowsRecipe([](auto& b) { std::fill_n(b.begin() + 64, 8, std::byte{0}); }), empty);
+    expectRefused(rowsRecipe([](auto& b) { std::fill_n(b.begin() + 72, 8, std::byte{0}); }), empty);
+    // As long as the texels themselves: stored in rows for no reason.
+    expectRefused(rowsRecipe([](auto& b) { b.resize(2048); }),
+                  "stored_size 2048 does not go with its raw_size");
+    // 2 GiB from one byte less than the rows of that map take.
+    expectRefused(with([](Recipe& r) {
+                      r.maps[1].format = 4;
+                      r.maps[1].compare = 2;
+                      r.maps[1].compression = 2;
+                      r.maps[1].width = r.maps[1].height = 16384;
+                      r.maps[1].raw_size = std::uint64_t{1} << 31U;
+                      r.maps[1].stored.resize(65'535);
+                  }),
+                  "65535 stored bytes cannot hold the 2147483648 that they claim");
 }
 
 TEST(Crafted, BombsAreRefusedBeforeAnythingIsAllocated) {

@@ -162,7 +162,7 @@ std::vector<Case> casesOfEveryCode() {
         {IssueCode::kPadding, flipped(0x1a0)},
         {IssueCode::kBytesBehind, resized(good.size() + 1)},
         {IssueCode::kPayloadChecksum, flipped(0x1d0)},
-        {IssueCode::kPayloadZstd, zstd},
+        {IssueCode::kPayloadUnpack, zstd},
         {IssueCode::kTexels,
          [] {
              Collider collider = soundCollider();

@@ -25,7 +25,7 @@ TEST(BudgetSearch, KeepsThePromiseWithLittleMoreThanItNeeds) {
     const Result<BudgetSearchResult> found = bakeForError(*query, *query, options);
     ASSERT_TRUE(found) << found.error().message;
     EXPECT_LE(found->chosen.wrong_percent, 2.0);
-    EXPECT_EQ(found->chosen.bytes, found->baked.collider.texelBytes());
+    EXPECT_EQ(found->chosen.bytes, found->baked.collider.gpuBytes());
     EXPECT_EQ(found->plan.bytes, found->chosen.bytes);
     EXPECT_LE(found->chosen.bytes, found->chosen.budget);
     EXPECT_EQ(told, found->tries.size());
@@ -74,7 +74,9 @@ TEST(BudgetSearch, SaysWhatTheBestIsWhereThePromiseCannotBeKept) {
     EXPECT_EQ(found.error().code, ErrorCode::kDifference);
     ASSERT_EQ(tries.size(), 2U);
     EXPECT_EQ(tries[1].budget, 50'000U) << "the limit itself is tried";
-    EXPECT_NE(found.error().message.find(std::to_string(tries[1].bytes) + " bytes"), std::string::npos)
+    // The best need not be the largest: a few texels more may fall less well.
+    const BudgetTry& best = tries[0].wrong_percent <= tries[1].wrong_percent ? tries[0] : tries[1];
+    EXPECT_NE(found.error().message.find(std::to_string(best.bytes) + " bytes"), std::string::npos)
         << found.error().message;
     // A limit below the usual start is the only budget.
     options.budget_max = 20'000;

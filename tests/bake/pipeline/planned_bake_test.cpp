@@ -193,7 +193,7 @@ TEST(ViewPlanner, KeepsTheBudgetAndSeesAllOfAConvexShape) {
         EXPECT_LE(plan.bytes, budget);
         EXPECT_GE(plan.bytes, budget * 9 / 10);
         EXPECT_EQ(plan.unseen_percent, 0.0);
-        EXPECT_LE(bakePlan(mesh, plan).texelBytes(), budget);
+        EXPECT_LE(bakePlan(mesh, plan).gpuBytes(), budget);
     }
 }
 
@@ -204,7 +204,7 @@ TEST(ViewPlanner, MakesAThirdOfTheMistakesOfThePapersMaps) {
         const Collider paper = bakeSpecs(
             mesh,
             {"front-back:dir=-x,size=52x52", "front-back:dir=-y,size=52x52", "front-back:dir=-z,size=52x52"});
-        ASSERT_LE(paper.texelBytes(), kBudget);
+        ASSERT_LE(paper.gpuBytes(), kBudget);
         EXPECT_LT(wrongNear(mesh, bakePlan(mesh, planOf(mesh))).total(),
                   wrongNear(mesh, paper).total() / 3.0);
     }

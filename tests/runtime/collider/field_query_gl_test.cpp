@@ -397,8 +397,8 @@ TEST_P(FieldQueryGlTest, MapsOfAnyShapeLieTogetherWithoutAGap) {
     expectAgreement(collider, randomPoints(20'000, random), 1e-3F, 4e-2);
     const auto textures = ColliderTextures::create(collider);
     ASSERT_TRUE(textures);
-    EXPECT_GE(textures->bytes(), collider.texelBytes());
-    EXPECT_LE(textures->bytes(), collider.texelBytes() + 1024 * (4 + 8 + 16)) << "less than a row each";
+    EXPECT_GE(textures->bytes(), collider.gpuBytes());
+    EXPECT_LE(textures->bytes(), collider.gpuBytes() + 1024 * (4 + 8 + 16)) << "less than a row each";
 }
 
 /// What a caller has bound must still be bound afterwards.
