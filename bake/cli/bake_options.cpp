@@ -95,13 +95,15 @@ void addTexelOptions(CLI::App& verb, BakeCommand& command) {
     addWords(verb, "--holes", command.holes,
              WordsFor<Holes>{{"close", Holes::kClose}, {"keep", Holes::kKeep}},
              "close (default): make solids of what --as says; keep: bake the surface as it is");
-    addWords(verb, "--as", command.as,
-             WordsFor<ShapeAs>{{"auto", ShapeAs::kAuto},
-                               {"solid", ShapeAs::kSolid},
-                               {"shell", ShapeAs::kShell},
-                               {"terrain", ShapeAs::kTerrain}},
-             "What the parts of the mesh are: auto (default: each is judged by what rays see),\n"
-             "solid (holes are closed), shell (a wall with two sides) or terrain (solid below)");
+    verb.add_option("--as", command.as,
+                    "What the parts of the mesh are: auto (default: each is judged by what rays see),\n"
+                    "solid (holes are closed), shell (a wall with two sides) or terrain (solid below).\n"
+                    "With NAME=, what has that name in the file: a node with all below it, a mesh, an\n"
+                    "OBJ group or a material; once for each, and of several that fit the last counts")
+        ->option_text("[NAME=]auto|solid|shell|terrain")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->allow_extra_args(false);
     verb.add_option("--thickness", command.thickness,
                     "Of shells, in the collider's units; default: a texel and a half")
         ->option_text("LENGTH")

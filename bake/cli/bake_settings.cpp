@@ -80,6 +80,20 @@ Result<void> readMapSettings(const BakeCommand& command, BakeSettings& settings)
     return {};
 }
 
+/// Names need the triangles of the file, and parts that are told apart.
+Result<void> readShapeSettings(const BakeCommand& command, BakeSettings& settings) {
+    settings.shape = RELIEF_TRY(parseShapeOptions(command.as));
+    const char* const against = !command.care.repair.empty() ? "--repair, which makes another surface"
+                                : command.holes == Holes::kKeep
+                                    ? "--holes keep, which takes nothing for a solid"
+                                    : nullptr;
+    if (!settings.shape.named.empty() && against != nullptr) {
+        return fail(ErrorCode::kUsage,
+                    "--as NAME=KIND does nothing with " + std::string(against) + "; leave one out");
+    }
+    return {};
+}
+
 }  // namespace
 
 Result<BakeSettings> settingsOf(const BakeCommand& command) {
@@ -87,6 +101,7 @@ Result<BakeSettings> settingsOf(const BakeCommand& command) {
     settings.source = RELIEF_TRY(sourceOf(command));
     RELIEF_TRY(checkPlanOut(command, settings.source));
     RELIEF_TRY(readMapSettings(command, settings));
+    RELIEF_TRY(readShapeSettings(command, settings));
     settings.bake.quality = command.quality.value_or(settings.bake.quality);
     settings.bake.prefer = command.prefer.value_or(settings.bake.prefer);
     settings.bake.threads = command.threads.value_or(settings.bake.threads);

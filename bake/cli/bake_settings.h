@@ -43,7 +43,7 @@ struct BakeCommand {
     int compress = 0;  ///< zstd's level; 0: none
     Holes holes = Holes::kClose;
     bool no_check = false;
-    ShapeAs as = ShapeAs::kAuto;
+    std::vector<std::string> as;
     std::optional<float> thickness;  ///< of shells, object units
     BackendChoice backend = BackendChoice::kRaycast;
     GpuOptions gpu;
@@ -64,12 +64,13 @@ enum class MapSource : std::uint8_t { kPlanner, kMaps, kPaper, kPlanFile };
 struct BakeSettings {
     MapSource source = MapSource::kPlanner;
     BakeOptions bake;
+    ShapeOptions shape;  ///< without a thickness: it depends on the mesh
     ContainerWriteOptions write;
     std::optional<Quality> plan_quality;  ///< of the plan file
 };
 
-/// Fails with kUsage for two ways to choose the maps, and for options that do nothing together; as parseMapSpec and
-/// checkMapSize.
+/// Fails with kUsage for two ways to choose the maps, and for options that do nothing together; as parseMapSpec,
+/// checkMapSize and parseShapeOptions.
 [[nodiscard]] Result<BakeSettings> settingsOf(const BakeCommand& command);
 
 /// Whether every output can be written, and none is an input or another output.

@@ -225,8 +225,7 @@ Result<void> prepare(BakeRun& run) {
 Result<void> shape(BakeRun& run) {
     const BakeCommand& command = run.command;
     const Bounds& bounds = run.cared.mesh->bounds;
-    ShapeOptions options;
-    options.as = command.as;
+    ShapeOptions options = run.settings.shape;
     options.thickness =
         command.thickness
             ? double{*command.thickness}
@@ -249,8 +248,9 @@ Result<void> shape(BakeRun& run) {
 Result<void> readMesh(BakeRun& run) {
     const BakeCommand& command = run.command;
     const Stopwatch watch;
-    TriangleMesh mesh =
-        RELIEF_TRY(importMeshInWorker(command.mesh, command.import.options, command.import.limits));
+    ImportOptions import = command.import.options;
+    import.names = run.settings.shape.names();
+    TriangleMesh mesh = RELIEF_TRY(importMeshInWorker(command.mesh, import, command.import.limits));
     run.times.import_ms = watch.ms();
     run.unused_vertices = mesh.unused_vertices;
     spdlog::debug("{}: {} triangles, {} vertices, XXH3-128 {}", mesh.name, mesh.triangles.size(),
@@ -332,6 +332,15 @@ void tellNotices(BakeRun& run) {
         spdlog::info("backend {}: {}", run.backend.raster ? "raster" : "raycast", run.backend.reason);
     }
     std::vector<std::string>& warnings = run.baked.report.warnings;
+    for (const NamedTriangles& named : run.shape.named) {
+        if (named.triangles == 0) {
+            warnings.insert(warnings.begin(),
+                            mesh.name + ": --as " + named.shape.name + "=" +
+                                std::string(shapeAsName(named.shape.as)) +
+                                " changes nothing: a later --as names all its triangles too, or they have "
+                                "no area; give it last");
+        }
+    }
     warnings.insert(warnings.begin(), mesh.warnings.begin(), mesh.warnings.end());
     for (const std::string& warning : warnings) {
         spdlog::warn(warning);

@@ -113,13 +113,25 @@ Result<void> prepare(const CheckCommand& command) {
     return preflightDistinct(command.mesh, command.html);
 }
 
+/// The mesh, with the names that the collider was baked by.
+Result<TriangleMesh> importFor(const RecordedBake& recorded, const CheckCommand& command) {
+    ImportOptions options = command.import.options;
+    options.names = recorded.shape.names();
+    Result<TriangleMesh> mesh = importMeshInWorker(command.mesh, options, command.import.limits);
+    if (!mesh && mesh.error().code == ErrorCode::kUsage && !options.names.empty()) {
+        return invalidInput(
+            mesh.error().message +
+            "; the collider was baked by that name: give --mesh the mesh that it was baked from");
+    }
+    return mesh;
+}
+
 Result<void> readInputs(const CheckCommand& command, CheckRun& run) {
     run.collider = RELIEF_TRY(loadCollider(command.file));
-    TriangleMesh imported =
-        RELIEF_TRY(importMeshInWorker(command.mesh, command.import.options, command.import.limits));
+    run.recorded = recordedBake(run.collider.provenance.options);
+    TriangleMesh imported = RELIEF_TRY(importFor(run.recorded, command));
     Winding winding = RELIEF_TRY(windOutwards(std::move(imported)));
     run.imported = std::move(winding.mesh);
-    run.recorded = recordedBake(run.collider.provenance.options);
     ShapedMesh shaped = RELIEF_TRY(shapedMesh(run.recorded, run.imported));
     run.mesh = std::move(shaped.mesh);
     run.shape = std::move(shaped.report);

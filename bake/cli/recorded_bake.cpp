@@ -21,6 +21,18 @@ bool isPlain(std::string_view word) {
     return !word.empty() && word.size() <= 200 && word.find_first_not_of(kPlain) == std::string_view::npos;
 }
 
+/// A word as a shell reads it back.
+std::string quoted(const std::string& word) {
+    if (isPlain(word)) {
+        return word;
+    }
+    std::string text = "'";
+    for (const char c : cleanUtf8(word)) {
+        text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    }
+    return text + "'";
+}
+
 /// \return whether the option is known, and its value one that it can have.
 bool take(std::string_view option, std::string_view value, RecordedBake& bake) {
     if (option == "--map") {
@@ -56,14 +68,8 @@ bool take(std::string_view option, std::string_view value, RecordedBake& bake) {
         bake.repair = value;
         return checkMeshCare({.repair = bake.repair}).has_value();
     }
-    if (option == "--as") {
-        const std::optional<ShapeAs> as = parseShapeAs(value);
-        bake.shape.as = as.value_or(bake.shape.as);
-        return as.has_value();
-    }
-    if (option == "--thickness") {
-        bake.shape.thickness = double{std::max(parseFloat(value).value_or(0.0F), 0.0F)};
-        return bake.shape.thickness > 0.0;
+    if (option == "--as" || option == "--thickness") {
+        return readRecordedShape(option, value, bake.shape);
     }
     // Those of the import are read from the command line of the check; planned maps need no backend.
     return option == "--unit" || option == "--up" || option == "--backend";
@@ -76,7 +82,13 @@ RecordedBake recordedBake(const std::string& options) {
     std::string_view rest = options;
     for (std::string_view option = takeWord(rest); !option.empty(); option = takeWord(rest)) {
         const std::string_view value = takeWord(rest);
-        if (!isPlain(option) || !isPlain(value)) {
+        const bool is_named = option == "--as" && value.find('=') != std::string_view::npos;
+        if (is_named && take(option, value, bake)) {
+            const NamedShape& named = bake.shape.named.back();
+            bake.options.emplace_back(option, quoted(named.name + "=" + std::string(shapeAsName(named.as))));
+            continue;
+        }
+        if (is_named || !isPlain(option) || !isPlain(value)) {
             bake.understood = false;
             continue;
         }
@@ -121,16 +133,7 @@ Result<ShapedMesh> repairedMesh(const RecordedBake& recorded, const PreparedMesh
 }
 
 std::string shellWord(const std::string& path) {
-    // A path may begin with a dash.
-    const std::string word = path.starts_with("-") ? "./" + path : path;
-    if (isPlain(word)) {
-        return word;
-    }
-    std::string quoted = "'";
-    for (const char c : cleanUtf8(word)) {
-        quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    }
-    return quoted + "'";
+    return quoted(path.starts_with("-") ? "./" + path : path);  // else it is taken for an option
 }
 
 }  // namespace relief

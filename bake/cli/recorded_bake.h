@@ -21,8 +21,8 @@ struct RecordedBake {
     bool keeps_holes = false;
     std::string repair;  ///< as on the command line; empty: none
     ShapeOptions shape;  ///< thickness 0: none is recorded
-    /// What a command needs beside the maps to bake alike: options and their values, which hold nothing that means
-    /// something to a shell.
+    /// What a command needs beside the maps to bake alike: options and their values, quoted where they hold something that
+    /// means something to a shell.
     std::vector<std::pair<std::string, std::string>> options;
     /// Every word is understood; otherwise another version baked it, or somebody made the record up.
     bool understood = true;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "bake/import/import_units.h"
 #include "bake/mesh/mesh.h"
@@ -20,6 +21,10 @@ struct ImportOptions {
     /// The source's axis that points upwards; the mesh is turned so that this becomes +Y. None: what the file
     /// says, and where it says nothing, axes stay as they are.
     std::optional<UpAxis> up;
+    /// What TriangleMesh::marks answers: names of nodes (all below one count), of meshes, of materials, of OBJ's groups
+    /// and objects. Clean UTF-8 (cleanUtf8), at most kAskedNamesMax of at most kAskedNameBytesMax bytes; the file's are
+    /// made clean and cut alike. A name that no triangle has is an error (kUsage) that lists those that exist.
+    std::vector<std::string> names{};
 };
 
 struct ImportLimits {

@@ -9,6 +9,7 @@
 
 #include <filesystem>
 #include <new>
+#include <span>
 
 #include "bake/import/import_job.h"
 #include "bake/import/import_message.h"
@@ -58,7 +59,7 @@ bool sendMessage(const Result<TriangleMesh>& raw) {
                0;
 }
 
-int work(char** arguments) {
+int work(std::span<char*> arguments) {
     const std::filesystem::path path = arguments[1];
     ImportOptions options;
     if (std::string_view(arguments[2]) != "-") {
@@ -71,6 +72,7 @@ int work(char** arguments) {
         }
         options.up = *up;
     }
+    options.names.assign(arguments.begin() + 6, arguments.end());
     const std::uint64_t memory = parseUnsigned(arguments[4]).value_or(0);
     const std::uint64_t seconds = parseUnsigned(arguments[5]).value_or(0);
     if (memory == 0 || seconds == 0 || seconds > UINT32_MAX) {
@@ -97,7 +99,7 @@ int work(char** arguments) {
 }  // namespace relief
 
 int main(int argc, char** argv) {
-    if (argc != 6) {
+    if (argc < 6) {
         return relief::kImportExitNoSandbox;
     }
     // assimp allocates much in little pieces: fewer, larger steps of one heap, that the limit is exact for.
@@ -105,7 +107,7 @@ int main(int argc, char** argv) {
     mallopt(M_TOP_PAD, 16 << 20);
     int code = relief::kImportExitNoMessage;
     try {
-        code = relief::work(argv);
+        code = relief::work({argv, static_cast<std::size_t>(argc)});
     } catch (...) {
         code = relief::kImportExitMemory;
     }

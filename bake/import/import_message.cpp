@@ -67,8 +67,9 @@ ImportMessage makeImportMessage(const Result<TriangleMesh>& raw) {
         message.add_positions(raw->positions.size());
         message.add_triangles(raw->triangles.size());
         message.add_unused_vertices(raw->unused_vertices);
+        message.add_marks(raw->marks.size());
         import_fb::FinishMessageBuffer(builder, message.Finish());
-        arrays = 12 * (raw->positions.size() + raw->triangles.size());
+        arrays = 12 * (raw->positions.size() + raw->triangles.size()) + raw->marks.size();
     }
     ImportMessage made;
     const std::uint64_t table = builder.GetSize();
@@ -87,11 +88,15 @@ void writeImportMessage(const ImportMessage& message, const Result<TriangleMesh>
     }
     std::byte* const arrays = target.data() + message.head.size();
     const std::size_t positions = 12 * raw->positions.size();
+    const std::size_t triangles = 12 * raw->triangles.size();
     if (positions != 0) {
         std::memcpy(arrays, raw->positions.data(), positions);
     }
-    if (!raw->triangles.empty()) {
-        std::memcpy(arrays + positions, raw->triangles.data(), 12 * raw->triangles.size());
+    if (triangles != 0) {
+        std::memcpy(arrays + positions, raw->triangles.data(), triangles);
+    }
+    if (!raw->marks.empty()) {
+        std::memcpy(arrays + positions + triangles, raw->marks.data(), raw->marks.size());
     }
 }
 
@@ -121,7 +126,8 @@ Result<TriangleMesh> readImportMessage(std::span<const std::byte> bytes) {
     // Each bounded before they are added up.
     if (message.positions() > 3 * kTriangleMax || message.triangles() > kTriangleMax ||
         message.unused_vertices() > kImportBytesMax ||  // a vertex takes more than a byte
-        head + 12 * (message.positions() + message.triangles()) != bytes.size()) {
+        !(message.marks() == 0 || message.marks() == message.triangles()) ||
+        head + 12 * (message.positions() + message.triangles()) + message.marks() != bytes.size()) {
         return noMessage();
     }
     TriangleMesh raw;
@@ -144,8 +150,11 @@ Result<TriangleMesh> readImportMessage(std::span<const std::byte> bytes) {
             raw.dependency_hashes.push_back(file->hash()->str());
         }
     }
-    copyArray(bytes.subspan(head, 12 * message.positions()), raw.positions);
-    copyArray(bytes.subspan(head + 12 * message.positions(), 12 * message.triangles()), raw.triangles);
+    const std::uint64_t triangles = head + 12 * message.positions();
+    const std::uint64_t marks = triangles + 12 * message.triangles();
+    copyArray(bytes.subspan(head, triangles - head), raw.positions);
+    copyArray(bytes.subspan(triangles, marks - triangles), raw.triangles);
+    copyArray(bytes.subspan(marks, message.marks()), raw.marks);
     return raw;
 }
 

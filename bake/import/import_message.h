@@ -2,7 +2,7 @@
 // file.
 //
 //     u64 size of the table   u64 0   the table (import_message.fbs), padded to a multiple of 16
-//     positions, 12 bytes each        triangles, 12 bytes each        and no byte more
+//     positions, 12 bytes each        triangles, 12 bytes each        marks, a byte each        and no byte more
 #pragma once
 
 #include <cstddef>
@@ -28,7 +28,8 @@ struct ImportMessage {
 void writeImportMessage(const ImportMessage& message, const Result<TriangleMesh>& raw,
                         std::span<std::byte> target);
 
-/// Reads a message that may hold anything. Indices and coordinates are left to finishMesh.
+/// Reads a message that may hold anything. Indices and coordinates are left to finishMesh, and what marks mean to
+/// ImportSource::finish; there are none, or one for each triangle.
 /// \param bytes  aligned to 16 bytes, and not changed meanwhile.
 /// \return what the worker's importRaw gave. Errors: the worker's own, as one line; kInvalidInput, saying no
 /// file's name, for a message that is none.

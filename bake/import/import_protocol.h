@@ -1,10 +1,10 @@
 // Between importMeshInWorker and the program relief-import: descriptors, arguments and exit codes.
 //
-//     relief-import PATH UNIT UP MEMORY SECONDS
+//     relief-import PATH UNIT UP MEMORY SECONDS [NAME…]
 //
 // PATH is the mesh's as the user gave it (for messages, its name and extension); UNIT and UP as
-// ImportOptions, "-" for none; MEMORY in bytes. Nothing is read from standard input or written to standard
-// output.
+// ImportOptions, "-" for none; MEMORY in bytes; each NAME one of ImportOptions::names.
+// Nothing is read from standard input or written to standard output.
 #pragma once
 
 namespace relief {

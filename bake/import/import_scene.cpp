@@ -44,7 +44,7 @@ Transform operator*(const Transform& outer, const aiMatrix4x4& inner) {
     return t;
 }
 
-/// Calls visit(mesh, transform) for every use of a mesh, parents before children. No recursion.
+/// Calls visit(mesh, transform, node) for every use of a mesh, parents before children. No recursion.
 /// \return false as soon as visit does.
 template <class Visit>
 bool forEachUse(const aiScene& scene, const Transform& root, const Visit& visit) {
@@ -60,7 +60,7 @@ bool forEachUse(const aiScene& scene, const Transform& root, const Visit& visit)
         for (unsigned i = 0; i < next.node->mNumMeshes; ++i) {
             const unsigned index = next.node->mMeshes[i];
             if (index < scene.mNumMeshes && scene.mMeshes[index]->HasPositions() &&
-                !visit(*scene.mMeshes[index], transform)) {
+                !visit(*scene.mMeshes[index], transform, next.node)) {
                 return false;
             }
         }
@@ -77,10 +77,11 @@ bool forEachUse(const aiScene& scene, const Transform& root, const Visit& visit)
 std::vector<const aiMesh*> unplacedMeshes(const aiScene& scene) {
     std::set<const aiMesh*> placed;
     if (scene.mRootNode != nullptr) {
-        forEachUse(scene, {}, [&](const aiMesh& mesh, const Transform& /*transform*/) {
-            placed.insert(&mesh);
-            return true;
-        });
+        forEachUse(scene, {},
+                   [&](const aiMesh& mesh, const Transform& /*transform*/, const aiNode* /*node*/) {
+                       placed.insert(&mesh);
+                       return true;
+                   });
     }
     std::vector<const aiMesh*> others;
     for (const aiMesh* mesh : std::span(scene.mMeshes, scene.mNumMeshes)) {
@@ -181,39 +182,45 @@ void warnOfScene(const aiScene& scene, std::vector<std::string>& warnings) {
 }
 
 Result<TriangleMesh> flatten(const aiScene& scene, const glm::dmat3& linear, const std::string& shown,
-                             Unplaced unplaced, TriangleMesh mesh) {
+                             Unplaced unplaced, NameMarks names, TriangleMesh mesh) {
     const Transform root{linear, glm::dvec3(0.0)};
     const std::vector<const aiMesh*> others =
         unplaced == Unplaced::kAtRoot ? unplacedMeshes(scene) : std::vector<const aiMesh*>();
     const auto for_each_use = [&](const auto& visit) {
         return forEachUse(scene, root, visit) &&
                std::all_of(others.begin(), others.end(),
-                           [&](const aiMesh* other) { return visit(*other, root); });
+                           [&](const aiMesh* other) { return visit(*other, root, nullptr); });
     };
     // Counted before anything is allocated: a small file can name one mesh very often.
     std::uint64_t faces = 0;
     std::uint64_t vertices = 0;
     std::uint64_t flat = 0;
-    const bool fits = for_each_use([&](const aiMesh& source, const Transform& transform) {
+    const auto count = [&](const aiMesh& source, const Transform& transform, const aiNode* /*node*/) {
         faces += source.mNumFaces;
         vertices += source.mNumVertices;
         flat += transform.flattens() ? 1 : 0;
         return faces <= kTriangleMax && vertices <= 3 * kTriangleMax;
-    });
-    if (!fits) {
+    };
+    if (!for_each_use(count)) {
         return fail(ErrorCode::kLimit, shown + ": more than " + std::to_string(kTriangleMax) +
                                            " triangles, instances counted one by one; simplify the mesh");
     }
     mesh.positions.reserve(vertices);
     mesh.triangles.reserve(faces);
-    for_each_use([&](const aiMesh& source, const Transform& transform) {
+    mesh.marks.reserve(names.any() ? faces : 0);
+    for_each_use([&](const aiMesh& source, const Transform& transform, const aiNode* node) {
+        const std::size_t before = mesh.triangles.size();
         appendMesh(source, transform, mesh);
+        if (names.any() && mesh.triangles.size() > before) {
+            mesh.marks.resize(mesh.triangles.size(), names.of(source, node));
+        }
         return true;
     });
     if (mesh.triangles.empty()) {
         return fail(ErrorCode::kInvalidInput,
                     shown + ": no triangles; export the surface as polygons, not as points or lines");
     }
+    RELIEF_TRY(names.allMet(shown));
     if (flat > 0) {
         mesh.warnings.push_back(std::to_string(flat) +
                                 " of its parts are scaled to nothing in some direction, and hold no volume");

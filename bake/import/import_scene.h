@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "bake/import/import_names.h"
 #include "bake/import/import_parts.h"
 #include "bake/mesh/mesh.h"
 #include "formats/base/result.h"
@@ -29,8 +30,10 @@ enum class Unplaced : std::uint8_t { kLeaveOut, kAtRoot };
 
 /// Adds every use of every mesh to `mesh`, with the transforms of its nodes applied and then `linear`.
 /// \param shown  the file's name for messages.
-/// Errors: kLimit (more than kTriangleMax triangles), kInvalidInput (none).
+/// \param names  of that scene; the mesh has marks if any are asked for.
+/// Errors: kLimit (more than kTriangleMax triangles), kInvalidInput (none), kUsage (a name that no triangle has).
 [[nodiscard]] Result<TriangleMesh> flatten(const aiScene& scene, const glm::dmat3& linear,
-                                           const std::string& shown, Unplaced unplaced, TriangleMesh mesh);
+                                           const std::string& shown, Unplaced unplaced, NameMarks names,
+                                           TriangleMesh mesh);
 
 }  // namespace relief

@@ -58,13 +58,17 @@ Result<ImportSource> ImportSource::open(const fs::path& path) {
     return ImportSource(path, extension.substr(1), std::move(bytes));
 }
 
-Result<TriangleMesh> ImportSource::finish(TriangleMesh raw) const {
+Result<TriangleMesh> ImportSource::finish(TriangleMesh raw, std::size_t names) const {
     const auto lies = [this](const char* what) {
         return fail(ErrorCode::kInvalidInput,
                     quotedPath(path_) + ": the importer answers with " + what + "; export the mesh again");
     };
     if (!(raw.unit.empty() || raw.unit == "m") || raw.dependencies.size() != raw.dependency_hashes.size()) {
         return lies("a unit or a list of files that cannot be");
+    }
+    if (raw.marks.size() != (names > 0 ? raw.triangles.size() : 0) ||
+        std::any_of(raw.marks.begin(), raw.marks.end(), [&](std::uint8_t mark) { return mark > names; })) {
+        return lies("names that nobody asked for");
     }
     const std::string name = cleanUtf8(path_.filename().string(), kMeshNameMax);
     std::vector<std::pair<std::string, std::string>> files;  // path, hash

@@ -35,10 +35,11 @@ class ImportSource {
 
     /// Completes what an importer made of it: the name, the hash, whole paths, and the invariants of
     /// TriangleMesh.
-    /// \param raw  positions, triangles, unit and warnings; dependencies, relative to the folder, and their
-    ///             hashes, without the mesh file itself. May be hostile.
+    /// \param raw    positions, triangles, marks, unit and warnings; dependencies, relative to the folder, and their
+    ///               hashes, without the mesh file itself. May be hostile.
+    /// \param names  how many names were asked for: with none there must be no marks.
     /// Errors: as finishMesh; kInvalidInput.
-    [[nodiscard]] Result<TriangleMesh> finish(TriangleMesh raw) const;
+    [[nodiscard]] Result<TriangleMesh> finish(TriangleMesh raw, std::size_t names = 0) const;
 
   private:
     ImportSource(std::filesystem::path path, std::string extension, std::vector<std::byte> bytes);

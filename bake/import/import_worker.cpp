@@ -141,7 +141,7 @@ class Import {
         }
         ImportSource source = RELIEF_TRY(ImportSource::open(path_));
         Result<TriangleMesh> raw = workOn(source);
-        return raw ? source.finish(std::move(*raw)) : raw;
+        return raw ? source.finish(std::move(*raw), options_.names.size()) : raw;
     }
 
   private:
@@ -195,6 +195,7 @@ class Import {
                            options_.up ? std::string(upAxisName(*options_.up)) : "-",
                            std::to_string(limits_.memory),
                            std::to_string(limits_.seconds)};
+        start.arguments.insert(start.arguments.end(), options_.names.begin(), options_.names.end());
         start.files.assign(kImportMeshFd, -1);
         start.files.insert(start.files.end(), files.begin(), files.end());
         // Whatever this process ignores, the worker's limits must be able to end it.

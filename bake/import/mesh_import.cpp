@@ -17,6 +17,7 @@
 #include "bake/import/assimp_ply.h"
 #include "bake/import/import_files.h"
 #include "bake/import/import_gltf.h"
+#include "bake/import/import_names.h"
 #include "bake/import/import_obj.h"
 #include "bake/import/import_parts.h"
 #include "bake/import/import_ply.h"
@@ -227,7 +228,8 @@ Result<TriangleMesh> importWithAssimp(const ImportJob& job) {
         mesh.dependency_hashes.push_back(file.hash);
     }
     return flatten(*scene, change.scale * change.turn, job.shown,
-                   isRaw(job) ? Unplaced::kAtRoot : Unplaced::kLeaveOut, std::move(mesh));
+                   isRaw(job) ? Unplaced::kAtRoot : Unplaced::kLeaveOut,
+                   NameMarks(*scene, job.options.names, job.extension, job.file_name), std::move(mesh));
 }
 
 // --- a thread with a deep stack ---
@@ -274,6 +276,10 @@ bool runOnDeepStack(Import& import) {
 }  // namespace
 
 Result<TriangleMesh> importRaw(const ImportJob& job) {
+    if (job.options.names.size() > kAskedNamesMax) {
+        return fail(ErrorCode::kLimit, job.shown + ": more than " + std::to_string(kAskedNamesMax) +
+                                           " names are asked for at once; ask for fewer");
+    }
     Import import{job, std::nullopt};
     if (!runOnDeepStack(import)) {
         return fail(ErrorCode::kFailure,
@@ -286,7 +292,7 @@ Result<TriangleMesh> importMesh(const fs::path& path, const ImportOptions& optio
     const ImportSource source = RELIEF_TRY(ImportSource::open(path));
     Result<TriangleMesh> raw = importRaw({quotedPath(path), path.filename().string(), source.extension(),
                                           source.bytes(), source.folder(), options});
-    return raw ? source.finish(std::move(*raw)) : raw;
+    return raw ? source.finish(std::move(*raw), options.names.size()) : raw;
 }
 
 }  // namespace relief

@@ -23,12 +23,14 @@ namespace relief {
 
 /// Reads a mesh file in this process, which a hostile file may crash. In the library bake_assimp.
 ///
-/// The transforms of its nodes are applied, a mesh used n times is there n times, polygons are triangulated,
-/// points and lines are left out with a warning (import_parts.h), and where a transform mirrors, the winding is turned. Materials, cameras
-/// and animation are not looked at; skinned and morphed meshes come in the pose they were modelled in, with a
-/// warning. Only files below the mesh's folder are read, and only regular ones (import_files.h).
+/// The transforms of its nodes are applied, a mesh used n times is there n times, polygons are
+/// triangulated, points and lines are left out with a warning (import_parts.h), and where a transform
+/// mirrors, the winding is turned. Cameras and animation are not looked at, and of materials only the
+/// names that ImportOptions asks for; skinned and morphed meshes come in the pose they were modelled in,
+/// with a warning. Only files below the mesh's folder are read, and only regular ones (import_files.h).
 /// Errors, each naming the file: kIo (missing, a folder, not readable), kUnsupported (a format, or a part of it, that is
-/// not read), kInvalidInput (not what the format says, no triangles, or as finishMesh), kLimit.
+/// not read), kInvalidInput (not what the format says, no triangles, or as finishMesh), kUsage (a name that no triangle
+/// has), kLimit.
 [[nodiscard]] Result<TriangleMesh> importMesh(const std::filesystem::path& path,
                                               const ImportOptions& options = {});
 

@@ -20,7 +20,8 @@ Result<TriangleMesh> finishMesh(TriangleMesh mesh) {
                                            std::to_string(kTriangleMax) + "; simplify the mesh");
     }
     std::size_t kept = 0;
-    for (const glm::uvec3& t : mesh.triangles) {
+    for (std::size_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
+        const glm::uvec3 t = mesh.triangles[triangle];
         if (std::max({t.x, t.y, t.z}) >= mesh.positions.size()) {
             return fail(ErrorCode::kInvalidInput,
                         mesh.name + ": a triangle uses vertex " + std::to_string(std::max({t.x, t.y, t.z})) +
@@ -37,11 +38,15 @@ Result<TriangleMesh> finishMesh(TriangleMesh mesh) {
             }
         }
         if (hasArea(planeOf(mesh.positions, t))) {
+            if (!mesh.marks.empty()) {
+                mesh.marks[kept] = mesh.marks[triangle];
+            }
             mesh.triangles[kept++] = t;
         }
     }
     mesh.dropped_triangles += mesh.triangles.size() - kept;
     mesh.triangles.resize(kept);
+    mesh.marks.resize(std::min(kept, mesh.marks.size()));
     if (kept == 0) {
         return fail(
             ErrorCode::kInvalidInput,

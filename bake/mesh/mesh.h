@@ -14,6 +14,9 @@ namespace relief {
 
 /// Limit of a mesh, instances counted one by one.
 inline constexpr std::uint64_t kTriangleMax = 100'000'000;
+/// Names that an importer may be asked for at once, and the bytes of one.
+inline constexpr std::size_t kAskedNamesMax = 255;
+inline constexpr std::size_t kAskedNameBytesMax = 256;
 
 /// After finishMesh: at least one triangle, every index valid, every position finite and used by a triangle,
 /// no triangle without area.
@@ -23,6 +26,9 @@ struct TriangleMesh {
     std::string unit;                   ///< of lengths: "m", or "" where the source does not say
     std::vector<glm::vec3> positions;   ///< object space
     std::vector<glm::uvec3> triangles;  ///< counter-clockwise seen from outside, if the source keeps to that
+    /// For each triangle, which of the names that its importer was asked for it has: 0 for none, else 1 + the index of
+    /// the last of them. Empty: nobody asked, or the triangles are no longer the source's.
+    std::vector<std::uint8_t> marks;
     std::uint64_t dropped_triangles = 0;  ///< without area, left out
     std::uint64_t unused_vertices = 0;    ///< of the source, that no triangle of it uses; left out
     /// The last of `triangles` are no surface of the source's: caps over holes (hole_caps.h), the rims of shells and the
@@ -47,7 +53,8 @@ struct TriangleMesh {
 };
 
 /// Turns raw positions and triangles into a mesh that keeps the invariants above: drops triangles without
-/// area and positions without triangle, computes the bounds.
+/// area, their marks, and positions without triangle, computes the bounds.
+/// \param mesh  with no marks, or as many as triangles.
 /// Errors, naming mesh.name: kInvalidInput (index out of range, coordinate that is not finite or beyond 1e15,
 /// no triangle with an area), kLimit (kTriangleMax).
 [[nodiscard]] Result<TriangleMesh> finishMesh(TriangleMesh mesh);

@@ -292,6 +292,7 @@ Result<PreparedMesh> closeHoles(const PreparedMesh& mesh, std::size_t probes) {
         return mesh;
     }
     TriangleMesh with_caps = *mesh;
+    with_caps.marks.clear();  // caps have no names
     Capper capper(with_caps);
     for (const Loop& loop : loopsOf(mesh.oddEdges())) {
         capper.close(loop);

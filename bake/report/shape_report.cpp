@@ -19,6 +19,10 @@ std::string shapeText(const ShapeReport& report, const std::string& unit) {
     if (report.coincident_triangles > 0) {
         text += "; " + std::to_string(report.coincident_triangles) + " coincident triangles count once";
     }
+    for (const auto& [shape, triangles] : report.named) {
+        text += "; " + shape.name + " (" + std::to_string(triangles) + " triangles) as " +
+                std::string(shapeAsName(shape.as));
+    }
     return "shape: " + text + "\n";
 }
 
@@ -26,8 +30,13 @@ nlohmann::ordered_json jsonShape(const ShapeReport& report) {
     if (report.text().empty()) {
         return nullptr;
     }
+    nlohmann::ordered_json named = nlohmann::ordered_json::array();
+    for (const auto& [shape, triangles] : report.named) {
+        named.push_back({{"name", shape.name}, {"as", shapeAsName(shape.as)}, {"triangles", triangles}});
+    }
     return {
         {"as", shapeAsName(report.as)},
+        {"named", named},
         {"solids", report.solids},
         {"solids_with_holes", report.solids_with_holes},
         {"sheets", report.sheets},

@@ -1,6 +1,8 @@
 #include "bake/shape/parts.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "bake/mesh/triangle_plane.h"
 
@@ -10,13 +12,35 @@ namespace {
 /// In units of the area to the power of 3/2: with less, triangles enclose nothing. Of a sphere it is 0.094.
 constexpr double kVolumeMin = 1e-5;
 
+/// Calls visit(uses) for each edge and each kind of triangles that it has.
+template <class Visit>
+void forEachEdgeOfAKind(const MeshEdges& edges, std::span<const ShapeAs> kinds, const Visit& visit) {
+    std::vector<EdgeUse> of_kind;
+    forEachEdge(edges.uses, [&](std::size_t begin, std::size_t end) {
+        const std::span uses = std::span(edges.uses).subspan(begin, end - begin);
+        if (kinds.empty()) {
+            visit(uses);
+            return;
+        }
+        for (std::size_t kind = 0; kind < kShapeAsCount; ++kind) {
+            of_kind.clear();
+            std::copy_if(uses.begin(), uses.end(), std::back_inserter(of_kind), [&](const EdgeUse& use) {
+                return kinds[use.triangle] == static_cast<ShapeAs>(kind);
+            });
+            if (!of_kind.empty()) {
+                visit(std::span<const EdgeUse>(of_kind));
+            }
+        }
+    });
+}
+
 }  // namespace
 
-std::vector<Part> partsOf(const TriangleMesh& mesh, const MeshEdges& edges) {
+std::vector<Part> partsOf(const TriangleMesh& mesh, const MeshEdges& edges, std::span<const ShapeAs> kinds) {
     DisjointSets sets(mesh.triangles.size());
-    forEachEdge(edges.uses, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin + 1; i < end; ++i) {
-            sets.join(edges.uses[begin].triangle, edges.uses[i].triangle);
+    forEachEdgeOfAKind(edges, kinds, [&](std::span<const EdgeUse> uses) {
+        for (const EdgeUse& use : uses.subspan(1)) {
+            sets.join(uses.front().triangle, use.triangle);
         }
     });
     std::vector<std::uint32_t> part_of(mesh.triangles.size());
@@ -30,15 +54,13 @@ std::vector<Part> partsOf(const TriangleMesh& mesh, const MeshEdges& edges) {
         part_of[i] = part_of[root];
         parts[part_of[i]].triangles.push_back(i);
     }
-    forEachEdge(edges.uses, [&](std::size_t begin, std::size_t end) {
-        Part& part = parts[part_of[edges.uses[begin].triangle]];
-        std::size_t down = 0;
-        for (std::size_t i = begin; i < end; ++i) {
-            down += edges.uses[i].down ? 1U : 0U;
-        }
-        part.closed = part.closed && (end - begin) % 2 == 0;
-        part.manifold = part.manifold && end - begin == 2;
-        part.balanced = part.balanced && 2 * down == end - begin;
+    forEachEdgeOfAKind(edges, kinds, [&](std::span<const EdgeUse> uses) {
+        Part& part = parts[part_of[uses.front().triangle]];
+        const auto down = static_cast<std::size_t>(
+            std::count_if(uses.begin(), uses.end(), [](const EdgeUse& use) { return use.down; }));
+        part.closed = part.closed && uses.size() % 2 == 0;
+        part.manifold = part.manifold && uses.size() == 2;
+        part.balanced = part.balanced && 2 * down == uses.size();
     });
     return parts;
 }

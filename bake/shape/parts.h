@@ -1,13 +1,16 @@
-// A mesh taken apart: triangles that hang together by edges, where equal positions are one vertex.
+// A mesh taken apart: triangles that hang together by edges, where equal positions are one vertex, and that are taken
+// for the same.
 #pragma once
 
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "bake/mesh/mesh.h"
 #include "bake/mesh/mesh_edges.h"
+#include "bake/shape/shape_options.h"
 
 namespace relief {
 
@@ -19,7 +22,10 @@ struct Part {
 };
 
 /// In the order of their lowest triangles.
-[[nodiscard]] std::vector<Part> partsOf(const TriangleMesh& mesh, const MeshEdges& edges);
+/// \param kinds  what each triangle is taken for; empty: all for the same. An edge between two kinds is the border of
+///               both.
+[[nodiscard]] std::vector<Part> partsOf(const TriangleMesh& mesh, const MeshEdges& edges,
+                                        std::span<const ShapeAs> kinds = {});
 
 /// What closed triangles enclose, negative if they look inwards. nullopt: nothing, as a sheet with two sides does.
 /// \param center  of the mesh, where sums lose least.

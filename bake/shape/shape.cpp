@@ -42,10 +42,6 @@ constexpr double kTerrainExtent = 0.8;
 /// The ground below a terrain, in units of the longest side.
 constexpr double kGround = 0.05;
 
-constexpr std::array<std::string_view, 4> kAsNames = {"auto", "solid", "shell", "terrain"};
-const std::string kAsOption = " --as ";
-const std::string kThicknessOption = " --thickness ";
-
 /// A sheet as a mesh of its own, not finished.
 TriangleMesh meshOf(const Sheet& sheet, const std::string& name) {
     TriangleMesh mesh;
@@ -84,13 +80,21 @@ class Shaper {
     Shaper(const PreparedMesh& mesh, const ShapeOptions& options)
         : prepared_(mesh), mesh_(*mesh), options_(options), union_(mesh_) {
         report_.as = options.as;
+        for (const NamedShape& named : options.named) {
+            report_.named.push_back({named, 0});
+        }
     }
 
     Result<ShapedMesh> run() {
         {
             const MeshEdges& edges = prepared_.edges();
-            parts_ = partsOf(mesh_, edges);
             welded_ = edges.welded;
+            parts_ = partsOf(mesh_, edges);
+            kinds_ = kindsOfTriangles();
+            if (!kinds_.empty()) {
+                keepSolidsWhole();
+                parts_ = partsOf(mesh_, edges, kinds_);
+            }
         }
         prepared_.freeEdges();
         std::vector<const Part*> solids;
@@ -107,7 +111,7 @@ class Shaper {
         }
         report_.solids = solids.size();
         makeSheets(others);
-        if (!sheets_.empty()) {
+        if (!open_.empty()) {
             RELIEF_TRY(sortSheets());
             RELIEF_TRY(closeParts());
             addSheets();
@@ -122,9 +126,53 @@ class Shaper {
         int axis = 1;  ///< of a terrain's heights
     };
 
+    /// A part that is no solid as it is.
+    struct Open {
+        Sheet sheet;
+        ShapeAs as = ShapeAs::kAuto;
+        Role role;
+    };
+
+    /// What each triangle is taken for, and in the report how many have which name. Empty: all are taken for the same.
+    [[nodiscard]] std::vector<ShapeAs> kindsOfTriangles() {
+        if (options_.named.empty() || mesh_.marks.size() != mesh_.triangles.size()) {
+            return {};
+        }
+        std::vector<ShapeAs> kinds(mesh_.marks.size(), options_.as);
+        for (std::size_t i = 0; i < kinds.size(); ++i) {
+            if (const std::size_t mark = mesh_.marks[i]; mark >= 1 && mark <= report_.named.size()) {
+                NamedTriangles& named = report_.named[mark - 1];
+                ++named.triangles;
+                kinds[i] = named.shape.as;
+            }
+        }
+        return kinds;
+    }
+
+    /// What is closed is a solid whatever it is taken for, if nothing of it is to be a wall.
+    void keepSolidsWhole() {
+        for (const Part& part : parts_) {
+            const auto is = [&](ShapeAs as) {
+                return [this, as](std::uint32_t triangle) { return kinds_[triangle] == as; };
+            };
+            const auto& triangles = part.triangles;
+            const bool mixed = !std::all_of(triangles.begin(), triangles.end(), is(kinds_[triangles[0]]));
+            const bool wall = std::any_of(triangles.begin(), triangles.end(), is(ShapeAs::kShell));
+            if (part.closed && mixed && !wall && !isFlat(part)) {
+                for (const std::uint32_t triangle : triangles) {
+                    kinds_[triangle] = ShapeAs::kSolid;
+                }
+            }
+        }
+    }
+
+    [[nodiscard]] ShapeAs kindOf(const Part& part) const {
+        return kinds_.empty() ? options_.as : kinds_[part.triangles.front()];
+    }
+
     [[nodiscard]] bool isSolid(const Part& part) const {
-        return part.closed && options_.as != ShapeAs::kShell &&
-               (options_.as == ShapeAs::kSolid || !isFlat(part));
+        const ShapeAs as = kindOf(part);
+        return part.closed && as != ShapeAs::kShell && (as == ShapeAs::kSolid || !isFlat(part));
     }
 
     /// Closed, but without a volume, as a sheet with two sides is; or copies of a surface.
@@ -153,16 +201,15 @@ class Shaper {
 
     /// The parts as sheets for the time being, but for those that are solids once coincident triangles count once.
     void makeSheets(const std::vector<const Part*>& parts) {
-        sheets_.resize(parts.size());
-        tbb::parallel_for(std::size_t{0}, parts.size(),
-                          [&](std::size_t i) { sheets_[i] = sheetOf(mesh_, welded_, parts[i]->triangles); });
-        for (const Sheet& sheet : sheets_) {
-            report_.coincident_triangles += sheet.duplicates;
+        open_.resize(parts.size());
+        tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
+            open_[i] = {sheetOf(mesh_, welded_, parts[i]->triangles), kindOf(*parts[i]), {}};
+        });
+        for (const Open& part : open_) {
+            report_.coincident_triangles += part.sheet.duplicates;
         }
-        if (options_.as != ShapeAs::kShell) {
-            std::erase_if(sheets_, [&](const Sheet& sheet) { return addSolidOf(sheet); });
-        }
-        roles_.assign(sheets_.size(), {});
+        std::erase_if(open_,
+                      [&](const Open& part) { return part.as != ShapeAs::kShell && addSolidOf(part.sheet); });
     }
 
     /// Adds a part that is closed once its coincident triangles count once, as copies of a solid are.
@@ -184,29 +231,51 @@ class Shaper {
         return true;
     }
 
-    /// Which of the sheets are solids with holes, and which terrains.
+    /// Which of the open parts are solids with holes, and which terrains.
     Result<void> sortSheets() {
-        if (options_.as == ShapeAs::kShell) {
-            return {};
-        }
-        if (options_.as == ShapeAs::kTerrain) {
-            for (std::size_t i = 0; i < sheets_.size(); ++i) {
-                roles_[i] = {Kind::kTerrain, terrainAxis(sheets_[i]).value_or(flattestAxis(sheets_[i]))};
+        std::vector<Open*> unclear;
+        for (Open& part : open_) {
+            if (part.as == ShapeAs::kTerrain) {
+                part.role = {Kind::kTerrain, terrainAxis(part.sheet).value_or(flattestAxis(part.sheet))};
+            } else if (part.as == ShapeAs::kSolid) {
+                part.role.kind = Kind::kHoled;
+            } else if (part.as == ShapeAs::kAuto) {
+                unclear.push_back(&part);
             }
+        }
+        if (unclear.empty()) {
             return {};
         }
-        const MeshQuery query = RELIEF_TRY(MeshQuery::build(prepared_));
-        const std::size_t asked = std::max(kSightPointsMin, kSightPoints / sheets_.size());
-        tbb::parallel_for(std::size_t{0}, sheets_.size(), [&](std::size_t i) {
-            const std::array<double, 2> sight = sightOf(sheets_[i], asked, query);
+        const MeshQuery query = RELIEF_TRY(MeshQuery::build(opaque()));
+        const std::size_t asked = std::max(kSightPointsMin, kSightPoints / unclear.size());
+        tbb::parallel_for(std::size_t{0}, unclear.size(), [&](std::size_t i) {
+            Open& part = *unclear[i];
+            const std::array<double, 2> sight = sightOf(part.sheet, asked, query);
             const auto [dark, light] = std::minmax(sight[0], sight[1]);
-            if (options_.as == ShapeAs::kSolid || (dark <= kSheetSight && light > kSeen)) {
-                roles_[i].kind = Kind::kHoled;
-            } else if (const std::optional<int> axis = terrainAxis(sheets_[i])) {
-                roles_[i] = {Kind::kTerrain, *axis};
+            if (dark <= kSheetSight && light > kSeen) {
+                part.role.kind = Kind::kHoled;
+            } else if (const std::optional<int> axis = terrainAxis(part.sheet)) {
+                part.role = {Kind::kTerrain, *axis};
             }
         });
         return {};
+    }
+
+    /// The mesh without what is to be a shell: there is free space on both sides of that, however dark it is there.
+    [[nodiscard]] PreparedMesh opaque() const {
+        TriangleMesh mesh;
+        for (std::size_t i = 0; i < kinds_.size(); ++i) {
+            if (kinds_[i] != ShapeAs::kShell) {
+                mesh.triangles.push_back(mesh_.triangles[i]);
+            }
+        }
+        if (mesh.triangles.size() == kinds_.size()) {
+            return prepared_;
+        }
+        mesh.name = mesh_.name;
+        mesh.positions = mesh_.positions;
+        Result<TriangleMesh> finished = finishMesh(std::move(mesh));
+        return finished ? PreparedMesh(std::move(*finished)) : prepared_;  // it may be too small for a mesh
     }
 
     /// The axis of the heights of a sheet that is the ground of its mesh.
@@ -280,41 +349,49 @@ class Shaper {
 
     /// Each part with holes by itself, and then what is left of them together: panels whose seams do not meet.
     Result<void> closeParts() {
-        std::vector<std::uint32_t> holed;
-        for (std::uint32_t i = 0; i < sheets_.size(); ++i) {
-            if (roles_[i].kind == Kind::kHoled) {
-                holed.push_back(i);
+        std::vector<Open*> holed;
+        for (Open& part : open_) {
+            if (part.role.kind == Kind::kHoled) {
+                holed.push_back(&part);
             }
         }
         std::vector<Result<Closed>> closed(holed.size(), Closed{});
         tbb::parallel_for(std::size_t{0}, holed.size(), [&](std::size_t i) {
-            const Result<TriangleMesh> mesh = finishMesh(meshOf(sheets_[holed[i]], mesh_.name));
+            const Result<TriangleMesh> mesh = finishMesh(meshOf(holed[i]->sheet, mesh_.name));
             if (mesh) {  // else it is too small for a mesh of its own
                 closed[i] = close(*mesh);
             }
         });
-        TriangleMesh rest;
-        rest.name = mesh_.name;
-        std::vector<std::uint32_t> left;
+        std::array<std::vector<Open*>, kShapeAsCount> left;  // by what they are taken for
         for (std::size_t i = 0; i < holed.size(); ++i) {
             const Closed part = RELIEF_TRY(std::move(closed[i]));
             if (part.mesh) {
                 add(part);
                 ++report_.solids_with_holes;
-                continue;
+            } else {
+                left[static_cast<std::size_t>(holed[i]->as)].push_back(holed[i]);
             }
-            left.push_back(holed[i]);
-            const Sheet& sheet = sheets_[holed[i]];
+        }
+        for (const std::vector<Open*>& parts : left) {
+            if (!parts.empty()) {
+                RELIEF_TRY(closeTogether(parts));
+            }
+        }
+        return {};
+    }
+
+    /// \param parts  taken for the same.
+    Result<void> closeTogether(const std::vector<Open*>& parts) {
+        TriangleMesh rest;
+        rest.name = mesh_.name;
+        for (const Open* part : parts) {
             const auto first = static_cast<std::uint32_t>(rest.positions.size());
-            rest.positions.insert(rest.positions.end(), sheet.positions.begin(), sheet.positions.end());
-            for (const glm::uvec3& t : sheet.triangles) {
+            rest.positions.insert(rest.positions.end(), part->sheet.positions.begin(),
+                                  part->sheet.positions.end());
+            for (const glm::uvec3& t : part->sheet.triangles) {
                 rest.triangles.push_back(t + first);
             }
         }
-        return left.empty() ? Result<void>() : closeTogether(std::move(rest), left);
-    }
-
-    Result<void> closeTogether(TriangleMesh rest, const std::vector<std::uint32_t>& parts) {
         rest = RELIEF_TRY(finishMesh(std::move(rest)));
         const Closed closed = RELIEF_TRY(close(rest));
         if (closed.mesh) {
@@ -324,26 +401,26 @@ class Shaper {
         }
         const MeshQuery query = RELIEF_TRY(MeshQuery::build(rest));
         const Enclosure enclosure = measureEnclosure(query);
-        if (options_.as == ShapeAs::kSolid ||
+        if (parts.front()->as == ShapeAs::kSolid ||
             (enclosure.one_sided >= kOneSided && enclosure.agreement >= kAgreement)) {
-            union_.add(rest.positions, rest.triangles, rest.triangles.size(), 1);
+            union_.add(rest.positions, rest.triangles, rest.triangles.size(), ++bodies_);
             ++report_.solids_with_holes;
             return {};
         }
-        for (const std::uint32_t i : parts) {
-            roles_[i].kind = Kind::kSheet;
+        for (Open* part : parts) {
+            part->role.kind = Kind::kSheet;
         }
         return {};
     }
 
     void addSheets() {
-        for (std::size_t i = 0; i < sheets_.size(); ++i) {
-            if (roles_[i].kind == Kind::kSheet) {
-                union_.add(thickened(sheets_[i], options_.thickness));
+        for (const Open& part : open_) {
+            if (part.role.kind == Kind::kSheet) {
+                union_.add(thickened(part.sheet, options_.thickness));
                 report_.thickness = options_.thickness;
                 ++report_.sheets;
-            } else if (roles_[i].kind == Kind::kTerrain) {
-                addTerrain(sheets_[i], roles_[i].axis);
+            } else if (part.role.kind == Kind::kTerrain) {
+                addTerrain(part.sheet, part.role.axis);
             }
         }
     }
@@ -362,9 +439,9 @@ class Shaper {
     const ShapeOptions& options_;
     std::vector<std::uint32_t> welded_;
     std::vector<Part> parts_;
-    std::vector<Sheet> sheets_;  // of the parts that are not solid as they are
-    std::vector<Role> roles_;    // of each of them
-    std::uint32_t bodies_ = 1;   // 1: the parts that enclose something together, by parity
+    std::vector<ShapeAs> kinds_;  // of the triangles; empty: options_.as
+    std::vector<Open> open_;      // of parts_
+    std::uint32_t bodies_ = 0;    // that parity decides about: their numbers begin at 1
     SolidUnion union_;
     ShapeReport report_;
 };
@@ -377,34 +454,12 @@ void append(std::string& text, std::uint64_t count, const char* one, const char*
 
 }  // namespace
 
-std::string_view shapeAsName(ShapeAs as) {
-    return kAsNames[static_cast<std::size_t>(as)];
-}
-
-std::optional<ShapeAs> parseShapeAs(std::string_view name) {
-    const auto found = std::find(kAsNames.begin(), kAsNames.end(), name);
-    return found == kAsNames.end() ? std::nullopt
-                                   : std::optional(static_cast<ShapeAs>(found - kAsNames.begin()));
-}
-
 std::string shapeOptionsText(const ShapeReport& report) {
-    return (report.as == ShapeAs::kAuto ? "" : kAsOption + std::string(shapeAsName(report.as))) +
-           (report.thickness > 0.0 ? kThicknessOption + shortest(static_cast<float>(report.thickness)) : "");
-}
-
-ShapeOptions shapeOptionsOf(const std::string& container_options, const ShapeOptions& otherwise) {
-    const auto valueOf = [&](const std::string& option) {
-        const std::size_t at = container_options.find(option);
-        const std::string rest = at == std::string::npos ? "" : container_options.substr(at + option.size());
-        return rest.substr(0, rest.find(' '));
-    };
-    ShapeOptions options = otherwise;
-    options.as = parseShapeAs(valueOf(kAsOption)).value_or(options.as);
-    const std::optional<float> thickness = parseFloat(valueOf(kThicknessOption));
-    if (thickness && *thickness > 0.0F) {
-        options.thickness = double{*thickness};
+    ShapeOptions options{report.as, report.thickness, {}};
+    for (const NamedTriangles& named : report.named) {
+        options.named.push_back(named.shape);
     }
-    return options;
+    return recordedShape(options);
 }
 
 std::string ShapeReport::text() const {

@@ -6,32 +6,21 @@
 //   sheet             both sides are seen from outside: it becomes a shell of a given thickness (sheet.h)
 //   terrain           a height field that covers its rectangle: it becomes the ground below it
 //
+// Triangles that are taken for different things do not hang together, whatever edges they share.
+//
 // Coincident triangles count once. What a point is inside of is the union of all parts: solids that overlap, shells that
 // cross a solid, and a sheet within a solid, which is never met.
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
-#include <string_view>
+#include <vector>
 
 #include "bake/mesh/prepared_mesh.h"
+#include "bake/shape/shape_options.h"
 #include "formats/base/result.h"
 
 namespace relief {
-
-/// What the parts are taken for.
-enum class ShapeAs : std::uint8_t { kAuto, kSolid, kShell, kTerrain };
-
-[[nodiscard]] std::string_view shapeAsName(ShapeAs as);  ///< "auto", "solid", "shell" or "terrain"
-[[nodiscard]] std::optional<ShapeAs> parseShapeAs(std::string_view name);
-
-struct ShapeOptions {
-    /// kSolid: every part is a solid, with or without holes. kShell: every part is a sheet. kTerrain: every open part is
-    /// a height field, along its flattest axis if none is better.
-    ShapeAs as = ShapeAs::kAuto;
-    double thickness = 0.0;  ///< of shells, object units, above 0: see defaultThickness
-};
 
 /// A texel and a half of a planned bake of a box like this: a wall that fills its texels.
 /// \param budget_bytes  of all texels.
@@ -41,8 +30,15 @@ struct ShapeOptions {
 inline constexpr double kThicknessMin = 1e-4;
 inline constexpr double kThicknessMax = 0.5;
 
+/// What a name was taken for.
+struct NamedTriangles {
+    NamedShape shape;
+    std::uint64_t triangles = 0;  ///< of the mesh, that no later name has too
+};
+
 struct ShapeReport {
     ShapeAs as = ShapeAs::kAuto;
+    std::vector<NamedTriangles> named;  ///< in the order of the options
     std::uint64_t solids = 0;
     std::uint64_t solids_with_holes = 0;
     std::uint64_t sheets = 0;
@@ -54,18 +50,15 @@ struct ShapeReport {
     [[nodiscard]] std::string text() const;
 };
 
-/// " --as shell --thickness 0.01", or less: for the options that a container records.
+/// " --as shell --as glass=auto --thickness 0.01", or less: for the options that a container records.
 [[nodiscard]] std::string shapeOptionsText(const ShapeReport& report);
-/// What a container was made with. Words that are missing or that make no sense are left as they are in `otherwise`.
-[[nodiscard]] ShapeOptions shapeOptionsOf(const std::string& container_options,
-                                          const ShapeOptions& otherwise);
 
 struct ShapedMesh {
     PreparedMesh mesh;  ///< the mesh that came if it is solid already
     ShapeReport report;
 };
 
-/// \param mesh  as windOutwards leaves it.
+/// \param mesh  as windOutwards leaves it. Its marks count options.named; without marks, nothing is named.
 /// The same for any number of threads.
 /// Errors: those of MeshQuery::build; kLimit (kTriangleMax).
 [[nodiscard]] Result<ShapedMesh> shapeMesh(const PreparedMesh& mesh, const ShapeOptions& options);

@@ -19,10 +19,11 @@ std::vector<std::string> linesOf(const std::string& text) {
     return lines;
 }
 
-/// "x|y|z" as three words; nothing for "WxH" or "SCENE.toml|COLLIDER.relief", which are no words to type.
+/// "x|y|z" as three words, "[NAME=]x|y" as two; nothing for "WxH" or "SCENE.toml|COLLIDER.relief", which are no words to
+/// type.
 std::vector<std::string> wordsOf(const std::string& value) {
     std::vector<std::string> words;
-    std::istringstream in(value);
+    std::istringstream in(value.substr(value.starts_with('[') ? value.find(']') + 1 : 0));
     for (std::string word; std::getline(in, word, '|');) {
         const bool literal = !word.empty() && std::ranges::all_of(word, [](char c) {
             return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-';

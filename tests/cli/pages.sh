@@ -72,6 +72,7 @@ completes() { # FILE EXPECTED WORD…
 completes relief.bash "$(printf '%s\n' "${verbs[@]}" | sort | tr '\n' ' ' | sed 's/ $//')" relief ''
 completes relief.bash bake relief ba
 completes relief.bash 'best fast normal' relief bake m.obj --quality ''
+completes relief.bash 'auto shell solid terrain' relief bake m.obj --as ''
 completes relief.bash fast relief bake m.obj --quality f
 completes relief.bash 'best fast normal' relief bake m.obj --quality =
 completes relief.bash best relief bake m.obj --quality = b

@@ -23,6 +23,7 @@ using relief::TriangleMesh;
 
 constexpr double kCoordinateMax = 1e15;  // finishMesh's
 constexpr std::size_t kErrorBytesMax = 5000;
+constexpr std::size_t kNames = 3;  // that were asked for, where there are marks
 
 /// A mesh file that the messages pretend to be of; gone again as soon as it is read.
 ImportSource openSource() {
@@ -69,6 +70,10 @@ void mustBeMesh(const TriangleMesh& mesh) {
             mustHold(x >= mesh.bounds.min[k] && x <= mesh.bounds.max[k], "and within the bounds");
         }
     }
+    mustHold(mesh.marks.empty() || mesh.marks.size() == mesh.triangles.size(), "a mark a triangle, or none");
+    for (const std::uint8_t mark : mesh.marks) {
+        mustHold(mark <= kNames, "a mark is that of a name");
+    }
     mustHold(mesh.unit.empty() || mesh.unit == "m", "the unit is known");
     mustHold(mesh.name == "m.obj", "the name is the file's, not the worker's");
     mustHold(mesh.dependencies.size() == mesh.dependency_hashes.size(), "a hash a file");
@@ -98,9 +103,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     const Result<TriangleMesh> again = relief::readImportMessage(bytesOf(raw));
     mustHold(again.has_value(), "what was read can be sent");
-    mustHold(sameBytes(again->positions, raw->positions) && sameBytes(again->triangles, raw->triangles),
+    mustHold(sameBytes(again->positions, raw->positions) && sameBytes(again->triangles, raw->triangles) &&
+                 sameBytes(again->marks, raw->marks),
              "and arrives as it was");
-    const Result<TriangleMesh> mesh = kSource.finish(std::move(*raw));
+    const std::size_t names = raw->marks.empty() ? 0 : kNames;
+    const Result<TriangleMesh> mesh = kSource.finish(std::move(*raw), names);
     if (!mesh) {
         mustHold(mesh.error().message.find("m.obj") != std::string::npos, "an error names the file");
         mustHold(isLine(mesh.error().message), "an error is one line");

@@ -39,11 +39,14 @@ std::size_t mend(std::span<std::uint8_t> bytes, unsigned seed) {
     }
     using relief::import_fb::Message;
     const auto& table = *flatbuffers::GetRoot<flatbuffers::Table>(data);
-    const std::size_t items = (bytes.size() - head) / kItemBytes;
-    const std::size_t positions = seed % (items + 1);
+    const bool marked = table.GetAddressOf(Message::VT_MARKS) != nullptr;
+    const std::size_t triangle_bytes = kItemBytes + (marked ? 1 : 0);
+    const std::size_t triangles = seed % ((bytes.size() - head) / triangle_bytes + 1);
+    const std::size_t positions = (bytes.size() - head - triangles * triangle_bytes) / kItemBytes;
     set(bytes, table, Message::VT_POSITIONS, positions);
-    set(bytes, table, Message::VT_TRIANGLES, items - positions);
-    return head + items * kItemBytes;
+    set(bytes, table, Message::VT_TRIANGLES, triangles);
+    set(bytes, table, Message::VT_MARKS, triangles);
+    return head + positions * kItemBytes + triangles * triangle_bytes;
 }
 
 }  // namespace

@@ -46,6 +46,23 @@ TEST(RecordedBake, TakesNothingThatMeansSomethingToAShell) {
     EXPECT_TRUE(recordedBake("").understood);
 }
 
+TEST(RecordedBake, NamesAreWordsOfTheAdvisedCommand) {
+    const RecordedBake bake =
+        recordedBake("--as solid --as glass%20%27top%27%3B=shell --as wheel=auto --as -x=shell");
+    EXPECT_TRUE(bake.understood);
+    EXPECT_EQ(bake.shape.as, ShapeAs::kSolid);
+    const std::vector<std::string> names = {"glass 'top';", "wheel", "-x"};
+    EXPECT_EQ(bake.shape.names(), names);
+    EXPECT_EQ(bake.words(), " --as solid --as 'glass '\\''top'\\'';=shell' --as wheel=auto --as -x=shell");
+    for (const char* options :
+         {"--as a;reboot=shell", "--as $(reboot)=shell", "--as a%0Ab=shell", "--as a=b=shell"}) {
+        const RecordedBake hostile = recordedBake(options);
+        EXPECT_FALSE(hostile.understood) << options;
+        EXPECT_EQ(hostile.words(), "");
+        EXPECT_TRUE(hostile.shape.named.empty());
+    }
+}
+
 TEST(RecordedBake, MakesTheSolidThatWasBaked) {
     TriangleMesh box = makeBoxMesh({0, 0, 0}, {1, 1, 1});
     box.triangles.pop_back();

@@ -15,11 +15,14 @@
 namespace relief::test {
 namespace {
 
+constexpr std::size_t kNames = 2;  // that were asked for
+
 TriangleMesh rawTriangle() {
     TriangleMesh raw;
     raw.unit = "m";
     raw.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     raw.triangles = {{0, 1, 2}};
+    raw.marks = {2};
     raw.dependencies = {"b/x.mtl"};
     raw.dependency_hashes = {std::string(32, 'a')};
     raw.warnings = {"something"};
@@ -41,6 +44,7 @@ TEST(ImportMessage, CarriesMeshesAndErrors) {
     EXPECT_EQ(read->unit, raw.unit);
     EXPECT_EQ(read->positions, raw.positions);
     EXPECT_EQ(read->triangles, raw.triangles);
+    EXPECT_EQ(read->marks, raw.marks);
     EXPECT_EQ(read->dependencies, raw.dependencies);
     EXPECT_EQ(read->dependency_hashes, raw.dependency_hashes);
     EXPECT_EQ(read->warnings, raw.warnings);
@@ -49,6 +53,11 @@ TEST(ImportMessage, CarriesMeshesAndErrors) {
     TriangleMesh lie = rawTriangle();
     lie.unused_vertices = std::numeric_limits<std::uint64_t>::max();
     EXPECT_FALSE(readImportMessage(bytesOf(lie))) << "no file holds so many";
+    lie = rawTriangle();
+    lie.marks = {1, 2};
+    EXPECT_FALSE(readImportMessage(bytesOf(lie))) << "a mark without a triangle";
+    lie.marks.clear();
+    EXPECT_TRUE(readImportMessage(bytesOf(lie)));
 
     const Result<TriangleMesh> error = readImportMessage(bytesOf(fail(ErrorCode::kLimit, "two\nlines \x1b")));
     ASSERT_FALSE(error);
@@ -84,7 +93,7 @@ TEST(ImportMessage, AnyFlippedBitsAreReadSafely) {
         }
         Result<TriangleMesh> raw = readImportMessage(bytes);
         if (raw) {
-            raw = source->finish(std::move(*raw));
+            raw = source->finish(std::move(*raw), kNames);
         }
         refused += raw ? 0 : 1;
     }
@@ -96,7 +105,7 @@ TEST(ImportSource, ClaimsOfTheWorkerAreChecked) {
     const TemporaryFolder folder;
     const Result<ImportSource> source = ImportSource::open(folder.write("t.obj", tetrahedronObj()));
     ASSERT_TRUE(source);
-    ASSERT_TRUE(source->finish(rawTriangle()));
+    ASSERT_TRUE(source->finish(rawTriangle(), kNames));
     const std::vector<std::function<void(TriangleMesh&)>> lies = {
         [](TriangleMesh& raw) { raw.unit = "parsec"; },
         [](TriangleMesh& raw) { raw.dependencies = {"/etc/passwd"}; },
@@ -107,16 +116,19 @@ TEST(ImportSource, ClaimsOfTheWorkerAreChecked) {
         [](TriangleMesh& raw) { raw.dependency_hashes = {"short"}; },
         [](TriangleMesh& raw) { raw.triangles[0].z = 3; },
         [](TriangleMesh& raw) { raw.triangles.clear(); },
+        [](TriangleMesh& raw) { raw.marks = {3}; },
+        [](TriangleMesh& raw) { raw.marks.clear(); },
         [](TriangleMesh& raw) { raw.positions[1].x = std::numeric_limits<float>::quiet_NaN(); },
     };
     for (std::size_t i = 0; i < lies.size(); ++i) {
         TriangleMesh raw = rawTriangle();
         lies[i](raw);
-        const Result<TriangleMesh> mesh = source->finish(std::move(raw));
+        const Result<TriangleMesh> mesh = source->finish(std::move(raw), kNames);
         ASSERT_FALSE(mesh) << "lie " << i;
         EXPECT_EQ(mesh.error().code, ErrorCode::kInvalidInput);
         EXPECT_NE(mesh.error().message.find("t.obj"), std::string::npos) << mesh.error().message;
     }
+    EXPECT_FALSE(source->finish(rawTriangle())) << "marks that nobody asked for";
 }
 
 TEST(ImportSource, FilesAreNamedAsTheyCanBeOpenedAndSorted) {
@@ -127,7 +139,7 @@ TEST(ImportSource, FilesAreNamedAsTheyCanBeOpenedAndSorted) {
     TriangleMesh raw = rawTriangle();
     raw.dependencies = {"z.mtl", "a.mtl"};
     raw.dependency_hashes = {std::string(32, 'f'), std::string(32, '0')};
-    const Result<TriangleMesh> mesh = source->finish(std::move(raw));
+    const Result<TriangleMesh> mesh = source->finish(std::move(raw), kNames);
     ASSERT_TRUE(mesh);
     const std::vector<std::string> files = {path.string(), folder.path() / "a.mtl", folder.path() / "z.mtl"};
     EXPECT_EQ(mesh->dependencies, files);

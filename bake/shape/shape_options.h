@@ -1,0 +1,52 @@
+// What the parts of a mesh are to be taken for: as the command line says it, and as containers record it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/base/result.h"
+
+namespace relief {
+
+/// What parts are taken for.
+enum class ShapeAs : std::uint8_t { kAuto, kSolid, kShell, kTerrain };
+
+inline constexpr std::size_t kShapeAsCount = 4;
+
+[[nodiscard]] std::string_view shapeAsName(ShapeAs as);  ///< "auto", "solid", "shell" or "terrain"
+[[nodiscard]] std::optional<ShapeAs> parseShapeAs(std::string_view name);
+
+/// What the triangles of a name are taken for, by its mark (TriangleMesh::marks).
+struct NamedShape {
+    std::string name;  ///< clean UTF-8, 1 to kAskedNameBytesMax bytes
+    ShapeAs as = ShapeAs::kAuto;
+
+    friend bool operator==(const NamedShape&, const NamedShape&) = default;
+};
+
+struct ShapeOptions {
+    /// kSolid: every part is a solid, with or without holes. kShell: every part is a sheet. kTerrain: every open part is
+    /// a height field, along its flattest axis if none is better.
+    ShapeAs as = ShapeAs::kAuto;
+    double thickness = 0.0;  ///< of shells, object units, above 0: see defaultThickness
+    /// What goes before `as`; each name once, at most kAskedNamesMax. Where a triangle has several, the last counts.
+    std::vector<NamedShape> named = {};
+
+    [[nodiscard]] std::vector<std::string> names() const;  ///< of `named`, in that order
+};
+
+/// The values of --as: KIND at most once, and NAME=KIND, split at the last "=". Errors: kUsage, kLimit.
+[[nodiscard]] Result<ShapeOptions> parseShapeOptions(const std::vector<std::string>& words);
+
+/// " --as shell --as glass=auto --thickness 0.01": what is not the default, as a container records it. Of a name, all is
+/// %XX that could mean something to a shell or to who reads the record.
+[[nodiscard]] std::string recordedShape(const ShapeOptions& options);
+/// Reads one option of such a record. \return whether it is one, and its value makes sense; otherwise nothing is changed.
+[[nodiscard]] bool readRecordedShape(std::string_view option, std::string_view value, ShapeOptions& options);
+/// What a container was made with. Words that are missing or that make no sense are left as they are in `otherwise`.
+[[nodiscard]] ShapeOptions shapeOptionsOf(std::string_view container_options, const ShapeOptions& otherwise);
+
+}  // namespace relief

@@ -1,0 +1,262 @@
+// What has a name in the mesh file is taken for what its name says; and what options and containers say of that.
+#include <gtest/gtest.h>
+
+#include "bake/mesh/mesh_query.h"
+#include "bake/repair/winding.h"
+#include "bake/shape/shape.h"
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+namespace {
+
+constexpr double kThickness = 0.1;
+using Named = std::vector<NamedShape>;
+
+ShapedMesh shaped(TriangleMesh mesh, const Named& named, ShapeAs as = ShapeAs::kAuto) {
+    Result<Winding> winding = windOutwards(std::move(mesh));
+    EXPECT_TRUE(winding);
+    Result<ShapedMesh> shape = shapeMesh(winding->mesh, {as, kThickness, named});
+    EXPECT_TRUE(shape) << shape.error().message;
+    return std::move(*shape);
+}
+
+void expectKinds(const ShapeReport& report, std::uint64_t solids, std::uint64_t holed, std::uint64_t sheets,
+                 std::uint64_t terrains) {
+    EXPECT_EQ(report.solids, solids);
+    EXPECT_EQ(report.solids_with_holes, holed);
+    EXPECT_EQ(report.sheets, sheets);
+    EXPECT_EQ(report.terrains, terrains);
+}
+
+bool inside(const ShapedMesh& shape, const glm::vec3& p) {
+    const Result<MeshQuery> query = MeshQuery::build(shape.mesh);
+    EXPECT_TRUE(query);
+    return query->inside(p);
+}
+
+/// Half sides 1; its lid, at y = 1, has the first name, all else the second.
+TriangleMesh makeBoxWithLid() {
+    TriangleMesh box = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0));
+    for (const glm::uvec3& t : box.triangles) {
+        const bool lid = std::min({box.positions[t.x].y, box.positions[t.y].y, box.positions[t.z].y}) > 0.9F;
+        box.marks.push_back(lid ? 1 : 2);
+    }
+    return box;
+}
+
+/// A box without a lid, named first, and a closed one at x = 4, named second.
+TriangleMesh makeTwoBoxes() {
+    TriangleMesh mesh = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0));
+    const TriangleMesh other = makeBoxMesh(glm::dvec3(4.0, 0.0, 0.0), glm::dvec3(1.0));
+    std::vector<glm::uvec3> triangles;
+    for (const glm::uvec3& t : mesh.triangles) {
+        if (std::min({mesh.positions[t.x].y, mesh.positions[t.y].y, mesh.positions[t.z].y}) < 0.9F) {
+            triangles.push_back(t);
+        }
+    }
+    std::vector<std::uint8_t> marks(triangles.size(), 1);
+    for (const glm::uvec3& t : other.triangles) {
+        triangles.push_back(t + static_cast<std::uint32_t>(mesh.positions.size()));
+        marks.push_back(2);
+    }
+    mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
+    mesh = finished(mesh.positions, triangles);
+    mesh.marks = marks;
+    return mesh;
+}
+
+TEST(NamedShape, EachPartIsWhatItsNameSays) {
+    const glm::vec3 tub(0.0F);
+    const glm::vec3 block(4.0F, 0.0F, 0.0F);
+    const ShapedMesh found = shaped(makeTwoBoxes(), {});
+    expectKinds(found.report, 1, 0, 1, 0);
+    EXPECT_FALSE(inside(found, tub));
+    EXPECT_TRUE(inside(found, block));
+    const ShapedMesh told = shaped(makeTwoBoxes(), {{"tub", ShapeAs::kSolid}, {"block", ShapeAs::kShell}});
+    expectKinds(told.report, 0, 1, 1, 0);
+    EXPECT_TRUE(inside(told, tub));
+    EXPECT_FALSE(inside(told, block));
+    EXPECT_TRUE(inside(told, {4.98F, 0.2F, 0.3F}));
+    ASSERT_EQ(told.report.named.size(), 2U);
+    EXPECT_EQ(told.report.named[0].triangles, 10U);
+    EXPECT_EQ(told.report.named[1].triangles, 12U);
+    EXPECT_EQ(shapeOptionsText(told.report), " --as tub=solid --as block=shell --thickness 0.1");
+    // What has no name goes by the default.
+    const ShapedMesh rest = shaped(makeTwoBoxes(), {{"tub", ShapeAs::kAuto}}, ShapeAs::kShell);
+    expectKinds(rest.report, 0, 0, 2, 0);
+    EXPECT_EQ(shapeOptionsText(rest.report), " --as shell --as tub=auto --thickness 0.1");
+}
+
+TEST(NamedShape, AWallIsCutOutOfTheSurfaceThatItSharesEdgesWith) {
+    // Glass: free space on both sides, and so within the box.
+    const ShapedMesh glass = shaped(makeBoxWithLid(), {{"lid", ShapeAs::kShell}});
+    expectKinds(glass.report, 0, 0, 2, 0);
+    EXPECT_FALSE(inside(glass, glm::vec3(0.0F)));
+    for (const glm::vec3& wall : {glm::vec3(0.0F, 1.04F, 0.0F), {0.0F, 0.96F, 0.0F}, {0.2F, -0.96F, 0.3F}}) {
+        EXPECT_TRUE(inside(glass, wall)) << wall.x << " " << wall.y;
+    }
+    // Below it, what is said to be full.
+    for (const auto& [named, as] :
+         {std::pair{Named{{"lid", ShapeAs::kShell}}, ShapeAs::kSolid},
+          {Named{{"lid", ShapeAs::kShell}, {"box", ShapeAs::kSolid}}, ShapeAs::kAuto}}) {
+        const ShapedMesh full = shaped(makeBoxWithLid(), named, as);
+        expectKinds(full.report, 0, 1, 1, 0);
+        EXPECT_TRUE(inside(full, glm::vec3(0.0F)));
+        EXPECT_TRUE(inside(full, {0.0F, 1.04F, 0.0F}));
+        EXPECT_FALSE(inside(full, {0.0F, 1.06F, 0.0F}));
+        EXPECT_FALSE(inside(full, {0.0F, -1.01F, 0.0F}));
+    }
+}
+
+TEST(NamedShape, AClosedSurfaceOfWhichNothingIsAWallStaysWhole) {
+    const ShapedMesh plain = shaped(makeBoxWithLid(), {});
+    for (const Named& named : {Named{{"lid", ShapeAs::kSolid}}, Named{{"lid", ShapeAs::kTerrain}},
+                               Named{{"lid", ShapeAs::kSolid}, {"box", ShapeAs::kSolid}},
+                               Named{{"lid", ShapeAs::kAuto}, {"box", ShapeAs::kSolid}}}) {
+        const ShapedMesh shape = shaped(makeBoxWithLid(), named);
+        expectKinds(shape.report, 1, 0, 0, 0);
+        EXPECT_EQ(shape.mesh->triangles, plain.mesh->triangles);
+        EXPECT_EQ(shape.mesh->positions, plain.mesh->positions);
+    }
+    // All of it by two names is all of it.
+    const ShapedMesh walls = shaped(makeBoxWithLid(), {{"lid", ShapeAs::kShell}, {"box", ShapeAs::kShell}});
+    expectKinds(walls.report, 0, 0, 1, 0);
+    EXPECT_EQ(walls.mesh->triangles, shaped(makeBoxWithLid(), {}, ShapeAs::kShell).mesh->triangles);
+}
+
+TEST(NamedShape, OpenPartsOfTwoKindsPartAtTheirCommonEdges) {
+    // A floor of two halves: ground, and a wall that lies flat. Neither is closed.
+    TriangleMesh floor = makePlane(0.0F, 8);
+    for (const glm::uvec3& t : floor.triangles) {
+        const float x = floor.positions[t.x].x + floor.positions[t.y].x + floor.positions[t.z].x;
+        floor.marks.push_back(x < 0.0F ? 1 : 2);
+    }
+    const ShapedMesh shape = shaped(floor, {{"ground", ShapeAs::kTerrain}, {"slab", ShapeAs::kShell}});
+    expectKinds(shape.report, 0, 0, 1, 1);
+    EXPECT_TRUE(inside(shape, {-0.5F, -0.09F, 0.2F}));
+    EXPECT_FALSE(inside(shape, {-0.5F, 0.01F, 0.2F}));
+    EXPECT_FALSE(inside(shape, {0.5F, -0.09F, 0.2F}));
+    EXPECT_TRUE(inside(shape, {0.5F, 0.04F, 0.2F}));
+    EXPECT_EQ(shape.mesh->sourceTriangles(), floor.triangles.size());
+}
+
+TEST(NamedShape, WhatStandsInAShellIsJudgedAsIfTheShellWereNotThere) {
+    // A ball with a hole, in the dark of a closed box.
+    TriangleMesh box = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(2.0));
+    const TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 2);
+    std::vector<glm::uvec3> triangles = box.triangles;
+    std::vector<std::uint8_t> marks(triangles.size(), 1);
+    for (std::size_t i = 1; i < ball.triangles.size(); ++i) {
+        triangles.push_back(ball.triangles[i] + static_cast<std::uint32_t>(box.positions.size()));
+        marks.push_back(0);
+    }
+    box.positions.insert(box.positions.end(), ball.positions.begin(), ball.positions.end());
+    TriangleMesh mesh = finished(box.positions, triangles);
+    mesh.marks = marks;
+    const ShapedMesh shape = shaped(mesh, {{"room", ShapeAs::kShell}});
+    expectKinds(shape.report, 0, 1, 1, 0);
+    EXPECT_TRUE(inside(shape, glm::vec3(0.0F)));
+    EXPECT_FALSE(inside(shape, {1.5F, 0.1F, 0.2F}));
+}
+
+TEST(NamedShape, MarksOfNobodyAreNoNames) {
+    const ShapedMesh plain = shaped(makeBoxWithLid(), {});
+    TriangleMesh hostile = makeBoxWithLid();
+    hostile.marks.assign(hostile.triangles.size(), 200);
+    const ShapedMesh beyond = shaped(hostile, {{"lid", ShapeAs::kShell}});
+    EXPECT_EQ(beyond.mesh->triangles, plain.mesh->triangles);
+    EXPECT_EQ(beyond.report.named.at(0).triangles, 0U);
+    hostile.marks.clear();
+    EXPECT_EQ(shaped(hostile, {{"lid", ShapeAs::kShell}}).mesh->triangles, plain.mesh->triangles);
+}
+
+TEST(FinishMesh, MarksStayWithTheirTriangles) {
+    TriangleMesh mesh;
+    mesh.name = "m";
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    mesh.triangles = {{0, 1, 2}, {1, 1, 2}, {0, 2, 3}, {3, 3, 3}, {0, 1, 3}};
+    mesh.marks = {5, 6, 7, 8, 9};
+    const Result<TriangleMesh> finished = finishMesh(mesh);
+    ASSERT_TRUE(finished);
+    EXPECT_EQ(finished->marks, (std::vector<std::uint8_t>{5, 7, 9}));
+    mesh.marks.clear();
+    EXPECT_TRUE(finishMesh(mesh)->marks.empty());
+}
+
+TEST(ShapeOptions, AreReadFromTheCommandLine) {
+    const Result<ShapeOptions> options = parseShapeOptions(
+        {"a=b=solid", "shell", " glass top =terrain", "solid=auto", "caf\xc3\xa9\x01=shell"});
+    ASSERT_TRUE(options) << options.error().message;
+    EXPECT_EQ(options->as, ShapeAs::kShell);
+    const Named expected = {{"a=b", ShapeAs::kSolid},
+                            {" glass top ", ShapeAs::kTerrain},
+                            {"solid", ShapeAs::kAuto},
+                            {"caf\xc3\xa9\xef\xbf\xbd", ShapeAs::kShell}};
+    EXPECT_EQ(options->named, expected);
+    EXPECT_EQ(parseShapeOptions({})->as, ShapeAs::kAuto);
+    const std::string longest(kAskedNameBytesMax, 'x');
+    EXPECT_TRUE(parseShapeOptions({longest + "=solid"}));
+    for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{{""},
+                                                                                       {"sheet"},
+                                                                                       {"=solid"},
+                                                                                       {"a="},
+                                                                                       {"a=sheet"},
+                                                                                       {"solid=a"},
+                                                                                       {"solid", "solid"},
+                                                                                       {"a=solid", "a=shell"},
+                                                                                       {longest + "x=solid"},
+                                                                                       {"\n"}}) {
+        const Result<ShapeOptions> wrong = parseShapeOptions(words);
+        ASSERT_FALSE(wrong) << words.back();
+        EXPECT_EQ(wrong.error().code, ErrorCode::kUsage);
+        EXPECT_TRUE(wrong.error().message.starts_with("--as ")) << wrong.error().message;
+        EXPECT_EQ(wrong.error().message.find('\n'), std::string::npos);
+    }
+    std::vector<std::string> many;
+    for (std::size_t i = 0; i <= kAskedNamesMax; ++i) {
+        many.push_back("n" + std::to_string(i) + "=solid");
+    }
+    EXPECT_EQ(parseShapeOptions(many).error().code, ErrorCode::kLimit);
+    many.pop_back();
+    EXPECT_TRUE(parseShapeOptions(many));
+}
+
+TEST(ShapeOptions, SurviveTheRecordOfAContainer) {
+    std::string all;
+    for (char c = ' '; c < '\x7f'; ++c) {
+        all += c;
+    }
+    const ShapeOptions options{
+        ShapeAs::kSolid,
+        0.25,
+        {{all, ShapeAs::kShell}, {"caf\xc3\xa9 \xe7\xaa\x93", ShapeAs::kAuto}, {"%41", ShapeAs::kTerrain}}};
+    const std::string text = recordedShape(options);
+    EXPECT_EQ(text.find_first_of(";|&$`'\"\\<>()*?~\t\n"), std::string::npos) << text;
+    const ShapeOptions read = shapeOptionsOf("--map x" + text + " --unit mm", {});
+    EXPECT_EQ(read.as, options.as);
+    EXPECT_EQ(read.thickness, options.thickness);
+    EXPECT_EQ(read.named, options.named);
+    EXPECT_EQ(recordedShape({}), "");
+}
+
+TEST(ShapeOptions, NothingElseOfARecordIsBelieved) {
+    const std::string too_long(kAskedNameBytesMax + 1, 'x');
+    for (const std::string& value :
+         {std::string("=shell"), std::string("a=wall"), std::string("a;b=shell"), std::string("a%=shell"),
+          std::string("a%4=shell"), std::string("a%0A=shell"), std::string("a%zz=shell"),
+          std::string("a%ff=shell"), std::string("\xff=shell"), std::string("a=b=shell"),
+          too_long + "=shell"}) {
+        ShapeOptions options{ShapeAs::kTerrain, 1.0, {}};
+        EXPECT_FALSE(readRecordedShape("--as", value, options)) << value;
+        EXPECT_TRUE(options.named.empty());
+        EXPECT_EQ(options.as, ShapeAs::kTerrain);
+    }
+    ShapeOptions options;
+    for (std::size_t i = 0; i < 2 * kAskedNamesMax; ++i) {
+        EXPECT_EQ(readRecordedShape("--as", "n" + std::to_string(i) + "=solid", options), i < kAskedNamesMax);
+    }
+    EXPECT_EQ(options.named.size(), kAskedNamesMax);
+}
+
+}  // namespace
+}  // namespace relief::test
