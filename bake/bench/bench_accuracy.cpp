@@ -303,13 +303,21 @@ struct Measured {
     Json meshes = Json::array();
 };
 
+/// What the collider that is to be measured was baked of; without one, what the parts are is found.
+Result<ShapeOptions> recordedShapeOf(const Arguments& arguments) {
+    if (arguments.collider.empty()) {
+        return ShapeOptions();
+    }
+    const Collider collider = RELIEF_TRY(loadCollider(arguments.collider));
+    return shapeOptionsOf(collider.provenance.options, {});
+}
+
 /// Measures one mesh at one budget with all methods.
-Result<void> measureBudget(const PreparedMesh& imported, const Arguments& arguments, std::uint64_t budget,
-                           Cache& cache, Measured& measured) {
-    ShapeOptions shape{ShapeAs::kAuto, defaultThickness(imported->bounds, budget)};
-    if (!arguments.collider.empty()) {
-        const Collider collider = RELIEF_TRY(loadCollider(arguments.collider));
-        shape = shapeOptionsOf(collider.provenance.options, shape);
+/// \param shape  thickness 0: the default for the budget.
+Result<void> measureBudget(const PreparedMesh& imported, const Arguments& arguments, ShapeOptions shape,
+                           std::uint64_t budget, Cache& cache, Measured& measured) {
+    if (!(shape.thickness > 0.0)) {
+        shape.thickness = defaultThickness(imported->bounds, budget);
     }
     const ShapedMesh shaped = RELIEF_TRY(shapeMesh(imported, shape));
     const MeshQuery query = RELIEF_TRY(MeshQuery::build(shaped.mesh));
@@ -373,18 +381,21 @@ Result<void> run(const Arguments& arguments) {
     if (!arguments.collider.empty() && (paths.size() != 1 || budgets.size() != 1)) {
         return fail(ErrorCode::kUsage, "--collider is of one mesh; give one MESH and one --budget");
     }
+    const ShapeOptions shape = RELIEF_TRY(recordedShapeOf(arguments));
+    ImportOptions import;
+    import.names = shape.names();
     Cache cache(arguments.cache);
     Measured measured;
     for (const std::string& path : paths) {
         const Stopwatch watch;
-        TriangleMesh mesh = RELIEF_TRY(importMeshInWorker(path));
+        TriangleMesh mesh = RELIEF_TRY(importMeshInWorker(path, import));
         if (!arguments.values.empty()) {
             const MeshQuery query = RELIEF_TRY(MeshQuery::build(std::move(mesh)));
             return printValues(query, budgets.front(), arguments.values);
         }
         const auto winding = RELIEF_TRY(windOutwards(std::move(mesh)));
         for (const std::uint64_t budget : budgets) {
-            RELIEF_TRY(measureBudget(winding.mesh, arguments, budget, cache, measured));
+            RELIEF_TRY(measureBudget(winding.mesh, arguments, shape, budget, cache, measured));
         }
         std::fprintf(stderr, "%s: %.1f s\n", winding.mesh->name.c_str(), watch.seconds());
     }
