@@ -212,6 +212,37 @@ struct Search {
     }
 };
 
+/// The parity directions, each the way that leaves the box sooner, the shortest way first: where leaves and grass lie in
+/// many layers, a ray meets fewer of them.
+class WaysOut {
+  public:
+    WaysOut(const Bounds& box, const glm::vec3& p) {
+        for (std::size_t i = 0; i < ways_.size(); ++i) {
+            const glm::dvec3& along = kParityDirections[i];
+            double ahead = std::numeric_limits<double>::infinity();
+            double behind = ahead;
+            for (int axis = 0; axis < 3; ++axis) {
+                const double up = (double{box.max[axis]} - p[axis]) / std::abs(along[axis]);
+                const double down = (double{p[axis]} - box.min[axis]) / std::abs(along[axis]);
+                ahead = std::min(ahead, along[axis] > 0.0 ? up : down);
+                behind = std::min(behind, along[axis] > 0.0 ? down : up);
+            }
+            ways_[i] = {std::min(ahead, behind), behind < ahead ? -along : along};
+        }
+        // Of equals the first.
+        std::stable_sort(ways_.begin(), ways_.end(),
+                         [](const Way& a, const Way& b) { return a.length < b.length; });
+    }
+    [[nodiscard]] const glm::dvec3& operator[](std::size_t i) const { return ways_[i].direction; }
+
+  private:
+    struct Way {
+        double length = 0.0;
+        glm::dvec3 direction;
+    };
+    std::array<Way, kParityDirections.size()> ways_;
+};
+
 }  // namespace
 
 Result<MeshQuery> MeshQuery::build(PreparedMesh mesh) {
@@ -232,8 +263,9 @@ bool MeshQuery::inside(const glm::vec3& p) const {
     // asked of open ones, and of meshes whose winding nobody has seen to.
     const std::size_t rays = !bodies_.empty() && shells_ ? 3 : kParityDirections.size();
     std::size_t votes[2] = {0, 0};
+    const WaysOut ways(mesh().bounds, p);
     for (std::size_t i = 0; votes[0] <= rays / 2 && votes[1] <= rays / 2; ++i) {
-        ++votes[rayIsInside(p, kParityDirections[i]) ? 1 : 0];
+        ++votes[rayIsInside(p, ways[i]) ? 1 : 0];
     }
     return votes[1] > rays / 2;
 }

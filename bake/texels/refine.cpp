@@ -14,6 +14,7 @@
 #include "bake/mesh/triangle_plane.h"
 #include "bake/texels/plane_fit.h"
 #include "formats/plane.h"
+#include "formats/row_spans.h"
 #include "formats/texel.h"
 
 namespace relief {
@@ -464,7 +465,7 @@ class Refinement {
 void refineTexels(Collider& collider, const MeshQuery& query, const RefineOptions& options) {
     double ends = 0.0;
     for (const DepthMap& map : collider.maps) {
-        ends += static_cast<double>(map.texelBytes()) / 4.0;
+        ends += static_cast<double>(gpuBytes(map)) / 4.0;
     }
     const auto count = static_cast<std::size_t>(std::clamp(ends * options.points_per_texel,
                                                            static_cast<double>(kRefinePointsMin),
