@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "formats/depth_map.h"
+#include "formats/nearest_surface.h"
 #include "formats/normal_index.h"
 
 namespace relief {
@@ -48,6 +49,25 @@ std::string makeConstants() {
     define("GRAZING", static_cast<float>(kGrazingCosine));
     define("STANDING_COSINE", kStandingCosine);
     define("NORMAL_HALF_RANGE", kNormalHalfRange);
+    define("NEAREST_EVALUATIONS_MAX", NearestSearch::kEvaluationsMax);
+    define("NEAREST_STEPS", NearestSearch::kSteps);
+    define("NEAREST_STEPS_FROM_PROBE", NearestSearch::kStepsFromProbe);
+    define("NEAREST_BEYOND", NearestSearch::kBeyond);
+    define("NEAREST_BEYOND_MIN", NearestSearch::kBeyondMin);
+    define("NEAREST_BEYOND_MAX", NearestSearch::kBeyondMax);
+    define("NEAREST_NEARER", NearestSearch::kNearer);
+    define("NEAREST_FINEST_RING", NearestSearch::kFinestRing);
+    define("NEAREST_FINEST_WHOLE_RING", NearestSearch::kFinestWholeRing);
+    define("NEAREST_HALVINGS", NearestSearch::kHalvings);
+    define("NEAREST_ROUNDS", NearestSearch::kRounds);
+    define("NEAREST_SHARE_NEAR", NearestSearch::kShareNear);
+    define("NEAREST_SHARE_FAR", NearestSearch::kShareFar);
+    define("NEAREST_TURNS", NearestSearch::kTurns);
+    define("NEAREST_TILT", NearestSearch::kTilt);
+    define("NEAREST_TILT_MIN", NearestSearch::kTiltMin);
+    define("NEAREST_REACH_MAX", NearestSearch::kReachMax);
+    define("NEAREST_REACH_MIN", NearestSearch::kReachMin);
+    define("NEAREST_DISTANCE_MIN", NearestSearch::kDistanceMin);
 
     define("BOUNCE", asFloat(OnCollision::kBounce));
     define("STOP", asFloat(OnCollision::kStop));

@@ -13,35 +13,12 @@ constexpr GLsizei kWidth = 1024;
 constexpr std::size_t kBatch = std::size_t{kWidth} * 1024;  // points evaluated with one draw
 constexpr ColliderTextures::Binding kBinding{1, 0};         // unit 0 holds the points
 
-}  // namespace
-
-Result<FieldQuery> FieldQuery::create(const Collider& collider) {
-    ColliderTextures textures = RELIEF_TRY(ColliderTextures::create(collider));
-    auto own = std::make_unique<ColliderTextures>(std::move(textures));
-    auto query = create(*own);
-    if (query) {
-        query->own_ = std::move(own);
-    }
-    return query;
-}
-
-Result<FieldQuery> FieldQuery::create(const ColliderTextures& textures) {
-    const PassState state;
-    FieldQuery query;
-    query.textures_ = &textures;
-    query.program_ = RELIEF_TRY(makeProgram("quad.vert", "query.frag", textures.defines()));
-    textures.attach(query.program_, kBinding);
-    glUniform1i(uniformLocation(query.program_, "u_points"), 0);
-    query.no_attributes_ = makeVertexArray();
-    return query;
-}
-
-Result<std::vector<FieldSample>> FieldQuery::evaluate(std::span<const glm::vec3> points) const {
-    const PassState state;
+/// Runs a program of query.frag at each point, and hands out both of its outputs, in order.
+template <class Take>
+Result<void> ask(std::span<const glm::vec3> points, const GlProgram& program,
+                 const ColliderTextures& textures, const GlVertexArray& no_attributes, const Take& take) {
     RELIEF_TRY(checkTextureSize(kWidth, std::min(kBatch, points.size()) / kWidth, "the points of a query",
                                 "this GL is too small for it"));
-    std::vector<FieldSample> samples;
-    samples.reserve(points.size());
     for (std::size_t first = 0; first < points.size(); first += kBatch) {
         const std::span<const glm::vec3> batch =
             points.subspan(first, std::min(kBatch, points.size() - first));
@@ -61,19 +38,72 @@ Result<std::vector<FieldSample>> FieldQuery::evaluate(std::span<const glm::vec3>
         const GlFramebuffer framebuffer = RELIEF_TRY(makeFramebuffer(targets));
         glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer.name());
         glViewport(0, 0, kWidth, height);
-        glUseProgram(program_.name());
+        glUseProgram(program.name());
         useTexture(0, input);
-        textures_->bind(kBinding);
-        glBindVertexArray(no_attributes_.name());
+        textures.bind(kBinding);
+        glBindVertexArray(no_attributes.name());
         glDrawArrays(GL_TRIANGLES, 0, 3);
 
         const auto fields = RELIEF_TRY(readTextureFloats(normal_distance, kWidth, height));
         const auto maps = RELIEF_TRY(readTextureFloats(map, kWidth, height));
         for (std::size_t i = 0; i < batch.size(); ++i) {
-            const float* field = &fields[4 * i];
-            samples.push_back({field[3], {field[0], field[1], field[2]}, static_cast<int>(maps[4 * i])});
+            take(&fields[4 * i], &maps[4 * i]);
         }
     }
+    return {};
+}
+
+}  // namespace
+
+Result<FieldQuery> FieldQuery::create(const Collider& collider) {
+    ColliderTextures textures = RELIEF_TRY(ColliderTextures::create(collider));
+    auto own = std::make_unique<ColliderTextures>(std::move(textures));
+    auto query = create(*own);
+    if (query) {
+        query->own_ = std::move(own);
+    }
+    return query;
+}
+
+Result<FieldQuery> FieldQuery::create(const ColliderTextures& textures) {
+    const PassState state;
+    FieldQuery query;
+    query.textures_ = &textures;
+    query.program_ = RELIEF_TRY(query.program(""));
+    query.no_attributes_ = makeVertexArray();
+    return query;
+}
+
+Result<GlProgram> FieldQuery::program(const std::string& defines) const {
+    GlProgram program = RELIEF_TRY(makeProgram("quad.vert", "query.frag", textures_->defines() + defines));
+    textures_->attach(program, kBinding);
+    glUniform1i(uniformLocation(program, "u_points"), 0);
+    return program;
+}
+
+Result<std::vector<FieldSample>> FieldQuery::evaluate(std::span<const glm::vec3> points) const {
+    const PassState state;
+    std::vector<FieldSample> samples;
+    samples.reserve(points.size());
+    RELIEF_TRY(ask(points, program_, *textures_, no_attributes_, [&](const float* field, const float* map) {
+        samples.push_back({field[3], {field[0], field[1], field[2]}, static_cast<int>(map[0])});
+    }));
+    return samples;
+}
+
+Result<std::vector<SurfaceSample>> FieldQuery::nearest(std::span<const glm::vec3> points,
+                                                       const Bounds& bounds) const {
+    const PassState state;
+    const GlProgram nearest = RELIEF_TRY(program("#define RELIEF_QUERY_NEAREST\n"));
+    glUseProgram(nearest.name());
+    glUniform3f(uniformLocation(nearest, "u_low"), bounds.min.x, bounds.min.y, bounds.min.z);
+    glUniform3f(uniformLocation(nearest, "u_high"), bounds.max.x, bounds.max.y, bounds.max.z);
+    std::vector<SurfaceSample> samples;
+    samples.reserve(points.size());
+    RELIEF_TRY(ask(points, nearest, *textures_, no_attributes_, [&](const float* field, const float* map) {
+        samples.push_back(
+            {field[3], {map[1], map[2], map[3]}, {field[0], field[1], field[2]}, static_cast<int>(map[0])});
+    }));
     return samples;
 }
 

@@ -17,6 +17,7 @@
 #include <span>
 
 #include "runtime/gl/pass_state.h"
+#include "tests/formats/analytic_shapes.h"
 #include "tests/runtime/gl/gl_test.h"
 
 namespace relief {
@@ -363,6 +364,111 @@ TEST_P(FieldQueryGlTest, TheEarlyOutIsTheSignOfTheWholeWalkAndAgreesWithTheCpu) 
     }
     EXPECT_GT(inside, points_tested / 20);
     EXPECT_LT(inside, points_tested / 2);
+}
+
+// ---- the nearest surface
+
+/// How far the GPU's search is from the CPU's. Where some point of one falls to another texel than in the other, by
+/// rounding, the search goes on from another plane.
+struct NearestAgreement {
+    double same = 0.0;   ///< share of points with the same distance, point, normal and map
+    double close = 0.0;  ///< share of points whose distance differs by less than `hair`
+};
+
+NearestAgreement nearestAgreement(const Collider& collider, std::span<const glm::vec3> points, float hair) {
+    const Result<FieldQuery> query = FieldQuery::create(collider);
+    EXPECT_TRUE(query) << query.error().message;
+    const Result<std::vector<SurfaceSample>> samples = query->nearest(points, collider.bounds);
+    EXPECT_TRUE(samples) << samples.error().message;
+    const Result<std::vector<FieldSample>> votes = query->evaluate(points);
+    EXPECT_TRUE(votes);
+    NearestAgreement agreement;
+    for (std::size_t i = 0; i < points.size() && !testing::Test::HasFailure(); ++i) {
+        const SurfaceSample& gpu = (*samples)[i];
+        const SurfaceSample cpu = nearestSurface(collider, points[i]);
+        SCOPED_TRACE(i);
+        for (const float value : {gpu.distance, gpu.normal.x, gpu.normal.y, gpu.normal.z, gpu.point.x,
+                                  gpu.point.y, gpu.point.z}) {
+            EXPECT_TRUE(std::isfinite(value));
+        }
+        EXPECT_EQ(gpu.inside(), (*votes)[i].inside());
+        EXPECT_EQ(gpu.map < 0, (*votes)[i].map < 0);
+        if (gpu.map >= 0 && std::abs(gpu.distance) < 1e10F) {
+            EXPECT_NEAR(glm::length(gpu.point - points[i]), std::abs(gpu.distance),
+                        kRelative * std::max(4.0F, std::abs(gpu.distance)));
+            EXPECT_NEAR(glm::length(gpu.normal), 1.0F, 1e-5F);
+        }
+        const float scale = std::max(2.0F, std::abs(cpu.distance));
+        const bool same =
+            gpu.map == cpu.map &&
+            (gpu.map < 0 || (std::abs(gpu.distance - cpu.distance) <= 4.0F * kRelative * scale &&
+                             glm::length(gpu.point - cpu.point) <= 1e-4F * scale &&
+                             glm::length(gpu.normal - cpu.normal) <= kNormal));
+        agreement.same += same ? 1.0 : 0.0;
+        agreement.close +=
+            gpu.map < 0 || std::abs(std::abs(gpu.distance) - std::abs(cpu.distance)) <= hair ? 1.0 : 0.0;
+    }
+    agreement.same /= static_cast<double>(points.size());
+    agreement.close /= static_cast<double>(points.size());
+    return agreement;
+}
+
+TEST_P(FieldQueryGlTest, TheNearestSurfaceOfASolidAgreesWithTheCpu) {
+    using namespace test;
+    constexpr std::uint32_t kSize = 64;
+    std::mt19937 random(31);
+    for (const Decode decode : {Decode::kPlane, Decode::kProjected}) {
+        Collider collider;
+        collider.bounds = {{-0.5F, -0.35F, -0.4F}, {0.5F, 0.35F, 0.4F}};
+        const auto box = makeBox({0, 0, 0}, {0.5, 0.35, 0.4});
+        const glm::dmat3 axes = rotation({1.0, 2.0, -0.5}, 37.0);
+        for (int k = 0; k < 3; ++k) {
+            const glm::dmat3 look(axes[(k + 1) % 3], axes[(k + 2) % 3], axes[k]);
+            collider.maps.push_back(makeMap(*box, centeredFrame({0, 0, 0}, look, glm::dvec3(1.6)),
+                                            k == 1 ? MapFormat::kFrontBackHalf : MapFormat::kFrontBackFixed,
+                                            Compare::kBoth, kSize, kSize));
+        }
+        collider.maps.push_back(
+            makeMap(*box, CubeFrame{{0, 0, 0}, axes, glm::dvec3(0.8)}, Compare::kGreater, kSize));
+        for (DepthMap& map : collider.maps) {
+            map.decode = decode;
+        }
+        const NearestAgreement agreement =
+            nearestAgreement(collider, randomPoints(20'000, random), 1.6F / kSize);
+        EXPECT_GT(agreement.same, 0.998);
+        EXPECT_GT(agreement.close, 0.9998);
+    }
+}
+
+TEST_P(FieldQueryGlTest, TheNearestSurfaceOfAnyMapsIsFiniteAndMostlyAgreesWithTheCpu) {
+    std::mt19937 random(37);
+    for (int repeat = 0; repeat < 6; ++repeat) {
+        Collider collider;
+        collider.bounds = {glm::vec3(-0.7F), glm::vec3(0.7F)};
+        for (int i = 0; i < 1 + repeat; ++i) {
+            const Kind& kind = kKinds[random() % std::size(kKinds)];
+            collider.maps.push_back(randomMap(kind.format, kind.compare, kind.width, kind.height, random));
+        }
+        const NearestAgreement agreement = nearestAgreement(collider, randomPoints(5'000, random), 0.02F);
+        EXPECT_GT(agreement.same, 0.99);
+        EXPECT_GT(agreement.close, 0.995);
+    }
+}
+
+TEST_P(FieldQueryGlTest, TheNearestSurfaceOfExtremePointsAndBoundsIsFinite) {
+    std::mt19937 random(41);
+    Collider collider;
+    for (const Kind& kind : kKinds) {
+        collider.maps.push_back(randomMap(kind.format, kind.compare, kind.width, kind.height, random));
+    }
+    const std::vector<glm::vec3> points = {{0, 0, 0},         {1e30F, 0, 0},         {-1e30F, 1e30F, -1e30F},
+                                           {3e38F, 3e38F, 0}, {1e-30F, -1e-38F, 0},  {1e16F, 1e16F, 1e16F},
+                                           {0.1F, 0, 0.2F},   {1e15F, -1e15F, 1e15F}};
+    for (const Bounds& bounds : {Bounds{{-1, -1, -1}, {1, 1, 1}}, Bounds{{0, 0, 0}, {0, 0, 0}},
+                                 Bounds{{-3e38F, 0, 0}, {3e38F, 1, 1}}, Bounds{}}) {
+        collider.bounds = bounds;
+        (void)nearestAgreement(collider, points, 1.0F);
+    }
 }
 
 TEST_P(FieldQueryGlTest, TooManyMapsAndTooLargeMapsAreNamedErrors) {

@@ -1,0 +1,390 @@
+#include "formats/nearest_surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace relief {
+namespace {
+
+float dot(const glm::vec3& a, const glm::vec3& b) {
+    return a.x * b.x + (a.y * b.y + a.z * b.z);
+}
+
+float length(const glm::vec3& v) {
+    return std::sqrt(dot(v, v));
+}
+
+glm::vec3 cross(const glm::vec3& a, const glm::vec3& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+bool isFinite(const glm::vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+/// Of a vote, with P's side as its positive one: at + normal·y is the distance of P + y.
+struct Plane {
+    glm::vec3 normal;
+    float at;
+};
+
+/// Up to three planes, of which the other side is the common one behind all.
+class Corner {
+  public:
+    explicit Corner(const Plane& plane) : planes_{plane}, foot_(-plane.at * plane.normal) {}
+
+    /// The point of the other side that is nearest to P, relative to P.
+    [[nodiscard]] const glm::vec3& foot() const { return foot_; }
+    [[nodiscard]] const glm::vec3& normal() const { return planes_[count_ - 1].normal; }  ///< of the newest
+    [[nodiscard]] bool isCutBy(const Plane& plane) const {
+        return plane.at + dot(plane.normal, foot_) > 0.0F;
+    }
+
+    /// Adds a plane that has the foot on P's side; of four the oldest is dropped. So the new foot lies on it.
+    void add(const Plane& plane) {
+        if (count_ == 3) {
+            planes_[0] = planes_[1];
+            planes_[1] = planes_[2];
+            count_ = 2;
+        }
+        planes_[count_++] = plane;
+        while (!meet()) {
+            planes_[0] = planes_[1];
+            planes_[1] = planes_[2];
+            --count_;
+        }
+    }
+
+  private:
+    [[nodiscard]] bool take(const glm::vec3& y) {
+        for (int i = 0; i < count_; ++i) {
+            if (!(planes_[i].at + dot(planes_[i].normal, y) <= 1e-4F * planes_[i].at)) {
+                return false;
+            }
+        }
+        foot_ = y;
+        return true;
+    }
+
+    /// The nearest point of two planes, in front of both of which P lies.
+    [[nodiscard]] bool takeEdge(const Plane& a, const Plane& b) {
+        const float cosine = dot(a.normal, b.normal);
+        const float sine2 = 1.0F - cosine * cosine;
+        const float along_a = cosine * b.at - a.at;
+        const float along_b = cosine * a.at - b.at;
+        return sine2 > 1e-4F && along_a <= 0.0F && along_b <= 0.0F &&
+               take((along_a / sine2) * a.normal + (along_b / sine2) * b.normal);
+    }
+
+    /// Fails where the planes have no common point, or none that floats can find.
+    [[nodiscard]] bool meet() {
+        const Plane& a = planes_[count_ - 1];
+        if (take(-a.at * a.normal) || count_ == 1) {
+            return true;
+        }
+        if (takeEdge(a, planes_[0]) || (count_ == 3 && takeEdge(a, planes_[1]))) {
+            return true;
+        }
+        if (count_ < 3) {
+            return false;
+        }
+        const Plane& b = planes_[0];
+        const Plane& c = planes_[1];
+        const glm::vec3 bc = cross(b.normal, c.normal);
+        const float volume = dot(a.normal, bc);
+        if (!(std::abs(volume) > 1e-3F)) {
+            return false;
+        }
+        foot_ = (-1.0F / volume) *
+                (a.at * bc + (b.at * cross(c.normal, a.normal) + c.at * cross(a.normal, b.normal)));
+        return true;
+    }
+
+    Plane planes_[3];
+    int count_ = 1;
+    glm::vec3 foot_;
+};
+
+class Search {
+  public:
+    Search(const Collider& collider, const glm::vec3& p, const FieldSample& sample)
+        : collider_(collider),
+          p_(p),
+          side_(collider.bounds.longestSide()),
+          sign_(sample.distance < 0.0F ? -1.0F : 1.0F) {
+        best_.distance = kFarOutside;
+        if (sample.distance < kFarOutside) {
+            follow({sign_ * sample.normal, sign_ * sample.distance}, nullptr, NearestSearch::kSteps);
+        }
+        findAny();
+        lookAround();
+        turn();
+    }
+
+    [[nodiscard]] bool found() const { return best_.distance < kFarOutside; }
+    [[nodiscard]] float sign() const { return sign_; }
+    [[nodiscard]] const SurfaceSample& best() const { return best_; }  ///< its distance is not signed
+
+  private:
+    // ---- what is asked
+
+    /// Nothing outside of the bounds is inside.
+    [[nodiscard]] glm::vec3 clamped(const glm::vec3& q) const {
+        if (sign_ < 0.0F) {
+            return q;
+        }
+        const auto one = [&](int k) {
+            return std::min(std::max(q[k], collider_.bounds.min[k]), collider_.bounds.max[k]);
+        };
+        return {one(0), one(1), one(2)};
+    }
+
+    [[nodiscard]] bool isOther(const FieldSample& sample) const {
+        return sample.map >= 0 && (sample.distance < 0.0F) != (sign_ < 0.0F);
+    }
+
+    /// The plane of a sample at P + y. `at` is not above 0 where there is none, or none that P is in front of.
+    [[nodiscard]] Plane planeOf(const FieldSample& sample, const glm::vec3& y) const {
+        if (sample.map < 0 || sample.distance >= kFarOutside) {
+            return {glm::vec3(0.0F), 0.0F};
+        }
+        const glm::vec3 normal = sign_ * sample.normal;
+        return {normal, sign_ * sample.distance - dot(normal, y)};
+    }
+
+    [[nodiscard]] FieldSample ask(const glm::vec3& q) {
+        --left_;
+        return evaluate(collider_, q);
+    }
+
+    /// A surface is at P + y. Whether that is the nearest so far.
+    bool offer(const glm::vec3& y, const FieldSample& sample) {
+        const float distance = length(y);
+        if (!(distance < best_.distance)) {
+            return false;
+        }
+        const bool far = sample.distance >= kFarOutside;
+        best_ = {distance, p_ + y, far ? y / distance : sample.normal, sample.map};
+        settled_ = false;
+        return true;
+    }
+
+    // ---- how
+
+    /// From a plane to the surface.
+    /// \param known  a point of the other side, relative to P; null if there is none.
+    void follow(const Plane& plane, const glm::vec3* known, int steps) {
+        Corner corner(plane);
+        bool has_other = known != nullptr;
+        glm::vec3 other = has_other ? *known : glm::vec3(0.0F);
+        glm::vec3 failed(0.0F);
+        bool halving = false;  // between the other side and a foot that no surface is at
+        for (int step = 0; step < steps && left_ > 0; ++step) {
+            glm::vec3 y = 0.5F * (other + failed);
+            float to_foot = 1.0F;  // share of y
+            if (!halving) {
+                const glm::vec3& foot = corner.foot();
+                const float way = length(foot);
+                if (!(way < best_.distance)) {
+                    return;
+                }
+                const float beyond =
+                    std::max(std::min(NearestSearch::kBeyond * way, NearestSearch::kBeyondMax * side_),
+                             NearestSearch::kBeyondMin * side_);
+                y = foot + (way > NearestSearch::kBeyondMin * side_ ? (beyond / way) * foot
+                                                                    : -beyond * corner.normal());
+                to_foot = way / (way + beyond);
+            }
+            const FieldSample sample = ask(p_ + y);
+            const Plane met = planeOf(sample, y);
+            if (isOther(sample)) {
+                // The plane says where between the foot and y the surface is; not before, where it may not hold.
+                const float share = met.at > 0.0F ? met.at / (met.at - sign_ * sample.distance) : 1.0F;
+                const bool nearest = offer(std::max(share, to_foot) * y, sample);
+                has_other = true;
+                other = y;
+                if (!halving) {
+                    if (!(met.at > 0.0F && met.at < NearestSearch::kNearer * best_.distance)) {
+                        settled_ = settled_ || nearest;
+                        return;
+                    }
+                    corner = Corner(met);
+                }
+            } else if (met.at > 0.0F && corner.isCutBy(met)) {
+                corner.add(met);
+                halving = false;
+            } else if (has_other) {
+                failed = y;
+                halving = true;
+            } else {
+                return;
+            }
+        }
+    }
+
+    /// The point of the other side between P and P + y, which is one, after some halvings.
+    [[nodiscard]] glm::vec3 nearerOther(glm::vec3 y, Plane& plane) {
+        glm::vec3 own(0.0F);
+        for (int i = 0; i < NearestSearch::kHalvings && left_ > 0; ++i) {
+            const glm::vec3 middle = 0.5F * (own + y);
+            const FieldSample sample = ask(p_ + middle);
+            if (isOther(sample)) {
+                offer(middle, sample);
+                y = middle;
+                plane = planeOf(sample, middle);
+            } else {
+                own = middle;
+            }
+        }
+        return y;
+    }
+
+    /// Asks at q for the other side; with `whole` it follows a plane of P's own side, too.
+    void probe(const glm::vec3& q, bool whole) {
+        glm::vec3 y = q - p_;
+        const float way = length(y);
+        if (left_ == 0 || !(way > 0.0F && way < best_.distance)) {
+            return;
+        }
+        if (sign_ > 0.0F && !whole && !evaluateInside(collider_, q).inside) {  // most often one vote
+            --left_;
+            return;
+        }
+        const FieldSample sample = ask(q);
+        Plane met = planeOf(sample, y);
+        const bool other = isOther(sample);
+        if (other) {
+            const bool first = !found();
+            offer(y, sample);
+            if (first) {
+                y = nearerOther(y, met);
+            }
+        }
+        if ((other || whole) && met.at > 0.0F) {
+            follow(met, other ? &y : nullptr, NearestSearch::kStepsFromProbe);
+        }
+    }
+
+    static glm::vec3 axis(int i) {
+        glm::vec3 direction(0.0F);
+        direction[i >> 1] = (i & 1) != 0 ? 1.0F : -1.0F;
+        return direction;
+    }
+
+    static glm::vec3 diagonal(int i) {
+        constexpr float kUnit = 0.57735027F;
+        return {(i & 1) != 0 ? kUnit : -kUnit, (i & 2) != 0 ? kUnit : -kUnit, (i & 4) != 0 ? kUnit : -kUnit};
+    }
+
+    /// Where the vote at P led to nothing: rings around P, or around the point of the bounds nearest to it, until
+    /// something is found.
+    void findAny() {
+        const glm::vec3 center = clamped(p_);
+        if (center != p_) {
+            probe(center, true);
+        }
+        for (int k = NearestSearch::kFinestRing; k >= 0 && !found(); --k) {
+            const float radius = std::ldexp(side_, -k);
+            for (int i = 0; i < 14; ++i) {
+                probe(clamped(center + radius * (i < 8 ? diagonal(i) : axis(i - 8))), false);
+            }
+        }
+        for (int k = NearestSearch::kFinestWholeRing; k >= 0 && !found(); --k) {
+            for (int i = 0; i < 6; ++i) {
+                probe(clamped(center + std::ldexp(side_, -k) * axis(i)), true);
+            }
+        }
+    }
+
+    /// Whether something else is nearer.
+    void lookAround() {
+        float before = kFarOutside;
+        for (int round = 0; round < NearestSearch::kRounds && best_.distance < before; ++round) {
+            before = best_.distance;
+            for (int i = 0; i < 14; ++i) {
+                const glm::vec3 way =
+                    i < 8 ? NearestSearch::kShareNear * diagonal(i) : NearestSearch::kShareFar * axis(i - 8);
+                probe(clamped(p_ + best_.distance * way), false);
+            }
+        }
+    }
+
+    /// Where no plane has said that the point found is the nearest of its surface: turns the way there to all sides,
+    /// while that makes it shorter.
+    void turn() {
+        float tilt = NearestSearch::kTilt;
+        for (int k = 0; k < NearestSearch::kTurns && tilt >= NearestSearch::kTiltMin && found() && !settled_;
+             ++k) {
+            const float before = best_.distance;
+            const glm::vec3 way = (best_.point - p_) / before;
+            const glm::vec3 across = std::abs(way.x) < 0.6F ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
+            const glm::vec3 right = across - dot(across, way) * way;
+            const glm::vec3 side = right / length(right);
+            const glm::vec3 up = cross(way, side);
+            for (int i = 0; i < 4 && best_.distance == before; ++i) {
+                const glm::vec3 turned = way + ((i & 1) != 0 ? -tilt : tilt) * (i < 2 ? side : up);
+                const float radius = before * (1.0F - 0.25F * tilt);
+                probe(clamped(p_ + (radius / length(turned)) * turned), false);
+            }
+            if (best_.distance == before) {
+                tilt *= 0.5F;
+            }
+        }
+    }
+
+    const Collider& collider_;
+    glm::vec3 p_;
+    float side_;
+    float sign_;
+    int left_ = NearestSearch::kEvaluationsMax - 1;
+    SurfaceSample best_;
+    bool settled_ = false;  // a plane said that no point of its surface is nearer
+};
+
+/// A float map's normals may be a little longer or shorter.
+glm::vec3 unit(const glm::vec3& normal) {
+    const float size = length(normal);
+    return size > 0.0F ? normal / size : normal;
+}
+
+/// All that the vote at P knows.
+SurfaceSample fromVote(const glm::vec3& p, const FieldSample& sample) {
+    SurfaceSample plane{std::clamp(sample.distance, -kFarOutside, kFarOutside), p, sample.normal, sample.map};
+    const glm::vec3 foot = p - plane.distance * unit(plane.normal);
+    if (plane.distance < kFarOutside && isFinite(foot)) {
+        plane.point = foot;
+    }
+    return plane;
+}
+
+bool canSearch(const Collider& collider, const glm::vec3& p) {
+    const auto within = [](const glm::vec3& v) {
+        return std::abs(v.x) <= NearestSearch::kReachMax && std::abs(v.y) <= NearestSearch::kReachMax &&
+               std::abs(v.z) <= NearestSearch::kReachMax;
+    };
+    const Bounds& bounds = collider.bounds;
+    return within(p) && within(bounds.min) && within(bounds.max) &&
+           bounds.longestSide() >= NearestSearch::kReachMin;
+}
+
+}  // namespace
+
+SurfaceSample nearestSurface(const Collider& collider, const glm::vec3& p) {
+    const FieldSample sample = evaluate(collider, p);
+    if (sample.map < 0) {
+        return {};
+    }
+    SurfaceSample nearest = fromVote(p, sample);
+    if (canSearch(collider, p)) {
+        const Search search(collider, p, sample);
+        if (search.found()) {
+            nearest = search.best();
+            // No distance of 0 says inside.
+            nearest.distance = search.sign() * std::max(nearest.distance, NearestSearch::kDistanceMin);
+        }
+    }
+    nearest.normal = unit(nearest.normal);
+    return nearest;
+}
+
+}  // namespace relief

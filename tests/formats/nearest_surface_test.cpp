@@ -1,0 +1,300 @@
+// The search for the nearest surface against shapes whose distance is known in closed form.
+//
+// What a collider of planes stands for differs from the shape by its texels: a plane is the surface's at the texel's
+// centre and leaves a curved one towards its rim, most of all where it is seen at a grazing angle, and an edge of the shape
+// ends with a texel. So a share of the points may be off by a texel; the distances that are asked for reach up to ten.
+#include "formats/nearest_surface.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <random>
+#include <string>
+
+#include "formats/validate.h"
+#include "tests/formats/analytic_shapes.h"
+#include "tests/formats/sample_colliders.h"
+
+namespace relief {
+namespace {
+
+using namespace test;
+
+using Distance = std::function<double(const glm::dvec3&)>;
+
+double boxDistance(const glm::dvec3& p, const glm::dvec3& half) {
+    const glm::dvec3 q = glm::abs(p) - half;
+    return glm::length(glm::max(q, glm::dvec3(0.0))) + std::min(std::max({q.x, q.y, q.z}), 0.0);
+}
+
+struct Scene {
+    Collider collider;
+    double texel = 0.0;  // object units
+};
+
+/// Front-back maps along +x, +y and +z of `axes`, whose texels are planes. The window leaves three texels around a box
+/// of the given half side.
+Scene threeMaps(const Shape& shape, double half, std::uint32_t size,
+                const glm::dmat3& axes = glm::dmat3(1.0)) {
+    Scene scene;
+    const double side = 2.0 * half * size / (size - 6);
+    scene.texel = side / size;
+    scene.collider.bounds = {glm::vec3(static_cast<float>(-half)), glm::vec3(static_cast<float>(half))};
+    for (int k = 0; k < 3; ++k) {
+        const glm::dmat3 look(axes[(k + 1) % 3], axes[(k + 2) % 3], axes[k]);
+        scene.collider.maps.push_back(makeMap(shape, centeredFrame({0, 0, 0}, look, glm::dvec3(side)),
+                                              MapFormat::kFrontBackFixed, Compare::kBoth, size, size));
+        scene.collider.maps.back().decode = Decode::kPlane;
+    }
+    return scene;
+}
+
+struct Errors {
+    double mean = 0.0;          // texels
+    double over_a_texel = 0.0;  // share of the points whose distance is off by more
+    double without_search =
+        0.0;  // the mean of evaluate() at the same points; one that says far counts as a texel
+    int inside = 0;
+    int count = 0;
+};
+
+/// At random points within `half` of the origin and 1 to 10 texels from the surface. What every answer promises is tested
+/// on the way.
+Errors measure(const Scene& scene, const Distance& truth, double half) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> within(-half, half);
+    Errors errors;
+    while (errors.count < 20'000 && !testing::Test::HasFailure()) {
+        const glm::vec3 p(glm::dvec3(within(random), within(random), within(random)));
+        const double distance = truth(glm::dvec3(p));
+        if (std::abs(distance) > 10.0 * scene.texel || std::abs(distance) < scene.texel) {
+            continue;
+        }
+        SCOPED_TRACE(std::to_string(p.x) + ", " + std::to_string(p.y) + ", " + std::to_string(p.z));
+        const FieldSample vote = evaluate(scene.collider, p);
+        const SurfaceSample nearest = nearestSurface(scene.collider, p);
+        EXPECT_EQ(nearest.inside(), vote.inside());
+        EXPECT_EQ(nearest.inside(), distance < 0.0);
+        EXPECT_LT(std::abs(nearest.distance), kFarOutside);
+        EXPECT_NEAR(glm::length(nearest.point - p), std::abs(nearest.distance), 1e-5);
+        EXPECT_NEAR(glm::length(nearest.normal), 1.0F, 1e-5F);
+        EXPECT_GE(nearest.map, 0);
+        const double error = std::abs(nearest.distance - distance) / scene.texel;
+        errors.mean += error;
+        errors.over_a_texel += error > 1.0 ? 1.0 : 0.0;
+        errors.without_search +=
+            vote.distance < kFarOutside ? std::abs(vote.distance - distance) / scene.texel : 1.0;
+        errors.inside += distance < 0.0 ? 1 : 0;
+        ++errors.count;
+    }
+    errors.mean /= errors.count;
+    errors.over_a_texel /= errors.count;
+    errors.without_search /= errors.count;
+    EXPECT_GT(errors.inside, errors.count / 10);
+    EXPECT_LT(errors.inside, errors.count / 2);
+    return errors;
+}
+
+TEST(NearestSurface, Sphere) {
+    constexpr double kRadius = 0.9;
+    const Scene scene = threeMaps(*makeSphere({0, 0, 0}, kRadius), kRadius, 64);
+    const Errors errors = measure(
+        scene, [&](const glm::dvec3& p) { return glm::length(p) - kRadius; }, 1.3);
+    EXPECT_LT(errors.mean, 0.04);
+    EXPECT_LT(errors.over_a_texel, 0.002);
+    EXPECT_GT(errors.without_search, 0.5);
+}
+
+/// Only one map, so that the surface is steep in its texels beside the hole, where it is seen at grazing angles.
+TEST(NearestSurface, TorusAndItsHole) {
+    constexpr std::uint32_t kSize = 96;
+    Scene scene;
+    scene.texel = 2.0 / kSize;
+    scene.collider.bounds = {{-0.95F, -0.95F, -0.25F}, {0.95F, 0.95F, 0.25F}};
+    scene.collider.maps.push_back(makeMap(*makeTorus(0.7, 0.25),
+                                          centeredFrame({0, 0, 0}, glm::dmat3(1.0), {2.0, 2.0, 0.6}),
+                                          MapFormat::kFrontBackFixed, Compare::kBoth, kSize, kSize));
+    scene.collider.maps.back().decode = Decode::kPlane;
+    const Errors errors = measure(
+        scene,
+        [](const glm::dvec3& p) {
+            const double ring = std::sqrt(p.x * p.x + p.y * p.y) - 0.7;
+            return std::sqrt(ring * ring + p.z * p.z) - 0.25;
+        },
+        1.2);
+    EXPECT_LT(errors.mean, 0.06);
+    EXPECT_LT(errors.over_a_texel, 0.005);
+    EXPECT_GT(errors.without_search, 0.5);
+}
+
+/// Each map sees an edge between two texels, and corners stick out of all of them.
+TEST(NearestSurface, BoxSeenAskew) {
+    const glm::dvec3 half(0.5, 0.35, 0.6);
+    Scene scene = threeMaps(*makeBox({0, 0, 0}, half), 0.8, 64, rotation({1.0, 2.0, -0.5}, 37.0));
+    scene.collider.bounds = {-glm::vec3(half), glm::vec3(half)};
+    const Errors errors = measure(
+        scene, [&](const glm::dvec3& p) { return boxDistance(p, half); }, 0.9);
+    EXPECT_LT(errors.mean, 0.06);
+    EXPECT_LT(errors.over_a_texel, 0.02);
+    EXPECT_GT(errors.without_search, 0.3);
+}
+
+/// Off a convex edge the plane of either face is nearer than the edge is.
+TEST(NearestSurface, OffAnEdgeAPlaneIsTooNear) {
+    const glm::dvec3 half(0.5, 0.35, 0.6);
+    Scene scene = threeMaps(*makeBox({0, 0, 0}, half), 0.8, 64, rotation({1.0, 2.0, -0.5}, 37.0));
+    scene.collider.bounds = {-glm::vec3(half), glm::vec3(half)};
+    double worst = 0.0;
+    double too_near = 0.0;  // by evaluate()
+    int points = 0;
+    for (int i = 0; i <= 100; ++i) {
+        for (const double off : {2.0, 4.0, 8.0}) {
+            // Beside an edge along y, at an equal distance from both of its faces.
+            const glm::dvec3 edge(half.x, half.y * (0.016 * i - 0.8), half.z);
+            const glm::vec3 p(edge + off * scene.texel * glm::dvec3(1.0, 0.0, 1.0));
+            const double truth = boxDistance(glm::dvec3(p), half);
+            ASSERT_NEAR(truth, std::sqrt(2.0) * off * scene.texel, 1e-6);
+            worst = std::max(worst, std::abs(nearestSurface(scene.collider, p).distance - truth));
+            too_near = std::max(too_near, truth - evaluate(scene.collider, p).distance);
+            ++points;
+        }
+    }
+    EXPECT_LT(worst, 1.0 * scene.texel);
+    EXPECT_GT(too_near, 2.0 * scene.texel);
+    EXPECT_EQ(points, 303);
+}
+
+/// A slot in a block, open upwards.
+class Slot : public Shape {
+  public:
+    [[nodiscard]] std::vector<Hit> hits(const glm::dvec3& origin,
+                                        const glm::dvec3& direction) const override {
+        std::vector<Hit> found;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double side = axis == 2 || direction[axis] < 0.0 ? -1.0 : 1.0;
+            const double t = (side * kHalf[axis] - origin[axis]) / direction[axis];
+            const glm::dvec3 beyond = glm::abs(origin + t * direction) - kHalf;
+            if (t > 0.0 && std::max({axis == 0 ? 0.0 : beyond.x, axis == 1 ? 0.0 : beyond.y,
+                                     axis == 2 ? 0.0 : beyond.z}) <= 0.0) {
+                glm::dvec3 normal(0.0);
+                normal[axis] = -side;
+                found.push_back({t, normal});
+            }
+        }
+        return found;
+    }
+    [[nodiscard]] bool inside(const glm::dvec3& p) const override {
+        const glm::dvec3 beyond = glm::abs(p) - kHalf;
+        return std::max({beyond.x, beyond.y, p.z > 0.0 ? -1.0 : beyond.z}) > 0.0;
+    }
+    static constexpr glm::dvec3 kHalf{0.25, 0.8, 0.4};
+};
+
+TEST(NearestSurface, InASlotTheNearestOfFloorAndWallsCounts) {
+    Scene scene;
+    scene.collider.bounds = {{-1, -1, -1}, {1, 1, 1}};
+    DepthMap cube =
+        makeMap(Slot(), CubeFrame{{0, 0, 0.05}, glm::dmat3(1.0), glm::dvec3(1.0)}, Compare::kLess, 128);
+    cube.decode = Decode::kPlane;
+    cube.encloses = false;
+    scene.collider.maps.push_back(cube);
+    std::mt19937 random(9);
+    std::uniform_real_distribution<float> x(-0.24F, 0.24F);
+    std::uniform_real_distribution<float> z(-0.39F, 0.1F);
+    double worst = 0.0;
+    double without = 0.0;
+    for (int i = 0; i < 5000; ++i) {
+        const glm::vec3 p(x(random), 0.5F * x(random), z(random));
+        const double truth = std::min(0.25 - std::abs(double{p.x}), double{p.z} + 0.4);
+        const SurfaceSample nearest = nearestSurface(scene.collider, p);
+        ASSERT_GT(nearest.distance, 0.0F);
+        worst = std::max(worst, std::abs(nearest.distance - truth));
+        without = std::max(without, std::abs(evaluate(scene.collider, p).distance - truth));
+    }
+    EXPECT_LT(worst, 0.05) << "a fifth of half the slot";
+    EXPECT_GT(without, 0.1);
+}
+
+/// Whatever a valid file may hold, at whatever finite point: nothing but finite numbers, and evaluate()'s side.
+TEST(NearestSurface, IsFiniteAndOnTheSideOfTheVoteWhateverTheMapsHold) {
+    constexpr float kMax = std::numeric_limits<float>::max();
+    std::mt19937 random(21);
+    std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
+    std::vector<glm::vec3> points;
+    for (const float x : {0.0F, 1e-40F, -1e4F, 3e9F, -1e15F, 1e19F, -1e30F, kMax, -kMax}) {
+        for (const float y : {0.0F, 0.5F, -1e15F, kMax}) {
+            points.insert(points.end(), {{x, y, 0.0F}, {y, x, y}, {-y, 0.0F, x}});
+        }
+    }
+    for (int i = 0; i < 500; ++i) {
+        points.emplace_back(unit(random), unit(random), unit(random));
+    }
+    const Bounds all_bounds[] = {{{-1, -1, -1}, {1, 1, 1}},        {{0, 0, 0}, {0, 0, 0}},
+                                 {{-kMax, -1, 0}, {kMax, 1, 0}},   {{1e-20F, 0, 0}, {2e-20F, 0, 0}},
+                                 {{-1e15F, -1, 0}, {1e15F, 1, 0}}, {}};
+    int inside = 0;
+    for (int round = 0; round < 20; ++round) {
+        Collider collider = oneMapOfEveryFormat();
+        for (DepthMap& map : collider.maps) {
+            map.decode = (random() & 1U) != 0 ? Decode::kPlane : Decode::kProjected;
+            map.encloses = (random() & 1U) != 0;
+            map.empty_is_outside = (random() & 1U) != 0;
+            if (map.format == MapFormat::kFixed8 || map.format == MapFormat::kFrontBackFixed ||
+                map.format == MapFormat::kCube8) {
+                for (std::byte& byte : map.texels) {  // any bytes are texels of these
+                    byte = static_cast<std::byte>(random());
+                }
+            }
+            ASSERT_TRUE(validateTexels(map));
+        }
+        for (const Bounds& bounds : all_bounds) {
+            collider.bounds = bounds;
+            for (const glm::vec3& p : points) {
+                const FieldSample vote = evaluate(collider, p);
+                const SurfaceSample nearest = nearestSurface(collider, p);
+                ASSERT_TRUE(std::isfinite(nearest.distance)) << p.x << " " << p.y << " " << p.z;
+                for (int k = 0; k < 3; ++k) {
+                    ASSERT_TRUE(std::isfinite(nearest.point[k]) && std::isfinite(nearest.normal[k]));
+                }
+                ASSERT_EQ(nearest.map < 0, vote.map < 0);
+                ASSERT_EQ(nearest.inside(), vote.inside());
+                inside += nearest.inside() ? 1 : 0;
+            }
+        }
+    }
+    EXPECT_GT(inside, 1000);
+}
+
+TEST(NearestSurface, WhereMapsKnowNothingItSaysSo) {
+    Scene scene = threeMaps(*makeSphere({0, 0, 0}, 0.5), 0.5, 16);
+    for (DepthMap& map : scene.collider.maps) {
+        map.encloses = false;
+    }
+    EXPECT_EQ(nearestSurface(scene.collider, {5, 5, 5}).map, -1);
+    // Outside, and no surface anywhere.
+    for (DepthMap& map : scene.collider.maps) {
+        map.encloses = true;
+        std::fill(map.texels.begin(), map.texels.end(), std::byte{0});
+    }
+    const SurfaceSample nothing = nearestSurface(scene.collider, {0.1F, 0, 0});
+    EXPECT_EQ(nothing.distance, kFarOutside);
+    EXPECT_EQ(nothing.point, glm::vec3(0.1F, 0, 0));
+    EXPECT_EQ(nothing.normal, glm::vec3(0.0F));
+    EXPECT_EQ(nothing.map, 0);
+}
+
+/// A point that every map calls outside, and no more, still has a distance.
+TEST(NearestSurface, FarOutsideOfAllVolumesTheDistanceIsFound) {
+    const Scene scene = threeMaps(*makeSphere({0, 0, 0}, 0.9), 0.9, 64);
+    for (const glm::vec3& p : {glm::vec3(3, 2, 1.5F), glm::vec3(-1.5F, 1.2F, -2), glm::vec3(10, -10, 5)}) {
+        ASSERT_EQ(evaluate(scene.collider, p).distance, kFarOutside);
+        EXPECT_NEAR(nearestSurface(scene.collider, p).distance, glm::length(p) - 0.9F, 0.1F * glm::length(p));
+    }
+}
+
+}  // namespace
+}  // namespace relief
