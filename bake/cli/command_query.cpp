@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <iterator>
 
 #include "bake/cli/command.h"
 #include "bake/cli/gl_options.h"
@@ -11,44 +12,65 @@
 #include "bake/report/points_csv.h"
 #include "formats/base/file_io.h"
 #include "formats/container.h"
+#include "formats/nearest_surface.h"
 #include "runtime/collider/field_query.h"
+#include "runtime/tool/option_values.h"
 
 namespace relief {
 namespace {
 
-constexpr std::size_t kPointsAtOnce = std::size_t{1} << 20;  // between two feedings of the watchdog
+// Between two feedings of the watchdog.
+constexpr std::size_t kPlanesAtOnce = std::size_t{1} << 20;
+constexpr std::size_t kSearchesAtOnce = std::size_t{1} << 16;
+
+enum class DistanceTo : std::uint8_t { kNearest, kPlane };
 
 struct QueryCommand {
     CommonOptions common;
     std::string file;
     std::string points;
     std::string output;
+    DistanceTo distance = DistanceTo::kNearest;
     bool gpu = false;
     GpuOptions gpu_options;
+
+    [[nodiscard]] bool plane() const { return distance == DistanceTo::kPlane; }
 };
 
-std::vector<FieldSample> evaluateOnCpu(const Collider& collider, std::span<const glm::vec3> points) {
+/// What is printed of the nearest surface: its distance, normal and map.
+FieldSample toSample(const SurfaceSample& nearest) {
+    return {nearest.distance, nearest.normal, nearest.map};
+}
+
+std::vector<FieldSample> askCpu(const Collider& collider, std::span<const glm::vec3> points, bool plane) {
     std::vector<FieldSample> samples(points.size());
-    tbb::parallel_for(std::size_t{0}, points.size(),
-                      [&](std::size_t i) { samples[i] = evaluate(collider, points[i]); });
+    tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+        samples[i] = plane ? evaluate(collider, points[i]) : toSample(nearestSurface(collider, points[i]));
+    });
     return samples;
 }
 
-Result<std::vector<FieldSample>> evaluateOnGpu(const Collider& collider, std::span<const glm::vec3> points,
-                                               const GpuOptions& options) {
-    const WatchedContext gl = RELIEF_TRY(openGl(options));
+Result<std::vector<FieldSample>> askGpu(const Collider& collider, std::span<const glm::vec3> points,
+                                        const QueryCommand& command) {
+    const WatchedContext gl = RELIEF_TRY(openGl(command.gpu_options));
     spdlog::debug("{}", gl.context->description());
     gl.watchdog->feed("uploading the collider");
     const FieldQuery query = RELIEF_TRY(FieldQuery::create(collider));
     std::vector<FieldSample> samples;
     samples.reserve(points.size());
-    for (std::size_t first = 0; first < points.size(); first += kPointsAtOnce) {
+    const std::size_t at_once = command.plane() ? kPlanesAtOnce : kSearchesAtOnce;
+    for (std::size_t first = 0; first < points.size(); first += at_once) {
         const std::span<const glm::vec3> some =
-            points.subspan(first, std::min(kPointsAtOnce, points.size() - first));
+            points.subspan(first, std::min(at_once, points.size() - first));
         gl.watchdog->feed("points " + std::to_string(first + 1) + " to " +
                           std::to_string(first + some.size()));
-        const std::vector<FieldSample> evaluated = RELIEF_TRY(query.evaluate(some));
-        samples.insert(samples.end(), evaluated.begin(), evaluated.end());
+        if (command.plane()) {
+            const std::vector<FieldSample> evaluated = RELIEF_TRY(query.evaluate(some));
+            samples.insert(samples.end(), evaluated.begin(), evaluated.end());
+        } else {
+            const std::vector<SurfaceSample> nearest = RELIEF_TRY(query.nearest(some, collider.bounds));
+            std::transform(nearest.begin(), nearest.end(), std::back_inserter(samples), toSample);
+        }
     }
     gl.watchdog->rest();
     return samples;
@@ -72,7 +94,7 @@ Result<void> runQuery(const QueryCommand& command) {
         RELIEF_TRY(parsePoints({reinterpret_cast<const char*>(text.data()), text.size()},
                                command.points == "-" ? "standard input" : command.points));
     const std::vector<FieldSample> samples = RELIEF_TRY(
-        command.gpu ? evaluateOnGpu(collider, points, command.gpu_options) : evaluateOnCpu(collider, points));
+        command.gpu ? askGpu(collider, points, command) : askCpu(collider, points, command.plane()));
     const std::string csv = formatSamples(points, samples);
     return writeFile(command.output, std::as_bytes(std::span(csv)));
 }
@@ -81,14 +103,14 @@ Result<void> runQuery(const QueryCommand& command) {
 
 void addQuery(CLI::App& app, Action& action) {
     auto command = std::make_shared<QueryCommand>();
-    CLI::App& verb =
-        addVerb(app, command->common, "query",
-                "Evaluates the field at points\n\nA line of the output is x,y,z,f,nx,ny,nz,map: signed "
-                "distance, normal, deciding map. f is "
-                "negative inside,\ninf where a point is outside and no more is known, and empty where no map "
-                "votes",
-                "relief query bunny.relief --points in.csv -o out.csv\n"
-                "echo 0,0.1,0 | relief query bunny.relief --points - -o - --gpu");
+    CLI::App& verb = addVerb(
+        app, command->common, "query",
+        "Evaluates the field at points\n\nA line of the output is x,y,z,f,nx,ny,nz,map: signed "
+        "distance to the nearest surface, its normal, its map.\nf is negative inside, inf where a point "
+        "is outside and no more is known, and empty where no map votes.\nWith --distance plane they are "
+        "those of the plane that decides the side; the side is the same",
+        "relief query bunny.relief --points in.csv -o out.csv\n"
+        "echo 0,0.1,0 | relief query bunny.relief --points - -o - --gpu");
     verb.add_option("FILE", command->file, "The collider; - for standard input")->type_name("")->required();
     verb.add_option("--points", command->points, "Lines x,y,z in object space; - for standard input")
         ->option_text("IN.csv")
@@ -96,6 +118,10 @@ void addQuery(CLI::App& app, Action& action) {
     verb.add_option("-o,--output", command->output, "The samples; - for standard output")
         ->option_text("OUT.csv")
         ->required();
+    addWords(verb, "--distance", command->distance,
+             WordsFor<DistanceTo>{{"nearest", DistanceTo::kNearest}, {"plane", DistanceTo::kPlane}},
+             "To the nearest surface, which is searched for (default), or to the plane that decides\n"
+             "the side, which is what particles collide with");
     verb.add_flag("--gpu", command->gpu,
                   "Evaluate with the simulation's shader (OpenGL 3.3; llvmpipe will do)");
     addGpuOptions(verb, command->gpu_options);

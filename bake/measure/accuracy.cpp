@@ -12,6 +12,7 @@
 #include "bake/measure/sight.h"
 #include "formats/base/portable_math.h"
 #include "formats/base/stopwatch.h"
+#include "formats/nearest_surface.h"
 
 namespace relief {
 namespace {
@@ -70,7 +71,7 @@ WrongShare wrongShare(const std::vector<TruthPoint>& points,
     return {percent(false_inside, points.size()), percent(false_outside, points.size())};
 }
 
-void measureDistances(const std::vector<TruthPoint>& points,
+void compareDistances(const std::vector<TruthPoint>& points,
                       const std::vector<std::optional<FieldValue>>& values, FieldAccuracy& accuracy) {
     std::vector<double> errors;
     errors.reserve(points.size());
@@ -122,6 +123,13 @@ Field fieldOf(const Collider& collider) {
     };
 }
 
+Field nearestFieldOf(const Collider& collider) {
+    return [&collider](const glm::vec3& p) -> std::optional<FieldValue> {
+        const SurfaceSample nearest = nearestSurface(collider, p);
+        return nearest.map < 0 ? std::nullopt : std::optional(FieldValue{nearest.distance, nearest.normal});
+    };
+}
+
 WrongShare measureNear(const std::vector<TruthPoint>& points, const Field& field) {
     return wrongShare(points, evaluateAt(points, field));
 }
@@ -132,7 +140,7 @@ FieldAccuracy measureField(const TruthSamples& samples, const Field& field) {
     {
         const std::vector<std::optional<FieldValue>> values = evaluateAt(samples.near, field);
         accuracy.near = wrongShare(samples.near, values);
-        measureDistances(samples.near, values, accuracy);
+        compareDistances(samples.near, values, accuracy);
     }
     accuracy.uniform = wrongShare(samples.uniform, evaluateAt(samples.uniform, field));
     measureNormals(samples.surface, field, accuracy);
@@ -140,10 +148,17 @@ FieldAccuracy measureField(const TruthSamples& samples, const Field& field) {
     return accuracy;
 }
 
+void measureDistances(const TruthSamples& samples, const Field& field, FieldAccuracy& accuracy) {
+    const Stopwatch watch;
+    compareDistances(samples.near, evaluateAt(samples.near, field), accuracy);
+    accuracy.seconds += watch.seconds();
+}
+
 ColliderAccuracy measureCollider(const TruthSamples& samples, const MeshQuery& query,
                                  const Collider& collider) {
     ColliderAccuracy accuracy;
     accuracy.field = measureField(samples, fieldOf(collider));
+    measureDistances(samples, nearestFieldOf(collider), accuracy.field);
     accuracy.unseen_percent = Sights(collider.maps, query).unseenPercent(samples.surface);
     accuracy.buried_percent = percent(
         static_cast<std::uint64_t>(std::count_if(samples.surface.begin(), samples.surface.end(),

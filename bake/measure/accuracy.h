@@ -22,8 +22,12 @@ struct FieldValue {
 /// this counts as outside.
 using Field = std::function<std::optional<FieldValue>(const glm::vec3&)>;
 
-/// \param collider  borrowed.
+/// The votes: the side, and the normal of the deciding plane. \param collider  borrowed.
 [[nodiscard]] Field fieldOf(const Collider& collider);
+
+/// The same sides with the distance to the nearest surface (nearest_surface.h), which takes about 13 times as long.
+/// \param collider  borrowed.
+[[nodiscard]] Field nearestFieldOf(const Collider& collider);
 
 /// Shares of points on the wrong side, in percent of all points of their kind.
 struct WrongShare {
@@ -46,7 +50,7 @@ struct FieldAccuracy {
     double normal_mean = 0.0;
     double normal_p99 = 0.0;
     double no_normal_percent = 0.0;  ///< of the surface points that are not buried
-    double seconds = 0.0;            ///< for evaluating the field at all points, on all cores
+    double seconds = 0.0;            ///< for asking all that, on all cores
 };
 
 /// \param points  as sampleNear draws them.
@@ -54,6 +58,10 @@ struct FieldAccuracy {
 
 /// The same for any number of threads, but for `seconds`.
 [[nodiscard]] FieldAccuracy measureField(const TruthSamples& samples, const Field& field);
+
+/// Puts another field's distances in the place of those of the first: the figures distance_… , far_percent and
+/// unknown_percent. Adds to `seconds`.
+void measureDistances(const TruthSamples& samples, const Field& field, FieldAccuracy& accuracy);
 
 struct ColliderAccuracy {
     FieldAccuracy field;
@@ -63,6 +71,7 @@ struct ColliderAccuracy {
     std::uint64_t gpu_bytes = 0;
 };
 
+/// Sides and normals by the votes, distances by the search for the nearest surface.
 [[nodiscard]] ColliderAccuracy measureCollider(const TruthSamples& samples, const MeshQuery& query,
                                                const Collider& collider);
 

@@ -364,7 +364,9 @@ class Page {
             "and all "
             "along it the distance to the plane is near 0. The side is right there, so that nothing collides "
             "with a "
-            "stripe; what reads distances finds them too small.</p>\n<div class=slices>\n";
+            "stripe; the errors of distances above are those of the nearest surface, which is searched for "
+            "and has "
+            "no stripes.</p>\n<div class=slices>\n";
         for (int axis = 0; axis < 3; ++axis) {
             SliceOptions options;
             options.axis = axis;

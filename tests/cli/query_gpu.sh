@@ -3,7 +3,8 @@
 #
 # Tolerance: distance within 1e-5 of the box's longest side and normal within 1e-5 on all points but one in 10,000;
 # those may lie on a texel's edge and have fallen to the neighbour (tests/runtime/collider/field_query_gl_test.cpp looks
-# at such points one by one). On llvmpipe no point differs.
+# at such points one by one). On llvmpipe no point differs. A search for the nearest surface asks at many points, of which
+# one may fall to the neighbour: one in 200 may differ by more, and one in 1000 by more than 1 % of the side.
 . "$(dirname "$0")/lib.sh"
 
 python3 - <<'P'
@@ -26,8 +27,11 @@ while read -r specs; do
     i=$((i + 1))
     # shellcheck disable=SC2086
     "$relief" bake "$bunny" -o "$i.relief" -q $specs
-    "$relief" query "$i.relief" --points points.csv -o cpu.csv
-    "$relief" query "$i.relief" --points points.csv -o gpu.csv --gpu
+    "$relief" query "$i.relief" --points points.csv -o cpu.csv --distance plane
+    "$relief" query "$i.relief" --points points.csv -o gpu.csv --distance plane --gpu
+    head -20001 points.csv >some.csv
+    "$relief" query "$i.relief" --points some.csv -o near_cpu.csv
+    "$relief" query "$i.relief" --points some.csv -o near_gpu.csv --gpu --distance nearest
     python3 - "$specs" <<'P' || die "CPU and GPU disagree: $specs"
 import csv, sys
 side = float(open('side').read())
@@ -42,8 +46,16 @@ for a, b in zip(cpu, gpu):
         same = a['f'] == b['f'] or abs(float(a['f']) - float(b['f'])) <= 1e-5 * side
         same = same and all(abs(float(a[k]) - float(b[k])) <= 1e-5 for k in ('nx', 'ny', 'nz'))
     bad += not same
-print(f"{sys.argv[1] or 'planned':40s} votes {votes}  inside {inside}  differing {bad}")
-sys.exit(0 if bad <= 10 and votes > 1000 and inside > 1000 else 1)
+near_cpu, near_gpu = (list(csv.DictReader(open(name))) for name in ('near_cpu.csv', 'near_gpu.csv'))
+assert len(near_cpu) == len(near_gpu) == 20_000
+gaps = []
+for vote, a, b in zip(gpu, near_cpu, near_gpu):
+    assert (vote['f'] == '') == (b['f'] == '') and vote['f'].startswith('-') == b['f'].startswith('-')
+    if a['f'] != '' and b['f'] != '' and a['f'] != b['f']:
+        gaps.append(abs(float(a['f']) - float(b['f'])) / side)
+differing, far = sum(gap > 1e-5 for gap in gaps), sum(gap > 1e-2 for gap in gaps)
+print(f"{sys.argv[1] or 'planned':40s} votes {votes}  inside {inside}  differing {bad}  nearest: {differing}, far {far}")
+sys.exit(0 if bad <= 10 and votes > 1000 and inside > 1000 and differing <= 100 and far <= 20 else 1)
 P
 done <<'S'
 

@@ -1,10 +1,12 @@
 // Containers: whatever the bytes, a collider that can be written again or an error.
+#include <cmath>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "formats/collider.h"
 #include "formats/container.h"
+#include "formats/nearest_surface.h"
 #include "tests/fuzz/target.h"
 
 namespace {
@@ -35,16 +37,26 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     mustHold(written_again.has_value() && *written_again == *written,
              "the same collider gives the same bytes");
 
-    // Votes about, in and far outside of the box, and where floats end.
+    // Votes and nearest surfaces about, in and far outside of the box, and where floats end.
+    const auto ask = [&](const glm::vec3& p) {
+        const relief::FieldSample vote = relief::evaluate(*collider, p);
+        const relief::SurfaceSample nearest = relief::nearestSurface(*collider, p);
+        mustHold(std::isfinite(nearest.distance) && std::isfinite(nearest.point.x + nearest.normal.x),
+                 "the nearest surface is finite");
+        mustHold(nearest.inside() == vote.inside(), "the nearest surface has the vote's side");
+    };
     const glm::vec3 center = collider->bounds.center();
     const glm::vec3 sides = collider->bounds.size();
     for (int i = 0; i < 64; ++i) {
         const glm::vec3 at(static_cast<float>(i % 4), static_cast<float>(i / 4 % 4),
                            static_cast<float>(i / 16));
-        static_cast<void>(relief::evaluate(*collider, center + sides * (at * 0.5F - 0.75F)));
+        const glm::vec3 p = center + sides * (at * 0.5F - 0.75F);
+        if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) {
+            ask(p);
+        }
     }
     for (const float far : {1e30F, -3e38F, 0.0F}) {
-        static_cast<void>(relief::evaluate(*collider, glm::vec3(far, 1.0F, -far)));
+        ask(glm::vec3(far, 1.0F, -far));
     }
     return 0;
 }

@@ -272,6 +272,26 @@ TEST(Accuracy, SurfaceInAHollowIsSeenByNoOuterMap) {
                 0.0, 0.1);
 }
 
+/// Sides and normals are those that particles meet, to the bit; distances those that whoever asks for a distance gets.
+TEST_F(AccuracyOfASphere, OfAColliderMeasuresTheVotesSidesAndTheNearestDistances) {
+    const Collider collider = bakeSpecs(mesh(), {"front-back:dir=+x", "front-back:dir=1/2/3"}, 48);
+    const FieldAccuracy whole = measureCollider(samples(), query(), collider).field;
+    const FieldAccuracy votes = measureField(samples(), fieldOf(collider));
+    const FieldAccuracy nearest = measureField(samples(), nearestFieldOf(collider));
+    EXPECT_EQ(whole.near.false_inside, votes.near.false_inside);
+    EXPECT_EQ(whole.near.false_outside, votes.near.false_outside);
+    EXPECT_EQ(whole.uniform.total(), votes.uniform.total());
+    EXPECT_EQ(whole.normal_mean, votes.normal_mean);
+    EXPECT_EQ(whole.no_normal_percent, votes.no_normal_percent);
+    EXPECT_EQ(nearest.near.total(), votes.near.total());
+    EXPECT_EQ(whole.distance_mean, nearest.distance_mean);
+    EXPECT_EQ(whole.distance_p99, nearest.distance_p99);
+    EXPECT_LT(whole.distance_mean, 0.7 * votes.distance_mean);
+    EXPECT_GT(votes.far_percent, 0.0);
+    EXPECT_EQ(whole.far_percent, 0.0);
+    EXPECT_EQ(whole.unknown_percent, 0.0);
+}
+
 TEST(Accuracy, BuriedSurfaceIsLeftOut) {
     // Two boxes that touch: both copies of the face between them have the inside on both sides.
     TriangleMesh mesh = makeBoxMesh({-1, 0, 0}, {1, 1, 1});
