@@ -12,6 +12,7 @@
 #include "bake/cli/bake_settings.h"
 #include "bake/cli/command.h"
 #include "bake/cli/command_recipe.h"
+#include "bake/cli/preflight.h"
 #include "bake/cli/progress.h"
 #include "bake/measure/accuracy.h"
 #include "bake/mesh/mesh_query.h"
@@ -389,6 +390,17 @@ Result<void> report(const BakeRun& run) {
     return {};
 }
 
+/// None of the files that the mesh refers to, a buffer or a material, may be lost to an output.
+Result<void> protectInputs(const BakeRun& run) {
+    const BakeCommand& command = run.command;
+    for (const std::string& file : run.cared.mesh->dependencies) {
+        for (const std::string& output : {command.output, command.plan_out, command.depfile}) {
+            RELIEF_TRY(preflightDistinct(file, output));
+        }
+    }
+    return {};
+}
+
 Result<void> runBake(const BakeCommand& command) {
     startLogging(command.common);
     BakeRun run(command);
@@ -399,6 +411,7 @@ Result<void> runBake(const BakeCommand& command) {
         control.emplace(tbb::global_control::max_allowed_parallelism, *command.threads);
     }
     RELIEF_TRY(readMesh(run));
+    RELIEF_TRY(protectInputs(run));
     RELIEF_TRY(makeCollider(run));
     RELIEF_TRY(checkItself(run));
     tellNotices(run);

@@ -28,6 +28,9 @@ Result<void> preflightFile(const fs::path& path) {
     if (fs::is_directory(path, error)) {
         return cannotWrite(path, "it is a folder; name a file");
     }
+    if (mayBlock(path)) {
+        return cannotWrite(path, "it is a pipe, a socket or a disk; name a file, or - for standard output");
+    }
     if (fs::exists(path, error) && !fs::is_regular_file(path, error)) {
         if (::access(path.c_str(), W_OK) != 0) {
             return cannotWrite(path, "no permission; choose another file");

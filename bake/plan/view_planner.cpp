@@ -35,7 +35,7 @@ constexpr float kEdgeOnService = 0.01F;
 constexpr double kClearGain = 0.03;
 /// What every map costs, in mean service: a step of a simulation looks at each in turn. Eight maps take about 1.6 times as
 /// long as the paper's two, by llvmpipe.
-constexpr double kMapPrice = 0.001;
+constexpr double kMapPrice = 0.0013;
 /// What a map costs that takes as many bytes as all before it: they are taken from those, whose texels grow.
 constexpr double kBytePrice = 0.02;
 /// Where free space must be kept free, price is no object.

@@ -8,6 +8,7 @@
 #include "bake/report/report.h"
 #include "bake/report/shape_report.h"
 #include "formats/base/file_io.h"
+#include "formats/row_spans.h"
 #include "runtime/tool/json_text.h"
 
 namespace relief {
@@ -95,7 +96,7 @@ std::string bakeText(const BakeSummary& summary, const std::string& output, std:
         const MapReport& report = baked.report.maps[i];
         rows.push_back({std::to_string(i), mapFormatName(map.format),
                         map.projection() == Projection::kCube ? "cube" : "orthographic",
-                        compareName(map.compare), sizeText(map), bytesText(map.texelBytes()),
+                        compareName(map.compare), sizeText(map), bytesText(gpuBytes(map)),
                         percent(coverage(report)),
                         summary.plan ? summary.plan->plan.maps[i].reason : toString(report.spec)});
     }

@@ -126,6 +126,9 @@ int followLinks(fs::path& path) {
 /// The number in /dev/fd/N and its like; nullopt: some other path. Opened by its name a file would be written
 /// from its begin on, whatever the shell has appended to it before; or replaced, and the shell's left behind.
 std::optional<int> descriptorOf(const fs::path& path) {
+    if (path == "/dev/stdin") {
+        return STDIN_FILENO;
+    }
     if (path == "/dev/stdout") {
         return STDOUT_FILENO;
     }
@@ -144,6 +147,15 @@ std::optional<int> descriptorOf(const fs::path& path) {
         }
     }
     return std::nullopt;
+}
+
+bool isStream(mode_t mode) {
+    return S_ISFIFO(mode) || S_ISSOCK(mode) || S_ISBLK(mode);
+}
+
+tl::unexpected<Error> streamError(const char* action, const std::string& name, const char* instead) {
+    return fail(ErrorCode::kIo, std::string("cannot ") + action + " " + name +
+                                    ": it is a pipe, a socket or a disk; name a file, or - for " + instead);
 }
 
 Result<void> writeInPlace(const fs::path& path, std::span<const std::byte> bytes) {
@@ -189,6 +201,11 @@ Result<void> replaceFile(const fs::path& target, const std::string& name, std::s
 
 }  // namespace
 
+bool mayBlock(const fs::path& path) {
+    struct stat status {};
+    return !descriptorOf(path) && ::stat(path.c_str(), &status) == 0 && isStream(status.st_mode);
+}
+
 Result<std::vector<std::byte>> readFile(const fs::path& path, std::uint64_t size_max) {
     if (path == "-") {
         return readAll(STDIN_FILENO, "standard input", 0, size_max);
@@ -196,6 +213,9 @@ Result<std::vector<std::byte>> readFile(const fs::path& path, std::uint64_t size
     const std::string name = quotedPath(path);
     if (const int code = checkPath(path)) {
         return ioError("read", name, code);
+    }
+    if (mayBlock(path)) {
+        return streamError("read", name, "standard input");
     }
     const Descriptor file(openRetry(path.c_str(), O_RDONLY));
     struct stat status {};
@@ -236,6 +256,9 @@ Result<void> writeFile(const fs::path& path, std::span<const std::byte> bytes) {
     if (::stat(path.c_str(), &status) == 0) {
         if (S_ISDIR(status.st_mode)) {
             return ioError("write", name, EISDIR);
+        }
+        if (isStream(status.st_mode)) {
+            return streamError("write", name, "standard output");
         }
         if (!S_ISREG(status.st_mode)) {
             return writeInPlace(path, bytes);

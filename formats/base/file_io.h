@@ -13,7 +13,11 @@
 
 namespace relief {
 
-/// Reads a whole file; "-" reads standard input. Pipes and devices are read to their end.
+/// Whether a path names a pipe, a socket or a disk: who opens one may wait for ever, and so they are neither read nor
+/// written. /dev/stdin, /dev/fd/N and their like are none: the shell has opened them.
+[[nodiscard]] bool mayBlock(const std::filesystem::path& path);
+
+/// Reads a whole file; "-" reads standard input. Devices are read to their end.
 /// \param size_max  refuse (kLimit) anything longer: a regular file before any of it is read, a stream after
 ///                  size_max + 1 bytes.
 /// Errors: kIo (with the system's words), kLimit.
@@ -26,8 +30,7 @@ namespace relief {
 ///
 /// A new file has the permissions that the umask leaves. An older file's permission bits are kept; its owner,
 /// ACLs and other names (hard links) are not. A symbolic link stays, and the file that it points to is
-/// replaced. "-" writes standard output; /dev/stdout, /dev/fd/N and a path that exists and is no regular file
-/// (a pipe, /dev/full) are written in place.
+/// replaced. "-" writes standard output; /dev/stdout, /dev/fd/N and devices (/dev/full) are written in place.
 /// Errors: kIo, with the system's words.
 [[nodiscard]] Result<void> writeFile(const std::filesystem::path& path, std::span<const std::byte> bytes);
 

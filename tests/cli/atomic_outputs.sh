@@ -182,11 +182,13 @@ rm out/link.relief
 echo head >appended
 "${bake[@]}" /dev/stdout --resolution 8 >>appended
 [ "$(tail -c +6 appended | sha256sum | cut -d' ' -f1)" = "$new" ] || die "/dev/stdout overwrites what was appended to"
+"${bake[@]}" >(cat >substituted.relief; touch done) --resolution 8
+for _ in $(seq 100); do [ -e done ] || sleep 0.1; done
+[ "$(hash_of substituted.relief)" = "$new" ] || die "a pipe of the shell gives other bytes"
 mkfifo pipe
-timeout 60 cat pipe >fifo.relief &
-"${bake[@]}" pipe --resolution 8
-wait $!
-[ "$(hash_of fifo.relief)" = "$new" ] || die "a pipe gives other bytes"
+code=0
+timeout 60 "${bake[@]}" pipe --resolution 8 2>stderr || code=$?
+[ "$code" -eq 2 ] && grep -q 'it is a pipe' stderr || die "a pipe with a name: exit code $code, $(cat stderr)"
 if setpriv --reuid=65534 --regid=65534 --clear-groups true 2>/dev/null; then # root may write anywhere
     mkdir sealed
     chmod 755 . sealed

@@ -124,3 +124,32 @@ expect_error 1 'size' "$relief_sim" good.relief --steps 1 --frames frames --size
 expect_error 6 '[0-9]{4,}' "$relief_sim" good.relief --steps 1 --frames frames --size 99999x99999
 expect_error 2 'good\.obj' "$relief_sim" good.relief --steps 1 --frames good.obj
 expect_error 2 '/dev/full' "$relief_sim" good.relief --steps 1 --dump /dev/full
+
+# --- inputs that would wait for ever, and inputs that an output would destroy ---
+
+mkfifo waits.obj waits.relief waits.toml
+for command in "bake waits.obj -o w.relief" "info waits.relief" "check waits.relief" "query waits.relief --points 0/0/0" \
+    "bake --recipe waits.toml"; do
+    code=0
+    # shellcheck disable=SC2086
+    timeout 20 "$relief" $command >/dev/null 2>stderr || code=$?
+    [ "$code" -ge 1 ] && [ "$code" -le 5 ] || die "relief $command: exit code $code, $(cat stderr)"
+done
+code=0
+timeout 20 "$relief_sim" waits.toml >/dev/null 2>stderr || code=$?
+[ "$code" -eq 2 ] && grep -q "waits.toml.*it is a pipe" stderr || die "a scene that is a pipe: $code, $(cat stderr)"
+
+mkdir refers && cd refers
+cp /usr/share/assimp/models/glTF2/BoxTextured-glTF/BoxTextured* .
+printf 'newmtl m\n' >m.mtl
+printf 'mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n' >m.obj
+sha256sum ./* >before
+for outputs in "-o BoxTextured0.bin" "-o x.relief --plan-out BoxTextured0.bin" "-o x.relief --depfile BoxTextured0.bin"; do
+    # shellcheck disable=SC2086
+    expect 1 "$relief" bake BoxTextured.gltf $outputs -q
+    grep -q "'BoxTextured0.bin' is the input" ../stderr || die "a buffer as an output: $(cat ../stderr)"
+done
+expect 1 "$relief" bake m.obj -o m.mtl -q
+sha256sum --quiet -c before || die "an input was destroyed"
+[ ! -e x.relief ] || die "half of a bake was written"
+cd ..

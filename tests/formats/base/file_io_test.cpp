@@ -253,15 +253,38 @@ TEST_F(FileIo, DevicesAreWrittenInPlace) {
     EXPECT_TRUE(fs::is_character_file("/dev/full"));
 }
 
-TEST_F(FileIo, PipesAreStreamed) {
-    ASSERT_EQ(::mkfifo(in("pipe").c_str(), 0600), 0);
+TEST_F(FileIo, PipesOfTheShellAreStreamed) {
     const std::vector<std::byte> bytes = pattern(3'000'001);
-    std::thread writer([&] { EXPECT_TRUE(writeFile(in("pipe"), bytes)); });
-    const auto read = readFile(in("pipe"));
+    int ends[2];
+    ASSERT_EQ(::pipe(ends), 0);
+    const std::string reading = "/dev/fd/" + std::to_string(ends[0]);
+    EXPECT_FALSE(mayBlock(reading));
+    std::thread writer([&] {
+        EXPECT_TRUE(writeFile("/dev/fd/" + std::to_string(ends[1]), bytes));
+        ::close(ends[1]);
+    });
+    const auto read = readFile(reading);
     writer.join();
+    ::close(ends[0]);
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_EQ(*read, bytes);
+}
+
+TEST_F(FileIo, NobodyWaitsForAPipeThatHasAName) {
+    ASSERT_EQ(::mkfifo(in("pipe").c_str(), 0600), 0);
+    fs::create_symlink("pipe", in("link"));
+    for (const char* name : {"pipe", "link"}) {
+        EXPECT_TRUE(mayBlock(in(name)));
+        const auto read = readFile(in(name));
+        ASSERT_FALSE(read);
+        EXPECT_EQ(read.error().code, ErrorCode::kIo);
+        EXPECT_TRUE(says(read.error(), "it is a pipe"));
+        const Result<void> written = writeFile(in(name), toBytes("x"));
+        ASSERT_FALSE(written);
+        EXPECT_TRUE(says(written.error(), "it is a pipe"));
+    }
     EXPECT_TRUE(fs::is_fifo(in("pipe")));
+    EXPECT_EQ(names(), (std::set<std::string>{"pipe", "link"}));
 }
 
 TEST_F(FileIo, StandardInputAndOutput) {
@@ -293,11 +316,13 @@ TEST_F(FileIo, TheLimitIsInclusiveForFilesAndStreams) {
     EXPECT_EQ(beyond.error().code, ErrorCode::kLimit);
     EXPECT_TRUE(says(beyond.error(), "1000 bytes"));
     // A stream tells its length only by ending.
-    ASSERT_EQ(::mkfifo(in("pipe").c_str(), 0600), 0);
     for (const std::uint64_t limit : {std::uint64_t{1000}, std::uint64_t{999}}) {
-        std::thread writer([&] { EXPECT_TRUE(writeFile(in("pipe"), pattern(1000))); });
-        const auto streamed = readFile(in("pipe"), limit);
-        writer.join();
+        int ends[2];
+        ASSERT_EQ(::pipe(ends), 0);
+        EXPECT_TRUE(writeFile("/dev/fd/" + std::to_string(ends[1]), pattern(1000)));
+        ::close(ends[1]);
+        const auto streamed = readFile("/dev/fd/" + std::to_string(ends[0]), limit);
+        ::close(ends[0]);
         EXPECT_EQ(streamed.has_value(), limit == 1000);
     }
     const auto endless = readFile("/dev/zero", 5'000'000);
