@@ -44,7 +44,7 @@ std::string namesText(const std::vector<NamedValue>& values) {
 std::vector<std::string> missedTargets(const BudgetSummary& summary) {
     std::vector<std::string> missed;
     const std::string at = " at " + budgetText(summary.budget);
-    if (summary.our_mean && *summary.our_mean > targetRatio(summary.budget)) {
+    if (summary.our_mean && *summary.our_mean > kRatioMax) {
         missed.push_back("ours/volume " + ratioText(*summary.our_mean) + at);
     }
     if (!summary.closed_above.empty()) {
@@ -91,10 +91,6 @@ std::optional<double> geometricMean(std::span<const double> values) {
 double wrongRatio(double percent, double volume_percent, std::uint32_t samples) {
     const double least = 0.5 * 100.0 / samples;
     return std::max(percent, least) / std::max(volume_percent, least);
-}
-
-double targetRatio(std::uint64_t budget) {
-    return budget < 1'000'000 ? 1.0 / 2.0 : 1.0 / 3.0;
 }
 
 std::vector<BudgetSummary> summarize(std::span<const AccuracyRow> rows,
@@ -145,7 +141,7 @@ std::string summaryText(std::span<const BudgetSummary> summaries) {
     for (const BudgetSummary& summary : summaries) {
         text += budgetText(summary.budget) + ", " + std::to_string(summary.meshes) +
                 (summary.meshes == 1 ? " mesh" : " meshes") + ": ours/volume " + ratioText(summary.our_mean) +
-                " (target at most " + ratioText(targetRatio(summary.budget)) + "), paper/volume " +
+                " (target at most " + ratioText(kRatioMax) + "), paper/volume " +
                 ratioText(summary.paper_mean);
         if (summary.worst) {
             text += "; worst " + summary.worst->mesh + " (" + ratioText(summary.worst->value) +

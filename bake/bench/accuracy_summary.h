@@ -25,9 +25,8 @@ namespace relief {
 /// \param samples  the number of points that both percentages are of, not 0.
 [[nodiscard]] double wrongRatio(double percent, double volume_percent, std::uint32_t samples);
 
-/// The wrong points that we allow ourselves for those of a volume of so many bytes: a half below 1 MB, a
-/// third from there on.
-[[nodiscard]] double targetRatio(std::uint64_t budget);
+/// The wrong points that we allow ourselves for those of a volume of as many bytes.
+inline constexpr double kRatioMax = 0.2;
 
 /// Bakes at this budget are to stay within kBakeSecondsMax.
 inline constexpr std::uint64_t kTimedBudget = 1'000'000;
