@@ -23,6 +23,7 @@
 #include "bake/import/import_ply.h"
 #include "bake/import/import_scene.h"
 #include "bake/import/import_source.h"
+#include "bake/import/import_text.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 
@@ -176,6 +177,12 @@ Result<const aiScene*> readScene(const ImportJob& job, ImportFiles& files, const
                                                   "corners or of more than 9, which are not read from OFF; "
                                                   "triangulate it, or save it as OBJ or PLY");
     }
+    if (logged.say("number of faces in the header is incorrect")) {
+        return fail(ErrorCode::kInvalidInput,
+                    "cannot read the mesh " + job.shown +
+                        ": it has fewer faces than its header says and was probably cut off; copy or "
+                        "export it again");
+    }
     parts = partsOfFile(job, scene);
     if (const std::optional<std::string> refusal = partsRefusal(parts)) {
         return fail(ErrorCode::kInvalidInput, "cannot read the mesh " + job.shown + ": " + *refusal);
@@ -202,6 +209,9 @@ Result<const aiScene*> readScene(const ImportJob& job, ImportFiles& files, const
 
 Result<TriangleMesh> importWithAssimp(const ImportJob& job) {
     TriangleMesh mesh;
+    if (const std::optional<std::string> fault = textFault(job.extension, job.bytes)) {
+        return fail(ErrorCode::kInvalidInput, "cannot read the mesh " + job.shown + ": " + *fault);
+    }
     if (isGltf(job)) {
         mesh.warnings = RELIEF_TRY(checkGltf(job.bytes, job.shown));
     }
@@ -280,10 +290,22 @@ Result<TriangleMesh> importRaw(const ImportJob& job) {
         return fail(ErrorCode::kLimit, job.shown + ": more than " + std::to_string(kAskedNamesMax) +
                                            " names are asked for at once; ask for fewer");
     }
-    Import import{job, std::nullopt};
+    ImportJob unmarked = job;
+    unmarked.bytes = withoutByteOrderMark(job.bytes);
+    const std::optional<std::string> format = otherFormat(job.extension, unmarked.bytes);
+    if (format) {
+        unmarked.file_name += "." + *format;
+        unmarked.extension = *format;
+    }
+    Import import{unmarked, std::nullopt};
     if (!runOnDeepStack(import)) {
         return fail(ErrorCode::kFailure,
                     job.shown + ": no thread could be started to read it; free some memory");
+    }
+    if (format && *import.result) {
+        (*import.result)
+            ->warnings.push_back("its contents are those of a ." + *format + ", not of a ." + job.extension +
+                                 ", and are read so; rename it");
     }
     return std::move(*import.result);
 }

@@ -2,6 +2,7 @@
 #include "bake/import/import_parts.h"
 
 #include <gtest/gtest.h>
+#include <cstdio>
 
 #include "bake/import/import_obj.h"
 #include "bake/import/mesh_import.h"
@@ -76,6 +77,82 @@ TEST(ImportParts, ObjStatementsAreCounted) {
               1U);
     EXPECT_EQ(obj("").vertices, 0U);
     EXPECT_EQ(obj("v 1 2 3\\").vertices, 1U);
+}
+
+std::string asciiStl() {
+    std::string text = "solid t\n";
+    for (const char* corners :
+         {"0 0 0 0 1 0 1 0 0", "0 0 0 1 0 0 0 0 1", "1 0 0 0 1 0 0 0 1", "0 0 0 0 0 1 0 1 0"}) {
+        float c[9];
+        std::sscanf(corners, "%f%f%f%f%f%f%f%f%f", c, c + 1, c + 2, c + 3, c + 4, c + 5, c + 6, c + 7, c + 8);
+        text += "facet normal 0 0 0\nouter loop\n";
+        for (int i = 0; i < 9; i += 3) {
+            text += "vertex " + std::to_string(c[i]) + " " + std::to_string(c[i + 1]) + " " +
+                    std::to_string(c[i + 2]) + "\n";
+        }
+        text += "endloop\nendfacet\n";
+    }
+    return text + "endsolid t\n";
+}
+
+TEST(ImportParts, AFileThatWasCutOffIsRefused) {
+    const std::string whole = asciiStl();
+    const Result<TriangleMesh> sound = load("a.stl", whole);
+    ASSERT_TRUE(sound) << sound.error().message;
+    EXPECT_EQ(sound->triangles.size(), 4U);
+    for (const char* end : {"", "\r\n", "\n\n ", "\n# a word about it is none\nENDSOLID"}) {
+        EXPECT_TRUE(load("b.stl", whole.substr(0, whole.size() - 1) + end)) << end;
+    }
+    EXPECT_TRUE(load("c.stl", whole + std::string(40, '\0'))) << "filled up with zeros";
+    // After any of its lines but the last.
+    for (std::size_t at = whole.find('\n'); at + 1 < whole.size(); at = whole.find('\n', at + 1)) {
+        const Result<TriangleMesh> cut = load("d.stl", whole.substr(0, at + 1));
+        ASSERT_FALSE(cut) << whole.substr(0, at);
+        EXPECT_NE(cut.error().message.find("cut off"), std::string::npos) << cut.error().message;
+    }
+    const std::string off = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+    EXPECT_TRUE(load("a.off", off));
+    for (const std::size_t lines : {1, 2, 3}) {
+        const Result<TriangleMesh> cut = load("b.off", off.substr(0, off.size() - 8 * lines));
+        ASSERT_FALSE(cut) << lines;
+        EXPECT_NE(cut.error().message.find("cut off"), std::string::npos) << cut.error().message;
+    }
+}
+
+TEST(ImportParts, WhatReadersOfTextMisread) {
+    const std::string mark = "\xef\xbb\xbf";
+    const Result<TriangleMesh> plain = load("a.obj", tetrahedronObj());
+    const Result<TriangleMesh> marked = load("a.obj", mark + tetrahedronObj());
+    ASSERT_TRUE(marked) << marked.error().message;
+    EXPECT_EQ(marked->positions, plain->positions);
+    EXPECT_NE(marked->content_hash, plain->content_hash) << "of the file's bytes";
+    const Result<TriangleMesh> gltf = load("a.gltf", mark + tetrahedronGltf({}));
+    EXPECT_TRUE(gltf) << gltf.error().message;
+
+    const Result<TriangleMesh> hexadecimal = load("b.obj", "v 0 0 0\nv 0x1p0 0 0\nv 0 1 0\nf 1 2 3\n");
+    ASSERT_FALSE(hexadecimal);
+    EXPECT_NE(hexadecimal.error().message.find("line 2: '0x1p0' is hexadecimal"), std::string::npos)
+        << hexadecimal.error().message;
+    for (const char* name : {"c.obj", "c.off", "c.stl", "c.ply", "c.gltf"}) {
+        const Result<TriangleMesh> packed = load(name, "\x1f\x8b\b and so on");
+        ASSERT_FALSE(packed);
+        EXPECT_NE(packed.error().message.find("gzip"), std::string::npos) << packed.error().message;
+    }
+}
+
+TEST(ImportParts, ContentsDecideWhereTheNameIsWrong) {
+    const Result<TriangleMesh> ply = load("a.obj", tetrahedronPly());
+    ASSERT_TRUE(ply) << ply.error().message;
+    EXPECT_EQ(ply->triangles.size(), 4U);
+    EXPECT_EQ(ply->name, "a.obj");
+    EXPECT_EQ(warningsOf(ply),
+              Lines{"its contents are those of a .ply, not of a .obj, and are read so; rename it"});
+    const Result<TriangleMesh> json = load("a.glb", tetrahedronGltf({}));
+    ASSERT_TRUE(json) << json.error().message;
+    EXPECT_EQ(warningsOf(json).size(), 1U);
+    EXPECT_TRUE(warningsOf(load("a.ply", tetrahedronPly())).empty());
+    // What names nothing beyond doubt is read as its name says.
+    EXPECT_FALSE(load("b.obj", "glTF and other words\n"));
 }
 
 TEST(ImportParts, UnusedVerticesOfEachFormat) {
