@@ -159,10 +159,11 @@ Result<void> ParticleSystem::setTypes(std::span<const ParticleType> types) {
     }
     const auto share = [](float value) { return value >= 0.0F && value <= 1.0F; };
     for (const ParticleType& type : types) {
-        if (!(type.mass > 0.0F && type.radius >= 0.0F && share(type.restitution) && share(type.friction) &&
-              type.friction_threshold >= 0.0F && type.lifetime_loss >= 0.0F)) {
+        if (!(type.mass >= kParticleMassMin && type.radius >= 0.0F && share(type.restitution) &&
+              share(type.friction) && type.friction_threshold >= 0.0F && type.lifetime_loss >= 0.0F)) {
             return fail(ErrorCode::kUsage,
-                        "a type of particles needs a mass above 0, a radius, friction threshold and loss of "
+                        "a type of particles needs a mass of at least 1e-15, a radius, friction threshold "
+                        "and loss of "
                         "lifetime of at least 0, and restitution and friction from 0 to 1");
         }
     }

@@ -102,7 +102,7 @@ class ParticleSystem {
     void setCollision(const Collision& collision);
     /// The types of particles: Birth::type is an index here, and the last one for what lies beyond. Compiles
     /// the step where their number changes, or the first gets a radius.
-    /// Errors: kUsage (none or more than kParticleTypesMax; a mass that is not above 0, a negative radius, a
+    /// Errors: kUsage (none or more than kParticleTypesMax; a mass below kParticleMassMin, a negative radius, a
     /// share outside 0…1), kFailure (the driver's compiler).
     [[nodiscard]] Result<void> setTypes(std::span<const ParticleType> types);
     /// Above 0 a step tests its way in pieces no longer than this, world units, and never ends inside what it

@@ -8,7 +8,7 @@
 namespace relief {
 
 struct ParticleType {
-    float mass = 1.0F;    ///< divides the drag; > 0
+    float mass = 1.0F;    ///< divides the drag; at least kParticleMassMin
     float radius = 0.0F;  ///< of collision, world units, ≥ 0
     /// ε, 0…1: how much comes back of the normal speed at the beginning of the step.
     float restitution = 0.0F;
@@ -19,5 +19,7 @@ struct ParticleType {
 };
 
 inline constexpr std::size_t kParticleTypesMax = 16;
+/// With less, drag over mass times wind is no float any more.
+inline constexpr float kParticleMassMin = 1e-15F;
 
 }  // namespace relief

@@ -10,7 +10,7 @@ namespace {
 /// mass, radius, restitution, friction, friction_threshold, on_collision, lifetime_loss.
 /// \param type  holds the defaults.
 void readPhysics(SceneTable& table, ParticleType& type) {
-    table.number("mass", {0.0, 1e9, false}, type.mass);
+    table.number("mass", {1e-15, 1e9}, type.mass);
     table.number("radius", {0.0, kLengthMax}, type.radius);
     table.number("restitution", {0.0, 1.0}, type.restitution);
     table.number("friction", {0.0, 1.0}, type.friction);

@@ -27,10 +27,41 @@ cmp a.ply b.ply || die "the same seed gives another run"
 # The other API runs the same scene.
 "$relief_sim" bunny.relief --steps 40 --dump es.ply --seed 3 --api gles -q
 
+# The ends of what a scene may ask for: the lightest of the largest in the thickest air and the strongest wind.
+for integrator in euler verlet; do
+    for air in 'drag = 1e6' 'viscosity = 1e6'; do
+        cat >extreme.toml <<S
+[collider]
+file = "bunny.relief"
+[time]
+dt = 1.0
+steps = 12
+integrator = "$integrator"
+[particles]
+capacity = 1000
+[emitter]
+burst = 500
+lifetime = [100.0, 100.0]
+box_min = [-1.0, -1.0, -1.0]
+box_max = [1.0, 1.0, 1.0]
+[forces]
+gravity = [0.0, -1e6, 0.0]
+wind = [1e6, -1e6, 1e6]
+$air
+[[type]]
+mass = 1e-15
+radius = 1e9
+S
+        expect 0 "$relief_sim" extreme.toml --dump "extreme_${integrator}_${air%% *}.ply" -q
+    done
+done
+
 python3 - <<'P'
 # The PLY matches its header, and every number is finite.
-import math, struct
-for name in ('a.ply', 'es.ply'):
+import glob, math, struct
+extremes = glob.glob('extreme_*.ply')
+assert len(extremes) == 4, extremes
+for name in ['a.ply', 'es.ply'] + extremes:
     data = open(name, 'rb').read()
     head, body = data.split(b'end_header\n', 1)
     lines = head.decode().splitlines()

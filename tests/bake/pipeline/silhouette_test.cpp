@@ -29,8 +29,8 @@ TEST(Silhouette, TellsWhatTheRowsOfABakedMapTake) {
                                               makeIcosphere({0.1, 0.2, 0.3}, 1.0, 3),
                                               makeBoxMesh({0, 0, 0}, {1, 2, 3})};
     for (const TriangleMesh& mesh : meshes) {
-        for (const char* direction : {"-z", "+x", "-y", "1/2/3", "3/-1/2"}) {
-            for (const char* size : {"3x3", "5x40", "64x64", "201x77", "60x1500"}) {
+        for (const char* direction : {"-z", "1/2/3"}) {
+            for (const char* size : {"3x3", "5x40", "40x40", "101x37", "5x1100"}) {
                 expectTold(mesh, std::string("front-back:dir=") + direction + ",size=" + size);
             }
         }

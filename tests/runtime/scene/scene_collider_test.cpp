@@ -237,7 +237,8 @@ TEST(SceneTypes, EveryPhysicalKey) {
 
 TEST(SceneTypes, MistakesAreNamed) {
     const std::string type = "[[type]]\n";
-    expectError(type + "mass = 0\n", "4:8", "above 0");
+    expectError(type + "mass = 0\n", "4:8", "out of range");
+    expectError(type + "mass = 1e-40\n", "4:8", "out of range");
     expectError(type + "mass = nan\n", "4:8", "out of range");
     expectError(type + "radius = -0.1\n", "4:10", "out of range");
     expectError(type + "restitution = 1.1\n", "4:15", "out of range");
