@@ -1,5 +1,5 @@
 // The nearest surface of a collider, found by asking its maps again and again. CPU truth of reliefNearest in
-// shaders/collider.glsl; README.md, "The nearest surface", in words.
+// shaders/nearest_surface.glsl; README.md, "The nearest surface", in words.
 //
 // A vote knows one plane: that of the texel that P falls on. Its distance is the surface's where the surface is that
 // plane, and wrong beside a silhouette, off an edge, or in a pocket, where another part is nearer. So the search

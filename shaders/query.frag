@@ -2,6 +2,9 @@
 // collider.glsl against its C++ twin. With RELIEF_QUERY_INSIDE it asks reliefSolid: the distance then is −1
 // inside and 1 outside. With RELIEF_QUERY_NEAREST it asks reliefNearest.
 //!include collider.glsl
+#ifdef RELIEF_QUERY_NEAREST
+//!include nearest_surface.glsl
+#endif
 uniform highp sampler2D u_points;  // xyz: object space
 #ifdef RELIEF_QUERY_NEAREST
 uniform vec3 u_low;  // the collider's bounds

@@ -49,9 +49,11 @@ bool isHexadecimal(std::string_view word) {
 }
 
 std::optional<std::string> objFault(std::span<const std::byte> bytes) {
-    std::size_t number = 0;
-    for (std::string_view text = textOf(bytes); !text.empty();) {
-        ++number;
+    std::string_view text = textOf(bytes);
+    if (text.find("0x") == std::string_view::npos && text.find("0X") == std::string_view::npos) {
+        return std::nullopt;  // as good as always: large files are not taken apart
+    }
+    for (std::size_t number = 1; !text.empty(); ++number) {
         std::string_view line = takeLine(text);
         if (takeWord(line) != "v") {
             continue;

@@ -2,6 +2,7 @@
 // same on every processor, whatever the ray tracer's own arithmetic is.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <vector>
@@ -13,6 +14,10 @@ namespace relief {
 }
 [[nodiscard]] inline glm::dvec3 cross(const glm::dvec3& a, const glm::dvec3& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+[[nodiscard]] inline double length(const glm::dvec3& v) {
+    return std::sqrt(dot(v, v));
 }
 
 struct TrianglePlane {

@@ -23,10 +23,6 @@ constexpr double kTurnGain = 0.96;
 /// Views whose silhouette is smaller than this share of the largest look at a flat mesh edge-on.
 constexpr double kSmallestView = 0.1;
 
-double length(const glm::dvec3& v) {
-    return std::sqrt(dot(v, v));
-}
-
 /// A direction to look along, and how its image is turned; nullopt: by the rule of view.h.
 struct Candidate {
     glm::dvec3 direction;

@@ -52,10 +52,6 @@ constexpr double kCavityReach = 0.65;
 /// corners.
 constexpr double kCubeDensity = 0.775;
 
-double length(const glm::dvec3& v) {
-    return std::sqrt(dot(v, v));
-}
-
 /// A point of free space near the surface.
 struct PlanPoint {
     glm::dvec3 position;

@@ -5,7 +5,7 @@
 // from the others, and the time that it takes of every step of a simulation. There are two kinds:
 //
 //   front-back maps of the whole mesh, along directions spread over the sphere and the axes of its box and of its
-//   oriented box (oriented_box.h), each turned so that its rectangle is small;
+//   oriented box (oriented_box.h), each turned so that its rows take up little (outer_views.h);
 //   for what these see badly (cavities, armpits, insides of holes), small cubes in free space that keep the nearest
 //   surface, placed where they see most of it.
 //

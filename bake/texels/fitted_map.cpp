@@ -86,7 +86,6 @@ class EndFitter {
           other_starts_free_(view.projection() == Projection::kOrthographic &&
                              view.starts_free[end == RayEnd::kNear ? 1 : 0]) {
         // One unit of u in object units: the length of the depth axis, or of a cube's mean half side.
-        const auto length = [](const glm::dvec3& v) { return std::sqrt(dot(v, v)); };
         const double unit = view.projection() == Projection::kCube
                                 ? (length(view.axis[0]) + length(view.axis[1]) + length(view.axis[2])) / 3.0
                                 : length(view.axis[2]);
