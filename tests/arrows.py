@@ -11,6 +11,7 @@ import sys
 # Third parties that only some folders may include; those of the standard library and the system are free.
 THIRD_PARTIES = {
     'assimp': ['bake/import'],
+    'seccomp.h': ['bake/import'],
     'embree3': ['bake/mesh', 'bake/texels', 'bake/bench'],
     'CGAL': ['bake/mesh', 'bake/repair'],
     'OpenEXR': ['bake/picture', 'runtime/files'],

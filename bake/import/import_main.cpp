@@ -7,11 +7,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <new>
 #include <span>
 
 #include "bake/import/import_job.h"
+#include "bake/import/import_memory.h"
 #include "bake/import/import_message.h"
 #include "bake/import/import_protocol.h"
 #include "bake/import/import_sandbox.h"
@@ -41,22 +43,33 @@ bool orphaned() {
     return ::poll(&alive, 1, 0) > 0 && (alive.revents & POLLERR) != 0;
 }
 
-bool sendMessage(const Result<TriangleMesh>& raw) {
+int exitOf(int number) {
+    return kImportExitErrno + (number > 0 && number < 128 ? number : EIO);
+}
+
+/// \return an exit code.
+int sendMessage(const Result<TriangleMesh>& raw) {
     const ImportMessage message = makeImportMessage(raw);
     if (message.size > fileSize(kImportResultFd)) {
-        return false;
+        return kImportExitTooLarge;
+    }
+    const auto size = static_cast<off_t>(message.size);
+    // All of it now: a page that cannot be had later would end this process by SIGBUS.
+    if (const int code = reserveMemory(kImportResultFd, message.size)) {
+        return exitOf(code);
     }
     // Not by write: no file may be written any more. The pages are the memfd's.
     void* const pages =
         ::mmap(nullptr, message.size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_POPULATE, kImportResultFd, 0);
     if (pages == MAP_FAILED) {
-        return false;
+        return errno == ENOMEM ? kImportExitMemory : exitOf(errno);
     }
     writeImportMessage(message, raw, {static_cast<std::byte*>(pages), message.size});
-    return ::munmap(pages, message.size) == 0 &&
-           ::ftruncate(kImportResultFd, static_cast<off_t>(message.size)) == 0 &&
-           ::fcntl(kImportResultFd, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL) ==
-               0;
+    if (::munmap(pages, message.size) != 0 || ::ftruncate(kImportResultFd, size) != 0) {
+        return exitOf(errno);
+    }
+    const int code = addSeals(kImportResultFd, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL);
+    return code == 0 ? kImportExitMessage : exitOf(code);
 }
 
 int work(std::span<char*> arguments) {
@@ -68,7 +81,7 @@ int work(std::span<char*> arguments) {
     if (std::string_view(arguments[3]) != "-") {
         const Result<UpAxis> up = parseUpAxis(arguments[3]);
         if (!up) {
-            return kImportExitNoSandbox;
+            return kImportExitArguments;
         }
         options.up = *up;
     }
@@ -76,14 +89,24 @@ int work(std::span<char*> arguments) {
     const std::uint64_t memory = parseUnsigned(arguments[4]).value_or(0);
     const std::uint64_t seconds = parseUnsigned(arguments[5]).value_or(0);
     if (memory == 0 || seconds == 0 || seconds > UINT32_MAX) {
-        return kImportExitNoSandbox;
+        return kImportExitArguments;
     }
     const std::uint64_t size = fileSize(kImportMeshFd);
     void* const pages = ::mmap(nullptr, size, PROT_READ, MAP_SHARED | MAP_POPULATE, kImportMeshFd, 0);
     const int folder = isFolder(kImportFolderFd) ? kImportFolderFd : -1;
-    if (pages == MAP_FAILED ||
-        !enterSandbox({memory + kMemoryBeside, static_cast<std::uint32_t>(seconds)}, folder) || orphaned()) {
-        return kImportExitNoSandbox;
+    if (pages == MAP_FAILED) {
+        return exitOf(errno);
+    }
+    const Result<void> limited =
+        enterSandbox({memory + kMemoryBeside, static_cast<std::uint32_t>(seconds)}, folder, kImportResultFd);
+    if (!limited) {
+        return sendMessage(fail(limited.error().code, "cannot read the mesh " + quotedPath(path) + ": " +
+                                                          limited.error().message +
+                                                          ", and so does not begin; raise the limits of "
+                                                          "this process (ulimit -a)"));
+    }
+    if (orphaned()) {
+        return kImportExitArguments;
     }
     std::set_new_handler([] { ::_exit(kImportExitMemory); });
     const Result<TriangleMesh> raw = importRaw({quotedPath(path),
@@ -92,7 +115,7 @@ int work(std::span<char*> arguments) {
                                                 {static_cast<const std::byte*>(pages), size},
                                                 folder,
                                                 options});
-    return sendMessage(raw) ? kImportExitMessage : kImportExitNoMessage;
+    return sendMessage(raw);
 }
 
 }  // namespace
@@ -100,12 +123,12 @@ int work(std::span<char*> arguments) {
 
 int main(int argc, char** argv) {
     if (argc < 6) {
-        return relief::kImportExitNoSandbox;
+        return relief::kImportExitArguments;
     }
     // assimp allocates much in little pieces: fewer, larger steps of one heap, that the limit is exact for.
     mallopt(M_ARENA_MAX, 1);
     mallopt(M_TOP_PAD, 16 << 20);
-    int code = relief::kImportExitNoMessage;
+    int code = relief::kImportExitMemory;
     try {
         code = relief::work({argv, static_cast<std::size_t>(argc)});
     } catch (...) {

@@ -16,7 +16,11 @@ inline constexpr int kImportAliveFd = 6;   ///< a pipe's writing end: closes as 
 
 inline constexpr int kImportExitMessage = 0;     ///< the message is there, a mesh or an error
 inline constexpr int kImportExitMemory = 10;     ///< the memory limit is reached
-inline constexpr int kImportExitNoSandbox = 11;  ///< the limits could not be set
-inline constexpr int kImportExitNoMessage = 12;  ///< the message could not be written
+inline constexpr int kImportExitArguments = 11;  ///< called otherwise than above, or the parent is gone
+inline constexpr int kImportExitTooLarge = 12;   ///< the message is larger than the memory for it
+/// Of the dynamic loader, which could not load a library, or of a program that could not be run.
+inline constexpr int kImportExitNotLoaded = 127;
+/// And behind it: 128 + errno, of a call of the system without which there is no message.
+inline constexpr int kImportExitErrno = 128;
 
 }  // namespace relief

@@ -13,6 +13,7 @@
 #include <fstream>
 #include <string>
 
+#include "bake/import/import_seccomp.h"
 #include "formats/base/descriptor.h"
 
 namespace relief {
@@ -77,7 +78,7 @@ Result<void> enterLandlock(int folder) {
 
 }  // namespace
 
-Result<void> enterSandbox(const SandboxLimits& limits, int folder) {
+Result<void> enterSandbox(const SandboxLimits& limits, int folder, int result) {
     if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) {
         return cannot("ask to end with its parent");
     }
@@ -89,13 +90,15 @@ Result<void> enterSandbox(const SandboxLimits& limits, int folder) {
 #endif
     // SIGXCPU first; SIGKILL a second later, should that be caught.
     if (!lowerLimit(RLIMIT_CPU, limits.seconds, std::uint64_t{limits.seconds} + 1U) ||
-        !lowerLimit(RLIMIT_CORE, 0, 0) || !lowerLimit(RLIMIT_FSIZE, 0, 0)) {
+        !lowerLimit(RLIMIT_STACK, kSandboxStack, kSandboxStack) || !lowerLimit(RLIMIT_CORE, 0, 0) ||
+        !lowerLimit(RLIMIT_FSIZE, 0, 0)) {
         return cannot("limit itself");
     }
     if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 || ::prctl(PR_SET_DUMPABLE, 0) != 0) {
         return cannot("give up privileges");
     }
-    return enterLandlock(folder);
+    RELIEF_TRY(enterLandlock(folder));
+    return enterSeccomp(folder, result);
 }
 
 }  // namespace relief

@@ -12,9 +12,11 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <ctime>
 #include <string>
 #include <utility>
 
+#include "bake/import/import_memory.h"
 #include "bake/import/import_message.h"
 #include "bake/import/import_protocol.h"
 #include "bake/import/import_source.h"
@@ -57,13 +59,12 @@ class Mapping {
 
 /// Empty where it cannot be had; errno then says why.
 Descriptor memoryFile(std::uint64_t size) {
-    Descriptor file(::memfd_create("relief-import", MFD_CLOEXEC | MFD_ALLOW_SEALING));
-    if (file && ::ftruncate(file.get(), static_cast<off_t>(size)) != 0) {
-        const int number = errno;
-        file.reset();
-        errno = number;
-    }
-    return file;
+    Descriptor file;
+    errno = retryTransient([&] {
+        file = Descriptor(::memfd_create("relief-import", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+        return file && ::ftruncate(file.get(), static_cast<off_t>(size)) == 0 ? 0 : errno;
+    });
+    return errno == 0 ? std::move(file) : Descriptor();
 }
 
 /// Memory counts as a file, of which this process may have been allowed little.
@@ -74,11 +75,15 @@ std::uint64_t largestFile(std::uint64_t wanted) {
                : wanted;
 }
 
-/// The mesh's bytes where the worker can read, and not change, them.
+/// The mesh's bytes where the worker can read, and not change, them. Empty where they cannot be had, as above.
 Descriptor sharedBytes(std::span<const std::byte> bytes) {
     Descriptor file = memoryFile(bytes.size());
     if (!file) {
         return file;
+    }
+    errno = reserveMemory(file.get(), bytes.size());
+    if (errno != 0) {
+        return Descriptor();
     }
     {
         const Mapping pages(file.get(), bytes.size(), PROT_READ | PROT_WRITE);
@@ -87,8 +92,8 @@ Descriptor sharedBytes(std::span<const std::byte> bytes) {
         }
         std::memcpy(pages.bytes().data(), bytes.data(), bytes.size());
     }
-    constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL;
-    return ::fcntl(file.get(), F_ADD_SEALS, kSeals) == 0 ? std::move(file) : Descriptor();
+    errno = addSeals(file.get(), F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL);
+    return errno == 0 ? std::move(file) : Descriptor();
 }
 
 /// The program, beside this one or where an installation puts it; "" if it is nowhere.
@@ -119,7 +124,9 @@ bool closesWithin(int file, std::uint32_t seconds) {
             return true;
         }
         if (ready < 0 && errno != EINTR) {
-            return false;
+            // Nothing is known of the worker but that its time is not up.
+            const timespec moment{0, 10'000'000};
+            ::nanosleep(&moment, nullptr);
         }
     }
 }
@@ -127,6 +134,33 @@ bool closesWithin(int file, std::uint32_t seconds) {
 std::string signalName(int number) {
     const char* const name = ::sigabbrev_np(number);
     return name != nullptr ? "SIG" + std::string(name) : "signal " + std::to_string(number);
+}
+
+/// What helps against an errno of a call that the import cannot do without.
+const char* cureOf(int number) {
+    switch (number) {
+        case EMFILE:
+            return "close files, or raise the limit of open files (ulimit -n)";
+        case ENFILE:
+            return "the whole system has too many files open; close some, or try again";
+        case EAGAIN:
+            return "end some processes, or raise their limit (ulimit -u)";
+        case ENOMEM:
+        case ENOSPC:
+            return "free memory, or raise its limit (ulimit -v)";
+        case EFBIG:
+            return "raise the file size limit (ulimit -f), which counts for memory too";
+        case ENOENT:
+        case EACCES:
+        case ENOEXEC:
+        case ELIBBAD:
+            return "install Relief again";
+        case EPERM:
+        case ENOSYS:
+            return "allow it where the system or its container forbids it";
+        default:
+            return "try again";
+    }
 }
 
 class Import {
@@ -148,10 +182,13 @@ class Import {
     [[nodiscard]] tl::unexpected<Error> error(ErrorCode code, const std::string& what) const {
         return fail(code, "cannot read the mesh " + quotedPath(path_) + ": " + what);
     }
+    /// \param what  "could not be …"
+    [[nodiscard]] tl::unexpected<Error> shortOf(const char* what, int number) const {
+        return error(ErrorCode::kFailure, std::string("the importer ") + what + " (" + std::strerror(number) +
+                                              "); " + cureOf(number));
+    }
     [[nodiscard]] tl::unexpected<Error> notStarted(int number) const {
-        return error(ErrorCode::kFailure, "the importer could not be started (" +
-                                              std::string(std::strerror(number)) +
-                                              "); free memory or processes");
+        return shortOf("could not be started", number);
     }
 
     Result<TriangleMesh> workOn(ImportSource& source) {
@@ -168,8 +205,11 @@ class Import {
         const Descriptor result = memoryFile(largestFile(limits_.memory));
         Descriptor alive;
         Descriptor alive_end;
-        if (!result || makePipe(alive, alive_end) != 0) {
+        if (!result) {
             return notStarted(errno);
+        }
+        if (const int failed = retryTransient([&] { return makePipe(alive, alive_end); })) {
+            return notStarted(failed);
         }
         Process worker;
         if (const int failed =
@@ -219,16 +259,23 @@ class Import {
                 return error(ErrorCode::kLimit,
                              "the importer needs more than " + std::to_string(limits_.memory) +
                                  " bytes; repair or simplify the mesh, or raise --import-memory");
-            case kImportExitNoSandbox:
+            case kImportExitArguments:
                 return error(
                     ErrorCode::kFailure,
-                    "the importer cannot limit itself, and so does not begin; raise the limits of this "
-                    "process (ulimit -a)");
-            case kImportExitNoMessage:
+                    "the importer was started by another version, or left alone; install Relief again");
+            case kImportExitTooLarge:
                 return error(ErrorCode::kLimit,
                              "the mesh is too large to be handed over; simplify it, or raise "
                              "--import-memory and this process's file size limit (ulimit -f)");
+            case kImportExitNotLoaded:
+                return error(
+                    ErrorCode::kFailure,
+                    "the importer could not be started, as its libraries cannot be loaded; close files "
+                    "or raise their limit (ulimit -n), free memory, or install Relief again");
             default:
+                if (end.exit_code > kImportExitErrno) {
+                    return shortOf("could not hand its mesh over", end.exit_code - kImportExitErrno);
+                }
                 return error(ErrorCode::kInvalidInput, "the importer ended with exit code " +
                                                            std::to_string(end.exit_code) +
                                                            "; export the mesh again, in another format");
@@ -247,6 +294,13 @@ class Import {
                 return error(ErrorCode::kFailure,
                              "the importer was ended by " + signalName(number) +
                                  " from outside (the system may be out of memory); try again");
+            case SIGSYS:
+                return error(
+                    ErrorCode::kInvalidInput,
+                    "the importer tried what it may not (SIGSYS), as a hostile file can make it; do not "
+                    "trust the file, or report it if you do");
+            case SIGBUS:  // its memory is no file that could have been cut
+                return shortOf("could not go on", ENOMEM);
             default:
                 return error(ErrorCode::kInvalidInput, "the importer crashed on it (" + signalName(number) +
                                                            "); export the mesh again, in another format");
@@ -257,12 +311,15 @@ class Import {
         constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE;
         struct stat status {};
         // Unsealed, it could change under our eyes.
-        if ((::fcntl(result, F_GET_SEALS) & kSeals) != kSeals || ::fstat(result, &status) != 0) {
-            return error(ErrorCode::kInvalidInput, "the importer gave no answer; export the mesh again");
+        const int seals = ::fcntl(result, F_GET_SEALS);
+        if (seals < 0 || (seals & kSeals) != kSeals || ::fstat(result, &status) != 0) {
+            return error(ErrorCode::kFailure,
+                         "the importer gave no answer; try again, or export the mesh in another format");
         }
         const Mapping pages(result, static_cast<std::size_t>(status.st_size), PROT_READ);
         if (!pages) {
-            return error(ErrorCode::kLimit, "its triangles do not fit into memory; simplify it");
+            return error(ErrorCode::kLimit, std::string("its triangles do not fit into memory (") +
+                                                std::strerror(errno) + "); simplify it, or free memory");
         }
         Result<TriangleMesh> raw = readImportMessage(pages.bytes());
         if (!raw && raw.error().message.find(quotedPath(path_)) == std::string::npos) {

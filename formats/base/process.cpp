@@ -11,6 +11,7 @@
 #include <span>
 
 #include "formats/base/descriptor.h"
+#include "formats/base/retry.h"
 
 namespace relief {
 namespace {
@@ -89,6 +90,8 @@ void become(Prepared& child) {
         }
     }
     if (!placeFiles(child)) {
+        // A number beyond the limit of open files is "invalid" or "bad" to the kernel.
+        errno = errno == EINVAL || errno == EBADF ? EMFILE : errno;
         return;
     }
     resetSignals(start.reset_ignored_signals);
@@ -107,6 +110,10 @@ Process::~Process() {
 }
 
 int Process::start(const ProcessStart& start) {
+    return retryTransient([&] { return startOnce(start); });
+}
+
+int Process::startOnce(const ProcessStart& start) {
     Descriptor failure;
     Descriptor failure_end;
     if (const int code = makePipe(failure, failure_end)) {

@@ -1,0 +1,463 @@
+// A worker that a hostile file has taken over: a process with the worker's own descriptors that enters the worker's
+// sandbox and then tries, by bare system calls, whatever could reach beyond it.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <linux/landlock.h>
+#include <linux/openat2.h>
+#include <linux/perf_event.h>
+#include <linux/seccomp.h>
+#include <netinet/in.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/ptrace.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <sys/uio.h>
+#include <sys/un.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "bake/import/import_protocol.h"
+#include "bake/import/import_sandbox.h"
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kMemory = std::uint64_t{256} << 20;
+constexpr std::size_t kPage = 4096;
+constexpr int kLeakedFd = 7;  ///< a file open for writing, which the real worker does not even have
+constexpr int kFiles = 8;
+
+constexpr int kDone = 0;     // exit codes of the worker: it could
+constexpr int kRefused = 1;  // and it could not, without being ended
+constexpr int kNoSandbox = 2;
+
+/// What the worker finds, as in import_protocol.h.
+class Place {
+  public:
+    Place() {
+        fs::create_directory(folder_.path() / "in");
+        folder_.write("in/inside", std::string(kPage, 'i'));
+        folder_.write("outside", std::string(kPage, 'o'));
+        folder_.write("leaked", std::string(kPage, 'l'));
+        files_[kImportMeshFd] = ::memfd_create("mesh", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+        files_[kImportFolderFd] = ::open((folder_.path() / "in").c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
+        files_[kImportResultFd] = ::memfd_create("result", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+        int ends[2] = {-1, -1};
+        ready_ = ::pipe2(ends, O_CLOEXEC) == 0 && ::ftruncate(files_[kImportMeshFd], kPage) == 0 &&
+                 ::ftruncate(files_[kImportResultFd], kPage) == 0 &&
+                 ::fcntl(files_[kImportMeshFd], F_ADD_SEALS,
+                         F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL) == 0;
+        alive_ = ends[0];
+        files_[kImportAliveFd] = ends[1];
+        files_[kLeakedFd] = ::open((folder_.path() / "leaked").c_str(), O_RDWR | O_CLOEXEC);
+        for (int file = 0; file < kImportMeshFd; ++file) {
+            files_[static_cast<std::size_t>(file)] = ::open("/dev/null", O_RDWR | O_CLOEXEC);
+        }
+    }
+    Place(const Place&) = delete;
+    Place& operator=(const Place&) = delete;
+    ~Place() {
+        for (const int file : files_) {
+            ::close(file);
+        }
+        ::close(alive_);
+    }
+
+    [[nodiscard]] bool ready() const {
+        return ready_ && *std::min_element(files_.begin(), files_.end()) >= 0;
+    }
+    [[nodiscard]] fs::path path(const char* name) const { return folder_.path() / name; }
+    [[nodiscard]] int result() const { return files_[kImportResultFd]; }
+    [[nodiscard]] std::string names() const {
+        std::string text;
+        std::vector<std::string> names;
+        for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_.path())) {
+            names.push_back(entry.path().filename());
+        }
+        std::sort(names.begin(), names.end());
+        for (const std::string& name : names) {
+            text += name + " ";
+        }
+        return text;
+    }
+    [[nodiscard]] std::string contents(const char* name) const {
+        std::ifstream file(path(name));
+        return {std::istreambuf_iterator<char>(file), {}};
+    }
+
+    /// For the child: the descriptors at their numbers, and no other.
+    void become() const {
+        std::array<int, kFiles> raised{};
+        for (std::size_t i = 0; i < kFiles; ++i) {
+            raised[i] = ::fcntl(files_[i], F_DUPFD, 100);
+        }
+        for (std::size_t i = 0; i < kFiles; ++i) {
+            ::dup2(raised[i], static_cast<int>(i));
+        }
+        ::closefrom(kFiles);
+    }
+
+  private:
+    TemporaryFolder folder_;
+    std::array<int, kFiles> files_{};
+    int alive_ = -1;
+    bool ready_ = false;
+};
+
+struct End {
+    int code = -1;   ///< of the worker; -1 if a signal ended it
+    int signal = 0;  ///< that did
+    bool refused() const { return code == kRefused || signal == SIGSYS; }
+};
+
+/// A child asks, in the sandbox or outside of it.
+End ask(const Place& place, bool sandbox, const std::function<bool()>& what) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+        place.become();
+        ::alarm(20);
+        if (sandbox && !enterSandbox({kMemory, 5}, kImportFolderFd, kImportResultFd)) {
+            ::_exit(kNoSandbox);
+        }
+        ::_exit(what() ? kDone : kRefused);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    return WIFEXITED(status) ? End{WEXITSTATUS(status), 0} : End{-1, WTERMSIG(status)};
+}
+
+template <class... Arguments>
+long raw(long call, Arguments... arguments) {
+    return ::syscall(call, arguments...);
+}
+
+struct Attempt {
+    const char* name;
+    std::function<bool()> what;  ///< true: it could
+    bool alone = true;           ///< can be done outside of the sandbox, here and by anybody
+};
+
+bool inSockets(int family, const sockaddr* address, socklen_t size) {
+    const int socket = static_cast<int>(raw(SYS_socket, family, SOCK_STREAM, 0));
+    // Refused by nobody who listens is a connection all the same: the call went out.
+    return socket >= 0 &&
+           (raw(SYS_connect, socket, address, size) == 0 || errno == ECONNREFUSED || errno == ENOENT);
+}
+
+bool sharesForWriting(int file) {
+    auto* const pages =
+        static_cast<char*>(::mmap(nullptr, kPage, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0));
+    if (pages == MAP_FAILED) {
+        return false;
+    }
+    pages[0] = 'X';
+    return true;
+}
+
+bool opens(const fs::path& path, std::uint64_t flags) {
+    open_how how{};
+    how.flags = flags;
+    how.mode = (flags & O_CREAT) != 0 ? 0600 : 0;
+    return raw(SYS_openat2, kImportFolderFd, path.c_str(), &how, sizeof(how)) >= 0;
+}
+
+std::vector<Attempt> attempts(const Place& place) {
+    const fs::path inside = place.path("in/inside");
+    const fs::path outside = place.path("outside");
+    const fs::path fresh = place.path("in/fresh");
+    const pid_t parent = ::getpid();
+    static char byte = 'X';
+    static iovec vector{&byte, 1};
+    static sockaddr_un local{};
+    local.sun_family = AF_UNIX;
+    std::strcpy(local.sun_path, "/tmp/nobody-listens-here");
+    static sockaddr_in internet{};
+    internet.sin_family = AF_INET;
+    internet.sin_port = 0x0900;
+    internet.sin_addr.s_addr = 0x0100007F;
+    static char program[] = "/bin/true";
+    static char* arguments[] = {program, nullptr};
+    const auto forked = [](long child) {
+        if (child == 0) {
+            ::_exit(0);
+        }
+        return child > 0;
+    };
+    return {
+        // open, to read or to write
+        {"open", [=] { return raw(SYS_open, outside.c_str(), O_RDONLY) >= 0; }},
+        {"open /etc/passwd", [=] { return raw(SYS_openat, AT_FDCWD, "/etc/passwd", O_RDONLY) >= 0; }},
+        {"open to write", [=] { return raw(SYS_openat, AT_FDCWD, inside.c_str(), O_WRONLY) >= 0; }},
+        {"openat from its folder", [=] { return raw(SYS_openat, kImportFolderFd, "inside", O_RDONLY) >= 0; }},
+        {"openat2 outside", [=] { return opens(outside, O_RDONLY); }},
+        {"openat2 above", [=] { return opens("../outside", O_RDONLY); }},
+        {"openat2 to write", [=] { return opens("inside", O_WRONLY); }},
+        {"openat2 to truncate", [=] { return opens("inside", O_WRONLY | O_TRUNC); }},
+        {"openat2 to create", [=] { return opens("fresh", O_WRONLY | O_CREAT); }},
+        {"openat2 a folder", [=] { return opens(".", O_RDONLY | O_DIRECTORY); }},
+        {"openat2 a device", [=] { return opens("/dev/zero", O_RDONLY); }},
+        {"openat2 itself", [=] { return opens("/proc/self/mem", O_RDWR); }},
+        {"creat", [=] { return raw(SYS_creat, fresh.c_str(), 0600) >= 0; }},
+        {"open by handle", [=] { return raw(SYS_open_by_handle_at, AT_FDCWD, nullptr, O_RDONLY) >= 0; },
+         false},
+        {"memfd", [=] { return raw(SYS_memfd_create, "x", 0) >= 0; }},
+        // change files by name
+        {"unlink", [=] { return raw(SYS_unlink, outside.c_str()) == 0; }},
+        {"rename", [=] { return raw(SYS_rename, inside.c_str(), fresh.c_str()) == 0; }},
+        {"mkdir", [=] { return raw(SYS_mkdir, fresh.c_str(), 0700) == 0; }},
+        {"symlink", [=] { return raw(SYS_symlink, "/etc", fresh.c_str()) == 0; }},
+        {"link", [=] { return raw(SYS_link, outside.c_str(), fresh.c_str()) == 0; }},
+        {"mknod", [=] { return raw(SYS_mknod, fresh.c_str(), S_IFIFO | 0600, 0) == 0; }},
+        {"chmod", [=] { return raw(SYS_chmod, inside.c_str(), 0777) == 0; }},
+        {"truncate", [=] { return raw(SYS_truncate, inside.c_str(), 1) == 0; }},
+        {"utimensat", [=] { return raw(SYS_utimensat, AT_FDCWD, inside.c_str(), nullptr, 0) == 0; }},
+        {"setxattr", [=] { return raw(SYS_setxattr, inside.c_str(), "user.x", "x", 1, 0) == 0; }, false},
+        {"chdir", [=] { return raw(SYS_chdir, "/") == 0; }},
+        // write where it was given no leave to: a file that leaked, its standard output, the mesh, the pipe
+        {"write", [=] { return raw(SYS_write, kLeakedFd, &byte, 1) == 1; }},
+        {"write to standard output", [=] { return raw(SYS_write, STDOUT_FILENO, &byte, 1) == 1; }},
+        {"write to the pipe", [=] { return raw(SYS_write, kImportAliveFd, &byte, 1) == 1; }},
+        {"writev", [=] { return raw(SYS_writev, kLeakedFd, &vector, 1) == 1; }},
+        {"pwrite", [=] { return raw(SYS_pwrite64, kLeakedFd, &byte, 1, 0) == 1; }},
+        {"pwritev2", [=] { return raw(SYS_pwritev2, kLeakedFd, &vector, 1, 0, 0, 0) == 1; }},
+        {"write to the mesh", [=] { return raw(SYS_pwrite64, kImportMeshFd, &byte, 1, 0) == 1; }, false},
+        {"share the mesh", [=] { return sharesForWriting(kImportMeshFd); }, false},
+        {"share a file", [=] { return sharesForWriting(kLeakedFd); }},
+        {"ftruncate", [=] { return raw(SYS_ftruncate, kLeakedFd, 1) == 0; }},
+        {"fallocate", [=] { return raw(SYS_fallocate, kLeakedFd, 0, 0, kPage) == 0; }},
+        {"punch a hole", [=] { return raw(SYS_fallocate, kLeakedFd, 3, 0, kPage) == 0; }, false},
+        {"fchmod", [=] { return raw(SYS_fchmod, kLeakedFd, 0777) == 0; }},
+        {"sendfile", [=] { return raw(SYS_sendfile, kLeakedFd, kImportResultFd, nullptr, 1) == 1; }},
+        {"splice",
+         [=] { return raw(SYS_splice, kImportResultFd, nullptr, kImportAliveFd, nullptr, 1, 0) == 1; }},
+        {"copy_file_range",
+         [=] { return raw(SYS_copy_file_range, kLeakedFd, nullptr, kLeakedFd, nullptr, 0, 0) == 0; }},
+        {"dup", [=] { return raw(SYS_dup, kLeakedFd) >= 0; }},
+        {"dup onto the result", [=] { return raw(SYS_dup2, kLeakedFd, kImportResultFd) >= 0; }},
+        {"fcntl dup", [=] { return raw(SYS_fcntl, kLeakedFd, F_DUPFD, 0) >= 0; }},
+        {"io_uring", [=] { return raw(SYS_io_uring_setup, 1, nullptr) >= 0; }, false},
+        // connect
+        {"socket", [=] { return raw(SYS_socket, AF_INET, SOCK_DGRAM, 0) >= 0; }},
+        {"socketpair",
+         [=] {
+             int ends[2] = {-1, -1};
+             return raw(SYS_socketpair, AF_UNIX, SOCK_STREAM, 0, ends) == 0;
+         }},
+        {"connect by name",
+         [=] { return inSockets(AF_UNIX, reinterpret_cast<const sockaddr*>(&local), sizeof(local)); }},
+        {"connect by address",
+         [=] { return inSockets(AF_INET, reinterpret_cast<const sockaddr*>(&internet), sizeof(internet)); }},
+        // exec
+        {"execve", [=] { return raw(SYS_execve, program, arguments, nullptr), false; }, false},
+        {"execveat", [=] { return raw(SYS_execveat, AT_FDCWD, program, arguments, nullptr, 0), false; },
+         false},
+        {"memory to run",
+         [=] {
+             return ::mmap(nullptr, kPage, PROT_READ | PROT_WRITE | PROT_EXEC, MAP_PRIVATE | MAP_ANONYMOUS,
+                           -1, 0) != MAP_FAILED;
+         }},
+        {"memory made to run",
+         [=] {
+             void* const pages =
+                 ::mmap(nullptr, kPage, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+             return raw(SYS_mprotect, pages, kPage, PROT_READ | PROT_EXEC) == 0;
+         }},
+        // fork
+        {"fork", [=] { return forked(raw(SYS_fork)); }},
+        {"clone", [=] { return forked(raw(SYS_clone, SIGCHLD, 0, 0, 0, 0)); }},
+        {"clone into a namespace",
+         [=] { return forked(raw(SYS_clone, CLONE_NEWUSER | SIGCHLD, 0, 0, 0, 0)); }, false},
+        {"clone3",
+         [=] {
+             std::uint64_t how[11] = {0, 0, 0, 0, SIGCHLD};
+             return forked(raw(SYS_clone3, how, sizeof(how)));
+         }},
+        // its parent and other processes
+        {"ptrace the parent", [=] { return raw(SYS_ptrace, PTRACE_ATTACH, parent, 0, 0) == 0; }, false},
+        {"be traced", [=] { return raw(SYS_ptrace, PTRACE_TRACEME, 0, 0, 0) == 0; }},
+        {"kill the parent", [=] { return raw(SYS_kill, parent, 0) == 0; }},
+        {"kill all", [=] { return raw(SYS_kill, -parent, 0) == 0; }, false},
+        {"tgkill the parent", [=] { return raw(SYS_tgkill, parent, parent, 0) == 0; }},
+        {"tkill the parent", [=] { return raw(SYS_tkill, parent, 0) == 0; }},
+        {"a descriptor of the parent", [=] { return raw(SYS_pidfd_open, parent, 0) >= 0; }},
+        {"the parent's memory",
+         [=] {
+             char there = 0;
+             iovec here{&there, 1};
+             return raw(SYS_process_vm_writev, parent, &here, 1, &vector, 1, 0) == 1;
+         },
+         false},
+        {"the parent's limits",
+         [=] {
+             rlimit limit{};
+             return raw(SYS_prlimit64, parent, RLIMIT_NOFILE, nullptr, &limit) == 0;
+         }},
+        {"the parent's priority", [=] { return raw(SYS_setpriority, PRIO_PROCESS, parent, 5) == 0; }, false},
+        // its own limits
+        {"raise a limit",
+         [=] {
+             const rlimit limit{0, 0};
+             return raw(SYS_prlimit64, 0, RLIMIT_CORE, &limit, nullptr) == 0;
+         }},
+        {"become dumpable", [=] { return raw(SYS_prctl, PR_SET_DUMPABLE, 1) == 0; }},
+        {"outlive the parent", [=] { return raw(SYS_prctl, PR_SET_PDEATHSIG, 0) == 0; }},
+        {"another filter", [=] { return raw(SYS_seccomp, SECCOMP_GET_ACTION_AVAIL, 0, &byte) == 0; }, false},
+        {"setuid", [=] { return raw(SYS_setuid, ::getuid()) == 0; }},
+        {"setsid", [=] { return raw(SYS_setsid) >= 0; }},
+        {"unshare", [=] { return raw(SYS_unshare, CLONE_NEWUSER) == 0; }, false},
+        {"mount", [=] { return raw(SYS_mount, "none", "/tmp", "tmpfs", 0, nullptr) == 0; }, false},
+        {"chroot", [=] { return raw(SYS_chroot, "/tmp") == 0; }, false},
+        {"personality", [=] { return raw(SYS_personality, 0xFFFFFFFF) >= 0; }},
+        // ways into the kernel
+        {"bpf", [=] { return raw(SYS_bpf, 0, nullptr, 0) >= 0; }, false},
+        {"perf",
+         [=] {
+             perf_event_attr counter{};
+             counter.size = sizeof(counter);
+             return raw(SYS_perf_event_open, &counter, 0, -1, -1, 0) >= 0;
+         },
+         false},
+        {"keys", [=] { return raw(SYS_keyctl, 0, -3, 1) >= 0; }, false},
+        {"faults in user space", [=] { return raw(SYS_userfaultfd, 1) >= 0; }, false},
+        {"shared memory", [=] { return raw(SYS_shmget, 0, kPage, 0600 | 01000) >= 0; }},
+        {"terminal", [=] { return raw(SYS_ioctl, kLeakedFd, 0x5421, &byte) == 0; }},
+        {"inotify", [=] { return raw(SYS_inotify_init1, 0) >= 0; }},
+    };
+}
+
+/// Seccomp must be there for most of this; every kernel that the tests run on has it.
+bool kernelHasSeccomp() {
+    return ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, nullptr) != 0 && errno == EFAULT;
+}
+
+/// Without it ImportFiles alone keeps to the folder.
+bool kernelHasLandlock() {
+    return ::syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION) >= 1;
+}
+
+TEST(CompromisedWorker, ReachesNothing) {
+    ASSERT_TRUE(kernelHasSeccomp());
+    RecordProperty("landlock", kernelHasLandlock() ? "yes" : "no");
+    const Place place;
+    ASSERT_TRUE(place.ready());
+    const std::string names = place.names();
+    for (const Attempt& attempt : attempts(place)) {
+        SCOPED_TRACE(attempt.name);
+        if (!kernelHasLandlock() && std::string_view(attempt.name).starts_with("openat2 ")) {
+            continue;
+        }
+#ifdef __SANITIZE_ADDRESS__
+        // The sanitizers write what they find.
+        if (std::string_view(attempt.name).starts_with("write to ") ||
+            attempt.name == std::string_view("write")) {
+            continue;
+        }
+#endif
+        const End end = ask(place, true, attempt.what);
+        EXPECT_TRUE(end.refused()) << "exit code " << end.code << ", signal " << end.signal;
+        EXPECT_EQ(place.names(), names);
+        EXPECT_EQ(place.contents("in/inside"), std::string(kPage, 'i'));
+        EXPECT_EQ(place.contents("outside"), std::string(kPage, 'o'));
+        EXPECT_EQ(place.contents("leaked"), std::string(kPage, 'l'));
+    }
+}
+
+TEST(CompromisedWorker, WouldReachAllThatWithoutTheSandbox) {
+    for (std::size_t i = 0; i < attempts(Place()).size(); ++i) {
+        const Place place;
+        ASSERT_TRUE(place.ready());
+        const Attempt attempt = attempts(place)[i];
+        if (attempt.alone) {
+            EXPECT_EQ(ask(place, false, attempt.what).code, kDone) << attempt.name;
+        }
+    }
+}
+
+TEST(CompromisedWorker, CanDoItsWork) {
+    const Place place;
+    ASSERT_TRUE(place.ready());
+    const auto can = [&](const std::function<bool()>& what) { return ask(place, true, what).code; };
+    EXPECT_EQ(can([] { return opens("inside", O_RDONLY); }), kDone);
+    EXPECT_EQ(can([] {
+                  pthread_t thread{};
+                  void* answer = nullptr;
+                  return ::pthread_create(
+                             &thread, nullptr, [](void* self) { return self; }, &answer) == 0 &&
+                         ::pthread_join(thread, &answer) == 0 && answer == &answer;
+              }),
+              kDone);
+    EXPECT_EQ(can([] {
+                  return sharesForWriting(kImportResultFd) && ::fallocate(kImportResultFd, 0, 0, 16) == 0 &&
+                         ::ftruncate(kImportResultFd, 16) == 0;
+              }),
+              kDone);
+    struct stat status {};
+    EXPECT_EQ(::fstat(place.result(), &status), 0);
+    EXPECT_EQ(status.st_size, 16);
+    EXPECT_EQ(can([] {
+                  return ::fcntl(kImportResultFd, F_ADD_SEALS,
+                                 F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL) == 0;
+              }),
+              kDone);
+    const End aborted = ask(place, true, [] {
+        ::abort();
+        return false;
+    });
+    EXPECT_EQ(aborted.signal, SIGABRT);
+}
+
+/// Recurses without an end.
+[[gnu::noinline]] std::size_t descend(std::size_t depth, volatile char* above) {
+    volatile char here[kPage] = {};
+    here[depth % kPage] = static_cast<char>(above[0] + 1);
+    return depth * kPage > (std::size_t{64} << 20)
+               ? depth
+               : descend(depth + 1, here) + static_cast<std::size_t>(here[0]);
+}
+
+TEST(CompromisedWorker, HasALittleStack) {
+    const Place place;
+    ASSERT_TRUE(place.ready());
+    const auto recurse = [] {
+        volatile char top[1] = {};
+        return descend(0, top) > 0;
+    };
+    rlimit before{};
+    ASSERT_EQ(::getrlimit(RLIMIT_STACK, &before), 0);
+    const auto deep = [&] {
+        const rlimit unlimited{before.rlim_max, before.rlim_max};
+        return ::setrlimit(RLIMIT_STACK, &unlimited) == 0;
+    };
+    if (before.rlim_max == RLIM_INFINITY) {
+        EXPECT_EQ(ask(place, false, [&] { return deep() && recurse(); }).code, kDone);
+    }
+    EXPECT_EQ(ask(place, true,
+                  [] {
+                      rlimit limit{};
+                      return ::getrlimit(RLIMIT_STACK, &limit) == 0 && limit.rlim_max <= kSandboxStack;
+                  })
+                  .code,
+              kDone);
+    EXPECT_EQ(ask(place, true, recurse).signal, SIGSEGV);
+}
+
+}  // namespace
+}  // namespace relief::test
