@@ -1,15 +1,18 @@
 #!/usr/bin/env bash
 # Kills relief while it writes, makes its writing fail, and races several writers (tests/cli/atomic_outputs.sh), for
-# RELIEF_ATOMIC_ROUNDS rounds (20 by default). Prints what it counted; with --page also into bake/measure/trust.md.
+# RELIEF_ATOMIC_ROUNDS rounds (20 by default); and kills and fails its import worker (tests/cli/import_faults.sh). Prints
+# what it counted; with --page also into bake/measure/trust.md.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-counts=$(mktemp)
-trap 'rm -f "$counts"' EXIT
+counts=$(mktemp) faults=$(mktemp)
+trap 'rm -f "$counts" "$faults"' EXIT
 RELIEF_BIN=$(scripts/build.sh release relief)
+export RELIEF_FAULTS_PAGE=$faults
 export RELIEF_BIN RELIEF_SOURCE=$PWD RELIEF_ATOMIC_PAGE=$counts RELIEF_ATOMIC_ROUNDS=${RELIEF_ATOMIC_ROUNDS:-20}
 bash tests/cli/atomic_outputs.sh
+bash tests/cli/import_faults.sh
 if [ "${1:-}" = --page ]; then
-    printf 'Written by `scripts/all_or_nothing.sh --page`.\n\n' | cat - "$counts" |
+    { printf 'Written by `scripts/all_or_nothing.sh --page`.\n\n' && cat "$counts" && echo && cat "$faults"; } |
         scripts/page_part.sh bake/measure/trust.md 'all or nothing'
 fi

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <filesystem>
 #include <new>
@@ -18,6 +19,7 @@
 #include "bake/import/import_protocol.h"
 #include "bake/import/import_sandbox.h"
 #include "bake/import/import_source.h"
+#include "formats/base/descriptor.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 
@@ -73,6 +75,10 @@ int sendMessage(const Result<TriangleMesh>& raw) {
 }
 
 int work(std::span<char*> arguments) {
+    constexpr std::array kBegun = {std::byte{1}};
+    if (const int code = writeAll(kImportAliveFd, kBegun)) {
+        return exitOf(code);
+    }
     const std::filesystem::path path = arguments[1];
     ImportOptions options;
     if (std::string_view(arguments[2]) != "-") {

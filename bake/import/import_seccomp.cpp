@@ -14,6 +14,7 @@
 #include <memory>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 namespace relief {
 namespace {
@@ -173,11 +174,14 @@ Result<void> enterSeccomp(int folder, int result) {
     if (filter == nullptr) {
         return cannot(ENOMEM);
     }
-    Rules rules(filter.get());
-    if (const int code = ::seccomp_attr_set(filter.get(), SCMP_FLTATR_ACT_BADARCH, SCMP_ACT_KILL_PROCESS);
-        code != 0) {
-        return cannot(-code);
+    // The kernel's own errno, and not one for all; another architecture's calls are as forbidden.
+    for (const auto& [attribute, value] : {std::pair{SCMP_FLTATR_API_SYSRAWRC, 1U},
+                                           std::pair{SCMP_FLTATR_ACT_BADARCH, SCMP_ACT_KILL_PROCESS}}) {
+        if (const int code = ::seccomp_attr_set(filter.get(), attribute, value); code != 0) {
+            return cannot(-code);
+        }
     }
+    Rules rules(filter.get());
     addRules(rules, folder, result);
     if (rules.failure() != 0) {
         return cannot(rules.failure());

@@ -221,7 +221,9 @@ class Import {
         if (!closesWithin(alive.get(), limits_.seconds)) {
             return timeIsUp();
         }
-        return answer(worker.wait(), result.get());
+        const ProcessEnd end = worker.wait();
+        std::byte begun{};
+        return ::read(alive.get(), &begun, 1) == 1 ? answer(end, result.get()) : notBegun(end);
     }
 
     /// \param files  for kImportMeshFd and the numbers behind it; -1: none, /dev/null. \return 0 or an errno.
@@ -248,6 +250,18 @@ class Import {
                                             " s; simplify the mesh or raise --import-time");
     }
 
+    /// It never ran: the dynamic loader gave up, or broke down.
+    [[nodiscard]] tl::unexpected<Error> notBegun(const ProcessEnd& end) const {
+        if (end.signal == SIGKILL || end.exit_code > kImportExitErrno) {
+            return end.signal != 0 ? ended(end.signal)
+                                   : shortOf("could not begin", end.exit_code - kImportExitErrno);
+        }
+        return error(
+            ErrorCode::kFailure,
+            "the importer could not be started, as its libraries cannot be loaded; close files or raise "
+            "their limit (ulimit -n), free memory, or install Relief again");
+    }
+
     Result<TriangleMesh> answer(const ProcessEnd& end, int result) const {
         if (end.signal != 0) {
             return ended(end.signal);
@@ -267,11 +281,6 @@ class Import {
                 return error(ErrorCode::kLimit,
                              "the mesh is too large to be handed over; simplify it, or raise "
                              "--import-memory and this process's file size limit (ulimit -f)");
-            case kImportExitNotLoaded:
-                return error(
-                    ErrorCode::kFailure,
-                    "the importer could not be started, as its libraries cannot be loaded; close files "
-                    "or raise their limit (ulimit -n), free memory, or install Relief again");
             default:
                 if (end.exit_code > kImportExitErrno) {
                     return shortOf("could not hand its mesh over", end.exit_code - kImportExitErrno);

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cmath>
+#include <cstring>
 #include <optional>
 #include <vector>
 
@@ -25,6 +26,7 @@
 #include "bake/import/import_source.h"
 #include "bake/import/import_text.h"
 #include "formats/base/file_io.h"
+#include "formats/base/retry.h"
 #include "formats/base/text.h"
 
 namespace relief {
@@ -267,20 +269,22 @@ struct Import {
     }
 };
 
-bool runOnDeepStack(Import& import) {
+/// \return 0 or an errno.
+int startOnDeepStack(Import& import) {
+    int failed = 0;
     for (std::size_t stack = kStackBytes; stack >= kStackBytesMin; stack /= 2) {
         pthread_attr_t attributes;
         pthread_attr_init(&attributes);
         pthread_t thread{};
-        const bool started = pthread_attr_setstacksize(&attributes, stack) == 0 &&
-                             pthread_create(&thread, &attributes, Import::start, &import) == 0;
+        failed = pthread_attr_setstacksize(&attributes, stack);
+        failed = failed == 0 ? pthread_create(&thread, &attributes, Import::start, &import) : failed;
         pthread_attr_destroy(&attributes);
-        if (started) {
+        if (failed == 0) {
             pthread_join(thread, nullptr);
-            return true;
+            break;
         }
     }
-    return false;
+    return failed;
 }
 
 }  // namespace
@@ -298,9 +302,11 @@ Result<TriangleMesh> importRaw(const ImportJob& job) {
         unmarked.extension = *format;
     }
     Import import{unmarked, std::nullopt};
-    if (!runOnDeepStack(import)) {
+    if (const int failed = retryTransient([&] { return startOnDeepStack(import); })) {
         return fail(ErrorCode::kFailure,
-                    job.shown + ": no thread could be started to read it; free some memory");
+                    "cannot read the mesh " + job.shown + ": no thread could be started (" +
+                        std::strerror(failed) +
+                        "); free memory, or end processes or raise their limit (ulimit -u)");
     }
     if (format && *import.result) {
         (*import.result)

@@ -456,7 +456,12 @@ TEST(CompromisedWorker, HasALittleStack) {
                   })
                   .code,
               kDone);
-    EXPECT_EQ(ask(place, true, recurse).signal, SIGSEGV);
+    const End end = ask(place, true, recurse);
+#ifdef __SANITIZE_ADDRESS__
+    EXPECT_TRUE(end.signal != 0 || end.code == 1);  // reported
+#else
+    EXPECT_EQ(end.signal, SIGSEGV);
+#endif
 }
 
 }  // namespace

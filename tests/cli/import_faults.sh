@@ -1,0 +1,196 @@
+# The import worker killed and failed at its system calls, and its parent short of descriptors, processes and memory: the
+# collider is the same, or one line says what the system says and what helps; the older file stays, and nothing else.
+#   RELIEF_FAULTS_PAGE=FILE  tries every call, not every third of the dynamic loader's, and writes what was counted,
+#                            for bake/measure/trust.md
+. "$(dirname "$0")/lib.sh"
+
+command -v strace >/dev/null || die "strace is missing; run scripts/setup.sh"
+strace -o probe.trace true 2>probe.err ||
+    die "strace may not trace here (ptrace is not permitted), and without it nothing is tested: $(head -1 probe.err)"
+mkdir out bin
+cat >mesh.obj <<'M'
+mtllib mesh.mtl
+v 0 0 0
+v 1 0 0
+v 0 1 0
+v 0 0 1
+f 1 3 2
+f 1 2 4
+f 1 4 3
+f 2 3 4
+M
+echo 'newmtl m' >mesh.mtl
+
+# relief takes the worker that lies beside it: here one that strace starts, with $INJECT.
+cp "$relief" bin/relief
+cp "$RELIEF_BIN/relief-import" bin/traced
+cat >bin/relief-import <<'W'
+#!/usr/bin/env bash
+# shellcheck disable=SC2086
+exec strace -f -o "$TRACE" ${INJECT:+-e "inject=$INJECT"} "${BASH_SOURCE%/*}/traced" "$@"
+W
+chmod +x bin/relief-import
+export TRACE="$work/trace" INJECT=
+bake=(mesh.obj --map fixed8:size=4 -j 1 -q -o)
+"$relief" bake "${bake[@]}" new.relief
+"$relief" bake "${bake[@]}" old.relief --map fixed8:size=8
+! cmp -s old.relief new.relief || die "the older and the new file are the same"
+cp old.relief out/a.relief
+bin/relief bake "${bake[@]}" out/a.relief
+cmp out/a.relief new.relief || die "a traced worker gives another file"
+
+# The worker's calls as "SYSCALL N PART", N counted for each thread as strace's when= does. A call that two threads make
+# for the same time is listed once, as the first's. PART: the dynamic loader's, or the worker's own.
+python3 - "$([ -n "${RELIEF_FAULTS_PAGE:-}" ] && echo 1 || echo 3)" >calls <<'P'
+import re, sys
+step = int(sys.argv[1])
+seen, listed, own = {}, set(), False
+for line in open('trace'):
+    match = re.match(r'(\d+) +(\w+)\(', line)
+    if not match:
+        continue
+    key = match[1], match[2]
+    seen[key] = seen.get(key, 0) + 1
+    # The first that the worker itself does is to look at the mesh.
+    own = own or (match[2] in ('fstat', 'newfstatat') and line.split('(')[1].startswith('3,') and 'memfd' not in line and
+                  'st_size=%d,' % __import__('os').path.getsize('mesh.obj') in line)
+    call = match[2], seen[key]
+    if call in listed:
+        continue
+    listed.add(call)
+    if own or call[1] % step == 0:
+        print(*call, 'own' if own else 'loader')
+P
+for name in mmap prctl prlimit64 landlock_restrict_self seccomp openat2 fallocate ftruncate fcntl exit_group; do
+    grep -q "^$name .* own$" calls || die "the trace of the worker shows no $name: $(cat calls)"
+done
+grep -q 'loader$' calls || die "the trace shows nothing of the dynamic loader"
+
+# ends WHAT: what is there after a bake is whole, and alone.
+ends() {
+    [ "$(ls -A out)" = a.relief ] || die "$1 leaves $(ls -A out)"
+    [ ! -e /proc/"$(head -1 trace | cut -d' ' -f1)" ] || die "$1 leaves a worker"
+    if [ "$code" -eq 0 ]; then
+        cmp -s out/a.relief new.relief || die "$1: success with another collider"
+    else
+        cmp -s out/a.relief old.relief || die "$1: exit code $code, and the older file is gone"
+        [ "$(wc -l <stderr)" -eq 1 ] && grep -q "^relief: error: .*'mesh\.obj'.*;" stderr || die "$1 is not named: $(cat stderr)"
+    fi
+}
+
+kills=0 errors=0 endured=0
+while read -r name number _; do
+    cp old.relief out/a.relief
+    code=0
+    { INJECT="$name:signal=KILL:when=$number" bin/relief bake "${bake[@]}" out/a.relief 2>stderr; } 2>/dev/null || code=$?
+    ends "SIGKILL of the worker at $name $number"
+    [ "$code" -eq 4 ] && grep -q 'SIGKILL' stderr || die "SIGKILL of the worker at $name $number: $code, $(cat stderr)"
+    kills=$((kills + 1))
+done < <(grep -v '^execve' calls)
+
+: >reported
+while read -r name number part; do
+    case $name in # brk fails by returning the old end, which strace cannot inject
+        openat | openat2) list='EMFILE ENFILE EACCES' ;;
+        mmap | mremap) list='ENOMEM EAGAIN' ;;
+        mprotect) list='ENOMEM' ;;
+        read | pread64) list='EIO' ;;
+        fallocate) list='ENOSPC ENOMEM EINTR' ;;
+        ftruncate) list='EIO ENOSPC' ;;
+        fcntl) list='EBUSY EPERM' ;;
+        clone | clone3) list='EAGAIN ENOMEM' ;;
+        landlock_restrict_self | landlock_add_rule) list='E2BIG' ;;
+        seccomp) list='ENOMEM' ;;
+        prctl | prlimit64) list='EPERM' ;;
+        *) list='' ;;
+    esac
+    for errno in $list; do
+        cp old.relief out/a.relief
+        code=0
+        # The call that is made instead is one that the sandbox allows.
+        INJECT="$name:error=$errno:syscall=getpid:when=$number" bin/relief bake "${bake[@]}" out/a.relief 2>stderr || code=$?
+        grep -q INJECTED trace || continue # this time the call was not made so often
+        ends "$errno at the worker's $name $number"
+        errors=$((errors + 1))
+        case $code in
+            0) endured=$((endured + 1)) ;;
+            2 | 4 | 6) echo "$name $errno $part $(cat stderr)" >>reported ;;
+            *) die "$errno at the worker's $name $number: exit code $code: $(cat stderr)" ;;
+        esac
+    done
+done <calls
+# What comes back at once is tried again; what stays is named, the loader's troubles too.
+for what in 'fallocate EINTR' 'fcntl EBUSY'; do
+    ! grep -q "^$what own" reported || die "once, and an error all the same: $(grep "^$what" reported)"
+done
+for what in 'mmap ENOMEM loader.*libraries cannot be loaded.*ulimit -n' 'fallocate ENOSPC own.*No space left' \
+    'ftruncate EIO own.*could not hand .*Input/output error' 'prlimit64 EPERM own.*cannot limit.*Operation not permitted' \
+    'seccomp ENOMEM own.*system calls.*Cannot allocate' 'landlock_restrict_self E2BIG own.*enter Landlock'; do
+    grep -qE "^$what" reported || die "not reported: $what: $(cut -c1-200 reported)"
+done
+
+# --- the parent ---
+
+# parent WANTED PATTERN INJECTION…: the parent's own calls; the worker is not traced.
+parent() {
+    local wanted=$1 pattern=$2 code=0 options=()
+    shift 2
+    for injection in "$@"; do options+=(-e "inject=$injection"); done
+    cp old.relief out/a.relief
+    strace -o trace "${options[@]}" "$relief" bake "${bake[@]}" out/a.relief 2>stderr || code=$?
+    grep -q INJECTED trace || die "$* was not injected"
+    errors=$((errors + 1))
+    ends "$*"
+    [ "$code" -eq "$wanted" ] && { [ "$wanted" -eq 0 ] || grep -qE "$pattern" stderr; } || die "$*: exit code $code: $(cat stderr)"
+    [ "$code" -ne 0 ] || endured=$((endured + 1))
+}
+# Once, it passes.
+for injection in memfd_create:error=ENFILE memfd_create:error=ENOMEM fallocate:error=EINTR fallocate:error=ENOMEM \
+    clone:error=EAGAIN clone:error=ENOMEM vfork:error=EAGAIN poll:error=ENOMEM poll:error=EINTR; do
+    grep -q "^${injection%%:*}(" trace 2>/dev/null || strace -o trace "$relief" bake "${bake[@]}" out/a.relief
+    grep -q "^${injection%%:*}(" trace || continue
+    parent 0 '' "$injection:when=1"
+done
+# Always, it is named.
+parent 4 'importer could not be started \(Resource temporarily unavailable\); end some processes.*ulimit -u' \
+    clone:error=EAGAIN
+parent 4 'importer could not be started \(Cannot allocate memory\); free memory' clone:error=ENOMEM
+parent 4 'importer could not be started \(Too many open files\); close files.*ulimit -n' memfd_create:error=EMFILE
+parent 4 'importer could not be started \(Too many open files in system\); the whole system' memfd_create:error=ENFILE
+parent 4 'importer could not be started \(No space left on device\); free memory' fallocate:error=ENOSPC
+
+# With few descriptors; without a tracer, which needs some itself.
+few=0
+for ((limit = 4; limit < 200; ++limit)); do
+    cp old.relief out/a.relief
+    code=0
+    (ulimit -n "$limit" && exec "$relief" bake "${bake[@]}" out/a.relief) 2>stderr || code=$?
+    [ "$code" -ne 0 ] || break
+    # The parent's own loader has its own words, and not ours.
+    ! grep -q 'error while loading shared libraries' stderr || continue
+    ends "$limit descriptors"
+    grep -q 'ulimit -n' stderr || die "$limit descriptors: $(cat stderr)"
+    few=$((few + 1))
+done
+[ "$code" -eq 0 ] && [ "$few" -ge 3 ] || die "with $limit descriptors: $code, $few refused: $(cat stderr)"
+cmp out/a.relief new.relief || die "few descriptors give another file"
+# Few processes: nobody's limit, for root has none.
+if setpriv --reuid=65534 --regid=65534 --clear-groups true 2>/dev/null; then
+    chmod -R a+rwX .
+    chmod a+x "$work"
+    cp old.relief out/a.relief
+    code=0
+    setpriv --reuid=65534 --regid=65534 --clear-groups bash -c 'ulimit -u 0 && exec "$@"' - \
+        "$relief" bake "${bake[@]}" out/a.relief 2>stderr || code=$?
+    [ "$code" -eq 4 ] && grep -q 'ulimit -u' stderr || die "no processes: exit code $code: $(cat stderr)"
+fi
+
+cat >counts <<C
+| what | times | another collider, a torn file or a process left |
+| --- | ---: | ---: |
+| SIGKILL of the import worker at its system calls | $kills | 0 |
+| an error injected there, and where its parent starts it (EMFILE, ENFILE, ENOMEM, EAGAIN, EIO, ENOSPC, EBUSY, EINTR, …) | $errors, of which $endured did not matter | 0 |
+| too few descriptors | $few | 0 |
+C
+cat counts
+[ -z "${RELIEF_FAULTS_PAGE:-}" ] || cp counts "$RELIEF_FAULTS_PAGE"
