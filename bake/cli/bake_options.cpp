@@ -10,6 +10,8 @@ namespace {
 
 constexpr std::uint64_t kThreadsMax = 1024;
 constexpr std::uint64_t kCompressionMax = 19;
+constexpr float kSecondsMin = 0.001F;
+constexpr float kSecondsMax = 1e7F;
 
 /// Maps that are named.
 void addMapOptions(CLI::App& verb, BakeCommand& command) {
@@ -126,6 +128,11 @@ void addBakeOptions(CLI::App& verb, BakeCommand& command) {
     addTexelOptions(verb, command);
     addImportOptions(verb, command.import);
     addMeshCareOptions(verb, command.care);
+    verb.add_option("--time-limit", command.time_limit,
+                    "Seconds that the whole bake may take, the import included; default: any. Beyond them\n"
+                    "exit with 6, and write nothing")
+        ->option_text("SECONDS")
+        ->transform(number(kSecondsMin, kSecondsMax, "a number of seconds from 0.001 to 10000000"));
     verb.add_flag("--json", command.json, "Print a report as JSON to standard output");
     verb.add_option("--depfile", command.depfile,
                     "Also write which files were read, for Make and Ninja: every input of the output")

@@ -47,6 +47,7 @@ struct BakeCommand {
     std::optional<float> thickness;  ///< of shells, object units
     BackendChoice backend = BackendChoice::kRaycast;
     GpuOptions gpu;
+    std::optional<float> time_limit;  ///< seconds
     ImportSettings import;
     MeshCareOptions care;
     std::string depfile;

@@ -11,6 +11,7 @@
 
 #include "bake/cli/bake_settings.h"
 #include "bake/cli/command.h"
+#include "bake/cli/command_line.h"
 #include "bake/cli/command_recipe.h"
 #include "bake/cli/preflight.h"
 #include "bake/cli/progress.h"
@@ -87,15 +88,19 @@ Result<PlanReport> planMaps(const MeshQuery& query, const BakeCommand& command, 
 
 /// Bakes at the least budget that keeps --max-error.
 Result<Baked> searchBudget(const MeshQuery& query, const MeshQuery& truth, const BakeCommand& command,
-                           const BakeSettings& settings, std::optional<PlanReport>& report) {
+                           const BakeSettings& settings, std::optional<PlanReport>& report,
+                           Progress& progress) {
+    progress.begin("searching for the least budget");
     BudgetSearchOptions options;
     options.max_error_percent = double{*command.max_error};
     options.budget_max = command.budget.value_or(options.budget_max);
     options.bake = settings.bake;
     options.max_maps = command.max_maps;
-    options.tried = [](const BudgetTry& made) {
-        spdlog::info("{}: {:.3g} % of the points near the surface are on the wrong side",
-                     bytesText(made.budget), made.wrong_percent);
+    options.tried = [&progress](const BudgetTry& made) {
+        progress.print([&made] {
+            spdlog::info("{}: {:.3g} % of the points near the surface are on the wrong side",
+                         bytesText(made.budget), made.wrong_percent);
+        });
     };
     BudgetSearchResult found = RELIEF_TRY(bakeForError(query, truth, options));
     report = PlanReport{std::move(found.plan), found.chosen.budget, options.max_error_percent,
@@ -103,9 +108,10 @@ Result<Baked> searchBudget(const MeshQuery& query, const MeshQuery& truth, const
     return std::move(found.baked);
 }
 
-Result<Baked> bakeMaps(const BakeCommand& command, const PreparedMesh& mesh, BakeSettings& settings) {
-    ProgressBar bar("baking " + mesh->name, !command.common.quiet);
-    settings.bake.progress = [&bar](double share) { bar.set(share); };
+Result<Baked> bakeMaps(const BakeCommand& command, const PreparedMesh& mesh, BakeSettings& settings,
+                       Progress& progress) {
+    progress.begin("baking the maps");
+    settings.bake.progress = [&progress](double share) { progress.set(share); };
     Result<Baked> baked = bake(mesh, settings.bake);
     if (!baked && settings.source == MapSource::kPlanFile) {
         // What no single map shows: too many texels, a volume that floats cannot hold, maps that see nothing.
@@ -120,23 +126,25 @@ Result<Baked> bakeMaps(const BakeCommand& command, const PreparedMesh& mesh, Bak
 /// \param imported  the mesh whose points --max-error is about: as it came, if it was repaired.
 /// \param mesh      the solid that is baked.
 Result<Baked> makeCollider(const BakeCommand& command, const PreparedMesh& imported, const PreparedMesh& mesh,
-                           BakeSettings& settings, std::optional<PlanReport>& plan, BakeTimes& times) {
+                           BakeSettings& settings, std::optional<PlanReport>& plan, BakeTimes& times,
+                           Progress& progress) {
     if (settings.source == MapSource::kPlanner) {
         const Stopwatch watch;
+        progress.begin("planning the maps");
         const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
         if (command.max_error) {
             MeshQuery truth = query;
             if (!command.care.repair.empty()) {
                 truth = RELIEF_TRY(MeshQuery::build(imported));
             }
-            Result<Baked> baked = searchBudget(query, truth, command, settings, plan);
+            Result<Baked> baked = searchBudget(query, truth, command, settings, plan, progress);
             times.search_ms = watch.ms();
             return baked;
         }
         plan = RELIEF_TRY(planMaps(query, command, settings));
         times.plan_ms = watch.ms();
     }
-    return bakeMaps(command, mesh, settings);
+    return bakeMaps(command, mesh, settings, progress);
 }
 
 Result<void> writePlanFile(const std::string& path, const PlanReport& plan, const Baked& baked,
@@ -183,6 +191,7 @@ struct BakeRun {
 
     const BakeCommand& command;
     Stopwatch total;
+    Progress progress{{quotedPath(command.mesh), !command.common.quiet, command.time_limit, reportError}};
     BakeTimes times;
     BakeSettings settings;
     std::string plan_hash;
@@ -239,6 +248,7 @@ Result<void> shape(BakeRun& run) {
                                            " long; give between " + shortest(float(kThicknessMin)) + " and " +
                                            shortest(float(kThicknessMax)) + " of that");
     }
+    run.progress.begin("making a solid of the mesh");
     ShapedMesh shaped = RELIEF_TRY(shapeMesh(run.cared.mesh, options));
     run.cared.mesh = std::move(shaped.mesh);
     run.shape = std::move(shaped.report);
@@ -251,19 +261,23 @@ Result<void> readMesh(BakeRun& run) {
     const Stopwatch watch;
     ImportOptions import = command.import.options;
     import.names = run.settings.shape.names();
+    run.progress.begin("reading the mesh");
     TriangleMesh mesh = RELIEF_TRY(importMeshInWorker(command.mesh, import, command.import.limits));
     run.times.import_ms = watch.ms();
     run.unused_vertices = mesh.unused_vertices;
-    spdlog::debug("{}: {} triangles, {} vertices, XXH3-128 {}", mesh.name, mesh.triangles.size(),
-                  mesh.positions.size(), mesh.content_hash);
-    if (mesh.dropped_triangles > 0) {
-        spdlog::debug("{}: {} triangles without area dropped", mesh.name, mesh.dropped_triangles);
-    }
+    run.progress.print([&mesh] {
+        spdlog::debug("{}: {} triangles, {} vertices, XXH3-128 {}", mesh.name, mesh.triangles.size(),
+                      mesh.positions.size(), mesh.content_hash);
+        if (mesh.dropped_triangles > 0) {
+            spdlog::debug("{}: {} triangles without area dropped", mesh.name, mesh.dropped_triangles);
+        }
+    });
     if (command.max_error && !command.care.repair.empty()) {
         run.imported = mesh;
     }
     MeshCareOptions care = command.care;
     care.report = command.json || !command.common.quiet;
+    run.progress.begin(care.repair.empty() ? "examining the mesh" : "repairing the mesh");
     run.cared = RELIEF_TRY(careFor(std::move(mesh), care));
     return command.holes == Holes::kClose ? shape(run) : Result<void>();
 }
@@ -271,8 +285,8 @@ Result<void> readMesh(BakeRun& run) {
 /// Chooses the maps and bakes them.
 Result<void> makeCollider(BakeRun& run) {
     const PreparedMesh& mesh = run.cared.mesh;
-    Result<Baked> baked =
-        makeCollider(run.command, run.imported.value_or(mesh), mesh, run.settings, run.plan, run.times);
+    Result<Baked> baked = makeCollider(run.command, run.imported.value_or(mesh), mesh, run.settings, run.plan,
+                                       run.times, run.progress);
     if (run.backend.raster) {
         run.backend.gl.watchdog->rest();
     }
@@ -310,6 +324,7 @@ Result<void> checkItself(BakeRun& run) {
         return {};
     }
     const Stopwatch watch;
+    run.progress.begin("measuring the collider");
     const MeshQuery query = RELIEF_TRY(MeshQuery::build(run.cared.mesh));
     AccuracyOptions options;
     options.samples = kSelfCheckPoints;
@@ -348,11 +363,20 @@ void tellNotices(BakeRun& run) {
     }
 }
 
+/// The bytes of the container: the last that may take long.
+Result<void> packContainer(BakeRun& run) {
+    const Stopwatch watch;
+    run.progress.begin("packing the collider");
+    run.bytes = RELIEF_TRY(writeContainer(run.baked.collider, run.settings.write));
+    run.times.write_ms = watch.ms();
+    run.progress.finish();
+    return {};
+}
+
 /// The collider, and the files beside it.
 Result<void> writeOutputs(BakeRun& run) {
     const BakeCommand& command = run.command;
     const Stopwatch watch;
-    run.bytes = RELIEF_TRY(writeContainer(run.baked.collider, run.settings.write));
     RELIEF_TRY(writeFile(command.output, run.bytes));
     if (!command.plan_out.empty()) {
         RELIEF_TRY(writePlanFile(command.plan_out, *run.plan, run.baked, run.settings.bake));
@@ -365,7 +389,7 @@ Result<void> writeOutputs(BakeRun& run) {
         }
         RELIEF_TRY(writeDepfile(command.depfile, {command.output}, names));
     }
-    run.times.write_ms = watch.ms();
+    run.times.write_ms += watch.ms();
     run.times.total_ms = run.total.ms();
     return {};
 }
@@ -404,6 +428,8 @@ Result<void> protectInputs(const BakeRun& run) {
 Result<void> runBake(const BakeCommand& command) {
     startLogging(command.common);
     BakeRun run(command);
+    RELIEF_TRY(run.progress.ready());
+    run.progress.begin("reading its options");
     RELIEF_TRY(prepare(run));
     // Planning and measuring keep to --threads too.
     std::optional<tbb::global_control> control;
@@ -414,6 +440,7 @@ Result<void> runBake(const BakeCommand& command) {
     RELIEF_TRY(protectInputs(run));
     RELIEF_TRY(makeCollider(run));
     RELIEF_TRY(checkItself(run));
+    RELIEF_TRY(packContainer(run));
     tellNotices(run);
     RELIEF_TRY(writeOutputs(run));
     return report(run);

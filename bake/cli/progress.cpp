@@ -3,41 +3,165 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <cstdio>
+#include <mutex>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "formats/base/temporary_file.h"
 
 namespace relief {
 namespace {
 
-constexpr int kBarWidth = 40;  // characters
+using Clock = std::chrono::steady_clock;
+
+constexpr int kBarWidth = 30;  // characters
 constexpr auto kFirst = std::chrono::milliseconds(500);
 constexpr auto kInterval = std::chrono::milliseconds(100);
+constexpr double kUnknown = -1.0;  // how much is done
+
+std::string secondsText(double seconds) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.3g s", seconds);
+    return text.data();
+}
+
+double secondsSince(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 }  // namespace
 
-ProgressBar::ProgressBar(std::string label, bool wanted)
-    : label_(std::move(label)),
-      enabled_(wanted && ::isatty(STDERR_FILENO) == 1),
-      next_(std::chrono::steady_clock::now() + kFirst) {}
+struct Progress::Impl {
+    ProgressOptions options;
+    Clock::time_point start = Clock::now();
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::string stage;
+    Clock::time_point stage_start = start;
+    std::atomic<double> share{kUnknown};
+    bool shown = false;  ///< there is a line on the terminal
+    bool ends = false;
+    std::string failure;  ///< why there is no thread
+    std::thread thread;
 
-ProgressBar::~ProgressBar() {
-    if (drawn_) {
-        std::fputs("\r\033[K", stderr);
+    explicit Impl(ProgressOptions wanted) : options(std::move(wanted)) {
+        options.drawn = options.drawn && ::isatty(STDERR_FILENO) == 1;
+        if (options.drawn || options.seconds) {
+            try {
+                thread = std::thread([this] { watch(); });
+            } catch (const std::system_error& error) {
+                failure = error.code().message();
+            }
+        }
     }
+
+    [[nodiscard]] Clock::time_point deadline() const {
+        return start + std::chrono::duration_cast<Clock::duration>(
+                           std::chrono::duration<double>(double{*options.seconds}));
+    }
+
+    void watch() {
+        std::unique_lock lock(mutex);
+        Clock::time_point next = start + kFirst;
+        while (!ends) {
+            const bool limited = options.seconds.has_value();
+            changed.wait_until(lock, !options.drawn ? deadline()
+                                     : limited      ? std::min(next, deadline())
+                                                    : next);
+            if (ends) {
+                return;
+            }
+            if (limited && Clock::now() >= deadline()) {
+                timeIsUp();
+            }
+            if (options.drawn && Clock::now() >= next) {
+                draw();
+                next = Clock::now() + kInterval;
+            }
+        }
+    }
+
+    /// The lock is kept: whoever wants it waits for the end.
+    [[noreturn]] void timeIsUp() {
+        wipe();
+        removeTemporaryFiles();
+        options.report({ErrorCode::kLimit, options.name + ": the bake did not end within " +
+                                               secondsText(double{*options.seconds}) + "; it was " + stage +
+                                               ", for " + secondsText(secondsSince(stage_start)) +
+                                               "; simplify the mesh, ask for less, or raise --time-limit"});
+        ::_exit(static_cast<int>(ErrorCode::kLimit));
+    }
+
+    void draw() {
+        std::string line = options.name + ": " + stage;
+        const double done = std::clamp(share.load(), kUnknown, 1.0);
+        if (done >= 0.0) {
+            const auto filled = static_cast<std::size_t>(done * kBarWidth);
+            line += " [" + std::string(filled, '#') + std::string(kBarWidth - filled, '.') + "] " +
+                    std::to_string(static_cast<int>(done * 100.0)) + " %";
+        }
+        line += ", " + std::to_string(static_cast<int>(secondsSince(stage_start))) + " s";
+        std::fprintf(stderr, "\r%s\033[K", line.c_str());
+        std::fflush(stderr);
+        shown = true;
+    }
+
+    void wipe() {
+        if (std::exchange(shown, false)) {
+            std::fputs("\r\033[K", stderr);
+            std::fflush(stderr);
+        }
+    }
+};
+
+Progress::Progress(ProgressOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {}
+
+Progress::~Progress() {
+    finish();
 }
 
-void ProgressBar::set(double share) {
-    const auto now = std::chrono::steady_clock::now();
-    if (!enabled_ || now < next_) {
-        return;
+Result<void> Progress::ready() const {
+    if (impl_->options.seconds && !impl_->failure.empty()) {
+        return fail(ErrorCode::kFailure, "--time-limit: no thread could be started to watch the time (" +
+                                             impl_->failure +
+                                             "); end processes or raise their limit (ulimit -u)");
     }
-    next_ = now + kInterval;
-    drawn_ = true;
-    const int filled = static_cast<int>(std::clamp(share, 0.0, 1.0) * kBarWidth);
-    std::fprintf(stderr, "\r%s [%s%s] %3d %%", label_.c_str(),
-                 std::string(static_cast<std::size_t>(filled), '#').c_str(),
-                 std::string(static_cast<std::size_t>(kBarWidth - filled), '.').c_str(),
-                 static_cast<int>(std::clamp(share, 0.0, 1.0) * 100.0));
-    std::fflush(stderr);
+    return {};
+}
+
+void Progress::begin(const std::string& stage) {
+    const std::lock_guard lock(impl_->mutex);
+    impl_->stage = stage;
+    impl_->stage_start = Clock::now();
+    impl_->share = kUnknown;
+}
+
+void Progress::set(double share) {
+    impl_->share = share;
+}
+
+void Progress::print(const std::function<void()>& print) {
+    const std::lock_guard lock(impl_->mutex);
+    impl_->wipe();
+    print();
+}
+
+void Progress::finish() {
+    {
+        const std::lock_guard lock(impl_->mutex);
+        impl_->ends = true;
+        impl_->wipe();
+    }
+    impl_->changed.notify_all();
+    if (impl_->thread.joinable()) {
+        impl_->thread.join();
+    }
 }
 
 }  // namespace relief

@@ -1,29 +1,55 @@
-// A progress bar on standard error, for people: only where that is a terminal.
+// What a bake is at: a line on standard error, for people, only where that is a terminal; and an end to it when its time is
+// up.
 #pragma once
 
-#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
 #include <string>
+
+#include "formats/base/result.h"
 
 namespace relief {
 
-class ProgressBar {
-  public:
-    /// \param wanted  false: draws nothing.
-    ProgressBar(std::string label, bool wanted);
-    ProgressBar(const ProgressBar&) = delete;
-    ProgressBar& operator=(const ProgressBar&) = delete;
-    /// Wipes the bar off the terminal.
-    ~ProgressBar();
+struct ProgressOptions {
+    std::string name;              ///< of what is baked: its path, as messages quote it
+    bool drawn = true;             ///< false: no line
+    std::optional<float> seconds;  ///< that may pass from here to finish(); none: any
+    /// Prints the error of a bake whose time is up.
+    std::function<void(const Error&)> report;
+};
 
-    /// \param share  of the work done, in [0, 1]. Draws at most ten times a second, and nothing in the first
-    ///               half second: short work shows no bar.
+/// The line names the stage, how much of it is done where that is known, and how long it has taken. It is drawn ten times
+/// a second, by a thread of its own, and not in the first half second: short work shows none.
+///
+/// When the time is up, that thread removes the temporary files of outputs, reports an error (kLimit) that names the stage,
+/// and ends the program with its exit code. The import worker ends with the program.
+///
+/// All members are for the thread that made it, but set(), which any may call.
+class Progress {
+  public:
+    explicit Progress(ProgressOptions options);
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+    /// As finish().
+    ~Progress();
+
+    /// Errors: kFailure (the time is limited, and no thread can be had to watch it).
+    [[nodiscard]] Result<void> ready() const;
+
+    /// \param stage  "planning the maps"
+    void begin(const std::string& stage);
+    /// \param share  of the stage that is done, in [0, 1].
     void set(double share);
+    /// Prints something else, which the line gives way to.
+    void print(const std::function<void()>& print);
+    /// Wipes the line; from here on the time is no longer limited. For the moment before the first output is written, so
+    /// that of several outputs all are new or none.
+    void finish();
 
   private:
-    std::string label_;
-    bool enabled_;
-    bool drawn_ = false;
-    std::chrono::steady_clock::time_point next_;
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace relief

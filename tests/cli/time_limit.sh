@@ -1,0 +1,136 @@
+# relief bake --time-limit: ends at the time with one line that says what took it, leaves the older files, nothing half
+# written and no worker; and the line of progress that says the same to people.
+. "$(dirname "$0")/lib.sh"
+mkdir out
+
+gone() { # the kernel takes its time to end the importer of a parent that is gone
+    python3 - "$1" <<'P'
+import os, sys, time
+for _ in range(500):
+    try:
+        os.killpg(int(sys.argv[1]), 0)
+    except ProcessLookupError:
+        sys.exit(0)
+    time.sleep(0.01)
+sys.exit(1)
+P
+}
+
+# limited SECONDS ARGUMENT…: bakes into out/a.relief in a process group of its own; sets $code.
+limited() {
+    local seconds=$1
+    shift
+    code=0
+    setsid --wait bash -c 'echo $$ >group; exec "$@"' - "$relief" bake "$@" -o out/a.relief --plan-out out/a.toml \
+        --time-limit "$seconds" >stdout 2>stderr </dev/null || code=$?
+    gone "$(cat group)" || die "a process outlived the time limit"
+}
+
+"$relief" bake "$bunny" -o new.relief --plan-out new.toml --budget 30kB -q
+"$relief" bake "$bunny" -o old.relief --plan-out old.toml --budget 20kB -q
+old() { cp old.relief out/a.relief && cp old.toml out/a.toml; }
+is() { cmp -s "out/a.relief" "$1.relief" && cmp -s out/a.toml "$1.toml" && [ "$(ls -A out)" = $'a.relief\na.toml' ]; }
+
+# A search that would take long.
+old
+start=$(date +%s%N)
+limited 1 "$bunny" --max-error 0.001%
+took=$((($(date +%s%N) - start) / 1000000))
+[ "$code" -eq 6 ] && [ "$(wc -l <stderr)" -eq 1 ] || die "exit code $code: $(cat stderr)"
+grep -qE "^relief: error: '.*bunny\.obj': the bake did not end within 1 s; it was [a-z ]+, for [0-9.]+ s; .*--time-limit" stderr ||
+    die "the error says: $(cat stderr)"
+[ "$took" -lt 5000 ] || die "it took $took ms"
+is old || die "a bake whose time is up leaves $(ls -lA out)"
+
+# An import that would never end; the worker ends too.
+python3 - <<'P'
+nodes = ''.join(f'<node id="n{i}"><instance_node url="#n{i + 1}"/><instance_node url="#n{i + 1}"/></node>'
+                for i in range(40))
+open('unfold.dae', 'w').write(
+    '<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset/>'
+    f'<library_nodes>{nodes}<node id="n40"/></library_nodes><library_visual_scenes><visual_scene id="s"><node>'
+    '<instance_node url="#n0"/></node></visual_scene></library_visual_scenes>'
+    '<scene><instance_visual_scene url="#s"/></scene></COLLADA>')
+P
+limited 0.5 unfold.dae --import-time 600 --import-memory 100GB
+[ "$code" -eq 6 ] && grep -q "unfold\.dae.*within 0\.5 s; it was reading the mesh" stderr || die "exit code $code: $(cat stderr)"
+is old || die "an import whose time is up leaves $(ls -lA out)"
+
+# At any time: all new or all old.
+start=$(date +%s%N)
+"$relief" bake "$bunny" -o timed.relief --budget 30kB -q
+span=$((($(date +%s%N) - start) / 1000000))
+ended=0
+for i in $(seq 12); do
+    old
+    ms=$((span * i / 11))
+    limited "$((ms / 1000)).$(printf %03d $((ms % 1000 + 1)))" "$bunny" --budget 30kB -q
+    case $code in
+        0) is new || die "after $ms ms: success without the new files" ;;
+        6) is old && ended=$((ended + 1)) || die "after $ms ms: exit code 6, and not the old files" ;;
+        *) die "after $ms ms: exit code $code: $(cat stderr)" ;;
+    esac
+done
+[ "$ended" -ge 3 ] || die "only $ended of 12 limits came in time"
+
+# Time enough changes nothing.
+old
+limited 600 "$bunny" --budget 30kB
+[ "$code" -eq 0 ] && is new || die "with time enough: exit code $code: $(cat stderr)"
+
+for wrong in 0 -1 nan inf 1s 99999999; do
+    expect_error 1 'time-limit.*seconds' "$relief" bake "$bunny" -o x.relief --time-limit="$wrong"
+done
+
+# A recipe says it of an asset, which fails alone.
+mkdir recipe
+cp "$bunny" recipe/bunny.obj
+cat >recipe/r.toml <<'R'
+version = 1
+[defaults]
+output = "{stem}-{dir}.relief"
+budget = "20kB"
+[[asset]]
+mesh = "bunny.obj"
+output = "slow.relief"
+max-error = "0.001%"
+time-limit = 0.5
+[[asset]]
+mesh = "bunny.obj"
+output = "fast.relief"
+time-limit = 600
+R
+expect 6 "$relief" bake --recipe recipe/r.toml -j 1
+grep -q "did not end within 0\.5 s" stderr || die "the recipe says: $(cat stderr)"
+cmp recipe/fast.relief old.relief || die "the other asset of the recipe is not there"
+[ ! -e recipe/slow.relief ] || die "the slow asset of the recipe is there"
+expect_error 1 'time-limit.*under \[defaults\]' "$relief" bake --recipe recipe/r.toml --time-limit 5
+
+# The line of progress: on a terminal alone, wiped at the end, and not with -q.
+cat >terminal.py <<'P'
+import os, pty, re, sys
+child, terminal = pty.fork()
+if child == 0:
+    os.execv(sys.argv[1], sys.argv[1:])
+shown = b''
+while True:
+    try:
+        data = os.read(terminal, 4096)
+    except OSError:  # EIO: the other end is closed
+        break
+    if not data:
+        break
+    shown += data
+_, status = os.waitpid(child, 0)
+shown = shown.decode()
+lines = [re.sub('\x1b\\[K', '', line) for line in shown.split('\r')]
+print('\n'.join(line for line in lines if re.search(r'bunny\.obj\': .*, \d+ s$', line)))
+assert shown.rfind(' s\x1b[K') <= shown.rfind('\r\x1b[K'), 'the line stays'
+sys.exit(os.waitstatus_to_exitcode(status))
+P
+python3 terminal.py "$relief" bake "$bunny" -o x.relief --max-error 2% --time-limit 600 >lines || die "on a terminal: $(cat lines)"
+grep -qE "bunny\.obj': searching for the least budget, [0-9]+ s" lines || die "the line says: $(head -3 lines)"
+python3 terminal.py "$relief" bake "$bunny" -o x.relief --paper --resolution 1024 -j 1 --quality best >lines || die "on a terminal: $(cat lines)"
+grep -qE "bunny\.obj': baking the maps \[#+\.*\] [0-9]+ %, [0-9]+ s" lines || die "the line says: $(head -3 lines)"
+python3 terminal.py "$relief" bake "$bunny" -o x.relief --max-error 2% -q >lines || die "on a terminal: $(cat lines)"
+[ ! -s lines ] || [ "$(tr -d '\n' <lines)" = '' ] || die "-q shows $(head -1 lines)"
