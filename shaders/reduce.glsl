@@ -1,7 +1,8 @@
 // Sums over squares of texels, one fragment each: what reduce_state.frag and reduce_sum.frag share.
 //
 //     counts   x particles alive   y collided   z caught   w half the sum of |v|^2
-//     sums     x, y collisions = x + RELIEF_COLLISIONS_HIGH y   z greatest |v|^2   w 0
+//     sums     x, y collisions = x + RELIEF_COLLISIONS_HIGH y   z greatest |v|^2
+//              w RELIEF_TYPE_CODES - the first type of which a particle is lost; 0 if none is
 //
 // Counts are whole numbers below 2^24, which floats hold exactly. The collisions of all particles go beyond; in
 // two parts they are exact up to 2^36.
@@ -32,12 +33,12 @@ void main() {
                 Sums one = sumsAt(texel);
                 row += one.counts;
                 sums.xy += one.sums.xy;
-                sums.z = max(sums.z, one.sums.z);
+                sums.zw = max(sums.zw, one.sums.zw);
             }
         }
         counts += row;
     }
     float carry = floor(sums.x / RELIEF_COLLISIONS_HIGH);
     o_counts = counts;
-    o_sums = vec4(sums.x - RELIEF_COLLISIONS_HIGH * carry, sums.y + carry, sums.z, 0.0);
+    o_sums = vec4(sums.x - RELIEF_COLLISIONS_HIGH * carry, sums.y + carry, sums.zw);
 }

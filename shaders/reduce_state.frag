@@ -3,8 +3,20 @@
 
 uniform highp sampler2D u_position;
 uniform highp sampler2D u_velocity;  // or, where u_rate_before is above 0, the position before
+uniform highp sampler2D u_birth;
 uniform float u_rate_before;         // 1 / seconds of the last step
 uniform int u_extent;  // particles; what lies beyond are leftovers
+
+// By its bits: a compiler may take it for granted that there is no NaN.
+bool finite(vec4 v) {
+    return all(notEqual(floatBitsToUint(v) & 0x7F800000u, uvec4(0x7F800000u)));
+}
+
+// Of a particle without a place, or faster than sums of squares can say: it counts as alive alone.
+Sums lostAt(ivec2 texel) {
+    float type = clamp(texelFetch(u_birth, texel, 0).z, 0.0, RELIEF_TYPE_CODES - 1.0);
+    return Sums(vec4(1.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, RELIEF_TYPE_CODES - type));
+}
 
 Sums sumsAt(ivec2 texel) {
     vec4 position = texelFetch(u_position, texel, 0);
@@ -12,12 +24,18 @@ Sums sumsAt(ivec2 texel) {
         return Sums(vec4(0.0), vec4(0.0));
     }
     vec4 velocity = texelFetch(u_velocity, texel, 0);
+    if (!finite(position) || !finite(velocity)) {
+        return lostAt(texel);
+    }
     if (u_rate_before > 0.0) {  // Verlet: step_state.glsl
         float collisions = floor(position.w);
         velocity = vec4((position.xyz - velocity.xyz) * u_rate_before, RELIEF_CONTACT_PARTS * (position.w - collisions));
         position.w = collisions;
     }
     float speed2 = dot(velocity.xyz, velocity.xyz);
+    if (!finite(vec4(speed2)) || speed2 > RELIEF_SPEED_MAX * RELIEF_SPEED_MAX) {
+        return lostAt(texel);
+    }
     float contact = velocity.w;
     float high = floor(position.w / RELIEF_COLLISIONS_HIGH);
     return Sums(vec4(1.0, contact == RELIEF_COLLIDED || contact >= RELIEF_STOPPED ? 1.0 : 0.0,

@@ -83,6 +83,8 @@ std::string makeConstants() {
     define("DEAD_COLLISIONS", kDeadCollisions);
     define("REDUCED_SIDE", kReducedSide);
     define("COLLISIONS_HIGH", static_cast<float>(kCollisionsHigh));
+    define("TYPE_CODES", kTypeCodes);
+    define("SPEED_MAX", kSpeedMaxOfState);
 
     define("AIR_FIELDS_MAX", kAirFieldsMax);
     define("SIX_PI", kSixPi);

@@ -46,6 +46,10 @@ inline constexpr float kDeadCollisions = -1.0F;
 inline constexpr int kReducedSide = 4;
 /// Sums of collisions are kept as low + kCollisionsHigh · high.
 inline constexpr int kCollisionsHigh = 4096;
+/// A type is found by the greatest of kTypeCodes - type.
+inline constexpr float kTypeCodes = 256.0F;
+/// Beyond this speed, world units a second, a particle counts as lost: the squares of 2^24 of them are still floats.
+inline constexpr float kSpeedMaxOfState = 1e15F;
 
 /// The most attractors, and the most vortices, in the block of air.glsl.
 inline constexpr int kAirFieldsMax = 8;

@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kCountsUnit = 0;  // positions in the first pass
 constexpr int kSumsUnit = 1;    // velocities
+constexpr int kBirthUnit = 2;
 
 constexpr GLsizeiptr kTexelBytes = 4 * sizeof(float);
 constexpr GLuint64 kPatience = 10'000'000'000;  // nanoseconds
@@ -65,6 +66,7 @@ Result<Statistics> Statistics::create(std::uint32_t capacity) {
     glUseProgram(statistics.state_program_.name());
     glUniform1i(uniformLocation(statistics.state_program_, "u_position"), kCountsUnit);
     glUniform1i(uniformLocation(statistics.state_program_, "u_velocity"), kSumsUnit);
+    glUniform1i(uniformLocation(statistics.state_program_, "u_birth"), kBirthUnit);
     statistics.state_size_ = uniformLocation(statistics.state_program_, "u_size");
     statistics.state_rate_ = uniformLocation(statistics.state_program_, "u_rate_before");
     statistics.state_extent_ = uniformLocation(statistics.state_program_, "u_extent");
@@ -94,6 +96,7 @@ bool Statistics::request(const ParticleSystem& particles, std::uint64_t tag) {
     glUniform2i(state_size_, static_cast<GLint>(width), static_cast<GLint>(height));
     useTexture(kCountsUnit, particles.positions());
     useTexture(kSumsUnit, particles.secondState());
+    useTexture(kBirthUnit, particles.births());
     glUniform1f(state_rate_, particles.rateBefore());
     glBindVertexArray(no_attributes_.name());
     // Only the rows that hold particles: with few of them the single texel is reached early.
@@ -176,6 +179,9 @@ std::optional<StatisticsSample> Statistics::collect() {
     sample.collisions =
         static_cast<std::uint64_t>(values[4]) + kCollisionsHigh * static_cast<std::uint64_t>(values[5]);
     sample.max_speed = std::sqrt(values[6]);
+    if (values[7] > 0.0F) {
+        sample.lost_type = static_cast<std::uint32_t>(kTypeCodes - values[7]);
+    }
     return sample;
 }
 

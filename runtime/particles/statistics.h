@@ -26,6 +26,9 @@ struct StatisticsSample {
     std::uint64_t collisions = 0;  ///< steps in contact so far; exact up to 2^36, then to 24 bits
     double energy = 0.0;           ///< kinetic, per unit of mass: ½ Σ |v|², to a relative 3e-6
     float max_speed = 0.0F;        ///< object units a second
+    /// The first type of which a live particle is lost: its position or velocity is no number, infinite, or faster than
+    /// kSpeedMaxOfState. As Birth::type. Lost ones count as alive, and in no other sum.
+    std::optional<std::uint32_t> lost_type{};
 };
 
 class Statistics {

@@ -11,6 +11,7 @@
 #include "runtime/gl/gl_fault.h"
 #include "runtime/player/outputs.h"
 #include "runtime/player/simulation.h"
+#include "runtime/player/state_check.h"
 #include "runtime/player/watched.h"
 #include "runtime/tool/gpu_tool.h"
 
@@ -36,10 +37,12 @@ double median(std::vector<double> values) {
 /// The run itself: stretches of steps and, between them, frames.
 class Run {
   public:
-    Run(const PlayerOptions& options, Simulation& simulation, Outputs& outputs, PlayerReport& report)
+    Run(const PlayerOptions& options, Simulation& simulation, StateCheck& check, Outputs& outputs,
+        PlayerReport& report)
         : options_(options),
           scene_(report.scene),
           simulation_(simulation),
+          check_(check),
           outputs_(outputs),
           report_(report),
           stats_every_(options.stats_every.value_or(scene_.render.every)) {}
@@ -58,6 +61,7 @@ class Run {
         report_.ms_per_step_median = median(std::move(stretches_));
         report_.counts = simulation_.particles().counts();
         report_.counts.refused += simulation_.refused();
+        RELIEF_TRY(watched(options_.watchdog, "looking for lost particles", [&] { return check_.finish(); }));
         RELIEF_TRY(outputs_.finish());
         if (outputs_.timer() != nullptr) {
             report_.stage_times = outputs_.timer()->times();
@@ -103,6 +107,8 @@ class Run {
 
     /// Tells how far the run is, and writes a frame where one is due.
     Result<void> afterStretch() {
+        RELIEF_TRY(watched(options_.watchdog, "looking for lost particles",
+                           [&] { return check_.look(simulation_.particles(), step_); }));
         if (outputs_.log() != nullptr) {
             RELIEF_TRY(outputs_.log()->poll());
         }
@@ -117,6 +123,7 @@ class Run {
     const PlayerOptions& options_;
     const Scene& scene_;
     Simulation& simulation_;
+    StateCheck& check_;
     Outputs& outputs_;
     PlayerReport& report_;
     std::uint32_t stats_every_;
@@ -169,7 +176,8 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     report.device = context->description();
     report.collider_maps = static_cast<std::size_t>(simulation.textures().mapCount());
     report.collider_bytes = simulation.textures().bytes();
-    RELIEF_TRY(Run(options, simulation, outputs, report).play());
+    auto check = RELIEF_TRY(StateCheck::create(options.input, report.scene));
+    RELIEF_TRY(Run(options, simulation, check, outputs, report).play());
     if (options.count_collisions || !options.dump.empty()) {
         RELIEF_TRY(readBack(options, simulation.particles(), report));
     }

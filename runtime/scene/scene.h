@@ -54,7 +54,8 @@ struct Scene {
     Collision collision{0.0F, 1.0F, 0.0F};
     float sweep = 0.0F;               ///< as ParticleSystem::setSweep
     std::vector<ParticleType> types;  ///< of [[type]], in their order; empty: one that [collision] describes
-    std::vector<std::string> type_names;  ///< as many; "" where a type has none
+    std::vector<std::string> type_names;   ///< as many; "" where a type has none
+    std::vector<std::string> type_places;  ///< as many: "file:line:column" of the table
 
     struct {
         bool enabled = true;

@@ -38,6 +38,7 @@ void readStrength(SceneTable& table, const toml::node& at, float& strength, floa
     if (!length(table, "radius", radius)) {
         failMissing(table, at, "radius", "give the distance up to which the strength grows");
     }
+    radius = std::max(radius, 1e-30F);  // the greatest strength over it stays a float
     table.integer("falloff", {0.0, 2.0}, falloff);
 }
 

@@ -46,6 +46,7 @@ void readTypes(SceneTable& top, std::string_view file, Scene& scene) {
         table.finish();
         scene.types.push_back(type);
         scene.type_names.push_back(std::move(name));
+        scene.type_places.push_back(table.place(one->source().begin));
         cell = cell || look.cell_first.has_value();
         scene.render.looks.push_back(std::move(look));
     }

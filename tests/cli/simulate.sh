@@ -56,11 +56,64 @@ S
     done
 done
 
+# A wind that no float holds any more, within all ranges: an error that names the type, and nothing is dumped. Its own
+# attractor, however small, is no such thing.
+python3 -c "import struct; open('flow.raw', 'wb').write(struct.pack('<24f', *[1e6] * 24))"
+lost_scene() { # RADIUS
+    cat <<S
+[collider]
+file = "bunny.relief"
+[time]
+dt = 0.01
+steps = 100
+[particles]
+capacity = 1000
+[emitter]
+burst = 500
+lifetime = [100.0, 100.0]
+box_min = [2.0, 2.0, 2.0]
+box_max = [2.0, 2.0, 2.0]
+type = "dust"
+[forces]
+viscosity = 1e6
+[flow]
+raw = "flow.raw"
+size = [2, 2, 2]
+box_min = [-1e9, -1e9, -1e9]
+box_max = [1e9, 1e9, 1e9]
+gain = 1e6
+outside = "edge"
+[ground]
+enabled = false
+[[attractor]]
+position = [2.0, 2.0, 2.0]
+strength = -1e6
+radius = 1e-300
+[[type]]
+name = "rain"
+[[type]]
+name = "dust"
+mass = 1e-15
+radius = $1
+S
+}
+lost_scene 1e9 >lost.toml
+for api in gl gles; do
+    for more in '' '--stats stats.jsonl'; do
+        # shellcheck disable=SC2086
+        expect_error 4 "lost\.toml:31:1: particles of the type 'dust' are lost: by step [0-9]+ .*; lower" \
+            "$relief_sim" lost.toml --api "$api" --dump lost.ply -q $more
+        [ ! -e lost.ply ] || die "a dump beside an error"
+    done
+done
+lost_scene 1e-9 >found.toml
+expect 0 "$relief_sim" found.toml --dump extreme_attractor.ply -q
+
 python3 - <<'P'
 # The PLY matches its header, and every number is finite.
 import glob, math, struct
 extremes = glob.glob('extreme_*.ply')
-assert len(extremes) == 4, extremes
+assert len(extremes) == 5, extremes
 for name in ['a.ply', 'es.ply'] + extremes:
     data = open(name, 'rb').read()
     head, body = data.split(b'end_header\n', 1)

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <string>
 #include <thread>
 
 #include "runtime/gl/gpu_timer.h"
@@ -118,6 +120,68 @@ TEST_P(StatisticsGlTest, FreeFlightInClosedForm) {
     EXPECT_EQ(after.max_speed, 5.0F);
     EXPECT_EQ(after.collisions, 0U);
     EXPECT_EQ(after.in_contact, 0U);
+}
+
+// Every way to be lost, alone among thousands that are not, in every component, at either end of the rows and with either
+// integrator: the type is found, and no sum is spoilt.
+TEST_P(StatisticsGlTest, LostParticlesNameTheirTypeAndSpoilNoSum) {
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    const std::vector<ParticleType> types(kParticleTypesMax);
+    for (const Integrator integrator : {Integrator::kEuler, Integrator::kVerlet}) {
+        for (const float value : {kNan, -kNan, kInfinity, -kInfinity, 3e38F, 2e15F}) {
+            for (const std::uint32_t lost : {0U, 1U, 2047U, 2499U}) {
+                SCOPED_TRACE(std::to_string(value) + " of particle " + std::to_string(lost));
+                auto particles = ParticleSystem::create({.capacity = 3000, .integrator = integrator});
+                ASSERT_TRUE(particles);
+                ASSERT_TRUE(particles->setTypes(types));
+                Statistics statistics = makeStatistics(3000);
+                std::vector<Birth> births(2500, {glm::vec3(0.0F), {0.0F, 3.0F, 4.0F}, 1.0F, 9});
+                Birth& birth = births[lost];
+                // A place may be as far off as floats go; a speed may not.
+                const bool place = !std::isfinite(value) && lost % 2 == 0;
+                (place ? birth.position : birth.velocity)[static_cast<int>(lost % 3)] = value;
+                birth.type = lost % 2 == 0 ? 0 : 15;
+                particles->spawn(births);
+                particles->step(kDt);
+                const StatisticsSample gpu = sample(statistics, *particles);
+                EXPECT_EQ(gpu.alive, 2500U);
+                // A lost type behind one that is not, and the other way round.
+                EXPECT_EQ(gpu.lost_type, std::optional<std::uint32_t>(birth.type));
+                EXPECT_NEAR(gpu.energy, 2499 * 12.5, integrator == Integrator::kEuler ? 0.0 : 0.5);
+                EXPECT_NEAR(gpu.max_speed, 5.0F, 1e-4F);
+                for (int step = 0; step < 80; ++step) {
+                    particles->step(kDt);
+                }
+                EXPECT_FALSE(sample(statistics, *particles).lost_type) << "the dead are not looked at";
+            }
+        }
+    }
+}
+
+TEST_P(StatisticsGlTest, OfSeveralLostTypesTheFirstIsNamed) {
+    ParticleSystem particles = makeParticles(3000);
+    ASSERT_TRUE(particles.setTypes(std::vector<ParticleType>(kParticleTypesMax)));
+    Statistics statistics = makeStatistics(3000);
+    std::vector<Birth> births(3000, {glm::vec3(0.0F), glm::vec3(0.0F), 1.0F, 0});
+    for (const std::uint32_t type : {14U, 7U, 3U, 11U}) {
+        births[100 * type].type = type;
+        births[100 * type].velocity.y = std::numeric_limits<float>::infinity();
+    }
+    particles.spawn(births);
+    particles.step(kDt);
+    EXPECT_EQ(sample(statistics, particles).lost_type, std::optional<std::uint32_t>(3));
+}
+
+// The fastest that are not lost: their squares still add up.
+TEST_P(StatisticsGlTest, TheFastestAddUp) {
+    ParticleSystem particles = makeParticles(3000);
+    Statistics statistics = makeStatistics(3000);
+    particles.spawn(std::vector<Birth>(3000, {glm::vec3(0.0F), {9e14F, 0.0F, 0.0F}, 10.0F, 0}));
+    particles.step(kDt);
+    const StatisticsSample gpu = sample(statistics, particles);
+    EXPECT_FALSE(gpu.lost_type);
+    EXPECT_NEAR(gpu.energy, 3000 * 0.5 * 8.1e29, 1e28);
 }
 
 // Beyond what one float counts: 20000 particles on the floor for 1000 steps, 2·10^7 steps in contact and an
