@@ -32,6 +32,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kWorkerName = "relief-import";
 constexpr const char* kWorkerFolder = "../libexec/relief";
+/// Times that a worker is started which does not begin.
+constexpr int kAttempts = 3;
 /// Sizes of files are signed.
 constexpr std::uint64_t kMemoryMax = std::uint64_t{1} << 46;
 
@@ -203,27 +205,37 @@ class Import {
         }
         source.dropBytes();
         const Descriptor result = memoryFile(largestFile(limits_.memory));
-        Descriptor alive;
-        Descriptor alive_end;
         if (!result) {
             return notStarted(errno);
         }
-        if (const int failed = retryTransient([&] { return makePipe(alive, alive_end); })) {
-            return notStarted(failed);
+        // What keeps a program from being loaded may pass in a moment: no memory, no files.
+        ProcessEnd end;
+        for (int attempt = 0; attempt < kAttempts; ++attempt) {
+            Descriptor alive;
+            Descriptor alive_end;
+            if (const int failed = retryTransient([&] { return makePipe(alive, alive_end); })) {
+                return notStarted(failed);
+            }
+            Process worker;
+            if (const int failed =
+                    start(program, {mesh.get(), source.folder(), result.get(), alive_end.get()}, worker)) {
+                return notStarted(failed);
+            }
+            alive_end.reset();
+            if (!closesWithin(alive.get(), limits_.seconds)) {
+                return timeIsUp();
+            }
+            end = worker.wait();
+            std::byte begun{};
+            if (::read(alive.get(), &begun, 1) == 1) {
+                mesh.reset();
+                return answer(end, result.get());
+            }
+            if (end.signal == SIGKILL) {
+                break;
+            }
         }
-        Process worker;
-        if (const int failed =
-                start(program, {mesh.get(), source.folder(), result.get(), alive_end.get()}, worker)) {
-            return notStarted(failed);
-        }
-        alive_end.reset();
-        mesh.reset();
-        if (!closesWithin(alive.get(), limits_.seconds)) {
-            return timeIsUp();
-        }
-        const ProcessEnd end = worker.wait();
-        std::byte begun{};
-        return ::read(alive.get(), &begun, 1) == 1 ? answer(end, result.get()) : notBegun(end);
+        return notBegun(end);
     }
 
     /// \param files  for kImportMeshFd and the numbers behind it; -1: none, /dev/null. \return 0 or an errno.

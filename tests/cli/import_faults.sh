@@ -26,7 +26,10 @@ cp "$relief" bin/relief
 cp "$RELIEF_BIN/relief-import" bin/traced
 cat >bin/relief-import <<'W'
 #!/usr/bin/env bash
+# With $ONCE, a file that is not there yet, $INJECT is for the first start alone.
 # shellcheck disable=SC2086
+[ -z "${ONCE:-}" ] || [ ! -e "$ONCE" ] || INJECT=
+[ -z "${ONCE:-}" ] || touch "$ONCE"
 exec strace -f -o "$TRACE" ${INJECT:+-e "inject=$INJECT"} "${BASH_SOURCE%/*}/traced" "$@"
 W
 chmod +x bin/relief-import
@@ -128,6 +131,11 @@ for what in 'mmap ENOMEM loader.*libraries cannot be loaded.*ulimit -n' 'falloca
     'seccomp ENOMEM own.*system calls.*Cannot allocate' 'landlock_restrict_self E2BIG own.*enter Landlock'; do
     grep -qE "^$what" reported || die "not reported: $what: $(cut -c1-200 reported)"
 done
+
+# A worker that cannot be loaded is started again.
+code=0
+ONCE="$work/once" INJECT="mmap:error=ENOMEM:when=5" bin/relief bake "${bake[@]}" out/a.relief 2>stderr || code=$?
+[ -e once ] && [ "$code" -eq 0 ] && ends "a worker that is loaded at the second time" || die "a worker that cannot be loaded once: $(cat stderr)"
 
 # --- the parent ---
 
