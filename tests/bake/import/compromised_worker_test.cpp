@@ -24,7 +24,9 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iterator>
@@ -289,7 +291,8 @@ std::vector<Attempt> attempts(const Place& place) {
          [=] {
              std::uint64_t how[11] = {0, 0, 0, 0, SIGCHLD};
              return forked(raw(SYS_clone3, how, sizeof(how)));
-         }},
+         },
+         false},  // some containers have none
         // its parent and other processes
         {"ptrace the parent", [=] { return raw(SYS_ptrace, PTRACE_ATTACH, parent, 0, 0) == 0; }, false},
         {"be traced", [=] { return raw(SYS_ptrace, PTRACE_TRACEME, 0, 0, 0) == 0; }},
