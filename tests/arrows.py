@@ -12,6 +12,7 @@ import sys
 THIRD_PARTIES = {
     'assimp': ['bake/import'],
     'seccomp.h': ['bake/import'],
+    'draco': ['bake/import'],
     'embree3': ['bake/mesh', 'bake/texels', 'bake/bench'],
     'CGAL': ['bake/mesh', 'bake/repair'],
     'OpenEXR': ['bake/picture', 'runtime/files'],

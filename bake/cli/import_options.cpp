@@ -38,6 +38,10 @@ void addImportOptions(CLI::App& verb, ImportSettings& settings) {
                     "Seconds that reading the mesh may take; default 60")
         ->option_text("SECONDS")
         ->transform(wholeNumber(1, kSecondsMax, "1 to " + std::to_string(kSecondsMax) + " seconds"));
+    verb.add_option("--max-triangles", settings.limits.triangles,
+                    "Triangles that the mesh may have, instances counted one by one; default 20000000")
+        ->option_text("N")
+        ->transform(wholeNumber(1, kTriangleMax, "1 to " + std::to_string(kTriangleMax) + " triangles"));
 }
 
 std::string importProvenance(const ImportOptions& options) {

@@ -16,7 +16,7 @@ struct ImportSettings {
     ImportLimits limits;
 };
 
-/// Adds --unit, --up, --import-memory and --import-time.
+/// Adds --unit, --up, --import-memory, --import-time and --max-triangles.
 void addImportOptions(CLI::App& verb, ImportSettings& settings);
 
 /// " --unit mm --up +z" for the provenance: those that change the mesh; "" by default.

@@ -1,23 +1,24 @@
-// Checks of glTF 2.0 files that assimp does not make, and refusals of what it reads wrongly without a word. They run
-// before assimp does.
+// glTF 2.0, as text and binary, read here and not by assimp, which reads on where the specification says otherwise.
 #pragma once
 
-#include <cstddef>
-#include <span>
-#include <string>
-#include <vector>
+#include <glm/mat3x3.hpp>
 
+#include "bake/import/import_files.h"
+#include "bake/import/import_job.h"
+#include "bake/mesh/mesh.h"
 #include "formats/base/result.h"
 
 namespace relief {
 
-/// Looks through the JSON of a .gltf or .glb file: version, required extensions, compressed and quantised
-/// attributes, that every accessor lies in its view and every view in its buffer, that nodes form trees, and
-/// that buffers name files relative to the mesh.
-/// \param shown  the file's name for messages.
-/// \return warnings, without the file's name.
-/// Errors: kUnsupported, kInvalidInput, kLimit.
-[[nodiscard]] Result<std::vector<std::string>> checkGltf(std::span<const std::byte> bytes,
-                                                         const std::string& shown);
+/// Reads the triangles that the file's scene shows, where its nodes place them. Whatever has a part in that keeps to the
+/// specification, or is an error: version, required extensions, JSON without equal keys, buffers (percent-encoded,
+/// base64, of their length), accessors (sparse ones, KHR_mesh_quantization, KHR_draco_mesh_compression), indices, modes,
+/// transforms, trees of nodes. The mesh of a skinned node is not moved by the node. Skins and targets of morphs are left
+/// out with a warning.
+/// \param linear  is applied behind the transforms.
+/// \param mesh    what is known of it otherwise: positions, triangles, marks, unused vertices and warnings are added.
+/// Errors, naming the file: kInvalidInput, kUnsupported, kLimit; kUsage (a name that no triangle has).
+[[nodiscard]] Result<TriangleMesh> readGltf(const ImportJob& job, ImportFiles& files,
+                                            const glm::dmat3& linear, TriangleMesh mesh);
 
 }  // namespace relief

@@ -30,6 +30,9 @@ struct ImportOptions {
 struct ImportLimits {
     std::uint64_t memory = 4'000'000'000;  ///< bytes that the importer may take beside its code and the file
     std::uint32_t seconds = 60;            ///< of processor time, and of wall time; at least 1
+    /// Of the mesh, instances counted one by one: more is an error. 1 to kTriangleMax. A bake takes some 120 bytes for
+    /// each.
+    std::uint64_t triangles = 20'000'000;
 };
 
 /// What an importer is given.
@@ -40,6 +43,7 @@ struct ImportJob {
     std::span<const std::byte> bytes;
     int folder = -1;  ///< descriptor; or -1
     ImportOptions options;
+    std::uint64_t triangle_max = kTriangleMax;  ///< ImportLimits::triangles
 };
 
 /// Reads the mesh, in the library bake_assimp. \return what ImportSource::finish wants. Errors: as importMesh.

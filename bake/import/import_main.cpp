@@ -91,10 +91,11 @@ int work(std::span<char*> arguments) {
         }
         options.up = *up;
     }
-    options.names.assign(arguments.begin() + 6, arguments.end());
+    options.names.assign(arguments.begin() + 7, arguments.end());
     const std::uint64_t memory = parseUnsigned(arguments[4]).value_or(0);
     const std::uint64_t seconds = parseUnsigned(arguments[5]).value_or(0);
-    if (memory == 0 || seconds == 0 || seconds > UINT32_MAX) {
+    const std::uint64_t triangles = parseUnsigned(arguments[6]).value_or(0);
+    if (memory == 0 || seconds == 0 || seconds > UINT32_MAX || triangles == 0 || triangles > kTriangleMax) {
         return kImportExitArguments;
     }
     const std::uint64_t size = fileSize(kImportMeshFd);
@@ -120,7 +121,8 @@ int work(std::span<char*> arguments) {
                                                 lowerCase(path.extension().string().substr(1)),
                                                 {static_cast<const std::byte*>(pages), size},
                                                 folder,
-                                                options});
+                                                options,
+                                                triangles});
     return sendMessage(raw);
 }
 
@@ -128,7 +130,7 @@ int work(std::span<char*> arguments) {
 }  // namespace relief
 
 int main(int argc, char** argv) {
-    if (argc < 6) {
+    if (argc < 7) {
         return relief::kImportExitArguments;
     }
     // assimp allocates much in little pieces: fewer, larger steps of one heap, that the limit is exact for.

@@ -100,7 +100,7 @@ void writeImportMessage(const ImportMessage& message, const Result<TriangleMesh>
     }
 }
 
-Result<TriangleMesh> readImportMessage(std::span<const std::byte> bytes) {
+Result<TriangleMesh> readImportMessage(std::span<const std::byte> bytes, std::uint64_t triangle_max) {
     std::uint64_t table = 0;
     if (bytes.size() < kPrefixBytes) {
         return noMessage();
@@ -124,7 +124,7 @@ Result<TriangleMesh> readImportMessage(std::span<const std::byte> bytes) {
         return fail(static_cast<ErrorCode>(code), cleanUtf8(textOf(message.error_message()), kErrorBytesMax));
     }
     // Each bounded before they are added up.
-    if (message.positions() > 3 * kTriangleMax || message.triangles() > kTriangleMax ||
+    if (message.positions() > 3 * triangle_max || message.triangles() > triangle_max ||
         message.unused_vertices() > kImportBytesMax ||  // a vertex takes more than a byte
         !(message.marks() == 0 || message.marks() == message.triangles()) ||
         head + 12 * (message.positions() + message.triangles()) + message.marks() != bytes.size()) {

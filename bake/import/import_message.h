@@ -31,8 +31,11 @@ void writeImportMessage(const ImportMessage& message, const Result<TriangleMesh>
 /// Reads a message that may hold anything. Indices and coordinates are left to finishMesh, and what marks mean to
 /// ImportSource::finish; there are none, or one for each triangle.
 /// \param bytes  aligned to 16 bytes, and not changed meanwhile.
+/// \param triangle_max  at most kTriangleMax. More, or more than thrice as many positions, are no message: nothing is
+/// allocated for them.
 /// \return what the worker's importRaw gave. Errors: the worker's own, as one line; kInvalidInput, saying no
 /// file's name, for a message that is none.
-[[nodiscard]] Result<TriangleMesh> readImportMessage(std::span<const std::byte> bytes);
+[[nodiscard]] Result<TriangleMesh> readImportMessage(std::span<const std::byte> bytes,
+                                                     std::uint64_t triangle_max = kTriangleMax);
 
 }  // namespace relief

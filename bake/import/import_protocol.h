@@ -1,9 +1,9 @@
 // Between importMeshInWorker and the program relief-import: descriptors, arguments and exit codes.
 //
-//     relief-import PATH UNIT UP MEMORY SECONDS [NAME…]
+//     relief-import PATH UNIT UP MEMORY SECONDS TRIANGLES [NAME…]
 //
 // PATH is the mesh's as the user gave it (for messages, its name and extension); UNIT and UP as
-// ImportOptions, "-" for none; MEMORY in bytes; each NAME one of ImportOptions::names.
+// ImportOptions, "-" for none; MEMORY in bytes; TRIANGLES as ImportLimits; each NAME one of ImportOptions::names.
 // Nothing is read from standard input or written to standard output.
 #pragma once
 

@@ -1,47 +1,24 @@
 #include "bake/import/import_scene.h"
 
 #include <algorithm>
-#include <cmath>
-#include <glm/geometric.hpp>
 #include <map>
 #include <set>
 #include <span>
+#include <string_view>
 #include <utility>
 
+#include "bake/import/import_instances.h"
 #include "formats/base/hash.h"
+#include "formats/base/text.h"
 
 namespace relief {
 namespace {
 
-/// A transform whose determinant is this small, relative to the product of its columns' lengths, leaves no volume.
-constexpr double kFlat = 1e-9;
+/// What assimp adds to nodes of FBX that it splits.
+constexpr std::string_view kHelperNode = "_$AssimpFbx$_";
 
-/// p -> linear · p + offset
-struct Transform {
-    glm::dmat3 linear{1.0};
-    glm::dvec3 offset{0.0};
-
-    [[nodiscard]] glm::dvec3 apply(const glm::dvec3& p) const { return linear * p + offset; }
-    [[nodiscard]] double determinant() const {
-        const glm::dmat3& m = linear;
-        return m[0][0] * (m[1][1] * m[2][2] - m[2][1] * m[1][2]) -
-               m[1][0] * (m[0][1] * m[2][2] - m[2][1] * m[0][2]) +
-               m[2][0] * (m[0][1] * m[1][2] - m[1][1] * m[0][2]);
-    }
-    [[nodiscard]] bool mirrors() const { return determinant() < 0.0; }
-    /// A scale of 0 along some direction.
-    [[nodiscard]] bool flattens() const {
-        const double lengths = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
-        return std::abs(determinant()) <= kFlat * lengths;
-    }
-};
-
-Transform operator*(const Transform& outer, const aiMatrix4x4& inner) {
-    Transform t;
-    t.linear = outer.linear * glm::dmat3(inner.a1, inner.b1, inner.c1, inner.a2, inner.b2, inner.c2, inner.a3,
-                                         inner.b3, inner.c3);
-    t.offset = outer.apply({inner.a4, inner.b4, inner.c4});
-    return t;
+Transform transformOf(const aiMatrix4x4& m) {
+    return {glm::dmat3(m.a1, m.b1, m.c1, m.a2, m.b2, m.c2, m.a3, m.b3, m.c3), {m.a4, m.b4, m.c4}};
 }
 
 /// Calls visit(mesh, transform, node) for every use of a mesh, parents before children. No recursion.
@@ -56,7 +33,7 @@ bool forEachUse(const aiScene& scene, const Transform& root, const Visit& visit)
     while (!pending.empty()) {
         const Pending next = pending.back();
         pending.pop_back();
-        const Transform transform = next.parent * next.node->mTransformation;
+        const Transform transform = next.parent * transformOf(next.node->mTransformation);
         for (unsigned i = 0; i < next.node->mNumMeshes; ++i) {
             const unsigned index = next.node->mMeshes[i];
             if (index < scene.mNumMeshes && scene.mMeshes[index]->HasPositions() &&
@@ -92,22 +69,84 @@ std::vector<const aiMesh*> unplacedMeshes(const aiScene& scene) {
     return others;
 }
 
-void appendMesh(const aiMesh& source, const Transform& transform, TriangleMesh& mesh) {
-    const auto base = static_cast<std::uint32_t>(mesh.positions.size());
-    for (unsigned i = 0; i < source.mNumVertices; ++i) {
-        const aiVector3D& v = source.mVertices[i];
-        mesh.positions.emplace_back(transform.apply({v.x, v.y, v.z}));
-    }
-    const bool mirrors = transform.mirrors();
-    for (unsigned i = 0; i < source.mNumFaces; ++i) {
-        const aiFace& face = source.mFaces[i];
-        if (face.mNumIndices != 3) {
-            continue;
+std::string_view textOf(const aiString& text) {
+    return {text.data, std::min<std::size_t>(text.length, sizeof(text.data))};
+}
+
+/// What assimp calls what has no name.
+bool isMadeUp(std::string_view name) {
+    return name == AI_DEFAULT_MATERIAL_NAME || (name.starts_with('<') && name.ends_with('>')) ||
+           name.find(kHelperNode) != std::string_view::npos;
+}
+
+/// Tells NameMarks the names of a scene's triangles.
+class SceneNames {
+  public:
+    /// \param scene  borrowed, and so is the job.
+    SceneNames(const aiScene& scene, const ImportJob& job)
+        : scene_(scene), is_obj_(job.extension == "obj"), marks_(job.options.names, job.file_name) {}
+
+    [[nodiscard]] const NameMarks& marks() const { return marks_; }
+
+    /// As TriangleMesh::marks has it, for the triangles of a mesh. \param node  that uses it; null: none does.
+    std::uint8_t of(const aiMesh& mesh, const aiNode* node) {
+        std::vector<const aiNode*> chain;
+        const aiNode* above = node;
+        for (; above != nullptr && !nodes_.contains(above); above = above->mParent) {
+            chain.push_back(above);
         }
-        const std::uint32_t a = face.mIndices[0];
-        const std::uint32_t b = face.mIndices[mirrors ? 2 : 1];
-        const std::uint32_t c = face.mIndices[mirrors ? 1 : 2];
-        mesh.triangles.emplace_back(base + a, base + b, base + c);
+        std::uint8_t mark = above != nullptr ? nodes_.at(above) : std::uint8_t{0};
+        for (auto it = chain.rbegin(); it != chain.rend(); ++it) {
+            mark = std::max(mark, meetNode(**it));
+            nodes_[*it] = mark;
+        }
+        return std::max({mark, meet(textOf(mesh.mName)), meetMaterial(mesh)});
+    }
+
+  private:
+    std::uint8_t meet(std::string_view name) { return marks_.meet(name, !isMadeUp(name)); }
+
+    std::uint8_t meetNode(const aiNode& node) {
+        const std::string_view name = textOf(node.mName);
+        std::uint8_t mark = meet(name);
+        if (is_obj_) {
+            std::string_view rest = name;
+            for (std::string_view word = takeWord(rest); !word.empty(); word = takeWord(rest)) {
+                mark = std::max(mark, meet(word));
+            }
+        }
+        return mark;
+    }
+
+    std::uint8_t meetMaterial(const aiMesh& mesh) {
+        aiString name;
+        return mesh.mMaterialIndex < scene_.mNumMaterials &&
+                       scene_.mMaterials[mesh.mMaterialIndex]->Get(AI_MATKEY_NAME, name) == AI_SUCCESS
+                   ? meet(textOf(name))
+                   : std::uint8_t{0};
+    }
+
+    const aiScene& scene_;
+    bool is_obj_;
+    NameMarks marks_;
+    std::map<const aiNode*, std::uint8_t> nodes_;  // with those above them
+};
+
+/// \param out  is cleared.
+void trianglesOf(const aiMesh& mesh, std::vector<glm::uvec3>& out) {
+    out.clear();
+    for (const aiFace& face : std::span(mesh.mFaces, mesh.mNumFaces)) {
+        if (face.mNumIndices == 3) {
+            out.emplace_back(face.mIndices[0], face.mIndices[1], face.mIndices[2]);
+        }
+    }
+}
+
+/// \param out  is cleared.
+void positionsOf(const aiMesh& mesh, std::vector<glm::vec3>& out) {
+    out.clear();
+    for (const aiVector3D& v : std::span(mesh.mVertices, mesh.mNumVertices)) {
+        out.emplace_back(v.x, v.y, v.z);
     }
 }
 
@@ -181,8 +220,8 @@ void warnOfScene(const aiScene& scene, std::vector<std::string>& warnings) {
     }
 }
 
-Result<TriangleMesh> flatten(const aiScene& scene, const glm::dmat3& linear, const std::string& shown,
-                             Unplaced unplaced, NameMarks names, TriangleMesh mesh) {
+Result<TriangleMesh> flatten(const aiScene& scene, const glm::dmat3& linear, const ImportJob& job,
+                             Unplaced unplaced, TriangleMesh mesh) {
     const Transform root{linear, glm::dvec3(0.0)};
     const std::vector<const aiMesh*> others =
         unplaced == Unplaced::kAtRoot ? unplacedMeshes(scene) : std::vector<const aiMesh*>();
@@ -191,41 +230,26 @@ Result<TriangleMesh> flatten(const aiScene& scene, const glm::dmat3& linear, con
                std::all_of(others.begin(), others.end(),
                            [&](const aiMesh* other) { return visit(*other, root, nullptr); });
     };
-    // Counted before anything is allocated: a small file can name one mesh very often.
-    std::uint64_t faces = 0;
-    std::uint64_t vertices = 0;
-    std::uint64_t flat = 0;
-    const auto count = [&](const aiMesh& source, const Transform& transform, const aiNode* /*node*/) {
-        faces += source.mNumFaces;
-        vertices += source.mNumVertices;
-        flat += transform.flattens() ? 1 : 0;
-        return faces <= kTriangleMax && vertices <= 3 * kTriangleMax;
-    };
-    if (!for_each_use(count)) {
-        return fail(ErrorCode::kLimit, shown + ": more than " + std::to_string(kTriangleMax) +
-                                           " triangles, instances counted one by one; simplify the mesh");
+    MeshInstances instances(job.shown, job.triangle_max, std::move(mesh));
+    const bool counted =
+        for_each_use([&](const aiMesh& source, const Transform& transform, const aiNode* /*node*/) {
+            return instances.count(source.mNumVertices, source.mNumFaces, transform);
+        });
+    if (!counted) {
+        return instances.tooMany();
     }
-    mesh.positions.reserve(vertices);
-    mesh.triangles.reserve(faces);
-    mesh.marks.reserve(names.any() ? faces : 0);
+    SceneNames names(scene, job);
+    instances.begin(names.marks().any());
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec3> triangles;
     for_each_use([&](const aiMesh& source, const Transform& transform, const aiNode* node) {
-        const std::size_t before = mesh.triangles.size();
-        appendMesh(source, transform, mesh);
-        if (names.any() && mesh.triangles.size() > before) {
-            mesh.marks.resize(mesh.triangles.size(), names.of(source, node));
-        }
+        positionsOf(source, positions);
+        trianglesOf(source, triangles);
+        const std::uint8_t mark = names.marks().any() && !triangles.empty() ? names.of(source, node) : 0;
+        instances.add(positions, triangles, transform, mark);
         return true;
     });
-    if (mesh.triangles.empty()) {
-        return fail(ErrorCode::kInvalidInput,
-                    shown + ": no triangles; export the surface as polygons, not as points or lines");
-    }
-    RELIEF_TRY(names.allMet(shown));
-    if (flat > 0) {
-        mesh.warnings.push_back(std::to_string(flat) +
-                                " of its parts are scaled to nothing in some direction, and hold no volume");
-    }
-    return mesh;
+    return instances.finish(names.marks());
 }
 
 }  // namespace relief

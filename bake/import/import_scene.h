@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "bake/import/import_names.h"
+#include "bake/import/import_job.h"
 #include "bake/import/import_parts.h"
 #include "bake/mesh/mesh.h"
 #include "formats/base/result.h"
@@ -28,12 +28,12 @@ void warnOfScene(const aiScene& scene, std::vector<std::string>& warnings);
 /// What becomes of meshes that no node places.
 enum class Unplaced : std::uint8_t { kLeaveOut, kAtRoot };
 
-/// Adds every use of every mesh to `mesh`, with the transforms of its nodes applied and then `linear`.
-/// \param shown  the file's name for messages.
-/// \param names  of that scene; the mesh has marks if any are asked for.
-/// Errors: kLimit (more than kTriangleMax triangles), kInvalidInput (none), kUsage (a name that no triangle has).
+/// Adds every use of every mesh to `mesh`, with the transforms of its nodes applied and then `linear`. A triangle has the
+/// names of its material, of its mesh, and of the node that uses it and of all above that. OBJ's groups and objects are
+/// nodes; a group of several names has each of them, and the line as a whole.
+/// \param mesh  has marks then if the job asks for names.
+/// Errors: kLimit (more triangles than the job allows), kInvalidInput (none), kUsage (a name that no triangle has).
 [[nodiscard]] Result<TriangleMesh> flatten(const aiScene& scene, const glm::dmat3& linear,
-                                           const std::string& shown, Unplaced unplaced, NameMarks names,
-                                           TriangleMesh mesh);
+                                           const ImportJob& job, Unplaced unplaced, TriangleMesh mesh);
 
 }  // namespace relief

@@ -171,9 +171,11 @@ class Import {
         : path_(path), options_(options), limits_(limits) {}
 
     Result<TriangleMesh> run() {
-        if (limits_.memory == 0 || limits_.memory > kMemoryMax || limits_.seconds == 0) {
+        if (limits_.memory == 0 || limits_.memory > kMemoryMax || limits_.seconds == 0 ||
+            limits_.triangles == 0 || limits_.triangles > kTriangleMax) {
             return fail(ErrorCode::kUsage,
-                        "the importer's limits must be 1 byte to 64 TB, and at least 1 second");
+                        "the importer's limits must be 1 byte to 64 TB, at least 1 second, and 1 to " +
+                            std::to_string(kTriangleMax) + " triangles");
         }
         ImportSource source = RELIEF_TRY(ImportSource::open(path_));
         Result<TriangleMesh> raw = workOn(source);
@@ -248,7 +250,8 @@ class Import {
                            options_.unit.empty() ? "-" : options_.unit,
                            options_.up ? std::string(upAxisName(*options_.up)) : "-",
                            std::to_string(limits_.memory),
-                           std::to_string(limits_.seconds)};
+                           std::to_string(limits_.seconds),
+                           std::to_string(limits_.triangles)};
         start.arguments.insert(start.arguments.end(), options_.names.begin(), options_.names.end());
         start.files.assign(kImportMeshFd, -1);
         start.files.insert(start.files.end(), files.begin(), files.end());
@@ -342,7 +345,7 @@ class Import {
             return error(ErrorCode::kLimit, std::string("its triangles do not fit into memory (") +
                                                 std::strerror(errno) + "); simplify it, or free memory");
         }
-        Result<TriangleMesh> raw = readImportMessage(pages.bytes());
+        Result<TriangleMesh> raw = readImportMessage(pages.bytes(), limits_.triangles);
         if (!raw && raw.error().message.find(quotedPath(path_)) == std::string::npos) {
             return error(raw.error().code, raw.error().message + "; export the mesh again");
         }

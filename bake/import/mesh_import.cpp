@@ -18,7 +18,6 @@
 #include "bake/import/assimp_ply.h"
 #include "bake/import/import_files.h"
 #include "bake/import/import_gltf.h"
-#include "bake/import/import_names.h"
 #include "bake/import/import_obj.h"
 #include "bake/import/import_parts.h"
 #include "bake/import/import_ply.h"
@@ -80,9 +79,6 @@ bool isRaw(const ImportJob& job) {
 }
 
 SourceFrame frameOf(const ImportJob& job, const aiScene& scene) {
-    if (isGltf(job)) {
-        return {1.0, UpAxis::kPlusY, false, false};
-    }
     if (job.extension == "fbx") {
         return fbxFrame(scene);
     }
@@ -209,15 +205,16 @@ Result<const aiScene*> readScene(const ImportJob& job, ImportFiles& files, const
     return unreadable(job, oneCleanLine(importer.GetErrorString()), files);
 }
 
-Result<TriangleMesh> importWithAssimp(const ImportJob& job) {
+/// Takes what changes the mesh into metres and +y. \param mesh  gets its unit and warnings. \return what to apply.
+glm::dmat3 takeFrame(const SourceFrame& frame, const ImportOptions& options, TriangleMesh& mesh) {
+    const FrameChange change = changeOf(frame, options.unit, options.up);
+    mesh.unit = change.unit;
+    mesh.warnings.insert(mesh.warnings.end(), change.warnings.begin(), change.warnings.end());
+    return change.scale * change.turn;
+}
+
+Result<TriangleMesh> importWithAssimp(const ImportJob& job, ImportFiles& files) {
     TriangleMesh mesh;
-    if (const std::optional<std::string> fault = textFault(job.extension, job.bytes)) {
-        return fail(ErrorCode::kInvalidInput, "cannot read the mesh " + job.shown + ": " + *fault);
-    }
-    if (isGltf(job)) {
-        mesh.warnings = RELIEF_TRY(checkGltf(job.bytes, job.shown));
-    }
-    ImportFiles files(job.folder, job.file_name, job.bytes);
     const LoggedErrors logged;
     Assimp::Importer importer;
     MeshParts parts;
@@ -226,12 +223,26 @@ Result<TriangleMesh> importWithAssimp(const ImportJob& job) {
     mesh.unused_vertices = parts.unused;
     warnOfParts(parts, mesh.warnings);
     warnOfScene(*scene, mesh.warnings);
-    const FrameChange change = changeOf(frameOf(job, *scene), job.options.unit, job.options.up);
-    mesh.unit = change.unit;
-    mesh.warnings.insert(mesh.warnings.end(), change.warnings.begin(), change.warnings.end());
+    const glm::dmat3 linear = takeFrame(frameOf(job, *scene), job.options, mesh);
     for (const std::string& error : logged.errors()) {
         mesh.warnings.push_back("its importer says: " + error);
     }
+    return flatten(*scene, linear, job, isRaw(job) ? Unplaced::kAtRoot : Unplaced::kLeaveOut,
+                   std::move(mesh));
+}
+
+Result<TriangleMesh> importGltf(const ImportJob& job, ImportFiles& files) {
+    TriangleMesh mesh;
+    const glm::dmat3 linear = takeFrame({1.0, UpAxis::kPlusY, false, false}, job.options, mesh);
+    return readGltf(job, files, linear, std::move(mesh));
+}
+
+Result<TriangleMesh> importWhatItIs(const ImportJob& job) {
+    if (const std::optional<std::string> fault = textFault(job.extension, job.bytes)) {
+        return fail(ErrorCode::kInvalidInput, "cannot read the mesh " + job.shown + ": " + *fault);
+    }
+    ImportFiles files(job.folder, job.file_name, job.bytes);
+    TriangleMesh mesh = RELIEF_TRY(isGltf(job) ? importGltf(job, files) : importWithAssimp(job, files));
     for (const std::string& refused : files.refused()) {
         mesh.warnings.push_back("left out " + refused);
     }
@@ -239,9 +250,7 @@ Result<TriangleMesh> importWithAssimp(const ImportJob& job) {
         mesh.dependencies.push_back(file.path);
         mesh.dependency_hashes.push_back(file.hash);
     }
-    return flatten(*scene, change.scale * change.turn, job.shown,
-                   isRaw(job) ? Unplaced::kAtRoot : Unplaced::kLeaveOut,
-                   NameMarks(*scene, job.options.names, job.extension, job.file_name), std::move(mesh));
+    return mesh;
 }
 
 // --- a thread with a deep stack ---
@@ -253,7 +262,7 @@ struct Import {
     void run() {
         const std::string where = "cannot read the mesh " + job.shown + ": ";
         try {
-            result.emplace(importWithAssimp(job));
+            result.emplace(importWhatItIs(job));
         } catch (const std::bad_alloc&) {
             result.emplace(fail(ErrorCode::kLimit, where + "out of memory; simplify it"));
         } catch (const std::exception& e) {

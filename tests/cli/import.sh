@@ -72,6 +72,30 @@ with open('large.obj', 'w') as file:
 P
 expect_error 6 'large\.obj.*more than 64000000 bytes' "$relief" bake large.obj -o x.relief --import-memory 64MB
 
+# Instances: 90 million triangles in a few kilobytes are refused before there is one of them, and without much memory.
+python3 - <<'P'
+import base64, json, struct
+n = 3000
+buffer = struct.pack('<9f', 0, 0, 0, 1, 0, 0, 0, 1, 0) + bytes(range(3)) * 1000
+json.dump({
+    'asset': {'version': '2.0'}, 'scenes': [{'nodes': list(range(n))}], 'nodes': [{'mesh': 0}] * n,
+    'meshes': [{'primitives': [{'attributes': {'POSITION': 0}, 'indices': 1}] * 30}],
+    'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': 3, 'type': 'VEC3'},
+                  {'bufferView': 1, 'componentType': 5121, 'count': 3000, 'type': 'SCALAR'}],
+    'bufferViews': [{'buffer': 0, 'byteLength': 36}, {'buffer': 0, 'byteOffset': 36, 'byteLength': 3000}],
+    'buffers': [{'byteLength': 3036, 'uri': 'data:;base64,' + base64.b64encode(buffer).decode()}]},
+    open('instances.gltf', 'w'))
+P
+(
+    ulimit -v 2000000 -t 10
+    expect_error 6 'instances\.gltf.*more than 20000000 triangles.*--max-triangles' \
+        "$relief" bake instances.gltf -o x.relief
+)
+expect_error 6 'instances\.gltf.*--max-triangles' "$relief" bake instances.gltf -o x.relief --max-triangles 3
+expect_error 1 'max-triangles.*1 to 100000000' "$relief" bake good.stl -o x.relief --max-triangles 200000000
+expect 0 "$relief" bake good.stl -o x.relief "${small[@]}" --max-triangles 4
+rm x.relief
+
 # A COLLADA document whose nodes each stand for two of the next: 2⁴⁰ in all, which the importer begins to unfold.
 python3 - <<'P'
 nodes = ''.join(f'<node id="n{i}"><instance_node url="#n{i + 1}"/><instance_node url="#n{i + 1}"/></node>'

@@ -175,14 +175,13 @@ TEST(ImportWorker, GltfThatIsNotReadIsRefused) {
     };
     constexpr ErrorCode kUnread = ErrorCode::kUnsupported;
     constexpr ErrorCode kWrong = ErrorCode::kInvalidInput;
-    for (const char* name : {"KHR_mesh_quantization", "EXT_meshopt_compression", "VENDOR_unheard_of"}) {
+    for (const char* name : {"KHR_meshopt_compression", "EXT_meshopt_compression", "VENDOR_unheard_of"}) {
         refused({.more = std::string(R"("extensionsRequired":[")") + name + "\"],"}, kUnread, name);
     }
-    refused({.position = R"("bufferView":0,"componentType":5122,"normalized":true,"count":4,"type":"VEC3")"},
-            kUnread, "5122");
+    refused({.position = R"("bufferView":0,"componentType":5125,"count":4,"type":"VEC3")"}, kUnread, "5125");
     refused(
         {.position = R"("bufferView":0,"componentType":5126,"count":4,"type":"VEC3","sparse":{"count":1})"},
-        kUnread, "sparse");
+        kWrong, "accessors[0].sparse");
     refused({.position = R"("componentType":5126,"count":4,"type":"VEC3")"}, kUnread, "no data");
     refused({.position = R"("bufferView":0,"componentType":5126,"count":4,"type":"VEC2")"}, kWrong, "VEC3");
     refused({.position = R"("bufferView":0,"componentType":5126,"count":5,"type":"VEC3")"}, kWrong,

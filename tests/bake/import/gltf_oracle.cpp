@@ -1,0 +1,363 @@
+#include "tests/bake/import/gltf_oracle.h"
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <glm/geometric.hpp>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <stdexcept>
+#include <string>
+
+namespace relief::test {
+namespace {
+
+using Json = nlohmann::json;
+using Place = std::function<glm::dvec3(glm::dvec3)>;
+
+void must(bool holds, const char* what) {
+    if (!holds) {
+        throw std::runtime_error(what);
+    }
+}
+
+std::size_t whole(const Json& json) {
+    must(json.is_number() && json.get<double>() >= 0 && json.get<double>() < 1e9 &&
+             json.get<double>() == std::floor(json.get<double>()),
+         "no whole number");
+    return static_cast<std::size_t>(json.get<double>());
+}
+
+std::size_t whole(const Json& json, const char* name, std::size_t otherwise) {
+    return json.contains(name) ? whole(json.at(name)) : otherwise;
+}
+
+const Json& list(const Json& json, const char* name) {
+    static const Json kNone = Json::array();
+    const Json& all = json.contains(name) ? json.at(name) : kNone;
+    must(all.is_array(), "no array");
+    return all;
+}
+
+const Json& element(const Json& json, const char* name, std::size_t index) {
+    const Json& value = list(json, name).at(index);
+    must(value.is_object(), "no object");
+    return value;
+}
+
+std::vector<double> numbers(const Json& json, const char* name, std::vector<double> otherwise) {
+    if (!json.contains(name)) {
+        return otherwise;
+    }
+    const Json& all = list(json, name);
+    must(all.size() == otherwise.size(), "another length");
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        must(all[i].is_number(), "no number");
+        otherwise[i] = all[i].get<double>();
+    }
+    return otherwise;
+}
+
+std::string percentDecoded(const std::string& text) {
+    std::string out;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] == '%') {
+            must(i + 2 < text.size() && std::isxdigit(text[i + 1]) && std::isxdigit(text[i + 2]), "%");
+            out += static_cast<char>(std::stoi(text.substr(i + 1, 2), nullptr, 16));
+            i += 2;
+        } else {
+            out += text[i];
+        }
+    }
+    return out;
+}
+
+std::string base64Decoded(const std::string& text) {
+    const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    must(text.size() % 4 == 0, "padding");
+    std::string out;
+    for (std::size_t i = 0; i < text.size(); i += 4) {
+        std::size_t group = 0;
+        std::size_t bytes = 3;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const bool end = text[i + k] == '=';
+            must(!end || (i + 4 == text.size() && k >= 2 && text.back() == '='), "an = within");
+            bytes -= end ? 1 : 0;
+            const std::size_t digit = end ? 0 : digits.find(text[i + k]);
+            must(digit != std::string::npos, "no digit of base64");
+            group = 64 * group + digit;
+        }
+        for (std::size_t k = 0; k < bytes; ++k) {
+            out += static_cast<char>(group >> (16 - 8 * k) & 255U);
+        }
+    }
+    return out;
+}
+
+std::string contentsOf(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    must(file.is_open() && std::filesystem::is_regular_file(path), "no file");
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+class Book {
+  public:
+    explicit Book(const std::filesystem::path& path) : path_(path) {
+        std::string text = contentsOf(path);
+        if (text.starts_with("glTF")) {
+            std::uint32_t header[5];
+            must(text.size() >= 20, "short");
+            std::memcpy(header, text.data(), 20);
+            must(header[1] == 2 && header[2] <= text.size() && header[4] == 0x4E4F534A &&
+                     header[3] <= header[2] - 20 && header[3] % 4 == 0,
+                 "header");
+            if (20 + header[3] < header[2]) {
+                std::uint32_t chunk[2];
+                must(28 + header[3] <= header[2], "chunk");
+                std::memcpy(chunk, text.data() + 20 + header[3], 8);
+                must(chunk[1] == 0x004E4942 && 28 + header[3] + chunk[0] == header[2], "chunk");
+                binary_ = text.substr(28 + header[3], chunk[0]);
+                has_binary_ = true;
+            }
+            text = text.substr(20, header[3]);
+        }
+        std::vector<std::set<std::string>> keys;
+        document_ = Json::parse(text, [&keys](int /*depth*/, Json::parse_event_t event, Json& parsed) {
+            if (event == Json::parse_event_t::object_start) {
+                keys.emplace_back();
+            } else if (event == Json::parse_event_t::object_end) {
+                keys.pop_back();
+            } else if (event == Json::parse_event_t::key) {
+                must(keys.back().insert(parsed.get<std::string>()).second, "a key twice");
+            }
+            return true;
+        });
+        must(document_.is_object(), "no document");
+    }
+
+    std::vector<Corners> read() {
+        const Json& asset = document_.at("asset");
+        must(asset.at("version").get<std::string>().starts_with("2."), "version");
+        must(!asset.contains("minVersion") || asset.at("minVersion") == "2.0", "minVersion");
+        for (const Json& name : list(document_, "extensionsRequired")) {
+            must(name == "KHR_mesh_quantization", "an extension");
+        }
+        countParents();
+        const std::size_t scene = whole(document_, "scene", 0);
+        std::set<std::size_t> roots;
+        for (const Json& root : list(element(document_, "scenes", scene), "nodes")) {
+            must(roots.insert(whole(root)).second && parents_.at(whole(root)) == 0, "a root");
+            visit(whole(root), [](const glm::dvec3& p) { return p; });
+        }
+        must(!triangles_.empty(), "no triangles");
+        return std::move(triangles_);
+    }
+
+  private:
+    void countParents() {
+        parents_.assign(list(document_, "nodes").size(), 0);
+        for (const Json& node : list(document_, "nodes")) {
+            must(node.is_object(), "no object");
+            for (const Json& child : list(node, "children")) {
+                must(++parents_.at(whole(child)) == 1, "two parents");
+            }
+        }
+    }
+
+    static Place placeOf(const Json& node) {
+        const std::vector<double> m =
+            numbers(node, "matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
+        const std::vector<double> t = numbers(node, "translation", {0, 0, 0});
+        const std::vector<double> q = numbers(node, "rotation", {0, 0, 0, 1});
+        const std::vector<double> s = numbers(node, "scale", {1, 1, 1});
+        const bool parts =
+            node.contains("translation") || node.contains("rotation") || node.contains("scale");
+        must(!node.contains("matrix") || !parts, "a matrix and more");
+        must(m[3] == 0 && m[7] == 0 && m[11] == 0 && m[15] == 1, "the last row");
+        must(std::abs(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1) < 1e-3, "no unit");
+        return [=](const glm::dvec3& p) {
+            const glm::dvec3 by = {m[0] * p.x + m[4] * p.y + m[8] * p.z + m[12],
+                                   m[1] * p.x + m[5] * p.y + m[9] * p.z + m[13],
+                                   m[2] * p.x + m[6] * p.y + m[10] * p.z + m[14]};
+            const glm::dvec3 scaled = by * glm::dvec3(s[0], s[1], s[2]);
+            const glm::dvec3 axis(q[0], q[1], q[2]);
+            const glm::dvec3 across = glm::cross(axis, scaled);
+            return scaled + 2.0 * (q[3] * across + glm::cross(axis, across)) + glm::dvec3(t[0], t[1], t[2]);
+        };
+    }
+
+    void visit(std::size_t index, const Place& above) {
+        const Json& node = element(document_, "nodes", index);
+        const Place own = placeOf(node);
+        const Place place = [above, own](const glm::dvec3& p) { return above(own(p)); };
+        if (node.contains("mesh")) {
+            const bool skinned = node.contains("skin");
+            if (skinned) {
+                element(document_, "skins", whole(node.at("skin")));
+            }
+            const Json& mesh = element(document_, "meshes", whole(node.at("mesh")));
+            for (const Json& primitive : list(mesh, "primitives")) {
+                addPrimitive(primitive, skinned ? Place([](const glm::dvec3& p) { return p; }) : place);
+            }
+        }
+        for (const Json& child : list(node, "children")) {
+            visit(whole(child), place);
+        }
+    }
+
+    void addPrimitive(const Json& primitive, const Place& place) {
+        const Json& attributes = primitive.at("attributes");
+        must(attributes.is_object(), "no attributes");
+        const std::size_t mode = whole(primitive, "mode", 4);
+        must(mode <= 6, "mode");
+        if (!attributes.contains("POSITION")) {
+            return;
+        }
+        const std::vector<double> flat = accessor(whole(attributes.at("POSITION")), "VEC3", 3);
+        std::vector<glm::dvec3> points;
+        for (std::size_t i = 0; i < flat.size(); i += 3) {
+            points.push_back(place({flat[i], flat[i + 1], flat[i + 2]}));
+        }
+        std::vector<std::size_t> corners;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            corners.push_back(i);
+        }
+        if (primitive.contains("indices")) {
+            corners.clear();
+            for (const double index : accessor(whole(primitive.at("indices")), "SCALAR", 1)) {
+                corners.push_back(static_cast<std::size_t>(index));
+                must(corners.back() < points.size(), "an index");
+            }
+        }
+        const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
+            triangles_.push_back({points[corners[a]], points[corners[b]], points[corners[c]]});
+        };
+        must(mode != 4 || corners.size() % 3 == 0, "a part of a triangle");
+        for (std::size_t i = 0; i + 2 < corners.size() && mode >= 4; i += mode == 4 ? 3 : 1) {
+            if (mode == 4) {
+                add(i, i + 1, i + 2);
+            } else if (mode == 5) {
+                add(i, i + (1 + i % 2), i + (2 - i % 2));
+            } else {
+                add(i + 1, i + 2, 0);
+            }
+        }
+    }
+
+    std::vector<double> accessor(std::size_t index, const char* type, std::size_t components) {
+        const Json& json = element(document_, "accessors", index);
+        must(json.at("type") == type, "type");
+        const std::size_t kind = whole(json.at("componentType"));
+        const std::size_t count = whole(json.at("count"));
+        const bool normalized = json.contains("normalized") && json.at("normalized").get<bool>();
+        must(components == 3 ? kind == 5120 || kind == 5121 || kind == 5122 || kind == 5123 || kind == 5126
+                             : kind == 5121 || kind == 5123 || kind == 5125,
+             "componentType");
+        must(!normalized || (components == 3 && kind != 5126), "normalized");
+        must(json.contains("bufferView") || json.contains("sparse"), "no data");
+        std::vector<double> values(count < 100000 ? count * components : throw std::runtime_error("count"));
+        if (json.contains("bufferView")) {
+            values = elements(json, kind, count, components, components == 3);
+        }
+        if (json.contains("sparse")) {
+            const Json& sparse = json.at("sparse");
+            const std::size_t replaced = whole(sparse.at("count"));
+            must(replaced > 0 && replaced <= count, "sparse count");
+            const std::size_t index_kind = whole(sparse.at("indices").at("componentType"));
+            must(index_kind == 5121 || index_kind == 5123 || index_kind == 5125, "sparse indices");
+            const auto where = elements(sparse.at("indices"), index_kind, replaced, 1, false);
+            const auto what = elements(sparse.at("values"), kind, replaced, components, false);
+            for (std::size_t i = 0; i < replaced; ++i) {
+                must((i == 0 || where[i] > where[i - 1]) && where[i] < static_cast<double>(count), "order");
+                for (std::size_t k = 0; k < components; ++k) {
+                    values[static_cast<std::size_t>(where[i]) * components + k] = what[i * components + k];
+                }
+            }
+        }
+        for (double& value : values) {
+            if (components == 1) {
+                must(value != (kind == 5121 ? 255.0 : kind == 5123 ? 65535.0 : 4294967295.0), "restart");
+            } else if (normalized) {
+                value = std::max(value / (kind == 5120   ? 127.0
+                                          : kind == 5121 ? 255.0
+                                          : kind == 5122 ? 32767.0
+                                                         : 65535.0),
+                                 -1.0);
+            }
+        }
+        return values;
+    }
+
+    std::vector<double> elements(const Json& owner, std::size_t kind, std::size_t count,
+                                 std::size_t components, bool strided) {
+        const Json& view = element(document_, "bufferViews", whole(owner.at("bufferView")));
+        must(!view.contains("extensions"), "an extension");
+        const std::size_t size = kind <= 5121 ? 1 : kind <= 5123 ? 2 : 4;
+        const std::size_t stride = whole(view, "byteStride", size * components);
+        must(stride >= size * components && (strided || stride == size * components), "stride");
+        const std::string buffer = bufferOf(whole(view.at("buffer")));
+        const std::size_t from = whole(view, "byteOffset", 0);
+        const std::size_t length = whole(view.at("byteLength"));
+        must(from + length <= buffer.size(), "a view behind its buffer");
+        const std::size_t offset = whole(owner, "byteOffset", 0);
+        must(count < 100000 && (count == 0 || offset + (count - 1) * stride + size * components <= length),
+             "an accessor behind its view");
+        std::vector<double> values;
+        for (std::size_t i = 0; i < count * components; ++i) {
+            const std::size_t at = from + offset + i / components * stride + i % components * size;
+            std::uint32_t bits = 0;
+            std::memcpy(&bits, buffer.data() + at, size);
+            float real = 0;
+            std::memcpy(&real, &bits, 4);
+            values.push_back(kind == 5126   ? static_cast<double>(real)
+                             : kind == 5120 ? static_cast<double>(static_cast<std::int8_t>(bits))
+                             : kind == 5122 ? static_cast<double>(static_cast<std::int16_t>(bits))
+                                            : static_cast<double>(bits));
+        }
+        return values;
+    }
+
+    std::string bufferOf(std::size_t index) {
+        const Json& buffer = element(document_, "buffers", index);
+        const std::size_t length = whole(buffer.at("byteLength"));
+        std::string bytes = binary_;
+        if (buffer.contains("uri")) {
+            const std::string uri = buffer.at("uri").get<std::string>();
+            const std::size_t comma = uri.find(";base64,");
+            if (uri.starts_with("data:")) {
+                must(comma != std::string::npos, "no base64");
+                bytes = base64Decoded(uri.substr(comma + 8));
+            } else {
+                must(!uri.empty() && uri.find(':') == std::string::npos, "a scheme");
+                const std::filesystem::path relative = percentDecoded(uri);
+                for (const auto& part : relative) {
+                    must(part != ".." && part != "/", "outside");
+                }
+                bytes = contentsOf(path_.parent_path() / relative);
+            }
+        } else {
+            must(has_binary_ && index == 0, "no bytes");
+        }
+        must(bytes.size() >= length, "a short buffer");
+        bytes.resize(length);
+        return bytes;
+    }
+
+    std::filesystem::path path_;
+    Json document_;
+    std::string binary_;
+    bool has_binary_ = false;
+    std::vector<int> parents_;
+    std::vector<Corners> triangles_;
+};
+
+}  // namespace
+
+std::vector<Corners> readGltfByTheBook(const std::filesystem::path& path) {
+    return Book(path).read();
+}
+
+}  // namespace relief::test

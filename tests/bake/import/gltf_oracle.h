@@ -1,0 +1,17 @@
+// Another reader of glTF, as short as the specification allows and for small files: what bake/import is compared with.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <vector>
+
+namespace relief::test {
+
+using Corners = std::array<glm::dvec3, 3>;
+
+/// All triangles of the file's scene, in the order in which the file has them.
+/// Throws std::exception for whatever is not as the specification says, as far as triangles hang on it.
+[[nodiscard]] std::vector<Corners> readGltfByTheBook(const std::filesystem::path& path);
+
+}  // namespace relief::test
