@@ -1,5 +1,6 @@
 #include "bake/import/import_text.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 
@@ -25,10 +26,14 @@ bool isBinaryStl(std::span<const std::byte> bytes) {
     return bytes.size() >= kStlHeader + sizeof(triangles) + std::uint64_t{triangles} * kStlTriangle;
 }
 
+bool isAsciiStl(std::span<const std::byte> bytes) {
+    std::string_view text = textOf(bytes);
+    return !isBinaryStl(bytes) && lowerCase(takeWord(text)) == "solid";
+}
+
 std::optional<std::string> stlFault(std::span<const std::byte> bytes) {
     std::string_view text = textOf(bytes);
-    std::string_view begin = text;
-    if (isBinaryStl(bytes) || lowerCase(std::string(takeWord(begin))) != "solid") {
+    if (!isAsciiStl(bytes)) {
         return std::nullopt;
     }
     // Some writers fill the last block with zeros.
@@ -38,6 +43,69 @@ std::optional<std::string> stlFault(std::span<const std::byte> bytes) {
         return std::nullopt;
     }
     return "it has no 'endsolid' at its end and was probably cut off; copy or export it again";
+}
+
+/// Follows the counts of an AC file.
+class AcCounts {
+  public:
+    /// \return whether everything is there that is announced.
+    bool hold(std::string_view text) {
+        static_cast<void>(takeLine(text));  // its version
+        while (!text.empty()) {
+            std::string_view line = takeLine(text);
+            const std::string_view word = takeWord(line);
+            const std::uint64_t count = parseUnsigned(takeWord(line)).value_or(0);
+            if (word == "OBJECT") {
+                ++objects_;
+                --kids_;
+            } else if (word == "kids") {
+                --objects_;  // each ends with them
+                kids_ += static_cast<std::int64_t>(std::min(count, kCountMax));
+            } else if (word == "data") {
+                text.remove_prefix(std::min<std::uint64_t>(text.size(), count));
+            } else if (word == "numsurf") {
+                surfaces_ += static_cast<std::int64_t>(std::min(count, kCountMax));
+            } else if (word == "SURF") {
+                --surfaces_;
+                ++open_surfaces_;
+            } else if (word == "refs" || word == "numvert") {
+                open_surfaces_ -= word == "refs" ? 1 : 0;
+                if (!takeLines(text, count, word == "numvert" ? 3 : 1)) {
+                    return false;
+                }
+            }
+        }
+        return objects_ == 0 && kids_ <= 0 && surfaces_ <= 0 && open_surfaces_ <= 0;
+    }
+
+  private:
+    static constexpr std::uint64_t kCountMax = 1'000'000'000;
+
+    static bool takeLines(std::string_view& text, std::uint64_t count, int words) {
+        for (std::uint64_t i = 0; i < count; ++i) {
+            std::string_view line = takeLine(text);
+            for (int k = 0; k < words; ++k) {
+                if (!parseDouble(takeWord(line))) {
+                    return false;
+                }
+            }
+        }
+        return true;
+    }
+
+    std::int64_t objects_ = 0;  // without their kids
+    std::int64_t kids_ = 1;     // announced; the world is one
+    std::int64_t surfaces_ = 0;
+    std::int64_t open_surfaces_ = 0;  // without their corners
+};
+
+std::optional<std::string> acFault(std::span<const std::byte> bytes) {
+    // Text in UTF-16 is assimp's own business.
+    const std::string_view text = textOf(bytes);
+    if (!text.starts_with("AC3D") || AcCounts().hold(text)) {
+        return std::nullopt;
+    }
+    return "it holds less than its counts say and was probably cut off; copy or export it again";
 }
 
 /// assimp takes the 0 before the x. (Words as nan it judges by itself.)
@@ -74,30 +142,40 @@ std::span<const std::byte> withoutByteOrderMark(std::span<const std::byte> bytes
     return textOf(bytes).starts_with("\xef\xbb\xbf") ? bytes.subspan(3) : bytes;
 }
 
-std::optional<std::string> otherFormat(std::string_view extension, std::span<const std::byte> bytes) {
-    const std::string_view text = textOf(bytes);
-    std::string_view format;
-    if (text.starts_with("glTF") && text.size() > 4 && text[4] == 2) {  // and its version, binary
-        format = "glb";
-    } else if (text.starts_with("ply\n") || text.starts_with("ply\r")) {
-        format = "ply";
-    } else if (text.starts_with("Kaydara FBX Binary")) {
-        format = "fbx";
-    } else if (extension == "glb" && trimmed(text.substr(0, 64)).starts_with('{')) {
-        format = "gltf";
+std::optional<std::vector<std::byte>> lowerCaseStl(std::string_view extension,
+                                                   std::span<const std::byte> bytes) {
+    std::string_view text = textOf(bytes);
+    if (extension != "stl" || !isAsciiStl(bytes)) {
+        return std::nullopt;
     }
-    return format.empty() || format == extension ? std::nullopt : std::optional(std::string(format));
+    std::vector<std::byte> lower(bytes.begin(), bytes.end());
+    bool changed = false;
+    while (!text.empty()) {
+        std::string_view line = takeLine(text);
+        const auto begin = static_cast<std::size_t>(line.data() - textOf(bytes).data());
+        std::string_view rest = line;
+        const std::string word = lowerCase(takeWord(rest));
+        // A name follows these two.
+        const bool named = word == "solid" || word == "endsolid";
+        for (std::size_t i = 0; i < line.size() - (named ? rest.size() : 0); ++i) {
+            if (line[i] >= 'A' && line[i] <= 'Z') {
+                lower[begin + i] = static_cast<std::byte>(line[i] - 'A' + 'a');
+                changed = true;
+            }
+        }
+    }
+    return changed ? std::optional(std::move(lower)) : std::nullopt;
 }
 
 std::optional<std::string> textFault(std::string_view extension, std::span<const std::byte> bytes) {
-    if (textOf(bytes).starts_with("\x1f\x8b")) {
-        return "it is packed by gzip; unpack it first (gunzip)";
-    }
     if (extension == "stl") {
         return stlFault(bytes);
     }
     if (extension == "obj") {
         return objFault(bytes);
+    }
+    if (extension == "ac") {
+        return acFault(bytes);
     }
     return std::nullopt;
 }

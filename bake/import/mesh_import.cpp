@@ -17,6 +17,7 @@
 #include "bake/import/assimp_io.h"
 #include "bake/import/assimp_ply.h"
 #include "bake/import/import_files.h"
+#include "bake/import/import_format.h"
 #include "bake/import/import_gltf.h"
 #include "bake/import/import_obj.h"
 #include "bake/import/import_parts.h"
@@ -182,6 +183,9 @@ Result<const aiScene*> readScene(const ImportJob& job, ImportFiles& files, const
                         "export it again");
     }
     parts = partsOfFile(job, scene);
+    if (job.extension == "obj" && parts.vertices == 0) {
+        return unreadable(job, "it has no vertices, and is probably no OBJ file", files);
+    }
     if (const std::optional<std::string> refusal = partsRefusal(parts)) {
         return fail(ErrorCode::kInvalidInput, "cannot read the mesh " + job.shown + ": " + *refusal);
     }
@@ -305,11 +309,16 @@ Result<TriangleMesh> importRaw(const ImportJob& job) {
     }
     ImportJob unmarked = job;
     unmarked.bytes = withoutByteOrderMark(job.bytes);
+    if (const std::optional<std::string> stranger = noMeshAtAll(job.extension, job.bytes)) {
+        return fail(ErrorCode::kInvalidInput, "cannot read the mesh " + job.shown + ": " + *stranger);
+    }
     const std::optional<std::string> format = otherFormat(job.extension, unmarked.bytes);
     if (format) {
         unmarked.file_name += "." + *format;
         unmarked.extension = *format;
     }
+    const std::optional<std::vector<std::byte>> lower = lowerCaseStl(unmarked.extension, unmarked.bytes);
+    unmarked.bytes = lower ? std::span<const std::byte>(*lower) : unmarked.bytes;
     Import import{unmarked, std::nullopt};
     if (const int failed = retryTransient([&] { return startOnDeepStack(import); })) {
         return fail(ErrorCode::kFailure,

@@ -13,8 +13,8 @@ namespace relief {
 
 struct EmbreeMesh {
     struct Release {
-        void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-        void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+        void operator()(RTCDevice released) const { rtcReleaseDevice(released); }
+        void operator()(RTCScene released) const { rtcReleaseScene(released); }
         void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
     };
 

@@ -4,12 +4,31 @@
 #include <cmath>
 #include <limits>
 
+#include "formats/base/text.h"
+
 namespace relief {
 namespace {
 
 // Object units. Squares of map coordinates and the scales of a map stay within a float's range.
 constexpr float kCoordinateMax = 1e15F;
 constexpr float kSizeMin = 1e-15F;
+
+/// Where coordinates are as large, whole triangles may fall into one point.
+constexpr float kFar = 1e6F;
+
+tl::unexpected<Error> noArea(const TriangleMesh& mesh) {
+    float farthest = 0.0F;
+    for (const glm::vec3& p : mesh.positions) {
+        farthest = std::max({farthest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    }
+    const float step = std::nextafter(farthest, 2.0F * farthest) - farthest;
+    return fail(
+        ErrorCode::kInvalidInput,
+        mesh.name + ": no triangle has an area; " +
+            (farthest >= kFar ? "its coordinates reach " + shortest(farthest) + ", where floats are " +
+                                    shortest(step) + " apart: move it to the origin"
+                              : "export the surface as polygons, not as points or lines"));
+}
 
 }  // namespace
 
@@ -48,9 +67,7 @@ Result<TriangleMesh> finishMesh(TriangleMesh mesh) {
     mesh.triangles.resize(kept);
     mesh.marks.resize(std::min(kept, mesh.marks.size()));
     if (kept == 0) {
-        return fail(
-            ErrorCode::kInvalidInput,
-            mesh.name + ": no triangle has an area; export the surface as polygons, not as points or lines");
+        return noArea(mesh);
     }
 
     constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();

@@ -1,0 +1,59 @@
+// glTF and GLB: whatever the bytes, triangles of positions that exist, or one line that names the file and a cure.
+#include <algorithm>
+#include <span>
+#include <string>
+
+#include "bake/import/import_gltf.h"
+#include "tests/fuzz/target.h"
+
+namespace {
+
+constexpr std::uint64_t kTriangles = 10'000;
+
+bool isLine(const std::string& text) {
+    return text.find_first_of(std::string_view("\n\r\x1b\0", 4)) == std::string::npos;
+}
+
+void mustBeTriangles(const relief::TriangleMesh& mesh, std::size_t names) {
+    mustHold(!mesh.triangles.empty() && mesh.triangles.size() <= kTriangles, "a mesh has some triangles");
+    mustHold(mesh.marks.size() == (names > 0 ? mesh.triangles.size() : 0),
+             "each triangle has a mark, or none has");
+    for (const glm::uvec3& t : mesh.triangles) {
+        mustHold(std::max({t.x, t.y, t.z}) < mesh.positions.size(), "corners exist");
+    }
+    for (const std::uint8_t mark : mesh.marks) {
+        mustHold(mark <= names, "marks are of names");
+    }
+    for (const std::string& warning : mesh.warnings) {
+        mustHold(isLine(warning), "a warning is one line");
+    }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string_view text(reinterpret_cast<const char*>(data), size);
+    if (text.find("draco") != std::string_view::npos) {
+        return 0;  // the library is not what is looked at
+    }
+    relief::ImportJob job;
+    job.shown = "'m.gltf'";
+    job.file_name = "m.gltf";
+    job.extension = "gltf";
+    job.bytes = std::as_bytes(std::span(data, size));
+    job.triangle_max = kTriangles;
+    for (const bool named : {false, true}) {
+        job.options.names = named ? std::vector<std::string>{"paint"} : std::vector<std::string>();
+        relief::ImportFiles files(-1, job.file_name, job.bytes);
+        const relief::Result<relief::TriangleMesh> mesh = readGltf(job, files, glm::dmat3(1.0), {});
+        if (mesh) {
+            mustBeTriangles(*mesh, job.options.names.size());
+            continue;
+        }
+        const std::string& words = mesh.error().message;
+        mustHold(words.find("'m.gltf'") != std::string::npos, "an error names the file");
+        mustHold(isLine(words), "an error is one line");
+        mustHold(named || words.find("; ") != std::string::npos, "an error names a cure");
+    }
+    return 0;
+}
