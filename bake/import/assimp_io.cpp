@@ -54,11 +54,11 @@ class MemoryStream final : public Assimp::IOStream {
 
 thread_local std::vector<std::string>* errors_of_thread = nullptr;
 
-/// Words of the warnings of its readers (BLEND, LWO, NFF, FBX, DXF, ASE, glTF) that a part of the surface is left out.
-constexpr std::array<std::string_view, 10> kLeftOut = {
-    "type is unsupported",     "unsupported primitive chunk", "unknown polygon type", "unsupported ID",
-    "unrecognized geometry",   "INSERT within a BLOCK",       "more than 4 indices",  "not enough vertices",
-    "unexpected vertex setup", "faces were dropped"};
+/// Words of the warnings of its readers (BLEND, LWO, NFF, FBX, DXF, ASE) that a part of the surface is left out.
+constexpr std::array<std::string_view, 9> kLeftOut = {
+    "type is unsupported", "unsupported primitive chunk", "unknown polygon type",
+    "unsupported ID",      "unrecognized geometry",       "INSERT within a BLOCK",
+    "more than 4 indices", "not enough vertices",         "unexpected vertex setup"};
 
 class Listener final : public Assimp::Logger {
   public:

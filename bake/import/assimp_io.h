@@ -11,7 +11,7 @@
 
 namespace relief {
 
-/// Files for assimp: the mesh from memory, and whatever it refers to (glTF buffers, material libraries) as ImportFiles
+/// Files for assimp: the mesh from memory, and whatever it refers to (material libraries) as ImportFiles
 /// allows. Nothing can be written.
 class ReadOnlyFiles final : public Assimp::IOSystem {
   public:

@@ -109,6 +109,11 @@ bool isObj(std::string_view text) {
     return vertices > 0;
 }
 
+/// Of which one comes first in the JSON, or close behind that.
+constexpr std::array<std::string_view, 7> kGltfKeys = {"\"asset\"",         "\"accessors\"", "\"buffers\"",
+                                                       "\"scenes\"",        "\"meshes\"",    "\"nodes\"",
+                                                       "\"extensionsUsed\""};
+
 /// By what a text says within its first bytes.
 std::string_view textFormat(std::string_view text) {
     std::string_view rest = text;
@@ -122,7 +127,9 @@ std::string_view textFormat(std::string_view text) {
     if (text.find("<COLLADA") != std::string_view::npos) {
         return "dae";
     }
-    if (word.starts_with('{') && text.find("\"asset\"") != std::string_view::npos) {
+    if (word.starts_with('{') &&
+        std::any_of(kGltfKeys.begin(), kGltfKeys.end(),
+                    [text](std::string_view key) { return text.find(key) != std::string_view::npos; })) {
         return "gltf";
     }
     return isObj(text) ? "obj" : "";

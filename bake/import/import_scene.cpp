@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "bake/import/import_instances.h"
-#include "formats/base/hash.h"
 #include "formats/base/text.h"
 
 namespace relief {
@@ -173,18 +172,12 @@ MeshParts partsOf(const aiScene& scene) {
     MeshParts parts;
     parts.meshes = scene.mNumMeshes;
     parts.unplaced = unplacedMeshes(scene).size();
-    // The meshes of a glTF file often share one list of vertices, of which each uses a part; assimp gives each a copy.
-    std::map<std::string, std::vector<std::uint8_t>> uses;
-    for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
-        const aiMesh& mesh = *scene.mMeshes[m];
-        if (!mesh.HasPositions()) {
+    for (const aiMesh* mesh : std::span(scene.mMeshes, scene.mNumMeshes)) {
+        if (!mesh->HasPositions()) {
             continue;
         }
-        const std::span vertices(mesh.mVertices, mesh.mNumVertices);
-        std::vector<std::uint8_t>& used =
-            uses[scene.mNumMeshes == 1 ? std::string() : xxh3_128Hex(std::as_bytes(vertices))];
-        used.resize(vertices.size());
-        for (const aiFace& face : std::span(mesh.mFaces, mesh.mNumFaces)) {
+        std::vector<std::uint8_t> used(mesh->mNumVertices, 0);
+        for (const aiFace& face : std::span(mesh->mFaces, mesh->mNumFaces)) {
             const bool polygon = face.mNumIndices >= 3;
             parts.polygons += polygon ? 1 : 0;
             parts.lines += face.mNumIndices == 2 ? 1 : 0;
@@ -193,8 +186,6 @@ MeshParts partsOf(const aiScene& scene) {
                 used[index] |= polygon ? kByPolygon : kByOther;
             }
         }
-    }
-    for (const auto& [hash, used] : uses) {
         parts.vertices += used.size();
         for (const std::uint8_t use : used) {
             parts.unused += (use & kByPolygon) == 0 ? 1 : 0;

@@ -22,7 +22,7 @@ namespace relief {
 /// Warns of what the scene holds that a rigid surface is not: bones, and targets of a morph.
 void warnOfScene(const aiScene& scene, std::vector<std::string>& warnings);
 
-/// \param scene  one whose indices exist. Vertices that several meshes share count once.
+/// \param scene  one whose indices exist.
 [[nodiscard]] MeshParts partsOf(const aiScene& scene);
 
 /// What becomes of meshes that no node places.
