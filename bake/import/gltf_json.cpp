@@ -42,8 +42,8 @@ class Strictness {
             case Event::key:
                 open_.back().key = parsed.get<std::string>();
                 if (!open_.back().keys.insert(open_.back().key).second) {
-                    throw Refusal{{ErrorCode::kInvalidInput,
-                                   "its JSON has the key " + path() + " twice in one object"}};
+                    throw Refusal{{ErrorCode::kInvalidInput, "its JSON has the key " + path() +
+                                                                 " twice in one object; export it again"}};
                 }
                 break;
             case Event::value:
@@ -119,7 +119,7 @@ Result<Json> parseGltfJson(std::string_view text) {
     } catch (const Json::parse_error& error) {
         return invalidInput("it is no valid JSON (" + placeInText(text, error.byte) + ")");
     } catch (const Json::exception& error) {  // a number beyond all numbers
-        return invalidInput("it is no valid JSON: " + cleanUtf8(error.what(), 200));
+        return invalidInput("it is no valid JSON: " + cleanUtf8(error.what(), 200) + "; export it again");
     }
 }
 

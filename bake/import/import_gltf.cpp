@@ -47,7 +47,8 @@ Result<void> checkVersion(const GltfValue& document) {
     for (const auto& [text, minor_max] : {std::pair(*version, any), std::pair(least, std::uint64_t{0})}) {
         const auto number = versionOf(text);
         if (!number) {
-            return asset->wrong("has '" + cleanUtf8(text, 20) + "' where a version belongs");
+            return asset->wrong("has '" + cleanUtf8(text, 20) +
+                                "' where a version belongs; save it as glTF 2.0");
         }
         if (number->first != 2 || number->second > minor_max) {
             return fail(ErrorCode::kUnsupported,
@@ -235,6 +236,7 @@ Result<TriangleMesh> readGltf(const ImportJob& job, ImportFiles& files, const gl
     GltfReader reader(job, files, linear);
     if (const Result<void> opened = reader.open(); !opened) {
         const std::string& what = opened.error().message;
+        // What quotes the file has a cure of its own.
         const bool cured = what.find(';') != std::string::npos;
         return fail(opened.error().code, "cannot read the mesh " + job.shown + ": " + what +
                                              (cured ? "" : "; repair the file or export it again"));
