@@ -67,9 +67,14 @@ Result<void> checkExtensions(const GltfValue& document, std::vector<std::string>
                                                      "', which is not read; export it without");
         }
     }
-    const std::vector<std::string> used = RELIEF_TRY(document.texts("extensionsUsed"));
-    if (std::find(used.begin(), used.end(), "EXT_mesh_gpu_instancing") != used.end()) {
-        warnings.emplace_back("instances by EXT_mesh_gpu_instancing are left out; export them as nodes");
+    // What changes the surface, and may be passed over all the same.
+    for (const std::string& name : RELIEF_TRY(document.texts("extensionsUsed"))) {
+        if (name == "EXT_mesh_gpu_instancing") {
+            warnings.emplace_back("instances by EXT_mesh_gpu_instancing are left out; export them as nodes");
+        } else if (name == "KHR_node_visibility") {
+            warnings.emplace_back(
+                "nodes that KHR_node_visibility hides are baked too; export it without them");
+        }
     }
     return {};
 }

@@ -1,10 +1,13 @@
-// PLY meshes and OBJ statements: whatever the bytes, polygons whose corners exist, or one line that names the file.
+// PLY meshes, OBJ statements, and what a file is: whatever the bytes, polygons whose corners exist, or one line that names
+// the file.
 #include <numeric>
 #include <span>
 #include <string>
 
+#include "bake/import/import_format.h"
 #include "bake/import/import_obj.h"
 #include "bake/import/import_ply.h"
+#include "bake/import/import_text.h"
 #include "tests/fuzz/target.h"
 
 namespace {
@@ -28,10 +31,25 @@ void mustBePolygons(const relief::PlyMesh& mesh) {
     }
 }
 
+/// Everything that is said of a file before a reader has it.
+void mustBeJudged(std::span<const std::byte> bytes) {
+    for (const char* extension : {"obj", "stl", "ac", "glb", "3mf"}) {
+        for (const auto& words :
+             {relief::noMeshAtAll(extension, bytes), relief::textFault(extension, bytes)}) {
+            mustHold(!words || (isLine(*words) && words->find("; ") != std::string::npos),
+                     "a fault is one line");
+        }
+        mustHold(relief::otherFormat(extension, bytes) != extension, "another format is another");
+        const auto lower = relief::lowerCaseStl(extension, bytes);
+        mustHold(!lower || lower->size() == bytes.size(), "lower case is as long");
+    }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const auto bytes = std::as_bytes(std::span(data, size));
+    mustBeJudged(bytes);
     const relief::MeshParts parts = relief::objPartsOf(bytes);
     mustHold(parts.loose <= parts.unused && parts.unused <= parts.vertices, "loose vertices are unused ones");
     const relief::Result<relief::PlyMesh> mesh = relief::readPly(bytes, "'m.ply'");

@@ -234,6 +234,14 @@ TEST(ImportGltf, VersionsAndExtensions) {
     expectError(load(asset(R"("version":"2.1","minVersion":"2.1")")), ErrorCode::kUnsupported,
                 "version '2.1'");
     expectError(load(asset(R"("version":"3.0")")), ErrorCode::kUnsupported, "version '3.0'");
+    for (const std::string name : {"EXT_mesh_gpu_instancing", "KHR_node_visibility"}) {
+        const Result<TriangleMesh> mesh = loadParts({.more = R"("extensionsUsed":[")" + name + "\"],"});
+        ASSERT_TRUE(mesh) << mesh.error().message;
+        ASSERT_EQ(mesh->warnings.size(), 1U);
+        EXPECT_NE(mesh->warnings[0].find(name), std::string::npos);
+        expectError(loadParts({.more = R"("extensionsRequired":[")" + name + "\"],"}),
+                    ErrorCode::kUnsupported, name);
+    }
     expectWrong(asset(R"("version":2.0)"), "asset.version is no string");
     expectWrong(asset(R"("version":"two")"), "asset has 'two' where a version belongs");
     expectWrong(asset(R"("version":"2.0","minVersion":[])"), "asset.minVersion");
