@@ -18,6 +18,9 @@ constexpr std::uint64_t kUnsignedInt = 5125;
 constexpr std::uint64_t kFloat = 5126;
 constexpr std::array kPositionTypes = {kByte, kUnsignedByte, kShort, kUnsignedShort, kFloat};
 constexpr std::array kIndexTypes = {kUnsignedByte, kUnsignedShort, kUnsignedInt};
+constexpr std::array kJointTypes = {kUnsignedByte, kUnsignedShort};
+constexpr std::array kWeightTypes = {kUnsignedByte, kUnsignedShort, kFloat};
+constexpr std::array kMatrixTypes = {kFloat};
 
 std::uint64_t sizeOf(std::uint64_t type) {
     return type == kByte || type == kUnsignedByte ? 1 : type == kShort || type == kUnsignedShort ? 2 : 4;
@@ -170,6 +173,31 @@ Result<void> forElements(const GltfValue& accessor, GltfBuffers& buffers, const 
     return {};
 }
 
+/// All components of all elements.
+Result<std::vector<float>> readFloats(const GltfValue& accessor, GltfBuffers& buffers, const Layout& layout,
+                                      std::uint64_t count_max) {
+    std::vector<float> values;
+    const auto load = [&](const std::byte* at, std::uint64_t component) {
+        return loadComponent(at + component * sizeOf(layout.type), layout.type, layout.normalized);
+    };
+    const auto base = [&](const Elements& elements) {
+        values.reserve(layout.count * layout.components);
+        for (std::uint64_t i = 0; i < layout.count; ++i) {
+            for (std::uint64_t k = 0; k < layout.components; ++k) {
+                values.push_back(load(elements.at(i), k));
+            }
+        }
+    };
+    const auto replace = [&](std::uint64_t index, const std::byte* at) {
+        values.resize(layout.count * layout.components, 0.0F);
+        for (std::uint64_t k = 0; k < layout.components; ++k) {
+            values[index * layout.components + k] = load(at, k);
+        }
+    };
+    RELIEF_TRY(forElements(accessor, buffers, layout, count_max, base, replace));
+    return values;
+}
+
 }  // namespace
 
 Result<std::uint64_t> accessorCount(const GltfValue& accessor) {
@@ -222,6 +250,30 @@ Result<std::vector<std::uint32_t>> readIndices(const GltfValue& accessor, GltfBu
                               ", which is not allowed: it means a restart; export it with wider indices");
     }
     return indices;
+}
+
+Result<std::vector<float>> readJoints(const GltfValue& accessor, GltfBuffers& buffers,
+                                      std::uint64_t count_max) {
+    const Layout layout = RELIEF_TRY(layoutOf(accessor, "VEC4", 4, kJointTypes));
+    if (layout.normalized) {
+        return accessor.wrong("is normalized, which numbers of joints are not");
+    }
+    return readFloats(accessor, buffers, layout, count_max);
+}
+
+Result<std::vector<float>> readWeights(const GltfValue& accessor, GltfBuffers& buffers,
+                                       std::uint64_t count_max) {
+    const Layout layout = RELIEF_TRY(layoutOf(accessor, "VEC4", 4, kWeightTypes));
+    if (layout.normalized != (layout.type != kFloat)) {
+        return accessor.wrong("is not normalized, as weights of whole numbers are");
+    }
+    return readFloats(accessor, buffers, layout, count_max);
+}
+
+Result<std::vector<float>> readMatrices(const GltfValue& accessor, GltfBuffers& buffers,
+                                        std::uint64_t count_max) {
+    const Layout layout = RELIEF_TRY(layoutOf(accessor, "MAT4", 16, kMatrixTypes));
+    return readFloats(accessor, buffers, layout, count_max);
 }
 
 }  // namespace relief

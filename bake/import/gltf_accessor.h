@@ -25,4 +25,14 @@ namespace relief {
 [[nodiscard]] Result<std::vector<std::uint32_t>> readIndices(const GltfValue& accessor, GltfBuffers& buffers,
                                                              std::uint64_t count_max);
 
+/// Four for each vertex, as whole numbers. Errors: kInvalidInput, kUnsupported, kLimit.
+[[nodiscard]] Result<std::vector<float>> readJoints(const GltfValue& accessor, GltfBuffers& buffers,
+                                                    std::uint64_t count_max);
+/// Four for each vertex. May be no numbers. Errors: kInvalidInput, kUnsupported, kLimit.
+[[nodiscard]] Result<std::vector<float>> readWeights(const GltfValue& accessor, GltfBuffers& buffers,
+                                                     std::uint64_t count_max);
+/// Sixteen for each matrix, by columns. May be no numbers. Errors: kInvalidInput, kUnsupported, kLimit.
+[[nodiscard]] Result<std::vector<float>> readMatrices(const GltfValue& accessor, GltfBuffers& buffers,
+                                                      std::uint64_t count_max);
+
 }  // namespace relief

@@ -38,6 +38,16 @@ glm::uvec3 cornersOf(std::uint64_t mode, std::uint32_t triangle) {
     }
 }
 
+GltfInfluences influencesOf(const GltfInfluences& all, const std::vector<std::uint32_t>& vertices) {
+    GltfInfluences some{all.per_vertex, {}};
+    some.all.reserve(all.per_vertex * vertices.size());
+    for (const std::uint32_t vertex : vertices) {
+        const auto from = all.all.begin() + static_cast<std::ptrdiff_t>(all.per_vertex * vertex);
+        some.all.insert(some.all.end(), from, from + static_cast<std::ptrdiff_t>(all.per_vertex));
+    }
+    return some;
+}
+
 }  // namespace
 
 void GltfMeshes::warn(const std::string& text) {
@@ -46,18 +56,18 @@ void GltfMeshes::warn(const std::string& text) {
     }
 }
 
-Result<GltfMesh> GltfMeshes::read(const GltfValue& mesh) {
+Result<GltfMesh> GltfMeshes::read(const GltfValue& mesh, bool skinned) {
     GltfMesh out;
     out.name = RELIEF_TRY(mesh.text("name")).value_or("");
     const GltfList primitives = RELIEF_TRY(mesh.objects("primitives"));
     for (std::size_t i = 0; i < primitives.size(); ++i) {
         const GltfValue place = RELIEF_TRY(primitives.at(i));
-        RELIEF_TRY(readPrimitive(place, out));
+        RELIEF_TRY(readPrimitive(place, skinned, out));
     }
     return out;
 }
 
-Result<void> GltfMeshes::readPrimitive(const GltfValue& place, GltfMesh& mesh) {
+Result<void> GltfMeshes::readPrimitive(const GltfValue& place, bool skinned, GltfMesh& mesh) {
     const std::optional<GltfValue> attributes = RELIEF_TRY(place.object("attributes"));
     const std::uint64_t mode = RELIEF_TRY(place.whole("mode")).value_or(kTriangles);
     if (!attributes || mode > kFan) {
@@ -92,7 +102,12 @@ Result<void> GltfMeshes::readPrimitive(const GltfValue& place, GltfMesh& mesh) {
         RELIEF_TRY(readDracoTriangles(place, *draco, count, out));
     } else {
         Vertices* const used = RELIEF_TRY(vertices(accessor, *position));
-        RELIEF_TRY(readTriangles(place, mode, *used, out));
+        const std::vector<std::uint32_t> kept = RELIEF_TRY(readTriangles(place, mode, *used, out));
+        if (skinned) {
+            const std::optional<GltfInfluences> all =
+                RELIEF_TRY(readInfluences(document_, *attributes, *buffers_, used->positions.size()));
+            out.influences = all ? std::optional(influencesOf(*all, kept)) : std::nullopt;
+        }
     }
     if (!out.triangles.empty()) {
         mesh.primitives.push_back(std::move(out));
@@ -129,8 +144,8 @@ Result<void> GltfMeshes::countTriangles(const GltfValue& place, std::uint64_t co
     return {};
 }
 
-Result<void> GltfMeshes::readTriangles(const GltfValue& place, std::uint64_t mode, Vertices& vertices,
-                                       GltfPrimitive& out) {
+Result<std::vector<std::uint32_t>> GltfMeshes::readTriangles(const GltfValue& place, std::uint64_t mode,
+                                                             Vertices& vertices, GltfPrimitive& out) {
     // Without indices, the vertices as they come.
     std::optional<std::vector<std::uint32_t>> indices;
     std::uint64_t corners = vertices.positions.size();
@@ -157,7 +172,7 @@ Result<void> GltfMeshes::readTriangles(const GltfValue& place, std::uint64_t mod
     parts_.points += mode == kPoints ? corners : 0;
     parts_.lines += surface || mode == kPoints ? 0 : linesOf(mode, corners);
     if (!surface) {
-        return {};
+        return std::vector<std::uint32_t>();
     }
     if (mode == kTriangles && corners % 3 != 0) {
         return place.wrong("has " + std::to_string(corners) + " corners, which is no multiple of 3");
@@ -171,11 +186,11 @@ Result<void> GltfMeshes::readTriangles(const GltfValue& place, std::uint64_t mod
         const glm::uvec3 corner = cornersOf(mode, i);
         triangles.emplace_back(vertexOf(corner.x), vertexOf(corner.y), vertexOf(corner.z));
     }
-    useOnly(vertices, std::move(triangles), out);
-    return {};
+    return useOnly(vertices, std::move(triangles), out);
 }
 
-void GltfMeshes::useOnly(Vertices& vertices, std::vector<glm::uvec3> triangles, GltfPrimitive& out) {
+std::vector<std::uint32_t> GltfMeshes::useOnly(const Vertices& vertices, std::vector<glm::uvec3> triangles,
+                                               GltfPrimitive& out) {
     new_index_.resize(std::max(new_index_.size(), vertices.positions.size()), kUnused);
     std::vector<std::uint32_t> used;
     for (const glm::uvec3& t : triangles) {
@@ -199,6 +214,7 @@ void GltfMeshes::useOnly(Vertices& vertices, std::vector<glm::uvec3> triangles, 
         new_index_[vertex] = kUnused;
     }
     out.triangles = std::move(triangles);
+    return used;
 }
 
 Result<void> GltfMeshes::readDracoTriangles(const GltfValue& place, const GltfValue& draco,

@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <map>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
 
 #include "bake/import/gltf_buffers.h"
 #include "bake/import/gltf_json.h"
+#include "bake/import/gltf_skin.h"
 #include "bake/import/import_parts.h"
 #include "formats/base/result.h"
 
@@ -17,9 +19,10 @@ namespace relief {
 
 /// The triangles of a primitive, and the positions that they use.
 struct GltfPrimitive {
-    std::vector<glm::vec3> positions;   ///< may be no numbers
-    std::vector<glm::uvec3> triangles;  ///< of positions
-    std::string material;               ///< its name; "" for none
+    std::vector<glm::vec3> positions;          ///< may be no numbers
+    std::vector<glm::uvec3> triangles;         ///< of positions
+    std::string material;                      ///< its name; "" for none
+    std::optional<GltfInfluences> influences;  ///< of these positions; read only where a skin asks for them
 };
 
 struct GltfMesh {
@@ -33,8 +36,8 @@ class GltfMeshes {
     GltfMeshes(const GltfValue& document, GltfBuffers& buffers, std::uint64_t triangle_max)
         : document_(document), buffers_(&buffers), triangle_max_(triangle_max) {}
 
-    /// Reads a mesh. Errors: kInvalidInput, kUnsupported, kLimit.
-    [[nodiscard]] Result<GltfMesh> read(const GltfValue& mesh);
+    /// Reads a mesh. \param skinned  whether a skin asks for it. Errors: kInvalidInput, kUnsupported, kLimit.
+    [[nodiscard]] Result<GltfMesh> read(const GltfValue& mesh, bool skinned);
 
     /// What those that were read hold; `meshes` and `unplaced` are not set.
     [[nodiscard]] MeshParts parts() const;
@@ -48,16 +51,18 @@ class GltfMeshes {
         std::vector<glm::vec3> positions;
         std::vector<std::uint8_t> uses;
     };
-    struct Primitive;  // as the document has it
 
-    Result<void> readPrimitive(const GltfValue& place, GltfMesh& mesh);
+    Result<void> readPrimitive(const GltfValue& place, bool skinned, GltfMesh& mesh);
     Result<Vertices*> vertices(const GltfValue& accessor, std::uint64_t index);
-    Result<void> readTriangles(const GltfValue& place, std::uint64_t mode, Vertices& vertices,
-                               GltfPrimitive& out);
+    /// \return the vertices that become out.positions.
+    Result<std::vector<std::uint32_t>> readTriangles(const GltfValue& place, std::uint64_t mode,
+                                                     Vertices& vertices, GltfPrimitive& out);
     Result<void> readDracoTriangles(const GltfValue& place, const GltfValue& draco, std::uint64_t position,
                                     GltfPrimitive& out);
     Result<void> countTriangles(const GltfValue& place, std::uint64_t count);
-    void useOnly(Vertices& vertices, std::vector<glm::uvec3> triangles, GltfPrimitive& out);
+    /// \return the vertices that become out.positions.
+    std::vector<std::uint32_t> useOnly(const Vertices& vertices, std::vector<glm::uvec3> triangles,
+                                       GltfPrimitive& out);
     void warn(const std::string& text);
 
     GltfValue document_;

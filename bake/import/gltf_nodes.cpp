@@ -23,16 +23,6 @@ glm::dmat3 rotationOf(const glm::dvec3& v, double w) {
             {2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)}};
 }
 
-Result<Transform> matrixTransform(const GltfValue& node, const std::array<float, 16>& m) {
-    for (const std::size_t i : {3, 7, 11, 15}) {
-        if (!(std::abs(m.at(i) - (i == 15 ? 1.0F : 0.0F)) <= kRowTolerance)) {
-            return node.wrong("has a matrix whose last row is not 0 0 0 1 (is it transposed?)");
-        }
-    }
-    return Transform{glm::dmat3(m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]),
-                     {m[12], m[13], m[14]}};
-}
-
 Result<Transform> transformOf(const GltfValue& node) {
     std::array<float, 16> matrix{};
     std::array<float, 3> translation{};
@@ -46,7 +36,9 @@ Result<Transform> transformOf(const GltfValue& node) {
         if (moved || turned || scaled) {
             return node.wrong("has a matrix and a translation, rotation or scale; only one may be");
         }
-        return matrixTransform(node, matrix);
+        const std::optional<Transform> transform = affine(matrix);
+        return transform ? Result<Transform>(*transform)
+                         : node.wrong("has a matrix whose last row is not 0 0 0 1 (is it transposed?)");
     }
     const double length =
         std::sqrt(double{q[0]} * q[0] + double{q[1]} * q[1] + double{q[2]} * q[2] + double{q[3]} * q[3]);
@@ -73,7 +65,7 @@ Result<void> readMesh(const GltfValue& document, const GltfValue& place, GltfNod
     if (const std::optional<std::uint64_t> skin = RELIEF_TRY(place.whole("skin"))) {
         const GltfList skins = RELIEF_TRY(document.objects("skins"));
         RELIEF_TRY(skins.named(*skin, place, "skin"));
-        node.skinned = node.mesh.has_value();
+        node.skin = node.mesh ? skin : std::nullopt;
     }
     return {};
 }
@@ -110,6 +102,24 @@ Result<void> setParents(std::vector<GltfNode>& nodes) {
 }
 
 }  // namespace
+
+std::optional<Transform> affine(std::span<const float> m) {
+    for (const std::size_t i : {3U, 7U, 11U, 15U}) {
+        if (!(std::abs(m[i] - (i == 15 ? 1.0F : 0.0F)) <= kRowTolerance)) {
+            return std::nullopt;
+        }
+    }
+    return Transform{glm::dmat3(m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]),
+                     {m[12], m[13], m[14]}};
+}
+
+Transform placeOf(const std::vector<GltfNode>& nodes, std::uint64_t node) {
+    Transform place = nodes[node].transform;
+    for (auto above = nodes[node].parent; above; above = nodes[*above].parent) {
+        place = nodes[*above].transform * place;
+    }
+    return place;
+}
 
 Result<std::vector<GltfNode>> readGltfNodes(const GltfValue& document) {
     const GltfList list = RELIEF_TRY(document.objects("nodes"));

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,12 +18,19 @@ struct GltfNode {
     std::vector<std::uint64_t> children;
     std::optional<std::uint64_t> parent;
     std::optional<std::uint64_t> mesh;  ///< exists
-    bool skinned = false;               ///< its mesh stands where its skeleton does, not where the node does
-    Transform transform;                ///< to its parent
+    /// Exists; only beside a mesh, which stands where its skeleton does then, not where the node does.
+    std::optional<std::uint64_t> skin;
+    Transform transform;  ///< to its parent
 };
+
+/// \param m  16 numbers, by columns. \return nullopt if its last row is not 0 0 0 1.
+[[nodiscard]] std::optional<Transform> affine(std::span<const float> m);
 
 /// All nodes. They form trees, whatever the file says. Errors: kInvalidInput.
 [[nodiscard]] Result<std::vector<GltfNode>> readGltfNodes(const GltfValue& document);
+
+/// Where a node stands, apart from what its mesh is in.
+[[nodiscard]] Transform placeOf(const std::vector<GltfNode>& nodes, std::uint64_t node);
 
 /// The roots of the scene that the file shows: of its first one if it names none.
 /// \param nodes  of the document. Errors: kInvalidInput.

@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "bake/import/gltf_json.h"
 #include "bake/import/gltf_meshes.h"
 #include "bake/import/gltf_nodes.h"
+#include "bake/import/gltf_skin.h"
 #include "bake/import/import_instances.h"
 #include "bake/import/import_names.h"
 #include "bake/import/import_parts.h"
@@ -83,6 +85,7 @@ Result<void> checkExtensions(const GltfValue& document, std::vector<std::string>
 struct Use {
     std::uint64_t node;
     std::uint64_t mesh;
+    std::optional<std::uint64_t> skin;
     Transform transform;
 };
 
@@ -103,7 +106,7 @@ std::vector<Use> usesOf(const std::vector<GltfNode>& nodes, const std::vector<st
         const GltfNode& node = nodes[index];
         const Transform transform = parent * node.transform;
         if (node.mesh) {
-            uses.push_back({index, *node.mesh, node.skinned ? root : transform});
+            uses.push_back({index, *node.mesh, node.skin, node.skin ? root : transform});
         }
         push(node.children, transform);
     }
@@ -144,6 +147,13 @@ class GltfNames {
     NameMarks marks_;
     std::vector<std::optional<std::uint8_t>> of_node_;  // with those above it
 };
+
+std::vector<glm::uvec3> turned(std::vector<glm::uvec3> triangles) {
+    for (glm::uvec3& t : triangles) {
+        std::swap(t.y, t.z);
+    }
+    return triangles;
+}
 
 /// All that is wrong with the document, or its mesh. Errors of this class name no file: readGltf does.
 class GltfReader {
@@ -187,7 +197,13 @@ class GltfReader {
             const GltfMesh& source = meshes_.at(use.mesh);
             for (const GltfPrimitive& part : source.primitives) {
                 const std::uint8_t mark = names.of(use.node, source, part);
-                instances.add(part.positions, part.triangles, use.transform, mark);
+                if (use.skin && part.influences) {
+                    const GltfPose pose = posed(part.positions, *part.influences, skins_.at(*use.skin));
+                    instances.add(pose.positions, pose.mirrored ? turned(part.triangles) : part.triangles,
+                                  use.transform, mark);
+                } else {
+                    instances.add(part.positions, part.triangles, use.transform, mark);
+                }
             }
         }
         return instances.finish(names.marks());
@@ -198,10 +214,16 @@ class GltfReader {
     Result<void> readMeshes(const GltfValue& document, GltfBuffers& buffers) {
         const GltfList list = RELIEF_TRY(document.objects("meshes"));
         GltfMeshes meshes(document, buffers, job_.triangle_max);
+        std::set<std::uint64_t> skinned;
+        for (const Use& use : uses_) {
+            if (use.skin) {
+                skinned.insert(use.mesh);
+            }
+        }
         for (const Use& use : uses_) {
             if (!meshes_.contains(use.mesh)) {
                 const GltfValue place = RELIEF_TRY(list.at(use.mesh));
-                meshes_[use.mesh] = RELIEF_TRY(meshes.read(place));
+                meshes_[use.mesh] = RELIEF_TRY(meshes.read(place, skinned.contains(use.mesh)));
             }
         }
         const std::uint64_t unplaced = list.size() - meshes_.size();
@@ -210,15 +232,45 @@ class GltfReader {
             return invalidInput(*refusal);
         }
         warnings_.insert(warnings_.end(), meshes.warnings().begin(), meshes.warnings().end());
-        if (std::any_of(uses_.begin(), uses_.end(),
-                        [&](const Use& use) { return nodes_[use.node].skinned; })) {
-            warnings_.emplace_back("it is skinned; baked as it is modelled, without its skeleton");
-        }
+        RELIEF_TRY(readSkins(document, buffers));
         if (unplaced > 0) {
             warnings_.push_back("left out " + std::to_string(unplaced) + " of its " +
                                 std::to_string(list.size()) + " meshes: its scene does not show them");
         }
         warnOfParts(parts_, warnings_);
+        return {};
+    }
+
+    /// Those of meshes that are shown.
+    Result<void> readSkins(const GltfValue& document, GltfBuffers& buffers) {
+        bool whole = true;
+        for (const Use& use : uses_) {
+            if (!use.skin) {
+                continue;
+            }
+            if (!skins_.contains(*use.skin)) {
+                skins_[*use.skin] = RELIEF_TRY(readSkin(document, *use.skin, nodes_, buffers));
+            }
+            const std::size_t joints = skins_[*use.skin].size();
+            for (const GltfPrimitive& part : meshes_.at(use.mesh).primitives) {
+                whole = whole && part.influences;
+                const auto lost = [joints](const GltfInfluence& by) {
+                    return by.weight > 0.0F && by.joint >= joints;
+                };
+                if (part.influences &&
+                    std::any_of(part.influences->all.begin(), part.influences->all.end(), lost)) {
+                    return invalidInput("meshes[" + std::to_string(use.mesh) +
+                                        "] has vertices that are moved by a joint which its skin, skins[" +
+                                        std::to_string(*use.skin) + "], does not have");
+                }
+            }
+        }
+        if (!skins_.empty()) {
+            warnings_.emplace_back(
+                whole ? "it is skinned; baked in the pose that its nodes have"
+                      : "it is skinned; parts without joints, or compressed by Draco, are baked as "
+                        "they are modelled, without their skeleton");
+        }
         return {};
     }
 
@@ -230,6 +282,7 @@ class GltfReader {
     std::vector<GltfNode> nodes_;
     std::vector<Use> uses_;
     std::map<std::uint64_t, GltfMesh> meshes_;
+    std::map<std::uint64_t, std::vector<Transform>> skins_;  // what their joints do
     MeshParts parts_;
     std::vector<std::string> warnings_;
 };

@@ -13,8 +13,8 @@ namespace relief {
 /// Reads the triangles that the file's scene shows, where its nodes place them. Whatever has a part in that keeps to the
 /// specification, or is an error: version, required extensions, JSON without equal keys, buffers (percent-encoded,
 /// base64, of their length), accessors (sparse ones, KHR_mesh_quantization, KHR_draco_mesh_compression), indices, modes,
-/// transforms, trees of nodes. The mesh of a skinned node is not moved by the node. Skins and targets of morphs are left
-/// out with a warning.
+/// transforms, trees of nodes, skins. Skinned meshes come in the pose that the nodes have, and targets of morphs are left
+/// out, with a warning each.
 /// \param linear  is applied behind the transforms.
 /// \param mesh    what is known of it otherwise: positions, triangles, marks, unused vertices and warnings are added.
 /// Errors, naming the file: kInvalidInput, kUnsupported, kLimit; kUsage (a name that no triangle has).

@@ -26,8 +26,8 @@ namespace relief {
 /// The transforms of its nodes are applied, a mesh used n times is there n times, polygons are
 /// triangulated, points and lines are left out with a warning (import_parts.h), and where a transform
 /// mirrors, the winding is turned. Cameras and animation are not looked at, and of materials only the
-/// names that ImportOptions asks for; skinned and morphed meshes come in the pose they were modelled in,
-/// with a warning. Only files below the mesh's folder are read, and only regular ones (import_files.h).
+/// names that ImportOptions asks for; skinned meshes of glTF come in the pose of the file's nodes, those of
+/// other formats and morphed ones as they were modelled, with a warning. Only files below the mesh's folder are read, and only regular ones (import_files.h).
 /// Errors, each naming the file: kIo (missing, a folder, not readable), kUnsupported (a format, or a part of it, that is
 /// not read), kInvalidInput (not what the format says, no triangles, or as finishMesh), kUsage (a name that no triangle
 /// has), kLimit.

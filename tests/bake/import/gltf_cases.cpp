@@ -39,7 +39,6 @@ class Maker {
     GltfCase make() {
         json_ = {{"asset", {{"version", "2.0"}, {"generator", "a test"}}},
                  {"materials", Json::array({{{"name", "paint"}}, Json::object()})},
-                 {"skins", Json::array({{{"joints", Json::array({0})}}})},
                  {"buffers", Json::array()},
                  {"bufferViews", Json::array()},
                  {"accessors", Json::array()},
@@ -48,6 +47,7 @@ class Maker {
         if (dice_.once(4)) {
             json_["asset"]["minVersion"] = "2.0";
         }
+        joints_ = dice_.from(1, 2);
         meshes_ = dice_.from(1, 3);
         for (int i = 0; i < meshes_; ++i) {
             Json primitives = Json::array();
@@ -58,6 +58,7 @@ class Maker {
             json_["meshes"].push_back({{"primitives", primitives}, {"name", "mesh"}});
         }
         makeNodes();
+        makeSkin();
         if (quantised_) {
             json_["extensionsRequired"] = Json::array({"KHR_mesh_quantization"});
             json_["extensionsUsed"] = json_["extensionsRequired"];
@@ -154,6 +155,9 @@ class Maker {
             positions.push_back(kind == 5121 || kind == 5123 ? dice_.from(0, 127) : dice_.from(-60, 60));
         }
         Json json = {{"attributes", {{"POSITION", addAccessor("VEC3", kind, 3, positions)}}}};
+        if (dice_.once(2)) {
+            addInfluences(json["attributes"], vertices);
+        }
         if (indexed) {
             std::vector<int> indices;
             for (int i = 3 * dice_.from(1, 6); i > 0; --i) {
@@ -169,6 +173,40 @@ class Maker {
             json["material"] = dice_.roll(2);
         }
         return json;
+    }
+
+    /// Of one set, of floats or bytes: 255 of these is 1.
+    void addInfluences(Json& attributes, int vertices) {
+        const bool bytes = dice_.once(2);
+        const int one = bytes ? 255 : 1;
+        std::vector<int> joints;
+        std::vector<int> weights;
+        for (int i = 0; i < vertices; ++i) {
+            const int first = dice_.from(0, joints_ - 1);
+            joints.insert(joints.end(), {first, dice_.from(0, joints_ - 1), dice_.from(0, 3), 0});
+            weights.insert(weights.end(), {one, dice_.once(2) ? one : 0, 0, 0});
+        }
+        attributes["JOINTS_0"] = addAccessor("VEC4", dice_.once(2) ? 5121 : 5123, 4, joints);
+        attributes["WEIGHTS_0"] = addAccessor("VEC4", bytes ? 5121 : 5126, 4, weights);
+        if (bytes) {
+            json_["accessors"].back()["normalized"] = true;
+        }
+    }
+
+    void makeSkin() {
+        Json skin = {{"joints", Json::array({0})}};
+        if (joints_ == 2) {
+            skin["joints"].push_back(1);
+        }
+        if (dice_.once(2)) {
+            std::vector<int> matrices;
+            for (int i = 0; i < joints_; ++i) {
+                matrices.insert(matrices.end(), {1, 0, 0, 0, 0, 2, 0, 0, 0, dice_.from(0, 1), 1, 0,
+                                                 dice_.from(-9, 9), dice_.from(-9, 9), 3, 1});
+            }
+            skin["inverseBindMatrices"] = addAccessor("MAT4", 5126, 16, matrices);
+        }
+        json_["skins"] = Json::array({skin});
     }
 
     Json place() {
@@ -214,7 +252,7 @@ class Maker {
 
     /// Each node below a former one or a root; those of a second scene are not shown.
     void makeNodes() {
-        const int count = dice_.from(1, 6);
+        const int count = dice_.from(2, 6);
         Json roots = Json::array();
         for (int i = 0; i < count; ++i) {
             Json node = place();
@@ -248,6 +286,7 @@ class Maker {
     std::string buffer_;
     std::vector<int> replaced_;  // elements of the last sparse accessor
     int meshes_ = 0;
+    int joints_ = 1;
     bool quantised_ = false;
 };
 

@@ -1,5 +1,6 @@
 #include "tests/bake/import/gltf_oracle.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -176,7 +177,7 @@ class Book {
         const bool parts =
             node.contains("translation") || node.contains("rotation") || node.contains("scale");
         must(!node.contains("matrix") || !parts, "a matrix and more");
-        must(m[3] == 0 && m[7] == 0 && m[11] == 0 && m[15] == 1, "the last row");
+        must(std::abs(m[3]) + std::abs(m[7]) + std::abs(m[11]) + std::abs(m[15] - 1) < 3e-5, "the last row");
         must(std::abs(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1) < 1e-3, "no unit");
         return [=](const glm::dvec3& p) {
             const glm::dvec3 by = {m[0] * p.x + m[4] * p.y + m[8] * p.z + m[12],
@@ -194,13 +195,13 @@ class Book {
         const Place own = placeOf(node);
         const Place place = [above, own](const glm::dvec3& p) { return above(own(p)); };
         if (node.contains("mesh")) {
-            const bool skinned = node.contains("skin");
-            if (skinned) {
-                element(document_, "skins", whole(node.at("skin")));
+            const Json* skin = nullptr;
+            if (node.contains("skin")) {
+                skin = &element(document_, "skins", whole(node.at("skin")));
             }
             const Json& mesh = element(document_, "meshes", whole(node.at("mesh")));
             for (const Json& primitive : list(mesh, "primitives")) {
-                addPrimitive(primitive, skinned ? Place([](const glm::dvec3& p) { return p; }) : place);
+                addPrimitive(primitive, place, skin);
             }
         }
         for (const Json& child : list(node, "children")) {
@@ -208,7 +209,73 @@ class Book {
         }
     }
 
-    void addPrimitive(const Json& primitive, const Place& place) {
+    Place placeOf(std::size_t joint) {
+        const Place own = placeOf(element(document_, "nodes", joint));
+        const Json& nodes = list(document_, "nodes");
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            for (const Json& child : list(nodes[i], "children")) {
+                if (whole(child) == joint) {
+                    const Place above = placeOf(i);
+                    return [above, own](const glm::dvec3& p) { return above(own(p)); };
+                }
+            }
+        }
+        return own;
+    }
+
+    /// Where a skin puts vertices.
+    std::vector<glm::dvec3> skinned(const std::vector<glm::dvec3>& points, const Json& attributes,
+                                    const Json& skin) {
+        const Json& joints = list(skin, "joints");
+        must(!joints.empty(), "no joints");
+        std::vector<double> inverse;
+        if (skin.contains("inverseBindMatrices")) {
+            inverse = accessor(whole(skin.at("inverseBindMatrices")), "MAT4", 16);
+            must(inverse.size() >= 16 * joints.size(), "too few matrices");
+        }
+        std::vector<Place> places;
+        for (std::size_t i = 0; i < joints.size(); ++i) {
+            const Place place = placeOf(whole(joints[i]));
+            std::vector<double> m = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+            if (!inverse.empty()) {
+                m.assign(inverse.begin() + 16 * static_cast<std::ptrdiff_t>(i),
+                         inverse.begin() + 16 * static_cast<std::ptrdiff_t>(i + 1));
+            }
+            must(std::abs(m[3]) + std::abs(m[7]) + std::abs(m[11]) + std::abs(m[15] - 1) < 3e-5,
+                 "the last row");
+            places.emplace_back([place, m](const glm::dvec3& p) {
+                return place({m[0] * p.x + m[4] * p.y + m[8] * p.z + m[12],
+                              m[1] * p.x + m[5] * p.y + m[9] * p.z + m[13],
+                              m[2] * p.x + m[6] * p.y + m[10] * p.z + m[14]});
+            });
+        }
+        if (!attributes.contains("JOINTS_0") && !attributes.contains("WEIGHTS_0")) {
+            return points;
+        }
+        const std::vector<double> by = accessor(whole(attributes.at("JOINTS_0")), "VEC4", 4);
+        const std::vector<double> weights = accessor(whole(attributes.at("WEIGHTS_0")), "VEC4", -4);
+        must(by.size() == 4 * points.size() && weights.size() == by.size(), "other counts");
+        std::vector<glm::dvec3> posed;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            glm::dvec3 sum(0);
+            double all = 0;
+            for (std::size_t k = 4 * i; k < 4 * i + 4; ++k) {
+                must(weights[k] >= 0, "a weight");
+                if (weights[k] > 0 && by[k] >= static_cast<double>(places.size())) {
+                    sum = glm::dvec3(std::nan(""));  // wrong where a triangle uses it
+                    all += weights[k];
+                } else if (weights[k] > 0) {
+                    sum += weights[k] * places.at(static_cast<std::size_t>(by[k]))(points[i]);
+                    all += weights[k];
+                }
+            }
+            must(all > 1e-5, "no weight");
+            posed.push_back(sum / all);
+        }
+        return posed;
+    }
+
+    void addPrimitive(const Json& primitive, const Place& place, const Json* skin) {
         const Json& attributes = primitive.at("attributes");
         must(attributes.is_object(), "no attributes");
         const std::size_t mode = whole(primitive, "mode", 4);
@@ -219,7 +286,12 @@ class Book {
         const std::vector<double> flat = accessor(whole(attributes.at("POSITION")), "VEC3", 3);
         std::vector<glm::dvec3> points;
         for (std::size_t i = 0; i < flat.size(); i += 3) {
-            points.push_back(place({flat[i], flat[i + 1], flat[i + 2]}));
+            points.push_back({flat[i], flat[i + 1], flat[i + 2]});
+        }
+        if (skin != nullptr) {
+            points = skinned(points, attributes, *skin);
+        } else {
+            std::transform(points.begin(), points.end(), points.begin(), place);
         }
         std::vector<std::size_t> corners;
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -233,6 +305,9 @@ class Book {
             }
         }
         const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
+            for (const std::size_t corner : {a, b, c}) {
+                must(!std::isnan(points[corners[corner]].x), "a corner that is no number");
+            }
             triangles_.push_back({points[corners[a]], points[corners[b]], points[corners[c]]});
         };
         must(mode != 4 || corners.size() % 3 == 0, "a part of a triangle");
@@ -247,20 +322,27 @@ class Book {
         }
     }
 
-    std::vector<double> accessor(std::size_t index, const char* type, std::size_t components) {
+    /// \param kind_of  the components; -4 for weights.
+    std::vector<double> accessor(std::size_t index, const char* type, int kind_of) {
+        const auto components = static_cast<std::size_t>(std::abs(kind_of));
         const Json& json = element(document_, "accessors", index);
         must(json.at("type") == type, "type");
         const std::size_t kind = whole(json.at("componentType"));
         const std::size_t count = whole(json.at("count"));
         const bool normalized = json.contains("normalized") && json.at("normalized").get<bool>();
-        must(components == 3 ? kind == 5120 || kind == 5121 || kind == 5122 || kind == 5123 || kind == 5126
-                             : kind == 5121 || kind == 5123 || kind == 5125,
+        const bool small = kind == 5121 || kind == 5123;
+        must(kind_of == 3    ? small || kind == 5120 || kind == 5122 || kind == 5126
+             : kind_of == 1  ? small || kind == 5125
+             : kind_of == 4  ? small
+             : kind_of == -4 ? small || kind == 5126
+                             : kind == 5126,
              "componentType");
-        must(!normalized || (components == 3 && kind != 5126), "normalized");
+        must(!normalized || (kind_of != 1 && kind_of != 4 && kind != 5126), "normalized");
+        must(kind_of != -4 || normalized == small, "normalized weights");
         must(json.contains("bufferView") || json.contains("sparse"), "no data");
         std::vector<double> values(count < 100000 ? count * components : throw std::runtime_error("count"));
         if (json.contains("bufferView")) {
-            values = elements(json, kind, count, components, components == 3);
+            values = elements(json, kind, count, components, components > 1);
         }
         if (json.contains("sparse")) {
             const Json& sparse = json.at("sparse");

@@ -186,24 +186,76 @@ TEST(ImportGltf, BytesOfBuffersAreIndicesThatExistOrNot) {
 // --- by hand ---
 
 TEST(ImportGltf, TheNodeOfASkinnedMeshDoesNotMoveIt) {
+    const std::string nodes =
+        R"({"mesh":0,"skin":0,"translation":[100,0,0],"scale":[2,2,2]},{"translation":[0,9,0]})";
     const std::string skins = R"("skins":[{"joints":[1]}],)";
-    const Result<TriangleMesh> mesh = loadParts(
-        {.nodes = R"({"mesh":0,"skin":0,"translation":[100,0,0],"scale":[2,2,2]},{"translation":[0,9,0]})",
-         .roots = "0,1",
-         .more = skins});
+    const Result<TriangleMesh> mesh = loadParts({.nodes = nodes, .roots = "0,1", .more = skins});
     ASSERT_TRUE(mesh) << mesh.error().message;
     EXPECT_EQ(mesh->bounds.max, glm::vec3(1, 2, 3));
     ASSERT_EQ(mesh->warnings.size(), 1U);
-    EXPECT_NE(mesh->warnings[0].find("skinned"), std::string::npos);
+    EXPECT_NE(mesh->warnings[0].find("it is skinned; parts without joints"), std::string::npos);
     // Units and axes still do.
     const TemporaryFolder folder;
-    const Result<TriangleMesh> turned = importMesh(
-        folder.write("u.gltf",
-                     tetrahedronGltf({.nodes = R"({"mesh":0,"skin":0,"scale":[2,2,2]})", .more = skins})),
-        {"cm", UpAxis::kPlusZ});
+    const Result<TriangleMesh> turned =
+        importMesh(folder.write("u.gltf", tetrahedronGltf({.nodes = nodes, .roots = "0,1", .more = skins})),
+                   {"cm", UpAxis::kPlusZ});
     ASSERT_TRUE(turned) << turned.error().message;
     EXPECT_EQ(turned->bounds.max, glm::vec3(0.01F, 0.03F, 0.0F));
     expectNode(R"("skin":3)", "nodes[0] names by skin skins[3], which does not exist");
+    expectPartsWrong({.nodes = nodes, .roots = "0,1", .more = R"("skins":[{"joints":[2]}],)"},
+                     "skins[0] names by joints nodes[2], which does not exist");
+    expectPartsWrong({.nodes = nodes, .roots = "0,1", .more = R"("skins":[{"joints":[]}],)"},
+                     "skins[0] has no joints");
+    expectPartsWrong(
+        {.nodes = nodes, .roots = "0,1", .more = R"("skins":[{"joints":[1],"inverseBindMatrices":0}],)"},
+        "accessors[0] is not of type MAT4");
+}
+
+TEST(ImportGltf, JointsMoveVertices) {
+    // A triangle, whose last corner a second joint moves: by 1 along x as it is bound, by 10 along y as it stands.
+    const std::string text =
+        R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0,1]}],"nodes":[{"mesh":0,"skin":0,"scale":[9,9,9]},)"
+        R"({"children":[2]},{"translation":[0,10,0]}],"skins":[{"joints":[1,2],"inverseBindMatrices":3}],)"
+        R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,"JOINTS_0":1,"WEIGHTS_0":2}}]}],"accessors":[)"
+        R"({"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},)"
+        R"({"bufferView":0,"byteOffset":36,"componentType":5121,"count":3,"type":"VEC4"},)"
+        R"({"bufferView":0,"byteOffset":48,"componentType":5121,"normalized":true,"count":3,"type":"VEC4"},)"
+        R"({"bufferView":0,"byteOffset":60,"componentType":5126,"count":2,"type":"MAT4"}],)"
+        R"("bufferViews":[{"buffer":0,"byteLength":188}],"buffers":[{"byteLength":188,"uri":"b.bin"}]})";
+    const std::array<float, 9> corners = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    const std::array<float, 32> bound = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1,
+                                         1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 1};
+    std::string bytes(reinterpret_cast<const char*>(corners.data()), sizeof(corners));
+    bytes += std::string("\0\0\0\0\0\0\0\0\1\0\0\0", 12);
+    bytes += std::string("\xff\0\0\0\xff\0\0\0\xff\0\0\0", 12);
+    bytes += std::string(reinterpret_cast<const char*>(bound.data()), sizeof(bound));
+    const TemporaryFolder folder;
+    folder.write("b.bin", bytes);
+    const Result<TriangleMesh> mesh = importMesh(folder.write("t.gltf", text));
+    ASSERT_TRUE(mesh) << mesh.error().message;
+    EXPECT_EQ(mesh->positions, std::vector<glm::vec3>({{0, 0, 0}, {1, 0, 0}, {1, 11, 0}}));
+    ASSERT_EQ(mesh->warnings.size(), 1U);
+    EXPECT_NE(mesh->warnings[0].find("in the pose that its nodes have"), std::string::npos);
+    // A model of the glTF tutorials, which is bound half a unit beside.
+    const Result<TriangleMesh> model =
+        importMeshInWorker("/usr/share/assimp/models/glTF2/simple_skin/simple_skin.gltf");
+    ASSERT_TRUE(model) << model.error().message;
+    EXPECT_EQ(model->bounds.min, glm::vec3(-0.5F, 0, 0));
+    const auto wrong = [&](std::size_t at, char byte, const std::string& says) {
+        folder.write("b.bin", std::string(bytes).replace(at, 1, 1, byte));
+        expectError(importMesh(folder.write("w.gltf", text)), ErrorCode::kInvalidInput, says);
+    };
+    wrong(36, 2, "meshes[0] has vertices that are moved by a joint which its skin, skins[0], does not have");
+    wrong(48, 0, "attributes have weights that are less than 0, no numbers, or 0 for all joints of a vertex");
+    wrong(60 + 15, 0x40, "skins[0] has inverseBindMatrices whose last row is not 0 0 0 1");
+    folder.write("b.bin", bytes);
+    for (const auto& [what, by, says] :
+         {std::tuple{R"("WEIGHTS_0":2)", R"("WEIGHTS_1":2)", "have only one of JOINTS_0 and WEIGHTS_0"},
+          std::tuple{R"("joints":[1,2])", R"("joints":[1,2,1])", "fewer inverseBindMatrices than joints"},
+          std::tuple{R"("normalized":true,)", "", "is not normalized"}}) {
+        expectError(importMesh(folder.write("w.gltf", replaced(text, what, by))), ErrorCode::kInvalidInput,
+                    says);
+    }
 }
 
 TEST(ImportGltf, TransformsThatAreNone) {
