@@ -244,8 +244,9 @@ class GltfReader {
     /// Those of meshes that are shown.
     Result<void> readSkins(const GltfValue& document, GltfBuffers& buffers) {
         bool whole = true;
+        std::set<std::pair<std::uint64_t, std::uint64_t>> seen;
         for (const Use& use : uses_) {
-            if (!use.skin) {
+            if (!use.skin || !seen.insert({use.mesh, *use.skin}).second) {
                 continue;
             }
             if (!skins_.contains(*use.skin)) {
