@@ -159,7 +159,9 @@ Result<std::vector<std::byte>> writeChecked(const Collider& collider, const Cont
     // The lowest version that holds it.
     const bool rows =
         std::ranges::any_of(packed, [](const PackedPayload& one) { return one.packing == Packing::kRows; });
-    header.minor = rows ? 1 : 0;
+    const bool gaps =
+        std::ranges::any_of(collider.maps, [](const DepthMap& map) { return map.compare == Compare::kGap; });
+    header.minor = gaps ? 2 : rows ? 1 : 0;
     header.metadata_size = writeMetadata(collider, payloads, packed).size();
     std::uint64_t end = header.metadata_offset + header.metadata_size;
     for (fb::Payload& payload : payloads) {

@@ -57,7 +57,8 @@ std::optional<Vote> voteOrthographic(const DepthMap& map, const glm::vec3& p) {
     const auto column = static_cast<std::uint32_t>(x);
     const auto row = static_cast<std::uint32_t>(y);
     const Texel texel = decodeTexel(map.format, map.texelAt(0, column, row));
-    if (!texel.front && !texel.back) {
+    const bool gap = map.compare == Compare::kGap;
+    if ((!texel.front && !texel.back) || (gap && !(texel.front && texel.back))) {
         return map.empty_is_outside ? std::optional(kFarOutsideVote) : std::nullopt;
     }
 
@@ -67,20 +68,24 @@ std::optional<Vote> voteOrthographic(const DepthMap& map, const glm::vec3& p) {
     const bool planes = map.decode == Decode::kPlane;
     const glm::vec3 from = planes ? fromMap(map, {across_x, across_y, p.z}) : glm::vec3(0.0F);
     const glm::vec3 ray = planes ? fromMap(map, {0.0F, 0.0F, 1.0F}) : glm::vec3(0.0F);
-    Vote best;
-    const auto add = [&](const Surface& surface, bool keeps_nearest) {
+    const auto voteOf = [&](const Surface& surface, bool keeps_nearest) {
         const float ahead = keeps_nearest ? surface.depth - p.z : p.z - surface.depth;
         const float distance =
             planes ? planeVote(map, surface, from, ray, map.object_per_map.z) : map.object_per_map.z * ahead;
-        if (replaces(distance, best.distance)) {
-            best = {distance, surface.normal};
-        }
+        return Vote{distance, surface.normal};
     };
+    if (gap) {
+        const Vote front = voteOf(*texel.front, true);
+        const Vote back = voteOf(*texel.back, false);
+        return back.distance < front.distance ? back : front;
+    }
+    Vote best;
+    const auto add = [&](const Vote& one) { best = replaces(one.distance, best.distance) ? one : best; };
     if (texel.front) {
-        add(*texel.front, map.compare != Compare::kGreater);
+        add(voteOf(*texel.front, map.compare != Compare::kGreater));
     }
     if (texel.back) {
-        add(*texel.back, false);
+        add(voteOf(*texel.back, false));
     }
     // Past the far end of the volume nothing of the collider remains.
     if (!in_depth && best.distance < 0.0F) {
@@ -141,6 +146,8 @@ const char* compareName(Compare compare) {
             return "greater";
         case Compare::kBoth:
             return "both";
+        case Compare::kGap:
+            return "gap";
     }
     return "unknown";
 }

@@ -89,6 +89,14 @@ bool reliefIsFrontBack(ivec4 info) {  // of an orthographic map, as is the next 
 #endif
 }
 
+bool reliefIsGap(ivec4 info) {  // of a front-back map
+#if !defined(RELIEF_HAS_GAP)
+    return false;
+#else
+    return (info.z & RELIEF_IS_GAP) != 0;
+#endif
+}
+
 bool reliefIsFloat(ivec4 info) {
 #if !defined(RELIEF_HAS_FLOAT)
     return false;
@@ -327,7 +335,7 @@ float reliefSightProjected(ivec4 info, float depth, ReliefSight sight) {
 
 // The votes of a texel of each kind; what they say where none is found is not looked at.
 
-// Two surfaces, the nearer in front, the farther in back.
+// Two surfaces that each see what is outside; of a gap both have to.
 ReliefVote reliefVoteFrontBack(int i, ivec4 info, ReliefSight sight, bool whole, out bool found) {
     uvec4 words = texelFetch(u_relief_front_back, reliefTexel(max(sight.texel, 0), u_relief_count.w), 0);
     found = sight.texel >= 0 && (words.b != 0u || words.a != 0u && (!sight.plane || RELIEF_HALF_EMPTY));
@@ -344,7 +352,7 @@ ReliefVote reliefVoteFrontBack(int i, ivec4 info, ReliefSight sight, bool whole,
         front = words.b != 0u ? front : RELIEF_FAR_INSIDE;
         back = words.a != 0u ? back : RELIEF_FAR_INSIDE;
     }
-    bool take_back = whole ? reliefReplaces(back, front) : back > front;
+    bool take_back = reliefIsGap(info) ? back < front : whole ? reliefReplaces(back, front) : back > front;
     return ReliefVote(take_back ? back : front, reliefCode(take_back ? words.g : words.r));
 }
 

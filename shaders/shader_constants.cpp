@@ -40,6 +40,7 @@ std::string makeConstants() {
     define("ENCLOSES", static_cast<int>(kEncloses));
     define("EMPTY_IS_OUTSIDE", static_cast<int>(kEmptyIsOutside));
     define("DECODES_PLANE", static_cast<int>(kDecodesPlane));
+    define("IS_GAP", static_cast<int>(kIsGap));
     define("HAS_ROWS", static_cast<int>(kHasRows));
     define("FAR_INSIDE", Vote{}.distance);
     define("FAR_OUTSIDE", kFarOutside);

@@ -13,6 +13,7 @@ enum MapFlag : std::int32_t {
     kEncloses = 2,
     kEmptyIsOutside = 4,
     kDecodesPlane = 8,
+    kIsGap = 32,    ///< front-back: outside only where both ends say so
     kHasRows = 16,  ///< front-back: a texel for each row says which of its texels there are
 };
 

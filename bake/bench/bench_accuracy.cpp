@@ -16,6 +16,7 @@
 #include "bake/import/mesh_import.h"
 #include "bake/measure/accuracy.h"
 #include "bake/pipeline/bake.h"
+#include "bake/pipeline/planned_bake.h"
 #include "bake/plan/view.h"
 #include "bake/plan/view_planner.h"
 #include "bake/repair/winding.h"
@@ -90,13 +91,9 @@ Result<Baked> bakePaper(const PreparedMesh& mesh, std::uint64_t bytes) {
 
 /// What `relief bake --budget` makes.
 Result<Baked> bakeOurs(const MeshQuery& query, std::uint64_t bytes) {
-    const PreparedMesh& mesh = query.prepared();
-    PlanOptions plan_options;
-    plan_options.budget_bytes = bytes;
-    const Plan plan = RELIEF_TRY(planViews(query, plan_options));
-    BakeOptions options;
-    options.maps = specsOf(plan);
-    return bake(mesh, options);
+    const ViewChoice views = RELIEF_TRY(chooseViews(query, {}));
+    PlannedBake planned = RELIEF_TRY(bakePlanned(query, views, bytes, {}));
+    return std::move(planned.baked);
 }
 
 // --- measuring ---

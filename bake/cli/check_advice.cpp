@@ -11,6 +11,7 @@
 
 #include "bake/measure/accuracy.h"
 #include "bake/pipeline/bake.h"
+#include "bake/pipeline/planned_bake.h"
 #include "bake/plan/view_planner.h"
 #include "formats/base/text.h"
 
@@ -137,14 +138,12 @@ class Advisor {
                                              const TruthSamples& truth,
                                              std::uint32_t max_maps = kPlannedMapsMax) const {
         const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
-        PlanOptions plan_options;
-        plan_options.budget_bytes = budget;
-        plan_options.views.prefer = input_.recorded.prefer;
-        plan_options.views.max_maps = max_maps;
-        const Plan plan = RELIEF_TRY(planViews(query, plan_options));
-        BakeOptions options = bakeOptions();
-        options.maps = specsOf(plan);
-        return wrongOf(mesh, options, truth);
+        ViewOptions options;
+        options.prefer = input_.recorded.prefer;
+        options.max_maps = max_maps;
+        const ViewChoice views = RELIEF_TRY(chooseViews(query, options));
+        const PlannedBake planned = RELIEF_TRY(bakePlanned(query, views, budget, bakeOptions()));
+        return measureField(truth, fieldOf(planned.baked.collider)).near.total();
     }
 
     /// Tries, and advises if it could be tried or is too much to be.

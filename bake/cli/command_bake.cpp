@@ -19,6 +19,7 @@
 #include "bake/mesh/mesh_query.h"
 #include "bake/pipeline/bake.h"
 #include "bake/pipeline/budget_search.h"
+#include "bake/pipeline/planned_bake.h"
 #include "bake/plan/plan_file.h"
 #include "bake/plan/view_planner.h"
 #include "bake/recipe/depfile.h"
@@ -72,20 +73,6 @@ Result<void> readPlanFile(const BakeCommand& command, BakeSettings& settings) {
     return {};
 }
 
-/// Chooses the maps for the budget.
-Result<PlanReport> planMaps(const MeshQuery& query, const BakeCommand& command, BakeSettings& settings) {
-    PlanReport report;
-    report.budget = command.budget.value_or(kBudgetDefault);
-    PlanOptions options;
-    options.budget_bytes = report.budget;
-    options.views.prefer = settings.bake.prefer;
-    options.views.max_maps = command.max_maps;
-    Plan plan = RELIEF_TRY(planViews(query, options));
-    report.plan = std::move(plan);
-    settings.bake.maps = specsOf(report.plan);
-    return report;
-}
-
 /// Bakes at the least budget that keeps --max-error.
 Result<Baked> searchBudget(const MeshQuery& query, const MeshQuery& truth, const BakeCommand& command,
                            const BakeSettings& settings, std::optional<PlanReport>& report,
@@ -106,6 +93,27 @@ Result<Baked> searchBudget(const MeshQuery& query, const MeshQuery& truth, const
     report = PlanReport{std::move(found.plan), found.chosen.budget, options.max_error_percent,
                         found.chosen.wrong_percent, std::move(found.tries)};
     return std::move(found.baked);
+}
+
+/// Chooses the maps for the budget, and bakes them.
+Result<Baked> bakeForBudget(const MeshQuery& query, const BakeCommand& command, const BakeSettings& settings,
+                            std::optional<PlanReport>& report, BakeTimes& times, const Stopwatch& watch,
+                            Progress& progress) {
+    ViewOptions options;
+    options.prefer = settings.bake.prefer;
+    options.max_maps = command.max_maps;
+    options.gaps = !settings.bake.rasterize;  // which sees the outer surfaces alone
+    const ViewChoice views = RELIEF_TRY(chooseViews(query, options));
+    times.plan_ms = watch.ms();
+    PlanReport made;
+    made.budget = command.budget.value_or(kBudgetDefault);
+    progress.begin("baking the maps");
+    BakeOptions bake_options = settings.bake;
+    bake_options.progress = [&progress](double share) { progress.set(share); };
+    PlannedBake planned = RELIEF_TRY(bakePlanned(query, views, made.budget, bake_options));
+    made.plan = std::move(planned.plan);
+    report = std::move(made);
+    return std::move(planned.baked);
 }
 
 Result<Baked> bakeMaps(const BakeCommand& command, const PreparedMesh& mesh, BakeSettings& settings,
@@ -141,8 +149,7 @@ Result<Baked> makeCollider(const BakeCommand& command, const PreparedMesh& impor
             times.search_ms = watch.ms();
             return baked;
         }
-        plan = RELIEF_TRY(planMaps(query, command, settings));
-        times.plan_ms = watch.ms();
+        return bakeForBudget(query, command, settings, plan, times, watch, progress);
     }
     return bakeMaps(command, mesh, settings, progress);
 }
@@ -291,9 +298,6 @@ Result<void> makeCollider(BakeRun& run) {
         run.backend.gl.watchdog->rest();
     }
     run.baked = RELIEF_TRY(std::move(baked));
-    if (run.plan) {
-        run.plan->plan.bytes = run.baked.collider.gpuBytes();
-    }
     run.baked.collider.provenance.options += (run.command.holes == Holes::kKeep ? " --holes keep" : "") +
                                              importProvenance(run.command.import.options) +
                                              careOptionsText(run.cared.care) + shapeOptionsText(run.shape);

@@ -44,6 +44,16 @@ Sight::Lines Sight::linesTo(const glm::dvec3& p, const glm::dvec3& in_map) const
     const auto add = [&](const glm::dvec3& line, bool parallel) {
         lines.line[lines.count++] = {p + line, parallel};
     };
+    if (map_.compare == Compare::kGap) {
+        const Texel texel =
+            decodeTexel(map_.format, map_.texelAt(0, static_cast<std::uint32_t>(in_map.x * map_.width),
+                                                  static_cast<std::uint32_t>(in_map.y * map_.height)));
+        if (texel.front && texel.back) {
+            const double middle = 0.5 * (double{texel.front->depth} + double{texel.back->depth});
+            add((middle - in_map.z) * to_object_[2], true);
+        }
+        return lines;
+    }
     if (map_.projection() == Projection::kCube) {
         const double reach = std::max({std::abs(in_map.x), std::abs(in_map.y), std::abs(in_map.z)});
         // From the centre, or from the face of the volume behind p.
@@ -138,7 +148,7 @@ bool Sight::isFlat(const std::array<Ray, 9>& rays, bool from_far_end, double tol
 
 bool Sight::isFlatRound(const glm::dvec3& p, double tolerance) const {
     const glm::dvec3 in_map = inMap(p);
-    if (!isInVolume(in_map)) {
+    if (!isInVolume(in_map) || map_.compare == Compare::kGap) {
         return false;
     }
     std::array<Ray, 9> rays;

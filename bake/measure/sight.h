@@ -19,7 +19,8 @@ namespace relief {
 /// farther than flat walls of artists' meshes are rough.
 inline constexpr double kWallStep = 1e-3;
 
-/// The lines of sight of one map. Its texels do not matter.
+/// The lines of sight of one map. Its texels do not matter, but those of a map of gaps, which say from where it looks: the
+/// middle of the gap, both ways.
 class Sight {
   public:
     /// \param map, query  borrowed.
@@ -37,7 +38,8 @@ class Sight {
     [[nodiscard]] std::optional<glm::dvec3> reaches(const glm::dvec3& p) const;
 
     /// Every surface that the texel of a point can hold is flat: the lines of sight through the texel meet it within
-    /// `tolerance` of the plane that the middle one meets, or nothing at all. Its plane then is the surface.
+    /// `tolerance` of the plane that the middle one meets, or nothing at all. Its plane then is the surface. Never of a
+    /// map of gaps.
     /// \param p  object space. \param tolerance  object units.
     [[nodiscard]] bool isFlatRound(const glm::dvec3& p, double tolerance) const;
 

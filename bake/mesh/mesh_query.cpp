@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -77,6 +78,27 @@ struct BodyCounter {
         for (unsigned i = 0; i < args->N; ++i) {
             if (args->valid[i] != 0) {
                 self->cross(self->bodies[RTCHitN_primID(args->hit, args->N, i)], wayOf(args, i));
+                args->valid[i] = 0;
+            }
+        }
+    }
+};
+
+/// The triangles on a line, through which it passes.
+struct CrossingCollector {
+    RTCIntersectContext context{};
+    std::vector<std::pair<std::uint32_t, int>> crossed;  ///< triangle, way
+
+    CrossingCollector() {
+        rtcInitIntersectContext(&context);
+        context.filter = filter;
+    }
+
+    static void filter(const RTCFilterFunctionNArguments* args) {
+        auto* self = reinterpret_cast<CrossingCollector*>(args->context);
+        for (unsigned i = 0; i < args->N; ++i) {
+            if (args->valid[i] != 0) {
+                self->crossed.emplace_back(RTCHitN_primID(args->hit, args->N, i), wayOf(args, i));
                 args->valid[i] = 0;
             }
         }
@@ -327,6 +349,57 @@ bool MeshQuery::isFree(const glm::dvec3& origin, const glm::dvec3& direction, fl
     setRay(ray, tree_->toLocal(origin), direction * tree_->scale, end);
     rtcOccluded1(tree_->scene.get(), &context, &ray);
     return ray.tfar >= 0.0F;
+}
+
+std::vector<LineGap> MeshQuery::gapsAlong(const glm::dvec3& origin, const glm::dvec3& direction) const {
+    // From before the mesh to behind it.
+    const glm::dvec3 unit = direction / std::sqrt(dot(direction, direction));
+    const glm::dvec3 middle = 0.5 * (glm::dvec3(mesh().bounds.min) + glm::dvec3(mesh().bounds.max));
+    const glm::dvec3 size = glm::dvec3(mesh().bounds.max) - glm::dvec3(mesh().bounds.min);
+    const glm::dvec3 start = origin + (dot(middle - origin, unit) - std::sqrt(dot(size, size))) * unit;
+    CrossingCollector collector;
+    RTCRayHit query = rayHit(tree_->toLocal(start), unit, std::numeric_limits<float>::infinity());
+    rtcIntersect1(tree_->scene.get(), &collector.context, &query);
+
+    struct Crossing {
+        double along;
+        std::uint32_t body;
+        int way;
+        std::uint32_t triangle;
+    };
+    std::vector<Crossing> crossings;
+    for (const auto& [triangle, way] : collector.crossed) {
+        crossings.push_back({depthAt(mesh(), triangle, start, unit),
+                             shells_ || bodies_.empty() ? 0 : bodies_[triangle], way, triangle});
+    }
+    std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
+        return std::tie(a.along, a.body, a.way, a.triangle) < std::tie(b.along, b.body, b.way, b.triangle);
+    });
+    const double tie = 1e-7 * mesh().bounds.longestSide();
+    const double shift = dot(start - origin, unit);
+    const double per_unit = 1.0 / std::sqrt(dot(direction, direction));
+    std::vector<LineGap> gaps;
+    BodyCounter counter(bodies_);
+    const bool winds = shells_ || !bodies_.empty();
+    bool odd = false;
+    for (std::size_t i = 0; i < crossings.size(); ++i) {
+        const Crossing& here = crossings[i];
+        // Two triangles of one body that are crossed the same way at the same place share an edge.
+        bool again = false;
+        for (std::size_t j = i; j > 0 && here.along - crossings[j - 1].along <= tie && !again; --j) {
+            again = crossings[j - 1].body == here.body && crossings[j - 1].way == here.way;
+        }
+        if (!again && winds) {
+            counter.cross(here.body, here.way);
+        }
+        odd = odd != !again;
+        const bool free = winds ? !counter.inside() : !odd;
+        if (free && i + 1 < crossings.size() && crossings[i + 1].along - here.along > tie) {
+            gaps.push_back({(here.along + shift) * per_unit, (crossings[i + 1].along + shift) * per_unit,
+                            here.triangle, crossings[i + 1].triangle});
+        }
+    }
+    return gaps;
 }
 
 std::optional<FirstHit> MeshQuery::firstHit(const glm::dvec3& origin, const glm::dvec3& direction) const {

@@ -6,6 +6,7 @@
 #include <glm/vec3.hpp>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "bake/mesh/prepared_mesh.h"
 #include "formats/base/result.h"
@@ -23,6 +24,17 @@ struct ClosestPoint {
 struct FirstHit {
     double along = 0.0;  ///< in units of the ray's direction
     std::uint32_t triangle = 0;
+};
+
+/// A stretch of a line that is outside, between two surfaces.
+struct LineGap {
+    double begin = 0.0;  ///< in units of the line's direction
+    double end = 0.0;
+    std::uint32_t first = 0;  ///< the triangle at its begin
+    std::uint32_t last = 0;   ///< and at its end
+
+    [[nodiscard]] double length() const { return end - begin; }
+    [[nodiscard]] double middle() const { return 0.5 * (begin + end); }
 };
 
 /// All questions may be asked from any thread, and their answers depend neither on the number of threads nor
@@ -65,6 +77,11 @@ class MeshQuery {
     /// \param direction  of any length but 0.
     [[nodiscard]] std::optional<FirstHit> firstHit(const glm::dvec3& origin,
                                                    const glm::dvec3& direction) const;
+
+    /// The stretches of a line that are outside, but for its two ends, in their order. By what it crosses, so that one
+    /// through an edge may be told less than there are, or one that is none: ask inside() in the middle of what counts.
+    /// \param direction  of any length but 0.
+    [[nodiscard]] std::vector<LineGap> gapsAlong(const glm::dvec3& origin, const glm::dvec3& direction) const;
 
   private:
     MeshQuery(PreparedMesh mesh, const EmbreeMesh& tree)

@@ -76,7 +76,7 @@ std::string mapImageName(const DepthMap& map, std::size_t index, std::uint32_t f
 
 FloatImage mapImage(const DepthMap& map, std::uint32_t face, const std::string& unit) {
     const bool cube = map.projection() == Projection::kCube;
-    const bool two_sided = map.compare == Compare::kBoth;
+    const bool two_sided = keepsTwo(map.compare);
     FloatImage image;
     image.width = map.width;
     image.height = map.height;

@@ -14,6 +14,7 @@
 #include "bake/plan/view.h"
 #include "bake/texels/encode.h"
 #include "bake/texels/fitted_map.h"
+#include "bake/texels/gap_map.h"
 #include "bake/texels/rasterize.h"
 #include "bake/texels/raycast.h"
 #include "bake/texels/refine.h"
@@ -51,6 +52,11 @@ Result<std::vector<Job>> planJobs(const PreparedMesh& mesh, const BakeOptions& o
     for (const MapSpec& spec : specs) {
         const MapSpec complete = RELIEF_TRY(completeSpec(spec, mesh, options.resolution));
         const View view = RELIEF_TRY(makeView(complete, *mesh));
+        if (options.rasterize && view.compare == Compare::kGap) {
+            return fail(ErrorCode::kUsage,
+                        "--map '" + toString(complete) +
+                            "': only rays find gaps between solids; leave out --backend raster");
+        }
         jobs.push_back({complete, view, spec.compare.has_value()});
         bytes += jobs.back().texels() * texelSize(view.format);
     }
@@ -302,12 +308,27 @@ class Bake {
             if (!unit_normals) {
                 unit_normals.emplace(*mesh_);
             }
+            const FittedMapOptions fit = fitOptions(*mesh_, job.view, options_);
             DepthMap map =
-                bakeFittedMap(*scene, *unit_normals, job.view, fitOptions(*mesh_, job.view, options_),
-                              report.covered, rowsDone(job.view));
+                job.view.compare == Compare::kGap
+                    ? RELIEF_TRY(bakeGaps(*unit_normals, job.view, fit, report))
+                    : bakeFittedMap(*scene, *unit_normals, job.view, fit, report.covered, rowsDone(job.view));
             add(std::move(map), std::move(report));
         }
         return {};
+    }
+
+    /// Of gaps that the maps baked so far see little of.
+    Result<DepthMap> bakeGaps(const TriangleNormals& normals, const View& view, const FittedMapOptions& fit,
+                              MapReport& report) {
+        const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh_));
+        const IsKnown is_known = [&](const glm::vec3& p) {
+            return std::ranges::any_of(baked_.collider.maps, [&](const DepthMap& map) {
+                const std::optional<Vote> said = vote(map, p);
+                return said && said->distance >= 0.0F;
+            });
+        };
+        return bakeGapMap(query, normals, view, fit, is_known, report.covered, rowsDone(view));
     }
 
     [[nodiscard]] Result<void> checkCovered() const {

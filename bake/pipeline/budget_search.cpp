@@ -1,5 +1,7 @@
 #include "bake/pipeline/budget_search.h"
 
+#include "bake/pipeline/planned_bake.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -69,12 +71,8 @@ class Search {
   private:
     /// Bakes with this budget; what keeps the promise is kept as the best so far.
     Result<bool> keeps(std::uint64_t budget) {
-        Plan plan = RELIEF_TRY(planSizes(views_, budget));
-        BakeOptions bake_options = options_.bake;
-        bake_options.maps = specsOf(plan);
-        Baked baked = RELIEF_TRY(bake(query_.prepared(), bake_options));
+        auto [plan, baked] = RELIEF_TRY(bakePlanned(query_, views_, budget, options_.bake));
         const double wrong = measureField(truth_, fieldOf(baked.collider)).near.total();
-        plan.bytes = baked.collider.gpuBytes();
         const BudgetTry made{budget, plan.bytes, wrong};
         tries_.push_back(made);
         if (options_.tried) {

@@ -144,6 +144,9 @@ Result<MapSpec> MapSpecBuilder::finish() const {
     if (isCube() && spec_.center && spec_.box) {
         return usage("a cube with a box is centred on the box; leave out center or box");
     }
+    if (spec_.compare == Compare::kGap && spec_.decode != Decode::kPlane) {
+        return usage("maps of gaps hold planes; leave out decode=projected");
+    }
     RELIEF_TRY(checkUp(spec_));
     return spec_;
 }
@@ -204,7 +207,12 @@ Result<void> MapSpecBuilder::setSize(std::string_view value) {
 
 Result<void> MapSpecBuilder::setCompare(std::string_view value) {
     if (isFrontBack(spec_.format)) {
-        return usage("compare does nothing for front-back, which keeps both surfaces; leave it out");
+        if (value != "gap") {
+            return usage(
+                "front-back keeps both surfaces; leave compare out, or keep those of gaps by compare=gap");
+        }
+        spec_.compare = Compare::kGap;
+        return {};
     }
     if (value != "less" && value != "greater") {
         return badValue("compare", value, "less or greater" + didYouMean(value, kCompareWords));
@@ -302,7 +310,7 @@ std::string toString(const MapSpec& spec) {
         add("size", cube ? std::to_string(spec.width)
                          : std::to_string(spec.width) + "x" + std::to_string(spec.height));
     }
-    if (spec.compare && !isFrontBack(spec.format)) {
+    if (spec.compare) {
         add("compare", compareName(*spec.compare));
     }
     if (spec.center) {

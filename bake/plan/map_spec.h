@@ -13,6 +13,8 @@
 //                                                      it is square to dir; without it, view.h's rule
 //     size     N or WxH            all (cube: N)       texels, border included; a cube's along a face's edge
 //     compare  less, greater       all but front-back  keep the nearest or the farthest surface along the ray
+//              gap                 front-back          keep both ends of the longest gap between solids of which the
+//                                                      maps before it see little; without it, the outermost surfaces
 //     center   a/b/c               cube                where the rays of a cube start, object space
 //     depth    unorm16, half       front-back          16-bit fixed point, or the paper's half floats
 //     decode   plane, projected    all                 the distance to a plane that was fitted to the texel's
@@ -48,7 +50,8 @@ struct MapSpec {
     /// Texels; 0 stands for the default resolution of the bake.
     std::uint32_t width = 0;
     std::uint32_t height = 0;
-    /// Not for front-back. nullopt: less; for a cube, greater if its centre lies inside the mesh.
+    /// For front-back kGap or nullopt, which is both. Of others nullopt: less; for a cube, greater if its centre lies
+    /// inside the mesh.
     std::optional<Compare> compare;
     /// Cubes only. nullopt: the middle of the box.
     std::optional<glm::vec3> center;

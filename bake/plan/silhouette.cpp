@@ -55,7 +55,7 @@ Silhouette::Silhouette(const TriangleMesh& mesh, const View& view) : strips_(kSt
             if (low > high) {
                 std::swap(low, high);
             }
-            Strip& strip = strips_[k];
+            RowExtent& strip = strips_[k];
             strip.low = std::min(strip.low, static_cast<float>(low - kSlack));
             strip.high = std::max(strip.high, static_cast<float>(high + kSlack));
         }
@@ -67,12 +67,18 @@ Silhouette::Silhouette(const TriangleMesh& mesh, const View& view) : strips_(kSt
     }
 }
 
+Silhouette::Silhouette(const std::vector<RowExtent>& rows) : strips_(kStrips) {
+    for (std::size_t k = 0; k < kStrips && !rows.empty(); ++k) {
+        strips_[k] = rows[k * rows.size() / kStrips];
+    }
+}
+
 std::uint64_t Silhouette::texels(std::uint32_t width, std::uint32_t height) const {
     const std::uint32_t rows = height - 2;
     const std::uint32_t columns = width - 2;
     std::uint64_t texels = 0;
     for (std::uint32_t row = 0; row < rows; ++row) {
-        Strip span;
+        RowExtent span;
         const std::size_t first = std::size_t{row} * kStrips / rows;
         const std::size_t end = ((std::size_t{row} + 1) * kStrips + rows - 1) / rows;
         for (std::size_t k = first; k < std::min(end, kStrips); ++k) {

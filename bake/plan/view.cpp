@@ -171,7 +171,8 @@ bool isFinite(const View& view) {
 }  // namespace
 
 bool View::emptyIsOutside() const {
-    return (keeps(RayEnd::kNear) && starts_free[0]) || (keeps(RayEnd::kFar) && starts_free[1]);
+    return compare != Compare::kGap &&
+           ((keeps(RayEnd::kNear) && starts_free[0]) || (keeps(RayEnd::kFar) && starts_free[1]));
 }
 
 TexelRay View::ray(std::uint32_t face, std::uint32_t x, std::uint32_t y) const {
@@ -272,6 +273,7 @@ Result<View> makeView(const MapSpec& spec, const TriangleMesh& mesh) {
         placeCube(view, spec, mesh);
     } else {
         placeOrthographic(view, spec, mesh);
+        view.encloses = view.encloses && view.compare != Compare::kGap;
     }
     if (!isFinite(view)) {
         return fail(ErrorCode::kUsage,

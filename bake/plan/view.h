@@ -52,7 +52,7 @@ struct View {
     }
     [[nodiscard]] std::uint32_t faceCount() const { return projection() == Projection::kCube ? 6 : 1; }
     [[nodiscard]] bool keeps(RayEnd end) const {
-        return compare == Compare::kBoth || (compare == Compare::kLess) == (end == RayEnd::kNear);
+        return keepsTwo(compare) || (compare == Compare::kLess) == (end == RayEnd::kNear);
     }
     /// A texel without surface says "outside": one of the kept ends saw the whole ray from free space.
     [[nodiscard]] bool emptyIsOutside() const;

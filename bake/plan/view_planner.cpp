@@ -6,11 +6,12 @@
 #include <cmath>
 #include <cstdio>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 #include <optional>
 
-#include "bake/measure/sight.h"
 #include "bake/mesh/surface_sampler.h"
 #include "bake/mesh/triangle_plane.h"
+#include "bake/plan/gap_grid.h"
 #include "bake/plan/outer_views.h"
 #include "bake/plan/view.h"
 
@@ -18,8 +19,6 @@ namespace relief {
 namespace {
 
 constexpr std::size_t kPoints = 8'000;
-/// Points on the surface, to say how much of it no map sees.
-constexpr std::uint32_t kSurfacePoints = 4'000;
 /// Spread of the points off the surface, in units of the longest side: where particles are looked up.
 constexpr double kSpread = 0.005;
 /// Cosine of incidence from which on a point is served in full.
@@ -48,6 +47,12 @@ constexpr int kIdleRounds = 3;
 constexpr int kCavityCandidates = 100;
 /// Cubes reach this far at most, in units of the longest side.
 constexpr double kCavityReach = 0.65;
+/// Of the area of an outer view, what the gaps along its direction take up: a guess, until one is chosen.
+constexpr double kGapShare = 0.3;
+/// Points served badly that directions are tried with for maps of gaps; those of the one that is taken are all.
+constexpr std::size_t kGapPoints = 400;
+/// Texels of a map of gaps across one of an outer view: what is seen by no other map is in much of it.
+constexpr double kGapDetail = 1.4;
 /// Texels of a cube across the mean width of its volume: its faces are nearer to the centre than to the
 /// corners.
 constexpr double kCubeDensity = 0.775;
@@ -131,29 +136,19 @@ class Planner {
             views.push_back({view, {}});
         }
         rateViews(views);
-        addViews(views);
+        RELIEF_TRY(addViews(views));
+        // Gaps are kept that no map before them sees.
+        std::ranges::stable_partition(choice_.views, [](const ViewChoice::Chosen& chosen) {
+            return chosen.map.spec.compare != Compare::kGap;
+        });
         RELIEF_TRY(addSilhouettes());
-        choice_.unseen_percent = RELIEF_TRY(unseenPercent());
         return std::move(choice_);
     }
 
   private:
-    /// As `relief check` has it of the baked maps.
-    [[nodiscard]] Result<double> unseenPercent() const {
-        std::vector<DepthMap> maps;
-        for (const ViewChoice::Chosen& chosen : choice_.views) {
-            MapSpec spec = chosen.map.spec;
-            spec.width = spec.height = 64;  // any: what a view sees does not depend on it
-            const View view = RELIEF_TRY(makeView(spec, mesh_));
-            maps.push_back(view.emptyMap());
-            maps.back().decode = spec.decode;
-        }
-        return Sights(maps, query_).unseenPercent(sampleSurface(query_, {.samples = kSurfacePoints}));
-    }
-
     [[nodiscard]] Result<void> addSilhouettes() {
         for (ViewChoice::Chosen& chosen : choice_.views) {
-            if (chosen.map.spec.format != MapFormat::kCube8) {
+            if (chosen.map.spec.format != MapFormat::kCube8 && !chosen.silhouette) {
                 MapSpec spec = chosen.map.spec;
                 spec.width = spec.height = 64;  // any: its outline does not depend on it
                 chosen.silhouette.emplace(mesh_, RELIEF_TRY(makeView(spec, mesh_)));
@@ -183,7 +178,7 @@ class Planner {
     }
 
     /// Takes views, from outside and from within, while one more is worth its price.
-    void addViews(const std::vector<RatedView>& views) {
+    [[nodiscard]] Result<void> addViews(const std::vector<RatedView>& views) {
         int idle_rounds = 0;
         for (std::uint64_t round = 0; idle_rounds < kIdleRounds; ++round) {
             const OuterChoice outer = bestOuterView(views);
@@ -192,27 +187,34 @@ class Planner {
                 take(*outer.view, outer.gain * total());
                 continue;
             }
-            const std::optional<Cavity> cavity = bestCavity(round);
+            const std::vector<std::size_t> unserved = unservedPoints();
+            const std::optional<Cavity> cavity = bestCavity(unserved, round);
+            const std::optional<Gaps> gaps = bestGaps(views, unserved);
             const double cavity_gain = cavity ? cavity->gain / total() : 0.0;
+            const double gap_gain = gaps ? gaps->gain / total() : 0.0;
             const double outer_value =
                 outer.view == nullptr ? 0.0 : valueOf(outer.gain, 8.0 * outer.view->area);
             const double cavity_value = cavity ? valueOf(cavity_gain, cavity->area) : 0.0;
+            const double gap_value = gaps ? valueOf(gap_gain, gaps->area) : 0.0;
             if (full) {
-                choice_.next_gain = std::max(outer.gain, cavity_gain);
-                return;
+                choice_.next_gain = std::max({outer.gain, cavity_gain, gap_gain});
+                return {};
             }
-            if (outer_value <= 0.0 && cavity_value <= 0.0) {
-                choice_.next_gain = std::max({choice_.next_gain, outer.gain, cavity_gain});
+            if (std::max({outer_value, cavity_value, gap_value}) <= 0.0) {
+                choice_.next_gain = std::max({choice_.next_gain, outer.gain, cavity_gain, gap_gain});
                 idle_rounds = cavity ? idle_rounds + 1 : kIdleRounds;  // places within are tried at random
                 continue;
             }
             choice_.next_gain = 0.0;
-            if (cavity_value > outer_value) {
+            if (gap_value >= std::max(outer_value, cavity_value)) {
+                RELIEF_TRY(take(*gaps, unserved));
+            } else if (cavity_value > outer_value) {
                 take(*cavity);
             } else {
                 take(*outer.view, outer.gain * total());
             }
         }
+        return {};
     }
 
     [[nodiscard]] double total() const { return static_cast<double>(points_.size()); }
@@ -281,8 +283,8 @@ class Planner {
         double area = 0.0;
     };
 
-    /// Of some places near points that are served badly.
-    [[nodiscard]] std::optional<Cavity> bestCavity(std::uint64_t round) const {
+    /// Points that are served badly; none where they are too few to look for.
+    [[nodiscard]] std::vector<std::size_t> unservedPoints() const {
         std::vector<std::size_t> unserved;
         for (std::size_t i = 0; i < points_.size(); ++i) {
             if (served_[i] < kUnserved) {
@@ -290,6 +292,113 @@ class Planner {
             }
         }
         if (static_cast<double>(unserved.size()) < kCavityShare * total()) {
+            unserved.clear();
+        }
+        return unserved;
+    }
+
+    /// A map of gaps along the direction of an outer view.
+    struct Gaps {
+        const RatedView* view = nullptr;
+        double gain = 0.0;
+        double area = 0.0;  ///< bytes for texels of side 1
+    };
+
+    /// A map that was taken sees a point of free space.
+    [[nodiscard]] bool isSeen(const glm::dvec3& p) const {
+        for (const ViewChoice::Chosen& chosen : choice_.views) {
+            const MapSpec& spec = chosen.map.spec;
+            if (spec.compare == Compare::kGap) {
+                continue;
+            }
+            if (spec.format != MapFormat::kCube8) {
+                const glm::dvec3 along(spec.direction);
+                if (query_.rayIsFree(p, along) || query_.rayIsFree(p, -along)) {
+                    return true;
+                }
+                continue;
+            }
+            const glm::dvec3 low(spec.box->min);
+            const glm::dvec3 high(spec.box->max);
+            const bool within =
+                glm::all(glm::greaterThanEqual(p, low)) && glm::all(glm::lessThanEqual(p, high));
+            if (within && query_.segmentIsFree(0.5 * (low + high), p)) {
+                return true;
+            }
+        }
+        return std::ranges::any_of(gap_grids_, [&](const GapGrid& grid) { return grid.holds(p); });
+    }
+    [[nodiscard]] IsSeen isSeenByTaken() const {
+        return [this](const glm::dvec3& p) { return isSeen(p); };
+    }
+
+    [[nodiscard]] float serviceOfGap(std::size_t i, const glm::dvec3& along) const {
+        const std::optional<LineGap> gap = keptGap(query_, points_[i].position, along, isSeenByTaken());
+        const bool held = gap && gap->begin <= 0.0 && gap->end >= 0.0;
+        return held ? service(std::abs(dot(points_[i].normal, along))) : 0.0F;
+    }
+
+    /// Of the directions of all outer views.
+    [[nodiscard]] std::optional<Gaps> bestGaps(const std::vector<RatedView>& views,
+                                               const std::vector<std::size_t>& unserved) const {
+        if (unserved.empty() || !options_.gaps) {
+            return std::nullopt;
+        }
+        const std::size_t stride = (unserved.size() + kGapPoints - 1) / kGapPoints;
+        std::vector<std::size_t> tried;
+        for (std::size_t k = 0; k < unserved.size(); k += stride) {
+            tried.push_back(unserved[k]);
+        }
+        const double weight = static_cast<double>(unserved.size()) / static_cast<double>(tried.size());
+        std::vector<Gaps> all(views.size());
+        tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
+            Gaps& gaps = all[v];
+            gaps.view = &views[v];
+            const glm::dvec3 along(views[v].spec.direction);
+            for (const std::size_t i : tried) {
+                gaps.gain += weight * std::max(0.0F, serviceOfGap(i, along) - served_[i]);
+            }
+            gaps.area = 8.0 * kGapDetail * kGapDetail * kGapShare * views[v].area;
+        });
+        const auto best = std::ranges::max_element(all, [&](const Gaps& a, const Gaps& b) {
+            return a.gain * std::sqrt(b.area) < b.gain * std::sqrt(a.area);
+        });
+        return best->gain > 0.0 ? std::optional(*best) : std::nullopt;
+    }
+
+    [[nodiscard]] Result<void> take(const Gaps& gaps, const std::vector<std::size_t>& unserved) {
+        const glm::dvec3 along(gaps.view->spec.direction);
+        std::vector<float> values(unserved.size());
+        tbb::parallel_for(std::size_t{0}, unserved.size(),
+                          [&](std::size_t k) { values[k] = serviceOfGap(unserved[k], along); });
+        double gain = 0.0;
+        for (std::size_t k = 0; k < unserved.size(); ++k) {
+            float& served = served_[unserved[k]];
+            gain += std::max(0.0F, values[k] - served);
+            served = std::max(served, values[k]);
+        }
+        ViewChoice::Chosen chosen;
+        chosen.map.spec = gaps.view->spec;
+        chosen.map.spec.compare = Compare::kGap;
+        chosen.map.serves = gain / total();
+        chosen.map.reason = text("gaps along (%.3g, %.3g, %.3g)", along.x, along.y, along.z) +
+                            text(": service +%.1f %%", 100.0 * gain / total());
+        chosen.width = gaps.view->width;
+        chosen.height = gaps.view->height;
+        MapSpec spec = chosen.map.spec;
+        spec.width = spec.height = 64;  // any
+        GapGrid grid(query_, RELIEF_TRY(makeView(spec, mesh_)), isSeenByTaken());
+        chosen.area = 8.0 * kGapDetail * kGapDetail * grid.area();
+        chosen.silhouette = grid.silhouette();
+        gap_grids_.push_back(std::move(grid));
+        add(std::move(chosen));
+        return {};
+    }
+
+    /// Of some places near points that are served badly.
+    [[nodiscard]] std::optional<Cavity> bestCavity(const std::vector<std::size_t>& unserved,
+                                                   std::uint64_t round) const {
+        if (unserved.empty()) {
             return std::nullopt;
         }
         std::vector<Cavity> candidates(kCavityCandidates);
@@ -371,6 +480,7 @@ class Planner {
     std::vector<PlanPoint> points_;
     std::vector<float> served_;  // of each point, 0…1
     ViewChoice choice_;
+    std::vector<GapGrid> gap_grids_;  // of the maps of gaps
     double outer_area_ = 0.0;
 };
 
@@ -386,13 +496,13 @@ Result<void> checkBudget(std::uint64_t bytes) {
 Plan sizedPlan(const ViewChoice& choice, double texel) {
     Plan plan;
     plan.texel = texel;
-    plan.unseen_percent = choice.unseen_percent;
     plan.next_gain = choice.next_gain;
     for (const ViewChoice::Chosen& view : choice.views) {
         PlannedMap map = view.map;
         const bool cube = map.spec.format == MapFormat::kCube8;
         const auto texels = [&](double extent) {
-            const double count = extent / texel + (cube ? 0.0 : 2.0);
+            const double detail = map.spec.compare == Compare::kGap ? kGapDetail : 1.0;
+            const double count = extent * detail / texel + (cube ? 0.0 : 2.0);
             return static_cast<std::uint32_t>(std::clamp(count, cube ? 2.0 : 3.0, double{kMapSizeMax}));
         };
         map.spec.width = texels(view.width);

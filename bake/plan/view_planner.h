@@ -2,12 +2,13 @@
 //
 // Points just outside the surface are drawn. A view serves a point if it sees it; less so at a grazing angle,
 // where a texel covers much surface. Maps are added greedily while one more is worth its price: the bytes that it takes
-// from the others, and the time that it takes of every step of a simulation. There are two kinds:
+// from the others, and the time that it takes of every step of a simulation. There are three kinds:
 //
 //   front-back maps of the whole mesh, along directions spread over the sphere and the axes of its box and of its
 //   oriented box (oriented_box.h), each turned so that its rows take up little (outer_views.h);
 //   for what these see badly (cavities, armpits, insides of holes), small cubes in free space that keep the nearest
-//   surface, placed where they see most of it.
+//   surface, placed where they see most of it;
+//   for what lies between solids (shelves, rails, leaves), maps of gaps along one of those directions (gap_grid.h).
 //
 // None of this depends on the budget. Sizes alone follow from it: one texel size for all maps, so that the
 // error is even.
@@ -33,6 +34,7 @@ struct ViewOptions {
     std::uint64_t seed = 1;
     Prefer prefer = Prefer::kNeither;          ///< kOutside: more views, so that less free space is doubtful
     std::uint32_t max_maps = kPlannedMapsMax;  ///< at least 1
+    bool gaps = true;                          ///< maps of gaps may be taken (bake/texels/gap_map.h)
     bool oriented_box = true;  ///< false: do without the axes of the oriented box, to see what they are worth
 };
 
@@ -52,8 +54,7 @@ struct ViewChoice {
         std::optional<Silhouette> silhouette;  ///< not of cubes
     };
     std::vector<Chosen> views;
-    double area = 0.0;            ///< of all views
-    double unseen_percent = 0.0;  ///< of the surface's area: no view sees it (bake/measure/sight.h)
+    double area = 0.0;       ///< of all views
     double next_gain = 0.0;  ///< what the best view that was left out would have served: 0 to 1, as `serves`
     std::string mesh_name;
 };
@@ -66,10 +67,11 @@ inline constexpr std::uint64_t kPlanBudgetMin = 4096;
 
 struct Plan {
     std::vector<PlannedMap> maps;
-    double texel = 0.0;           ///< side of a texel, object units
-    double unseen_percent = 0.0;  ///< as ViewChoice has it
-    double next_gain = 0.0;       ///< as ViewChoice has it
-    std::uint64_t bytes = 0;      ///< of all maps on the GPU; at most, until they are baked
+    double texel = 0.0;  ///< side of a texel, object units
+    double unseen_percent =
+        0.0;  ///< of the surface's area: no map sees it (bake/measure/sight.h); 0 until it is baked
+    double next_gain = 0.0;   ///< as ViewChoice has it
+    std::uint64_t bytes = 0;  ///< of all maps on the GPU; about as many, until they are baked
 };
 
 /// What bake() takes of a plan.
@@ -84,7 +86,8 @@ struct PlanOptions {
     ViewOptions views;
 };
 
-/// Views and sizes. Errors: those of chooseViews and planSizes.
+/// Views and sizes, to be seen or changed; bakePlanned() (bake/pipeline/planned_bake.h) also keeps to the budget. Errors:
+/// those of chooseViews and planSizes.
 [[nodiscard]] Result<Plan> planViews(const MeshQuery& query, const PlanOptions& options);
 
 }  // namespace relief

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "bake/mesh/triangle_plane.h"
+#include "bake/texels/fitted_end.h"
 #include "bake/texels/plane_fit.h"
 #include "bake/texels/ray_probe.h"
 #include "bake/texels/raycast.h"
@@ -19,54 +20,8 @@ namespace {
 
 /// Rays traced before their texels are fitted: bounds the memory for hits to 64 MiB whatever a map's size.
 constexpr std::uint64_t kStripeRays = std::uint64_t{1} << 22;
-constexpr double kDepthCodes = kDepthSteps;
 /// Parts of the way between two rays of a footprint to which the edge of a surface is found; odd.
 constexpr std::uint32_t kEdgeParts = 63;
-
-/// Looks at one end of a view from where its rays start: u grows away from the viewer.
-class EndView {
-  public:
-    EndView(const View& view, RayEnd end)
-        : far_(end == RayEnd::kFar),
-          u_max_(view.projection() == Projection::kCube ? double{kCubeDepthMax} : 1.0) {}
-
-    [[nodiscard]] double uMax() const { return u_max_; }
-    [[nodiscard]] FootprintRay fromViewer(const TexelRay& ray) const {
-        return far_ ? FootprintRay{ray.origin + u_max_ * ray.direction, -ray.direction, -1.0, glm::dvec3(0.0)}
-                    : FootprintRay{ray.origin, ray.direction, -1.0, glm::dvec3(0.0)};
-    }
-    [[nodiscard]] double uOf(double depth) const { return far_ ? u_max_ - depth : depth; }
-    /// Map depth of a fitted plane. Exact in double: both count in the same 65534 parts.
-    [[nodiscard]] double depthOf(const FittedPlane& plane) const {
-        const double code = plane.code;
-        return (far_ && !plane.stands ? kDepthCodes - code : code) / kDepthCodes * u_max_;
-    }
-    /// Towards the viewer in map depth.
-    [[nodiscard]] bool outwardsIsLess() const { return !far_; }
-
-  private:
-    bool far_;
-    double u_max_;
-};
-
-/// The ring of texels that stays empty (depth_map.h).
-bool isBorder(const View& view, std::uint32_t x, std::uint32_t y) {
-    return view.projection() == Projection::kOrthographic &&
-           (x == 0 || y == 0 || x + 1 == view.width || y + 1 == view.height);
-}
-
-/// A half-float depth on the viewer's side of `depth`.
-float outwardHalf(double depth, bool outwards_is_less) {
-    const std::uint16_t nearest = encodeHalfDepth(static_cast<float>(depth));
-    const double decoded = decodeHalfDepth(nearest);
-    if (outwards_is_less && decoded > depth) {
-        return decodeHalfDepth(std::max<std::uint16_t>(nearest - 1, encodeHalfDepth(0.0F)));
-    }
-    if (!outwards_is_less && decoded < depth) {
-        return decodeHalfDepth(std::min<std::uint16_t>(nearest + 1, encodeHalfDepth(1.0F)));
-    }
-    return static_cast<float>(decoded);
-}
 
 /// Fits the texels of one end, from the hits of a view with `samples` times as many texels each way.
 class EndFitter {
@@ -129,11 +84,7 @@ class EndFitter {
         if (!plane) {
             return std::nullopt;
         }
-        const double depth = end_.depthOf(*plane);
-        return Surface{view_.format == MapFormat::kFrontBackHalf
-                           ? outwardHalf(depth, end_.outwardsIsLess() && !plane->stands)
-                           : static_cast<float>(depth),
-                       glm::vec3(plane->normal)};
+        return end_.surfaceOf(*plane, view_.format);
     }
 
   private:

@@ -115,7 +115,7 @@ class PlaneSearch {
         const double along = dot(normal, centre_.direction);
         const double cosine = along / direction_length_;
         const bool stands = std::abs(cosine) < kStandingMax;
-        if (!stands && !(cosine <= -kPlaneGrazingMin)) {
+        if (std::abs(cosine) < options_.steepest || (!stands && !(cosine <= -kPlaneGrazingMin))) {
             return;
         }
         // Pushed until no sampled surface point lies in front.

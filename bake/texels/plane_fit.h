@@ -41,7 +41,9 @@ struct PlaneFitOptions {
     double range = 0.0;       ///< standingRange of the map, object units
     double pixel_cost = 0.0;  ///< per ray: a fit whose mean error is below this, in u, is good enough, in u
     bool cautious = false;    ///< all planes keep behind the rays about the footprint, not only steep ones
-    int refinements = 3;      ///< rounds of search among neighbouring normals; 0: none
+    /// |cosine| with the ray from which on a plane is steep enough to be left out; above kStandingCosine none stands.
+    double steepest = 0.0;
+    int refinements = 3;  ///< rounds of search among neighbouring normals; 0: none
     /// Above 0 a plane is let back inwards by this part of the spread of the sampled points about it, so that
     /// it cuts some of the solid and spares as much free space; not at steps, whose spread is more than
     /// `range`/4.

@@ -62,6 +62,8 @@ class TexelVotes {
     [[nodiscard]] bool changeable() const {
         return map_.decode == Decode::kPlane && std::string_view(depthEncodingName(map_.format)) == "unorm16";
     }
+    /// Of a gap both ends have to see a point outside.
+    [[nodiscard]] bool isGap() const { return map_.compare == Compare::kGap; }
     [[nodiscard]] int ends() const { return isFrontBack(map_.format) ? 2 : 1; }
     [[nodiscard]] std::size_t texels() const {
         return std::size_t{map_.faceCount()} * map_.width * map_.height;
@@ -160,6 +162,16 @@ class TexelVotes {
         return dot(normal, p - ray.origin) - offsetOf(code, normal, ray) >= 0.0;
     }
 
+    /// How many of a texel's votes say outside: of each end, or of a gap.
+    [[nodiscard]] std::uint16_t outsideVotes(std::size_t texel, const Ray& ray, const glm::dvec3& p) const {
+        int votes = 0;
+        for (int end = 0; end < ends(); ++end) {
+            const Code here = code(texel, end);
+            votes += here.depth != 0 && sawOutside(here, ray, p) ? 1 : 0;
+        }
+        return static_cast<std::uint16_t>(isGap() ? votes / 2 : votes);
+    }
+
     /// Both ends of a texel are empty, and that means outside.
     [[nodiscard]] bool emptyIsOutside(std::size_t texel) const {
         return map_.empty_is_outside && code(texel, 0).depth == 0 &&
@@ -171,7 +183,7 @@ class TexelVotes {
         const bool sees_far = map_.compare == Compare::kGreater || end == 1;
         const double cosine = dot(normal, ray.direction) / ray.length * (sees_far ? 1.0 : -1.0);
         const bool in_gap = std::abs(std::abs(cosine) - double{kStandingCosine}) < 1e-4;
-        return std::abs(cosine) >= steepest && !in_gap && (cosine > 0.0 || stands(normal, ray));
+        return std::abs(cosine) >= steepest && !in_gap && (cosine > 0.0 || (stands(normal, ray) && !isGap()));
     }
 
     [[nodiscard]] const DepthMap& map() const { return map_; }
@@ -364,13 +376,8 @@ class Refinement {
                         ++outside_votes_[i];
                         continue;
                     }
-                    const Ray ray = map.ray(at);
-                    for (int end = 0; end < map.ends(); ++end) {
-                        const Code code = map.code(at, end);
-                        if (code.depth != 0 && map.sawOutside(code, ray, points_[i].position)) {
-                            ++outside_votes_[i];
-                        }
-                    }
+                    outside_votes_[i] = static_cast<std::uint16_t>(
+                        outside_votes_[i] + map.outsideVotes(at, map.ray(at), points_[i].position));
                 }
             }
         });
@@ -432,10 +439,18 @@ class Refinement {
             if (current.depth == 0) {
                 continue;
             }
+            const Code other = map.isGap() ? map.code(texel, 1 - end) : Code{};
+            if (map.isGap() && other.depth == 0) {
+                continue;
+            }
+            // What the other end of a gap sees inside is not for this one to decide.
+            const auto mayDecide = [&](std::uint32_t i) {
+                return !map.isGap() || map.sawOutside(other, ray, points_[i].position);
+            };
             choice.points.clear();
             for (const std::uint32_t i : members) {
                 const int own = map.sawOutside(current, ray, points_[i].position) ? 1 : 0;
-                if (outside_votes_[i] == own) {
+                if (mayDecide(i) && outside_votes_[i] == own) {
                     choice.points.push_back(
                         {glm::dvec3(points_[i].position) - ray.origin, points_[i].normal, points_[i].inside});
                 }
@@ -446,6 +461,9 @@ class Refinement {
             }
             map.setCode(texel, end, best);
             for (const std::uint32_t i : members) {
+                if (!mayDecide(i)) {
+                    continue;
+                }
                 const int before = map.sawOutside(current, ray, points_[i].position) ? 1 : 0;
                 const int after = map.sawOutside(best, ray, points_[i].position) ? 1 : 0;
                 outside_votes_[i] = static_cast<std::uint16_t>(outside_votes_[i] + after - before);

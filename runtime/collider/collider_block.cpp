@@ -22,6 +22,7 @@ static_assert(sizeof(BlockMap) == 144);
 std::int32_t flagsOf(const PlacedMap& placed) {
     const DepthMap& map = *placed.map;
     return (isFrontBack(map.format) && !placed.live ? kHasRows : 0) |
+           (map.compare == Compare::kGap ? kIsGap : 0) |
            (map.compare == Compare::kGreater ? kKeepsFarthest : 0) | (map.encloses ? kEncloses : 0) |
            (map.empty_is_outside ? kEmptyIsOutside : 0) | (map.decode == Decode::kPlane ? kDecodesPlane : 0);
 }
@@ -115,6 +116,7 @@ std::string colliderDefines(std::size_t bodies, std::span<const PlacedMap> maps)
     defineIf("FRONT_BACK_HALF", [](const DepthMap& map) { return map.format == MapFormat::kFrontBackHalf; });
     defineIf("FRONT_BACK_FIXED",
              [](const DepthMap& map) { return map.format == MapFormat::kFrontBackFixed; });
+    defineIf("GAP", [](const DepthMap& map) { return map.compare == Compare::kGap; });
     defineIf("PLANE", [](const DepthMap& map) { return map.decode == Decode::kPlane; });
     defineIf("PROJECTED", [](const DepthMap& map) { return map.decode == Decode::kProjected; });
     return defines;

@@ -62,7 +62,11 @@ std::vector<std::byte> shaderTexels(const DepthMap& map) {
             const auto isEmpty = [&](std::size_t end) {
                 return texel[4 + 2 * end] == std::byte{0} && texel[5 + 2 * end] == std::byte{0};
             };
-            if (map.decode == Decode::kPlane && isEmpty(0) != isEmpty(1)) {
+            if (map.compare == Compare::kGap) {
+                if (isEmpty(0) || isEmpty(1)) {
+                    std::ranges::fill(texel, std::byte{0});
+                }
+            } else if (map.decode == Decode::kPlane && isEmpty(0) != isEmpty(1)) {
                 const std::size_t full = isEmpty(0) ? 1 : 0;
                 for (const std::size_t word : {std::size_t{0}, std::size_t{4}}) {
                     std::memcpy(&texel[word + 2 * (1 - full)], &texel[word + 2 * full], 2);

@@ -47,6 +47,10 @@ Result<void> checkFrame(const DepthMapFrame& frame) {
                         " texels cannot be rendered; take " + std::to_string(least) + " to " +
                         std::to_string(kMapSizeMax) + " along a side, a cube as wide as high");
     }
+    if (frame.compare == Compare::kGap) {
+        return fail(ErrorCode::kUsage,
+                    "a map of gaps cannot be rendered, which shows the outer surfaces alone; bake it");
+    }
     if ((frame.compare == Compare::kBoth) != isFrontBack(frame.format)) {
         return fail(ErrorCode::kUsage, std::string("a depth map of format ") + mapFormatName(frame.format) +
                                            " cannot keep " + compareName(frame.compare) +

@@ -56,3 +56,6 @@ cmp bare.relief rays.relief || die "the ray caster's bytes depend on the OpenGL"
 expect 0 "${without_gl[@]}" "$relief" bake "$bunny" -o bare.relief --backend auto --quality fast "${maps[@]}"
 grep -q 'backend raycast: no OpenGL' stderr || die "auto does not say that there is no OpenGL"
 cmp bare.relief rays.relief || die "auto without an OpenGL is not the ray caster"
+# Only rays find what lies between solids.
+expect 1 "$relief" bake "$bunny" -o gaps.relief --backend raster --map front-back:compare=gap
+matches 'leave out --backend raster' < stderr

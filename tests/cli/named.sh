@@ -124,6 +124,8 @@ bakes names.obj "s['named'][0]['name'] == 'Fenster = \"vorn\" \$x;\'é'" --as "F
 json report.json "' --as Fenster%20%3D%20%22vorn%22%20%24x%3B%27é=shell --thickness' in d['provenance']['options']"
 expect 0 "$relief" check out.relief --mesh names.obj --samples 2000 --json
 json stdout "d['mesh']['shape']['sheets'] == 2"
+expect 0 "$relief" bake names.obj -o rough.relief --budget 10kB --max-maps 1 --no-check --as "Fenster = \"vorn\" \$x;'é=shell"
+expect 0 "$relief" check rough.relief --mesh names.obj --samples 2000 --json
 cp stdout check.json
 python3 - <<'P' || die "the advised commands lack the name: $(cat check.json)"
 import json, shlex, sys

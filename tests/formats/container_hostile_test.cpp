@@ -311,7 +311,8 @@ TEST(Crafted, Frames) {
     expectRefused(with([](Recipe& r) { r.maps[0].decode = 255; }), "map 0: its decode 255 is unknown");
     expectRefused(with([](Recipe& r) { r.maps[1].format = 4; }),
                   "\"less\" does not go with its format \"front-back\"");
-    expectRefused(with([](Recipe& r) { r.maps[1].compare = 3; }), "map 1: its compare 3 is unknown");
+    expectRefused(with([](Recipe& r) { r.maps[1].compare = 4; }), "map 1: its compare 4 is unknown");
+    expectRefused(with([](Recipe& r) { r.maps[1].compare = 3; }), "does not go with its format");
     expectRefused(with([](Recipe& r) { r.maps[1].compare = 2; }),
                   "\"both\" does not go with its format \"fixed8\"");
     expectRefused(with([](Recipe& r) { r.maps[1].compression = 3; }), "map 1: its compression 3 is unknown");

@@ -74,6 +74,20 @@ TEST(Container, SameColliderSameBytes) {
     }
 }
 
+TEST(Container, MapsOfGapsAreReadAndNeedVersion12) {
+    Collider collider = oneMapOfEveryFormat();
+    DepthMap& map = collider.maps[4];
+    map.compare = Compare::kGap;
+    map.encloses = map.empty_is_outside = false;
+    for (const int level : {0, 19}) {
+        const std::vector<std::byte> bytes = written(collider, level);
+        EXPECT_EQ(readContainerInfo(bytes)->minor, 2);
+        const Result<Collider> read = readContainer(bytes);
+        ASSERT_TRUE(read) << read.error().message;
+        EXPECT_EQ(read->maps, collider.maps);
+    }
+}
+
 TEST(Container, LayoutIsTheOneOfTheReadme) {
     for (const int level : {0, 19}) {
         const std::vector<std::byte> bytes = written(oneMapOfEveryFormat(), level);
@@ -229,8 +243,10 @@ const std::vector<Refusal>& refusals() {
         {"options has", [](Collider& c) { c.provenance.options.assign((1 << 20) + 1, 'a'); }},
         {"map 0: its format 5 is unknown", [](Collider& c) { c.maps[0].format = static_cast<MapFormat>(5); }},
         {"map 2: its decode 2 is unknown", [](Collider& c) { c.maps[2].decode = static_cast<Decode>(2); }},
-        {"map 0: its compare 3 is unknown", [](Collider& c) { c.maps[0].compare = static_cast<Compare>(3); }},
+        {"map 0: its compare 4 is unknown", [](Collider& c) { c.maps[0].compare = static_cast<Compare>(4); }},
         {"does not go with its format", [](Collider& c) { c.maps[1].compare = Compare::kBoth; }},
+        {"does not go with its format", [](Collider& c) { c.maps[1].compare = Compare::kGap; }},
+        {"a map of gaps has planes", [](Collider& c) { c.maps[4].compare = Compare::kGap; }},
         {"does not go with its format", [](Collider& c) { c.maps[2].compare = Compare::kLess; }},
         {"does not go with its format", [](Collider& c) { c.maps[4].compare = Compare::kGreater; }},
         {"map 3: its size 4x5 is not square", [](Collider& c) { c.maps[3].height = 5; }},

@@ -55,6 +55,7 @@ TEST(MapSpecParser, TextAndSpecAreOne) {
           "front-back:dir=-y,size=7x9,depth=unorm16,decode=plane,box=tight",
           "front-back:dir=1/2/3,up=0.1/-7/1e-20,size=7x9,depth=unorm16,decode=plane,box=tight",
           "float:dir=-y,up=+x,size=7x9,compare=less,decode=plane,box=tight",
+          "front-back:dir=+x,size=64x32,compare=gap,depth=unorm16,decode=plane,box=tight",
           "cube:size=256,compare=less,center=0/0.1/0,decode=projected,box=tight",
           "cube:size=1,compare=greater,decode=plane,box=-1/-1/-1/0.1/1e+20/3"}) {
         const Result<MapSpec> spec = parseMapSpec(text);
@@ -105,7 +106,9 @@ TEST(MapSpecParser, RefusesWithTheCure) {
         {"float:dir=1/2/inf", kUsage, "a/b/c"},
         {"float:dir=1e99/0/0", kUsage, "a/b/c"},
         {"cube:dir=+x", kUsage, "does nothing for a cube"},
-        {"front-back:compare=less", kUsage, "does nothing for front-back"},
+        {"front-back:compare=less", kUsage, "leave compare out, or keep those of gaps by compare=gap"},
+        {"fixed8:compare=gap", kUsage, "less or greater"},
+        {"front-back:compare=gap,decode=projected", kUsage, "maps of gaps hold planes"},
         {"float:compare=lesser", kUsage, "did you mean 'less'"},
         {"float:center=0/0/0", kUsage, "does nothing but for a cube"},
         {"cube:center=0/0", kUsage, "three numbers"},

@@ -547,6 +547,10 @@ TEST_P(DepthMapRendererGlTest, WhatIsWrongIsRefused) {
     EXPECT_TRUE(refused([](DepthMapFrame& f) { f.height = kMapSizeMax + 1; }));
     EXPECT_TRUE(refused([](DepthMapFrame& f) { f.width = 17; }));
     EXPECT_TRUE(refused([](DepthMapFrame& f) { f.compare = Compare::kBoth; }));
+    EXPECT_TRUE(refused([](DepthMapFrame& f) {
+        f.format = MapFormat::kFrontBackFixed;
+        f.compare = Compare::kGap;
+    }));
     EXPECT_TRUE(refused([](DepthMapFrame& f) { f.format = MapFormat::kFrontBackHalf; }));
     EXPECT_TRUE(refused([](DepthMapFrame& f) { f.format = MapFormat::kFloat32; }));
     EXPECT_TRUE(refused([](DepthMapFrame& f) { f.axis[1] = glm::dvec3(0.0); }));

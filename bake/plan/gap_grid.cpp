@@ -1,0 +1,114 @@
+#include "bake/plan/gap_grid.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace relief {
+namespace {
+
+/// Lines across the image, each way.
+constexpr std::uint32_t kLines = 64;
+/// Parts of a gap of which it is asked whether they are seen.
+constexpr int kParts = 2;
+/// Gaps that count less are none: in units of the mesh's longest side.
+constexpr double kShortest = 1e-3;
+/// Of a cell: gaps end between two lines.
+constexpr double kBesideLine = 0.5;
+
+View gridOf(View view) {
+    // The border of the view is one texel wide, whatever its size.
+    const double sides[2] = {static_cast<double>(view.width), static_cast<double>(view.height)};
+    for (int i = 0; i < 2; ++i) {
+        const double inner = (sides[i] - 2.0) / sides[i];
+        const glm::dvec3 axis = view.axis[i];
+        view.axis[i] = axis * (inner * (kLines + 2.0) / kLines);
+        view.origin += 0.5 * (axis - view.axis[i]);
+    }
+    view.width = view.height = kLines + 2;
+    return view;
+}
+
+double unseenLength(const LineGap& gap, const glm::dvec3& origin, const glm::dvec3& direction,
+                    const IsSeen& is_seen) {
+    int unseen = 0;
+    for (int i = 0; i < kParts; ++i) {
+        unseen += is_seen(origin + (gap.begin + (i + 0.5) / kParts * gap.length()) * direction) ? 0 : 1;
+    }
+    return unseen * gap.length() / kParts;
+}
+
+}  // namespace
+
+std::optional<LineGap> keptGap(const MeshQuery& query, const glm::dvec3& origin, const glm::dvec3& direction,
+                               const IsSeen& is_seen) {
+    std::vector<LineGap> gaps = query.gapsAlong(origin, direction);
+    // Longest first: what is shorter than an unseen part of the best need not be asked.
+    std::ranges::stable_sort(gaps,
+                             [](const LineGap& a, const LineGap& b) { return a.length() > b.length(); });
+    std::optional<LineGap> best;
+    double most = kShortest * query.mesh().bounds.longestSide() / std::sqrt(dot(direction, direction));
+    for (const LineGap& gap : gaps) {
+        if (!(gap.length() > most)) {
+            break;
+        }
+        if (const double length = unseenLength(gap, origin, direction, is_seen); length > most) {
+            most = length;
+            best = gap;
+        }
+    }
+    return best;
+}
+
+GapGrid::GapGrid(const MeshQuery& query, View view, const IsSeen& is_seen)
+    : view_(gridOf(std::move(view))), cells_(std::size_t{view_.width} * view_.height), silhouette_({}) {
+    tbb::parallel_for(std::uint32_t{1}, view_.height - 1, [&](std::uint32_t y) {
+        for (std::uint32_t x = 1; x + 1 < view_.width; ++x) {
+            const TexelRay ray = view_.ray(0, x, y);
+            if (const auto gap = keptGap(query, ray.origin, ray.direction, is_seen)) {
+                cells_[std::size_t{y} * view_.width + x] = *gap;
+            }
+        }
+    });
+    const std::vector<RowExtent> extents = rows();
+    for (const RowExtent& row : extents) {
+        area_ += std::max(0.0, static_cast<double>(row.high) - static_cast<double>(row.low));
+    }
+    const double inner = static_cast<double>(kLines) / (kLines + 2.0);
+    area_ *= inner * inner * length(view_.axis[0]) * length(view_.axis[1]) / kLines;
+    silhouette_ = Silhouette(extents);
+}
+
+std::vector<RowExtent> GapGrid::rows() const {
+    std::vector<RowExtent> extents(kLines);
+    for (std::uint32_t y = 0; y < kLines; ++y) {
+        for (std::uint32_t x = 0; x < kLines; ++x) {
+            if (cells_[std::size_t{y + 1} * view_.width + x + 1].length() > 0.0) {
+                RowExtent& row = extents[y];
+                row.low = std::min(row.low, static_cast<float>(std::max(0.0, (x - kBesideLine) / kLines)));
+                row.high =
+                    std::max(row.high, static_cast<float>(std::min(1.0, (x + 1.0 + kBesideLine) / kLines)));
+            }
+        }
+    }
+    return extents;
+}
+
+bool GapGrid::holds(const glm::dvec3& p) const {
+    const glm::dvec3 from = p - view_.origin;
+    double at[3];
+    for (int i = 0; i < 3; ++i) {
+        at[i] = dot(from, view_.axis[i]) / dot(view_.axis[i], view_.axis[i]);
+        if (!(at[i] >= 0.0 && at[i] < 1.0)) {
+            return false;
+        }
+    }
+    const auto x = static_cast<std::size_t>(at[0] * view_.width);
+    const auto y = static_cast<std::size_t>(at[1] * view_.height);
+    const LineGap& gap = cells_[y * view_.width + x];
+    return gap.length() > 0.0 && at[2] >= gap.begin && at[2] <= gap.end;
+}
+
+}  // namespace relief

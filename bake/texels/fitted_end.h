@@ -1,0 +1,63 @@
+// One end of a view, as the fits of its texels see it (plane_fit.h): from where its rays start.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "bake/plan/view.h"
+#include "bake/texels/plane_fit.h"
+#include "formats/depth_map.h"
+#include "formats/texel.h"
+
+namespace relief {
+
+/// The ring of texels that stays empty (depth_map.h).
+[[nodiscard]] inline bool isBorder(const View& view, std::uint32_t x, std::uint32_t y) {
+    return view.projection() == Projection::kOrthographic &&
+           (x == 0 || y == 0 || x + 1 == view.width || y + 1 == view.height);
+}
+
+/// u grows away from the viewer.
+class EndView {
+  public:
+    EndView(const View& view, RayEnd end)
+        : far_(end == RayEnd::kFar),
+          u_max_(view.projection() == Projection::kCube ? double{kCubeDepthMax} : 1.0) {}
+
+    [[nodiscard]] double uMax() const { return u_max_; }
+    /// A ray that meets nothing.
+    [[nodiscard]] FootprintRay fromViewer(const TexelRay& ray) const {
+        return far_ ? FootprintRay{ray.origin + u_max_ * ray.direction, -ray.direction, -1.0, glm::dvec3(0.0)}
+                    : FootprintRay{ray.origin, ray.direction, -1.0, glm::dvec3(0.0)};
+    }
+    [[nodiscard]] double uOf(double depth) const { return far_ ? u_max_ - depth : depth; }
+
+    /// What a texel stores of a plane: in half floats its depth is one on the viewer's side.
+    [[nodiscard]] Surface surfaceOf(const FittedPlane& plane, MapFormat format) const {
+        // Exact in double: both count in the same 65534 parts.
+        constexpr double kCodes = kDepthSteps;
+        const double code = plane.code;
+        const double depth = (far_ && !plane.stands ? kCodes - code : code) / kCodes * u_max_;
+        return {format == MapFormat::kFrontBackHalf ? outwardHalf(depth, !far_ && !plane.stands)
+                                                    : static_cast<float>(depth),
+                glm::vec3(plane.normal)};
+    }
+
+  private:
+    static float outwardHalf(double depth, bool outwards_is_less) {
+        const std::uint16_t nearest = encodeHalfDepth(static_cast<float>(depth));
+        const double decoded = decodeHalfDepth(nearest);
+        if (outwards_is_less && decoded > depth) {
+            return decodeHalfDepth(std::max<std::uint16_t>(nearest - 1, encodeHalfDepth(0.0F)));
+        }
+        if (!outwards_is_less && decoded < depth) {
+            return decodeHalfDepth(std::min<std::uint16_t>(nearest + 1, encodeHalfDepth(1.0F)));
+        }
+        return static_cast<float>(decoded);
+    }
+
+    bool far_;
+    double u_max_;
+};
+
+}  // namespace relief

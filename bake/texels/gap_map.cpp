@@ -1,0 +1,208 @@
+#include "bake/texels/gap_map.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "bake/texels/fitted_end.h"
+#include "bake/texels/plane_fit.h"
+#include "formats/texel.h"
+
+namespace relief {
+namespace {
+
+/// Parts of a gap of which the maps before are asked.
+constexpr int kParts = 4;
+/// Gaps that count less are none: in units of the mesh's longest side.
+constexpr double kShortest = 1e-3;
+/// |cosine| of a plane with the ray: a steeper one would reach far into the solid beyond the end of the gap.
+constexpr double kSteepest = 0.1;
+/// Rows between two calls of the progress function.
+constexpr std::uint32_t kStripeRows = 64;
+
+/// Fits single texels. Not thread-safe.
+class GapFitter {
+  public:
+    GapFitter(const MeshQuery& query, const TriangleNormals& normals, const View& view, const View& fine,
+              const FittedMapOptions& options, const IsKnown& is_known)
+        : query_(query),
+          normals_(normals),
+          view_(view),
+          fine_(fine),
+          samples_(options.samples),
+          is_known_(is_known),
+          winding_(query.prepared().orientation() < 0.0 ? -1.0 : 1.0),
+          ends_{EndView(view, RayEnd::kNear), EndView(view, RayEnd::kFar)} {
+        const double unit = length(view.axis[2]);
+        shortest_ = kShortest * query.mesh().bounds.longestSide();
+        fit_.u_max = 1.0;
+        fit_.range = standingRange(view.projection(), view.object_per_map, view.width, view.height);
+        fit_.reach = options.reach / unit;
+        fit_.pixel_cost = options.good_enough / unit;
+        fit_.refinements = options.refinements;
+        fit_.let_back = options.let_back;
+        fit_.steepest = kSteepest;
+    }
+
+    [[nodiscard]] Texel fit(std::uint32_t x, std::uint32_t y) {
+        const TexelRay centre = view_.ray(0, x, y);
+        const std::optional<LineGap> gap = bestGap(centre);
+        Texel texel;
+        if (!gap || !look(x, y, centre, *gap)) {
+            return texel;
+        }
+        for (std::size_t end = 0; end < 2; ++end) {
+            const std::optional<FittedPlane> plane =
+                fitSupportingPlane(rays_[end], {}, {}, ends_[end].fromViewer(centre), centre.origin, fit_);
+            if (!plane) {
+                return {};
+            }
+            (end == 0 ? texel.front : texel.back) = ends_[end].surfaceOf(*plane, view_.format);
+        }
+        return texel;
+    }
+
+  private:
+    /// The gap that counts most.
+    [[nodiscard]] std::optional<LineGap> bestGap(const TexelRay& ray) const {
+        std::vector<std::pair<double, LineGap>> rated;
+        for (LineGap gap : query_.gapsAlong(ray.origin, ray.direction)) {
+            gap.begin = std::max(gap.begin, 0.0);
+            gap.end = std::min(gap.end, 1.0);
+            if (gap.length() > 0.0) {
+                rated.emplace_back(unknownLength(gap, ray.origin, ray.direction, is_known_), gap);
+            }
+        }
+        std::ranges::stable_sort(rated, [](const auto& a, const auto& b) { return a.first > b.first; });
+        for (const auto& [counts, gap] : rated) {
+            if (!(counts > shortest_)) {
+                break;
+            }
+            if (!query_.inside(glm::vec3(ray.at(gap.middle())))) {
+                return gap;
+            }
+        }
+        return std::nullopt;
+    }
+
+    /// How far the middle of a gap moves in depth for a way across the texel: as the planes at its ends do on average.
+    [[nodiscard]] double middleBeside(const LineGap& gap, const TexelRay& centre,
+                                      const glm::dvec3& way) const {
+        double moved = 0.0;
+        for (const std::uint32_t triangle : {gap.first, gap.last}) {
+            const glm::dvec3& normal = normals_[triangle];
+            const double along = dot(normal, centre.direction);
+            if (std::abs(along) > kSteepest * length(centre.direction)) {
+                moved -= 0.5 * dot(normal, way) / along;
+            }
+        }
+        return gap.middle() + moved;
+    }
+
+    /// What the texel's rays meet, from the middle of the gap on.
+    /// \return false if most of them are not free there.
+    bool look(std::uint32_t x, std::uint32_t y, const TexelRay& centre, const LineGap& gap) {
+        rays_[0].clear();
+        rays_[1].clear();
+        for (std::uint32_t j = 0; j < samples_; ++j) {
+            for (std::uint32_t i = 0; i < samples_; ++i) {
+                const TexelRay along = fine_.ray(0, x * samples_ + i, y * samples_ + j);
+                for (const double middle :
+                     {middleBeside(gap, centre, along.origin - centre.origin), gap.middle()}) {
+                    const std::optional<FootprintRay> closes = lookOneWay(along, middle, 0);
+                    const std::optional<FootprintRay> opens = lookOneWay(along, middle, 1);
+                    if (closes && opens) {
+                        rays_[0].push_back(*closes);
+                        rays_[1].push_back(*opens);
+                        break;
+                    }
+                }
+            }
+        }
+        return 2 * rays_[0].size() >= std::size_t{samples_} * samples_;
+    }
+
+    [[nodiscard]] std::optional<FootprintRay> lookOneWay(const TexelRay& along, double middle,
+                                                         std::size_t end) const {
+        const double way = end == 0 ? 1.0 : -1.0;
+        if (!(middle > 0.0 && middle < 1.0)) {
+            return std::nullopt;
+        }
+        const auto hit = query_.firstHit(along.at(middle), way * along.direction);
+        if (!hit) {
+            return std::nullopt;  // past an edge of the mesh, which is no gap
+        }
+        const glm::dvec3& normal = normals_[hit->triangle];
+        const double cosine = way * winding_ * dot(normal, along.direction);
+        if (cosine > 0.0) {
+            return std::nullopt;  // from within a solid
+        }
+        FootprintRay ray = ends_[end].fromViewer(along);
+        ray.u = ends_[end].uOf(std::clamp(middle + way * hit->along, 0.0, 1.0));
+        ray.u_last = 1.0;
+        ray.normal = winding_ * normal;
+        return ray;
+    }
+
+    const MeshQuery& query_;
+    const TriangleNormals& normals_;
+    const View& view_;
+    const View& fine_;
+    std::uint32_t samples_;
+    const IsKnown& is_known_;
+    double winding_;
+    double shortest_ = 0.0;
+    EndView ends_[2];
+    PlaneFitOptions fit_;
+    std::array<std::vector<FootprintRay>, 2> rays_;  // by RayEnd
+};
+
+}  // namespace
+
+double unknownLength(const LineGap& gap, const glm::dvec3& origin, const glm::dvec3& direction,
+                     const IsKnown& is_known) {
+    int unknown = 0;
+    for (int i = 0; i < kParts; ++i) {
+        const double at = gap.begin + (i + 0.5) / kParts * gap.length();
+        unknown += is_known(glm::vec3(origin + at * direction)) ? 0 : 1;
+    }
+    return unknown * gap.length() * std::sqrt(dot(direction, direction)) / kParts;
+}
+
+DepthMap bakeGapMap(const MeshQuery& query, const TriangleNormals& normals, const View& view,
+                    const FittedMapOptions& options, const IsKnown& is_known, std::uint64_t& covered,
+                    const std::function<void(std::uint32_t)>& rowsDone) {
+    View fine = view;
+    fine.width *= options.samples;
+    fine.height *= options.samples;
+    DepthMap map = view.emptyMap();
+    map.decode = Decode::kPlane;
+    covered = 0;
+    for (std::uint32_t begin = 0; begin < view.height; begin += kStripeRows) {
+        const std::uint32_t end = std::min(begin + kStripeRows, view.height);
+        covered += tbb::parallel_reduce(
+            tbb::blocked_range<std::uint32_t>(begin, end), std::uint64_t{0},
+            [&](const auto& rows, std::uint64_t count) {
+                GapFitter fitter(query, normals, view, fine, options, is_known);
+                for (std::uint32_t y = rows.begin(); y != rows.end(); ++y) {
+                    for (std::uint32_t x = 0; x < view.width; ++x) {
+                        const Texel texel = isBorder(view, x, y) ? Texel{} : fitter.fit(x, y);
+                        encodeTexel(map.format, texel, map.texelAt(0, x, y));
+                        count += texel.front ? 1U : 0U;
+                    }
+                }
+                return count;
+            },
+            std::plus<>());
+        rowsDone(end - begin);
+    }
+    return map;
+}
+
+}  // namespace relief

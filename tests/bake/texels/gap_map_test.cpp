@@ -1,0 +1,265 @@
+// Maps of gaps: shapes whose gaps have a closed form, and the promises of gap_map.h.
+#include "bake/texels/gap_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <random>
+#include <vector>
+
+#include "bake/measure/accuracy.h"
+#include "bake/measure/sight.h"
+#include "bake/pipeline/planned_bake.h"
+#include "bake/plan/gap_grid.h"
+#include "formats/validate.h"
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+namespace {
+
+MeshQuery queryOf(const TriangleMesh& mesh) {
+    Result<MeshQuery> query = MeshQuery::build(mesh);
+    EXPECT_TRUE(query) << query.error().message;
+    return std::move(*query);
+}
+
+TriangleMesh joined(const std::vector<TriangleMesh>& parts) {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec3> triangles;
+    for (const TriangleMesh& part : parts) {
+        const auto first = static_cast<std::uint32_t>(positions.size());
+        positions.insert(positions.end(), part.positions.begin(), part.positions.end());
+        for (const glm::uvec3& t : part.triangles) {
+            triangles.push_back(t + first);
+        }
+    }
+    return finished(std::move(positions), std::move(triangles));
+}
+
+/// A ball in the middle of a hollow one: no ray from outside gets into the gap.
+constexpr double kOuter = 1.0;
+constexpr double kHollow = 0.9;
+constexpr double kBall = 0.5;
+TriangleMesh ballInABall() {
+    return joined({makeIcosphere({0, 0, 0}, kOuter, 4), reversed(makeIcosphere({0, 0, 0}, kHollow, 4)),
+                   makeIcosphere({0, 0, 0}, kBall, 4)});
+}
+
+/// Four plates across z, one half apart, then one and a half, then a quarter.
+TriangleMesh plates() {
+    const auto plate = [](double low, double high) {
+        return makeBoxMesh({0, 0, 0.5 * (low + high)}, {1, 1, 0.5 * (high - low)});
+    };
+    return joined({plate(0.0, 0.25), plate(0.75, 1.0), plate(2.5, 2.75), plate(3.0, 3.25)});
+}
+
+DepthMap gapMap(const TriangleMesh& mesh, const std::string& spec, const IsKnown& is_known) {
+    const MeshQuery query = queryOf(mesh);
+    const Result<MapSpec> parsed = parseMapSpec(spec);
+    EXPECT_TRUE(parsed) << parsed.error().message;
+    const Result<View> view = makeView(*parsed, mesh);
+    EXPECT_TRUE(view);
+    FittedMapOptions options;
+    options.reach = 0.05;
+    std::uint64_t covered = 0;
+    DepthMap map =
+        bakeGapMap(query, TriangleNormals(mesh), *view, options, is_known, covered, [](std::uint32_t) {});
+    EXPECT_GT(covered, 0U);
+    EXPECT_TRUE(validateFrame(map));
+    return map;
+}
+
+const IsKnown kNothingKnown = [](const glm::vec3&) { return false; };
+
+TEST(GapMap, KnowsHowFarTheEndsOfTheLongestGapAre) {
+    const DepthMap map = gapMap(plates(), "front-back:dir=-z,size=34,compare=gap", kNothingKnown);
+    EXPECT_FALSE(map.encloses);
+    EXPECT_FALSE(map.empty_is_outside);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> across(-0.93F, 0.93F);
+    std::uniform_real_distribution<float> deep(0.01F, 3.24F);
+    for (int i = 0; i < 5000; ++i) {
+        const glm::vec3 p(across(random), across(random), deep(random));
+        const std::optional<Vote> said = vote(map, p);
+        ASSERT_TRUE(said);
+        const float expected = std::min(p.z - 1.0F, 2.5F - p.z);
+        EXPECT_NEAR(said->distance, expected, 2e-4F) << p.z;
+        EXPECT_NEAR(said->normal.z, p.z < 1.75F ? 1.0F : -1.0F, 1e-4F);
+    }
+    EXPECT_FALSE(vote(map, {1.5F, 0.0F, 1.7F}));  // beside the plates
+    EXPECT_FALSE(vote(map, {0.0F, 0.0F, 4.0F}));  // behind them
+}
+
+TEST(GapMap, KeepsTheGapOfWhichLeastIsKnown) {
+    // The longest is known from its first to its last third: what is left of it is shorter than the half.
+    const DepthMap map = gapMap(plates(), "front-back:dir=+z,size=34,compare=gap",
+                                [](const glm::vec3& p) { return p.z > 1.3F && p.z < 2.5F; });
+    EXPECT_GT(vote(map, {0.1F, 0.2F, 0.5F})->distance, 0.2F);
+    EXPECT_LT(vote(map, {0.1F, 0.2F, 1.7F})->distance, 0.0F);
+    // All but the shortest is known.
+    const DepthMap third = gapMap(plates(), "front-back:dir=+z,size=34,compare=gap",
+                                  [](const glm::vec3& p) { return p.z < 2.6F; });
+    EXPECT_NEAR(vote(third, {0.1F, 0.2F, 2.875F})->distance, 0.125F, 1e-3F);
+}
+
+TEST(GapMap, FindsThinGapsAcrossTheLineOfSight) {
+    // Two plates a hundredth apart, at 45° to the view and thinner than a texel.
+    const glm::dmat3 turned = rotation({1, 0, 0}, 45.0);
+    const TriangleMesh mesh = joined({makeBoxMesh(turned * glm::dvec3(0, 0, 0.205), {1, 1, 0.2}, turned),
+                                      makeBoxMesh(turned * glm::dvec3(0, 0, -0.205), {1, 1, 0.2}, turned)});
+    const DepthMap map = gapMap(mesh, "front-back:dir=-z,size=66,compare=gap", kNothingKnown);
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> across(-0.8, 0.8);
+    int outside = 0;
+    int inside = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const double x = across(random);
+        const double y = across(random);
+        const auto in_gap = vote(map, glm::vec3(turned * glm::dvec3(x, y, 0.0)));
+        outside += in_gap && in_gap->distance >= 0.0F ? 1 : 0;
+        const auto beyond = vote(map, glm::vec3(turned * glm::dvec3(x, y, 0.03)));
+        inside += beyond && beyond->distance < 0.0F ? 1 : 0;
+    }
+    EXPECT_GT(outside, 1980);
+    EXPECT_GT(inside, 1980);
+}
+
+TEST(GapMap, NoPointDeepInASolidIsOutside) {
+    const TriangleMesh mesh = ballInABall();
+    std::mt19937 random(5);
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    for (const char* spec :
+         {"front-back:dir=-z,size=66,compare=gap", "front-back:dir=1/2/3,size=50x80,compare=gap",
+          "front-back:dir=+x,size=66,compare=gap,depth=half"}) {
+        SCOPED_TRACE(spec);
+        const DepthMap map = gapMap(mesh, spec, kNothingKnown);
+        const double texel = 2.0 * std::sqrt(3.0) / 48.0;
+        int known = 0;
+        int free = 0;
+        for (int i = 0; i < 20'000; ++i) {
+            const glm::dvec3 way = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
+            const bool shell = unit(random) < 0.5;
+            const double inside = shell ? kHollow + texel + unit(random) : kBall * unit(random) - texel;
+            const double clamped = std::clamp(inside, 0.0, shell ? 0.999 : kBall);
+            const auto in_solid = vote(map, glm::vec3(clamped * way));
+            ASSERT_FALSE(in_solid && in_solid->distance >= 0.0F && (shell ? clamped > kHollow + texel : true))
+                << clamped;
+            const auto in_gap = vote(map, glm::vec3((kBall + unit(random) * (kHollow - kBall)) * way));
+            ++free;
+            known += in_gap && in_gap->distance >= 0.0F ? 1 : 0;
+        }
+        // Before and behind the ball a line of sight has two gaps, of which it keeps one.
+        EXPECT_GT(known, 0.6 * free);
+    }
+}
+
+TEST(GapMap, ItsSightIsWhatItsTexelsSay) {
+    const TriangleMesh mesh = ballInABall();
+    const MeshQuery query = queryOf(mesh);
+    const DepthMap map = gapMap(mesh, "front-back:dir=-z,size=130,compare=gap", kNothingKnown);
+    const Sight sight(map, query);
+    std::mt19937 random(6);
+    std::uniform_real_distribution<float> unit(-0.9F, 0.9F);
+    int reached = 0;
+    int differ = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        const glm::vec3 p(unit(random), unit(random), unit(random));
+        const double r = glm::length(glm::dvec3(p));
+        if (r < kBall + 0.03 || r > kHollow - 0.03) {
+            continue;
+        }
+        const bool reaches = sight.reaches(p).has_value();
+        const auto said = vote(map, p);
+        reached += reaches ? 1 : 0;
+        differ += reaches != (said && said->distance >= 0.0F) ? 1 : 0;
+    }
+    EXPECT_GT(reached, 3000);
+    EXPECT_LT(differ, reached / 50);  // beside the ball's silhouette a texel speaks for points of both gaps
+    EXPECT_FALSE(sight.reaches({0.0F, 0.0F, 1.5F}));
+}
+
+TEST(GapMap, APlannedBakeLooksBetweenShelves) {
+    // A closed cupboard: a cube in free space sees one of its shelves, a map of gaps from the side all.
+    std::vector<TriangleMesh> boards;
+    for (const double sign : {-1.0, 1.0}) {
+        boards.push_back(makeBoxMesh({0.95 * sign, 0, 0}, {0.05, 1, 1}));
+        boards.push_back(makeBoxMesh({0, 0.95 * sign, 0}, {1, 0.05, 1}));
+        boards.push_back(makeBoxMesh({0, 0, 0.95 * sign}, {1, 1, 0.05}));
+    }
+    for (int i = 1; i < 8; ++i) {
+        boards.push_back(makeBoxMesh({0, 0.25 * i - 1.0, 0}, {0.99, 0.02, 0.99}));
+    }
+    const TriangleMesh mesh = joined(boards);
+    const Result<MeshQuery> query =
+        MeshQuery::build(PreparedMesh::unionOf(mesh, std::vector<std::uint32_t>(mesh.triangles.size(), 0)));
+    ASSERT_TRUE(query);
+    const auto wrongOf = [&](bool gaps) {
+        ViewOptions options;
+        options.gaps = gaps;
+        const Result<ViewChoice> views = chooseViews(*query, options);
+        EXPECT_TRUE(views);
+        const Result<PlannedBake> made = bakePlanned(*query, *views, 200'000, {});
+        EXPECT_TRUE(made) << made.error().message;
+        EXPECT_LE(made->baked.collider.gpuBytes(), 200'000U);
+        EXPECT_EQ(made->plan.bytes, made->baked.collider.gpuBytes());
+        const std::vector<DepthMap>& maps = made->baked.collider.maps;
+        EXPECT_EQ(std::ranges::any_of(maps, [](const DepthMap& map) { return map.compare == Compare::kGap; }),
+                  gaps);
+        return measureNear(sampleNear(*query, {.samples = 30'000, .seed = 8}), fieldOf(made->baked.collider))
+            .total();
+    };
+    EXPECT_LT(wrongOf(true), 0.2 * wrongOf(false));
+}
+
+TEST(GapMap, AnyNumberOfThreadsMakesTheSame) {
+    const TriangleMesh mesh = ballInABall();
+    const std::vector<std::string> specs = {
+        "front-back:dir=-z,size=40,decode=plane,depth=unorm16",
+        "front-back:dir=1/2/3,size=60,decode=plane,depth=unorm16,compare=gap"};
+    EXPECT_EQ(bakeSpecs(mesh, specs, 64, 1).maps, bakeSpecs(mesh, specs, 64, 3).maps);
+}
+
+TEST(GapsAlong, AreWhatALineCrosses) {
+    const MeshQuery query = queryOf(plates());
+    for (const double scale : {1.0, 0.5, 3.0}) {
+        const std::vector<LineGap> gaps = query.gapsAlong({0.1, 0.2, 1.5}, {0, 0, scale});
+        ASSERT_EQ(gaps.size(), 3U);
+        const double expected[3][2] = {{0.25, 0.75}, {1.0, 2.5}, {2.75, 3.0}};
+        for (std::size_t i = 0; i < 3; ++i) {
+            EXPECT_NEAR(1.5 + scale * gaps[i].begin, expected[i][0], 1e-9);
+            EXPECT_NEAR(1.5 + scale * gaps[i].end, expected[i][1], 1e-9);
+        }
+    }
+    EXPECT_TRUE(query.gapsAlong({1.1, 0.0, 0.0}, {0, 0, 1}).empty());
+    // Through the middle of every plate, where two triangles of it share an edge.
+    EXPECT_EQ(query.gapsAlong({0, 0, -9}, {0, 0, 1}).size(), 3U);
+    // Solids that overlap are one.
+    const TriangleMesh boxes =
+        joined({makeBoxMesh({0, 0, 0}, {1, 1, 1}), makeBoxMesh({0, 0, 0.5}, {0.5, 0.5, 1.0}),
+                makeBoxMesh({0, 0, 3}, {1, 1, 1})});
+    const Result<MeshQuery> overlapping =
+        MeshQuery::build(PreparedMesh::unionOf(boxes, std::vector<std::uint32_t>(boxes.triangles.size(), 0)));
+    ASSERT_TRUE(overlapping);
+    const std::vector<LineGap> one = overlapping->gapsAlong({0.1, 0.3, 0}, {0, 0, 1});
+    ASSERT_EQ(one.size(), 1U);
+    EXPECT_NEAR(one[0].begin, 1.5, 1e-9);
+    EXPECT_NEAR(one[0].end, 2.0, 1e-9);
+}
+
+TEST(GapGrid, HoldsWhatTheMapWill) {
+    const TriangleMesh mesh = plates();
+    const MeshQuery query = queryOf(mesh);
+    MapSpec spec = *parseMapSpec("front-back:dir=-z,size=64,compare=gap");
+    const GapGrid grid(query, *makeView(spec, mesh),
+                       [](const glm::dvec3& p) { return p.z > 1.2 && p.z < 2.4; });
+    EXPECT_TRUE(grid.holds({0.3, 0.4, 0.5}));
+    EXPECT_FALSE(grid.holds({0.3, 0.4, 0.1}));
+    EXPECT_FALSE(grid.holds({0.3, 0.4, 1.8}));
+    EXPECT_FALSE(grid.holds({1.3, 0.4, 0.5}));
+    EXPECT_NEAR(grid.area(), 4.0, 0.01);
+    EXPECT_NEAR(static_cast<double>(grid.silhouette().texels(102, 102)), 1e4, 100.0);
+}
+
+}  // namespace
+}  // namespace relief::test
