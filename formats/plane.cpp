@@ -8,6 +8,10 @@
 namespace relief {
 
 TexelRay texelRay(const DepthMap& map, std::uint32_t face, std::uint32_t x, std::uint32_t y) {
+    return rayThrough(map, face, x + 0.5, y + 0.5);
+}
+
+TexelRay rayThrough(const DepthMap& map, std::uint32_t face, double x, double y) {
     glm::dmat3 rows;  // as columns
     glm::dvec3 shift;
     for (int k = 0; k < 3; ++k) {
@@ -17,8 +21,8 @@ TexelRay texelRay(const DepthMap& map, std::uint32_t face, std::uint32_t x, std:
     }
     const glm::dmat3 object_from_map = glm::inverse(glm::transpose(rows));
     const glm::dvec3 start = -(object_from_map * shift);  // the origin of map space
-    const double s = (x + 0.5) / map.width;
-    const double t = (y + 0.5) / map.height;
+    const double s = x / map.width;
+    const double t = y / map.height;
     if (map.projection() == Projection::kOrthographic) {
         return {start + object_from_map * glm::dvec3(s, t, 0.0), object_from_map[2]};
     }

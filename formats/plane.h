@@ -36,6 +36,9 @@ struct TexelRay {
 /// \param face  0 for an orthographic map.
 [[nodiscard]] TexelRay texelRay(const DepthMap& map, std::uint32_t face, std::uint32_t x, std::uint32_t y);
 
+/// The same through any place of a face. \param x, y  in texels: the centre of texel (i, j) is (i + ½, j + ½).
+[[nodiscard]] TexelRay rayThrough(const DepthMap& map, std::uint32_t face, double x, double y);
+
 /// The depth at which a ray meets the plane through `point`. Infinite or NaN where they are parallel; may lie
 /// outside of what a texel holds.
 [[nodiscard]] double planeDepth(const TexelRay& ray, const glm::dvec3& normal, const glm::dvec3& point);

@@ -105,6 +105,27 @@ struct CrossingCollector {
     }
 };
 
+/// Collects the triangles that a ray meets, and lets it pass through them.
+struct HitCollector {
+    RTCIntersectContext context{};
+    std::vector<std::uint32_t> triangles;
+
+    HitCollector() {
+        rtcInitIntersectContext(&context);
+        context.filter = filter;
+    }
+
+    static void filter(const RTCFilterFunctionNArguments* args) {
+        auto* self = reinterpret_cast<HitCollector*>(args->context);
+        for (unsigned i = 0; i < args->N; ++i) {
+            if (args->valid[i] != 0) {
+                self->triangles.push_back(RTCHitN_primID(args->hit, args->N, i));
+                args->valid[i] = 0;
+            }
+        }
+    }
+};
+
 template <class Ray>
 void setRay(Ray& ray, const glm::vec3& origin, const glm::vec3& direction, float end) {
     ray.org_x = origin.x;
@@ -192,6 +213,26 @@ template <class Counter>
 void trace(const EmbreeMesh& tree, const glm::vec3& p, const glm::dvec3& direction, Counter& counter) {
     RTCRayHit query = rayHit(tree.toLocal(p), direction, std::numeric_limits<float>::infinity());
     rtcIntersect1(tree.scene.get(), &counter.context, &query);
+}
+
+/// The part of a line that lies in a box, in units of its direction; begin ≥ end: none.
+LineSpan inBox(const Bounds& box, const glm::dvec3& p, const glm::dvec3& direction) {
+    LineSpan span{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+    for (int axis = 0; axis < 3; ++axis) {
+        const double low = double{box.min[axis]} - p[axis];
+        const double high = double{box.max[axis]} - p[axis];
+        if (direction[axis] == 0.0) {
+            if (low > 0.0 || high < 0.0) {
+                return {};
+            }
+            continue;
+        }
+        const double a = low / direction[axis];
+        const double b = high / direction[axis];
+        span.begin = std::max(span.begin, std::min(a, b));
+        span.end = std::min(span.end, std::max(a, b));
+    }
+    return span;
 }
 
 /// One search for the closest point; in Embree's units.
@@ -307,6 +348,53 @@ unsigned MeshQuery::crossings(const glm::vec3& p, const glm::dvec3& direction) c
     CrossingCounter counter;
     trace(*tree_, p, direction, counter);
     return counter.count;
+}
+
+bool MeshQuery::spansInside(const glm::dvec3& p, const glm::dvec3& direction,
+                            std::vector<LineSpan>& spans) const {
+    spans.clear();
+    const LineSpan box = inBox(mesh().bounds, p, direction);
+    if (!(box.begin < box.end)) {
+        return true;
+    }
+    // From outside of the box to outside of the box.
+    const double margin =
+        1e-3 * (box.end - box.begin) + 1e-3 * mesh().bounds.longestSide() / length(direction);
+    const glm::dvec3 start = p + (box.begin - margin) * direction;
+    HitCollector hits;
+    RTCRayHit query = rayHit(tree_->toLocal(start), direction * tree_->scale,
+                             static_cast<float>(box.end - box.begin + 2.0 * margin));
+    rtcIntersect1(tree_->scene.get(), &hits.context, &query);
+    struct Crossing {
+        double at;
+        std::uint32_t triangle;
+        int way;
+    };
+    std::vector<Crossing> crossings;
+    crossings.reserve(hits.triangles.size());
+    for (const std::uint32_t triangle : hits.triangles) {
+        const double along = dot(planeOf(mesh(), triangle).normal, direction);
+        const double at = depthAt(mesh(), triangle, start, direction) + box.begin - margin;
+        crossings.push_back({at, triangle, along < 0.0 ? -1 : 1});
+    }
+    std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
+        return a.at < b.at || (a.at == b.at && a.triangle < b.triangle);
+    });
+    BodyCounter counter(bodies_);
+    bool inside = false;
+    bool odd = false;
+    for (const Crossing& crossing : crossings) {
+        counter.cross(shells_ || bodies_.empty() ? 0 : bodies_[crossing.triangle], crossing.way);
+        odd = !odd;
+        const bool now = shells_ || !bodies_.empty() ? counter.inside() : odd;
+        if (now && !inside) {
+            spans.push_back({crossing.at, crossing.at});
+        } else if (!now && inside) {
+            spans.back().end = crossing.at;
+        }
+        inside = now;
+    }
+    return !inside;
 }
 
 ClosestPoint MeshQuery::closest(const glm::vec3& p, std::optional<std::uint32_t> hint) const {

@@ -37,6 +37,12 @@ struct LineGap {
     [[nodiscard]] double middle() const { return 0.5 * (begin + end); }
 };
 
+/// A part of a line, in units of its direction.
+struct LineSpan {
+    double begin = 0.0;
+    double end = 0.0;
+};
+
 /// All questions may be asked from any thread, and their answers depend neither on the number of threads nor
 /// on the order of the questions.
 class MeshQuery {
@@ -56,6 +62,14 @@ class MeshQuery {
     /// How many triangles a ray from `p` meets.
     /// \param direction  of any length but 0.
     [[nodiscard]] unsigned crossings(const glm::vec3& p, const glm::dvec3& direction) const;
+
+    /// The parts of the whole line through `p` that are inside, as inside() has it, in order. Their ends are those of the
+    /// triangles' planes, in double precision.
+    /// \param spans  receives them
+    /// \return false if the crossings do not add up, and nothing is known: the line passes through an edge, or the mesh is
+    ///         open.
+    [[nodiscard]] bool spansInside(const glm::dvec3& p, const glm::dvec3& direction,
+                                   std::vector<LineSpan>& spans) const;
 
     /// Every edge belongs to an even number of triangles, where equal positions are one: inside() is then the
     /// same at both ends of any segment that meets no surface.

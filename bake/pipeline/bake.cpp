@@ -30,6 +30,9 @@ constexpr std::uint64_t kStripeTexels = std::uint64_t{1} << 20;
 /// pages (a first touch of 12 MB takes 8 ms).
 constexpr std::uint64_t kBlockTexels = std::uint64_t{1} << 13;
 
+/// In units of the longest side.
+constexpr double kOnSurface = 1e-5;
+
 struct Job {
     MapSpec spec;  // complete
     View view;
@@ -39,6 +42,15 @@ struct Job {
         return std::uint64_t{view.faceCount()} * view.width * view.height;
     }
 };
+
+/// Whether the centre of a view's rays is nearer to the surface than floats can be trusted to tell its sides.
+Result<bool> centreIsOnSurface(const PreparedMesh& mesh, const View& view) {
+    if (view.projection() != Projection::kCube || view.compare != Compare::kLess) {
+        return false;
+    }
+    const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
+    return query.closest(view.origin).distance <= kOnSurface * mesh->bounds.longestSide();
+}
 
 Result<std::vector<Job>> planJobs(const PreparedMesh& mesh, const BakeOptions& options) {
     const std::vector<MapSpec> specs = options.maps.empty() ? paperMapSpecs() : options.maps;
@@ -51,12 +63,13 @@ Result<std::vector<Job>> planJobs(const PreparedMesh& mesh, const BakeOptions& o
     std::uint64_t bytes = 0;
     for (const MapSpec& spec : specs) {
         const MapSpec complete = RELIEF_TRY(completeSpec(spec, mesh, options.resolution));
-        const View view = RELIEF_TRY(makeView(complete, *mesh));
+        View view = RELIEF_TRY(makeView(complete, *mesh));
         if (options.rasterize && view.compare == Compare::kGap) {
             return fail(ErrorCode::kUsage,
                         "--map '" + toString(complete) +
                             "': only rays find gaps between solids; leave out --backend raster");
         }
+        view.centre_on_surface = RELIEF_TRY(centreIsOnSurface(mesh, view));
         jobs.push_back({complete, view, spec.compare.has_value()});
         bytes += jobs.back().texels() * texelSize(view.format);
     }
@@ -96,8 +109,12 @@ void warnAbout(const PreparedMesh& mesh, const std::vector<Job>& jobs, BakeRepor
     }
     for (std::size_t i = 0; i < jobs.size(); ++i) {
         const View& view = jobs[i].view;
-        if (view.projection() == Projection::kCube && jobs[i].compare_was_given &&
-            view.compare == Compare::kLess && insideByParity(mesh, view.origin)) {
+        if (view.centre_on_surface) {
+            report.warnings.push_back(
+                "map " + std::to_string(i) + " (" + toString(jobs[i].spec) +
+                ") has its centre on the surface of the mesh; move center into free space");
+        } else if (view.projection() == Projection::kCube && jobs[i].compare_was_given &&
+                   view.compare == Compare::kLess && insideByParity(mesh, view.origin)) {
             report.warnings.push_back(
                 "map " + std::to_string(i) + " (" + toString(jobs[i].spec) +
                 ") compares less but its centre seems to lie inside the mesh; move center, or "
@@ -200,8 +217,8 @@ class MapBaker {
                     trace(view, RayEnd::kFar, rows, worker);
                 }
                 const TimeAdder watch_encode(worker.encode_ms);
-                worker.covered += encodeRows(scene_.mesh(), scene_.winding(), normals_, view, rows,
-                                             worker.hits[0], worker.hits[1], map);
+                worker.covered +=
+                    encodeRows(scene_, normals_, view, rows, worker.hits[0], worker.hits[1], map);
             });
         }
         Worker all;
@@ -296,6 +313,7 @@ class Bake {
         }
         const MapBaker baker(*scene, *normals);
         std::optional<TriangleNormals> unit_normals;
+        const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh_));
         for (const Job& job : jobs_) {
             MapReport report{job.spec, 0, job.texels()};
             if (job.spec.decode != Decode::kPlane) {
@@ -311,17 +329,17 @@ class Bake {
             const FittedMapOptions fit = fitOptions(*mesh_, job.view, options_);
             DepthMap map =
                 job.view.compare == Compare::kGap
-                    ? RELIEF_TRY(bakeGaps(*unit_normals, job.view, fit, report))
-                    : bakeFittedMap(*scene, *unit_normals, job.view, fit, report.covered, rowsDone(job.view));
+                    ? bakeGaps(query, *unit_normals, job.view, fit, report)
+                    : bakeFittedMap(*scene, query, *unit_normals, job.view, fit, report.covered,
+                                    rowsDone(job.view));
             add(std::move(map), std::move(report));
         }
         return {};
     }
 
     /// Of gaps that the maps baked so far see little of.
-    Result<DepthMap> bakeGaps(const TriangleNormals& normals, const View& view, const FittedMapOptions& fit,
-                              MapReport& report) {
-        const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh_));
+    DepthMap bakeGaps(const MeshQuery& query, const TriangleNormals& normals, const View& view,
+                      const FittedMapOptions& fit, MapReport& report) {
         const IsKnown is_known = [&](const glm::vec3& p) {
             return std::ranges::any_of(baked_.collider.maps, [&](const DepthMap& map) {
                 const std::optional<Vote> said = vote(map, p);

@@ -46,6 +46,8 @@ struct View {
     /// By RayEnd: the rays that look for this surface start in free space. The one of kNear starts at depth
     /// 0; the one of kFar at the far end of the volume, and runs backwards.
     bool starts_free[2] = {true, true};
+    /// Of a cube that keeps the nearest surface: its rays may start on either side of the surface. bake() sets it.
+    bool centre_on_surface = false;
 
     [[nodiscard]] Projection projection() const {
         return format == MapFormat::kCube8 ? Projection::kCube : Projection::kOrthographic;

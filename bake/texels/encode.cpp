@@ -73,13 +73,13 @@ void writeTexel(MapFormat format, const std::optional<EncodedSurface>& front,
 /// Turns the hits of one end into surfaces.
 class SurfaceEncoder {
   public:
-    SurfaceEncoder(const TriangleMesh& mesh, double winding, const NormalTable& normals, const View& view,
-                   RayEnd end)
-        : mesh_(mesh),
-          inside_out_(winding < 0.0),
+    SurfaceEncoder(const RayScene& scene, const NormalTable& normals, const View& view, RayEnd end)
+        : mesh_(scene.mesh()),
+          inside_out_(scene.winding() < 0.0),
           normals_(normals),
           float_normals_(view.format == MapFormat::kFloat32),
-          starts_free_(view.starts_free[static_cast<std::size_t>(end)]) {}
+          starts_free_(view.starts_free[static_cast<std::size_t>(end)]),
+          may_start_inside_(mayStartInside(scene, view, end)) {}
 
     std::optional<EncodedSurface> encode(const Hit& hit) {
         if (hit.empty()) {
@@ -98,7 +98,8 @@ class SurfaceEncoder {
                 index_ = normals_.index(triangle_, from_behind);
             }
         }
-        return EncodedSurface{hit.depth(), normal_, index_};
+        const bool started_inside = may_start_inside_ && from_behind != inside_out_;
+        return EncodedSurface{started_inside ? 0.0F : hit.depth(), normal_, index_};
     }
 
   private:
@@ -107,6 +108,7 @@ class SurfaceEncoder {
     const NormalTable& normals_;
     bool float_normals_;
     bool starts_free_;
+    bool may_start_inside_;
     std::uint32_t triangle_ = 0xffffffff;  // none yet
     bool from_behind_ = false;
     glm::vec3 normal_{0.0F};  // only for float maps
@@ -132,11 +134,11 @@ NormalIndex NormalTable::index(std::uint32_t triangle, bool from_behind) const {
                : table_[triangle];
 }
 
-std::uint64_t encodeRows(const TriangleMesh& mesh, double winding, const NormalTable& normals,
-                         const View& view, const RowRange& rows, std::span<const Hit> near_hits,
-                         std::span<const Hit> far_hits, DepthMap& map) {
-    SurfaceEncoder near_encoder(mesh, winding, normals, view, RayEnd::kNear);
-    SurfaceEncoder far_encoder(mesh, winding, normals, view, RayEnd::kFar);
+std::uint64_t encodeRows(const RayScene& scene, const NormalTable& normals, const View& view,
+                         const RowRange& rows, std::span<const Hit> near_hits, std::span<const Hit> far_hits,
+                         DepthMap& map) {
+    SurfaceEncoder near_encoder(scene, normals, view, RayEnd::kNear);
+    SurfaceEncoder far_encoder(scene, normals, view, RayEnd::kFar);
     // A map that keeps the far end alone holds it as its one surface.
     const bool only_far = view.compare == Compare::kGreater;
     std::uint64_t covered = 0;

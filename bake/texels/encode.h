@@ -7,6 +7,7 @@
 
 #include "bake/mesh/mesh.h"
 #include "bake/plan/view.h"
+#include "bake/texels/ray_scene.h"
 #include "bake/texels/raycast.h"
 #include "formats/depth_map.h"
 
@@ -33,10 +34,11 @@ class NormalTable {
 /// Encodes rows of a map from the hits of both ends (empty for an end that the map does not keep).
 ///
 /// Normals are the triangles' own and point out of the solid: towards the free space in which the ray
-/// started. Where it may have started inside, a surface met from its inner side is left out. Runs on the
-/// calling thread. \param winding  orientation(mesh) \return the number of texels with a surface.
-std::uint64_t encodeRows(const TriangleMesh& mesh, double winding, const NormalTable& normals,
-                         const View& view, const RowRange& rows, std::span<const Hit> near_hits,
-                         std::span<const Hit> far_hits, DepthMap& map);
+/// started. Where it may have started inside, a surface met from its inner side is left out; of a cube
+/// whose centre lies on the surface the texel then holds the centre, behind which all is inside. Runs on the
+/// calling thread. \return the number of texels with a surface.
+std::uint64_t encodeRows(const RayScene& scene, const NormalTable& normals, const View& view,
+                         const RowRange& rows, std::span<const Hit> near_hits, std::span<const Hit> far_hits,
+                         DepthMap& map);
 
 }  // namespace relief

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "bake/mesh/triangle_plane.h"
+#include "bake/texels/deep_solid.h"
 #include "bake/texels/fitted_end.h"
 #include "bake/texels/plane_fit.h"
 #include "bake/texels/ray_probe.h"
@@ -26,9 +27,11 @@ constexpr std::uint32_t kEdgeParts = 63;
 /// Fits the texels of one end, from the hits of a view with `samples` times as many texels each way.
 class EndFitter {
   public:
-    EndFitter(const RayScene& scene, const TriangleNormals& normals, const View& view, const View& fine,
-              const View& finest, RayEnd end, const FittedMapOptions& options)
+    EndFitter(const RayScene& scene, const MeshQuery& query, const DepthMap& map,
+              const TriangleNormals& normals, const View& view, const View& fine, const View& finest,
+              RayEnd end, const FittedMapOptions& options)
         : normals_(normals),
+          deep_(query, map),
           finest_(finest),
           probe_(scene, finest, end),
           probe_other_(scene, finest, end == RayEnd::kNear ? RayEnd::kFar : RayEnd::kNear),
@@ -37,6 +40,7 @@ class EndFitter {
           end_(view, end),
           samples_(options.samples),
           inside_out_(scene.winding() < 0.0),
+          may_start_inside_(mayStartInside(scene, view, end)),
           starts_free_(view.starts_free[static_cast<std::size_t>(end)]),
           other_starts_free_(view.projection() == Projection::kOrthographic &&
                              view.starts_free[end == RayEnd::kNear ? 1 : 0]) {
@@ -51,6 +55,8 @@ class EndFitter {
         fit_.refinements = options.refinements;
         fit_.let_back = options.let_back;
         fit_.cautious = options.cautious;
+        fit_.rays_apart = 0.5 / samples_;
+        fit_.starts_free = starts_free_;
         rays_.resize(std::size_t{samples_} * samples_);
     }
 
@@ -68,8 +74,8 @@ class EndFitter {
             for (std::uint32_t i = 0; i < samples_; ++i) {
                 const std::uint32_t column = x * samples_ + i;
                 const Hit& hit = hits[std::size_t{row - first_row} * fine_.width + column];
-                if (!hit.empty() && startsInside(hit)) {
-                    return std::nullopt;  // the ray starts inside: what lies before this surface is not free
+                if (!hit.empty() && startsInside(hit)) {  // what lies before this surface is not free
+                    return may_start_inside_ ? std::optional(allInside(face, x, y)) : std::nullopt;
                 }
                 const std::size_t at = std::size_t{row - first_row} * fine_.width + column;
                 rays_[std::size_t{j} * samples_ + i] = footprintRay(
@@ -79,8 +85,9 @@ class EndFitter {
         findEdge(here);
         lookAround(here);
         const TexelRay centre = view_.ray(face, x, y);
+        deep_.setTexel((std::size_t{face} * view_.height + y) * view_.width + x);
         const std::optional<FittedPlane> plane =
-            fitSupportingPlane(rays_, around_, edge_, end_.fromViewer(centre), centre.origin, fit_);
+            fitSupportingPlane(rays_, around_, edge_, end_.fromViewer(centre), centre.origin, fit_, &deep_);
         if (!plane) {
             return std::nullopt;
         }
@@ -102,7 +109,13 @@ class EndFitter {
 
     /// The ray of a hit started in the solid.
     [[nodiscard]] bool startsInside(const Hit& hit) const {
-        return !starts_free_ && hit.fromBehind() != inside_out_;
+        return (!starts_free_ || may_start_inside_) && hit.fromBehind() != inside_out_;
+    }
+
+    /// What a cube holds where its rays start in the solid: a plane through its centre.
+    [[nodiscard]] Surface allInside(std::uint32_t face, std::uint32_t x, std::uint32_t y) const {
+        const glm::dvec3 direction = view_.ray(face, x, y).direction;
+        return {0.0F, glm::vec3(direction / -length(direction))};
     }
 
     /// A texel, and the hits of the fine view from row `first_row` of its face on.
@@ -204,6 +217,7 @@ class EndFitter {
     }
 
     const TriangleNormals& normals_;
+    DeepSolid deep_;
     const View& finest_;
     RayProbe probe_;
     RayProbe probe_other_;
@@ -212,6 +226,7 @@ class EndFitter {
     EndView end_;
     std::uint32_t samples_;
     bool inside_out_;
+    bool may_start_inside_;
     bool starts_free_;
     bool other_starts_free_;
     PlaneFitOptions fit_;
@@ -223,9 +238,10 @@ class EndFitter {
 /// Fits all texels of a map, stripe by stripe.
 class MapFitter {
   public:
-    MapFitter(const RayScene& scene, const TriangleNormals& normals, const View& view,
+    MapFitter(const RayScene& scene, const MeshQuery& query, const TriangleNormals& normals, const View& view,
               const FittedMapOptions& options)
         : scene_(scene),
+          query_(query),
           normals_(normals),
           view_(view),
           fine_(scaled(view, options.samples)),
@@ -277,8 +293,8 @@ class MapFitter {
     }
 
     std::uint64_t fitRows(const RowRange& rows, std::uint32_t first_ray_row) {
-        EndFitter near_fitter(scene_, normals_, view_, fine_, finest_, RayEnd::kNear, options_);
-        EndFitter far_fitter(scene_, normals_, view_, fine_, finest_, RayEnd::kFar, options_);
+        EndFitter near_fitter(scene_, query_, map_, normals_, view_, fine_, finest_, RayEnd::kNear, options_);
+        EndFitter far_fitter(scene_, query_, map_, normals_, view_, fine_, finest_, RayEnd::kFar, options_);
         std::uint64_t covered = 0;
         for (std::uint32_t y = rows.begin; y != rows.end; ++y) {
             for (std::uint32_t x = 0; x < view_.width; ++x) {
@@ -302,6 +318,7 @@ class MapFitter {
     }
 
     const RayScene& scene_;
+    const MeshQuery& query_;
     const TriangleNormals& normals_;
     const View& view_;
     View fine_;    // a texel for each ray of a footprint
@@ -320,10 +337,10 @@ TriangleNormals::TriangleNormals(const TriangleMesh& mesh) : normals_(mesh.trian
     });
 }
 
-DepthMap bakeFittedMap(const RayScene& scene, const TriangleNormals& normals, const View& view,
-                       const FittedMapOptions& options, std::uint64_t& covered,
+DepthMap bakeFittedMap(const RayScene& scene, const MeshQuery& query, const TriangleNormals& normals,
+                       const View& view, const FittedMapOptions& options, std::uint64_t& covered,
                        const std::function<void(std::uint32_t)>& rowsDone) {
-    return MapFitter(scene, normals, view, options).run(covered, rowsDone);
+    return MapFitter(scene, query, normals, view, options).run(covered, rowsDone);
 }
 
 }  // namespace relief

@@ -34,13 +34,14 @@ class PlaneSearch {
   public:
     PlaneSearch(std::span<const FootprintRay> rays, std::span<const FootprintRay> around,
                 std::span<const FootprintRay> edge, const FootprintRay& centre, const glm::dvec3& zero_depth,
-                const PlaneFitOptions& options)
+                const PlaneFitOptions& options, DeepSolid* deep)
         : rays_(rays),
           around_(around),
           edge_(edge),
           centre_(centre),
           from_zero_(centre.origin - zero_depth),
           options_(options),
+          deep_(deep),
           direction_length_(std::sqrt(dot(centre.direction, centre.direction))) {}
 
     std::optional<FittedPlane> run() {
@@ -78,6 +79,10 @@ class PlaneSearch {
         refine();
         if (best_cost_ == kInfinity) {
             takeFacing(facing);
+            const double depth = best_.code / kDepthCodes * options_.u_max;
+            if (!options_.starts_free && isDeep(best_.normal, depth * dot(best_.normal, centre_.direction))) {
+                return std::nullopt;
+            }
         }
         return best_;
     }
@@ -147,8 +152,18 @@ class PlaneSearch {
                 return;
             }
         }
+        const bool vouched =
+            options_.starts_free && options_.let_back == 0.0 && !stands && -cosine > options_.rays_apart;
+        if (!vouched && isDeep(normal, stored)) {
+            return;
+        }
         best_cost_ = cost;
         best_ = {normal, unpackNormal(code), stands, static_cast<std::uint16_t>(scaled)};
+    }
+
+    /// \param offset  of the plane from the centre ray's start
+    [[nodiscard]] bool isDeep(const glm::dvec3& normal, double offset) const {
+        return deep_ != nullptr && deep_->cutBy(normal, offset + dot(normal, from_zero_));
     }
 
     [[nodiscard]] double lowestOf(std::span<const FootprintRay> rays, const glm::dvec3& normal) const {
@@ -271,6 +286,7 @@ class PlaneSearch {
     const FootprintRay& centre_;
     glm::dvec3 from_zero_;
     const PlaneFitOptions& options_;
+    DeepSolid* deep_;
     double direction_length_;
     int hits_ = 0;
     double good_enough_ = 0.0;
@@ -296,8 +312,9 @@ const std::array<glm::dvec3, 65536>& decodedNormals() {
 std::optional<FittedPlane> fitSupportingPlane(std::span<const FootprintRay> rays,
                                               std::span<const FootprintRay> around,
                                               std::span<const FootprintRay> edge, const FootprintRay& centre,
-                                              const glm::dvec3& zero_depth, const PlaneFitOptions& options) {
-    return PlaneSearch(rays, around, edge, centre, zero_depth, options).run();
+                                              const glm::dvec3& zero_depth, const PlaneFitOptions& options,
+                                              DeepSolid* deep) {
+    return PlaneSearch(rays, around, edge, centre, zero_depth, options, deep).run();
 }
 
 }  // namespace relief

@@ -20,6 +20,7 @@
 #include <span>
 
 #include "bake/plan/view.h"
+#include "bake/texels/deep_solid.h"
 #include "formats/normal_index.h"
 #include "formats/texel.h"
 
@@ -48,6 +49,11 @@ struct PlaneFitOptions {
     /// it cuts some of the solid and spares as much free space; not at steps, whose spread is more than
     /// `range`/4.
     double let_back = 0.0;
+    /// The farthest that a point of the texel is from a ray, in units of the texel's diagonal. A plane of a smaller cosine
+    /// drops, between two rays, by more than the diagonal.
+    double rays_apart = 0.0;
+    /// Rays start in free space. Otherwise one that meets nothing may have run through the solid all the way.
+    bool starts_free = true;
 };
 
 /// A half-space in a texel's own units.
@@ -69,12 +75,11 @@ struct FittedPlane {
 /// \param edge    rays that just meet a surface, beside ones that meet none: what a standing plane leans on.
 /// \param centre  the texel's centre ray, from the viewer on: where the plane's depth is stored.
 /// \param zero_depth  the point of that ray whose map depth is 0.
-/// \return nullopt if no ray meets a surface: the texel is empty.
-[[nodiscard]] std::optional<FittedPlane> fitSupportingPlane(std::span<const FootprintRay> rays,
-                                                            std::span<const FootprintRay> around,
-                                                            std::span<const FootprintRay> edge,
-                                                            const FootprintRay& centre,
-                                                            const glm::dvec3& zero_depth,
-                                                            const PlaneFitOptions& options);
+/// \param deep  of the texel: planes that the rays alone do not vouch for may not cut what is deep. May be null.
+/// \return nullopt if no ray meets a surface: the texel is empty. Without starts_free also if nothing is known.
+[[nodiscard]] std::optional<FittedPlane> fitSupportingPlane(
+    std::span<const FootprintRay> rays, std::span<const FootprintRay> around,
+    std::span<const FootprintRay> edge, const FootprintRay& centre, const glm::dvec3& zero_depth,
+    const PlaneFitOptions& options, DeepSolid* deep = nullptr);
 
 }  // namespace relief

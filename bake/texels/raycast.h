@@ -16,6 +16,11 @@ struct RowRange {
     std::uint32_t end = 0;  ///< one behind the last
 };
 
+/// Rays of this end that meet an inner side have started in the solid, although the view's empty texels are free.
+[[nodiscard]] inline bool mayStartInside(const RayScene& scene, const View& view, RayEnd end) {
+    return view.centre_on_surface && end == RayEnd::kNear && scene.closed();
+}
+
 /// Traces one ray a texel for one end of a view, on all cores of the current arena.
 ///
 /// Embree decides which triangle is met; the depth is that of the triangle's plane in double precision. A

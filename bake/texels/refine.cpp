@@ -12,6 +12,7 @@
 
 #include "bake/mesh/surface_sampler.h"
 #include "bake/mesh/triangle_plane.h"
+#include "bake/texels/deep_solid.h"
 #include "bake/texels/plane_fit.h"
 #include "formats/plane.h"
 #include "formats/row_spans.h"
@@ -207,12 +208,15 @@ struct Decided {
 /// The search for one end's plane among the points it decides.
 class PlaneChoice {
   public:
-    PlaneChoice(const TexelVotes& votes, const RefineOptions& options)
+    PlaneChoice(const TexelVotes& votes, const MeshQuery& query, const RefineOptions& options)
         : votes_(votes),
           options_(options),
+          deep_(query, votes.map()),
           margin_(kMargin * std::max(options.false_inside, 0.5 * options.false_outside)) {}
 
     std::vector<Decided> points;
+
+    void setTexel(std::size_t texel) { deep_.setTexel(texel); }
 
     Code best(const Code& current, const Ray& ray, int end) {
         ray_ = &ray;
@@ -302,8 +306,9 @@ class PlaneChoice {
         if (quantised.depth == 0) {
             return;
         }
-        const double real = costOf(normal, votes_.offsetOf(quantised, normal, *ray_));
-        if (real < best_cost_) {
+        const double stored = votes_.offsetOf(quantised, normal, *ray_);
+        const double real = costOf(normal, stored);
+        if (real < best_cost_ && !deep_.cutBy(normal, stored)) {
             best_cost_ = real;
             best_ = quantised;
         }
@@ -311,6 +316,7 @@ class PlaneChoice {
 
     const TexelVotes& votes_;
     const RefineOptions& options_;
+    DeepSolid deep_;
     double margin_;
     const Ray* ray_ = nullptr;
     int end_ = 0;
@@ -324,8 +330,9 @@ class PlaneChoice {
 
 class Refinement {
   public:
-    Refinement(Collider& collider, std::vector<LabelledPoint> points, const RefineOptions& options)
-        : options_(options), points_(std::move(points)), outside_votes_(points_.size(), 0) {
+    Refinement(Collider& collider, const MeshQuery& query, std::vector<LabelledPoint> points,
+               const RefineOptions& options)
+        : query_(query), options_(options), points_(std::move(points)), outside_votes_(points_.size(), 0) {
         for (DepthMap& map : collider.maps) {
             maps_.emplace_back(map);
         }
@@ -420,7 +427,7 @@ class Refinement {
             }
         }
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, map.texels(), 256), [&](const auto& range) {
-            PlaneChoice choice(map, options_);
+            PlaneChoice choice(map, query_, options_);
             for (std::size_t texel = range.begin(); texel != range.end(); ++texel) {
                 const std::span<const std::uint32_t> here(members.data() + first[texel],
                                                           first[texel + 1] - first[texel]);
@@ -434,6 +441,7 @@ class Refinement {
     void refineTexel(TexelVotes& map, std::size_t texel, std::span<const std::uint32_t> members,
                      PlaneChoice& choice) {
         const Ray ray = map.ray(texel);
+        choice.setTexel(texel);
         for (int end = 0; end < map.ends(); ++end) {
             const Code current = map.code(texel, end);
             if (current.depth == 0) {
@@ -471,6 +479,7 @@ class Refinement {
         }
     }
 
+    const MeshQuery& query_;
     const RefineOptions& options_;
     std::vector<LabelledPoint> points_;
     std::vector<std::uint16_t> outside_votes_;  // a point's: how many ends of maps see it outside
@@ -489,7 +498,7 @@ void refineTexels(Collider& collider, const MeshQuery& query, const RefineOption
                                                            static_cast<double>(kRefinePointsMin),
                                                            static_cast<double>(kRefinePointsMax)));
     const double sigma = options.sigma_share * query.mesh().bounds.longestSide();
-    Refinement(collider, drawNearSurface(query, count, sigma, options.seed), options).run();
+    Refinement(collider, query, drawNearSurface(query, count, sigma, options.seed), options).run();
 }
 
 }  // namespace relief

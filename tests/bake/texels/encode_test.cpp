@@ -34,7 +34,7 @@ TEST(Encode, WritesWhatEncodeTexelWrites) {
                         traceRows(*scene, *view, end, rows, hits[static_cast<std::size_t>(end)]);
                     }
                 }
-                covered += encodeRows(mesh, scene->winding(), normals, *view, rows, hits[0], hits[1], map);
+                covered += encodeRows(*scene, normals, *view, rows, hits[0], hits[1], map);
                 for (std::uint32_t y = 0; y < view->height; ++y) {
                     for (std::uint32_t x = 0; x < view->width; ++x) {
                         const auto surface = [&](const std::vector<Hit>& end) -> std::optional<Surface> {

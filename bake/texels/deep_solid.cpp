@@ -1,0 +1,107 @@
+#include "bake/texels/deep_solid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "bake/mesh/triangle_plane.h"
+
+namespace relief {
+namespace {
+
+/// A line, from the texel's centre, in texels. They run on no lines of a grid that texels may be aligned to.
+struct Place {
+    double x;
+    double y;
+    /// Of a ball of one diagonal about a point of the texel, which is at most √(1 − half_chord²) diagonals away, this part
+    /// of a diagonal of the line at least is within the ball, on either side.
+    double half_chord;
+};
+constexpr std::array<Place, 5> kPlaces = {{{0.0131, -0.0173, 0.84},
+                                           {-0.4831, -0.4787, 0.18},
+                                           {0.4723, 0.4849, 0.18},
+                                           {0.4849, -0.4801, 0.18},
+                                           {-0.4771, 0.4837, 0.18}}};
+
+double distance(const glm::dvec3& a, const glm::dvec3& b) {
+    return length(a - b);
+}
+
+}  // namespace
+
+void DeepSolid::place() {
+    const auto x = static_cast<std::uint32_t>(texel_ % map_.width);
+    const auto row = static_cast<std::uint32_t>(texel_ / map_.width);
+    const std::uint32_t face = row / map_.height;
+    const std::uint32_t y = row % map_.height;
+    centre_ = texelRay(map_, face, x, y);
+    for (std::size_t i = 0; i < kLines; ++i) {
+        lines_[i] = rayThrough(map_, face, x + 0.5 + kPlaces[i].x, y + 0.5 + kPlaces[i].y);
+    }
+    for (std::size_t i = 0; i < kCorners; ++i) {
+        corners_[i] = rayThrough(map_, face, x + (i % 2 == 0 ? 0.0 : 1.0), y + (i < 2 ? 0.0 : 1.0));
+    }
+    diagonal_ = std::max(distance(corners_[0].at(1.0), corners_[3].at(1.0)),
+                         distance(corners_[1].at(1.0), corners_[2].at(1.0))) /
+                length(centre_.direction);
+    known_ = true;
+    any_known_ = false;
+    asked_ = 0;
+    spans_.assign(1, {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()});
+}
+
+void DeepSolid::narrow() {
+    const double shrunk = kPlaces[asked_].half_chord * diagonal_;
+    const TexelRay& line = lines_[asked_++];
+    if (!query_.spansInside(line.origin, line.direction, of_line_)) {
+        return;
+    }
+    any_known_ = true;
+    both_.clear();
+    const bool cube = map_.projection() == Projection::kCube;
+    for (LineSpan span : of_line_) {
+        // The diagonal of a cube's texel grows with the depth.
+        if (cube) {
+            span = {std::max(span.begin, 0.0) / std::max(1.0 - shrunk, 1e-3), span.end / (1.0 + shrunk)};
+        } else {
+            span = {span.begin + shrunk, span.end - shrunk};
+        }
+        for (const LineSpan& other : spans_) {
+            const LineSpan common{std::max(span.begin, other.begin), std::min(span.end, other.end)};
+            if (common.begin < common.end) {
+                both_.push_back(common);
+            }
+        }
+    }
+    spans_.swap(both_);
+}
+
+bool DeepSolid::cutBy(const glm::dvec3& normal, double offset) {
+    if (!known_) {
+        place();
+    }
+    // The depths at which the half-space has a point of the texel: up to a depth, or from one on, by each corner.
+    double up_to = -std::numeric_limits<double>::infinity();
+    double from = std::numeric_limits<double>::infinity();
+    for (const TexelRay& line : corners_) {
+        const double along = dot(normal, line.direction);
+        const double at = (offset - dot(normal, line.origin - centre_.origin)) / along;
+        if (along < 0.0) {
+            up_to = std::max(up_to, at);
+        } else if (along > 0.0) {
+            from = std::min(from, at);
+        } else if (offset <= dot(normal, line.origin - centre_.origin)) {
+            up_to = std::numeric_limits<double>::infinity();
+        }
+    }
+    const auto isCut = [&](const LineSpan& span) { return span.begin < up_to || span.end > from; };
+    while (std::any_of(spans_.begin(), spans_.end(), isCut)) {
+        if (asked_ == kLines) {
+            return any_known_ || query_.watertight();
+        }
+        narrow();
+    }
+    return false;
+}
+
+}  // namespace relief

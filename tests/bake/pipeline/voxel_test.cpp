@@ -1,0 +1,209 @@
+// Nothing deep in a solid is ever outside: against solids of unit cubes, whose insides and distances are exact, and
+// whose vertices, edges and faces lie under texel centres and borders in every way. And cubes whose centres lie on the
+// surface.
+//
+// Bound. A map's rays know what is solid but for what lies between them: a point that is farther from the surface than
+// its texel's diagonal, where all rays of the texel are in the solid, is inside. For a cube the texel is as large as it
+// is at the point's distance from the centre. A quantum of the depth, and a float's grain, come on top.
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "bake/mesh/mesh_query.h"
+#include "bake/plan/view_planner.h"
+#include "tests/bake/meshes.h"
+#include "tests/bake/voxels.h"
+
+namespace relief::test {
+namespace {
+
+constexpr int kPoints = 8000;
+
+double boundAt(const DepthMap& map, const glm::vec3& p) {
+    const glm::dvec3 scale = map.object_per_map;
+    const double grain = 1e-6 * std::max({scale.x, scale.y, scale.z});
+    const double quantum = map.format == MapFormat::kFrontBackHalf ? 1.0 / 2048.0 : 1.0 / 65534.0;
+    if (map.projection() == Projection::kOrthographic) {
+        return std::hypot(scale.x / map.width, scale.y / map.height) + quantum * scale.z + grain;
+    }
+    const glm::dvec3 q = map.object_to_map.apply(p);
+    const double radius = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z);
+    return std::max({scale.x, scale.y, scale.z}) *
+               (2.0 * std::sqrt(2.0) / map.width * radius + 2.0 * quantum) +
+           grain;
+}
+
+Collider baked(const PreparedMesh& mesh, const std::vector<std::string>& specs, Quality quality,
+               Prefer prefer = Prefer::kNeither) {
+    BakeOptions options;
+    options.quality = quality;
+    options.prefer = prefer;
+    for (const std::string& text : specs) {
+        const Result<MapSpec> spec = parseMapSpec(text);
+        EXPECT_TRUE(spec) << spec.error().message;
+        options.maps.push_back(spec.value_or(MapSpec{}));
+    }
+    Result<Baked> result = bake(mesh, options);
+    return result ? std::move(result->collider) : Collider{};  // a part of the volume may hold no surface
+}
+
+std::string text(const glm::vec3& p) {
+    return std::to_string(p.x) + "/" + std::to_string(p.y) + "/" + std::to_string(p.z);
+}
+
+/// Every way to look at a solid of voxels, with numbers drawn from the seed.
+std::vector<std::vector<std::string>> viewsOf(const VoxelGrid& grid, const TriangleMesh& mesh,
+                                              std::uint32_t seed) {
+    std::mt19937 random(seed);
+    const auto below = [&](std::uint32_t n) { return static_cast<int>(random() % n); };
+    const auto vertex = [&] { return mesh.positions[random() % mesh.positions.size()]; };
+    const auto number = [](double v) { return std::to_string(v); };
+    const std::string size = ",size=" + std::to_string(12 + below(90));
+    const std::string cube_size = ",size=" + std::to_string(8 + below(40));
+    const std::string round =
+        "front-back:dir=" + std::to_string(below(7) - 3) + "/" + std::to_string(below(7) - 3) + "/1";
+    const std::string steep = "front-back:dir=" + std::to_string(500 + below(500)) + "/" +
+                              std::to_string(below(101) - 50) + "/" + std::to_string(below(201) - 100);
+    // Texel centres, or borders, on the integers.
+    const int per_unit = 1 + below(6);
+    const double shift = below(2) == 0 ? 0.0 : 0.5 / per_unit;
+    const int side = std::max({grid.size().x, grid.size().y, grid.size().z}) + 2;
+    const std::string low = number(shift - 1.0);
+    const std::string high = number(shift - 1.0 + side);
+    const std::string aligned = "front-back:dir=-z,size=" + std::to_string(side * per_unit + 2) +
+                                ",box=" + low + "/" + low + "/-1/" + high + "/" + high + "/" +
+                                std::to_string(side);
+    const glm::vec3 corner(below(3), below(3), below(3));
+    const std::string part =
+        "front-back:dir=-z" + size + ",box=" + text(corner - 1.0F) + "/" + text(corner + 1.5F);
+    const std::string at_vertex = "cube:center=" + text(vertex()) + cube_size;
+    const glm::uvec3& t = mesh.triangles[random() % mesh.triangles.size()];
+    const std::string on_edge =
+        "cube:center=" + text(0.5F * (mesh.positions[t.x] + mesh.positions[t.y])) + cube_size;
+    const std::string in_cell =
+        "cube:center=" + text(glm::vec3(below(3), below(3), below(3)) + 0.5F) + cube_size;
+    return {{"front-back:dir=-z" + size},
+            {"front-back:dir=-x" + size, "front-back:dir=-y" + size, "front-back:dir=-z" + size},
+            {"front-back:dir=1/1/1" + size},
+            {round + size},
+            {steep + size},
+            {"front-back:dir=+y,depth=half" + size},
+            {aligned},
+            {part},
+            {at_vertex},
+            {at_vertex + ",compare=less"},
+            {at_vertex + ",decode=projected"},
+            {on_edge},
+            {in_cell}};
+}
+
+/// Points in the grid, in object space and in cells: where the solid is, and how deep.
+void expectNothingDeepOutside(const VoxelGrid& grid, const Collider& collider, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    const auto share = [&] { return static_cast<float>(random() >> 8) * 0x1p-24F; };
+    int deep = 0;
+    for (int i = 0; i < kPoints && !collider.maps.empty(); ++i) {
+        const float x = share();
+        const float y = share();
+        const glm::vec3 p = glm::vec3(grid.size()) * glm::vec3(x, y, share());
+        const FieldSample sample = evaluate(collider, p);
+        if (sample.map < 0 || sample.inside() || !grid.inside(p)) {
+            continue;
+        }
+        const double depth = grid.distance(p, 2);
+        const double bound = boundAt(collider.maps[static_cast<std::size_t>(sample.map)], p);
+        deep += depth > bound ? 1 : 0;
+        ASSERT_LT(deep, 3) << "(" << text(p) << ") is " << depth << " deep, " << depth / bound
+                           << " of the bound, and outside for map " << sample.map;
+    }
+    EXPECT_EQ(deep, 0);
+}
+
+TEST(Voxels, NothingDeepIsOutside) {
+    for (std::uint32_t seed = 1; seed <= 5; ++seed) {
+        const VoxelGrid grid = VoxelGrid::random(seed);
+        const PreparedMesh mesh(grid.mesh());
+        for (const std::vector<std::string>& specs : viewsOf(grid, *mesh, seed)) {
+            for (const Quality quality : {Quality::kFast, Quality::kNormal}) {
+                SCOPED_TRACE(std::to_string(seed) + " " + specs.front() + " " + qualityName(quality));
+                expectNothingDeepOutside(grid, baked(mesh, specs, quality), seed);
+            }
+        }
+    }
+}
+
+TEST(Voxels, NothingDeepIsOutsideWhateverIsPreferred) {
+    for (std::uint32_t seed = 101; seed <= 103; ++seed) {
+        const VoxelGrid grid = VoxelGrid::random(seed);
+        const PreparedMesh mesh(grid.mesh());
+        for (const Prefer prefer : {Prefer::kInside, Prefer::kOutside}) {
+            SCOPED_TRACE(std::to_string(seed) + " " + preferName(prefer));
+            const std::vector<std::string> specs = {"front-back:dir=-x,size=80",
+                                                    "front-back:dir=1/2/3,size=70", "cube:size=30"};
+            expectNothingDeepOutside(grid, baked(mesh, specs, Quality::kNormal, prefer), seed);
+        }
+    }
+}
+
+TEST(Voxels, NothingDeepIsOutsideOfAPlan) {
+    for (std::uint32_t seed = 201; seed <= 206; ++seed) {
+        SCOPED_TRACE(seed);
+        const VoxelGrid grid = VoxelGrid::random(seed);
+        const PreparedMesh mesh(grid.mesh());
+        const Result<MeshQuery> query = MeshQuery::build(mesh);
+        ASSERT_TRUE(query);
+        PlanOptions options;
+        options.budget_bytes = 65536 << (seed % 3);
+        const Result<Plan> plan = planViews(*query, options);
+        ASSERT_TRUE(plan);
+        BakeOptions bake_options;
+        bake_options.maps = specsOf(*plan);
+        const Result<Baked> result = bake(mesh, bake_options);
+        ASSERT_TRUE(result);
+        expectNothingDeepOutside(grid, result->collider, seed);
+    }
+}
+
+/// A cube that keeps the nearest surface, centred on the surface or barely in the solid: its rays ran through the solid,
+/// and half of that was free.
+TEST(Cubes, CentresOnTheSurfaceFreeNothingDeep) {
+    const TriangleMesh meshes[] = {makeBoxMesh({0.1, 0.2, 0.3}, {1, 0.6, 0.4}, rotation({1, 2, 3}, 40.0)),
+                                   makeIcosphere({0.3, -0.2, 0.1}, 0.8, 3), makeTorusMesh(1.0, 0.35, 40, 20)};
+    for (const TriangleMesh& mesh : meshes) {
+        const PreparedMesh prepared(mesh);
+        const Result<MeshQuery> query = MeshQuery::build(prepared);
+        ASSERT_TRUE(query);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const glm::uvec3& t = mesh.triangles[k * 53 % mesh.triangles.size()];
+            glm::vec3 at = mesh.positions[t.x];
+            if (k % 3 == 1) {
+                at = 0.5F * (at + mesh.positions[t.y]);
+            } else if (k % 3 == 2) {
+                at = (at + mesh.positions[t.y] + mesh.positions[t.z]) / 3.0F;
+            }
+            for (const std::string decode : {"plane", "projected"}) {
+                char spec[160];
+                std::snprintf(spec, sizeof(spec), "cube:size=64,center=%.9g/%.9g/%.9g,compare=less,decode=%s",
+                              at.x, at.y, at.z, decode.c_str());
+                SCOPED_TRACE(spec);
+                const Collider collider = baked(prepared, {spec}, Quality::kNormal);
+                std::mt19937 random(3);
+                const auto share = [&] { return static_cast<float>(random() >> 8) * 0x1p-24F; };
+                int deep = 0;
+                for (int i = 0; i < kPoints; ++i) {
+                    const float x = share();
+                    const float y = share();
+                    const glm::vec3 p = mesh.bounds.min + mesh.bounds.size() * glm::vec3(x, y, share());
+                    const FieldSample sample = evaluate(collider, p);
+                    if (sample.map >= 0 && !sample.inside() && query->inside(p)) {
+                        deep += query->closest(p).distance > boundAt(collider.maps.front(), p) ? 1 : 0;
+                    }
+                }
+                EXPECT_EQ(deep, 0);
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace relief::test
