@@ -215,7 +215,7 @@ void trace(const EmbreeMesh& tree, const glm::vec3& p, const glm::dvec3& directi
     rtcIntersect1(tree.scene.get(), &counter.context, &query);
 }
 
-/// The part of a line that lies in a box, in units of its direction; begin ≥ end: none.
+/// The part of a line that lies in a box, in units of its direction; begin > end: none.
 LineSpan inBox(const Bounds& box, const glm::dvec3& p, const glm::dvec3& direction) {
     LineSpan span{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     for (int axis = 0; axis < 3; ++axis) {
@@ -223,7 +223,7 @@ LineSpan inBox(const Bounds& box, const glm::dvec3& p, const glm::dvec3& directi
         const double high = double{box.max[axis]} - p[axis];
         if (direction[axis] == 0.0) {
             if (low > 0.0 || high < 0.0) {
-                return {};
+                return {1.0, 0.0};
             }
             continue;
         }
@@ -350,47 +350,47 @@ unsigned MeshQuery::crossings(const glm::vec3& p, const glm::dvec3& direction) c
     return counter.count;
 }
 
-bool MeshQuery::spansInside(const glm::dvec3& p, const glm::dvec3& direction,
-                            std::vector<LineSpan>& spans) const {
-    spans.clear();
+void MeshQuery::hitsAlong(const glm::dvec3& p, const glm::dvec3& direction,
+                          std::vector<LineHit>& hits) const {
+    hits.clear();
     const LineSpan box = inBox(mesh().bounds, p, direction);
-    if (!(box.begin < box.end)) {
-        return true;
+    if (!(box.begin <= box.end)) {
+        return;
     }
     // From outside of the box to outside of the box.
     const double margin =
         1e-3 * (box.end - box.begin) + 1e-3 * mesh().bounds.longestSide() / length(direction);
-    const glm::dvec3 start = p + (box.begin - margin) * direction;
-    HitCollector hits;
-    RTCRayHit query = rayHit(tree_->toLocal(start), direction * tree_->scale,
-                             static_cast<float>(box.end - box.begin + 2.0 * margin));
-    rtcIntersect1(tree_->scene.get(), &hits.context, &query);
-    struct Crossing {
-        double at;
-        std::uint32_t triangle;
-        int way;
-    };
-    std::vector<Crossing> crossings;
-    crossings.reserve(hits.triangles.size());
-    for (const std::uint32_t triangle : hits.triangles) {
-        const double along = dot(planeOf(mesh(), triangle).normal, direction);
-        const double at = depthAt(mesh(), triangle, start, direction) + box.begin - margin;
-        crossings.push_back({at, triangle, along < 0.0 ? -1 : 1});
+    const double begin = box.begin - margin;
+    const glm::dvec3 start = p + begin * direction;
+    HitCollector collector;
+    RTCRayHit query =
+        rayHit(tree_->toLocal(start), direction * tree_->scale, static_cast<float>(box.end + margin - begin));
+    rtcIntersect1(tree_->scene.get(), &collector.context, &query);
+    for (const std::uint32_t triangle : collector.triangles) {
+        hits.push_back({begin + depthAt(mesh(), triangle, start, direction), triangle});
     }
-    std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
+    std::sort(hits.begin(), hits.end(), [](const LineHit& a, const LineHit& b) {
         return a.at < b.at || (a.at == b.at && a.triangle < b.triangle);
     });
+}
+
+bool MeshQuery::spansInside(const glm::dvec3& p, const glm::dvec3& direction,
+                            std::vector<LineSpan>& spans) const {
+    spans.clear();
+    std::vector<LineHit> hits;
+    hitsAlong(p, direction, hits);
     BodyCounter counter(bodies_);
     bool inside = false;
     bool odd = false;
-    for (const Crossing& crossing : crossings) {
-        counter.cross(shells_ || bodies_.empty() ? 0 : bodies_[crossing.triangle], crossing.way);
+    for (const LineHit& hit : hits) {
+        const int way = dot(planeOf(mesh(), hit.triangle).normal, direction) < 0.0 ? -1 : 1;
+        counter.cross(shells_ || bodies_.empty() ? 0 : bodies_[hit.triangle], way);
         odd = !odd;
         const bool now = shells_ || !bodies_.empty() ? counter.inside() : odd;
         if (now && !inside) {
-            spans.push_back({crossing.at, crossing.at});
+            spans.push_back({hit.at, hit.at});
         } else if (!now && inside) {
-            spans.back().end = crossing.at;
+            spans.back().end = hit.at;
         }
         inside = now;
     }

@@ -43,6 +43,12 @@ struct LineSpan {
     double end = 0.0;
 };
 
+/// Where a line meets a triangle: along it, in units of its direction, in double precision.
+struct LineHit {
+    double at = 0.0;
+    std::uint32_t triangle = 0;
+};
+
 /// All questions may be asked from any thread, and their answers depend neither on the number of threads nor
 /// on the order of the questions.
 class MeshQuery {
@@ -62,6 +68,10 @@ class MeshQuery {
     /// How many triangles a ray from `p` meets.
     /// \param direction  of any length but 0.
     [[nodiscard]] unsigned crossings(const glm::vec3& p, const glm::dvec3& direction) const;
+
+    /// All triangles that the whole line through `p` meets, in their order along it; of equals the lower index first.
+    /// \param hits  receives them
+    void hitsAlong(const glm::dvec3& p, const glm::dvec3& direction, std::vector<LineHit>& hits) const;
 
     /// The parts of the whole line through `p` that are inside, as inside() has it, in order. Their ends are those of the
     /// triangles' planes, in double precision.

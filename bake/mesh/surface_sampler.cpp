@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "bake/mesh/inside.h"
 #include "bake/mesh/triangle_plane.h"
 
 namespace relief {
@@ -9,6 +10,12 @@ namespace {
 
 /// Points that are asked for by rays before a mesh's winding is trusted.
 constexpr std::size_t kTrials = 512;
+/// Crossings that may be counted for all points together: where thousands of surfaces lie within each other, fewer points
+/// are drawn, but not less than so many.
+constexpr double kCrossingsMax = 2e8;
+constexpr double kPointsMin = 20'000.0;
+/// Rays that inside() asks, about.
+constexpr double kRaysAsked = 4.0;
 /// Points per task.
 constexpr std::size_t kBlock = 1024;
 
@@ -46,23 +53,34 @@ std::vector<LabelledPoint> drawNearSurface(const MeshQuery& query, std::size_t c
         return NearDraw{surface, sigma * random.normal()};
     };
     // Beside a surface that no other cuts off, the side says it; elsewhere rays do.
-    const auto insideByWinding = [&](const NearDraw& near) {
+    const auto isFree = [&](const NearDraw& near) {
         const double sign = near.offset < 0.0 ? -1.0 : 1.0;
         const glm::dvec3 start = near.surface.position + sign * clear * near.surface.normal;
-        return std::abs(near.offset) <= clear || query.segmentIsFree(start, near.position())
-                   ? near.offset < 0.0
-                   : query.inside(glm::vec3(near.position()));
+        return std::abs(near.offset) <= clear || query.segmentIsFree(start, near.position());
+    };
+    const auto insideByWinding = [&](const NearDraw& near) {
+        return isFree(near) ? near.offset < 0.0 : query.inside(glm::vec3(near.position()));
     };
     bool trusted = query.watertight();
+    double crossings = 0.0;  // of a ray in the mean
+    double asked = 0.0;      // share of the points that rays are asked about
     MersenneRandom trial(seed);
-    for (std::size_t i = 0; trusted && i < kTrials; ++i) {
+    for (std::size_t i = 0; i < kTrials; ++i) {
         const NearDraw near = draw(i, kTrials, trial);
-        trusted = std::abs(near.offset) <= clear ||
-                  insideByWinding(near) == query.inside(glm::vec3(near.position()));
+        const glm::vec3 position(near.position());
+        const bool free = isFree(near);
+        asked += free ? 0.0 : 1.0 / static_cast<double>(kTrials);
+        trusted = trusted &&
+                  (std::abs(near.offset) <= clear || !free || (near.offset < 0.0) == query.inside(position));
+        crossings += query.crossings(position, kParityDirections[i % kParityDirections.size()]) /
+                     static_cast<double>(kTrials);
     }
     if (!trusted) {
         count /= 4;
+        asked = 1.0;
     }
+    const double affordable = kCrossingsMax / (kRaysAsked * std::max(crossings * asked, 1.0));
+    count = std::min(count, static_cast<std::size_t>(std::max(kPointsMin, affordable)));
     std::vector<LabelledPoint> points(count);
     tbb::parallel_for(std::size_t{0}, (count + kBlock - 1) / kBlock, [&](std::size_t block) {
         MersenneRandom random(seed * 0x9e3779b97f4a7c15ULL + block);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -28,11 +29,21 @@ struct Neighbour {
     bool same_direction = false;  ///< wound against each other
 };
 
+/// Surfaces nearer to each other along a line, in units of the longest side, lie in one place.
+constexpr double kOnePlace = 1e-10;
+/// With more patches than these, the open ones are asked by lines too: the rays of one after the other would take the
+/// square of their number where they lie in one place.
+constexpr std::size_t kManyPatches = 1000;
+/// Lines that are asked at a time.
+constexpr std::size_t kLinesAtOnce = 64;
+
 /// Triangles that hang together by edges of two triangles.
 struct Patch {
     std::vector<std::uint32_t> triangles;
     std::uint64_t turned = 0;  ///< of them, to agree with the first
     bool closed = true;
+    std::optional<bool> hollow;   ///< of a closed one: whether all of it lies inside an odd number of others
+    std::optional<bool> inwards;  ///< of an open one: whether the inside is clearly in front of it
 };
 
 class Winder {
@@ -53,9 +64,12 @@ class Winder {
         // Parity does not care about the winding: asked before anything is turned.
         const MeshQuery query = RELIEF_TRY(MeshQuery::build(prepared_));
         tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t i) {
-            Patch& patch = patches_[i];
             // Breadth first is no order to spread samples over.
-            std::sort(patch.triangles.begin(), patch.triangles.end());
+            std::sort(patches_[i].triangles.begin(), patches_[i].triangles.end());
+        });
+        Nesting(*this, query).run();
+        tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t i) {
+            const Patch& patch = patches_[i];
             if (looksInwards(patch, query)) {
                 for (const std::uint32_t triangle : patch.triangles) {
                     turn_[triangle] ^= 1U;
@@ -156,6 +170,9 @@ class Winder {
         };
         if (patch.closed) {
             const bool inwards = volumeOf(patch) < 0.0;
+            if (patch.hollow) {
+                return inwards != *patch.hollow;
+            }
             for (std::size_t i = 0; i < asked; ++i) {
                 const std::array<bool, 2> inside = answer(i);
                 if (!inside[inwards ? 1 : 0]) {
@@ -164,6 +181,9 @@ class Winder {
             }
             return !inwards;  // a hollow in another patch
         }
+        if (patch.inwards) {
+            return *patch.inwards;
+        }
         double sum = 0.0;
         for (std::size_t i = 0; i < asked; ++i) {
             const std::array<bool, 2> inside = answer(i);
@@ -171,6 +191,187 @@ class Winder {
         }
         return sum > kClearShare * static_cast<double>(asked);
     }
+
+    /// Which of the closed patches are hollows in others, and of many open ones where they look. One line tells it of all patches that it crosses, so that
+    /// thousands of them within each other take no more lines than one; and however thin the wall between two of them is,
+    /// it tells them apart.
+    class Nesting {
+      public:
+        Nesting(Winder& winder, const MeshQuery& query)
+            : winder_(winder),
+              mesh_(winder.mesh_),
+              patches_(winder.patches_),
+              query_(query),
+              known_(patches_.size()) {}
+
+        void run() {
+            patch_of_.resize(mesh_.triangles.size());
+            std::vector<std::uint32_t> order;
+            std::vector<float> size(patches_.size());
+            for (std::uint32_t i = 0; i < patches_.size(); ++i) {
+                Bounds box;
+                for (const std::uint32_t triangle : patches_[i].triangles) {
+                    patch_of_[triangle] = i;
+                    for (int corner = 0; corner < 3; ++corner) {
+                        box.add(mesh_.positions[mesh_.triangles[triangle][corner]]);
+                    }
+                }
+                size[i] = box.longestSide();
+                if (patches_[i].closed || patches_.size() > kManyPatches) {
+                    order.push_back(i);
+                }
+            }
+            // The innermost first: their lines cross all that they lie in.
+            std::stable_sort(order.begin(), order.end(),
+                             [&](std::uint32_t a, std::uint32_t b) { return size[a] < size[b]; });
+            while (!order.empty()) {
+                askAll(order);
+                std::erase_if(order, [&](std::uint32_t i) { return decided(i); });
+            }
+            for (std::size_t i = 0; i < patches_.size(); ++i) {
+                const Known& known = known_[i];
+                if (patches_[i].closed && (known.outside || known.samples > 0)) {
+                    patches_[i].hollow = !known.outside;
+                } else if (!patches_[i].closed && patches_.size() > kManyPatches && known.samples > 0) {
+                    patches_[i].inwards = known.facing > kClearShare * static_cast<double>(known.samples);
+                }
+            }
+        }
+
+      private:
+        struct Known {
+            std::size_t asked = 0;  ///< lines through it
+            std::size_t samples =
+                0;  ///< places of it; of a closed one those that lie inside an odd number of others
+            bool outside = false;  ///< of a closed one: a place that does not
+            double facing =
+                0.0;  ///< of an open one: the samples with the inside in front, less those with it behind
+        };
+        /// A place of a patch that a line crosses.
+        struct Place {
+            std::uint32_t patch;
+            bool outside;
+            int facing;
+        };
+
+        [[nodiscard]] bool decided(std::uint32_t i) const {
+            const std::size_t wanted = std::min(patches_[i].triangles.size(), kAskedMax);
+            return known_[i].outside || known_[i].samples >= wanted ||
+                   known_[i].asked >= std::max(wanted, kParityDirections.size());
+        }
+
+        /// One line for each, but for those that other lines have decided before.
+        void askAll(const std::vector<std::uint32_t>& order) {
+            std::vector<std::uint32_t> asked;
+            std::vector<std::vector<Place>> places(kLinesAtOnce);
+            std::size_t at_once = 2;
+            for (std::size_t next = 0; next < order.size();) {
+                asked.clear();
+                for (; next < order.size() && asked.size() < at_once; ++next) {
+                    if (!decided(order[next])) {
+                        asked.push_back(order[next]);
+                    }
+                }
+                at_once = std::min(2 * at_once, kLinesAtOnce);
+                tbb::parallel_for(std::size_t{0}, asked.size(),
+                                  [&](std::size_t k) { askLine(asked[k], places[k]); });
+                for (std::size_t k = 0; k < asked.size(); ++k) {
+                    ++known_[asked[k]].asked;
+                    for (const Place& place : places[k]) {
+                        known_[place.patch].outside = known_[place.patch].outside || place.outside;
+                        known_[place.patch].samples += place.outside ? 0 : 1;
+                        known_[place.patch].facing += place.facing;
+                    }
+                }
+            }
+        }
+
+        /// What the next line through a patch says of all patches that it crosses: whether they lie, a hair outwards of
+        /// their own surface, inside an odd number of others. Nothing, if the crossings do not add up.
+        void askLine(std::uint32_t patch, std::vector<Place>& places) const {
+            places.clear();
+            const std::vector<std::uint32_t>& triangles = patches_[patch].triangles;
+            const std::size_t asked = std::min(triangles.size(), kAskedMax);
+            const std::size_t k = known_[patch].asked;
+            // Off the middle, which lies on lines of symmetry more often.
+            const glm::dvec3 on = pointOn(mesh_, triangles[k % asked * triangles.size() / asked], 0.37, 0.29);
+            const glm::dvec3& direction = kParityDirections[k % kParityDirections.size()];
+            std::vector<LineHit> hits;
+            query_.hitsAlong(on, direction, hits);
+            if (hits.size() % 2 != 0) {
+                return;
+            }
+            const double one_place = kOnePlace * mesh_.bounds.longestSide();
+            // By patch, and in the order of the line: of how many crossings before it each is the next.
+            std::vector<std::pair<std::uint32_t, std::uint32_t>> own;
+            for (std::uint32_t i = 0; i < hits.size(); ++i) {
+                own.emplace_back(patch_of_[hits[i].triangle], i);
+            }
+            std::sort(own.begin(), own.end());
+            // Of each hit, the first and the last in its place.
+            std::vector<std::uint32_t> first(hits.size());
+            std::vector<std::uint32_t> last(hits.size());
+            for (std::size_t i = 0; i < hits.size(); ++i) {
+                const bool same = i > 0 && hits[i].at - hits[i - 1].at <= one_place;
+                first[i] = same ? first[i - 1] : static_cast<std::uint32_t>(i);
+            }
+            for (std::size_t i = hits.size(); i-- > 0;) {
+                const bool same = i + 1 < hits.size() && first[i + 1] == first[i];
+                last[i] = same ? last[i + 1] : static_cast<std::uint32_t>(i);
+            }
+            for (std::size_t begin = 0; begin < own.size();) {
+                std::size_t end = begin;
+                while (end < own.size() && own[end].first == own[begin].first) {
+                    ++end;
+                }
+                const std::uint32_t of = own[begin].first;
+                if (!patches_[of].closed) {
+                    for (std::size_t i = begin; i < end; ++i) {
+                        const LineHit& hit = hits[own[i].second];
+                        const int before = first[own[i].second] % 2 == 0 ? 0 : 1;
+                        const int after = last[own[i].second] % 2 == 0 ? 1 : 0;
+                        const bool ahead = dot(winder_.normalOf(hit.triangle), direction) > 0.0;
+                        places.push_back({of, false, ahead ? after - before : before - after});
+                    }
+                } else if ((end - begin) % 2 != 0) {
+                    places.clear();
+                    return;
+                } else {
+                    for (std::size_t i = begin; i < end; ++i) {
+                        addPlace(of, own, begin, end, i, first, last, places);
+                    }
+                }
+                begin = end;
+            }
+        }
+
+        /// \param i  of own[begin … end), the crossings of a patch.
+        static void addPlace(std::uint32_t of,
+                             const std::vector<std::pair<std::uint32_t, std::uint32_t>>& own,
+                             std::size_t begin, std::size_t end, std::size_t i,
+                             const std::vector<std::uint32_t>& first, const std::vector<std::uint32_t>& last,
+                             std::vector<Place>& places) {
+            const std::uint32_t hit = own[i].second;
+            const bool enters = (i - begin) % 2 == 0;
+            // All crossings before the place or up to its end, less those of the patch itself.
+            const std::uint32_t before = enters ? first[hit] : last[hit] + 1;
+            std::size_t mine = i - begin;
+            while (enters && mine > 0 && own[begin + mine - 1].second >= before) {
+                --mine;
+            }
+            while (!enters && begin + mine < end && own[begin + mine].second < before) {
+                ++mine;
+            }
+            places.push_back({of, (before - mine) % 2 == 0, 0});
+        }
+
+        const Winder& winder_;
+        const TriangleMesh& mesh_;
+        std::vector<Patch>& patches_;
+        const MeshQuery& query_;
+        std::vector<Known> known_;
+        std::vector<std::uint32_t> patch_of_;
+    };
 
     const PreparedMesh& prepared_;
     const TriangleMesh& mesh_;

@@ -218,6 +218,58 @@ TEST(Winding, FlippedTrianglesComeBack) {
     EXPECT_EQ(winding->mesh->triangles, hollow.triangles);
 }
 
+/// A hollow whose wall was thinner than the step that rays started with, 1e-4 of the longest side, was filled.
+TEST(Winding, AHollowWithAThinWallStaysAHollow) {
+    for (const double wall : {1e-3, 1e-4, 1e-5, 1e-6}) {
+        SCOPED_TRACE(wall);
+        const TriangleMesh outer = makeBoxMesh({0, 0, 0}, {1, 1, 1});
+        const TriangleMesh inner = makeBoxMesh({0, 0, 0}, glm::dvec3(1.0 - wall));
+        for (const TriangleMesh& mesh : {joined(outer, inner), joined(reversed(inner), outer)}) {
+            const Result<Winding> winding = windOutwards(mesh);
+            ASSERT_TRUE(winding);
+            const Result<MeshQuery> query = MeshQuery::build(winding->mesh);
+            ASSERT_TRUE(query);
+            EXPECT_FALSE(query->inside({0.1F, 0.2F, 0.3F}));
+            EXPECT_TRUE(query->inside({static_cast<float>(1.0 - 0.5 * wall), 0.2F, 0.3F}));
+        }
+    }
+}
+
+/// One line tells of all that it crosses: the rays of each would take the square of their number.
+TEST(Winding, OfThousandsOfSurfacesWithinEachOther) {
+    constexpr int kShells = 2000;
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec3> triangles;
+    for (int i = 0; i < kShells; ++i) {
+        TriangleMesh box = makeBoxMesh({0, 0, 0}, glm::dvec3(1.0 - 0.9 * i / kShells));
+        box = i % 3 == 0 ? reversed(std::move(box)) : std::move(box);
+        for (const glm::uvec3& t : box.triangles) {
+            triangles.push_back(t + static_cast<std::uint32_t>(positions.size()));
+        }
+        positions.insert(positions.end(), box.positions.begin(), box.positions.end());
+    }
+    const Result<Winding> winding = windOutwards(finished(positions, triangles));
+    ASSERT_TRUE(winding);
+    const Result<MeshQuery> query = MeshQuery::build(winding->mesh);
+    ASSERT_TRUE(query);
+    for (int i = 0; i < kShells; i += 37) {  // between a shell and the next
+        const auto x = static_cast<float>(1.0 - 0.9 * (i + 0.5) / kShells);
+        EXPECT_EQ(query->inside({x, 0.03F, -0.02F}), i % 2 == 0) << i;
+    }
+}
+
+/// Where copies lie in one place every edge has thousands of triangles, each a patch of its own.
+TEST(Winding, OfThousandsOfCopiesStaysOutwards) {
+    const TriangleMesh box = makeBoxMesh({0, 0, 0}, {1, 1, 1});
+    std::vector<glm::uvec3> triangles;
+    for (int i = 0; i < 2001; ++i) {
+        triangles.insert(triangles.end(), box.triangles.begin(), box.triangles.end());
+    }
+    const Result<Winding> winding = windOutwards(finished(box.positions, triangles));
+    ASSERT_TRUE(winding);
+    EXPECT_EQ(winding->turned, 0U);
+}
+
 TEST(Winding, OneSidedStripsBakeTheSameField) {
     const TriangleMesh strip = makeMoebiusStrip(60, 6);
     const Collider truth = bakedOutwards(strip);
