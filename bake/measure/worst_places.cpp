@@ -283,8 +283,9 @@ std::vector<WorstPlace> worstPlaces(const TruthSamples& samples, const MeshQuery
     for (const auto& [place, points] : found) {
         const std::size_t stride = (points.size() + kCausesMax - 1) / kCausesMax;
         std::vector<WrongCause> seen((points.size() + stride - 1) / stride);
-        tbb::parallel_for(std::size_t{0}, seen.size(),
-                          [&](std::size_t i) { seen[i] = causes.of(wrong[points[i * stride]]); });
+        tbb::parallel_for(std::size_t{0}, seen.size(), [&, &points = points](std::size_t i) {
+            seen[i] = causes.of(wrong[points[i * stride]]);
+        });
         std::vector<std::size_t> by_cause(kWrongCauses, 0);
         for (const WrongCause cause : seen) {
             ++by_cause[static_cast<std::size_t>(cause)];
