@@ -84,27 +84,6 @@ struct BodyCounter {
     }
 };
 
-/// The triangles on a line, through which it passes.
-struct CrossingCollector {
-    RTCIntersectContext context{};
-    std::vector<std::pair<std::uint32_t, int>> crossed;  ///< triangle, way
-
-    CrossingCollector() {
-        rtcInitIntersectContext(&context);
-        context.filter = filter;
-    }
-
-    static void filter(const RTCFilterFunctionNArguments* args) {
-        auto* self = reinterpret_cast<CrossingCollector*>(args->context);
-        for (unsigned i = 0; i < args->N; ++i) {
-            if (args->valid[i] != 0) {
-                self->crossed.emplace_back(RTCHitN_primID(args->hit, args->N, i), wayOf(args, i));
-                args->valid[i] = 0;
-            }
-        }
-    }
-};
-
 /// Collects the triangles that a ray meets, and lets it pass through them.
 struct HitCollector {
     RTCIntersectContext context{};
@@ -440,15 +419,8 @@ bool MeshQuery::isFree(const glm::dvec3& origin, const glm::dvec3& direction, fl
 }
 
 std::vector<LineGap> MeshQuery::gapsAlong(const glm::dvec3& origin, const glm::dvec3& direction) const {
-    // From before the mesh to behind it.
-    const glm::dvec3 unit = direction / std::sqrt(dot(direction, direction));
-    const glm::dvec3 middle = 0.5 * (glm::dvec3(mesh().bounds.min) + glm::dvec3(mesh().bounds.max));
-    const glm::dvec3 size = glm::dvec3(mesh().bounds.max) - glm::dvec3(mesh().bounds.min);
-    const glm::dvec3 start = origin + (dot(middle - origin, unit) - std::sqrt(dot(size, size))) * unit;
-    CrossingCollector collector;
-    RTCRayHit query = rayHit(tree_->toLocal(start), unit, std::numeric_limits<float>::infinity());
-    rtcIntersect1(tree_->scene.get(), &collector.context, &query);
-
+    std::vector<LineHit> hits;
+    hitsAlong(origin, direction, hits);
     struct Crossing {
         double along;
         std::uint32_t body;
@@ -456,16 +428,15 @@ std::vector<LineGap> MeshQuery::gapsAlong(const glm::dvec3& origin, const glm::d
         std::uint32_t triangle;
     };
     std::vector<Crossing> crossings;
-    for (const auto& [triangle, way] : collector.crossed) {
-        crossings.push_back({depthAt(mesh(), triangle, start, unit),
-                             shells_ || bodies_.empty() ? 0 : bodies_[triangle], way, triangle});
+    for (const LineHit& hit : hits) {
+        const int way = dot(planeOf(mesh(), hit.triangle).normal, direction) < 0.0 ? -1 : 1;
+        const std::uint32_t body = shells_ || bodies_.empty() ? 0 : bodies_[hit.triangle];
+        crossings.push_back({hit.at, body, way, hit.triangle});
     }
     std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
         return std::tie(a.along, a.body, a.way, a.triangle) < std::tie(b.along, b.body, b.way, b.triangle);
     });
-    const double tie = 1e-7 * mesh().bounds.longestSide();
-    const double shift = dot(start - origin, unit);
-    const double per_unit = 1.0 / std::sqrt(dot(direction, direction));
+    const double tie = 1e-7 * mesh().bounds.longestSide() / length(direction);
     std::vector<LineGap> gaps;
     BodyCounter counter(bodies_);
     const bool winds = shells_ || !bodies_.empty();
@@ -483,8 +454,7 @@ std::vector<LineGap> MeshQuery::gapsAlong(const glm::dvec3& origin, const glm::d
         odd = odd != !again;
         const bool free = winds ? !counter.inside() : !odd;
         if (free && i + 1 < crossings.size() && crossings[i + 1].along - here.along > tie) {
-            gaps.push_back({(here.along + shift) * per_unit, (crossings[i + 1].along + shift) * per_unit,
-                            here.triangle, crossings[i + 1].triangle});
+            gaps.push_back({here.along, crossings[i + 1].along, here.triangle, crossings[i + 1].triangle});
         }
     }
     return gaps;

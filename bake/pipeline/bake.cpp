@@ -327,11 +327,10 @@ class Bake {
                 unit_normals.emplace(*mesh_);
             }
             const FittedMapOptions fit = fitOptions(*mesh_, job.view, options_);
-            DepthMap map =
-                job.view.compare == Compare::kGap
-                    ? bakeGaps(query, *unit_normals, job.view, fit, report)
-                    : bakeFittedMap(*scene, query, *unit_normals, job.view, fit, report.covered,
-                                    rowsDone(job.view));
+            DepthMap map = job.view.compare == Compare::kGap
+                               ? bakeGaps(query, *unit_normals, job.view, fit, report)
+                               : bakeFittedMap(*scene, query, *unit_normals, job.view, fit, report.covered,
+                                               rowsDone(job.view));
             add(std::move(map), std::move(report));
         }
         return {};

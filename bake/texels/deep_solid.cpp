@@ -76,25 +76,42 @@ void DeepSolid::narrow() {
     spans_.swap(both_);
 }
 
-bool DeepSolid::cutBy(const glm::dvec3& normal, double offset) {
+DeepSolid::Reach DeepSolid::reachOf(const glm::dvec3& normal, double offset) {
     if (!known_) {
         place();
     }
-    // The depths at which the half-space has a point of the texel: up to a depth, or from one on, by each corner.
-    double up_to = -std::numeric_limits<double>::infinity();
-    double from = std::numeric_limits<double>::infinity();
+    Reach reach{kAllDepths.begin, kAllDepths.end};
     for (const TexelRay& line : corners_) {
         const double along = dot(normal, line.direction);
         const double at = (offset - dot(normal, line.origin - centre_.origin)) / along;
         if (along < 0.0) {
-            up_to = std::max(up_to, at);
+            reach.up_to = std::max(reach.up_to, at);
         } else if (along > 0.0) {
-            from = std::min(from, at);
+            reach.from = std::min(reach.from, at);
         } else if (offset <= dot(normal, line.origin - centre_.origin)) {
-            up_to = std::numeric_limits<double>::infinity();
+            reach.up_to = kAllDepths.end;
         }
     }
-    const auto isCut = [&](const LineSpan& span) { return span.begin < up_to || span.end > from; };
+    return reach;
+}
+
+LineSpan DeepSolid::depthsOf(const glm::dvec3& normal, double offset) {
+    const Reach reach = reachOf(normal, offset);
+    const bool up_to = reach.up_to > kAllDepths.begin;
+    const bool from = reach.from < kAllDepths.end;
+    if (up_to == from) {
+        return up_to ? kAllDepths : LineSpan{};
+    }
+    return up_to ? LineSpan{kAllDepths.begin, reach.up_to} : LineSpan{reach.from, kAllDepths.end};
+}
+
+bool DeepSolid::cutBy(const glm::dvec3& normal, double offset, const LineSpan& within) {
+    const Reach reach = reachOf(normal, offset);
+    const auto isCut = [&](const LineSpan& span) {
+        const double begin = std::max(span.begin, within.begin);
+        const double end = std::min(span.end, within.end);
+        return begin < end && (begin < reach.up_to || end > reach.from);
+    };
     while (std::any_of(spans_.begin(), spans_.end(), isCut)) {
         if (asked_ == kLines) {
             return any_known_ || query_.watertight();

@@ -13,6 +13,7 @@
 #include <array>
 #include <cstddef>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <vector>
 
 #include "bake/mesh/mesh_query.h"
@@ -36,7 +37,14 @@ class DeepSolid {
     /// Whether the half-space n·(P − O) ≥ offset, with O where the texel's centre ray has depth 0, may hold a point of the
     /// texel that is deeper in the solid than the texel's diagonal there. False positives are rare, false negatives are
     /// none; of an open mesh, whose lines do not add up, it knows nothing.
-    [[nodiscard]] bool cutBy(const glm::dvec3& normal, double offset);
+    /// \param within  depths that count: where another plane of the texel, of a gap, holds nothing does not matter.
+    [[nodiscard]] bool cutBy(const glm::dvec3& normal, double offset, const LineSpan& within = kAllDepths);
+
+    /// The depths at which such a half-space has a point of the texel.
+    [[nodiscard]] LineSpan depthsOf(const glm::dvec3& normal, double offset);
+
+    static constexpr LineSpan kAllDepths = {-std::numeric_limits<double>::infinity(),
+                                            std::numeric_limits<double>::infinity()};
 
   private:
     static constexpr std::size_t kLines = 5;
@@ -44,6 +52,12 @@ class DeepSolid {
 
     /// The lines of texel_.
     void place();
+    /// A half-space has points of the texel up to a depth, or from one on, by each corner.
+    struct Reach {
+        double up_to;
+        double from;
+    };
+    [[nodiscard]] Reach reachOf(const glm::dvec3& normal, double offset);
     /// Keeps of spans_ what is deep by the next line too.
     void narrow();
 

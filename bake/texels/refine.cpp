@@ -216,7 +216,15 @@ class PlaneChoice {
 
     std::vector<Decided> points;
 
-    void setTexel(std::size_t texel) { deep_.setTexel(texel); }
+    void setTexel(std::size_t texel) {
+        deep_.setTexel(texel);
+        within_ = DeepSolid::kAllDepths;
+    }
+    /// Of a gap the other end has its say too.
+    void setOther(const Code& other, const Ray& ray) {
+        const glm::dvec3& normal = decodedNormals()[other.normal];
+        within_ = deep_.depthsOf(normal, votes_.offsetOf(other, normal, ray));
+    }
 
     Code best(const Code& current, const Ray& ray, int end) {
         ray_ = &ray;
@@ -308,7 +316,7 @@ class PlaneChoice {
         }
         const double stored = votes_.offsetOf(quantised, normal, *ray_);
         const double real = costOf(normal, stored);
-        if (real < best_cost_ && !deep_.cutBy(normal, stored)) {
+        if (real < best_cost_ && !deep_.cutBy(normal, stored, within_)) {
             best_cost_ = real;
             best_ = quantised;
         }
@@ -317,6 +325,7 @@ class PlaneChoice {
     const TexelVotes& votes_;
     const RefineOptions& options_;
     DeepSolid deep_;
+    LineSpan within_ = DeepSolid::kAllDepths;
     double margin_;
     const Ray* ray_ = nullptr;
     int end_ = 0;
@@ -448,8 +457,11 @@ class Refinement {
                 continue;
             }
             const Code other = map.isGap() ? map.code(texel, 1 - end) : Code{};
-            if (map.isGap() && other.depth == 0) {
-                continue;
+            if (map.isGap()) {
+                if (other.depth == 0) {
+                    continue;
+                }
+                choice.setOther(other, ray);
             }
             // What the other end of a gap sees inside is not for this one to decide.
             const auto mayDecide = [&](std::uint32_t i) {
