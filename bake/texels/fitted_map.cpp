@@ -86,8 +86,10 @@ class EndFitter {
         lookAround(here);
         const TexelRay centre = view_.ray(face, x, y);
         deep_.setTexel((std::size_t{face} * view_.height + y) * view_.width + x);
+        // Of one ray the plane that it meets is as good as is known: one that faces the viewer cuts more of a slope.
         const std::optional<FittedPlane> plane =
-            fitSupportingPlane(rays_, around_, edge_, end_.fromViewer(centre), centre.origin, fit_, &deep_);
+            fitSupportingPlane(rays_, around_, edge_, end_.fromViewer(centre), centre.origin, fit_,
+                               samples_ > 1 ? &deep_ : nullptr);
         if (!plane) {
             return std::nullopt;
         }

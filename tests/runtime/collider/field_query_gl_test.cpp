@@ -466,7 +466,9 @@ TEST_P(FieldQueryGlTest, TheNearestSurfaceOfAnyMapsIsFiniteAndMostlyAgreesWithTh
             collider.maps.push_back(randomMap(kind.format, kind.compare, kind.width, kind.height, random));
         }
         const NearestAgreement agreement = nearestAgreement(collider, randomPoints(5'000, random), 0.02F);
-        EXPECT_GT(agreement.same, 0.99);
+        // Among surfaces at random a rounding decides which way the search goes: 0.9898 at worst by an NVIDIA H100, which
+        // joins products and sums.
+        EXPECT_GT(agreement.same, 0.985);
         EXPECT_GT(agreement.close, 0.995);
     }
 }
