@@ -20,6 +20,9 @@ std::string obstacle(const BackendRequest& request) {
         return std::string("--prefer ") + preferName(request.prefer) +
                " chooses among planes that rays were fitted to; leave --prefer out";
     }
+    if (request.gaps) {
+        return "only rays find gaps between solids; leave out compare=gap";
+    }
     return {};
 }
 

@@ -23,6 +23,7 @@ struct BackendRequest {
     bool quality_given = false;          ///< by an option or a plan file
     Quality quality = Quality::kNormal;  ///< if given
     Prefer prefer = Prefer::kNeither;
+    bool gaps = false;  ///< of a map of gaps between solids
 };
 
 struct Backend {

@@ -4,6 +4,7 @@
 #include <tbb/info.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -102,7 +103,6 @@ Result<Baked> bakeForBudget(const MeshQuery& query, const BakeCommand& command, 
     ViewOptions options;
     options.prefer = settings.bake.prefer;
     options.max_maps = command.max_maps;
-    options.gaps = !settings.bake.rasterize;  // which sees the outer surfaces alone
     const ViewChoice views = RELIEF_TRY(chooseViews(query, options));
     times.plan_ms = watch.ms();
     PlanReport made;
@@ -227,10 +227,12 @@ Result<void> prepare(BakeRun& run) {
         RELIEF_TRY(readPlanFile(command, run.settings));
     }
     BakeOptions& options = run.settings.bake;
-    run.backend = RELIEF_TRY(
-        chooseBackend(command.backend, command.gpu,
-                      {run.settings.source == MapSource::kPlanner,
-                       command.quality || run.settings.plan_quality, options.quality, options.prefer}));
+    run.backend = RELIEF_TRY(chooseBackend(
+        command.backend, command.gpu,
+        {run.settings.source == MapSource::kPlanner, command.quality || run.settings.plan_quality,
+         options.quality, options.prefer, std::ranges::any_of(options.maps, [](const MapSpec& spec) {
+             return spec.compare == Compare::kGap;
+         })}));
     options.rasterize = run.backend.raster;
     if (run.backend.raster) {
         options.quality = Quality::kFast;

@@ -83,7 +83,8 @@ bool Sight::sees(const SurfacePoint& point) const {
         const auto& [start, parallel] = lines.line[i];
         const glm::dvec3 sight = start - p;
         const double cosine = glm::dot(sight, normal) / glm::length(sight);
-        const bool stands = map_.decode == Decode::kPlane && std::abs(cosine) < double{kStandingCosine};
+        const bool stands = map_.decode == Decode::kPlane && map_.compare != Compare::kGap &&
+                            std::abs(cosine) < double{kStandingCosine};
         if ((cosine > 0.0 || stands) && query_.segmentIsFree(p, start)) {
             return true;
         }

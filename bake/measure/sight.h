@@ -28,7 +28,7 @@ class Sight {
 
     /// The map holds the surface there: an end that it keeps has, in the map's volume, a free line of sight to the
     /// front of the surface, kSurfaceStep above it. A wall that stands along the line of sight (its cosine is below
-    /// kStandingCosine) is held by the planes of Decode::kPlane, and seen if the line is free kSurfaceStep or kWallStep
+    /// kStandingCosine) is held by the planes of Decode::kPlane, but not of gaps, and seen if the line is free kSurfaceStep or kWallStep
     /// above it.
     [[nodiscard]] bool sees(const SurfacePoint& point) const;
 

@@ -80,7 +80,11 @@ std::vector<LabelledPoint> drawNearSurface(const MeshQuery& query, std::size_t c
         asked = 1.0;
     }
     const double affordable = kCrossingsMax / (kRaysAsked * std::max(crossings * asked, 1.0));
-    count = std::min(count, static_cast<std::size_t>(std::max(kPointsMin, affordable)));
+    // Halved until they can be afforded: how often a ray through an edge meets the surface may differ among processors,
+    // and moves no point then.
+    while (static_cast<double>(count) > std::max(2.0 * kPointsMin, affordable)) {
+        count /= 2;
+    }
     std::vector<LabelledPoint> points(count);
     tbb::parallel_for(std::size_t{0}, (count + kBlock - 1) / kBlock, [&](std::size_t block) {
         MersenneRandom random(seed * 0x9e3779b97f4a7c15ULL + block);

@@ -67,7 +67,7 @@ Result<std::vector<Job>> planJobs(const PreparedMesh& mesh, const BakeOptions& o
         if (options.rasterize && view.compare == Compare::kGap) {
             return fail(ErrorCode::kUsage,
                         "--map '" + toString(complete) +
-                            "': only rays find gaps between solids; leave out --backend raster");
+                            "': only rays find gaps between solids; leave out compare=gap");
         }
         view.centre_on_surface = RELIEF_TRY(centreIsOnSurface(mesh, view));
         jobs.push_back({complete, view, spec.compare.has_value()});

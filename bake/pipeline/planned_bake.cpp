@@ -1,5 +1,6 @@
 #include "bake/pipeline/planned_bake.h"
 
+#include <optional>
 #include <utility>
 
 #include "bake/measure/sight.h"
@@ -17,8 +18,8 @@ constexpr double kSecondShare = 0.99;
 
 Result<PlannedBake> bakePlanned(const MeshQuery& query, const ViewChoice& views, std::uint64_t budget_bytes,
                                 BakeOptions options) {
-    for (double aim = static_cast<double>(budget_bytes);;) {
-        Plan plan = RELIEF_TRY(planSizes(views, static_cast<std::uint64_t>(aim)));
+    Plan plan = RELIEF_TRY(planSizes(views, budget_bytes));
+    for (auto aim = static_cast<double>(budget_bytes);;) {
         options.maps = specsOf(plan);
         Baked baked = RELIEF_TRY(bake(query.prepared(), options));
         plan.bytes = baked.collider.gpuBytes();
@@ -28,6 +29,11 @@ Result<PlannedBake> bakePlanned(const MeshQuery& query, const ViewChoice& views,
             return PlannedBake{std::move(plan), std::move(baked)};
         }
         aim *= kSecondShare * static_cast<double>(budget_bytes) / static_cast<double>(plan.bytes);
+        std::optional<Plan> smaller = sizesWithin(views, static_cast<std::uint64_t>(aim));
+        if (!smaller) {
+            return tl::unexpected<Error>(budgetTooSmall(views, budget_bytes));
+        }
+        plan = std::move(*smaller);
     }
 }
 

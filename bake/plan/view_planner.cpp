@@ -535,24 +535,36 @@ Result<ViewChoice> chooseViews(const MeshQuery& query, const ViewOptions& option
     return choice;
 }
 
-Result<Plan> planSizes(const ViewChoice& choice, std::uint64_t budget_bytes) {
-    RELIEF_TRY(checkBudget(budget_bytes));
+std::optional<Plan> sizesWithin(const ViewChoice& choice, std::uint64_t bytes) {
     // Partial texels at the ends of rows take bytes too: shrink until all fit.
-    for (double texel = 0.8 * std::sqrt(choice.area / static_cast<double>(budget_bytes));; texel *= 1.002) {
+    const double least = static_cast<double>(std::max<std::uint64_t>(bytes, 1));
+    for (double texel = 0.8 * std::sqrt(choice.area / least);; texel *= 1.002) {
         Plan plan = sizedPlan(choice, texel);
-        if (plan.bytes <= budget_bytes) {
+        if (plan.bytes <= bytes) {
             return plan;
         }
         const bool smallest = std::all_of(plan.maps.begin(), plan.maps.end(), [](const PlannedMap& map) {
             return map.spec.width <= 3 && map.spec.height <= 3;
         });
         if (smallest) {
-            return fail(ErrorCode::kUsage, "a budget of " + std::to_string(budget_bytes) +
-                                               " bytes is too small for the " +
-                                               std::to_string(choice.views.size()) + " maps that " +
-                                               choice.mesh_name + " needs; raise --budget");
+            return std::nullopt;
         }
     }
+}
+
+Error budgetTooSmall(const ViewChoice& choice, std::uint64_t budget_bytes) {
+    return {ErrorCode::kUsage, "a budget of " + std::to_string(budget_bytes) +
+                                   " bytes is too small for the " + std::to_string(choice.views.size()) +
+                                   " maps that " + choice.mesh_name + " needs; raise --budget"};
+}
+
+Result<Plan> planSizes(const ViewChoice& choice, std::uint64_t budget_bytes) {
+    RELIEF_TRY(checkBudget(budget_bytes));
+    std::optional<Plan> plan = sizesWithin(choice, budget_bytes);
+    if (!plan) {
+        return tl::unexpected<Error>(budgetTooSmall(choice, budget_bytes));
+    }
+    return std::move(*plan);
 }
 
 Result<Plan> planViews(const MeshQuery& query, const PlanOptions& options) {

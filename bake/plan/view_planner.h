@@ -80,6 +80,10 @@ struct Plan {
 /// \param budget_bytes  of all maps together on the GPU (Collider::gpuBytes), at least kPlanBudgetMin
 /// Errors: kUsage (a budget below kPlanBudgetMin or too small for the views).
 [[nodiscard]] Result<Plan> planSizes(const ViewChoice& choice, std::uint64_t budget_bytes);
+/// The same for any number of bytes; nullopt where even the least maps take more.
+[[nodiscard]] std::optional<Plan> sizesWithin(const ViewChoice& choice, std::uint64_t bytes);
+/// What planSizes says where they do.
+[[nodiscard]] Error budgetTooSmall(const ViewChoice& choice, std::uint64_t budget_bytes);
 
 struct PlanOptions {
     std::uint64_t budget_bytes = std::uint64_t{1} << 20;  ///< as planSizes has it

@@ -59,6 +59,8 @@ void DeepSolid::narrow() {
     any_known_ = true;
     both_.clear();
     const bool cube = map_.projection() == Projection::kCube;
+    // Both lists run along the line.
+    auto other = spans_.begin();
     for (LineSpan span : of_line_) {
         // The diagonal of a cube's texel grows with the depth.
         if (cube) {
@@ -66,8 +68,11 @@ void DeepSolid::narrow() {
         } else {
             span = {span.begin + shrunk, span.end - shrunk};
         }
-        for (const LineSpan& other : spans_) {
-            const LineSpan common{std::max(span.begin, other.begin), std::min(span.end, other.end)};
+        while (other != spans_.end() && other->end <= span.begin) {
+            ++other;
+        }
+        for (auto here = other; here != spans_.end() && here->begin < span.end; ++here) {
+            const LineSpan common{std::max(span.begin, here->begin), std::min(span.end, here->end)};
             if (common.begin < common.end) {
                 both_.push_back(common);
             }

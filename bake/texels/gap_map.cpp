@@ -23,6 +23,10 @@ constexpr int kParts = 4;
 constexpr double kShortest = 1e-3;
 /// |cosine| of a plane with the ray: a steeper one would reach far into the solid beyond the end of the gap.
 constexpr double kSteepest = 0.1;
+/// More than this share of a texel's rays have to be free in the middle of the gap: a wall along the line of sight, which
+/// no plane of the texel spares, may be as thin as a texel. Sheets are twice as thick (defaultThickness).
+constexpr double kFreeShare = 0.5;
+constexpr double kCautiousShare = 0.99;
 /// Rows between two calls of the progress function.
 constexpr std::uint32_t kStripeRows = 64;
 
@@ -48,6 +52,7 @@ class GapFitter {
         fit_.refinements = options.refinements;
         fit_.let_back = options.let_back;
         fit_.steepest = kSteepest;
+        share_ = options.cautious ? kCautiousShare : kFreeShare;
     }
 
     [[nodiscard]] Texel fit(std::uint32_t x, std::uint32_t y) {
@@ -106,7 +111,7 @@ class GapFitter {
     }
 
     /// What the texel's rays meet, from the middle of the gap on.
-    /// \return false if most of them are not free there.
+    /// \return false if too few of them are free there.
     bool look(std::uint32_t x, std::uint32_t y, const TexelRay& centre, const LineGap& gap) {
         rays_[0].clear();
         rays_[1].clear();
@@ -125,7 +130,7 @@ class GapFitter {
                 }
             }
         }
-        return 2 * rays_[0].size() >= std::size_t{samples_} * samples_;
+        return static_cast<double>(rays_[0].size()) > share_ * samples_ * samples_;
     }
 
     [[nodiscard]] std::optional<FootprintRay> lookOneWay(const TexelRay& along, double middle,
@@ -158,6 +163,7 @@ class GapFitter {
     const IsKnown& is_known_;
     double winding_;
     double shortest_ = 0.0;
+    double share_ = kFreeShare;
     EndView ends_[2];
     PlaneFitOptions fit_;
     std::array<std::vector<FootprintRay>, 2> rays_;  // by RayEnd

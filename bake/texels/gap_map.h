@@ -6,8 +6,8 @@
 //                      gap     the longest gap     counts most is kept.
 //
 // From the middle of that gap the texel's rays look both ways, and a plane is fitted to what they meet at either end, as to
-// the outer surfaces (plane_fit.h). Rays whose middle is not free do not count; where they are more than half, the texel
-// stays empty. No plane stands along the rays: a gap has an end.
+// the outer surfaces (plane_fit.h). Rays whose middle is not free do not count; where they are many, the texel stays
+// empty. No plane stands along the rays: a gap has an end.
 #pragma once
 
 #include <cstdint>

@@ -124,6 +124,24 @@ TEST(GapMap, FindsThinGapsAcrossTheLineOfSight) {
     EXPECT_GT(inside, 1980);
 }
 
+TEST(GapMap, SparesAWallAlongTheLineOfSight) {
+    // As thick as a texel, half in one and half in the next.
+    const double half = 1.0 / 32.0;
+    const TriangleMesh mesh =
+        joined({makeBoxMesh({0, 0, 0.1}, {1, 1, 0.1}), makeBoxMesh({0, 0, 2.1}, {1, 1, 0.1}),
+                makeBoxMesh({0, 0, 1.1}, {half, 1, 0.9 - 1e-3})});
+    const DepthMap map = gapMap(mesh, "front-back:dir=-z,size=34,compare=gap", kNothingKnown);
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> unit(-0.9F, 0.9F);
+    for (int i = 0; i < 2000; ++i) {
+        const float x = 0.9F * static_cast<float>(half) * unit(random);
+        const auto in_wall = vote(map, {x, unit(random), 1.1F + 0.8F * unit(random)});
+        ASSERT_FALSE(in_wall && in_wall->distance >= 0.0F) << x;
+        const auto beside = vote(map, {unit(random) < 0.0F ? -0.5F : 0.5F, unit(random), 1.1F});
+        ASSERT_TRUE(beside && beside->distance > 0.8F);
+    }
+}
+
 TEST(GapMap, NoPointDeepInASolidIsOutside) {
     const TriangleMesh mesh = ballInABall();
     std::mt19937 random(5);
