@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 namespace relief {
 namespace {
@@ -16,7 +17,7 @@ constexpr int kParts = 2;
 /// Gaps that count less are none: in units of the mesh's longest side.
 constexpr double kShortest = 1e-3;
 /// Of a cell: gaps end between two lines.
-constexpr double kBesideLine = 0.5;
+constexpr double kBesideLine = 1.0;
 
 View gridOf(View view) {
     // The border of the view is one texel wide, whatever its size.
@@ -93,7 +94,15 @@ std::vector<RowExtent> GapGrid::rows() const {
             }
         }
     }
-    return extents;
+    // Between two lines of sight a row may take up what either of its neighbours does.
+    std::vector<RowExtent> wide = extents;
+    for (std::size_t y = 0; y + 1 < extents.size(); ++y) {
+        for (const auto& [to, from] : {std::pair{y, y + 1}, std::pair{y + 1, y}}) {
+            wide[to].low = std::min(wide[to].low, extents[from].low);
+            wide[to].high = std::max(wide[to].high, extents[from].high);
+        }
+    }
+    return wide;
 }
 
 bool GapGrid::holds(const glm::dvec3& p) const {

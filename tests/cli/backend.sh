@@ -59,4 +59,4 @@ cmp bare.relief rays.relief || die "auto without an OpenGL is not the ray caster
 # Only rays find what lies between solids.
 expect 1 "$relief" bake "$bunny" -o gaps.relief --backend raster --map front-back:compare=gap
 matches 'leave out compare=gap' < stderr
-expect 0 "$relief" bake "$bunny" -o gaps.relief --backend auto --map front-back:compare=gap,size=16 -q
+expect 0 "$relief" bake "$bunny" -o gaps.relief --backend auto --map front-back:size=16 --map front-back:compare=gap,size=16 -q
