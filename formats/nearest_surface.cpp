@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "formats/base/finite.h"
+
 namespace relief {
 namespace {
 
@@ -16,10 +18,6 @@ float length(const glm::vec3& v) {
 
 glm::vec3 cross(const glm::vec3& a, const glm::vec3& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-bool isFinite(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
 /// Of a vote, with P's side as its positive one: at + normal·y is the distance of P + y.

@@ -1,5 +1,5 @@
-# What makes builds fast and changes nothing else: the fastest linker there is, a compiler cache where there is one, and
-# precompiled headers.
+# What makes builds fast and changes nothing else: the fastest linker there is, a compiler cache where there is one,
+# precompiled headers, and sources joined.
 find_program(RELIEF_LINKER NAMES mold ld.lld)
 if(RELIEF_LINKER)
     cmake_path(GET RELIEF_LINKER FILENAME linker)
@@ -44,5 +44,13 @@ function(relief_precompile target from)
         # happen. scripts/soak.sh builds without precompiled headers, and with these warnings.
         target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow
                                                  -Wno-stringop-overread)
+    endif()
+endfunction()
+
+# relief_unity(TARGET): compiles up to eight sources as one. For targets whose sources all instantiate the same large
+# templates, CLI11's or those of nlohmann's JSON: doing that once takes a third of the time.
+function(relief_unity target)
+    if(RELIEF_UNITY)
+        set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
     endif()
 endfunction()

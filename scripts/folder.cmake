@@ -1,13 +1,14 @@
-# relief_folder(FOLDER [USES FOLDER…] [LINKS LIBRARY…] [PUBLIC LIBRARY…] [EXCEPT FILE…])
+# relief_folder(FOLDER [UNITY] [USES FOLDER…] [LINKS LIBRARY…] [PUBLIC LIBRARY…] [EXCEPT FILE…])
 # Makes a library of every .cpp of FOLDER, except those named after EXCEPT. The target's name is FOLDER with _ for /.
 #
 # Its sources find the headers of FOLDER, of the folders that it USES, and of those that these use in turn; other includes
 # do not compile. To this end each folder has an include root of its own in the build tree, with a link to that folder and
 # nothing else. USES takes only folders declared earlier, so no arrow can run back.
 #
+# UNITY joins sources (scripts/fast_build.cmake).
 # LINKS are libraries that only the sources use; PUBLIC are those whose headers the folder's own headers include.
 function(relief_folder folder)
-    cmake_parse_arguments(ARG "" "" "USES;LINKS;PUBLIC;EXCEPT" ${ARGN})
+    cmake_parse_arguments(ARG "UNITY" "" "USES;LINKS;PUBLIC;EXCEPT" ${ARGN})
     string(REPLACE / _ target ${folder})
     set(root ${PROJECT_BINARY_DIR}/folders/${target})
     cmake_path(GET folder PARENT_PATH parent)
@@ -21,6 +22,9 @@ function(relief_folder folder)
     target_include_directories(${target} PUBLIC ${root})
     target_link_libraries(${target} PUBLIC relief_options ${ARG_PUBLIC} PRIVATE ${ARG_LINKS})
     relief_precompile(${target} relief_headers)
+    if(ARG_UNITY)
+        relief_unity(${target})
+    endif()
     foreach(used IN LISTS ARG_USES)
         string(REPLACE / _ used_target ${used})
         if(NOT TARGET ${used_target})

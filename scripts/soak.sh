@@ -8,7 +8,8 @@
 #   import  every file of assimp-testmodels is read or refused, and none crashes the worker.
 #   mutants 2,000 broken mesh files and every file of assimp-testmodels are baked soundly or refused (scripts/mutants.sh)
 #   package a build without the baker, from nothing, installs a runtime that samples/embed builds with.
-#   headers a build without precompiled headers: every file includes what it uses, and no warning of GCC is off.
+#   headers a build of each file alone, without precompiled headers: every file includes what it uses, and no warning of
+#           GCC is off.
 #   bytes   204 bakes of ten meshes in surroundings that must not matter give one hash each (scripts/determinism.sh)
 #   corpus  536 meshes as artists make them are baked at 1 MB and measured, or refused in one line. An hour or so.
 #   fuzz    libFuzzer looks at containers, scenes, plans, recipes, points and import messages, ten minutes each (scripts/fuzz.sh)
@@ -57,7 +58,8 @@ package() {
 }
 
 headers() {
-    cmake -G Ninja -S . -B "$work/headers" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DRELIEF_PRECOMPILE=OFF >"$work/headers.log" &&
+    cmake -G Ninja -S . -B "$work/headers" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DRELIEF_PRECOMPILE=OFF \
+        -DRELIEF_UNITY=OFF >"$work/headers.log" &&
         cmake --build "$work/headers" >>"$work/headers.log" || {
         grep -m5 -E ' error: ' "$work/headers.log" >&2
         return 1

@@ -9,6 +9,7 @@
 #include <glm/mat3x3.hpp>
 #include <vector>
 
+#include "bake/measure/percent.h"
 #include "bake/measure/sight.h"
 #include "formats/base/portable_math.h"
 #include "formats/base/stopwatch.h"
@@ -18,10 +19,6 @@ namespace relief {
 namespace {
 
 constexpr double kDegrees = 180.0 / 3.14159265358979323846;
-
-double percent(std::uint64_t part, std::uint64_t whole) {
-    return whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
-}
 
 /// Calls visit(i) for all i < count, on all cores.
 template <class Visit>

@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 
+#include "bake/measure/percent.h"
 #include "bake/mesh/triangle_plane.h"
 
 namespace relief {
@@ -189,10 +190,6 @@ class Causes {
     const Sights& sights_;
     const Collider& collider_;
 };
-
-double percent(std::size_t part, std::size_t whole) {
-    return 100.0 * static_cast<double>(part) / static_cast<double>(whole);
-}
 
 /// The most frequent of some small numbers, of equals the smallest, and how many there are of it.
 std::pair<std::size_t, std::size_t> mostFrequent(const std::vector<std::size_t>& counts) {

@@ -138,9 +138,9 @@ class Planner {
         rateViews(views);
         RELIEF_TRY(addViews(views));
         // Gaps are kept that no map before them sees.
-        std::ranges::stable_partition(choice_.views, [](const ViewChoice::Chosen& chosen) {
-            return chosen.map.spec.compare != Compare::kGap;
-        });
+        std::stable_partition(
+            choice_.views.begin(), choice_.views.end(),
+            [](const ViewChoice::Chosen& chosen) { return chosen.map.spec.compare != Compare::kGap; });
         RELIEF_TRY(addSilhouettes());
         return std::move(choice_);
     }

@@ -22,7 +22,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t kCacheBytesMax = std::uint64_t{256} << 20;
 constexpr const char* kFormat = "relief-cache";
-constexpr int kVersion = 1;
+constexpr int kCacheVersion = 1;
 
 /// Holds the lock of a folder, or none where the file system has no locks.
 class FolderLock {
@@ -79,7 +79,7 @@ std::optional<std::string> hashOfFile(const fs::path& path) {
 Result<BakeCacheEntries> parseBakeCache(std::string_view text) {
     try {
         const Json json = Json::parse(text);
-        if (json.at("format") == kFormat && json.at("version") == kVersion) {
+        if (json.at("format") == kFormat && json.at("version") == kCacheVersion) {
             BakeCacheEntries entries;
             for (const auto& [name, value] : json.at("outputs").get_ref<const Json::object_t&>()) {
                 entries.insert_or_assign(name, entryOf(value));
@@ -105,7 +105,7 @@ std::string bakeCacheText(const BakeCacheEntries& entries) {
                                     {"output_hash", entry.output_hash},
                                     {"output_bytes", entry.output_bytes}};
     }
-    const Json json = {{"format", kFormat}, {"version", kVersion}, {"outputs", std::move(outputs)}};
+    const Json json = {{"format", kFormat}, {"version", kCacheVersion}, {"outputs", std::move(outputs)}};
     return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kVersion = 1;
+constexpr std::int64_t kRecipeVersion = 1;
 constexpr std::size_t kTextMax = 4096;  // bytes of a value
 constexpr std::array<std::string_view, 3> kTopKeys = {"version", "defaults", "asset"};
 /// Who says how the maps are chosen says it alone: these go together.
@@ -67,7 +67,7 @@ class Reader {
         if (version == nullptr) {
             return invalid({1, 1}, "a recipe starts with version = 1");
         }
-        if (version->value_exact<std::int64_t>() != kVersion) {
+        if (version->value_exact<std::int64_t>() != kRecipeVersion) {
             return invalid(version->source().begin, "version must be 1, the only one that is known");
         }
         for (const toml::key* key : keysInOrder(root)) {

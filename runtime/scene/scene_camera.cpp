@@ -6,14 +6,14 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t kKeysMax = 10'000;
+constexpr std::size_t kCameraKeysMax = 10'000;
 
 }  // namespace
 
 void readCameraPath(SceneTable& camera, std::string_view file, Scene& scene) {
     auto& out = scene.camera;
     double before = -1.0;
-    for (const toml::table* one : camera.tables("key", kKeysMax)) {
+    for (const toml::table* one : camera.tables("key", kCameraKeysMax)) {
         SceneTable table(one, "camera.key", file);
         SceneCameraKey key;
         const bool time = table.number("time", {0.0, kSecondsMax * 10.0}, key.time);

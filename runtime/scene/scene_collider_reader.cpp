@@ -7,7 +7,7 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t kKeysMax = 1024;
+constexpr std::size_t kMotionKeysMax = 1024;
 constexpr double kTimeMax = 1e7;
 constexpr double kScaleMin = 1e-6;
 constexpr double kScaleMax = 1e6;
@@ -35,7 +35,7 @@ bool readPlace(SceneTable& table, Pose& pose) {
 }
 
 void readKeys(SceneTable& table, std::string_view file, SceneCollider& collider) {
-    for (const toml::table* one : table.tables("key", kKeysMax)) {
+    for (const toml::table* one : table.tables("key", kMotionKeysMax)) {
         SceneTable key_table(one, "collider.key", file);
         SceneColliderKey key;
         key.pose = collider.pose;

@@ -107,7 +107,7 @@ std::string lowerFirst(std::string text) {
     return text;
 }
 
-std::string exitCodes() {
+std::string exitCodeEntries() {
     std::string text = ".TP\n.B 0\nsuccess\n";
     for (int code = 1; code <= static_cast<int>(ErrorCode::kDifference); ++code) {
         text += ".TP\n.B " + std::to_string(code) + "\n" +
@@ -142,7 +142,7 @@ std::string manPage(const CliProgram& program, const CliCommand* verb) {
     for (const CliOption& option : command.options) {
         text += optionEntry(option);
     }
-    text += ".SH EXIT STATUS\n" + exitCodes();
+    text += ".SH EXIT STATUS\n" + exitCodeEntries();
     if (!command.examples.empty()) {
         text += ".SH EXAMPLES\n.nf\n";
         for (const std::string& example : command.examples) {

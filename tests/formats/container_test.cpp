@@ -23,12 +23,7 @@ namespace relief {
 namespace {
 
 using test::oneMapOfEveryFormat;
-
-std::vector<std::byte> written(const Collider& collider, int level = 0) {
-    Result<std::vector<std::byte>> bytes = writeContainer(collider, {level});
-    EXPECT_TRUE(bytes) << bytes.error().message;
-    return bytes ? *bytes : std::vector<std::byte>();
-}
+using test::written;
 
 TEST(Container, RoundTripOfEveryFormatAtEveryLevel) {
     const Collider collider = oneMapOfEveryFormat();
@@ -203,7 +198,7 @@ struct Refusal {
     ErrorCode code = ErrorCode::kInvalidInput;
 };
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 template <class T>
@@ -227,7 +222,7 @@ const std::vector<Refusal>& refusals() {
     static const std::vector<Refusal> all = {
         {"there is no map", [](Collider& c) { c.maps.clear(); }},
         {"bounds are not finite", [](Collider& c) { c.bounds.max.y = kInfinity; }},
-        {"bounds are not finite", [](Collider& c) { c.bounds.min.x = kNaN; }},
+        {"bounds are not finite", [](Collider& c) { c.bounds.min.x = kNotANumber; }},
         {"lies beyond bounds.max", [](Collider& c) { c.bounds.min.z = 9.0F; }},
         {"lies beyond bounds.max", [](Collider& c) { c.bounds = {}; }},
         {"mesh_name has a '/'", [](Collider& c) { c.provenance.mesh_name = "../x.obj"; }},
@@ -256,7 +251,8 @@ const std::vector<Refusal>& refusals() {
          ErrorCode::kLimit},
         {"map 1: it has 224 bytes of texels", [](Collider& c) { c.maps[1].height = 9; }},
         {"map 1: it has 225 bytes of texels", [](Collider& c) { c.maps[1].texels.push_back({}); }},
-        {"object_to_map row 2 is not finite", [](Collider& c) { c.maps[0].object_to_map.row[2].x = kNaN; }},
+        {"object_to_map row 2 is not finite",
+         [](Collider& c) { c.maps[0].object_to_map.row[2].x = kNotANumber; }},
         {"object_to_map row 0 is not finite",
          [](Collider& c) { c.maps[0].object_to_map.row[0].w = kInfinity; }},
         {"object_to_map row 1 is zero",
@@ -269,13 +265,13 @@ const std::vector<Refusal>& refusals() {
          [](Collider& c) { c.maps[4].object_to_map.row[0] += 0.1F * c.maps[4].object_to_map.row[2]; }},
         {"object_per_map (0, ", [](Collider& c) { c.maps[3].object_per_map.x = 0.0F; }},
         {"is not positive and finite", [](Collider& c) { c.maps[0].object_per_map.z = -1.0F; }},
-        {"is not positive and finite", [](Collider& c) { c.maps[0].object_per_map.y = kNaN; }},
+        {"is not positive and finite", [](Collider& c) { c.maps[0].object_per_map.y = kNotANumber; }},
         {"is not positive and finite", [](Collider& c) { c.maps[0].object_per_map.y = kInfinity; }},
         {"object_per_map.z is 2.0", [](Collider& c) { c.maps[0].object_per_map.z = 2.01F; }},
         {"map 0: texel (0, 0) is empty", [](Collider& c) { poke(c.maps[0], 0, 0, 1.0F); }},
         {"neither -1 nor in 0...1", [](Collider& c) { poke(c.maps[0], fullTexel(c.maps[0]), 3, 1.5F); }},
         {"neither -1 nor in 0...1", [](Collider& c) { poke(c.maps[0], fullTexel(c.maps[0]), 3, -0.5F); }},
-        {"not finite", [](Collider& c) { poke(c.maps[0], fullTexel(c.maps[0]), 3, kNaN); }},
+        {"not finite", [](Collider& c) { poke(c.maps[0], fullTexel(c.maps[0]), 3, kNotANumber); }},
         {"not finite", [](Collider& c) { poke(c.maps[0], 0, 1, kInfinity); }},
         {"not of unit length", [](Collider& c) { poke(c.maps[0], fullTexel(c.maps[0]), 0, 1.5F); }},
         {"map 2: texel (0, 0) has a half-float",

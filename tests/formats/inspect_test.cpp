@@ -21,12 +21,7 @@ namespace relief {
 namespace {
 
 using Bytes = std::vector<std::byte>;
-
-Bytes written(const Collider& collider, int level = 0) {
-    const Result<Bytes> bytes = writeContainer(collider, {level});
-    EXPECT_TRUE(bytes) << bytes.error().message;
-    return bytes.value_or(Bytes{});
-}
+using test::written;
 
 Inspection inspected(const Bytes& bytes, const ContainerLimits& limits = {}) {
     const Result<Inspection> inspection = inspectContainer(bytes, limits);

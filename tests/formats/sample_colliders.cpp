@@ -1,8 +1,11 @@
 #include "tests/formats/sample_colliders.h"
 
+#include <gtest/gtest.h>
+
 #include <cstring>
 
 #include "formats/base/hash.h"
+#include "formats/container.h"
 #include "formats/container_header.h"
 #include "tests/formats/analytic_shapes.h"
 
@@ -44,6 +47,12 @@ Collider readmeExample() {
     encodeTexel(map.format, {Surface{0.25F, {0, 0, -1}}, std::nullopt}, map.texelAt(0, 1, 1));
     collider.maps.push_back(map);
     return collider;
+}
+
+std::vector<std::byte> written(const Collider& collider, int level) {
+    Result<std::vector<std::byte>> bytes = writeContainer(collider, {level});
+    EXPECT_TRUE(bytes) << bytes.error().message;
+    return bytes ? *bytes : std::vector<std::byte>();
 }
 
 void mendChecksums(std::vector<std::byte>& bytes) {

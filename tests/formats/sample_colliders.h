@@ -17,6 +17,9 @@ namespace relief::test {
 /// The worked example of formats/README.md.
 [[nodiscard]] Collider readmeExample();
 
+/// The collider's container. The test that asks fails if it cannot be written.
+[[nodiscard]] std::vector<std::byte> written(const Collider& collider, int level = 0);
+
 /// Sets a container's checksums to what its bytes say: the metadata's and then the header's.
 void mendChecksums(std::vector<std::byte>& bytes);
 
