@@ -32,6 +32,11 @@ View gridOf(View view) {
     return view;
 }
 
+/// In units of the direction.
+double shortestKept(const MeshQuery& query, const glm::dvec3& direction) {
+    return kShortest * query.mesh().bounds.longestSide() / std::sqrt(dot(direction, direction));
+}
+
 double unseenLength(const LineGap& gap, const glm::dvec3& origin, const glm::dvec3& direction,
                     const IsSeen& is_seen) {
     int unseen = 0;
@@ -50,7 +55,7 @@ std::optional<LineGap> keptGap(const MeshQuery& query, const glm::dvec3& origin,
     std::ranges::stable_sort(gaps,
                              [](const LineGap& a, const LineGap& b) { return a.length() > b.length(); });
     std::optional<LineGap> best;
-    double most = kShortest * query.mesh().bounds.longestSide() / std::sqrt(dot(direction, direction));
+    double most = shortestKept(query, direction);
     for (const LineGap& gap : gaps) {
         if (!(gap.length() > most)) {
             break;
@@ -61,6 +66,22 @@ std::optional<LineGap> keptGap(const MeshQuery& query, const glm::dvec3& origin,
         }
     }
     return best;
+}
+
+bool isInKeptGap(const MeshQuery& query, const glm::dvec3& p, const glm::dvec3& direction,
+                 const IsSeen& is_seen) {
+    const std::vector<LineGap> gaps = query.gapsAlong(p, direction);
+    const auto own =
+        std::ranges::find_if(gaps, [](const LineGap& gap) { return gap.begin <= 0.0 && gap.end >= 0.0; });
+    if (own == gaps.end()) {
+        return false;
+    }
+    // Most points lie in a gap that is short or seen, which spares the question what else there is.
+    const double shortest = shortestKept(query, direction);
+    const double length = own->length() > shortest ? unseenLength(*own, p, direction, is_seen) : 0.0;
+    return length > shortest && std::ranges::none_of(gaps, [&](const LineGap& gap) {
+               return gap.length() > length && unseenLength(gap, p, direction, is_seen) > length;
+           });
 }
 
 GapGrid::GapGrid(const MeshQuery& query, View view, const IsSeen& is_seen)

@@ -22,6 +22,10 @@ using IsSeen = std::function<bool(const glm::dvec3&)>;
 [[nodiscard]] std::optional<LineGap> keptGap(const MeshQuery& query, const glm::dvec3& origin,
                                              const glm::dvec3& direction, const IsSeen& is_seen);
 
+/// keptGap(query, p, direction, is_seen) is a gap that p lies in or on the end of. Asks less.
+[[nodiscard]] bool isInKeptGap(const MeshQuery& query, const glm::dvec3& p, const glm::dvec3& direction,
+                               const IsSeen& is_seen);
+
 class GapGrid {
   public:
     /// \param view  orthographic, tight round the mesh; its size does not matter.

@@ -180,6 +180,8 @@ class Planner {
     /// Takes views, from outside and from within, while one more is worth its price.
     [[nodiscard]] Result<void> addViews(const std::vector<RatedView>& views) {
         int idle_rounds = 0;
+        std::optional<Gaps> gaps;
+        std::size_t gaps_after = 0;  // so many maps they were looked for
         for (std::uint64_t round = 0; idle_rounds < kIdleRounds; ++round) {
             const OuterChoice outer = bestOuterView(views);
             const bool full = choice_.views.size() >= options_.max_maps;
@@ -189,7 +191,10 @@ class Planner {
             }
             const std::vector<std::size_t> unserved = unservedPoints();
             const std::optional<Cavity> cavity = bestCavity(unserved, round);
-            const std::optional<Gaps> gaps = bestGaps(views, unserved);
+            if (choice_.views.size() != gaps_after) {  // else nothing has changed since
+                gaps_after = choice_.views.size();
+                gaps = bestGaps(views, unserved);
+            }
             const double cavity_gain = cavity ? cavity->gain / total() : 0.0;
             const double gap_gain = gaps ? gaps->gain / total() : 0.0;
             const double outer_value =
@@ -333,9 +338,10 @@ class Planner {
     }
 
     [[nodiscard]] float serviceOfGap(std::size_t i, const glm::dvec3& along) const {
-        const std::optional<LineGap> gap = keptGap(query_, points_[i].position, along, isSeenByTaken());
-        const bool held = gap && gap->begin <= 0.0 && gap->end >= 0.0;
-        return held ? service(std::abs(dot(points_[i].normal, along))) : 0.0F;
+        const float most = service(std::abs(dot(points_[i].normal, along)));
+        // What would not serve better than today's maps need not be asked.
+        return most > served_[i] && isInKeptGap(query_, points_[i].position, along, isSeenByTaken()) ? most
+                                                                                                     : 0.0F;
     }
 
     /// Of the directions of all outer views.
