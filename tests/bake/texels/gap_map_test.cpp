@@ -265,6 +265,35 @@ TEST(GapsAlong, AreWhatALineCrosses) {
     EXPECT_NEAR(one[0].end, 2.0, 1e-9);
 }
 
+TEST(GapGrid, APointInTheKeptGapIsFoundByAskingLess) {
+    std::vector<TriangleMesh> balls;
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> coordinate(-1.0, 1.0);
+    const auto place = [&] { return glm::dvec3(coordinate(random), coordinate(random), coordinate(random)); };
+    for (int i = 0; i < 60; ++i) {
+        const glm::dvec3 at = place();
+        balls.push_back(makeIcosphere(at, 0.2, 1));
+    }
+    const TriangleMesh mesh = joined(balls);
+    const Result<MeshQuery> query =
+        MeshQuery::build(PreparedMesh::unionOf(mesh, std::vector<std::uint32_t>(mesh.triangles.size(), 0)));
+    ASSERT_TRUE(query);
+    const auto is_seen = [](const glm::dvec3& p) { return p.x + 0.5 * p.y > 0.1; };
+    int held = 0;
+    int met = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const glm::dvec3 p = place();
+        const glm::dvec3 along = place();
+        const std::optional<LineGap> kept = keptGap(*query, p, along, is_seen);
+        const bool in_kept = kept && kept->begin <= 0.0 && kept->end >= 0.0;
+        ASSERT_EQ(isInKeptGap(*query, p, along, is_seen), in_kept) << i;
+        held += in_kept ? 1 : 0;
+        met += kept ? 1 : 0;
+    }
+    EXPECT_GT(held, 100);
+    EXPECT_GT(met, held + 100);
+}
+
 TEST(GapGrid, HoldsWhatTheMapWill) {
     const TriangleMesh mesh = plates();
     const MeshQuery query = queryOf(mesh);
