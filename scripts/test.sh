@@ -4,7 +4,7 @@
 #   (nothing)  the release build and all tests; then the sanitizer build, and what a sanitizer can find: no slow tests,
 #              and none of numbers alone
 #   --quick    for the work in between: the release build, and its tests but for the slow ones and those that only
-#              repeat another in OpenGL ES
+#              repeat another in OpenGL ES, or by compute shaders
 set -euo pipefail
 cd "$(dirname "$0")/.."
 jobs=$(nproc)

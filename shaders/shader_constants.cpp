@@ -82,6 +82,8 @@ std::string makeConstants() {
     define("VERLET_COLLISIONS_MAX", kVerletCollisionsMax);
     define("DEAD_HEIGHT", kDeadHeight);
     define("DEAD_COLLISIONS", kDeadCollisions);
+    define("STEP_GROUP_WIDTH", kStepGroupWidth);
+    define("STEP_GROUP_HEIGHT", kStepGroupHeight);
     define("REDUCED_SIDE", kReducedSide);
     define("COLLISIONS_HIGH", static_cast<float>(kCollisionsHigh));
     define("TYPE_CODES", kTypeCodes);

@@ -43,6 +43,11 @@ inline constexpr float kVerletCollisionsMax = 524287.0F;  // 2^19 - 1
 inline constexpr float kDeadHeight = -1e30F;
 inline constexpr float kDeadCollisions = -1.0F;
 
+/// Texels of a work group of a compute step. Textures lie in memory by squares: on an H100 8 x 8 is 6 % faster than 16 x 8
+/// or 128 x 1.
+inline constexpr int kStepGroupWidth = 8;
+inline constexpr int kStepGroupHeight = 8;
+
 /// A pass of the statistics sums squares of so many texels a side.
 inline constexpr int kReducedSide = 4;
 /// Sums of collisions are kept as low + kCollisionsHigh · high.

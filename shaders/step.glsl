@@ -1,5 +1,5 @@
-// One step of the simulation: age, forces, collision reaction, Euler or Verlet. A fragment is a particle. The file
-// that includes this one says what is solid.
+// One step of the simulation: age, forces, collision reaction, Euler or Verlet. A fragment is a particle, or with
+// RELIEF_COMPUTE an invocation. The file that includes this one says what is solid.
 //!include step_state.glsl
 
 uniform highp sampler2D u_birth;
@@ -156,8 +156,7 @@ ParticleType typeOf(vec4 birth) {
     return ParticleType(a.x, a.y, a.z, a.w, b.x, b.y, b.z);
 }
 
-void main() {
-    ivec2 texel = ivec2(gl_FragCoord.xy);
+void stepAt(ivec2 texel) {
     State state = stateAt(texel);
     vec4 birth = texelFetch(u_birth, texel, 0);
     ParticleType type = typeOf(birth);
@@ -172,3 +171,31 @@ void main() {
         move(state, type);
     }
 }
+
+#if !defined(RELIEF_COMPUTE)
+
+void main() {
+    stepAt(ivec2(gl_FragCoord.xy));
+}
+
+#else
+
+layout(local_size_x = RELIEF_STEP_GROUP_WIDTH, local_size_y = RELIEF_STEP_GROUP_HEIGHT) in;
+layout(rgba32f, binding = 0) writeonly uniform highp image2D u_position_out;
+#if !defined(RELIEF_VERLET)
+layout(rgba32f, binding = 1) writeonly uniform highp image2D u_velocity_out;
+#endif
+uniform ivec2 u_size;  // of the texels that hold particles
+
+void main() {
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+    if (texel.x < u_size.x && texel.y < u_size.y) {
+        stepAt(texel);
+        imageStore(u_position_out, texel, o_position);
+#if !defined(RELIEF_VERLET)
+        imageStore(u_velocity_out, texel, o_velocity);
+#endif
+    }
+}
+
+#endif

@@ -14,6 +14,13 @@
 // position's w holds both counts: collisions + contact / RELIEF_CONTACT_PARTS.
 uniform highp sampler2D u_position;
 
+// What a step writes: a fragment's colours, or for compute variables that step.glsl stores in images.
+#if defined(RELIEF_COMPUTE)
+#define RELIEF_STATE_OUT(i)
+#else
+#define RELIEF_STATE_OUT(i) layout(location = i) out
+#endif
+
 struct State {
     vec3 position;
     vec3 velocity;
@@ -26,7 +33,7 @@ struct State {
 uniform highp sampler2D u_position_before;
 uniform float u_rate_before;  // 1 / seconds of the last step
 
-layout(location = 0) out vec4 o_position;
+RELIEF_STATE_OUT(0) vec4 o_position;
 
 State stateAt(ivec2 texel) {
     vec4 position = texelFetch(u_position, texel, 0);
@@ -47,8 +54,8 @@ void writeDead() {
 
 uniform highp sampler2D u_velocity;
 
-layout(location = 0) out vec4 o_position;
-layout(location = 1) out vec4 o_velocity;
+RELIEF_STATE_OUT(0) vec4 o_position;
+RELIEF_STATE_OUT(1) vec4 o_velocity;
 
 State stateAt(ivec2 texel) {
     vec4 position = texelFetch(u_position, texel, 0);

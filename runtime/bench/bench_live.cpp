@@ -64,7 +64,7 @@ Result<ParticleSystem> makeParticles(const Collider& frames, const ColliderTextu
                                      std::uint32_t count) {
     auto particles = RELIEF_TRY(ParticleSystem::create({.capacity = count}));
     RELIEF_TRY(particles.setCollider(&textures));
-    BenchScene scene = makeBenchScene(frames, count);
+    BenchScene scene = makeBenchScene(frames, count, StepPath::kFragment);
     for (Birth& birth : scene.births) {
         birth.lifetime = 1e6F;
     }

@@ -1,5 +1,5 @@
-// What a step costs: relief-bench-step COLLIDER.relief [--large] prints JSON. Nothing here is a test:
-// machines are shared and noisy.
+// What a step costs: relief-bench-step COLLIDER.relief [--large] [--path fragment|compute] [--particles N] prints JSON.
+// Nothing here is a test: machines are shared and noisy.
 //
 // A block is some steps between two glFinish. Before each all particles are born anew, so that blocks
 // are alike; births and the first step are not timed. Blocks of all variants take turns, and a ratio is the
@@ -8,8 +8,8 @@
 // on the wall. `call_ms` is how long the calls took of that: where it is nearly the whole, a GPU waited for
 // the CPU (which llvmpipe is).
 //
-// `copy` is a draw that only copies the two state textures: it reads and writes 32 bytes a particle; a step
-// reads the 16 of the birth texture besides.
+// `copy` is a draw, or with --path compute a dispatch, that only copies the two state textures: it reads and writes 32
+// bytes a particle; a step reads the 16 of the birth texture besides.
 //
 // Sizes suit llvmpipe where that is the renderer, unless --large asks for a GPU's.
 #include <algorithm>
@@ -19,20 +19,24 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/base/text.h"
 #include "formats/container.h"
 #include "runtime/bench/bench_tool.h"
 #include "runtime/bench/bench_variants.h"
 #include "runtime/gl/gl_context.h"
+#include "runtime/gl/image_units.h"
 #include "runtime/particles/random.h"
 #include "runtime/picture/camera.h"
 #include "runtime/picture/collider_view.h"
 #include "runtime/picture/particle_renderer.h"
+#include "shaders/shader_constants.h"
 
 namespace relief {
 namespace {
 
 constexpr GLsizei kPictureWidth = 1280;
 constexpr GLsizei kPictureHeight = 720;
+constexpr double kWarmUpMs = 100.0;
 
 struct Sizes {
     bool software;
@@ -88,20 +92,25 @@ Json ratio(const Times& times, const Times& base, bool software) {
 /// The bare copy of two state textures.
 class Copy {
   public:
-    static Result<Copy> create(std::uint32_t particles) {
+    static Result<Copy> create(std::uint32_t particles, StepPath path) {
         Copy copy;
+        copy.compute_ = path == StepPath::kCompute;
         copy.rows_ = static_cast<GLsizei>(particles / ParticleSystem::kStateWidth);
         Pcg32 random(1);
         std::vector<float> texels(std::size_t{4} * particles);  // that no driver can compress
         std::generate(texels.begin(), texels.end(), [&] { return random.uniform(); });
         for (std::size_t i = 0; i < 2; ++i) {
             for (GlTexture& texture : copy.state_[i]) {
-                texture = makeTexture2D(GL_RGBA32F, kWidth, copy.rows_, GL_RGBA, GL_FLOAT, texels.data());
+                texture = makeImageTexture2D(GL_RGBA32F, kWidth, copy.rows_);
+                glBindTexture(GL_TEXTURE_2D, texture.name());
+                glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, kWidth, copy.rows_, GL_RGBA, GL_FLOAT, texels.data());
+                glBindTexture(GL_TEXTURE_2D, 0);
             }
             copy.target_[i] = RELIEF_TRY(
                 makeFramebuffer(std::array<GLuint, 2>{copy.state_[i][0].name(), copy.state_[i][1].name()}));
         }
-        copy.program_ = RELIEF_TRY(makeProgram("quad.vert", "copy_state.frag"));
+        copy.program_ = RELIEF_TRY(copy.compute_ ? makeComputeProgram("copy_state.comp")
+                                                 : makeProgram("quad.vert", "copy_state.frag"));
         copy.array_ = makeVertexArray();
         glUseProgram(copy.program_.name());
         glUniform1i(uniformLocation(copy.program_, "u_velocity"), 1);
@@ -110,20 +119,28 @@ class Copy {
     }
     void step() {
         const std::size_t next = 1 - current_;
-        glBindFramebuffer(GL_FRAMEBUFFER, target_[next].name());
         for (std::size_t i = 0; i < 2; ++i) {
             useTexture(static_cast<int>(i), state_[current_][i]);
         }
         glUseProgram(program_.name());
-        glViewport(0, 0, kWidth, rows_);
-        glBindVertexArray(array_.name());
-        glDrawArrays(GL_TRIANGLES, 0, 3);
+        if (compute_) {
+            ImageUnits::write(0, state_[next][0]);
+            ImageUnits::write(1, state_[next][1]);
+            glDispatchCompute(kWidth / kStepGroupWidth, static_cast<GLuint>(rows_) / kStepGroupHeight, 1);
+            ImageUnits::finish();
+        } else {
+            glBindFramebuffer(GL_FRAMEBUFFER, target_[next].name());
+            glViewport(0, 0, kWidth, rows_);
+            glBindVertexArray(array_.name());
+            glDrawArrays(GL_TRIANGLES, 0, 3);
+        }
         current_ = next;
     }
 
   private:
     static constexpr auto kWidth = static_cast<GLsizei>(ParticleSystem::kStateWidth);
 
+    bool compute_ = false;
     GLsizei rows_ = 0;
     std::size_t current_ = 0;
     std::array<std::array<GlTexture, 2>, 2> state_;  // position and velocity
@@ -160,16 +177,28 @@ Result<void> benchSteps(const BenchScene& scene, const Sizes& sizes, Json& json)
         auto made = RELIEF_TRY(variant.make(scene));
         systems.push_back(std::move(made));
     }
-    auto copy = RELIEF_TRY(Copy::create(sizes.particles));
+    auto copy = RELIEF_TRY(Copy::create(sizes.particles, scene.path));
     Times copied;
     std::vector<Times> times(variants.size());
     std::vector<Json> touch(variants.size());
     copy.step();  // the driver compiles
-    for (int round = 0; round < sizes.rounds; ++round) {
-        copied.measure(sizes.steps, [&] { copy.step(); });
+    // A GPU that waited for births has slowed its clock down, which no game lets it do.
+    const auto warm = [&] {
+        const Stopwatch watch;
+        while (!sizes.software && watch.ms() < kWarmUpMs) {
+            for (int i = 0; i < kBenchStepsMost; ++i) {
+                copy.step();
+            }
+            glFinish();
+        }
         glUseProgram(0);  // PassState must not save a program of the copy's
+    };
+    for (int round = 0; round < sizes.rounds; ++round) {
+        warm();
+        copied.measure(sizes.steps, [&] { copy.step(); });
         for (std::size_t i = 0; i < variants.size(); ++i) {
             systems[i].begin(scene);
+            warm();
             times[i].measure(sizes.steps, [&] { systems[i].step(); });
             if (round == 0) {
                 touch[i] = touching(systems[i], sizes.steps + 1);
@@ -200,8 +229,9 @@ Result<void> benchSteps(const BenchScene& scene, const Sizes& sizes, Json& json)
 }
 
 /// A step alone, a step and a picture of points, a step and one of quads.
-Result<void> benchFrames(const Collider& collider, std::uint32_t particles, const Sizes& sizes, Json& json) {
-    const BenchScene scene = makeBenchScene(collider, particles);
+Result<void> benchFrames(const Collider& collider, std::uint32_t particles, const Sizes& sizes, StepPath path,
+                         Json& json) {
+    const BenchScene scene = makeBenchScene(collider, particles, path);
     auto system = RELIEF_TRY(makeColliderSystem(scene));
     auto renderer = RELIEF_TRY(ParticleRenderer::create(
         ColliderView{system.textures.get(), collider.bounds, finestTexel(collider)}));
@@ -254,23 +284,62 @@ Result<void> benchFrames(const Collider& collider, std::uint32_t particles, cons
     return {};
 }
 
-Result<Json> bench(int argc, char** argv) {
-    const bool large = argc == 3 && std::string_view(argv[2]) == "--large";
-    if (argc != 2 && !large) {
-        return fail(ErrorCode::kUsage, "usage: relief-bench-step COLLIDER.relief [--large]");
+struct Options {
+    std::string collider;
+    bool large = false;
+    StepPath path = StepPath::kFragment;
+    std::uint32_t particles = 0;  ///< of the step, and no frames; 0: as sizesFor() has it
+};
+
+Result<Options> parse(int argc, char** argv) {
+    Options options;
+    bool known = argc >= 2;
+    for (int i = 1; i < argc && known; ++i) {
+        const std::string_view word = argv[i];
+        const std::string_view value = i + 1 < argc ? argv[i + 1] : "";
+        if (word == "--large") {
+            options.large = true;
+        } else if (word == "--path" && (value == "fragment" || value == "compute")) {
+            options.path = value == "compute" ? StepPath::kCompute : StepPath::kFragment;
+            ++i;
+        } else if (const auto count = parseUnsigned(value); word == "--particles" && count &&
+                                                            *count % 8192 == 0 && *count > 0 &&
+                                                            *count <= ParticleSystem::kCapacityMax) {
+            options.particles = static_cast<std::uint32_t>(*count);
+            ++i;
+        } else {
+            known = options.collider.empty() && !word.starts_with("--");
+            options.collider = word;
+        }
     }
-    const auto collider = RELIEF_TRY(loadCollider(argv[1]));
+    if (!known || options.collider.empty()) {
+        return fail(ErrorCode::kUsage,
+                    "usage: relief-bench-step COLLIDER.relief [--large] [--path fragment|compute] "
+                    "[--particles N, of 8192]");
+    }
+    return options;
+}
+
+Result<Json> bench(int argc, char** argv) {
+    const Options options = RELIEF_TRY(parse(argc, argv));
+    const auto collider = RELIEF_TRY(loadCollider(options.collider));
     const auto context = RELIEF_TRY(GlContext::create(GlApi::kGl33Core));
-    const Sizes sizes = sizesFor(context->software(), large);
+    Sizes sizes = sizesFor(context->software(), options.large);
+    if (options.particles != 0) {
+        sizes.particles = options.particles;
+        sizes.rounds = options.particles > (1U << 20) ? 3 : sizes.rounds;  // births take the processor long
+        sizes.frames.clear();
+    }
     Json json;
     json["device"] = context->description();
     json["renderer"] = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
     json["software"] = sizes.software;
     json["ratios_of"] = sizes.software ? "CPU time" : "wall clock";
+    json["path"] = options.path == StepPath::kCompute ? "compute" : "fragment";
     json["collider"] = {{"maps", collider.maps.size()}};
-    RELIEF_TRY(benchSteps(makeBenchScene(collider, sizes.particles), sizes, json));
+    RELIEF_TRY(benchSteps(makeBenchScene(collider, sizes.particles, options.path), sizes, json));
     for (const std::uint32_t particles : sizes.frames) {
-        RELIEF_TRY(benchFrames(collider, particles, sizes, json));
+        RELIEF_TRY(benchFrames(collider, particles, sizes, options.path, json));
     }
     if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
         return fail(ErrorCode::kFailure, "the GL reports error " + std::to_string(error));

@@ -41,8 +41,10 @@ Result<ColliderTextures> makeTextures(const BenchScene& scene, Solids solids) {
 }
 
 Result<BenchSystem> makeSystem(const BenchScene& scene, Solids solids, Integrator integrator) {
-    auto particles = RELIEF_TRY(ParticleSystem::create(
-        {.capacity = static_cast<std::uint32_t>(scene.births.size()), .integrator = integrator}));
+    auto particles =
+        RELIEF_TRY(ParticleSystem::create({.capacity = static_cast<std::uint32_t>(scene.births.size()),
+                                           .integrator = integrator,
+                                           .path = scene.path}));
     BenchSystem system;
     system.particles = std::make_unique<ParticleSystem>(std::move(particles));
     system.particles->setForces(scene.forces);
@@ -176,8 +178,9 @@ BenchVariant turning(std::string name, std::string what, Solids solids) {
 
 }  // namespace
 
-BenchScene makeBenchScene(Collider collider, std::uint32_t particles) {
+BenchScene makeBenchScene(Collider collider, std::uint32_t particles, StepPath path) {
     BenchScene scene;
+    scene.path = path;
     scene.collider = std::move(collider);
     const Bounds& bounds = scene.collider.bounds;
     const float side = scene.side = bounds.longestSide();

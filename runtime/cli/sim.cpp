@@ -77,6 +77,9 @@ Result<void> checkTogether(const SimCommand& command) {
         return usage(std::string(command.gpu.given()) +
                      " does nothing with --check, which needs no GPU; leave it out");
     }
+    if (command.check && player.path != StepPath::kAuto) {
+        return usage("--path does nothing with --check, which needs no GPU; leave it out");
+    }
     if (command.size && player.frames.empty() && player.video.empty()) {
         return usage("--size does nothing without --frames or --video; add --frames DIR");
     }
@@ -154,6 +157,13 @@ void defineSim(CLI::App& app, SimCommand& command) {
     addWords(app, "--api", command.gpu.api,
              WordsFor<GlApi>{{"gl", GlApi::kGl33Core}, {"gles", GlApi::kGles30}},
              "gl for OpenGL 3.3 (default), gles for OpenGL ES 3.0");
+    addWords(
+        app, "--path", command.player.path,
+        WordsFor<StepPath>{
+            {"auto", StepPath::kAuto}, {"fragment", StepPath::kFragment}, {"compute", StepPath::kCompute}},
+        "How particles step: fragment shaders, compute shaders (OpenGL 4.3, OpenGL ES 3.1), or auto "
+        "(default): "
+        "compute on a GPU that has it");
     addGpuOptions(app, command.gpu);
     app.add_flag("--json", command.json, "Print the report, or what --check finds, as JSON");
     app.add_flag("-q,--quiet", command.quiet,

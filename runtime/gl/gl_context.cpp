@@ -3,10 +3,12 @@
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
+#include <array>
 #include <cstdio>
 #include <vector>
 
 #include "runtime/gl/gl_display.h"
+#include "runtime/gl/gl_object.h"
 
 namespace relief {
 namespace {
@@ -33,31 +35,27 @@ std::vector<EGLint> resetAttributes(EGLDisplay display, bool es) {
 
 EGLContext createContext(EGLDisplay display, EGLConfig config, bool es) {
     const std::vector<EGLint> reset = resetAttributes(display, es);
-    // A driver may know the attribute and still refuse it.
-    for (const bool with_reset : {true, false}) {
-        std::vector<EGLint> attributes = with_reset ? reset : std::vector<EGLint>{};
-        attributes.insert(attributes.end(),
-                          {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, es ? 0 : 3});
-        if (!es) {
+    // The version with compute shaders first: some drivers give just what they are asked for.
+    const std::array<EGLint, 2> with_compute = es ? std::array<EGLint, 2>{3, 1} : std::array<EGLint, 2>{4, 3};
+    const std::array<EGLint, 2> without = es ? std::array<EGLint, 2>{3, 0} : std::array<EGLint, 2>{3, 3};
+    for (const auto& [major, minor] : {with_compute, without}) {
+        // A driver may know the attribute and still refuse it.
+        for (const bool with_reset : {true, false}) {
+            std::vector<EGLint> attributes = with_reset ? reset : std::vector<EGLint>{};
             attributes.insert(attributes.end(),
-                              {EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT});
-        }
-        attributes.push_back(EGL_NONE);
-        const EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
-        if (context != EGL_NO_CONTEXT) {
-            return context;
+                              {EGL_CONTEXT_MAJOR_VERSION, major, EGL_CONTEXT_MINOR_VERSION, minor});
+            if (!es) {
+                attributes.insert(attributes.end(),
+                                  {EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT});
+            }
+            attributes.push_back(EGL_NONE);
+            const EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
+            if (context != EGL_NO_CONTEXT) {
+                return context;
+            }
         }
     }
     return EGL_NO_CONTEXT;
-}
-
-bool softwareRenderer(const std::string& renderer) {
-    for (const char* name : {"llvmpipe", "softpipe", "swrast", "SwiftShader", "Software Rasterizer"}) {
-        if (renderer.find(name) != std::string::npos) {
-            return true;
-        }
-    }
-    return false;
 }
 
 }  // namespace
@@ -125,7 +123,7 @@ struct GlContext::Impl {
         const std::string renderer = glText(GL_RENDERER);
         description =
             (api == GlApi::kGles30 ? "" : "OpenGL ") + glText(GL_VERSION) + ", " + renderer + ", " + where;
-        software = softwareRenderer(renderer);
+        software = isSoftwareRenderer();
     }
 
     /// What was tried, in words; or "" once a context is there.

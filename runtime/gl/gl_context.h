@@ -29,8 +29,8 @@ struct GlContextOptions {
 
 class GlContext {
   public:
-    /// Creates a context of at least this version and makes it current on this thread. Where EGL can, the
-    /// context is one that says when the GPU was reset (gl_fault.h).
+    /// Creates a context of at least this version and makes it current on this thread: of one with compute shaders where
+    /// there is one. Where EGL can, the context is one that says when the GPU was reset (gl_fault.h).
     /// Errors: kUnsupported, saying what was tried; also where a float texture cannot be rendered to, and
     /// without EGL's library. kUsage: there is no such device; says how many there are.
     [[nodiscard]] static Result<std::unique_ptr<GlContext>> create(const GlContextOptions& options);

@@ -55,7 +55,9 @@ Result<GLuint> compile(GLenum stage, std::string_view file, std::string_view def
     std::vector<std::string> included;
     const std::string body = RELIEF_TRY(resolveIncludes(file, included));
     // highp everywhere: state and depth are 32-bit floats, and ES 3.0 requires highp in fragment shaders.
-    std::string source = isGles() ? "#version 300 es\n" : "#version 330 core\n";
+    const bool compute = stage == GL_COMPUTE_SHADER;
+    std::string source = isGles() ? (compute ? "#version 310 es\n" : "#version 300 es\n")
+                                  : (compute ? "#version 430 core\n" : "#version 330 core\n");
     source += shaderConstants();
     source += defines;
     source +=
@@ -101,21 +103,44 @@ GlBuffer makeBuffer() {
 GlVertexArray makeVertexArray() {
     return GlVertexArray(generate([](GLsizei n, GLuint* out) { glGenVertexArrays(n, out); }));
 }
+namespace {
+
+/// A texture's name, bound to GL_TEXTURE_2D of the active unit until it is gone, with nearest filter, clamped.
+class NewTexture2D {
+  public:
+    NewTexture2D() : texture_(generate([](GLsizei n, GLuint* out) { glGenTextures(n, out); })) {
+        glGetIntegerv(GL_TEXTURE_BINDING_2D, &bound_);
+        glBindTexture(GL_TEXTURE_2D, texture_.name());
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    }
+    GlTexture done() {
+        glBindTexture(GL_TEXTURE_2D, static_cast<GLuint>(bound_));
+        return std::move(texture_);
+    }
+
+  private:
+    GlTexture texture_;
+    GLint bound_ = 0;
+};
+
+}  // namespace
+
 GlTexture makeTexture2D(GLenum internal_format, GLsizei width, GLsizei height, GLenum format, GLenum type,
                         const void* pixels) {
-    GlTexture texture(generate([](GLsizei n, GLuint* out) { glGenTextures(n, out); }));
-    GLint bound = 0;
-    glGetIntegerv(GL_TEXTURE_BINDING_2D, &bound);
-    glBindTexture(GL_TEXTURE_2D, texture.name());
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    NewTexture2D texture;
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
     glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internal_format), width, height, 0, format, type,
                  pixels);
-    glBindTexture(GL_TEXTURE_2D, static_cast<GLuint>(bound));
-    return texture;
+    return texture.done();
+}
+
+GlTexture makeImageTexture2D(GLenum internal_format, GLsizei width, GLsizei height) {
+    NewTexture2D texture;
+    glTexStorage2D(GL_TEXTURE_2D, 1, internal_format, width, height);
+    return texture.done();
 }
 
 Result<GlFramebuffer> makeFramebuffer(std::span<const GLuint> color_textures, GLuint depth_texture) {
@@ -180,6 +205,21 @@ Result<GlProgram> makeProgram(std::string_view vertex, std::string_view fragment
     return compileAndLink(vertex, fragment, defines, {}, {});
 }
 
+Result<GlProgram> makeComputeProgram(std::string_view compute, std::string_view defines) {
+    const GLuint shader = RELIEF_TRY(compile(GL_COMPUTE_SHADER, compute, defines));
+    GlProgram program(glCreateProgram());
+    glAttachShader(program.name(), shader);
+    glLinkProgram(program.name());
+    glDeleteShader(shader);
+    GLint linked = GL_FALSE;
+    glGetProgramiv(program.name(), GL_LINK_STATUS, &linked);
+    if (linked != GL_TRUE) {
+        return fail(ErrorCode::kFailure,
+                    "program " + std::string(compute) + " does not link: " + infoLog(program.name(), true));
+    }
+    return program;
+}
+
 Result<GlProgram> makeFeedbackProgram(std::string_view vertex, std::span<const char* const> outputs,
                                       std::string_view defines, std::string_view appended) {
     return compileAndLink(vertex, "nothing.frag", defines, outputs, appended);
@@ -191,6 +231,19 @@ GLint uniformLocation(const GlProgram& program, const char* name) {
 
 bool isGles() {
     return !epoxy_is_desktop_gl();
+}
+
+bool isSoftwareRenderer() {
+    const auto* const text = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    const std::string_view renderer = text == nullptr ? "" : text;
+    constexpr std::array<std::string_view, 5> kNames{"llvmpipe", "softpipe", "swrast", "SwiftShader",
+                                                     "Software Rasterizer"};
+    return std::any_of(kNames.begin(), kNames.end(),
+                       [&](std::string_view name) { return renderer.find(name) != std::string_view::npos; });
+}
+
+bool hasCompute() {
+    return epoxy_gl_version() >= (isGles() ? 31 : 43);
 }
 
 Result<std::vector<float>> readTextureFloats(const GlTexture& texture, GLsizei width, GLsizei height) {

@@ -71,6 +71,9 @@ using GlProgram = GlName<gl_detail::deleteProgram>;
 [[nodiscard]] GlTexture makeTexture2D(GLenum internal_format, GLsizei width, GLsizei height, GLenum format,
                                       GLenum type, const void* pixels = nullptr);
 
+/// The same, immutable, for compute shaders to write to; where hasCompute().
+[[nodiscard]] GlTexture makeImageTexture2D(GLenum internal_format, GLsizei width, GLsizei height);
+
 /// A framebuffer with these colour attachments, in order, and an optional depth texture, as draw buffers.
 /// Errors: kUnsupported, with the status, if the GL does not render to that combination.
 [[nodiscard]] Result<GlFramebuffer> makeFramebuffer(std::span<const GLuint> color_textures,
@@ -83,6 +86,10 @@ using GlProgram = GlName<gl_detail::deleteProgram>;
 /// Fails with kFailure, the driver's log and the file's name.
 [[nodiscard]] Result<GlProgram> makeProgram(std::string_view vertex, std::string_view fragment,
                                             std::string_view defines = {});
+
+/// A program of a compute shader, from the same subset of GLSL; its version line is `#version 430 core` or
+/// `#version 310 es`. Where hasCompute(). Fails as makeProgram does.
+[[nodiscard]] Result<GlProgram> makeComputeProgram(std::string_view compute, std::string_view defines = {});
 
 /// A program of a vertex shader alone, whose outputs transform feedback writes, interleaved in their order.
 /// \param appended  GLSL of the caller's that is put behind the vertex shader; the log's lines count from its
@@ -98,6 +105,12 @@ using GlProgram = GlName<gl_detail::deleteProgram>;
 
 /// True if the current context is OpenGL ES.
 [[nodiscard]] bool isGles();
+
+/// True if the processor draws, not a GPU.
+[[nodiscard]] bool isSoftwareRenderer();
+
+/// True if the current context has compute shaders: OpenGL 4.3, OpenGL ES 3.1, or later.
+[[nodiscard]] bool hasCompute();
 
 /// Reads a texture (level 0 of a 2-D texture of a float format) back as RGBA floats, 4 · width · height.
 [[nodiscard]] Result<std::vector<float>> readTextureFloats(const GlTexture& texture, GLsizei width,

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "runtime/gl/gl_fault.h"
+#include "runtime/gl/image_units.h"
 #include "runtime/gl/pass_state.h"
 
 namespace relief {
@@ -21,16 +22,24 @@ constexpr float kNoGround = -1e30F;
 
 constexpr std::uint32_t kIdMask = (1U << 24) - 1;  // what a float counts exactly
 
-GlTexture makeStateTexture(std::uint32_t width, std::uint32_t height) {
-    return makeTexture2D(GL_RGBA32F, static_cast<GLsizei>(width), static_cast<GLsizei>(height), GL_RGBA,
-                         GL_FLOAT);
-}
-
 /// Draws quad.vert's triangle over the first rows of the bound framebuffer.
 void drawRows(const GlVertexArray& no_attributes, std::uint32_t width, std::uint32_t rows) {
     glViewport(0, 0, static_cast<GLsizei>(width), static_cast<GLsizei>(rows));
     glBindVertexArray(no_attributes.name());
     glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+Result<StepPath> chosenPath(StepPath wanted) {
+    if (wanted == StepPath::kCompute && !hasCompute()) {
+        return fail(ErrorCode::kUnsupported,
+                    "the compute path needs OpenGL 4.3 or OpenGL ES 3.1, and this context has " +
+                        std::string(reinterpret_cast<const char*>(glGetString(GL_VERSION))) +
+                        "; take the fragment path");
+    }
+    if (wanted == StepPath::kAuto) {
+        return hasCompute() && !isSoftwareRenderer() ? StepPath::kCompute : StepPath::kFragment;
+    }
+    return wanted;
 }
 
 }  // namespace
@@ -48,6 +57,7 @@ Result<ParticleSystem> ParticleSystem::create(const ParticleSystemOptions& optio
     ParticleSystem system(options.capacity);
     system.epoch_seconds_ = options.epoch_seconds;
     system.integrator_ = options.integrator;
+    system.path_ = RELIEF_TRY(chosenPath(options.path));
     system.width_ = std::min(options.capacity, kStateWidth);
     system.height_ = (options.capacity + system.width_ - 1) / system.width_;
     system.ids_.resize(options.capacity);
@@ -61,15 +71,22 @@ Result<ParticleSystem> ParticleSystem::create(const ParticleSystemOptions& optio
     return system;
 }
 
+GlTexture ParticleSystem::makeStateTexture() const {
+    const auto width = static_cast<GLsizei>(width_);
+    const auto height = static_cast<GLsizei>(height_);
+    return path_ == StepPath::kCompute ? makeImageTexture2D(GL_RGBA32F, width, height)
+                                       : makeTexture2D(GL_RGBA32F, width, height, GL_RGBA, GL_FLOAT);
+}
+
 Result<void> ParticleSystem::createTextures() {
     forgetGlErrors();
-    birth_ = makeStateTexture(width_, height_);
+    birth_ = makeStateTexture();
     no_attributes_ = makeVertexArray();
     const int buffers = verlet() ? 3 : 2;
     for (int i = 0; i < buffers; ++i) {
-        position_[i] = makeStateTexture(width_, height_);
+        position_[i] = makeStateTexture();
         if (!verlet()) {
-            velocity_[i] = makeStateTexture(width_, height_);
+            velocity_[i] = makeStateTexture();
         }
     }
     RELIEF_TRY(checkAllocated("the state of " + std::to_string(ids_.size()) + " particles",
@@ -127,6 +144,7 @@ StepFeatures ParticleSystem::featuresFor(const ColliderTextures* collider) const
             verlet(),
             sweep_ > 0.0F,
             radius && collider != nullptr,
+            path_ == StepPath::kCompute,
             static_cast<int>(types_.size())};
 }
 
@@ -237,7 +255,7 @@ void ParticleSystem::step(float dt) {
     drawBirths();
     time_ += static_cast<double>(dt);
     const float now = clock();
-    drawStep(dt, now);
+    runStep(dt, now);
     freeDead(now);
     if (time_ - epoch_ >= epoch_seconds_) {
         setEpochForward();
@@ -266,13 +284,12 @@ void ParticleSystem::drawBirths() {
     newborn_.clear();
 }
 
-void ParticleSystem::drawStep(float dt, float now) {
+void ParticleSystem::runStep(float dt, float now) {
     const std::uint32_t extent = allocator_.extent();
     if (extent == 0) {
         return;
     }
     const int next = verlet() ? (current_ + 1) % 3 : 1 - current_;
-    glBindFramebuffer(GL_FRAMEBUFFER, step_target_[next].name());
     useTexture(StepPass::kPositionUnit, position_[current_]);
     useTexture(StepPass::kVelocityUnit, verlet() ? position_[(current_ + 2) % 3] : velocity_[current_]);
     useTexture(StepPass::kBirthUnit, birth_);
@@ -285,7 +302,19 @@ void ParticleSystem::drawStep(float dt, float now) {
     dt_before_ = dt;
     // Rows beyond the extent keep what they held in either buffer. That is sound: an index beyond it is only
     // reached again through a birth, which overwrites it, and an index below it has been stepped ever since.
-    drawRows(no_attributes_, width_, (extent + width_ - 1) / width_);
+    const std::uint32_t rows = (extent + width_ - 1) / width_;
+    if (path_ == StepPath::kCompute) {
+        const ImageUnits units;
+        ImageUnits::write(0, position_[next]);
+        if (!verlet()) {
+            ImageUnits::write(1, velocity_[next]);
+        }
+        step_.dispatch(width_, rows);
+        ImageUnits::finish();
+    } else {
+        glBindFramebuffer(GL_FRAMEBUFFER, step_target_[next].name());
+        drawRows(no_attributes_, width_, rows);
+    }
     current_ = next;
 }
 
@@ -308,7 +337,7 @@ void ParticleSystem::setEpochForward() {
         return;
     }
     if (!birth_spare_) {
-        birth_spare_ = makeStateTexture(width_, height_);
+        birth_spare_ = makeStateTexture();
         rebase_target_ = makeFramebuffer();
     }
     // Made by hand, because a step cannot report an error: create() has tried this combination.

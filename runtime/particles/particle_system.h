@@ -32,6 +32,7 @@
 #include "runtime/particles/emitter.h"
 #include "runtime/particles/index_allocator.h"
 #include "runtime/particles/step_pass.h"
+#include "runtime/particles/step_path.h"
 
 namespace relief {
 
@@ -52,6 +53,7 @@ struct ParticleSystemOptions {
     std::uint32_t capacity = 65536;  ///< particles that may live at once, 1…kCapacityMax
     Integrator integrator = Integrator::kEuler;
     double epoch_seconds = 4096.0;  ///< how far the GPU's clock runs before it is set back
+    StepPath path = StepPath::kAuto;
 };
 
 struct ParticleCounts {
@@ -89,7 +91,8 @@ class ParticleSystem {
     static constexpr std::uint32_t kCapacityMax = 1U << 24;
 
     /// Needs a current context, as every call does that is not const.
-    /// Errors: kUsage (capacity, epoch), kLimit (above what this GL takes), kUnsupported, kFailure.
+    /// Errors: kUsage (capacity, epoch), kLimit (above what this GL takes), kUnsupported (also StepPath::kCompute without
+    /// compute shaders), kFailure.
     [[nodiscard]] static Result<ParticleSystem> create(const ParticleSystemOptions& options = {});
 
     /// What the particles collide with from the next step on; compiles the step for it. The particles live in
@@ -124,6 +127,8 @@ class ParticleSystem {
     /// Moves everything by `dt` seconds, > 0. Restores the GL state that it touches (runtime/INTEGRATE.md).
     void step(float dt);
 
+    /// kFragment or kCompute.
+    [[nodiscard]] StepPath path() const { return path_; }
     [[nodiscard]] std::uint32_t capacity() const { return allocator_.capacity(); }
     /// Places left for spawn().
     [[nodiscard]] std::uint32_t room() const { return allocator_.capacity() - allocator_.liveCount(); }
@@ -173,7 +178,8 @@ class ParticleSystem {
     [[nodiscard]] float clockOf(double time) const { return static_cast<float>(time - epoch_); }
     void setEpochForward();
     void drawBirths();
-    void drawStep(float dt, float now);
+    [[nodiscard]] GlTexture makeStateTexture() const;
+    void runStep(float dt, float now);
     void freeDead(float now);
 
     IndexAllocator allocator_;
@@ -188,6 +194,7 @@ class ParticleSystem {
     double epoch_ = 0.0;
     double epoch_seconds_ = 0.0;
 
+    StepPath path_ = StepPath::kFragment;
     Integrator integrator_ = Integrator::kEuler;
     Forces forces_;
     std::vector<ParticleType> types_{ParticleType{}};

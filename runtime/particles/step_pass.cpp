@@ -3,6 +3,8 @@
 #include <array>
 #include <string>
 
+#include "shaders/shader_constants.h"
+
 namespace relief {
 
 float dragRate(const Forces& forces, const ParticleType& type) {
@@ -23,10 +25,14 @@ Result<StepPass> StepPass::create(const StepFeatures& features) {
     }
     StepPass pass;
     pass.features_ = features;
-    pass.program_ =
-        RELIEF_TRY(features.collider != nullptr
-                       ? makeProgram("quad.vert", "step.frag", defines + features.collider->defines())
-                       : makeProgram("quad.vert", "step_free.frag", defines));
+    defineIf(features.compute, "RELIEF_COMPUTE");
+    const bool among = features.collider != nullptr;
+    if (among) {
+        defines += features.collider->defines();
+    }
+    pass.program_ = RELIEF_TRY(
+        features.compute ? makeComputeProgram(among ? "step.comp" : "step_free.comp", defines)
+                         : makeProgram("quad.vert", among ? "step.frag" : "step_free.frag", defines));
     const auto at = [&](const char* name) { return glGetUniformLocation(pass.program_.name(), name); };
     pass.now_ = at("u_now");
     pass.dt_ = at("u_dt");
@@ -38,6 +44,7 @@ Result<StepPass> StepPass::create(const StepFeatures& features) {
     pass.sweep_ = at("u_sweep");
     pass.air_time_ = at("u_air_time");
     pass.types_ = at("u_types");
+    pass.size_ = at("u_size");
     glUseProgram(pass.program_.name());
     glUniform1i(at("u_position"), kPositionUnit);
     glUniform1i(at(features.verlet ? "u_position_before" : "u_velocity"), kVelocityUnit);
@@ -83,6 +90,12 @@ void StepPass::use(const Values& values) const {
         std::copy(row.begin(), row.end(), types.begin() + static_cast<std::ptrdiff_t>(8 * i));
     }
     glUniform4fv(types_, 2 * features_.types, types.data());
+}
+
+void StepPass::dispatch(std::uint32_t width, std::uint32_t rows) const {
+    glUniform2i(size_, static_cast<GLint>(width), static_cast<GLint>(rows));
+    glDispatchCompute((width + kStepGroupWidth - 1) / kStepGroupWidth,
+                      (rows + kStepGroupHeight - 1) / kStepGroupHeight, 1);
 }
 
 }  // namespace relief

@@ -1,6 +1,7 @@
 // The program of one simulation step, compiled for what a scene uses and no more (shaders/step.glsl).
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "formats/base/result.h"
@@ -27,7 +28,8 @@ struct StepFeatures {
     const AirBlock* air = nullptr;               ///< null: still, but for the wind of Forces
     bool verlet = false;
     bool sweep = false;
-    bool radius = false;  ///< some type has a radius
+    bool radius = false;   ///< some type has a radius
+    bool compute = false;  ///< the program is a compute shader: dispatch()
     int types = 1;
     friend bool operator==(const StepFeatures&, const StepFeatures&) = default;
 };
@@ -61,13 +63,16 @@ class StepPass {
 
     /// Makes the program current and sets its uniforms; binds the collider's textures.
     void use(const Values& values) const;
+    /// With StepFeatures::compute, after use(): steps the particles of the first `rows` rows of `width` texels into image
+    /// units 0 (positions) and, without verlet, 1 (velocities).
+    void dispatch(std::uint32_t width, std::uint32_t rows) const;
     [[nodiscard]] const StepFeatures& features() const { return features_; }
 
   private:
     StepFeatures features_;
     GlProgram program_;
     GLint now_ = -1, dt_ = -1, rate_before_ = -1, gravity_ = -1, wind_ = -1, still_ = -1, ground_ = -1,
-          sweep_ = -1, air_time_ = -1, types_ = -1;
+          sweep_ = -1, air_time_ = -1, types_ = -1, size_ = -1;
 };
 
 }  // namespace relief

@@ -167,13 +167,15 @@ Result<PlayerReport> play(const PlayerOptions& options) {
         RELIEF_TRY(checkDump(options.dump));
     }
     const auto context = RELIEF_TRY(makeContext(options));
-    auto simulation = RELIEF_TRY(Simulation::create(loaded, std::move(emitters), options.watchdog));
+    auto simulation =
+        RELIEF_TRY(Simulation::create(loaded, std::move(emitters), options.path, options.watchdog));
     Outputs outputs(options, loaded, simulation.textures());
     RELIEF_TRY(outputs.open());
 
     PlayerReport report;
     report.scene = loaded.scene;
     report.device = context->description();
+    report.path = simulation.particles().path();
     report.collider_maps = static_cast<std::size_t>(simulation.textures().mapCount());
     report.collider_bytes = simulation.textures().bytes();
     auto check = RELIEF_TRY(StateCheck::create(options.input, report.scene));

@@ -31,6 +31,7 @@ struct PlayerOptions {
     /// Reads the state back at the end for the report's collisions and contacts.
     bool count_collisions = false;
     GlApi api = GlApi::kGl33Core;
+    StepPath path = StepPath::kAuto;
     std::optional<std::size_t> device;  ///< as of GlContextOptions
     Watchdog* watchdog = nullptr;       ///< fed while the GPU works; or null
     bool default_timeout = false;       ///< its limit becomes that of the context, defaultGpuTimeout
@@ -38,8 +39,9 @@ struct PlayerOptions {
 };
 
 struct PlayerReport {
-    Scene scene;         ///< as played: overridden by the options, every default filled in
-    std::string device;  ///< GlContext::description()
+    Scene scene;                          ///< as played: overridden by the options, every default filled in
+    std::string device;                   ///< GlContext::description()
+    StepPath path = StepPath::kFragment;  ///< that was taken: not kAuto
     std::size_t collider_maps = 0;
     std::size_t collider_bytes = 0;  ///< of textures on the GPU
     ParticleCounts counts;

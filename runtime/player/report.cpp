@@ -226,12 +226,17 @@ Json settings(const Scene& scene) {
     return json;
 }
 
+const char* pathName(StepPath path) {
+    return path == StepPath::kCompute ? "compute" : "fragment";
+}
+
 }  // namespace
 
 std::string reportJson(const PlayerReport& report) {
     Json json;
     json["settings"] = settings(report.scene);
     json["device"] = report.device;
+    json["path"] = pathName(report.path);
     json["collider"] = {{"maps", report.collider_maps}, {"gpu_bytes", report.collider_bytes}};
     json["particles"] = {{"alive", report.counts.alive},
                          {"born", report.counts.born},
@@ -256,7 +261,7 @@ std::string reportText(const PlayerReport& report) {
                   report.scene.steps, report.ms_per_step, static_cast<unsigned long long>(report.counts.born),
                   static_cast<unsigned long long>(report.counts.died), report.counts.alive,
                   static_cast<unsigned long long>(report.counts.refused), report.frames_written);
-    return report.device + "\n" + text;
+    return report.device + ", " + pathName(report.path) + " path\n" + text;
 }
 
 }  // namespace relief

@@ -26,9 +26,9 @@ Result<ColliderTextures> makeTextures(const Scene& scene, std::span<const Collid
     return ColliderTextures::create(bodies);
 }
 
-Result<ParticleSystem> makeParticles(const Scene& scene, const ColliderTextures& textures) {
-    auto particles =
-        RELIEF_TRY(ParticleSystem::create({.capacity = scene.capacity, .integrator = scene.integrator}));
+Result<ParticleSystem> makeParticles(const Scene& scene, const ColliderTextures& textures, StepPath path) {
+    auto particles = RELIEF_TRY(
+        ParticleSystem::create({.capacity = scene.capacity, .integrator = scene.integrator, .path = path}));
     RELIEF_TRY(particles.setCollider(&textures));
     particles.setForces({*scene.forces.gravity, scene.forces.wind,
                          scene.air.viscosity ? 0.0F : scene.forces.drag, scene.air.viscosity.value_or(0.0F)});
@@ -54,7 +54,7 @@ std::vector<Pose> posesAt(const Scene& scene, double time) {
 
 }  // namespace
 
-Result<Simulation> Simulation::create(const LoadedScene& loaded, std::vector<Emitter> emitters,
+Result<Simulation> Simulation::create(const LoadedScene& loaded, std::vector<Emitter> emitters, StepPath path,
                                       Watchdog* watchdog) {
     Simulation made;
     const Scene& scene = loaded.scene;
@@ -70,8 +70,8 @@ Result<Simulation> Simulation::create(const LoadedScene& loaded, std::vector<Emi
         RELIEF_TRY(watched(watchdog, "the shaders of colliders", [&] { return LiveBodies::create(loaded); }));
     RELIEF_TRY(watched(watchdog, "the colliders' first maps",
                        [&] { return made.live_.show(0.0, *made.textures_); }));
-    auto particles = RELIEF_TRY(
-        watched(watchdog, "the shaders of particles", [&] { return makeParticles(scene, *made.textures_); }));
+    auto particles = RELIEF_TRY(watched(watchdog, "the shaders of particles",
+                                        [&] { return makeParticles(scene, *made.textures_, path); }));
     made.particles_ = std::make_unique<ParticleSystem>(std::move(particles));
     return made;
 }

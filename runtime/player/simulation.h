@@ -19,11 +19,12 @@ class Simulation {
   public:
     /// Needs a current context, as step() does.
     /// \param loaded    must outlive this.
+    /// \param path      of the particles' steps.
     /// \param watchdog  may be null.
     /// Fails as ColliderTextures, LiveBodies and ParticleSystem do. An error of the textures names the scene's
     /// first collider.
     [[nodiscard]] static Result<Simulation> create(const LoadedScene& loaded, std::vector<Emitter> emitters,
-                                                   Watchdog* watchdog);
+                                                   StepPath path, Watchdog* watchdog);
 
     /// Births, then the colliders' poses and shapes at the step's end, then the particles' step.
     /// \param stages  times births and step; may be null.

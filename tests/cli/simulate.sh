@@ -27,6 +27,15 @@ cmp a.ply b.ply || die "the same seed gives another run"
 # The other API runs the same scene.
 "$relief_sim" bunny.relief --steps 40 --dump es.ply --seed 3 --api gles -q
 
+# Compute shaders, where the context has them; else one line says what is missing.
+"$relief_sim" bunny.relief --steps 5 --path compute --json >stdout
+json stdout 'd["path"] == "compute" and d["particles"]["born"] > 0'
+"$relief_sim" bunny.relief --steps 5 --path fragment --json >stdout
+json stdout 'd["path"] == "fragment"'
+MESA_GL_VERSION_OVERRIDE=3.3 expect_error 5 'OpenGL 4\.3 or OpenGL ES 3\.1.*take the fragment path' \
+    "$relief_sim" bunny.relief --steps 5 --path compute
+expect_error 1 '--path does nothing with --check' "$relief_sim" bunny.relief --check --path compute
+
 # The ends of what a scene may ask for: the lightest of the largest in the thickest air and the strongest wind.
 for integrator in euler verlet; do
     for air in 'drag = 1e6' 'viscosity = 1e6'; do

@@ -157,7 +157,7 @@ class LiveColliderGlTest : public CollisionTest {
 
     std::optional<LiveCollider> live_;
 };
-RELIEF_INSTANTIATE_GL_TESTS(LiveColliderGlTest);
+RELIEF_INSTANTIATE_STEP_TESTS(LiveColliderGlTest);
 
 /// Maps of one format that enclose a cube about the origin and together see a convex mesh from all sides.
 Collider framesOf(MapFormat format, Decode decode, float half, std::uint32_t resolution) {

@@ -16,13 +16,19 @@ inline std::string glApiTestName(const testing::TestParamInfo<GlApi>& info) {
     return info.param == GlApi::kGles30 ? "Gles30" : "Gl33Core";
 }
 
-class GlTest : public testing::TestWithParam<GlApi> {
+inline GlApi apiOf(GlApi api) {
+    return api;
+}
+
+/// Of tests whose parameter names an API, by apiOf().
+template <class Param>
+class GlTestOf : public testing::TestWithParam<Param> {
   protected:
     void SetUp() override {
-        Result<std::unique_ptr<GlContext>> context = GlContext::create(GetParam());
+        Result<std::unique_ptr<GlContext>> context = GlContext::create(apiOf(this->GetParam()));
         ASSERT_TRUE(context) << context.error().message;
         context_ = std::move(*context);
-        RecordProperty("context", context_->description());
+        this->RecordProperty("context", context_->description());
     }
     void TearDown() override {
         if (context_) {
@@ -33,6 +39,8 @@ class GlTest : public testing::TestWithParam<GlApi> {
     // Outlives the members of a fixture, which give their GL names back.
     std::unique_ptr<GlContext> context_;
 };
+
+using GlTest = GlTestOf<GlApi>;
 
 #define RELIEF_INSTANTIATE_GL_TESTS(suite) \
     INSTANTIATE_TEST_SUITE_P(Apis, suite, testing::Values(GlApi::kGl33Core, GlApi::kGles30), glApiTestName)

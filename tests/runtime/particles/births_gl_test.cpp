@@ -8,15 +8,15 @@
 
 #include "runtime/particles/emitter.h"
 #include "runtime/particles/particle_system.h"
-#include "tests/runtime/gl/gl_test.h"
+#include "tests/runtime/particles/step_gl_test.h"
 
 namespace relief {
 namespace {
 
-class BirthsGlTest : public GlTest {
+class BirthsGlTest : public StepGlTest {
   protected:
     static ParticleSystem makeSystem(std::uint32_t capacity) {
-        auto made = ParticleSystem::create({.capacity = capacity});
+        auto made = ParticleSystem::create(onPath({.capacity = capacity}));
         EXPECT_TRUE(made) << made.error().message;
         return std::move(*made);
     }
@@ -136,7 +136,7 @@ TEST_P(BirthsGlTest, FourMillionPlacesFillEmptyAndFillAgain) {
     }
 }
 
-RELIEF_INSTANTIATE_GL_TESTS(BirthsGlTest);
+RELIEF_INSTANTIATE_STEP_TESTS(BirthsGlTest);
 
 }  // namespace
 }  // namespace relief

@@ -464,6 +464,6 @@ TEST_P(CollisionCornersGlTest, VerletComesToRest) {
 
 }  // namespace
 
-RELIEF_INSTANTIATE_GL_TESTS(CollisionCornersGlTest);
+RELIEF_INSTANTIATE_STEP_TESTS(CollisionCornersGlTest);
 
 }  // namespace relief

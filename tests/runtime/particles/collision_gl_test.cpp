@@ -489,6 +489,6 @@ TEST_P(CollisionGlTest, BadTypesBodiesAndSweepsAreErrors) {
 
 }  // namespace
 
-RELIEF_INSTANTIATE_GL_TESTS(CollisionGlTest);
+RELIEF_INSTANTIATE_STEP_TESTS(CollisionGlTest);
 
 }  // namespace relief

@@ -9,16 +9,16 @@
 
 #include "runtime/particles/particle_system.h"
 #include "tests/runtime/collider/analytic_collider.h"
-#include "tests/runtime/gl/gl_test.h"
+#include "tests/runtime/particles/step_gl_test.h"
 
 namespace relief {
 
 inline constexpr float kDt = 1.0F / 60.0F;
 
-class CollisionTest : public GlTest {
+class CollisionTest : public StepGlTest {
   protected:
     void make(const ParticleSystemOptions& options) {
-        auto made = ParticleSystem::create(options);
+        auto made = ParticleSystem::create(onPath(options));
         ASSERT_TRUE(made) << made.error().message;
         particles_ = std::make_unique<ParticleSystem>(std::move(*made));
     }

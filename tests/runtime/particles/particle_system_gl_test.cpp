@@ -13,8 +13,8 @@
 
 #include "runtime/particles/emitter.h"
 #include "tests/runtime/collider/analytic_collider.h"
-#include "tests/runtime/gl/gl_test.h"
 #include "tests/runtime/particles/reference_step.h"
+#include "tests/runtime/particles/step_gl_test.h"
 
 namespace relief {
 namespace {
@@ -30,7 +30,7 @@ struct World {
     std::unique_ptr<ParticleSystem> particles;
 
     void make(const ParticleSystemOptions& options) {
-        auto made = ParticleSystem::create(options);
+        auto made = ParticleSystem::create(StepGlTest::onPath(options));
         ASSERT_TRUE(made) << made.error().message;
         particles = std::make_unique<ParticleSystem>(std::move(*made));
         if (collider.maps.empty()) {
@@ -87,7 +87,7 @@ Collider mixedCollider() {
     return collider;
 }
 
-class ParticleSystemGlTest : public GlTest {};
+class ParticleSystemGlTest : public StepGlTest {};
 
 // Every particle of every step is compared with the CPU's step from the GPU's own previous state, and every
 // index with the CPU's own bookkeeping of births and deaths.
@@ -616,11 +616,11 @@ TEST_P(ParticleSystemGlTest, OptionsOutOfRangeAreErrors) {
           ParticleSystemOptions{.capacity = ParticleSystem::kCapacityMax + 1},
           ParticleSystemOptions{.epoch_seconds = 0.0}, ParticleSystemOptions{.epoch_seconds = std::nan("")},
           ParticleSystemOptions{.epoch_seconds = 1e9}}) {
-        const auto made = ParticleSystem::create(options);
+        const auto made = ParticleSystem::create(StepGlTest::onPath(options));
         ASSERT_FALSE(made);
         EXPECT_EQ(made.error().code, ErrorCode::kUsage);
     }
-    auto made = ParticleSystem::create({.capacity = 1});
+    auto made = ParticleSystem::create(onPath({.capacity = 1}));
     ASSERT_TRUE(made);
     ASSERT_TRUE(made->setCollider(nullptr));
     made->step(0.1F);  // nobody there
@@ -629,6 +629,6 @@ TEST_P(ParticleSystemGlTest, OptionsOutOfRangeAreErrors) {
 
 }  // namespace
 
-RELIEF_INSTANTIATE_GL_TESTS(ParticleSystemGlTest);
+RELIEF_INSTANTIATE_STEP_TESTS(ParticleSystemGlTest);
 
 }  // namespace relief

@@ -12,17 +12,17 @@
 
 #include "runtime/gl/gpu_timer.h"
 #include "tests/runtime/collider/analytic_collider.h"
-#include "tests/runtime/gl/gl_test.h"
+#include "tests/runtime/particles/step_gl_test.h"
 
 namespace relief {
 namespace {
 
 constexpr float kDt = 1.0F / 60.0F;
 
-class StatisticsGlTest : public GlTest {
+class StatisticsGlTest : public StepGlTest {
   protected:
     static ParticleSystem makeParticles(std::uint32_t capacity) {
-        auto particles = ParticleSystem::create({.capacity = capacity});
+        auto particles = ParticleSystem::create(onPath({.capacity = capacity}));
         EXPECT_TRUE(particles) << particles.error().message;
         return std::move(*particles);
     }
@@ -132,7 +132,7 @@ TEST_P(StatisticsGlTest, LostParticlesNameTheirTypeAndSpoilNoSum) {
         for (const float value : {kNan, -kNan, kInfinity, -kInfinity, 3e38F, 2e15F}) {
             for (const std::uint32_t lost : {0U, 1U, 2047U, 2499U}) {
                 SCOPED_TRACE(std::to_string(value) + " of particle " + std::to_string(lost));
-                auto particles = ParticleSystem::create({.capacity = 3000, .integrator = integrator});
+                auto particles = ParticleSystem::create(onPath({.capacity = 3000, .integrator = integrator}));
                 ASSERT_TRUE(particles);
                 ASSERT_TRUE(particles->setTypes(types));
                 Statistics statistics = makeStatistics(3000);
@@ -343,7 +343,7 @@ TEST_P(StatisticsGlTest, StagesAreTimed) {
 // A query of the caller's own goes on, and the stage inside it is timed on the CPU.
 TEST_P(StatisticsGlTest, TheCallersQueryIsLeftAlone) {
     GpuTimer timer;
-    if (!timer.measuresGpu() || GetParam() == GlApi::kGles30) {
+    if (!timer.measuresGpu() || GetParam().api == GlApi::kGles30) {
         return;  // there is no such query to be in the way
     }
     GLuint query = 0;
@@ -364,6 +364,6 @@ TEST_P(StatisticsGlTest, TheCallersQueryIsLeftAlone) {
 
 }  // namespace
 
-RELIEF_INSTANTIATE_GL_TESTS(StatisticsGlTest);
+RELIEF_INSTANTIATE_STEP_TESTS(StatisticsGlTest);
 
 }  // namespace relief

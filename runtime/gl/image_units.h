@@ -1,0 +1,32 @@
+// The image units that compute passes write through.
+#pragma once
+
+#include <array>
+
+#include "runtime/gl/gl_object.h"
+
+namespace relief {
+
+/// On construction: saves image units 0 and 1. On destruction: puts them back. Needs hasCompute(). What PassState does
+/// for all other state; few passes use images.
+class ImageUnits {
+  public:
+    static constexpr GLuint kUnits = 2;
+    ImageUnits();
+    ~ImageUnits();
+    ImageUnits(const ImageUnits&) = delete;
+    ImageUnits& operator=(const ImageUnits&) = delete;
+
+    /// Level 0 of an RGBA32F texture, to be written.
+    static void write(GLuint unit, const GlTexture& texture);
+    /// Lets everything see what compute passes have written.
+    static void finish();
+
+  private:
+    struct Unit {
+        GLint texture = 0, level = 0, layered = 0, layer = 0, access = 0, format = 0;
+    };
+    std::array<Unit, kUnits> saved_;
+};
+
+}  // namespace relief

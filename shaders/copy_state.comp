@@ -1,0 +1,13 @@
+// For relief-bench-step alone: the least that a compute step of two state textures can be.
+layout(local_size_x = RELIEF_STEP_GROUP_WIDTH, local_size_y = RELIEF_STEP_GROUP_HEIGHT) in;
+layout(rgba32f, binding = 0) writeonly uniform highp image2D u_position_out;
+layout(rgba32f, binding = 1) writeonly uniform highp image2D u_velocity_out;
+
+uniform highp sampler2D u_position;
+uniform highp sampler2D u_velocity;
+
+void main() {
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    imageStore(u_position_out, at, texelFetch(u_position, at, 0));
+    imageStore(u_velocity_out, at, texelFetch(u_velocity, at, 0));
+}

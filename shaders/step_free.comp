@@ -1,0 +1,2 @@
+// A step with nothing solid but the floor, where there are compute shaders.
+//!include step_free.frag
