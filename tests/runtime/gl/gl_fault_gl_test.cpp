@@ -45,6 +45,7 @@ GLenum pending_error = GL_NO_ERROR;
 GLint texture_side = 0;
 decltype(epoxy_glTexImage2D) real_image_2d = nullptr;
 decltype(epoxy_glTexImage3D) real_image_3d = nullptr;
+decltype(epoxy_glTexStorage2D) real_storage_2d = nullptr;
 decltype(epoxy_glBufferData) real_buffer_data = nullptr;
 decltype(epoxy_glGetError) real_get_error = nullptr;
 decltype(epoxy_glGetIntegerv) real_get_integer = nullptr;
@@ -67,6 +68,11 @@ void image3d(GLenum target, GLint level, GLint internal, GLsizei width, GLsizei 
              GLint border, GLenum format, GLenum type, const void* pixels) {
     if (!failsNow()) {
         real_image_3d(target, level, internal, width, height, depth, border, format, type, pixels);
+    }
+}
+void storage2d(GLenum target, GLsizei levels, GLenum internal, GLsizei width, GLsizei height) {
+    if (!failsNow()) {
+        real_storage_2d(target, levels, internal, width, height);
     }
 }
 void bufferData(GLenum target, GLsizeiptr size, const void* data, GLenum usage) {
@@ -151,11 +157,13 @@ class GlFaultTest : public GlTest {
         particles_->spawn(births);
         particles_->step(0.01F);
         ASSERT_TRUE(ParticleSystem::create({.capacity = 1})->setAir(air()));
+        ASSERT_TRUE(ParticleSystem::create({.capacity = 1, .path = StepPath::kCompute}));
         ASSERT_TRUE(waitForGpu("nothing"));
         const auto points = FieldQuery::create(collider_);
         ASSERT_TRUE(points);
         real_image_2d = epoxy_glTexImage2D;
         real_image_3d = epoxy_glTexImage3D;
+        real_storage_2d = epoxy_glTexStorage2D;
         real_buffer_data = epoxy_glBufferData;
         real_get_error = epoxy_glGetError;
         real_get_integer = epoxy_glGetIntegerv;
@@ -180,6 +188,9 @@ class GlFaultTest : public GlTest {
         settings.flow = flow;
         return settings;
     }
+    static Result<void> particles(Integrator integrator, StepPath path) {
+        return outcome(ParticleSystem::create({.capacity = 200'000, .integrator = integrator, .path = path}));
+    }
     [[nodiscard]] ColliderView view() const {
         return {textures_.get(), collider_.bounds, finestTexel(collider_)};
     }
@@ -197,12 +208,10 @@ class GlFaultTest : public GlTest {
                  const std::vector<glm::vec3> points(200'000);  // more rows than the limit below
                  return query ? outcome(query->evaluate(points)) : outcome(query);
              }},
-            {"euler", [] { return outcome(ParticleSystem::create({.capacity = 200'000})); }},
-            {"verlet",
-             [] {
-                 return outcome(
-                     ParticleSystem::create({.capacity = 200'000, .integrator = Integrator::kVerlet}));
-             }},
+            {"euler", [] { return particles(Integrator::kEuler, StepPath::kFragment); }},
+            {"verlet", [] { return particles(Integrator::kVerlet, StepPath::kFragment); }},
+            {"euler, compute", [] { return particles(Integrator::kEuler, StepPath::kCompute); }},
+            {"verlet, compute", [] { return particles(Integrator::kVerlet, StepPath::kCompute); }},
             {"flow", [this] { return particles_->setAir(air()); }},
             {"sort", [] { return outcome(DepthSorter::create(200'000)); }},
             {"frame", [] { return outcome(Frame::create(100, 100)); }},
@@ -241,6 +250,7 @@ TEST_P(GlFaultTest, EveryAllocationThatFailsIsNamed) {
     }
     const Replaced two(epoxy_glTexImage2D, &image2d);
     const Replaced three(epoxy_glTexImage3D, &image3d);
+    const Replaced storage(epoxy_glTexStorage2D, &storage2d);
     const Replaced buffers(epoxy_glBufferData, &bufferData);
     const Replaced errors(epoxy_glGetError, &getError);
     for (const Work& one : all) {
