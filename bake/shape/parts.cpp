@@ -1,8 +1,10 @@
 #include "bake/shape/parts.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "bake/mesh/triangle_plane.h"
 
@@ -63,6 +65,49 @@ std::vector<Part> partsOf(const TriangleMesh& mesh, const MeshEdges& edges, std:
         part.balanced = part.balanced && 2 * down == uses.size();
     });
     return parts;
+}
+
+std::vector<std::uint32_t> copiesInSolids(const TriangleMesh& mesh, std::span<const std::uint32_t> welded,
+                                          std::span<const Part> parts) {
+    std::vector<std::uint32_t> copies;
+    for (const Part& part : parts) {
+        if (part.manifold) {
+            continue;  // edges of copies have four triangles and more
+        }
+        std::vector<std::pair<std::array<std::uint32_t, 3>, std::uint32_t>>
+            keyed;  // corners, sorted; triangle
+        for (const std::uint32_t i : part.triangles) {
+            const glm::uvec3& t = mesh.triangles[i];
+            std::array<std::uint32_t, 3> corners = {welded[t.x], welded[t.y], welded[t.z]};
+            std::sort(corners.begin(), corners.end());
+            keyed.emplace_back(corners, i);
+        }
+        std::sort(keyed.begin(), keyed.end());
+        std::vector<std::uint32_t> again;
+        std::vector<std::array<std::uint32_t, 2>> edges;  // without copies
+        for (std::size_t k = 0; k < keyed.size(); ++k) {
+            const auto& [corners, triangle] = keyed[k];
+            if (k > 0 && keyed[k - 1].first == corners) {
+                again.push_back(triangle);
+            } else {
+                edges.insert(edges.end(),
+                             {{corners[0], corners[1]}, {corners[1], corners[2]}, {corners[0], corners[2]}});
+            }
+        }
+        std::sort(edges.begin(), edges.end());
+        bool closed = true;
+        for (std::size_t begin = 0, end = 0; closed && begin < edges.size(); begin = end) {
+            while (end < edges.size() && edges[end] == edges[begin]) {
+                ++end;
+            }
+            closed = (end - begin) % 2 == 0;
+        }
+        if (closed) {
+            copies.insert(copies.end(), again.begin(), again.end());
+        }
+    }
+    std::sort(copies.begin(), copies.end());
+    return copies;
 }
 
 std::optional<double> enclosedVolume(const std::vector<glm::vec3>& positions,

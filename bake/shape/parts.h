@@ -27,6 +27,14 @@ struct Part {
 [[nodiscard]] std::vector<Part> partsOf(const TriangleMesh& mesh, const MeshEdges& edges,
                                         std::span<const ShapeAs> kinds = {});
 
+/// Triangles that lie where an earlier one of their part does, either way round, if the part is closed without them: more
+/// copies of a solid, or of a piece of one. Two sides of a fin are none, for without one of them its part is open.
+/// \param welded  of the mesh (mesh_edges.h).
+/// \return indices, ascending.
+[[nodiscard]] std::vector<std::uint32_t> copiesInSolids(const TriangleMesh& mesh,
+                                                        std::span<const std::uint32_t> welded,
+                                                        std::span<const Part> parts);
+
 /// What closed triangles enclose, negative if they look inwards. nullopt: nothing, as a sheet with two sides does.
 /// \param center  of the mesh, where sums lose least.
 [[nodiscard]] std::optional<double> enclosedVolume(const std::vector<glm::vec3>& positions,

@@ -16,6 +16,7 @@
 #include "bake/mesh/surface_sampler.h"
 #include "bake/mesh/triangle_plane.h"
 #include "bake/repair/hole_caps.h"
+#include "bake/repair/winding.h"
 #include "bake/shape/parts.h"
 #include "bake/shape/sheet.h"
 #include "bake/shape/solid_union.h"
@@ -97,6 +98,10 @@ class Shaper {
             }
         }
         prepared_.freeEdges();
+        if (const std::vector<std::uint32_t> copies = copiesInSolids(mesh_, welded_, parts_);
+            !copies.empty()) {
+            return runWithout(copies);
+        }
         std::vector<const Part*> solids;
         std::vector<const Part*> others;
         for (const Part& part : parts_) {
@@ -111,11 +116,9 @@ class Shaper {
         }
         report_.solids = solids.size();
         makeSheets(others);
-        if (!open_.empty()) {
-            RELIEF_TRY(sortSheets());
-            RELIEF_TRY(closeParts());
-            addSheets();
-        }
+        RELIEF_TRY(sortSheets());
+        RELIEF_TRY(closeParts());
+        addSheets();
         return ShapedMesh{RELIEF_TRY(union_.finish(report_.thickness)), report_};
     }
 
@@ -132,6 +135,33 @@ class Shaper {
         ShapeAs as = ShapeAs::kAuto;
         Role role;
     };
+
+    /// Copies hide where the inside is, and so which way round a surface lies, and which is a hollow's: what is left is
+    /// wound again.
+    Result<ShapedMesh> runWithout(const std::vector<std::uint32_t>& copies) {
+        TriangleMesh rest = mesh_;
+        rest.source_triangles = mesh_.sourceTriangles();
+        std::size_t kept = 0;
+        for (std::size_t i = 0, next = 0; i < mesh_.triangles.size(); ++i) {
+            if (next < copies.size() && copies[next] == i) {
+                ++next;
+                continue;
+            }
+            rest.triangles[kept] = mesh_.triangles[i];
+            if (!rest.marks.empty()) {
+                rest.marks[kept] = mesh_.marks[i];
+            }
+            ++kept;
+        }
+        rest.triangles.resize(kept);
+        rest.marks.resize(std::min(kept, rest.marks.size()));
+        rest = RELIEF_TRY(finishMesh(std::move(rest)));
+        const Winding winding = RELIEF_TRY(windOutwards(std::move(rest)));
+        ShapedMesh shaped = RELIEF_TRY(Shaper(winding.mesh, options_).run());
+        shaped.report.coincident_triangles += copies.size();
+        shaped.report.named = report_.named;
+        return shaped;
+    }
 
     /// What each triangle is taken for, and in the report how many have which name. Empty: all are taken for the same.
     [[nodiscard]] std::vector<ShapeAs> kindsOfTriangles() {
@@ -175,7 +205,7 @@ class Shaper {
         return part.closed && as != ShapeAs::kShell && (as == ShapeAs::kSolid || !isFlat(part));
     }
 
-    /// Closed, but without a volume, as a sheet with two sides is; or copies of a surface.
+    /// Closed, but without a volume, as a sheet with two sides is.
     [[nodiscard]] bool isFlat(const Part& part) const {
         std::vector<glm::uvec3> triangles;
         triangles.reserve(part.triangles.size());
@@ -199,7 +229,7 @@ class Shaper {
         return 2.0 * (all - once) > kTwice * all;
     }
 
-    /// The parts as sheets for the time being, but for those that are solids once coincident triangles count once.
+    /// The parts as sheets for the time being.
     void makeSheets(const std::vector<const Part*>& parts) {
         open_.resize(parts.size());
         tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
@@ -208,27 +238,6 @@ class Shaper {
         for (const Open& part : open_) {
             report_.coincident_triangles += part.sheet.duplicates;
         }
-        std::erase_if(open_,
-                      [&](const Open& part) { return part.as != ShapeAs::kShell && addSolidOf(part.sheet); });
-    }
-
-    /// Adds a part that is closed once its coincident triangles count once, as copies of a solid are.
-    bool addSolidOf(const Sheet& sheet) {
-        if (sheet.duplicates == 0 || !sheet.closed) {
-            return false;
-        }
-        const std::optional<double> volume =
-            enclosedVolume(sheet.positions, sheet.triangles, mesh_.bounds.center());
-        if (!volume) {
-            return false;
-        }
-        std::vector<glm::uvec3> triangles = sheet.triangles;
-        for (glm::uvec3& t : triangles) {
-            t = *volume < 0.0 ? glm::uvec3(t.x, t.z, t.y) : t;
-        }
-        union_.add(sheet.positions, triangles, triangles.size(), 0);
-        ++report_.solids;
-        return true;
     }
 
     /// Which of the open parts are solids with holes, and which terrains.

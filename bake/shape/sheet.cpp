@@ -91,9 +91,6 @@ void joinEdges(Sheet& sheet) {
         }
     });
     windConsistently(sheet);
-    sheet.closed = std::none_of(sheet.neighbours.begin(), sheet.neighbours.end(), [](const glm::uvec3& n) {
-        return n.x == Sheet::kNoTriangle || n.y == Sheet::kNoTriangle || n.z == Sheet::kNoTriangle;
-    });
     for (std::uint32_t i = 0; i < sheet.triangles.size(); ++i) {
         for (int side = 0; side < 3; ++side) {
             const std::uint32_t next = sheet.neighbours[i][side];

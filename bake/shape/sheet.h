@@ -26,8 +26,6 @@ struct Sheet {
     /// the border, where three or more triangles meet, at a one-sided strip's seam, and at folds sharper than
     /// kFoldCosine).
     std::vector<glm::uvec3> neighbours;
-    bool closed =
-        false;  ///< every edge is one of two triangles, which are wound against each other; folds do not matter
     std::uint64_t duplicates = 0;  ///< triangles that were left out, as an earlier one has the same vertices
 
     static constexpr std::uint32_t kNoTriangle = 0xffffffff;

@@ -146,7 +146,8 @@ def main():
     seeds = len(mutate.seeds())
     with multiprocessing.Pool(call.jobs, begin, [os.path.abspath(call.relief), call.hang]) as pool:
         whole = pool.map(try_mutant, range(-seeds, 0), 1)
-        mutants = pool.map(try_mutant, range(call.count), 4)
+        first = 1000000 * int(os.environ.get('RELIEF_TEST_SEED', '0'))
+        mutants = pool.map(try_mutant, range(first, first + call.count), 4)
         models = pool.map(try_model, sorted(files), 4)
     failures = ['mutant %s: %s' % (r[0], r[4]) for r in mutants if r[4]]
     failures += ['%s: %s' % (r[0], r[4]) for r in models if r[4]]

@@ -15,6 +15,7 @@
 #include "tests/bake/import/gltf_oracle.h"
 #include "tests/bake/import/import_meshes.h"
 #include "tests/bake/meshes.h"
+#include "tests/seeds.h"
 
 namespace relief::test {
 namespace {
@@ -141,7 +142,7 @@ void compare(const fs::path& file, bool right, Verdicts& verdicts) {
 TEST(ImportGltf, WhatTheSpecificationAllowsIsRead) {
     const TemporaryFolder folder;
     Verdicts verdicts;
-    for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    for (std::uint64_t seed = seedFrom(0), end = seed + 300; seed < end; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         Dice dice(seed);
         compare(writeGltf(makeGltf(dice), folder, "m"), true, verdicts);
@@ -153,7 +154,7 @@ TEST(ImportGltf, WhatTheSpecificationAllowsIsRead) {
 TEST(ImportGltf, MutantsAreReadRightOrRefused) {
     const TemporaryFolder folder;
     Verdicts verdicts;
-    for (std::uint64_t seed = 1000; seed < 1700; ++seed) {
+    for (std::uint64_t seed = seedFrom(1000), end = seed + 700; seed < end; ++seed) {
         Dice dice(seed);
         GltfCase gltf = makeGltf(dice);
         const std::string what = mutateGltf(gltf.document, dice);
@@ -169,7 +170,7 @@ TEST(ImportGltf, MutantsAreReadRightOrRefused) {
 TEST(ImportGltf, BytesOfBuffersAreIndicesThatExistOrNot) {
     const TemporaryFolder folder;
     Verdicts verdicts;
-    for (std::uint64_t seed = 5000; seed < 5300; ++seed) {
+    for (std::uint64_t seed = seedFrom(5000), end = seed + 300; seed < end; ++seed) {
         Dice dice(seed);
         GltfCase gltf = makeGltf(dice);
         SCOPED_TRACE("seed " + std::to_string(seed));

@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 #include <cstdio>
+#include <random>
 
 #include "bake/import/import_obj.h"
 #include "bake/import/mesh_import.h"
 #include "tests/bake/import/import_meshes.h"
 #include "tests/bake/meshes.h"
+#include "tests/bake/voxels.h"
+#include "tests/seeds.h"
 
 namespace relief::test {
 namespace {
@@ -116,6 +119,56 @@ TEST(ImportParts, AFileThatWasCutOffIsRefused) {
         const Result<TriangleMesh> cut = load("b.off", off.substr(0, off.size() - 8 * lines));
         ASSERT_FALSE(cut) << lines;
         EXPECT_NE(cut.error().message.find("cut off"), std::string::npos) << cut.error().message;
+    }
+}
+
+std::string numbers(const glm::vec3& p) {
+    return std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z) + "\n";
+}
+
+/// A mesh as ASCII STL, OFF and PLY, by the ends of their names.
+std::vector<std::pair<std::string, std::string>> textsOf(const TriangleMesh& mesh) {
+    std::string stl = "solid s\n";
+    std::string faces;
+    for (const glm::uvec3& t : mesh.triangles) {
+        stl += "facet normal 0 0 0\nouter loop\n";
+        for (int k = 0; k < 3; ++k) {
+            stl += "vertex " + numbers(mesh.positions[t[k]]);
+        }
+        stl += "endloop\nendfacet\n";
+        faces += "3 " + std::to_string(t.x) + " " + std::to_string(t.y) + " " + std::to_string(t.z) + "\n";
+    }
+    std::string vertices;
+    for (const glm::vec3& p : mesh.positions) {
+        vertices += numbers(p);
+    }
+    const std::string n = std::to_string(mesh.positions.size());
+    const std::string m = std::to_string(mesh.triangles.size());
+    return {{"stl", stl + "endsolid\n"},
+            {"off", "OFF\n" + n + " " + m + " 0\n" + vertices + faces},
+            {"ply", "ply\nformat ascii 1.0\nelement vertex " + n +
+                        "\nproperty float x\nproperty float y\nproperty float z\nelement face " + m +
+                        "\nproperty list uchar int vertex_indices\nend_header\n" + vertices + faces}};
+}
+
+TEST(ImportParts, TextThatWasCutOffBetweenAnyTwoWordsIsRefused) {
+    for (std::uint32_t seed = seedFrom(401), end = seed + 12; seed < end; ++seed) {
+        const TriangleMesh mesh = VoxelGrid::random(seed).mesh();
+        std::mt19937 random(seed);
+        for (const auto& [kind, text] : textsOf(mesh)) {
+            const Result<TriangleMesh> whole = load("whole." + kind, text);
+            ASSERT_TRUE(whole) << whole.error().message;
+            EXPECT_EQ(whole->triangles.size(), mesh.triangles.size());
+            for (int i = 0; i < 5; ++i) {
+                // Behind any word but the last; half of them near the end, where little is missing.
+                const std::size_t last = text.find_last_of(" \n", text.size() - 2);
+                const std::size_t from = random() % (i % 2 == 0 ? last : std::min<std::size_t>(last, 60));
+                const std::size_t at = text.find_last_of(" \n", last - from);
+                const Result<TriangleMesh> cut = load("cut." + kind, text.substr(0, at));
+                ASSERT_FALSE(cut) << kind << " of seed " << seed << ", " << at << " of " << text.size();
+                EXPECT_EQ(cut.error().message.find("crashed"), std::string::npos) << cut.error().message;
+            }
+        }
     }
 }
 

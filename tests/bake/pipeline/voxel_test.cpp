@@ -13,6 +13,7 @@
 #include "bake/plan/view_planner.h"
 #include "tests/bake/meshes.h"
 #include "tests/bake/voxels.h"
+#include "tests/seeds.h"
 
 namespace relief::test {
 namespace {
@@ -120,7 +121,7 @@ void expectNothingDeepOutside(const VoxelGrid& grid, const Collider& collider, s
 }
 
 TEST(Voxels, NothingDeepIsOutside) {
-    for (std::uint32_t seed = 1; seed <= 5; ++seed) {
+    for (std::uint32_t seed = seedFrom(1), end = seed + 5; seed < end; ++seed) {
         const VoxelGrid grid = VoxelGrid::random(seed);
         const PreparedMesh mesh(grid.mesh());
         for (const std::vector<std::string>& specs : viewsOf(grid, *mesh, seed)) {
@@ -133,7 +134,7 @@ TEST(Voxels, NothingDeepIsOutside) {
 }
 
 TEST(Voxels, NothingDeepIsOutsideWhateverIsPreferred) {
-    for (std::uint32_t seed = 101; seed <= 103; ++seed) {
+    for (std::uint32_t seed = seedFrom(101), end = seed + 3; seed < end; ++seed) {
         const VoxelGrid grid = VoxelGrid::random(seed);
         const PreparedMesh mesh(grid.mesh());
         for (const Prefer prefer : {Prefer::kInside, Prefer::kOutside}) {
@@ -146,7 +147,7 @@ TEST(Voxels, NothingDeepIsOutsideWhateverIsPreferred) {
 }
 
 TEST(Voxels, NothingDeepIsOutsideOfAPlan) {
-    for (std::uint32_t seed = 201; seed <= 206; ++seed) {
+    for (std::uint32_t seed = seedFrom(201), end = seed + 6; seed < end; ++seed) {
         SCOPED_TRACE(seed);
         const VoxelGrid grid = VoxelGrid::random(seed);
         const PreparedMesh mesh(grid.mesh());

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <random>
 
 #include "bake/measure/accuracy.h"
 #include "bake/mesh/surface_sampler.h"
@@ -12,6 +13,8 @@
 #include "bake/plan/view_planner.h"
 #include "bake/repair/winding.h"
 #include "tests/bake/meshes.h"
+#include "tests/bake/voxels.h"
+#include "tests/seeds.h"
 
 namespace relief::test {
 namespace {
@@ -241,6 +244,41 @@ TEST(Shape, CopiesOfASolidAreOneSolid) {
             const glm::dvec3 share{random.uniform(), random.uniform(), random.uniform()};
             const glm::vec3 p = 2.4 * share - 1.2;
             ASSERT_EQ(query.inside(p), truth.inside(p)) << c.name;
+        }
+    }
+}
+
+TEST(Shape, CopiesOfSolidsOfCubesAreTheseSolids) {
+    for (std::uint32_t seed = seedFrom(301), end = seed + 60; seed < end; ++seed) {
+        SCOPED_TRACE(seed);
+        const VoxelGrid grid = VoxelGrid::random(seed);
+        TriangleMesh mesh = grid.mesh();
+        std::mt19937 random(seed);
+        const auto below = [&](std::uint32_t n) { return static_cast<std::uint32_t>(random() % n); };
+        // Up to three more of each triangle, or of a half of them; of each way round, from any corner, in any place.
+        const std::uint32_t most = 2 + below(3);
+        const std::size_t copied = below(2) == 0 ? mesh.triangles.size() : mesh.triangles.size() / 2;
+        for (std::size_t i = 0; i < copied; ++i) {
+            for (std::uint32_t copy = below(most); copy > 0; --copy) {
+                glm::uvec3 t = mesh.triangles[i];
+                t = below(2) == 0 ? glm::uvec3(t.y, t.z, t.x) : t;
+                mesh.triangles.push_back(below(2) == 0 ? glm::uvec3(t.x, t.z, t.y) : t);
+            }
+        }
+        for (std::size_t i = mesh.triangles.size(); i > 1; --i) {
+            std::swap(mesh.triangles[i - 1], mesh.triangles[below(static_cast<std::uint32_t>(i))]);
+        }
+        const ShapedMesh shape = shaped(finished(mesh.positions, mesh.triangles));
+        EXPECT_EQ(shape.report.sheets + shape.report.terrains + shape.report.solids_with_holes, 0U);
+        const MeshQuery query = queryOf(shape.mesh);
+        const auto share = [&] { return static_cast<float>(random() >> 8) * 0x1p-24F; };
+        for (int i = 0; i < 500; ++i) {
+            const float x = share();
+            const float y = share();
+            const glm::vec3 p = glm::vec3(grid.size()) * glm::vec3(x, y, share());
+            if (grid.distance(p, 1) > 1e-4) {
+                ASSERT_EQ(query.inside(p), grid.inside(p)) << p.x << " " << p.y << " " << p.z;
+            }
         }
     }
 }
