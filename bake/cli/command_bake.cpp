@@ -462,7 +462,7 @@ Result<void> checkArguments(std::vector<std::string> arguments) {
     const std::shared_ptr<BakeCommand> command = registerBake(app, none);
     arguments.insert(arguments.begin(), "bake");
     RELIEF_TRY(parseCommandLine(app, std::move(arguments)));
-    RELIEF_TRY(settingsOf(*command));
+    static_cast<void>(RELIEF_TRY(settingsOf(*command)));
     return {};
 }
 
