@@ -108,6 +108,53 @@ std::optional<std::string> acFault(std::span<const std::byte> bytes) {
     return "it holds less than its counts say and was probably cut off; copy or export it again";
 }
 
+/// The next line of an OFF file that holds a word, without its comment; empty at the end.
+std::string_view takeOffLine(std::string_view& text) {
+    while (!text.empty()) {
+        std::string_view line = takeLine(text);
+        line = line.substr(0, line.find('#'));
+        if (std::string_view rest = line; !takeWord(rest).empty()) {
+            return line;
+        }
+    }
+    return {};
+}
+
+std::uint64_t wordsOf(std::string_view line) {
+    std::uint64_t words = 0;
+    while (!takeWord(line).empty()) {
+        ++words;
+    }
+    return words;
+}
+
+/// assimp takes 0 for each number that the line of a face lacks.
+std::optional<std::string> offFault(std::span<const std::byte> bytes) {
+    std::string_view text = textOf(bytes);
+    std::string_view line = takeOffLine(text);
+    if (std::string_view rest = line; lowerCase(takeWord(rest)).ends_with("off")) {
+        line = wordsOf(rest) > 0 ? rest : takeOffLine(text);
+    }
+    const std::optional<std::uint64_t> vertices = parseUnsigned(takeWord(line));
+    const std::optional<std::uint64_t> faces = parseUnsigned(takeWord(line));
+    if (!vertices || !faces) {
+        return std::nullopt;  // the reader's own business, as lines that are missing are
+    }
+    for (std::uint64_t i = 0; i < *vertices && !text.empty(); ++i) {
+        takeOffLine(text);
+    }
+    for (std::uint64_t i = 0; i < *faces && !text.empty(); ++i) {
+        line = takeOffLine(text);
+        const std::optional<std::uint64_t> corners = parseUnsigned(takeWord(line));
+        if (corners && wordsOf(line) < *corners) {
+            return "face " + std::to_string(i) +
+                   " has fewer vertices than it says, and the file was probably cut off; copy or export it "
+                   "again";
+        }
+    }
+    return std::nullopt;
+}
+
 /// assimp takes the 0 before the x. (Words as nan it judges by itself.)
 bool isHexadecimal(std::string_view word) {
     if (word.starts_with('-') || word.starts_with('+')) {
@@ -176,6 +223,9 @@ std::optional<std::string> textFault(std::string_view extension, std::span<const
     }
     if (extension == "ac") {
         return acFault(bytes);
+    }
+    if (extension == "off") {
+        return offFault(bytes);
     }
     return std::nullopt;
 }

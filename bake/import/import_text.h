@@ -21,7 +21,8 @@ namespace relief {
                                                                  std::span<const std::byte> bytes);
 
 /// What is wrong with a file, and its cure; nullopt: nothing that is looked for here. Of an OBJ: a coordinate that is no
-/// decimal number. Of an STL in ASCII: that it has no end. Of an AC: that it holds less than its counts say.
+/// decimal number. Of an STL in ASCII: that it has no end. Of an AC: that it holds less than its counts say. Of an OFF: a
+/// face of too few vertices.
 /// \param extension  lower case, without its dot.
 [[nodiscard]] std::optional<std::string> textFault(std::string_view extension,
                                                    std::span<const std::byte> bytes);

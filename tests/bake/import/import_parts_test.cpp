@@ -115,6 +115,13 @@ TEST(ImportParts, AFileThatWasCutOffIsRefused) {
     }
     const std::string off = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
     EXPECT_TRUE(load("a.off", off));
+    for (const auto& [line, says] :
+         {std::pair{"3 0 3 2\n", "face 3 has fewer"}, std::pair{"3 0 1 3\n", "face 1 has fewer"}}) {
+        std::string less = off;
+        const std::size_t end = less.find(line) + std::string_view(line).size();
+        expectRefused(load("c.off", less.erase(end - 3, 2)), says);
+    }
+    EXPECT_TRUE(load("d.off", std::string(off).replace(off.find("1 3\n"), 4, "1 3 # 9\n")));
     for (const std::size_t lines : {1, 2, 3}) {
         const Result<TriangleMesh> cut = load("b.off", off.substr(0, off.size() - 8 * lines));
         ASSERT_FALSE(cut) << lines;
