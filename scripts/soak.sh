@@ -13,16 +13,22 @@
 #   bytes   204 bakes of ten meshes in surroundings that must not matter give one hash each (scripts/determinism.sh)
 #   corpus  536 meshes as artists make them are baked at 1 MB and measured, or refused in one line. An hour or so.
 #   fuzz    libFuzzer looks at containers, scenes, plans, recipes, points and import messages, ten minutes each (scripts/fuzz.sh)
+#   seeds   the generated cases of the tests are others: of seed RELIEF_TEST_SEED, by default the day's date
+#   clang   everything is built by clang too, without a warning, and passes its tests.
+#   load    the release tests pass five times while stress-ng keeps processors, memory and disk busy.
+#   bare    .ci/run, from nothing, in a minimal Debian 12 that mmdebstrap makes; scripts/test.sh there without root; and
+#           what the tools do there without a GL. Needs root, and takes hours.
 #   outputs 20 rounds of kills, errors, signals and eight writers leave no torn file (scripts/all_or_nothing.sh)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/setup.sh
-all_runs=(sweep rest import mutants package headers bytes outputs corpus fuzz)
+all_runs=(sweep rest import mutants package headers bytes seeds clang load bare outputs corpus fuzz)
 runs=("$@")
 [ ${#runs[@]} -gt 0 ] || runs=("${all_runs[@]}")
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+stress=
+trap '[ -z "$stress" ] || kill "$stress"; rm -rf "$work"' EXIT
 
 sweep() {
     local bin status=0
@@ -127,6 +133,114 @@ outputs() { scripts/all_or_nothing.sh; }
 corpus() { scripts/accuracy.sh --corpus --all --csv "$work/corpus.csv" | sed 's/^/corpus: /'; }
 
 fuzz() { scripts/fuzz.sh 600; }
+
+seeds() {
+    local seed=${RELIEF_TEST_SEED:-$(date +%Y%m%d)}
+    scripts/build.sh release >/dev/null || return 1
+    # Whatever draws its cases by seedFrom() (tests/seeds.h), and the command lines that do.
+    RELIEF_TEST_SEED=$seed RELIEF_MUTANTS=500 RELIEF_SCENES=200 ctest --preset release -j "$(nproc)" \
+        -R '^(Voxels|ImportGltf|ImportFormat|ImportParts|ImportMessage|Shape|Winding|Mutated)[.]|^cli[.](mutants|scenes)$' \
+        >"$work/seeds.log" || {
+        cat "$work/seeds.log" >&2
+        return 1
+    }
+    echo "seeds: seed $seed: none is wrong"
+}
+
+clang() {
+    scripts/setup.sh clang || return 1
+    cmake -G Ninja -S . -B "$work/clang" -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=RelWithDebInfo \
+        -DCMAKE_CXX_FLAGS_RELWITHDEBINFO='-O2 -g1 -DNDEBUG' >"$work/clang.log" &&
+        cmake --build "$work/clang" >>"$work/clang.log" || {
+        grep -m5 -E ' error: ' "$work/clang.log" >&2
+        return 1
+    }
+    ctest --test-dir "$work/clang" -j "$(nproc)" --output-on-failure >"$work/clang.log" || {
+        tail -40 "$work/clang.log" >&2
+        return 1
+    }
+    echo "clang: $(clang++ -dumpversion) builds everything, and it passes its tests"
+}
+
+load() {
+    local round status=0
+    scripts/setup.sh stress-ng || return 1
+    scripts/build.sh release >/dev/null || return 1
+    stress-ng --quiet --cpu 2 --vm 1 --vm-bytes 512M --io 1 --temp-path "$work" &
+    stress=$!
+    for round in 1 2 3 4 5; do
+        if ctest --preset release -j "$(nproc)" >"$work/load.log" 2>&1; then
+            echo "load: round $round: all pass"
+        else
+            status=1
+            echo "load: round $round: $(grep -cE '\((Failed|Timeout|SEGFAULT|Subprocess[^)]*)\)$' "$work/load.log") fail" >&2
+            cat "$work/load.log" >&2
+        fi
+    done
+    kill "$stress"
+    stress=
+    return "$status"
+}
+
+# in_bare COMMAND: runs it there as root. Its mounts and processes end with it.
+in_bare() {
+    # shellcheck disable=SC2016
+    unshare --mount --pid --fork bash -c '
+        mount --rbind /dev "$0/dev" && mount -t proc proc "$0/proc" && mount -t sysfs sysfs "$0/sys" &&
+            exec env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 chroot "$0" bash -euc "$1"' \
+        "$work/bare" "$1"
+}
+
+bare() {
+    [ "$(id -u)" = 0 ] || {
+        echo "soak.sh: bare needs root, for it makes a system; use sudo" >&2
+        return 1
+    }
+    scripts/setup.sh mmdebstrap || return 1
+    # From where this system has its packages.
+    # shellcheck disable=SC2016
+    apt-get indextargets --format 'deb $(REPO_URI) $(RELEASE) $(COMPONENT)' 'Created-By: Packages' 'Origin: Debian' |
+        grep -E ' bookworm(-updates|-security)? ' >"$work/sources.list"
+    mmdebstrap --quiet --variant=minbase --include=ca-certificates,git bookworm "$work/bare" - <"$work/sources.list" ||
+        return 1
+    cp /etc/resolv.conf "$work/bare/etc/"
+    git clone -q --no-hardlinks . "$work/bare/root/relief" || return 1
+    in_bare '/root/relief/.ci/run' >"$work/bare.log" 2>&1 || {
+        tail -60 "$work/bare.log" >&2
+        return 1
+    }
+    echo "bare: .ci/run passes"
+    in_bare 'useradd -m user && git clone -q --no-hardlinks /root/relief /home/user/relief &&
+        chown -R user: /home/user/relief && su user -s /bin/bash -c "cd && relief/scripts/test.sh"' >"$work/bare.log" 2>&1 || {
+        tail -60 "$work/bare.log" >&2
+        return 1
+    }
+    echo "bare: scripts/test.sh passes without root"
+    # No driver, and no library of EGL: what needs a GPU says so in a line, and what needs none works.
+    in_bare 'apt-get remove -y -qq libegl-mesa0 libegl1 libgl1-mesa-dri
+        cd /root
+        bin=relief/build/release/bin
+        refused() { # COMMAND…: exit code 5 and one line that names what to install
+            local code=0
+            "$@" >out 2>err || code=$?
+            [ $code = 5 ] && [ ! -s out ] && [ "$(wc -l <err)" = 1 ] && grep -q "error: .*libegl1" err && return
+            echo "exit code $code: $*" && cat out err
+            return 1
+        }
+        bunny=/usr/share/glmark2/models/bunny.obj
+        $bin/relief bake $bunny -o bunny.relief -q --budget 200kB
+        $bin/relief check bunny.relief --mesh $bunny >/dev/null
+        echo 0,0,0 >points.csv
+        $bin/relief query bunny.relief --points points.csv -o answers.csv
+        refused $bin/relief query bunny.relief --points points.csv -o gpu.csv --gpu
+        refused $bin/relief bake $bunny -o gpu.relief -q --budget 200kB --backend raster
+        refused $bin/relief-sim bunny.relief --steps 3
+        [ ! -e gpu.csv ] && [ ! -e gpu.relief ]' >"$work/bare.log" 2>&1 || {
+        tail -20 "$work/bare.log" >&2
+        return 1
+    }
+    echo "bare: without a GL the CPU bakes, and what needs a GPU says what to install"
+}
 
 failed=0
 for run in "${runs[@]}"; do
