@@ -233,7 +233,7 @@ bare() {
         echo 0,0,0 >points.csv
         $bin/relief query bunny.relief --points points.csv -o answers.csv
         refused $bin/relief query bunny.relief --points points.csv -o gpu.csv --gpu
-        refused $bin/relief bake $bunny -o gpu.relief -q --budget 200kB --backend raster
+        refused $bin/relief bake $bunny -o gpu.relief -q --paper --backend raster
         refused $bin/relief-sim bunny.relief --steps 3
         [ ! -e gpu.csv ] && [ ! -e gpu.relief ]' >"$work/bare.log" 2>&1 || {
         tail -20 "$work/bare.log" >&2
