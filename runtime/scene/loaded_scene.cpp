@@ -6,6 +6,7 @@
 #include "formats/container.h"
 #include "runtime/files/flow_file.h"
 #include "runtime/scene/scene_parser.h"
+#include "runtime/scene/scene_table.h"
 
 namespace relief {
 namespace {
@@ -33,6 +34,11 @@ Result<Collider> openCollider(const SceneCollider& from) {
                                : inFront(from.origin + ": collider.file", std::move(collider));
 }
 
+bool withinLengths(const Bounds& bounds) {
+    return glm::all(glm::greaterThanEqual(bounds.min, glm::vec3(-kLengthMax))) &&
+           glm::all(glm::lessThanEqual(bounds.max, glm::vec3(kLengthMax)));
+}
+
 }  // namespace
 
 Result<LoadedScene> loadAll(const fs::path& input, const SceneOverrides& overrides) {
@@ -53,6 +59,11 @@ Result<LoadedScene> loadAll(const fs::path& input, const SceneOverrides& overrid
             RELIEF_TRY(from.live ? Result<Collider>(loaded.live.back()->frames) : openCollider(from));
         const bool posed = from.posed || scene.colliders.size() > 1;
         const Bounds bounds = posed ? worldBounds(from, collider.bounds) : collider.bounds;
+        if (!from.origin.empty() && withinLengths(collider.bounds) && !withinLengths(bounds)) {
+            return fail(ErrorCode::kInvalidInput,
+                        from.origin + ": its position and scale bring the collider beyond " +
+                            numberText(kLengthMax) + "; place it nearer, or scale it less");
+        }
         if (loaded.colliders.empty()) {
             loaded.bounds = bounds;
         }

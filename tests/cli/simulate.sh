@@ -65,6 +65,10 @@ S
     done
 done
 
+# A place and a scale within their ranges that are too much together.
+printf '[collider]\nfile = "bunny.relief"\nposition = [0.0, 1e9, 0.0]\nscale = 1e6\n' >moved.toml
+expect_error 3 'moved.toml:2:8: .*beyond 1e\+09; place it nearer' "$relief_sim" moved.toml
+
 # A wind that no float holds any more, within all ranges: an error that names the type, and nothing is dumped. Its own
 # attractor, however small, is no such thing.
 python3 -c "import struct; open('flow.raw', 'wb').write(struct.pack('<24f', *[1e6] * 24))"
