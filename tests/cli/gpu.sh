@@ -80,7 +80,7 @@ mkdir video
 FFMPEG_PID=$PWD/pid PATH=$PWD:$PATH stall_fails read 'picture 0' "$relief_sim" bunny.relief --video video/x.mp4 --size 16x16
 [ -z "$(ls -A video)" ] || die "left behind: $(ls -A video)"
 if [ -s pid ]; then
-    ! kill -0 "$(cat pid)" 2>/dev/null || die "ffmpeg still runs"
+    gone "$(cat pid)" || die "ffmpeg still runs"
 fi
 
 # Without a limit the watchdog stays silent: `timeout` ends the run.

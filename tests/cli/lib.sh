@@ -6,6 +6,7 @@ relief_sim="$RELIEF_BIN/relief-sim"
 bunny=/usr/share/glmark2/models/bunny.obj
 models=/usr/share/assimp/models
 work=$(mktemp -d)
+export PYTHONPATH=$RELIEF_SOURCE/tests/cli PYTHONDONTWRITEBYTECODE=1 # processes.py
 trap 'rm -rf "$work"' EXIT
 cd "$work"
 
@@ -38,6 +39,11 @@ expect_error() {
     grep -qE '^relief(-sim|-pages)?: error: ' "$work/stderr" || die "error without the program's name: $(cat "$work/stderr")"
     grep -qiE -- "$pattern" "$work/stderr" || die "'$(cat "$work/stderr")' does not match '$pattern'"
     [ ! -s "$work/stdout" ] || die "output on stdout beside an error: $*"
+}
+
+# gone PID: waits until neither the process nor one of its group runs; fails if one still does after a while.
+gone() {
+    python3 "$RELIEF_SOURCE/tests/cli/processes.py" "$1"
 }
 
 # COMMAND | matches PATTERN…: as grep -q, but reads to the end, so that COMMAND never fails by SIGPIPE.

@@ -173,7 +173,7 @@ quality = "best"
 T
 for signal in INT TERM; do
     python3 - "$relief" $signal <<'P' || die "interrupting by SIG$signal failed"
-import json, os, signal, subprocess, sys, time
+import json, os, processes, signal, subprocess, sys, time
 number = getattr(signal, 'SIG' + sys.argv[2])
 signal.signal(signal.SIGINT, signal.default_int_handler)  # bash has background jobs ignore it
 run = subprocess.Popen([sys.argv[1], 'bake', '--recipe', 'many/m.toml', '-j', '2', '--events', '-'],
@@ -195,7 +195,7 @@ took = time.monotonic() - begin
 assert code == -number, code
 assert took < 2, took
 assert rest[-1]['event'] == 'summary' and rest[-1]['signal'] == number, rest
-assert not any(os.path.exists('/proc/' + child) for child in children), 'a child is left'
+assert all(processes.gone(int(child), 0.0) for child in children), 'a child is left'
 P
     [ -z "$(find many -name '.relief-*.tmp')" ] || die "a temporary file is left"
     [ -f many/a.relief ] || die "what was done is gone"
@@ -205,7 +205,7 @@ grep -q 'a.relief .*up to date' stdout || die "what was done is not known: $(cat
 
 # A killed run leaves no child behind.
 python3 - "$relief" <<'P' || die "a killed run leaves a child"
-import os, subprocess, sys, time
+import processes, subprocess, sys, time
 run = subprocess.Popen([sys.argv[1], 'bake', '--recipe', 'many/m.toml', '-q'])
 path = f'/proc/{run.pid}/task/{run.pid}/children'
 while not (children := open(path).read().split()):
@@ -213,16 +213,7 @@ while not (children := open(path).read().split()):
 time.sleep(0.1)
 run.kill()
 run.wait()
-def alive(child):
-    try:
-        return open(f'/proc/{child}/stat').read().split()[2] != 'Z'
-    except OSError:
-        return False
-for _ in range(100):
-    if not any(map(alive, children)):
-        sys.exit(0)
-    time.sleep(0.05)
-sys.exit(1)
+sys.exit(0 if all(processes.gone(int(child), 5.0) for child in children) else 1)
 P
 
 # Mistakes in a recipe are reported with their place, before anything is baked.

@@ -3,19 +3,6 @@
 . "$(dirname "$0")/lib.sh"
 mkdir out
 
-gone() { # the kernel takes its time to end the importer of a parent that is gone
-    python3 - "$1" <<'P'
-import os, sys, time
-for _ in range(500):
-    try:
-        os.killpg(int(sys.argv[1]), 0)
-    except ProcessLookupError:
-        sys.exit(0)
-    time.sleep(0.01)
-sys.exit(1)
-P
-}
-
 # limited SECONDS ARGUMENT…: bakes into out/a.relief in a process group of its own; sets $code.
 limited() {
     local seconds=$1
