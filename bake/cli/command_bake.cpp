@@ -461,7 +461,7 @@ Result<void> checkArguments(std::vector<std::string> arguments) {
     Action none;
     const std::shared_ptr<BakeCommand> command = registerBake(app, none);
     arguments.insert(arguments.begin(), "bake");
-    RELIEF_TRY(parseCommandLine(app, std::move(arguments)));
+    static_cast<void>(RELIEF_TRY(parseCommandLine(app, std::move(arguments))));
     static_cast<void>(RELIEF_TRY(settingsOf(*command)));
     return {};
 }

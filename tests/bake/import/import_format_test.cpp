@@ -86,8 +86,8 @@ TEST(ImportFormat, EveryFormatUnderEveryName) {
         ASSERT_TRUE(wrong) << format << ": " << wrong.error().message;
         EXPECT_EQ(wrong->positions, right->positions);
         EXPECT_EQ(wrong->triangles, right->triangles);
-        EXPECT_TRUE(
-            std::any_of(wrong->warnings.begin(), wrong->warnings.end(), [&](const std::string& warning) {
+        EXPECT_TRUE(std::any_of(
+            wrong->warnings.begin(), wrong->warnings.end(), [&format = format](const std::string& warning) {
                 return warning.find("its contents are those of a ." + format) != std::string::npos;
             }));
     }

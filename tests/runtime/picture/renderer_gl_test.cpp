@@ -23,7 +23,6 @@ constexpr std::uint32_t kHeight = 64;
 
 struct Rgb {
     int r, g, b;
-    friend bool operator==(const Rgb&, const Rgb&) = default;
 };
 
 class RendererGlTest : public GlTest {
