@@ -29,8 +29,8 @@ off() { echo "$work/data/meshes/$1.off"; }
 relief_of() {
     local folder=build/determinism-$1
     shift
-    cmake -S . -B "$folder" -G Ninja -DRELIEF_BUILD_TESTS=OFF -DRELIEF_BUILD_BENCHMARKS=OFF "$@" >&2
-    cmake --build "$folder" --target relief >&2
+    cmake -S . -B "$folder" -G Ninja -DRELIEF_BUILD_TESTS=OFF -DRELIEF_BUILD_BENCHMARKS=OFF "$@" >&2 &&
+        cmake --build "$folder" --target relief >&2 || return 1
     echo "$PWD/$folder/bin/relief"
 }
 
