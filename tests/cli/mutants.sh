@@ -7,7 +7,7 @@ run=(python3 -B "$RELIEF_SOURCE/tests/cli/mutants.py")
 suspect() {
     printf '#!/bin/bash\n%s\n' "$2" >suspect
     chmod +x suspect
-    expect 1 "${run[@]}" ./suspect 1 --hang 2 --jobs 4
+    expect 1 env -u RELIEF_TEST_SEED "${run[@]}" ./suspect 1 --hang 2 --jobs 4
     grep -qE "^FAILED: mutant 0: .*$1" "$work/stderr" || die "not found out: $2: $(cat "$work/stderr")"
 }
 refuse='echo "relief: error: $2: no" >&2; exit 3'
