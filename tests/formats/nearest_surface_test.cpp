@@ -69,7 +69,9 @@ Errors measure(const Scene& scene, const Distance& truth, double half) {
     std::uniform_real_distribution<double> within(-half, half);
     Errors errors;
     while (errors.count < 20'000 && !testing::Test::HasFailure()) {
-        const glm::vec3 p(glm::dvec3(within(random), within(random), within(random)));
+        const double z = within(random);
+        const double y = within(random);
+        const glm::vec3 p(glm::dvec3(within(random), y, z));
         const double distance = truth(glm::dvec3(p));
         if (std::abs(distance) > 10.0 * scene.texel || std::abs(distance) < scene.texel) {
             continue;
