@@ -28,8 +28,8 @@ class Sight {
 
     /// The map holds the surface there: an end that it keeps has, in the map's volume, a free line of sight to the
     /// front of the surface, kSurfaceStep above it. A wall that stands along the line of sight (its cosine is below
-    /// kStandingCosine) is held by the planes of Decode::kPlane, but not of gaps, and seen if the line is free kSurfaceStep or kWallStep
-    /// above it.
+    /// kStandingCosine) is held by the planes of Decode::kPlane, but not of gaps, and seen if the line is free
+    /// kSurfaceStep or kWallStep above it.
     [[nodiscard]] bool sees(const SurfacePoint& point) const;
 
     /// Where a free line of sight to a point begins. nullopt: none of them reaches it, and with texels as fine as one

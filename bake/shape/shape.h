@@ -43,9 +43,8 @@ struct ShapeReport {
     std::uint64_t solids_with_holes = 0;
     std::uint64_t sheets = 0;
     std::uint64_t terrains = 0;
-    std::uint64_t coincident_triangles =
-        0;                   ///< left out of sheets, and of solids, which are closed without them
-    double thickness = 0.0;  ///< of the shells, object units; 0: there are none
+    std::uint64_t coincident_triangles = 0;  ///< left out of sheets, and of solids closed without them
+    double thickness = 0.0;                  ///< of the shells, object units; 0: there are none
 
     /// "2 solids, 1 sheet"
     [[nodiscard]] std::string text() const;

@@ -62,9 +62,9 @@ Deformation twistOf(const PictureMesh& mesh) {
 /// Everybody born in the collider's box, and for good.
 Result<ParticleSystem> makeParticles(const Collider& frames, const ColliderTextures& textures,
                                      std::uint32_t count) {
-    auto particles = RELIEF_TRY(ParticleSystem::create({.capacity = count}));
+    auto particles = RELIEF_TRY(ParticleSystem::create({.capacity = count, .path = StepPath::kFragment}));
     RELIEF_TRY(particles.setCollider(&textures));
-    BenchScene scene = makeBenchScene(frames, count, StepPath::kFragment);
+    BenchScene scene = makeBenchScene(frames, count);
     for (Birth& birth : scene.births) {
         birth.lifetime = 1e6F;
     }

@@ -101,6 +101,10 @@ class Copy {
         std::generate(texels.begin(), texels.end(), [&] { return random.uniform(); });
         for (std::size_t i = 0; i < 2; ++i) {
             for (GlTexture& texture : copy.state_[i]) {
+                if (!copy.compute_) {  // where there may be no immutable textures
+                    texture = makeTexture2D(GL_RGBA32F, kWidth, copy.rows_, GL_RGBA, GL_FLOAT, texels.data());
+                    continue;
+                }
                 texture = makeImageTexture2D(GL_RGBA32F, kWidth, copy.rows_);
                 glBindTexture(GL_TEXTURE_2D, texture.name());
                 glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, kWidth, copy.rows_, GL_RGBA, GL_FLOAT, texels.data());
@@ -231,7 +235,8 @@ Result<void> benchSteps(const BenchScene& scene, const Sizes& sizes, Json& json)
 /// A step alone, a step and a picture of points, a step and one of quads.
 Result<void> benchFrames(const Collider& collider, std::uint32_t particles, const Sizes& sizes, StepPath path,
                          Json& json) {
-    const BenchScene scene = makeBenchScene(collider, particles, path);
+    BenchScene scene = makeBenchScene(collider, particles);
+    scene.path = path;
     auto system = RELIEF_TRY(makeColliderSystem(scene));
     auto renderer = RELIEF_TRY(ParticleRenderer::create(
         ColliderView{system.textures.get(), collider.bounds, finestTexel(collider)}));
@@ -337,7 +342,9 @@ Result<Json> bench(int argc, char** argv) {
     json["ratios_of"] = sizes.software ? "CPU time" : "wall clock";
     json["path"] = options.path == StepPath::kCompute ? "compute" : "fragment";
     json["collider"] = {{"maps", collider.maps.size()}};
-    RELIEF_TRY(benchSteps(makeBenchScene(collider, sizes.particles, options.path), sizes, json));
+    BenchScene scene = makeBenchScene(collider, sizes.particles);
+    scene.path = options.path;
+    RELIEF_TRY(benchSteps(scene, sizes, json));
     for (const std::uint32_t particles : sizes.frames) {
         RELIEF_TRY(benchFrames(collider, particles, sizes, options.path, json));
     }

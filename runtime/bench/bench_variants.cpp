@@ -178,9 +178,8 @@ BenchVariant turning(std::string name, std::string what, Solids solids) {
 
 }  // namespace
 
-BenchScene makeBenchScene(Collider collider, std::uint32_t particles, StepPath path) {
+BenchScene makeBenchScene(Collider collider, std::uint32_t particles) {
     BenchScene scene;
-    scene.path = path;
     scene.collider = std::move(collider);
     const Bounds& bounds = scene.collider.bounds;
     const float side = scene.side = bounds.longestSide();

@@ -29,10 +29,10 @@ struct BenchScene {
     float side = 1.0F;  ///< longest of the bounds, object units
     Forces forces;
     std::vector<Birth> births;
-    StepPath path = StepPath::kFragment;
+    StepPath path = StepPath::kFragment;  ///< of the systems
 };
 
-[[nodiscard]] BenchScene makeBenchScene(Collider collider, std::uint32_t particles, StepPath path);
+[[nodiscard]] BenchScene makeBenchScene(Collider collider, std::uint32_t particles);
 
 /// A particle system with what it collides with.
 struct BenchSystem {

@@ -171,6 +171,18 @@ Result<GlFramebuffer> makeFramebuffer(std::span<const GLuint> color_textures, GL
 
 namespace {
 
+/// Links what is attached. \param name  of the program, for the error.
+Result<GlProgram> linked(GlProgram program, const std::string& name) {
+    glLinkProgram(program.name());
+    GLint status = GL_FALSE;
+    glGetProgramiv(program.name(), GL_LINK_STATUS, &status);
+    if (status != GL_TRUE) {
+        return fail(ErrorCode::kFailure,
+                    "program " + name + " does not link: " + infoLog(program.name(), true));
+    }
+    return program;
+}
+
 /// \param outputs  of the vertex shader that transform feedback writes, interleaved; empty: none.
 Result<GlProgram> compileAndLink(std::string_view vertex, std::string_view fragment, std::string_view defines,
                                  std::span<const char* const> outputs, std::string_view appended) {
@@ -187,16 +199,9 @@ Result<GlProgram> compileAndLink(std::string_view vertex, std::string_view fragm
         glTransformFeedbackVaryings(program.name(), static_cast<GLsizei>(outputs.size()), outputs.data(),
                                     GL_INTERLEAVED_ATTRIBS);
     }
-    glLinkProgram(program.name());
-    glDeleteShader(vertex_shader);
+    glDeleteShader(vertex_shader);  // once the program lets go of them
     glDeleteShader(*fragment_shader);
-    GLint linked = GL_FALSE;
-    glGetProgramiv(program.name(), GL_LINK_STATUS, &linked);
-    if (linked != GL_TRUE) {
-        return fail(ErrorCode::kFailure, "program " + std::string(vertex) + " + " + std::string(fragment) +
-                                             " does not link: " + infoLog(program.name(), true));
-    }
-    return program;
+    return linked(std::move(program), std::string(vertex) + " + " + std::string(fragment));
 }
 
 }  // namespace
@@ -209,15 +214,8 @@ Result<GlProgram> makeComputeProgram(std::string_view compute, std::string_view 
     const GLuint shader = RELIEF_TRY(compile(GL_COMPUTE_SHADER, compute, defines));
     GlProgram program(glCreateProgram());
     glAttachShader(program.name(), shader);
-    glLinkProgram(program.name());
-    glDeleteShader(shader);
-    GLint linked = GL_FALSE;
-    glGetProgramiv(program.name(), GL_LINK_STATUS, &linked);
-    if (linked != GL_TRUE) {
-        return fail(ErrorCode::kFailure,
-                    "program " + std::string(compute) + " does not link: " + infoLog(program.name(), true));
-    }
-    return program;
+    glDeleteShader(shader);  // once the program lets go of it
+    return linked(std::move(program), std::string(compute));
 }
 
 Result<GlProgram> makeFeedbackProgram(std::string_view vertex, std::span<const char* const> outputs,

@@ -1,15 +1,12 @@
 // The paths of a step: the same particles, whichever is taken, and the caller's image units as they were.
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <memory>
 #include <vector>
 
-#include "runtime/gl/image_units.h"
+#include "runtime/gl/gl_object.h"
 #include "runtime/particles/particle_system.h"
 #include "runtime/particles/random.h"
 #include "tests/runtime/collider/analytic_collider.h"
-#include "tests/runtime/gl/gl_test.h"
 #include "tests/runtime/particles/collision_test.h"
 
 namespace relief {
