@@ -113,6 +113,7 @@ int main(int argc, char** argv) {
 
     std::map<std::string, std::vector<double>> times;
     std::vector<Hit> hits(std::size_t{kResolution} * kResolution);
+    std::vector<Hit> far_hits(hits.size());
     std::uint64_t bare_hits = 0;
     std::uint64_t our_hits = 0;
     for (int repeat = 0; repeat < kRepeats; ++repeat) {
@@ -122,9 +123,7 @@ int main(int argc, char** argv) {
         our_hits = 0;
         times["trace"].push_back(milliseconds([&] {
             for (const View& view : views) {
-                for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
-                    traceRows(*scene, view, end, {0, 0, kResolution}, hits);
-                }
+                ViewTracer(*scene, view).trace({0, 0, kResolution}, hits, far_hits);
             }
         }));
         const PreparedMesh fresh(*mesh);
@@ -137,10 +136,10 @@ int main(int argc, char** argv) {
     }
     std::filesystem::remove(output);
     for (const View& view : views) {
-        for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
-            traceRows(*scene, view, end, {0, 0, kResolution}, hits);
+        ViewTracer(*scene, view).trace({0, 0, kResolution}, hits, far_hits);
+        for (const std::vector<Hit>& end : {hits, far_hits}) {
             our_hits += static_cast<std::uint64_t>(
-                std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return !hit.empty(); }));
+                std::count_if(end.begin(), end.end(), [](const Hit& hit) { return !hit.empty(); }));
         }
     }
 

@@ -1,5 +1,7 @@
 #include "bake/plan/outer_views.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -158,26 +160,35 @@ Result<void> turn(OuterView& view, const TriangleMesh& mesh, const std::vector<g
     return {};
 }
 
+/// The view of a candidate, and how large it is.
+Result<void> measure(const Candidate& candidate, const TriangleMesh& mesh,
+                     const std::vector<glm::dvec3>& points, OuterView& view) {
+    view.spec.format = MapFormat::kFrontBackFixed;
+    view.spec.decode = Decode::kPlane;
+    view.spec.direction = glm::vec3(candidate.direction) + 0.0F;  // no −0, for the reason
+    if (candidate.up) {
+        view.spec.up = glm::vec3(*candidate.up);
+    }
+    view.spec.width = view.spec.height = 64;  // any: the extents do not depend on it
+    RELIEF_TRY(turn(view, mesh, points));
+    const View frame = RELIEF_TRY(makeView(view.spec, mesh));
+    // The inner 62 of 64 texels cover the mesh.
+    view.width = length(frame.axis[0]) * 62.0 / 64.0;
+    view.height = length(frame.axis[1]) * 62.0 / 64.0;
+    return {};
+}
+
 }  // namespace
 
 Result<std::vector<OuterView>> outerViews(const TriangleMesh& mesh, const std::vector<glm::dvec3>& points,
                                           bool oriented_box) {
-    std::vector<OuterView> views;
-    for (const Candidate& candidate : outerCandidates(mesh, oriented_box)) {
-        OuterView view;
-        view.spec.format = MapFormat::kFrontBackFixed;
-        view.spec.decode = Decode::kPlane;
-        view.spec.direction = glm::vec3(candidate.direction) + 0.0F;  // no −0, for the reason
-        if (candidate.up) {
-            view.spec.up = glm::vec3(*candidate.up);
-        }
-        view.spec.width = view.spec.height = 64;  // any: the extents do not depend on it
-        RELIEF_TRY(turn(view, mesh, points));
-        const View frame = RELIEF_TRY(makeView(view.spec, mesh));
-        // The inner 62 of 64 texels cover the mesh.
-        view.width = length(frame.axis[0]) * 62.0 / 64.0;
-        view.height = length(frame.axis[1]) * 62.0 / 64.0;
-        views.push_back(std::move(view));
+    const std::vector<Candidate> candidates = outerCandidates(mesh, oriented_box);
+    std::vector<OuterView> views(candidates.size());
+    std::vector<Result<void>> done(candidates.size());
+    tbb::parallel_for(std::size_t{0}, candidates.size(),
+                      [&](std::size_t i) { done[i] = measure(candidates[i], mesh, points, views[i]); });
+    for (Result<void>& result : done) {
+        RELIEF_TRY(std::move(result));
     }
     double largest = 0.0;
     for (const OuterView& view : views) {

@@ -51,6 +51,8 @@ constexpr double kCavityReach = 0.65;
 constexpr double kGapShare = 0.3;
 /// Points served badly that directions are tried with for maps of gaps; those of the one that is taken are all.
 constexpr std::size_t kGapPoints = 400;
+/// The first of them, this part, are asked about in all directions.
+constexpr std::size_t kGapParts = 8;
 /// Texels of a map of gaps across one of an outer view: what is seen by no other map is in much of it.
 constexpr double kGapDetail = 1.4;
 /// Texels of a cube across the mean width of its volume: its faces are nearer to the centre than to the
@@ -147,12 +149,19 @@ class Planner {
 
   private:
     [[nodiscard]] Result<void> addSilhouettes() {
-        for (ViewChoice::Chosen& chosen : choice_.views) {
-            if (chosen.map.spec.format != MapFormat::kCube8 && !chosen.silhouette) {
-                MapSpec spec = chosen.map.spec;
-                spec.width = spec.height = 64;  // any: its outline does not depend on it
-                chosen.silhouette.emplace(mesh_, RELIEF_TRY(makeView(spec, mesh_)));
-            }
+        std::vector<Result<void>> done(choice_.views.size());
+        tbb::parallel_for(std::size_t{0}, done.size(),
+                          [&](std::size_t i) { done[i] = addSilhouette(choice_.views[i]); });
+        for (Result<void>& result : done) {
+            RELIEF_TRY(std::move(result));
+        }
+        return {};
+    }
+    [[nodiscard]] Result<void> addSilhouette(ViewChoice::Chosen& chosen) const {
+        if (chosen.map.spec.format != MapFormat::kCube8 && !chosen.silhouette) {
+            MapSpec spec = chosen.map.spec;
+            spec.width = spec.height = 64;  // any: its outline does not depend on it
+            chosen.silhouette.emplace(mesh_, RELIEF_TRY(makeView(spec, mesh_)));
         }
         return {};
     }
@@ -350,26 +359,42 @@ class Planner {
         if (unserved.empty() || !options_.gaps) {
             return std::nullopt;
         }
-        const std::size_t stride = (unserved.size() + kGapPoints - 1) / kGapPoints;
-        std::vector<std::size_t> tried;
-        for (std::size_t k = 0; k < unserved.size(); k += stride) {
-            tried.push_back(unserved[k]);
+        const std::vector<std::size_t> tried = gapPoints(unserved);
+        std::vector<Gaps> left(views.size());
+        for (std::size_t v = 0; v < views.size(); ++v) {
+            left[v].view = &views[v];
+            left[v].area = 8.0 * kGapDetail * kGapDetail * kGapShare * views[v].area;
         }
-        const double weight = static_cast<double>(unserved.size()) / static_cast<double>(tried.size());
-        std::vector<Gaps> all(views.size());
-        tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
-            Gaps& gaps = all[v];
-            gaps.view = &views[v];
-            const glm::dvec3 along(views[v].spec.direction);
-            for (const std::size_t i : tried) {
-                gaps.gain += weight * std::max(0.0F, serviceOfGap(i, along) - served_[i]);
+        // A few points tell the worse half of the directions; the others are asked for twice as many.
+        std::size_t asked = 0;
+        for (std::size_t parts = kGapParts; parts > 0; parts /= 2) {
+            const std::size_t end = tried.size() / parts;
+            tbb::parallel_for(std::size_t{0}, left.size(), [&](std::size_t v) {
+                const glm::dvec3 along(left[v].view->spec.direction);
+                for (std::size_t k = asked; k < end; ++k) {
+                    left[v].gain += std::max(0.0F, serviceOfGap(tried[k], along) - served_[tried[k]]);
+                }
+            });
+            asked = end;
+            std::ranges::stable_sort(left, [](const Gaps& a, const Gaps& b) {
+                return a.gain * std::sqrt(b.area) > b.gain * std::sqrt(a.area);
+            });
+            left.resize(parts == 1 ? 1 : (left.size() + 1) / 2);
+        }
+        left[0].gain *= static_cast<double>(unserved.size()) / static_cast<double>(tried.size());
+        return left[0].gain > 0.0 ? std::optional(left[0]) : std::nullopt;
+    }
+
+    /// Some of the points that are served badly, in an order in which the first are from everywhere too.
+    [[nodiscard]] static std::vector<std::size_t> gapPoints(const std::vector<std::size_t>& unserved) {
+        const std::size_t stride = (unserved.size() + kGapPoints - 1) / kGapPoints;
+        std::vector<std::size_t> points;
+        for (std::size_t first = 0; first < kGapParts; ++first) {
+            for (std::size_t k = first * stride; k < unserved.size(); k += kGapParts * stride) {
+                points.push_back(unserved[k]);
             }
-            gaps.area = 8.0 * kGapDetail * kGapDetail * kGapShare * views[v].area;
-        });
-        const auto best = std::ranges::max_element(all, [&](const Gaps& a, const Gaps& b) {
-            return a.gain * std::sqrt(b.area) < b.gain * std::sqrt(a.area);
-        });
-        return best->gain > 0.0 ? std::optional(*best) : std::nullopt;
+        }
+        return points;
     }
 
     [[nodiscard]] Result<void> take(const Gaps& gaps, const std::vector<std::size_t>& unserved) {

@@ -53,6 +53,7 @@ class EndFitter {
         fit_.reach = options.reach / unit;
         fit_.pixel_cost = options.good_enough / unit;
         fit_.refinements = options.refinements;
+        fit_.parallel = view.projection() == Projection::kOrthographic;
         fit_.let_back = options.let_back;
         fit_.cautious = options.cautious;
         fit_.rays_apart = 0.5 / samples_;
@@ -66,7 +67,8 @@ class EndFitter {
     std::optional<Surface> fit(std::uint32_t face, std::uint32_t x, std::uint32_t y, std::uint32_t first_row,
                                std::span<const Hit> hits, std::span<const Hit> other_hits) {
         const Footprint here{face, x, y, first_row, hits, other_hits};
-        if (!seesAnything(here)) {
+        const auto [any, all] = whatMeets(here);
+        if (!any) {
             return std::nullopt;
         }
         for (std::uint32_t j = 0; j < samples_; ++j) {
@@ -82,14 +84,16 @@ class EndFitter {
                     fine_.ray(face, column, row), hit, other_hits.empty() ? Hit() : other_hits[at]);
             }
         }
-        findEdge(here);
-        lookAround(here);
+        edge_.clear();
+        if (!all) {
+            findEdge(here);
+        }
         const TexelRay centre = view_.ray(face, x, y);
         deep_.setTexel((std::size_t{face} * view_.height + y) * view_.width + x);
         // Of one ray the plane that it meets is as good as is known: one that faces the viewer cuts more of a slope.
-        const std::optional<FittedPlane> plane =
-            fitSupportingPlane(rays_, around_, edge_, end_.fromViewer(centre), centre.origin, fit_,
-                               samples_ > 1 ? &deep_ : nullptr);
+        const std::optional<FittedPlane> plane = fitSupportingPlane(
+            rays_, [&] { return lookAround(here); }, edge_, end_.fromViewer(centre), centre.origin, fit_,
+            samples_ > 1 ? &deep_ : nullptr);
         if (!plane) {
             return std::nullopt;
         }
@@ -155,15 +159,19 @@ class EndFitter {
         return row / samples_ == here.y && column / samples_ == here.x;
     }
 
-    [[nodiscard]] bool seesAnything(const Footprint& here) const {
+    /// Whether any and all of the rays of a footprint and about it meet a surface.
+    [[nodiscard]] std::pair<bool, bool> whatMeets(const Footprint& here) const {
         bool any = false;
+        bool all = true;
         forEachAround(here, [&](std::uint32_t column, std::uint32_t row) {
-            any = any || !here.hits[indexOf(here, column, row)].empty();
+            const bool meets = !here.hits[indexOf(here, column, row)].empty();
+            any = any || meets;
+            all = all && meets;
         });
-        return any;
+        return {any, all};
     }
 
-    void lookAround(const Footprint& here) {
+    std::span<const FootprintRay> lookAround(const Footprint& here) {
         around_.clear();
         forEachAround(here, [&](std::uint32_t column, std::uint32_t row) {
             const std::size_t at = indexOf(here, column, row);
@@ -173,13 +181,13 @@ class EndFitter {
                                                here.other_hits.empty() ? Hit() : here.other_hits[at]));
             }
         });
+        return around_;
     }
 
     /// Where the edges of surfaces run through the texel: between neighbours of which one meets a surface and
     /// the other does not, the last ray that does. One of the neighbours may be of the ring about the texel:
     /// a wall an eighth of a texel away from its border is as much of a wall.
     void findEdge(const Footprint& here) {
-        edge_.clear();
         forEachAround(here, [&](std::uint32_t column, std::uint32_t row) {
             for (const auto& [right, up] : {std::pair{1U, 0U}, std::pair{0U, 1U}}) {
                 const bool on_face = column + right < fine_.width && row + up < fine_.height;
@@ -249,7 +257,8 @@ class MapFitter {
           fine_(scaled(view, options.samples)),
           finest_(scaled(fine_, kEdgeParts)),
           options_(options),
-          map_(view.emptyMap()) {
+          map_(view.emptyMap()),
+          tracer_(scene, fine_) {
         map_.decode = Decode::kPlane;
     }
 
@@ -283,9 +292,9 @@ class MapFitter {
             if (view_.keeps(end)) {
                 std::vector<Hit>& hits = hits_[static_cast<std::size_t>(end)];
                 hits.resize(std::size_t{rays.end - rays.begin} * fine_.width);
-                traceRows(scene_, fine_, end, rays, hits);
             }
         }
+        tracer_.trace(rays, hits_[0], hits_[1]);
         return tbb::parallel_reduce(
             tbb::blocked_range<std::uint32_t>(stripe.begin, stripe.end), std::uint64_t{0},
             [&](const auto& block, std::uint64_t count) {
@@ -327,6 +336,7 @@ class MapFitter {
     View finest_;  // and for each place between two rays where an edge is looked for
     const FittedMapOptions& options_;
     DepthMap map_;
+    ViewTracer tracer_;                     // of fine_
     std::array<std::vector<Hit>, 2> hits_;  // of the stripe, by RayEnd
 };
 

@@ -50,6 +50,7 @@ class GapFitter {
         fit_.reach = options.reach / unit;
         fit_.pixel_cost = options.good_enough / unit;
         fit_.refinements = options.refinements;
+        fit_.parallel = view.projection() == Projection::kOrthographic;
         fit_.let_back = options.let_back;
         fit_.steepest = kSteepest;
         share_ = options.cautious ? kCautiousShare : kFreeShare;
@@ -63,8 +64,8 @@ class GapFitter {
             return texel;
         }
         for (std::size_t end = 0; end < 2; ++end) {
-            const std::optional<FittedPlane> plane =
-                fitSupportingPlane(rays_[end], {}, {}, ends_[end].fromViewer(centre), centre.origin, fit_);
+            const std::optional<FittedPlane> plane = fitSupportingPlane(
+                rays_[end], nullptr, {}, ends_[end].fromViewer(centre), centre.origin, fit_);
             if (!plane) {
                 return {};
             }

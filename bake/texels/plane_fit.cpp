@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
 #include "bake/mesh/triangle_plane.h"
+#include "bake/texels/highest_below.h"
 #include "formats/plane.h"
 #include "formats/texel.h"
 
@@ -29,13 +31,105 @@ std::uint16_t codeOf(const glm::dvec3& normal) {
     return packNormal(encodeNormal(glm::vec3(normal)));
 }
 
+/// Doubles that are calculated with together, each as it would be alone.
+using Lanes [[gnu::vector_size(16)]] = double;
+constexpr std::size_t kLanes = 2;
+
+/// The rays of a footprint, component by component: what is asked of all of them, for each candidate, is asked of some
+/// at a time.
+class RayTable {
+  public:
+    RayTable(std::span<const FootprintRay> rays, const glm::dvec3& origin, double u_max)
+        : count_(rays.size()), blocks_((rays.size() + kLanes - 1) / kLanes) {
+        assert(count_ <= kFootprintRaysMax);
+        for (std::size_t i = 0; i < blocks_ * kLanes; ++i) {
+            const FootprintRay& ray = rays[std::min(i, count_ - 1)];  // a ray more changes no maximum
+            Block& block = table_[i / kLanes];
+            const std::size_t lane = i % kLanes;
+            const glm::dvec3 start = ray.origin - origin;
+            for (int axis = 0; axis < 3; ++axis) {
+                block.start[axis][lane] = start[axis];
+                block.direction[axis][lane] = ray.direction[axis];
+            }
+            const bool meets = ray.u >= 0.0;
+            block.least[lane] = meets ? -kInfinity : kInfinity;
+            block.first[lane] = ray.u;
+            block.last[lane] = ray.u_last;
+            block.free_end[lane] = meets ? ray.u : u_max;
+        }
+    }
+
+    /// Of the planes that are asked about, until the next is set.
+    void setNormal(const glm::dvec3& n) {
+        for (std::size_t b = 0; b < blocks_; ++b) {
+            Block& block = table_[b];
+            block.along = n.x * block.direction[0] + (n.y * block.direction[1] + n.z * block.direction[2]);
+            block.at_start = n.x * block.start[0] + (n.y * block.start[1] + n.z * block.start[2]);
+        }
+    }
+
+    /// The least offset of a plane with no surface point in front of it. One that leans away from the viewer must not cut
+    /// what lies behind the surface that a ray meets.
+    [[nodiscard]] double support() const {
+        Lanes most = {-kInfinity, -kInfinity};
+        for (std::size_t b = 0; b < blocks_; ++b) {
+            const Block& block = table_[b];
+            const Lanes u = block.along > 0.0 ? block.last : block.first;
+            const Lanes value = block.at_start + u * block.along;
+            const Lanes met = block.least < value ? value : most;
+            most = met > most ? met : most;
+        }
+        return std::max(most[0], most[1]);
+    }
+
+    /// The sum over all rays of the length of what is free but behind the plane, each at most `reach`.
+    [[nodiscard]] double freeSpaceBehind(double offset, double reach) const {
+        const Lanes none = {};
+        const Lanes endless = none + kInfinity;
+        const Lanes most = none + reach;
+        double sum = 0.0;
+        for (std::size_t b = 0; b < blocks_; ++b) {
+            const Block& block = table_[b];
+            const Lanes at_plane = (offset - block.at_start) / block.along;
+            // A plane that is met from its free side; one that is met from behind.
+            const Lanes facing = block.free_end - (at_plane > 0.0 ? at_plane : none);
+            const Lanes until = block.along > 0.0 ? at_plane : endless;
+            const Lanes until_end = until < block.free_end ? until : block.free_end;
+            const Lanes leaning = block.at_start > offset ? none : until_end;
+            const Lanes length = block.along < 0.0 ? facing : leaning;
+            const Lanes positive = length > 0.0 ? length : none;
+            const Lanes counted = positive < most ? positive : most;
+            for (std::size_t lane = 0; lane < std::min(kLanes, count_ - b * kLanes); ++lane) {
+                sum += counted[lane];
+            }
+        }
+        return sum;
+    }
+
+  private:
+    struct Block {
+        Lanes start[3];
+        Lanes direction[3];
+        Lanes least;  // what its support must be above: nothing is, of a ray that meets nothing
+        Lanes first;
+        Lanes last;
+        Lanes free_end;
+        Lanes along;
+        Lanes at_start;
+    };
+    std::size_t count_;
+    std::size_t blocks_;
+    std::array<Block, (kFootprintRaysMax + kLanes - 1) / kLanes> table_;
+};
+
 /// The search for one texel's plane.
 class PlaneSearch {
   public:
-    PlaneSearch(std::span<const FootprintRay> rays, std::span<const FootprintRay> around,
+    PlaneSearch(std::span<const FootprintRay> rays, const AroundRays& around,
                 std::span<const FootprintRay> edge, const FootprintRay& centre, const glm::dvec3& zero_depth,
                 const PlaneFitOptions& options, DeepSolid* deep)
         : rays_(rays),
+          table_(rays, centre.origin, options.u_max),
           around_(around),
           edge_(edge),
           centre_(centre),
@@ -65,9 +159,15 @@ class PlaneSearch {
         // The mean first: on a smooth surface nothing else is needed.
         const double sum_length = std::sqrt(dot(sum, sum));
         tryCode(codeOf(sum_length > 1e-6 ? sum / sum_length : facing));
+        if (best_cost_ > good_enough_ && trySupported()) {
+            return best_;
+        }
+        const glm::dvec3* last = nullptr;
         for (const FootprintRay& ray : rays_) {
-            if (ray.u >= 0.0 && best_cost_ > good_enough_) {
+            const bool as_before = last != nullptr && *last == ray.normal;  // most are of one triangle
+            if (ray.u >= 0.0 && !as_before && best_cost_ > good_enough_) {
                 tryCode(codeOf(ray.normal));
+                last = &ray.normal;
             }
         }
         if (best_cost_ > good_enough_) {
@@ -88,6 +188,50 @@ class PlaneSearch {
     }
 
   private:
+    /// Where all rays are parallel and meet one surface, the best plane is known.
+    /// \return false if there is more to be tried.
+    bool trySupported() {
+        if (!options_.parallel || options_.refinements == 0 || options_.let_back > 0.0 || options_.cautious ||
+            hits_ < static_cast<int>(rays_.size())) {
+            return false;
+        }
+        // Across the ray, in units of its length.
+        const glm::dvec3& ray = centre_.direction;
+        const double square = direction_length_ * direction_length_;
+        const glm::dvec3 x = anyAcross(ray);
+        const glm::dvec3 y = cross(ray, x) / direction_length_;
+        std::array<glm::dvec3, kFootprintRaysMax> points;
+        glm::dvec3 mean(0.0);
+        for (std::size_t i = 0; i < rays_.size(); ++i) {
+            const glm::dvec3 start = rays_[i].origin - centre_.origin;
+            points[i] = {dot(start, x) / square, dot(start, y) / square,
+                         rays_[i].u + dot(start, ray) / square};
+            mean += points[i];
+        }
+        mean /= static_cast<double>(rays_.size());
+        for (std::size_t i = 0; i < rays_.size(); ++i) {
+            points[i] -= mean;
+        }
+        const std::optional<glm::dvec2> slope = highestBelow({points.data(), rays_.size()});
+        if (!slope) {
+            return false;
+        }
+        // Of the plane's tangents, x + slope.x · ray and y + slope.y · ray, the product: of length 1 at right angles.
+        const glm::dvec3 normal = slope->x * x + slope->y * y - ray;
+        tryCode(codeOf(normal / std::sqrt(dot(normal, normal))));
+        if (best_cost_ > good_enough_) {
+            tryNeighbours(1);
+        }
+        return best_cost_ < options_.reach * static_cast<double>(rays_.size()) / 8.0;
+    }
+
+    /// Of the length of v.
+    static glm::dvec3 anyAcross(const glm::dvec3& v) {
+        const bool along_x = std::abs(v.x) > 0.6 * std::sqrt(dot(v, v));
+        const glm::dvec3 across = cross(v, along_x ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(1.0, 0.0, 0.0));
+        return across * std::sqrt(dot(v, v) / dot(across, across));
+    }
+
     void refine() {
         for (int step = 1 << options_.refinements >> 1; step > 0 && best_cost_ > good_enough_; step /= 2) {
             tryNeighbours(step);
@@ -124,12 +268,13 @@ class PlaneSearch {
             return;
         }
         // Pushed until no sampled surface point lies in front.
-        double offset = supportOf(rays_, normal);
+        table_.setNormal(normal);
+        double offset = table_.support();
         if (cosine > -kSteepCosine) {
             offset = std::max(offset, supportOf(edge_, normal));
         }
         if (options_.cautious || cosine > -kDeepCosine) {
-            offset = std::max(offset, supportOf(around_, normal));
+            offset = std::max(offset, supportOf(around(), normal));
         }
         if (options_.let_back > 0.0 && !stands) {
             const double spread = offset - lowestOf(rays_, normal);
@@ -144,13 +289,14 @@ class PlaneSearch {
         }
         const double stored = stands ? (2.0 * scaled / kDepthCodes - 1.0) * options_.range - from_zero
                                      : scaled / kDepthCodes * options_.u_max * along;
-        double cost = 0.0;
-        for (const FootprintRay& ray : rays_) {
-            cost += freeSpaceBehind(ray, normal, stored);
-            cost += options_.let_back > 0.0 ? solidInFront(ray, normal, stored) : 0.0;
-            if (cost >= best_cost_) {
-                return;
+        double cost = table_.freeSpaceBehind(stored, options_.reach);
+        if (options_.let_back > 0.0) {
+            for (const FootprintRay& ray : rays_) {
+                cost += solidInFront(ray, normal, stored);
             }
+        }
+        if (cost >= best_cost_) {
+            return;
         }
         const bool vouched =
             options_.starts_free && options_.let_back == 0.0 && !stands && -cosine > options_.rays_apart;
@@ -159,6 +305,14 @@ class PlaneSearch {
         }
         best_cost_ = cost;
         best_ = {normal, unpackNormal(code), stands, static_cast<std::uint16_t>(scaled)};
+    }
+
+    std::span<const FootprintRay> around() {
+        if (!around_asked_ && around_) {
+            around_rays_ = around_();
+        }
+        around_asked_ = true;
+        return around_rays_;
     }
 
     /// \param offset  of the plane from the centre ray's start
@@ -239,21 +393,6 @@ class PlaneSearch {
         }
     }
 
-    /// Length of the part of a ray that is free but behind the plane, at most `reach`.
-    [[nodiscard]] double freeSpaceBehind(const FootprintRay& ray, const glm::dvec3& normal,
-                                         double offset) const {
-        const double along = dot(normal, ray.direction);
-        const double start = dot(normal, ray.origin - centre_.origin);
-        const double end = ray.u >= 0.0 ? ray.u : options_.u_max;  // of the free part
-        if (along < 0.0) {                                         // the plane is met from its free side
-            return std::clamp(end - std::max(0.0, (offset - start) / along), 0.0, options_.reach);
-        }
-        if (start > offset) {
-            return 0.0;
-        }
-        return std::min({options_.reach, end, along > 0.0 ? (offset - start) / along : kInfinity});
-    }
-
     /// Length of the part of a ray that is solid but in front of the plane.
     [[nodiscard]] double solidInFront(const FootprintRay& ray, const glm::dvec3& normal,
                                       double offset) const {
@@ -281,7 +420,10 @@ class PlaneSearch {
     }
 
     std::span<const FootprintRay> rays_;
-    std::span<const FootprintRay> around_;
+    RayTable table_;
+    const AroundRays& around_;
+    std::span<const FootprintRay> around_rays_;
+    bool around_asked_ = false;
     std::span<const FootprintRay> edge_;
     const FootprintRay& centre_;
     glm::dvec3 from_zero_;
@@ -309,8 +451,7 @@ const std::array<glm::dvec3, 65536>& decodedNormals() {
     return *table;
 }
 
-std::optional<FittedPlane> fitSupportingPlane(std::span<const FootprintRay> rays,
-                                              std::span<const FootprintRay> around,
+std::optional<FittedPlane> fitSupportingPlane(std::span<const FootprintRay> rays, const AroundRays& around,
                                               std::span<const FootprintRay> edge, const FootprintRay& centre,
                                               const glm::dvec3& zero_depth, const PlaneFitOptions& options,
                                               DeepSolid* deep) {

@@ -15,6 +15,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <span>
@@ -36,6 +37,9 @@ struct FootprintRay {
     double u_last = -1.0;    ///< of the last surface on the ray: nothing behind it is solid
 };
 
+/// Rays of a footprint, at most.
+inline constexpr std::size_t kFootprintRaysMax = 64;
+
 struct PlaneFitOptions {
     double u_max = 1.0;       ///< depth range: map depth 1, or kCubeDepthMax
     double reach = 1.0;       ///< free space behind the plane counts up to this length, in u
@@ -52,6 +56,7 @@ struct PlaneFitOptions {
     /// The farthest that a point of the texel is from a ray, in units of the texel's diagonal. A plane of a smaller cosine
     /// drops, between two rays, by more than the diagonal.
     double rays_apart = 0.0;
+    bool parallel = false;  ///< all rays of a footprint have one direction
     /// Rays start in free space. Otherwise one that meets nothing may have run through the solid all the way.
     bool starts_free = true;
 };
@@ -69,17 +74,20 @@ struct FittedPlane {
 /// The decoded vectors of all packed normals, in double: candidates are looked up thousands of times a row.
 [[nodiscard]] const std::array<glm::dvec3, 65536>& decodedNormals();
 
+using AroundRays = std::function<std::span<const FootprintRay>()>;
+
 /// Fits one texel.
-/// \param rays    the footprint; at least one.
-/// \param around  rays beside the footprint, whose surface points may not lie in front of steep planes either
+/// \param rays    the footprint; at least one, at most kFootprintRaysMax.
+/// \param around  rays beside the footprint, whose surface points may not lie in front of steep planes either; asked for
+///                when the first such plane is tried, and not after the call. May be null.
 /// \param edge    rays that just meet a surface, beside ones that meet none: what a standing plane leans on.
 /// \param centre  the texel's centre ray, from the viewer on: where the plane's depth is stored.
 /// \param zero_depth  the point of that ray whose map depth is 0.
 /// \param deep  of the texel: planes that the rays alone do not vouch for may not cut what is deep. May be null.
 /// \return nullopt if no ray meets a surface: the texel is empty. Without starts_free also if nothing is known.
 [[nodiscard]] std::optional<FittedPlane> fitSupportingPlane(
-    std::span<const FootprintRay> rays, std::span<const FootprintRay> around,
-    std::span<const FootprintRay> edge, const FootprintRay& centre, const glm::dvec3& zero_depth,
-    const PlaneFitOptions& options, DeepSolid* deep = nullptr);
+    std::span<const FootprintRay> rays, const AroundRays& around, std::span<const FootprintRay> edge,
+    const FootprintRay& centre, const glm::dvec3& zero_depth, const PlaneFitOptions& options,
+    DeepSolid* deep = nullptr);
 
 }  // namespace relief

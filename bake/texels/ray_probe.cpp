@@ -27,11 +27,6 @@ constexpr std::array<std::array<double, 2>, kBesideRays> kBesideDirections = {{{
                                                                                {-0.9945, 0.1045},
                                                                                {-0.6428, 0.7660}}};
 
-bool isGrazing(const TrianglePlane& plane, const glm::dvec3& direction, double along) {
-    return !(along * along >
-             kGrazingCosine * kGrazingCosine * dot(plane.normal, plane.normal) * dot(direction, direction));
-}
-
 }  // namespace
 
 RayProbe::RayProbe(const RayScene& scene, const View& view, RayEnd end)
@@ -42,9 +37,7 @@ RayProbe::RayProbe(const RayScene& scene, const View& view, RayEnd end)
       end_(end),
       inside_out_(scene.winding() < 0.0),
       closed_(scene.closed()),
-      first_ray_(view.ray(0, 0, 0)),
-      column_step_(view.axis[0] / static_cast<double>(view.width)),
-      row_step_(view.axis[1] / static_cast<double>(view.height)) {}
+      planes_(scene.mesh(), view) {}
 
 void RayProbe::Collector::filter(const RTCFilterFunctionNArguments* args) {
     // RTCIntersectContext is the first member: Embree hands back the pointer it was given.
@@ -87,41 +80,14 @@ RTCRayHit RayProbe::queryOf(const RaySegment& segment) const {
     return query;
 }
 
-RayProbe::PlaneDepth RayProbe::planeDepth(std::uint32_t triangle) const {
-    const TrianglePlane plane = planeOf(mesh_, triangle);
-    const double along = dot(plane.normal, first_ray_.direction);
-    const double per_along = 1.0 / along;
-    PlaneDepth depth;
-    depth.triangle = triangle;
-    depth.from_behind = isFromBehind(along);
-    depth.grazing = isGrazing(plane, first_ray_.direction, along);
-    depth.base = dot(plane.normal, plane.point - first_ray_.origin) * per_along;
-    depth.per_column = -dot(plane.normal, column_step_) * per_along;
-    depth.per_row = -dot(plane.normal, row_step_) * per_along;
-    return depth;
-}
-
 Hit RayProbe::cubeHit(const TexelRay& ray, std::uint32_t triangle) const {
     const TrianglePlane plane = planeOf(mesh_, triangle);
     const double along = dot(plane.normal, ray.direction);
     double depth = dot(plane.normal, plane.point - ray.origin) / along;
-    if (isGrazing(plane, ray.direction, along)) {
-        depth = insideTriangle(ray, triangle, depth);
+    if (isGrazing(plane.normal, ray.direction, along)) {
+        depth = insideTriangle(mesh_, triangle, ray, depth);
     }
     return {static_cast<float>(std::clamp(depth, 0.0, double{kCubeDepthMax})), triangle, isFromBehind(along)};
-}
-
-double RayProbe::insideTriangle(const TexelRay& ray, std::uint32_t triangle, double depth) const {
-    const glm::uvec3& t = mesh_.triangles[triangle];
-    const double per_depth = dot(ray.direction, ray.direction);
-    double low = std::numeric_limits<double>::max();
-    double high = -low;
-    for (const std::uint32_t corner : {t.x, t.y, t.z}) {
-        const double at = dot(glm::dvec3(mesh_.positions[corner]) - ray.origin, ray.direction) / per_depth;
-        low = std::min(low, at);
-        high = std::max(high, at);
-    }
-    return depth >= low && depth <= high ? depth : std::isnan(depth) || depth < low ? low : high;
 }
 
 std::uint32_t RayProbe::bestAtEdge(const RaySegment& segment, float at, std::uint32_t first) {
@@ -141,11 +107,7 @@ std::uint32_t RayProbe::bestFacing(const RaySegment& segment, std::uint32_t firs
     std::uint32_t best = first;
     double best_score = -2.0;
     for (const std::uint32_t triangle : collector_.triangles) {
-        const TrianglePlane plane = planeOf(mesh_, triangle);
-        const double length =
-            std::sqrt(dot(plane.normal, plane.normal) * dot(segment.direction, segment.direction));
-        const double facing = -winding_ * dot(plane.normal, segment.direction) / length;
-        const double score = facing > 0.0 ? facing : -1.0 - facing;
+        const double score = facingScore(mesh_, triangle, winding_, segment.direction);
         if (score > best_score || (score == best_score && triangle < best)) {
             best = triangle;
             best_score = score;

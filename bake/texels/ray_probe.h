@@ -12,6 +12,7 @@
 #include "bake/mesh/embree_mesh.h"
 #include "bake/mesh/triangle_plane.h"
 #include "bake/plan/view.h"
+#include "bake/texels/plane_depth.h"
 #include "bake/texels/ray_scene.h"
 
 namespace relief {
@@ -59,18 +60,12 @@ class RayProbe {
     [[nodiscard]] Hit lookAgain(std::uint32_t face, std::uint32_t x, std::uint32_t y, const Hit& hit);
 
   private:
-    static constexpr std::size_t kPlaneDepths = 256;
+    static constexpr std::size_t kKnownPlanes = 256;
     static constexpr std::uint32_t kNone = 0xffffffff;
 
-    /// The depth of a triangle's plane at the texels of an orthographic map: at (x, y) it is
-    /// base + x · per_column + y · per_row.
-    struct PlaneDepth {
+    struct KnownPlane {
         std::uint32_t triangle = kNone;
-        bool from_behind = false;
-        bool grazing = false;
-        double base = 0.0;
-        double per_column = 0.0;
-        double per_row = 0.0;
+        PlaneDepth depth;
     };
 
     /// Collects the triangles that one ray meets, and lets it pass through them.
@@ -83,28 +78,24 @@ class RayProbe {
 
     Hit orthographicHit(std::uint32_t x, std::uint32_t y, std::uint32_t triangle) {
         // Neighbouring texels mostly see the same few triangles.
-        PlaneDepth& plane = plane_depths_[triangle % kPlaneDepths];
+        KnownPlane& plane = known_planes_[triangle % kKnownPlanes];
         if (plane.triangle != triangle) {
-            plane = planeDepth(triangle);
+            plane = {triangle, planes_.of(triangle)};
         }
-        double depth =
-            plane.base + static_cast<double>(x) * plane.per_column + static_cast<double>(y) * plane.per_row;
-        if (plane.grazing) {
-            depth = insideTriangle(view_.ray(0, x, y), triangle, depth);
+        double depth = plane.depth.at(x, y);
+        if (plane.depth.grazing) {
+            depth = insideTriangle(mesh_, triangle, view_.ray(0, x, y), depth);
         }
-        return {static_cast<float>(std::clamp(depth, 0.0, 1.0)), triangle, plane.from_behind};
+        return {static_cast<float>(std::clamp(depth, 0.0, 1.0)), triangle, isFromBehind(plane.depth.along)};
     }
 
     /// The segment in Embree's units.
     [[nodiscard]] RTCRayHit queryOf(const RaySegment& segment) const;
-    [[nodiscard]] PlaneDepth planeDepth(std::uint32_t triangle) const;
     [[nodiscard]] Hit cubeHit(const TexelRay& ray, std::uint32_t triangle) const;
     /// \param along  dot(normal, direction of growing depth)
     [[nodiscard]] bool isFromBehind(double along) const {
         return end_ == RayEnd::kNear ? along > 0.0 : along < 0.0;
     }
-    /// A depth on a triangle seen almost edge-on, held between the depths of its corners.
-    [[nodiscard]] double insideTriangle(const TexelRay& ray, std::uint32_t triangle, double depth) const;
     /// Whether a line through `origin`, square to `right` and `up`, passes a triangle within kTouching.
     [[nodiscard]] bool touches(const glm::dvec3& origin, const glm::dvec3& right, const glm::dvec3& up,
                                std::uint32_t triangle) const;
@@ -118,11 +109,8 @@ class RayProbe {
     RayEnd end_;
     bool inside_out_;
     bool closed_;
-    // For an orthographic view: the ray of texel (0, 0), and the steps from one texel's ray to the next.
-    TexelRay first_ray_;
-    glm::dvec3 column_step_;
-    glm::dvec3 row_step_;
-    std::array<PlaneDepth, kPlaneDepths> plane_depths_;
+    PlaneDepths planes_;  // for an orthographic view
+    std::array<KnownPlane, kKnownPlanes> known_planes_;
     Collector collector_;
 };
 

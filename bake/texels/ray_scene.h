@@ -30,6 +30,13 @@ class Hit {
     std::uint32_t code_ = kNothing;
 };
 
+/// Rows of one face of a view, in the order of a map's texels.
+struct RowRange {
+    std::uint32_t face = 0;
+    std::uint32_t begin = 0;
+    std::uint32_t end = 0;  ///< one behind the last
+};
+
 /// A mesh to be traced, for any number of views, from any thread.
 class RayScene {
   public:

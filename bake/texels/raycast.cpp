@@ -1,7 +1,6 @@
 #include "bake/texels/raycast.h"
 
 #include <embree3/rtcore.h>
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -21,7 +20,7 @@ constexpr float kDepthJump = 0.08F;
 /// A hit this near to an edge, in barycentric coordinates, may as well be the neighbour's.
 constexpr float kEdgeWidth = 1e-4F;
 
-/// Traces the packets of one row of tiles.
+/// Traces the packets of one row of tiles of a cube.
 class TileTracer {
   public:
     TileTracer(const RayScene& scene, const View& view, RayEnd end)
@@ -32,9 +31,6 @@ class TileTracer {
             packet_.ray.mask[lane] = 0xffffffff;
             packet_.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
         }
-        if (view.projection() == Projection::kOrthographic) {
-            prepareOrthographic();
-        }
     }
 
     /// \param hits  rows of the view from y0 on.
@@ -43,11 +39,7 @@ class TileTracer {
         for (std::uint32_t x0 = 0; x0 < view_.width; x0 += kTile) {
             const std::uint32_t columns = std::min(kTile, view_.width - x0);
             setValid(columns, rows);
-            if (view_.projection() == Projection::kOrthographic) {
-                setOrthographicRays(x0, y0);
-            } else {
-                setCubeRays(face, x0, y0);
-            }
+            setRays(face, x0, y0);
             rtcIntersect16(valid_, tree_.scene.get(), &context_, &packet_);
             prefetchCorners();
             // What mendPinholes goes by: most tiles need no second look.
@@ -110,38 +102,7 @@ class TileTracer {
         }
     }
 
-    void prepareOrthographic() {
-        const RaySegment segment = probe_.segmentOf(view_.ray(0, 0, 0));
-        local_origin_ = (segment.origin - tree_.center) * tree_.scale;
-        local_column_step_ = view_.axis[0] / static_cast<double>(view_.width) * tree_.scale;
-        local_row_step_ = view_.axis[1] / static_cast<double>(view_.height) * tree_.scale;
-        const glm::vec3 direction = segment.direction * tree_.scale;
-        for (int lane = 0; lane < kLanes; ++lane) {
-            const glm::vec3 offset = static_cast<double>(columnOf(lane)) * local_column_step_ +
-                                     static_cast<double>(rowOf(lane)) * local_row_step_;
-            offset_x_[lane] = offset.x;
-            offset_y_[lane] = offset.y;
-            offset_z_[lane] = offset.z;
-            packet_.ray.dir_x[lane] = direction.x;
-            packet_.ray.dir_y[lane] = direction.y;
-            packet_.ray.dir_z[lane] = direction.z;
-        }
-        length_ = static_cast<float>(segment.length);
-    }
-
-    void setOrthographicRays(std::uint32_t x0, std::uint32_t y0) {
-        const glm::vec3 corner = local_origin_ + (static_cast<double>(x0) * local_column_step_ +
-                                                  static_cast<double>(y0) * local_row_step_);
-        for (int lane = 0; lane < kLanes; ++lane) {
-            packet_.ray.org_x[lane] = corner.x + offset_x_[lane];
-            packet_.ray.org_y[lane] = corner.y + offset_y_[lane];
-            packet_.ray.org_z[lane] = corner.z + offset_z_[lane];
-            packet_.ray.tfar[lane] = length_;
-            packet_.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
-        }
-    }
-
-    void setCubeRays(std::uint32_t face, std::uint32_t x0, std::uint32_t y0) {
+    void setRays(std::uint32_t face, std::uint32_t x0, std::uint32_t y0) {
         for (int lane = 0; lane < kLanes; ++lane) {
             const RaySegment segment =
                 probe_.segmentOf(view_.ray(face, x0 + columnOf(lane), y0 + rowOf(lane)));
@@ -227,39 +188,47 @@ class TileTracer {
     RayEnd end_;
     RayProbe probe_;
     RTCIntersectContext context_{};
-    // For an orthographic view, in Embree's units: where the ray of texel (0, 0) starts, and the steps from one
-    // texel's ray to the next.
-    glm::dvec3 local_origin_{0.0};
-    glm::dvec3 local_column_step_{0.0};
-    glm::dvec3 local_row_step_{0.0};
-    float length_ = 1.0F;
     std::uint32_t valid_columns_ = 0;
     std::uint32_t valid_rows_ = 0;
     alignas(64) int valid_[kLanes] = {};
-    alignas(64) float offset_x_[kLanes] = {};
-    alignas(64) float offset_y_[kLanes] = {};
-    alignas(64) float offset_z_[kLanes] = {};
     alignas(64) RTCRayHit16 packet_{};
 };
 
 }  // namespace
 
-void traceRows(const RayScene& scene, const View& view, RayEnd end, const RowRange& rows,
-               std::span<Hit> hits) {
-    const std::uint32_t tile_rows = (rows.end - rows.begin + kTile - 1) / kTile;
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, tile_rows), [&](const auto& block) {
-        const RowRange part{rows.face, rows.begin + block.begin() * kTile,
-                            std::min(rows.begin + block.end() * kTile, rows.end)};
-        const std::size_t first = std::size_t{part.begin - rows.begin} * view.width;
-        traceRowsAlone(scene, view, end, part, hits.subspan(first));
+ViewTracer::ViewTracer(const RayScene& scene, const View& view) : scene_(scene), view_(view) {
+    if (view.projection() == Projection::kOrthographic) {
+        scan_.emplace(scene, view);
+    }
+}
+
+void ViewTracer::trace(const RowRange& rows, std::span<Hit> near, std::span<Hit> far) const {
+    // Blocks that begin where those of ScanConverter do.
+    constexpr std::uint32_t kRows = ScanConverter::kBlockRows;
+    tbb::parallel_for(rows.begin / kRows, (rows.end + kRows - 1) / kRows, [&](std::uint32_t block) {
+        const RowRange part{rows.face, std::max(rows.begin, block * kRows),
+                            std::min(rows.end, (block + 1) * kRows)};
+        const std::size_t first = std::size_t{part.begin - rows.begin} * view_.width;
+        const std::size_t count = std::size_t{part.end - part.begin} * view_.width;
+        const auto of = [&](std::span<Hit> hits) { return hits.empty() ? hits : hits.subspan(first, count); };
+        traceAlone(part, of(near), of(far));
     });
 }
 
-void traceRowsAlone(const RayScene& scene, const View& view, RayEnd end, const RowRange& rows,
-                    std::span<Hit> hits) {
-    TileTracer tracer(scene, view, end);
-    for (std::uint32_t y = rows.begin; y < rows.end; y += kTile) {
-        tracer.traceTileRow(rows.face, y, rows.end, &hits[std::size_t{y - rows.begin} * view.width]);
+void ViewTracer::traceAlone(const RowRange& rows, std::span<Hit> near, std::span<Hit> far) const {
+    if (scan_) {
+        scan_->scanRows(rows, near, far);
+        return;
+    }
+    for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
+        const std::span<Hit> hits = end == RayEnd::kNear ? near : far;
+        if (hits.empty()) {
+            continue;
+        }
+        TileTracer tracer(scene_, view_, end);
+        for (std::uint32_t y = rows.begin; y < rows.end; y += kTile) {
+            tracer.traceTileRow(rows.face, y, rows.end, &hits[std::size_t{y - rows.begin} * view_.width]);
+        }
     }
 }
 

@@ -21,7 +21,7 @@ struct RefineOptions {
     double false_inside = 1.0;
     double false_outside = 2.0;
     int sweeps = 1;                 ///< over all maps
-    double points_per_texel = 6.0;  ///< and end of a map; at least kRefinePointsMin in all
+    double points_per_texel = 4.0;  ///< and end of a map; at least kRefinePointsMin in all
     double sigma_share = 0.005;     ///< of the points' offset, in units of the mesh's longest side
     std::uint64_t seed = 1;
 };

@@ -110,7 +110,7 @@ TEST(PlaneFit, NoSampledSurfacePointLiesInFrontOfThePlane) {
         }
         const FootprintRay center{{0, 0, 0}, {0, 0, 1}, -1.0, glm::dvec3(0.0)};
         const std::optional<FittedPlane> plane =
-            fitSupportingPlane(rays, {}, {}, center, center.origin, options);
+            fitSupportingPlane(rays, nullptr, {}, center, center.origin, options);
         ASSERT_TRUE(plane);
         ASSERT_FALSE(plane->stands);
         EXPECT_LE(plane->normal.z, -1.0 / 32.0);
@@ -125,7 +125,7 @@ TEST(PlaneFit, NoSampledSurfacePointLiesInFrontOfThePlane) {
 
 TEST(PlaneFit, FootprintWithoutSurfaceIsEmpty) {
     const FootprintRay ray{{0, 0, 0}, {0, 0, 1}, -1.0, glm::dvec3(0.0)};
-    EXPECT_FALSE(fitSupportingPlane(std::vector<FootprintRay>(4, ray), {}, {}, ray, ray.origin, {}));
+    EXPECT_FALSE(fitSupportingPlane(std::vector<FootprintRay>(4, ray), nullptr, {}, ray, ray.origin, {}));
 }
 
 TEST(FittedMap, ATiltedFaceIsFoundToAQuantumEverywhere) {

@@ -31,9 +31,9 @@ TEST(Encode, WritesWhatEncodeTexelWrites) {
                 for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
                     if (view->keeps(end)) {
                         hits[static_cast<std::size_t>(end)].resize(std::size_t{view->width} * view->height);
-                        traceRows(*scene, *view, end, rows, hits[static_cast<std::size_t>(end)]);
                     }
                 }
+                ViewTracer(*scene, *view).trace(rows, hits[0], hits[1]);
                 covered += encodeRows(*scene, normals, *view, rows, hits[0], hits[1], map);
                 for (std::uint32_t y = 0; y < view->height; ++y) {
                     for (std::uint32_t x = 0; x < view->width; ++x) {
@@ -76,13 +76,14 @@ TEST(Trace, RowsOfAnyRangeAreTheSameRows) {
         ASSERT_TRUE(view);
         const std::uint32_t face = view->faceCount() - 1;
         std::vector<Hit> whole(std::size_t{view->width} * 37);
-        traceRows(*scene, *view, RayEnd::kNear, {face, 0, 37}, whole);
+        const ViewTracer tracer(*scene, *view);
+        tracer.trace({face, 0, 37}, whole, {});
         std::size_t hits = 0;
         for (const std::uint32_t step : {1U, 5U, 8U}) {
             for (std::uint32_t y = 0; y < 37; y += step) {
                 const RowRange rows{face, y, std::min(y + step, 37U)};
                 std::vector<Hit> part(std::size_t{rows.end - rows.begin} * view->width);
-                traceRows(*scene, *view, RayEnd::kNear, rows, part);
+                tracer.trace(rows, part, {});
                 for (std::size_t i = 0; i < part.size(); ++i) {
                     const Hit& other = whole[std::size_t{y} * view->width + i];
                     ASSERT_EQ(part[i].empty(), other.empty());
