@@ -49,10 +49,11 @@ constexpr int kCavityCandidates = 100;
 constexpr double kCavityReach = 0.65;
 /// Of the area of an outer view, what the gaps along its direction take up: a guess, until one is chosen.
 constexpr double kGapShare = 0.3;
-/// Points served badly that directions are tried with for maps of gaps; those of the one that is taken are all.
-constexpr std::size_t kGapPoints = 400;
+/// Points served badly that directions are tried with for maps of gaps, and places for cubes; the one that is taken is
+/// asked about all.
+constexpr std::size_t kTryPoints = 400;
 /// The first of them, this part, are asked about in all directions.
-constexpr std::size_t kGapParts = 8;
+constexpr std::size_t kTryParts = 8;
 /// Texels of a map of gaps across one of an outer view: what is seen by no other map is in much of it.
 constexpr double kGapDetail = 1.4;
 /// Texels of a cube across the mean width of its volume: its faces are nearer to the centre than to the
@@ -359,7 +360,7 @@ class Planner {
         if (unserved.empty() || !options_.gaps) {
             return std::nullopt;
         }
-        const std::vector<std::size_t> tried = gapPoints(unserved);
+        const std::vector<std::size_t> tried = tryPoints(unserved);
         std::vector<Gaps> left(views.size());
         for (std::size_t v = 0; v < views.size(); ++v) {
             left[v].view = &views[v];
@@ -367,7 +368,7 @@ class Planner {
         }
         // A few points tell the worse half of the directions; the others are asked for twice as many.
         std::size_t asked = 0;
-        for (std::size_t parts = kGapParts; parts > 0; parts /= 2) {
+        for (std::size_t parts = kTryParts; parts > 0; parts /= 2) {
             const std::size_t end = tried.size() / parts;
             tbb::parallel_for(std::size_t{0}, left.size(), [&](std::size_t v) {
                 const glm::dvec3 along(left[v].view->spec.direction);
@@ -386,11 +387,11 @@ class Planner {
     }
 
     /// Some of the points that are served badly, in an order in which the first are from everywhere too.
-    [[nodiscard]] static std::vector<std::size_t> gapPoints(const std::vector<std::size_t>& unserved) {
-        const std::size_t stride = (unserved.size() + kGapPoints - 1) / kGapPoints;
+    [[nodiscard]] static std::vector<std::size_t> tryPoints(const std::vector<std::size_t>& unserved) {
+        const std::size_t stride = (unserved.size() + kTryPoints - 1) / kTryPoints;
         std::vector<std::size_t> points;
-        for (std::size_t first = 0; first < kGapParts; ++first) {
-            for (std::size_t k = first * stride; k < unserved.size(); k += kGapParts * stride) {
+        for (std::size_t first = 0; first < kTryParts; ++first) {
+            for (std::size_t k = first * stride; k < unserved.size(); k += kTryParts * stride) {
                 points.push_back(unserved[k]);
             }
         }
@@ -432,11 +433,13 @@ class Planner {
         if (unserved.empty()) {
             return std::nullopt;
         }
+        const std::vector<std::size_t> some = tryPoints(unserved);
         std::vector<Cavity> candidates(kCavityCandidates);
         tbb::parallel_for(0, kCavityCandidates, [&](int k) {
-            candidates[static_cast<std::size_t>(k)] =
-                lookFromWithin(unserved, options_.seed * 1'000'003 + round * kCavityCandidates +
-                                             static_cast<std::uint64_t>(k));
+            const glm::dvec3 center =
+                placeWithin(unserved, options_.seed * 1'000'003 + round * kCavityCandidates +
+                                          static_cast<std::uint64_t>(k));
+            candidates[static_cast<std::size_t>(k)] = lookFromWithin(some, center);
         });
         const Cavity* best = nullptr;
         double best_score = 0.0;
@@ -447,7 +450,7 @@ class Planner {
                 best_score = score;
             }
         }
-        return best == nullptr ? std::nullopt : std::optional(*best);
+        return best == nullptr ? std::nullopt : std::optional(lookFromWithin(unserved, best->center));
     }
 
     void take(const Cavity& cavity) {
@@ -473,18 +476,24 @@ class Planner {
         return 2.0 * kCubeDensity * std::max({half.x, half.y, half.z});
     }
 
-    /// A cube in free space near some point that is not served, and what it would serve.
-    [[nodiscard]] Cavity lookFromWithin(const std::vector<std::size_t>& unserved, std::uint64_t seed) const {
+    /// A place in free space near some point that is not served.
+    [[nodiscard]] glm::dvec3 placeWithin(const std::vector<std::size_t>& unserved, std::uint64_t seed) const {
         MersenneRandom random(seed);
-        Cavity cavity;
         const glm::dvec3 from = points_[unserved[random.below(unserved.size())]].position;
         const glm::dvec3 direction = random.direction();
         double free_length = kCavityReach * side_;
         if (const auto hit = query_.firstHit(from, direction); hit && hit->along < free_length) {
             free_length = hit->along;
         }
-        cavity.center = from + (0.2 + 0.6 * random.uniform()) * free_length * direction;
-        for (const std::size_t i : unserved) {
+        return from + (0.2 + 0.6 * random.uniform()) * free_length * direction;
+    }
+
+    /// A cube there, and what it would serve of some points.
+    [[nodiscard]] Cavity lookFromWithin(const std::vector<std::size_t>& points,
+                                        const glm::dvec3& center) const {
+        Cavity cavity;
+        cavity.center = center;
+        for (const std::size_t i : points) {
             const glm::dvec3 offset = points_[i].position - cavity.center;
             const double distance = length(offset);
             if (distance > kCavityReach * side_ || !(distance > 0.0) ||

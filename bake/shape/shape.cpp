@@ -52,14 +52,16 @@ TriangleMesh meshOf(const Sheet& sheet, const std::string& name) {
     return mesh;
 }
 
-/// Share of the rays that lead out of the mesh, from either side of a sheet of it.
+/// Share of the rays that lead out of the mesh, from either side of a sheet of it; at least so many, once it is more than
+/// kSheetSight on both.
 std::array<double, 2> sightOf(const Sheet& sheet, std::size_t asked, const MeshQuery& query) {
     const double side = query.mesh().bounds.longestSide();
     const TriangleMesh mesh = meshOf(sheet, "");
     const AreaTable areas(mesh);
     MersenneRandom random(1);
     std::array<double, 2> out{};
-    for (std::size_t k = 0; k < asked; ++k) {
+    const auto rays = static_cast<double>(asked * kParityDirections.size());
+    for (std::size_t k = 0; k < asked && std::min(out[0], out[1]) <= kSheetSight * rays; ++k) {
         const double at = (static_cast<double>(k) + random.uniform()) / static_cast<double>(asked);
         const auto [on, normal] = drawOnSurface(mesh, areas, at, random);
         for (std::size_t face = 0; face < 2; ++face) {
@@ -71,7 +73,6 @@ std::array<double, 2> sightOf(const Sheet& sheet, std::size_t asked, const MeshQ
             }
         }
     }
-    const auto rays = static_cast<double>(asked * kParityDirections.size());
     return {out[0] / rays, out[1] / rays};
 }
 

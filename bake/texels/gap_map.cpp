@@ -116,22 +116,26 @@ class GapFitter {
     bool look(std::uint32_t x, std::uint32_t y, const TexelRay& centre, const LineGap& gap) {
         rays_[0].clear();
         rays_[1].clear();
-        for (std::uint32_t j = 0; j < samples_; ++j) {
-            for (std::uint32_t i = 0; i < samples_; ++i) {
-                const TexelRay along = fine_.ray(0, x * samples_ + i, y * samples_ + j);
-                for (const double middle :
-                     {middleBeside(gap, centre, along.origin - centre.origin), gap.middle()}) {
-                    const std::optional<FootprintRay> closes = lookOneWay(along, middle, 0);
-                    const std::optional<FootprintRay> opens = lookOneWay(along, middle, 1);
-                    if (closes && opens) {
-                        rays_[0].push_back(*closes);
-                        rays_[1].push_back(*opens);
-                        break;
-                    }
+        const double least = share_ * samples_ * samples_;
+        const std::uint32_t count = samples_ * samples_;
+        for (std::uint32_t k = 0; k < count; ++k) {
+            if (!(static_cast<double>(rays_[0].size() + (count - k)) > least)) {
+                return false;  // whatever the others meet
+            }
+            const TexelRay along = fine_.ray(0, x * samples_ + k % samples_, y * samples_ + k / samples_);
+            for (const double middle :
+                 {middleBeside(gap, centre, along.origin - centre.origin), gap.middle()}) {
+                const std::optional<FootprintRay> closes = lookOneWay(along, middle, 0);
+                const std::optional<FootprintRay> opens =
+                    closes ? lookOneWay(along, middle, 1) : std::nullopt;
+                if (opens) {
+                    rays_[0].push_back(*closes);
+                    rays_[1].push_back(*opens);
+                    break;
                 }
             }
         }
-        return static_cast<double>(rays_[0].size()) > share_ * samples_ * samples_;
+        return static_cast<double>(rays_[0].size()) > least;
     }
 
     [[nodiscard]] std::optional<FootprintRay> lookOneWay(const TexelRay& along, double middle,
