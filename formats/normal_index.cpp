@@ -28,7 +28,7 @@ glm::vec3 decodeNormal(NormalIndex index) {
     return v / std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
 }
 
-NormalIndex encodeNormal(const glm::vec3& normal) {
+NormalIndex lowestAround(const glm::vec3& normal) {
     // Double throughout: tiny or huge vectors must not lose their direction on the way to the octahedron.
     const double x = normal.x;
     const double y = normal.y;
@@ -42,17 +42,25 @@ NormalIndex encodeNormal(const glm::vec3& normal) {
         s = folded_s;
         t = folded_t;
     }
-    const int low_s =
-        std::clamp(static_cast<int>(std::floor(s * kNormalHalfRange)) + kNormalHalfRange, 0, kLast - 1);
-    const int low_t =
-        std::clamp(static_cast<int>(std::floor(t * kNormalHalfRange)) + kNormalHalfRange, 0, kLast - 1);
+    const auto lowest = [](double coordinate) {
+        const int index = static_cast<int>(std::floor(coordinate * kNormalHalfRange)) + kNormalHalfRange;
+        return static_cast<std::uint8_t>(std::clamp(index, 0, kLast - 1));
+    };
+    return {lowest(s), lowest(t)};
+}
 
+NormalIndex encodeNormal(const glm::vec3& normal) {
+    const double x = normal.x;
+    const double y = normal.y;
+    const double z = normal.z;
+    const double norm = std::abs(x) + std::abs(y) + std::abs(z);
+    const NormalIndex low = lowestAround(normal);
     NormalIndex best;
     double best_cosine = -std::numeric_limits<double>::infinity();
     for (int dt = 0; dt <= 1; ++dt) {
         for (int ds = 0; ds <= 1; ++ds) {
-            const NormalIndex candidate{static_cast<std::uint8_t>(low_s + ds),
-                                        static_cast<std::uint8_t>(low_t + dt)};
+            const NormalIndex candidate{static_cast<std::uint8_t>(low.s + ds),
+                                        static_cast<std::uint8_t>(low.t + dt)};
             const glm::vec3 decoded = decodeNormal(candidate);
             const double cosine = x * decoded.x + y * decoded.y + z * decoded.z;
             // A clear improvement is needed, so that ties go to the lower index on every machine.

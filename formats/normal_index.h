@@ -26,6 +26,11 @@ struct NormalIndex {
 /// The unit vector of an index. Every pair of bytes has one; never NaN.
 [[nodiscard]] glm::vec3 decodeNormal(NormalIndex index);
 
+/// Of the four indices that surround a vector in the square, the one of the lowest s and t; the others are one further
+/// along s, t or both.
+/// \param normal  any finite vector but zero; need not be of length 1.
+[[nodiscard]] NormalIndex lowestAround(const glm::vec3& normal);
+
 /// The index whose vector is nearest to `normal` by angle among the four that surround it in the square
 /// (Cigolle et al., JCGT 2014, "oct16 precise"): at most 0.64° off, against 0.94° by rounding.
 /// \param normal  any finite vector but zero; need not be of length 1.

@@ -18,7 +18,7 @@
 #include "bake/import/mesh_import.h"
 #include "bake/pipeline/bake.h"
 #include "bake/plan/view.h"
-#include "bake/texels/raycast.h"
+#include "bake/texels/scan_convert.h"
 #include "formats/base/stopwatch.h"
 #include "formats/container.h"
 
@@ -123,7 +123,7 @@ int main(int argc, char** argv) {
         our_hits = 0;
         times["trace"].push_back(milliseconds([&] {
             for (const View& view : views) {
-                ViewTracer(*scene, view).trace({0, 0, kResolution}, hits, far_hits);
+                ScanConverter(*scene, view).scan({0, 0, kResolution}, hits, far_hits);
             }
         }));
         const PreparedMesh fresh(*mesh);
@@ -136,7 +136,7 @@ int main(int argc, char** argv) {
     }
     std::filesystem::remove(output);
     for (const View& view : views) {
-        ViewTracer(*scene, view).trace({0, 0, kResolution}, hits, far_hits);
+        ScanConverter(*scene, view).scan({0, 0, kResolution}, hits, far_hits);
         for (const std::vector<Hit>& end : {hits, far_hits}) {
             our_hits += static_cast<std::uint64_t>(
                 std::count_if(end.begin(), end.end(), [](const Hit& hit) { return !hit.empty(); }));

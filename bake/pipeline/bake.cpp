@@ -16,8 +16,8 @@
 #include "bake/texels/fitted_map.h"
 #include "bake/texels/gap_map.h"
 #include "bake/texels/rasterize.h"
-#include "bake/texels/raycast.h"
 #include "bake/texels/refine.h"
+#include "bake/texels/scan_convert.h"
 #include "formats/base/stopwatch.h"
 #include "formats/container.h"
 
@@ -181,15 +181,15 @@ class MapBaker {
             return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(texels / view.width, 4, view.height));
         };
         const std::uint32_t stripe_rows = rows_of(kStripeTexels);
-        std::optional<ViewTracer> tracer;
+        std::optional<ScanConverter> scan;
         {
             const TimeAdder watch(report.trace_ms);
-            tracer.emplace(scene_, view);
+            scan.emplace(scene_, view);
         }
         for (std::uint32_t face = 0; face < view.faceCount(); ++face) {
             for (std::uint32_t y = 0; y < view.height; y += stripe_rows) {
                 const RowRange stripe{face, y, std::min(y + stripe_rows, view.height)};
-                covered += bakeStripe(view, *tracer, stripe, rows_of(kBlockTexels), report, map);
+                covered += bakeStripe(view, *scan, stripe, rows_of(kBlockTexels), report, map);
                 stripeDone(std::uint64_t{stripe.end - stripe.begin} * view.width);
             }
         }
@@ -205,7 +205,7 @@ class MapBaker {
         double encode_ms = 0.0;
     };
 
-    std::uint64_t bakeStripe(const View& view, const ViewTracer& tracer, const RowRange& stripe,
+    std::uint64_t bakeStripe(const View& view, const ScanConverter& scan, const RowRange& stripe,
                              std::uint32_t block_rows, BakeReport& report, DepthMap& map) const {
         double stripe_ms = 0.0;
         tbb::enumerable_thread_specific<Worker> workers;
@@ -218,7 +218,7 @@ class MapBaker {
                 Worker& worker = workers.local();
                 {
                     const TimeAdder watch_trace(worker.trace_ms);
-                    trace(view, tracer, rows, worker);
+                    trace(view, scan, rows, worker);
                 }
                 const TimeAdder watch_encode(worker.encode_ms);
                 worker.covered +=
@@ -238,12 +238,12 @@ class MapBaker {
         return all.covered;
     }
 
-    static void trace(const View& view, const ViewTracer& tracer, const RowRange& rows, Worker& worker) {
+    static void trace(const View& view, const ScanConverter& scan, const RowRange& rows, Worker& worker) {
         for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
             worker.hits[static_cast<std::size_t>(end)].resize(
                 view.keeps(end) ? std::size_t{rows.end - rows.begin} * view.width : 0);
         }
-        tracer.traceAlone(rows, worker.hits[0], worker.hits[1]);
+        scan.scanAlone(rows, worker.hits[0], worker.hits[1]);
     }
 
     const RayScene& scene_;

@@ -8,7 +8,7 @@
 #include "bake/mesh/mesh.h"
 #include "bake/plan/view.h"
 #include "bake/texels/ray_scene.h"
-#include "bake/texels/raycast.h"
+#include "bake/texels/scan_convert.h"
 #include "formats/depth_map.h"
 
 namespace relief {

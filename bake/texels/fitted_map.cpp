@@ -13,7 +13,7 @@
 #include "bake/texels/fitted_end.h"
 #include "bake/texels/plane_fit.h"
 #include "bake/texels/ray_probe.h"
-#include "bake/texels/raycast.h"
+#include "bake/texels/scan_convert.h"
 #include "formats/texel.h"
 
 namespace relief {
@@ -53,7 +53,6 @@ class EndFitter {
         fit_.reach = options.reach / unit;
         fit_.pixel_cost = options.good_enough / unit;
         fit_.refinements = options.refinements;
-        fit_.parallel = view.projection() == Projection::kOrthographic;
         fit_.let_back = options.let_back;
         fit_.cautious = options.cautious;
         fit_.rays_apart = 0.5 / samples_;
@@ -258,7 +257,7 @@ class MapFitter {
           finest_(scaled(fine_, kEdgeParts)),
           options_(options),
           map_(view.emptyMap()),
-          tracer_(scene, fine_) {
+          scan_(scene, fine_) {
         map_.decode = Decode::kPlane;
     }
 
@@ -294,7 +293,7 @@ class MapFitter {
                 hits.resize(std::size_t{rays.end - rays.begin} * fine_.width);
             }
         }
-        tracer_.trace(rays, hits_[0], hits_[1]);
+        scan_.scan(rays, hits_[0], hits_[1]);
         return tbb::parallel_reduce(
             tbb::blocked_range<std::uint32_t>(stripe.begin, stripe.end), std::uint64_t{0},
             [&](const auto& block, std::uint64_t count) {
@@ -336,7 +335,7 @@ class MapFitter {
     View finest_;  // and for each place between two rays where an edge is looked for
     const FittedMapOptions& options_;
     DepthMap map_;
-    ViewTracer tracer_;                     // of fine_
+    ScanConverter scan_;                    // of fine_
     std::array<std::vector<Hit>, 2> hits_;  // of the stripe, by RayEnd
 };
 

@@ -50,7 +50,6 @@ class GapFitter {
         fit_.reach = options.reach / unit;
         fit_.pixel_cost = options.good_enough / unit;
         fit_.refinements = options.refinements;
-        fit_.parallel = view.projection() == Projection::kOrthographic;
         fit_.let_back = options.let_back;
         fit_.steepest = kSteepest;
         share_ = options.cautious ? kCautiousShare : kFreeShare;

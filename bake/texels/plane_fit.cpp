@@ -188,10 +188,10 @@ class PlaneSearch {
     }
 
   private:
-    /// Where all rays are parallel and meet one surface, the best plane is known.
+    /// Where all rays meet one surface, and run side by side as far as a texel is wide, the best plane is known.
     /// \return false if there is more to be tried.
     bool trySupported() {
-        if (!options_.parallel || options_.refinements == 0 || options_.let_back > 0.0 || options_.cautious ||
+        if (options_.refinements == 0 || options_.let_back > 0.0 || options_.cautious ||
             hits_ < static_cast<int>(rays_.size())) {
             return false;
         }
@@ -203,9 +203,8 @@ class PlaneSearch {
         std::array<glm::dvec3, kFootprintRaysMax> points;
         glm::dvec3 mean(0.0);
         for (std::size_t i = 0; i < rays_.size(); ++i) {
-            const glm::dvec3 start = rays_[i].origin - centre_.origin;
-            points[i] = {dot(start, x) / square, dot(start, y) / square,
-                         rays_[i].u + dot(start, ray) / square};
+            const glm::dvec3 p = rays_[i].origin + rays_[i].u * rays_[i].direction - centre_.origin;
+            points[i] = {dot(p, x) / square, dot(p, y) / square, dot(p, ray) / square};
             mean += points[i];
         }
         mean /= static_cast<double>(rays_.size());
@@ -218,9 +217,10 @@ class PlaneSearch {
         }
         // Of the plane's tangents, x + slope.x · ray and y + slope.y · ray, the product: of length 1 at right angles.
         const glm::dvec3 normal = slope->x * x + slope->y * y - ray;
-        tryCode(codeOf(normal / std::sqrt(dot(normal, normal))));
-        if (best_cost_ > good_enough_) {
-            tryNeighbours(1);
+        const NormalIndex low = lowestAround(glm::vec3(normal / std::sqrt(dot(normal, normal))));
+        for (int i = 0; i < 4; ++i) {
+            tryCode(packNormal(
+                {static_cast<std::uint8_t>(low.s + i % 2), static_cast<std::uint8_t>(low.t + i / 2)}));
         }
         return best_cost_ < options_.reach * static_cast<double>(rays_.size()) / 8.0;
     }

@@ -56,7 +56,6 @@ struct PlaneFitOptions {
     /// The farthest that a point of the texel is from a ray, in units of the texel's diagonal. A plane of a smaller cosine
     /// drops, between two rays, by more than the diagonal.
     double rays_apart = 0.0;
-    bool parallel = false;  ///< all rays of a footprint have one direction
     /// Rays start in free space. Otherwise one that meets nothing may have run through the solid all the way.
     bool starts_free = true;
 };

@@ -1,4 +1,4 @@
-// A view and a mesh make a map on the GPU: the other way to what raycast.h and encode.h do together, one ray
+// A view and a mesh make a map on the GPU: the other way to what scan_convert.h and encode.h do together, one ray
 // through the centre of each texel.
 #pragma once
 

@@ -1,5 +1,6 @@
 #include "bake/texels/ray_probe.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -8,8 +9,6 @@
 namespace relief {
 namespace {
 
-/// Surfaces this near along the ray, in units of its length, meet at an edge.
-constexpr float kTieDepth = 1e-5F;
 /// How far beside a ray that may have slipped through others look, and how near to it a triangle must come to
 /// count as met. Embree's units: the mesh is one to two long. Floats there are 6e-8 apart.
 constexpr double kBeside = 0x1p-17;
@@ -39,15 +38,26 @@ RayProbe::RayProbe(const RayScene& scene, const View& view, RayEnd end)
       closed_(scene.closed()),
       planes_(scene.mesh(), view) {}
 
-void RayProbe::Collector::filter(const RTCFilterFunctionNArguments* args) {
-    // RTCIntersectContext is the first member: Embree hands back the pointer it was given.
-    auto* self = reinterpret_cast<Collector*>(args->context);
-    for (unsigned i = 0; i < args->N; ++i) {
-        if (args->valid[i] != 0) {
-            self->triangles.push_back(RTCHitN_primID(args->hit, args->N, i));
-            args->valid[i] = 0;
-        }
+RayProbe::Segment RayProbe::segmentOf(const TexelRay& ray) const {
+    const double depth_max = view_.depthMax(ray);
+    // A cube's rays start in its very centre.
+    const bool from_point = view_.projection() == Projection::kCube && end_ == RayEnd::kNear;
+    const double slack = from_point ? 0.0 : kDepthSlack;
+    if (end_ == RayEnd::kNear) {
+        return {ray.origin - slack * ray.direction, ray.direction, depth_max + 2.0 * slack};
     }
+    const double back = view_.projection() == Projection::kCube ? 0.0 : slack;
+    return {ray.origin + (depth_max + slack) * ray.direction, -ray.direction, depth_max + slack + back};
+}
+
+Hit RayProbe::hitOf(std::uint32_t face, std::uint32_t x, std::uint32_t y, std::uint32_t triangle) {
+    SeenPlane& plane = known_planes_[triangle % kKnownPlanes];
+    if (plane.triangle != triangle) {
+        plane = planes_.of(triangle);
+    }
+    const auto [depth, along] = planes_.at(plane, face, x, y);
+    const double most = view_.projection() == Projection::kCube ? double{kCubeDepthMax} : 1.0;
+    return {static_cast<float>(std::clamp(depth, 0.0, most)), triangle, isFromBehind(along)};
 }
 
 Hit RayProbe::trace(std::uint32_t face, std::uint32_t x, std::uint32_t y) {
@@ -63,7 +73,7 @@ Hit RayProbe::trace(std::uint32_t face, std::uint32_t x, std::uint32_t y) {
     return closed_ && metInside(hit) ? lookAgain(face, x, y, hit) : hit;
 }
 
-RTCRayHit RayProbe::queryOf(const RaySegment& segment) const {
+RTCRayHit RayProbe::queryOf(const Segment& segment) const {
     const glm::vec3 origin = tree_.toLocal(segment.origin);
     const glm::vec3 direction = segment.direction * tree_.scale;
     RTCRayHit query{};
@@ -80,34 +90,12 @@ RTCRayHit RayProbe::queryOf(const RaySegment& segment) const {
     return query;
 }
 
-Hit RayProbe::cubeHit(const TexelRay& ray, std::uint32_t triangle) const {
-    const TrianglePlane plane = planeOf(mesh_, triangle);
-    const double along = dot(plane.normal, ray.direction);
-    double depth = dot(plane.normal, plane.point - ray.origin) / along;
-    if (isGrazing(plane.normal, ray.direction, along)) {
-        depth = insideTriangle(mesh_, triangle, ray, depth);
-    }
-    return {static_cast<float>(std::clamp(depth, 0.0, double{kCubeDepthMax})), triangle, isFromBehind(along)};
-}
-
-std::uint32_t RayProbe::bestAtEdge(const RaySegment& segment, float at, std::uint32_t first) {
-    collector_.triangles.assign(1, first);
-    rtcInitIntersectContext(&collector_.context);
-    collector_.context.filter = Collector::filter;
-    const float tie = kTieDepth * static_cast<float>(segment.length);
-    RTCRayHit query = queryOf(segment);
-    query.ray.tnear = std::max(0.0F, at - tie);
-    query.ray.tfar = at + tie;
-    rtcIntersect1(tree_.scene.get(), &collector_.context, &query);
-
-    return bestFacing(segment, first);
-}
-
-std::uint32_t RayProbe::bestFacing(const RaySegment& segment, std::uint32_t first) const {
-    std::uint32_t best = first;
+std::uint32_t RayProbe::bestFacing(std::span<const std::uint32_t> triangles,
+                                   const glm::dvec3& direction) const {
+    std::uint32_t best = triangles.front();
     double best_score = -2.0;
-    for (const std::uint32_t triangle : collector_.triangles) {
-        const double score = facingScore(mesh_, triangle, winding_, segment.direction);
+    for (const std::uint32_t triangle : triangles) {
+        const double score = facingScore(mesh_, triangle, winding_, direction);
         if (score > best_score || (score == best_score && triangle < best)) {
             best = triangle;
             best_score = score;
@@ -117,7 +105,7 @@ std::uint32_t RayProbe::bestFacing(const RaySegment& segment, std::uint32_t firs
 }
 
 Hit RayProbe::lookAgain(std::uint32_t face, std::uint32_t x, std::uint32_t y, const Hit& hit) {
-    const RaySegment segment = segmentOf(view_.ray(face, x, y));
+    const Segment segment = segmentOf(view_.ray(face, x, y));
     const glm::dvec3 direction = segment.direction * tree_.scale;
     const double length = std::sqrt(dot(direction, direction));
     const glm::dvec3 unit = direction / length;
@@ -138,7 +126,7 @@ Hit RayProbe::lookAgain(std::uint32_t face, std::uint32_t x, std::uint32_t y, co
         const auto& [sine, cosine] = kBesideDirections[i];
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
-        RaySegment shifted = segment;
+        Segment shifted = segment;
         shifted.origin += (kBeside / tree_.scale) * (cosine * right + sine * up);
         RTCRayHit query = queryOf(shifted);
         rtcIntersect1(tree_.scene.get(), &context, &query);
@@ -154,13 +142,13 @@ Hit RayProbe::lookAgain(std::uint32_t face, std::uint32_t x, std::uint32_t y, co
     }
     // Triangles beside the ray lie a little before or behind where it meets them.
     const float tie = static_cast<float>(64.0 * kBeside / length);
-    collector_.triangles.clear();
+    std::size_t as_near = 0;
     for (std::size_t i = 0; i < count; ++i) {
         if (where[i] <= nearest + tie) {
-            collector_.triangles.push_back(touched[i]);
+            touched[as_near++] = touched[i];
         }
     }
-    const std::uint32_t best = bestFacing(segment, collector_.triangles.front());
+    const std::uint32_t best = bestFacing(std::span(touched).first(as_near), segment.direction);
     const Hit found = hitOf(face, x, y, best);
     const bool before =
         hit.empty() || (end_ == RayEnd::kNear ? found.depth() < hit.depth() : found.depth() > hit.depth());

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "bake/mesh/prepared_mesh.h"
+#include "bake/plan/view.h"
 #include "formats/base/result.h"
 
 namespace relief {
@@ -58,5 +59,10 @@ class RayScene {
     double winding_;
     bool closed_;
 };
+
+/// Rays of this end that meet an inner side have started in the solid, although the view's empty texels are free.
+[[nodiscard]] inline bool mayStartInside(const RayScene& scene, const View& view, RayEnd end) {
+    return view.centre_on_surface && end == RayEnd::kNear && scene.closed();
+}
 
 }  // namespace relief

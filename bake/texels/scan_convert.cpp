@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "bake/mesh/triangle_plane.h"
@@ -13,131 +14,267 @@
 namespace relief {
 namespace {
 
-/// As raycast.cpp has it: this near to an edge, in barycentric coordinates, a hit may as well be the neighbour's;
-/// surfaces this near in depth meet there.
+/// This near to an edge, in barycentric coordinates, a hit may as well be the neighbour's; surfaces this near in depth meet
+/// there.
 constexpr double kEdgeWidth = 1e-4;
 constexpr double kTieDepth = 1e-5;
 /// Surfaces this near in depth are one, also away from edges.
 constexpr double kSameDepth = 1e-9;
-/// Edges flatter than this, in texels, say too little about where a row crosses them.
-constexpr double kFlat = 1e-6;
+/// An edge whose side changes along a row by less than this part of its value says too little about where it crosses the
+/// row.
+constexpr double kFlat = 1e-9;
 
-double cross(const glm::dvec2& a, const glm::dvec2& b) {
-    return a.x * b.y - a.y * b.x;
-}
-
-/// An edge, the same bits for both of its triangles.
-class Edge {
-  public:
-    Edge(const glm::dvec2& from, const glm::dvec2& to, double turn) {
-        const bool as_given = from.x < to.x || (from.x == to.x && from.y < to.y);
-        start_ = as_given ? from : to;
-        along_ = as_given ? to - from : from - to;
-        inwards_ = as_given ? turn : -turn;
-    }
-
-    /// Above 0 inside the triangle; in units of the double area.
-    [[nodiscard]] double sideOf(const glm::dvec2& p) const {
-        return inwards_ * (along_.x * (p.y - start_.y) - along_.y * (p.x - start_.x));
-    }
-    [[nodiscard]] bool isFlat() const { return std::abs(along_.y) < kFlat; }
-    /// Rows end at this edge, rather than begin.
-    [[nodiscard]] bool isRight() const { return inwards_ * along_.y > 0.0; }
-    [[nodiscard]] bool isNear(double y) const { return std::abs(y - start_.y) < 1e3 * kFlat; }
-    [[nodiscard]] double crossing(double y) const {
-        return start_.x + (y - start_.y) * (along_.x / along_.y);
-    }
-
-  private:
-    glm::dvec2 start_;
-    glm::dvec2 along_;
-    double inwards_;  // 1 or −1
+/// How the point (x, y, 1) of a face, both in [−1, 1], lies in the cube: View::ray has the same table.
+struct Face {
+    struct Axis {
+        int index;
+        double sign;
+        [[nodiscard]] double of(const glm::dvec3& v) const { return sign * v[index]; }
+    };
+    Axis x;
+    Axis y;
+    Axis towards;
 };
+constexpr std::array<Face, 6> kFaces = {{{{2, -1.0}, {1, -1.0}, {0, 1.0}},
+                                         {{2, 1.0}, {1, -1.0}, {0, -1.0}},
+                                         {{0, 1.0}, {2, 1.0}, {1, 1.0}},
+                                         {{0, 1.0}, {2, -1.0}, {1, -1.0}},
+                                         {{0, 1.0}, {1, -1.0}, {2, 1.0}},
+                                         {{0, -1.0}, {1, -1.0}, {2, -1.0}}}};
+
+/// Texels of one face, as coordinates in which its rays are (x, y, 1).
+struct Grid {
+    const Face* face = nullptr;  ///< null: orthographic
+    double columns = 1.0;
+    double rows = 1.0;
+
+    [[nodiscard]] double x(double column) const {
+        return face == nullptr ? column : 2.0 * ((column + 0.5) / columns) - 1.0;
+    }
+    [[nodiscard]] double y(double row) const {
+        return face == nullptr ? row : 2.0 * ((row + 0.5) / rows) - 1.0;
+    }
+    [[nodiscard]] double column(double x) const {
+        return face == nullptr ? x : 0.5 * (x + 1.0) * columns - 0.5;
+    }
+    [[nodiscard]] double row(double y) const { return face == nullptr ? y : 0.5 * (y + 1.0) * rows - 0.5; }
+    /// A corner as x, y and the height of its ray above the centre: it is at (x, y) / height.
+    [[nodiscard]] glm::dvec3 of(const glm::dvec3& place) const {
+        return face == nullptr ? place
+                               : glm::dvec3(face->x.of(place), face->y.of(place), face->towards.of(place));
+    }
+};
+
+bool comesBefore(const glm::dvec3& a, const glm::dvec3& b) {
+    return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+}
 
 }  // namespace
 
 /// Rows, and where their hits go.
 struct ScanConverter::Block {
+    std::uint32_t face;
     std::uint32_t begin;
     std::uint32_t end;
     std::span<Hit> near;  // from row `begin` on
     std::span<Hit> far;
 };
 
-/// A triangle in the view.
-class ScanConverter::Triangle {
+/// The half of a face's plane on one side of an edge: what a triangle with this edge has rays in. The same bits for both
+/// triangles of the edge, but for the sign.
+class ScanConverter::Edge {
   public:
-    Triangle(const std::vector<glm::dvec2>& places, const glm::uvec3& t)
-        : corners_{places[t.x], places[t.y], places[t.z]},
-          double_area_(cross(corners_[1] - corners_[0], corners_[2] - corners_[0])) {}
+    /// \param from, to  as Grid::of has them.
+    /// \param turn  1 or −1, so that sideOf is positive inside.
+    Edge(const glm::dvec3& from, const glm::dvec3& to, double turn, bool cube) {
+        const bool as_given = comesBefore(from, to);
+        const glm::dvec3& a = as_given ? from : to;
+        const glm::dvec3& b = as_given ? to : from;
+        const double sign = as_given ? turn : -turn;
+        if (cube) {
+            side_ = sign * cross(a, b);  // of the plane through the centre and the edge
+        } else {
+            start_ = a;
+            side_ = {sign * (a.y - b.y), sign * (b.x - a.x), 0.0};
+        }
+    }
 
-    [[nodiscard]] bool edgeOn() const { return !(std::abs(double_area_) > 0.0); }
+    [[nodiscard]] double sideOf(double x, double y) const {
+        return side_.x * (x - start_.x) + (side_.y * (y - start_.y) + side_.z);
+    }
 
-    /// Of some number of texels, those whose centres lie between two corners, [first, end).
+    /// Shrinks the range of x to this side of the edge, along the row of y.
+    /// \return false if the row runs along the edge: its texels must be asked one by one.
+    [[nodiscard]] bool clip(double y, double& low, double& high) const {
+        const double at_start = side_.y * (y - start_.y) + side_.z;
+        const double change = side_.x;
+        if (std::abs(change) > kFlat * (std::abs(side_.y * (y - start_.y)) + std::abs(side_.z))) {
+            const double crossing = start_.x - at_start / change;
+            if (change > 0.0) {
+                low = std::max(low, crossing);
+            } else {
+                high = std::min(high, crossing);
+            }
+            return true;
+        }
+        const double most = 2.0 * std::abs(change) * (std::abs(low - start_.x) + std::abs(high - start_.x));
+        if (at_start < -most) {
+            high = -std::numeric_limits<double>::infinity();
+        }
+        return std::abs(at_start) > most;
+    }
+
+  private:
+    glm::dvec3 side_;
+    glm::dvec3 start_{0.0};
+};
+
+/// A triangle as a face of the view sees it.
+class ScanConverter::Shape {
+  public:
+    Shape(const ScanConverter& scan, std::uint32_t triangle, std::uint32_t face)
+        : grid_{scan.cube_ ? &kFaces[face] : nullptr, static_cast<double>(scan.view_.width),
+                static_cast<double>(scan.view_.height)},
+          corners_(cornersOf(scan, triangle, grid_)),
+          volume_(scan.cube_ ? dot(corners_[0], cross(corners_[1], corners_[2]))
+                             : cross(corners_[1] - corners_[0], corners_[2] - corners_[0]).z) {}
+
+    /// No ray meets more than its edge.
+    [[nodiscard]] bool edgeOn() const { return !(std::abs(volume_) > 0.0); }
+
+    /// Of some number of columns (axis 0) or rows (1), those whose rays may meet the triangle, [first, end).
     [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> rangeOf(int axis, std::uint32_t count) const {
-        const double low = std::min({corners_[0][axis], corners_[1][axis], corners_[2][axis]});
-        const double high = std::max({corners_[0][axis], corners_[1][axis], corners_[2][axis]});
+        double low = std::numeric_limits<double>::infinity();
+        double high = -low;
+        int behind = 0;
+        for (const glm::dvec3& corner : corners_) {
+            if (!(corner.z > kLeastHeight)) {
+                ++behind;
+                continue;
+            }
+            const double at = corner[axis] / corner.z;
+            const double texel = axis == 0 ? grid_.column(at) : grid_.row(at);
+            low = std::min(low, texel);
+            high = std::max(high, texel);
+        }
+        if (behind == 3) {
+            return {0, 0};
+        }
         const double last = count;
-        return {static_cast<std::uint32_t>(std::clamp(std::ceil(low), 0.0, last)),
-                static_cast<std::uint32_t>(std::clamp(std::floor(high) + 1.0, 0.0, last))};
+        if (behind > 0) {  // it passes by the centre, and may be seen anywhere
+            return {0, count};
+        }
+        // A cube's texels are rounded on the way there and back.
+        const double slack = grid_.face == nullptr ? 0.0 : 1e-6;
+        return {static_cast<std::uint32_t>(std::clamp(std::ceil(low - slack), 0.0, last)),
+                static_cast<std::uint32_t>(std::clamp(std::floor(high + slack) + 1.0, 0.0, last))};
     }
 
     [[nodiscard]] std::array<Edge, 3> edges() const {
-        const double turn = double_area_ > 0.0 ? 1.0 : -1.0;
-        return {Edge(corners_[0], corners_[1], turn), Edge(corners_[1], corners_[2], turn),
-                Edge(corners_[2], corners_[0], turn)};
+        const double turn = volume_ > 0.0 ? 1.0 : -1.0;
+        const bool cube = grid_.face != nullptr;
+        return {Edge(corners_[0], corners_[1], turn, cube), Edge(corners_[1], corners_[2], turn, cube),
+                Edge(corners_[2], corners_[0], turn, cube)};
     }
-    [[nodiscard]] double doubleArea() const { return std::abs(double_area_); }
+    [[nodiscard]] const Grid& grid() const { return grid_; }
 
   private:
-    std::array<glm::dvec2, 3> corners_;
-    double double_area_;
+    /// Of a corner in front of the centre, in half sides of the cube: less is beside it.
+    static constexpr double kLeastHeight = 1e-6;
+
+    static std::array<glm::dvec3, 3> cornersOf(const ScanConverter& scan, std::uint32_t triangle,
+                                               const Grid& grid) {
+        const glm::uvec3& t = scan.scene_.mesh().triangles[triangle];
+        return {grid.of(scan.places_[t.x]), grid.of(scan.places_[t.y]), grid.of(scan.places_[t.z])};
+    }
+
+    Grid grid_;
+    std::array<glm::dvec3, 3> corners_;
+    double volume_;  // of the tetrahedron with the centre, six times; of an orthographic view the area, twice
 };
 
 ScanConverter::ScanConverter(const RayScene& scene, const View& view)
-    : scene_(scene), view_(view), planes_(scene.mesh(), view), direction_(view.axis[2]) {
-    const TriangleMesh& mesh = scene.mesh();
-    const glm::dvec3 across = view.axis[0] * (view.width / dot(view.axis[0], view.axis[0]));
-    const glm::dvec3 upwards = view.axis[1] * (view.height / dot(view.axis[1], view.axis[1]));
-    places_.resize(mesh.positions.size());
+    : scene_(scene),
+      view_(view),
+      cube_(view.projection() == Projection::kCube),
+      planes_(scene.mesh(), view),
+      blocks_((view.height + kBlockRows - 1) / kBlockRows) {
+    place();
+    sortIntoBlocks();
+}
+
+void ScanConverter::place() {
+    const std::vector<glm::vec3>& positions = scene_.mesh().positions;
+    const auto unitsOf = [&](int axis, double count) {
+        return view_.axis[axis] * (count / dot(view_.axis[axis], view_.axis[axis]));
+    };
+    const glm::dvec3 x = unitsOf(0, cube_ ? 1.0 : view_.width);
+    const glm::dvec3 y = unitsOf(1, cube_ ? 1.0 : view_.height);
+    const glm::dvec3 z = unitsOf(2, 1.0);
+    places_.resize(positions.size());
     tbb::parallel_for(std::size_t{0}, places_.size(), [&](std::size_t i) {
-        const glm::dvec3 from_origin = glm::dvec3(mesh.positions[i]) - view.origin;
-        places_[i] = {dot(from_origin, across) - 0.5, dot(from_origin, upwards) - 0.5};
+        const glm::dvec3 p = glm::dvec3(positions[i]) - view_.origin;
+        places_[i] = cube_ ? glm::dvec3(dot(p, x), dot(p, y), dot(p, z))
+                           : glm::dvec3(dot(p, x) - 0.5, dot(p, y) - 0.5, 1.0);
     });
-    // Which blocks of rows a triangle has samples in, [first, end).
-    const std::uint32_t blocks = (view.height + kBlockRows - 1) / kBlockRows;
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> ranges(mesh.triangles.size());
-    tbb::parallel_for(std::size_t{0}, ranges.size(), [&](std::size_t i) {
-        const Triangle triangle(places_, mesh.triangles[i]);
-        const auto [row, row_end] = triangle.rangeOf(1, view.height);
-        const auto [column, column_end] = triangle.rangeOf(0, view.width);
-        if (!triangle.edgeOn() && row < row_end && column < column_end) {
-            ranges[i] = {row / kBlockRows, (row_end - 1) / kBlockRows + 1};
+}
+
+void ScanConverter::sortIntoBlocks() {
+    const std::size_t faces = view_.faceCount();
+    const std::size_t count = scene_.mesh().triangles.size();
+    // Which blocks of rows a triangle may have texels in, [first, end), by face.
+    std::vector<std::array<std::uint16_t, 2>> ranges(faces * count);
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+        for (std::size_t face = 0; face < faces; ++face) {
+            const Shape shape(*this, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(face));
+            const auto [row, row_end] = shape.rangeOf(1, view_.height);
+            const auto [column, column_end] = shape.rangeOf(0, view_.width);
+            if (!shape.edgeOn() && row < row_end && column < column_end) {
+                ranges[faces * i + face] = {static_cast<std::uint16_t>(row / kBlockRows),
+                                            static_cast<std::uint16_t>((row_end - 1) / kBlockRows + 1)};
+            }
         }
     });
-    first_.assign(blocks + 1, 0);
-    for (const auto& [begin, end] : ranges) {
-        for (std::uint32_t block = begin; block < end; ++block) {
-            ++first_[block + 1];
+    const auto forEachBlock = [&](const auto& visit) {
+        for (std::size_t i = 0; i < count; ++i) {
+            for (std::size_t face = 0; face < faces; ++face) {
+                const auto [begin, end] = ranges[faces * i + face];
+                for (std::size_t block = begin; block < end; ++block) {
+                    visit(face * blocks_ + block, static_cast<std::uint32_t>(i));
+                }
+            }
         }
-    }
+    };
+    first_.assign(faces * blocks_ + 1, 0);
+    forEachBlock([&](std::size_t block, std::uint32_t) { ++first_[block + 1]; });
     for (std::size_t block = 1; block < first_.size(); ++block) {
         first_[block] += first_[block - 1];
     }
     triangles_.resize(first_.back());
     std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-    for (std::size_t i = 0; i < ranges.size(); ++i) {
-        for (std::uint32_t block = ranges[i].first; block < ranges[i].second; ++block) {
-            triangles_[next[block]++] = static_cast<std::uint32_t>(i);
-        }
-    }
+    forEachBlock([&](std::size_t block, std::uint32_t triangle) { triangles_[next[block]++] = triangle; });
 }
 
-std::span<const std::uint32_t> ScanConverter::trianglesOf(std::uint32_t block) const {
-    return std::span(triangles_).subspan(first_[block], first_[block + 1] - first_[block]);
+std::span<const std::uint32_t> ScanConverter::trianglesOf(std::uint32_t face, std::uint32_t block) const {
+    const std::size_t at = std::size_t{face} * blocks_ + block;
+    return std::span(triangles_).subspan(first_[at], first_[at + 1] - first_[at]);
 }
 
-void ScanConverter::scanRows(const RowRange& rows, std::span<Hit> near, std::span<Hit> far) const {
+void ScanConverter::scan(const RowRange& rows, std::span<Hit> near, std::span<Hit> far) const {
+    tbb::parallel_for(rows.begin / kBlockRows, (rows.end + kBlockRows - 1) / kBlockRows,
+                      [&](std::uint32_t block) {
+                          const RowRange part{rows.face, std::max(rows.begin, block * kBlockRows),
+                                              std::min(rows.end, (block + 1) * kBlockRows)};
+                          const std::size_t first = std::size_t{part.begin - rows.begin} * view_.width;
+                          const std::size_t count = std::size_t{part.end - part.begin} * view_.width;
+                          const auto of = [&](std::span<Hit> hits) {
+                              return hits.empty() ? hits : hits.subspan(first, count);
+                          };
+                          scanAlone(part, of(near), of(far));
+                      });
+}
+
+void ScanConverter::scanAlone(const RowRange& rows, std::span<Hit> near, std::span<Hit> far) const {
     std::ranges::fill(near, Hit());
     std::ranges::fill(far, Hit());
     for (std::uint32_t begin = rows.begin; begin < rows.end;) {
@@ -145,71 +282,64 @@ void ScanConverter::scanRows(const RowRange& rows, std::span<Hit> near, std::spa
         const std::uint32_t end = std::min(rows.end, (block + 1) * kBlockRows);
         const std::size_t at = std::size_t{begin - rows.begin} * view_.width;
         const auto part = [&](std::span<Hit> hits) { return hits.empty() ? hits : hits.subspan(at); };
-        const Block here{begin, end, part(near), part(far)};
-        for (const std::uint32_t triangle : trianglesOf(block)) {
-            scan(triangle, here);
+        const Block here{rows.face, begin, end, part(near), part(far)};
+        for (const std::uint32_t triangle : trianglesOf(rows.face, block)) {
+            draw(triangle, here);
         }
         begin = end;
     }
 }
 
-void ScanConverter::scan(std::uint32_t triangle, const Block& block) const {
-    const Triangle shape(places_, scene_.mesh().triangles[triangle]);
+void ScanConverter::draw(std::uint32_t triangle, const Block& block) const {
+    const Shape shape(*this, triangle, block.face);
+    const Grid& grid = shape.grid();
     const std::array<Edge, 3> edges = shape.edges();
     const auto [first_row, end_row] = shape.rangeOf(1, view_.height);
     const auto [first_column, end_column] = shape.rangeOf(0, view_.width);
-    const PlaneDepth plane = planes_.of(triangle);
-    const auto holds = [&](std::int64_t x, std::uint32_t y) {
-        const glm::dvec2 p(static_cast<double>(x), y);
-        return edges[0].sideOf(p) >= 0.0 && edges[1].sideOf(p) >= 0.0 && edges[2].sideOf(p) >= 0.0;
-    };
-    for (std::uint32_t y = std::max(first_row, block.begin); y < std::min(end_row, block.end); ++y) {
-        // About where the row enters and leaves the triangle: there the edges themselves are asked, and all along one
-        // that the row runs along.
-        double low = first_column;
-        double high = end_column - 1.0;
-        bool along_edge = false;
+    const SeenPlane plane = planes_.of(triangle);
+    for (std::uint32_t row = std::max(first_row, block.begin); row < std::min(end_row, block.end); ++row) {
+        const double y = grid.y(row);
+        const auto holds = [&](std::int64_t column) {
+            const double x = grid.x(static_cast<double>(column));
+            return edges[0].sideOf(x, y) >= 0.0 && edges[1].sideOf(x, y) >= 0.0 &&
+                   edges[2].sideOf(x, y) >= 0.0;
+        };
+        // About where the row enters and leaves the triangle. There the edges themselves are asked, and all along one that
+        // the row runs along.
+        double low = grid.x(first_column);
+        double high = grid.x(end_column - 1.0);
+        bool clear = true;
         for (const Edge& edge : edges) {
-            if (edge.isFlat()) {
-                along_edge = along_edge || edge.isNear(y);
-            } else if (edge.isRight()) {
-                high = std::min(high, edge.crossing(y));
-            } else {
-                low = std::max(low, edge.crossing(y));
-            }
+            clear = edge.clip(y, low, high) && clear;
         }
+        low = grid.column(low);
+        high = grid.column(high);
         if (!(low <= high + 2.0)) {
             continue;
         }
-        auto x = std::max<std::int64_t>(static_cast<std::int64_t>(std::ceil(low)) - 1, first_column);
+        auto column = std::max<std::int64_t>(static_cast<std::int64_t>(std::ceil(low)) - 1, first_column);
         auto last = std::min<std::int64_t>(static_cast<std::int64_t>(std::floor(high)) + 1, end_column - 1);
-        while (x <= last && !holds(x, y)) {
-            ++x;
+        while (column <= last && !holds(column)) {
+            ++column;
         }
-        while (x < last && !holds(last, y)) {
+        while (column < last && !holds(last)) {
             --last;
         }
-        for (; x <= last; ++x) {
-            if (!along_edge || holds(x, y)) {
-                meet(triangle, plane, static_cast<std::uint32_t>(x), y, block);
+        for (; column <= last; ++column) {
+            if (clear || holds(column)) {
+                meet(plane, static_cast<std::uint32_t>(column), row, block);
             }
         }
     }
 }
 
-double ScanConverter::depthAt(std::uint32_t triangle, const PlaneDepth& plane, std::uint32_t x,
-                              std::uint32_t y) const {
-    const double depth = plane.at(x, y);
-    return plane.grazing ? insideTriangle(scene_.mesh(), triangle, view_.ray(0, x, y), depth) : depth;
-}
-
-void ScanConverter::meet(std::uint32_t triangle, const PlaneDepth& plane, std::uint32_t x, std::uint32_t y,
-                         const Block& block) const {
-    const double depth = depthAt(triangle, plane, x, y);
-    if (!(depth >= -kDepthSlack && depth <= 1.0 + kDepthSlack)) {
+void ScanConverter::meet(const SeenPlane& plane, std::uint32_t x, std::uint32_t y, const Block& block) const {
+    const auto [depth, along] = planes_.at(plane, block.face, x, y);
+    const double most = cube_ ? double{kCubeDepthMax} : 1.0;
+    if (!isInView(depth, block.face, x, y)) {
         return;
     }
-    const auto stored = static_cast<float>(std::clamp(depth, 0.0, 1.0));
+    const auto stored = static_cast<float>(std::clamp(depth, 0.0, most));
     const std::size_t at = std::size_t{y - block.begin} * view_.width + x;
     for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
         const bool near = end == RayEnd::kNear;
@@ -220,34 +350,49 @@ void ScanConverter::meet(std::uint32_t triangle, const PlaneDepth& plane, std::u
         Hit& hit = hits[at];
         const float before = near ? hit.depth() - stored : stored - hit.depth();
         constexpr auto kTie = static_cast<float>(kTieDepth);
-        if (hit.empty() || before > kTie || (before >= -kTie && isBetter(triangle, depth, hit, end, x, y))) {
-            hit = Hit(stored, triangle, near ? plane.along > 0.0 : plane.along < 0.0);
+        if (hit.empty() || before > kTie ||
+            (before >= -kTie && isBetter(plane.triangle, depth, hit, end, block.face, x, y))) {
+            hit = Hit(stored, plane.triangle, near ? along > 0.0 : along < 0.0);
         }
     }
 }
 
+bool ScanConverter::isInView(double depth, std::uint32_t face, std::uint32_t x, std::uint32_t y) const {
+    if (cube_ && view_.encloses) {
+        return depth >= 0.0;
+    }
+    const double most = cube_ ? view_.depthMax(view_.ray(face, x, y)) : 1.0;
+    return depth >= (cube_ ? 0.0 : -kDepthSlack) && depth <= most + kDepthSlack;
+}
+
 bool ScanConverter::isBetter(std::uint32_t triangle, double depth, const Hit& than, RayEnd end,
-                             std::uint32_t x, std::uint32_t y) const {
-    const double other = depthAt(than.triangle(), planes_.of(than.triangle()), x, y);
+                             std::uint32_t face, std::uint32_t x, std::uint32_t y) const {
+    const double other = planes_.at(planes_.of(than.triangle()), face, x, y).depth;
     const double before = end == RayEnd::kNear ? other - depth : depth - other;
     const bool meet_here =
-        std::abs(before) <= kSameDepth ||
-        (std::abs(before) <= kTieDepth && atEdge(triangle, x, y) && atEdge(than.triangle(), x, y));
+        std::abs(before) <= kSameDepth || (std::abs(before) <= kTieDepth && atEdge(triangle, face, x, y) &&
+                                           atEdge(than.triangle(), face, x, y));
     if (!meet_here) {
         return before > 0.0;
     }
-    const glm::dvec3 direction = end == RayEnd::kNear ? direction_ : -direction_;
+    const glm::dvec3 away = view_.ray(face, x, y).direction;
+    const glm::dvec3 direction = end == RayEnd::kNear ? away : -away;
     const auto scoreOf = [&](std::uint32_t t) {
         return facingScore(scene_.mesh(), t, scene_.winding(), direction);
     };
     return scoreOf(triangle) > scoreOf(than.triangle());  // of equals the first, which has the lower index
 }
 
-bool ScanConverter::atEdge(std::uint32_t triangle, std::uint32_t x, std::uint32_t y) const {
-    const Triangle shape(places_, scene_.mesh().triangles[triangle]);
-    return std::ranges::any_of(shape.edges(), [&](const Edge& edge) {
-        return edge.sideOf(glm::dvec2(x, y)) < kEdgeWidth * shape.doubleArea();
-    });
+bool ScanConverter::atEdge(std::uint32_t triangle, std::uint32_t face, std::uint32_t x,
+                           std::uint32_t y) const {
+    const Shape shape(*this, triangle, face);
+    std::array<double, 3> sides{};
+    double sum = 0.0;
+    for (std::size_t i = 0; const Edge& edge : shape.edges()) {
+        sides[i] = edge.sideOf(shape.grid().x(x), shape.grid().y(y));
+        sum += sides[i++];
+    }
+    return std::ranges::min(sides) < kEdgeWidth * sum;
 }
 
 }  // namespace relief

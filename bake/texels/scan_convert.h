@@ -1,58 +1,67 @@
-// Which triangle each texel's ray of an orthographic view meets, without a ray: triangle by triangle, row by row, as
-// GPUs do it, in double precision. The rays of such a view are side by side, so that a triangle knows those that meet it.
-// A dozen times as fast as a ray each, for both ends of the view at once, and the same on every processor, as no ray
-// tracer's arithmetic takes part.
+// Which triangle each texel's ray meets, without a ray: triangle by triangle, row by row, as GPUs do it, in double
+// precision. The rays of an orthographic view are side by side and those of a cube's face run from one point, so that a
+// triangle knows those that meet it. Several times as fast as a ray each, for both ends of the view at once, and the same
+// on every processor, as no ray tracer's arithmetic takes part.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <span>
 #include <vector>
 
 #include "bake/plan/view.h"
-#include "bake/texels/plane_depth.h"
 #include "bake/texels/ray_scene.h"
+#include "bake/texels/seen_plane.h"
 
 namespace relief {
 
-/// A mesh as an orthographic view sees it.
+/// A mesh as a view sees it.
+///
+/// The depth is that of the triangle's plane in double precision. Texels on the edge of two triangles belong to both, bit by
+/// bit: no ray slips through. Of the triangles that share an edge there, and of those in one place, one that faces the ray
+/// counts, of those the one that faces it most, and of equals the one of the lowest index.
 class ScanConverter {
   public:
     /// \param scene, view  borrowed; must outlive it.
     ScanConverter(const RayScene& scene, const View& view);
 
-    /// What ViewTracer (raycast.h) promises of rows, on the calling thread. Samples on the edge of two triangles belong to
-    /// both, bit by bit: no ray slips through.
+    /// What each texel of some rows meets, from either end of its ray, on all cores of the current arena.
     /// \param near, far  (end − begin) · width, row by row; empty: not wanted.
-    void scanRows(const RowRange& rows, std::span<Hit> near, std::span<Hit> far) const;
-
-    /// Rows whose triangles are known together: others ask for more than they need.
-    static constexpr std::uint32_t kBlockRows = 32;
+    void scan(const RowRange& rows, std::span<Hit> near, std::span<Hit> far) const;
+    /// The same on the calling thread alone.
+    void scanAlone(const RowRange& rows, std::span<Hit> near, std::span<Hit> far) const;
 
   private:
-    struct Block;
-    class Triangle;
+    /// Rows whose triangles are known together.
+    static constexpr std::uint32_t kBlockRows = 32;
 
-    /// The triangles of a block of rows.
-    [[nodiscard]] std::span<const std::uint32_t> trianglesOf(std::uint32_t block) const;
-    void scan(std::uint32_t triangle, const Block& block) const;
-    void meet(std::uint32_t triangle, const PlaneDepth& plane, std::uint32_t x, std::uint32_t y,
-              const Block& block) const;
+    struct Block;
+    class Edge;
+    class Shape;
+
+    void place();
+    void sortIntoBlocks();
+    /// The triangles of a block of rows of a face.
+    [[nodiscard]] std::span<const std::uint32_t> trianglesOf(std::uint32_t face, std::uint32_t block) const;
+    void draw(std::uint32_t triangle, const Block& block) const;
+    void meet(const SeenPlane& plane, std::uint32_t x, std::uint32_t y, const Block& block) const;
+    [[nodiscard]] bool isInView(double depth, std::uint32_t face, std::uint32_t x, std::uint32_t y) const;
     /// Whether a hit counts more than one of almost the same depth.
     [[nodiscard]] bool isBetter(std::uint32_t triangle, double depth, const Hit& than, RayEnd end,
-                                std::uint32_t x, std::uint32_t y) const;
-    [[nodiscard]] double depthAt(std::uint32_t triangle, const PlaneDepth& plane, std::uint32_t x,
-                                 std::uint32_t y) const;
-    [[nodiscard]] bool atEdge(std::uint32_t triangle, std::uint32_t x, std::uint32_t y) const;
+                                std::uint32_t face, std::uint32_t x, std::uint32_t y) const;
+    [[nodiscard]] bool atEdge(std::uint32_t triangle, std::uint32_t face, std::uint32_t x,
+                              std::uint32_t y) const;
 
     const RayScene& scene_;
     const View& view_;
-    PlaneDepths planes_;
-    glm::dvec3 direction_;  // of growing depth
-    std::vector<glm::dvec2>
-        places_;  // of the mesh's corners, in texels: (x, y) is the centre of texel (x, y)
-    std::vector<std::size_t> first_;        // of each block of rows, and of one more
+    bool cube_;
+    SeenPlanes planes_;
+    /// The mesh's corners. Orthographic: (x, y) in texels, of which (i, j) is the centre of texel (i, j), and 1. Of a cube
+    /// from the centre, in units of its half sides.
+    std::vector<glm::dvec3> places_;
+    std::uint32_t blocks_;                  // of rows, of each face
+    std::vector<std::size_t> first_;        // of each block of each face, and of one more
     std::vector<std::uint32_t> triangles_;  // of each block, in ascending order
 };
 

@@ -8,7 +8,7 @@
 
 #include "bake/mesh/triangle_plane.h"
 #include "bake/texels/ray_probe.h"
-#include "bake/texels/raycast.h"
+#include "bake/texels/scan_convert.h"
 #include "tests/bake/meshes.h"
 
 namespace relief::test {
@@ -120,13 +120,13 @@ void expectNoLeak(const TriangleMesh& mesh, const View& view, const std::vector<
     std::uint64_t lost = 0;
     std::uint64_t beside = 0;
     double worst = 0.0;
-    const ViewTracer tracer(*scene, view);
+    const ScanConverter scan(*scene, view);
     for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
         for (std::uint32_t face = 0; face < view.faceCount(); ++face) {
             std::vector<Hit> hits(std::size_t{view.width} * view.height);
             const bool near = end == RayEnd::kNear;
-            tracer.trace({face, 0, view.height}, near ? std::span(hits) : std::span<Hit>(),
-                         near ? std::span<Hit>() : std::span(hits));
+            scan.scan({face, 0, view.height}, near ? std::span(hits) : std::span<Hit>(),
+                      near ? std::span<Hit>() : std::span(hits));
             for (std::uint32_t y = 0; y < view.height; ++y) {
                 for (std::uint32_t x = 0; x < view.width; ++x) {
                     const TexelRay ray = view.ray(face, x, y);
@@ -266,7 +266,7 @@ TEST(Pinholes, RaysAimedAtVerticesAndEdgesAreMet) {
                     if (i % 16 < 2) {  // the whole mesh is scanned for the few texels of each
                         std::array<Hit, 64> near;
                         std::array<Hit, 64> far;
-                        ViewTracer(*scene, view).traceAlone({0, 0, 8}, near, far);
+                        ScanConverter(*scene, view).scanAlone({0, 0, 8}, near, far);
                         count((end == RayEnd::kNear ? near : far)[4 * 8 + 3]);
                     }
                 }

@@ -3,7 +3,7 @@
 
 #include "bake/mesh/triangle_plane.h"
 #include "bake/plan/view.h"
-#include "bake/texels/raycast.h"
+#include "bake/texels/scan_convert.h"
 #include "tests/bake/meshes.h"
 
 namespace relief::test {
@@ -33,7 +33,7 @@ TEST(Encode, WritesWhatEncodeTexelWrites) {
                         hits[static_cast<std::size_t>(end)].resize(std::size_t{view->width} * view->height);
                     }
                 }
-                ViewTracer(*scene, *view).trace(rows, hits[0], hits[1]);
+                ScanConverter(*scene, *view).scan(rows, hits[0], hits[1]);
                 covered += encodeRows(*scene, normals, *view, rows, hits[0], hits[1], map);
                 for (std::uint32_t y = 0; y < view->height; ++y) {
                     for (std::uint32_t x = 0; x < view->width; ++x) {
@@ -76,14 +76,14 @@ TEST(Trace, RowsOfAnyRangeAreTheSameRows) {
         ASSERT_TRUE(view);
         const std::uint32_t face = view->faceCount() - 1;
         std::vector<Hit> whole(std::size_t{view->width} * 37);
-        const ViewTracer tracer(*scene, *view);
-        tracer.trace({face, 0, 37}, whole, {});
+        const ScanConverter scan(*scene, *view);
+        scan.scan({face, 0, 37}, whole, {});
         std::size_t hits = 0;
         for (const std::uint32_t step : {1U, 5U, 8U}) {
             for (std::uint32_t y = 0; y < 37; y += step) {
                 const RowRange rows{face, y, std::min(y + step, 37U)};
                 std::vector<Hit> part(std::size_t{rows.end - rows.begin} * view->width);
-                tracer.trace(rows, part, {});
+                scan.scan(rows, part, {});
                 for (std::size_t i = 0; i < part.size(); ++i) {
                     const Hit& other = whole[std::size_t{y} * view->width + i];
                     ASSERT_EQ(part[i].empty(), other.empty());

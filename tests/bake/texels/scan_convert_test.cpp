@@ -30,7 +30,7 @@ Scanned scan(const TriangleMesh& mesh, const View& view) {
     Scanned hits;
     hits.near.resize(std::size_t{view.width} * view.height);
     hits.far.resize(hits.near.size());
-    ScanConverter(*scene, view).scanRows({0, 0, view.height}, hits.near, hits.far);
+    ScanConverter(*scene, view).scan({0, 0, view.height}, hits.near, hits.far);
     return hits;
 }
 

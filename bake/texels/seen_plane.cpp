@@ -1,0 +1,82 @@
+#include "bake/texels/seen_plane.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "bake/mesh/triangle_plane.h"
+#include "formats/depth_map.h"
+
+namespace relief {
+
+namespace {
+
+/// The plane is seen so nearly edge-on that its depth may leave the triangle's.
+bool isGrazing(const glm::dvec3& normal, const glm::dvec3& direction, double along) {
+    return !(along * along >
+             kGrazingCosine * kGrazingCosine * dot(normal, normal) * dot(direction, direction));
+}
+
+/// A depth on a triangle seen almost edge-on, held between the depths of its corners.
+double insideTriangle(const TriangleMesh& mesh, std::uint32_t triangle, const TexelRay& ray, double depth) {
+    const glm::uvec3& t = mesh.triangles[triangle];
+    const double per_depth = dot(ray.direction, ray.direction);
+    double low = std::numeric_limits<double>::max();
+    double high = -low;
+    for (const std::uint32_t corner : {t.x, t.y, t.z}) {
+        const double at = dot(glm::dvec3(mesh.positions[corner]) - ray.origin, ray.direction) / per_depth;
+        low = std::min(low, at);
+        high = std::max(high, at);
+    }
+    return depth >= low && depth <= high ? depth : std::isnan(depth) || depth < low ? low : high;
+}
+
+}  // namespace
+
+SeenPlanes::SeenPlanes(const TriangleMesh& mesh, const View& view)
+    : mesh_(mesh),
+      view_(view),
+      first_ray_(view.ray(0, 0, 0)),
+      column_step_(view.axis[0] / static_cast<double>(view.width)),
+      row_step_(view.axis[1] / static_cast<double>(view.height)) {}
+
+SeenPlane SeenPlanes::of(std::uint32_t triangle) const {
+    const TrianglePlane plane = planeOf(mesh_, triangle);
+    SeenPlane seen;
+    seen.triangle = triangle;
+    seen.normal = plane.normal;
+    seen.ahead = dot(plane.normal, plane.point - first_ray_.origin);
+    if (view_.projection() == Projection::kOrthographic) {
+        seen.along = dot(plane.normal, first_ray_.direction);
+        seen.grazing = isGrazing(plane.normal, first_ray_.direction, seen.along);
+        const double per_along = 1.0 / seen.along;
+        seen.base = seen.ahead * per_along;
+        seen.per_column = -dot(plane.normal, column_step_) * per_along;
+        seen.per_row = -dot(plane.normal, row_step_) * per_along;
+    }
+    return seen;
+}
+
+PlaneHit SeenPlanes::at(const SeenPlane& plane, std::uint32_t face, std::uint32_t x, std::uint32_t y) const {
+    if (view_.projection() == Projection::kOrthographic) {
+        const double depth =
+            plane.base + static_cast<double>(x) * plane.per_column + static_cast<double>(y) * plane.per_row;
+        return {plane.grazing ? insideTriangle(mesh_, plane.triangle, view_.ray(face, x, y), depth) : depth,
+                plane.along};
+    }
+    const TexelRay ray = view_.ray(face, x, y);
+    const double along = dot(plane.normal, ray.direction);
+    const double depth = plane.ahead / along;
+    const bool grazing = isGrazing(plane.normal, ray.direction, along);
+    return {grazing ? insideTriangle(mesh_, plane.triangle, ray, depth) : depth, along};
+}
+
+double facingScore(const TriangleMesh& mesh, std::uint32_t triangle, double winding,
+                   const glm::dvec3& direction) {
+    const TrianglePlane plane = planeOf(mesh, triangle);
+    const double length = std::sqrt(dot(plane.normal, plane.normal) * dot(direction, direction));
+    const double facing = -winding * dot(plane.normal, direction) / length;
+    return facing > 0.0 ? facing : -1.0 - facing;
+}
+
+}  // namespace relief

@@ -1,0 +1,58 @@
+// The depth of a triangle's plane at the rays of a view.
+#pragma once
+
+#include <cstdint>
+
+#include "bake/mesh/mesh.h"
+#include "bake/plan/view.h"
+
+namespace relief {
+
+/// A triangle's plane, as the rays of a view meet it.
+struct SeenPlane {
+    std::uint32_t triangle = 0xffffffff;
+    glm::dvec3 normal{0.0};
+    // Of an orthographic view, whose rays all run the same way: the depth at the ray of texel (x, y) is
+    // base + x · per_column + y · per_row.
+    double base = 0.0;
+    double per_column = 0.0;
+    double per_row = 0.0;
+    double along = 0.0;  ///< dot(normal, direction of growing depth)
+    bool grazing = false;
+    // Of a cube, whose rays begin in one point.
+    double ahead = 0.0;  ///< dot(normal, point of the plane − centre)
+};
+
+/// Where a ray meets a plane.
+struct PlaneHit {
+    double depth;
+    double along;  ///< dot(normal, direction of growing depth)
+};
+
+/// What is the same for all triangles of a view.
+class SeenPlanes {
+  public:
+    /// \param mesh, view  borrowed; must outlive it.
+    SeenPlanes(const TriangleMesh& mesh, const View& view);
+
+    [[nodiscard]] SeenPlane of(std::uint32_t triangle) const;
+
+    /// What the ray of a texel meets of a plane, held within the triangle if that is seen almost edge-on.
+    [[nodiscard]] PlaneHit at(const SeenPlane& plane, std::uint32_t face, std::uint32_t x,
+                              std::uint32_t y) const;
+
+  private:
+    const TriangleMesh& mesh_;
+    const View& view_;
+    TexelRay first_ray_;
+    glm::dvec3 column_step_;
+    glm::dvec3 row_step_;
+};
+
+/// How a surface that a ray meets faces it: of surfaces that meet there, the one of the highest score counts. One that
+/// faces the ray always beats one that does not.
+/// \param winding  orientation() of the mesh.
+[[nodiscard]] double facingScore(const TriangleMesh& mesh, std::uint32_t triangle, double winding,
+                                 const glm::dvec3& direction);
+
+}  // namespace relief
