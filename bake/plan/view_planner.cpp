@@ -9,27 +9,19 @@
 #include <glm/vector_relational.hpp>
 #include <optional>
 
-#include "bake/mesh/surface_sampler.h"
 #include "bake/mesh/triangle_plane.h"
+#include "bake/plan/cavities.h"
 #include "bake/plan/gap_grid.h"
 #include "bake/plan/outer_views.h"
+#include "bake/plan/plan_points.h"
 #include "bake/plan/view.h"
 
 namespace relief {
 namespace {
 
-constexpr std::size_t kPoints = 8'000;
-/// Spread of the points off the surface, in units of the longest side: where particles are looked up.
-constexpr double kSpread = 0.005;
-/// Cosine of incidence from which on a point is served in full.
-constexpr double kFullCosine = 0.7;
 /// How well a point is served that a view sees from both sides: it is off a silhouette, through which a
 /// standing plane passes (plane_fit.h).
 constexpr float kSilhouette = 0.9F;
-/// Service under the flattest angle that is not edge-on.
-constexpr double kLeastService = 0.15;
-constexpr double kEdgeOn = 0.05;
-constexpr float kEdgeOnService = 0.01F;
 /// An outer view that raises the mean service by this much is taken before places within are looked at.
 constexpr double kClearGain = 0.03;
 /// What every map costs, in mean service: a step of a simulation looks at each in turn. Eight maps take about 1.6 times as
@@ -44,67 +36,10 @@ constexpr double kUnserved = 0.5;
 constexpr double kCavityShare = 0.002;
 /// Rounds in a row in which no place within is worth its price.
 constexpr int kIdleRounds = 3;
-constexpr int kCavityCandidates = 100;
-/// Cubes reach this far at most, in units of the longest side.
-constexpr double kCavityReach = 0.65;
 /// Of the area of an outer view, what the gaps along its direction take up: a guess, until one is chosen.
 constexpr double kGapShare = 0.3;
-/// Points served badly that directions are tried with for maps of gaps, and places for cubes; the one that is taken is
-/// asked about all.
-constexpr std::size_t kTryPoints = 400;
-/// The first of them, this part, are asked about in all directions.
-constexpr std::size_t kTryParts = 8;
 /// Texels of a map of gaps across one of an outer view: what is seen by no other map is in much of it.
 constexpr double kGapDetail = 1.4;
-/// Texels of a cube across the mean width of its volume: its faces are nearer to the centre than to the
-/// corners.
-constexpr double kCubeDensity = 0.775;
-
-/// A point of free space near the surface.
-struct PlanPoint {
-    glm::dvec3 position;
-    glm::dvec3 normal;  ///< of the surface, towards the point
-};
-
-std::vector<PlanPoint> drawPoints(const MeshQuery& query, std::uint64_t seed) {
-    const TriangleMesh& mesh = query.mesh();
-    const AreaTable& areas = query.prepared().areas();
-    struct Draw {
-        PlanPoint point;
-        bool free = false;
-    };
-    std::vector<Draw> draws(kPoints);
-    const double side = mesh.bounds.longestSide();
-    tbb::parallel_for(std::size_t{0}, kPoints, [&](std::size_t i) {
-        MersenneRandom random(seed * 0x9e3779b97f4a7c15ULL + i);
-        // Stratified over the area.
-        const double at = (static_cast<double>(i) + random.uniform()) / static_cast<double>(kPoints);
-        const auto [surface, normal] = drawOnSurface(mesh, areas, at, random);
-        const double offset = side * std::max(5e-5, kSpread * std::abs(random.normal()));
-        // Winding is not trusted: the free side is the one that is not inside; of two free sides, the front.
-        for (const double sign : {1.0, -1.0}) {
-            const glm::dvec3 position = surface + sign * offset * normal;
-            if (!query.inside(glm::vec3(position))) {
-                draws[i] = {{position, sign * normal}, true};
-                return;
-            }
-        }
-    });
-    std::vector<PlanPoint> points;
-    for (const Draw& draw : draws) {
-        if (draw.free) {
-            points.push_back(draw.point);
-        }
-    }
-    return points;
-}
-
-/// How well a point is served by a view that sees it under this cosine: hardly, edge-on.
-float service(double cosine) {
-    return cosine < kEdgeOn ? kEdgeOnService
-                            : static_cast<float>(std::min(
-                                  1.0, kLeastService + (1.0 - kLeastService) * cosine / kFullCosine));
-}
 
 std::string text(const char* format, double a, double b = 0.0, double c = 0.0, double d = 0.0) {
     char buffer[160];
@@ -122,9 +57,9 @@ class Planner {
         : mesh_(query.mesh()),
           query_(query),
           options_(options),
-          side_(mesh_.bounds.longestSide()),
-          points_(drawPoints(query, options.seed)),
-          served_(points_.size(), 0.0F) {
+          points_(drawPlanPoints(query, options.seed)),
+          served_(points_.size(), 0.0F),
+          cavities_(query, points_) {
         choice_.mesh_name = mesh_.name;
     }
 
@@ -200,7 +135,9 @@ class Planner {
                 continue;
             }
             const std::vector<std::size_t> unserved = unservedPoints();
-            const std::optional<Cavity> cavity = bestCavity(unserved, round);
+            const std::optional<Cavity> cavity =
+                cavities_.best(unserved, served_, outer_area_,
+                               options_.seed * 1'000'003 + round * CavitySearch::kCandidates);
             if (choice_.views.size() != gaps_after) {  // else nothing has changed since
                 gaps_after = choice_.views.size();
                 gaps = bestGaps(views, unserved);
@@ -290,14 +227,6 @@ class Planner {
         choice_.views.push_back(std::move(chosen));
     }
 
-    struct Cavity {
-        glm::dvec3 center{0.0};
-        glm::dvec3 half{0.0};  ///< of the volume
-        std::vector<std::pair<std::size_t, float>> service;
-        double gain = 0.0;
-        double area = 0.0;
-    };
-
     /// Points that are served badly; none where they are too few to look for.
     [[nodiscard]] std::vector<std::size_t> unservedPoints() const {
         std::vector<std::size_t> unserved;
@@ -360,7 +289,7 @@ class Planner {
         if (unserved.empty() || !options_.gaps) {
             return std::nullopt;
         }
-        const std::vector<std::size_t> tried = tryPoints(unserved);
+        const std::vector<std::size_t> tried = somePoints(unserved);
         std::vector<Gaps> left(views.size());
         for (std::size_t v = 0; v < views.size(); ++v) {
             left[v].view = &views[v];
@@ -368,7 +297,7 @@ class Planner {
         }
         // A few points tell the worse half of the directions; the others are asked for twice as many.
         std::size_t asked = 0;
-        for (std::size_t parts = kTryParts; parts > 0; parts /= 2) {
+        for (std::size_t parts = kSomeParts; parts > 0; parts /= 2) {
             const std::size_t end = tried.size() / parts;
             tbb::parallel_for(std::size_t{0}, left.size(), [&](std::size_t v) {
                 const glm::dvec3 along(left[v].view->spec.direction);
@@ -384,18 +313,6 @@ class Planner {
         }
         left[0].gain *= static_cast<double>(unserved.size()) / static_cast<double>(tried.size());
         return left[0].gain > 0.0 ? std::optional(left[0]) : std::nullopt;
-    }
-
-    /// Some of the points that are served badly, in an order in which the first are from everywhere too.
-    [[nodiscard]] static std::vector<std::size_t> tryPoints(const std::vector<std::size_t>& unserved) {
-        const std::size_t stride = (unserved.size() + kTryPoints - 1) / kTryPoints;
-        std::vector<std::size_t> points;
-        for (std::size_t first = 0; first < kTryParts; ++first) {
-            for (std::size_t k = first * stride; k < unserved.size(); k += kTryParts * stride) {
-                points.push_back(unserved[k]);
-            }
-        }
-        return points;
     }
 
     [[nodiscard]] Result<void> take(const Gaps& gaps, const std::vector<std::size_t>& unserved) {
@@ -427,32 +344,6 @@ class Planner {
         return {};
     }
 
-    /// Of some places near points that are served badly.
-    [[nodiscard]] std::optional<Cavity> bestCavity(const std::vector<std::size_t>& unserved,
-                                                   std::uint64_t round) const {
-        if (unserved.empty()) {
-            return std::nullopt;
-        }
-        const std::vector<std::size_t> some = tryPoints(unserved);
-        std::vector<Cavity> candidates(kCavityCandidates);
-        tbb::parallel_for(0, kCavityCandidates, [&](int k) {
-            const glm::dvec3 center =
-                placeWithin(unserved, options_.seed * 1'000'003 + round * kCavityCandidates +
-                                          static_cast<std::uint64_t>(k));
-            candidates[static_cast<std::size_t>(k)] = lookFromWithin(some, center);
-        });
-        const Cavity* best = nullptr;
-        double best_score = 0.0;
-        for (const Cavity& candidate : candidates) {
-            const double score = candidate.gain / (candidate.area + 0.02 * outer_area_);
-            if (score > best_score) {
-                best = &candidate;
-                best_score = score;
-            }
-        }
-        return best == nullptr ? std::nullopt : std::optional(lookFromWithin(unserved, best->center));
-    }
-
     void take(const Cavity& cavity) {
         for (const auto& [i, value] : cavity.service) {
             served_[i] = std::max(served_[i], value);
@@ -467,58 +358,17 @@ class Planner {
         chosen.map.serves = cavity.gain / total;
         chosen.map.reason = text("a cavity round (%.4g, %.4g, %.4g): service +%.2f %%", cavity.center.x,
                                  cavity.center.y, cavity.center.z, 100.0 * cavity.gain / total);
-        chosen.width = chosen.height = cubeWidth(cavity.half);
+        chosen.width = chosen.height = cavity.width();
         chosen.area = cavity.area;
         add(std::move(chosen));
-    }
-
-    static double cubeWidth(const glm::dvec3& half) {
-        return 2.0 * kCubeDensity * std::max({half.x, half.y, half.z});
-    }
-
-    /// A place in free space near some point that is not served.
-    [[nodiscard]] glm::dvec3 placeWithin(const std::vector<std::size_t>& unserved, std::uint64_t seed) const {
-        MersenneRandom random(seed);
-        const glm::dvec3 from = points_[unserved[random.below(unserved.size())]].position;
-        const glm::dvec3 direction = random.direction();
-        double free_length = kCavityReach * side_;
-        if (const auto hit = query_.firstHit(from, direction); hit && hit->along < free_length) {
-            free_length = hit->along;
-        }
-        return from + (0.2 + 0.6 * random.uniform()) * free_length * direction;
-    }
-
-    /// A cube there, and what it would serve of some points.
-    [[nodiscard]] Cavity lookFromWithin(const std::vector<std::size_t>& points,
-                                        const glm::dvec3& center) const {
-        Cavity cavity;
-        cavity.center = center;
-        for (const std::size_t i : points) {
-            const glm::dvec3 offset = points_[i].position - cavity.center;
-            const double distance = length(offset);
-            if (distance > kCavityReach * side_ || !(distance > 0.0) ||
-                !query_.segmentIsFree(cavity.center, points_[i].position)) {
-                continue;
-            }
-            const float value = service(-dot(points_[i].normal, offset) / distance);
-            cavity.service.emplace_back(i, value);
-            cavity.gain += std::max(0.0F, value - served_[i]);
-            for (int axis = 0; axis < 3; ++axis) {
-                cavity.half[axis] = std::max(cavity.half[axis], std::abs(offset[axis]));
-            }
-        }
-        cavity.half = 1.1 * cavity.half + glm::dvec3(1e-3 * side_);
-        const double width = cubeWidth(cavity.half);
-        cavity.area = 24.0 * width * width;
-        return cavity;
     }
 
     const TriangleMesh& mesh_;
     const MeshQuery& query_;
     const ViewOptions& options_;
-    double side_;
     std::vector<PlanPoint> points_;
     std::vector<float> served_;  // of each point, 0…1
+    CavitySearch cavities_;
     ViewChoice choice_;
     std::vector<GapGrid> gap_grids_;  // of the maps of gaps
     double outer_area_ = 0.0;

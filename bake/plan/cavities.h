@@ -1,0 +1,54 @@
+// Places within a mesh for cubes, which see what no view from outside does.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "bake/mesh/mesh_query.h"
+#include "bake/plan/plan_points.h"
+
+namespace relief {
+
+/// A cube in free space, and what it would serve.
+struct Cavity {
+    glm::dvec3 center{0.0};
+    glm::dvec3 half{0.0};                                ///< of the volume
+    std::vector<std::pair<std::size_t, float>> service;  ///< of points, by index
+    double gain = 0.0;                                   ///< in the service of all points
+    double area = 0.0;                                   ///< bytes for texels of side 1
+
+    /// Of a face's image, in object units; texels are as large on the surface as those of other maps.
+    [[nodiscard]] double width() const;
+};
+
+class CavitySearch {
+  public:
+    /// \param query, points  borrowed; must outlive it.
+    CavitySearch(const MeshQuery& query, const std::vector<PlanPoint>& points)
+        : query_(query), points_(points) {}
+
+    /// Places that best() tries, each with a seed of its own from `seed` on.
+    static constexpr std::size_t kCandidates = 100;
+
+    /// The best of some places near points that are served badly.
+    /// \param unserved  their indices
+    /// \param served    how well each point is served
+    /// \param others_area  bytes for texels of side 1 of the views from outside: a place costs as much more
+    [[nodiscard]] std::optional<Cavity> best(const std::vector<std::size_t>& unserved,
+                                             const std::vector<float>& served, double others_area,
+                                             std::uint64_t seed) const;
+
+  private:
+    [[nodiscard]] glm::dvec3 placeWithin(const std::vector<std::size_t>& unserved, std::uint64_t seed) const;
+    [[nodiscard]] Cavity lookFromWithin(const std::vector<std::size_t>& points,
+                                        const std::vector<float>& served, const glm::dvec3& center) const;
+
+    const MeshQuery& query_;
+    const std::vector<PlanPoint>& points_;
+};
+
+}  // namespace relief
