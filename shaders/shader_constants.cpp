@@ -84,6 +84,8 @@ std::string makeConstants() {
     define("DEAD_COLLISIONS", kDeadCollisions);
     define("STEP_GROUP_WIDTH", kStepGroupWidth);
     define("STEP_GROUP_HEIGHT", kStepGroupHeight);
+    define("RADIX_DIGITS", kRadixDigits);
+    define("RADIX_BLOCKS_EACH", kRadixBlocksEach);
     define("REDUCED_SIDE", kReducedSide);
     define("COLLISIONS_HIGH", static_cast<float>(kCollisionsHigh));
     define("TYPE_CODES", kTypeCodes);

@@ -48,6 +48,10 @@ inline constexpr float kDeadCollisions = -1.0F;
 inline constexpr int kStepGroupWidth = 8;
 inline constexpr int kStepGroupHeight = 8;
 
+/// Values of a digit of the radix sort, and invocations of its work groups; blocks whose counts one invocation sums.
+inline constexpr int kRadixDigits = 256;
+inline constexpr int kRadixBlocksEach = 4;
+
 /// A pass of the statistics sums squares of so many texels a side.
 inline constexpr int kReducedSide = 4;
 /// Sums of collisions are kept as low + kCollisionsHigh · high.

@@ -17,8 +17,8 @@ class ImageUnits {
     ImageUnits(const ImageUnits&) = delete;
     ImageUnits& operator=(const ImageUnits&) = delete;
 
-    /// Level 0 of an RGBA32F texture, to be written.
-    static void write(GLuint unit, const GlTexture& texture);
+    /// Level 0 of a texture, to be written. \param format  the texture's.
+    static void write(GLuint unit, const GlTexture& texture, GLenum format = GL_RGBA32F);
     /// Lets everything see what compute passes have written.
     static void finish();
 

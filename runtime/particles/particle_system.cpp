@@ -29,19 +29,6 @@ void drawRows(const GlVertexArray& no_attributes, std::uint32_t width, std::uint
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-Result<StepPath> chosenPath(StepPath wanted) {
-    if (wanted == StepPath::kCompute && !hasCompute()) {
-        return fail(ErrorCode::kUnsupported,
-                    "the compute path needs OpenGL 4.3 or OpenGL ES 3.1, and this context has " +
-                        std::string(reinterpret_cast<const char*>(glGetString(GL_VERSION))) +
-                        "; take the fragment path");
-    }
-    if (wanted == StepPath::kAuto) {
-        return hasCompute() && !isSoftwareRenderer() ? StepPath::kCompute : StepPath::kFragment;
-    }
-    return wanted;
-}
-
 }  // namespace
 
 Result<ParticleSystem> ParticleSystem::create(const ParticleSystemOptions& options) {

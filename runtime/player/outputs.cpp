@@ -68,8 +68,9 @@ Outputs::~Outputs() {
 Result<void> Outputs::open() {
     const Scene& scene = loaded_.scene;
     if (!options_.frames.empty() || !options_.video.empty()) {
-        picture_ = RELIEF_TRY(watched(options_.watchdog, "the shaders of pictures",
-                                      [&] { return ScenePicture::create(loaded_, textures_); }));
+        picture_ = RELIEF_TRY(watched(options_.watchdog, "the shaders of pictures", [&] {
+            return ScenePicture::create(loaded_, textures_, options_.path);
+        }));
     }
     if (!options_.video.empty()) {
         RELIEF_TRY(openVideo());
