@@ -87,6 +87,7 @@ std::string makeConstants() {
     define("RADIX_DIGITS", kRadixDigits);
     define("RADIX_BLOCKS_EACH", kRadixBlocksEach);
     define("REDUCED_SIDE", kReducedSide);
+    define("REDUCED_GROUP", kReducedGroup);
     define("COLLISIONS_HIGH", static_cast<float>(kCollisionsHigh));
     define("TYPE_CODES", kTypeCodes);
     define("SPEED_MAX", kSpeedMaxOfState);

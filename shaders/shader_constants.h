@@ -54,6 +54,8 @@ inline constexpr int kRadixBlocksEach = 4;
 
 /// A pass of the statistics sums squares of so many texels a side.
 inline constexpr int kReducedSide = 4;
+/// Squares a side of a work group: those that its second pass and its third sum into one.
+inline constexpr int kReducedGroup = kReducedSide * kReducedSide;
 /// Sums of collisions are kept as low + kCollisionsHigh · high.
 inline constexpr int kCollisionsHigh = 4096;
 /// A type is found by the greatest of kTypeCodes - type.

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "runtime/bench/bench_tool.h"
+#include "runtime/bench/gpu_time.h"
 #include "runtime/gl/gl_context.h"
 #include "runtime/particles/emitter.h"
 #include "runtime/picture/depth_sort.h"
@@ -13,37 +13,8 @@
 namespace relief {
 namespace {
 
-constexpr int kRepeatsLeast = 3;
-constexpr int kRepeatsMost = 50;
-constexpr double kSeconds = 1.0;  // repeats go on for so long
-constexpr double kBlockMs = 10.0;
 constexpr std::uint32_t kFrames = 30;
 constexpr glm::vec3 kEye{0.5F, 0.5F, 3.0F};
-
-/// Of a call, in blocks that last kBlockMs, so that neither waiting for the GPU nor waking it tells.
-double medianMilliseconds(const std::function<void()>& work) {
-    const auto block = [&](int calls) {
-        const Stopwatch watch;
-        for (int i = 0; i < calls; ++i) {
-            work();
-        }
-        glFinish();
-        return watch.ms();
-    };
-    block(1);  // the driver compiles
-    int calls = 1;
-    while (block(calls) < kBlockMs) {
-        calls *= 2;
-    }
-    std::vector<double> all;
-    double sum = 0.0;
-    while (static_cast<int>(all.size()) < kRepeatsLeast ||
-           (sum < 1000.0 * kSeconds && static_cast<int>(all.size()) < kRepeatsMost)) {
-        all.push_back(block(calls) / calls);
-        sum += all.back() * calls;
-    }
-    return median(all);
-}
 
 GlTexture randomPositions(std::uint32_t count) {
     Pcg32 random(1);
@@ -61,8 +32,7 @@ Result<std::function<double(std::uint32_t)>> timer(std::uint32_t count, StepPath
                                                    const GlTexture& positions) {
     auto sorter = std::make_shared<DepthSorter>(RELIEF_TRY(DepthSorter::create(count, path)));
     return [sorter, count, &positions](std::uint32_t passes) {
-        return medianMilliseconds(
-            [&] { sorter->update(positions, DepthSorter::kWidth, count, kEye, passes); });
+        return medianGpuMs([&] { sorter->update(positions, DepthSorter::kWidth, count, kEye, passes); });
     };
 }
 

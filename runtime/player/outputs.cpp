@@ -79,7 +79,7 @@ Result<void> Outputs::open() {
         timer_.emplace();
     }
     if (!options_.stats.empty()) {
-        log_ = RELIEF_TRY(StatisticsLog::create(options_.stats, scene.capacity, *timer_));
+        log_ = RELIEF_TRY(StatisticsLog::create(options_.stats, scene.capacity, options_.path, *timer_));
     }
     if (!options_.frames.empty()) {
         RELIEF_TRY(prepareFolder(options_.frames, "--frames"));
