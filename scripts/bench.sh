@@ -125,7 +125,7 @@ for s in sort['sorts']:
           + (f", as compute {s['compute_ms']:.3f} ms" if 'compute_ms' in s else ''))
 for c in births['capacities']:
     b = c['births_per_ms']
-    print(f"births, capacity {c['capacity']:8d}: {b['emit']:.0f} sampled, {b['spawn']:.0f} placed, "
+    print(f"births, capacity {c['capacity']:8d}, {c['path']}: {b['emit']:.0f} sampled, {b['spawn']:.0f} placed, "
           f"{b['draw']:.0f} drawn per ms; {c['bookkeeping']['ns_per_death']:.0f} ns a death")
 P
 

@@ -52,6 +52,9 @@ inline constexpr int kStepGroupHeight = 8;
 inline constexpr int kRadixDigits = 256;
 inline constexpr int kRadixBlocksEach = 4;
 
+/// Invocations of a work group of births.
+inline constexpr int kBirthGroup = 64;
+
 /// A pass of the statistics sums squares of so many texels a side.
 inline constexpr int kReducedSide = 4;
 /// Squares a side of a work group: those that its second pass and its third sum into one.

@@ -7,11 +7,11 @@
 
 namespace relief {
 
-/// On construction: saves image units 0 and 1. On destruction: puts them back. Needs hasCompute(). What PassState does
+/// On construction: saves image units 0 to 2. On destruction: puts them back. Needs hasCompute(). What PassState does
 /// for all other state; few passes use images.
 class ImageUnits {
   public:
-    static constexpr GLuint kUnits = 2;
+    static constexpr GLuint kUnits = 3;
     ImageUnits();
     ~ImageUnits();
     ImageUnits(const ImageUnits&) = delete;
