@@ -5,8 +5,9 @@ layout(std430, binding = 2) buffer Counts { uint b_counts[]; };
 layout(std430, binding = 3) writeonly buffer Totals { uint b_totals[]; };
 
 void main() {
-    uint first = gl_LocalInvocationIndex * uint(RELIEF_RADIX_BLOCKS_EACH);
-    uint last = min(first + uint(RELIEF_RADIX_BLOCKS_EACH), u_blocks);
+    uint each = (u_blocks + uint(RELIEF_RADIX_DIGITS - 1)) / uint(RELIEF_RADIX_DIGITS);
+    uint first = gl_LocalInvocationIndex * each;
+    uint last = min(first + each, u_blocks);
     uint at = countsOf(gl_WorkGroupID.x);
     uint mine = 0u;
     for (uint block = first; block < last; ++block) {

@@ -85,7 +85,6 @@ std::string makeConstants() {
     define("STEP_GROUP_WIDTH", kStepGroupWidth);
     define("STEP_GROUP_HEIGHT", kStepGroupHeight);
     define("RADIX_DIGITS", kRadixDigits);
-    define("RADIX_BLOCKS_EACH", kRadixBlocksEach);
     define("BIRTH_GROUP", kBirthGroup);
     define("REDUCED_SIDE", kReducedSide);
     define("REDUCED_GROUP", kReducedGroup);

@@ -48,9 +48,8 @@ inline constexpr float kDeadCollisions = -1.0F;
 inline constexpr int kStepGroupWidth = 8;
 inline constexpr int kStepGroupHeight = 8;
 
-/// Values of a digit of the radix sort, and invocations of its work groups; blocks whose counts one invocation sums.
+/// Values of a digit of the radix sort, and invocations of its work groups.
 inline constexpr int kRadixDigits = 256;
-inline constexpr int kRadixBlocksEach = 4;
 
 /// Invocations of a work group of births.
 inline constexpr int kBirthGroup = 64;

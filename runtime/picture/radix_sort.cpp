@@ -23,7 +23,10 @@ constexpr std::uint32_t kDigits = kRadixDigits;
 constexpr std::uint32_t kDigitBits = 8;
 constexpr std::uint32_t kKeyDigits = 32 / kDigitBits;
 static_assert(kDigits == 1U << kDigitBits && kKeyDigits % 2 == 0);
-constexpr std::uint32_t kBlocksMax = kDigits * kRadixBlocksEach;  // that one group scans
+// More rows make blocks more numerous, then longer, then more numerous again: an H100's best for 2^16 to 2^24 particles.
+constexpr std::uint32_t kBlocksFew = 512;
+constexpr std::uint32_t kTurns = 8;
+constexpr std::uint32_t kBlocksMax = 2048;
 
 constexpr GLsizeiptr kElementBytes = 2 * sizeof(std::uint32_t);
 
@@ -116,8 +119,9 @@ void RadixSort::dispatch(const Program& program, const Cut& cut, std::uint32_t d
 void RadixSort::sort(const GlTexture& positions, std::uint32_t width, std::uint32_t extent,
                      const glm::vec3& eye) {
     const std::uint32_t rows = dividedUp(extent, kDigits);
-    Cut cut{extent, dividedUp(rows, kBlocksMax), 0};
-    cut.blocks = dividedUp(rows, cut.turns);
+    const std::uint32_t turns =
+        std::max(std::min(dividedUp(rows, kBlocksFew), kTurns), dividedUp(rows, kBlocksMax));
+    const Cut cut{extent, turns, dividedUp(rows, turns)};
 
     const StorageUnits storage;
     const ImageUnits images;

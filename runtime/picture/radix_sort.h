@@ -1,9 +1,9 @@
 // The exact drawing order of particles by compute shaders: a radix sort, whole in each call (shaders/radix.glsl).
 // DepthSorter's on the compute path.
 //
-//     bytes on the GPU = 24 · capacity and up to 1 MB:
+//     bytes on the GPU = 24 · capacity and up to 2 MB:
 //         elements  2 × 8 bytes (double-buffered)      index of a particle, key
-//         counts    of 256 digits in up to 1024 blocks
+//         counts    of 256 digits in up to 2048 blocks
 //         order     RG32UI (on OpenGL ES, whose shaders cannot store into that, RGBA32UI of 16 bytes)
 #pragma once
 
