@@ -121,10 +121,11 @@ for f in step['frames']:
           f"with points {f['points_ms']:.2f} ms, with quads {f['quads_ms']:.2f} ms")
 for s in sort['sorts']:
     print(f"sort of {s['particles']:8d} particles: {s['passes_per_ms']:.3f} passes/ms, "
-          f"{s['frame_ms_over_30']:.2f} ms a frame over 30 frames")
+          f"{s['frame_ms_over_30']:.2f} ms a frame over 30 frames, whole {s['sequence_ms']:.2f} ms"
+          + (f", as compute {s['compute_ms']:.3f} ms" if 'compute_ms' in s else ''))
 for c in births['capacities']:
     b = c['births_per_ms']
-    print(f"births, capacity {c['capacity']:8d}: {b['emit']:.0f} sampled, {b['spawn']:.0f} placed, "
+    print(f"births, capacity {c['capacity']:8d}, {c['path']}: {b['emit']:.0f} sampled, {b['spawn']:.0f} placed, "
           f"{b['draw']:.0f} drawn per ms; {c['bookkeeping']['ns_per_death']:.0f} ns a death")
 P
 

@@ -84,7 +84,10 @@ std::string makeConstants() {
     define("DEAD_COLLISIONS", kDeadCollisions);
     define("STEP_GROUP_WIDTH", kStepGroupWidth);
     define("STEP_GROUP_HEIGHT", kStepGroupHeight);
+    define("RADIX_DIGITS", kRadixDigits);
+    define("BIRTH_GROUP", kBirthGroup);
     define("REDUCED_SIDE", kReducedSide);
+    define("REDUCED_GROUP", kReducedGroup);
     define("COLLISIONS_HIGH", static_cast<float>(kCollisionsHigh));
     define("TYPE_CODES", kTypeCodes);
     define("SPEED_MAX", kSpeedMaxOfState);

@@ -48,8 +48,16 @@ inline constexpr float kDeadCollisions = -1.0F;
 inline constexpr int kStepGroupWidth = 8;
 inline constexpr int kStepGroupHeight = 8;
 
+/// Values of a digit of the radix sort, and invocations of its work groups.
+inline constexpr int kRadixDigits = 256;
+
+/// Invocations of a work group of births.
+inline constexpr int kBirthGroup = 64;
+
 /// A pass of the statistics sums squares of so many texels a side.
 inline constexpr int kReducedSide = 4;
+/// Squares a side of a work group: those that its second pass and its third sum into one.
+inline constexpr int kReducedGroup = kReducedSide * kReducedSide;
 /// Sums of collisions are kept as low + kCollisionsHigh · high.
 inline constexpr int kCollisionsHigh = 4096;
 /// A type is found by the greatest of kTypeCodes - type.

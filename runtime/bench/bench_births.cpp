@@ -1,12 +1,12 @@
 // What a birth costs: relief-bench-births [BIRTHS_PER_STEP [CAPACITY…]] prints JSON. Nothing here is a test:
 // machines are shared and noisy.
 //
-// Each capacity is run in its steady state, where each step as many die as are born (at most a quarter of the
-// capacity): what a long run pays, not what an empty system pays. `emit` samples; `spawn` takes indices and
-// files the deaths; `free_and_upload` is what births and deaths add to the call of a step: indices given
-// back, and the births handed to the driver; `draw` is what they add to a step until it is finished: the
-// GPU's work, and the CPU's where that plays the GPU. All but `draw` is CPU time of the one
-// thread. `bookkeeping` is indices and deaths alone, without GL.
+// Each capacity is run on each path that the context has, in its steady state: each step as many die as are born (at
+// most a quarter of the capacity), which is what a long run pays, not what an empty system pays. `emit` samples;
+// `spawn` takes indices and files the deaths; `free_and_upload` is what births and deaths add to the call of a step:
+// indices given back, and the births handed to the driver; `draw` is what they add to a step until it is finished:
+// the GPU's work, and the CPU's where that plays the GPU. All but `draw` is CPU time of the one thread. `bookkeeping`
+// is indices and deaths alone, without GL.
 #include <algorithm>
 #include <cstdlib>
 #include <vector>
@@ -112,14 +112,14 @@ Cost costWithout(ParticleSystem& particles) {
     return cost;
 }
 
-Json benchCapacity(std::uint32_t capacity, std::uint32_t per_step) {
+Json benchCapacity(std::uint32_t capacity, std::uint32_t per_step, StepPath path) {
     per_step = steadyBirths(capacity, per_step);
     EmitterSettings settings = fountain(60.0 * per_step);
     // Spread so that indices come back in disorder.
     const float life = steadyLife(capacity, per_step);
     settings.lifetime_min = 0.5F * life;
     settings.lifetime_max = 1.5F * life;
-    auto particles = ParticleSystem::create({.capacity = capacity});
+    auto particles = ParticleSystem::create({.capacity = capacity, .path = path});
     if (!particles) {
         return {{"capacity", capacity}, {"error", particles.error().message}};
     }
@@ -130,6 +130,7 @@ Json benchCapacity(std::uint32_t capacity, std::uint32_t per_step) {
     const double draw = median(cost.drawn) - median(without.drawn);
     Json json;
     json["capacity"] = capacity;
+    json["path"] = path == StepPath::kCompute ? "compute" : "fragment";
     json["births_per_step"] = per_step;
     json["alive"] = particles->counts().alive;
     json["ms_per_step"] = {{"emit", median(cost.emit)},
@@ -200,9 +201,15 @@ Result<Json> bench(int argc, char** argv) {
     json["emit_births_per_ms"] = {{"box", emitRate(box, per_step)},
                                   {"fountain", emitRate(fountain(60.0 * per_step), per_step)}};
     for (const std::uint32_t capacity : capacities) {
-        Json one = benchCapacity(capacity, per_step);
-        one["bookkeeping"] = benchDeaths(capacity, per_step);
-        json["capacities"].push_back(std::move(one));
+        const Json bookkeeping = benchDeaths(capacity, per_step);
+        for (const StepPath path : {StepPath::kFragment, StepPath::kCompute}) {
+            if (path == StepPath::kCompute && !hasCompute()) {
+                continue;
+            }
+            Json one = benchCapacity(capacity, per_step, path);
+            one["bookkeeping"] = bookkeeping;
+            json["capacities"].push_back(std::move(one));
+        }
     }
     return json;
 }

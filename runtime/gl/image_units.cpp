@@ -23,8 +23,8 @@ ImageUnits::~ImageUnits() {
     }
 }
 
-void ImageUnits::write(GLuint unit, const GlTexture& texture) {
-    glBindImageTexture(unit, texture.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+void ImageUnits::write(GLuint unit, const GlTexture& texture, GLenum format) {
+    glBindImageTexture(unit, texture.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, format);
 }
 
 void ImageUnits::finish() {

@@ -7,18 +7,18 @@
 
 namespace relief {
 
-/// On construction: saves image units 0 and 1. On destruction: puts them back. Needs hasCompute(). What PassState does
+/// On construction: saves image units 0 to 2. On destruction: puts them back. Needs hasCompute(). What PassState does
 /// for all other state; few passes use images.
 class ImageUnits {
   public:
-    static constexpr GLuint kUnits = 2;
+    static constexpr GLuint kUnits = 3;
     ImageUnits();
     ~ImageUnits();
     ImageUnits(const ImageUnits&) = delete;
     ImageUnits& operator=(const ImageUnits&) = delete;
 
-    /// Level 0 of an RGBA32F texture, to be written.
-    static void write(GLuint unit, const GlTexture& texture);
+    /// Level 0 of a texture, to be written. \param format  the texture's.
+    static void write(GLuint unit, const GlTexture& texture, GLenum format = GL_RGBA32F);
     /// Lets everything see what compute passes have written.
     static void finish();
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <string>
 
 #include "runtime/gl/gl_fault.h"
@@ -27,19 +26,6 @@ void drawRows(const GlVertexArray& no_attributes, std::uint32_t width, std::uint
     glViewport(0, 0, static_cast<GLsizei>(width), static_cast<GLsizei>(rows));
     glBindVertexArray(no_attributes.name());
     glDrawArrays(GL_TRIANGLES, 0, 3);
-}
-
-Result<StepPath> chosenPath(StepPath wanted) {
-    if (wanted == StepPath::kCompute && !hasCompute()) {
-        return fail(ErrorCode::kUnsupported,
-                    "the compute path needs OpenGL 4.3 or OpenGL ES 3.1, and this context has " +
-                        std::string(reinterpret_cast<const char*>(glGetString(GL_VERSION))) +
-                        "; take the fragment path");
-    }
-    if (wanted == StepPath::kAuto) {
-        return hasCompute() && !isSoftwareRenderer() ? StepPath::kCompute : StepPath::kFragment;
-    }
-    return wanted;
 }
 
 }  // namespace
@@ -104,31 +90,12 @@ Result<void> ParticleSystem::createTextures() {
         glClearBufferfv(GL_COLOR, 1, verlet() ? kDeadPosition.data() : kZero.data());
         glClearBufferfv(GL_COLOR, 2, kZero.data());
     }
-
-    birth_vertices_ = makeBuffer();
-    birth_array_ = makeVertexArray();
-    glBindVertexArray(birth_array_.name());
-    glBindBuffer(GL_ARRAY_BUFFER, birth_vertices_.name());
-    const auto at = [](std::size_t offset) { return reinterpret_cast<const void*>(offset); };
-    constexpr GLsizei kStride = sizeof(BirthVertex);
-    glVertexAttribIPointer(0, 1, GL_UNSIGNED_INT, kStride, at(offsetof(BirthVertex, index)));
-    glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, kStride, at(offsetof(BirthVertex, position)));
-    glVertexAttribPointer(2, 3, GL_FLOAT, GL_FALSE, kStride, at(offsetof(BirthVertex, velocity)));
-    glVertexAttribPointer(3, 4, GL_FLOAT, GL_FALSE, kStride, at(offsetof(BirthVertex, birth)));
-    for (GLuint i = 0; i < 4; ++i) {
-        glEnableVertexAttribArray(i);
-    }
     return {};
 }
 
 Result<void> ParticleSystem::createPrograms() {
-    birth_program_ =
-        RELIEF_TRY(makeProgram("birth.vert", "birth.frag", verlet() ? "#define RELIEF_VERLET\n" : ""));
+    birth_pass_ = RELIEF_TRY(BirthPass::create({width_, height_}, verlet(), path_));
     rebase_program_ = RELIEF_TRY(makeProgram("quad.vert", "rebase.frag"));
-    glUseProgram(birth_program_.name());
-    glUniform2i(uniformLocation(birth_program_, "u_size"), static_cast<GLint>(width_),
-                static_cast<GLint>(height_));
-    birth_dt_ = glGetUniformLocation(birth_program_.name(), "u_dt_before");
     glUseProgram(rebase_program_.name());
     glUniform1i(uniformLocation(rebase_program_, "u_birth"), StepPass::kBirthUnit);
     rebase_shift_ = uniformLocation(rebase_program_, "u_shift");
@@ -234,7 +201,7 @@ std::size_t ParticleSystem::spawn(std::span<const Birth> births) {
         ids_[*index] = id;
         deaths_.push(death, *index);
         // Written member by member: a copy of a whole vertex would wait for its parts.
-        BirthVertex& vertex = newborn_.emplace_back();
+        BirthPass::Newborn& vertex = newborn_.emplace_back();
         vertex.index = *index;
         vertex.position = birth.position + birth.age * velocity;
         vertex.velocity = velocity;
@@ -252,7 +219,7 @@ void ParticleSystem::step(float dt) {
     if (dt_before_ == 0.0F) {
         dt_before_ = dt;
     }
-    drawBirths();
+    runBirths();
     time_ += static_cast<double>(dt);
     const float now = clock();
     runStep(dt, now);
@@ -267,20 +234,12 @@ float ParticleSystem::clock() const {
     return clockOf(time_);
 }
 
-void ParticleSystem::drawBirths() {
+void ParticleSystem::runBirths() {
     if (newborn_.empty()) {
         return;
     }
-    glBindFramebuffer(GL_FRAMEBUFFER, birth_target_[current_].name());
-    glViewport(0, 0, static_cast<GLsizei>(width_), static_cast<GLsizei>(height_));
-    glUseProgram(birth_program_.name());
-    glUniform1f(birth_dt_, dt_before_);
-    glBindVertexArray(birth_array_.name());
-    glBindBuffer(GL_ARRAY_BUFFER, birth_vertices_.name());
-    // A fresh store each time: the driver need not wait until the last one has been drawn.
-    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(newborn_.size() * sizeof(BirthVertex)),
-                 newborn_.data(), GL_STREAM_DRAW);
-    glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(newborn_.size()));
+    birth_pass_.run(newborn_, {birth_target_[current_].name(), position_[current_], secondState(), birth_},
+                    dt_before_);
     newborn_.clear();
 }
 
@@ -398,7 +357,7 @@ Result<RawState> ParticleSystem::readRaw() const {
 Result<std::vector<ParticleState>> ParticleSystem::readState() const {
     auto raw = RELIEF_TRY(readRaw());
     std::vector<bool> unborn(drawn_extent_);
-    for (const BirthVertex& vertex : newborn_) {
+    for (const BirthPass::Newborn& vertex : newborn_) {
         if (vertex.index < drawn_extent_) {
             unborn[vertex.index] = true;
         }

@@ -8,7 +8,7 @@
 //         birth     1 × RGBA32F                        time of birth, time of death, type, id mod 2^24
 //     (96 · texels once the clock has been set back for the first time)
 //
-// A step, in this order: births are drawn into the textures as points; one pass over the occupied rows
+// A step, in this order: births are written into the textures (birth_pass.h); one pass over the occupied rows
 // decides deaths, moves and collides (shaders/step.glsl); the CPU frees the indices of the dead.
 //
 // Time. The CPU counts in double. The GPU sees floats relative to an epoch that is set forward whenever
@@ -28,6 +28,7 @@
 #include "runtime/air/air_block.h"
 #include "runtime/collider/collider_textures.h"
 #include "runtime/gl/gl_object.h"
+#include "runtime/particles/birth_pass.h"
 #include "runtime/particles/death_queue.h"
 #include "runtime/particles/emitter.h"
 #include "runtime/particles/index_allocator.h"
@@ -160,13 +161,6 @@ class ParticleSystem {
     [[nodiscard]] Result<RawState> readRaw() const;
 
   private:
-    /// A vertex of the births' draw.
-    struct BirthVertex {
-        std::uint32_t index;
-        glm::vec3 position;
-        glm::vec3 velocity;
-        glm::vec4 birth;
-    };
     explicit ParticleSystem(std::uint32_t capacity) : allocator_(capacity), deaths_(capacity) {}
     [[nodiscard]] Result<void> createTextures();
     [[nodiscard]] Result<void> createPrograms();
@@ -177,16 +171,16 @@ class ParticleSystem {
     [[nodiscard]] bool verlet() const { return integrator_ == Integrator::kVerlet; }
     [[nodiscard]] float clockOf(double time) const { return static_cast<float>(time - epoch_); }
     void setEpochForward();
-    void drawBirths();
+    void runBirths();
     [[nodiscard]] GlTexture makeStateTexture() const;
     void runStep(float dt, float now);
     void freeDead(float now);
 
     IndexAllocator allocator_;
     DeathQueue deaths_;
-    std::vector<std::uint32_t> dead_;   // of the last step, kept for its memory
-    std::vector<std::uint32_t> ids_;    // of each index
-    std::vector<BirthVertex> newborn_;  // since the last step
+    std::vector<std::uint32_t> dead_;          // of the last step, kept for its memory
+    std::vector<std::uint32_t> ids_;           // of each index
+    std::vector<BirthPass::Newborn> newborn_;  // since the last step
     std::uint64_t born_ = 0;
     std::uint64_t died_ = 0;
     std::uint64_t refused_ = 0;
@@ -215,13 +209,10 @@ class ParticleSystem {
     GlFramebuffer step_target_[3];   // position and velocity
     GlFramebuffer birth_target_[3];  // position, velocity or position before, birth
     GlFramebuffer rebase_target_;    // birth_spare_
-    GlBuffer birth_vertices_;
-    GlVertexArray birth_array_;
     GlVertexArray no_attributes_;
-    GlProgram birth_program_;
+    BirthPass birth_pass_;
     GlProgram rebase_program_;
     GLint rebase_shift_ = -1;
-    GLint birth_dt_ = -1;
     StepPass step_;
 };
 

@@ -26,18 +26,34 @@ std::uint32_t reduced(std::uint32_t side) {
 
 }  // namespace
 
-Result<Statistics> Statistics::create(std::uint32_t capacity) {
+Result<Statistics> Statistics::create(std::uint32_t capacity, StepPath path) {
     if (capacity == 0 || capacity > ParticleSystem::kCapacityMax) {
         return fail(ErrorCode::kUsage, "statistics of " + std::to_string(capacity) +
                                            " particles are not possible; choose 1 to " +
                                            std::to_string(ParticleSystem::kCapacityMax));
     }
+    const StepPath chosen = RELIEF_TRY(chosenPath(path));
     const PassState state;
     forgetGlErrors();
     Statistics statistics;
     statistics.capacity_ = capacity;
-    std::uint32_t width = std::min(capacity, ParticleSystem::kStateWidth);
-    std::uint32_t height = (capacity + width - 1) / width;
+    for (Slot& slot : statistics.slots_) {
+        slot.buffer = makeBuffer();
+        glBindBuffer(GL_PIXEL_PACK_BUFFER, slot.buffer.name());
+        glBufferData(GL_PIXEL_PACK_BUFFER, StateSums::kBytes, nullptr, GL_STREAM_READ);
+    }
+    RELIEF_TRY(checkAllocated("the statistics' buffers", "choose a smaller capacity"));
+    if (chosen == StepPath::kCompute) {
+        statistics.compute_ = RELIEF_TRY(StateSums::create(capacity));
+    } else {
+        RELIEF_TRY(statistics.createLadder());
+    }
+    return statistics;
+}
+
+Result<void> Statistics::createLadder() {
+    std::uint32_t width = std::min(capacity_, ParticleSystem::kStateWidth);
+    std::uint32_t height = (capacity_ + width - 1) / width;
     do {
         width = reduced(width);
         height = reduced(height);
@@ -46,35 +62,28 @@ Result<Statistics> Statistics::create(std::uint32_t capacity) {
                                  GL_RGBA, GL_FLOAT);
         };
         Level level{make(), make(), {}};
-        RELIEF_TRY(checkAllocated("the statistics of " + std::to_string(capacity) + " particles",
+        RELIEF_TRY(checkAllocated("the statistics of " + std::to_string(capacity_) + " particles",
                                   "choose a smaller capacity"));
         const std::array<GLuint, 2> textures{level.counts.name(), level.sums.name()};
         level.target = RELIEF_TRY(makeFramebuffer(textures));
-        statistics.levels_.push_back(std::move(level));
+        levels_.push_back(std::move(level));
     } while (width > 1 || height > 1);
+    no_attributes_ = makeVertexArray();
 
-    for (Slot& slot : statistics.slots_) {
-        slot.buffer = makeBuffer();
-        glBindBuffer(GL_PIXEL_PACK_BUFFER, slot.buffer.name());
-        glBufferData(GL_PIXEL_PACK_BUFFER, 2 * kTexelBytes, nullptr, GL_STREAM_READ);
-    }
-    RELIEF_TRY(checkAllocated("the statistics' buffers", "choose a smaller capacity"));
-    statistics.no_attributes_ = makeVertexArray();
-
-    statistics.state_program_ = RELIEF_TRY(makeProgram("quad.vert", "reduce_state.frag"));
-    statistics.sum_program_ = RELIEF_TRY(makeProgram("quad.vert", "reduce_sum.frag"));
-    glUseProgram(statistics.state_program_.name());
-    glUniform1i(uniformLocation(statistics.state_program_, "u_position"), kCountsUnit);
-    glUniform1i(uniformLocation(statistics.state_program_, "u_velocity"), kSumsUnit);
-    glUniform1i(uniformLocation(statistics.state_program_, "u_birth"), kBirthUnit);
-    statistics.state_size_ = uniformLocation(statistics.state_program_, "u_size");
-    statistics.state_rate_ = uniformLocation(statistics.state_program_, "u_rate_before");
-    statistics.state_extent_ = uniformLocation(statistics.state_program_, "u_extent");
-    glUseProgram(statistics.sum_program_.name());
-    glUniform1i(uniformLocation(statistics.sum_program_, "u_counts"), kCountsUnit);
-    glUniform1i(uniformLocation(statistics.sum_program_, "u_sums"), kSumsUnit);
-    statistics.sum_size_ = uniformLocation(statistics.sum_program_, "u_size");
-    return statistics;
+    state_program_ = RELIEF_TRY(makeProgram("quad.vert", "reduce_state.frag"));
+    sum_program_ = RELIEF_TRY(makeProgram("quad.vert", "reduce_sum.frag"));
+    glUseProgram(state_program_.name());
+    glUniform1i(uniformLocation(state_program_, "u_position"), kCountsUnit);
+    glUniform1i(uniformLocation(state_program_, "u_velocity"), kSumsUnit);
+    glUniform1i(uniformLocation(state_program_, "u_birth"), kBirthUnit);
+    state_size_ = uniformLocation(state_program_, "u_size");
+    state_rate_ = uniformLocation(state_program_, "u_rate_before");
+    state_extent_ = uniformLocation(state_program_, "u_extent");
+    glUseProgram(sum_program_.name());
+    glUniform1i(uniformLocation(sum_program_, "u_counts"), kCountsUnit);
+    glUniform1i(uniformLocation(sum_program_, "u_sums"), kSumsUnit);
+    sum_size_ = uniformLocation(sum_program_, "u_size");
+    return {};
 }
 
 bool Statistics::request(const ParticleSystem& particles, std::uint64_t tag) {
@@ -89,6 +98,16 @@ bool Statistics::request(const ParticleSystem& particles, std::uint64_t tag) {
         return true;
     }
     const PassState state;
+    if (compute_) {
+        compute_->sum(particles, slot.buffer);
+    } else {
+        sumByLadder(particles, slot.buffer);
+    }
+    slot.fence.insert();
+    return true;
+}
+
+void Statistics::sumByLadder(const ParticleSystem& particles, const GlBuffer& result) const {
     std::uint32_t width = particles.textureWidth();
     std::uint32_t height = (particles.extent() + width - 1) / width;
     glUseProgram(state_program_.name());
@@ -114,13 +133,11 @@ bool Statistics::request(const ParticleSystem& particles, std::uint64_t tag) {
         useTexture(kCountsUnit, levels_[i].counts);
         useTexture(kSumsUnit, levels_[i].sums);
     }
-    glBindBuffer(GL_PIXEL_PACK_BUFFER, slot.buffer.name());
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, result.name());
     for (GLenum i = 0; i < 2; ++i) {
         glReadBuffer(GL_COLOR_ATTACHMENT0 + i);
         glReadPixels(0, 0, 1, 1, GL_RGBA, GL_FLOAT, reinterpret_cast<void*>(i * kTexelBytes));
     }
-    slot.fence.insert();
-    return true;
 }
 
 std::optional<StatisticsSample> Statistics::poll() {
@@ -162,7 +179,7 @@ std::optional<StatisticsSample> Statistics::collect() {
     glGetIntegerv(GL_PIXEL_PACK_BUFFER_BINDING, &bound);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, slot.buffer.name());
     std::array<float, 8> values{};
-    const void* mapped = glMapBufferRange(GL_PIXEL_PACK_BUFFER, 0, 2 * kTexelBytes, GL_MAP_READ_BIT);
+    const void* mapped = glMapBufferRange(GL_PIXEL_PACK_BUFFER, 0, StateSums::kBytes, GL_MAP_READ_BIT);
     if (mapped != nullptr) {
         std::memcpy(values.data(), mapped, sizeof(values));
     }

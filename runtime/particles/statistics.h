@@ -1,8 +1,9 @@
 // What the particles do as a whole, summed up on the GPU: passes that each sum 4 × 4 texels into one, down to
-// a single texel, which is copied into a buffer. Nothing waits for the GPU but wait(): a sample is asked for
+// a single texel, which is copied into a buffer; or, on StepPath::kCompute, the same sums by work groups
+// (state_sums.h). Nothing waits for the GPU but wait(): a sample is asked for
 // after a step and collected some steps later.
 //
-//     bytes on the GPU < 32/15 · texels of the state + 1 kB (for the system's capacity)
+//     bytes on the GPU < 32/15 · texels of the state + 1 kB (for the system's capacity); compute: 1/64 · texels + 1 kB
 #pragma once
 
 #include <array>
@@ -14,6 +15,7 @@
 #include "runtime/gl/gl_fence.h"
 #include "runtime/gl/gl_object.h"
 #include "runtime/particles/particle_system.h"
+#include "runtime/particles/state_sums.h"
 
 namespace relief {
 
@@ -36,8 +38,9 @@ class Statistics {
     static constexpr int kInFlightMax = 16;  ///< samples asked for and not yet collected
 
     /// For systems of this capacity. Needs a current context, as every call does.
-    /// Errors: kUsage (0 or above ParticleSystem::kCapacityMax), kUnsupported, kFailure.
-    [[nodiscard]] static Result<Statistics> create(std::uint32_t capacity);
+    /// \param path  how it sums, of systems of either path: the system's, as a rule.
+    /// Errors: kUsage (0 or above ParticleSystem::kCapacityMax), kLimit, kUnsupported, kFailure.
+    [[nodiscard]] static Result<Statistics> create(std::uint32_t capacity, StepPath path = StepPath::kAuto);
 
     /// Asks for a sample of the particles as they are now; restores the GL state.
     /// \param tag  comes back with it, the number of the step for example.
@@ -67,13 +70,16 @@ class Statistics {
     };
 
     Statistics() = default;
+    [[nodiscard]] Result<void> createLadder();
+    void sumByLadder(const ParticleSystem& particles, const GlBuffer& result) const;
     [[nodiscard]] std::optional<StatisticsSample> collect();
 
     std::uint32_t capacity_ = 0;
-    std::vector<Level> levels_;
+    std::optional<StateSums> compute_;  // instead of the ladder
     std::array<Slot, kInFlightMax> slots_;
     int oldest_ = 0;
     int in_flight_ = 0;
+    std::vector<Level> levels_;
     GlVertexArray no_attributes_;
     GlProgram state_program_;
     GlProgram sum_program_;

@@ -1,15 +1,21 @@
-// How a step of the particles runs on the GPU.
+// How the work on particles runs on the GPU: steps, births, statistics, the depth sort.
 #pragma once
 
 #include <cstdint>
 
+#include "formats/base/result.h"
+
 namespace relief {
 
-/// Every path runs the same step.glsl, and gives the same particles but for rounding.
+/// Every path runs the same GLSL, and gives the same particles but for rounding.
 enum class StepPath : std::uint8_t {
     kAuto,      ///< kCompute where the context has compute shaders and a GPU draws, else kFragment
     kFragment,  ///< a fragment a particle, as in the paper: OpenGL 3.3, OpenGL ES 3.0, WebGL2
     kCompute,   ///< an invocation a particle: OpenGL 4.3, OpenGL ES 3.1
 };
+
+/// kFragment or kCompute, in the current context.
+/// Errors: kUnsupported (kCompute is wanted and the context has no compute shaders).
+[[nodiscard]] Result<StepPath> chosenPath(StepPath wanted);
 
 }  // namespace relief

@@ -20,7 +20,7 @@ std::uint32_t regionFor(std::uint32_t extent) {
 
 }  // namespace
 
-Result<DepthSorter> DepthSorter::create(std::uint32_t capacity) {
+Result<DepthSorter> DepthSorter::create(std::uint32_t capacity, StepPath path) {
     if (capacity == 0 || capacity > kCapacityMax) {
         return fail(ErrorCode::kUsage, "a depth sorter for " + std::to_string(capacity) +
                                            " particles is not possible; choose 1 to " +
@@ -31,6 +31,11 @@ Result<DepthSorter> DepthSorter::create(std::uint32_t capacity) {
                                 "choose a smaller capacity"));
     const PassState state;
     DepthSorter sorter(capacity);
+    const StepPath chosen = RELIEF_TRY(chosenPath(path));
+    if (chosen == StepPath::kCompute) {
+        sorter.radix_ = RELIEF_TRY(RadixSort::create(capacity, kWidth));
+        return sorter;
+    }
     RELIEF_TRY(sorter.createTextures());
     RELIEF_TRY(sorter.createPrograms());
     return sorter;
@@ -73,6 +78,19 @@ Result<void> DepthSorter::createPrograms() {
 void DepthSorter::update(const GlTexture& positions, std::uint32_t width, std::uint32_t extent,
                          const glm::vec3& eye, std::uint32_t passes) {
     extent = std::min(extent, capacity_);
+    if (radix_) {
+        count_ = extent;
+        if (extent > 0) {
+            const PassState state;
+            radix_->sort(positions, width, extent, eye);
+        }
+        return;
+    }
+    merge(positions, width, extent, eye, passes);
+}
+
+void DepthSorter::merge(const GlTexture& positions, std::uint32_t width, std::uint32_t extent,
+                        const glm::vec3& eye, std::uint32_t passes) {
     const std::uint32_t kept = count_;
     if (extent > count_) {
         count_ = regionFor(extent);

@@ -68,8 +68,9 @@ Outputs::~Outputs() {
 Result<void> Outputs::open() {
     const Scene& scene = loaded_.scene;
     if (!options_.frames.empty() || !options_.video.empty()) {
-        picture_ = RELIEF_TRY(watched(options_.watchdog, "the shaders of pictures",
-                                      [&] { return ScenePicture::create(loaded_, textures_); }));
+        picture_ = RELIEF_TRY(watched(options_.watchdog, "the shaders of pictures", [&] {
+            return ScenePicture::create(loaded_, textures_, options_.path);
+        }));
     }
     if (!options_.video.empty()) {
         RELIEF_TRY(openVideo());
@@ -78,7 +79,7 @@ Result<void> Outputs::open() {
         timer_.emplace();
     }
     if (!options_.stats.empty()) {
-        log_ = RELIEF_TRY(StatisticsLog::create(options_.stats, scene.capacity, *timer_));
+        log_ = RELIEF_TRY(StatisticsLog::create(options_.stats, scene.capacity, options_.path, *timer_));
     }
     if (!options_.frames.empty()) {
         RELIEF_TRY(prepareFolder(options_.frames, "--frames"));

@@ -26,7 +26,8 @@ ColliderStyle colliderStyle(const Scene& scene) {
 
 }  // namespace
 
-Result<ScenePicture> ScenePicture::create(const LoadedScene& loaded, const ColliderTextures& textures) {
+Result<ScenePicture> ScenePicture::create(const LoadedScene& loaded, const ColliderTextures& textures,
+                                          StepPath path) {
     const Scene& scene = loaded.scene;
     const ColliderView view = viewOf(loaded, textures);
     auto frame = RELIEF_TRY(Frame::create(scene.render.width, scene.render.height));
@@ -42,7 +43,7 @@ Result<ScenePicture> ScenePicture::create(const LoadedScene& loaded, const Colli
     auto particles = RELIEF_TRY(ParticleRenderer::create(view));
     ScenePicture picture(loaded, std::move(frame), std::move(collider), std::move(particles));
     if (scene.render.sort_frames > 0) {
-        picture.sorter_ = RELIEF_TRY(DepthSorter::create(scene.capacity));
+        picture.sorter_ = RELIEF_TRY(DepthSorter::create(scene.capacity, path));
     }
     picture.collider_style_ = colliderStyle(scene);
     picture.particle_style_ = particleStyle(scene, atlas.get());

@@ -20,10 +20,10 @@ namespace relief {
 class ScenePicture {
   public:
     /// Needs a current context, as draw() does.
-    /// \param loaded, textures  must outlive this.
+    /// \param loaded, textures  must outlive this. \param path  of the depth sort.
     /// Fails as loadAtlas, loadColliderMesh and the renderers do.
     [[nodiscard]] static Result<ScenePicture> create(const LoadedScene& loaded,
-                                                     const ColliderTextures& textures);
+                                                     const ColliderTextures& textures, StepPath path);
 
     /// The particles as they are now: 3 · width · height bytes sRGB, the top row first. Waits for the GPU.
     /// \param stages  times sort and draw; may be null.

@@ -27,8 +27,8 @@ void StatisticsLog::Close::operator()(std::FILE* file) const {
 }
 
 Result<StatisticsLog> StatisticsLog::create(const std::filesystem::path& path, std::uint32_t capacity,
-                                            GpuTimer& timer) {
-    auto statistics = RELIEF_TRY(Statistics::create(capacity));
+                                            StepPath steps, GpuTimer& timer) {
+    auto statistics = RELIEF_TRY(Statistics::create(capacity, steps));
     StatisticsLog log(std::move(statistics), timer);
     log.path_ = path;
     log.file_.reset(path == "-" ? stdout : std::fopen(path.c_str(), "we"));

@@ -16,10 +16,12 @@ namespace relief {
 class StatisticsLog {
   public:
     /// \param path   "-" for standard output. Unlike other outputs it grows line by line, to be followed.
+    /// \param steps  how the sums are made: the path of the steps.
     /// \param timer  of the stages; must outlive this.
     /// Errors: kIo, and those of Statistics::create.
     [[nodiscard]] static Result<StatisticsLog> create(const std::filesystem::path& path,
-                                                      std::uint32_t capacity, GpuTimer& timer);
+                                                      std::uint32_t capacity, StepPath steps,
+                                                      GpuTimer& timer);
 
     /// A line about the particles after this step, once the GPU has summed them up. Waits only where the GPU
     /// lies Statistics::kInFlightMax lines behind.

@@ -213,7 +213,8 @@ class GlFaultTest : public GlTest {
             {"euler, compute", [] { return particles(Integrator::kEuler, StepPath::kCompute); }},
             {"verlet, compute", [] { return particles(Integrator::kVerlet, StepPath::kCompute); }},
             {"flow", [this] { return particles_->setAir(air()); }},
-            {"sort", [] { return outcome(DepthSorter::create(200'000)); }},
+            {"sort", [] { return outcome(DepthSorter::create(200'000, StepPath::kFragment)); }},
+            {"sort, compute", [] { return outcome(DepthSorter::create(200'000, StepPath::kCompute)); }},
             {"frame", [] { return outcome(Frame::create(100, 100)); }},
             {"collider from maps", [=] { return drawCollider(nullptr); }},
             {"collider from mesh", [=, this] { return drawCollider(mesh_.get()); }},
@@ -226,13 +227,15 @@ class GlFaultTest : public GlTest {
     }
     /// What is small on every GL, and never beyond a limit.
     std::vector<Work> smallWork() {
-        return {{"statistics", [] { return outcome(Statistics::create(200'000)); }},
-                {"mesh", [] { return outcome(ColliderMesh::create(tetrahedron())); }},
-                {"particles, lit", [this]() -> Result<void> {
-                     auto renderer = ParticleRenderer::create(view());
-                     return renderer ? renderer->draw(*particles_, {}, {}, frame_->target(), {}, nullptr)
-                                     : outcome(renderer);
-                 }}};
+        return {
+            {"statistics", [] { return outcome(Statistics::create(200'000, StepPath::kFragment)); }},
+            {"statistics, compute", [] { return outcome(Statistics::create(200'000, StepPath::kCompute)); }},
+            {"mesh", [] { return outcome(ColliderMesh::create(tetrahedron())); }},
+            {"particles, lit", [this]() -> Result<void> {
+                 auto renderer = ParticleRenderer::create(view());
+                 return renderer ? renderer->draw(*particles_, {}, {}, frame_->target(), {}, nullptr)
+                                 : outcome(renderer);
+             }}};
     }
 
     Collider collider_;

@@ -14,7 +14,7 @@
 #include "runtime/gl/pass_state.h"
 #include "runtime/particles/emitter.h"
 #include "runtime/picture/depth_sort.h"
-#include "tests/runtime/gl/gl_test.h"
+#include "tests/runtime/particles/step_gl_test.h"
 
 namespace relief {
 
@@ -94,9 +94,9 @@ inline Cloud latticeCloud(std::uint32_t count, std::uint32_t levels, Pcg32& rand
 
 inline const glm::vec3 kEye{1.5F, -2.25F, 7.0F};
 
-/// Index order with the keys of a lattice cloud.
-inline std::vector<Element> latticeElements(const Cloud& cloud) {
-    std::vector<Element> elements(std::bit_ceil(cloud.particles.size()));
+/// Index order with the keys of a lattice cloud. \param count  of the ranks.
+inline std::vector<Element> latticeElements(const Cloud& cloud, std::uint32_t count) {
+    std::vector<Element> elements(count);
     for (std::uint32_t i = 0; i < elements.size(); ++i) {
         elements[i].index = i;
         if (i < cloud.extent() && cloud.particles[i].w >= 0.0F) {
@@ -107,11 +107,16 @@ inline std::vector<Element> latticeElements(const Cloud& cloud) {
     return elements;
 }
 
-/// One sorter.
-class DepthSorterTest : public GlTest {
+/// One sorter, of the case's path.
+class DepthSorterTest : public StepGlTest {
   protected:
+    static bool exact() { return GetParam().path == StepPath::kCompute; }
+    /// The ranks that so many particles need.
+    static std::uint32_t ranksFor(std::uint32_t extent) {
+        return exact() || extent == 0 ? extent : std::bit_ceil(extent);
+    }
     void make(std::uint32_t capacity) {
-        auto sorter = DepthSorter::create(capacity);
+        auto sorter = DepthSorter::create(capacity, GetParam().path);
         ASSERT_TRUE(sorter) << sorter.error().message;
         sorter_ = std::make_unique<DepthSorter>(std::move(*sorter));
     }

@@ -1,5 +1,5 @@
-// The depth sort in OpenGL 3.3 and in OpenGL ES 3.0: against std::stable_sort, against the network pass by
-// pass, and for what must hold after every pass.
+// The depth sort, on each path: against std::stable_sort; as fragments against the network pass by pass, and for what
+// must hold after every pass; as compute for its blocks, for numbers that are none, and beside the fragments.
 #include "runtime/picture/depth_sort.h"
 
 #include <gtest/gtest.h>
@@ -14,11 +14,12 @@ namespace relief {
 namespace {
 
 class DepthSortGlTest : public DepthSorterTest {};
+class DepthSortNetworkGlTest : public DepthSorterTest {};  // fragments alone
 
 TEST_P(DepthSortGlTest, AWholeSequenceIsAStableSort) {
     Pcg32 random(3);
     std::vector<std::uint32_t> counts{1, 2, 3, 1000, 1024, 1025, 70'000};
-    if (GetParam() == GlApi::kGl33Core) {
+    if (GetParam().api == GlApi::kGl33Core) {
         counts.push_back(300'000);
     }
     for (const std::uint32_t count : counts) {
@@ -30,7 +31,8 @@ TEST_P(DepthSortGlTest, AWholeSequenceIsAStableSort) {
             make(count);
             ASSERT_FALSE(HasFatalFailure());
             update(cloud, DepthSorter::sequencePasses(count));
-            std::vector<Element> expected = latticeElements(cloud);
+            ASSERT_EQ(sorter_->count(), ranksFor(count));
+            std::vector<Element> expected = latticeElements(cloud, ranksFor(count));
             std::stable_sort(expected.begin(), expected.end(),
                              [](const Element& a, const Element& b) { return a.key > b.key; });
             EXPECT_TRUE(readOrder(*sorter_) == expected) << count << " particles, " << levels << " levels";
@@ -39,7 +41,7 @@ TEST_P(DepthSortGlTest, AWholeSequenceIsAStableSort) {
     }
 }
 
-TEST_P(DepthSortGlTest, SequencesHaveTheLengthOfThePaper) {
+TEST(DepthSort, SequencesHaveTheLengthOfThePaper) {
     const std::array<std::array<std::uint32_t, 2>, 9> lengths{
         {{0, 0}, {1, 0}, {2, 1}, {3, 3}, {4, 3}, {5, 6}, {1024, 55}, {1025, 66}, {1U << 20, 210}}};
     for (const auto& [count, passes] : lengths) {
@@ -53,12 +55,12 @@ TEST_P(DepthSortGlTest, SequencesHaveTheLengthOfThePaper) {
 }
 
 // Batcher's network as loops over its pairs (Knuth, Algorithm M): after each pass, element for element.
-TEST_P(DepthSortGlTest, EveryPassIsThatOfTheNetwork) {
+TEST_P(DepthSortNetworkGlTest, EveryPassIsThatOfTheNetwork) {
     constexpr std::uint32_t kCount = 2048;
     Pcg32 random(5);
     const Cloud cloud = latticeCloud(kCount, 1024, random);
     make(kCount);
-    std::vector<Element> expected = latticeElements(cloud);
+    std::vector<Element> expected = latticeElements(cloud, kCount);
     std::uint32_t passes = 0;
     for (std::uint32_t p = 1; p < kCount; p *= 2) {
         for (std::uint32_t k = p; k >= 1; k /= 2) {
@@ -79,7 +81,7 @@ TEST_P(DepthSortGlTest, EveryPassIsThatOfTheNetwork) {
     EXPECT_TRUE(std::is_sorted(expected.begin(), expected.end(), before));
 }
 
-TEST_P(DepthSortGlTest, ARestartBeginsAWholeSequence) {
+TEST_P(DepthSortNetworkGlTest, ARestartBeginsAWholeSequence) {
     constexpr std::uint32_t kCount = 4000;
     Pcg32 random(6);
     const Cloud first = latticeCloud(kCount, 1024, random);
@@ -97,7 +99,7 @@ TEST_P(DepthSortGlTest, ARestartBeginsAWholeSequence) {
     }
 }
 
-TEST_P(DepthSortGlTest, NoPassRaisesTheNumberOfInversions) {
+TEST_P(DepthSortNetworkGlTest, NoPassRaisesTheNumberOfInversions) {
     constexpr std::uint32_t kCount = 1500;  // in 2048: the absent are elements like others
     Pcg32 random(7);
     const Cloud shuffled = latticeCloud(kCount, 1024, random);
@@ -190,7 +192,7 @@ TEST_P(DepthSortGlTest, KeysAreDistancesAndTheDeadHaveNone) {
     make(4000);
     sorter_->update(cloud.texture, cloud.width, 2900, eye, DepthSorter::sequencePasses(2900));
     const std::vector<Element> order = readOrder(*sorter_);
-    ASSERT_EQ(order.size(), 4096U);
+    ASSERT_EQ(order.size(), ranksFor(2900));
     EXPECT_TRUE(std::is_sorted(order.begin(), order.end(), before));
     EXPECT_EQ(order[0].index, 2U);
     for (const Element& element : order) {
@@ -265,13 +267,17 @@ TEST_P(DepthSortGlTest, CapacitiesOutOfRangeAreErrorsAndExtentsBeyondAreLeftOut)
     make(100);
     update(cloud, DepthSorter::sequencePasses(100));
     const std::vector<Element> order = readOrder(*sorter_);
-    ASSERT_EQ(order.size(), 128U);
+    ASSERT_EQ(order.size(), ranksFor(100));
     for (const Element& element : order) {
         EXPECT_TRUE(element.index < 100 || element.key == 0);
     }
 }
 
-RELIEF_INSTANTIATE_GL_TESTS(DepthSortGlTest);
+RELIEF_INSTANTIATE_STEP_TESTS(DepthSortGlTest);
+INSTANTIATE_TEST_SUITE_P(Fragments, DepthSortNetworkGlTest,
+                         testing::Values(StepCase{GlApi::kGl33Core, StepPath::kFragment},
+                                         StepCase{GlApi::kGles30, StepPath::kFragment}),
+                         stepTestName);
 
 }  // namespace
 }  // namespace relief

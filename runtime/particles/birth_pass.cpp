@@ -1,0 +1,96 @@
+#include "runtime/particles/birth_pass.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "runtime/gl/image_units.h"
+#include "runtime/gl/storage_units.h"
+#include "shaders/shader_constants.h"
+
+namespace relief {
+namespace {
+
+// 11.5 MB, below every GL's largest storage block.
+constexpr std::size_t kDispatchedAtOnce = std::size_t{1} << 18;
+
+constexpr GLsizei kStride = sizeof(BirthPass::Newborn);
+static_assert(kStride == 11 * sizeof(float));
+
+/// A fresh store each time: the driver need not wait until the last one has been used.
+void upload(GLenum target, std::span<const BirthPass::Newborn> newborn) {
+    glBufferData(target, static_cast<GLsizeiptr>(newborn.size_bytes()), newborn.data(), GL_STREAM_DRAW);
+}
+
+}  // namespace
+
+Result<BirthPass> BirthPass::create(const glm::uvec2& size, bool verlet, StepPath path) {
+    BirthPass pass;
+    pass.path_ = path;
+    pass.size_ = size;
+    pass.newborn_ = makeBuffer();
+    const char* defines = verlet ? "#define RELIEF_VERLET\n" : "";
+    pass.program_ = RELIEF_TRY(path == StepPath::kCompute ? makeComputeProgram("birth.comp", defines)
+                                                          : makeProgram("birth.vert", "birth.frag", defines));
+    pass.dt_before_ = uniformLocation(pass.program_, "u_dt_before");
+    pass.count_ = uniformLocation(pass.program_, "u_count");
+    glUseProgram(pass.program_.name());
+    glUniform2i(uniformLocation(pass.program_, "u_size"), static_cast<GLint>(size.x),
+                static_cast<GLint>(size.y));
+    if (path != StepPath::kCompute) {
+        pass.makeVertexFormat();
+    }
+    return pass;
+}
+
+void BirthPass::makeVertexFormat() {
+    array_ = makeVertexArray();
+    glBindVertexArray(array_.name());
+    glBindBuffer(GL_ARRAY_BUFFER, newborn_.name());
+    const auto at = [](std::size_t offset) { return reinterpret_cast<const void*>(offset); };
+    glVertexAttribIPointer(0, 1, GL_UNSIGNED_INT, kStride, at(offsetof(Newborn, index)));
+    glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, kStride, at(offsetof(Newborn, position)));
+    glVertexAttribPointer(2, 3, GL_FLOAT, GL_FALSE, kStride, at(offsetof(Newborn, velocity)));
+    glVertexAttribPointer(3, 4, GL_FLOAT, GL_FALSE, kStride, at(offsetof(Newborn, birth)));
+    for (GLuint i = 0; i < 4; ++i) {
+        glEnableVertexAttribArray(i);
+    }
+}
+
+void BirthPass::run(std::span<const Newborn> newborn, const Target& target, float dt_before) const {
+    glUseProgram(program_.name());
+    glUniform1f(dt_before_, dt_before);
+    if (path_ == StepPath::kCompute) {
+        dispatch(newborn, target);
+    } else {
+        draw(newborn, target);
+    }
+}
+
+void BirthPass::draw(std::span<const Newborn> newborn, const Target& target) const {
+    glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
+    glViewport(0, 0, static_cast<GLsizei>(size_.x), static_cast<GLsizei>(size_.y));
+    glBindVertexArray(array_.name());
+    glBindBuffer(GL_ARRAY_BUFFER, newborn_.name());
+    upload(GL_ARRAY_BUFFER, newborn);
+    glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(newborn.size()));
+}
+
+void BirthPass::dispatch(std::span<const Newborn> newborn, const Target& target) const {
+    const ImageUnits images;
+    const StorageUnits storage;
+    ImageUnits::write(0, target.position);
+    ImageUnits::write(1, target.second);
+    ImageUnits::write(2, target.birth);
+    StorageUnits::bind(0, newborn_);
+    StorageUnits::order();  // renderers may still read the textures
+    for (std::size_t first = 0; first < newborn.size(); first += kDispatchedAtOnce) {
+        const auto some = newborn.subspan(first, std::min(kDispatchedAtOnce, newborn.size() - first));
+        upload(GL_SHADER_STORAGE_BUFFER, some);
+        const auto count = static_cast<GLuint>(some.size());
+        glUniform1ui(count_, count);
+        glDispatchCompute((count + kBirthGroup - 1) / kBirthGroup, 1, 1);
+    }
+    ImageUnits::finish();
+}
+
+}  // namespace relief

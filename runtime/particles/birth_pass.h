@@ -1,0 +1,56 @@
+// Writes newborn particles into the state textures: as points that are drawn, or by a compute shader.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <span>
+
+#include "formats/base/result.h"
+#include "runtime/gl/gl_object.h"
+#include "runtime/particles/step_path.h"
+
+namespace relief {
+
+class BirthPass {
+  public:
+    /// As the shaders have it.
+    struct Newborn {
+        std::uint32_t index;  ///< of its texel; no two are the same
+        glm::vec3 position;
+        glm::vec3 velocity;
+        glm::vec4 birth;  ///< time of birth, time of death, type, id modulo 2^24
+    };
+    /// Where to, by either path.
+    struct Target {
+        GLuint framebuffer = 0;  ///< of the three textures, in their order
+        const GlTexture& position;
+        const GlTexture& second;  ///< velocity; with Verlet the position before
+        const GlTexture& birth;
+    };
+
+    BirthPass() = default;
+    /// \param size  of the state textures, texels. \param path  not kAuto.
+    /// Errors: kFailure (the driver's compiler).
+    [[nodiscard]] static Result<BirthPass> create(const glm::uvec2& size, bool verlet, StepPath path);
+
+    /// With the state of a pass (PassState).
+    /// \param dt_before  seconds, Verlet's alone.
+    void run(std::span<const Newborn> newborn, const Target& target, float dt_before) const;
+
+  private:
+    void makeVertexFormat();
+    void draw(std::span<const Newborn> newborn, const Target& target) const;
+    void dispatch(std::span<const Newborn> newborn, const Target& target) const;
+
+    StepPath path_ = StepPath::kFragment;
+    glm::uvec2 size_{0};
+    GlBuffer newborn_;
+    GlVertexArray array_;  // of the points
+    GlProgram program_;
+    GLint dt_before_ = -1;
+    GLint count_ = -1;
+};
+
+}  // namespace relief
