@@ -504,26 +504,46 @@ vec3 reliefToVolume(int i, vec3 p) {
     return reliefFromMap(i, clamp(in_map, low, high) - in_map);
 }
 
-// Where a ball touches whose centre is outside: each map that sees a surface near says which way it lies, and the
-// point of the ball there is asked for. The deepest such point decides, with a distance below 0; else the result is
-// RELIEF_FAR_OUTSIDE.
-ReliefField reliefTouch(int first, int end, vec3 center, float radius) {
-    ReliefField best = ReliefField(RELIEF_FAR_OUTSIDE, vec3(0.0), -1);
+// The maps [first, end) of a point that is inside; any distance that is not below 0 stands for all others. Map `start` is
+// asked first, which saw p from near and knows most often that it is outside.
+ReliefBest reliefProbe(int first, int end, int start, vec3 p) {
+    ReliefBest best = RELIEF_NO_VOTE;
+    int i = start;
+    for (int k = first; k < end && best.distance < 0.0; ++k) {
+        ReliefVote vote = reliefVote(i, p, false);
+        // Of equal votes that of the first map counts, as in reliefMaps().
+        if (vote.distance > best.distance || (vote.distance == best.distance && i < best.map)) {
+            best = ReliefBest(vote.distance, vote.normal, i);
+        }
+        i = k < start ? k : k + 1;
+    }
+    return best;
+}
+
+// What a ball is in or touches. Where its centre is inside, as reliefSolid() of that. Else each map that sees a surface
+// near says which way it lies, and the point of the ball there is asked for; the deepest such point decides, with a
+// distance below 0. Where it touches nothing: RELIEF_FAR_OUTSIDE, or where all maps abstain, no map.
+ReliefField reliefBall(int first, int end, vec3 center, float radius) {
+    ReliefBest inside = RELIEF_NO_VOTE;
+    ReliefField touched = ReliefField(RELIEF_FAR_OUTSIDE, vec3(0.0), -1);
     for (int i = first; i < end; ++i) {
-        ReliefField near = reliefMaps(i, i + 1, center, true);
+        ReliefVote vote = reliefVote(i, center, true);
+        if (vote.distance > inside.distance) {
+            inside = ReliefBest(vote.distance, vote.normal, i);
+        }
         // A projected distance may be some times the distance.
-        bool seen = near.distance >= 0.0 && near.distance < 4.0 * radius;
+        bool seen = vote.distance >= 0.0 && vote.distance < 4.0 * radius;
         vec3 way = reliefToVolume(i, center);
         float apart = reliefLength(way);
         if (seen || (apart > 0.0 && apart < radius)) {
-            vec3 normal = seen ? near.normal : -way / apart;
-            ReliefField touched = reliefMaps(first, end, center - radius * normal, false);
-            if (reliefInside(touched) && touched.distance < best.distance) {
-                best = ReliefField(touched.distance, seen ? touched.normal : normal, touched.map);
+            vec3 normal = seen ? reliefDecode(vote.normal) : -way / apart;
+            ReliefBest probe = reliefProbe(first, end, i, center - radius * normal);
+            if (probe.map >= 0 && probe.distance < 0.0 && probe.distance < touched.distance) {
+                touched = ReliefField(probe.distance, seen ? reliefDecode(probe.normal) : normal, probe.map);
             }
         }
     }
-    return best;
+    return inside.map >= 0 && inside.distance < 0.0 ? reliefFieldOf(inside) : touched;
 }
 
 #if RELIEF_BODIES == 0
@@ -614,13 +634,12 @@ vec3 reliefWorldNormal(int body, vec3 n) {
 ReliefField reliefBodyField(int body, vec3 q, float radius, bool whole) {
     int first = u_relief_bodies[body].maps.x;
     int end = first + u_relief_bodies[body].maps.y;
-    ReliefField best = reliefMaps(first, end, q, whole);
 #if defined(RELIEF_RADIUS)
-    if (radius > 0.0 && !reliefInside(best)) {
-        return reliefTouch(first, end, q, radius / u_relief_bodies[body].response.x);
+    if (radius > 0.0) {
+        return reliefBall(first, end, q, radius / u_relief_bodies[body].response.x);
     }
 #endif
-    return best;
+    return reliefMaps(first, end, q, whole);
 }
 
 // The union of all bodies in the world, which the nearest, inside the deepest, decides. The distance is in world

@@ -35,7 +35,8 @@ struct Solid {
 
 // Of everything but the floor, at the end of the step; what a ball about p touches.
 Solid solid(vec3 p, float radius);
-// Whether p, where the step began, was inside the body of s at that time.
+// Whether a ball about p, where the step began, was in the body of s at that time: its centre, or the point of it that is
+// nearest to the surface met. (That it touched another side then does not count: a ball on a floor bounces off a wall.)
 bool insideBefore(vec3 p, float radius, Solid s);
 // Where a point of the body of s was at the beginning of the step.
 vec3 pointBefore(Solid s, vec3 p);

@@ -15,7 +15,13 @@ Solid solid(vec3 p, float radius) {
 // that it met, and is asked for at the end: right where all of the surface near it moves alike, as it does but for
 // second order in the way of a step.
 bool insideBefore(vec3 p, float radius, Solid s) {
-    return reliefInside(reliefBodyField(s.body, reliefBodyBefore(s.body, p) + s.motion, radius, false));
+    vec3 q = reliefBodyBefore(s.body, p) + s.motion;
+    bool inside = reliefInside(reliefBodyField(s.body, q, 0.0, false));
+#if defined(RELIEF_RADIUS)
+    vec3 towards = reliefBodyNow(s.body, radius * s.normal) - reliefBodyNow(s.body, vec3(0.0));
+    inside = inside || reliefInside(reliefBodyField(s.body, q - towards, 0.0, false));
+#endif
+    return inside;
 }
 
 vec3 pointBefore(Solid s, vec3 p) {

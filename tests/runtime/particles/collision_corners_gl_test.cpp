@@ -424,6 +424,43 @@ TEST_P(CollisionCornersGlTest, BallsTouchEdgesAndCorners) {
     EXPECT_LE(sunk, 4) << "a texel's rim may hide one";
 }
 
+// A ball that lies a little in a floor and rolls into a wall bounces off the wall as its type says: what it touches
+// elsewhere does not make it one that the wall has caught, which would come back as fast as it came.
+TEST_P(CollisionCornersGlTest, ABallOnAFloorBouncesOffAWall) {
+    constexpr float kRadius = 0.1F;
+    const analytic::Shape shape = analytic::unite({analytic::box({-1.0, -0.2, -0.5}, {1.0, 0.0, 0.5}),
+                                                   analytic::box({0.5, -0.2, -0.5}, {1.0, 0.6, 0.5})});
+    const Collider corner = analytic::frontBackCollider(shape, 128);
+    for (const bool posed : {false, true}) {
+        const Pose pose =
+            posed ? Pose{{3.0F, 0.0F, 0.0F}, glm::angleAxis(0.7F, glm::vec3(0.0F, 1.0F, 0.0F)), 2.0F}
+                  : Pose{};
+        const auto turned = [&](const glm::vec3& v) { return pose.scale * (pose.rotation * v); };
+        make({.capacity = 1});
+        if (posed) {
+            const ColliderBody body{&corner, pose, 1.0F, 0.0F};
+            collideWith(ColliderTextures::create(std::span(&body, 1)));
+        } else {
+            collideWith(ColliderTextures::create(corner));
+        }
+        ParticleType type;
+        type.radius = pose.scale * kRadius;
+        type.restitution = 0.5F;
+        setType(type);
+        particles_->setForces({});
+        // 0.01 in the floor, and at the wall after a step and a half.
+        const glm::vec3 at(0.5F - kRadius - 1.5F * 0.03F, kRadius - 0.01F, 0.05F);
+        spawnOne({pose.position + turned(at), turned({0.03F / kDt, 0.0F, 0.0F}), 100.0F, 0});
+        for (int step = 0; step < 2; ++step) {
+            particles_->step(kDt);
+        }
+        const ParticleState ball = state().at(0);
+        const glm::vec3 expected = turned({-0.5F * 0.03F / kDt, 0.0F, 0.0F});
+        EXPECT_EQ(ball.contact, Contact::kCollided) << posed;
+        EXPECT_LT(glm::length(ball.velocity - expected), 0.02F * glm::length(expected)) << posed;
+    }
+}
+
 // Verlet's bounces end, too.
 TEST_P(CollisionCornersGlTest, VerletComesToRest) {
     const Collider box = analytic::frontBackCollider(analytic::box({-2.0, -0.5, -2.0}, {2.0, 0.0, 2.0}), 64);
