@@ -1,4 +1,5 @@
-// What a step costs: relief-bench-step COLLIDER.relief [--large] [--path fragment|compute] [--particles N] prints JSON.
+// What a step costs: relief-bench-step COLLIDER.relief [--large] [--path fragment|compute] [--particles N] [--only NAME]
+// prints JSON.
 // Nothing here is a test: machines are shared and noisy.
 //
 // A block is some steps between two glFinish. Before each all particles are born anew, so that blocks
@@ -130,7 +131,9 @@ class Copy {
         if (compute_) {
             ImageUnits::write(0, state_[next][0]);
             ImageUnits::write(1, state_[next][1]);
-            glDispatchCompute(kWidth / kStepGroupWidth, static_cast<GLuint>(rows_) / kStepGroupHeight, 1);
+            // What is written beyond the last row is lost.
+            glDispatchCompute(kWidth / kStepGroupWidth,
+                              static_cast<GLuint>((rows_ + kStepGroupHeight - 1) / kStepGroupHeight), 1);
             ImageUnits::finish();
         } else {
             glBindFramebuffer(GL_FRAMEBUFFER, target_[next].name());
@@ -174,8 +177,20 @@ Json touching(const BenchSystem& system, int steps_taken) {
             {"contacts_a_step", static_cast<double>(collisions) / steps}};
 }
 
-Result<void> benchSteps(const BenchScene& scene, const Sizes& sizes, Json& json) {
-    const std::vector<BenchVariant> variants = benchVariants();
+Result<void> benchSteps(const BenchScene& scene, const Sizes& sizes, const std::string& only, Json& json) {
+    std::vector<BenchVariant> variants = benchVariants();
+    if (!only.empty()) {
+        const auto named = [](const BenchVariant& variant, std::string_view name) {
+            return variant.name == name;
+        };
+        if (std::none_of(variants.begin(), variants.end(),
+                         [&](const BenchVariant& variant) { return named(variant, only); })) {
+            return fail(ErrorCode::kUsage, "--only " + only + ": no such variant; without it all are named");
+        }
+        std::erase_if(variants, [&](const BenchVariant& variant) {
+            return !named(variant, only) && !named(variant, "collider") && !named(variant, "no_collider");
+        });
+    }
     std::vector<BenchSystem> systems;
     for (const BenchVariant& variant : variants) {
         auto made = RELIEF_TRY(variant.make(scene));
@@ -294,6 +309,7 @@ struct Options {
     bool large = false;
     StepPath path = StepPath::kFragment;
     std::uint32_t particles = 0;  ///< of the step, and no frames; 0: as sizesFor() has it
+    std::string only;             ///< the variant to compare with the collider and with none; empty: all
 };
 
 Result<Options> parse(int argc, char** argv) {
@@ -308,9 +324,12 @@ Result<Options> parse(int argc, char** argv) {
             options.path = value == "compute" ? StepPath::kCompute : StepPath::kFragment;
             ++i;
         } else if (const auto count = parseUnsigned(value); word == "--particles" && count &&
-                                                            *count % 8192 == 0 && *count > 0 &&
+                                                            *count % 1024 == 0 && *count > 0 &&
                                                             *count <= ParticleSystem::kCapacityMax) {
             options.particles = static_cast<std::uint32_t>(*count);
+            ++i;
+        } else if (word == "--only" && !value.empty()) {
+            options.only = value;
             ++i;
         } else {
             known = options.collider.empty() && !word.starts_with("--");
@@ -320,7 +339,7 @@ Result<Options> parse(int argc, char** argv) {
     if (!known || options.collider.empty()) {
         return fail(ErrorCode::kUsage,
                     "usage: relief-bench-step COLLIDER.relief [--large] [--path fragment|compute] "
-                    "[--particles N, of 8192]");
+                    "[--particles N, of 1024] [--only NAME]");
     }
     return options;
 }
@@ -344,7 +363,7 @@ Result<Json> bench(int argc, char** argv) {
     json["collider"] = {{"maps", collider.maps.size()}};
     BenchScene scene = makeBenchScene(collider, sizes.particles);
     scene.path = options.path;
-    RELIEF_TRY(benchSteps(scene, sizes, json));
+    RELIEF_TRY(benchSteps(scene, sizes, options.only, json));
     for (const std::uint32_t particles : sizes.frames) {
         RELIEF_TRY(benchFrames(collider, particles, sizes, options.path, json));
     }
