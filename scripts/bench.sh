@@ -1,12 +1,75 @@
 #!/usr/bin/env bash
-# Prints the ratios that Relief promises, each from one run on this machine: scripts/bench.sh [MESH]
-# Nothing here is a test, because machines are shared and noisy. It prints medians; run it twice before you believe a
-# change. RELIEF_BENCH_LARGE=1 takes the sizes for a GPU (a million particles and more) even where there is none.
+# Prints the ratios that Relief promises, each from one run on this machine. Nothing here is a test, because machines are
+# shared and noisy.
+#
+#   scripts/bench.sh [MESH]                      all of them, as medians; run it twice before you believe a change
+#   scripts/bench.sh --save OLD.json             nine rounds of the ratios of bakes and steps (--rounds N: other than 9)
+#   scripts/bench.sh --against OLD.json          the same of this build, and whether it is slower: exit code 1, else 0
+#                                                (bench_compare.py says how noise is told; with --save also kept)
+#   scripts/bench.sh --growth DIR [OPTION]…      time against triangles, bytes and particles, as DIR/growth.png and .csv;
+#                                                bench_growth.py --help has the options
+#
+# RELIEF_BENCH_LARGE=1 takes the sizes for a GPU (a million particles and more) even where there is none.
 set -euo pipefail
+
+if [ "${1:-}" = --growth ]; then
+    [ $# -ge 2 ] || {
+        echo "bench.sh: --growth needs a folder for growth.png and growth.csv" >&2
+        exit 2
+    }
+    folder=$(realpath -m "$2")
+    shift 2
+    root=$(realpath "$(dirname "$0")/..")
+    "$root/scripts/setup.sh" libopenvdb-tools python3-matplotlib
+    bin=$("$root/scripts/build.sh" release relief relief-bench-step)
+    exec /usr/bin/python3 "$root/scripts/bench_growth.py" --bin "$bin" --out "$folder" "$@"
+fi
+
+save='' against='' rounds=9 mesh=/usr/share/glmark2/models/bunny.obj
+while [ $# -gt 0 ]; do
+    case $1 in
+    --save | --against | --rounds)
+        [ $# -ge 2 ] || {
+            echo "bench.sh: $1 needs a value" >&2
+            exit 2
+        }
+        case $1 in
+        --save) save=$(realpath -m "$2") ;;
+        --against) against=$(realpath -m "$2") ;;
+        --rounds) rounds=$2 ;;
+        esac
+        shift 2
+        ;;
+    -*)
+        echo "bench.sh: unknown option $1; scripts/bench.sh [MESH] [--save FILE] [--against FILE] [--rounds N]," \
+            "or --growth DIR" >&2
+        exit 2
+        ;;
+    *)
+        mesh=$(realpath "$1")
+        shift
+        ;;
+    esac
+done
+[[ $rounds =~ ^[1-9][0-9]{0,3}$ ]] || {
+    echo "bench.sh: --rounds $rounds is no number from 1 to 9999" >&2
+    exit 2
+}
+[ -z "$against" ] || [ -r "$against" ] || {
+    echo "bench.sh: $against cannot be read; write it with scripts/bench.sh --save" >&2
+    exit 2
+}
 cd "$(dirname "$0")/.."
 
 scripts/setup.sh
-mesh=${1:-/usr/share/glmark2/models/bunny.obj}
+if [ -n "$save$against" ]; then
+    bin=$(scripts/build.sh release relief relief-bench-raycast relief-bench-step)
+    work=$(mktemp -d)
+    trap 'rm -rf "$work"' EXIT
+    python3 scripts/bench_save.py "$bin" "$mesh" "$rounds" "${save:-$work/new.json}"
+    [ -z "$against" ] || python3 scripts/bench_compare.py "$against" "${save:-$work/new.json}"
+    exit
+fi
 bin=$(scripts/build.sh release relief relief-sim relief-bench-raycast relief-bench-step relief-bench-sort \
     relief-bench-births relief-bench-depth-maps)
 work=$(mktemp -d)
