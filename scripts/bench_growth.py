@@ -14,6 +14,7 @@ where the last ended within --limit seconds.
 import argparse
 import array
 import csv
+import importlib.util
 import json
 import math
 import os
@@ -304,6 +305,8 @@ def parse(arguments):
 
 def main(arguments):
     options = parse(arguments)
+    if importlib.util.find_spec("matplotlib") is None:  # said before the hours that the rest may take
+        sys.exit("bench_growth.py: this python3 has no matplotlib; take /usr/bin/python3 and python3-matplotlib")
     machine = f"{os.uname().machine}, {os.cpu_count()} processors"
     rows = [row for path in options.others for row in read_rows(path)]
     for word in options.steps:
