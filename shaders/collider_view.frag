@@ -1,17 +1,9 @@
-// The collider as its depth maps know it, on a floor without end: for each pixel the ray is followed through the
-// combined field in steps below a texel, to the first change of sign.
-//
-//     eye ·····|····o o o o o x───── inside        the box clips the ray; o outside, x the first inside;
-//              └ bounds       ^ bisection           then ten bisections between the last two
-//
-// Two passes. With RELIEF_COARSE every fourth pixel of every fourth row is followed through the whole box and only
-// the distance kept; the second pass then starts a little before the nearest of the nine distances around it, and
-// follows no ray where all nine missed.
+// The collider as its depth maps know it, on a floor without end. For each pixel the ray is followed through the
+// combined field, in two passes (trace.glsl).
 //
 // With RELIEF_MESH the collider's mesh has been drawn before and says where it is and which way it faces; the field
 // still casts the shadows.
-//!include collider.glsl
-//!include light.glsl
+//!include trace.glsl
 
 in vec2 v_uv;
 
@@ -20,7 +12,6 @@ uniform vec3 u_forward;     // the pixel's ray is eye + t (forward + x right + y
 uniform vec3 u_right;
 uniform vec3 u_up;
 uniform vec2 u_depth;       // window depth of view distance t: x + y / t
-uniform float u_step;       // object units
 uniform float u_ground;     // height of the floor
 uniform bool u_has_ground;
 uniform vec3 u_background;  // linear
@@ -29,43 +20,13 @@ uniform int u_normals;      // averaged for shading: 1, 7 or 13
 
 #if defined(RELIEF_COARSE)
 layout(location = 0) out float o_distance;  // along forward; -1: missed
-#elif defined(RELIEF_MESH)
-uniform highp sampler2D u_mesh_normal;      // as ColliderMesh::View
-uniform highp sampler2D u_mesh_depth;
-layout(location = 0) out vec4 o_color;
 #else
-uniform highp sampler2D u_coarse;           // the first pass
 layout(location = 0) out vec4 o_color;
 #endif
-
-uniform int u_steps_max;    // samples of the field on a ray
-uniform int u_bisections;
-
-// First point of the collider on the ray between t.x and t.y; -1 if there is none, -2 if t.x lies inside.
-float hit(vec3 d, vec2 t) {
-    float stride = u_step / length(d);
-    float outer = t.x;   // the last point known to be outside
-    float inner = -1.0;  // the first known to be inside, once there is one
-    int left = u_bisections;
-    float at = t.x;
-    for (int i = 0; i < u_steps_max && left > 0; ++i) {
-        bool inside = reliefInside(reliefSolid(u_eye + at * d));
-        if (inner < 0.0) {
-            if (inside && i == 0) {
-                return -2.0;
-            }
-            if (!inside && at >= t.y) {
-                return -1.0;
-            }
-        } else {
-            --left;
-        }
-        inner = inside ? at : inner;
-        outer = inside ? outer : at;
-        at = inner < 0.0 ? min(at + stride, t.y) : 0.5 * (outer + inner);
-    }
-    return inner;
-}
+#if defined(RELIEF_MESH)
+uniform highp sampler2D u_mesh_normal;      // as ColliderMesh::View
+uniform highp sampler2D u_mesh_depth;
+#endif
 
 // The ray of this pixel: its direction, and the part of it in the box and above the floor.
 vec3 rayDirection() {
@@ -84,7 +45,7 @@ vec2 raySpan(vec3 d, float t_floor) {
 void main() {
     vec3 d = rayDirection();
     vec2 span = raySpan(d, floorDistance(d));
-    o_distance = span.x < span.y ? hit(d, span) : -1.0;
+    o_distance = span.x < span.y ? hit(u_eye, d, span) : -1.0;
     if (o_distance == -2.0) {
         o_distance = span.x;
     }
@@ -106,33 +67,6 @@ vec3 meshNormal(vec3 to_eye) {
 }
 
 #else
-
-// The first hit with the help of the coarse pass.
-float guidedHit(vec3 d, vec2 span) {
-    ivec2 size = textureSize(u_coarse, 0);
-    ivec2 center = ivec2(v_uv * vec2(size));
-    float nearest = 1e30;
-    for (int y = -1; y <= 1; ++y) {
-        for (int x = -1; x <= 1; ++x) {
-            float t = texelFetch(u_coarse, clamp(center + ivec2(x, y), ivec2(0), size - 1), 0).r;
-            nearest = t >= 0.0 ? min(nearest, t) : nearest;
-        }
-    }
-    if (nearest == 1e30) {
-        return -1.0;
-    }
-    float start = max(nearest - 8.0 * u_step / length(d), span.x);
-    float t = -2.0;
-    // Once more from the box if the start lies inside: the guide was too far in, or the eye is in the collider.
-    for (int attempt = 0; attempt < u_bisections && t == -2.0; ++attempt) {
-        t = hit(d, vec2(start, span.y));
-        if (start == span.x) {
-            break;
-        }
-        start = span.x;
-    }
-    return t == -2.0 ? span.x : t;
-}
 
 // The maps' normals, one a texel, averaged over a few texels round p so that they shade smoothly.
 vec3 smoothNormal(vec3 p, vec3 to_eye) {
@@ -174,7 +108,7 @@ void main() {
     float t = meshHit(t_floor);
 #else
     vec2 span = raySpan(d, t_floor);
-    float t = span.x < span.y ? guidedHit(d, span) : -1.0;
+    float t = span.x < span.y ? guidedHit(v_uv, u_eye, d, span) : -1.0;
 #endif
     bool on_collider = t > 0.0;
     bool on_floor = !on_collider && t_floor > 0.0;

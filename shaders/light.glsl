@@ -1,5 +1,6 @@
 // The light that a point among collider and floor receives: a sun of some width, and a sky, both hidden by the
-// collider's own field. Shared by the collider's picture and by the particles. Needs collider.glsl.
+// collider's own field, which rays ask. For the collider's picture, which is kept; particles look the same light up
+// (particle_light.glsl). Needs collider.glsl.
 //!include sky.glsl
 
 uniform vec3 u_bounds_min;    // of the collider, with a small margin
@@ -7,9 +8,6 @@ uniform vec3 u_bounds_max;
 uniform float u_scale;        // longest side of the bounds
 uniform float u_texel;        // object units of the finest texel
 uniform vec3 u_sun;           // unit vector towards it
-
-const float SUN_WIDTH = 0.10;  // radius of the sun's disc at distance 1
-const float TWO_PI = 6.2831853;
 
 // Uniform in [0, 1), different for every seed (PCG's output permutation).
 float noise(inout uint seed) {
@@ -70,20 +68,14 @@ void receive(vec3 p, vec3 n, inout uint seed, out float sun, out vec3 sky) {
         vec3 a, b;
         basis(axis, a, b);
         vec3 across = sqrt(r2) * (cos(angle) * a + sin(angle) * b);
-        vec3 d = to_sun ? normalize(axis + SUN_WIDTH * across) : across + sqrt(1.0 - r2) * axis;
-        bool hidden = blocked(p, d, (to_sun ? 4.0 : 0.45) * u_scale, to_sun ? u_ray_steps.x : u_ray_steps.y, noise(seed));
+        vec3 d = to_sun ? normalize(axis + RELIEF_SUN_WIDTH * across) : across + sqrt(1.0 - r2) * axis;
+        bool hidden = blocked(p, d, (to_sun ? 4.0 : RELIEF_SKY_REACH) * u_scale, to_sun ? u_ray_steps.x : u_ray_steps.y, noise(seed));
         if (to_sun) {
             sun += hidden ? 0.0 : 1.0;
         } else {
-            sky += (hidden ? 0.12 : 1.0) * mix(FLOOR_COLOR, SKY_COLOR, 0.5 + 0.5 * d.y);
+            sky += (hidden ? SKY_HIDDEN : 1.0) * mix(FLOOR_COLOR, SKY_COLOR, 0.5 + 0.5 * d.y);
         }
     }
     sun /= float(u_rays.x);
     sky /= float(u_rays.y);
-}
-
-// The sky of receive() on an open floor: the mean of mix(FLOOR_COLOR, SKY_COLOR, ½ + ½ d.y) over a cosine-weighted
-// hemisphere, where d.y averages 2/3.
-vec3 skylightOpen() {
-    return mix(FLOOR_COLOR, SKY_COLOR, 0.5 + 0.5 * (2.0 / 3.0));
 }

@@ -100,6 +100,10 @@ std::string makeConstants() {
     define("TWIST", static_cast<int>(DeformKind::kTwist));
     define("LOOK_HEAD_TEXELS", kLookHeadTexels);
     define("LOOK_KEY_TEXELS", kLookKeyTexels);
+    define("SUN_WIDTH", kSunWidth);
+    define("SKY_REACH", kSkyReach);
+    define("SUN_SAMPLES", kSunSamples);
+    define("NO_SHADE", kNoShade);
     define("QUAD_VERTICES", kQuadVertices);
     return lines;
 }

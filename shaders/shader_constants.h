@@ -80,6 +80,14 @@ enum class DeformKind : std::uint8_t { kBend = 0, kTwist = 1, kWobble = 2 };
 inline constexpr int kLookHeadTexels = 2;
 inline constexpr int kLookKeyTexels = 2;
 
+/// Radius of the sun's disc at distance 1, and how far shade of the sky reaches, in longest sides of the collider.
+inline constexpr float kSunWidth = 0.1F;
+inline constexpr float kSkyReach = 0.45F;
+/// Texels of the sun's map that a particle looks up.
+inline constexpr int kSunSamples = 6;
+/// In the sun's map, where nothing shades; object units.
+inline constexpr float kNoShade = 1e30F;
+
 /// Vertices of a sprite that is a quad.
 inline constexpr int kQuadVertices = 6;
 

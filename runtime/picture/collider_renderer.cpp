@@ -1,11 +1,11 @@
 #include "runtime/picture/collider_renderer.h"
 
-#include <algorithm>
 #include <array>
 #include <string>
 
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/pass_state.h"
+#include "runtime/picture/ray_passes.h"
 
 namespace relief {
 namespace {
@@ -17,23 +17,10 @@ constexpr int kCoarseUnit = 3;  // after the collider's three; with a mesh:
 constexpr int kMeshNormalUnit = 3;
 constexpr int kMeshDepthUnit = 4;
 
-// Every kCoarseStride-th pixel of a row or column is traced first; collider_view.frag says why.
-constexpr GLsizei kCoarseStride = 4;
-
-// A ray's step in texels: it hits whatever is two texels thick.
-constexpr float kStepTexels = 1.5F;
-
-// Across the diagonal of a box whose finest texel is 1/2048 of its longest side, with room for the
-// bisections.
-constexpr int kRayStepsMax = 2560;
-constexpr int kBisections = 10;
 constexpr int kNormals = 13;
 
 // For one of the four samples of a pixel.
 constexpr LightRays kLightRays{.sun = 2, .sky = 6, .sun_steps = 32, .sky_steps = 5};
-
-// Rows per draw: a driver may take a draw of several seconds for a hang.
-constexpr GLsizei kBandRows = 64;
 
 constexpr const char* kSmallerPicture = "choose a smaller size";
 
@@ -58,18 +45,6 @@ void setViewUniforms(const GlProgram& program, const Camera& camera, const Colli
     setVector(program, "u_clay", linearColor(style.clay));
 }
 
-/// quad.vert's triangle over the whole of the bound framebuffer; the empty vertex array is bound.
-void drawInBands(GLsizei width, GLsizei height) {
-    glViewport(0, 0, width, height);
-    glEnable(GL_SCISSOR_TEST);
-    for (GLsizei y = 0; y < height; y += kBandRows) {
-        glScissor(0, y, width, std::min(kBandRows, height - y));
-        glDrawArrays(GL_TRIANGLES, 0, 3);
-        glFlush();
-    }
-    glDisable(GL_SCISSOR_TEST);
-}
-
 }  // namespace
 
 Result<ColliderRenderer> ColliderRenderer::create(const ColliderView& view, const ColliderMesh* mesh) {
@@ -87,9 +62,7 @@ Result<ColliderRenderer> ColliderRenderer::create(const ColliderView& view, cons
     for (const GlProgram* program : {&renderer.trace_program_, &renderer.coarse_program_}) {
         view.textures->attach(*program, kColliderBinding);
         setLightUniforms(*program, view, kLightRays);
-        glUniform1f(uniformLocation(*program, "u_step"), kStepTexels * view.texel);
-        glUniform1i(uniformLocation(*program, "u_steps_max"), kRayStepsMax);
-        glUniform1i(uniformLocation(*program, "u_bisections"), kBisections);
+        setRayUniforms(*program, view);
         glUniform1i(uniformLocation(*program, "u_normals"), kNormals);
     }
     glUseProgram(renderer.trace_program_.name());

@@ -1,7 +1,6 @@
 #include "runtime/picture/particle_renderer.h"
 
 #include <algorithm>
-#include <array>
 #include <glm/gtc/type_ptr.hpp>
 #include <string>
 
@@ -12,62 +11,25 @@ namespace relief {
 namespace {
 
 // Sampler k of the program is unit k.
-constexpr std::array<const char*, 7> kSamplers{"u_position", "u_birth", "u_looks", "u_light",
-                                               "u_atlas",    "u_order", "u_behind"};
+constexpr std::array<const char*, 6> kSamplers{"u_position", "u_birth", "u_looks",
+                                               "u_order",    "u_atlas", "u_behind"};
+constexpr int kLightUnit = kSamplers.size();  // of two
+static_assert(kLightUnit + 2 <= PassState::kUnits);
 
 // A smaller sprite would miss the centres of most pixels.
 constexpr float kPixelsMin = 1.5F;
 
-Result<GlProgram> makeSpriteProgram(const std::string& defines) {
-    auto program = RELIEF_TRY(makeProgram("point.vert", "point.frag", defines));
-    glUseProgram(program.name());
-    for (std::size_t unit = 0; unit < kSamplers.size(); ++unit) {
-        glUniform1i(uniformLocation(program, kSamplers[unit]), static_cast<GLint>(unit));
-    }
-    return program;
+bool anyLit(const ParticleStyle& style) {
+    return style.looks.empty() || std::any_of(style.looks.begin(), style.looks.end(),
+                                              [](const ParticleLook& look) { return look.lit; });
 }
 
-}  // namespace
-
-Result<ParticleRenderer> ParticleRenderer::create(const std::optional<ColliderView>& collider) {
-    const PassState state;
-    ParticleRenderer renderer;
-    if (collider) {
-        renderer.light_ = RELIEF_TRY(ParticleLight::create(*collider));
-    }
-    const std::string defines = collider ? "#define RELIEF_LIT 1\n" : "";
-    renderer.point_program_ = RELIEF_TRY(makeSpriteProgram(defines));
-    renderer.quad_program_ = RELIEF_TRY(makeSpriteProgram("#define RELIEF_QUADS 1\n" + defines));
-    renderer.no_attributes_ = makeVertexArray();
-    forgetGlErrors();
-    const std::array<GLubyte, 4> zero{};
-    renderer.nothing_ = makeTexture2D(GL_RGBA8, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, zero.data());
-    constexpr std::array<std::uint32_t, 2> kNoRank{};
-    renderer.no_order_ = makeTexture2D(GL_RG32UI, 1, 1, GL_RG_INTEGER, GL_UNSIGNED_INT, kNoRank.data());
-    RELIEF_TRY(checkAllocated("the renderer of the particles", "close what else is on the GPU"));
-    return renderer;
+std::uint32_t spriteCount(const ParticleSystem& particles, const ParticleOrder& order) {
+    return order.texture != nullptr && particles.extent() > 0 ? order.count : particles.extent();
 }
 
-Result<void> ParticleRenderer::uploadLooks(const ParticleStyle& style) {
-    auto packed = RELIEF_TRY(
-        packLooks(style.looks, {style.diameter, style.color, style.opacity, style.fade_in, style.fade_out}));
-    if (!looks_ || packed != packed_) {
-        forgetGlErrors();
-        packed_ = std::move(packed);
-        looks_ = makeTexture2D(GL_RGBA32F, static_cast<GLsizei>(kLookTexels),
-                               static_cast<GLsizei>(packed_.size() / kLookTexels), GL_RGBA, GL_FLOAT,
-                               packed_.data());
-        if (auto done = checkAllocated("the looks of the particles", "choose fewer types"); !done) {
-            looks_ = {};
-            return done;
-        }
-    }
-    return {};
-}
-
-void ParticleRenderer::setUniforms(const GlProgram& program, const ParticleSystem& particles,
-                                   const Camera& camera, const ParticleStyle& style,
-                                   const RenderTarget& target) const {
+void setUniforms(const GlProgram& program, const ParticleSystem& particles, const Camera& camera,
+                 const ParticleStyle& style, const RenderTarget& target) {
     const auto at = [&](const char* name) { return uniformLocation(program, name); };
     const glm::mat4 view = camera.view();
     const glm::mat4 projection = camera.projection(target.aspect());
@@ -91,10 +53,85 @@ void ParticleRenderer::setUniforms(const GlProgram& program, const ParticleSyste
     glUniform2f(at("u_depth"), depth.x, depth.y);
     glUniform3f(at("u_sun_view"), sun.x, sun.y, sun.z);
     glUniform3f(at("u_up_view"), up.x, up.y, up.z);
-    glUniform2i(at("u_cells"), style.atlas != nullptr ? style.atlas->columns() : 0,
-                style.atlas != nullptr ? style.atlas->rows() : 0);
-    glUniform1f(at("u_levels_max"),
-                style.atlas != nullptr ? static_cast<float>(style.atlas->lastLevel()) : 0.0F);
+    if (style.atlas != nullptr) {
+        glUniform2i(at("u_cells"), style.atlas->columns(), style.atlas->rows());
+        glUniform1f(at("u_levels_max"), static_cast<float>(style.atlas->lastLevel()));
+    }
+}
+
+}  // namespace
+
+Result<ParticleRenderer> ParticleRenderer::create(const std::optional<ColliderView>& collider) {
+    const PassState state;
+    ParticleRenderer renderer;
+    if (collider) {
+        renderer.light_ = RELIEF_TRY(ColliderLight::create(*collider));
+    }
+    for (const Sprite sprite : {Sprite::kPoint, Sprite::kQuad}) {
+        RELIEF_TRY(renderer.programFor({.sprite = sprite}));
+    }
+    renderer.no_attributes_ = makeVertexArray();
+    forgetGlErrors();
+    const std::array<GLubyte, 4> zero{};
+    renderer.nothing_ = makeTexture2D(GL_RGBA8, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, zero.data());
+    constexpr std::array<std::uint32_t, 2> kNoRank{};
+    renderer.no_order_ = makeTexture2D(GL_RG32UI, 1, 1, GL_RG_INTEGER, GL_UNSIGNED_INT, kNoRank.data());
+    RELIEF_TRY(checkAllocated("the renderer of the particles", "close what else is on the GPU"));
+    return renderer;
+}
+
+Result<const GlProgram*> ParticleRenderer::programFor(const ParticleStyle& style) {
+    const bool quads = style.sprite == Sprite::kQuad;
+    const bool cells = style.atlas != nullptr;
+    GlProgram& program = programs_[(quads ? 1U : 0U) + (cells ? 2U : 0U)];
+    if (!program) {
+        const std::string defines = std::string(light_ ? "#define RELIEF_LIT 1\n" : "") +
+                                    (quads ? "#define RELIEF_QUADS 1\n" : "") +
+                                    (cells ? "#define RELIEF_CELLS 1\n" : "");
+        program = RELIEF_TRY(makeProgram("point.vert", "point.frag", defines));
+        glUseProgram(program.name());
+        for (std::size_t unit = 0; unit < kSamplers.size(); ++unit) {
+            glUniform1i(uniformLocation(program, kSamplers[unit]), static_cast<GLint>(unit));
+        }
+        if (light_) {
+            light_->attach(program, kLightUnit);
+        }
+    }
+    return &program;
+}
+
+Result<void> ParticleRenderer::uploadLooks(const ParticleStyle& style) {
+    auto packed = RELIEF_TRY(
+        packLooks(style.looks, {style.diameter, style.color, style.opacity, style.fade_in, style.fade_out}));
+    if (!looks_ || packed != packed_) {
+        forgetGlErrors();
+        packed_ = std::move(packed);
+        looks_ = makeTexture2D(GL_RGBA32F, static_cast<GLsizei>(kLookTexels),
+                               static_cast<GLsizei>(packed_.size() / kLookTexels), GL_RGBA, GL_FLOAT,
+                               packed_.data());
+        if (auto done = checkAllocated("the looks of the particles", "choose fewer types"); !done) {
+            looks_ = {};
+            return done;
+        }
+    }
+    return {};
+}
+
+void ParticleRenderer::bindTextures(const ParticleSystem& particles, const ParticleStyle& style,
+                                    const ParticleOrder& order, const GlTexture* behind) const {
+    const std::array<const GlTexture*, kSamplers.size()> textures{
+        &particles.positions(),
+        &particles.births(),
+        &looks_,
+        order.texture != nullptr ? order.texture : &no_order_,
+        style.atlas != nullptr ? &style.atlas->texture() : &nothing_,
+        behind != nullptr ? behind : &nothing_};
+    for (std::size_t unit = 0; unit < textures.size(); ++unit) {
+        useTexture(static_cast<int>(unit), *textures[unit]);
+    }
+    if (light_) {
+        light_->bind(kLightUnit);
+    }
 }
 
 Result<void> ParticleRenderer::draw(const ParticleSystem& particles, const Camera& camera,
@@ -108,25 +145,14 @@ Result<void> ParticleRenderer::draw(const ParticleSystem& particles, const Camer
     if (particles.extent() == 0) {
         return {};
     }
-    if (light_) {
-        RELIEF_TRY(light_->update(particles, looks_));
+    if (light_ && anyLit(style)) {
+        RELIEF_TRY(light_->update());
     }
-    const bool quads = style.sprite == Sprite::kQuad;
-    const GlProgram& program = quads ? quad_program_ : point_program_;
+    const GlProgram& program = *RELIEF_TRY(programFor(style));
     setUniforms(program, particles, camera, style, target);
     glUniform1i(uniformLocation(program, "u_ordered"), order.texture != nullptr ? 1 : 0);
     glUniform1f(uniformLocation(program, "u_soft"), behind != nullptr ? style.soft : 0.0F);
-    const std::array<const GlTexture*, kSamplers.size()> textures{
-        &particles.positions(),
-        &particles.births(),
-        &looks_,
-        light_ ? &light_->texture() : &nothing_,
-        style.atlas != nullptr ? &style.atlas->texture() : &nothing_,
-        order.texture != nullptr ? order.texture : &no_order_,
-        behind != nullptr ? behind : &nothing_};
-    for (std::size_t unit = 0; unit < textures.size(); ++unit) {
-        useTexture(static_cast<int>(unit), *textures[unit]);
-    }
+    bindTextures(particles, style, order, behind);
     glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
     glViewport(0, 0, target.width, target.height);
     glEnable(GL_BLEND);
@@ -136,8 +162,8 @@ Result<void> ParticleRenderer::draw(const ParticleSystem& particles, const Camer
     glDepthFunc(GL_LEQUAL);
     glDepthMask(GL_FALSE);
     glBindVertexArray(no_attributes_.name());
-    const auto count = static_cast<GLsizei>(order.texture != nullptr ? order.count : particles.extent());
-    if (quads) {
+    const auto count = static_cast<GLsizei>(spriteCount(particles, order));
+    if (style.sprite == Sprite::kQuad) {
         glDrawArrays(GL_TRIANGLES, 0, kQuadVertices * count);
     } else {
         glDrawArrays(GL_POINTS, 0, count);

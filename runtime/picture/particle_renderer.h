@@ -1,6 +1,7 @@
 // Draws the particles of a ParticleSystem as sprites that face the viewer, straight from its state textures.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
@@ -10,8 +11,8 @@
 #include "runtime/gl/gl_object.h"
 #include "runtime/particles/particle_system.h"
 #include "runtime/picture/camera.h"
+#include "runtime/picture/collider_light.h"
 #include "runtime/picture/collider_view.h"
-#include "runtime/picture/particle_light.h"
 #include "runtime/picture/particle_look.h"
 #include "runtime/picture/render_target.h"
 #include "runtime/picture/sprite_atlas.h"
@@ -63,19 +64,21 @@ class ParticleRenderer {
     /// \param behind  what style.soft compares with: window depths of a picture by the same camera and of the
     ///                target's size, not attached to the target, such as ColliderRenderer::depth(). Null:
     ///                style.soft has no effect.
-    /// Errors: kUsage (looks, see packLooks; soft), kUnsupported.
+    /// Errors: kUsage (looks, see packLooks; soft), kUnsupported, kFailure (the driver's compiler), kLimit (no room for
+    /// the light among the collider).
     Result<void> draw(const ParticleSystem& particles, const Camera& camera, const ParticleStyle& style,
                       const RenderTarget& target, const ParticleOrder& order = {},
                       const GlTexture* behind = nullptr);
 
   private:
     [[nodiscard]] Result<void> uploadLooks(const ParticleStyle& style);
-    void setUniforms(const GlProgram& program, const ParticleSystem& particles, const Camera& camera,
-                     const ParticleStyle& style, const RenderTarget& target) const;
+    /// The program of the style, compiled when it is first wanted.
+    [[nodiscard]] Result<const GlProgram*> programFor(const ParticleStyle& style);
+    void bindTextures(const ParticleSystem& particles, const ParticleStyle& style, const ParticleOrder& order,
+                      const GlTexture* behind) const;
 
-    std::optional<ParticleLight> light_;
-    GlProgram point_program_;
-    GlProgram quad_program_;
+    std::optional<ColliderLight> light_;
+    std::array<GlProgram, 4> programs_;  // points, quads; both of an atlas
     GlVertexArray no_attributes_;
     GlTexture no_order_;
     GlTexture nothing_;  // stands for a texture that a draw does without

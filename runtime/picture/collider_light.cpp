@@ -1,0 +1,228 @@
+#include "runtime/picture/collider_light.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "runtime/gl/gl_fault.h"
+#include "runtime/gl/pass_state.h"
+#include "runtime/picture/ray_passes.h"
+#include "shaders/shader_constants.h"
+
+namespace relief {
+namespace {
+
+constexpr ColliderTextures::Binding kColliderBinding{0, 0};
+constexpr int kInputUnit = 3;  // after the collider's three
+
+constexpr int kVoxelsOfSide = 40;  // the collider's longest
+constexpr int kSkyRays = 16;
+constexpr float kSunBiasTexels = 1.5F;
+
+constexpr const char* kLess = "close what else is on the GPU";
+
+GlTexture makeVolumeTexture(const glm::ivec3& size) {
+    GLuint name = 0;
+    glGenTextures(1, &name);
+    glBindTexture(GL_TEXTURE_3D, name);
+    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) {
+        glTexParameteri(GL_TEXTURE_3D, filter, GL_LINEAR);
+    }
+    for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) {
+        glTexParameteri(GL_TEXTURE_3D, wrap, GL_CLAMP_TO_EDGE);
+    }
+    glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAX_LEVEL, 0);
+    glTexImage3D(GL_TEXTURE_3D, 0, GL_R8, size.x, size.y, size.z, 0, GL_RED, GL_UNSIGNED_BYTE, nullptr);
+    glBindTexture(GL_TEXTURE_3D, 0);
+    return GlTexture(name);
+}
+
+void useVolume(int unit, const GlTexture& texture) {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    glBindTexture(GL_TEXTURE_3D, texture.name());
+}
+
+void setVector(const GlProgram& program, const char* name, const glm::vec3& v) {
+    glUniform3f(uniformLocation(program, name), v.x, v.y, v.z);
+}
+
+/// Object space to 0…1 of a volume's texture: scale · (p - shift).
+void setVolumeFrame(const GlProgram& program, const char* shift, const char* scale, const glm::vec3& first,
+                    const glm::ivec3& size, float voxel) {
+    setVector(program, shift, first - glm::vec3(0.5F * voxel));
+    setVector(program, scale, 1.0F / (voxel * glm::vec3(size)));
+}
+
+}  // namespace
+
+GLsizei ColliderLight::Volume::tiles() const {
+    return static_cast<GLsizei>(std::ceil(std::sqrt(static_cast<double>(size.z))));
+}
+
+Result<void> ColliderLight::Volume::allocate() {
+    const GLsizei rows = (size.z + tiles() - 1) / tiles();
+    layers = makeTexture2D(GL_R8, tiles() * size.x, rows * size.y, GL_RED, GL_UNSIGNED_BYTE);
+    texture = makeVolumeTexture(size);
+    RELIEF_TRY(checkAllocated("the light among the collider", kLess));
+    target = RELIEF_TRY(makeFramebuffer(std::array<GLuint, 1>{layers.name()}));
+    return {};
+}
+
+Result<ColliderLight> ColliderLight::create(const ColliderView& collider) {
+    const PassState state;
+    ColliderLight light;
+    light.collider_ = collider;
+    light.frameSun();
+    light.frameVolumes();
+    light.no_attributes_ = makeVertexArray();
+    RELIEF_TRY(light.createPrograms());
+    return light;
+}
+
+// The map's plane lies beyond the collider, and its square holds all of it from there.
+void ColliderLight::frameSun() {
+    const glm::vec3 sun = sunDirection();
+    sun_across_ = glm::normalize(glm::cross(glm::vec3(0.0F, 1.0F, 0.0F), sun));
+    sun_along_ = glm::cross(sun, sun_across_);
+    const glm::vec3 half = 0.5F * collider_.bounds.size() + glm::vec3(2.0F * collider_.texel);
+    const auto reach = [&](const glm::vec3& axis) { return glm::dot(glm::abs(axis), half); };
+    const float side = 2.0F * std::max(reach(sun_across_), reach(sun_along_));
+    sun_texel_ = side / static_cast<float>(kSunSide);
+    sun_corner_ = collider_.bounds.center() + reach(sun) * sun - 0.5F * side * (sun_across_ + sun_along_);
+}
+
+// The sky is hidden as far from the collider as shade reaches, to all sides and below; above, by nothing.
+void ColliderLight::frameVolumes() {
+    const float side = collider_.bounds.longestSide();
+    voxel_ = side / static_cast<float>(kVoxelsOfSide);
+    const auto frame = [&](Volume& volume, const glm::vec3& low, const glm::vec3& high) {
+        volume.first = low;
+        volume.size = glm::ivec3(glm::ceil((high - low) / voxel_)) + 1;
+    };
+    const glm::vec3 margin(voxel_);
+    frame(occupied_, collider_.bounds.min - margin, collider_.bounds.max + margin);
+    const glm::vec3 shade(kSkyReach * side + 2.0F * voxel_);  // beyond it the outermost voxels count
+    frame(sky_, collider_.bounds.min - shade,
+          collider_.bounds.max + glm::vec3(shade.x, 2.0F * voxel_, shade.z));
+}
+
+Result<void> ColliderLight::createPrograms() {
+    const std::string defines = collider_.textures->defines();
+    coarse_program_ =
+        RELIEF_TRY(makeProgram("quad.vert", "sun_map.frag", "#define RELIEF_COARSE 1\n" + defines));
+    sun_program_ = RELIEF_TRY(makeProgram("quad.vert", "sun_map.frag", defines));
+    occupied_.program = RELIEF_TRY(makeProgram("quad.vert", "occupancy.frag", defines));
+    sky_.program = RELIEF_TRY(makeProgram("quad.vert", "sky_share.frag"));
+    const float side = sun_texel_ * static_cast<float>(kSunSide);
+    for (const GlProgram* program : {&coarse_program_, &sun_program_}) {
+        collider_.textures->attach(*program, kColliderBinding);
+        setLightUniforms(*program, collider_, {});
+        setRayUniforms(*program, collider_);
+        setVector(*program, "u_corner", sun_corner_);
+        setVector(*program, "u_across", side * sun_across_);
+        setVector(*program, "u_along", side * sun_along_);
+    }
+    glUniform1i(uniformLocation(sun_program_, "u_coarse"), kInputUnit);
+    collider_.textures->attach(occupied_.program, kColliderBinding);
+    for (const Volume* volume : {&occupied_, &sky_}) {
+        glUseProgram(volume->program.name());
+        setVector(volume->program, "u_first", volume->first);
+        glUniform1f(uniformLocation(volume->program, "u_voxel"), voxel_);
+        glUniform3i(uniformLocation(volume->program, "u_size"), volume->size.x, volume->size.y,
+                    volume->size.z);
+        glUniform1i(uniformLocation(volume->program, "u_tiles"), volume->tiles());
+    }
+    setVolumeFrame(sky_.program, "u_occupied_shift", "u_occupied_scale", occupied_.first, occupied_.size,
+                   voxel_);
+    glUniform1i(uniformLocation(sky_.program, "u_occupied"), kInputUnit);
+    glUniform1i(uniformLocation(sky_.program, "u_sky_rays"), kSkyRays);
+    glUniform1i(uniformLocation(sky_.program, "u_sky_steps"),
+                static_cast<GLint>(kSkyReach * static_cast<float>(kVoxelsOfSide)));
+    return {};
+}
+
+Result<void> ColliderLight::createTextures() {
+    forgetGlErrors();
+    constexpr GLsizei kCoarseSide = kSunSide / kCoarseStride;
+    coarse_ = makeTexture2D(GL_R32F, kCoarseSide, kCoarseSide, GL_RED, GL_FLOAT);
+    sun_map_ = makeTexture2D(GL_R32F, kSunSide, kSunSide, GL_RED, GL_FLOAT);
+    RELIEF_TRY(checkAllocated("the sun's map of the collider", kLess));
+    coarse_target_ = RELIEF_TRY(makeFramebuffer(std::array<GLuint, 1>{coarse_.name()}));
+    RELIEF_TRY(occupied_.allocate());
+    RELIEF_TRY(sky_.allocate());
+    // Last: that it is there says that all of them are.
+    sun_target_ = RELIEF_TRY(makeFramebuffer(std::array<GLuint, 1>{sun_map_.name()}));
+    return {};
+}
+
+Result<void> ColliderLight::update() {
+    const std::uint64_t revision = collider_.textures->revision();
+    if (revision_ == revision) {
+        return {};
+    }
+    if (!sun_target_) {
+        RELIEF_TRY(createTextures());
+    }
+    glBindVertexArray(no_attributes_.name());
+    collider_.textures->bind(kColliderBinding);
+    drawSun();
+    drawVolume(occupied_);
+    useVolume(kInputUnit, occupied_.texture);
+    drawVolume(sky_);
+    revision_ = revision;
+    ++updates_;
+    return {};
+}
+
+void ColliderLight::drawSun() {
+    glBindFramebuffer(GL_FRAMEBUFFER, coarse_target_.name());
+    glUseProgram(coarse_program_.name());
+    drawInBands(kSunSide / kCoarseStride, kSunSide / kCoarseStride);
+    useTexture(kInputUnit, coarse_);
+    glBindFramebuffer(GL_FRAMEBUFFER, sun_target_.name());
+    glUseProgram(sun_program_.name());
+    drawInBands(kSunSide, kSunSide);
+}
+
+void ColliderLight::drawVolume(const Volume& volume) const {
+    const GLsizei tiles = volume.tiles();
+    const glm::ivec3& size = volume.size;
+    glBindFramebuffer(GL_FRAMEBUFFER, volume.target.name());
+    glUseProgram(volume.program.name());
+    glViewport(0, 0, tiles * size.x, (size.z + tiles - 1) / tiles * size.y);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glActiveTexture(GL_TEXTURE0 + kInputUnit);
+    glBindTexture(GL_TEXTURE_3D, volume.texture.name());
+    for (GLint z = 0; z < size.z; ++z) {
+        glCopyTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, z, z % tiles * size.x, z / tiles * size.y, size.x,
+                            size.y);
+    }
+}
+
+float ColliderLight::sunBias() const {
+    return kSunBiasTexels * sun_texel_;
+}
+
+void ColliderLight::attach(const GlProgram& program, int unit) const {
+    glUseProgram(program.name());
+    glUniform1i(uniformLocation(program, "u_sun_map"), unit);
+    glUniform1i(uniformLocation(program, "u_sky_share"), unit + 1);
+    const glm::vec3 sun = sunDirection();
+    const glm::vec3 across = sun_across_ / sun_texel_;
+    const glm::vec3 along = sun_along_ / sun_texel_;
+    const std::array<glm::vec4, 3> rows{glm::vec4(across, -glm::dot(across, sun_corner_)),
+                                        glm::vec4(along, -glm::dot(along, sun_corner_)),
+                                        glm::vec4(-sun, glm::dot(sun, sun_corner_))};
+    glUniform4fv(uniformLocation(program, "u_sun_rows"), 3, &rows[0].x);
+    glUniform1f(uniformLocation(program, "u_sun_bias"), sunBias());
+    glUniform1f(uniformLocation(program, "u_sun_cone"), kSunWidth / sun_texel_);
+    setVolumeFrame(program, "u_sky_shift", "u_sky_scale", sky_.first, sky_.size, voxel_);
+    glUniform1f(uniformLocation(program, "u_texel"), collider_.texel);
+}
+
+void ColliderLight::bind(int unit) const {
+    useTexture(unit, sun_map_);
+    useVolume(unit + 1, sky_.texture);
+}
+
+}  // namespace relief

@@ -1,0 +1,19 @@
+// What the passes share that follow rays through a collider's field (shaders/trace.glsl).
+#pragma once
+
+#include "runtime/gl/gl_object.h"
+#include "runtime/picture/collider_view.h"
+
+namespace relief {
+
+/// Of the first pass every kCoarseStride-th ray of a row or column is followed.
+inline constexpr GLsizei kCoarseStride = 4;
+
+/// Sets trace.glsl's uniforms; leaves the program current.
+void setRayUniforms(const GlProgram& program, const ColliderView& view);
+
+/// Draws quad.vert's triangle over the whole of the bound framebuffer, band by band: a driver may take a draw of
+/// several seconds for a hang. An empty vertex array is bound.
+void drawInBands(GLsizei width, GLsizei height);
+
+}  // namespace relief

@@ -1,0 +1,289 @@
+// The light among a collider in closed form: a sphere's shade, a plate's, and that both follow what moves.
+#include "runtime/picture/collider_light.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "runtime/collider/live_collider.h"
+#include "runtime/gl/pass_state.h"
+#include "shaders/shader_constants.h"
+#include "tests/runtime/collider/analytic_collider.h"
+#include "tests/runtime/gl/gl_test.h"
+
+namespace relief {
+namespace {
+
+constexpr double kPi = 3.14159265358979;
+
+struct Light {
+    float sun;
+    float sky;
+};
+
+class ColliderLightGlTest : public GlTest {
+  protected:
+    void TearDown() override {
+        light_.reset();
+        textures_.reset();
+        GlTest::TearDown();
+    }
+    void use(ColliderTextures textures, const Bounds& bounds, float texel) {
+        light_.reset();
+        textures_ = std::make_unique<ColliderTextures>(std::move(textures));
+        auto light = ColliderLight::create({textures_.get(), bounds, texel});
+        ASSERT_TRUE(light) << light.error().message;
+        light_.emplace(std::move(*light));
+    }
+    void use(const Collider& collider) {
+        auto textures = ColliderTextures::create(collider);
+        ASSERT_TRUE(textures) << textures.error().message;
+        use(std::move(*textures), collider.bounds, finestTexel(collider));
+    }
+    /// As particles get it, the mean over their random numbers.
+    std::vector<Light> at(const std::vector<glm::vec3>& points) {
+        const PassState state;
+        const auto updated = light_->update();
+        EXPECT_TRUE(updated) << updated.error().message;
+        std::vector<glm::vec4> texels;
+        for (const glm::vec3& p : points) {
+            texels.emplace_back(p, 0.0F);
+        }
+        const auto count = static_cast<GLsizei>(points.size());
+        const GlTexture input = makeTexture2D(GL_RGBA32F, count, 1, GL_RGBA, GL_FLOAT, texels.data());
+        const GlTexture output = makeTexture2D(GL_RGBA32F, count, 1, GL_RGBA, GL_FLOAT);
+        const auto target = makeFramebuffer(std::array<GLuint, 1>{output.name()});
+        const auto program = makeProgram("quad.vert", "light_query.frag");
+        EXPECT_TRUE(target && program);
+        const GlVertexArray array = makeVertexArray();
+        light_->attach(*program, 1);
+        glUniform1i(uniformLocation(*program, "u_points"), 0);
+        light_->bind(1);
+        useTexture(0, input);
+        glBindFramebuffer(GL_FRAMEBUFFER, target->name());
+        glViewport(0, 0, count, 1);
+        glBindVertexArray(array.name());
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+        const auto values = readTextureFloats(output, count, 1);
+        std::vector<Light> lights;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            lights.push_back({(*values)[4 * i], (*values)[4 * i + 1]});
+        }
+        return lights;
+    }
+    Light at(const glm::vec3& point) { return at(std::vector<glm::vec3>{point}).front(); }
+
+    std::unique_ptr<ColliderTextures> textures_;  // stays where it is: the light points at it
+    std::optional<ColliderLight> light_;
+};
+
+/// The share of the sun's disc that the rays from p see past a sphere.
+double sunPastSphere(const glm::dvec3& p, const glm::dvec3& center, double radius) {
+    const glm::dvec3 sun(sunDirection());
+    const glm::dvec3 a = glm::normalize(glm::cross(sun, glm::dvec3(0, 0, 1)));
+    const glm::dvec3 b = glm::cross(sun, a);
+    int seen = 0;
+    constexpr int kRays = 4000;
+    for (int i = 0; i < kRays; ++i) {
+        const double r = static_cast<double>(kSunWidth) * std::sqrt((i + 0.5) / kRays);
+        const double angle = 2.0 * kPi * 0.61803398875 * i;
+        const glm::dvec3 d = glm::normalize(sun + r * (std::cos(angle) * a + std::sin(angle) * b));
+        const glm::dvec3 to = center - p;
+        const double along = glm::dot(to, d);
+        seen += along > 0.0 && glm::dot(to, to) - along * along < radius * radius ? 0 : 1;
+    }
+    return static_cast<double>(seen) / kRays;
+}
+
+// On a plane below a sphere: full light and full shade where geometry says so, and between them the share of the
+// disc. Would fail with a map that is turned, shifted or scaled, a penumbra of another width, or shade from nothing.
+TEST_P(ColliderLightGlTest, ASphereCastsItsShade) {
+    use(analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, 0.5), 128));
+    for (const float height : {-0.55F, -1.0F, -2.5F}) {
+        std::vector<glm::vec3> points;
+        for (int z = 0; z < 40; ++z) {
+            for (int x = 0; x < 40; ++x) {
+                // Along the light, below the sphere.
+                const glm::vec3 under = sunDirection() * (height / sunDirection().y);
+                points.push_back(under + glm::vec3(0.05F * static_cast<float>(x) - 1.0F, 0.0F,
+                                                   0.05F * static_cast<float>(z) - 1.0F));
+            }
+        }
+        const std::vector<Light> lights = at(points);
+        int full = 0;
+        int dark = 0;
+        double in_dark = 0.0;
+        double sum = 0.0;
+        int between = 0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            // A texel of the map, and of the collider's own.
+            const double least = sunPastSphere(points[i], glm::dvec3(0.0), 0.515);
+            const double most = sunPastSphere(points[i], glm::dvec3(0.0), 0.485);
+            if (least == 1.0) {
+                EXPECT_EQ(lights[i].sun, 1.0F) << points[i].x << " " << points[i].y << " " << points[i].z;
+                ++full;
+            } else if (most == 0.0) {
+                EXPECT_LT(lights[i].sun, 0.1F) << points[i].x << " " << points[i].y << " " << points[i].z;
+                in_dark += static_cast<double>(lights[i].sun);
+                ++dark;
+            } else {
+                const double expected = sunPastSphere(points[i], glm::dvec3(0.0), 0.5);
+                EXPECT_NEAR(lights[i].sun, expected, 0.3) << points[i].x << " " << points[i].z;
+                sum += lights[i].sun - expected;
+                ++between;
+            }
+        }
+        EXPECT_GT(full, 300) << height;
+        EXPECT_GT(dark, 30) << height;
+        EXPECT_LT(in_dark / dark, 0.01) << height;
+        EXPECT_GT(between, 50) << height;
+        EXPECT_NEAR(sum / between, 0.0, 0.06) << height;
+    }
+}
+
+// On the sphere itself: what faces the sun is not shaded by its own texels, what faces away is.
+TEST_P(ColliderLightGlTest, ASurfaceDoesNotShadeItself) {
+    use(analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, 0.5), 128));
+    std::vector<glm::vec3> points;
+    std::vector<float> facing;
+    for (int i = 0; i < 2000; ++i) {
+        const float y = 1.0F - (static_cast<float>(i) + 0.5F) / 1000.0F;
+        const float around = 2.3999632F * static_cast<float>(i);
+        const glm::vec3 n(std::sqrt(1.0F - y * y) * std::cos(around), y,
+                          std::sqrt(1.0F - y * y) * std::sin(around));
+        points.push_back(0.505F * n);
+        facing.push_back(glm::dot(n, sunDirection()));
+    }
+    const std::vector<Light> lights = at(points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (facing[i] > 0.3F) {
+            EXPECT_EQ(lights[i].sun, 1.0F) << facing[i];
+        } else if (facing[i] < -0.3F) {
+            EXPECT_LT(lights[i].sun, 0.1F) << facing[i];
+        }
+    }
+}
+
+// A sheet of a fortieth of a voxel. Behind it there is no sun beyond the bias, and no more sky than geometry leaves: of
+// an infinite plate at height h the rays steeper than h / reach meet it, and 1 - (h / reach)² of the cosine-weighted
+// sky is hidden.
+TEST_P(ColliderLightGlTest, NoLightLeaksThroughAThinSheet) {
+    const Collider sheet =
+        analytic::frontBackCollider(analytic::box({-1.0, -0.00125, -1.0}, {1.0, 0.0, 1.0}), 256);
+    use(sheet);
+    EXPECT_NEAR(light_->voxel(), 0.05F, 1e-6F);
+    std::vector<glm::vec3> points;
+    const float behind = light_->sunBias() / sunDirection().y + 0.01F;
+    const float under = 1.5F * light_->voxel() + 0.002F;
+    EXPECT_LT(behind, 0.03F) << "of a side of 2";
+    for (int i = 0; i < 400; ++i) {  // anywhere in the middle, at the bias and deeper
+        const float x = -0.2F + 0.02F * static_cast<float>(i % 20);
+        const float z = -0.2F + 0.02F * static_cast<float>(i / 20);
+        const float depth = behind + 0.001F * static_cast<float>(i % 37);
+        points.emplace_back(x, -depth, z);
+        points.emplace_back(x, -under - 0.001F * static_cast<float>(i % 37), z);
+        points.emplace_back(x, 0.01F, z);
+    }
+    const std::vector<Light> lights = at(points);
+    for (std::size_t i = 0; i < points.size(); i += 3) {
+        EXPECT_EQ(lights[i].sun, 0.0F) << points[i].y;
+        EXPECT_LT(lights[i + 1].sky, 0.08F) << points[i + 1].y;
+        EXPECT_EQ(lights[i + 2].sun, 1.0F);
+        EXPECT_GT(lights[i + 2].sky, 0.92F);
+    }
+    const float reach = kSkyReach * 2.0F;
+    for (const float share : {0.3F, 0.5F, 0.7F, 0.85F}) {
+        EXPECT_NEAR(at({0.0F, -share * reach, 0.0F}).sky, share * share, 0.12F) << share;
+    }
+    EXPECT_GT(at({0.0F, -1.2F * reach, 0.0F}).sky, 0.95F) << "beyond the reach of shade";
+    EXPECT_EQ(at({0.0F, 3.0F, 0.0F}).sky, 1.0F);
+    EXPECT_EQ(at({30.0F, -0.3F, 0.0F}).sun, 1.0F);
+    EXPECT_EQ(at({30.0F, -0.3F, 0.0F}).sky, 1.0F);
+}
+
+TEST_P(ColliderLightGlTest, LightFollowsABodyThatMoves) {
+    const Collider ball = analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, 0.25), 64);
+    ColliderBody body;
+    body.collider = &ball;
+    Bounds bounds;
+    bounds.add(glm::vec3(-1.5F, -0.5F, -0.5F));
+    bounds.add(glm::vec3(1.5F, 0.5F, 0.5F));
+    auto textures = ColliderTextures::create(std::span(&body, 1));
+    ASSERT_TRUE(textures) << textures.error().message;
+    use(std::move(*textures), bounds, finestTexel(ball));
+    // Behind each place of the ball, seen from the sun, and right below it.
+    const auto lightUnder = [&](float x) {
+        const glm::vec3 place(x, 0.0F, 0.0F);
+        return Light{at(place - 0.6F * sunDirection()).sun, at(place - glm::vec3(0.0F, 0.45F, 0.0F)).sky};
+    };
+    EXPECT_EQ(lightUnder(0.0F).sun, 0.0F);
+    EXPECT_LT(lightUnder(0.0F).sky, 0.8F);
+    EXPECT_EQ(light_->updates(), 1U) << "a body at rest costs nothing";
+    for (const float x : {1.0F, -1.0F, 0.0F}) {
+        Pose pose;
+        pose.position = {x, 0.0F, 0.0F};
+        textures_->setPoses(std::span(&pose, 1));
+        for (const float other : {-1.0F, 0.0F, 1.0F}) {
+            const Light light = lightUnder(other);
+            EXPECT_EQ(light.sun, other == x ? 0.0F : 1.0F) << x << " " << other;
+            EXPECT_EQ(light.sky < 0.8F, other == x) << x << " " << other << " " << light.sky;
+        }
+    }
+    EXPECT_EQ(light_->updates(), 4U);
+}
+
+TEST_P(ColliderLightGlTest, LightFollowsABodyThatDeforms) {
+    // A slab that grows to both sides.
+    const auto slab = [](float half) {
+        std::vector<glm::vec3> corners;
+        for (int i = 0; i < 8; ++i) {
+            corners.emplace_back((i & 1) != 0 ? half : -half, (i & 2) != 0 ? 0.1F : -0.1F,
+                                 (i & 4) != 0 ? 0.5F : -0.5F);
+        }
+        return corners;
+    };
+    const std::array<glm::uvec3, 12> triangles{{{0, 2, 1},
+                                                {1, 2, 3},
+                                                {4, 5, 6},
+                                                {5, 7, 6},
+                                                {0, 1, 4},
+                                                {1, 5, 4},
+                                                {2, 6, 3},
+                                                {3, 6, 7},
+                                                {0, 4, 2},
+                                                {2, 4, 6},
+                                                {1, 3, 5},
+                                                {3, 7, 5}}};
+    Bounds box;
+    box.add(glm::vec3(-1.2F, -0.3F, -0.7F));
+    box.add(glm::vec3(1.2F, 0.3F, 0.7F));
+    auto frames = liveFrames(box, 128);
+    ASSERT_TRUE(frames) << frames.error().message;
+    auto live = LiveCollider::create(slab(0.3F), triangles, *frames);
+    ASSERT_TRUE(live) << live.error().message;
+    ColliderBody body;
+    body.collider = &live->frames();
+    body.live = true;
+    auto textures = ColliderTextures::create(std::span(&body, 1));
+    ASSERT_TRUE(textures) << textures.error().message;
+    use(std::move(*textures), box, finestTexel(live->frames()));
+    ASSERT_TRUE(live->update(*textures_, 0));
+    const glm::vec3 behind = glm::vec3(0.8F, 0.0F, 0.0F) - 0.5F * sunDirection();
+    const glm::vec3 below(0.8F, -0.4F, 0.0F);
+    EXPECT_EQ(at(behind).sun, 1.0F);
+    EXPECT_GT(at(below).sky, 0.7F);
+    ASSERT_TRUE(live->setPositions(slab(1.1F)));
+    ASSERT_TRUE(live->update(*textures_, 0));
+    EXPECT_EQ(at(behind).sun, 0.0F);
+    EXPECT_LT(at(below).sky, 0.5F);
+}
+
+}  // namespace
+
+RELIEF_INSTANTIATE_GL_TESTS(ColliderLightGlTest);
+
+}  // namespace relief
