@@ -71,7 +71,7 @@ if [ -n "$save$against" ]; then
     exit
 fi
 bin=$(scripts/build.sh release relief relief-sim relief-bench-raycast relief-bench-step relief-bench-sort \
-    relief-bench-births relief-bench-depth-maps)
+    relief-bench-picture relief-bench-births relief-bench-depth-maps)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -157,6 +157,8 @@ large=${RELIEF_BENCH_LARGE:-0}
 [ "$large" = 1 ] && large_option=--large || large_option=
 "$bin/relief-bench-step" "$work/planned.relief" $large_option >"$work/step.json"
 "$bin/relief-bench-sort" >"$work/sort.json"
+[ "$large" = 1 ] || ! grep -q '"software": true' "$work/step.json" && count=1048576 || count=65536
+"$bin/relief-bench-picture" "$work/planned.relief" --particles $count >"$work/picture.json"
 capacities=(16667)
 if [ "$large" != 1 ] && grep -q '"software": true' "$work/step.json"; then
     capacities+=(65536 262144)
@@ -165,7 +167,7 @@ fi
 python3 - "$work" <<'P'
 import json, sys
 work = sys.argv[1]
-step, sort, births = (json.load(open(f'{work}/{name}.json')) for name in ('step', 'sort', 'births'))
+step, sort, births, picture = (json.load(open(f'{work}/{name}.json')) for name in ('step', 'sort', 'births', 'picture'))
 
 steps, copy = step['steps'], step['copy']
 print(f"\nstep of {steps['particles']} particles, medians of {steps['blocks']} blocks of {steps['block']} in turns, "
@@ -182,6 +184,11 @@ for f in step['frames']:
     size = 'x'.join(map(str, f['picture']))
     print(f"frame of {f['particles']:7d} particles, {size}: step {f['step_ms']:.2f} ms, "
           f"with points {f['points_ms']:.2f} ms, with quads {f['quads_ms']:.2f} ms")
+for p in picture['pictures']:
+    size, parts = 'x'.join(map(str, p['picture'])), p['parts']
+    print(f"picture of {picture['particles']} points of {p['pixels_of_a_point']:.1f} pixels, {size}: "
+          + ', '.join(f"{name} {part['ms']:.2f}" for name, part in parts.items()) + ' ms')
+    print(f"picture with light, soft edges, order / bare draw  {parts['all']['over_bare']:.2f}   (at most 1.2 on a GPU)")
 for s in sort['sorts']:
     print(f"sort of {s['particles']:8d} particles: {s['passes_per_ms']:.3f} passes/ms, "
           f"{s['frame_ms_over_30']:.2f} ms a frame over 30 frames, whole {s['sequence_ms']:.2f} ms"
