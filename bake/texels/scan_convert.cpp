@@ -152,7 +152,7 @@ class ScanConverter::Shape {
                 ++behind;
                 continue;
             }
-            const double at = corner[axis] / corner.z;
+            const double at = grid_.face == nullptr ? corner[axis] : corner[axis] / corner.z;
             const double texel = axis == 0 ? grid_.column(at) : grid_.row(at);
             low = std::min(low, texel);
             high = std::max(high, texel);
