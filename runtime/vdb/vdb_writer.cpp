@@ -1,0 +1,43 @@
+#include "runtime/vdb/vdb_writer.h"
+
+#include <dlfcn.h>
+
+#include <filesystem>
+#include <string>
+
+namespace relief {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kModule = "relief-vdb.so";
+
+Result<VdbWriter*> load() {
+    std::error_code error;
+    const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
+    std::string why = "it has no " + std::string(kModule);
+    for (const fs::path& module : {folder / kModule, folder / "../lib/relief" / kModule}) {
+        if (!fs::is_regular_file(module, error)) {
+            continue;
+        }
+        // Never unloaded: OpenVDB keeps threads and registries.
+        void* const handle = ::dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
+        void* const make = handle != nullptr ? ::dlsym(handle, "reliefVdbWriter") : nullptr;
+        if (make != nullptr) {
+            return reinterpret_cast<VdbWriter* (*)()>(make)();
+        }
+        why = ::dlerror();
+    }
+    return fail(ErrorCode::kUnsupported, "this build has no OpenVDB (" + why +
+                                             "); install libopenvdb-dev and build Relief with "
+                                             "-DRELIEF_BUILD_OPENVDB=ON");
+}
+
+}  // namespace
+
+Result<VdbWriter*> vdbWriter() {
+    static const Result<VdbWriter*> kLoaded = load();
+    return kLoaded;
+}
+
+}  // namespace relief

@@ -1,0 +1,46 @@
+// What writes OpenVDB files. It lies in a module of its own, relief-vdb.so, which is loaded when it is needed: the library
+// brings others along that start threads in whatever program loads them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "formats/base/result.h"
+#include "runtime/particles/particle_system.h"
+
+namespace relief {
+
+/// Signed distances near a surface, on a grid whose voxel (i, j, k) has its centre at voxel × (i, j, k).
+struct NarrowBand {
+    double voxel = 1.0;       ///< object units
+    float background = 0.0F;  ///< half of the band's width; distances are less
+    std::vector<glm::ivec3> at;
+    std::vector<float> distance;  ///< as many; negative inside
+};
+
+/// Faces anticlockwise seen from outside.
+struct GridSurface {
+    std::vector<glm::vec3> points;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    std::vector<std::array<std::uint32_t, 4>> quads;
+};
+
+class VdbWriter {
+  public:
+    virtual ~VdbWriter() = default;
+    // Equal arguments give equal bytes. Errors: kFailure (OpenVDB's, memory).
+    /// \param particles  ordered by id, at finite positions.
+    [[nodiscard]] virtual Result<std::vector<std::byte>> points(std::span<const ParticleState> particles) = 0;
+    [[nodiscard]] virtual Result<std::vector<std::byte>> levelSet(const NarrowBand& band) = 0;
+    [[nodiscard]] virtual Result<GridSurface> surface(const NarrowBand& band) = 0;
+};
+
+/// Loads the module, once. It lies beside the program, or in ../lib/relief.
+/// Errors: kUnsupported: there is none, or what it needs is missing.
+[[nodiscard]] Result<VdbWriter*> vdbWriter();
+
+}  // namespace relief

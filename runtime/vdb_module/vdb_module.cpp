@@ -1,0 +1,133 @@
+// relief-vdb.so: VdbWriter by OpenVDB.
+#include <openvdb/points/PointConversion.h>
+#include <openvdb/tools/SignedFloodFill.h>
+#include <openvdb/tools/VolumeToMesh.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "runtime/vdb/vdb_writer.h"
+#include "runtime/vdb_module/vdb_file.h"
+
+namespace relief {
+namespace {
+
+using openvdb::points::PointDataGrid;
+using openvdb::points::PointDataTree;
+using openvdb::tools::PointIndexGrid;
+
+constexpr double kPointsAVoxel = 8.0;
+constexpr double kVoxelsMax = 4096.0;  // along the longest side
+constexpr double kIndexMax = 0x1p24;   // of a voxel, from the origin
+
+/// Of a voxel that holds some eight points, if they fill their box evenly.
+double voxelSize(const std::vector<openvdb::Vec3f>& positions) {
+    openvdb::BBoxd box;
+    for (const openvdb::Vec3f& p : positions) {
+        box.expand(openvdb::Vec3d(p));
+    }
+    const double side = positions.empty() ? 0.0 : box.extents()[box.maxExtent()];
+    const double cells = std::cbrt(static_cast<double>(positions.size()) / kPointsAVoxel);
+    const double size = side > 0.0 ? side / std::clamp(cells, 1.0, kVoxelsMax) : 1.0;
+    double farthest = 0.0;
+    for (int i = 0; i < 3 && !positions.empty(); ++i) {
+        farthest = std::max({farthest, std::abs(box.min()[i]), std::abs(box.max()[i])});
+    }
+    return std::max(size, farthest / kIndexMax);
+}
+
+/// One attribute of all points.
+template <class Value, class Of>
+void add(PointDataTree& tree, const PointIndexGrid& index, std::span<const ParticleState> particles,
+         const std::string& name, Of of) {
+    std::vector<Value> values;
+    values.reserve(particles.size());
+    for (const ParticleState& particle : particles) {
+        values.push_back(of(particle));
+    }
+    openvdb::points::appendAttribute<Value>(tree, name);
+    openvdb::points::populateAttribute(tree, index.tree(), name,
+                                       openvdb::points::PointAttributeVector<Value>(values));
+}
+
+openvdb::GridPtrVec makePoints(std::span<const ParticleState> particles) {
+    std::vector<openvdb::Vec3f> positions;
+    for (const ParticleState& p : particles) {
+        positions.emplace_back(p.position.x, p.position.y, p.position.z);
+    }
+    const auto transform = openvdb::math::Transform::createLinearTransform(voxelSize(positions));
+    const openvdb::points::PointAttributeVector<openvdb::Vec3f> wrapped(positions);
+    const auto index = openvdb::tools::createPointIndexGrid<PointIndexGrid>(wrapped, *transform);
+    const auto grid = openvdb::points::createPointDataGrid<openvdb::points::NullCodec, PointDataGrid>(
+        *index, wrapped, *transform);
+    grid->setName("particles");
+    grid->insertMeta("points", openvdb::Int64Metadata(static_cast<std::int64_t>(positions.size())));
+    PointDataTree& tree = grid->tree();
+    if (!positions.empty()) {
+        add<openvdb::Vec3f>(tree, *index, particles, "v", [](const ParticleState& p) {
+            return openvdb::Vec3f(p.velocity.x, p.velocity.y, p.velocity.z);
+        });
+        add<float>(tree, *index, particles, "age", [](const ParticleState& p) { return p.age; });
+        add<float>(tree, *index, particles, "life", [](const ParticleState& p) { return p.lifetime; });
+        add<int>(tree, *index, particles, "id",
+                 [](const ParticleState& p) { return static_cast<int>(p.id); });
+        add<int>(tree, *index, particles, "type",
+                 [](const ParticleState& p) { return static_cast<int>(p.type); });
+    }
+    return {grid};
+}
+
+openvdb::FloatGrid::Ptr makeGrid(const NarrowBand& band) {
+    auto grid = openvdb::FloatGrid::create(band.background);
+    grid->setName("surface");
+    grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    grid->setTransform(openvdb::math::Transform::createLinearTransform(band.voxel));
+    auto to = grid->getAccessor();
+    for (std::size_t i = 0; i < band.at.size(); ++i) {
+        to.setValueOn(openvdb::Coord(band.at[i].x, band.at[i].y, band.at[i].z), band.distance[i]);
+    }
+    openvdb::tools::signedFloodFill(grid->tree());
+    return grid;
+}
+
+class Writer : public VdbWriter {
+  public:
+    Result<std::vector<std::byte>> points(std::span<const ParticleState> particles) override {
+        return vdbBytes([&] { return makePoints(particles); });
+    }
+
+    Result<std::vector<std::byte>> levelSet(const NarrowBand& band) override {
+        return vdbBytes([&] { return openvdb::GridPtrVec{makeGrid(band)}; });
+    }
+
+    Result<GridSurface> surface(const NarrowBand& band) override {
+        std::vector<openvdb::Vec3s> points;
+        std::vector<openvdb::Vec3I> triangles;
+        std::vector<openvdb::Vec4I> quads;
+        RELIEF_TRY(vdbBytes([&] {
+            openvdb::tools::volumeToMesh(*makeGrid(band), points, triangles, quads, 0.0, 0.0);
+            return openvdb::GridPtrVec{};
+        }));
+        GridSurface out;
+        for (const openvdb::Vec3s& p : points) {
+            out.points.emplace_back(p.x(), p.y(), p.z());
+        }
+        // OpenVDB's faces run clockwise seen from outside.
+        for (const openvdb::Vec3I& t : triangles) {
+            out.triangles.push_back({t[2], t[1], t[0]});
+        }
+        for (const openvdb::Vec4I& q : quads) {
+            out.quads.push_back({q[3], q[2], q[1], q[0]});
+        }
+        return out;
+    }
+};
+
+}  // namespace
+}  // namespace relief
+
+extern "C" __attribute__((visibility("default"))) relief::VdbWriter* reliefVdbWriter() {
+    static relief::Writer writer;
+    return &writer;
+}
