@@ -1,0 +1,120 @@
+// relief view: a page to turn a collider round in, drop particles on it, and see where it is wrong.
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <span>
+
+#include "bake/cli/command.h"
+#include "bake/cli/live_view.h"
+#include "bake/cli/preflight.h"
+#include "bake/cli/view_source.h"
+#include "bake/view/page_server.h"
+#include "formats/base/file_io.h"
+#include "formats/base/text.h"
+#include "runtime/tool/command_line.h"
+#include "runtime/tool/option_values.h"
+
+namespace relief {
+namespace {
+
+struct ViewCommand {
+    CommonOptions common;
+    ViewSource source;
+    std::string output;
+    std::optional<std::uint16_t> serve;  // port
+};
+
+constexpr std::uint16_t kPortDefault = 8321;
+
+/// \param word  empty: --serve stands alone.
+std::optional<std::uint16_t> parsePort(const std::string& word) {
+    if (word.empty()) {
+        return kPortDefault;
+    }
+    const std::optional<std::uint64_t> port = parseUnsigned(word);
+    return port && *port <= 65535 ? std::optional(static_cast<std::uint16_t>(*port)) : std::nullopt;
+}
+
+/// Beside FILE unless -o says where.
+Result<std::string> outputOf(const ViewCommand& command) {
+    if (!command.output.empty()) {
+        return command.output;
+    }
+    if (command.source.file == "-") {
+        return fail(ErrorCode::kUsage,
+                    "a page of standard input has no name of its own; give it one with -o");
+    }
+    return std::filesystem::path(command.source.file).replace_extension(".html").string();
+}
+
+Result<void> checkSource(const ViewSource& source) {
+    if (source.isScene() && !source.check.mesh.empty()) {
+        return fail(ErrorCode::kUsage, "--mesh is for a collider, and " + quotedPath(source.file) +
+                                           " is a scene; leave out --mesh, or view the collider");
+    }
+    return prepareMeshCheck(source.check);
+}
+
+Result<void> serve(const ViewCommand& command) {
+    if (command.source.file == "-") {
+        return fail(ErrorCode::kUsage, "--serve follows a file, and standard input is none; name the file");
+    }
+    PageServer server = RELIEF_TRY(PageServer::listen(*command.serve));
+    LiveView view(command.source);
+    RELIEF_TRY(view.start());
+    RELIEF_TRY(printOut(server.address() + "\n"));
+    return server.serve([&view] { return view.current(); });
+}
+
+Result<void> runView(const ViewCommand& command) {
+    startLogging(command.common);
+    RELIEF_TRY(checkSource(command.source));
+    if (command.serve) {
+        return serve(command);
+    }
+    const std::string output = RELIEF_TRY(outputOf(command));
+    RELIEF_TRY(preflightFile(output));
+    RELIEF_TRY(preflightDistinct(command.source.file, output));
+    RELIEF_TRY(preflightDistinct(command.source.check.mesh, output));
+    const MadePage page = RELIEF_TRY(makeViewPage(command.source));
+    // What the inputs refer to is known only now.
+    for (const std::filesystem::path& file : page.files) {
+        RELIEF_TRY(preflightDistinct(file, output));
+    }
+    return writeFile(output, std::as_bytes(std::span(page.html)));
+}
+
+}  // namespace
+
+void addView(CLI::App& app, Action& action) {
+    auto command = std::make_shared<ViewCommand>();
+    CLI::App& verb = addVerb(
+        app, command->common, "view",
+        "Makes a page to look at a collider, and to play with\n\nOne HTML file that holds everything and "
+        "opens from disk in any browser with WebGL2: the surface as the maps see it,\nevery map, slices, and "
+        "live "
+        "particles. With --mesh also the mesh, the errors on it and the worst places of `relief check`.\n"
+        "Of a scene: its particles, as relief-sim plays them.",
+        "relief view bunny.relief\n"
+        "relief view bunny.relief --mesh bunny.obj -o page.html\n"
+        "relief view bunny.relief --mesh bunny.obj --serve\n"
+        "relief view scene.toml");
+    verb.add_option("FILE", command->source.file,
+                    "The collider, or a scene (.toml); - for a collider on standard input")
+        ->type_name("")
+        ->required();
+    addMeshCheckOptions(verb, command->source.check);
+    addImportOptions(verb, command->source.check.import);
+    CLI::Option* output =
+        verb.add_option("-o,--output", command->output,
+                        "The page; - for standard output; default FILE with .html in place of its extension")
+            ->option_text("OUT");
+    addParsed(verb, "--serve", command->serve, parsePort, "a port, from 0 to 65535",
+              "Serve the page on this machine alone instead, and load it anew when FILE is baked anew; "
+              "default port 8321, 0 for any that is free")
+        ->option_text("[PORT]")
+        ->expected(0, 1)
+        ->excludes(output);
+    verb.callback([command, &action] { action = [command] { return runView(*command); }; });
+}
+
+}  // namespace relief

@@ -1,0 +1,163 @@
+#include "bake/cli/view_source.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "bake/cli/command.h"
+#include "bake/import/mesh_import.h"
+#include "bake/pipeline/bake.h"
+#include "bake/repair/winding.h"
+#include "bake/view/view_page.h"
+#include "formats/bake_first.h"
+#include "formats/base/error_context.h"
+#include "formats/base/file_io.h"
+#include "formats/base/text.h"
+#include "formats/container.h"
+#include "runtime/scene/loaded_scene.h"
+#include "runtime/scene/scene_pictures.h"
+
+namespace relief {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The page of an installed tool, or of a build beside this one.
+Result<fs::path> findPage() {
+    if (const char* named = std::getenv("RELIEF_VIEW_PAGE"); named != nullptr && *named != '\0') {
+        return fs::path(named);
+    }
+    std::error_code error;
+    const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
+    for (const char* place : {"../share/relief/view.html", "../../web/bin/view.html"}) {
+        const fs::path page = folder / place;
+        if (fs::is_regular_file(page, error)) {
+            return page;
+        }
+    }
+    return fail(ErrorCode::kUnsupported,
+                "there is no page to put a collider in; scripts/build.sh web makes it, or name one with "
+                "RELIEF_VIEW_PAGE");
+}
+
+std::string textOf(const std::vector<std::byte>& bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// The template, and what is put in.
+struct Page {
+    const ViewSource& source;
+    ViewPageInput input;
+    std::vector<std::byte> container;
+    std::vector<fs::path> files;
+
+    /// Reads a file that the page depends on.
+    Result<std::vector<std::byte>> read(const fs::path& path) {
+        files.push_back(path);
+        return readFile(path, kViewBytesMax);
+    }
+
+    Result<MadePage> make() {
+        const fs::path page = RELIEF_TRY(findPage());
+        const std::string text = textOf(RELIEF_TRY(read(page)));
+        input.container = container;
+        input.events = source.events;
+        std::string html = RELIEF_TRY(viewPage(text, quotedPath(page), input));
+        std::sort(files.begin(), files.end());
+        return MadePage{std::move(html), std::move(files)};
+    }
+};
+
+Result<MadePage> colliderPage(Page page) {
+    const ViewSource& source = page.source;
+    page.container = RELIEF_TRY(page.read(source.file));
+    RELIEF_TRY(refuseMesh(source.file, page.container));
+    Collider collider = RELIEF_TRY(inFront(shownInput(source.file), readContainer(page.container)));
+    if (source.check.mesh.empty()) {
+        return page.make();
+    }
+    const MeshCheck check = RELIEF_TRY(checkAgainstMesh(source.check, std::move(collider)));
+    for (const std::string& file : check.imported->dependencies) {
+        page.files.emplace_back(file);
+    }
+    page.input.mesh = &*check.imported;
+    const Measured& judged = check.judged();
+    page.input.check.emplace(
+        ViewCheck{check.collider, *check.query, source.check.samples, judged.accuracy.field, check.places});
+    return page.make();
+}
+
+/// Every file that a scene names.
+std::vector<fs::path> filesOf(const Scene& scene) {
+    std::vector<fs::path> files;
+    for (const SceneCollider& collider : scene.colliders) {
+        files.push_back(collider.path);
+    }
+    for (const SceneEmitter& emitter : scene.emitters) {
+        files.push_back(emitter.points);
+    }
+    files.push_back(scene.render.atlas);
+    files.push_back(scene.render.mesh);
+    std::erase(files, fs::path());
+    std::sort(files.begin(), files.end());
+    files.erase(std::unique(files.begin(), files.end()), files.end());
+    return files;
+}
+
+/// A body that deforms has no container: its mesh at rest, baked, to look at.
+Result<std::vector<std::byte>> bakedAtRest(const SceneCollider& live) {
+    TriangleMesh mesh = RELIEF_TRY(importMeshInWorker(live.path, {}, {}));
+    const Winding winding = RELIEF_TRY(windOutwards(std::move(mesh)));
+    BakeOptions options;
+    options.resolution = live.live->resolution;
+    const Baked baked = RELIEF_TRY(bake(winding.mesh, options));
+    return writeContainer(baked.collider, {9});
+}
+
+/// Of a file that a scene names, as the scene names it.
+std::string nameInScene(const fs::path& file, const fs::path& scene) {
+    return file.lexically_normal().lexically_relative(scene.parent_path().lexically_normal());
+}
+
+/// The first collider that has texels, else the first.
+Result<void> chooseShown(const Scene& scene, const fs::path& file, Page& page) {
+    for (const SceneCollider& collider : scene.colliders) {
+        if (!collider.live) {
+            page.input.shows = nameInScene(collider.path, file);
+            return {};
+        }
+    }
+    page.container = RELIEF_TRY(bakedAtRest(scene.colliders.front()));
+    return {};
+}
+
+Result<MadePage> scenePage(Page page) {
+    const fs::path file = page.source.file;
+    page.input.scene = textOf(RELIEF_TRY(page.read(file)));
+    const LoadedScene loaded = RELIEF_TRY(loadAll(file, {}));
+    RELIEF_TRY(checkPictures(loaded.scene, loaded.bounds));
+    if (loaded.scene.flow) {
+        return fail(ErrorCode::kUnsupported,
+                    quotedPath(file) +
+                        " has a [flow], which browsers do not read; take relief-sim, or "
+                        "leave it out");
+    }
+    for (const fs::path& named : filesOf(loaded.scene)) {
+        page.input.files[nameInScene(named, file)] = RELIEF_TRY(page.read(named));
+    }
+    RELIEF_TRY(chooseShown(loaded.scene, file, page));
+    return page.make();
+}
+
+}  // namespace
+
+bool ViewSource::isScene() const {
+    return lowerCase(fs::path(file).extension().native()) == ".toml";
+}
+
+Result<MadePage> makeViewPage(const ViewSource& source) {
+    Page page{source, {}, {}, {}};
+    page.input.name = inputName(source.file);
+    return source.isScene() ? scenePage(std::move(page)) : colliderPage(std::move(page));
+}
+
+}  // namespace relief

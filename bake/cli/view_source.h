@@ -1,0 +1,31 @@
+// What `relief view` shows, read from its files: a collider with or without its mesh, or a scene; and the page of it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bake/cli/mesh_check.h"
+#include "formats/base/result.h"
+
+namespace relief {
+
+struct ViewSource {
+    std::string file;         ///< a container, "-" for standard input, or a scene (.toml)
+    MeshCheckSettings check;  ///< mesh empty: none
+    std::string events;       ///< as ViewPageInput
+
+    [[nodiscard]] bool isScene() const;
+};
+
+struct MadePage {
+    std::string html;
+    /// All that it was made of; sorted. A file that names others is read again when one of them changes.
+    std::vector<std::filesystem::path> files;
+};
+
+/// Reads everything, checks it as `relief check` and `relief-sim` do, and makes the page.
+/// Fails as they do, and as viewPage does; kUnsupported: no template, or a scene that browsers do not play.
+[[nodiscard]] Result<MadePage> makeViewPage(const ViewSource& source);
+
+}  // namespace relief

@@ -1,0 +1,470 @@
+// What relief.js calls. Handles are pointers; every function but those that end one fails by returning null or a negative
+// number, and then relief_error() says why. All that touch the GL need a current context, whose state they leave as it was.
+#include <emscripten.h>
+
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/container.h"
+#include "formats/nearest_surface.h"
+#include "formats/texel.h"
+#include "runtime/collider/field_query.h"
+#include "runtime/gl/gl_fault.h"
+#include "runtime/gl/pass_state.h"
+#include "runtime/picture/depth_sort.h"
+#include "runtime/picture/particle_renderer.h"
+#include "runtime/player/simulation.h"
+#include "runtime/scene/loaded_scene.h"
+#include "runtime/scene/scene_parser.h"
+#include "runtime/scene/scene_pictures.h"
+
+namespace relief {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string g_error;  // of the last call that failed
+std::string g_text;   // what a call that returns text returned last
+
+const char* returned(std::string text) {
+    g_text = std::move(text);
+    return g_text.c_str();
+}
+
+/// What f returns, or `failed` and the reason in g_error: an error, or an exception of the standard library.
+template <class T, class F>
+T guarded(T failed, F f) {
+    try {
+        auto result = f();
+        if (result) {
+            return std::move(*result);
+        }
+        g_error = result.error().message;
+    } catch (const std::bad_alloc&) {
+        g_error = "out of memory; use fewer particles, or a smaller collider";
+    } catch (const std::exception& error) {
+        g_error = error.what();
+    }
+    return failed;
+}
+
+std::span<const glm::vec3> points(const float* xyz, int count) {
+    static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
+    return {reinterpret_cast<const glm::vec3*>(xyz), static_cast<std::size_t>(count)};
+}
+
+void store(const FieldSample& sample, float* field, std::int32_t* map) {
+    field[0] = sample.normal.x;
+    field[1] = sample.normal.y;
+    field[2] = sample.normal.z;
+    field[3] = sample.distance;
+    *map = sample.map;
+}
+
+Json json(const glm::vec3& v) {
+    return {v.x, v.y, v.z};
+}
+Json json(const glm::vec4& v) {
+    return {v.x, v.y, v.z, v.w};
+}
+
+Json describe(const DepthMap& map) {
+    const Affine& t = map.object_to_map;
+    return {{"format", mapFormatName(map.format)},
+            {"encoding", depthEncodingName(map.format)},
+            {"compare", compareName(map.compare)},
+            {"decode", decodeName(map.decode)},
+            {"projection", map.projection() == Projection::kCube ? "cube" : "orthographic"},
+            {"width", map.width},
+            {"height", map.height},
+            {"faces", map.faceCount()},
+            {"rows", {json(t.row[0]), json(t.row[1]), json(t.row[2])}},
+            {"object_per_map", json(map.object_per_map)},
+            {"encloses", map.encloses},
+            {"empty_is_outside", map.empty_is_outside},
+            {"bytes", map.texelBytes()}};
+}
+
+Json describe(const Collider& collider) {
+    Json maps = Json::array();
+    for (const DepthMap& map : collider.maps) {
+        maps.push_back(describe(map));
+    }
+    const Provenance& from = collider.provenance;
+    return {{"bounds", {{"min", json(collider.bounds.min)}, {"max", json(collider.bounds.max)}}},
+            {"unit", collider.unit},
+            {"mesh", {{"name", from.mesh_name}, {"hash", from.mesh_hash}, {"triangles", from.triangles}}},
+            {"tool", from.tool_version},
+            {"options", from.options},
+            {"bytes", collider.texelBytes()},
+            {"gpu_bytes", collider.gpuBytes()},
+            {"finest_texel", finestTexel(collider)},
+            {"maps", maps}};
+}
+
+/// A scene's colliders as they are now: where each stands, by columns, and of which file it is. One without a file of
+/// its own deforms.
+Json describeBodies(const std::vector<SceneCollider>& colliders, double time) {
+    Json bodies = Json::array();
+    for (const SceneCollider& collider : colliders) {
+        const Pose pose = poseAt(collider, time);
+        const glm::mat3 turned = pose.scale * glm::mat3_cast(pose.rotation);
+        Json matrix = Json::array();
+        for (int i = 0; i < 3; ++i) {
+            matrix.insert(matrix.end(), {turned[i].x, turned[i].y, turned[i].z, 0.0F});
+        }
+        matrix.insert(matrix.end(), {pose.position.x, pose.position.y, pose.position.z, 1.0F});
+        bodies.push_back({{"file", collider.path.string()},
+                          {"deforms", collider.live.has_value()},
+                          {"moves", !collider.keys.empty()},
+                          {"matrix", matrix}});
+    }
+    return bodies;
+}
+
+/// A scene that plays: all that a page keeps of it.
+struct Player {
+    LoadedScene loaded;
+    std::unique_ptr<Simulation> simulation;
+    std::unique_ptr<SpriteAtlas> atlas;
+    std::unique_ptr<ParticleRenderer> renderer;
+    std::unique_ptr<DepthSorter> sorter;
+    ParticleStyle style;
+    std::vector<ParticleState> read;  // kept for its memory
+};
+
+float finest(const LoadedScene& loaded) {
+    float texel = std::numeric_limits<float>::max();
+    for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
+        texel = std::min(texel, loaded.scene.colliders[i].pose.scale * finestTexel(loaded.colliders[i]));
+    }
+    return texel;
+}
+
+Result<Player*> createPlayer(const char* path, bool shaded) {
+    const PassState state;
+    auto player = std::make_unique<Player>();
+    player->loaded = RELIEF_TRY(loadAll(path, {}));
+    const Scene& scene = player->loaded.scene;
+    auto emitters = RELIEF_TRY(makeEmitters(scene.emitters));
+    auto simulation =
+        RELIEF_TRY(Simulation::create(player->loaded, std::move(emitters), StepPath::kFragment, nullptr));
+    player->simulation = std::make_unique<Simulation>(std::move(simulation));
+    player->atlas = RELIEF_TRY(loadAtlas(scene));
+    player->style = particleStyle(scene, player->atlas.get());
+    const ColliderView view{&player->simulation->textures(), player->loaded.bounds, finest(player->loaded)};
+    auto renderer =
+        RELIEF_TRY(ParticleRenderer::create(shaded ? std::optional<ColliderView>(view) : std::nullopt));
+    player->renderer = std::make_unique<ParticleRenderer>(std::move(renderer));
+    if (scene.render.sort_frames > 0) {
+        auto sorter = RELIEF_TRY(DepthSorter::create(scene.capacity, StepPath::kFragment));
+        player->sorter = std::make_unique<DepthSorter>(std::move(sorter));
+    }
+    return player.release();
+}
+
+/// Everything of the scene at `path` that needs no new colliders, no other capacity and no other integrator.
+Result<bool> changePlayer(Player& player, const char* path, bool emitters) {
+    const PassState state;
+    Scene& now = player.loaded.scene;
+    Scene wanted = RELIEF_TRY(loadScene(path));
+    wanted = RELIEF_TRY(withDefaults(std::move(wanted), player.loaded.bounds));
+    if (wanted.capacity != now.capacity || wanted.integrator != now.integrator ||
+        wanted.colliders.size() != now.colliders.size()) {
+        return fail(ErrorCode::kUsage,
+                    "other colliders, another capacity or integrator need a new system; make one");
+    }
+    std::optional<std::vector<Emitter>> made;
+    if (emitters) {
+        made = RELIEF_TRY(makeEmitters(wanted.emitters));
+    }
+    wanted.air.flow = now.air.flow;
+    wanted.render.atlas = now.render.atlas;
+    wanted.colliders = now.colliders;
+    if (wanted.render.sort_frames > 0 && !player.sorter) {
+        auto sorter = RELIEF_TRY(DepthSorter::create(wanted.capacity, StepPath::kFragment));
+        player.sorter = std::make_unique<DepthSorter>(std::move(sorter));
+    }
+    now = std::move(wanted);
+    player.style = particleStyle(now, player.atlas.get());
+    RELIEF_TRY(player.simulation->change(std::move(made)));
+    return true;
+}
+
+Result<bool> drawPlayer(Player& player, const glm::mat4& view, const glm::mat4& projection,
+                        const RenderTarget& target) {
+    const PassState state;
+    const ParticleSystem& particles = player.simulation->particles();
+    const CameraMatrices camera(view, projection);
+    ParticleOrder order;
+    if (player.sorter && player.loaded.scene.render.sort_frames > 0) {
+        player.sorter->update(
+            particles.positions(), particles.textureWidth(), particles.extent(), camera.eye(),
+            DepthSorter::passesPerFrame(particles.extent(), player.loaded.scene.render.sort_frames));
+        order = {&player.sorter->order(), player.sorter->count()};
+    }
+    RELIEF_TRY(player.renderer->draw(particles, camera, player.style, target, order));
+    return true;
+}
+
+/// A collider on the GPU, for a page's own shaders.
+struct GpuCollider {
+    ColliderTextures textures;
+    std::optional<FieldQuery> query;
+};
+
+Result<GpuCollider*> uploadCollider(const Collider& collider) {
+    const PassState state;
+    auto textures = RELIEF_TRY(ColliderTextures::create(collider));
+    return new GpuCollider{std::move(textures), std::nullopt};
+}
+
+Result<bool> queryOnGpu(GpuCollider& gpu, std::span<const glm::vec3> at, float* fields, std::int32_t* maps) {
+    const PassState state;
+    if (!gpu.query) {
+        gpu.query = RELIEF_TRY(FieldQuery::create(gpu.textures));
+    }
+    const auto samples = RELIEF_TRY(gpu.query->evaluate(at));
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        store(samples[i], fields + 4 * i, maps + i);
+    }
+    return true;
+}
+
+}  // namespace
+}  // namespace relief
+
+using namespace relief;  // NOLINT: the functions below have C's names
+
+extern "C" {
+
+EMSCRIPTEN_KEEPALIVE const char* relief_error() {
+    return g_error.c_str();
+}
+
+// --- colliders, on the CPU
+
+EMSCRIPTEN_KEEPALIVE Collider* relief_collider_load(const std::byte* bytes, int size) {
+    return guarded<Collider*>(nullptr, [&]() -> Result<Collider*> {
+        Collider collider = RELIEF_TRY(readContainer({bytes, static_cast<std::size_t>(size)}));
+        return new Collider(std::move(collider));
+    });
+}
+
+EMSCRIPTEN_KEEPALIVE void relief_collider_free(Collider* collider) {
+    delete collider;
+}
+
+/// JSON.
+EMSCRIPTEN_KEEPALIVE const char* relief_collider_info(const Collider* collider) {
+    return returned(describe(*collider).dump());
+}
+
+/// fields: 4 · count floats, normal and distance; maps: count.
+EMSCRIPTEN_KEEPALIVE void relief_collider_query(const Collider* collider, const float* xyz, int count,
+                                                float* fields, std::int32_t* maps) {
+    for (const glm::vec3& p : points(xyz, count)) {
+        store(evaluate(*collider, p), fields, maps);
+        fields += 4;
+        ++maps;
+    }
+}
+
+/// Texels of a map as the reader understands them, from the row y = 0 up, the faces of a cube in their order: for each
+/// the depth and the normal of its front, then those of its back: 8 floats. A depth of NaN: nothing there.
+EMSCRIPTEN_KEEPALIVE void relief_collider_texels(const Collider* collider, int map, float* out) {
+    const DepthMap& from = collider->maps[static_cast<std::size_t>(map)];
+    const auto put = [&](const std::optional<Surface>& surface) {
+        *out++ = surface ? surface->depth : std::numeric_limits<float>::quiet_NaN();
+        for (int i = 0; i < 3; ++i) {
+            *out++ = surface ? surface->normal[i] : 0.0F;
+        }
+    };
+    for (std::uint32_t face = 0; face < from.faceCount(); ++face) {
+        for (std::uint32_t y = 0; y < from.height; ++y) {
+            for (std::uint32_t x = 0; x < from.width; ++x) {
+                const Texel texel = decodeTexel(from.format, from.texelAt(face, x, y));
+                put(texel.front);
+                put(texel.back);
+            }
+        }
+    }
+}
+
+// --- colliders, on the GPU
+
+EMSCRIPTEN_KEEPALIVE GpuCollider* relief_gpu_create(const Collider* collider) {
+    return guarded<GpuCollider*>(nullptr, [&] { return uploadCollider(*collider); });
+}
+
+EMSCRIPTEN_KEEPALIVE void relief_gpu_free(GpuCollider* gpu) {
+    delete gpu;
+}
+
+/// As relief_collider_query. 0, or -1.
+EMSCRIPTEN_KEEPALIVE int relief_gpu_query(GpuCollider* gpu, const float* xyz, int count, float* fields,
+                                          std::int32_t* maps) {
+    return guarded(false, [&] { return queryOnGpu(*gpu, points(xyz, count), fields, maps); }) ? 0 : -1;
+}
+
+/// What a shader of one's own begins with, behind its version line: constants, what this collider is, and collider.glsl.
+EMSCRIPTEN_KEEPALIVE const char* relief_gpu_glsl(const GpuCollider* gpu) {
+    return guarded<const char*>(nullptr, [&]() -> Result<const char*> {
+        std::string text = gpu->textures.defines();
+        text +=
+            "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n"
+            "precision highp usampler2D;\nprecision highp sampler3D;\n";
+        text += RELIEF_TRY(shaderText("collider.glsl"));
+        return returned(std::move(text));
+    });
+}
+
+/// Binds its three textures to units from `unit` on, and its block to `block`; the page's program has the samplers and
+/// the block set to these.
+EMSCRIPTEN_KEEPALIVE void relief_gpu_bind(const GpuCollider* gpu, int unit, int block) {
+    gpu->textures.bind({unit, block});
+}
+
+// --- particles
+
+/// \param path    of a scene in emscripten's file system.
+/// \param shaded  1: particles are lit and shaded by the collider.
+EMSCRIPTEN_KEEPALIVE Player* relief_player_create(const char* path, int shaded) {
+    return guarded<Player*>(nullptr, [&] { return createPlayer(path, shaded != 0); });
+}
+
+EMSCRIPTEN_KEEPALIVE void relief_player_free(Player* player) {
+    delete player;
+}
+
+/// 0, or -1.
+EMSCRIPTEN_KEEPALIVE int relief_player_step(Player* player, float dt) {
+    return guarded(false,
+                   [&]() -> Result<bool> {
+                       const PassState state;
+                       RELIEF_TRY(player->simulation->step(dt, nullptr));
+                       RELIEF_TRY(checkGpu("stepping particles"));
+                       return true;
+                   })
+               ? 0
+               : -1;
+}
+
+/// \param emitters  1: those of the scene begin anew.
+EMSCRIPTEN_KEEPALIVE int relief_player_change(Player* player, const char* path, int emitters) {
+    return guarded(false, [&] { return changePlayer(*player, path, emitters != 0); }) ? 0 : -1;
+}
+
+/// Births on top of the emitters': 8 floats each, position, velocity, lifetime, type. The number accepted.
+EMSCRIPTEN_KEEPALIVE int relief_player_spawn(Player* player, const float* births, int count) {
+    return guarded(-1, [&]() -> Result<int> {
+        std::vector<Birth> list;
+        for (int i = 0; i < count; ++i, births += 8) {
+            list.push_back({{births[0], births[1], births[2]},
+                            {births[3], births[4], births[5]},
+                            births[6],
+                            static_cast<std::uint32_t>(births[7])});
+        }
+        return static_cast<int>(player->simulation->spawn(list));
+    });
+}
+
+/// Draws to the framebuffer that is bound, its pixels (0, 0) … (width - 1, height - 1).
+/// \param matrices  view, then projection, by columns.
+/// \param srgb      1: the framebuffer holds sRGB values.
+EMSCRIPTEN_KEEPALIVE int relief_player_draw(Player* player, const float* matrices, int framebuffer, int width,
+                                            int height, int srgb) {
+    glm::mat4 view;
+    glm::mat4 projection;
+    std::memcpy(&view, matrices, sizeof(view));
+    std::memcpy(&projection, matrices + 16, sizeof(projection));
+    const RenderTarget target{static_cast<GLuint>(framebuffer), width, height, srgb != 0};
+    return guarded(false, [&] { return drawPlayer(*player, view, projection, target); }) ? 0 : -1;
+}
+
+/// JSON.
+EMSCRIPTEN_KEEPALIVE const char* relief_player_info(const Player* player) {
+    const ParticleSystem& particles = player->simulation->particles();
+    const ParticleCounts counts = particles.counts();
+    const Scene& scene = player->loaded.scene;
+    const Bounds& bounds = player->loaded.bounds;
+    const Camera camera = sceneCamera(scene, bounds, particles.time());
+    return returned(
+        Json{{"time", particles.time()},
+             {"alive", counts.alive},
+             {"born", counts.born},
+             {"died", counts.died},
+             {"refused", counts.refused + player->simulation->refused()},
+             {"extent", counts.extent},
+             {"capacity", particles.capacity()},
+             {"width", particles.textureWidth()},
+             {"dt", scene.dt},
+             {"steps", scene.steps},
+             {"bounds", {{"min", json(bounds.min)}, {"max", json(bounds.max)}}},
+             {"ground", scene.ground.enabled && scene.ground.height ? Json(*scene.ground.height) : Json()},
+             {"camera", {{"eye", json(camera.eye)}, {"target", json(camera.target)}, {"fov", camera.fov}}},
+             {"background", json(scene.render.background)},
+             {"bodies", describeBodies(scene.colliders, particles.time())}}
+            .dump());
+}
+
+/// The names of the state textures: which 0: positions, 1: velocities (of Verlet: positions before), 2: births.
+EMSCRIPTEN_KEEPALIVE int relief_player_texture(const Player* player, int which) {
+    const ParticleSystem& particles = player->simulation->particles();
+    const GlTexture& texture = which == 0   ? particles.positions()
+                               : which == 1 ? particles.secondState()
+                                            : particles.births();
+    return static_cast<int>(texture.name());
+}
+
+/// The mesh of a collider that deforms, as it is now: names of the textures of its positions and corners, their shifts, and
+/// how many triangles. 0: that one does not deform.
+EMSCRIPTEN_KEEPALIVE int relief_player_mesh(const Player* player, int body, int* out) {
+    const GpuMesh* mesh = player->simulation->mesh(static_cast<std::size_t>(body));
+    if (mesh == nullptr) {
+        return 0;
+    }
+    out[0] = static_cast<int>(mesh->positions());
+    out[1] = static_cast<int>(mesh->corners());
+    out[2] = mesh->vertexShift();
+    out[3] = mesh->triangleShift();
+    out[4] = static_cast<int>(mesh->triangleCount());
+    return 1;
+}
+
+/// Reads the particles back, and waits for the GPU to that end; how many live, or -1.
+EMSCRIPTEN_KEEPALIVE int relief_player_read(Player* player) {
+    return guarded(-1, [&]() -> Result<int> {
+        const PassState state;
+        player->read = RELIEF_TRY(player->simulation->particles().readState());
+        return static_cast<int>(player->read.size());
+    });
+}
+
+/// What relief_player_read() read: 12 floats each, position, age, velocity, lifetime, type, steps in contact, contact in
+/// the last step, and the low 24 bits of the id.
+EMSCRIPTEN_KEEPALIVE void relief_player_states(const Player* player, float* out) {
+    for (const ParticleState& one : player->read) {
+        const float row[12] = {one.position.x,
+                               one.position.y,
+                               one.position.z,
+                               one.age,
+                               one.velocity.x,
+                               one.velocity.y,
+                               one.velocity.z,
+                               one.lifetime,
+                               static_cast<float>(one.type),
+                               static_cast<float>(one.collisions),
+                               static_cast<float>(one.contact),
+                               static_cast<float>(one.id & 0xffffffU)};
+        std::memcpy(out, row, sizeof(row));
+        out += 12;
+    }
+}
+
+}  // extern "C"

@@ -1,0 +1,42 @@
+// The functions of JavaScript that the C++ of this folder calls. emscripten puts them into its module, whose GLctx is the
+// current context.
+mergeInto(LibraryManager.library, {
+    // --- gl_web.cpp
+    relief_js_has_extension: function (name) {
+        return GLctx.getSupportedExtensions().includes(UTF8ToString(name).replace(/^GL_/, "")) ? 1 : 0;
+    },
+
+    relief_js_is_lost: function () {
+        return GLctx.isContextLost() ? 1 : 0;
+    },
+
+    relief_js_is_software: function () {
+        let name = GLctx.getParameter(GLctx.RENDERER);
+        if (/^WebKit/.test(name)) { // which hides it; asking a browser that does not is warned of on its console
+            const info = GLctx.getExtension("WEBGL_debug_renderer_info");
+            name = info ? GLctx.getParameter(info.UNMASKED_RENDERER_WEBGL) : name;
+        }
+        return /llvmpipe|softpipe|swrast|SwiftShader|Software|Basic Render/i.test(name) ? 1 : 0;
+    },
+
+    // --- buffer_read_web.cpp
+    relief_js_read_buffer: function (buffer, out, bytes) {
+        const bound = GLctx.getParameter(GLctx.PIXEL_PACK_BUFFER_BINDING);
+        GLctx.bindBuffer(GLctx.PIXEL_PACK_BUFFER, GL.buffers[buffer]);
+        GLctx.getBufferSubData(GLctx.PIXEL_PACK_BUFFER, 0, HEAPU8, out, bytes);
+        GLctx.bindBuffer(GLctx.PIXEL_PACK_BUFFER, bound);
+    },
+
+    // --- compression_web.cpp: how many bytes it decompressed to; -1: it is no frame
+    relief_js_decompress: function (stored, storedSize, raw, rawSize) {
+        try {
+            const bytes = Module.decompress(HEAPU8.slice(stored, stored + storedSize), rawSize);
+            if (bytes.length === rawSize) {
+                HEAPU8.set(bytes, raw);
+            }
+            return bytes.length;
+        } catch (error) {
+            return -1;
+        }
+    },
+});

@@ -1,0 +1,244 @@
+// relief-particles: particles that collide with baked meshes, in WebGL2.
+//
+// Lengths are in the collider's units, times in seconds, angles in degrees, colours in sRGB. Points and other lists are
+// flat: x, y, z of the first, then of the second. What goes wrong throws a ReliefError of one sentence. Colliders, systems
+// and GpuColliders hold memory that only dispose() gives back.
+
+/** Everything that this package throws. Its message is one sentence that names the thing and mostly the cure. */
+export class ReliefError extends Error {
+    constructor(message: string);
+}
+
+export type Vec3 = [number, number, number];
+/** Numbers in a row. A Float32Array is taken as it is, others are converted. */
+export type Numbers = ArrayLike<number> & (readonly number[] | ArrayBufferView);
+/** 16 numbers, column by column, as WebGL takes them; or what keeps them in `elements`, such as three.js's Matrix4. */
+export type Matrix = Numbers | { readonly elements: Numbers };
+/** A URL, what fetch() answered, a dropped file, or the bytes. */
+export type Source = string | URL | Request | Response | Blob | ArrayBuffer | Uint8Array;
+
+export interface InitOptions {
+    /** Where relief_wasm.wasm lies, if not beside relief.js. */
+    wasmUrl?: string | URL;
+    /** Its bytes, where there is nothing to fetch. */
+    wasmBinary?: ArrayBuffer | Uint8Array;
+}
+
+/** Starts the WebAssembly, once; load() does so itself. Only the first call's options count. */
+export function init(options?: InitOptions): Promise<unknown>;
+
+/** Fetches and reads a .relief file. */
+export function load(source: Source): Promise<Collider>;
+
+export interface Bounds {
+    min: Vec3;
+    max: Vec3;
+}
+
+/** What a collider says of n points. */
+export interface Answers {
+    /** n: to the surface, below 0 inside. About 1e30 or beyond where a point is outside, and no more is known. */
+    distance: Float32Array;
+    /** 3 n: of the surface, outwards; 0 where there is none. */
+    normal: Float32Array;
+    /** n: the map that decides; -1 where none has a say. */
+    map: Int32Array;
+}
+
+export interface MapInfo {
+    format: string;
+    encoding: string;
+    compare: string;
+    decode: string;
+    projection: "orthographic" | "cube";
+    width: number;
+    height: number;
+    /** 6 of a cube, else 1. */
+    faces: number;
+    /** Object space to map space: three rows of four. */
+    rows: [number, number, number, number][];
+    object_per_map: [number, number, number, number];
+    encloses: boolean;
+    empty_is_outside: boolean;
+    bytes: number;
+}
+
+export interface ColliderInfo {
+    bounds: Bounds;
+    unit: string;
+    mesh: { name: string; hash: string; triangles: number };
+    tool: string;
+    options: string;
+    bytes: number;
+    gpu_bytes: number;
+    /** Side of the finest texel, in object units. */
+    finest_texel: number;
+    maps: MapInfo[];
+}
+
+/** A collider in memory. It needs no WebGL; systems made of it keep what they need of it. */
+export class Collider {
+    /** @param bytes of a .relief file; kept, so do not change them. init() must have ended. */
+    constructor(bytes: Uint8Array);
+    readonly bytes: Uint8Array;
+    readonly info: ColliderInfo;
+    readonly bounds: Bounds;
+    /** Asks the CPU. @param points 3 n numbers. */
+    query(points: Numbers): Answers;
+    /**
+     * The texels of a map, 8 numbers each: depth and normal of the front, then of the back; a depth of NaN where nothing
+     * is. Row y = 0 comes first, the faces of a cube one after the other.
+     */
+    texels(map: number): Float32Array;
+    dispose(): void;
+}
+
+/** A collider as textures, for one's own shaders in that context. A lost context takes it along: make a new one. */
+export class GpuCollider {
+    constructor(gl: WebGL2RenderingContext, collider: Collider);
+    readonly collider: Collider;
+    /**
+     * What a fragment or vertex shader has behind its `#version 300 es` line. It then calls
+     * `ReliefField reliefEvaluate(vec3 p)`, whose members are `float distance`, `vec3 normal` and `int map`, and
+     * `bool reliefInside(ReliefField)`.
+     */
+    readonly glsl: string;
+    /** Asks the GPU, and waits for it; see Collider.query(). */
+    query(points: Numbers): Answers;
+    /** Tells a linked program its three samplers (units `unit` to `unit` + 2) and its uniform block. Once is enough. */
+    attach(program: WebGLProgram, unit?: number, block?: number): void;
+    /**
+     * Before a draw with that program: binds three textures to units `unit` to `unit` + 2, and a buffer to the uniform
+     * block binding `block`. It leaves them bound, on purpose; it is all in this package that changes a context's state.
+     */
+    bind(unit?: number, block?: number): void;
+    dispose(): void;
+}
+
+type SceneValue = string | number | boolean | readonly SceneValue[] | ArrayBufferView | { readonly [key: string]: SceneValue | undefined };
+type Table = { readonly [key: string]: SceneValue | undefined };
+
+/** A scene with the keys of scene.toml, as runtime/scene/README.md of the Relief sources lists them. */
+export interface Scene {
+    collider?: Table | readonly Table[];
+    time?: { dt?: number; steps?: number; integrator?: "euler" | "verlet" };
+    particles?: { capacity?: number };
+    emitter?: Table | readonly Table[];
+    spawn?: readonly Table[];
+    type?: readonly Table[];
+    forces?: { gravity?: Vec3; wind?: Vec3; drag?: number; viscosity?: number };
+    collision?: { restitution?: number; friction?: number; friction_threshold?: number; sweep?: number };
+    ground?: { enabled?: boolean; height?: number };
+    attractor?: readonly Table[];
+    vortex?: readonly Table[];
+    curl_noise?: Table;
+    camera?: Table;
+    render?: Table;
+}
+
+/** A scene as the text of scene.toml, as relief-sim plays it. */
+export function toToml(scene: Scene): string;
+
+export interface ParticleSystemOptions {
+    /** The one collider of a scene that names none. */
+    collider?: Collider;
+    /** Defaults for whatever it leaves out. As text it is scene.toml itself, and names its colliders. */
+    scene?: Scene | string;
+    /** The files that the scene names, by their paths in it. */
+    files?: Record<string, Collider | Uint8Array | string>;
+    /** False: the collider casts no shade on particles, which is cheaper. */
+    shaded?: boolean;
+}
+
+export interface Birth {
+    position: Vec3 | Numbers;
+    /** Default: 0. */
+    velocity?: Vec3 | Numbers;
+    /** Seconds; default 1. */
+    lifetime?: number;
+    /** Index into the scene's types; default 0. */
+    type?: number;
+}
+
+export interface DrawOptions {
+    /** World to eye. Of a three.js camera: matrixWorldInverse. */
+    view: Matrix;
+    /** Eye to clip space, of a perspective. Of a three.js camera: projectionMatrix. */
+    projection: Matrix;
+    /** Default: the one that is bound; null: the canvas. */
+    framebuffer?: WebGLFramebuffer | null;
+    /** Pixels of the target. Default: those of the canvas; of another framebuffer those of the viewport. */
+    width?: number;
+    height?: number;
+    /** False: the target holds linear light, as a float target for tone mapping does. Default true. */
+    srgb?: boolean;
+}
+
+export interface SystemInfo {
+    time: number;
+    alive: number;
+    born: number;
+    died: number;
+    /** Births for which there was no room. */
+    refused: number;
+    /** Texels of the state textures that may hold a particle: 0 … extent - 1, row by row. */
+    extent: number;
+    capacity: number;
+    /** Width of the state textures. */
+    width: number;
+    dt: number;
+    steps: number;
+    bounds: Bounds;
+    ground: number | null;
+    camera: { eye: Vec3; target: Vec3; fov: number };
+    background: Vec3;
+    /** The scene's colliders, each where it stands now: object to world, by columns. One that deforms names its mesh. */
+    bodies: { file: string; deforms: boolean; moves: boolean; matrix: number[] }[];
+}
+
+/** A mesh whose vertices move on the GPU, in object space. Item i of a texture lies at (i & ((1 << shift) - 1), i >> shift). */
+export interface LiveMesh {
+    /** Floats, xyz of each vertex. */
+    positions: WebGLTexture;
+    vertexShift: number;
+    /** Unsigned integers, the vertices of each triangle. */
+    corners: WebGLTexture;
+    triangleShift: number;
+    triangles: number;
+}
+
+/** Particles in a WebGL2 context. All it does leaves the context's state as it was. */
+export class ParticleSystem {
+    constructor(gl: WebGL2RenderingContext, options: ParticleSystemOptions);
+    readonly info: SystemInfo;
+    /** @param dt seconds, 0 … 1; default: the scene's. Take Math.min(seconds since the last frame, 1 / 30). */
+    step(dt?: number): void;
+    /** Draws over what is there, hidden by nearer depths of the target; writes no depth. */
+    draw(options: DrawOptions): void;
+    /** Births on top of the emitters'. Also 8 numbers each: position, velocity, lifetime, type. Returns how many found room. */
+    spawn(births: readonly Birth[] | Numbers): number;
+    /** Changes a part of a scene given as an object; not its colliders, capacity or integrator. */
+    set(patch: Scene): void;
+    /** Starts over with nothing alive; also after 'webglcontextrestored'. */
+    restart(): void;
+    /** The particles, 12 numbers each: position, age, velocity, lifetime, type, steps in contact, contact, id. Waits for the GPU. */
+    read(): Float32Array;
+    /** The state, for one's own shaders; other textures after each step. They belong to the system. */
+    textures(): { position: WebGLTexture; velocity: WebGLTexture; birth: WebGLTexture };
+    /** The mesh of a body that deforms, as it is now; null of one that does not. It belongs to the system. */
+    mesh(body: number): LiveMesh | null;
+    /** The scene as scene.toml. */
+    toToml(): string;
+    dispose(): void;
+}
+
+export const Relief: {
+    init: typeof init;
+    load: typeof load;
+    Collider: typeof Collider;
+    GpuCollider: typeof GpuCollider;
+    ParticleSystem: typeof ParticleSystem;
+    ReliefError: typeof ReliefError;
+    toToml: typeof toToml;
+};
+export default Relief;

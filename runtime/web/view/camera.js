@@ -1,0 +1,157 @@
+// A camera that goes round a point: by mouse, by touch with two fingers, by keys.
+import { add, boxOf, clamp, cross, length, lookAt, mix, multiply, normalize, perspective, scale, sub } from "./math.js";
+
+const kFov = 36 * Math.PI / 180;
+const kFlight = 450; // ms
+
+export class Camera {
+    constructor(changed) {
+        Object.assign(this, { changed, yaw: 0.6, pitch: 0.32, distance: 4, target: [0, 0, 0], flight: null });
+        this.box = boxOf({ min: [-1, -1, -1], max: [1, 1, 1] });
+        this.fov = kFov;
+        this.shift = [0, 0]; // of the picture's middle, for what lies under a panel
+    }
+
+    /** Round a box. room: what is free of the picture, its shorter side over the picture's height. */
+    frame(box, room = 1) {
+        this.box = box;
+        const half = Math.atan(Math.tan(kFov / 2) * Math.min(1, room));
+        this.stop();
+        this.fov = kFov;
+        this.target = [...box.center];
+        this.distance = 1.02 * box.radius / Math.sin(half);
+        this.changed();
+    }
+
+    /** From an eye to a target, as a scene says. */
+    look(eye, target, fov) {
+        const away = sub(eye, target);
+        this.stop();
+        this.distance = length(away) || 1;
+        this.yaw = Math.atan2(away[0], away[2]);
+        this.pitch = Math.asin(clamp(away[1] / this.distance, -1, 1));
+        this.target = [...target];
+        this.fov = fov ?? this.fov;
+        this.changed();
+    }
+
+    get eye() {
+        const c = Math.cos(this.pitch);
+        return add(this.target, scale([Math.sin(this.yaw) * c, Math.sin(this.pitch), Math.cos(this.yaw) * c],
+                                      this.distance));
+    }
+
+    matrices(width, height) {
+        const view = lookAt(this.eye, this.target, [0, 1, 0]);
+        const reach = this.distance + 12 * this.box.radius;
+        const near = Math.max(this.distance - 3 * this.box.radius, this.distance * 0.01, reach * 2e-4);
+        const projection = perspective(this.fov, width / height, near, reach);
+        projection[8] = this.shift[0];
+        projection[9] = this.shift[1];
+        return { view, projection, camera: multiply(projection, view), eye: this.eye };
+    }
+
+    stop() {
+        this.flight = null;
+    }
+
+    orbit(dx, dy) {
+        this.stop();
+        this.yaw -= dx;
+        this.pitch = clamp(this.pitch + dy, -1.55, 1.55);
+        this.changed();
+    }
+
+    zoom(factor) {
+        this.stop();
+        this.distance = clamp(this.distance * factor, 0.02 * this.box.radius, 20 * this.box.radius);
+        this.changed();
+    }
+
+    /** In heights of the picture. */
+    pan(dx, dy) {
+        this.stop();
+        const back = normalize(sub(this.eye, this.target));
+        const right = normalize(cross([0, 1, 0], back));
+        const span = 2 * this.distance * Math.tan(this.fov / 2);
+        this.target = add(this.target, add(scale(right, -dx * span), scale(cross(back, right), dy * span)));
+        this.changed();
+    }
+
+    /** To look at a place from its normal's side. */
+    flyTo(place, normal, distance, now = performance.now()) {
+        const n = normalize(normal);
+        const yaw = Math.hypot(n[0], n[2]) > 0.2 ? Math.atan2(n[0], n[2]) : this.yaw;
+        const turns = Math.round((this.yaw - yaw) / (2 * Math.PI));
+        const to = { yaw: yaw + 2 * Math.PI * turns, pitch: clamp(Math.asin(clamp(n[1], -1, 1)), -1.3, 1.3), distance,
+                     target: [...place] };
+        const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
+        const { yaw: y, pitch, distance: d, target } = this;
+        this.flight = { from: { yaw: y, pitch, distance: d, target }, to, start: now, length: calm ? 1 : kFlight };
+        this.changed();
+    }
+
+    /** Goes on with a flight. */
+    advance(now) {
+        if (!this.flight) {
+            return;
+        }
+        const { from, to, start, length: lasts } = this.flight;
+        const t = clamp((now - start) / lasts, 0, 1);
+        const s = t * t * (3 - 2 * t);
+        this.yaw = from.yaw + (to.yaw - from.yaw) * s;
+        this.pitch = from.pitch + (to.pitch - from.pitch) * s;
+        this.distance = from.distance * (to.distance / from.distance) ** s;
+        this.target = mix(from.target, to.target, s);
+        if (t === 1) {
+            this.flight = null;
+        }
+        this.changed();
+    }
+}
+
+/** Mouse, pen and fingers on the canvas. */
+export function followPointers(canvas, camera) {
+    const down = new Map();
+    const spread = () => {
+        const [a, b] = [...down.values()];
+        return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2, d: Math.hypot(a.x - b.x, a.y - b.y) || 1 };
+    };
+    canvas.addEventListener("pointerdown", (event) => {
+        canvas.setPointerCapture(event.pointerId);
+        down.set(event.pointerId, { x: event.clientX, y: event.clientY });
+        canvas.classList.add("held");
+    });
+    canvas.addEventListener("pointermove", (event) => {
+        const last = down.get(event.pointerId);
+        if (!last) {
+            return;
+        }
+        const height = canvas.clientHeight;
+        const before = down.size === 2 ? spread() : null;
+        const dx = event.clientX - last.x;
+        const dy = event.clientY - last.y;
+        down.set(event.pointerId, { x: event.clientX, y: event.clientY });
+        if (before) {
+            const now = spread();
+            camera.pan((now.x - before.x) / height, (now.y - before.y) / height);
+            camera.zoom(before.d / now.d);
+        } else if (down.size === 1 && (event.buttons & 6 || event.shiftKey)) {
+            camera.pan(dx / height, dy / height);
+        } else if (down.size === 1) {
+            camera.orbit(dx * 3.2 / height, dy * 3.2 / height);
+        }
+    });
+    const up = (event) => {
+        down.delete(event.pointerId);
+        canvas.classList.toggle("held", down.size > 0);
+    };
+    canvas.addEventListener("pointerup", up);
+    canvas.addEventListener("pointercancel", up);
+    canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+    canvas.addEventListener("wheel", (event) => {
+        event.preventDefault();
+        const pixels = event.deltaY * (event.deltaMode === 1 ? 30 : event.deltaMode === 2 ? 300 : 1);
+        camera.zoom(Math.exp(clamp(pixels, -240, 240) * (event.ctrlKey ? 0.008 : 0.0014)));
+    }, { passive: false });
+}

@@ -1,0 +1,158 @@
+// What every pass needs of WebGL2: programs, targets, buffers.
+
+export class GlFailure extends Error {}
+
+/** The attributes a_… get their places in this order. */
+const kAttributes = ["a_position", "a_normal", "a_other", "a_color"];
+
+export function program(gl, vertex, fragment, prefix = "") {
+    const made = gl.createProgram();
+    for (const [type, text] of [[gl.VERTEX_SHADER, `#version 300 es\nprecision highp float;\n${vertex}`],
+                                [gl.FRAGMENT_SHADER,
+                                 `#version 300 es\n${prefix || "precision highp float;\nprecision highp int;\n"}${fragment}`]]) {
+        const shader = gl.createShader(type);
+        gl.shaderSource(shader, text);
+        gl.compileShader(shader);
+        gl.attachShader(made, shader);
+        gl.deleteShader(shader);
+    }
+    kAttributes.forEach((name, i) => gl.bindAttribLocation(made, i, name));
+    gl.linkProgram(made);
+    if (!gl.getProgramParameter(made, gl.LINK_STATUS) && !gl.isContextLost()) {
+        const logs = gl.getAttachedShaders(made).map((shader) => gl.getShaderInfoLog(shader)).join(" ").trim();
+        throw new GlFailure(`this browser's WebGL2 refuses a shader of this page: ${logs || gl.getProgramInfoLog(made)}`);
+    }
+    const places = new Map();
+    return {
+        name: made,
+        at(name) {
+            if (!places.has(name)) {
+                places.set(name, gl.getUniformLocation(made, name));
+            }
+            return places.get(name);
+        },
+        /** Uniforms by what they hold: numbers, 2 to 4 of them, matrices of 16; { int } for samplers and flags. */
+        set(values) {
+            gl.useProgram(made);
+            for (const [key, value] of Object.entries(values)) {
+                const at = this.at(key);
+                if (typeof value === "number") {
+                    gl.uniform1f(at, value);
+                } else if (value.int !== undefined) {
+                    gl.uniform1i(at, value.int);
+                } else if (value.length === 16) {
+                    gl.uniformMatrix4fv(at, false, value);
+                } else {
+                    gl[`uniform${value.length}fv`](at, value);
+                }
+            }
+        },
+    };
+}
+
+/** Triangles or points of the attributes { a_position: Float32Array, … }, three numbers each, and indices. */
+export class Geometry {
+    constructor(gl, attributes, indices = null) {
+        this.gl = gl;
+        this.array = gl.createVertexArray();
+        this.buffers = [];
+        gl.bindVertexArray(this.array);
+        for (const [name, values] of Object.entries(attributes)) {
+            const at = kAttributes.indexOf(name);
+            this.fill(gl.ARRAY_BUFFER, values);
+            gl.enableVertexAttribArray(at);
+            gl.vertexAttribPointer(at, 3, gl.FLOAT, false, 0, 0);
+            this.count = values.length / 3;
+        }
+        if (indices) {
+            this.fill(gl.ELEMENT_ARRAY_BUFFER, indices);
+            this.count = indices.length;
+        }
+        this.indexed = indices !== null;
+        gl.bindVertexArray(null);
+    }
+
+    fill(target, values) {
+        const buffer = this.gl.createBuffer();
+        this.buffers.push(buffer);
+        this.gl.bindBuffer(target, buffer);
+        this.gl.bufferData(target, values, this.gl.STATIC_DRAW);
+    }
+
+    draw(mode = this.gl.TRIANGLES) {
+        const { gl } = this;
+        gl.bindVertexArray(this.array);
+        if (this.indexed) {
+            gl.drawElements(mode, this.count, gl.UNSIGNED_INT, 0);
+        } else {
+            gl.drawArrays(mode, 0, this.count);
+        }
+        gl.bindVertexArray(null);
+    }
+
+    dispose() {
+        this.buffers.forEach((buffer) => this.gl.deleteBuffer(buffer));
+        this.gl.deleteVertexArray(this.array);
+    }
+}
+
+function texture(gl, internal, width, height, format, type) {
+    const made = gl.createTexture();
+    gl.bindTexture(gl.TEXTURE_2D, made);
+    gl.texImage2D(gl.TEXTURE_2D, 0, internal, width, height, 0, format, type, null);
+    for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
+        gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
+    }
+    for (const wrap of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) {
+        gl.texParameteri(gl.TEXTURE_2D, wrap, gl.CLAMP_TO_EDGE);
+    }
+    gl.bindTexture(gl.TEXTURE_2D, null);
+    return made;
+}
+
+/** A framebuffer with textures for colour and, but for `float`, depth. */
+export class Target {
+    constructor(gl, width, height, float = false) {
+        Object.assign(this, { gl, width, height });
+        this.color = float ? texture(gl, gl.RGBA32F, width, height, gl.RGBA, gl.FLOAT)
+                           : texture(gl, gl.RGBA8, width, height, gl.RGBA, gl.UNSIGNED_BYTE);
+        this.depth = float ? null
+                           : texture(gl, gl.DEPTH_COMPONENT24, width, height, gl.DEPTH_COMPONENT, gl.UNSIGNED_INT);
+        this.name = gl.createFramebuffer();
+        gl.bindFramebuffer(gl.FRAMEBUFFER, this.name);
+        gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, this.color, 0);
+        if (this.depth) {
+            gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, this.depth, 0);
+        }
+        gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    }
+
+    bind() {
+        this.gl.bindFramebuffer(this.gl.FRAMEBUFFER, this.name);
+        this.gl.viewport(0, 0, this.width, this.height);
+    }
+
+    dispose() {
+        this.gl.deleteFramebuffer(this.name);
+        this.gl.deleteTexture(this.color);
+        this.gl.deleteTexture(this.depth);
+    }
+}
+
+export function bindTexture(gl, unit, name) {
+    gl.activeTexture(gl.TEXTURE0 + unit);
+    gl.bindTexture(gl.TEXTURE_2D, name);
+}
+
+/** A triangle that covers everything; its program makes the corners of gl_VertexID. */
+export function drawScreen(gl) {
+    gl.bindVertexArray(null);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+}
+
+export const kScreenVertex = `
+out vec2 v_uv;
+void main() {
+    v_uv = vec2((gl_VertexID << 1) & 2, gl_VertexID & 2);
+    gl_Position = vec4(2.0 * v_uv - 1.0, 0.0, 1.0);
+}`;

@@ -1,0 +1,113 @@
+// Vectors as arrays of three, matrices as 16 numbers by columns.
+
+export const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+export const sub = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+export const scale = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
+export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+export const length = (a) => Math.hypot(a[0], a[1], a[2]);
+export const mix = (a, b, t) => a.map((v, i) => v + (b[i] - v) * t);
+export const clamp = (v, low, high) => Math.min(Math.max(v, low), high);
+export const identity = () => new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
+
+export function normalize(a) {
+    const l = length(a);
+    return l > 0 ? scale(a, 1 / l) : [0, 1, 0];
+}
+
+export function multiply(a, b) {
+    const r = new Float32Array(16);
+    for (let c = 0; c < 4; ++c) {
+        for (let i = 0; i < 4; ++i) {
+            r[4 * c + i] = a[i] * b[4 * c] + a[4 + i] * b[4 * c + 1] + a[8 + i] * b[4 * c + 2] + a[12 + i] * b[4 * c + 3];
+        }
+    }
+    return r;
+}
+
+/** Of a vector with w = 1; four numbers. */
+export const transform = (m, p) => [0, 1, 2, 3].map((i) => m[i] * p[0] + m[4 + i] * p[1] + m[8 + i] * p[2] + m[12 + i]);
+
+export function lookAt(eye, target, up) {
+    const z = normalize(sub(eye, target));
+    const x = normalize(cross(up, z));
+    const y = cross(z, x);
+    return new Float32Array([x[0], y[0], z[0], 0, x[1], y[1], z[1], 0, x[2], y[2], z[2], 0,
+                             -dot(x, eye), -dot(y, eye), -dot(z, eye), 1]);
+}
+
+/** fov: vertical, in radians. */
+export function perspective(fov, aspect, near, far) {
+    const f = 1 / Math.tan(fov / 2);
+    return new Float32Array([f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), -1,
+                             0, 0, 2 * far * near / (near - far), 0]);
+}
+
+/** Rows [x y z w] of an affine map, undone: a function of a point. */
+export function inverseRows(rows) {
+    const [a, b, c] = rows;
+    const bc = cross(b, c);
+    const ca = cross(c, a);
+    const ab = cross(a, b);
+    const det = dot(a, bc);
+    return (q) => {
+        const v = [q[0] - a[3], q[1] - b[3], q[2] - c[3]];
+        return scale(add(add(scale(bc, v[0]), scale(ca, v[1])), scale(ab, v[2])), 1 / det);
+    };
+}
+
+/** Of an affine matrix that turns, scales evenly and moves. */
+export function inverseSimilarity(m) {
+    const s2 = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
+    const r = new Float32Array(16);
+    for (let i = 0; i < 3; ++i) {
+        for (let j = 0; j < 3; ++j) {
+            r[4 * j + i] = m[4 * i + j] / s2;
+        }
+        r[12 + i] = -(m[4 * i] * m[12] + m[4 * i + 1] * m[13] + m[4 * i + 2] * m[14]) / s2;
+    }
+    r[15] = 1;
+    return r;
+}
+
+/** A box with what every view needs of it. */
+export function boxOf(bounds) {
+    const size = sub(bounds.max, bounds.min);
+    return {
+        min: bounds.min,
+        max: bounds.max,
+        size,
+        center: scale(add(bounds.min, bounds.max), 0.5),
+        longest: Math.max(...size) || 1,
+        radius: 0.5 * length(size) || 1,
+    };
+}
+
+/** Numbers in [0, 1), the same on each visit. */
+export function random(seed) {
+    let state = seed >>> 0;
+    return () => {
+        state = (state + 0x9e3779b9) >>> 0;
+        let z = state;
+        z = Math.imul(z ^ (z >>> 16), 0x85ebca6b);
+        z = Math.imul(z ^ (z >>> 13), 0xc2b2ae35);
+        return ((z ^ (z >>> 16)) >>> 0) / 4294967296;
+    };
+}
+
+/** The value below which a share of the numbers lies. */
+export function quantile(values, share) {
+    if (values.length === 0) {
+        return 0;
+    }
+    const sorted = Float64Array.from(values).sort();
+    return sorted[Math.floor(share * (sorted.length - 1))];
+}
+
+export function shortNumber(v) {
+    if (Math.abs(v) >= 1000 && Math.abs(v) < 1e7) {
+        return Math.round(v).toLocaleString("en").replace("-", "−");
+    }
+    const text = Math.abs(v) >= 1e7 || (v !== 0 && Math.abs(v) < 1e-4) ? v.toExponential(1) : v.toPrecision(3);
+    return (text.includes(".") && !text.includes("e") ? text.replace(/\.?0+$/, "") : text).replace("-", "−");
+}

@@ -1,0 +1,468 @@
+// The panel and the title: what the buttons and sliders do.
+import { css, mapColor } from "./colors.js";
+import { $, choice, element, legend, linear, powers, say, slider, tabs } from "./controls.js";
+import { drawMap, frustum, mapTitle } from "./map_images.js";
+import { add, scale, shortNumber } from "./math.js";
+import { followKeys } from "./keys.js";
+import { sliceRange } from "./slice_range.js";
+
+const narrow = matchMedia("(max-width: 720px)");
+// The causes of wrong places, as `relief check` names them to programs.
+const kKinds = { sheet: "thin sheet", open: "open mesh", unseen: "no map sees it", silhouette: "behind a silhouette",
+                 other: "of another mesh", texel: "finer than a texel" };
+const percent = (v) => `${Math.round(100 * v)} %`;
+
+export class Panel {
+    #map = -1;
+    #picture = "depth";
+    #place = null;
+    #queue = 0;
+    #lastTick = 0;
+    #heatSeen = false;
+
+    constructor(app) {
+        this.app = app;
+        this.tabs = tabs((tab) => {
+            if (tab === "errors" && !this.#heatSeen && this.app.measured) {
+                this.#heatSeen = true;
+                $("heat").checked = true;
+                this.#heat();
+            }
+            this.app.changed();
+        });
+        this.#viewSheet();
+        this.#sliceFields();
+        this.#mapSheet();
+        this.#errorSheet();
+        this.#particleSheet();
+        this.#title();
+        this.#splitBar();
+        followKeys(app, this);
+    }
+
+    show(tab) {
+        $(`tab-${tab}`).click();
+        $("panel").classList.remove("folded");
+    }
+
+    /** How far the picture's middle moves out from under the panel. */
+    shift() {
+        const panel = $("panel");
+        if (panel.hidden) {
+            return [0, 0];
+        }
+        const box = panel.getBoundingClientRect();
+        return narrow.matches ? [0, -box.height / innerHeight * 0.9] : [box.width / innerWidth * 0.9, 0];
+    }
+
+    /** What the panel leaves free: the shorter side, in heights of the picture. */
+    room() {
+        const panel = $("panel").getBoundingClientRect();
+        const free = narrow.matches ? [innerWidth, innerHeight - panel.height - $("title").offsetHeight]
+            : [innerWidth - panel.width, innerHeight];
+        return Math.max(Math.min(...free) / innerHeight, 0.2);
+    }
+
+    #title() {
+        $("theme").onclick = () => this.app.setTheme(this.app.look.theme === "dark" ? "light" : "dark");
+        $("help").onclick = () => $("keys").showModal();
+        $("open").onclick = $("pick").onclick = () => $("files").click();
+        $("frame").onclick = () => this.frame();
+        $("files").onchange = () => {
+            const files = [...$("files").files];
+            this.app.attempt(() => this.app.openFiles(files)).finally(() => ($("files").value = ""));
+        };
+        $("fold").onclick = () => this.fold();
+        $("message").querySelector("button").onclick = () => say(null);
+    }
+
+    fold() {
+        const folded = $("panel").classList.toggle("folded");
+        $("fold").setAttribute("aria-expanded", !folded);
+        this.app.changed();
+    }
+
+    frame() {
+        const { camera, look } = this.app;
+        if (look.box) {
+            camera.frame(look.box, this.room());
+        }
+    }
+
+    #viewSheet() {
+        const { look } = this.app;
+        this.showChoice = choice("show", (value) => this.setShow(value));
+        $("tint").onchange = () => {
+            const tint = $("tint").checked;
+            this.selectMap(-1);
+            $("tint").checked = tint;
+            look.map = tint ? -2 : -1;
+        };
+        $("floor").onchange = () => this.app.setFloor($("floor").checked);
+    }
+
+    setShow(value) {
+        this.app.look.show = value;
+        this.showChoice.show(value);
+        $("split-bar").hidden = value !== "split" || !this.app.mesh || !this.app.body;
+        this.app.changed();
+    }
+
+    // --- the slice
+
+    #sliceFields() {
+        legend("slice-legend");
+        legend("heat-legend");
+        this.axis = 2;
+        this.axisChoice = choice("axis", (value) => {
+            this.axis = Number(value);
+            this.#slice();
+        });
+        $("slice-on").onchange = () => this.#slice();
+        $("slice-at").oninput = () => this.#slice();
+    }
+
+    setSlice(axis, share) {
+        $("slice-on").checked = axis !== null;
+        if (axis !== null) {
+            this.axis = axis;
+            this.axisChoice.show(String(axis));
+            $("slice-at").value = share ?? $("slice-at").value;
+        }
+        this.#slice();
+    }
+
+    #slice() {
+        const { look, body } = this.app;
+        const on = $("slice-on").checked && Boolean(body);
+        $("slice-fields").setAttribute("aria-disabled", !on);
+        if (!on) {
+            look.slice = null;
+            this.app.changed();
+            return;
+        }
+        const { min, size } = body.box;
+        const at = min[this.axis] + Number($("slice-at").value) * size[this.axis];
+        const key = `${this.axis}`;
+        if (look.slice?.key !== key) {
+            // One range for an axis, so that the colours keep their meaning while the slice moves.
+            this.range = sliceRange(body.collider, body.box, this.axis, min[this.axis] + 0.5 * size[this.axis]);
+        }
+        look.slice = { axis: this.axis, at, range: this.range, key };
+        $("slice-value").textContent = shortNumber(at);
+        $("slice-low").textContent = `${shortNumber(-this.range)} inside`;
+        $("slice-high").textContent = `outside ${shortNumber(this.range)}`;
+        this.app.changed();
+    }
+
+    // --- maps
+
+    #mapSheet() {
+        this.mapChoice = choice("picture", (value) => {
+            this.#picture = value;
+            this.#pictures();
+        });
+        $("maps").addEventListener("keydown", (event) => {
+            const way = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
+            const buttons = [...$("maps").children];
+            const next = buttons[buttons.indexOf(document.activeElement) + way];
+            if (way && next) {
+                event.preventDefault();
+                event.stopPropagation();
+                next.focus();
+            }
+        });
+    }
+
+    #fillMaps() {
+        const maps = this.app.body?.collider.info.maps ?? [];
+        $("maps").replaceChildren(...maps.map((map, i) => element("button", {
+            role: "option", "aria-selected": false, "data-map": i, onclick: () => this.selectMap(this.#map === i ? -1 : i),
+        }, element("span", { class: "frame" }, element("canvas", { role: "img", "aria-label": `Map ${i}` })),
+           element("span", { class: "what" }, element("i", { style: `background:${css(mapColor(i))}` }),
+                   element("b", {}, `${i}`), ` ${mapTitle(map)}, ${map.format}`))));
+        this.#map = -1;
+        this.#pictures();
+    }
+
+    /** One after the other, so that the page stays alive however many there are. */
+    async #pictures() {
+        const turn = ++this.#queue;
+        const { body } = this.app;
+        for (const button of [...$("maps").children]) {
+            if (turn !== this.#queue || body !== this.app.body) {
+                return;
+            }
+            await this.app.attempt(() => drawMap(button.querySelector("canvas"), body.collider, Number(button.dataset.map), this.#picture));
+            await new Promise((done) => setTimeout(done));
+        }
+        this.picturesDone = turn;
+    }
+
+    selectMap(i) {
+        const { look, view, body } = this.app;
+        this.#map = i;
+        [...$("maps").children].forEach((button, k) => button.setAttribute("aria-selected", k === i));
+        look.map = i;
+        $("tint").checked = false;
+        if (i >= 0 && look.show === "mesh") {
+            this.setShow("surface");
+        }
+        if (view && body) {
+            view.setLines(i >= 0 ? frustum(body.collider.info.maps[i], mapColor(i)) : []);
+        }
+        this.app.changed();
+    }
+
+    // --- errors
+
+    #errorSheet() {
+        $("heat").onchange = () => this.#heat();
+    }
+
+    #heat() {
+        const { look, measured } = this.app;
+        look.heat = measured && $("heat").checked ? measured.range : 0;
+        look.depth = measured?.depth ?? 0;
+        this.app.changed();
+    }
+
+    #fillErrors() {
+        const { measured, body } = this.app;
+        $("errors-none").hidden = Boolean(measured);
+        $("errors-some").hidden = !measured;
+        this.#place = null;
+        this.#heatSeen = false;
+        $("heat").checked = false;
+        $("pin").hidden = true;
+        this.#heat();
+        if (!measured) {
+            return;
+        }
+        const { check } = measured;
+        const side = body.box.longest;
+        const row = (name, value) => [element("dt", {}, name), element("dd", {}, value)];
+        const length = (v) => `${shortNumber(v)} (${shortNumber(100 * v / side)} %)`;
+        $("measures").replaceChildren(
+            ...(check ? [...row("anywhere in the box", `${shortNumber(check.uniform_percent)} % wrong`),
+                         ...row("points checked", check.points.toLocaleString("en")),
+                         ...row("mean error", length(check.distance_mean)), ...row("99 % below", length(check.distance_p99))]
+                      : [...row("median on the mesh", length(measured.median)), ...row("mean", length(measured.mean)),
+                         ...row("99 % below", length(measured.p99))]));
+        $("verdict").hidden = !check;
+        $("verdict").className = check?.grade ?? "";
+        $("verdict").textContent = check?.verdict ?? "";
+        $("sheets-note").hidden = measured.depth === 0;
+        $("sheets-note").textContent = `Sheets have a thickness of ${shortNumber(2 * measured.depth)} round the mesh: ` +
+            "white is where they lie in its middle.";
+        $("what-to-do").hidden = !check || check.grade === "good";
+        $("advice").textContent = `relief check ${this.app.opened.name} --mesh ${this.app.mesh.name}`;
+        $("heat-low").textContent = `${shortNumber(-measured.range)} inside`;
+        $("heat-high").textContent = `outside ${shortNumber(measured.range)}`;
+        this.places = check?.places?.length ? check.places : measured.places;
+        $("places-title").textContent = check ? "Worst places, by share of what is wrong" : "Worst places";
+        $("places").replaceChildren(...this.places.map((place, i) => element("li", {}, element("button", {
+            onclick: () => this.goTo(i),
+        }, element("b", {}, check ? `${shortNumber(place.share_percent)} %` : shortNumber(place.error)),
+            element("span", {}, `${kKinds[place.kind] ?? place.kind}, ${place.map < 0 ? "no map" : `map ${place.map}`}`)))));
+    }
+
+    goTo(i) {
+        const place = this.places[i];
+        const { camera, look, view, body } = this.app;
+        this.#place = place;
+        [...$("places").querySelectorAll("button")].forEach((button, k) => button.setAttribute("aria-current", k === i));
+        camera.flyTo(place.position, place.normal, 0.9 * body.box.longest);
+        const tint = look.theme === "dark" ? [1, 0.85, 0.3] : [0.75, 0.1, 0.05];
+        const to = add(place.position, scale(place.normal, 0.12 * body.box.longest));
+        view.setLines([[place.position, to, tint], ...cross(place.position, 0.02 * body.box.longest, tint)]);
+        $("pin").textContent = place.why;
+        $("pin").hidden = false;
+    }
+
+    /** What hangs on places in space. */
+    place(project) {
+        const bar = $("split-bar");
+        bar.style.left = `${100 * this.app.look.split}%`;
+        const at = this.#place && project(this.#place.position);
+        $("pin").hidden = !at;
+        if (at) {
+            const pin = $("pin");
+            const x = Math.min(Math.max(at[0] + 18, 8), innerWidth - pin.offsetWidth - 8);
+            const y = Math.min(Math.max(at[1] + 18, 8), innerHeight - pin.offsetHeight - 8);
+            pin.style.transform = `translate(${Math.round(x)}px, ${Math.round(y)}px)`;
+        }
+    }
+
+    dropPin() {
+        this.#place = null;
+        $("pin").hidden = true;
+        [...$("places").querySelectorAll("button")].forEach((button) => button.removeAttribute("aria-current"));
+        this.selectMap(-1);
+    }
+
+    #splitBar() {
+        const bar = $("split-bar");
+        const move = (share) => {
+            this.app.look.split = Math.min(Math.max(share, 0.02), 0.98);
+            bar.setAttribute("aria-valuenow", Math.round(100 * this.app.look.split));
+            this.app.changed();
+        };
+        bar.addEventListener("pointerdown", (event) => bar.setPointerCapture(event.pointerId));
+        bar.addEventListener("pointermove", (event) => event.buttons && move(event.clientX / innerWidth));
+        bar.addEventListener("keydown", (event) => {
+            const way = { ArrowLeft: -0.02, ArrowRight: 0.02 }[event.key];
+            if (way) {
+                event.preventDefault();
+                event.stopPropagation();
+                move(this.app.look.split + way);
+            }
+        });
+    }
+
+    // --- particles
+
+    #particleSheet() {
+        const change = (key) => (value) => this.#change({ [key]: value });
+        const lengths = (v) => `${shortNumber(v * (this.app.look.box?.longest ?? 1))}`;
+        const parts = [
+            { id: "bounce", name: "Bounce", scale: linear(0, 1), text: percent },
+            { id: "friction", name: "Friction", scale: linear(0, 1), text: percent },
+            { id: "radius", name: "Radius", scale: linear(0, 0.03), text: lengths },
+            { id: "wind", name: "Wind", scale: linear(-1.5, 1.5), text: (v) => (Math.abs(v) < 0.02 ? "0" : lengths(v)) },
+            { id: "rate", name: "Rate", scale: powers(50, 120000, Math.round), text: (v) => `${Math.round(v).toLocaleString("en")}/s` },
+            { id: "count", name: "Count", scale: powers(1024, 262144, (v) => 2 ** Math.round(Math.log2(v))),
+              text: (v) => v.toLocaleString("en") },
+        ];
+        this.sliders = Object.fromEntries(parts.map((part) => [part.id, slider({ ...part, changed: change(part.id) })]));
+        $("sliders").append(...Object.values(this.sliders).map((one) => one.label));
+        this.presetChoice = choice("preset", (value) => this.app.attempt(() => this.app.startPreset(value)));
+        $("pause").onclick = () => this.pause();
+        $("step").onclick = () => this.step();
+        $("restart").onclick = () => this.restart();
+        $("marks").onchange = () => {
+            this.app.particles.marking = $("marks").checked;
+            this.app.changed(false);
+        };
+        $("copy").onclick = () => this.copy();
+    }
+
+    #change(settings) {
+        const { particles } = this.app;
+        if (settings.count) {
+            // As many births as keep that many alive.
+            settings.rate = Math.min(settings.count / particles.settings.seconds, 120000);
+            this.sliders.rate.show(settings.rate);
+        }
+        this.app.attempt(() => particles.change(settings));
+        this.app.changed(false);
+    }
+
+    pause() {
+        const { particles } = this.app;
+        particles.paused = !particles.paused;
+        $("pause").textContent = particles.paused ? "Play" : "Pause";
+        this.app.changed(false);
+    }
+
+    step() {
+        const { particles } = this.app;
+        if (!particles.system) {
+            return;
+        }
+        if (!particles.paused) {
+            this.pause();
+        }
+        this.app.attempt(() => particles.step());
+        this.app.changed(false);
+    }
+
+    restart() {
+        this.app.attempt(() => this.app.particles.restart());
+        this.app.changed(false);
+    }
+
+    async copy() {
+        const { particles } = this.app;
+        if (!particles.system) {
+            return;
+        }
+        const text = particles.system.toToml();
+        this.copiedText = text;
+        let told = "copied";
+        try {
+            await navigator.clipboard.writeText(text);
+        } catch {
+            // No clipboard for a page opened from disk: by hand.
+            const area = element("textarea", { style: "position:fixed;opacity:0" });
+            area.value = text;
+            document.body.append(area);
+            area.select();
+            told = document.execCommand("copy") ? "copied" : "this browser lets no page copy";
+            area.remove();
+        }
+        $("copied").textContent = `${told}; save beside ${this.app.opened.file}`;
+        setTimeout(() => ($("copied").textContent = ""), 4000);
+    }
+
+    refreshParticles() {
+        const { particles } = this.app;
+        const running = Boolean(particles?.system);
+        const free = running && particles.preset !== "scene";
+        this.presetChoice.show(running ? (free ? particles.preset : "") : "none");
+        for (const id of ["pause", "step", "restart", "copy", "marks"]) {
+            $(id).disabled = !running;
+        }
+        for (const [key, one] of Object.entries(this.sliders)) {
+            one.input.disabled = !free;
+            one.label.style.opacity = free ? 1 : 0.45;
+            if (free) {
+                one.show(particles.settings[key]);
+            }
+        }
+        $("scene-note").hidden = !running || free;
+        $("scene-note").textContent = "A scene of its own is playing; the sliders are those of the presets.";
+        $("pause").textContent = particles?.paused ? "Play" : "Pause";
+        if (particles) {
+            particles.marking = $("marks").checked;
+        }
+        $("alive").textContent = "";
+    }
+
+    /** Now and then: how many particles live. */
+    tick(now) {
+        const { particles } = this.app;
+        if (now - this.#lastTick > 250 && particles.system) {
+            this.#lastTick = now;
+            $("alive").textContent = `${particles.alive.toLocaleString("en")} alive`;
+        }
+    }
+
+    /** After another file was opened. */
+    refresh() {
+        const { opened, body, mesh, look } = this.app;
+        $("name").textContent = opened?.name ?? "";
+        $("facts").textContent = this.app.facts;
+        this.showChoice.allow("mesh", Boolean(mesh));
+        this.showChoice.allow("split", Boolean(mesh && body));
+        this.showChoice.allow("surface", Boolean(body));
+        $("slice-on").disabled = !body;
+        $("preset").querySelectorAll("button").forEach((one) => (one.disabled = !body));
+        this.#fillMaps();
+        this.#fillErrors();
+        this.setShow(look.show);
+        look.split = 0.5 - 0.5 * this.shift()[0];
+        $("slice-on").checked = false;
+        $("tint").checked = false;
+        this.#slice();
+        this.refreshParticles();
+    }
+}
+
+function cross(p, r, tint) {
+    return [0, 1, 2].map((i) => {
+        const arm = [0, 0, 0];
+        arm[i] = r;
+        return [add(p, arm), add(p, scale(arm, -1)), tint];
+    });
+}

@@ -1,0 +1,120 @@
+// The particles on the page: one system of Relief, of a preset or of a scene that was dropped in.
+import { ParticleSystem } from "./relief.js";
+import { Marks } from "./marks.js";
+import { kDefaults, presetScene } from "./presets.js";
+
+const kStepsAFrame = 3; // where the page is slow, time goes slower
+
+export class Particles {
+    #marks;
+    #owed = 0;
+
+    constructor(gl) {
+        this.gl = gl;
+        this.system = null;
+        this.preset = null; // "scene": a dropped one
+        this.settings = null;
+        this.paused = false;
+        this.marking = false;
+        this.steps = 0; // grows with whatever the system does
+        this.#marks = new Marks(gl);
+    }
+
+    /** @param body  of body.js */
+    startPreset(preset, body, settings) {
+        this.body = body;
+        const wanted = settings ?? { ...kDefaults[preset] };
+        wanted.rate ??= wanted.count / wanted.seconds;
+        const scene = presetScene(preset, body.name, body.box, wanted);
+        this.#replace(() => new ParticleSystem(this.gl, { scene, files: { [body.name]: body.collider } }), preset);
+        this.settings = wanted;
+    }
+
+    startScene(text, files) {
+        this.#replace(() => new ParticleSystem(this.gl, { scene: text, files }), "scene");
+        this.settings = null;
+    }
+
+    #replace(make, preset) {
+        const made = make(); // the old one plays on where this fails
+        this.stop();
+        this.system = made;
+        this.preset = preset;
+        this.info = made.info;
+    }
+
+    stop() {
+        this.system?.dispose();
+        this.system = null;
+        this.preset = null;
+        this.#marks.clear();
+        this.#owed = 0;
+    }
+
+    /** Settings of the sliders. A system of another size is a new one. */
+    change(settings) {
+        const before = this.settings;
+        this.settings = { ...before, ...settings };
+        if (!this.system) {
+            return;
+        }
+        if (this.settings.count !== before.count) {
+            this.startPreset(this.preset, this.body, this.settings);
+            return;
+        }
+        const { collider, time, particles, ...rest } = presetScene(this.preset, this.body.name, this.body.box, this.settings);
+        this.system.set(rest);
+    }
+
+    restart() {
+        this.system?.restart();
+        this.#marks.clear();
+        this.info = this.system?.info;
+        this.steps += 1;
+    }
+
+    step() {
+        this.system.step();
+        this.steps += 1;
+        if (this.marking && this.keepsContacts) {
+            this.#marks.keep(this.system.textures(), this.system.info);
+        }
+    }
+
+    get keepsContacts() {
+        return !/integrator\s*=\s*"verlet"/.test(this.preset === "scene" ? this.system.toToml() : "");
+    }
+
+    /** As many steps as `seconds` ask for. */
+    advance(seconds) {
+        if (!this.system || this.paused) {
+            return;
+        }
+        const { dt } = this.info;
+        this.#owed = Math.min(this.#owed + seconds, kStepsAFrame * dt);
+        for (let i = 0; this.#owed >= 0.98 * dt && i < kStepsAFrame; ++i) {
+            this.step();
+            this.#owed = Math.max(this.#owed - dt, 0);
+        }
+    }
+
+    draw(matrices, width, height, tint, size) {
+        if (!this.system) {
+            return;
+        }
+        if (this.marking) {
+            this.#marks.draw(matrices, height, this.system.info.time, size, tint);
+        }
+        this.gl.bindFramebuffer(this.gl.FRAMEBUFFER, null);
+        this.system.draw({ view: matrices.view, projection: matrices.projection, framebuffer: null, width, height });
+    }
+
+    /** How many live: told by the CPU's books, now and then. */
+    get alive() {
+        return this.system?.info.alive ?? 0;
+    }
+
+    markCount() {
+        return this.#marks.count();
+    }
+}

@@ -1,0 +1,215 @@
+// Draws all there is. The bodies are drawn when something about them changes, and kept: particles fall before the kept
+// picture, by its depths.
+import { Geometry, Target, bindTexture, drawScreen, kScreenVertex, program } from "./gl.js";
+import { kBodyVertex, kCopyFragment, kFloorFragment, kLiveVertex, kMeshFragment, kSkyFragment } from "./body_shaders.js";
+import { add, identity, normalize, scale, transform } from "./math.js";
+import { Lines } from "./lines.js";
+
+const kThemes = {
+    dark: {
+        low: [0.10, 0.115, 0.135], high: [0.155, 0.175, 0.205], line: [0.30, 0.33, 0.38], base: [0.70, 0.71, 0.73],
+        mesh: [0.66, 0.70, 0.76], sky: [0.50, 0.53, 0.58], earth: [0.17, 0.17, 0.19],
+    },
+    light: {
+        low: [0.90, 0.91, 0.925], high: [0.80, 0.83, 0.865], line: [0.66, 0.69, 0.73], base: [0.80, 0.795, 0.78],
+        mesh: [0.72, 0.77, 0.83], sky: [0.60, 0.61, 0.63], earth: [0.33, 0.32, 0.31],
+    },
+};
+
+function quad(gl) {
+    return new Geometry(gl, { a_position: new Float32Array(12) }, new Uint32Array([0, 1, 2, 0, 2, 3]));
+}
+
+export class View {
+    #kept = null;
+    #fine = 1;
+
+    constructor(gl) {
+        this.gl = gl;
+        this.bodies = [];
+        this.live = []; // { mesh(), model }: meshes that deform (LiveMesh of relief.d.ts)
+        this.mesh = null; // Geometry, in the object space of the first body
+        this.lines = new Lines(gl);
+        this.segments = [];
+        this.dirty = true;
+        this.programs = {
+            mesh: program(gl, kBodyVertex, kMeshFragment),
+            live: program(gl, kLiveVertex, kMeshFragment),
+            floor: program(gl, kBodyVertex, kFloorFragment),
+            sky: program(gl, kScreenVertex, kSkyFragment),
+            copy: program(gl, kScreenVertex, kCopyFragment),
+        };
+        this.floor = quad(gl);
+        this.plane = quad(gl);
+    }
+
+    #corners(geometry, corners) {
+        this.gl.bindBuffer(this.gl.ARRAY_BUFFER, geometry.buffers[0]);
+        this.gl.bufferData(this.gl.ARRAY_BUFFER, Float32Array.from(corners.flat()), this.gl.DYNAMIC_DRAW);
+    }
+
+    /** All of a frame but what moves. options: main.js's `look`. */
+    drawBodies(matrices, width, height, look, still) {
+        const fine = still && width * height <= 2.5e6 ? 2 : 1;
+        if (!this.dirty && fine <= this.#fine && this.#kept?.width === width * this.#fine &&
+            this.#kept.height === height * this.#fine) {
+            return;
+        }
+        const { gl } = this;
+        if (!this.#kept || this.#kept.width !== width * fine || this.#kept.height !== height * fine) {
+            this.#kept?.dispose();
+            this.#kept = new Target(gl, width * fine, height * fine);
+        }
+        this.#fine = fine;
+        this.dirty = false;
+        this.#kept.bind();
+        const theme = kThemes[look.theme];
+        gl.disable(gl.BLEND);
+        gl.disable(gl.CULL_FACE);
+        gl.disable(gl.DEPTH_TEST);
+        gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+        this.programs.sky.set({ u_low: theme.low, u_high: theme.high });
+        drawScreen(gl);
+        gl.enable(gl.DEPTH_TEST);
+        gl.depthFunc(gl.LEQUAL);
+        const common = this.#lights(matrices, theme, look);
+        const split = Math.round(look.split * width * fine);
+        const parts = !this.mesh ? [["surface", 0, width * fine]]
+            : look.show === "split" ? [["mesh", 0, split], ["surface", split, width * fine - split]]
+            : [[look.show, 0, width * fine]];
+        gl.enable(gl.SCISSOR_TEST);
+        for (const [what, x, w] of parts) {
+            gl.scissor(x, 0, w, height * fine);
+            if (what === "mesh") {
+                this.#drawMesh(common, theme, look);
+            } else {
+                this.#drawSurfaces(common, theme, look, matrices.eye);
+                this.live.forEach((one) => this.#drawLive(common, theme, one.mesh(), one.model));
+            }
+        }
+        gl.disable(gl.SCISSOR_TEST);
+        if (look.slice) {
+            this.#drawSlice(matrices.camera, look.slice);
+        }
+        if (look.floor !== null) {
+            this.#drawFloor(matrices.camera, theme, look);
+        }
+        gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    }
+
+    #lights(matrices, theme, look) {
+        const { view, camera, eye } = matrices;
+        const key = normalize(add(add(scale([view[0], view[4], view[8]], -0.5), scale([view[2], view[6], view[10]], 0.6)),
+                                  [0, 0.9, 0]));
+        let cut = [0, 0, 0, 0];
+        if (look.slice) {
+            const { axis, at } = look.slice;
+            const way = eye[axis] > at ? 1 : -1;
+            cut = [0, 0, 0, way * at];
+            cut[axis] = way;
+        }
+        return { u_camera: camera, u_eye: eye, u_key: key, u_cut: cut, u_sky: theme.sky, u_earth: theme.earth,
+                 u_model: identity() };
+    }
+
+    #drawMesh(common, theme, look) {
+        const body = this.bodies[0];
+        const heat = look.heat > 0 && body;
+        const program = heat ? body.use("heat") : this.programs.mesh;
+        program.set({ ...common, u_base: theme.mesh, u_model: body?.model ?? identity(),
+                      ...(heat ? { u_range: look.heat, u_depth: look.depth } : {}) });
+        this.mesh.draw();
+    }
+
+    #drawSurfaces(common, theme, look, eye) {
+        for (const body of this.bodies.filter((one) => one.surface)) {
+            const first = body === this.bodies[0];
+            body.use("surface").set({ ...common, u_base: theme.base, u_model: body.model,
+                                      u_eye_object: body.eyeInObject(eye), u_spacing: body.spacing,
+                                      u_map: { int: first ? look.map : -1 } });
+            body.surface.draw();
+        }
+    }
+
+    #drawLive(common, theme, mesh, model) {
+        const { gl } = this;
+        bindTexture(gl, 0, mesh.positions);
+        bindTexture(gl, 1, mesh.corners);
+        this.programs.live.set({ ...common, u_base: theme.base, u_model: model, u_positions: { int: 0 }, u_corners: { int: 1 },
+                                 u_vertex_shift: { int: mesh.vertexShift }, u_triangle_shift: { int: mesh.triangleShift } });
+        gl.bindVertexArray(null);
+        gl.drawArrays(gl.TRIANGLES, 0, 3 * mesh.triangles);
+        bindTexture(gl, 0, null);
+        bindTexture(gl, 1, null);
+    }
+
+    #drawSlice(camera, { axis, at, range }) {
+        const body = this.bodies[0];
+        if (!body) {
+            return;
+        }
+        const margin = 0.1 * body.box.longest;
+        const corners = [[0, 0], [1, 0], [1, 1], [0, 1]].map((side) => {
+            const p = [0, 0, 0];
+            p[axis] = at;
+            [(axis + 1) % 3, (axis + 2) % 3].forEach((i, k) =>
+                (p[i] = side[k] ? body.box.max[i] + margin : body.box.min[i] - margin));
+            return p;
+        });
+        this.#corners(this.plane, corners);
+        body.use("slice").set({ u_camera: camera, u_model: body.model, u_range: range });
+        this.plane.draw();
+    }
+
+    #drawFloor(camera, theme, look) {
+        const { gl } = this;
+        const { center, radius, longest } = look.box;
+        const r = 5 * radius;
+        this.#corners(this.floor, [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([x, z]) =>
+            [center[0] + r * x, look.floor - 1e-3 * longest, center[2] + r * z]));
+        gl.enable(gl.BLEND);
+        gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+        this.programs.floor.set({ u_camera: camera, u_model: identity(), u_background: theme.low, u_line: theme.line,
+                                  u_middle: center, u_radius: r, u_grid: 10 ** Math.round(Math.log10(longest / 4)) });
+        this.floor.draw();
+        gl.disable(gl.BLEND);
+    }
+
+    /** The kept picture to the canvas, and its depths. */
+    copyBodies(width, height) {
+        const { gl } = this;
+        gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+        gl.viewport(0, 0, width, height);
+        gl.disable(gl.BLEND);
+        gl.enable(gl.DEPTH_TEST);
+        gl.depthFunc(gl.ALWAYS);
+        bindTexture(gl, 0, this.#kept.color);
+        bindTexture(gl, 1, this.#kept.depth);
+        this.programs.copy.set({ u_color: { int: 0 }, u_depth: { int: 1 }, u_fine: { int: this.#fine } });
+        drawScreen(gl);
+        bindTexture(gl, 0, null);
+        bindTexture(gl, 1, null);
+        gl.depthFunc(gl.LEQUAL);
+    }
+
+    dispose() {
+        [this.mesh, this.floor, this.plane, this.lines.geometry, this.#kept].forEach((one) => one?.dispose());
+        [this.lines.program, ...Object.values(this.programs)].forEach((one) => this.gl.deleteProgram(one.name));
+    }
+
+    setLines(segments) {
+        this.segments = segments;
+        this.lines.set(segments);
+    }
+
+    drawLines(camera, width, height, pixels) {
+        this.lines.draw(camera, [width, height], 1.6 * pixels);
+    }
+}
+
+/** Where a point is on the canvas, in CSS pixels; null behind the eye. */
+export function project(camera, p, canvas) {
+    const q = transform(camera, p);
+    return q[3] <= 0 ? null : [(0.5 + 0.5 * q[0] / q[3]) * canvas.clientWidth,
+                               (0.5 - 0.5 * q[1] / q[3]) * canvas.clientHeight];
+}

@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# Installs what tests/web/package.json names from the npm registry into build/web, exactly as its lock file says. Does
+# nothing, and needs no network, when that is there already. Prints the folder that holds node_modules.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+folder=$PWD/build/web
+mkdir -p "$folder"
+if ! cmp -s tests/web/package-lock.json "$folder/node_modules/.installed"; then
+    cp tests/web/package.json tests/web/package-lock.json "$folder/"
+    npm ci --prefix "$folder" --no-audit --no-fund --ignore-scripts --loglevel=error >&2
+    cp tests/web/package-lock.json "$folder/node_modules/.installed"
+fi
+echo "$folder"

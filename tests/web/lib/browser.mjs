@@ -1,0 +1,68 @@
+// A real browser for tests: Debian's Chromium without a window, its WebGL2 drawn by the processor (SwiftShader).
+import { createServer } from "node:http";
+import { readFile } from "node:fs/promises";
+import { createRequire } from "node:module";
+import path from "node:path";
+import { fileURLToPath } from "node:url";
+
+export const root = path.resolve(path.dirname(fileURLToPath(import.meta.url)), "../../..");
+export const built = process.env.RELIEF_WEB_BUILD ?? path.join(root, "build/web");
+export const modules = path.join(built, "node_modules");
+const require = createRequire(path.join(built, "package.json"));
+const { chromium } = require("playwright-core");
+
+const kTypes = {
+    ".css": "text/css",
+    ".html": "text/html; charset=utf-8",
+    ".js": "text/javascript",
+    ".json": "application/json",
+    ".mjs": "text/javascript",
+    ".png": "image/png",
+    ".svg": "image/svg+xml",
+    ".wasm": "application/wasm",
+};
+
+/** Serves folders on this machine alone: { "/": folder, "/npm": folder }, the longest prefix first. */
+export async function serve(folders) {
+    const mounts = Object.entries(folders).sort(([a], [b]) => b.length - a.length);
+    const server = createServer(async (request, response) => {
+        const url = decodeURIComponent(new URL(request.url, "http://localhost").pathname);
+        const mount = mounts.find(([prefix]) => url === prefix || url.startsWith(prefix.replace(/\/?$/, "/")));
+        try {
+            if (url === "/favicon.ico") {
+                response.writeHead(204).end();
+                return;
+            }
+            const rest = url.slice(mount[0].length).replace(/^\//, "") || "index.html";
+            const file = path.join(mount[1], path.normalize(`/${rest}`));
+            const bytes = await readFile(file);
+            response.writeHead(200, { "content-type": kTypes[path.extname(file)] ?? "application/octet-stream" });
+            response.end(bytes);
+        } catch {
+            response.writeHead(404).end(url);
+        }
+    });
+    await new Promise((done) => server.listen(0, "127.0.0.1", done));
+    return { url: `http://127.0.0.1:${server.address().port}`, close: () => server.close() };
+}
+
+/** Chromium; arguments beyond those that every test has. */
+export async function launch(more = []) {
+    return chromium.launch({
+        executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+        args: ["--no-sandbox", "--enable-unsafe-swiftshader", "--use-angle=swiftshader", "--disable-dev-shm-usage",
+               ...more],
+    });
+}
+
+/** A page whose console and errors are kept in `said`, one line each. */
+export async function openPage(browser, url, options = {}) {
+    const context = await browser.newContext({ viewport: { width: 1000, height: 700 }, ...options });
+    const page = await context.newPage();
+    const said = [];
+    page.on("console", (message) => said.push(`${message.type()}: ${message.text()}`));
+    page.on("pageerror", (error) => said.push(`error: ${error.message}`));
+    page.on("requestfailed", (request) => said.push(`failed: ${request.url()}`));
+    await page.goto(url);
+    return { page, said, close: () => context.close() };
+}

@@ -1,0 +1,51 @@
+// The page of `relief view`, filled as the tool fills it, and opened from disk.
+import { readFileSync, writeFileSync } from "node:fs";
+import path from "node:path";
+import { pathToFileURL } from "node:url";
+
+import { built, launch, openPage } from "./browser.mjs";
+
+const kEmpty = '<script type="application/json" id="relief-page-data">null</script>';
+
+/** An OBJ file as the page's data has meshes. */
+export function meshData(file) {
+    const vertices = [];
+    const triangles = [];
+    for (const line of readFileSync(file, "utf8").split("\n")) {
+        const [kind, ...words] = line.trim().split(/\s+/);
+        if (kind === "v") {
+            vertices.push(...words.slice(0, 3).map(Number));
+        } else if (kind === "f") {
+            const corners = words.map((word) => parseInt(word, 10) - 1);
+            corners.slice(2).forEach((corner, i) => triangles.push(corners[0], corners[i + 1], corner));
+        }
+    }
+    const base64 = (array) => Buffer.from(array.buffer).toString("base64");
+    return { name: path.basename(file), vertices: base64(Float32Array.from(vertices)),
+             triangles: base64(Uint32Array.from(triangles)) };
+}
+
+/** Data of a page that shows a collider's bytes. */
+export const pageData = (name, bytes, more = {}) =>
+    ({ format: 1, name, collider: bytes && Buffer.from(bytes).toString("base64"), shows: null, mesh: null, check: null, scene: null,
+       files: null, serve: null, ...more });
+
+/** Writes the page with that data; its address. data: an object, or text as it is. */
+export function writePage(folder, name, data) {
+    const template = readFileSync(path.join(built, "bin/view.html"), "utf8");
+    const text = typeof data === "string" ? data : JSON.stringify(data).replaceAll("<", "\\u003c");
+    const file = path.join(folder, name);
+    writeFileSync(file, template.replace(kEmpty, () => kEmpty.replace("null", text)));
+    return pathToFileURL(file).href;
+}
+
+/** A browser that ends with the test, and what opens pages in it. */
+export async function viewer(t, folder, more = []) {
+    const browser = await launch(more);
+    t.after(() => browser.close());
+    return async (data, options = {}) => {
+        const opened = await openPage(browser, writePage(folder, "page.html", data), options);
+        await opened.page.waitForFunction("window.reliefView?.ready", undefined, { timeout: 60_000 });
+        return opened;
+    };
+}

@@ -1,0 +1,126 @@
+// What a page does wrong is answered by a ReliefError of one sentence that names the thing, and leaves the rest usable.
+import assert from "node:assert/strict";
+import { readFileSync, writeFileSync } from "node:fs";
+import path from "node:path";
+import test from "node:test";
+
+import { bakeCube } from "./lib/cube.mjs";
+import { libraryPage } from "./lib/library.mjs";
+import { scratch } from "./lib/native.mjs";
+
+// What is done (with collider, gpu, system, made for each), and what the sentence says.
+const kMistakes = {
+    // loading
+    "relief.load('/files/nothing.relief')": /nothing\.relief: the server answers 404/,
+    "relief.load('/page.html')": /page\.html: the server sends a web page, no collider/,
+    "relief.load('http://127.0.0.1:1/a.relief')": /a\.relief: the server does not answer/,
+    "relief.load('/files/noise.relief')": /noise\.relief: .*(not|no) /,
+    "relief.load('/files/cut.relief')": /cut\.relief: /,
+    "relief.load(new ArrayBuffer(0))": /./,
+    "relief.load()": /load\(\) takes a URL/,
+    "relief.load(7)": /load\(\) takes a URL/,
+    "new relief.Collider('text')": /Uint8Array/,
+    // contexts
+    "new relief.ParticleSystem(null, { collider })": /no WebGL2 context/,
+    "new relief.ParticleSystem(document.createElement('canvas').getContext('webgl'), { collider })": /WebGL2 context/,
+    "new relief.ParticleSystem(document.createElement('canvas').getContext('2d'), { collider })": /WebGL2 context/,
+    "new relief.GpuCollider(gl)": /needs a Collider/,
+    "new relief.GpuCollider(gl, relief.load('/files/cube.relief'))": /forget to await/,
+    // options and scenes
+    "new relief.ParticleSystem(gl)": /the option 'collider'/,
+    "new relief.ParticleSystem(gl, { colider: collider })": /no option 'colider'/,
+    "new relief.ParticleSystem(gl, { collider: 'cube.relief' })": /needs a Collider/,
+    "new relief.ParticleSystem(gl, { collider, scene: { particels: {} } })": /particels/,
+    "new relief.ParticleSystem(gl, { collider, scene: { particles: { 'my key': 1 } } })": /my key/,
+    "new relief.ParticleSystem(gl, { collider, scene: { forces: { gravity: [0, NaN, 0] } } })": /gravity/,
+    "new relief.ParticleSystem(gl, { collider, scene: { emitter: { rate: () => 3 } } })": /a scene holds numbers/,
+    "new relief.ParticleSystem(gl, { collider, scene: { particles: { capacity: 2e7 } } })": /capacity.*16777216/,
+    "new relief.ParticleSystem(gl, { collider, scene: 'capacity = 3' })": /give them in 'files'/,
+    "new relief.ParticleSystem(gl, { scene: '[collider]\\nfile = \"other.relief\"' })": /other\.relief/,
+    "new relief.ParticleSystem(gl, { scene: '[collider' })": /scene\.toml:1/,
+    "new relief.ParticleSystem(gl, { scene: { collider: { file: '../../etc/passwd' } } })": /passwd/,
+    "new relief.ParticleSystem(gl, { collider, files: { '../x': '' } })": /'\.\.\/x' is no file/,
+    "new relief.ParticleSystem(gl, { collider, files: { x: 3 } })": /the file 'x' is/,
+    "new relief.ParticleSystem(gl, { collider, scene: { flow: { file: 'a.exr', box_min: [0, 0, 0], box_max: [1, 1, 1] } }, files: { 'a.exr': 'x' } })":
+        /flow fields are not read in a browser/,
+    // stepping and drawing
+    "system.step(NaN)": /step\(NaN\)/,
+    "system.step(-1)": /step\(-1\)/,
+    "system.step(7)": /step\(7\).*Math\.min/,
+    "system.step('1')": /step\("1"\)/,
+    "system.draw()": /view: 16 numbers/,
+    "system.draw({ view: eye })": /projection: 16 numbers/,
+    "system.draw({ view: eye, projection: eye.slice(1) })": /projection: 16 numbers/,
+    "system.draw({ view: eye, projection: eye.map(() => NaN) })": /projection: number 0 is NaN/,
+    "system.draw({ view: eye, projection: eye, width: -3 })": /the width is -3/,
+    "system.spawn([{ velocity: [0, 0, 0] }])": /birth 0 needs a position/,
+    "system.spawn([1, 2, 3])": /births: 3 numbers are not 8 for each/,
+    "system.spawn([{ position: [0, NaN, 0] }])": /births: number 1 is NaN/,
+    "system.spawn(3)": /births are an array/,
+    "system.set(3)": /set\(\) takes a part of a scene/,
+    "system.set({ forces: { gravitation: 3 } })": /gravitation/,
+    "system.set({ particles: { capacity: 4096 } })": /make one/,
+    // asking
+    "collider.query([1, 2])": /points: 2 numbers are not 3 for each/,
+    "collider.query()": /points are an array/,
+    "gpu.query([1, 2, 3, 4])": /points: 4 numbers/,
+    "collider.texels(99)": /no map 99/,
+    "collider.texels('0')": /no map 0/,
+    "gpu.attach(null)": /WebGLProgram that is linked/,
+    "gpu.bind(1000)": /no texture unit 1000/,
+    "gpu.bind(0, -1)": /no uniform block binding -1/,
+    // what is disposed of
+    "(collider.dispose(), collider.query([0, 0, 0]))": /this collider is disposed of/,
+    "(collider.dispose(), new relief.GpuCollider(gl, collider))": /this collider is disposed of/,
+    "(collider.dispose(), new relief.ParticleSystem(gl, { collider }))": /this collider is disposed of/,
+    "(gpu.dispose(), gpu.dispose(), gpu.query([0, 0, 0]))": /this GpuCollider is disposed of/,
+    "(gpu.dispose(), gpu.bind())": /this GpuCollider is disposed of/,
+    "(system.dispose(), system.dispose(), system.step())": /this system is disposed of/,
+    "(system.dispose(), system.draw({ view: eye, projection: eye }))": /this system is disposed of/,
+    "(system.dispose(), system.restart())": /this system is disposed of/,
+    "(system.dispose(), system.info)": /this system is disposed of/,
+};
+
+test("each mistake has its sentence", { timeout: 60_000 }, async (t) => {
+    const folder = scratch(t);
+    bakeCube(folder);
+    const whole = readFileSync(path.join(folder, "cube.relief"));
+    writeFileSync(path.join(folder, "cut.relief"), whole.subarray(0, 9000));
+    writeFileSync(path.join(folder, "noise.relief"), whole.map((byte, i) => (byte * 31 + i) & 255));
+    const { page, said } = await libraryPage(t, folder);
+    const answers = await page.evaluate(async (mistakes) => {
+        const eye = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+        const answers = {};
+        for (const mistake of mistakes) {
+            const collider = await relief.load("/files/cube.relief");
+            const gpu = new relief.GpuCollider(gl, collider);
+            const system = new relief.ParticleSystem(gl, { collider, scene: { particles: { capacity: 256 } } });
+            try {
+                await new Function("relief", "collider", "gpu", "system", "eye", `return ${mistake};`)(
+                    relief, collider, gpu, system, eye);
+                answers[mistake] = ["nothing", "no error"];
+            } catch (error) {
+                answers[mistake] = [error instanceof relief.ReliefError ? "ReliefError" : error.name, error.message];
+            }
+            gpu.dispose();
+            system.dispose();
+            collider.dispose();
+        }
+        const collider = await relief.load("/files/cube.relief");
+        const system = new relief.ParticleSystem(gl, { collider });
+        system.step(0);
+        system.step();
+        return { answers, error: gl.getError(), alive: system.info.alive, time: system.info.time };
+    }, Object.keys(kMistakes));
+    for (const [mistake, expected] of Object.entries(kMistakes)) {
+        const [name, message] = answers.answers[mistake];
+        t.diagnostic(`${mistake}: ${message}`);
+        assert.equal(name, "ReliefError", `${mistake}: ${message}`);
+        assert.match(message, expected, mistake);
+        assert.ok(message.length < 240 && !/\n|\/scene\d/.test(message), `${mistake}: ${message}`);
+    }
+    assert.equal(answers.error, 0, "a GL error");
+    assert.ok(answers.alive > 0 && answers.time > 0, "afterwards all works");
+    const expected = /Failed to load resource|net::ERR_CONNECTION_REFUSED|^failed: http:\/\/127.0.0.1:1\/|ERR_UNSAFE_PORT/;
+    assert.deepEqual(said.filter((line) => !expected.test(line)), []);
+});

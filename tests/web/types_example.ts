@@ -1,0 +1,46 @@
+// Everything of relief-particles once, for the compiler: types_test.mjs.
+import Relief, { Collider, GpuCollider, ParticleSystem, ReliefError, init, load, toToml } from "relief-particles";
+import type { Answers, Birth, Scene } from "relief-particles";
+
+export async function everything(gl: WebGL2RenderingContext, program: WebGLProgram, file: File): Promise<string[]> {
+    await init({ wasmUrl: new URL("https://example.org/relief_wasm.wasm") });
+    const collider: Collider = await Relief.load("bunny.relief");
+    const dropped = await load(file);
+    const { distance, normal, map }: Answers = collider.query([0, 1, 2]);
+    const sum: number = distance[0] + normal[0] + map[0] + dropped.texels(0)[0] + collider.bounds.min[1];
+
+    const gpu = new GpuCollider(gl, collider);
+    gpu.attach(program, 4, 1);
+    gpu.bind(4, 1);
+    gpu.query(new Float32Array(3));
+    const source: string = `#version 300 es\n${gpu.glsl}`;
+
+    const scene: Scene = { particles: { capacity: 4096 }, emitter: [{ rate: 100, point: [0, 2, 0] }], type: [{ radius: 0.1 }] };
+    const system = new ParticleSystem(gl, { collider, scene, shaded: false });
+    const other = new ParticleSystem(gl, { scene: toToml(scene), files: { "a/b.relief": dropped, "c.obj": "v 0 0 0" } });
+    const births: Birth[] = [{ position: [0, 1, 0], velocity: new Float32Array(3), lifetime: 2 }];
+    const accepted: number = system.spawn(births) + system.spawn(new Float32Array(8));
+    system.set({ forces: { wind: [1, 0, 0], drag: 1 } });
+    system.step();
+    system.step(1 / 60);
+    const view = new Float32Array(16);
+    system.draw({ view, projection: { elements: [...view] }, framebuffer: null, width: 640, height: 480, srgb: false });
+    const texture: WebGLTexture = system.textures().position;
+    const alive: number = system.info.alive + system.read().length;
+    system.restart();
+    // @ts-expect-error: a time is a number
+    system.step("1");
+    // @ts-expect-error: there is no such option
+    new ParticleSystem(gl, { colider: collider });
+    // @ts-expect-error: a drawing needs both matrices
+    system.draw({ view });
+    try {
+        other.step();
+    } catch (error) {
+        if (error instanceof ReliefError) {
+            return [error.message];
+        }
+    }
+    [system, other, gpu, collider, dropped].forEach((one) => one.dispose());
+    return [source, String(texture), system.toToml(), String(sum + accepted + alive)];
+}

@@ -1,0 +1,237 @@
+// The page of `relief view`: opened from disk with a bunny in it, each of its features once, and everything that may be
+// given to it by mistake. Nothing may be said on the console, and no GL error may be left.
+import assert from "node:assert/strict";
+import { readFileSync, writeFileSync } from "node:fs";
+import path from "node:path";
+import test from "node:test";
+
+import { bunny, run, scratch } from "./lib/native.mjs";
+import { meshData, pageData, viewer } from "./lib/view.mjs";
+
+function bake(folder) {
+    const file = path.join(folder, "bunny.relief");
+    run("relief", "bake", bunny, "-q", "-o", file, "--budget", "60kB");
+    return file;
+}
+
+/** Runs in the page: what share of the canvas differs from a picture kept before, and keeps this one. */
+const kChange = `(() => {
+    const now = reliefView.pixelsNow();
+    if (now.error) throw new Error("GL error " + now.error);
+    const before = window.pictureBefore;
+    window.pictureBefore = now.data;
+    if (!before || before.length !== now.data.length) return 1;
+    let changed = 0;
+    for (let i = 0; i < now.data.length; i += 4)
+        changed += Math.abs(now.data[i] - before[i]) + Math.abs(now.data[i + 1] - before[i + 1]) +
+            Math.abs(now.data[i + 2] - before[i + 2]) > 12;
+    return changed / (now.data.length / 4);
+})()`;
+
+test("each feature of the page shows", { timeout: 300_000 }, async (t) => {
+    const folder = scratch(t);
+    const bytes = readFileSync(bake(folder));
+    const open = await viewer(t, folder);
+    const { page, said } = await open(pageData("bunny.relief", bytes, { mesh: meshData(bunny) }),
+                                      { viewport: { width: 760, height: 400 }, colorScheme: "dark" });
+    const message = () => page.locator("#message p").textContent();
+    const changed = async (what, least, action) => {
+        await page.evaluate(kChange);
+        await action();
+        const share = await page.evaluate(kChange);
+        assert.ok(share >= least, `${what}: ${(100 * share).toFixed(2)} % of the picture changed`);
+    };
+    await page.waitForFunction("reliefView.body.triangles > 30000");
+    await changed("only the maps", 0.002, () => page.evaluate(() => reliefView.panel.setShow("surface")));
+    await changed("coloured by map", 0.02, () => page.evaluate(() => document.getElementById("tint").click()));
+    await changed("turned by a key", 0.02, () => page.keyboard.press("ArrowLeft"));
+    await changed("a slice", 0.02, () => page.keyboard.press("x"));
+    await changed("the slice moved", 0.01, () => page.keyboard.press("]"));
+    assert.equal(await page.evaluate("reliefView.look.slice.axis"), 0);
+    await page.keyboard.press("x");
+    assert.equal(await page.evaluate("reliefView.look.slice"), null);
+
+    await page.click("#tab-maps");
+    await changed("a map", 0.01, () => page.locator("#maps button").first().click());
+    assert.ok(await page.evaluate("reliefView.view.segments.length >= 12"), "its view is drawn");
+    await page.waitForFunction("reliefView.panel.picturesDone");
+    const drawn = await page.evaluate(() => [...document.querySelectorAll("#maps canvas")].every((canvas) =>
+        canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data.some((v) => v > 0)));
+    assert.ok(drawn, "every map has a picture");
+
+    await page.click("#tab-errors");
+    await changed("the heat map", 0.02, () => page.evaluate(() => reliefView.panel.setShow("mesh")));
+    const before = await page.evaluate("reliefView.camera.distance");
+    await page.locator("#places button").first().click();
+    await page.waitForFunction("reliefView.camera.flight === null");
+    assert.notEqual(await page.evaluate("reliefView.camera.distance"), before);
+    assert.match(await page.locator("#pin").textContent(), /^Map \d+ decides here/);
+
+    await page.click("#tab-particles");
+    await page.evaluate(() => {
+        reliefView.panel.dropPin();
+        reliefView.panel.setShow("surface");
+        reliefView.panel.frame();
+    });
+    for (const preset of ["rain", "snow", "fountain", "smoke"]) {
+        await page.evaluate(() => (reliefView.particles.paused = true));
+        await page.click(`[data-value=${preset}]`);
+        await page.evaluate(() => reliefView.panel.sliders.count.input.dispatchEvent(new Event("input")));
+        await changed(preset, 0.001, () => page.evaluate(() => {
+            for (let i = 0; i < 45; ++i) {
+                reliefView.particles.step();
+            }
+        }));
+        assert.ok(await page.evaluate("reliefView.particles.alive") > 50, `${preset}: some live`);
+    }
+    assert.equal(await message(), "");
+    assert.deepEqual(said, []);
+});
+
+test("particles follow the sliders, leave marks, and are copied as a scene", { timeout: 300_000 }, async (t) => {
+    const folder = scratch(t);
+    const bytes = readFileSync(bake(folder));
+    const open = await viewer(t, folder);
+    const { page, said } = await open(pageData("bunny.relief", bytes), { viewport: { width: 420, height: 800 } });
+    await page.evaluate(() => (reliefView.particles.paused = true));
+    await page.click("#tab-particles");
+    await page.click("[data-value=rain]");
+    await page.evaluate(() => {
+        document.getElementById("marks").click();
+        const set = (id, at) => {
+            const { input } = reliefView.panel.sliders[id];
+            input.value = at;
+            input.dispatchEvent(new Event("input"));
+        };
+        set("count", 0.25);
+        set("bounce", 0.5);
+        set("wind", 0.75);
+        set("rate", 0.5);
+    });
+    const settings = await page.evaluate("reliefView.particles.settings");
+    assert.equal(settings.count, 4096);
+    assert.equal(settings.bounce, 0.5);
+    const marks = await page.evaluate(() => {
+        for (let i = 0; i < 60; ++i) {
+            reliefView.particles.step();
+        }
+        return reliefView.particles.markCount();
+    });
+    assert.ok(marks > 20, `${marks} marks of contacts`);
+    const time = await page.evaluate("reliefView.particles.system.info.time");
+    await page.click("#step");
+    const later = await page.evaluate("reliefView.particles.system.info.time");
+    assert.ok(Math.abs(later - time - 1 / 60) < 1e-4, "one step");
+
+    await page.click("#copy");
+    const scene = await page.evaluate("reliefView.panel.copiedText");
+    assert.equal(scene, await page.evaluate("reliefView.particles.system.toToml()"));
+    assert.match(scene, /file = "bunny.relief"/);
+    assert.match(scene, /restitution = 0.5\n/);
+    assert.match(scene, /capacity = 4096\n/);
+
+    writeFileSync(path.join(folder, "rain.toml"), scene);
+    await page.setInputFiles("#files", path.join(folder, "rain.toml"));
+    await page.waitForFunction("reliefView.particles.preset === 'scene'");
+    assert.equal(await page.evaluate("reliefView.particles.system.toToml()"), scene, "a scene is dropped in");
+
+    const wide = await page.evaluate("document.documentElement.scrollWidth");
+    assert.ok(wide <= 420, `the page is ${wide} pixels wide`);
+    const beyond = await page.evaluate(() => [...document.querySelectorAll("#panel *, #title *")]
+        .filter((one) => one.offsetParent && one.getBoundingClientRect().right > 421).map((one) => one.outerHTML.slice(0, 80)));
+    assert.deepEqual(beyond, []);
+    assert.deepEqual(said, []);
+});
+
+test("what is given by mistake ends in a sentence, and the page goes on", { timeout: 300_000 }, async (t) => {
+    const folder = scratch(t);
+    const file = bake(folder);
+    const bytes = readFileSync(file);
+    const open = await viewer(t, folder);
+    const sentence = async (data, pattern) => {
+        const { page, said, close } = await open(data);
+        assert.match(await page.locator("#message p").textContent(), pattern);
+        assert.deepEqual(said, []);
+        await close();
+    };
+    const damaged = Buffer.from(bytes);
+    damaged.fill(0x5a, 100, 400);
+    await sentence(pageData("bunny.relief", damaged), /\.$/);
+    await sentence(pageData("bunny.relief", bytes.subarray(0, 500)), /\.$/);
+    await sentence("{ broken", /this page is damaged/i);
+    await sentence({ ...pageData("a.relief", bytes), format: 2 }, /format 2/);
+    await sentence({ ...pageData("a.relief", bytes), collider: "%%%" }, /cannot be decoded/);
+    await sentence(pageData("a.relief", bytes, { scene: "[collider]\nfile = \"b.relief\"\n" }), /b\.relief/);
+    await sentence(pageData("a.relief", bytes, { mesh: { name: "m", vertices: "AAAAAA==", triangles: "" } }), /cut off/);
+
+    const { page, said } = await open(null);
+    assert.ok(await page.isVisible("#drop"), "an empty page asks for a file");
+    const give = async (name, content, pattern) => {
+        const to = path.join(folder, name);
+        writeFileSync(to, content);
+        await page.setInputFiles("#files", to);
+        await page.waitForFunction((source) => new RegExp(source).test(document.querySelector("#message p").textContent),
+                                   pattern.source);
+    };
+    await give("notes.txt", "hello", /nothing that the page opens/);
+    await give("bad.relief", damaged, /\.$/);
+    await give("alone.toml", "[collider]\nfile = \"x.relief\"\n", /needs its collider/);
+    await give("none.obj", "v 0 0 0\n", /holds no triangles/);
+    await give("odd.obj", "v 0 0 0\nf 1 2 3\n", /names a vertex/);
+    await give("cut.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n" +
+               "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n", /damaged|cut off/);
+    await page.setInputFiles("#files", file);
+    await page.waitForFunction("reliefView.body?.surface");
+    assert.ok(!await page.isVisible("#drop"));
+    await give("worse.relief", damaged, /\.$/);
+    assert.equal(await page.locator("#name").textContent(), "bunny.relief", "what was open stays");
+    assert.deepEqual(said, []);
+});
+
+test("a browser without what the page needs is told so; a lost context is made anew", { timeout: 300_000 }, async (t) => {
+    const folder = scratch(t);
+    const bytes = readFileSync(bake(folder));
+    const open = await viewer(t, folder);
+    const data = pageData("bunny.relief", bytes);
+    const { page, said } = await open(data);
+    await page.evaluate(() => {
+        window.loss = reliefView.gl.getExtension("WEBGL_lose_context");
+        window.loss.loseContext();
+    });
+    await page.waitForFunction(() => /The GPU was reset/.test(document.querySelector("#message p").textContent));
+    await page.evaluate(() => {
+        window.bodyBefore = reliefView.body;
+        window.loss.restoreContext();
+    });
+    await page.waitForFunction("reliefView.body && reliefView.body !== window.bodyBefore && reliefView.body.surface");
+    assert.equal(await page.locator("#message p").textContent(), "");
+    assert.equal(await page.evaluate("reliefView.pixelsNow().error"), 0);
+    assert.deepEqual(said.filter((line) => !/CONTEXT_LOST_WEBGL/.test(line)), []);
+
+    const without = async (script, pattern) => {
+        const { page: other, close } = await open(data, {});
+        await other.addInitScript(script);
+        await other.reload();
+        await other.waitForFunction("window.reliefView?.ready");
+        assert.match(await other.locator("#message p").textContent(), pattern);
+        await close();
+    };
+    await without(() => {
+        const get = HTMLCanvasElement.prototype.getContext;
+        HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+            return kind === "webgl2" ? null : get.call(this, kind, ...rest);
+        };
+    }, /no WebGL2/);
+    await without(() => {
+        const get = WebGL2RenderingContext.prototype.getExtension;
+        WebGL2RenderingContext.prototype.getExtension = function (name) {
+            return name === "EXT_color_buffer_float" ? null : get.call(this, name);
+        };
+    }, /EXT_color_buffer_float/);
+    await without(() => {
+        const get = WebGL2RenderingContext.prototype.getParameter;
+        WebGL2RenderingContext.prototype.getParameter = function (name) {
+            return name === this.MAX_TEXTURE_SIZE ? 64 : get.call(this, name);
+        };
+    }, /texture|texels/i);
+});

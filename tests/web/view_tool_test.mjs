@@ -1,0 +1,193 @@
+// Pages as `relief view` makes them: a checked sheet, a scene of several bodies, and a page that follows its file.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { once } from "node:events";
+import { writeFileSync } from "node:fs";
+import path from "node:path";
+import test from "node:test";
+import { pathToFileURL } from "node:url";
+
+import { built, launch, openPage } from "./lib/browser.mjs";
+import { bin, bunny, run, scratch } from "./lib/native.mjs";
+
+process.env.RELIEF_VIEW_PAGE = path.join(built, "bin/view.html");
+const kViewport = { viewport: { width: 700, height: 400 } };
+
+async function opened(t, address) {
+    const browser = await launch();
+    t.after(() => browser.close());
+    const one = await openPage(browser, address, kViewport);
+    await one.page.waitForFunction("window.reliefView?.ready", undefined, { timeout: 60_000 });
+    return one;
+}
+
+const square = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 4 3 2 1\n";
+
+test("a check says what relief check says; a sheet is right in the middle of its thickness", { timeout: 300_000 }, async (t) => {
+    const at = (name) => path.join(scratch.folder, name);
+    scratch.folder = scratch(t);
+    writeFileSync(at("sheet.obj"), square);
+    run("relief", "bake", at("sheet.obj"), "-q", "-o", at("sheet.relief"), "--budget", "60kB", "--as", "shell");
+    run("relief", "view", at("sheet.relief"), "--mesh", at("sheet.obj"), "-q", "--samples", "5000", "-o", at("sheet.html"));
+    const said = JSON.parse(run("relief", "check", at("sheet.relief"), "--mesh", at("sheet.obj"), "--samples", "5000", "--json"));
+    const { page, said: console } = await opened(t, pathToFileURL(at("sheet.html")).href);
+    await page.click("#tab-errors");
+    assert.equal(await page.locator("#verdict").textContent(),
+                 run("relief", "check", at("sheet.relief"), "--mesh", at("sheet.obj"), "--samples", "5000").split("\n")[0]
+                     .replace(/^[^:]+: /, ""));
+    assert.equal(await page.locator("#verdict").getAttribute("class"), said.verdict.grade);
+    assert.match(await page.locator("#sheets-note").textContent(), /Sheets have a thickness of [0-9.]+ /);
+    const { depth, median } = await page.evaluate(() => ({ depth: reliefView.measured.depth, median: reliefView.measured.median }));
+    assert.ok(depth > 1e-3, `half of the thickness is ${depth}`);
+    assert.ok(median < 0.02 * depth, `${median} off the middle of a sheet that is ${2 * depth} thick`);
+    // The heat map says so too: nothing in the strong colours of the range's ends.
+    const strong = await page.evaluate(() => {
+        reliefView.panel.setShow("mesh");
+        const { data } = reliefView.pixelsNow();
+        let blue = 0;
+        for (let i = 0; i < data.length; i += 4) blue += data[i + 2] - data[i] > 80;
+        return blue / (data.length / 4);
+    });
+    assert.ok(strong < 0.01, `${(100 * strong).toFixed(1)} % of the picture is blue`);
+    assert.deepEqual(console, []);
+});
+
+test("a scene's bodies are drawn where they stand, and move", { timeout: 300_000 }, async (t) => {
+    const folder = scratch(t);
+    const at = (name) => path.join(folder, name);
+    run("relief", "bake", bunny, "-q", "-o", at("b.relief"), "--paper", "--resolution", "48");
+    writeFileSync(at("s.toml"), `
+[[collider]]
+file = "b.relief"
+[[collider]]
+file = "b.relief"
+position = [3.0, 0.0, 0.0]
+[[collider.key]]
+time = 0.0
+[[collider.key]]
+time = 1.0
+position = [3.0, 2.0, 0.0]
+[particles]
+capacity = 4096
+[[emitter]]
+box_min = [-1.0, 2.0, -1.0]
+box_max = [1.0, 2.1, 1.0]
+direction = [0.0, -1.0, 0.0]
+speed = 1.0
+rate = 500.0
+`);
+    run("relief", "view", at("s.toml"), "-o", at("s.html"));
+    const { page, said } = await opened(t, pathToFileURL(at("s.html")).href);
+    await page.waitForFunction("reliefView.view.bodies.length === 2 && reliefView.view.bodies.every((body) => body.surface)",
+                               undefined, { timeout: 120_000 });
+    const places = () => page.evaluate(() => reliefView.view.bodies.map((body) => [...body.model].slice(12, 15)));
+    assert.deepEqual((await places())[0], [0, 0, 0]);
+    await page.evaluate(() => (reliefView.particles.paused = true));
+    const before = (await places())[1];
+    await page.evaluate(() => {
+        for (let i = 0; i < 30; ++i) reliefView.particles.step();
+    });
+    await page.waitForFunction((y) => reliefView.view.bodies[1].model[13] > y + 0.2, before[1], { timeout: 60_000 });
+    assert.ok(await page.evaluate("reliefView.particles.alive") > 100);
+    assert.equal(await page.evaluate("reliefView.pixelsNow().error"), 0);
+    assert.equal(await page.locator("#message p").textContent(), "");
+    assert.deepEqual(said, []);
+});
+
+test("a body that deforms is drawn as it is at each step", { timeout: 300_000 }, async (t) => {
+    const folder = scratch(t);
+    const at = (name) => path.join(folder, name);
+    writeFileSync(at("box.obj"), "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n" +
+                  "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 4 1 5 8\n");
+    writeFileSync(at("s.toml"), `
+[collider]
+mesh = "box.obj"
+deform = { kind = "twist", axis = [0.0, 1.0, 0.0], amplitude = 90.0, frequency = 0.5 }
+resolution = 32
+[particles]
+capacity = 1024
+`);
+    run("relief", "view", at("s.toml"), "-o", at("s.html"));
+    const { page } = await opened(t, pathToFileURL(at("s.html")).href);
+    await page.evaluate(() => (reliefView.particles.paused = true));
+    const covered = () => page.evaluate(() => {
+        const { data, error } = reliefView.pixelsNow();
+        return { error, bright: [...data.keys()].filter((i) => i % 4 === 0 && data[i] > 110).length };
+    });
+    const before = await covered();
+    assert.ok(before.bright > 2000, `${before.bright} pixels of the box`);
+    await page.evaluate(() => {
+        for (let i = 0; i < 30; ++i) reliefView.particles.step();
+    });
+    const after = await covered();
+    assert.equal(after.error, 0);
+    assert.ok(Math.abs(after.bright - before.bright) > 50, `${before.bright} pixels, then ${after.bright}`);
+    assert.equal(await page.locator("#message p").textContent(), "");
+});
+
+test("fingers turn and pinch; a PLY of the mesh shows the errors", { timeout: 300_000 }, async (t) => {
+    const folder = scratch(t);
+    const at = (name) => path.join(folder, name);
+    writeFileSync(at("sheet.obj"), square);
+    run("relief", "bake", at("sheet.obj"), "-q", "-o", at("sheet.relief"), "--budget", "60kB", "--as", "shell");
+    run("relief", "view", at("sheet.relief"), "-o", at("sheet.html"));
+    const browser = await launch();
+    t.after(() => browser.close());
+    const { page, said } = await openPage(browser, pathToFileURL(at("sheet.html")).href, { ...kViewport, hasTouch: true });
+    await page.waitForFunction("window.reliefView?.ready", undefined, { timeout: 60_000 });
+    const camera = () => page.evaluate(() => ({ distance: reliefView.camera.distance, ...reliefView.camera.matrices(4, 3) }));
+    const session = await page.context().newCDPSession(page);
+    const touch = (type, ...points) => session.send("Input.dispatchTouchEvent",
+                                                    { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+    const before = await camera();
+    await touch("touchStart", [150, 200]);
+    await touch("touchMove", [210, 220]);
+    await touch("touchEnd");
+    const turned = await camera();
+    assert.notDeepEqual(turned.eye, before.eye);
+    assert.ok(Math.abs(turned.distance - before.distance) < 1e-3 * before.distance);
+    await touch("touchStart", [150, 200], [250, 200]);
+    await touch("touchMove", [100, 200], [300, 200]);
+    await touch("touchEnd");
+    const near = await camera();
+    assert.ok(Math.abs(near.distance / turned.distance - 0.5) < 0.1, `${near.distance} of ${turned.distance}`);
+
+    const header = (format) => `ply\nformat ${format} 1.0\nelement vertex 4\nproperty float x\nproperty float y\n` +
+        "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    const corners = [[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1]];
+    const binary = Buffer.alloc(48 + 1 + 16);
+    corners.flat().forEach((x, i) => binary.writeFloatLE(x, 4 * i));
+    binary.writeUInt8(4, 48);
+    [3, 2, 1, 0].forEach((i, k) => binary.writeInt32LE(i, 49 + 4 * k));
+    const files = {
+        "text.ply": Buffer.from(`${header("ascii")}${corners.map((c) => c.join(" ")).join("\n")}\n4 3 2 1 0\n`),
+        "binary.ply": Buffer.concat([Buffer.from(header("binary_little_endian")), binary]),
+    };
+    const medians = [];
+    for (const [name, bytes] of Object.entries(files)) {
+        writeFileSync(at(name), bytes);
+        await page.evaluate(() => (reliefView.measured = null));
+        await page.setInputFiles("#files", at(name));
+        await page.waitForFunction("reliefView.measured", undefined, { timeout: 60_000 });
+        medians.push(await page.evaluate("reliefView.measured.median"));
+        assert.equal(await page.evaluate("reliefView.mesh.triangles.length"), 6, name);
+    }
+    assert.equal(medians[0], medians[1]);
+    assert.deepEqual(said, []);
+});
+
+test("a served page is loaded anew when its file is baked anew", { timeout: 300_000 }, async (t) => {
+    const folder = scratch(t);
+    const at = (name) => path.join(folder, name);
+    const bake = (size) => run("relief", "bake", bunny, "-q", "-o", at("b.relief"), "--paper", "--resolution", String(size));
+    bake(32);
+    const server = spawn(path.join(bin, "relief"), ["view", at("b.relief"), "--serve", "0"], { stdio: ["ignore", "pipe", "inherit"] });
+    t.after(() => server.kill());
+    const [address] = await once(server.stdout, "data");
+    const { page } = await opened(t, String(address).trim());
+    const width = () => page.evaluate("reliefView.body.collider.info.maps[0].width");
+    assert.equal(await width(), 32);
+    bake(40);
+    await page.waitForFunction("window.reliefView?.ready && reliefView.body?.collider.info.maps[0].width === 40", undefined,
+                               { timeout: 60_000 });
+});

@@ -1,0 +1,54 @@
+// The package as a web developer has it: packed by npm, installed into a fresh folder beside Vite, bundled, and played.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { cpSync, mkdirSync, writeFileSync } from "node:fs";
+import path from "node:path";
+import test from "node:test";
+
+import { launch, openPage, root, serve } from "./lib/browser.mjs";
+import { bakeCube } from "./lib/cube.mjs";
+import { scratch } from "./lib/native.mjs";
+
+const kMain = `import { Relief, ParticleSystem } from "relief-particles";
+const gl = document.querySelector("canvas").getContext("webgl2");
+const collider = await Relief.load("cube.relief");
+const system = new ParticleSystem(gl, { collider, scene: { particles: { capacity: 4096 } } });
+for (let i = 0; i < 10; ++i) {
+    system.step(1 / 60);
+}
+window.answer = { ...system.info, error: gl.getError() };
+`;
+
+test("npm pack, install and vite build give a page that plays", { timeout: 120_000 }, async (t) => {
+    const folder = scratch(t);
+    const npm = (...words) => execFileSync("npm", [...words, "--no-audit", "--no-fund", "--loglevel=error"],
+                                           { cwd: folder, encoding: "utf8" });
+    const [packed] = JSON.parse(npm("pack", path.join(root, "out/npm"), "--json"));
+    assert.equal(packed.name, "relief-particles");
+    assert.deepEqual(packed.files.map((file) => file.path).sort(), [
+        "LICENSE", "README.md", "package.json", "relief.d.ts", "relief.js", "relief_wasm.mjs", "relief_wasm.wasm"]);
+    writeFileSync(path.join(folder, "package.json"), '{ "name": "page", "private": true, "type": "module" }');
+    npm("install", "--prefer-offline", "--ignore-scripts", `./${packed.filename}`, "vite@5.4.21");
+    writeFileSync(path.join(folder, "index.html"), `<!doctype html><title>A page</title><canvas></canvas>
+<script type="module" src="/main.js"></script>`);
+    writeFileSync(path.join(folder, "main.js"), kMain);
+    mkdirSync(path.join(folder, "public"));
+    bakeCube(folder);
+    cpSync(path.join(folder, "cube.relief"), path.join(folder, "public/cube.relief"));
+    execFileSync(process.execPath, ["node_modules/vite/bin/vite.js", "build", "--target", "es2022", "--logLevel", "warn"],
+                 { cwd: folder });
+
+    const server = await serve({ "/": path.join(folder, "dist") });
+    const browser = await launch();
+    t.after(async () => {
+        await browser.close();
+        server.close();
+    });
+    const { page, said } = await openPage(browser, server.url);
+    await page.waitForFunction("window.answer", undefined, { timeout: 30_000 });
+    const answer = await page.evaluate("window.answer");
+    assert.ok(answer.alive > 50, `${answer.alive} particles`);
+    assert.equal(answer.time.toFixed(3), "0.167");
+    assert.equal(answer.error, 0);
+    assert.deepEqual(said, []);
+});
