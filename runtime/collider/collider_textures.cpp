@@ -6,26 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "runtime/collider/gpu_image.h"
 #include "runtime/collider/shader_texels.h"
 #include "runtime/gl/gl_fault.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 
 namespace relief {
 namespace {
-
-/// How the GL takes each TexelKind, and the sampler that reads it.
-struct TexelFormat {
-    const char* sampler;
-    GLenum internal_format;
-    GLenum format;
-    GLenum type;
-    std::size_t texel_size;
-};
-constexpr std::array<TexelFormat, kTexelKinds> kFormats = {{
-    {"u_relief_float", GL_RGBA32F, GL_RGBA, GL_FLOAT, 16},
-    {"u_relief_fixed", GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, 4},
-    {"u_relief_front_back", GL_RGBA16UI, GL_RGBA_INTEGER, GL_UNSIGNED_SHORT, 8},
-}};
 
 /// Uploads texels that follow each other, from index `first` on; the texture is bound.
 void uploadTexels(const TexelFormat& format, const TexelLayout& wrapped, std::size_t first,
@@ -134,6 +122,7 @@ void ColliderTextures::setPoses(std::span<const Pose> poses) {
 
 Result<ColliderTextures> ColliderTextures::upload(std::span<const PlacedMap> maps,
                                                   std::vector<BlockBody> bodies) {
+    RELIEF_TRY(checkContext());
     RELIEF_TRY(checkMapCount(maps.size(), bodies.size()));
     const MapLayout layout = RELIEF_TRY(MapLayout::create(maps, integer(GL_MAX_TEXTURE_SIZE)));
     ColliderTextures result;
@@ -160,7 +149,7 @@ Result<ColliderTextures> ColliderTextures::upload(std::span<const PlacedMap> map
 
 void ColliderTextures::makeTextures(const MapLayout& layout) {
     for (std::size_t kind = 0; kind < kTexelKinds; ++kind) {
-        const TexelFormat& format = kFormats[kind];
+        const TexelFormat& format = texelFormat(static_cast<TexelKind>(kind));
         const GLsizei width = layout.textures[kind].width();
         const GLsizei height = layout.textures[kind].height();
         // A layout that no map uses still gets one texel, for a sampler must have something bound.
@@ -173,18 +162,18 @@ void ColliderTextures::makeTextures(const MapLayout& layout) {
 
 void ColliderTextures::uploadStored(const DepthMap& map, const MapPlace& place, const MapLayout& layout) {
     glBindTexture(GL_TEXTURE_2D, textures_[place.kind].name());
-    uploadTexels(kFormats[place.kind], layout.textures[place.kind], place.first, shaderTexels(map));
+    uploadTexels(texelFormat(place.kind), layout.textures[place.kind], place.first, shaderTexels(map));
 }
 
 void ColliderTextures::clearLive(const DepthMap& map, const MapPlace& place) {
-    const TexelFormat& format = kFormats[place.kind];
+    const TexelFormat& format = texelFormat(place.kind);
     std::vector<std::byte> empty(format.texel_size);
     encodeTexel(map.format, {}, empty);
     glBindTexture(GL_TEXTURE_2D, textures_[place.kind].name());
     fillRectangle(format, place.texels, empty);
     const std::array<std::byte, 16> still{};
     glBindTexture(GL_TEXTURE_2D, textures_[kFloatTexels].name());
-    fillRectangle(kFormats[kFloatTexels], place.motion, still);
+    fillRectangle(texelFormat(kFloatTexels), place.motion, still);
 }
 
 void ColliderTextures::makeBlock(std::span<const std::byte> bytes) {
@@ -208,15 +197,15 @@ std::vector<LiveSlot> ColliderTextures::liveSlots(std::size_t body) const {
     return slots;
 }
 
-void ColliderTextures::attach(const GlProgram& program, const Binding& binding) const {
-    glUseProgram(program.name());
+void ColliderTextures::attach(GLuint program, const Binding& binding) const {
+    glUseProgram(program);
     for (std::size_t kind = 0; kind < kTexelKinds; ++kind) {
-        glUniform1i(uniformLocation(program, kFormats[kind].sampler),
+        glUniform1i(glGetUniformLocation(program, texelFormat(static_cast<TexelKind>(kind)).sampler),
                     binding.first_unit + static_cast<GLint>(kind));
     }
-    const GLuint index = glGetUniformBlockIndex(program.name(), "ReliefCollider");
+    const GLuint index = glGetUniformBlockIndex(program, "ReliefCollider");
     if (index != GL_INVALID_INDEX) {
-        glUniformBlockBinding(program.name(), index, static_cast<GLuint>(binding.uniform_block));
+        glUniformBlockBinding(program, index, static_cast<GLuint>(binding.uniform_block));
     }
 }
 

@@ -80,7 +80,8 @@ class ColliderTextures {
 
     /// Connects a program that includes collider.glsl: samplers, block binding. Once after linking; leaves
     /// the program current.
-    void attach(const GlProgram& program, const Binding& binding) const;
+    void attach(const GlProgram& program, const Binding& binding) const { attach(program.name(), binding); }
+    void attach(GLuint program, const Binding& binding) const;  ///< of a program of the caller's own
     /// Binds textures and block for the next draw.
     void bind(const Binding& binding) const;
 

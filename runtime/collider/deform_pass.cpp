@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "runtime/gl/gl_fault.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 
 namespace relief {
@@ -60,6 +62,7 @@ void setVector(const GlProgram& program, const char* name, const glm::vec3& v) {
 
 Result<DeformPass> DeformPass::create(const Deformation& deformation, std::span<const glm::vec3> positions,
                                       std::span<const glm::vec3> normals, Output output) {
+    RELIEF_TRY(checkContext());
     RELIEF_TRY(checkDeformation(deformation));
     if (deformation.kind == DeformKind::kWobble && normals.empty()) {
         return fail(ErrorCode::kUsage, "a wobble goes along the normals of the mesh; give them");
@@ -73,6 +76,7 @@ Result<DeformPass> DeformPass::create(const Deformation& deformation, std::span<
 
 Result<DeformPass> DeformPass::create(const std::string& glsl, std::span<const glm::vec3> positions,
                                       std::span<const glm::vec3> normals, Output output) {
+    RELIEF_TRY(checkContext());
     auto pass = make("#define RELIEF_DEFORM_CUSTOM 1\n", glsl, positions, normals, output);
     if (pass) {
         pass->custom_ = true;

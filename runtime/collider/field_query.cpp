@@ -4,6 +4,7 @@
 #include <array>
 
 #include "runtime/gl/gl_fault.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 
 namespace relief {
@@ -66,6 +67,7 @@ Result<FieldQuery> FieldQuery::create(const Collider& collider) {
 }
 
 Result<FieldQuery> FieldQuery::create(const ColliderTextures& textures) {
+    RELIEF_TRY(checkContext());
     const PassState state;
     FieldQuery query;
     query.textures_ = &textures;

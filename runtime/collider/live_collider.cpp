@@ -5,6 +5,8 @@
 #include <glm/glm.hpp>
 #include <string>
 
+#include "runtime/gl/gl_fault.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 
 namespace relief {
@@ -88,6 +90,7 @@ Result<Collider> liveFrames(const Bounds& box, std::uint32_t resolution) {
 
 Result<LiveCollider> LiveCollider::create(std::span<const glm::vec3> positions,
                                           std::span<const glm::uvec3> triangles, Collider frames) {
+    RELIEF_TRY(checkContext());
     if (frames.maps.empty()) {
         return fail(ErrorCode::kUsage, "a live collider needs maps; liveFrames() makes some");
     }

@@ -17,7 +17,7 @@ GLsizei motionHeight(const DepthMap& map) {
 }
 
 std::size_t texelCount(const DepthMap& map) {
-    return gpuBytes(map) / texelSize(map.format);
+    return static_cast<std::size_t>(gpuBytes(map)) / texelSize(map.format);
 }
 
 Result<void> reserve(std::span<const PlacedMap> maps, GLint side_max,

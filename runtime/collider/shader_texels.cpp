@@ -25,7 +25,7 @@ std::vector<std::byte> withRows(const DepthMap& map, std::span<const std::byte> 
     const std::vector<RowSpan> spans = rowSpans(map);
     const std::size_t size = texelSize(map.format);
     std::vector<std::byte> bytes;
-    bytes.reserve((spans.size() + texelsOf(spans)) * size);
+    bytes.reserve((spans.size() + static_cast<std::size_t>(texelsOf(spans))) * size);
     auto next = static_cast<std::uint32_t>(spans.size());
     for (const RowSpan& span : spans) {
         // Less than 0 for the first rows of maps that are wider than high: modulo 2^32, as the shader adds.
@@ -64,7 +64,7 @@ std::vector<std::byte> shaderTexels(const DepthMap& map) {
             };
             if (map.compare == Compare::kGap) {
                 if (isEmpty(0) || isEmpty(1)) {
-                    std::ranges::fill(texel, std::byte{0});
+                    std::fill(texel.begin(), texel.end(), std::byte{0});
                 }
             } else if (map.decode == Decode::kPlane && isEmpty(0) != isEmpty(1)) {
                 const std::size_t full = isEmpty(0) ? 1 : 0;

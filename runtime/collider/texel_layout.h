@@ -2,10 +2,10 @@
 // rectangles that are drawn to.
 #pragma once
 
-#include <epoxy/gl.h>
-
 #include <cstddef>
 #include <vector>
+
+#include "runtime/gl/gl_types.h"
 
 namespace relief {
 

@@ -1,0 +1,45 @@
+// What ColliderTextures uploads of a collider, as bytes: for loaders of one's own (LAYOUT.md). Needs no GL.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "formats/base/result.h"
+#include "formats/collider.h"
+#include "runtime/collider/map_layout.h"
+
+namespace relief {
+
+/// How a GL takes the texels of a texture.
+struct TexelFormat {
+    const char* sampler;            ///< that reads it in collider.glsl
+    const char* name;               ///< of the internal format: "GL_RGBA32F"
+    std::uint32_t internal_format;  ///< the GL's numbers, as are the next two
+    std::uint32_t format;
+    std::uint32_t type;
+    std::size_t texel_size;  ///< bytes
+};
+
+[[nodiscard]] const TexelFormat& texelFormat(TexelKind kind);
+
+struct GpuTexture {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;       ///< at least 1: a sampler must have something bound
+    std::vector<std::byte> texels;  ///< width · height · texel_size; zero where no map lies
+};
+
+struct GpuImage {
+    std::array<GpuTexture, kTexelKinds> textures;  ///< by TexelKind
+    std::vector<std::byte> block;                  ///< ReliefCollider, std140
+    std::string defines;                           ///< lines that collider.glsl is compiled with
+};
+
+/// A collider by itself, in its own object space, as ColliderTextures::create(collider) has it.
+/// \param side_max  of a texture, texels.
+/// Fails with kUnsupported (no maps) or kLimit (a texture would have to be larger).
+[[nodiscard]] Result<GpuImage> gpuImage(const Collider& collider, std::int32_t side_max = 16384);
+
+}  // namespace relief
