@@ -1,0 +1,421 @@
+// relief._relief: what the package relief of Python is made of. relief/__init__.py documents it for users.
+#include <pybind11/functional.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "bake/import/mesh_import.h"
+#include "bake/measure/accuracy.h"
+#include "bake/measure/worst_places.h"
+#include "bake/mesh/mesh_query.h"
+#include "bake/pipeline/planned_bake.h"
+#include "bake/plan/view_planner.h"
+#include "bake/repair/mesh_care.h"
+#include "bake/shape/shape.h"
+#include "formats/container.h"
+#include "formats/nearest_surface.h"
+#include "runtime/gl/gl_context.h"
+#include "runtime/player/simulation.h"
+#include "runtime/scene/loaded_scene.h"
+
+namespace py = pybind11;
+
+namespace relief {
+namespace {
+
+using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
+using Indices = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
+
+/// relief.Error and those derived from it, by ErrorCode; made by the module.
+struct Errors {
+    py::object base, usage, input, io, limit, unsupported;
+};
+Errors* g_errors = nullptr;
+
+[[noreturn]] void raise(const Error& error) {
+    const py::object* type = &g_errors->base;
+    switch (error.code) {
+        case ErrorCode::kUsage:
+            type = &g_errors->usage;
+            break;
+        case ErrorCode::kInvalidInput:
+            type = &g_errors->input;
+            break;
+        case ErrorCode::kIo:
+            type = &g_errors->io;
+            break;
+        case ErrorCode::kLimit:
+            type = &g_errors->limit;
+            break;
+        case ErrorCode::kUnsupported:
+            type = &g_errors->unsupported;
+            break;
+        default:
+            break;
+    }
+    PyErr_SetString(type->ptr(), error.message.c_str());
+    throw py::error_already_set();
+}
+
+/// The value, or the exception. With the GIL.
+template <class T>
+T need(Result<T> result) {
+    if (!result) {
+        raise(result.error());
+    }
+    return std::move(*result);
+}
+
+/// f() without the GIL.
+template <class F>
+auto released(const F& f) {
+    const py::gil_scoped_release release;
+    return f();
+}
+
+std::span<const glm::vec3> pointsOf(const Floats& points) {
+    if (points.ndim() != 2 || points.shape(1) != 3) {
+        raise({ErrorCode::kUsage, "points are an array of shape (n, 3)"});
+    }
+    static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
+    return {reinterpret_cast<const glm::vec3*>(points.data()), static_cast<std::size_t>(points.shape(0))};
+}
+
+struct Samples {
+    Floats distance;
+    Floats normal;
+    py::array_t<std::int32_t> map;
+};
+
+/// ask(p, distance, normal, map) at all points, on all cores.
+template <class Ask>
+Samples sampleAll(const Floats& points, const Ask& ask) {
+    const auto at = pointsOf(points);
+    const auto count = static_cast<py::ssize_t>(at.size());
+    Samples out{Floats(count), Floats({count, py::ssize_t{3}}), py::array_t<std::int32_t>(count)};
+    float* const distance = out.distance.mutable_data();
+    float* const normal = out.normal.mutable_data();
+    std::int32_t* const map = out.map.mutable_data();
+    released([&] {
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, at.size(), 4096), [&](const auto& range) {
+            for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                const auto sample = ask(at[i]);
+                distance[i] = sample.distance;
+                std::copy_n(&sample.normal.x, 3, normal + 3 * i);
+                map[i] = sample.map;
+            }
+        });
+    });
+    return out;
+}
+
+py::tuple query(const Collider& collider, const Floats& points, const std::string& distance) {
+    if (distance != "plane" && distance != "nearest") {
+        raise({ErrorCode::kUsage, "distance is 'plane' or 'nearest'"});
+    }
+    Samples s = distance == "plane"
+                    ? sampleAll(points, [&](const glm::vec3& p) { return evaluate(collider, p); })
+                    : sampleAll(points, [&](const glm::vec3& p) { return nearestSurface(collider, p); });
+    return py::make_tuple(s.distance, s.normal, s.map);
+}
+
+/// The stored texels of a map, without a copy: they live as long as the collider.
+py::array texelsOf(const py::object& self, std::size_t index) {
+    const auto& collider = self.cast<const Collider&>();
+    if (index >= collider.maps.size()) {
+        throw py::index_error("no such map");
+    }
+    const DepthMap& map = collider.maps[index];
+    const auto faces = static_cast<py::ssize_t>(map.faceCount());
+    const auto height = static_cast<py::ssize_t>(map.height);
+    const auto width = static_cast<py::ssize_t>(map.width);
+    const bool floats = map.format == MapFormat::kFloat32;
+    const bool words = isFrontBack(map.format);
+    const py::dtype type = floats  ? py::dtype::of<float>()
+                           : words ? py::dtype::of<std::uint16_t>()
+                                   : py::dtype::of<std::uint8_t>();
+    py::array array(type, {faces, height, width, py::ssize_t{4}}, map.texels.data(), self);
+    array.attr("setflags")(py::arg("write") = false);
+    return array;
+}
+
+/// Depth of the front, or of the back, of every texel: NaN where there is none.
+Floats depthOf(const Collider& collider, std::size_t index, bool back) {
+    if (index >= collider.maps.size()) {
+        throw py::index_error("no such map");
+    }
+    const DepthMap& map = collider.maps[index];
+    Floats out({static_cast<py::ssize_t>(map.faceCount()), static_cast<py::ssize_t>(map.height),
+                static_cast<py::ssize_t>(map.width)});
+    float* depth = out.mutable_data();
+    for (std::uint32_t face = 0; face < map.faceCount(); ++face) {
+        for (std::uint32_t y = 0; y < map.height; ++y) {
+            for (std::uint32_t x = 0; x < map.width; ++x) {
+                const Texel texel = decodeTexel(map.format, map.texelAt(face, x, y));
+                const auto& surface = back ? texel.back : texel.front;
+                *depth++ = surface ? surface->depth : std::numeric_limits<float>::quiet_NaN();
+            }
+        }
+    }
+    return out;
+}
+
+py::dict describe(const Collider& collider, std::size_t index) {
+    const DepthMap& map = collider.maps.at(index);
+    py::list rows;
+    for (const glm::vec4& row : map.object_to_map.row) {
+        rows.append(py::make_tuple(row.x, row.y, row.z, row.w));
+    }
+    py::dict out;
+    out["format"] = mapFormatName(map.format);
+    out["encoding"] = depthEncodingName(map.format);
+    out["compare"] = compareName(map.compare);
+    out["decode"] = decodeName(map.decode);
+    out["width"] = map.width;
+    out["height"] = map.height;
+    out["faces"] = map.faceCount();
+    out["object_to_map"] = rows;
+    out["encloses"] = map.encloses;
+    out["empty_is_outside"] = map.empty_is_outside;
+    return out;
+}
+
+// --- bake
+
+struct BakeArguments {
+    std::uint64_t budget = 1'000'000;
+    std::string quality = "normal";
+    std::uint32_t max_maps = kPlannedMapsMax;
+    std::optional<double> thickness;
+};
+
+Result<Collider> bakeMesh(TriangleMesh mesh, const BakeArguments& arguments) {
+    MeshCareOptions care;
+    care.report = false;
+    CaredMesh cared = RELIEF_TRY(careFor(std::move(mesh), care));
+    ShapeOptions shape;
+    shape.thickness = arguments.thickness.value_or(defaultThickness(cared.mesh->bounds, arguments.budget));
+    ShapedMesh shaped = RELIEF_TRY(shapeMesh(cared.mesh, shape));
+    const MeshQuery query = RELIEF_TRY(MeshQuery::build(shaped.mesh));
+    ViewOptions views;
+    views.max_maps = arguments.max_maps;
+    const ViewChoice choice = RELIEF_TRY(chooseViews(query, views));
+    BakeOptions options;
+    options.quality = arguments.quality == "fast" ? Quality::kFast : Quality::kNormal;
+    PlannedBake planned = RELIEF_TRY(bakePlanned(query, choice, arguments.budget, options));
+    Collider collider = std::move(planned.baked.collider);
+    collider.provenance.options += careOptionsText(cared.care) + shapeOptionsText(shaped.report);
+    return collider;
+}
+
+Result<TriangleMesh> meshOf(const Floats& vertices, const Indices& triangles, const std::string& name) {
+    const auto positions = pointsOf(vertices);
+    if (triangles.ndim() != 2 || triangles.shape(1) != 3) {
+        return fail(ErrorCode::kUsage, "triangles are an array of indices of shape (n, 3)");
+    }
+    TriangleMesh mesh;
+    mesh.name = name;
+    mesh.positions.assign(positions.begin(), positions.end());
+    const auto* corners = reinterpret_cast<const glm::uvec3*>(triangles.data());
+    mesh.triangles.assign(corners, corners + triangles.shape(0));
+    return finishMesh(std::move(mesh));
+}
+
+py::dict check(const Collider& collider, TriangleMesh mesh, std::uint32_t samples, std::uint64_t seed) {
+    const auto measured = released([&]() -> Result<std::pair<FieldAccuracy, std::vector<WorstPlace>>> {
+        MeshCareOptions care;
+        care.report = false;
+        CaredMesh cared = RELIEF_TRY(careFor(std::move(mesh), care));
+        ShapeOptions shape = shapeOptionsOf(collider.provenance.options, ShapeOptions{});
+        if (shape.thickness <= 0.0) {
+            shape.thickness = defaultThickness(cared.mesh->bounds, collider.gpuBytes());
+        }
+        ShapedMesh shaped = RELIEF_TRY(shapeMesh(cared.mesh, shape));
+        const MeshQuery query = RELIEF_TRY(MeshQuery::build(shaped.mesh));
+        AccuracyOptions options;
+        options.samples = samples;
+        options.seed = seed;
+        const TruthSamples truth = sampleTruth(query, options);
+        FieldAccuracy accuracy = measureField(truth, nearestFieldOf(collider));
+        return std::pair(accuracy, worstPlaces(truth, query, Sights(collider.maps, query), collider));
+    });
+    const auto& [accuracy, found] = need(measured);
+    py::dict out;
+    out["false_inside_percent"] = accuracy.near.false_inside;
+    out["false_outside_percent"] = accuracy.near.false_outside;
+    out["distance_mean"] = accuracy.distance_mean;
+    out["distance_p99"] = accuracy.distance_p99;
+    out["normal_mean"] = accuracy.normal_mean;
+    out["unknown_percent"] = accuracy.unknown_percent;
+    py::list places;
+    for (const WorstPlace& place : found) {
+        places.append(py::dict(
+            py::arg("position") = py::make_tuple(place.position.x, place.position.y, place.position.z),
+            py::arg("size") = place.size(), py::arg("share_percent") = place.share_percent,
+            py::arg("inside_percent") = place.inside_percent, py::arg("map") = place.map,
+            py::arg("cause") = std::string(wrongCauseName(place.cause))));
+    }
+    out["places"] = places;
+    return out;
+}
+
+// --- simulate
+
+/// A scene without a window. One at a time holds the context of its thread.
+class HeadlessSimulation {
+  public:
+    HeadlessSimulation(const std::filesystem::path& scene, std::optional<std::uint64_t> seed)
+        : context_(need(GlContext::create())) {
+        SceneOverrides overrides;
+        overrides.seed = seed;
+        loaded_ = std::make_unique<LoadedScene>(need(loadAll(scene, overrides)));
+        auto emitters = need(makeEmitters(loaded_->scene.emitters));
+        simulation_ = std::make_unique<Simulation>(
+            need(Simulation::create(*loaded_, std::move(emitters), StepPath::kAuto, nullptr)));
+    }
+
+    void step(std::uint32_t count) {
+        const Result<void> done = released([&]() -> Result<void> {
+            for (std::uint32_t i = 0; i < count; ++i) {
+                RELIEF_TRY(simulation_->step(nullptr));
+            }
+            return {};
+        });
+        if (!done) {
+            raise(done.error());
+        }
+    }
+
+    [[nodiscard]] py::dict read() const {
+        const auto states = need(simulation_->particles().readState());
+        const auto count = static_cast<py::ssize_t>(states.size());
+        Floats position({count, py::ssize_t{3}});
+        Floats velocity({count, py::ssize_t{3}});
+        Floats age(count);
+        Floats lifetime(count);
+        Indices id(count);
+        Indices type(count);
+        Indices collisions(count);
+        for (std::size_t i = 0; i < states.size(); ++i) {
+            std::copy_n(&states[i].position.x, 3, position.mutable_data() + 3 * i);
+            std::copy_n(&states[i].velocity.x, 3, velocity.mutable_data() + 3 * i);
+            age.mutable_data()[i] = states[i].age;
+            lifetime.mutable_data()[i] = states[i].lifetime;
+            id.mutable_data()[i] = states[i].id;
+            type.mutable_data()[i] = states[i].type;
+            collisions.mutable_data()[i] = states[i].collisions;
+        }
+        py::dict out;
+        out["positions"] = position;
+        out["velocities"] = velocity;
+        out["ages"] = age;
+        out["lifetimes"] = lifetime;
+        out["ids"] = id;
+        out["types"] = type;
+        out["collisions"] = collisions;
+        return out;
+    }
+
+    [[nodiscard]] double time() const { return simulation_->particles().time(); }
+    [[nodiscard]] std::uint32_t alive() const { return simulation_->particles().counts().alive; }
+
+  private:
+    std::unique_ptr<GlContext> context_;
+    std::unique_ptr<LoadedScene> loaded_;
+    std::unique_ptr<Simulation> simulation_;
+};
+
+py::tuple vectorOf(const glm::vec3& v) {
+    return py::make_tuple(v.x, v.y, v.z);
+}
+
+}  // namespace
+}  // namespace relief
+
+PYBIND11_MODULE(_relief, m) {
+    using namespace relief;  // NOLINT: a module is one scope
+    m.attr("version") = RELIEF_VERSION;
+
+    auto errors = std::make_unique<Errors>();
+    const auto derive = [&](const char* name, const py::object& base) {
+        const std::string full = std::string("relief.") + name;
+        py::object made =
+            py::reinterpret_steal<py::object>(PyErr_NewException(full.c_str(), base.ptr(), nullptr));
+        m.attr(name) = made;
+        return made;
+    };
+    errors->base = derive("Error", py::reinterpret_borrow<py::object>(PyExc_RuntimeError));
+    errors->usage = derive("UsageError", errors->base);
+    errors->input = derive("InputError", errors->base);
+    errors->io = derive("FileError", errors->base);
+    errors->limit = derive("LimitError", errors->base);
+    errors->unsupported = derive("UnsupportedError", errors->base);
+    g_errors = errors.release();  // as long as the process
+
+    py::class_<Collider, std::shared_ptr<Collider>>(m, "Collider")
+        .def_property_readonly(
+            "bounds",
+            [](const Collider& c) { return py::make_tuple(vectorOf(c.bounds.min), vectorOf(c.bounds.max)); })
+        .def_property_readonly("unit", [](const Collider& c) { return c.unit; })
+        .def_property_readonly("mesh_name", [](const Collider& c) { return c.provenance.mesh_name; })
+        .def_property_readonly("options", [](const Collider& c) { return c.provenance.options; })
+        .def_property_readonly("gpu_bytes", &Collider::gpuBytes)
+        .def_property_readonly("map_count", [](const Collider& c) { return c.maps.size(); })
+        .def("describe_map", &describe)
+        .def("map_texels", [](const py::object& self, std::size_t i) { return texelsOf(self, i); })
+        .def("map_depth", &depthOf)
+        .def("query", &query);
+    m.def("load", [](const std::filesystem::path& path) {
+        return std::make_shared<Collider>(need(released([&] { return loadCollider(path); })));
+    });
+    m.def("read", [](const py::bytes& bytes) {
+        const std::string_view view = bytes;
+        return std::make_shared<Collider>(need(readContainer(std::as_bytes(std::span(view)))));
+    });
+    m.def("save", [](const Collider& collider, const std::filesystem::path& path, int compression) {
+        ContainerWriteOptions options;
+        options.compression_level = compression;
+        const Result<void> done = released([&] { return saveCollider(path, collider, options); });
+        if (!done) {
+            raise(done.error());
+        }
+    });
+    const auto make = [](TriangleMesh mesh, std::uint64_t budget, const std::string& quality,
+                         std::uint32_t max_maps, std::optional<double> thickness) {
+        const BakeArguments arguments{budget, quality, max_maps, thickness};
+        return std::make_shared<Collider>(
+            need(released([&] { return bakeMesh(std::move(mesh), arguments); })));
+    };
+    m.def("bake_mesh", [make](const Floats& vertices, const Indices& triangles, const std::string& name,
+                              std::uint64_t budget, const std::string& quality, std::uint32_t max_maps,
+                              std::optional<double> thickness) {
+        return make(need(meshOf(vertices, triangles, name)), budget, quality, max_maps, thickness);
+    });
+    m.def("bake_file",
+          [make](const std::filesystem::path& path, std::uint64_t budget, const std::string& quality,
+                 std::uint32_t max_maps, std::optional<double> thickness) {
+              return make(need(released([&] { return importMeshInWorker(path); })), budget, quality, max_maps,
+                          thickness);
+          });
+    m.def("check_mesh", [](const Collider& collider, const Floats& vertices, const Indices& triangles,
+                           std::uint32_t samples, std::uint64_t seed) {
+        return check(collider, need(meshOf(vertices, triangles, "mesh")), samples, seed);
+    });
+    m.def("check_file", [](const Collider& collider, const std::filesystem::path& path, std::uint32_t samples,
+                           std::uint64_t seed) {
+        return check(collider, need(released([&] { return importMeshInWorker(path); })), samples, seed);
+    });
+    py::class_<HeadlessSimulation>(m, "Simulation")
+        .def(py::init<const std::filesystem::path&, std::optional<std::uint64_t>>())
+        .def("step", &HeadlessSimulation::step)
+        .def("read", &HeadlessSimulation::read)
+        .def_property_readonly("time", &HeadlessSimulation::time)
+        .def_property_readonly("alive", &HeadlessSimulation::alive);
+}
