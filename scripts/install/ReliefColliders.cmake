@@ -6,7 +6,9 @@
 # Adds a target that is built by default. With RECIPE one command bakes all that the recipe lists. With MESHES one command
 # a mesh bakes <dir>/<name of the mesh>.relief, with these options of `relief bake`; the target's property RELIEF_COLLIDERS
 # lists them. <dir> is by default the current binary directory. The build also watches materials, buffers and other files
-# that a mesh refers to, and `relief` itself.
+# that a mesh refers to, and `relief` itself. Warnings are printed, once each.
+#
+# Ninja runs RELIEF_BAKE_JOBS of these commands at a time, 2 by default: each of them uses all cores.
 
 function(relief_add_colliders target)
     cmake_parse_arguments(PARSE_ARGV 1 arg "" "RECIPE;OUTPUT_DIR" "MESHES;OPTIONS")
@@ -26,15 +28,22 @@ function(relief_add_colliders target)
         get_filename_component(folder ${arg_OUTPUT_DIR} ABSOLUTE BASE_DIR ${CMAKE_CURRENT_BINARY_DIR})
     endif()
     file(MAKE_DIRECTORY ${folder})
+    set(RELIEF_BAKE_JOBS 2 CACHE STRING "Commands of relief_add_colliders() that Ninja runs at a time")
+    get_property(pools GLOBAL PROPERTY JOB_POOLS)
+    if(NOT pools MATCHES "(^|;)relief_bakes=")
+        set_property(GLOBAL APPEND PROPERTY JOB_POOLS relief_bakes=${RELIEF_BAKE_JOBS})
+    endif()
 
     if(arg_RECIPE)
         get_filename_component(recipe ${arg_RECIPE} ABSOLUTE)
         set(stamp ${CMAKE_CURRENT_BINARY_DIR}/${target}.stamp)
         add_custom_command(
             OUTPUT ${stamp}
-            COMMAND Relief::relief bake --recipe ${recipe} -o ${folder} --stamp ${stamp} --depfile ${stamp}.d -q
+            COMMAND Relief::relief bake --recipe ${recipe} -o ${folder} --stamp ${stamp} --depfile ${stamp}.d
+                    --warnings-only
             DEPENDS ${recipe} Relief::relief
             DEPFILE ${stamp}.d
+            JOB_POOL relief_bakes
             COMMENT "Baking the colliders of ${arg_RECIPE}"
             VERBATIM)
         add_custom_target(${target} ALL DEPENDS ${stamp})
@@ -52,9 +61,10 @@ function(relief_add_colliders target)
         list(APPEND outputs ${output})
         add_custom_command(
             OUTPUT ${output}
-            COMMAND Relief::relief bake ${mesh} -o ${output} --depfile ${output}.d -q ${arg_OPTIONS}
+            COMMAND Relief::relief bake ${mesh} -o ${output} --depfile ${output}.d --warnings-only ${arg_OPTIONS}
             DEPENDS ${mesh} Relief::relief
             DEPFILE ${output}.d
+            JOB_POOL relief_bakes
             COMMENT "Baking ${name}.relief"
             VERBATIM)
     endforeach()

@@ -1,0 +1,54 @@
+#!/usr/bin/env python3
+"""One report of all tasks: gather.py REPORTS TASKS
+
+Reads REPORTS/1.jsonl … REPORTS/TASKS.jsonl (bake/recipe/README.md, "Events"); writes report.json and failures.txt, and
+prints a summary. Exit code 0 if every asset of every shard is there, 1 otherwise.
+"""
+import collections
+import json
+import pathlib
+import sys
+
+reports, tasks = pathlib.Path(sys.argv[1]), int(sys.argv[2])
+counts = collections.Counter()
+failures, warnings, slow, unfinished = [], collections.defaultdict(list), [], []
+for task in range(1, tasks + 1):
+    ended = False
+    path = reports / f"{task}.jsonl"
+    for line in path.read_text(errors="replace").splitlines() if path.is_file() else []:
+        try:
+            event = json.loads(line)
+        except ValueError:
+            break  # cut off with its task
+        kind = event["event"]
+        if kind in ("done", "skipped", "failed", "cancelled"):
+            counts[kind] += 1
+            counts["bytes"] += event.get("bytes", 0)
+        if kind == "failed":
+            failures.append((event["asset"], event["error"]))
+        if kind == "done":
+            slow.append((event["ms"], event["asset"]))
+        for warning in event.get("warnings", []):
+            warnings[warning.split(": ", 1)[-1]].append(event["asset"])
+        ended = ended or kind == "summary" and event["signal"] is None
+    if not ended:
+        unfinished.append(task)
+
+slow = sorted(slow, reverse=True)[:20]
+report = {
+    "tasks": tasks, "unfinished_tasks": unfinished, "baked": counts["done"], "up_to_date": counts["skipped"],
+    "failed": counts["failed"], "cancelled": counts["cancelled"], "bytes": counts["bytes"],
+    "slowest": [{"asset": asset, "ms": ms} for ms, asset in slow],
+    "warnings": [{"warning": text, "assets": len(assets), "such_as": assets[:5]}
+                 for text, assets in sorted(warnings.items(), key=lambda item: (-len(item[1]), item[0]))],
+    "failures": [{"asset": asset, "error": error} for asset, error in sorted(failures)],
+}
+(reports / "report.json").write_text(json.dumps(report, indent=2) + "\n")
+(reports / "failures.txt").write_text("".join(f"{asset}: {error}\n" for asset, error in sorted(failures)))
+print(f"{report['baked']} baked, {report['up_to_date']} up to date, {report['failed']} failed, "
+      f"{len(unfinished)} of {tasks} tasks did not end")
+for asset, error in sorted(failures)[:20]:
+    print(f"{asset}: {error}")
+if unfinished:
+    print(f"tasks that did not end: {unfinished}; submit again to go on")
+sys.exit(0 if not failures and not unfinished and not counts["cancelled"] else 1)

@@ -1,0 +1,87 @@
+# `cpack` makes the .deb files of Debian 12, one of each component: relief, librelief1, librelief-dev and python3-relief.
+# README.md beside this file shows how.
+set(RELIEF_MAINTAINER "Relief maintainers <maintainers@relief.example>" CACHE STRING
+    "Who is named in the packages that cpack makes: Name <address>")
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_VENDOR "")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each package has one of its own
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/deb)
+set(CPACK_STRIP_FILES ON)
+# Like every Debian package, whatever the mask of whoever builds.
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
+                                                WORLD_READ WORLD_EXECUTE)
+# What a package has and an installed tree has not: compressed pages, copyright, changelog; no debug information.
+set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/debianise.cmake)
+set(CPACK_RELIEF_SOURCE ${PROJECT_SOURCE_DIR})
+set(CPACK_RELIEF_STRIP ${CMAKE_STRIP})
+
+set(CPACK_COMPONENTS_ALL library development tools)
+if(NOT RELIEF_BUILD_BAKE)
+    list(REMOVE_ITEM CPACK_COMPONENTS_ALL tools)  # the package relief is the baker's
+elseif(RELIEF_BUILD_PYTHON)
+    list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
+set(CPACK_COMPONENTS_GROUPING IGNORE)  # a package each
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_MAINTAINER ${RELIEF_MAINTAINER})
+set(CPACK_DEBIAN_PACKAGE_SOURCE relief)
+set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+
+# Baking needs no GL, playing does. libepoxy loads it while it runs, so that nothing finds these by what is linked.
+set(gl "libegl1, libegl-mesa0, libgl1-mesa-dri, libgles2, libopengl0")
+set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME relief)
+set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_TOOLS_PACKAGE_RECOMMENDS "${gl}")
+set(CPACK_DEBIAN_TOOLS_DESCRIPTION "depth map colliders baked from meshes, and a particle player
+Relief bakes the outer shape of a mesh into a few depth maps, and collides a
+million particles with it in one fragment shader. This package has `relief`,
+which bakes, checks, slices and exports colliders, and `relief-sim`, which
+plays scenes of particles without a window.")
+
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME librelief1)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS "${gl}")
+# What programs that link librelief.so depend on, and that the cache of the linker is to be made anew.
+file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/library/shlibs "librelief 1 librelief1 (>= ${PROJECT_VERSION})\n")
+file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/library/triggers "activate-noawait ldconfig\n")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_BINARY_DIR}/library/shlibs
+                                               ${CMAKE_CURRENT_BINARY_DIR}/library/triggers)
+set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "depth map colliders for particles, runtime library
+Relief bakes the outer shape of a mesh into a few depth maps, and collides a
+million particles with it in one fragment shader. This package has the shared
+library for C programs, and for those that call C.")
+
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME librelief-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
+    "librelief1 (= ${PROJECT_VERSION}), libepoxy-dev, libexpected-dev, libglm-dev, libxxhash-dev, libzstd-dev, pkgconf | pkg-config")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS relief)
+set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "depth map colliders for particles, development files
+Relief bakes the outer shape of a mesh into a few depth maps, and collides a
+million particles with it in one fragment shader. This package has the
+headers, the static library for C++, the shaders, the files for CMake and
+pkg-config, the documentation and the samples.")
+
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-relief)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+if(RELIEF_BUILD_BAKE AND RELIEF_BUILD_PYTHON)
+    set(Python3_EXECUTABLE /usr/bin/python3)  # whose modules ours is built for
+    find_package(Python3 REQUIRED COMPONENTS Interpreter)
+    math(EXPR next_minor "${Python3_VERSION_MINOR} + 1")
+    set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+        "python3 (>= 3.${Python3_VERSION_MINOR}), python3 (<< 3.${next_minor}), python3-numpy")
+endif()
+set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "${gl}")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_LIST_DIR}/debian/postinst
+                                              ${CMAKE_CURRENT_LIST_DIR}/debian/prerm)
+set(CPACK_DEBIAN_PYTHON_DESCRIPTION "depth map colliders baked from meshes, for Python
+Relief bakes the outer shape of a mesh into a few depth maps, and collides a
+million particles with it in one fragment shader. This package bakes and asks
+colliders from numpy arrays, and steps scenes of particles.")
+include(CPack)

@@ -1,0 +1,91 @@
+#!/usr/bin/env bash
+# Tries installed packages as their users would: try_packages.sh MESH PART…, in an empty folder, on a system that has
+# nothing else of Relief. `scripts/soak.sh packages` runs it in a bare Debian. Parts:
+#
+#   tools        the commands of README.md, "Use it"; the manual
+#   python       the program of bake/python/README.md
+#   development  the projects of scripts/install/README.md, samples/embed, a program in C
+#
+# Pages are read where librelief-dev puts them; RELIEF_DOC says another place.
+set -euo pipefail
+
+doc=${RELIEF_DOC:-/usr/share/doc/relief}
+mesh=$1
+shift
+
+die() {
+    echo "FAILED: $*" >&2
+    exit 1
+}
+
+tools() {
+    cp "$mesh" bunny.obj
+    printf '[collider]\nfile = "bunny.relief"\n[time]\nsteps = 20\n[render]\nsize = [160, 120]\n' >scene.toml
+    mkdir -p meshes/rocks && cp "$mesh" meshes/rocks/a.obj
+    printf 'version = 1\n[[asset]]\nmesh = "meshes/**/*.obj"\noutput = "baked/{stem}.relief"\nbudget = "64kB"\n' >colliders.toml
+    sed -n '/^## Use it/,/^Or embed it/s/^    \(relief.*[^ ]\)  *#.*/\1/p' "$doc/README.md" >commands
+    [ "$(wc -l <commands)" -ge 6 ] || die "README.md shows $(wc -l <commands) commands"
+    while read -r line; do
+        bash -euc "$line" >said 2>&1 </dev/null || die "$line: $(tail -5 said)"
+        echo "  $line"
+    done <commands
+    for file in bunny.relief slice.png bunny.html final.ply frames/frame_0000.png baked/a.relief; do
+        [ -s $file ] || die "no $file was written"
+    done
+    relief bake --recipe colliders.toml -j 2 >said 2>&1 || die "the recipe fails the second time: $(tail -5 said)"
+    # Manual pages where man finds them, if it is there.
+    [ -s /usr/share/man/man1/relief-bake.1.gz ] || die "no manual of relief bake"
+}
+
+python() {
+    cp "$mesh" bunny.obj
+    sed -n '/^```python$/,/^```$/{//!p}' "$doc/bake/python/README.md" >program.py
+    [ "$(wc -l <program.py)" -ge 5 ] || die "bake/python/README.md shows no program"
+    python3 program.py >said 2>&1 || die "Python: $(tail -5 said)"
+    python3 - said bunny.relief <<'P'
+import pathlib, sys
+import relief
+wrong = float(open(sys.argv[1]).read())
+assert 0 < wrong < 3, wrong
+assert relief.load(sys.argv[2]).maps
+home = pathlib.Path(relief.__file__).parent
+assert str(home) == "/usr/lib/python3/dist-packages/relief", home
+assert (home / "py.typed").is_file() and (home / "_relief.pyi").is_file()
+P
+}
+
+development() {
+    mkdir consumer
+    between() { sed -n "/<!-- $1 -->/,/^\`\`\`\$/p" "$doc/scripts/install/README.md" | sed '1,2d;$d'; }
+    between install:cmake >consumer/CMakeLists.txt
+    between install:cpp >consumer/main.cpp
+    cp "$mesh" consumer/bunny.obj
+    cp "$mesh" consumer/box.obj
+    { cmake -G Ninja -S consumer -B out && cmake --build out; } >said 2>&1 || die "the project of the page: $(tail -20 said)"
+    out/snowfall out/bunny.relief | grep -qE '^[0-9]+ maps, ' || die "the project's program says something else"
+    { cmake -G Ninja -S /usr/share/relief/samples/embed -B embed && cmake --build embed; } >said 2>&1 ||
+        die "samples/embed: $(tail -20 said)"
+    embed/relief-embed-sample out/bunny.relief | grep -q 'GL state as it was' || die "samples/embed says something else"
+    read -ra flags < <(pkg-config --cflags --libs relief-runtime)
+    g++ -std=c++20 /usr/share/relief/samples/embed/embed.cpp -o by_pkg_config "${flags[@]}" || die "pkg-config"
+    cat >load.c <<'C'
+#include <relief.h>
+#include <stdio.h>
+int main(int count, char** arguments) {
+    relief_collider* collider = relief_collider_load(count > 1 ? arguments[1] : "");
+    puts(collider != NULL ? relief_version() : relief_error());
+    relief_collider_free(collider);
+    return collider == NULL;
+}
+C
+    read -ra flags < <(pkg-config --cflags --libs relief)
+    cc -std=c99 -Wall -Werror load.c -o load "${flags[@]}" || die "a program in C does not build"
+    [ "$(./load out/bunny.relief)" = "$(relief --version | sed 's/.* //')" ] || die "a program in C does not load a collider"
+}
+
+for part in "$@"; do
+    work=$(mktemp -d)
+    (cd "$work" && "$part") || exit 1
+    rm -rf "$work"
+    echo "packages: $part works"
+done
