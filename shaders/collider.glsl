@@ -543,7 +543,10 @@ ReliefField reliefBall(int first, int end, vec3 center, float radius) {
             }
         }
     }
-    return inside.map >= 0 && inside.distance < 0.0 ? reliefFieldOf(inside) : touched;
+    if (inside.map >= 0 && inside.distance < 0.0) {  // WebGL has no ?: of structures
+        return reliefFieldOf(inside);
+    }
+    return touched;
 }
 
 #if RELIEF_BODIES == 0

@@ -292,7 +292,10 @@ ReliefSurface reliefFromVote(vec3 p, ReliefField field) {
 // The maps [first, end) alone. low, high: the collider's bounds, of which nothing is outside.
 ReliefSurface reliefNearest(int first, int end, vec3 p, vec3 low, vec3 high) {
     ReliefField vote = reliefMaps(first, end, p, true);
-    ReliefSurface nearest = vote.map < 0 ? ReliefSurface(0.0, vec3(0.0), vec3(0.0), -1) : reliefFromVote(p, vote);
+    ReliefSurface nearest = ReliefSurface(0.0, vec3(0.0), vec3(0.0), -1);
+    if (vote.map >= 0) {  // WebGL has no ?: of structures
+        nearest = reliefFromVote(p, vote);
+    }
     vec3 size = high - low;
     float side = max(size.x, max(size.y, size.z));
     vec3 reach = max(abs(p), max(abs(low), abs(high)));

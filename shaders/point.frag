@@ -2,6 +2,7 @@
 // faces the viewer.
 //!include grain.glsl
 //!include grain_light.glsl
+//!include srgb.glsl
 
 flat in uvec3 v_grain;
 #ifdef RELIEF_CELLS
@@ -17,6 +18,7 @@ uniform float u_levels_max;       // above it cells would run into each other
 uniform highp sampler2D u_behind; // window depth of what lies behind
 uniform float u_soft;             // object units; 0: hard edges
 uniform vec2 u_depth;             // window depth of view distance t: x + y / t
+uniform bool u_srgb;              // the target holds sRGB values
 
 layout(location = 0) out vec4 o_color;  // premultiplied by alpha
 
@@ -74,4 +76,7 @@ void main() {
         light = grainLight(vec3(at, sqrt(max(1.0 - radius * radius, 0.0))), grain.sun, grain.sky);
     }
     o_color = vec4(grain.color * light * (shown * body.rgb), alpha);
+    if (u_srgb) {
+        o_color.rgb = alpha * srgbOf(min(o_color.rgb / alpha, vec3(1.0)));
+    }
 }

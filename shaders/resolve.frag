@@ -1,4 +1,5 @@
 // The mean of factor × factor linear pixels, as sRGB.
+//!include srgb.glsl
 uniform highp sampler2D u_color;
 uniform int u_factor;
 
@@ -13,6 +14,5 @@ void main() {
         }
     }
     vec3 c = max(sum / float(u_factor * u_factor), vec3(0.0));
-    vec3 curve = 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055;
-    o_color = vec4(mix(curve, 12.92 * c, vec3(lessThan(c, vec3(0.0031308)))), 1.0);
+    o_color = vec4(srgbOf(c), 1.0);
 }

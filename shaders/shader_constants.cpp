@@ -1,8 +1,10 @@
 #include "shaders/shader_constants.h"
 
 #include <array>
-#include <charconv>
+#include <cmath>
+#include <limits>
 
+#include "formats/base/float_chars.h"
 #include "formats/depth_map.h"
 #include "formats/nearest_surface.h"
 #include "formats/normal_index.h"
@@ -12,8 +14,12 @@ namespace {
 
 /// As short as reads back as the same float.
 std::string literal(float value) {
+    if (std::abs(value) == std::numeric_limits<float>::max()) {
+        // ANGLE, which browsers compile with, takes its shortest digits for infinite. This is exact: (2^24 - 1) 2^104.
+        return std::string(value < 0.0F ? "-" : "") + "16777215.0 * 2.028240960365167e31";
+    }
     std::array<char, 32> digits{};
-    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+    const auto end = toChars(digits.data(), digits.data() + digits.size(), value).ptr;
     std::string text(digits.data(), end);
     return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
@@ -78,6 +84,13 @@ std::string makeConstants() {
     define("COLLIDED", asFloat(Contact::kCollided));
     define("CAUGHT", asFloat(Contact::kCaught));
     define("STOPPED", asFloat(Contact::kStopped));
+    define("EVENT_COLLISION", static_cast<int>(kEventCollision));
+    define("EVENT_LASTS", static_cast<int>(kEventLasts));
+    define("EVENT_DEATH", static_cast<int>(kEventDeath));
+    define("EVENT_FLAGS", kEventFlags);
+    define("EVENT_DIRECTIONS", kEventDirections);
+    define("EVENTS_COUNTED", kEventsCounted);
+    define("EVENTS_WIDTH", kEventsWidth);
     define("CONTACT_PARTS", kContactParts);
     define("VERLET_COLLISIONS_MAX", kVerletCollisionsMax);
     define("DEAD_HEIGHT", kDeadHeight);

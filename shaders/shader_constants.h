@@ -34,6 +34,21 @@ enum class Contact : std::uint8_t {
     kStopped = 3,  ///< at rest for good (OnCollision::kStop)
 };
 
+/// What happened to a particle in a step: the sum of these, 0 where nothing did.
+enum EventFlag : std::int32_t {
+    kEventCollision = 1,
+    kEventLasts = 2,  ///< beside kEventCollision: the step before touched something, too
+    kEventDeath = 4,  ///< of age, or beside kEventCollision of the collision
+};
+/// The step writes flags + kEventFlags · (direction + kEventDirections · (body + 1)), as events.glsl has it.
+inline constexpr int kEventFlags = 8;
+inline constexpr int kEventDirections = 6;
+/// A count of events is that of so many counts before it; kEventLevels of them count the largest system.
+inline constexpr int kEventsCounted = 64;
+inline constexpr int kEventLevels = 4;
+/// Texels in a row of the counts and of the list of events.
+inline constexpr int kEventsWidth = 1024;
+
 /// With Verlet one float holds both counts of a particle: collisions + contact / kContactParts. Beyond the largest
 /// number of collisions it would lose the parts.
 inline constexpr float kContactParts = 16.0F;

@@ -56,6 +56,7 @@ Solid solidOrGround(vec3 p, float radius) {
 }
 
 //!include step_way.glsl
+//!include step_event.glsl
 
 bool caught(vec3 p, float radius, Solid s) {
     return s.body < 0 ? p.y - radius < u_ground : insideBefore(p, radius, s);
@@ -133,6 +134,7 @@ void react(State state, Way way, ParticleType type) {
             response *= way.met.body < 0 ? vec2(1.0) : bodyResponse(way.met.body);
             v = carried + bounced(state.velocity - carried, relative, vn, along, n, type, response);
         }
+        writeHit(way, vn, state.contact != RELIEF_FREE, dies);
     }
     if (dies) {
         writeDead();
@@ -164,7 +166,11 @@ void stepAt(ivec2 texel) {
     // A comparison alone, of numbers that the CPU made: both agree on the step. (A loss of life only the GPU knows;
     // the CPU then frees the index at the time that it was born with.)
     bool spent = u_now >= birth.y || (type.loss > 0.0 && u_now >= birth.y - type.loss * state.collisions);
+    writeNoEvent();
     if (state.collisions < 0.0 || spent) {
+        if (state.collisions >= 0.0) {
+            writeDeath(state, birth.y - type.loss * state.collisions);
+        }
         writeDead();
     } else if (state.contact >= RELIEF_STOPPED) {
         rest(state);
@@ -186,6 +192,10 @@ layout(rgba32f, binding = 0) writeonly uniform highp image2D u_position_out;
 #if !defined(RELIEF_VERLET)
 layout(rgba32f, binding = 1) writeonly uniform highp image2D u_velocity_out;
 #endif
+#if defined(RELIEF_EVENTS)
+layout(rgba32f, binding = RELIEF_EVENT_WAY_OUT) writeonly uniform highp image2D u_event_way_out;
+layout(rgba32f, binding = RELIEF_EVENT_SURFACE_OUT) writeonly uniform highp image2D u_event_surface_out;
+#endif
 uniform ivec2 u_size;  // of the texels that hold particles
 
 void main() {
@@ -195,6 +205,10 @@ void main() {
         imageStore(u_position_out, texel, o_position);
 #if !defined(RELIEF_VERLET)
         imageStore(u_velocity_out, texel, o_velocity);
+#endif
+#if defined(RELIEF_EVENTS)
+        imageStore(u_event_way_out, texel, o_event_way);
+        imageStore(u_event_surface_out, texel, o_event_surface);
 #endif
     }
 }

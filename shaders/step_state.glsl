@@ -30,6 +30,9 @@ struct State {
 
 #if defined(RELIEF_VERLET)
 
+// Where a step writes its events, behind the state.
+#define RELIEF_EVENT_WAY_OUT 1
+#define RELIEF_EVENT_SURFACE_OUT 2
 uniform highp sampler2D u_position_before;
 uniform float u_rate_before;  // 1 / seconds of the last step
 
@@ -52,6 +55,8 @@ void writeDead() {
 
 #else
 
+#define RELIEF_EVENT_WAY_OUT 2
+#define RELIEF_EVENT_SURFACE_OUT 3
 uniform highp sampler2D u_velocity;
 
 RELIEF_STATE_OUT(0) vec4 o_position;

@@ -7,6 +7,7 @@ struct Way {
     vec3 to;      // the end of the piece from there on: in `met`, or where the step ends
     float share;  // of the step, that this piece takes
     bool first;   // whether this piece begins where the step does
+    float end;    // of this piece, as a share of the step
     Solid met;
 };
 
@@ -14,7 +15,7 @@ struct Way {
 
 Way wayOf(vec3 p, vec3 v, float radius) {
     vec3 to = p + u_dt * v;
-    return Way(v, p, to, 1.0, true, solidOrGround(to, radius));
+    return Way(v, p, to, 1.0, true, 1.0, solidOrGround(to, radius));
 }
 
 vec3 wayEnd(Way way, vec3 p, vec3 carried, vec3 v, float contact, float radius) {
@@ -37,13 +38,15 @@ Way wayOf(vec3 p, vec3 v, float radius) {
     float share = 1.0 / pieces;
     vec3 from = p;
     vec3 to = p + (share * u_dt) * v;
+    float end = share;
     Solid next = solidOrGround(to, radius);
     for (int i = 1; i < RELIEF_SWEEP && float(i) < pieces && next.distance >= 0.0; ++i) {
         from = to;
-        to = p + ((float(i) + 1.0) * share * u_dt) * v;
+        end = (float(i) + 1.0) * share;
+        to = p + (end * u_dt) * v;
         next = solidOrGround(to, radius);
     }
-    return Way(v, from, to, share, from == p, next);
+    return Way(v, from, to, share, from == p, end, next);
 }
 
 // From the free point on for the piece's time. All pieces are tested against the end of the step: what met a moving

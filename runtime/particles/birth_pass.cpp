@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/image_units.h"
 #include "runtime/gl/storage_units.h"
 #include "shaders/shader_constants.h"

@@ -163,7 +163,8 @@ std::uint64_t Emitter::emit(double dt, std::uint64_t room, std::vector<Birth>& b
         make(by_rate, births);
         for (std::uint64_t i = 0; settings_.spread && i < by_rate; ++i) {
             const double moment = settings_.start + static_cast<double>(steady + i + 1) / settings_.rate;
-            births[from + i].age = static_cast<float>(std::clamp(elapsed_ - moment, 0.0, dt));
+            births[from + static_cast<std::size_t>(i)].age =
+                static_cast<float>(std::clamp(elapsed_ - moment, 0.0, dt));
         }
         steady += by_rate;
         left -= by_rate;

@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <unordered_map>
 
 #include "runtime/gl/gl_fault.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/image_units.h"
 #include "runtime/gl/pass_state.h"
 
@@ -31,6 +33,7 @@ void drawRows(const GlVertexArray& no_attributes, std::uint32_t width, std::uint
 }  // namespace
 
 Result<ParticleSystem> ParticleSystem::create(const ParticleSystemOptions& options) {
+    RELIEF_TRY(checkContext());
     if (options.capacity == 0 || options.capacity > kCapacityMax) {
         return fail(ErrorCode::kUsage, "a particle system of " + std::to_string(options.capacity) +
                                            " particles is not possible; choose 1 to " +
@@ -112,7 +115,8 @@ StepFeatures ParticleSystem::featuresFor(const ColliderTextures* collider) const
             sweep_ > 0.0F,
             radius && collider != nullptr,
             path_ == StepPath::kCompute,
-            static_cast<int>(types_.size())};
+            static_cast<int>(types_.size()),
+            events_ != nullptr};
 }
 
 Result<void> ParticleSystem::remakeStep(const ColliderTextures* collider) {
@@ -170,6 +174,9 @@ Result<void> ParticleSystem::setCollider(const ColliderTextures* collider) {
 }
 
 Result<void> ParticleSystem::setAir(const AirSettings& air) {
+    if (air == air_settings_) {
+        return {};  // a new step is compiled otherwise
+    }
     const PassState state;
     auto block = RELIEF_TRY(AirBlock::create(air));
     std::unique_ptr<AirBlock> old = std::move(air_);
@@ -180,6 +187,93 @@ Result<void> ParticleSystem::setAir(const AirSettings& air) {
     }
     air_settings_ = air;
     return {};
+}
+
+Result<void> ParticleSystem::setEvents(const std::optional<EventOptions>& options) {
+    const PassState state;
+    std::unique_ptr<EventList> made;
+    if (options) {
+        made = std::make_unique<EventList>(RELIEF_TRY(EventList::create(*options, capacity())));
+        RELIEF_TRY(createEventTextures());
+    }
+    std::swap(events_, made);
+    if (step_.features().events != (events_ != nullptr)) {
+        if (auto done = remakeStep(step_.features().collider); !done) {
+            std::swap(events_, made);
+            return done;
+        }
+    }
+    replaced_.clear();
+    if (!events_) {
+        event_way_ = {};
+        event_surface_ = {};
+        for (GlFramebuffer& target : event_target_) {
+            target = {};
+        }
+    }
+    stepped_extent_ = 0;  // the last step has said nothing
+    return {};
+}
+
+Result<void> ParticleSystem::createEventTextures() {
+    if (event_way_) {
+        return {};
+    }
+    forgetGlErrors();
+    GlTexture way = makeStateTexture();
+    GlTexture surface = makeStateTexture();
+    RELIEF_TRY(checkAllocated("the events of " + std::to_string(ids_.size()) + " particles",
+                              "choose a smaller capacity"));
+    for (int i = 0; i < (verlet() ? 3 : 2); ++i) {
+        std::vector<GLuint> textures{position_[i].name()};
+        if (!verlet()) {
+            textures.push_back(velocity_[i].name());
+        }
+        textures.push_back(way.name());
+        textures.push_back(surface.name());
+        event_target_[i] = RELIEF_TRY(makeFramebuffer(textures));
+    }
+    event_way_ = std::move(way);
+    event_surface_ = std::move(surface);
+    return {};
+}
+
+bool ParticleSystem::requestEvents(std::uint64_t tag) {
+    if (!events_) {
+        return false;
+    }
+    const PassState state;
+    const GlTexture& before = verlet() ? position_[(current_ + 2) % 3] : position_[1 - current_];
+    return events_->request({event_way_, event_surface_, before, birth_, width_, stepped_extent_, types_, tag,
+                             steps_, step_begin_, time_});
+}
+
+std::optional<StepEvents> ParticleSystem::pollEvents() {
+    auto collected = events_ ? events_->poll() : std::nullopt;
+    return collected ? std::optional(withIds(std::move(*collected))) : std::nullopt;
+}
+
+Result<std::optional<StepEvents>> ParticleSystem::waitEvents() {
+    if (!events_) {
+        return std::optional<StepEvents>();
+    }
+    auto collected = RELIEF_TRY(events_->wait());
+    return collected ? std::optional(withIds(std::move(*collected))) : std::nullopt;
+}
+
+StepEvents ParticleSystem::withIds(EventList::Collected collected) const {
+    // The first that took the place of the one that the event is about.
+    std::unordered_map<std::uint32_t, std::uint32_t> before;
+    for (const Replaced& one : replaced_) {
+        if (one.step >= collected.number) {
+            before.try_emplace(one.index, one.id);
+        }
+    }
+    for (ParticleEvent& event : collected.events.events) {
+        const auto found = before.find(event.index);
+        event.id = found == before.end() ? ids_[event.index] : found->second;
+    }
+    return std::move(collected.events);
 }
 
 std::size_t ParticleSystem::spawn(std::span<const Birth> births) {
@@ -198,6 +292,9 @@ std::size_t ParticleSystem::spawn(std::span<const Birth> births) {
         const glm::vec3 velocity = (birth.velocity + birth.age * (forces_.gravity + drag * wind)) *
                                    (1.0F / (1.0F + birth.age * drag));
         const auto id = static_cast<std::uint32_t>(born_ + accepted);
+        if (events_) {
+            replaced_.push_back({steps_, *index, ids_[*index]});
+        }
         ids_[*index] = id;
         deaths_.push(death, *index);
         // Written member by member: a copy of a whole vertex would wait for its parts.
@@ -219,6 +316,13 @@ void ParticleSystem::step(float dt) {
     if (dt_before_ == 0.0F) {
         dt_before_ = dt;
     }
+    // Lists are of the step before this one, or older and under way.
+    const std::uint64_t oldest = events_ ? events_->oldestNumber().value_or(steps_ + 1) : 0;
+    while (!replaced_.empty() && replaced_.front().step < oldest) {
+        replaced_.pop_front();
+    }
+    ++steps_;
+    step_begin_ = time_;
     runBirths();
     time_ += static_cast<double>(dt);
     const float now = clock();
@@ -245,6 +349,7 @@ void ParticleSystem::runBirths() {
 
 void ParticleSystem::runStep(float dt, float now) {
     const std::uint32_t extent = allocator_.extent();
+    stepped_extent_ = extent;
     if (extent == 0) {
         return;
     }
@@ -268,10 +373,14 @@ void ParticleSystem::runStep(float dt, float now) {
         if (!verlet()) {
             ImageUnits::write(1, velocity_[next]);
         }
+        if (events_) {
+            ImageUnits::write(verlet() ? 1 : 2, event_way_);
+            ImageUnits::write(verlet() ? 2 : 3, event_surface_);
+        }
         step_.dispatch(width_, rows);
         ImageUnits::finish();
     } else {
-        glBindFramebuffer(GL_FRAMEBUFFER, step_target_[next].name());
+        glBindFramebuffer(GL_FRAMEBUFFER, (events_ ? event_target_ : step_target_)[next].name());
         drawRows(no_attributes_, width_, rows);
     }
     current_ = next;
@@ -305,7 +414,8 @@ void ParticleSystem::setEpochForward() {
     glUseProgram(rebase_program_.name());
     useTexture(StepPass::kBirthUnit, birth_);
     glUniform1f(rebase_shift_, shift);
-    drawRows(no_attributes_, width_, (allocator_.extent() + width_ - 1) / width_);
+    // Those who have just died included: their events may yet be listed.
+    drawRows(no_attributes_, width_, (std::max(allocator_.extent(), stepped_extent_) + width_ - 1) / width_);
 
     std::swap(birth_, birth_spare_);
     for (const GlFramebuffer& target : birth_target_) {

@@ -6,7 +6,7 @@
 //         velocity  2 × RGBA32F (double-buffered)      xyz, contact of the last step
 //         (with Verlet: a third position instead; 64 · texels in all)
 //         birth     1 × RGBA32F                        time of birth, time of death, type, id mod 2^24
-//     (96 · texels once the clock has been set back for the first time)
+//     (96 · texels once the clock has been set back for the first time; 32 · texels more with setEvents())
 //
 // A step, in this order: births are written into the textures (birth_pass.h); one pass over the occupied rows
 // decides deaths, moves and collides (shaders/step.glsl); the CPU frees the indices of the dead.
@@ -18,6 +18,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
@@ -31,7 +32,9 @@
 #include "runtime/particles/birth_pass.h"
 #include "runtime/particles/death_queue.h"
 #include "runtime/particles/emitter.h"
+#include "runtime/particles/event_list.h"
 #include "runtime/particles/index_allocator.h"
+#include "runtime/particles/particle_event.h"
 #include "runtime/particles/step_pass.h"
 #include "runtime/particles/step_path.h"
 
@@ -120,6 +123,24 @@ class ParticleSystem {
     /// A floor: everything below this height is solid, in union with the collider. nullopt: none.
     void setGround(std::optional<float> height) { ground_ = height; }
 
+    /// From the next step on, each step says what happened to every particle. nullopt: no longer, as at first; a step
+    /// then costs nothing more, in time or memory. Compiles the step where that changes; what is under way is lost.
+    /// Errors: kUsage (the options), kLimit, kUnsupported (a GL that draws to fewer textures), kFailure.
+    [[nodiscard]] Result<void> setEvents(const std::optional<EventOptions>& options);
+    /// Lists the events of the last step on the GPU, and asks for them. Restores the GL state. Collect what you ask for:
+    /// until then the system keeps every id that a birth takes the place of.
+    /// \param tag  comes back with them, the number of the step for example.
+    /// \return false, and nothing is done, while EventList::kInFlightMax lists are under way, and without setEvents().
+    bool requestEvents(std::uint64_t tag);
+    /// The oldest list, if the GPU has finished it: never waits.
+    [[nodiscard]] std::optional<StepEvents> pollEvents();
+    /// The oldest list, which the GPU is waited for; nullopt if none is under way.
+    /// Errors: kFailure (the GPU has not answered for ten seconds, or its memory cannot be read).
+    [[nodiscard]] Result<std::optional<StepEvents>> waitEvents();
+    [[nodiscard]] int eventsInFlight() const { return events_ ? events_->inFlight() : 0; }
+    /// The list of the last request on the GPU, for shaders of one's own; null without setEvents().
+    [[nodiscard]] const EventList* eventList() const { return events_.get(); }
+
     /// Gives birth at the start of the next step; what has an age then has moved freely, under the forces,
     /// since its own birth. Texels without a particle are taken in ascending order.
     /// \return how many found a place; the rest are refused and counted.
@@ -175,12 +196,23 @@ class ParticleSystem {
     [[nodiscard]] GlTexture makeStateTexture() const;
     void runStep(float dt, float now);
     void freeDead(float now);
+    [[nodiscard]] Result<void> createEventTextures();
+    /// With whole ids: as they were in that step.
+    [[nodiscard]] StepEvents withIds(EventList::Collected collected) const;
 
     IndexAllocator allocator_;
     DeathQueue deaths_;
     std::vector<std::uint32_t> dead_;          // of the last step, kept for its memory
     std::vector<std::uint32_t> ids_;           // of each index
     std::vector<BirthPass::Newborn> newborn_;  // since the last step
+    struct Replaced {                          // an id that a birth took the place of
+        std::uint64_t step;                    // the last one that it was in
+        std::uint32_t index;
+        std::uint32_t id;
+    };
+    std::deque<Replaced> replaced_;  // since the oldest list of events under way
+    std::uint64_t steps_ = 0;
+    std::uint32_t stepped_extent_ = 0;  // of the last step: those that died in it included
     std::uint64_t born_ = 0;
     std::uint64_t died_ = 0;
     std::uint64_t refused_ = 0;
@@ -214,6 +246,11 @@ class ParticleSystem {
     GlProgram rebase_program_;
     GLint rebase_shift_ = -1;
     StepPass step_;
+    std::unique_ptr<EventList> events_;
+    GlTexture event_way_;  // as step_event.glsl writes them
+    GlTexture event_surface_;
+    GlFramebuffer event_target_[3];  // step_target_'s and both of these
+    double step_begin_ = 0.0;
 };
 
 }  // namespace relief

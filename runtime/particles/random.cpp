@@ -1,8 +1,8 @@
 #include "runtime/particles/random.h"
 
-#include <bit>
 #include <cmath>
 
+#include "formats/base/bits.h"
 #include "formats/base/finite.h"
 
 namespace relief {
@@ -13,9 +13,9 @@ constexpr double kArtanh[] = {1.0 / 19.0, 1.0 / 17.0, 1.0 / 15.0, 1.0 / 13.0, 1.
 
 /// ln x for a normal x > 0: the exponent, and the series of 2 artanh z for the mantissa, |z| < 0.172.
 double logarithm(double x) {
-    const auto bits = std::bit_cast<std::uint64_t>(x);
+    const auto bits = bitCast<std::uint64_t>(x);
     auto exponent = static_cast<double>(static_cast<std::int64_t>(bits >> 52) - 1023);
-    auto mantissa = std::bit_cast<double>((bits & 0xfffffffffffffU) | 0x3ff0000000000000U);
+    auto mantissa = bitCast<double>((bits & 0xfffffffffffffU) | 0x3ff0000000000000U);
     if (mantissa > 1.4142135623730951) {
         mantissa *= 0.5;
         exponent += 1.0;

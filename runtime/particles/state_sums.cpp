@@ -4,6 +4,7 @@
 #include <string>
 
 #include "runtime/gl/gl_fault.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/storage_units.h"
 
 namespace relief {
@@ -37,7 +38,7 @@ Result<StateSums> StateSums::create(std::uint32_t capacity) {
     const std::uint32_t width = std::min(capacity, ParticleSystem::kStateWidth);
     const std::uint32_t parts = reduced(width) * reduced((capacity + width - 1) / width);
     for (GlBuffer& buffer : sums.parts_) {
-        buffer = StorageUnits::make(GLsizeiptr{parts} * kBytes);
+        buffer = StorageUnits::make(static_cast<GLsizeiptr>(parts) * kBytes);
         RELIEF_TRY(checkAllocated("the statistics of " + std::to_string(capacity) + " particles",
                                   "choose a smaller capacity"));
     }

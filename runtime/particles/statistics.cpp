@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
+#include <span>
 #include <string>
 
+#include "runtime/gl/buffer_read.h"
 #include "runtime/gl/gl_fault.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 
 namespace relief {
@@ -27,6 +29,7 @@ std::uint32_t reduced(std::uint32_t side) {
 }  // namespace
 
 Result<Statistics> Statistics::create(std::uint32_t capacity, StepPath path) {
+    RELIEF_TRY(checkContext());
     if (capacity == 0 || capacity > ParticleSystem::kCapacityMax) {
         return fail(ErrorCode::kUsage, "statistics of " + std::to_string(capacity) +
                                            " particles are not possible; choose 1 to " +
@@ -175,18 +178,9 @@ std::optional<StatisticsSample> Statistics::collect() {
         return sample;
     }
     slot.fence.remove();
-    GLint bound = 0;
-    glGetIntegerv(GL_PIXEL_PACK_BUFFER_BINDING, &bound);
-    glBindBuffer(GL_PIXEL_PACK_BUFFER, slot.buffer.name());
     std::array<float, 8> values{};
-    const void* mapped = glMapBufferRange(GL_PIXEL_PACK_BUFFER, 0, StateSums::kBytes, GL_MAP_READ_BIT);
-    if (mapped != nullptr) {
-        std::memcpy(values.data(), mapped, sizeof(values));
-    }
-    // False if the memory was lost while it was mapped.
-    const bool whole = mapped != nullptr && glUnmapBuffer(GL_PIXEL_PACK_BUFFER) == GL_TRUE;
-    glBindBuffer(GL_PIXEL_PACK_BUFFER, static_cast<GLuint>(bound));
-    if (!whole) {
+    static_assert(sizeof(values) == StateSums::kBytes);
+    if (!readBuffer(slot.buffer, std::as_writable_bytes(std::span(values)))) {
         return std::nullopt;
     }
     sample.alive = static_cast<std::uint32_t>(values[0]);

@@ -3,6 +3,7 @@
 #include <array>
 #include <string>
 
+#include "runtime/gl/gl_functions.h"
 #include "shaders/shader_constants.h"
 
 namespace relief {
@@ -20,6 +21,7 @@ Result<StepPass> StepPass::create(const StepFeatures& features) {
     defineIf(features.verlet, "RELIEF_VERLET");
     defineIf(features.sweep, "RELIEF_SWEEP " + std::to_string(kSweepPieces));
     defineIf(features.radius, "RELIEF_RADIUS");
+    defineIf(features.events, "RELIEF_EVENTS");
     if (features.air != nullptr) {
         defines += features.air->defines();
     }

@@ -31,6 +31,7 @@ struct StepFeatures {
     bool radius = false;   ///< some type has a radius
     bool compute = false;  ///< the program is a compute shader: dispatch()
     int types = 1;
+    bool events = false;  ///< writes what happened, too (shaders/step_event.glsl)
     friend bool operator==(const StepFeatures&, const StepFeatures&) = default;
 };
 
@@ -64,7 +65,7 @@ class StepPass {
     /// Makes the program current and sets its uniforms; binds the collider's textures.
     void use(const Values& values) const;
     /// With StepFeatures::compute, after use(): steps the particles of the first `rows` rows of `width` texels into image
-    /// units 0 (positions) and, without verlet, 1 (velocities).
+    /// units 0 (positions), without verlet 1 (velocities), and with events the next two.
     void dispatch(std::uint32_t width, std::uint32_t rows) const;
     [[nodiscard]] const StepFeatures& features() const { return features_; }
 

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "runtime/gl/gl_capabilities.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/gl_object.h"
 
 namespace relief {

@@ -1,5 +1,7 @@
 #include "runtime/player/live_bodies.h"
 
+#include <algorithm>
+
 #include "formats/base/error_context.h"
 
 namespace relief {
@@ -30,6 +32,12 @@ Result<void> LiveBodies::show(double time, ColliderTextures& textures) {
         RELIEF_TRY(body.collider.update(textures, body.index));
     }
     return {};
+}
+
+const GpuMesh* LiveBodies::mesh(std::size_t index) const {
+    const auto found =
+        std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& body) { return body.index == index; });
+    return found == bodies_.end() ? nullptr : &found->collider.mesh();
 }
 
 Result<LivePicture> LivePicture::create(const LiveMesh& live) {

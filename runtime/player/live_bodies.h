@@ -23,6 +23,8 @@ class LiveBodies {
     /// Deforms all of them to a time, in seconds, and renders their maps. Before each step, for its end.
     /// Fails as LiveCollider::update does.
     [[nodiscard]] Result<void> show(double time, ColliderTextures& textures);
+    /// The mesh of the scene's collider with that index, as it was last shown; null: that one does not deform.
+    [[nodiscard]] const GpuMesh* mesh(std::size_t index) const;
 
   private:
     struct Body {

@@ -11,6 +11,7 @@
 #include "runtime/files/ply.h"
 #include "runtime/files/png.h"
 #include "runtime/player/watched.h"
+#include "runtime/vdb/vdb_points.h"
 
 namespace relief {
 namespace {
@@ -43,7 +44,14 @@ double videoRate(const Scene& scene) {
 
 }  // namespace
 
-Result<void> checkDump(const fs::path& dump) {
+Result<void> checkDump(const PlayerOptions& options) {
+    const fs::path& dump = options.dump;
+    if (options.dump_format == DumpFormat::kVdb && !(dump.empty() && options.dump_frames.empty())) {
+        RELIEF_TRY(checkVdb());
+    }
+    if (dump.empty()) {
+        return {};
+    }
     std::error_code error;
     const fs::path folder = dump.has_parent_path() ? dump.parent_path() : fs::path(".");
     if (dump != "-" && !fs::is_directory(folder, error)) {
@@ -81,11 +89,18 @@ Result<void> Outputs::open() {
     if (!options_.stats.empty()) {
         log_ = RELIEF_TRY(StatisticsLog::create(options_.stats, scene.capacity, options_.path, *timer_));
     }
+    if (!options_.events.empty()) {
+        events_ = RELIEF_TRY(EventsLog::create(options_.events, options_.events_min_speed.value_or(0.0F)));
+    }
     if (!options_.frames.empty()) {
         RELIEF_TRY(prepareFolder(options_.frames, "--frames"));
     }
     return options_.dump_frames.empty() ? Result<void>{}
                                         : prepareFolder(options_.dump_frames, "--dump-frames");
+}
+
+Result<std::vector<std::byte>> encodeDump(std::span<const ParticleState> particles, DumpFormat format) {
+    return format == DumpFormat::kVdb ? encodeVdbPoints(particles) : encodePly(particles);
 }
 
 Result<void> Outputs::openVideo() {
@@ -123,8 +138,10 @@ Result<void> Outputs::writePicture(const ParticleSystem& particles, PlayerReport
 Result<void> Outputs::writeParticles(const ParticleSystem& particles, PlayerReport& report) {
     const auto state = RELIEF_TRY(
         watched(options_.watchdog, "reading particles back", [&] { return particles.readState(); }));
-    const fs::path path = numberedPath(options_.dump_frames, "particles_", report.dumps_written, ".ply");
-    RELIEF_TRY(writeFile(path, encodePly(state)));
+    const char* const ending = options_.dump_format == DumpFormat::kVdb ? ".vdb" : ".ply";
+    const fs::path path = numberedPath(options_.dump_frames, "particles_", report.dumps_written, ending);
+    const auto bytes = RELIEF_TRY(encodeDump(state, options_.dump_format));
+    RELIEF_TRY(writeFile(path, bytes));
     ++report.dumps_written;
     return {};
 }
@@ -132,6 +149,9 @@ Result<void> Outputs::writeParticles(const ParticleSystem& particles, PlayerRepo
 Result<void> Outputs::finish() {
     if (log_) {
         RELIEF_TRY(watched(options_.watchdog, "the statistics", [&] { return log_->finish(); }));
+    }
+    if (events_) {
+        RELIEF_TRY(events_->finish());
     }
     return video_ ? video_->finish() : Result<void>{};
 }

@@ -4,18 +4,25 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "formats/base/result.h"
 #include "runtime/files/video.h"
 #include "runtime/gl/gpu_timer.h"
+#include "runtime/player/events_log.h"
 #include "runtime/player/player_options.h"
 #include "runtime/player/scene_picture.h"
 #include "runtime/player/statistics_log.h"
 
 namespace relief {
 
-/// Whether --dump can be written, as far as that shows before the run. Fails with kIo.
-[[nodiscard]] Result<void> checkDump(const std::filesystem::path& dump);
+/// Whether dumps can be written, as far as that shows before the run. Fails with kIo, and with kUnsupported (OpenVDB).
+[[nodiscard]] Result<void> checkDump(const PlayerOptions& options);
+
+/// Errors: those of encodeVdbPoints.
+[[nodiscard]] Result<std::vector<std::byte>> encodeDump(std::span<const ParticleState> particles,
+                                                        DumpFormat format);
 
 class Outputs {
   public:
@@ -36,9 +43,11 @@ class Outputs {
     [[nodiscard]] Result<void> writeFrame(const ParticleSystem& particles, PlayerReport& report);
     /// Null without statistics.
     [[nodiscard]] StatisticsLog* log() { return log_ ? &*log_ : nullptr; }
+    /// Null without events.
+    [[nodiscard]] EventsLog* events() { return events_ ? &*events_ : nullptr; }
     /// Null where stages are not timed.
     [[nodiscard]] GpuTimer* timer() { return timer_ ? &*timer_ : nullptr; }
-    /// Ends the statistics and the video.
+    /// Ends the statistics, the events and the video.
     [[nodiscard]] Result<void> finish();
 
   private:
@@ -53,6 +62,7 @@ class Outputs {
     std::unique_ptr<VideoWriter> video_;
     std::optional<GpuTimer> timer_;
     std::optional<StatisticsLog> log_;
+    std::optional<EventsLog> events_;
 };
 
 }  // namespace relief

@@ -7,9 +7,9 @@
 
 #include "formats/base/file_io.h"
 #include "formats/base/stopwatch.h"
-#include "runtime/files/ply.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/player/outputs.h"
+#include "runtime/player/scene_warnings.h"
 #include "runtime/player/simulation.h"
 #include "runtime/player/state_check.h"
 #include "runtime/player/watched.h"
@@ -62,6 +62,10 @@ class Run {
         report_.counts = simulation_.particles().counts();
         report_.counts.refused += simulation_.refused();
         RELIEF_TRY(watched(options_.watchdog, "looking for lost particles", [&] { return check_.finish(); }));
+        if (outputs_.events() != nullptr) {
+            RELIEF_TRY(watched(options_.watchdog, "the events", [&] { return simulation_.finishEvents(); }));
+            report_.events_dropped = outputs_.events()->dropped();
+        }
         RELIEF_TRY(outputs_.finish());
         if (outputs_.timer() != nullptr) {
             report_.stage_times = outputs_.timer()->times();
@@ -154,7 +158,8 @@ Result<void> readBack(const PlayerOptions& options, const ParticleSystem& partic
     }
     report.collisions = collisions;
     report.in_contact = in_contact;
-    return options.dump.empty() ? Result<void>{} : writeFile(options.dump, encodePly(state));
+    return options.dump.empty() ? Result<void>{}
+                                : writeFile(options.dump, RELIEF_TRY(encodeDump(state, options.dump_format)));
 }
 
 }  // namespace
@@ -163,14 +168,17 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     // Cheap checks come first.
     const auto loaded = RELIEF_TRY(loadAll(options.input, options.overrides));
     auto emitters = RELIEF_TRY(makeEmitters(loaded.scene.emitters));
-    if (!options.dump.empty()) {
-        RELIEF_TRY(checkDump(options.dump));
-    }
+    std::vector<std::string> warnings = sceneWarnings(loaded, emitters);
+    RELIEF_TRY(checkDump(options));
     const auto context = RELIEF_TRY(makeContext(options));
     auto simulation =
         RELIEF_TRY(Simulation::create(loaded, std::move(emitters), options.path, options.watchdog));
     Outputs outputs(options, loaded, simulation.textures());
     RELIEF_TRY(outputs.open());
+    if (EventsLog* events = outputs.events(); events != nullptr) {
+        RELIEF_TRY(simulation.listHits(options.events_min_speed.value_or(0.0F),
+                                       [events](const StepEvents& step) { return events->write(step); }));
+    }
 
     PlayerReport report;
     report.scene = loaded.scene;
@@ -182,6 +190,10 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     RELIEF_TRY(Run(options, simulation, check, outputs, report).play());
     if (options.count_collisions || !options.dump.empty()) {
         RELIEF_TRY(readBack(options, simulation.particles(), report));
+    }
+    report.warnings = std::move(warnings);
+    if (auto refused = refusedWarning(report.counts, report.scene.capacity)) {
+        report.warnings.push_back(std::move(*refused));
     }
     return report;
 }

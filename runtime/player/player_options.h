@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "runtime/gl/gl_context.h"
 #include "runtime/gl/gpu_timer.h"
@@ -15,19 +16,26 @@
 
 namespace relief {
 
+/// What particles are dumped as.
+enum class DumpFormat : std::uint8_t { kPly, kVdb };
+
 struct PlayerOptions {
     /// A scene (.toml) or a collider (.relief), for which the default scene is played.
     std::filesystem::path input;
     SceneOverrides overrides;
     /// Folder for frame_0000.png and so on, made if missing; empty: no pictures.
     std::filesystem::path frames;
-    std::filesystem::path dump;  ///< PLY of the final particles, "-" for standard output; empty: none
+    std::filesystem::path dump;  ///< the final particles, "-" for standard output; empty: none
     /// Folder for particles_0000.ply and so on, as often as frames; empty: none.
     std::filesystem::path dump_frames;
-    std::filesystem::path video;  ///< of the frames, through ffmpeg (video.h); empty: none
+    DumpFormat dump_format = DumpFormat::kPly;  ///< of both
+    std::filesystem::path video;                ///< of the frames, through ffmpeg (video.h); empty: none
     std::filesystem::path stats;  ///< lines of JSON (statistics_log.h), "-" for standard output; empty: none
     std::optional<std::uint32_t> stats_every;  ///< steps from line to line, ≥ 1; nullopt: render.every
-    bool time_stages = false;                  ///< for the report; with stats they are timed anyway
+    std::filesystem::path
+        events;  ///< hits as lines of JSON (events_log.h), "-" for standard output; empty: none
+    std::optional<float> events_min_speed;  ///< slower hits are left out; nullopt: none
+    bool time_stages = false;               ///< for the report; with stats they are timed anyway
     /// Reads the state back at the end for the report's collisions and contacts.
     bool count_collisions = false;
     GlApi api = GlApi::kGl33Core;
@@ -53,8 +61,10 @@ struct PlayerReport {
     /// compiles, wherever there are three or more. 0 without steps.
     double ms_per_step_median = 0.0;
     std::optional<StageTimes> stage_times;
-    std::uint32_t frames_written = 0;  ///< pictures, in files or in the video
-    std::uint32_t dumps_written = 0;   ///< of dump_frames
+    std::uint32_t frames_written = 0;   ///< pictures, in files or in the video
+    std::uint32_t dumps_written = 0;    ///< of dump_frames
+    std::vector<std::string> warnings;  ///< what is probably not meant; one line each
+    std::uint64_t events_dropped = 0;   ///< hits that a step's list had no room for
 };
 
 }  // namespace relief

@@ -182,6 +182,25 @@ Json colliderSettings(const SceneCollider& collider) {
     return json;
 }
 
+Json spawnSettings(const SceneSpawn& spawn) {
+    const SpawnSettings& s = spawn.settings;
+    Json json{{"on", s.on == SpawnOn::kDeath ? "death" : "collision"},
+              {"of", s.of ? Json(*s.of) : Json()},
+              {"type", s.type},
+              {"count", {s.count_min, s.count_max}},
+              {"most", s.most},
+              {"lifetime", {jsonNumber(s.lifetime_min), jsonNumber(s.lifetime_max)}},
+              {"inherit", jsonNumber(s.inherit)},
+              {"speed", {jsonNumber(s.speed_min), jsonNumber(s.speed_max)}},
+              {"kick", jsonNumber(s.kick)},
+              {"cone", jsonNumber(s.cone_degrees)},
+              {"seed", spawn.seed}};
+    if (s.on == SpawnOn::kCollision) {
+        json["min_speed"] = jsonNumber(s.min_speed);
+    }
+    return json;
+}
+
 Json settings(const Scene& scene) {
     Json json;
     for (const SceneCollider& collider : scene.colliders) {
@@ -199,6 +218,9 @@ Json settings(const Scene& scene) {
     }
     if (scene.emitters.size() == 1) {
         json["emitter"] = emitterSettings(scene.emitters.front());
+    }
+    for (const SceneSpawn& spawn : scene.spawns) {
+        json["spawn"].push_back(spawnSettings(spawn));
     }
     json["forces"] = {{"gravity", jsonVector(*scene.forces.gravity)},
                       {"wind", jsonVector(scene.forces.wind)},
@@ -250,6 +272,7 @@ std::string reportJson(const PlayerReport& report) {
     json["ms_per_stage"] = report.stage_times ? stageJson(*report.stage_times) : Json();
     json["frames"] = report.frames_written;
     json["dumps"] = report.dumps_written;
+    json["warnings"] = report.warnings;
     // A file name that is no UTF-8 must not end the program.
     return jsonText(json);
 }

@@ -6,6 +6,7 @@
 #include "formats/base/file_io.h"
 #include "formats/container.h"
 #include "runtime/picture/frame.h"
+#include "runtime/player/scene_warnings.h"
 #include "runtime/scene/scene_pictures.h"
 #include "runtime/tool/json_text.h"
 
@@ -31,7 +32,7 @@ Result<CheckReport> checkScene(const PlayerOptions& options) {
                                            std::to_string(Frame::kPixelsMax) +
                                            " pixels in all; choose a smaller one");
     }
-    RELIEF_TRY(makeEmitters(loaded.scene.emitters));
+    const auto emitters = RELIEF_TRY(makeEmitters(loaded.scene.emitters));
     RELIEF_TRY(checkPictures(loaded.scene, loaded.bounds));
     CheckReport report;
     if (options.input != loaded.scene.colliders.front().path) {
@@ -53,6 +54,7 @@ Result<CheckReport> checkScene(const PlayerOptions& options) {
     }
     report.steps = loaded.scene.steps;
     report.capacity = loaded.scene.capacity;
+    report.warnings = sceneWarnings(loaded, emitters);
     return report;
 }
 
@@ -76,6 +78,7 @@ std::string checkJson(const CheckReport& report) {
     for (const CheckedFile& file : report.files) {
         json["files"].push_back({{"file", file.path.native()}, {"kind", file.kind}, {"bytes", file.bytes}});
     }
+    json["warnings"] = report.warnings;
     return jsonText(json);
 }
 

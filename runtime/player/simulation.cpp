@@ -1,6 +1,7 @@
 #include "runtime/player/simulation.h"
 
 #include <algorithm>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -10,6 +11,10 @@
 
 namespace relief {
 namespace {
+
+// When a step begins, the events of the one before may still be on their way, and no others. Always: what is made of
+// them depends on no clock.
+constexpr int kStepsUnderWay = 1;
 
 /// The colliders on the GPU: a single one without a pose in its own space, others in the world.
 Result<ColliderTextures> makeTextures(const Scene& scene, std::span<const Collider> colliders) {
@@ -26,21 +31,24 @@ Result<ColliderTextures> makeTextures(const Scene& scene, std::span<const Collid
     return ColliderTextures::create(bodies);
 }
 
-Result<ParticleSystem> makeParticles(const Scene& scene, const ColliderTextures& textures, StepPath path) {
-    auto particles = RELIEF_TRY(
-        ParticleSystem::create({.capacity = scene.capacity, .integrator = scene.integrator, .path = path}));
-    RELIEF_TRY(particles.setCollider(&textures));
+Result<void> applyScene(const Scene& scene, ParticleSystem& particles) {
     particles.setForces({*scene.forces.gravity, scene.forces.wind,
                          scene.air.viscosity ? 0.0F : scene.forces.drag, scene.air.viscosity.value_or(0.0F)});
     particles.setCollision(scene.collision);
     if (!scene.types.empty()) {
         RELIEF_TRY(particles.setTypes(scene.types));
     }
-    if (scene.sweep > 0.0F) {
-        RELIEF_TRY(particles.setSweep(scene.sweep));
-    }
+    RELIEF_TRY(particles.setSweep(scene.sweep));
     RELIEF_TRY(particles.setAir(scene.air));
     particles.setGround(scene.ground.enabled ? scene.ground.height : std::nullopt);
+    return {};
+}
+
+Result<ParticleSystem> makeParticles(const Scene& scene, const ColliderTextures& textures, StepPath path) {
+    auto particles = RELIEF_TRY(
+        ParticleSystem::create({.capacity = scene.capacity, .integrator = scene.integrator, .path = path}));
+    RELIEF_TRY(particles.setCollider(&textures));
+    RELIEF_TRY(applyScene(scene, particles));
     return particles;
 }
 
@@ -73,23 +81,90 @@ Result<Simulation> Simulation::create(const LoadedScene& loaded, std::vector<Emi
     auto particles = RELIEF_TRY(watched(watchdog, "the shaders of particles",
                                         [&] { return makeParticles(scene, *made.textures_, path); }));
     made.particles_ = std::make_unique<ParticleSystem>(std::move(particles));
+    RELIEF_TRY(watched(watchdog, "the shaders of events", [&] { return made.setEvents(); }));
     return made;
 }
 
-Result<void> Simulation::step(StageTimer* stages) {
+Result<void> Simulation::step(float dt, StageTimer* stages) {
     {
         const StageScope scope(stages, Stage::kBirths);
-        giveBirth();
+        RELIEF_TRY(takeEvents(kStepsUnderWay));
+        giveBirth(dt);
     }
     const StageScope scope(stages, Stage::kStep);
-    RELIEF_TRY(moveColliders(particles_->time() + static_cast<double>(scene_->dt)));
-    particles_->step(scene_->dt);
+    RELIEF_TRY(moveColliders(particles_->time() + static_cast<double>(dt)));
+    particles_->step(dt);
+    ++steps_;
+    if (particles_->eventList() != nullptr) {
+        particles_->requestEvents(steps_);
+    }
     return {};
 }
 
-void Simulation::giveBirth() {
+Result<void> Simulation::listHits(float min_speed, EventSink sink) {
+    event_sink_ = std::move(sink);
+    sink_min_speed_ = min_speed;
+    return setEvents();
+}
+
+Result<void> Simulation::setEvents() {
+    if (spawns_ != scene_->spawns) {
+        spawns_ = scene_->spawns;
+        spawners_ = makeSpawners(spawns_);
+    }
+    constexpr float kNone = std::numeric_limits<float>::infinity();
+    EventOptions options{
+        .hits = false, .min_speed = event_sink_ ? sink_min_speed_ : kNone, .most = kEventsMax};
+    for (const SceneSpawn& spawn : spawns_) {
+        const SpawnSettings& settings = spawn.settings;
+        const bool death = settings.on == SpawnOn::kDeath;
+        options.deaths = options.deaths || death;
+        options.min_speed = std::min(options.min_speed, death ? kNone : settings.min_speed);
+    }
+    options.hits = options.min_speed < kNone;
+    options.min_speed = options.hits ? options.min_speed : 0.0F;
+    const auto wanted = options.hits || options.deaths ? std::optional(options) : std::nullopt;
+    if (wanted == event_options_) {
+        return {};
+    }
+    RELIEF_TRY(particles_->setEvents(wanted));
+    event_options_ = wanted;
+    return {};
+}
+
+Result<void> Simulation::takeEvents(int in_flight) {
+    while (particles_->eventsInFlight() > in_flight) {
+        const auto events = RELIEF_TRY(particles_->waitEvents());
+        if (!events) {
+            return {};
+        }
+        if (event_sink_) {
+            RELIEF_TRY(event_sink_(*events));
+        }
+        refused_ += spawners_.empty() ? 0 : events->dropped;
+        for (Spawner& spawner : spawners_) {
+            const std::uint64_t room =
+                particles_->room() - std::min<std::uint64_t>(particles_->room(), spawned_.size());
+            refused_ += spawner.spawn(*events, scene_->types, room, spawned_);
+        }
+    }
+    return {};
+}
+
+Result<void> Simulation::change(std::optional<std::vector<Emitter>> emitters) {
+    if (emitters) {
+        emitters_ = std::move(*emitters);
+    }
+    RELIEF_TRY(applyScene(*scene_, *particles_));
+    return setEvents();
+}
+
+void Simulation::giveBirth(float dt) {
     births_.clear();
-    refused_ += emitAll(emitters_, static_cast<double>(scene_->dt), particles_->room(), births_);
+    births_.swap(spawned_);
+    const std::uint64_t room =
+        particles_->room() - std::min<std::uint64_t>(particles_->room(), births_.size());
+    refused_ += emitAll(emitters_, static_cast<double>(dt), room, births_);
     particles_->spawn(births_);
 }
 

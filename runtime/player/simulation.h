@@ -2,7 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "formats/base/result.h"
@@ -26,20 +29,48 @@ class Simulation {
     [[nodiscard]] static Result<Simulation> create(const LoadedScene& loaded, std::vector<Emitter> emitters,
                                                    StepPath path, Watchdog* watchdog);
 
-    /// Births, then the colliders' poses and shapes at the step's end, then the particles' step.
+    /// Births, those of the scene's [[spawn]] by events of the step before the last, then the colliders' poses and shapes at the step's end, then the particles' step.
     /// \param stages  times births and step; may be null.
     /// Fails as LiveBodies::show does.
-    [[nodiscard]] Result<void> step(StageTimer* stages);
+    [[nodiscard]] Result<void> step(StageTimer* stages) { return step(scene_->dt, stages); }
+    /// \param dt  seconds, > 0, instead of the scene's.
+    [[nodiscard]] Result<void> step(float dt, StageTimer* stages);
+
+    /// Takes over what a scene that was changed since says of forces, collision, types, air and ground; particles stay.
+    /// The scene is that of create(), whose colliders, capacity and integrator are as they were.
+    /// \param emitters  instead of those there are; nullopt: these go on.
+    /// Fails as ParticleSystem's setters do.
+    [[nodiscard]] Result<void> change(std::optional<std::vector<Emitter>> emitters);
+
+    /// Hands on the events of every step from the next one on, in the order of steps; each comes a few steps late, so
+    /// that nothing waits for the GPU. The tag is the number of the step, from 1.
+    /// It may hold more than hits that began: what the scene's [[spawn]] asks for. Up to kEventsMax of a step.
+    /// \param min_speed  slower hits may be left out.
+    /// Fails as ParticleSystem::setEvents does.
+    using EventSink = std::function<Result<void>(const StepEvents&)>;
+    [[nodiscard]] Result<void> listHits(float min_speed, EventSink sink);
+    static constexpr std::uint32_t kEventsMax = 1U << 18;
+    /// Hands on the events that are still under way. Fails as the sink and ParticleSystem::waitEvents do.
+    [[nodiscard]] Result<void> finishEvents() { return takeEvents(0); }
+
+    /// Births on top of the emitters', with the next step. Returns how many: see ParticleSystem::spawn.
+    std::size_t spawn(std::span<const Birth> births) { return particles_->spawn(births); }
 
     [[nodiscard]] const ParticleSystem& particles() const { return *particles_; }
     [[nodiscard]] const ColliderTextures& textures() const { return *textures_; }
-    /// Births that emitters did not ask the particle system for, as it had no room.
+    /// Births that emitters and [[spawn]] did not ask the particle system for, as it had no room.
     [[nodiscard]] std::uint64_t refused() const { return refused_; }
+    /// The mesh of a collider that deforms, as it is now; null: that one does not.
+    [[nodiscard]] const GpuMesh* mesh(std::size_t collider) const { return live_.mesh(collider); }
 
   private:
     Simulation() = default;
-    void giveBirth();
+    void giveBirth(float dt);
     [[nodiscard]] Result<void> moveColliders(double time);
+    /// Lists what the scene's [[spawn]] and the sink ask for, or nothing.
+    [[nodiscard]] Result<void> setEvents();
+    /// Until at most so many steps are under way.
+    [[nodiscard]] Result<void> takeEvents(int in_flight);
 
     const Scene* scene_ = nullptr;
     bool poses_change_ = false;
@@ -49,6 +80,13 @@ class Simulation {
     std::unique_ptr<ParticleSystem> particles_;
     std::vector<Birth> births_;  // of a step, kept for its memory
     std::uint64_t refused_ = 0;
+    std::uint64_t steps_ = 0;
+    std::vector<SceneSpawn> spawns_;  // that the spawners are made of
+    std::vector<Spawner> spawners_;
+    std::vector<Birth> spawned_;  // for the next step
+    std::optional<EventOptions> event_options_;
+    EventSink event_sink_;  // may be empty
+    float sink_min_speed_ = 0.0F;
 };
 
 }  // namespace relief

@@ -1,5 +1,6 @@
 #include "runtime/scene/loaded_scene.h"
 
+#include "formats/bake_first.h"
 #include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
@@ -13,10 +14,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Result<Scene> openScene(const fs::path& input) {
+Result<Scene> openScene(const fs::path& input, const fs::path& root) {
     const std::string extension = lowerCase(input.extension().native());
     if (extension == ".toml") {
-        return loadScene(input);
+        return loadScene(input, root);
     }
     if (extension == ".relief") {
         Scene scene;
@@ -24,6 +25,7 @@ Result<Scene> openScene(const fs::path& input) {
         scene.colliders.front().path = input;
         return scene;
     }
+    RELIEF_TRY(refuseMeshName(input));
     return fail(ErrorCode::kUsage,
                 quotedPath(input) + " is neither a scene nor a collider; name a .toml or a .relief file");
 }
@@ -42,7 +44,7 @@ bool withinLengths(const Bounds& bounds) {
 }  // namespace
 
 Result<LoadedScene> loadAll(const fs::path& input, const SceneOverrides& overrides) {
-    auto scene = RELIEF_TRY(openScene(input));
+    auto scene = RELIEF_TRY(openScene(input, overrides.root));
     scene.steps = overrides.steps.value_or(scene.steps);
     scene.render.width = overrides.width.value_or(scene.render.width);
     scene.render.height = overrides.height.value_or(scene.render.height);

@@ -19,6 +19,8 @@ struct SceneOverrides {
     std::optional<std::uint32_t> width;  ///< of pictures, pixels, as is the next
     std::optional<std::uint32_t> height;
     std::optional<std::uint64_t> seed;  ///< of every emitter
+    /// A folder whose files the scene may name beside those of its own; empty: none.
+    std::filesystem::path root;
 };
 
 /// A scene and what it names, read and complete.

@@ -19,6 +19,7 @@
 #include "runtime/picture/particle_renderer.h"
 #include "runtime/scene/scene_collider.h"
 #include "runtime/scene/scene_emitter.h"
+#include "runtime/scene/scene_spawn.h"
 
 namespace relief {
 
@@ -41,6 +42,7 @@ struct Scene {
     Integrator integrator = Integrator::kEuler;
 
     std::vector<SceneEmitter> emitters{SceneEmitter{}};  ///< at least one
+    std::vector<SceneSpawn> spawns;                      ///< of [[spawn]], in their order
 
     struct {
         std::optional<glm::vec3> gravity;

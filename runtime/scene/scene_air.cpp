@@ -117,7 +117,7 @@ void readRawShape(SceneTable& table, const toml::node& at, FlowFile& flow) {
     }
 }
 
-void readFlow(SceneTable table, const toml::node* at, const fs::path& folder, Scene& scene) {
+void readFlow(SceneTable table, const toml::node* at, const SceneFolder& folder, Scene& scene) {
     if (at == nullptr) {
         return;
     }
@@ -186,7 +186,7 @@ void nameAirTables(SceneTable& top) {
     }
 }
 
-void readAir(SceneTable& top, const fs::path& folder, Scene& scene) {
+void readAir(SceneTable& top, const SceneFolder& folder, Scene& scene) {
     const toml::node* flow = top.find("flow");
     const toml::node* noise = top.find("curl_noise");
     readAttractors(top, top.file(), scene);

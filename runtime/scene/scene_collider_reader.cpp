@@ -56,7 +56,7 @@ void readKeys(SceneTable& table, std::string_view file, SceneCollider& collider)
 }
 
 /// collider.file
-void readFileName(SceneTable& table, const toml::source_position& at, const std::filesystem::path& folder,
+void readFileName(SceneTable& table, const toml::source_position& at, const SceneFolder& folder,
                   SceneCollider& collider) {
     std::string name;
     if (!table.text("file", name) || name.empty()) {
@@ -67,7 +67,7 @@ void readFileName(SceneTable& table, const toml::source_position& at, const std:
 }
 
 SceneCollider readCollider(SceneTable table, const toml::source_position& at, std::string_view file,
-                           const std::filesystem::path& folder) {
+                           const SceneFolder& folder) {
     SceneCollider collider;
     if (!readLive(table, file, folder, collider)) {
         readFileName(table, at, folder, collider);
@@ -84,8 +84,7 @@ SceneCollider readCollider(SceneTable table, const toml::source_position& at, st
 
 }  // namespace
 
-std::vector<SceneCollider> readColliders(SceneTable& top, std::string_view file,
-                                         const std::filesystem::path& folder) {
+std::vector<SceneCollider> readColliders(SceneTable& top, std::string_view file, const SceneFolder& folder) {
     const toml::node* node = top.find("collider");
     if (node == nullptr || !node->is_array()) {
         const toml::source_position at = node == nullptr ? toml::source_position{1, 1} : node->source().begin;

@@ -24,25 +24,6 @@ float positive(double value) {
     return std::max(static_cast<float>(value), std::numeric_limits<float>::min());
 }
 
-/// A number, or [least, most].
-struct Span {
-    double least = 0.0;
-    double most = 0.0;
-};
-Span readSpan(const SceneTable& table, const toml::node& node, std::string_view key, const SceneRange& range,
-              std::string_view wanted) {
-    const toml::array* both = node.as_array();
-    if (both == nullptr ? !node.is_number() : both->size() != 2) {
-        table.wrongType(node, key, wanted);
-    }
-    const Span span{table.numberOf(both == nullptr ? node : *both->get(0), key, range),
-                    table.numberOf(both == nullptr ? node : *both->get(1), key, range)};
-    if (span.least > span.most) {
-        table.failAt(node, table.full(key) + " has its least above its most; exchange them");
-    }
-    return span;
-}
-
 void readBox(SceneTable& table, SceneEmitter& emitter) {
     const SceneRange length = symmetric(kLengthMax);
     const bool low = table.vector("box_min", length, emitter.box_min);
@@ -83,7 +64,7 @@ bool readDirection(SceneTable& table, std::string_view key, T& out) {
     return true;
 }
 
-void readPlace(SceneTable& table, const fs::path& folder, SceneEmitter& emitter) {
+void readPlace(SceneTable& table, const SceneFolder& folder, SceneEmitter& emitter) {
     // Without `shape`, the keys of the place tell the shape.
     std::size_t shape = table.find("points") != nullptr  ? static_cast<std::size_t>(EmitterShape::kPoints)
                         : table.find("point") != nullptr ? kPoint
@@ -172,8 +153,8 @@ void readSpeed(SceneTable& table, std::string_view file, SceneEmitter& emitter) 
         emitter.speed_max = mean;
         return;
     }
-    const Span span =
-        readSpan(table, *node, "speed", range, "a number, two [least, most], or { mean = …, deviation = … }");
+    const SceneSpan span =
+        table.spanOf(*node, "speed", range, "a number, two [least, most], or { mean = …, deviation = … }");
     emitter.speed_min = static_cast<float>(span.least);
     emitter.speed_max = static_cast<float>(span.most);
 }
@@ -201,8 +182,8 @@ void readVelocity(SceneTable& table, std::string_view file, SceneEmitter& emitte
 
 void readLife(SceneTable& table, SceneEmitter& emitter) {
     if (const toml::node* node = table.find("lifetime"); node != nullptr) {
-        const Span span = readSpan(table, *node, "lifetime", {0.0, kSecondsMax, false},
-                                   "a number of seconds, or two [least, most]");
+        const SceneSpan span = table.spanOf(*node, "lifetime", {0.0, kSecondsMax, false},
+                                            "a number of seconds, or two [least, most]");
         // A lifetime below the smallest float would be 0.
         emitter.lifetime_min = positive(span.least);
         emitter.lifetime_max = positive(span.most);
@@ -224,7 +205,7 @@ void readLife(SceneTable& table, SceneEmitter& emitter) {
     table.integer("seed", {0.0, kSeedMax}, emitter.seed);
 }
 
-SceneEmitter readEmitter(SceneTable table, std::string_view file, const fs::path& folder,
+SceneEmitter readEmitter(SceneTable table, std::string_view file, const SceneFolder& folder,
                          std::uint32_t capacity) {
     SceneEmitter emitter;
     readPlace(table, folder, emitter);
@@ -237,7 +218,7 @@ SceneEmitter readEmitter(SceneTable table, std::string_view file, const fs::path
 
 }  // namespace
 
-std::vector<SceneEmitter> readEmitters(SceneTable& top, std::string_view file, const fs::path& folder,
+std::vector<SceneEmitter> readEmitters(SceneTable& top, std::string_view file, const SceneFolder& folder,
                                        std::uint32_t capacity) {
     constexpr std::string_view kName = "emitter";
     const toml::node* node = top.find(kName);

@@ -113,8 +113,7 @@ SceneLive readDeform(const SceneTable& table, const toml::node& node, std::strin
 
 }  // namespace
 
-bool readLive(SceneTable& table, std::string_view file, const std::filesystem::path& folder,
-              SceneCollider& collider) {
+bool readLive(SceneTable& table, std::string_view file, const SceneFolder& folder, SceneCollider& collider) {
     std::string name;
     const bool has_mesh = table.text("mesh", name);
     const toml::node* deform = table.find("deform");

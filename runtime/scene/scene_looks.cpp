@@ -102,7 +102,7 @@ void readLook(SceneTable& table, std::uint32_t cells, ParticleLook& look) {
     table.pair("fade", {0.0, kSecondsMax}, "two numbers of seconds [in, out]", look.fade_in, look.fade_out);
 }
 
-void readSprites(SceneTable& render, const std::filesystem::path& folder, Scene& scene) {
+void readSprites(SceneTable& render, const SceneFolder& folder, Scene& scene) {
     auto& out = scene.render;
     render.word("sprite", {"point", "quad"}, out.sprite);
     render.word("blend", {"alpha", "additive"}, out.blend);

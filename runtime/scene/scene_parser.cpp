@@ -67,7 +67,7 @@ void readCamera(SceneTable table, std::string_view file, Scene& scene) {
     }
 }
 
-void readRender(SceneTable table, const fs::path& folder, Scene& scene) {
+void readRender(SceneTable table, const SceneFolder& folder, Scene& scene) {
     auto& render = scene.render;
     table.pair("size", {1.0, kPixelsMax}, "two whole numbers [width, height]", render.width, render.height);
     if (table.number("point_size", {0.0, kLengthMax, false}, render.point_size)) {
@@ -87,7 +87,7 @@ void readRender(SceneTable table, const fs::path& folder, Scene& scene) {
     table.finish();
 }
 
-Scene readScene(const toml::table& root, const fs::path& path, std::string_view file) {
+Scene readScene(const toml::table& root, const SceneFolder& folder, std::string_view file) {
     Scene scene;
     SceneTable top(&root, "", file);
     static_cast<void>(top.find("collider"));  // a table or an array: readColliders
@@ -100,35 +100,38 @@ Scene readScene(const toml::table& root, const fs::path& path, std::string_view 
     SceneTable camera = top.sub("camera");
     SceneTable render = top.sub("render");
     nameAirTables(top);
+    static_cast<void>(top.find("spawn"));
     static_cast<void>(top.find("type"));  // an array: readTypes
     top.finish();
 
-    scene.colliders = readColliders(top, file, path.parent_path());
+    scene.colliders = readColliders(top, file, folder);
     time.number("dt", {1e-6, 1.0}, scene.dt);
     time.integer("steps", {0.0, kStepsMax}, scene.steps);
     time.word("integrator", {"euler", "verlet"}, scene.integrator);
     time.finish();
     particles.integer("capacity", {1.0, ParticleSystem::kCapacityMax}, scene.capacity);
     particles.finish();
-    scene.emitters = readEmitters(top, file, path.parent_path(), scene.capacity);
+    scene.emitters = readEmitters(top, file, folder, scene.capacity);
     readForces(forces, scene);
-    readAir(top, path.parent_path(), scene);
+    readAir(top, folder, scene);
     readCollision(collision, scene);
     readGround(ground, scene);
     readCamera(camera, file, scene);
-    readRender(render, path.parent_path(), scene);
+    readRender(render, folder, scene);
     readTypes(top, file, scene);
+    scene.spawns = readSpawns(top, file);
     return scene;
 }
 
 }  // namespace
 
-Result<Scene> parseScene(std::string_view text, const fs::path& path) {
+Result<Scene> parseScene(std::string_view text, const fs::path& path, const fs::path& root) {
     const std::string file = oneLine(path.native());
     try {
-        const toml::table root = toml::parse(text, file);
-        Scene scene = readScene(root, path, file);
+        const toml::table tables = toml::parse(text, file);
+        Scene scene = readScene(tables, {path.parent_path(), root}, file);
         RELIEF_TRY(resolveEmitterTypes(scene.emitters, scene.type_names));
+        RELIEF_TRY(resolveSpawnTypes(scene.spawns, scene.type_names));
         return scene;
     } catch (const toml::parse_error& error) {
         const toml::source_position& at = error.source().begin;
@@ -142,9 +145,9 @@ Result<Scene> parseScene(std::string_view text, const fs::path& path) {
     }
 }
 
-Result<Scene> loadScene(const fs::path& path) {
+Result<Scene> loadScene(const fs::path& path, const fs::path& root) {
     const auto bytes = RELIEF_TRY(readFile(path, kSceneBytesMax));
-    return parseScene({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path);
+    return parseScene({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path, root);
 }
 
 }  // namespace relief

@@ -12,10 +12,13 @@ namespace relief {
 /// \param text    the file's contents; may be hostile.
 /// \param path    names it in messages and resolves the paths in it, which may not leave its folder
 ///                (confined_path.h).
+/// \param root    another folder that they may lead to; empty: none.
 /// Errors: kInvalidInput, one line "file:line:column: what is wrong; the cure".
-[[nodiscard]] Result<Scene> parseScene(std::string_view text, const std::filesystem::path& path);
+[[nodiscard]] Result<Scene> parseScene(std::string_view text, const std::filesystem::path& path,
+                                       const std::filesystem::path& root = {});
 
 /// Reads a file and parses it. Fails as readFile and parseScene do, and with kLimit above 1 MiB.
-[[nodiscard]] Result<Scene> loadScene(const std::filesystem::path& path);
+[[nodiscard]] Result<Scene> loadScene(const std::filesystem::path& path,
+                                      const std::filesystem::path& root = {});
 
 }  // namespace relief

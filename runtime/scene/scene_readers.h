@@ -19,7 +19,7 @@ namespace relief {
 void nameAirTables(SceneTable& top);
 /// [[attractor]], [[vortex]], [flow] and [curl_noise]; call when scene.forces is read.
 /// \param folder  of the scene, as for the readers below.
-void readAir(SceneTable& top, const std::filesystem::path& folder, Scene& scene);
+void readAir(SceneTable& top, const SceneFolder& folder, Scene& scene);
 /// forces.viscosity.
 void readViscosity(SceneTable& forces, Scene& scene);
 
@@ -28,21 +28,25 @@ void readViscosity(SceneTable& forces, Scene& scene);
 /// [emitter], or [[emitter]] as often as wanted; one emitter with every default where there is neither.
 /// \param capacity  of the particles.
 [[nodiscard]] std::vector<SceneEmitter> readEmitters(SceneTable& top, std::string_view file,
-                                                     const std::filesystem::path& folder,
-                                                     std::uint32_t capacity);
+                                                     const SceneFolder& folder, std::uint32_t capacity);
 
 // scene_collider_reader.cpp
 
 /// [collider], or [[collider]] as often as wanted.
 [[nodiscard]] std::vector<SceneCollider> readColliders(SceneTable& top, std::string_view file,
-                                                       const std::filesystem::path& folder);
+                                                       const SceneFolder& folder);
 
 // scene_live_reader.cpp
 
 /// collider.mesh, collider.deform and collider.resolution: sets path, origin and live.
 /// \return whether the collider deforms; else it needs a file.
-[[nodiscard]] bool readLive(SceneTable& collider, std::string_view file, const std::filesystem::path& folder,
+[[nodiscard]] bool readLive(SceneTable& collider, std::string_view file, const SceneFolder& folder,
                             SceneCollider& out);
+
+// scene_spawn_reader.cpp
+
+/// [[spawn]].
+[[nodiscard]] std::vector<SceneSpawn> readSpawns(SceneTable& top, std::string_view file);
 
 // scene_types.cpp
 
@@ -55,7 +59,7 @@ void readTypes(SceneTable& top, std::string_view file, Scene& scene);
 /// \param cells  of the atlas; 0: there is none.
 void readLook(SceneTable& type, std::uint32_t cells, ParticleLook& look);
 /// What [render] says of sprites and of the collider's mesh.
-void readSprites(SceneTable& render, const std::filesystem::path& folder, Scene& scene);
+void readSprites(SceneTable& render, const SceneFolder& folder, Scene& scene);
 
 // scene_camera.cpp
 

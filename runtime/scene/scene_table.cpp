@@ -59,20 +59,34 @@ bool SceneTable::text(std::string_view key, std::string& out) {
         return *node.value_exact<std::string>();
     });
 }
-bool SceneTable::path(std::string_view key, const std::filesystem::path& folder, std::filesystem::path& out,
+bool SceneTable::path(std::string_view key, const SceneFolder& folder, std::filesystem::path& out,
                       std::string& origin) {
     std::string name;
     if (!text(key, name)) {
         return false;
     }
     const toml::node& node = *find(key);
-    auto inside = resolveInside(folder, name);
+    auto inside = resolveInside(folder.own, name, "scene", folder.root);
     if (!inside) {
         failAt(node, full(key) + " = " + inside.error().message);
     }
     out = std::move(*inside);
     origin = place(node.source().begin);
     return true;
+}
+
+SceneSpan SceneTable::spanOf(const toml::node& node, std::string_view key, const SceneRange& range,
+                             std::string_view wanted) const {
+    const toml::array* both = node.as_array();
+    if (both == nullptr ? !node.is_number() : both->size() != 2) {
+        wrongType(node, key, wanted);
+    }
+    const SceneSpan span{numberOf(both == nullptr ? node : *both->get(0), key, range),
+                         numberOf(both == nullptr ? node : *both->get(1), key, range)};
+    if (span.least > span.most) {
+        failAt(node, full(key) + " has its least above its most; exchange them");
+    }
+    return span;
 }
 
 std::vector<const toml::table*> SceneTable::tables(std::string_view key, std::size_t most) {

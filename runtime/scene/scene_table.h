@@ -31,6 +31,12 @@ struct SceneError {
 /// A line of text that a hostile file can neither break nor colour.
 [[nodiscard]] std::string oneLine(std::string_view text);
 
+/// Where the paths of a scene may lead (confined_path.h).
+struct SceneFolder {
+    std::filesystem::path own;   ///< the scene's, from which they are named
+    std::filesystem::path root;  ///< another one; empty: none
+};
+
 struct SceneRange {
     double low;
     double high;
@@ -38,6 +44,12 @@ struct SceneRange {
 
     [[nodiscard]] bool holds(double value) const;  ///< false for NaN
     [[nodiscard]] std::string text() const;        ///< "choose 0 to 1"
+};
+
+/// A number, or [least, most].
+struct SceneSpan {
+    double least = 0.0;
+    double most = 0.0;
 };
 
 constexpr SceneRange symmetric(double limit) {
@@ -104,7 +116,7 @@ class SceneTable {
     }
     /// A path, resolved, and its place in the file.
     /// \param folder  of the scene, as everywhere.
-    bool path(std::string_view key, const std::filesystem::path& folder, std::filesystem::path& out,
+    bool path(std::string_view key, const SceneFolder& folder, std::filesystem::path& out,
               std::string& origin);
 
     /// The tables of the array `key`; none if it is absent.
@@ -119,6 +131,9 @@ class SceneTable {
                                          const SceneRange& range) const;
     [[nodiscard]] glm::vec3 vectorOf(const toml::node& node, std::string_view key,
                                      const SceneRange& range) const;
+    /// \param wanted  what the value must be, in words.
+    [[nodiscard]] SceneSpan spanOf(const toml::node& node, std::string_view key, const SceneRange& range,
+                                   std::string_view wanted) const;
     [[nodiscard]] std::size_t wordOf(const toml::node& node, std::string_view key,
                                      const std::vector<std::string_view>& words) const;
 

@@ -1,0 +1,112 @@
+// The events of a step as a list on the GPU, and its way back to the CPU some steps later.
+//
+// The step writes what happened to each particle into two textures (shaders/step_event.glsl). The list is made of them
+// by fragments alone, on either path: sums of kEventsCounted in kEventLevels levels say how many events lie before each
+// index, and every texel of the list looks its own event up (a histogram pyramid, Ziegler et al. 2006).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "formats/base/result.h"
+#include "runtime/gl/gl_fence.h"
+#include "runtime/gl/gl_object.h"
+#include "runtime/particles/particle_event.h"
+#include "runtime/particles/particle_type.h"
+
+namespace relief {
+
+class EventList {
+  public:
+    static constexpr int kInFlightMax = 8;  ///< steps asked for and not yet collected
+
+    /// A step that has just been made, in the particle system's textures.
+    struct Step {
+        const GlTexture& way;  ///< as step_event.glsl writes them
+        const GlTexture& surface;
+        const GlTexture& position_before;
+        const GlTexture& birth;
+        std::uint32_t width = 0;   ///< of the textures
+        std::uint32_t extent = 0;  ///< particles that were stepped
+        std::span<const ParticleType> types;
+        std::uint64_t tag = 0;
+        std::uint64_t number = 0;  ///< of the step
+        double begin = 0.0;        ///< of the step, seconds
+        double end = 0.0;
+    };
+    /// What has come back: ids are modulo 2^24.
+    struct Collected {
+        StepEvents events;
+        std::uint64_t number = 0;
+    };
+
+    /// \param capacity  of the particle system.
+    /// Errors: kUsage (the options), kLimit, kUnsupported, kFailure.
+    [[nodiscard]] static Result<EventList> create(const EventOptions& options, std::uint32_t capacity);
+
+    /// Makes the list, and asks for it. With the state of a pass (PassState).
+    /// \return false, and nothing is made, while kInFlightMax are under way.
+    bool request(const Step& step);
+    /// The oldest list, if the GPU has finished it: never waits.
+    [[nodiscard]] std::optional<Collected> poll();
+    /// The oldest list, which the GPU is waited for; nullopt if none is under way.
+    /// Errors: kFailure (the GPU has not answered for ten seconds, or its memory cannot be read).
+    [[nodiscard]] Result<std::optional<Collected>> wait();
+    [[nodiscard]] int inFlight() const { return in_flight_; }
+    /// The number of the oldest step under way.
+    [[nodiscard]] std::optional<std::uint64_t> oldestNumber() const;
+
+    [[nodiscard]] const EventOptions& options() const { return options_; }
+    /// The list of the last request, four textures of RGBA32F, kEventsWidth texels in a row: place, surface, way and
+    /// who of shaders/event_list.frag.
+    [[nodiscard]] std::span<const GlTexture, 4> textures() const { return list_; }
+    /// A texel: x says how many events there were; the list holds `most` of them.
+    [[nodiscard]] const GlTexture& total() const { return counts_[kLevels - 1].texture; }
+
+  private:
+    static constexpr std::size_t kLevels = 4;
+    struct Level {
+        GlTexture texture;
+        GlFramebuffer target;
+    };
+    struct Slot {
+        GlBuffer buffer;
+        GlFence fence;
+        std::uint32_t rows = 0;  // of the list that were read; 0: nobody was there
+        std::uint64_t tag = 0;
+        std::uint64_t number = 0;
+        double begin = 0.0;
+        double end = 0.0;
+    };
+    EventList() = default;
+    [[nodiscard]] Result<void> createTextures(std::uint32_t capacity);
+    [[nodiscard]] Result<void> createPrograms();
+    [[nodiscard]] std::uint32_t listWidth() const;
+    void useFilter(const GlProgram& program) const;
+    void count(const Step& step) const;
+    void makeList(const Step& step, std::uint32_t rows) const;
+    void readInto(Slot& slot) const;
+    [[nodiscard]] std::optional<Collected> collect();
+    [[nodiscard]] Collected decoded(const Slot& slot, const std::vector<float>& values) const;
+
+    EventOptions options_;
+    std::array<Level, kLevels> counts_;
+    std::array<GlTexture, 4> list_;
+    GlFramebuffer list_target_;
+    GlVertexArray no_attributes_;
+    GlProgram count_program_;
+    GlProgram sum_program_;
+    GlProgram list_program_;
+    GLint count_particles_ = -1;
+    GLint sum_count_ = -1;
+    GLint list_width_ = -1;
+    GLint list_radius_ = -1;
+    std::array<Slot, kInFlightMax> slots_;
+    int oldest_ = 0;
+    int in_flight_ = 0;
+};
+
+}  // namespace relief

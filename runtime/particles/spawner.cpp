@@ -1,0 +1,93 @@
+#include "runtime/particles/spawner.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace relief {
+namespace {
+
+const char* problemOf(const SpawnSettings& s) {
+    const auto ordered = [](float least, float most) {
+        return least >= 0.0F && least <= most && std::isfinite(most);
+    };
+    if (s.count_min > s.count_max || s.count_max == 0 || s.most == 0) {
+        return "counts must be in order, and the most at least 1";
+    }
+    if (!(s.lifetime_min > 0.0F) || !ordered(s.lifetime_min, s.lifetime_max)) {
+        return "lifetime_min must be above 0 and not above lifetime_max";
+    }
+    if (!ordered(s.speed_min, s.speed_max) || !ordered(s.kick, s.kick) || !ordered(s.inherit, s.inherit) ||
+        !ordered(s.min_speed, s.min_speed)) {
+        return "speeds, kick and inherit must be finite, at least 0 and in order";
+    }
+    if (!(s.cone_degrees >= 0.0F && s.cone_degrees <= 180.0F)) {
+        return "cone_degrees must be 0 to 180";
+    }
+    return nullptr;
+}
+
+}  // namespace
+
+Result<void> Spawner::check(const SpawnSettings& settings) {
+    if (const char* problem = problemOf(settings); problem != nullptr) {
+        return fail(ErrorCode::kUsage, std::string("a spawner's ") + problem);
+    }
+    return {};
+}
+
+Spawner::Spawner(const SpawnSettings& settings, std::uint64_t seed, std::uint64_t stream)
+    : settings_(settings),
+      random_(seed, stream),
+      opening_(static_cast<float>(oneMinusCosine(static_cast<double>(settings.cone_degrees)))) {}
+
+bool Spawner::heeds(const ParticleEvent& event) const {
+    if (settings_.of && event.type != *settings_.of) {
+        return false;
+    }
+    return settings_.on == SpawnOn::kDeath ? event.death
+                                           : event.hit && !event.lasts && event.speed >= settings_.min_speed;
+}
+
+std::uint64_t Spawner::spawn(const StepEvents& step, std::span<const ParticleType> types, std::uint64_t room,
+                             std::vector<Birth>& births) {
+    const float radius =
+        types.empty() ? 0.0F : types[std::min<std::size_t>(settings_.type, types.size() - 1)].radius;
+    std::uint64_t left = std::min<std::uint64_t>(room, settings_.most);
+    std::uint64_t refused = 0;
+    for (const ParticleEvent& event : step.events) {
+        if (!heeds(event)) {
+            continue;
+        }
+        const std::uint64_t due =
+            settings_.count_min + random_.below(settings_.count_max - settings_.count_min + 1);
+        const std::uint64_t made = std::min(due, left);
+        for (std::uint64_t i = 0; i < made; ++i) {
+            births.push_back(sample(event, radius));
+        }
+        left -= made;
+        refused += due - made;
+    }
+    return refused;
+}
+
+// The order of the draws is part of every seeded run: direction, speed, lifetime.
+Birth Spawner::sample(const ParticleEvent& event, float radius) {
+    glm::vec3 axis = event.hit ? event.normal : unitVector(event.velocity);
+    if (axis == glm::vec3(0.0F)) {
+        axis = {0.0F, 1.0F, 0.0F};
+    }
+    const glm::vec3 direction = basisAbout(axis).toWorld(inCone(random_, opening_));
+    const float speed =
+        random_.between(settings_.speed_min, settings_.speed_max) + settings_.kick * event.speed;
+    // What is left of the velocity once the particle no longer approaches the surface.
+    const glm::vec3 along = event.velocity + event.speed * event.normal;
+    Birth birth;
+    birth.position = event.position + radius * event.normal;
+    birth.velocity = settings_.inherit * along + speed * direction;
+    birth.lifetime = random_.between(settings_.lifetime_min, settings_.lifetime_max);
+    birth.type = settings_.type;
+    return birth;
+}
+
+}  // namespace relief

@@ -1,0 +1,197 @@
+#include "runtime/player/scene_warnings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <glm/geometric.hpp>
+
+#include "formats/base/file_io.h"
+#include "formats/nearest_surface.h"
+
+namespace relief {
+namespace {
+
+constexpr int kGrid = 8;  // points along each side of the box, from which surfaces are looked for
+constexpr std::size_t kPlacesMin = 16;  // fewer places say nothing of a body
+constexpr float kThinnest = 0x1p-14F;   // of the longest side, as are the next
+constexpr float kThickest = 2.0F;
+constexpr float kWider = 1.2F;           // from one depth that is asked about to the next
+constexpr std::uint64_t kBirths = 1000;  // of each emitter
+constexpr double kInsideShare = 0.05;    // of them, from which on births inside are no accident
+constexpr float kInsideDepth = 0.01F;    // of the longest side: births on a surface are none inside
+constexpr float kEarth = 9.81F;          // m/s²
+constexpr float kFar = 10.0F;            // times
+
+std::string number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof(text), "%.3g", value);
+    return text;
+}
+
+std::string nameOf(const SceneCollider& body) {
+    return quotedPath(body.path.filename());
+}
+
+/// How far it is inwards from a place of the surface to the other side; nullopt beside an edge.
+std::optional<float> thicknessAt(const Collider& collider, const SurfaceSample& place, float longest) {
+    float depth = kThinnest * longest;
+    for (; depth < kThickest * longest; depth *= kWider) {
+        if (!evaluate(collider, place.point - depth * place.normal).inside()) {
+            break;
+        }
+    }
+    return depth > kThinnest * longest ? std::optional(depth) : std::nullopt;
+}
+
+/// The first births of an emitter.
+struct Births {
+    std::vector<Birth> births;
+    double start = 0.0;  ///< seconds
+};
+
+Births birthsOf(Emitter emitter, const Scene& scene) {
+    Births made;
+    made.start = emitter.settings().start;
+    emitter.emit(double{scene.dt} * scene.steps, kBirths, made.births);
+    return made;
+}
+
+/// The speed that a birth has fallen to by the middle of all bodies, if nothing but gravity and drag acts on it.
+float speedAtBodies(const Birth& birth, const LoadedScene& loaded) {
+    const glm::vec3 gravity = *loaded.scene.forces.gravity;
+    const float pull = glm::length(gravity);
+    const float start = glm::length(birth.velocity);
+    if (!(pull > 0.0F)) {
+        return start;
+    }
+    const float fall = glm::dot(gravity / pull, loaded.bounds.center() - birth.position);
+    const float free = std::sqrt(start * start + 2.0F * pull * std::max(fall, 0.0F));
+    const float drag = loaded.scene.air.viscosity ? 0.0F : loaded.scene.forces.drag;
+    return drag > 0.0F ? std::min(free, std::max(start, pull / drag)) : free;
+}
+
+float radiusOf(const Birth& birth, const Scene& scene) {
+    return birth.type < scene.types.size() ? scene.types[birth.type].radius : 0.0F;
+}
+
+/// Steps that particles pass through a body with.
+void warnOfSteps(const LoadedScene& loaded, std::span<const Births> births,
+                 std::vector<std::string>& warnings) {
+    const Scene& scene = loaded.scene;
+    float speed = 0.0F;
+    float radius = 0.0F;
+    for (const Births& of : births) {
+        for (const Birth& birth : of.births) {
+            const float reached = speedAtBodies(birth, loaded);
+            if (reached > speed) {
+                speed = reached;
+                radius = radiusOf(birth, scene);
+            }
+        }
+    }
+    const float step = scene.sweep > 0.0F ? std::min(speed * scene.dt, scene.sweep) : speed * scene.dt;
+    for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
+        const SceneCollider& body = scene.colliders[i];
+        const auto thickness = body.live ? std::nullopt : typicalThickness(loaded.colliders[i]);
+        const float thick = thickness.value_or(0.0F) * body.pose.scale + 2.0F * radius;
+        if (thickness && step > thick) {
+            warnings.push_back("at a speed of " + number(double{speed}) + " a step is " +
+                               number(double{step}) + " long, and " + nameOf(body) + " mostly " +
+                               number(double{thick}) +
+                               " thick: particles may pass through it; set collision.sweep = " +
+                               number(0.5 * double{thick}) + ", or a smaller time.dt");
+        }
+    }
+}
+
+bool isInside(const Collider& collider, const SceneCollider& body, const Birth& birth, double time) {
+    const glm::vec3 p = body.posed ? toObject(poseAt(body, time), birth.position) : birth.position;
+    const FieldSample sample = evaluate(collider, p);
+    return sample.inside() && -sample.distance > kInsideDepth * collider.bounds.longestSide();
+}
+
+void warnOfBirthsInside(const LoadedScene& loaded, std::span<const Births> births,
+                        std::vector<std::string>& warnings) {
+    for (std::size_t i = 0; i < births.size(); ++i) {
+        for (std::size_t k = 0; k < loaded.colliders.size(); ++k) {
+            const SceneCollider& body = loaded.scene.colliders[k];
+            const std::vector<Birth>& all = births[i].births;
+            if (body.live || all.empty()) {
+                continue;
+            }
+            const auto inside = std::count_if(all.begin(), all.end(), [&](const Birth& birth) {
+                return isInside(loaded.colliders[k], body, birth, births[i].start);
+            });
+            const double share = static_cast<double>(inside) / static_cast<double>(all.size());
+            if (share >= kInsideShare) {
+                warnings.push_back(number(100.0 * share) + " % of the births of emitter " +
+                                   std::to_string(i + 1) + " are inside of " + nameOf(body) +
+                                   ", which throws them out; move the emitter");
+            }
+        }
+    }
+}
+
+void warnOfGravity(const LoadedScene& loaded, std::vector<std::string>& warnings) {
+    const float pull = glm::length(*loaded.scene.forces.gravity);
+    const SceneCollider& first = loaded.scene.colliders.front();
+    // A collider that is played alone, without a scene, has the defaults; one that is scaled no unit any more.
+    const bool metres =
+        loaded.colliders.front().unit == "m" && first.pose.scale == 1.0F && !first.origin.empty();
+    if (metres && pull > 0.0F && !(pull >= kEarth / kFar && pull <= kEarth * kFar)) {
+        warnings.push_back("gravity is " + number(double{pull}) + " m/s², for " + nameOf(first) +
+                           " is in metres; the Earth's is forces.gravity = [0, -9.81, 0]");
+    }
+}
+
+}  // namespace
+
+std::optional<float> typicalThickness(const Collider& collider) {
+    const float longest = collider.bounds.longestSide();
+    if (!(longest > 0.0F)) {
+        return std::nullopt;
+    }
+    std::vector<float> found;
+    for (int i = 0; i < kGrid * kGrid * kGrid; ++i) {
+        const glm::vec3 cell(static_cast<float>(i % kGrid), static_cast<float>(i / kGrid % kGrid),
+                             static_cast<float>(i / kGrid / kGrid));
+        const glm::vec3 p =
+            collider.bounds.min + (cell + 0.5F) / static_cast<float>(kGrid) * collider.bounds.size();
+        const SurfaceSample place = nearestSurface(collider, p);
+        if (place.map >= 0 && std::abs(place.distance) < kFarOutside) {
+            if (const auto thickness = thicknessAt(collider, place, longest)) {
+                found.push_back(*thickness);
+            }
+        }
+    }
+    if (found.size() < kPlacesMin) {
+        return std::nullopt;
+    }
+    const auto middle = found.begin() + static_cast<std::ptrdiff_t>(found.size() / 2);
+    std::nth_element(found.begin(), middle, found.end());
+    return *middle;
+}
+
+std::vector<std::string> sceneWarnings(const LoadedScene& loaded, std::span<const Emitter> emitters) {
+    std::vector<Births> births;
+    for (const Emitter& emitter : emitters) {
+        births.push_back(birthsOf(emitter, loaded.scene));
+    }
+    std::vector<std::string> warnings;
+    warnOfSteps(loaded, births, warnings);
+    warnOfBirthsInside(loaded, births, warnings);
+    warnOfGravity(loaded, warnings);
+    return warnings;
+}
+
+std::optional<std::string> refusedWarning(const ParticleCounts& counts, std::uint32_t capacity) {
+    const std::uint64_t asked = counts.born + counts.refused;
+    if (counts.refused <= counts.born) {
+        return std::nullopt;
+    }
+    return std::to_string(counts.refused) + " of " + std::to_string(asked) +
+           " births found no free place; raise particles.capacity (now " + std::to_string(capacity) +
+           "), or lower emitter.rate, emitter.burst or emitter.lifetime";
+}
+
+}  // namespace relief
