@@ -25,6 +25,7 @@ struct Attractor {
     float radius = 1.0F;                              ///< object units, > 0
     int falloff = 2;                                  ///< 0, 1 or 2
     float reach = std::numeric_limits<float>::max();  ///< object units, > 0; nothing beyond
+    friend bool operator==(const Attractor&, const Attractor&) = default;
 };
 
 /// Drives round a straight line, right-handed about `axis`; along and across it, it does nothing. The
@@ -35,6 +36,7 @@ struct Vortex {
     float strength = 0.0F;             ///< object units a second squared; below 0 it turns the other way
     float radius = 1.0F;               ///< object units, > 0
     int falloff = 1;                   ///< 0, 1 or 2
+    friend bool operator==(const Vortex&, const Vortex&) = default;
 };
 
 struct AirSettings {
@@ -49,6 +51,7 @@ struct AirSettings {
     /// Dynamic viscosity, object mass units / (object length units · s), ≥ 0: drag by Stokes' law, other for
     /// every size and mass of particle. Without it drag is one rate for all.
     std::optional<float> viscosity;
+    friend bool operator==(const AirSettings&, const AirSettings&) = default;
 };
 
 /// Fails as checkFlow does, and with kUsage (a number out of the range given above, too many).

@@ -23,6 +23,7 @@ struct CurlNoise {
     /// Object units a second, ≥ 0: an eddy gives way to another every size / drift seconds.
     float drift = 0.0F;
     std::uint32_t seed = 1;
+    friend bool operator==(const CurlNoise&, const CurlNoise&) = default;
 };
 
 /// The velocity at p and time t, object units a second. No speed exceeds 12 · √2 · 15/√85 · amplitude (the

@@ -12,7 +12,9 @@
 #include <vector>
 
 #include "runtime/bench/bench_tool.h"
+#include "runtime/gl/gl_capabilities.h"
 #include "runtime/gl/gl_context.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/particles/death_queue.h"
 #include "runtime/particles/particle_system.h"
 

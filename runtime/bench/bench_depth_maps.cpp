@@ -16,6 +16,7 @@
 #include "runtime/depth_maps/depth_map_renderer.h"
 #include "runtime/files/mesh_file.h"
 #include "runtime/gl/gl_context.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/gpu_timer.h"
 #include "runtime/gl/pass_state.h"
 

@@ -13,6 +13,7 @@
 #include "runtime/collider/live_collider.h"
 #include "runtime/files/mesh_file.h"
 #include "runtime/gl/gl_context.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/picture/picture_mesh.h"
 
 namespace relief {

@@ -17,6 +17,7 @@
 #include "runtime/bench/bench_tool.h"
 #include "runtime/bench/bench_variants.h"
 #include "runtime/gl/gl_context.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 #include "runtime/picture/camera.h"
 #include "runtime/picture/collider_light.h"

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "runtime/bench/gpu_time.h"
+#include "runtime/gl/gl_capabilities.h"
 #include "runtime/gl/gl_context.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/particles/emitter.h"
 #include "runtime/picture/depth_sort.h"
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "runtime/bench/gpu_time.h"
+#include "runtime/gl/gl_capabilities.h"
 #include "runtime/gl/gl_context.h"
 #include "runtime/particles/statistics.h"
 

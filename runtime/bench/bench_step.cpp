@@ -25,6 +25,7 @@
 #include "runtime/bench/bench_tool.h"
 #include "runtime/bench/bench_variants.h"
 #include "runtime/gl/gl_context.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/image_units.h"
 #include "runtime/particles/random.h"
 #include "runtime/picture/camera.h"

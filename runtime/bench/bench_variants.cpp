@@ -176,6 +176,27 @@ BenchVariant turning(std::string name, std::string what, Solids solids) {
     return {std::move(name), std::move(what), make};
 }
 
+Result<void> setEvents(ParticleSystem& particles, const BenchScene&) {
+    return particles.setEvents(EventOptions{.lasting = true, .deaths = true});
+}
+
+/// Events of every step, listed and brought to the CPU when they are there.
+BenchVariant listed(std::string name, std::string what) {
+    const auto make = [](const BenchScene& scene) -> Result<BenchSystem> {
+        auto system = makeColliderSystem(scene);
+        if (system) {
+            RELIEF_TRY(setEvents(*system->particles, scene));
+            system->before_step = [particles = system->particles.get()] {
+                particles->requestEvents(0);
+                while (particles->pollEvents()) {
+                }
+            };
+        }
+        return system;
+    };
+    return {std::move(name), std::move(what), make};
+}
+
 }  // namespace
 
 BenchScene makeBenchScene(Collider collider, std::uint32_t particles) {
@@ -233,6 +254,8 @@ std::vector<BenchVariant> benchVariants() {
         feature("flow", "a flow field of 32 x 32 x 32 nodes", airOf(flowAir)),
         feature("curl_noise", "two octaves of curl noise", airOf(curlAir)),
         feature("attractors", "four attractors", airOf(attractorAir)),
+        feature("events", "writing what happened to each particle", setEvents),
+        listed("events_listed", "and lists of up to 65,536 events, which come to the CPU"),
     };
 }
 

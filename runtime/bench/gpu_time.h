@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "runtime/bench/bench_tool.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/gl_object.h"
 
 namespace relief {

@@ -6,8 +6,10 @@
 #include <cstdio>
 
 #include "formats/base/text.h"
+#include "formats/config/confined_path.h"
 #include "runtime/player/report.h"
 #include "runtime/player/scene_check.h"
+#include "runtime/player/simulation.h"
 #include "runtime/tool/command_line.h"
 #include "runtime/tool/option_values.h"
 
@@ -44,11 +46,15 @@ void addOutputs(CLI::App& app, SimCommand& command) {
     app.add_option("--seed", player.overrides.seed, "Seed of the births, instead of the scene's")
         ->option_text("S")
         ->transform(wholeNumber(0, kSeedMax));
-    app.add_option("--dump", player.dump, "Write the final particles as PLY; - for standard output")
+    app.add_option("--dump", player.dump, "Write the final particles; - for standard output")
         ->option_text("OUT.ply");
     app.add_option("--dump-frames", player.dump_frames,
                    "Write particles_0000.ply and so on into this folder, made if missing, as often as frames")
         ->option_text("DIR");
+    addWords(app, "--dump-format", command.dump_format,
+             WordsFor<DumpFormat>{{"ply", DumpFormat::kPly}, {"vdb", DumpFormat::kVdb}},
+             "Of --dump and --dump-frames: PLY, or points of OpenVDB; default: what --dump's name ends with, "
+             "else ply");
     app.add_option(
            "--video", player.video,
            "Write the frames as a video (.mp4, .mkv, .mov or .webm) in the scene's time; needs ffmpeg")
@@ -60,6 +66,13 @@ void addOutputs(CLI::App& app, SimCommand& command) {
                    "Steps from line to line of --stats, instead of the scene's render.every")
         ->option_text("N")
         ->transform(wholeNumber(1, kStepsMax));
+    app.add_option("--events", player.events,
+                   "Write the hits while playing, a line of JSON each; - for standard output")
+        ->option_text("OUT.jsonl");
+    app.add_option("--events-min-speed", player.events_min_speed,
+                   "Leave hits out of --events that are slower, world units a second")
+        ->option_text("V")
+        ->transform(number(0.0F, 1e9F, "a speed, 0 or more"));
 }
 
 /// Options that do nothing together, and outputs that would share standard output.
@@ -70,7 +83,7 @@ Result<void> checkTogether(const SimCommand& command) {
         return usage("name a scene (.toml) or a collider (.relief); see relief-sim --help");
     }
     if (command.check && !(player.frames.empty() && player.dump.empty() && player.dump_frames.empty() &&
-                           player.video.empty() && player.stats.empty())) {
+                           player.video.empty() && player.stats.empty() && player.events.empty())) {
         return usage("--check plays nothing and writes nothing; remove it, or the outputs");
     }
     if (command.check && command.gpu.given() != nullptr) {
@@ -86,6 +99,19 @@ Result<void> checkTogether(const SimCommand& command) {
     if (player.stats_every && player.stats.empty()) {
         return usage("--stats-every does nothing without --stats; add --stats OUT.jsonl");
     }
+    if (command.dump_format && player.dump.empty() && player.dump_frames.empty()) {
+        return usage("--dump-format does nothing without --dump or --dump-frames; add --dump-frames DIR");
+    }
+    if (player.events_min_speed && player.events.empty()) {
+        return usage("--events-min-speed does nothing without --events; add --events OUT.jsonl");
+    }
+    if (player.events == "-" && (command.json || player.dump == "-" || player.stats == "-")) {
+        return usage(std::string("--events - and ") +
+                     (command.json         ? "--json"
+                      : player.dump == "-" ? "--dump -"
+                                           : "--stats -") +
+                     " both write standard output; write the events to a file");
+    }
     if (command.json && player.dump == "-") {
         return usage("--json and --dump - both write standard output; dump to a file");
     }
@@ -96,9 +122,21 @@ Result<void> checkTogether(const SimCommand& command) {
     return {};
 }
 
+/// After the work: a run that fails has one line to say.
+void showWarnings(const std::vector<std::string>& warnings, bool quiet) {
+    for (const std::string& warning : warnings) {
+        if (!quiet) {
+            std::fprintf(stderr, "relief-sim: warning: %s\n", warning.c_str());
+        }
+    }
+}
+
 /// --check. With --json the object comes in either case.
 Result<void> check(const SimCommand& command) {
     const Result<CheckReport> checked = checkScene(command.player);
+    if (checked) {
+        showWarnings(checked->warnings, command.quiet);
+    }
     if (command.json) {
         RELIEF_TRY(printOut(checked ? checkJson(*checked) : checkJson(checked.error())));
     } else if (checked && !command.quiet) {
@@ -117,6 +155,8 @@ void showProgress(std::uint32_t step, std::uint32_t steps) {
 
 Result<void> playScene(SimCommand& command) {
     PlayerOptions& player = command.player;
+    const bool named_vdb = lowerCase(player.dump.extension().native()) == ".vdb";
+    player.dump_format = command.dump_format.value_or(named_vdb ? DumpFormat::kVdb : DumpFormat::kPly);
     player.api = command.gpu.api;
     player.device = command.gpu.device;
     player.count_collisions = command.json;
@@ -128,10 +168,17 @@ Result<void> playScene(SimCommand& command) {
     player.watchdog = &watchdog;
     player.default_timeout = !command.gpu.timeout;
     const PlayerReport played = RELIEF_TRY(play(player));
+    showWarnings(played.warnings, command.quiet);
+    if (played.events_dropped > 0) {
+        std::fprintf(stderr,
+                     "relief-sim: warning: %llu hits are missing in --events: a step lists at most %u; "
+                     "raise --events-min-speed\n",
+                     static_cast<unsigned long long>(played.events_dropped), Simulation::kEventsMax);
+    }
     if (command.json) {
         return printOut(reportJson(played));
     }
-    if (!command.quiet && (player.dump == "-" || player.stats == "-")) {
+    if (!command.quiet && (player.dump == "-" || player.stats == "-" || player.events == "-")) {
         std::fputs(reportText(played).c_str(), stderr);  // they have standard output to themselves
         return {};
     }
@@ -152,6 +199,9 @@ void defineSim(CLI::App& app, SimCommand& command) {
         ->option_text("N")
         ->transform(wholeNumber(0, kStepsMax));
     addOutputs(app, command);
+    app.add_option("--root", command.player.overrides.root,
+                   "Folder whose files the scene may name too, by ..; default: those of its own folder alone")
+        ->option_text("DIR");
     app.add_flag("--check", command.check,
                  "Only check the scene and what it names, without a GPU: one line, or the first mistake");
     addWords(app, "--api", command.gpu.api,
@@ -178,6 +228,9 @@ Result<void> runSim(int argc, char** argv) {
         return {};
     }
     RELIEF_TRY(checkTogether(command));
+    if (!command.player.overrides.root.empty()) {
+        RELIEF_TRY(checkRoot(command.player.overrides.root));
+    }
     if (command.size) {
         command.player.overrides.width = command.size->width;
         command.player.overrides.height = command.size->height;

@@ -16,6 +16,7 @@ struct FrameSize {
 struct SimCommand {
     PlayerOptions player;
     std::optional<FrameSize> size;
+    std::optional<DumpFormat> dump_format;
     GpuOptions gpu;
     bool check = false;
     bool json = false;

@@ -7,6 +7,9 @@
 #include <glm/matrix.hpp>
 #include <string>
 
+#include "runtime/gl/gl_capabilities.h"
+#include "runtime/gl/gl_fault.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 
 namespace relief {
@@ -210,6 +213,7 @@ void beginWindow(const DepthMapFrame& frame, const TexelWindow& window, const De
 }  // namespace
 
 Result<DepthMapRenderer> DepthMapRenderer::create() {
+    RELIEF_TRY(checkContext());
     return DepthMapRenderer();
 }
 

@@ -5,6 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "runtime/gl/gl_capabilities.h"
+#include "runtime/gl/gl_fault.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 
 namespace relief {
@@ -35,6 +38,7 @@ TexelLayout layoutOf(MapFormat format) {
 
 Result<DepthMapTarget> DepthMapTarget::create(MapFormat format, std::uint32_t width, std::uint32_t height,
                                               bool motion) {
+    RELIEF_TRY(checkContext());
     GLint side = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side);
     GLint viewport[2] = {};
@@ -47,7 +51,7 @@ Result<DepthMapTarget> DepthMapTarget::create(MapFormat format, std::uint32_t wi
                                            std::to_string(most) + " along a side");
     }
     if (isGles() && (motion || format == MapFormat::kFloat32) &&
-        !epoxy_has_gl_extension("GL_EXT_color_buffer_float")) {
+        !hasGlExtension("GL_EXT_color_buffer_float")) {
         return fail(ErrorCode::kUnsupported,
                     "GL_EXT_color_buffer_float is missing, float depth maps and motion cannot be rendered; "
                     "take another format, or OpenGL 3.3");

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "formats/base/finite.h"
+#include "runtime/gl/gl_fault.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 
 namespace relief {
@@ -96,8 +98,11 @@ Result<void> checkSize(std::size_t vertices, std::size_t triangles) {
     glGetInteger64v(GL_MAX_ELEMENT_INDEX, &index_max);
     // 3 indices of each triangle are one draw's, counted by a GLsizei.
     const auto draw_max = static_cast<std::uint64_t>(std::numeric_limits<GLsizei>::max() / 3);
-    const std::uint64_t texels = std::uint64_t{std::bit_floor(static_cast<std::uint32_t>(side))} *
-                                 std::bit_floor(static_cast<std::uint32_t>(side));
+    std::uint64_t power = 1;  // of two: the widest texture's width and height
+    while (2 * power <= static_cast<std::uint64_t>(side)) {
+        power *= 2;
+    }
+    const std::uint64_t texels = power * power;
     const std::uint64_t most = std::min(texels, draw_max);
     if (vertices > most) {
         return tooLarge("vertices", vertices, most);
@@ -116,6 +121,7 @@ Result<void> checkSize(std::size_t vertices, std::size_t triangles) {
 
 Result<GpuMesh> GpuMesh::create(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
                                 const GpuMeshOptions& options) {
+    RELIEF_TRY(checkContext());
     if (triangles.empty() || positions.empty()) {
         return fail(ErrorCode::kInvalidInput, "a mesh without triangles cannot be drawn; give it some");
     }

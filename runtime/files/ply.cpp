@@ -1,9 +1,10 @@
 #include "runtime/files/ply.h"
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <string>
+
+#include "formats/base/bits.h"
 
 namespace relief {
 namespace {
@@ -46,7 +47,7 @@ std::vector<std::byte> encodePly(std::span<const ParticleState> particles) {
     for (const ParticleState* p : ordered) {
         for (const float value : {p->position.x, p->position.y, p->position.z, p->velocity.x, p->velocity.y,
                                   p->velocity.z, p->age, p->lifetime}) {
-            append(out, std::bit_cast<std::uint32_t>(value));
+            append(out, bitCast<std::uint32_t>(value));
         }
         append(out, p->id);
         append(out, p->type);

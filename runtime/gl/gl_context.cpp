@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "runtime/gl/gl_capabilities.h"
 #include "runtime/gl/gl_display.h"
 #include "runtime/gl/gl_object.h"
 
@@ -204,7 +205,8 @@ Result<std::unique_ptr<GlContext>> GlContext::create(const GlContextOptions& opt
     Impl& impl = *context->impl_;
     impl.api = options.api;
     constexpr const char* kCure =
-        "; install a driver, for example libegl1 with libegl-mesa0 and libgl1-mesa-dri";
+        "; install a driver, for example libegl1 with libopengl0 (OpenGL ES: libgles2), libegl-mesa0 and "
+        "libgl1-mesa-dri";
     if (const std::string missing = missingGlLibrary(options.api); !missing.empty()) {
         return fail(ErrorCode::kUnsupported,
                     "no " + impl.apiName() + " context: " + missing + " cannot be loaded" + kCure);

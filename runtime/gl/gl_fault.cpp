@@ -1,29 +1,18 @@
 #include "runtime/gl/gl_fault.h"
 
-#include <epoxy/gl.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdio>
 
+#include "runtime/gl/gl_capabilities.h"
 #include "runtime/gl/gl_fence.h"
+#include "runtime/gl/gl_functions.h"
 
 namespace relief {
 namespace {
 
 constexpr int kErrorFlagsMax = 64;         // a lost context may report errors without end
 constexpr GLuint64 kAtOnce = 100'000'000;  // nanoseconds of one wait
-
-/// libepoxy ends the process where a GL has no such function under any of its names.
-bool hasResetStatus() {
-    const int version = epoxy_gl_version();
-    if (epoxy_is_desktop_gl()) {
-        return version >= 45 || epoxy_has_gl_extension("GL_KHR_robustness") ||
-               epoxy_has_gl_extension("GL_ARB_robustness");
-    }
-    return version >= 32 || epoxy_has_gl_extension("GL_KHR_robustness") ||
-           epoxy_has_gl_extension("GL_EXT_robustness");
-}
 
 std::string errorText(GLenum error) {
     std::array<char, 16> text{};
@@ -33,17 +22,22 @@ std::string errorText(GLenum error) {
 
 }  // namespace
 
+Result<void> checkContext() {
+    if (glGetString(GL_VERSION) == nullptr) {
+        return fail(ErrorCode::kUsage,
+                    "no OpenGL context is current; make yours current on this thread before the first call");
+    }
+    return {};
+}
+
 Result<void> checkGpu(const std::string& during) {
-    if (!hasResetStatus()) {
+    const GpuReset reset = gpuReset();
+    if (reset == GpuReset::kNone) {
         return {};
     }
-    const GLenum status = glGetGraphicsResetStatus();
-    if (status == GL_NO_ERROR) {
-        return {};
-    }
-    const char* cause = status == GL_GUILTY_CONTEXT_RESET     ? ", by what Relief had asked of it"
-                        : status == GL_INNOCENT_CONTEXT_RESET ? ", by another program"
-                                                              : "";
+    const char* cause = reset == GpuReset::kGuilty     ? ", by what Relief had asked of it"
+                        : reset == GpuReset::kInnocent ? ", by another program"
+                                                       : "";
     return fail(ErrorCode::kFailure,
                 "the GPU was reset" + std::string(cause) + " while " + during +
                     ", and what was on it is lost; run it again, with less at once if it happens again");

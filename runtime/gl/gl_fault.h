@@ -9,6 +9,9 @@
 
 namespace relief {
 
+/// Fails with kUsage if no context is current. First in whatever makes objects of the GL.
+[[nodiscard]] Result<void> checkContext();
+
 /// Whether the context still works; cheap. Call after read-backs and waits: until then a reset shows in
 /// nothing but pictures and numbers that are wrong.
 /// \param during  for the message: "reading a picture".

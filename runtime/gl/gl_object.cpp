@@ -1,10 +1,11 @@
 #include "runtime/gl/gl_object.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 
+#include "runtime/gl/gl_capabilities.h"
 #include "runtime/gl/gl_fault.h"
+#include "runtime/gl/gl_functions.h"
 #include "shaders/shader_constants.h"
 #include "shaders/shader_sources.h"
 
@@ -92,6 +93,26 @@ GLuint generate(void (*create)(GLsizei, GLuint*)) {
 }
 
 }  // namespace
+
+namespace gl_detail {
+
+void deleteTexture(GLuint name) {
+    glDeleteTextures(1, &name);
+}
+void deleteFramebuffer(GLuint name) {
+    glDeleteFramebuffers(1, &name);
+}
+void deleteBuffer(GLuint name) {
+    glDeleteBuffers(1, &name);
+}
+void deleteVertexArray(GLuint name) {
+    glDeleteVertexArrays(1, &name);
+}
+void deleteProgram(GLuint name) {
+    glDeleteProgram(name);
+}
+
+}  // namespace gl_detail
 
 // libepoxy's entry points are function pointers behind macros, hence the lambdas.
 GlFramebuffer makeFramebuffer() {
@@ -206,6 +227,12 @@ Result<GlProgram> compileAndLink(std::string_view vertex, std::string_view fragm
 
 }  // namespace
 
+Result<std::string> shaderText(std::string_view file) {
+    std::vector<std::string> included;
+    std::string text = RELIEF_TRY(resolveIncludes(file, included));
+    return std::string(shaderConstants()) + text;
+}
+
 Result<GlProgram> makeProgram(std::string_view vertex, std::string_view fragment, std::string_view defines) {
     return compileAndLink(vertex, fragment, defines, {}, {});
 }
@@ -223,25 +250,13 @@ Result<GlProgram> makeFeedbackProgram(std::string_view vertex, std::span<const c
     return compileAndLink(vertex, "nothing.frag", defines, outputs, appended);
 }
 
+void useTexture(int unit, GLuint texture) {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    glBindTexture(GL_TEXTURE_2D, texture);
+}
+
 GLint uniformLocation(const GlProgram& program, const char* name) {
     return glGetUniformLocation(program.name(), name);
-}
-
-bool isGles() {
-    return !epoxy_is_desktop_gl();
-}
-
-bool isSoftwareRenderer() {
-    const auto* const text = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-    const std::string_view renderer = text == nullptr ? "" : text;
-    constexpr std::array<std::string_view, 5> kNames{"llvmpipe", "softpipe", "swrast", "SwiftShader",
-                                                     "Software Rasterizer"};
-    return std::any_of(kNames.begin(), kNames.end(),
-                       [&](std::string_view name) { return renderer.find(name) != std::string_view::npos; });
-}
-
-bool hasCompute() {
-    return epoxy_gl_version() >= (isGles() ? 31 : 43);
 }
 
 Result<std::vector<float>> readTextureFloats(const GlTexture& texture, GLsizei width, GLsizei height) {

@@ -2,14 +2,13 @@
 // of a non-empty object. Nothing here binds more than it must; what is bound is restored.
 #pragma once
 
-#include <epoxy/gl.h>
-
 #include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "formats/base/result.h"
+#include "runtime/gl/gl_types.h"
 
 namespace relief {
 
@@ -39,21 +38,11 @@ class GlName {
 };
 
 namespace gl_detail {
-inline void deleteTexture(GLuint name) {
-    glDeleteTextures(1, &name);
-}
-inline void deleteFramebuffer(GLuint name) {
-    glDeleteFramebuffers(1, &name);
-}
-inline void deleteBuffer(GLuint name) {
-    glDeleteBuffers(1, &name);
-}
-inline void deleteVertexArray(GLuint name) {
-    glDeleteVertexArrays(1, &name);
-}
-inline void deleteProgram(GLuint name) {
-    glDeleteProgram(name);
-}
+void deleteTexture(GLuint name);
+void deleteFramebuffer(GLuint name);
+void deleteBuffer(GLuint name);
+void deleteVertexArray(GLuint name);
+void deleteProgram(GLuint name);
 }  // namespace gl_detail
 
 using GlTexture = GlName<gl_detail::deleteTexture>;
@@ -79,6 +68,10 @@ using GlProgram = GlName<gl_detail::deleteProgram>;
 [[nodiscard]] Result<GlFramebuffer> makeFramebuffer(std::span<const GLuint> color_textures,
                                                     GLuint depth_texture = 0);
 
+/// A file of shaders/ with what it includes, behind shaderConstants(): for programs of one's own, between whose version
+/// line and text it goes. Fails with kFailure (no such file).
+[[nodiscard]] Result<std::string> shaderText(std::string_view file);
+
 /// Compiles and links a program from GLSL ES 3.00 subset sources. In front come the version line of the current
 /// context, `#version 330 core` or `#version 300 es`, shaderConstants() and precision statements.
 /// \param vertex, fragment  file names in shaders/, for example "quad.vert".
@@ -103,24 +96,12 @@ using GlProgram = GlName<gl_detail::deleteProgram>;
 /// Location of a uniform; −1 where the program does not use it, which the GL's setters ignore.
 [[nodiscard]] GLint uniformLocation(const GlProgram& program, const char* name);
 
-/// True if the current context is OpenGL ES.
-[[nodiscard]] bool isGles();
-
-/// True if the processor draws, not a GPU.
-[[nodiscard]] bool isSoftwareRenderer();
-
-/// True if the current context has compute shaders: OpenGL 4.3, OpenGL ES 3.1, or later.
-[[nodiscard]] bool hasCompute();
-
 /// Reads a texture (level 0 of a 2-D texture of a float format) back as RGBA floats, 4 · width · height.
 [[nodiscard]] Result<std::vector<float>> readTextureFloats(const GlTexture& texture, GLsizei width,
                                                            GLsizei height);
 
 /// Binds a 2-D texture to texture unit `unit` and leaves that unit active.
-inline void useTexture(int unit, GLuint texture) {
-    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-    glBindTexture(GL_TEXTURE_2D, texture);
-}
+void useTexture(int unit, GLuint texture);
 inline void useTexture(int unit, const GlTexture& texture) {
     useTexture(unit, texture.name());
 }

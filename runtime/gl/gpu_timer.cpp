@@ -1,5 +1,7 @@
 #include "runtime/gl/gpu_timer.h"
 
+#include "runtime/gl/gl_capabilities.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/gl_object.h"
 
 namespace relief {

@@ -2,11 +2,11 @@
 // is kept so that nothing waits for a result.
 #pragma once
 
-#include <epoxy/gl.h>
 #include <array>
 #include <cstdint>
 
 #include "formats/base/stopwatch.h"
+#include "runtime/gl/gl_types.h"
 #include "runtime/gl/stage_timer.h"
 
 namespace relief {

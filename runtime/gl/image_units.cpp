@@ -1,5 +1,7 @@
 #include "runtime/gl/image_units.h"
 
+#include "runtime/gl/gl_functions.h"
+
 namespace relief {
 
 ImageUnits::ImageUnits() {
@@ -21,6 +23,10 @@ ImageUnits::~ImageUnits() {
                            unit.layered != 0 ? GL_TRUE : GL_FALSE, unit.layer,
                            static_cast<GLenum>(unit.access), static_cast<GLenum>(unit.format));
     }
+}
+
+void ImageUnits::write(GLuint unit, const GlTexture& texture) {
+    write(unit, texture, GL_RGBA32F);
 }
 
 void ImageUnits::write(GLuint unit, const GlTexture& texture, GLenum format) {

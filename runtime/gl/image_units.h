@@ -7,18 +7,19 @@
 
 namespace relief {
 
-/// On construction: saves image units 0 to 2. On destruction: puts them back. Needs hasCompute(). What PassState does
+/// On construction: saves image units 0 to 3. On destruction: puts them back. Needs hasCompute(). What PassState does
 /// for all other state; few passes use images.
 class ImageUnits {
   public:
-    static constexpr GLuint kUnits = 3;
+    static constexpr GLuint kUnits = 4;
     ImageUnits();
     ~ImageUnits();
     ImageUnits(const ImageUnits&) = delete;
     ImageUnits& operator=(const ImageUnits&) = delete;
 
     /// Level 0 of a texture, to be written. \param format  the texture's.
-    static void write(GLuint unit, const GlTexture& texture, GLenum format = GL_RGBA32F);
+    static void write(GLuint unit, const GlTexture& texture);  // of GL_RGBA32F
+    static void write(GLuint unit, const GlTexture& texture, GLenum format);
     /// Lets everything see what compute passes have written.
     static void finish();
 

@@ -3,6 +3,8 @@
 #include <array>
 #include <iterator>
 
+#include "runtime/gl/gl_capabilities.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/gl_object.h"
 
 namespace relief {

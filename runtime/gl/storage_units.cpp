@@ -1,5 +1,7 @@
 #include "runtime/gl/storage_units.h"
 
+#include "runtime/gl/gl_functions.h"
+
 namespace relief {
 
 StorageUnits::StorageUnits() {
@@ -23,6 +25,10 @@ StorageUnits::~StorageUnits() {
         }
     }
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(bound_));  // binding a unit sets it too
+}
+
+GlBuffer StorageUnits::make(GLsizeiptr bytes) {
+    return make(bytes, GL_STREAM_COPY);
 }
 
 GlBuffer StorageUnits::make(GLsizeiptr bytes, GLenum usage) {

@@ -18,7 +18,8 @@ class StorageUnits {
     StorageUnits& operator=(const StorageUnits&) = delete;
 
     /// A buffer of so many bytes, contents undefined. Leaves it bound to the target.
-    [[nodiscard]] static GlBuffer make(GLsizeiptr bytes, GLenum usage = GL_STREAM_COPY);
+    [[nodiscard]] static GlBuffer make(GLsizeiptr bytes);  // GL_STREAM_COPY
+    [[nodiscard]] static GlBuffer make(GLsizeiptr bytes, GLenum usage);
     static void bind(GLuint unit, const GlBuffer& buffer);
     /// Between passes: the next one sees what those before have stored, and stores nothing that they still read.
     static void order();

@@ -35,6 +35,24 @@ struct Camera {
     friend bool operator==(const Camera&, const Camera&) = default;
 };
 
+/// A camera as most programs have theirs: two matrices.
+struct CameraMatrices {
+    glm::mat4 view{1.0F};        ///< object to view space, a rotation and a shift; view space looks along -z
+    glm::mat4 projection{1.0F};  ///< perspective, view space to OpenGL's clip space
+
+    CameraMatrices(const glm::mat4& view_matrix, const glm::mat4& projection_matrix)
+        : view(view_matrix), projection(projection_matrix) {}
+    CameraMatrices(const Camera& camera, float aspect)
+        : view(camera.view()), projection(camera.projection(aspect)) {}
+
+    [[nodiscard]] float tanHalfFov() const { return 1.0F / projection[1][1]; }
+    /// As Camera's.
+    [[nodiscard]] glm::vec2 depthOfDistance() const {
+        return {0.5F - 0.5F * projection[2][2], 0.5F * projection[3][2]};
+    }
+    [[nodiscard]] glm::vec3 eye() const { return -glm::transpose(glm::mat3(view)) * glm::vec3(view[3]); }
+};
+
 /// Places the eye in front of the box (+z, glTF's front), a little to the right and above, so that a sphere
 /// round the box fills about four fifths of the height.
 /// \param radius  of that sphere, > 0.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "runtime/gl/gl_fault.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 #include "runtime/picture/ray_passes.h"
 #include "shaders/shader_constants.h"
@@ -69,6 +70,7 @@ Result<void> ColliderLight::Volume::allocate() {
 }
 
 Result<ColliderLight> ColliderLight::create(const ColliderView& collider) {
+    RELIEF_TRY(checkContext());
     const PassState state;
     ColliderLight light;
     light.collider_ = collider;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runtime/gl/gl_fault.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 
 namespace relief {
@@ -26,6 +27,7 @@ void setAttribute(GLuint location, std::size_t offset) {
 }  // namespace
 
 Result<ColliderMesh> ColliderMesh::create(const PictureMesh& mesh) {
+    RELIEF_TRY(checkContext());
     RELIEF_TRY(checkMesh(mesh));
     if (mesh.triangles.size() > static_cast<std::size_t>(std::numeric_limits<GLsizei>::max())) {
         return fail(ErrorCode::kInvalidInput, "a mesh of more triangles than one draw takes");

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "runtime/gl/gl_fault.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 #include "runtime/picture/ray_passes.h"
 
@@ -48,6 +49,7 @@ void setViewUniforms(const GlProgram& program, const Camera& camera, const Colli
 }  // namespace
 
 Result<ColliderRenderer> ColliderRenderer::create(const ColliderView& view, const ColliderMesh* mesh) {
+    RELIEF_TRY(checkContext());
     const PassState state;
     ColliderRenderer renderer;
     renderer.view_ = view;
@@ -88,6 +90,7 @@ Result<void> ColliderRenderer::draw(const Camera& camera, const ColliderStyle& s
     glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
     glViewport(0, 0, target.width, target.height);
     glUseProgram(copy_program_.name());
+    glUniform1i(uniformLocation(copy_program_, "u_srgb"), target.srgb ? 1 : 0);
     useTexture(kColorUnit, color_);
     useTexture(kDepthUnit, depth_);
     // Depth is written only while its test is on.

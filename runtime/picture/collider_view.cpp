@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/gl/gl_functions.h"
+
 namespace relief {
 
 float finestTexel(const Collider& collider) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "runtime/gl/gl_fault.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 
 namespace relief {
@@ -21,6 +22,7 @@ std::uint32_t regionFor(std::uint32_t extent) {
 }  // namespace
 
 Result<DepthSorter> DepthSorter::create(std::uint32_t capacity, StepPath path) {
+    RELIEF_TRY(checkContext());
     if (capacity == 0 || capacity > kCapacityMax) {
         return fail(ErrorCode::kUsage, "a depth sorter for " + std::to_string(capacity) +
                                            " particles is not possible; choose 1 to " +
@@ -33,8 +35,15 @@ Result<DepthSorter> DepthSorter::create(std::uint32_t capacity, StepPath path) {
     DepthSorter sorter(capacity);
     const StepPath chosen = RELIEF_TRY(chosenPath(path));
     if (chosen == StepPath::kCompute) {
-        sorter.radix_ = RELIEF_TRY(RadixSort::create(capacity, kWidth));
-        return sorter;
+        auto radix = RadixSort::create(capacity, kWidth);
+        if (radix) {
+            sorter.radix_ = std::move(*radix);
+            return sorter;
+        }
+        if (path != StepPath::kAuto || radix.error().code != ErrorCode::kLimit) {
+            return forward(radix);
+        }
+        // OpenGL ES 3.1 promises work groups of half the size that the radix sort takes, and storage blocks of 128 MiB.
     }
     RELIEF_TRY(sorter.createTextures());
     RELIEF_TRY(sorter.createPrograms());

@@ -5,11 +5,13 @@
 #include <string>
 
 #include "runtime/gl/gl_fault.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 
 namespace relief {
 
 Result<Frame> Frame::create(std::uint32_t width, std::uint32_t height) {
+    RELIEF_TRY(checkContext());
     const std::string size = std::to_string(width) + "x" + std::to_string(height);
     if (width == 0 || height == 0) {
         return fail(ErrorCode::kUsage,

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "runtime/gl/gl_fault.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 
 namespace relief {
@@ -28,13 +29,11 @@ std::uint32_t spriteCount(const ParticleSystem& particles, const ParticleOrder& 
     return order.texture != nullptr && particles.extent() > 0 ? order.count : particles.extent();
 }
 
-void setUniforms(const GlProgram& program, const ParticleSystem& particles, const Camera& camera,
+void setUniforms(const GlProgram& program, const ParticleSystem& particles, const CameraMatrices& camera,
                  const ParticleStyle& style, const RenderTarget& target) {
     const auto at = [&](const char* name) { return uniformLocation(program, name); };
-    const glm::mat4 view = camera.view();
-    const glm::mat4 projection = camera.projection(target.aspect());
-    const glm::vec3 sun = glm::mat3(view) * sunDirection();
-    const glm::vec3 up = glm::mat3(view) * glm::vec3(0.0F, 1.0F, 0.0F);
+    const glm::vec3 sun = glm::mat3(camera.view) * sunDirection();
+    const glm::vec3 up = glm::mat3(camera.view) * glm::vec3(0.0F, 1.0F, 0.0F);
     std::array<GLfloat, 2> sizes{1.0F, 1.0F};
     glGetFloatv(GL_ALIASED_POINT_SIZE_RANGE, sizes.data());
     const bool quads = style.sprite == Sprite::kQuad;
@@ -44,8 +43,8 @@ void setUniforms(const GlProgram& program, const ParticleSystem& particles, cons
     glUniform1i(at("u_width"), static_cast<GLint>(particles.textureWidth()));
     glUniform1i(at("u_extent"), static_cast<GLint>(particles.extent()));
     glUniform1f(at("u_now"), particles.clock());
-    glUniformMatrix4fv(at("u_view"), 1, GL_FALSE, glm::value_ptr(view));
-    glUniformMatrix4fv(at("u_projection"), 1, GL_FALSE, glm::value_ptr(projection));
+    glUniformMatrix4fv(at("u_view"), 1, GL_FALSE, glm::value_ptr(camera.view));
+    glUniformMatrix4fv(at("u_projection"), 1, GL_FALSE, glm::value_ptr(camera.projection));
     glUniform1f(at("u_pixels_per_unit"), 0.5F * static_cast<float>(target.height) / camera.tanHalfFov());
     glUniform2f(at("u_pixels"), std::min(kPixelsMin, largest), largest);
     glUniform2f(at("u_target"), static_cast<float>(target.width), static_cast<float>(target.height));
@@ -62,13 +61,14 @@ void setUniforms(const GlProgram& program, const ParticleSystem& particles, cons
 }  // namespace
 
 Result<ParticleRenderer> ParticleRenderer::create(const std::optional<ColliderView>& collider) {
+    RELIEF_TRY(checkContext());
     const PassState state;
     ParticleRenderer renderer;
     if (collider) {
         renderer.light_ = RELIEF_TRY(ColliderLight::create(*collider));
     }
     for (const Sprite sprite : {Sprite::kPoint, Sprite::kQuad}) {
-        RELIEF_TRY(renderer.programFor({.sprite = sprite}));
+        [[maybe_unused]] const GlProgram* made = RELIEF_TRY(renderer.programFor({.sprite = sprite}));
     }
     renderer.no_attributes_ = makeVertexArray();
     forgetGlErrors();
@@ -134,7 +134,7 @@ void ParticleRenderer::bindTextures(const ParticleSystem& particles, const Parti
     }
 }
 
-Result<void> ParticleRenderer::draw(const ParticleSystem& particles, const Camera& camera,
+Result<void> ParticleRenderer::draw(const ParticleSystem& particles, const CameraMatrices& camera,
                                     const ParticleStyle& style, const RenderTarget& target,
                                     const ParticleOrder& order, const GlTexture* behind) {
     if (!(style.soft >= 0.0F && style.soft < 1e30F)) {
@@ -151,6 +151,7 @@ Result<void> ParticleRenderer::draw(const ParticleSystem& particles, const Camer
     const GlProgram& program = *RELIEF_TRY(programFor(style));
     setUniforms(program, particles, camera, style, target);
     glUniform1i(uniformLocation(program, "u_ordered"), order.texture != nullptr ? 1 : 0);
+    glUniform1i(uniformLocation(program, "u_srgb"), target.srgb ? 1 : 0);
     glUniform1f(uniformLocation(program, "u_soft"), behind != nullptr ? style.soft : 0.0F);
     bindTextures(particles, style, order, behind);
     glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);

@@ -58,7 +58,7 @@ class ParticleRenderer {
     /// Errors: kFailure (the driver's compiler).
     [[nodiscard]] static Result<ParticleRenderer> create(const std::optional<ColliderView>& collider);
 
-    /// Draws over what the target shows, in linear light, hidden where its depth is nearer; depth stays as it
+    /// Draws over what the target shows, in linear light or as the target says, hidden where its depth is nearer; depth stays as it
     /// is. Nothing is read back, nothing waits for the GPU.
     /// \param order   in which they are drawn; without a texture that of their texels.
     /// \param behind  what style.soft compares with: window depths of a picture by the same camera and of the
@@ -66,9 +66,15 @@ class ParticleRenderer {
     ///                style.soft has no effect.
     /// Errors: kUsage (looks, see packLooks; soft), kUnsupported, kFailure (the driver's compiler), kLimit (no room for
     /// the light among the collider).
+    Result<void> draw(const ParticleSystem& particles, const CameraMatrices& camera,
+                      const ParticleStyle& style, const RenderTarget& target, const ParticleOrder& order = {},
+                      const GlTexture* behind = nullptr);
+    /// By a camera whose picture has the target's shape.
     Result<void> draw(const ParticleSystem& particles, const Camera& camera, const ParticleStyle& style,
                       const RenderTarget& target, const ParticleOrder& order = {},
-                      const GlTexture* behind = nullptr);
+                      const GlTexture* behind = nullptr) {
+        return draw(particles, CameraMatrices(camera, target.aspect()), style, target, order, behind);
+    }
 
   private:
     [[nodiscard]] Result<void> uploadLooks(const ParticleStyle& style);

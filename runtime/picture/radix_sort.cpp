@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <string>
 
+#include "runtime/gl/gl_capabilities.h"
 #include "runtime/gl/gl_fault.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/image_units.h"
 #include "runtime/gl/storage_units.h"
 #include "shaders/shader_constants.h"

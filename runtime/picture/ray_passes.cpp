@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "runtime/gl/gl_functions.h"
+
 namespace relief {
 namespace {
 

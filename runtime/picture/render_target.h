@@ -1,7 +1,7 @@
 // Where a renderer draws.
 #pragma once
 
-#include <epoxy/gl.h>
+#include "runtime/gl/gl_types.h"
 
 namespace relief {
 
@@ -11,6 +11,9 @@ struct RenderTarget {
     GLuint framebuffer = 0;
     GLsizei width = 0;
     GLsizei height = 0;
+    /// The framebuffer takes sRGB values as they are, as that of a window does; else linear light. Particles are then blended
+    /// in sRGB values, too.
+    bool srgb = false;
 
     [[nodiscard]] float aspect() const { return static_cast<float>(width) / static_cast<float>(height); }
 };

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runtime/gl/gl_fault.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 #include "runtime/picture/collider_view.h"
 
@@ -43,6 +44,7 @@ std::vector<glm::vec4> halved(const std::vector<glm::vec4>& texels, std::size_t 
 
 Result<SpriteAtlas> SpriteAtlas::create(std::span<const std::uint8_t> rgba, std::uint32_t width,
                                         std::uint32_t height, std::uint32_t columns, std::uint32_t rows) {
+    RELIEF_TRY(checkContext());
     const std::string size = std::to_string(width) + "x" + std::to_string(height);
     GLint side_max = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side_max);

@@ -23,6 +23,31 @@ std::string exitCodes() {
     return text + "\n";
 }
 
+constexpr std::size_t kHelpColumns = 120;
+
+/// Breaks longer lines at their spaces. What follows stands below the description of an option.
+/// \param column  where descriptions of options begin.
+std::string folded(const std::string& text, std::size_t column) {
+    std::string out;
+    for (std::string_view line : split(text, '\n')) {
+        const std::string indent(line.starts_with("  ") ? column : 0, ' ');
+        std::string before;
+        while (before.size() + line.size() > kHelpColumns) {
+            const std::size_t space = line.rfind(' ', kHelpColumns - before.size());
+            // Not within the indentation or the names, from which nothing would be gained.
+            if (space == std::string_view::npos || before.size() + space <= column) {
+                break;
+            }
+            out.append(before).append(line.substr(0, space)).append("\n");
+            line.remove_prefix(space + 1);
+            before = indent;
+        }
+        out.append(before).append(line).append("\n");
+    }
+    out.pop_back();  // the last line had no end of its own
+    return out;
+}
+
 /// Help that begins with examples: CLI11's footer, moved to the top.
 class ExampleFormatter : public CLI::Formatter {
   public:
@@ -35,9 +60,11 @@ class ExampleFormatter : public CLI::Formatter {
         for (const std::string_view line : split(examples, '\n')) {
             text.append("  ").append(line).append("\n");
         }
-        return text + "\n" + make_description(app) + make_usage(app, name) + make_positionals(app) +
-               make_groups(app, mode) + make_subcommands(app, mode) +
-               (app->get_parent() == nullptr ? exitCodes() : "");
+        return text + "\n" +
+               folded(make_description(app) + make_usage(app, name) + make_positionals(app) +
+                          make_groups(app, mode) + make_subcommands(app, mode) +
+                          (app->get_parent() == nullptr ? exitCodes() : ""),
+                      column_width_);
     }
     /// In the list of verbs: the first line of the description.
     std::string make_subcommand(const CLI::App* sub) const override {
@@ -123,11 +150,11 @@ std::string parseErrorMessage(const CLI::App& app, const CLI::ParseError& error)
     return cleanUtf8(error.what()) + "; " + help;
 }
 
-/// An empty word is a variable of a script that was not set.
+/// An empty word is a variable of a script that was not set. Options that may stand without a value see no difference.
 Result<void> refuseEmptyValues(const CLI::App& app) {
     for (const CLI::Option* option : app.get_options()) {
         const std::vector<std::string>& words = option->results();
-        if (option->get_expected_max() > 0 && std::ranges::find(words, "") != words.end()) {
+        if (option->get_expected_min() > 0 && std::ranges::find(words, "") != words.end()) {
             return fail(ErrorCode::kUsage,
                         option->get_name() + " is given without a value; leave it out, or give it one");
         }

@@ -1,0 +1,28 @@
+#include "runtime/gl/buffer_read.h"
+
+#include <cstring>
+
+#include "runtime/gl/gl_functions.h"
+
+namespace relief {
+
+bool waitToRead(const GlFence& fence, GLuint64 nanoseconds) {
+    return fence.passed(nanoseconds);
+}
+
+bool readBuffer(const GlBuffer& buffer, std::span<std::byte> out) {
+    GLint bound = 0;
+    glGetIntegerv(GL_PIXEL_PACK_BUFFER_BINDING, &bound);
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, buffer.name());
+    const void* mapped =
+        glMapBufferRange(GL_PIXEL_PACK_BUFFER, 0, static_cast<GLsizeiptr>(out.size()), GL_MAP_READ_BIT);
+    if (mapped != nullptr) {
+        std::memcpy(out.data(), mapped, out.size());
+    }
+    // False if the memory was lost while it was mapped.
+    const bool whole = mapped != nullptr && glUnmapBuffer(GL_PIXEL_PACK_BUFFER) == GL_TRUE;
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, static_cast<GLuint>(bound));
+    return whole;
+}
+
+}  // namespace relief

@@ -1,0 +1,20 @@
+// Buffers that the GPU has written, back in memory.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "runtime/gl/gl_fence.h"
+#include "runtime/gl/gl_object.h"
+
+namespace relief {
+
+/// Waits until the GPU has come by, for at most so many nanoseconds; where nothing may wait, in a browser, readBuffer()
+/// does so.
+[[nodiscard]] bool waitToRead(const GlFence& fence, GLuint64 nanoseconds);
+
+/// Copies the beginning of a buffer, as GL_PIXEL_PACK_BUFFER. Waits for the GPU.
+/// \return false if its memory was lost.
+[[nodiscard]] bool readBuffer(const GlBuffer& buffer, std::span<std::byte> out);
+
+}  // namespace relief

@@ -1,0 +1,22 @@
+// What the current context can do.
+#pragma once
+
+namespace relief {
+
+/// True if the current context is OpenGL ES.
+[[nodiscard]] bool isGles();
+
+/// True if the processor draws, not a GPU.
+[[nodiscard]] bool isSoftwareRenderer();
+
+/// True if the current context has compute shaders: OpenGL 4.3, OpenGL ES 3.1, or later.
+[[nodiscard]] bool hasCompute();
+
+/// \param name  "GL_EXT_color_buffer_float"
+[[nodiscard]] bool hasGlExtension(const char* name);
+
+/// Whether the GPU still has what it was given; checkGpu() says it in words.
+enum class GpuReset { kNone, kGuilty, kInnocent, kUnknown };
+[[nodiscard]] GpuReset gpuReset();
+
+}  // namespace relief
