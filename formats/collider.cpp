@@ -16,8 +16,8 @@ float Bounds::longestSide() const {
     return std::max({s.x, s.y, s.z});
 }
 
-std::size_t Collider::texelBytes() const {
-    std::size_t bytes = 0;
+std::uint64_t Collider::texelBytes() const {
+    std::uint64_t bytes = 0;
     for (const DepthMap& map : maps) {
         bytes += map.texelBytes();
     }

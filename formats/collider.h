@@ -41,7 +41,7 @@ struct Collider {
     std::vector<DepthMap> maps;
 
     /// Bytes of all maps' texels, in memory.
-    [[nodiscard]] std::size_t texelBytes() const;
+    [[nodiscard]] std::uint64_t texelBytes() const;
     /// Bytes that all maps take on the GPU (row_spans.h).
     [[nodiscard]] std::uint64_t gpuBytes() const;
     friend bool operator==(const Collider&, const Collider&) = default;

@@ -1,7 +1,6 @@
 #include "formats/container.h"
 
 #include <flatbuffers/flatbuffers.h>
-#include <zstd.h>
 
 #include <algorithm>
 #include <cstring>
@@ -9,8 +8,10 @@
 #include <string>
 
 #include "collider_generated.h"
+#include "formats/bake_first.h"
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
+#include "formats/compression.h"
 #include "formats/container_header.h"
 #include "formats/container_parts.h"
 #include "formats/row_spans.h"
@@ -58,16 +59,8 @@ Result<PackedPayload> pack(const DepthMap& map, int level) {
         }
         return packed;
     }
-    std::vector<std::byte> bytes(ZSTD_compressBound(map.texels.size()));
-    const std::size_t size =
-        ZSTD_compress(bytes.data(), bytes.size(), map.texels.data(), map.texels.size(), level);
-    if (ZSTD_isError(size) != 0) {
-        return fail(ErrorCode::kFailure,
-                    std::string("zstd could not compress it: ") + ZSTD_getErrorName(size));
-    }
-    if (size < map.texels.size()) {
-        bytes.resize(size);
-        bytes.shrink_to_fit();
+    std::vector<std::byte> bytes = RELIEF_TRY(compress(map.texels, level));
+    if (bytes.size() < map.texels.size()) {
         packed.take(Packing::kZstd, std::move(bytes));
     }
     return packed;
@@ -157,10 +150,10 @@ Result<std::vector<std::byte>> writeChecked(const Collider& collider, const Cont
     }
     ContainerHeader header;
     // The lowest version that holds it.
-    const bool rows =
-        std::ranges::any_of(packed, [](const PackedPayload& one) { return one.packing == Packing::kRows; });
-    const bool gaps =
-        std::ranges::any_of(collider.maps, [](const DepthMap& map) { return map.compare == Compare::kGap; });
+    const bool rows = std::any_of(packed.begin(), packed.end(),
+                                  [](const PackedPayload& one) { return one.packing == Packing::kRows; });
+    const bool gaps = std::any_of(collider.maps.begin(), collider.maps.end(),
+                                  [](const DepthMap& map) { return map.compare == Compare::kGap; });
     header.minor = gaps ? 2 : rows ? 1 : 0;
     header.metadata_size = writeMetadata(collider, payloads, packed).size();
     std::uint64_t end = header.metadata_offset + header.metadata_size;
@@ -176,17 +169,23 @@ Result<std::vector<std::byte>> writeChecked(const Collider& collider, const Cont
     header.metadata_hash = xxh3_64(metadata);
     header.header_hash = header.computeHash();
 
-    std::vector<std::byte> bytes(end);  // zero: the padding
+    std::vector<std::byte> bytes(static_cast<std::size_t>(end));  // zero: the padding
     std::memcpy(bytes.data(), &header, sizeof(header));
-    std::ranges::copy(metadata, bytes.begin() + static_cast<std::ptrdiff_t>(header.metadata_offset));
+    std::copy(metadata.begin(), metadata.end(),
+              bytes.begin() + static_cast<std::ptrdiff_t>(header.metadata_offset));
     for (std::size_t i = 0; i < packed.size(); ++i) {
-        std::ranges::copy(packed[i].stored,
-                          bytes.begin() + static_cast<std::ptrdiff_t>(payloads[i].offset()));
+        std::copy(packed[i].stored.begin(), packed[i].stored.end(),
+                  bytes.begin() + static_cast<std::ptrdiff_t>(payloads[i].offset()));
     }
     return bytes;
 }
 
 // --- read ---
+
+/// Bytes that were found to lie within the file.
+std::span<const std::byte> part(std::span<const std::byte> bytes, std::uint64_t offset, std::uint64_t size) {
+    return bytes.subspan(static_cast<std::size_t>(offset), static_cast<std::size_t>(size));
+}
 
 /// Maps whose frames and sizes are in order, within the limits.
 Result<void> readMaps(ParsedMetadata&& parsed, const ContainerLimits& limits, Description& into) {
@@ -236,8 +235,9 @@ Result<void> checkLayout(std::span<const std::byte> bytes, const Description& de
                                      std::to_string(info.stored_size) +
                                      " bytes reaches beyond the end of the file");
         }
-        const auto padding = bytes.subspan(end, expected - end);
-        if (const auto at = std::ranges::find_if(padding, [](std::byte b) { return b != std::byte{0}; });
+        const auto padding = part(bytes, end, expected - end);
+        if (const auto at =
+                std::find_if(padding.begin(), padding.end(), [](std::byte b) { return b != std::byte{0}; });
             at != padding.end()) {
             return invalidMap(i, "damaged: byte " +
                                      std::to_string(end + static_cast<std::uint64_t>(at - padding.begin())) +
@@ -254,7 +254,7 @@ Result<void> checkLayout(std::span<const std::byte> bytes, const Description& de
 
 Result<Description> readDescription(std::span<const std::byte> bytes, const ContainerLimits& limits) {
     const ContainerHeader header = RELIEF_TRY(readContainerHeader(bytes));
-    const auto metadata = bytes.subspan(header.metadata_offset, header.metadata_size);
+    const auto metadata = part(bytes, header.metadata_offset, header.metadata_size);
     if (header.metadata_hash != xxh3_64(metadata)) {
         return invalidInput("damaged: the checksum at byte 48 is not that of the metadata");
     }
@@ -267,7 +267,7 @@ Result<Description> readDescription(std::span<const std::byte> bytes, const Cont
 
 Result<void> readTexels(std::span<const std::byte> bytes, ParsedMap& map) {
     const StoredPayload& payload = map.payload;
-    const auto stored = bytes.subspan(payload.info.offset, payload.info.stored_size);
+    const auto stored = part(bytes, payload.info.offset, payload.info.stored_size);
     if (payload.hash != xxh3_64(stored)) {
         return invalidInput("damaged: the checksum of its payload at byte " +
                             std::to_string(payload.info.offset) + " is wrong");
@@ -326,6 +326,7 @@ Result<ContainerInfo> readContainerInfo(std::span<const std::byte> bytes, const 
 
 Result<Collider> loadCollider(const std::filesystem::path& path, const ContainerLimits& limits) {
     const std::vector<std::byte> bytes = RELIEF_TRY(readFile(path, containerSizeMax(limits)));
+    RELIEF_TRY(refuseMesh(path, bytes));
     Result<Collider> collider = readContainer(bytes, limits);
     if (!collider) {
         return fail(collider.error().code, quotedPath(path) + ": " + collider.error().message);

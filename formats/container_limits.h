@@ -1,6 +1,7 @@
 // The version of the container format, what readers take at most, and how a payload lies in a file.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace relief {
@@ -10,7 +11,8 @@ inline constexpr std::uint16_t kContainerMinor = 1;
 
 struct ContainerLimits {
     std::uint32_t maps = 1024;
-    std::uint64_t texel_bytes = std::uint64_t{2} << 30;  ///< of all maps together, uncompressed
+    /// Of all maps together, uncompressed. A machine of 32 bits (WebAssembly) has room for less.
+    std::uint64_t texel_bytes = std::uint64_t{1} << (sizeof(std::size_t) == 4 ? 29 : 31);
 };
 
 /// How each payload lies in a file; for `relief info`.

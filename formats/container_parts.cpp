@@ -1,7 +1,6 @@
 #include "formats/container_parts.h"
 
 #include <flatbuffers/flatbuffers.h>
-#include <zstd.h>
 
 #include <algorithm>
 #include <cstring>
@@ -9,6 +8,7 @@
 #include <string>
 
 #include "collider_generated.h"
+#include "formats/compression.h"
 #include "formats/container_header.h"
 #include "formats/row_spans.h"
 
@@ -114,30 +114,6 @@ Result<void> validatePayloadSizes(const ParsedMap& map) {
     }
     return {};
 }
-
-namespace {
-
-Result<std::vector<std::byte>> decompress(std::span<const std::byte> stored, std::uint64_t raw_size) {
-    if (ZSTD_getFrameContentSize(stored.data(), stored.size()) != raw_size) {
-        return invalidInput("its payload is no zstd frame that states a content of " +
-                            std::to_string(raw_size) + " bytes");
-    }
-    if (ZSTD_findFrameCompressedSize(stored.data(), stored.size()) != stored.size()) {
-        return invalidInput("its payload is not exactly one zstd frame");
-    }
-    std::vector<std::byte> raw(raw_size);
-    const std::size_t size = ZSTD_decompress(raw.data(), raw.size(), stored.data(), stored.size());
-    if (ZSTD_isError(size) != 0) {
-        return invalidInput(std::string("its payload does not decompress: ") + ZSTD_getErrorName(size));
-    }
-    if (size != raw_size) {
-        return invalidInput("its payload decompresses to " + std::to_string(size) + " bytes, not " +
-                            std::to_string(raw_size));
-    }
-    return raw;
-}
-
-}  // namespace
 
 const char* packingName(Packing packing) {
     switch (packing) {

@@ -113,8 +113,8 @@ struct DepthMap {
         return format == MapFormat::kCube8 ? Projection::kCube : Projection::kOrthographic;
     }
     [[nodiscard]] std::uint32_t faceCount() const { return projection() == Projection::kCube ? 6 : 1; }
-    [[nodiscard]] std::size_t texelBytes() const {
-        return std::size_t{faceCount()} * width * height * texelSize(format);
+    [[nodiscard]] std::uint64_t texelBytes() const {
+        return std::uint64_t{faceCount()} * width * height * texelSize(format);
     }
     [[nodiscard]] std::span<const std::byte> texelAt(std::uint32_t face, std::uint32_t x,
                                                      std::uint32_t y) const;

@@ -58,7 +58,8 @@ constexpr std::array kKinds = {
 };
 
 const IssueKind& kindOf(IssueCode code) {
-    return *std::ranges::find_if(kKinds, [&](const IssueKind& kind) { return kind.code == code; });
+    return *std::find_if(std::begin(kKinds), std::end(kKinds),
+                         [&](const IssueKind& kind) { return kind.code == code; });
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace relief {
 namespace {
 
 bool isEmpty(std::span<const std::byte> texel) {
-    return std::ranges::all_of(texel, [](std::byte b) { return b == std::byte{0}; });
+    return std::all_of(texel.begin(), texel.end(), [](std::byte b) { return b == std::byte{0}; });
 }
 
 std::uint16_t loadWord(std::span<const std::byte> bytes, std::size_t at) {
@@ -61,7 +61,8 @@ std::uint64_t gpuBytes(const DepthMap& map) {
 std::vector<std::byte> packRows(const DepthMap& map) {
     const std::vector<RowSpan> spans = rowSpans(map);
     std::vector<std::byte> packed;
-    packed.reserve(spans.size() * kRowSpanBytes + texelsOf(spans) * texelSize(map.format));
+    packed.reserve(spans.size() * kRowSpanBytes +
+                   static_cast<std::size_t>(texelsOf(spans)) * texelSize(map.format));
     for (const RowSpan& span : spans) {
         storeWord(packed, span.first);
         storeWord(packed, span.end);
@@ -98,7 +99,7 @@ Result<std::vector<std::byte>> unpackRows(std::span<const std::byte> packed, con
                                                   " bytes of texels, its payload " +
                                                   std::to_string(left.size()));
     }
-    std::vector<std::byte> texels(map.texelBytes());
+    std::vector<std::byte> texels(static_cast<std::size_t>(map.texelBytes()));
     for (std::size_t y = 0; y < spans.size(); ++y) {
         const auto row = left.first(spans[y].texels() * size);
         left = left.subspan(row.size());

@@ -1,11 +1,11 @@
 #include "bake/bench/bench_bare_loop.h"
 
-#include <embree3/rtcore.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
 #include <functional>
 
+#include "bake/mesh/embree.h"
 #include "bake/mesh/embree_config.h"
 #include "formats/base/stopwatch.h"
 
@@ -50,9 +50,7 @@ std::uint64_t BareLoop::trace(std::span<const View> views) const {
             const auto traceRows = [&](const tbb::blocked_range<std::uint32_t>& rows, std::uint64_t count) {
                 alignas(64) int valid[16];
                 alignas(64) RTCRayHit16 packet{};
-                RTCIntersectContext context;
-                rtcInitIntersectContext(&context);
-                context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+                RayQuery query(nullptr, RayOrder::kCoherent);
                 for (int i = 0; i < 16; ++i) {
                     valid[i] = -1;
                 }
@@ -74,7 +72,7 @@ std::uint64_t BareLoop::trace(std::span<const View> views) const {
                             packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
                             packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
                         }
-                        rtcIntersect16(valid, impl_->scene, &context, &packet);
+                        query.intersect(impl_->scene, valid, packet);
                         for (unsigned geometry : packet.hit.geomID) {
                             count += geometry != RTC_INVALID_GEOMETRY_ID ? 1 : 0;
                         }

@@ -50,8 +50,10 @@ void addMapOptions(CLI::App& verb, BakeCommand& command) {
 
 /// Maps that are planned.
 void addPlanOptions(CLI::App& verb, BakeCommand& command) {
-    verb.add_option("--budget", command.budget,
-                    "Plan for this many bytes of texels; default 1MB. With --max-error: use no more")
+    verb.add_option(
+            "--budget", command.budget,
+            "Plan for this many bytes; default 1MB. What counts is what all maps together take on the GPU:\n"
+            "the file has some hundred bytes more, or fewer with --compress. With --max-error: use no more")
         ->option_text("BYTES")
         ->transform(byteCount());
     verb.add_option(

@@ -2,6 +2,7 @@
 
 #include "bake/cli/command.h"
 #include "bake/report/inspect_report.h"
+#include "formats/bake_first.h"
 #include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "formats/container_parts.h"
@@ -19,6 +20,7 @@ Result<void> checkFile(const std::string& file, bool json) {
     if (!printed || !inspection.damaged()) {
         return printed;
     }
+    RELIEF_TRY(refuseMesh(file, bytes));
     for (const Issue& issue : inspection.issues) {
         if (issue.severity() != Severity::kWarning) {
             const std::string map = issue.map >= 0 ? "map " + std::to_string(issue.map) + ": " : "";

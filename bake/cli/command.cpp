@@ -16,12 +16,23 @@ CLI::App& addVerb(CLI::App& app, CommonOptions& common, const std::string& name,
     verb->footer(example);
     verb->set_help_flag("-h,--help", "Print this help and exit");
     CLI::Option* quiet = verb->add_flag("-q,--quiet", common.quiet, "Print errors only");
-    verb->add_flag("-v,--verbose", common.verbose, "Print details too")->excludes(quiet);
+    CLI::Option* verbose =
+        verb->add_flag("-v,--verbose", common.verbose, "Print details too")->excludes(quiet);
+    verb->add_flag_callback(
+            "--warnings-only",
+            [&common] {
+                common.quiet = true;
+                common.warnings = true;
+            },
+            "Print warnings and errors only")
+        ->excludes(quiet)
+        ->excludes(verbose);
     return *verb;
 }
 
 void startLogging(const CommonOptions& common) {
-    spdlog::set_level(common.quiet     ? spdlog::level::err
+    spdlog::set_level(common.warnings  ? spdlog::level::warn
+                      : common.quiet   ? spdlog::level::err
                       : common.verbose ? spdlog::level::debug
                                        : spdlog::level::info);
 }

@@ -16,8 +16,9 @@ namespace relief {
 using Action = std::function<Result<void>()>;
 
 struct CommonOptions {
-    bool quiet = false;    ///< errors only
-    bool verbose = false;  ///< details too
+    bool quiet = false;     ///< errors only
+    bool verbose = false;   ///< details too
+    bool warnings = false;  ///< with quiet: warnings too
 };
 
 /// Adds a verb with -q and -v.

@@ -28,6 +28,7 @@
 #include "bake/report/accuracy_report.h"
 #include "bake/report/bake_report.h"
 #include "bake/report/report.h"
+#include "bake/report/size_report.h"
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
 #include "formats/base/stopwatch.h"
@@ -68,6 +69,7 @@ Result<void> readPlanFile(const BakeCommand& command, BakeSettings& settings) {
     if (!command.prefer) {
         settings.bake.prefer = plan.prefer;
     }
+    settings.bake.planned_budget = plan.budget;
     for (const PlanFileMap& map : plan.maps) {
         settings.bake.maps.push_back(map.spec);
     }
@@ -159,6 +161,7 @@ Result<void> writePlanFile(const std::string& path, const PlanReport& plan, cons
     PlanFile file;
     file.quality = options.quality;
     file.prefer = options.prefer;
+    file.budget = plan.budget;
     for (std::size_t i = 0; i < plan.plan.maps.size(); ++i) {
         file.maps.push_back({baked.report.maps[i].spec, plan.plan.maps[i].reason});
     }
@@ -362,6 +365,11 @@ void tellNotices(BakeRun& run) {
                                 " changes nothing: a later --as names all its triangles too, or they have "
                                 "no area; give it last");
         }
+    }
+    const auto forgotten = mesh.unit.empty() ? forgottenUnit(run.baked.collider.bounds) : std::nullopt;
+    // A terrain of hundreds of metres is nothing special.
+    if (forgotten && run.shape.terrains == 0) {
+        warnings.insert(warnings.begin(), mesh.name + ": " + *forgotten);
     }
     warnings.insert(warnings.begin(), mesh.warnings.begin(), mesh.warnings.end());
     for (const std::string& warning : warnings) {

@@ -1,26 +1,19 @@
 // relief check: whether a container is sound, and how well a collider keeps to its mesh.
-#include <spdlog/spdlog.h>
-
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <span>
 
 #include "bake/cli/check_advice.h"
 #include "bake/cli/check_file.h"
 #include "bake/cli/command.h"
-#include "bake/cli/import_options.h"
+#include "bake/cli/mesh_check.h"
 #include "bake/cli/preflight.h"
-#include "bake/cli/recorded_bake.h"
 #include "bake/measure/accuracy.h"
 #include "bake/measure/worst_places.h"
-#include "bake/repair/mesh_care.h"
-#include "bake/repair/winding.h"
 #include "bake/report/accuracy_page.h"
 #include "bake/report/accuracy_report.h"
 #include "bake/report/places_report.h"
 #include "bake/report/shape_report.h"
-#include "bake/shape/shape.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "formats/container.h"
@@ -31,77 +24,24 @@
 namespace relief {
 namespace {
 
-constexpr std::uint64_t kSamplesMax = 100'000'000;
-/// Bounds that differ by more, in units of the longest side, are those of another mesh.
-constexpr double kBoundsTolerance = 1e-3;
-
 struct CheckCommand {
     CommonOptions common;
     std::string file;
-    std::string mesh;
-    std::uint64_t samples = 200'000;
-    std::uint64_t seed = 1;
+    MeshCheckSettings settings;
     std::optional<float> max_error;  // percent
     std::string html;
-    ImportSettings import;
     bool json = false;
 };
 
-Result<void> checkSameMesh(const Collider& collider, const TriangleMesh& mesh) {
-    const double tolerance = (kBoundsTolerance + repairReach(collider.provenance.options)) *
-                             static_cast<double>(mesh.bounds.longestSide());
-    for (int i = 0; i < 3; ++i) {
-        // Written so that NaN fails too.
-        const bool same =
-            std::abs(double{collider.bounds.min[i]} - double{mesh.bounds.min[i]}) <= tolerance &&
-            std::abs(double{collider.bounds.max[i]} - double{mesh.bounds.max[i]}) <= tolerance;
-        if (!same) {
-            return fail(ErrorCode::kInvalidInput,
-                        mesh.name + " has the bounds " + shortest(mesh.bounds.min) + " to " +
-                            shortest(mesh.bounds.max) + " but the collider, of " +
-                            collider.provenance.mesh_name + ", has " + shortest(collider.bounds.min) +
-                            " to " + shortest(collider.bounds.max) +
-                            "; give --mesh the mesh that it was baked from");
-        }
-    }
-    return {};
-}
-
-/// The truth of a mesh, and how far the collider is from it.
-struct Measured {
-    TruthSamples samples;
-    ColliderAccuracy accuracy;
-};
-
-/// A check against a mesh, and what its stages leave for the next.
-struct CheckRun {
-    Collider collider;
-    PreparedMesh imported{TriangleMesh()};  ///< wound outwards
-    /// The solid that stands for it: where solids overlap, their winding decides what is inside.
-    PreparedMesh mesh{TriangleMesh()};
-    ShapeReport shape;
-    RecordedBake recorded;
-    PreparedMesh baked{TriangleMesh()};  ///< the same of the repaired mesh; `mesh` without a repair
-    bool same_file = false;
-    std::vector<std::string> warnings;
-    bool watertight = false;
-    Measured original;
-    std::optional<Measured> repaired;  ///< if the collider is of a repaired mesh
-    std::vector<WorstPlace> places;
+/// The measurement, and what it means for this command.
+struct CheckRun : MeshCheck {
     std::vector<Advice> advice;
     bool passed = true;
-
-    /// Against the mesh that was baked.
-    [[nodiscard]] const Measured& judged() const { return repaired ? *repaired : original; }
-    [[nodiscard]] double wrongPercent() const { return judged().accuracy.field.near.total(); }
 };
 
 /// Before the long work.
 Result<void> prepare(const CheckCommand& command) {
-    if (command.samples > kSamplesMax) {
-        return fail(ErrorCode::kLimit, "--samples is " + std::to_string(command.samples) + "; the limit is " +
-                                           std::to_string(kSamplesMax));
-    }
+    RELIEF_TRY(prepareMeshCheck(command.settings));
     if (command.html.empty()) {
         return {};
     }
@@ -110,106 +50,28 @@ Result<void> prepare(const CheckCommand& command) {
     }
     RELIEF_TRY(preflightFile(command.html));
     RELIEF_TRY(preflightDistinct(command.file, command.html));
-    return preflightDistinct(command.mesh, command.html);
+    return preflightDistinct(command.settings.mesh, command.html);
 }
 
-/// The mesh, with the names that the collider was baked by.
-Result<TriangleMesh> importFor(const RecordedBake& recorded, const CheckCommand& command) {
-    ImportOptions options = command.import.options;
-    options.names = recorded.shape.names();
-    Result<TriangleMesh> mesh = importMeshInWorker(command.mesh, options, command.import.limits);
-    if (!mesh && mesh.error().code == ErrorCode::kUsage && !options.names.empty()) {
-        return invalidInput(
-            mesh.error().message +
-            "; the collider was baked by that name: give --mesh the mesh that it was baked from");
-    }
-    return mesh;
-}
-
-Result<void> readInputs(const CheckCommand& command, CheckRun& run) {
-    run.collider = RELIEF_TRY(loadCollider(command.file));
-    run.recorded = recordedBake(run.collider.provenance.options);
-    TriangleMesh imported = RELIEF_TRY(importFor(run.recorded, command));
-    Winding winding = RELIEF_TRY(windOutwards(std::move(imported)));
-    run.imported = std::move(winding.mesh);
-    ShapedMesh shaped = RELIEF_TRY(shapedMesh(run.recorded, run.imported));
-    run.mesh = std::move(shaped.mesh);
-    run.shape = std::move(shaped.report);
-    RELIEF_TRY(checkSameMesh(run.collider, *run.mesh));
-    const Provenance& from = run.collider.provenance;
-    run.same_file = from.mesh_hash == run.mesh->content_hash;
-    run.warnings = run.mesh->warnings;
-    if (!run.same_file) {
-        run.warnings.push_back(run.mesh->name + " is not the file that the collider was baked from (" +
-                               from.mesh_name + ", XXH3-128 " +
-                               (from.mesh_hash.empty() ? "unknown" : from.mesh_hash) +
-                               "); its bounds are the same");
-    }
-    return {};
-}
-
-/// The mesh as it was baked, or as it came if the repair cannot be made again.
-void makeBakedMesh(CheckRun& run) {
-    run.baked = run.mesh;
-    if (run.recorded.repair.empty()) {
-        return;
-    }
-    std::string reason = "it is not the same file";
-    if (run.same_file) {
-        Result<ShapedMesh> baked = repairedMesh(run.recorded, run.imported);
-        if (baked) {
-            run.baked = std::move(baked->mesh);
-            run.shape = std::move(baked->report);
-            return;
-        }
-        reason = baked.error().message;
-    }
-    run.warnings.push_back("the collider is of a mesh repaired by " + run.recorded.repair +
-                           ", which is not made again (" + reason + "); all is measured against " +
-                           run.mesh->name + " as it came");
-}
-
-/// Where the collider is wrong most, and what to do about it.
-void lookCloser(const CheckCommand& command, const MeshQuery& query, CheckRun& run) {
-    const Sights sights(run.collider.maps, query);
-    run.places = worstPlaces(run.judged().samples, query, sights, run.collider);
+/// What to do about the places.
+void addAdvice(const CheckCommand& command, CheckRun& run) {
+    run.passed = !command.max_error || run.original.accuracy.field.near.total() <= double{*command.max_error};
     if (run.passed && run.wrongPercent() <= kGoodPercent) {
         return;
     }
     const std::string output = command.file == "-" ? "out.relief" : command.file;
-    run.advice = adviceFor({command.mesh, output, run.collider, run.recorded, run.imported, run.baked,
-                            run.shape, query, run.judged().samples, run.places, run.wrongPercent()});
+    run.advice =
+        adviceFor({command.settings.mesh, output, run.collider, run.recorded, run.imported, run.baked,
+                   run.shape, *run.query, run.judged().samples, run.places, run.wrongPercent()});
 }
 
-/// Measures, and writes the page that --html asks for.
-Result<void> measure(const CheckCommand& command, CheckRun& run) {
-    makeBakedMesh(run);
-    for (const std::string& warning : run.warnings) {
-        spdlog::warn(warning);
-    }
-    const MeshQuery query = RELIEF_TRY(MeshQuery::build(run.mesh));
-    const MeshQuery baked = RELIEF_TRY(MeshQuery::build(run.baked));
-    AccuracyOptions options;
-    options.samples = static_cast<std::uint32_t>(command.samples);
-    options.seed = command.seed;
-    run.watertight = query.watertight();
-    run.original.samples = sampleTruth(query, options);
-    run.original.accuracy = measureCollider(run.original.samples, query, run.collider);
-    const bool is_repaired = run.baked->triangles != run.mesh->triangles;
-    if (is_repaired) {
-        run.repaired = Measured{sampleTruth(baked, options), {}};
-        run.repaired->accuracy = measureCollider(run.repaired->samples, baked, run.collider);
-    }
-    spdlog::debug("truth {:.2f} s, field {:.2f} s", run.original.samples.seconds,
-                  run.original.accuracy.field.seconds);
-    run.passed = !command.max_error || run.original.accuracy.field.near.total() <= double{*command.max_error};
-    const MeshQuery& judged = is_repaired ? baked : query;
-    lookCloser(command, judged, run);
+/// The page that --html asks for.
+Result<void> writePage(const CheckCommand& command, const CheckRun& run) {
     if (command.html.empty()) {
         return {};
     }
     const std::string page =
-        RELIEF_TRY(accuracyPage({inputName(command.file), run.collider, judged, run.judged().samples,
+        RELIEF_TRY(accuracyPage({inputName(command.file), run.collider, *run.query, run.judged().samples,
                                  run.judged().accuracy, run.places, run.advice}));
     return writeFile(command.html, std::as_bytes(std::span(page)));
 }
@@ -272,13 +134,14 @@ std::string checkText(const CheckCommand& command, const CheckRun& run) {
 
 Result<void> runCheck(const CheckCommand& command) {
     startLogging(command.common);
-    if (command.mesh.empty()) {
+    if (command.settings.mesh.empty()) {
         return checkFile(command.file, command.json);
     }
-    CheckRun run;
     RELIEF_TRY(prepare(command));
-    RELIEF_TRY(readInputs(command, run));
-    RELIEF_TRY(measure(command, run));
+    Collider collider = RELIEF_TRY(loadCollider(command.file));
+    CheckRun run{RELIEF_TRY(checkAgainstMesh(command.settings, std::move(collider))), {}};
+    addAdvice(command, run);
+    RELIEF_TRY(writePage(command, run));
     RELIEF_TRY(printOut(command.json ? jsonText(jsonCheck(command, run)) : checkText(command, run)));
     if (!run.passed) {
         return fail(ErrorCode::kDifference, shortNumber(run.original.accuracy.field.near.total()) +
@@ -308,16 +171,7 @@ void addCheck(CLI::App& app, Action& action) {
         "relief check bunny.relief --mesh bunny.obj --html bunny.html\n"
         "relief check bunny.relief --mesh bunny.obj --max-error 2 --json");
     verb.add_option("FILE", command->file, "The collider; - for standard input")->type_name("")->required();
-    CLI::Option* mesh =
-        verb.add_option("--mesh", command->mesh, "The mesh that it was baked from")->option_text("MESH");
-    verb.add_option("--samples", command->samples, "Points of each kind; default 200000")
-        ->option_text("N")
-        ->transform(wholeNumber(1, std::numeric_limits<std::uint64_t>::max(), "a whole number of at least 1"))
-        ->needs(mesh);
-    verb.add_option("--seed", command->seed, "Of the points; default 1")
-        ->option_text("S")
-        ->transform(wholeNumber())
-        ->needs(mesh);
+    CLI::Option* mesh = addMeshCheckOptions(verb, command->settings);
     verb.add_option("--max-error", command->max_error,
                     "Exit with 7 if more than this share of the points near the surface, in percent, is on "
                     "the wrong side")
@@ -328,7 +182,7 @@ void addCheck(CLI::App& app, Action& action) {
                     "Also write a page to look at: numbers, error on the surface, slices and maps")
         ->option_text("OUT")
         ->needs(mesh);
-    addImportOptions(verb, command->import);
+    addImportOptions(verb, command->settings.import);
     verb.add_flag("--json", command->json, "Print JSON");
     verb.callback([command, &action] { action = [command] { return runCheck(*command); }; });
 }

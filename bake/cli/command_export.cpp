@@ -1,13 +1,18 @@
-// relief export: every map as OpenEXR.
+// relief export: every map as OpenEXR; or what a program of one's own uploads.
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 
 #include "bake/cli/command.h"
+#include "bake/cli/gpu_export.h"
 #include "bake/cli/preflight.h"
 #include "bake/picture/map_image.h"
+#include "bake/volume/level_set.h"
+#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "formats/container.h"
+#include "runtime/tool/option_values.h"
+#include "runtime/vdb/vdb_points.h"
 
 namespace relief {
 namespace {
@@ -16,12 +21,13 @@ struct ExportCommand {
     CommonOptions common;
     std::string file;
     std::string output;
+    std::string gpu;
+    std::string vdb;
+    std::string mesh;
+    std::optional<std::uint32_t> voxels;
 };
 
-Result<void> runExport(const ExportCommand& command) {
-    startLogging(command.common);
-    const Collider collider = RELIEF_TRY(loadCollider(command.file));
-    const std::filesystem::path folder = command.output;
+Result<void> exportMaps(const Collider& collider, const std::filesystem::path& folder) {
     RELIEF_TRY(preflightFolder(folder));
     std::size_t count = 0;
     for (std::size_t i = 0; i < collider.maps.size(); ++i) {
@@ -38,22 +44,100 @@ Result<void> runExport(const ExportCommand& command) {
     return {};
 }
 
+Result<void> checkTogether(const ExportCommand& command) {
+    const bool grids = !command.vdb.empty() || !command.mesh.empty();
+    if (command.output.empty() && command.gpu.empty() && !grids) {
+        return fail(ErrorCode::kUsage,
+                    "nothing to write; give a folder with -o or --gpu, or a file with --vdb or --mesh");
+    }
+    if (command.voxels && !grids) {
+        return fail(ErrorCode::kUsage, "--voxels does nothing without --vdb or --mesh; add one of them");
+    }
+    if (command.vdb == "-" && command.mesh == "-") {
+        return fail(ErrorCode::kUsage, "--vdb - and --mesh - both write standard output; name a file");
+    }
+    return {};
+}
+
+/// Below that share, what is missing is a texel here and there.
+constexpr double kMissingShown = 1e-3;
+
+/// The field on a grid, and its surface.
+Result<void> exportGrids(const Collider& collider, const ExportCommand& command) {
+    FieldGridOptions options;
+    options.voxels = command.voxels.value_or(options.voxels);
+    options.level_set = !command.vdb.empty();
+    options.surface = !command.mesh.empty();
+    if (!options.level_set && !options.surface) {
+        return {};
+    }
+    const FieldGrids grids = RELIEF_TRY(inFront(shownInput(command.file), encodeGrids(collider, options)));
+    if (grids.missing >= kMissingShown) {
+        spdlog::warn(
+            "{}: some {:.2g} % of its surface is missing: parts thinner than a voxel, {:.3g} wide; "
+            "ask for more voxels than --voxels {}",
+            shownInput(command.file), 100.0 * grids.missing, grids.voxel, options.voxels);
+    }
+    if (options.level_set) {
+        RELIEF_TRY(writeFile(command.vdb, grids.level_set));
+    }
+    if (options.surface) {
+        RELIEF_TRY(writeFile(command.mesh, grids.surface));
+    }
+    return {};
+}
+
+Result<void> runExport(const ExportCommand& command) {
+    startLogging(command.common);
+    RELIEF_TRY(checkTogether(command));
+    for (const std::string& file : {command.vdb, command.mesh}) {
+        if (!file.empty()) {
+            RELIEF_TRY(checkVdb());
+            RELIEF_TRY(preflightFile(file));
+            RELIEF_TRY(preflightDistinct(command.file, file));
+        }
+    }
+    const Collider collider = RELIEF_TRY(loadCollider(command.file));
+    if (!command.output.empty()) {
+        RELIEF_TRY(exportMaps(collider, command.output));
+    }
+    if (!command.gpu.empty()) {
+        RELIEF_TRY(preflightFolder(command.gpu));
+        const int count = RELIEF_TRY(exportForGpu(collider, command.gpu));
+        spdlog::info("wrote {} files into {}", count, quotedPath(std::filesystem::path(command.gpu)));
+    }
+    return exportGrids(collider, command);
+}
+
 }  // namespace
 
 void addExport(CLI::App& app, Action& action) {
     auto command = std::make_shared<ExportCommand>();
-    CLI::App& verb =
-        addVerb(app, command->common, "export",
-                "Writes every map as OpenEXR\n\nFiles are map0_front-back.exr, and map3_cube_+x.exr to "
-                "map3_cube_-z.exr for the "
-                "six faces\nof a cube. Channels Z and N.X N.Y N.Z, and ZBack and NBack.X NBack.Y NBack.Z of "
-                "front-back maps;\nZ is in object units from the near plane or the cube's centre, +inf where "
-                "there is no surface",
-                "relief export bunny.relief -o maps/");
+    CLI::App& verb = addVerb(
+        app, command->common, "export",
+        "Writes the maps as pictures, the field as a level set, the surface as a mesh\n\n-o: every map as "
+        "OpenEXR. Files are map0_front-back.exr, and map3_cube_+x.exr to "
+        "map3_cube_-z.exr for the "
+        "six faces\nof a cube. Channels Z and N.X N.Y N.Z, and ZBack and NBack.X NBack.Y NBack.Z of "
+        "front-back maps;\nZ is in object units from the near plane or the cube's centre, +inf where "
+        "there is no surface.\nWith --gpu it writes what a program without "
+        "Relief uploads: raw textures, the uniform block, GLSL, and\nthe sizes of all as JSON "
+        "(runtime/collider/LAYOUT.md).\nWith --vdb it writes signed distances as a level set of OpenVDB, "
+        "and with --mesh the surface of that as PLY",
+        "relief export bunny.relief -o maps/\nrelief export bunny.relief --gpu engine/bunny/\n"
+        "relief export bunny.relief --vdb bunny.vdb --voxels 256\nrelief export bunny.relief --mesh "
+        "bunny.ply");
     verb.add_option("FILE", command->file, "The collider; - for standard input")->type_name("")->required();
-    verb.add_option("-o,--output", command->output, "The folder; made if it is missing")
-        ->option_text("DIR")
-        ->required();
+    verb.add_option("-o,--output", command->output, "The folder; made if it is missing")->option_text("DIR");
+    verb.add_option("--gpu", command->gpu, "The folder for textures, block and GLSL; made if it is missing")
+        ->option_text("DIR");
+    verb.add_option("--vdb", command->vdb, "The level set, \"surface\"; - for standard output")
+        ->option_text("OUT.vdb");
+    verb.add_option("--mesh", command->mesh, "The surface as PLY; - for standard output")
+        ->option_text("OUT.ply");
+    verb.add_option("--voxels", command->voxels, "Of --vdb and --mesh, along the longest side; default 128")
+        ->option_text("N")
+        ->transform(wholeNumber(kVoxelsMin, kVoxelsMax));
     verb.callback([command, &action] { action = [command] { return runExport(*command); }; });
 }
 

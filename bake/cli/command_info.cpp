@@ -1,8 +1,14 @@
 // relief info: what is in a container.
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
 
 #include "bake/cli/command.h"
+#include "bake/cli/command_line.h"
 #include "bake/report/report.h"
+#include "formats/bake_first.h"
+#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "runtime/tool/command_line.h"
@@ -10,9 +16,11 @@
 namespace relief {
 namespace {
 
+constexpr std::size_t kLineMost = 80;  // characters of options on one line
+
 struct InfoCommand {
     CommonOptions common;
-    std::string file;
+    std::vector<std::string> files;
     bool json = false;
 };
 
@@ -24,6 +32,19 @@ std::string vectorText(const glm::vec3& v) {
     return "(" + shortest(v.x) + ", " + shortest(v.y) + ", " + shortest(v.z) + ")";
 }
 
+/// A line, or one for each option where that would be long.
+std::string bakedText(const Provenance& from) {
+    const std::string by = "baked    by " + from.tool_version + " with";
+    if (from.options.size() <= kLineMost) {
+        return by + " " + from.options + "\n";
+    }
+    std::string text = by;
+    for (const std::string& option : optionList(from.options)) {
+        text += "\n         " + option;
+    }
+    return text + "\n";
+}
+
 std::string humanReport(const Collider& collider, const ContainerInfo& info) {
     const Provenance& from = collider.provenance;
     std::string text = "Relief container " + std::to_string(info.major) + "." + std::to_string(info.minor) +
@@ -32,7 +53,7 @@ std::string humanReport(const Collider& collider, const ContainerInfo& info) {
             (collider.unit.empty() ? " object units" : " " + collider.unit) + "\n";
     text += "mesh     " + from.mesh_name + ", " + std::to_string(from.triangles) + " triangles, XXH3-128 " +
             (from.mesh_hash.empty() ? "unknown" : from.mesh_hash) + "\n";
-    text += "baked    by " + from.tool_version + " with " + from.options + "\n";
+    text += bakedText(from);
     std::vector<std::vector<std::string>> rows = {
         {"map", "format", "projection", "keeps", "size>", "bytes>", "stored>", "encloses", "empty is"}};
     for (std::size_t i = 0; i < collider.maps.size(); ++i) {
@@ -58,22 +79,62 @@ std::string humanReport(const Collider& collider, const ContainerInfo& info) {
     return text;
 }
 
+/// A container that has been checked as a whole, payloads too: what info shows can be relied on.
+struct Shown {
+    std::string file;
+    Collider collider;
+    ContainerInfo info;
+};
+
+Result<Shown> open(const std::string& file) {
+    const std::vector<std::byte> bytes = RELIEF_TRY(readFile(file));
+    RELIEF_TRY(refuseMesh(file, bytes));
+    Collider collider = RELIEF_TRY(inFront(shownInput(file), readContainer(bytes)));
+    ContainerInfo info = RELIEF_TRY(inFront(shownInput(file), readContainerInfo(bytes)));
+    return Shown{file, std::move(collider), std::move(info)};
+}
+
+/// Of one file among several: what is said of it alone, under its name.
+std::string humanPart(const Shown& shown, bool first) {
+    return (first ? "" : "\n") + (shown.file == "-" ? "standard input" : cleanUtf8(shown.file)) + "\n" +
+           humanReport(shown.collider, shown.info);
+}
+
+Result<void> runMany(const InfoCommand& command) {
+    bool first = true;
+    std::optional<Error> failed;
+    for (const std::string& file : command.files) {
+        const Result<Shown> shown = open(file);
+        if (!shown) {
+            // The others are shown all the same. The last error is the program's own, with the code of the first.
+            const ErrorCode code = failed ? failed->code : shown.error().code;
+            if (failed) {
+                reportError(*failed);
+            }
+            failed = Error{code, shown.error().message};
+        } else if (command.json) {
+            nlohmann::ordered_json one = {{"file", file == "-" ? "standard input" : cleanUtf8(file)}};
+            one.update(jsonCollider(shown->collider, shown->info));
+            RELIEF_TRY(printOut(one.dump() + "\n"));
+        } else {
+            RELIEF_TRY(printOut(humanPart(*shown, first)));
+            first = false;
+        }
+    }
+    return failed ? Result<void>(tl::unexpected<Error>(std::move(*failed))) : Result<void>();
+}
+
 Result<void> runInfo(const InfoCommand& command) {
     startLogging(command.common);
-    const std::vector<std::byte> bytes = RELIEF_TRY(readFile(command.file));
-    const auto named = [&](const Error& error) {
-        return fail(error.code, shownInput(command.file) + ": " + error.message);
-    };
-    // The whole container is checked, payloads too: what info shows can be relied on.
-    const Result<Collider> collider = readContainer(bytes);
-    if (!collider) {
-        return named(collider.error());
+    if (std::ranges::count(command.files, "-") > 1) {
+        return fail(ErrorCode::kUsage, "standard input can be shown once; name a file instead of one -");
     }
-    const Result<ContainerInfo> info = readContainerInfo(bytes);
-    if (!info) {
-        return named(info.error());
+    if (command.files.size() > 1) {
+        return runMany(command);
     }
-    return printOut(command.json ? colliderJson(*collider, *info) : humanReport(*collider, *info));
+    const Shown shown = RELIEF_TRY(open(command.files.front()));
+    return printOut(command.json ? colliderJson(shown.collider, shown.info)
+                                 : humanReport(shown.collider, shown.info));
 }
 
 }  // namespace
@@ -83,9 +144,11 @@ void addInfo(CLI::App& app, Action& action) {
     CLI::App& verb =
         addVerb(app, command->common, "info", "Shows what is in a collider, and where it comes from",
                 "relief info bunny.relief\n"
+                "relief info *.relief\n"
                 "relief info bunny.relief --json | jq .maps[0].object_to_map");
-    verb.add_option("FILE", command->file, "The collider; - for standard input")->type_name("")->required();
-    verb.add_flag("--json", command->json, "Print JSON");
+    verb.add_option("FILE", command->files, "The colliders; - for standard input")->type_name("")->required();
+    verb.add_flag("--json", command->json,
+                  "Print JSON; of several files a line for each, with its name as file");
     verb.callback([command, &action] { action = [command] { return runInfo(*command); }; });
 }
 

@@ -13,6 +13,7 @@ void addDiff(CLI::App& app, Action& action);
 void addInfo(CLI::App& app, Action& action);
 void addQuery(CLI::App& app, Action& action);
 void addSlice(CLI::App& app, Action& action);
+void addView(CLI::App& app, Action& action);
 void addExport(CLI::App& app, Action& action);
 
 /// Gives an app named "relief" its verbs. `action` must outlive it.

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "bake/cli/preflight.h"
+#include "bake/cli/recipe_keys.h"
 #include "bake/recipe/child_process.h"
 #include "bake/recipe/recipe_run.h"
 #include "bake/recipe/recipe_stamp.h"
@@ -19,6 +20,7 @@
 #include "formats/base/file_io.h"
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
+#include "formats/config/confined_path.h"
 #include "runtime/tool/command_line.h"
 #include "runtime/tool/json_text.h"
 #include "runtime/tool/option_values.h"
@@ -33,9 +35,10 @@ constexpr std::uint64_t kShardsMax = 1'000'000;
 constexpr float kTimeoutMax = 1e7F;  // seconds
 
 /// Options of a whole run, not of an asset: they are no keys of a recipe.
-constexpr std::array<std::string_view, 17> kOfTheRun = {
-    "list-devices", "help",   "quiet", "verbose", "output",  "threads",   "json",       "depfile", "plan-out",
-    "recipe",       "events", "shard", "stamp",   "timeout", "fail-fast", "keep-going", "dry-run"};
+constexpr std::array<std::string_view, 19> kOfTheRun = {
+    "list-devices", "warnings-only", "help",      "quiet",      "verbose", "output", "threads",
+    "json",         "depfile",       "plan-out",  "recipe",     "events",  "shard",  "stamp",
+    "root",         "timeout",       "fail-fast", "keep-going", "dry-run"};
 
 std::vector<RecipeKey> recipeKeys(const CLI::App& verb) {
     std::vector<RecipeKey> keys;
@@ -194,9 +197,12 @@ Result<RecipeWork> plan(const RecipeOptionsOfBake& options, const RecipeCall& ca
     RecipeWork work;
     RELIEF_TRY(checkOptions(call));
     work.run = RELIEF_TRY(runOf(options, call));
+    if (!options.root.empty()) {
+        RELIEF_TRY(checkRoot(options.root));
+    }
     const std::vector<RecipeAsset> assets = RELIEF_TRY(loadRecipe(options.recipe, recipeKeys(call.verb)));
     RELIEF_TRY(checkAssets(assets, call));
-    RecipeJobs all = RELIEF_TRY(recipeJobs(assets, options.recipe, work.run.output_folder));
+    RecipeJobs all = RELIEF_TRY(recipeJobs(assets, options.recipe, work.run.output_folder, options.root));
     work.folders = std::move(all.folders);
     const Shard shard = options.shard.value_or(Shard{});
     std::ranges::copy_if(all.jobs, std::back_inserter(work.jobs),
@@ -248,9 +254,6 @@ Result<RecipeResult> bakeAll(RecipeWork& work, bool shown, RecipeEvents& events)
     run.ended = [&](const AssetResult& asset) {
         event(endEvent(asset.state), asset);
         display.wipe();
-        for (const std::string& warning : asset.warnings) {
-            spdlog::warn("{}: {}", cleanUtf8(asset.job.output), warning);
-        }
         if (asset.state == AssetState::kFailed) {
             spdlog::error("{}: {}", cleanUtf8(asset.job.output), asset.error.message);
         }
@@ -260,7 +263,13 @@ Result<RecipeResult> bakeAll(RecipeWork& work, bool shown, RecipeEvents& events)
         display.wipe();
         spdlog::warn(warning);
     };
-    return runRecipe(std::move(work.jobs), run);
+    run.waiting = [&] { display.tick(); };
+    Result<RecipeResult> result = runRecipe(std::move(work.jobs), run);
+    display.wipe();
+    for (const std::string& line : result ? warningLines(result->assets) : std::vector<std::string>()) {
+        spdlog::warn(line);
+    }
+    return result;
 }
 
 void writeSummary(const RecipeResult& result, const RecipeCounts& counts, double ms, RecipeEvents& events) {
@@ -319,6 +328,11 @@ void addRecipeOptions(CLI::App& verb, RecipeOptionsOfBake& options) {
                     "Of --recipe: write this file when everything is up to date: the target for --depfile")
         ->option_text("FILE")
         ->needs(recipe);
+    verb.add_option("--root", options.root,
+                    "Of --recipe: a folder whose meshes and plans it may name too, by .. at the start;\n"
+                    "default: those of its own folder alone")
+        ->option_text("DIR")
+        ->needs(recipe);
     verb.add_option("--timeout", options.timeout, "Of --recipe: for one asset; default 3600, 0 for any")
         ->option_text("SECONDS")
         ->transform(number(0.0F, kTimeoutMax, "a number of seconds, 0 for any"))
@@ -342,12 +356,17 @@ Result<void> runRecipeCommand(const RecipeOptionsOfBake& options, const RecipeCa
         RELIEF_TRY(events.open(options.events));
     }
     writeStart(options, work, events);
-    const RecipeResult result = RELIEF_TRY(bakeAll(work, !call.common.quiet && !options.dry_run, events));
+    RecipeResult result = RELIEF_TRY(bakeAll(work, !call.common.quiet && !options.dry_run, events));
+    if (options.dry_run && call.json) {
+        RELIEF_TRY(addKeys(result.assets, work.run));
+    }
     const RecipeCounts counts = countAssets(result.assets);
     const double ms = watch.ms();
     writeSummary(result, counts, ms, events);
     if (!call.common.quiet) {
-        std::fputs((recipeSummary(counts, ms) + "\n").c_str(), stderr);
+        const std::string slowest = slowestText(result.assets);
+        std::fputs((recipeSummary(counts, ms) + (slowest.empty() ? "" : "; ") + slowest + "\n").c_str(),
+                   stderr);
     }
     if (result.signal != 0) {
         ChildProcesses::endBySignal(result.signal);

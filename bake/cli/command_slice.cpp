@@ -1,4 +1,6 @@
 // relief slice: the field on a plane, as numbers or as a figure.
+#include <spdlog/spdlog.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
@@ -56,11 +58,27 @@ SliceOptions optionsOf(const SliceCommand& command) {
     return options;
 }
 
+/// The picture is drawn all the same: it shows what the collider says there.
+void warnOutside(const SliceCommand& command, const Collider& collider) {
+    const std::optional<float> at = optionsOf(command).at;
+    const int axis = static_cast<int>(command.axis);
+    const float low = collider.bounds.min[axis];
+    const float high = collider.bounds.max[axis];
+    if (at && !(*at >= low && *at <= high)) {
+        spdlog::warn(
+            "{}: --at {} lies outside of the collider's box, which goes from {} = {} to {}{}; give a "
+            "number between them, or center",
+            shownInput(command.file), shortest(*at), axisName(axis), shortest(low), shortest(high),
+            collider.unit.empty() ? "" : " " + collider.unit);
+    }
+}
+
 Result<void> runSlice(const SliceCommand& command) {
     startLogging(command.common);
     const ImageKind kind = RELIEF_TRY(imageKind(command.output));
     RELIEF_TRY(preflightFile(command.output));
     const Collider collider = RELIEF_TRY(loadCollider(command.file));
+    warnOutside(command, collider);
     const Slice slice = RELIEF_TRY(evaluateSlice(collider, optionsOf(command)));
     const std::vector<std::byte> bytes =
         RELIEF_TRY(kind == ImageKind::kPng ? drawSlice(slice, {inputName(command.file), collider.unit})

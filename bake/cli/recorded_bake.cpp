@@ -71,8 +71,9 @@ bool take(std::string_view option, std::string_view value, RecordedBake& bake) {
     if (option == "--as" || option == "--thickness") {
         return readRecordedShape(option, value, bake.shape);
     }
-    // Those of the import are read from the command line of the check; planned maps need no backend.
-    return option == "--unit" || option == "--up" || option == "--backend";
+    // Those of the import are read from the command line of the check; planned maps need no backend, and what is baked
+    // next has a budget of its own.
+    return option == "--budget" || option == "--unit" || option == "--up" || option == "--backend";
 }
 
 }  // namespace
@@ -94,7 +95,7 @@ RecordedBake recordedBake(const std::string& options) {
         }
         bake.understood = take(option, value, bake) && bake.understood;
         const bool is_default = option == "--quality" && bake.quality == Quality::kNormal;
-        if (option != "--map" && option != "--backend" && !is_default) {
+        if (option != "--map" && option != "--budget" && option != "--backend" && !is_default) {
             bake.options.emplace_back(option, value);
         }
     }

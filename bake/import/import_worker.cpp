@@ -1,4 +1,5 @@
 // importMeshInWorker: starts relief-import, waits for it, and believes nothing that it says.
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
@@ -98,13 +99,21 @@ Descriptor sharedBytes(std::span<const std::byte> bytes) {
     return errno == 0 ? std::move(file) : Descriptor();
 }
 
-/// The program, beside this one or where an installation puts it; "" if it is nowhere.
+/// The folder of the executable or shared library that this function is in.
+fs::path ownFolder() {
+    Dl_info info{};
+    const bool found = ::dladdr(reinterpret_cast<const void*>(&ownFolder), &info) != 0;
+    return found && info.dli_fname != nullptr ? fs::path(info.dli_fname).parent_path() : fs::path();
+}
+
+/// The program, beside this one or where an installation puts it, or beside a library that this is part of; "" if it is
+/// nowhere.
 std::string workerProgram() {
     std::error_code error;
     const fs::path self = fs::read_symlink("/proc/self/exe", error);
-    for (const fs::path& folder : {self.parent_path(), self.parent_path() / kWorkerFolder}) {
+    for (const fs::path& folder : {self.parent_path(), self.parent_path() / kWorkerFolder, ownFolder()}) {
         const std::string program = (folder / kWorkerName).string();
-        if (!error && ::access(program.c_str(), X_OK) == 0) {
+        if (!error && !folder.empty() && ::access(program.c_str(), X_OK) == 0) {
             return program;
         }
     }

@@ -68,7 +68,7 @@ Result<EmbreeMesh> EmbreeMesh::build(const TriangleMesh& mesh) {
                                mesh.triangles.data(), 0, sizeof(glm::uvec3), mesh.triangles.size());
     rtcCommitGeometry(geometry.get());
     rtcAttachGeometry(tree.scene.get(), geometry.get());
-    rtcSetSceneFlags(tree.scene.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+    rtcSetSceneFlags(tree.scene.get(), RTC_SCENE_FLAG_ROBUST | kEmbreeRayFilters);
     rtcSetSceneBuildQuality(tree.scene.get(), RTC_BUILD_QUALITY_MEDIUM);
     rtcCommitScene(tree.scene.get());
     if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE) {

@@ -1,11 +1,10 @@
 // A mesh as Embree holds it, built the same way for every use.
 #pragma once
 
-#include <embree3/rtcore.h>
-
 #include <glm/vec3.hpp>
 #include <memory>
 
+#include "bake/mesh/embree.h"
 #include "bake/mesh/mesh.h"
 #include "formats/base/result.h"
 

@@ -1,7 +1,5 @@
 #include "bake/mesh/mesh_query.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -26,19 +24,14 @@ int wayOf(const RTCFilterFunctionNArguments* args, unsigned i) {
 }
 
 /// Counts the surfaces on a ray, and lets it pass through them.
-struct CrossingCounter {
-    RTCIntersectContext context{};
+struct CrossingCounter : RayQuery {
     unsigned count = 0;
     int winding = 0;  ///< crossings one way less those the other way
 
-    CrossingCounter() {
-        rtcInitIntersectContext(&context);
-        context.filter = filter;
-    }
+    CrossingCounter() : RayQuery(filter) {}
 
     static void filter(const RTCFilterFunctionNArguments* args) {
-        // RTCIntersectContext is the first member: Embree hands back the pointer it was given.
-        auto* self = reinterpret_cast<CrossingCounter*>(args->context);
+        auto* self = static_cast<CrossingCounter*>(of(args));
         for (unsigned i = 0; i < args->N; ++i) {
             if (args->valid[i] != 0) {
                 ++self->count;
@@ -50,16 +43,12 @@ struct CrossingCounter {
 };
 
 /// How a ray crosses the bodies of a union, one by one.
-struct BodyCounter {
-    RTCIntersectContext context{};
+struct BodyCounter : RayQuery {
     std::span<const std::uint32_t> bodies;
     int winding = 0;
     std::vector<std::uint32_t> odd;  ///< bodies crossed an odd number of times so far, but for body 0
 
-    explicit BodyCounter(std::span<const std::uint32_t> of) : bodies(of) {
-        rtcInitIntersectContext(&context);
-        context.filter = filter;
-    }
+    explicit BodyCounter(std::span<const std::uint32_t> body_of) : RayQuery(filter), bodies(body_of) {}
 
     [[nodiscard]] bool inside() const { return winding != 0 || !odd.empty(); }
 
@@ -74,7 +63,7 @@ struct BodyCounter {
     }
 
     static void filter(const RTCFilterFunctionNArguments* args) {
-        auto* self = reinterpret_cast<BodyCounter*>(args->context);
+        auto* self = static_cast<BodyCounter*>(of(args));
         for (unsigned i = 0; i < args->N; ++i) {
             if (args->valid[i] != 0) {
                 self->cross(self->bodies[RTCHitN_primID(args->hit, args->N, i)], wayOf(args, i));
@@ -85,17 +74,13 @@ struct BodyCounter {
 };
 
 /// Collects the triangles that a ray meets, and lets it pass through them.
-struct HitCollector {
-    RTCIntersectContext context{};
+struct HitCollector : RayQuery {
     std::vector<std::uint32_t> triangles;
 
-    HitCollector() {
-        rtcInitIntersectContext(&context);
-        context.filter = filter;
-    }
+    HitCollector() : RayQuery(filter) {}
 
     static void filter(const RTCFilterFunctionNArguments* args) {
-        auto* self = reinterpret_cast<HitCollector*>(args->context);
+        auto* self = static_cast<HitCollector*>(of(args));
         for (unsigned i = 0; i < args->N; ++i) {
             if (args->valid[i] != 0) {
                 self->triangles.push_back(RTCHitN_primID(args->hit, args->N, i));
@@ -191,7 +176,7 @@ double depthAt(const TriangleMesh& mesh, std::uint32_t triangle, const glm::dvec
 template <class Counter>
 void trace(const EmbreeMesh& tree, const glm::vec3& p, const glm::dvec3& direction, Counter& counter) {
     RTCRayHit query = rayHit(tree.toLocal(p), direction, std::numeric_limits<float>::infinity());
-    rtcIntersect1(tree.scene.get(), &counter.context, &query);
+    counter.intersect(tree.scene.get(), query);
 }
 
 /// The part of a line that lies in a box, in units of its direction; begin > end: none.
@@ -344,7 +329,7 @@ void MeshQuery::hitsAlong(const glm::dvec3& p, const glm::dvec3& direction,
     HitCollector collector;
     RTCRayHit query =
         rayHit(tree_->toLocal(start), direction * tree_->scale, static_cast<float>(box.end + margin - begin));
-    rtcIntersect1(tree_->scene.get(), &collector.context, &query);
+    collector.intersect(tree_->scene.get(), query);
     for (const std::uint32_t triangle : collector.triangles) {
         hits.push_back({begin + depthAt(mesh(), triangle, start, direction), triangle});
     }
@@ -410,11 +395,9 @@ bool MeshQuery::rayIsFree(const glm::dvec3& origin, const glm::dvec3& direction)
 }
 
 bool MeshQuery::isFree(const glm::dvec3& origin, const glm::dvec3& direction, float end) const {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
     RTCRay ray{};
     setRay(ray, tree_->toLocal(origin), direction * tree_->scale, end);
-    rtcOccluded1(tree_->scene.get(), &context, &ray);
+    RayQuery().occluded(tree_->scene.get(), ray);
     return ray.tfar >= 0.0F;
 }
 
@@ -461,11 +444,9 @@ std::vector<LineGap> MeshQuery::gapsAlong(const glm::dvec3& origin, const glm::d
 }
 
 std::optional<FirstHit> MeshQuery::firstHit(const glm::dvec3& origin, const glm::dvec3& direction) const {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
     RTCRayHit query =
         rayHit(tree_->toLocal(origin), direction * tree_->scale, std::numeric_limits<float>::infinity());
-    rtcIntersect1(tree_->scene.get(), &context, &query);
+    RayQuery().intersect(tree_->scene.get(), query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
         return std::nullopt;
     }

@@ -81,7 +81,8 @@ Result<std::vector<Job>> planJobs(const PreparedMesh& mesh, const BakeOptions& o
     return jobs;
 }
 
-std::string effectiveOptions(const std::vector<Job>& jobs, const BakeOptions& options) {
+/// \param bytes  that the baked maps take on the GPU.
+std::string effectiveOptions(const std::vector<Job>& jobs, const BakeOptions& options, std::uint64_t bytes) {
     std::string text;
     bool has_planes = false;
     for (const Job& job : jobs) {
@@ -95,6 +96,9 @@ std::string effectiveOptions(const std::vector<Job>& jobs, const BakeOptions& op
         if (options.prefer != Prefer::kNeither) {
             text.append(" --prefer ").append(preferName(options.prefer));
         }
+    }
+    if (options.planned_budget > 0 && bytes <= options.planned_budget) {
+        text.append(" --budget ").append(std::to_string(options.planned_budget));
     }
     return text;
 }
@@ -267,7 +271,8 @@ class Bake {
         baked_.collider.bounds = mesh_->bounds;
         baked_.collider.unit = mesh_->unit;
         baked_.collider.provenance = {mesh_->name, mesh_->content_hash, mesh_->sourceTriangles(),
-                                      "relief " RELIEF_VERSION, effectiveOptions(jobs_, options_)};
+                                      "relief " RELIEF_VERSION,
+                                      effectiveOptions(jobs_, options_, baked_.collider.gpuBytes())};
         return std::move(baked_);
     }
 

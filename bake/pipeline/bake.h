@@ -19,6 +19,9 @@ struct BakeOptions {
     std::uint32_t resolution = 512;  ///< texels along a side, for maps whose spec names no size
     Quality quality = Quality::kNormal;
     Prefer prefer = Prefer::kNeither;
+    /// Bytes that the maps were planned for, to be recorded; 0: they were not. Maps that take more on the GPU are others
+    /// than were planned, and it is not recorded.
+    std::uint64_t planned_budget = 0;
     unsigned threads = 0;  ///< 0: all cores. Never changes the result.
     /// On the GPU (rasterize.h) instead of by rays: needs a current context, and quality and prefer have no
     /// effect. Not the same bytes on every machine.

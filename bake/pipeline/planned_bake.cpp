@@ -19,6 +19,7 @@ constexpr double kSecondShare = 0.99;
 Result<PlannedBake> bakePlanned(const MeshQuery& query, const ViewChoice& views, std::uint64_t budget_bytes,
                                 BakeOptions options) {
     Plan plan = RELIEF_TRY(planSizes(views, budget_bytes));
+    options.planned_budget = budget_bytes;
     for (auto aim = static_cast<double>(budget_bytes);;) {
         options.maps = specsOf(plan);
         Baked baked = RELIEF_TRY(bake(query.prepared(), options));

@@ -18,7 +18,7 @@ struct PlannedBake {
 /// What the rows of a map of gaps take up is known to some per cent before it is baked: where all maps together take more
 /// than the budget, they are baked again with larger texels.
 /// \param query    of the mesh that the views were chosen for
-/// \param options  its maps do not count
+/// \param options  its maps and planned_budget do not count
 /// Errors: those of planSizes and bake.
 [[nodiscard]] Result<PlannedBake> bakePlanned(const MeshQuery& query, const ViewChoice& views,
                                               std::uint64_t budget_bytes, BakeOptions options);

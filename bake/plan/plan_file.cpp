@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kPlanBytesMax = std::uint64_t{1} << 20;
 constexpr std::int64_t kVersion = 1;
-constexpr std::array<std::string_view, 4> kTopKeys = {"version", "quality", "prefer", "map"};
+constexpr std::array<std::string_view, 5> kTopKeys = {"version", "quality", "prefer", "budget", "map"};
 
 class Reader {
   public:
@@ -64,6 +64,8 @@ class Reader {
                 done = readQuality(node, plan);
             } else if (key->str() == "prefer") {
                 done = readPrefer(node, plan);
+            } else if (key->str() == "budget") {
+                done = readBudget(node, plan);
             } else if (key->str() == "map") {
                 done = readMaps(node, plan);
             } else if (key->str() != "version") {
@@ -102,6 +104,15 @@ class Reader {
             }
         }
         return invalid(node.source().begin, "prefer must be \"neither\", \"inside\" or \"outside\"");
+    }
+
+    Result<void> readBudget(const toml::node& node, PlanFile& plan) const {
+        const auto bytes = node.value_exact<std::int64_t>();
+        if (!bytes || *bytes < 1) {
+            return invalid(node.source().begin, "budget must be a whole number of bytes above 0");
+        }
+        plan.budget = static_cast<std::uint64_t>(*bytes);
+        return {};
     }
 
     Result<void> readMaps(const toml::node& node, PlanFile& plan) const {
@@ -180,6 +191,7 @@ std::string planText(const PlanFile& plan) {
         "version = " +
         std::to_string(kVersion) + "\nquality = \"" + qualityName(plan.quality) + "\"\nprefer = \"" +
         preferName(plan.prefer) + "\"\n";
+    text += plan.budget == 0 ? "" : "budget = " + std::to_string(plan.budget) + "\n";
     for (const PlanFileMap& map : plan.maps) {
         text += "\n";
         if (!map.comment.empty()) {

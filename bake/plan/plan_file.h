@@ -4,6 +4,7 @@
 //     version = 1
 //     quality = "normal"
 //     prefer = "neither"
+//     budget = 1000000
 //
 //     # both sides along (0, 0, 1) see 83.1 % of the surface; service +71.4 %
 //     [[map]]
@@ -14,11 +15,13 @@
 //     decode = "plane"
 //     box = "tight"
 //
-// A map has `format`, `size`, and whichever other keys of map_spec.h it needs; their values are strings, as
+// `budget` is what the maps were planned for, bytes on the GPU; it changes nothing but the collider's record, and may be
+// left out. A map has `format`, `size`, and whichever other keys of map_spec.h it needs; their values are strings, as
 // after --map, and `size` may be a whole number. Numbers are the shortest that read back as the same floats:
 // what was planned and what is baked from its file are the same bytes.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -38,10 +41,11 @@ struct PlanFileMap {
 struct PlanFile {
     Quality quality = Quality::kNormal;
     Prefer prefer = Prefer::kNeither;
+    std::uint64_t budget = 0;  ///< bytes; 0: none is named
     std::vector<PlanFileMap> maps;
 };
 
-/// Parsing it gives the same quality, prefer and specs.
+/// Parsing it gives the same quality, prefer, budget and specs.
 [[nodiscard]] std::string planText(const PlanFile& plan);
 
 /// \param path  for messages.

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "bake/recipe/asset_key.h"
 #include "bake/recipe/child_process.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
@@ -94,6 +95,7 @@ class Runner {
                 asset.hash = entry->second.output_hash;
                 asset.bytes = entry->second.output_bytes;
                 asset.inputs = entry->second.inputs;
+                asset.key = assetKey(tool_, asset.job.options, asset.inputs);
                 tell(run_.ended, asset);
             } else {
                 asset.reason = *reason;
@@ -120,6 +122,9 @@ class Runner {
             }
             for (const ChildEnd& end : children_.wait(std::chrono::seconds(1))) {
                 take(end);
+            }
+            if (run_.waiting) {
+                run_.waiting();
             }
             if (!fresh_.empty() && Clock::now() - cached > kCacheInterval) {
                 // Should it fail, the last time says so.
@@ -206,10 +211,8 @@ class Runner {
                     !input.contains("hash") || !input["hash"].is_string()) {
                     continue;
                 }
-                const fs::path path = input["file"].get<std::string>();
-                const fs::path inside = path.lexically_normal().lexically_relative(folder.lexically_normal());
-                asset.inputs.push_back(
-                    {inside.empty() ? path.string() : inside.string(), input["hash"].get<std::string>()});
+                asset.inputs.push_back({nameInRecipe(input["file"].get<std::string>(), folder),
+                                        input["hash"].get<std::string>()});
             }
         }
         const std::optional<std::string> hash = hashOfFile(asset.job.output_path);
@@ -221,6 +224,7 @@ class Runner {
             return;
         }
         asset.inputs.front().path = asset.job.mesh;
+        asset.key = assetKey(tool_, asset.job.options, asset.inputs);
         asset.state = AssetState::kBaked;
         asset.hash = *hash;
         asset.bytes = bytes;

@@ -31,6 +31,7 @@ struct AssetResult {
     Error error;                        ///< failed
     std::vector<std::string> warnings;  ///< of its baking
     std::vector<InputFile> inputs;      ///< from the recipe's folder, the mesh first; known as the hash is
+    std::string key;                    ///< assetKey(); known as the inputs are
 };
 
 struct RecipeRun {
@@ -44,6 +45,7 @@ struct RecipeRun {
     // Called between the work; may be empty.
     std::function<void(const AssetResult&)> started;
     std::function<void(const AssetResult&)> ended;  ///< up to date, baked, failed or cancelled
+    std::function<void()> waiting;                  ///< about once a second while assets are baked
     std::function<void(const std::string&)> warn;
 };
 

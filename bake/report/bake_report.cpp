@@ -7,6 +7,7 @@
 #include "bake/report/care_report.h"
 #include "bake/report/report.h"
 #include "bake/report/shape_report.h"
+#include "bake/report/size_report.h"
 #include "formats/base/file_io.h"
 #include "formats/row_spans.h"
 #include "runtime/tool/json_text.h"
@@ -33,9 +34,9 @@ std::string sizeText(const DepthMap& map) {
 
 std::string planLine(const PlanReport& report, const std::string& unit) {
     const Plan& plan = report.plan;
-    std::string line = "planned for " + bytesText(report.budget) + ": texels of " + shortNumber(plan.texel) +
-                       " " + (unit.empty() ? "object units" : unit) + "; " +
-                       shortNumber(plan.unseen_percent) +
+    std::string line = "planned for " + bytesText(report.budget) + " on the GPU, where the maps take " +
+                       bytesText(plan.bytes) + ": texels of " + shortNumber(plan.texel) + " " +
+                       (unit.empty() ? "object units" : unit) + "; " + shortNumber(plan.unseen_percent) +
                        " % of the surface is seen by no map; one more map would have "
                        "served " +
                        shortNumber(100.0 * plan.next_gain) + " % more";
@@ -85,6 +86,7 @@ std::string bakeText(const BakeSummary& summary, const std::string& output, std:
         text += ", " + std::to_string(summary.unused_vertices) +
                 (summary.unused_vertices == 1 ? " vertex" : " vertices") + " of no triangle";
     }
+    text += "\nbox " + boxText(summary.mesh.bounds, summary.mesh.unit);
     text += "\n" + careText(summary.care, summary.verbose) + shapeText(summary.shape, summary.mesh.unit);
     if (summary.plan) {
         text += planLine(*summary.plan, summary.mesh.unit);

@@ -113,6 +113,9 @@ Json jsonAsset(const AssetResult& asset) {
         json["hash"] = asset.hash;
         json["inputs"] = std::move(inputs);
     }
+    if (!asset.key.empty()) {
+        json["key"] = asset.key;
+    }
     if (asset.state == AssetState::kFailed) {
         json["code"] = static_cast<int>(asset.error.code);
         json["error"] = asset.error.message;
@@ -175,22 +178,40 @@ RecipeDisplay::~RecipeDisplay() {
 }
 
 void RecipeDisplay::started(const AssetResult& asset) {
-    running_.push_back(cleanUtf8(asset.job.output));
+    running_.push_back({cleanUtf8(asset.job.output)});
     draw();
 }
 
 void RecipeDisplay::ended(const AssetResult& asset) {
     const std::string name = cleanUtf8(asset.job.output);
-    if (const auto found = std::find(running_.begin(), running_.end(), name); found != running_.end()) {
+    const auto found =
+        std::find_if(running_.begin(), running_.end(), [&](const Running& one) { return one.name == name; });
+    if (found != running_.end()) {
         running_.erase(found);
     }
     ++done_;
     failed_ += asset.state == AssetState::kFailed ? 1 : 0;
     if (wanted_ && !terminal_ && asset.state == AssetState::kBaked) {
-        std::fprintf(stderr, "%s: baked, %s, %s\n", name.c_str(), bytesText(asset.bytes).c_str(),
-                     seconds(asset.ms).c_str());
+        std::fprintf(stderr, "%s %s: baked, %s, %s\n", place().c_str(), name.c_str(),
+                     bytesText(asset.bytes).c_str(), seconds(asset.ms).c_str());
     }
     draw();
+}
+
+void RecipeDisplay::tick() {
+    for (Running& one : running_) {
+        const double ms = one.watch.ms();
+        if (wanted_ && !terminal_ && ms >= one.tell_ms) {
+            std::fprintf(stderr, "%s %s: still baking, %s\n", place().c_str(), one.name.c_str(),
+                         seconds(ms).c_str());
+            one.tell_ms = 2.0 * one.tell_ms;
+        }
+    }
+    draw();
+}
+
+std::string RecipeDisplay::place() const {
+    return "[" + std::to_string(done_) + "/" + std::to_string(assets_) + "]";
 }
 
 void RecipeDisplay::wipe() {
@@ -204,12 +225,15 @@ void RecipeDisplay::draw() {
     if (!terminal_) {
         return;
     }
-    std::string line = "[" + std::to_string(done_) + "/" + std::to_string(assets_) + "]";
+    std::string line = place();
     if (failed_ > 0) {
         line += " " + std::to_string(failed_) + " failed";
     }
     for (std::size_t i = 0; i < running_.size(); ++i) {
-        line += (i == 0 ? " baking " : ", ") + running_[i];
+        line += (i == 0 ? " baking " : ", ") + running_[i].name;
+        if (running_[i].watch.ms() >= kLong / 10.0) {
+            line += " (" + seconds(running_[i].watch.ms()) + ")";
+        }
     }
     winsize size{};
     const std::size_t columns =
@@ -217,6 +241,64 @@ void RecipeDisplay::draw() {
     std::fprintf(stderr, "\r%s\033[K", cleanUtf8(line, columns).c_str());
     std::fflush(stderr);
     drawn_ = true;
+}
+
+// --- at the end ---
+
+std::vector<std::string> warningLines(const std::vector<AssetResult>& assets) {
+    constexpr std::size_t kNamed = 3;
+    struct Group {
+        std::string warning;
+        std::vector<std::string> assets;
+    };
+    std::vector<Group> groups;
+    for (const AssetResult& asset : assets) {
+        // Warnings begin with the mesh's name, which would tell equal ones apart.
+        const std::string mesh = cleanUtf8(std::filesystem::path(asset.job.mesh).filename().string()) + ": ";
+        for (const std::string& said : asset.warnings) {
+            const std::string warning = said.starts_with(mesh) ? said.substr(mesh.size()) : said;
+            auto group = std::find_if(groups.begin(), groups.end(),
+                                      [&](const Group& one) { return one.warning == warning; });
+            if (group == groups.end()) {
+                groups.push_back({warning, {}});
+                group = groups.end() - 1;
+            }
+            group->assets.push_back(cleanUtf8(asset.job.output));
+        }
+    }
+    std::vector<std::string> out;
+    for (const Group& group : groups) {
+        const std::size_t count = group.assets.size();
+        std::string names;
+        for (std::size_t i = 0; i < std::min(count, kNamed); ++i) {
+            names += (i == 0 ? "" : ", ") + group.assets[i];
+        }
+        if (count > kNamed) {
+            names += ", and " + std::to_string(count - kNamed) + " more";
+        }
+        out.push_back((count == 1 ? names : std::to_string(count) + " assets (" + names + ")") + ": " +
+                      group.warning);
+    }
+    return out;
+}
+
+std::string slowestText(const std::vector<AssetResult>& assets) {
+    std::vector<const AssetResult*> baked;
+    for (const AssetResult& asset : assets) {
+        if (asset.state == AssetState::kBaked) {
+            baked.push_back(&asset);
+        }
+    }
+    std::stable_sort(baked.begin(), baked.end(),
+                     [](const AssetResult* a, const AssetResult* b) { return a->ms > b->ms; });
+    std::string text;
+    for (std::size_t i = 0; i < std::min<std::size_t>(baked.size(), 3); ++i) {
+        if (baked[i]->ms > 2.0 * baked[baked.size() / 2]->ms) {
+            text += (text.empty() ? "the slowest: " : ", ") + cleanUtf8(baked[i]->job.output) + " " +
+                    seconds(baked[i]->ms);
+        }
+    }
+    return text;
 }
 
 }  // namespace relief

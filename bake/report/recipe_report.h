@@ -7,6 +7,7 @@
 
 #include "bake/recipe/recipe_run.h"
 #include "formats/base/descriptor.h"
+#include "formats/base/stopwatch.h"
 
 namespace relief {
 
@@ -58,11 +59,21 @@ class RecipeDisplay {
 
     void started(const AssetResult& asset);
     void ended(const AssetResult& asset);
+    /// Now and then: tells what takes long, its first time after half a minute, and then each time that it has taken twice
+    /// as long.
+    void tick();
     /// Wipes the line, so that something else can be written.
     void wipe();
 
   private:
+    static constexpr double kLong = 30'000.0;  // ms
+    struct Running {
+        std::string name;
+        Stopwatch watch = {};
+        double tell_ms = kLong;
+    };
     void draw();
+    [[nodiscard]] std::string place() const;
 
     std::size_t assets_;
     bool wanted_;
@@ -70,7 +81,15 @@ class RecipeDisplay {
     bool drawn_ = false;
     std::size_t done_ = 0;
     std::size_t failed_ = 0;
-    std::vector<std::string> running_;
+    std::vector<Running> running_;
 };
+
+/// "2 assets (a.relief, b.relief): it is skinned": the warnings, one line each, in the order of the assets; one that several
+/// have is told once.
+[[nodiscard]] std::vector<std::string> warningLines(const std::vector<AssetResult>& assets);
+
+/// "the slowest: a.relief 12.3 s, b.relief 4.0 s": up to three that were baked and took more than twice the median; "" where
+/// none did.
+[[nodiscard]] std::string slowestText(const std::vector<AssetResult>& assets);
 
 }  // namespace relief

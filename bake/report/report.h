@@ -24,6 +24,9 @@ namespace relief {
 /// "12.3 MB", "640 B": powers of 1000.
 [[nodiscard]] std::string bytesText(std::uint64_t bytes);
 
+/// The options of a bake one by one: "--map cube:size=16", "--quality normal".
+[[nodiscard]] std::vector<std::string> optionList(const std::string& options);
+
 /// Lines of a table for people, columns aligned, the first row a heading. Text columns go left, columns whose
 /// heading ends in '>' right (the mark is not printed).
 [[nodiscard]] std::string table(const std::vector<std::vector<std::string>>& rows);

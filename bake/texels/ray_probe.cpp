@@ -61,10 +61,8 @@ Hit RayProbe::hitOf(std::uint32_t face, std::uint32_t x, std::uint32_t y, std::u
 }
 
 Hit RayProbe::trace(std::uint32_t face, std::uint32_t x, std::uint32_t y) {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
     RTCRayHit query = queryOf(segmentOf(view_.ray(face, x, y)));
-    rtcIntersect1(tree_.scene.get(), &context, &query);
+    RayQuery().intersect(tree_.scene.get(), query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
         return {};
     }
@@ -124,12 +122,10 @@ Hit RayProbe::lookAgain(std::uint32_t face, std::uint32_t x, std::uint32_t y, co
             return hit;  // beside a silhouette: as good as all that is doubted
         }
         const auto& [sine, cosine] = kBesideDirections[i];
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
         Segment shifted = segment;
         shifted.origin += (kBeside / tree_.scale) * (cosine * right + sine * up);
         RTCRayHit query = queryOf(shifted);
-        rtcIntersect1(tree_.scene.get(), &context, &query);
+        RayQuery().intersect(tree_.scene.get(), query);
         if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID &&
             touches((segment.origin - tree_.center) * tree_.scale, right, up, query.hit.primID)) {
             touched[count] = query.hit.primID;

@@ -1,8 +1,6 @@
 // Single rays of one end of a view, by Embree, for where scan_convert.h knows no texel: between two of them.
 #pragma once
 
-#include <embree3/rtcore.h>
-
 #include <array>
 #include <cstddef>
 #include <span>

@@ -1,10 +1,10 @@
 #include "formats/base/byte_count.h"
 
 #include <array>
-#include <charconv>
 #include <string>
 #include <utility>
 
+#include "formats/base/float_chars.h"
 #include "formats/base/text.h"
 
 namespace relief {
@@ -21,7 +21,7 @@ std::optional<std::uint64_t> parseByteCount(std::string_view text) {
     text = trimmed(text);
     double number = 0.0;
     const char* end = text.data() + text.size();
-    const auto [rest, error] = std::from_chars(text.data(), end, number, std::chars_format::fixed);
+    const auto [rest, error] = fromChars(text.data(), end, number, true);
     if (error != std::errc()) {
         return std::nullopt;
     }

@@ -1,12 +1,12 @@
 #include "formats/base/ply_reader.h"
 
 #include <array>
-#include <bit>
 #include <charconv>
 #include <cmath>
 #include <span>
 #include <utility>
 
+#include "formats/base/bits.h"
 #include "formats/base/text.h"
 
 namespace relief {
@@ -166,9 +166,9 @@ std::optional<double> PlyNumbers::nextBytes(PlyType type) {
         case PlyType::kInt32:
             return static_cast<std::int32_t>(bits);
         case PlyType::kFloat32:
-            return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
+            return bitCast<float>(static_cast<std::uint32_t>(bits));
         case PlyType::kFloat64:
-            return std::bit_cast<double>(bits);
+            return bitCast<double>(bits);
         default:
             return static_cast<double>(bits);
     }

@@ -7,6 +7,8 @@
 #include <limits>
 #include <numeric>
 
+#include "formats/base/float_chars.h"
+
 namespace relief {
 namespace {
 
@@ -37,7 +39,7 @@ std::optional<T> parseNumber(std::string_view text) {
         text.remove_prefix(1);
     }
     T value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const auto [end, error] = fromChars(text.data(), text.data() + text.size(), value);
     return error == std::errc{} && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
 }
 
@@ -70,7 +72,7 @@ std::size_t utf8Length(std::string_view bytes) {
 
 void appendShortest(std::string& out, float value) {
     char text[32];
-    const auto end = std::to_chars(text, text + sizeof(text), value);
+    const auto end = toChars(text, text + sizeof(text), value);
     out.append(text, end.ptr);
 }
 

@@ -55,7 +55,8 @@ bool liesIn(const fs::path& folder, const fs::path& path) {
 
 }  // namespace
 
-Result<fs::path> resolveInside(const fs::path& folder, std::string_view text, std::string_view owner) {
+Result<fs::path> resolveInside(const fs::path& folder, std::string_view text, std::string_view owner,
+                               const fs::path& root) {
     const fs::path path(text);
     const std::string whose(owner);
     const auto refuse = [&](const std::string& why) {
@@ -72,17 +73,27 @@ Result<fs::path> resolveInside(const fs::path& folder, std::string_view text, st
                       "'s folder and name it from there");
     }
     std::error_code error;
-    const fs::path root = settled(folder.empty() ? fs::path(".") : folder, error);
-    const fs::path target = error ? fs::path() : destination(root / path, error);
+    const fs::path own = settled(folder.empty() ? fs::path(".") : folder, error);
+    const fs::path target = error ? fs::path() : destination(own / path, error);
+    const fs::path other = error || root.empty() ? fs::path() : settled(root, error);
     if (error) {
         return refuse("cannot be followed: " + error.message() + "; mend the path");
     }
-    if (!liesIn(root, target)) {
-        return refuse("leads out of the " + whose + "'s folder; put the file there, or the " + whose +
-                      " beside the file");
+    if (!liesIn(own, target) && !(!root.empty() && liesIn(other, target))) {
+        return refuse("leads out of the " + whose + "'s folder" +
+                      (root.empty() ? "" : " and of --root " + quotedPath(root)) +
+                      "; put the file there, or the " + whose + " beside the file");
     }
     // Alone, "-" would be standard input.
     return text == "-" ? folder / "./-" : folder / path;
+}
+
+Result<void> checkRoot(const fs::path& root) {
+    std::error_code error;
+    if (!fs::is_directory(root, error)) {
+        return fail(ErrorCode::kIo, "--root " + quotedPath(root) + " is no folder; name one that exists");
+    }
+    return {};
 }
 
 }  // namespace relief

@@ -1,0 +1,73 @@
+// A collider measured against the mesh that it was baked from: what `relief check --mesh` reports and `relief view --mesh`
+// shows.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bake/cli/import_options.h"
+#include "bake/cli/recorded_bake.h"
+#include "bake/measure/accuracy.h"
+#include "bake/measure/worst_places.h"
+#include "bake/mesh/mesh_query.h"
+#include "bake/mesh/prepared_mesh.h"
+#include "bake/shape/shape.h"
+#include "formats/base/result.h"
+#include "formats/collider.h"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace relief {
+
+struct MeshCheckSettings {
+    std::string mesh;
+    std::uint64_t samples = 200'000;
+    std::uint64_t seed = 1;
+    ImportSettings import;
+};
+
+/// Adds --mesh, and --samples and --seed, which need it.
+/// \return --mesh
+CLI::Option* addMeshCheckOptions(CLI::App& verb, MeshCheckSettings& settings);
+
+/// The truth of a mesh, and how far the collider is from it.
+struct Measured {
+    TruthSamples samples;
+    ColliderAccuracy accuracy;
+};
+
+/// A check against a mesh, and what its stages leave for the next.
+struct MeshCheck {
+    Collider collider;
+    PreparedMesh imported{TriangleMesh()};  ///< wound outwards
+    /// The solid that stands for it: where solids overlap, their winding decides what is inside.
+    PreparedMesh mesh{TriangleMesh()};
+    ShapeReport shape;
+    RecordedBake recorded;
+    PreparedMesh baked{TriangleMesh()};  ///< the same of the repaired mesh; `mesh` without a repair
+    std::optional<MeshQuery> query;      ///< of what is judged: `baked`
+    bool same_file = false;
+    std::vector<std::string> warnings;  ///< one line each; already logged
+    bool watertight = false;
+    Measured original;
+    std::optional<Measured> repaired;  ///< if the collider is of a repaired mesh
+    std::vector<WorstPlace> places;
+
+    /// Against the mesh that was baked.
+    [[nodiscard]] const Measured& judged() const { return repaired ? *repaired : original; }
+    [[nodiscard]] double wrongPercent() const { return judged().accuracy.field.near.total(); }
+};
+
+/// Before the long work. Errors: kLimit (--samples).
+[[nodiscard]] Result<void> prepareMeshCheck(const MeshCheckSettings& settings);
+
+/// Imports the mesh, measures, and looks for the worst places. Logs warnings.
+/// Errors: those of importMeshInWorker, of the shapes and of Embree; kInvalidInput (the mesh of another collider).
+[[nodiscard]] Result<MeshCheck> checkAgainstMesh(const MeshCheckSettings& settings, Collider collider);
+
+}  // namespace relief

@@ -1,0 +1,104 @@
+// std::from_chars and std::to_chars of floating-point numbers, also where the standard library has only those of
+// integers (LLVM's up to version 16, which Debian's emscripten has).
+#pragma once
+
+#include <charconv>
+#include <type_traits>
+#include <version>
+
+#if !defined(__cpp_lib_to_chars)
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <string_view>
+#endif
+
+namespace relief {
+
+#if defined(__cpp_lib_to_chars)
+
+/// std::from_chars. \param fixed  no exponent is part of it.
+template <class Number>
+std::from_chars_result fromChars(const char* first, const char* last, Number& value, bool fixed = false) {
+    if constexpr (std::is_floating_point_v<Number>) {
+        return std::from_chars(first, last, value,
+                               fixed ? std::chars_format::fixed : std::chars_format::general);
+    } else {
+        return std::from_chars(first, last, value);
+    }
+}
+
+/// std::to_chars: as short as reads back as the same number.
+inline std::to_chars_result toChars(char* first, char* last, float value) {
+    return std::to_chars(first, last, value);
+}
+
+#else
+
+template <class Number>
+std::from_chars_result fromChars(const char* first, const char* last, Number& value, bool fixed = false) {
+    if constexpr (std::is_floating_point_v<Number>) {
+        // The longest prefix that std::from_chars takes; strtod would also take blanks, a plus sign and hexadecimals.
+        const std::string_view text(first, static_cast<std::size_t>(last - first));
+        const std::size_t sign = text.starts_with('-') ? 1 : 0;
+        std::string number;
+        if (const std::string_view word = text.substr(sign, 3); word == "inf" || word == "nan") {
+            number = text.substr(0, sign + 3);
+        } else {
+            std::size_t end = text.find_first_not_of("0123456789", sign);
+            end = end == std::string_view::npos ? text.size() : end;
+            if (end < text.size() && text[end] == '.') {
+                end = text.find_first_not_of("0123456789", end + 1);
+                end = end == std::string_view::npos ? text.size() : end;
+            }
+            if (text.substr(sign, end - sign).find_first_of("0123456789") == std::string_view::npos) {
+                return {first, std::errc::invalid_argument};
+            }
+            if (!fixed && end < text.size() && (text[end] == 'e' || text[end] == 'E')) {
+                std::size_t digits = end + 1;
+                digits += digits < text.size() && (text[digits] == '+' || text[digits] == '-') ? 1 : 0;
+                if (digits < text.size() && text[digits] >= '0' && text[digits] <= '9') {
+                    end = text.find_first_not_of("0123456789", digits);
+                    end = end == std::string_view::npos ? text.size() : end;
+                }
+            }
+            number = text.substr(0, end);
+        }
+        Number read{};
+        if constexpr (std::is_same_v<Number, float>) {
+            read = std::strtof(number.c_str(), nullptr);
+        } else {
+            read = std::strtod(number.c_str(), nullptr);
+        }
+        const char* const end = first + number.size();
+        const bool finite = read - read == Number{0};
+        if (!finite && number.find_first_of("0123456789") != std::string::npos) {
+            return {end, std::errc::result_out_of_range};
+        }
+        value = read;
+        return {end, std::errc{}};
+    } else {
+        return std::from_chars(first, last, value);
+    }
+}
+
+inline std::to_chars_result toChars(char* first, char* last, float value) {
+    char text[32];
+    int length = 0;
+    for (int digits = 1; digits <= 9; ++digits) {
+        length = std::snprintf(text, sizeof(text), "%.*g", digits, static_cast<double>(value));
+        if (std::strtof(text, nullptr) == value) {
+            break;
+        }
+    }
+    if (length > last - first) {
+        return {last, std::errc::value_too_large};
+    }
+    std::memcpy(first, text, static_cast<std::size_t>(length));
+    return {first + length, std::errc{}};
+}
+
+#endif
+
+}  // namespace relief

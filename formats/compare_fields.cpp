@@ -1,0 +1,100 @@
+#include "formats/compare_fields.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "formats/nearest_surface.h"
+
+namespace relief {
+namespace {
+
+constexpr double kMargin = 0.1;  // round the box, of its longest side
+constexpr double kNear = 0.01;   // of the same
+constexpr double kShare = 0.99;  // of DifferenceStatistics::percentile_99
+
+/// The digits of i in a base, mirrored at the point: Halton's sequence along one axis, in [0, 1).
+double mirrored(std::uint64_t i, std::uint64_t base) {
+    double value = 0.0;
+    double digit = 1.0;
+    for (; i > 0; i /= base) {
+        digit /= static_cast<double>(base);
+        value += digit * static_cast<double>(i % base);
+    }
+    return value;
+}
+
+bool knowsDistance(const SurfaceSample& sample) {
+    return sample.map >= 0 && std::abs(sample.distance) < kFarOutside;
+}
+
+/// What is said of points, one after the other.
+class Points {
+  public:
+    void add(const SurfaceSample& a, const SurfaceSample& b) {
+        ++result_.points;
+        result_.only_a += a.inside() && !b.inside() ? 1 : 0;
+        result_.only_b += b.inside() && !a.inside() ? 1 : 0;
+        if (knowsDistance(a) != knowsDistance(b)) {
+            ++result_.one_known;
+        } else if (knowsDistance(a)) {
+            distances_.push_back(std::abs(double{a.distance} - double{b.distance}));
+        }
+    }
+
+    PointsDifference done() {
+        result_.distances = distances_.size();
+        DifferenceStatistics& statistics = result_.distance;
+        double sum = 0.0;
+        std::sort(distances_.begin(), distances_.end());  // first: the sum then has one order
+        for (const double distance : distances_) {
+            sum += distance;
+            statistics.differing += distance > 0.0 ? 1 : 0;
+        }
+        if (!distances_.empty()) {
+            const auto count = static_cast<double>(distances_.size());
+            statistics.max = distances_.back();
+            statistics.mean = sum / count;
+            statistics.percentile_99 = distances_[static_cast<std::size_t>(std::ceil(kShare * count)) - 1];
+        }
+        return result_;
+    }
+
+  private:
+    PointsDifference result_;
+    std::vector<double> distances_;
+};
+
+}  // namespace
+
+double PointsDifference::sidesPercent() const {
+    return points == 0 ? 0.0 : 100.0 * static_cast<double>(only_a + only_b) / static_cast<double>(points);
+}
+
+FieldsDifference compareFields(const Collider& a, const Collider& b, const CompareFieldsOptions& options) {
+    const glm::dvec3 low = glm::min(glm::dvec3(a.bounds.min), glm::dvec3(b.bounds.min));
+    const glm::dvec3 high = glm::max(glm::dvec3(a.bounds.max), glm::dvec3(b.bounds.max));
+    const glm::dvec3 size = high - low;
+    const double longest = std::max({size.x, size.y, size.z});
+    Points box;
+    Points near;
+    for (std::uint64_t i = 1; i <= options.points; ++i) {
+        const glm::dvec3 share(mirrored(i, 2), mirrored(i, 3), mirrored(i, 5));
+        const glm::dvec3 offset = glm::dvec3(mirrored(i, 7), mirrored(i, 11), mirrored(i, 13)) * 2.0 - 1.0;
+        const glm::vec3 p(low - kMargin * longest + share * (size + 2.0 * kMargin * longest));
+        const SurfaceSample of_a = nearestSurface(a, p);
+        const SurfaceSample of_b = nearestSurface(b, p);
+        box.add(of_a, of_b);
+        for (const SurfaceSample& of : {of_a, of_b}) {
+            if (knowsDistance(of)) {
+                const glm::vec3 q(glm::dvec3(of.point) + kNear * longest * offset);
+                near.add(nearestSurface(a, q), nearestSurface(b, q));
+            }
+        }
+    }
+    return {box.done(), near.done()};
+}
+
+}  // namespace relief
