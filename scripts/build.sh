@@ -1,11 +1,16 @@
 #!/usr/bin/env bash
-# Builds one preset of CMakePresets.json: scripts/build.sh release|debug|sanitize|fuzz [TARGET]…
-# Prints the folder of the executables.
+# Builds one preset of CMakePresets.json: scripts/build.sh release|debug|sanitize|fuzz|web [TARGET]…
+# Prints the folder of the executables. web is the runtime as WebAssembly (runtime/web/README.md), which needs packages
+# of its own and installs them.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 preset=${1:-release}
 shift || true
+if [ "$preset" = web ]; then
+    scripts/setup.sh web
+    scripts/web_modules.sh >&2
+fi
 [ -f "build/$preset/build.ninja" ] || cmake --preset "$preset" >&2
 cmake --build --preset "$preset" ${1:+--target "$@"} >&2
 echo "$PWD/build/$preset/bin"

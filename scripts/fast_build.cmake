@@ -1,7 +1,7 @@
 # What makes builds fast and changes nothing else: the fastest linker there is, a compiler cache where there is one,
 # precompiled headers, and sources joined.
 find_program(RELIEF_LINKER NAMES mold ld.lld)
-if(RELIEF_LINKER)
+if(RELIEF_LINKER AND NOT EMSCRIPTEN)
     cmake_path(GET RELIEF_LINKER FILENAME linker)
     string(REPLACE "ld.lld" "lld" linker ${linker})
     add_link_options(-fuse-ld=${linker})

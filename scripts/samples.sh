@@ -1,7 +1,20 @@
 #!/usr/bin/env bash
 # Bakes and plays samples without a window: scripts/samples.sh [NAME…], all of them by default. Leaves frames and a
 # picture of six of them, contact_sheet.png and .jpg, in out/samples/NAME. Needs no GPU, but is faster with one.
+#
+# scripts/samples.sh --web [FOLDER]: bakes all of them, and leaves a static site in FOLDER (out/gallery): a page for each
+# scene, which plays it in a browser, and index.html.
 set -euo pipefail
+
+web=
+if [ "${1-}" = --web ]; then
+    [ $# -le 2 ] || {
+        echo "samples.sh: --web takes one folder, and all samples" >&2
+        exit 1
+    }
+    web=$(realpath -m "${2:-$(dirname "$0")/../out/gallery}")
+    shift $#
+fi
 cd "$(dirname "$0")/.."
 
 all=(bunny_in_the_snow fountain linked_tori rain wobbling_torus)
@@ -22,16 +35,12 @@ models=/usr/share/glmark2/models
 mesh() { python3 samples/meshes.py "${1%.*}" "$out/$1"; }
 bake() { "$bin/relief" bake "$@"; }
 
-for name in "${names[@]}"; do
-    out=out/samples/$name
+# prepare: the scene NAME and all that it names, in out/samples/NAME.
+prepare() {
     mkdir -p "$out"
-    rm -rf "$out/frames"
     case $name in
     bunny_in_the_snow)
         bake "$models/bunny.obj" -o "$out/bunny.relief" --prefer inside
-        for axis in x y z; do
-            "$bin/relief" slice "$out/bunny.relief" --axis $axis --at center --size 480 -o "$out/slice_$axis.png"
-        done
         ;;
     fountain)
         mesh basin.obj
@@ -54,8 +63,37 @@ for name in "${names[@]}"; do
         ;;
     esac
     cp "samples/$name.toml" "$out/"
+}
+
+# play: frames and the sheet of them.
+play() {
+    rm -rf "$out/frames"
+    if [ "$name" = bunny_in_the_snow ]; then
+        for axis in x y z; do
+            "$bin/relief" slice "$out/bunny.relief" --axis $axis --at center --size 480 -o "$out/slice_$axis.png"
+        done
+    fi
     "$bin/relief-sim" "$out/$name.toml" --frames "$out/frames"
     scripts/contact_sheet.sh "$out"
     convert "$out/contact_sheet.png" -resize 1200x -define jpeg:extent=150kB "$out/contact_sheet.jpg"
     echo "Look at $out/contact_sheet.png"
+}
+
+if [ -n "$web" ]; then
+    [ -n "${RELIEF_VIEW_PAGE-}" ] || scripts/build.sh web >/dev/null
+    mkdir -p "$web"
+fi
+for name in "${names[@]}"; do
+    out=out/samples/$name
+    prepare
+    if [ -n "$web" ]; then
+        "$bin/relief" view "$out/$name.toml" -o "$web/$name.html"
+    else
+        play
+    fi
 done
+if [ -n "$web" ]; then
+    scenes=("${names[@]/#/samples/}")
+    python3 samples/gallery.py "$web" "${scenes[@]/%/.toml}"
+    echo "Look at $web/index.html"
+fi

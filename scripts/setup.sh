@@ -1,7 +1,16 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages that Relief needs to build and run. Does nothing, and needs no network, when all are
 # there already. The other scripts call it: scripts/setup.sh [PACKAGE]…, with the packages that they need besides.
+#
+# scripts/setup.sh web: also what runtime/web and its tests need. node and npm may come from elsewhere.
 set -euo pipefail
+
+if [ "${1-}" = web ]; then
+    shift
+    set -- emscripten chromium fonts-liberation "$@"
+    command -v node >/dev/null || set -- nodejs "$@"
+    command -v npm >/dev/null || set -- npm "$@"
+fi
 
 packages=(
     # tools
@@ -10,12 +19,14 @@ packages=(
     flatbuffers-compiler libexpected-dev libflatbuffers-dev libglm-dev libxxhash-dev libzstd-dev
     # bake
     libassimp-dev libcairo2-dev libcgal-dev libcli11-dev libdraco-dev libeigen3-dev libembree-dev libopenexr-dev
-    libseccomp-dev libspdlog-dev libtbb-dev nlohmann-json3-dev fonts-dejavu-core
+    libopenvdb-dev libopenvdb-tools libseccomp-dev libspdlog-dev libtbb-dev nlohmann-json3-dev fonts-dejavu-core
     # runtime: libepoxy, and Mesa's llvmpipe for machines without a GPU
     libegl-dev libepoxy-dev libgl-dev libgles-dev libpng-dev libtomlplusplus-dev libegl1 libegl-mesa0 libgl1-mesa-dri
     # tests, benchmarks and the demo
     assimp-testmodels bsdextrautils fish glmark2-data groff-base imagemagick libbenchmark-dev libcgal-demo libgtest-dev
-    make man-db mandoc openexr python3 python3-jsonschema qemu-user-static strace zsh
+    libglew-dev libglfw3-dev libjansson-dev libsdl2-dev libstb-dev make man-db mandoc openexr pybind11-dev python3 python3-dev
+    python3-jsonschema python3-matplotlib python3-numpy python3-pytest
+    qemu-user-static strace xauth xvfb zsh
     "$@"
 )
 

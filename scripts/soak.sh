@@ -18,12 +18,19 @@
 #   load    the release tests pass five times while stress-ng keeps processors, memory and disk busy.
 #   bare    .ci/run, from nothing, in a minimal Debian 12 that mmdebstrap makes; scripts/test.sh there without root; and
 #           what the tools do there without a GL. Needs root, and takes hours.
+#   blender the add-on of samples/blender bakes, shows errors and plays particles in Debian's Blender, without a window
+#   packages  cpack's .deb files pass lintian, and their users' programs and commands work in a minimal Debian 12 that has
+#           nothing else (scripts/install/try_packages.sh). Needs root.
+#   embree4 a build for Embree 4's functions, done by Embree 3 (tests/bake/mesh/embree4), bakes the same bytes.
+#   slurm   samples/slurm bakes the models of sweethome3d-furniture on a cluster of one node, with a task that is begun again,
+#           one that is killed, and broken meshes; a second run bakes the rest, and a third nothing. Needs root.
 #   outputs 20 rounds of kills, errors, signals and eight writers leave no torn file (scripts/all_or_nothing.sh)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/setup.sh
-all_runs=(sweep rest import mutants package headers bytes seeds clang load bare outputs corpus fuzz)
+all_runs=(sweep rest import mutants package headers bytes seeds clang load bare packages embree4 outputs blender slurm
+    corpus fuzz)
 runs=("$@")
 [ ${#runs[@]} -gt 0 ] || runs=("${all_runs[@]}")
 work=$(mktemp -d)
@@ -130,6 +137,113 @@ mutants() { scripts/mutants.sh 2000; }
 
 outputs() { scripts/all_or_nothing.sh; }
 
+# A cluster of this machine alone, until its function ends.
+slurm_cluster() { # FOLDER
+    mkdir -p "$1"/{state,spool} /run/munge
+    cat >"$1/slurm.conf" <<C
+ClusterName=soak
+SlurmctldHost=$(hostname)
+AuthType=auth/munge
+SlurmUser=root
+StateSaveLocation=$1/state
+SlurmdSpoolDir=$1/spool
+SlurmctldPidFile=$1/slurmctld.pid
+SlurmdPidFile=$1/slurmd.pid
+SlurmctldLogFile=$1/slurmctld.log
+SlurmdLogFile=$1/slurmd.log
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_CPU
+MpiDefault=none
+ReturnToService=2
+KillWait=2
+JobAcctGatherType=jobacct_gather/none
+NodeName=$(hostname) CPUs=$(nproc) State=UNKNOWN
+PartitionName=farm Nodes=ALL Default=YES MaxTime=INFINITE State=UP
+C
+    export SLURM_CONF=$1/slurm.conf
+    [ -s /etc/munge/munge.key ] || mungekey || return 1
+    chown munge: /run/munge /etc/munge/munge.key
+    munge -n >/dev/null 2>&1 || runuser -u munge -- munged || return 1
+    local _
+    slurmctld
+    slurmd
+    for _ in $(seq 60); do
+        sinfo -h -o %T 2>/dev/null | grep -q idle && return
+        sleep 1
+    done
+    tail -n 5 "$1/slurmctld.log" >&2
+    tail -n 5 "$1/slurmd.log" >&2
+    scontrol shutdown
+    return 1
+}
+
+# waits until a job of submit.sh ends.
+slurm_wait() {
+    while squeue -h -j "$1" 2>/dev/null | grep -q .; do sleep 2; done
+}
+
+slurm() {
+    local bin models=/usr/share/sweethome3d/furniture archive job tasks=8 status=0
+    scripts/setup.sh slurm-wlm munge sweethome3d-furniture unzip || return 1
+    bin=$(scripts/build.sh release relief) || return 1
+    for archive in Scopia KatorLegaz; do
+        mkdir -p "$work/farm/$archive"
+        unzip -q -o "$models/$archive.sh3f" -d "$work/farm/$archive"
+    done
+    find "$work/farm" -name '*.obj' | sort | tail -n +486 | xargs -r rm
+    printf 'v 0 0 0\nf 1 2 9\n' >"$work/farm/broken_index.obj"
+    printf 'no mesh\n' >"$work/farm/broken_text.obj"
+    printf 'version = 1\n[defaults]\nbudget = "60kB"\nquality = "fast"\n[[asset]]\nmesh = "**/*.obj"\noutput = "{dir}/{stem}.relief"\n' \
+        >"$work/farm/r.toml"
+    slurm_cluster "$work/slurm" || return 1
+    export RELIEF=$bin/relief
+    local out=$work/farm_out begun=$SECONDS
+    report() { python3 -c "import json; d = json.load(open('$out/reports/report.json')); print($1)"; }
+    {
+        job=$(samples/slurm/submit.sh "$work/farm/r.toml" "$out" $tasks -- --cpus-per-task=1)
+        sleep 20
+        # A node that dies: Slurm begins its task again. And one that is killed for good.
+        scontrol requeue "$((job - 1))_1" || true
+        sleep 2
+        pkill -KILL -f "shard 2/$tasks" || true
+        slurm_wait "$job"
+        echo "slurm: first run: $(tail -1 "$out/reports/report.log" | head -c 200)"
+        [ "$(report "d['failed'] >= 2 and d['unfinished_tasks'] == [2]")" = True ] &&
+            job=$(samples/slurm/submit.sh "$work/farm/r.toml" "$out" $tasks -- --cpus-per-task=1) &&
+            slurm_wait "$job" &&
+            [ "$(report "d['unfinished_tasks'] == [] and d['failed']")" = 2 ] &&
+            grep -q broken_index "$out/reports/failures.txt" &&
+            [ "$(find "$out" -name '*.relief' | wc -l)" = "$(report "d['baked'] + d['up_to_date']")" ] &&
+            echo "slurm: $(report "d['baked'] + d['up_to_date']") of $(find "$work/farm" -name '*.obj' | wc -l) models, $((SECONDS - begun)) s" &&
+            rm "$work"/farm/broken_*.obj &&
+            job=$(samples/slurm/submit.sh "$work/farm/r.toml" "$out" $tasks -- --cpus-per-task=1) &&
+            slurm_wait "$job" &&
+            [ "$(report "[d['baked'], d['failed'], d['unfinished_tasks']]")" = '[0, 0, []]' ] &&
+            echo "slurm: another run bakes nothing"
+    } || {
+        status=1
+        cat "$out"/reports/report.json "$out"/reports/report.log >&2
+    }
+    scontrol shutdown || true
+    return $status
+}
+
+blender() {
+    local bin
+    scripts/setup.sh blender || return 1
+    bin=$(scripts/build.sh release relief relief-sim relief_python) || return 1
+    mkdir -p "$work/blender"
+    PYTHONPATH=$PWD/build/release/python command blender -b --factory-startup --python-exit-code 1 \
+        -P samples/blender/test_addon.py -- "$PWD/samples/blender/relief_collider.py" "$bin/relief" "$bin/relief-sim" \
+        "$work/blender" "$work/blender/errors.png" >"$work/blender.log" 2>&1 || {
+        tail -20 "$work/blender.log" >&2
+        return 1
+    }
+    [ -s "$work/blender/errors.png" ] && grep '^blender: ' "$work/blender.log"
+}
+
 corpus() { scripts/accuracy.sh --corpus --all --csv "$work/corpus.csv" | sed 's/^/corpus: /'; }
 
 fuzz() { scripts/fuzz.sh 600; }
@@ -191,9 +305,10 @@ in_bare() {
         "$work/bare" "$1"
 }
 
-bare() {
+# make_bare PART PACKAGES: a minimal Debian 12 with PACKAGES in $work/bare.
+make_bare() {
     [ "$(id -u)" = 0 ] || {
-        echo "soak.sh: bare needs root, for it makes a system; use sudo" >&2
+        echo "soak.sh: $1 needs root, for it makes a system; use sudo" >&2
         return 1
     }
     scripts/setup.sh mmdebstrap || return 1
@@ -201,9 +316,13 @@ bare() {
     # shellcheck disable=SC2016
     apt-get indextargets --format 'deb $(REPO_URI) $(RELEASE) $(COMPONENT)' 'Created-By: Packages' 'Origin: Debian' |
         grep -E ' bookworm(-updates|-security)? ' >"$work/sources.list"
-    mmdebstrap --quiet --variant=minbase --include=ca-certificates,git bookworm "$work/bare" - <"$work/sources.list" ||
-        return 1
+    rm -rf "$work/bare"
+    mmdebstrap --quiet --variant=minbase --include="$2" bookworm "$work/bare" - <"$work/sources.list" || return 1
     cp /etc/resolv.conf "$work/bare/etc/"
+}
+
+bare() {
+    make_bare bare ca-certificates,git || return 1
     git clone -q --no-hardlinks . "$work/bare/root/relief" || return 1
     in_bare '/root/relief/.ci/run' >"$work/bare.log" 2>&1 || {
         tail -60 "$work/bare.log" >&2
@@ -240,6 +359,78 @@ bare() {
         return 1
     }
     echo "bare: without a GL the CPU bakes, and what needs a GPU says what to install"
+}
+
+packages() {
+    make_bare packages ca-certificates || return 1
+    scripts/setup.sh dpkg-dev lintian || return 1
+    local room=$work/bare/srv/relief names
+    mkdir -p "$room/doc"
+    # With the page of relief view.
+    { scripts/build.sh web && scripts/build.sh packages; } >"$work/packages.log" 2>&1 || {
+        tail -20 "$work/packages.log" >&2
+        return 1
+    }
+    # Twice: the same sources give the same packages.
+    local round
+    for round in 1 2; do
+        rm -rf build/packages/deb
+        SOURCE_DATE_EPOCH=$(git log -1 --format=%ct) cpack --preset packages >"$work/packages.log" 2>&1 || {
+            tail -20 "$work/packages.log" >&2
+            return 1
+        }
+        (cd build/packages/deb && sha256sum ./*.deb) >"$work/sums.$round"
+    done
+    cmp "$work/sums.1" "$work/sums.2" || {
+        echo "packages: the same sources give other packages" >&2
+        return 1
+    }
+    lintian --no-cfg --allow-root --fail-on error build/packages/deb/*.deb || return 1
+    names=$(cd build/packages/deb && echo *.deb)
+    echo "packages: $names: lintian has no errors"
+    cp build/packages/deb/*.deb "$room/"
+    cp scripts/install/try_packages.sh /usr/share/glmark2/models/bunny.obj "$room/"
+    cp --parents README.md bake/python/README.md "$room/doc/"
+    # First what users of the tools have, without a compiler or documentation; then what programmers have; then nothing.
+    in_bare 'cd /srv/relief
+        export DEBIAN_FRONTEND=noninteractive
+        apt-get update -qq
+        user() { su nobody -s /bin/bash -c "$*"; }
+        apt-get install -y -qq --install-recommends ./relief_*.deb ./python3-relief_*.deb
+        user RELIEF_DOC=/srv/relief/doc ./try_packages.sh /srv/relief/bunny.obj tools python >&3
+        apt-get install -y -qq --no-install-recommends ./librelief1_*.deb ./librelief-dev_*.deb cmake g++ ninja-build
+        user ./try_packages.sh /srv/relief/bunny.obj development >&3
+        apt-get remove -y -qq relief librelief1 librelief-dev python3-relief
+        left=$(find /usr -ipath "*relief*" ! -path "/usr/share/doc/*")
+        [ -z "$left" ] || { echo "left behind: $left"; exit 1; }' 3>&1 >"$work/packages.log" 2>&1 || {
+        tail -40 "$work/packages.log" >&2
+        return 1
+    }
+    echo "packages: removed, they leave nothing behind"
+}
+
+embree4() {
+    local bin mesh options hashes
+    bin=$(scripts/build.sh release relief) || return 1
+    cmake --preset packages -B "$work/embree4" -DRELIEF_EMBREE=4 -Dembree_DIR="$PWD/tests/bake/mesh/embree4" \
+        -DRELIEF_BUILD_PYTHON=OFF >"$work/embree4.log" && cmake --build "$work/embree4" --target relief >>"$work/embree4.log" || {
+        tail -20 "$work/embree4.log" >&2
+        return 1
+    }
+    # Solids, shells and cavities; scan conversion and rays.
+    for mesh in /usr/share/glmark2/models/bunny.obj /usr/share/glmark2/models/horse.3ds \
+        /usr/share/assimp/models/OBJ/spider.obj; do
+        for options in '--budget 200kB' '--paper --resolution 64' '--max-error 3%'; do
+            # shellcheck disable=SC2086
+            "$bin/relief" bake "$mesh" -o "$work/3.relief" -q $options &&
+                "$work/embree4/bin/relief" bake "$mesh" -o "$work/4.relief" -q $options || return 1
+            cmp "$work/3.relief" "$work/4.relief" || return 1
+        done
+    done
+    hashes=$("$bin/relief" check "$work/3.relief" --mesh "$mesh" --json | sha256sum)
+    [ "$hashes" = "$("$work/embree4/bin/relief" check "$work/4.relief" --mesh "$mesh" --json | sed s/4.relief/3.relief/ | sha256sum)" ] ||
+        { echo "embree4: relief check says something else" >&2 && return 1; }
+    echo "embree4: nine bakes of three meshes are the same bytes"
 }
 
 failed=0

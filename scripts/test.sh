@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds everything and runs every test. Needs no GPU. scripts/test.sh [--quick]
 #
-#   (nothing)  the release build and all tests; then the sanitizer build, and what a sanitizer can find: no slow tests,
-#              and none of numbers alone
+#   (nothing)  the release build and all tests; the runtime as WebAssembly, and its tests in a real browser; then the
+#              sanitizer build, and what a sanitizer can find: no slow tests, and none of numbers alone
 #   --quick    for the work in between: the release build, and its tests but for the slow ones and those that only
 #              repeat another in OpenGL ES, or by compute shaders
 set -euo pipefail
@@ -35,5 +35,7 @@ if [ $quick = 1 ]; then
     exit
 fi
 stage 'release tests' ctest --preset release -j "$jobs"
+stage 'web build' scripts/build.sh web
+stage 'browser tests' node --test tests/web
 stage 'sanitizer build' scripts/build.sh sanitize
 stage 'sanitizer tests' ctest --preset sanitize -j "$jobs"

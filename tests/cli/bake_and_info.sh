@@ -100,7 +100,7 @@ expect 0 "$relief" bake box.obj -o t1.relief --paper --resolution 32 -q
 [ "$(ls -A elsewhere)" = x.relief ] || die "files left behind: $(ls -A elsewhere)"
 
 # Help leads with an example, for every verb; versions are printed.
-for verb in bake info query slice export; do
+for verb in bake info query slice view export; do
     expect 0 "$relief" $verb --help
     head -8 stdout | matches "relief $verb " || die "help of $verb does not lead with an example"
 done

@@ -1,5 +1,5 @@
-# The installed tree from outside: the links of its pages work; the CMake project of scripts/install/README.md builds, runs,
-# and bakes again exactly what changed; the embedding sample builds by pkg-config alone; a build without the baker installs
+# The installed tree from outside: the links of its pages work; Python imports its package; the CMake project of scripts/install/README.md builds, runs,
+# and bakes again exactly what changed; the embedding sample builds by pkg-config alone, and by CMake; a build without the baker installs
 # the runtime.
 . "$(dirname "$0")/lib.sh"
 build="$RELIEF_BIN/.."
@@ -10,20 +10,34 @@ export CMAKE_PREFIX_PATH=$prefix
 for file in bin/relief bin/relief-sim share/man/man1/relief.1 share/man/man1/relief-bake.1 share/man/man1/relief-sim.1 \
     share/bash-completion/completions/relief share/zsh/site-functions/_relief-sim \
     share/fish/vendor_completions.d/relief.fish share/doc/relief/README.md share/doc/relief/formats/README.md \
-    share/relief/samples/embed/embed.cpp share/relief/samples/rain.toml share/relief/schemas/bake.schema.json include/relief/runtime/particles/particle_system.h; do
+    share/relief/samples/embed/embed.cpp share/relief/samples/rain.toml share/relief/schemas/bake.schema.json \
+    share/relief/shaders/collider.glsl share/relief/collider.fbs share/relief/samples/own_engine/own_engine.c include/relief/runtime/particles/particle_system.h; do
     [ -s "$prefix/$file" ] || die "$file is not installed"
 done
 ! grep -rIlF "$RELIEF_SOURCE" "$prefix" --include='*.cmake' --include='*.pc' --include='*.h' --include='*.1' ||
     die "the installed tree knows where it was built"
 [ ! -e "$prefix/bin/relief-pages" ] || die "a program of the build is installed"
 
-# Every link of an installed page to another page or a picture works.
-(cd "$prefix/share/doc/relief" && grep -roE '\]\([^):]+\.(md|jpg)\)' . | sort -u) >links
-[ "$(wc -l <links)" -ge 20 ] || die "only $(wc -l <links) links in the installed pages"
-while IFS=: read -r page link; do
-    target=${link#"]("}
-    [ -f "$prefix/share/doc/relief/$(dirname "$page")/${target%)}" ] || die "$page links to ${target%)}, which is not installed"
-done <links
+# Every relative link of an installed page works, and the pages that users look for are there.
+python3 "$RELIEF_SOURCE/tests/cli/links.py" "$prefix" >links || die "dead links: $(cat links)"
+for page in bake/recipe/README.md bake/measure/trust.md bake/measure/accuracy.md runtime/bench/measurements.md \
+    samples/README.md samples/embed/CMakeLists.txt samples/python/plots.py; do
+    [ -s "$prefix/share/doc/relief/$page" ] || die "$page is not installed"
+done
+echo '[dead](nowhere.md)' >"$prefix/share/doc/relief/dead.md"
+! python3 "$RELIEF_SOURCE/tests/cli/links.py" "$prefix" >links || die "a dead link is not found"
+grep -q 'dead.md: nowhere.md is not there' links || die "the dead link is not named: $(cat links)"
+
+# The package of Python by itself: it finds its importer, and tells type checkers of its types.
+if [ -d "$build/python" ]; then
+    cmake --install "$build" --prefix "$work/python" --component python >log || die "cannot install the Python package"
+    module=$work/python/lib/python3/dist-packages
+    [ -f "$module/relief/py.typed" ] && [ -s "$module/relief/_relief.pyi" ] || die "no types: $(ls "$module/relief")"
+    [ ! -e python/bin ] || die "the Python package brings along: $(ls python/bin)"
+    PYTHONPATH=$module /usr/bin/python3 -c 'import relief, sys; print(relief.__file__); relief.bake(sys.argv[1], budget=20000)' \
+        "$bunny" >module || die "import relief"
+    [ "$(cat module)" = "$module/relief/__init__.py" ] || die "import relief imports $(cat module)"
+fi
 
 # Installed headers include only installed headers, and none of the player's.
 (cd "$prefix/include/relief" && grep -rhoE '#include "[^"]+"' . | sort -u | sed 's/.*"\(.*\)"/\1/') >includes
@@ -31,6 +45,46 @@ while read -r header; do
     [ -f "$prefix/include/relief/$header" ] || die "a header includes $header, which is not installed"
 done <includes
 ! grep -rlE '#include <(nlohmann|toml|CLI|png|Imf|flatbuffers|zstd)' "$prefix/include/relief" || die "headers of third parties"
+
+# The shaders, for those who compile them themselves: pkg-config and CMake say where they are.
+ln -s "$prefix" plain # pkg-config puts backslashes before blanks
+PKG_CONFIG_PATH=$(find "$work/plain/" -name pkgconfig)
+export PKG_CONFIG_PATH
+shaders=$(pkg-config --variable=shaderdir relief-runtime)
+[ -s "$shaders/collider.glsl" ] || die "pkg-config has the shaders in '$shaders'"
+mkdir shaders
+cat >shaders/CMakeLists.txt <<'C'
+cmake_minimum_required(VERSION 3.25)
+project(shaders LANGUAGES CXX)
+find_package(Relief REQUIRED)
+file(SIZE ${Relief_SHADER_DIR}/collider.glsl bytes)
+C
+cmake -G Ninja -S shaders -B shaders/out >log 2>&1 || die "CMake finds no shaders: $(tail -20 log)"
+
+# Any loader of the GL before Relief's headers, or after them; and every installed header by itself.
+read -ra flags < <(pkg-config --cflags relief-runtime glfw3 sdl2)
+for loader in epoxy/gl.h GL/glew.h GLES3/gl32.h SDL_opengl.h GLFW/glfw3.h; do
+    printf '#include <%s>\n#include <relief/relief.hpp>\nint main() {}\n' "$loader" >first.cpp
+    printf '#include <relief/relief.hpp>\n#include <%s>\nint main() {}\n' "$loader" >last.cpp
+    for order in first last; do
+        g++ -std=c++20 -Wall -Wextra -Werror -fsyntax-only "${flags[@]}" $order.cpp 2>log || die "$loader $order: $(head -5 log)"
+    done
+done
+(cd "$prefix/include/relief" && find . -name '*.h' | sort | sed 's|^\./\(.*\)|#include "\1"|') >all.cpp
+g++ -std=c++20 -Wall -Wextra -Werror -fsyntax-only "${flags[@]}" all.cpp 2>log || die "installed headers: $(head -5 log)"
+! grep -rlE '#include <(epoxy|GL|GLES|EGL)' "$prefix/include/relief" || die "a public header brings the GL along"
+
+# The samples with windows, as their page builds them: a million particles' worth of textures, and some frames.
+grep '^ *g++' "$RELIEF_SOURCE/samples/windows/README.md" >commands
+[ "$(wc -l <commands)" -eq 2 ] || die "samples/windows/README.md has other commands"
+cp "$RELIEF_SOURCE"/samples/windows/*.cpp .
+sh -e commands >log 2>&1 || die "samples/windows do not build: $(head -5 log)"
+"$relief" bake "$bunny" -q -o windows.relief --budget 100kB
+for program in glfw sdl2; do
+    [ "$(wc -l <$program.cpp)" -lt 60 ] || die "$program.cpp is not under 60 lines"
+    said=$(xvfb-run -a -s '-screen 0 320x240x24' ./$program windows.relief 3 2>&1) || die "$program: $said"
+    [ "$said" = '5000 particles' ] || die "$program says: $said"
+done
 
 # The project of scripts/install/README.md.
 mkdir consumer
@@ -101,6 +155,12 @@ cmake --build recipe/out >log 2>&1 || die "does not build: $(tail -20 log)"
 expect 0 "$relief" check recipe/out/baked/box.relief
 cmake --build recipe/out | matches 'no work to do' || die "the recipe is baked twice"
 sleep 0.01
+grep -qE '^ *pool = relief_bakes' recipe/out/build.ninja && grep -A1 '^pool relief_bakes' recipe/out/CMakeFiles/rules.ninja \
+    recipe/out/build.ninja | grep -q 'depth = 2' || die "Ninja has no pool for bakes"
+cp /usr/share/assimp/models/glTF2/simple_skin/simple_skin.gltf recipe/
+sed -i 's/"\*.obj"/["*.obj", "*.gltf"]/' recipe/recipe.toml
+cmake --build recipe/out >log 2>&1 || die "does not build: $(tail -20 log)"
+[ "$(grep -c 'it is skinned' log)" = 1 ] || die "a build hides warnings, or repeats them: $(cat log)"
 echo '# touched' >>recipe/box.mtl
 cmake --build recipe/out >log 2>&1
 grep -q 'Baking the colliders' log || die "a material of a recipe is not watched"
@@ -115,13 +175,19 @@ eval "g++ -std=c++20 $(pkg-config --cflags relief-runtime)" \
 expect 0 ./embed out/bunny.relief
 grep -q 'GL state as it was' stdout || die "samples/embed says: $(cat stdout)"
 
+# And by its own CMakeLists.txt, as it is installed.
+cmake -G Ninja -S "$prefix/share/relief/samples/embed" -B embed_build >log 2>&1 && cmake --build embed_build >>log 2>&1 ||
+    die "samples/embed does not build by its CMakeLists.txt: $(tail -20 log)"
+expect 0 embed_build/relief-embed-sample out/bunny.relief
+grep -q 'GL state as it was' stdout || die "samples/embed says: $(cat stdout)"
+
 # Without the baker. What both builds compile alike is copied, not compiled again (scripts/soak.sh package does that).
-cmake -G Ninja -S "$RELIEF_SOURCE" -B runtime_only -DRELIEF_BUILD_BAKE=OFF -DRELIEF_BUILD_TESTS=OFF \
+cmake -G Ninja -S "$RELIEF_SOURCE" -B runtime_only -DRELIEF_BUILD_BAKE=OFF -DRELIEF_BUILD_TESTS=OFF -DRELIEF_BUILD_OPENVDB=OFF \
     -DRELIEF_BUILD_BENCHMARKS=OFF >log 2>&1 || die "does not configure without the baker: $(tail -20 log)"
-for file in formats/librelief_formats.a runtime/librelief_runtime.a bin/relief-sim \
+for file in formats/librelief_formats.a runtime/librelief_runtime.a lib/librelief.so.1.0 lib/librelief.so.1 lib/librelief.so bin/relief-sim \
     install/pages/relief-sim; do
     mkdir -p "runtime_only/$(dirname $file)"
-    cp -r "$build/$file" runtime_only/$file
+    cp -rP "$build/$file" runtime_only/$file
 done
 cmake --install runtime_only --prefix "$work/runtime" >log || die "cannot install without the baker: $(tail log)"
 [ -x runtime/bin/relief-sim ] && [ ! -e runtime/bin/relief ] && [ -f runtime/share/man/man1/relief-sim.1 ] ||

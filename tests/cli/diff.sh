@@ -8,7 +8,7 @@ expect 0 "$relief" diff a.relief again.relief
 grep -q "'a.relief' and 'again.relief' are identical" stdout || die "said: $(cat stdout)"
 expect 0 "$relief" diff a.relief again.relief --json
 json stdout 'd["identical"] and d["same_collider"] and d["within_limits"] and d["total"]["coverage_percent"] == 0'
-json stdout 'list(d) == ["a", "b", "identical", "same_collider", "within_limits", "limits", "structure", "provenance", "maps", "total"]'
+json stdout 'list(d) == ["a", "b", "identical", "same_collider", "within_limits", "limits", "structure", "provenance", "maps", "total", "fields"]'
 json stdout 'list(d["maps"][0]["front"]) == ["ends", "both", "only_a", "only_b", "coverage_percent", "beyond", "beyond_percent", "depth", "normal_degrees"]'
 json stdout '[m["depth_unit"] for m in d["maps"]] == ["ulp"] * 3 + ["1/65534"] and d["maps"][3]["back"] is None'
 json stdout 'd["total"]["ends"] == 3 * 2 * 48 * 48 + 6 * 48 * 48 and d["total"]["both"] > 1000'
@@ -81,3 +81,51 @@ expect_error 1 'max-normal' "$relief" diff a.relief a.relief --max-normal nan
 expect_error 1 'max-coverage' "$relief" diff a.relief a.relief --max-coverage few
 expect_error 1 'B' "$relief" diff a.relief
 expect_error 2 '/dev/full|standard output' sh -c "'$relief' diff a.relief moved.relief >/dev/full"
+
+# Two plans are compared by what they say of the same points. A scaled box has another surface: one percent more of its
+# half sides of 1, 2 and 3.
+cat >box.obj <<'O'
+v -1 -2 -3
+v 1 -2 -3
+v 1 2 -3
+v -1 2 -3
+v -1 -2 3
+v 1 -2 3
+v 1 2 3
+v -1 2 3
+f 4 3 2 1
+f 5 6 7 8
+f 1 2 6 5
+f 3 4 8 7
+f 2 3 7 6
+f 1 5 8 4
+O
+awk '/^v / { $2 *= 1.1; $3 *= 1.1; $4 *= 1.1 } { print }' box.obj >larger.obj
+"$relief" bake box.obj -o planned.relief -q --budget 60kB
+"$relief" bake box.obj -o cube.relief -q --map cube:size=128
+"$relief" bake larger.obj -o larger_box.relief -q --map cube:size=128
+expect 7 "$relief" diff planned.relief cube.relief
+grep -q '^what they say of the same points:' stdout || die "no fields: $(cat stdout)"
+grep -qE '^  near the surfaces, [0-9]+ points: .* on another side .*; distances differ by .* object units' stdout ||
+    die "said: $(cat stdout)"
+expect 0 "$relief" diff planned.relief cube.relief --max-sides 2% --max-distance 0.06
+grep -q 'within the limits' stdout || die "said: $(cat stdout)"
+expect 0 "$relief" diff planned.relief cube.relief --max-sides 2 --json
+json stdout 'd["within_limits"] and d["limits"]["max_sides"] == 2 and d["limits"]["max_distance"] is None'
+json stdout 'd["fields"]["near"]["sides_percent"] < 2 and d["fields"]["near"]["points"] > 15000 and d["fields"]["box"]["points"] == 10000'
+json stdout 'd["fields"]["near"]["distance"]["mean"] < 0.01'
+expect 7 "$relief" diff planned.relief larger_box.relief --max-sides 2% --json
+json stdout 'd["fields"]["box"]["only_b"] > 0 == d["fields"]["box"]["only_a"]'
+# The shell of 1.331 - 1 of 48, in a box of the larger one's sides and 1.32 more.
+json stdout 'abs(d["fields"]["box"]["sides_percent"] - 100 * 0.331 * 48 / (3.52 * 5.72 * 7.92)) < 0.5'
+grep -q '% of the points near the surfaces are on another side' stderr || die "said: $(cat stderr)"
+expect 7 "$relief" diff planned.relief larger_box.relief --max-distance 0.06
+grep -q 'distances near the surfaces differ by' stderr || die "said: $(cat stderr)"
+"$relief" bake box.obj -o metres.relief -q --map cube:size=128 --unit m
+expect 7 "$relief" diff cube.relief metres.relief --max-sides 2%
+grep -q 'unit differs' stderr || die "said: $(cat stderr)"
+# Where only texels differ, nothing is asked of points.
+expect 0 "$relief" diff a.relief moved.relief --max-coverage 100 --max-texels 100 --json
+json stdout 'd["fields"] is None'
+expect_error 1 'max-depth is about maps and --max-sides' "$relief" diff a.relief a.relief --max-sides 1 --max-depth 2
+expect_error 1 'max-distance.*must be a length' "$relief" diff a.relief a.relief --max-distance -1

@@ -48,6 +48,7 @@ for missing in __EGL_VENDOR_LIBRARY_DIRS=/nonexistent LD_LIBRARY_PATH=no_egl LD_
     cmp bunny.relief again.relief || die "another collider without a GPU"
     rm again.relief
 done
+grep -q libopengl0 <(LD_LIBRARY_PATH=no_gl "$relief_sim" bunny.relief --steps 3 2>&1) || die "the package of the GL is not named"
 expect_error 5 'libEGL' env LD_LIBRARY_PATH=no_egl "$relief_sim" --list-devices
 expect 0 env __EGL_VENDOR_LIBRARY_DIRS=/nonexistent "$relief_sim" --list-devices --json
 json stdout 'd["devices"] == []'

@@ -14,11 +14,29 @@ json report.json 'all("decode=plane" in m for m in d["settings"]["maps"])'
 json report.json 'd["settings"]["resolution"] is None and d["times_ms"]["plan"] > 0 and d["times_ms"]["fit"] > 0'
 expect 0 "$relief" bake "$mesh" -o budget.relief --budget 1MB
 cmp default.relief budget.relief || die "the default is not a budget of 1 MB"
-grep -q 'planned for 1.0 MB' stderr || die "the report does not say what was planned: $(cat stderr)"
+grep -qE 'planned for 1.0 MB on the GPU, where the maps take [0-9.]+ [kM]B: ' stderr || die "the report does not say what was planned: $(cat stderr)"
 grep -q 'both sides along' stderr || die "the report does not say why: $(cat stderr)"
 for time in import plan tree rays texels planes writing; do
     grep -q "ms: .*$time [0-9]" stderr || die "the report does not say how long $time took: $(cat stderr)"
 done
+
+# The collider records the budget, and what counts is what the maps take on the GPU; --compress changes the file alone.
+json report.json '" --budget 1000000" in d["provenance"]["options"]'
+for options in "" "--compress 9"; do
+    expect 0 "$relief" bake "$mesh" -o recorded.relief --budget 60kB $options --json
+    json stdout '" --budget 60000" in d["provenance"]["options"] and 50000 < d["texel_bytes"] <= 60000'
+    json stdout "d['file_size'] == $(stat -c %s recorded.relief)"
+done
+[ "$(stat -c %s recorded.relief)" -lt 60000 ] || die "compressed, the file is larger than its maps on the GPU"
+expect 0 "$relief" check recorded.relief --mesh "$mesh" --samples 2000
+! matches -- '--budget 60000' <stdout || die "advice repeats the recorded budget: $(cat stdout)"
+expect 0 "$relief" bake "$mesh" -o named.relief --map cube:size=16 --json
+json stdout '"--budget" not in d["provenance"]["options"]'
+# Maps that someone has enlarged are no longer those that were planned.
+expect 0 "$relief" bake "$mesh" -o small.relief --budget 20kB --plan-out small.toml -q
+sed 's/^size = .*/size = "128x128"/' small.toml >enlarged.toml
+expect 0 "$relief" bake "$mesh" -o enlarged.relief --plan enlarged.toml --json
+json stdout '"--budget" not in d["provenance"]["options"] and d["texel_bytes"] > 20000'
 
 # A plan file gives the same bytes as its plan; the quality is the file's.
 expect 0 "$relief" bake "$mesh" -o again.relief --plan default.toml -q

@@ -277,6 +277,61 @@ expect 0 "$relief" bake --recipe sample/colliders.toml
 [ "$(find sample -name '*.relief')" = sample/colliders/meshes/rocks/a.relief ] ||
     die "the sample bakes $(find sample -name '*.relief')"
 
+# Keys for other caches: known before anything is baked, the same afterwards and elsewhere, and others if anything else is.
+keys() { python3 -c "import json,sys; print(*[a['asset'] + '=' + a.get('key', '') for a in json.load(open(sys.argv[1]))['assets']])" "$1"; }
+mkdir keys
+printf 'mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl a\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n' >keys/m.obj
+printf 'newmtl a\nKd 1 0 0\n' >keys/m.mtl
+tetrahedron keys/t.obj 2
+cp plans/entrance.toml keys/plan.toml
+printf 'version = 1\n[[asset]]\nmesh = "m.obj"\noutput = "m.relief"\nbudget = "20kB"\n[[asset]]\nmesh = "t.obj"\noutput = "t.relief"\nplan = "plan.toml"\n' >keys/r.toml
+expect 0 "$relief" bake --recipe keys/r.toml --dry-run --json
+keys stdout >before
+grep -qE '^m.relief=[0-9a-f]{32} t.relief=[0-9a-f]{32}$' before || die "keys: $(cat before)"
+[ ! -e keys/m.relief ] || die "a dry run bakes"
+expect 0 "$relief" bake --recipe keys/r.toml --json
+keys stdout | cmp - before || die "the keys are others once baked: $(keys stdout)"
+expect 0 "$relief" bake --recipe keys/r.toml --dry-run --json
+keys stdout | cmp - before || die "the keys are others once up to date: $(keys stdout)"
+cp -r keys elsewhere
+rm elsewhere/*.relief elsewhere/.relief-cache.json
+touch elsewhere/*
+expect 0 "$relief" bake --recipe elsewhere/r.toml --dry-run --json
+keys stdout | cmp - before || die "the keys are others elsewhere: $(keys stdout)"
+changes() { # WHICH: exactly this asset's key is another now
+    expect 0 "$relief" bake --recipe elsewhere/r.toml --dry-run --json
+    [ "$(keys stdout | tr ' ' '\n' | grep -vxFf <(tr ' ' '\n' <before) | cut -d= -f1)" = "$1" ] ||
+        die "other keys than that of $1: $(keys stdout)"
+    cp keys/m.mtl keys/*.obj keys/*.toml elsewhere/
+}
+echo 'Kd 0 1 0' >>elsewhere/m.mtl
+changes m.relief
+echo '# ' >>elsewhere/t.obj
+changes t.relief
+echo '# ' >>elsewhere/plan.toml
+changes t.relief
+sed -i 's/20kB/21kB/' elsewhere/r.toml
+changes m.relief
+echo 'no mesh' >elsewhere/t.obj
+expect 0 "$relief" bake --recipe elsewhere/r.toml --dry-run --json
+json stdout "['key' in a for a in d['assets']] == [True, False]"
+
+# What several assets are warned of is told once, also where only warnings are wanted; lines count.
+mkdir warned
+cp /usr/share/assimp/models/glTF2/simple_skin/simple_skin.gltf warned/a.gltf
+cp warned/a.gltf warned/b.gltf
+printf 'version = 1\n[[asset]]\nmesh = "*.gltf"\noutput = "{stem}.relief"\nbudget = "20kB"\n' >warned/r.toml
+expect 0 "$relief" bake --recipe warned/r.toml --warnings-only
+[ "$(cat stderr)" = "relief: warning: 2 assets (a.relief, b.relief): it is skinned; baked in the pose that its nodes have" ] ||
+    die "warnings: $(cat stderr)"
+rm warned/*.relief
+expect 0 "$relief" bake --recipe warned/r.toml -j 1
+grep -qE '^\[1/2\] a.relief: baked, .* s$' stderr && grep -qE '^\[2/2\] b.relief: baked, .* s$' stderr ||
+    die "lines: $(cat stderr)"
+expect 0 "$relief" bake warned/a.gltf -o warned/c.relief --warnings-only
+[ "$(wc -l <stderr)" = 1 ] && grep -q 'it is skinned' stderr || die "one mesh: $(cat stderr)"
+expect_error 1 'quiet|warnings-only' "$relief" bake warned/a.gltf -o warned/c.relief --warnings-only -q
+
 # Response files, for any verb.
 printf -- "--map cube:size=16 # small\n'--map' \"fixed8:dir=-y,size=16\"\n@more.txt\n" >args.txt
 echo '-o response.relief' >more.txt

@@ -188,17 +188,20 @@ eye = [0, 1, 5]
 [[camera.key]]
 time = 1
 eye = [5, 1, 0]
+[[spawn]]
+on = "collision"
 [render]
 size = [32, 24]
 every = 2
 sprite = "quad"
 T
-"$relief_sim" scene.toml --steps 4 --frames frames --stats stats.jsonl --json >sim.json
+"$relief_sim" scene.toml --steps 40 --frames frames --stats stats.jsonl --events hits.jsonl --json >sim.json
+[ -s hits.jsonl ] || die "nothing was hit"
 "$relief_sim" b.relief --steps 2 --json >alone.json
 "$relief_sim" scene.toml --check --json >valid.json
 echo nonsense >bad.toml
 expect 3 "$relief_sim" bad.toml --check --json
 cp stdout invalid.json
-outputs+=(sim-report:sim.json sim-report:alone.json sim-stats:stats.jsonl sim-check:valid.json sim-check:invalid.json)
+outputs+=(sim-report:sim.json sim-report:alone.json sim-stats:stats.jsonl sim-events:hits.jsonl sim-check:valid.json sim-check:invalid.json)
 
 python3 validate.py "$RELIEF_SOURCE/formats/schemas" "${outputs[@]}" || die "schemas and outputs differ"

@@ -12,7 +12,7 @@ TEST(RecordedBake, ReadsWhatBakeWrites) {
     const RecordedBake bake = recordedBake(
         "--map front-back:dir=+z,size=95x90,depth=unorm16,decode=plane,box=tight "
         "--map cube:size=6,compare=less,decode=plane,box=0/0/0/1/1/1 --quality best --prefer inside "
-        "--holes keep --unit mm --up +z --repair wrap=0.02 --as shell --thickness 0.25");
+        "--budget 60000 --holes keep --unit mm --up +z --repair wrap=0.02 --as shell --thickness 0.25");
     EXPECT_TRUE(bake.understood);
     ASSERT_EQ(bake.maps.size(), 2U);
     EXPECT_EQ(bake.maps[0].width, 95U);

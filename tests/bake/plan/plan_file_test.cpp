@@ -15,6 +15,7 @@ constexpr const char* kHead = "version = 1\n";
 TEST(PlanFile, ReadsWhatItWrites) {
     PlanFile plan;
     plan.quality = Quality::kBest;
+    plan.budget = 123'456'789'012;
     for (const char* text :
          {"front-back:dir=0.1/-0.7/1e-20,up=+x,size=7x9,depth=unorm16,decode=plane,box=tight",
           "front-back:dir=-y,size=16384x3,depth=half,decode=projected,box=-1/-2/-3/0.1/1e+20/3",
@@ -28,6 +29,7 @@ TEST(PlanFile, ReadsWhatItWrites) {
     const Result<PlanFile> back = parsePlan(text, "plan.toml");
     ASSERT_TRUE(back) << back.error().message << "\n" << text;
     EXPECT_EQ(back->quality, Quality::kBest);
+    EXPECT_EQ(back->budget, plan.budget);
     ASSERT_EQ(back->maps.size(), plan.maps.size());
     for (std::size_t i = 0; i < plan.maps.size(); ++i) {
         EXPECT_EQ(back->maps[i].spec, plan.maps[i].spec) << toString(plan.maps[i].spec);

@@ -122,6 +122,36 @@ TEST_F(ScenePaths, EveryWayToNameTheFolder) {
     EXPECT_TRUE(resolveInside("/", "a.relief"));
 }
 
+// One folder more, and nothing beside it; the scene's own stays.
+TEST_F(ScenePaths, ARootMayBeNamedToo) {
+    const fs::path root = base_ / "scenes_too";
+    const auto resolved = resolveInside(folder_, "../scenes_too/c.relief", "scene", root);
+    ASSERT_TRUE(resolved) << resolved.error().message;
+    EXPECT_EQ(*resolved, folder_ / "../scenes_too/c.relief");
+    EXPECT_TRUE(resolveInside(folder_, "a.relief", "scene", root));
+    EXPECT_TRUE(resolveInside(folder_, "../scenes/a.relief", "scene", root));
+    EXPECT_TRUE(resolveInside(folder_, "../scenes_too/none/d.relief", "scene", base_));
+    for (const char* text :
+         {"../c.relief", "../scenes_tooth/c.relief", "../../x", "../scenes_too/../c.relief"}) {
+        EXPECT_FALSE(resolveInside(folder_, text, "scene", root)) << text;
+    }
+    EXPECT_FALSE(resolveInside(folder_, root.native() + "/c.relief", "scene", root)) << "absolute";
+    fs::create_symlink("../c.relief", root / "out");
+    EXPECT_FALSE(resolveInside(folder_, "../scenes_too/out", "scene", root));
+    link("../scenes_too/c.relief", "in");
+    EXPECT_TRUE(resolveInside(folder_, "in", "scene", root));
+    EXPECT_FALSE(resolveInside(folder_, "in"));
+}
+
+TEST_F(ScenePaths, ARootIsAFolder) {
+    EXPECT_TRUE(checkRoot(folder_));
+    for (const fs::path& none : {folder_ / "a.relief", folder_ / "none"}) {
+        const auto checked = checkRoot(none);
+        ASSERT_FALSE(checked);
+        EXPECT_EQ(checked.error().code, ErrorCode::kIo);
+    }
+}
+
 TEST_F(ScenePaths, ADashIsAFile) {
     EXPECT_EQ(*resolveInside("", "-"), fs::path("./-"));
 }

@@ -12,6 +12,7 @@
 #include <glm/geometric.hpp>
 
 #include "runtime/air/air_block.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 #include "runtime/particles/emitter.h"
 #include "tests/runtime/gl/gl_test.h"

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "runtime/collider/deform_pass.h"
+#include "runtime/gl/gl_functions.h"
 #include "tests/runtime/gl/gl_test.h"
 
 namespace relief {

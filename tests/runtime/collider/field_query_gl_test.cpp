@@ -16,6 +16,7 @@
 #include <random>
 #include <span>
 
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 #include "tests/formats/analytic_shapes.h"
 #include "tests/runtime/gl/gl_test.h"

@@ -13,6 +13,7 @@
 #include "runtime/collider/deform_pass.h"
 #include "runtime/collider/deformation.h"
 #include "runtime/collider/field_query.h"
+#include "runtime/gl/gl_functions.h"
 #include "tests/runtime/particles/collision_test.h"
 
 namespace relief {

@@ -17,6 +17,7 @@
 
 #include "formats/normal_index.h"
 #include "formats/plane.h"
+#include "runtime/gl/gl_functions.h"
 #include "tests/runtime/gl/gl_test.h"
 
 namespace relief {

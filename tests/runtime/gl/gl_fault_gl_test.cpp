@@ -10,6 +10,7 @@
 
 #include "runtime/collider/field_query.h"
 #include "runtime/gl/gl_fence.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/particles/statistics.h"
 #include "runtime/picture/collider_mesh.h"
 #include "runtime/picture/collider_renderer.h"
@@ -212,6 +213,11 @@ class GlFaultTest : public GlTest {
             {"verlet", [] { return particles(Integrator::kVerlet, StepPath::kFragment); }},
             {"euler, compute", [] { return particles(Integrator::kEuler, StepPath::kCompute); }},
             {"verlet, compute", [] { return particles(Integrator::kVerlet, StepPath::kCompute); }},
+            {"events",
+             [this] {
+                 EXPECT_TRUE(particles_->setEvents(std::nullopt));
+                 return particles_->setEvents(EventOptions{});
+             }},
             {"flow", [this] { return particles_->setAir(air()); }},
             {"sort", [] { return outcome(DepthSorter::create(200'000, StepPath::kFragment)); }},
             {"sort, compute", [] { return outcome(DepthSorter::create(200'000, StepPath::kCompute)); }},
@@ -299,6 +305,9 @@ TEST_P(GlFaultTest, AResetIsNamedWhereverSomethingIsReadBack) {
     ASSERT_TRUE(query->evaluate(points));
     ASSERT_TRUE(checkGpu("testing")) << "without a reset there is no error";
     ASSERT_TRUE(statistics->request(*particles_, 1));
+    ASSERT_TRUE(particles_->setEvents(EventOptions{}));
+    particles_->step(0.01F);
+    ASSERT_TRUE(particles_->requestEvents(1));
     struct Cause {
         GLenum (*status)();
         const char* words;
@@ -306,12 +315,12 @@ TEST_P(GlFaultTest, AResetIsNamedWhereverSomethingIsReadBack) {
     for (const Cause& cause :
          {Cause{guiltyReset, "by what Relief had asked of it"}, Cause{innocentReset, "by another program"}}) {
         const Replaced status(epoxy_glGetGraphicsResetStatus, cause.status);
-        for (const Result<void>& done :
-             {checkGpu("testing"), waitForGpu("steps 1 to 2"), outcome(query->evaluate(points)),
-              outcome(particles_->readState()), outcome(statistics->wait())}) {
+        for (const Result<void>& done : {checkGpu("testing"), waitForGpu("steps 1 to 2"),
+                                         outcome(query->evaluate(points)), outcome(particles_->readState()),
+                                         outcome(statistics->wait()), outcome(particles_->waitEvents())}) {
             if (done) {
-                // The one sample that was asked for came back at the first cause.
-                EXPECT_EQ(statistics->inFlight(), 0);
+                // The one sample and the one list that were asked for came back at the first cause.
+                EXPECT_EQ(statistics->inFlight() + particles_->eventsInFlight(), 0);
                 EXPECT_EQ(cause.status, &innocentReset);
                 continue;
             }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "runtime/gl/gl_context.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/gl_object.h"
 
 namespace relief {

@@ -6,6 +6,7 @@
 #include <array>
 #include <memory>
 
+#include "runtime/gl/gl_functions.h"
 #include "runtime/particles/emitter.h"
 #include "runtime/particles/particle_system.h"
 #include "runtime/particles/statistics.h"

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "runtime/gl/gl_functions.h"
 #include "runtime/particles/emitter.h"
 #include "runtime/particles/particle_system.h"
 #include "tests/runtime/particles/collision_test.h"

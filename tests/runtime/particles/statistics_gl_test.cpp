@@ -10,6 +10,7 @@
 #include <string>
 #include <thread>
 
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/gpu_timer.h"
 #include "tests/runtime/collider/analytic_collider.h"
 #include "tests/runtime/particles/step_gl_test.h"

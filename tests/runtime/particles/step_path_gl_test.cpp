@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/gl_object.h"
 #include "runtime/particles/particle_system.h"
 #include "runtime/particles/random.h"

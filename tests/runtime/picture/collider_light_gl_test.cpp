@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "runtime/collider/live_collider.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 #include "shaders/shader_constants.h"
 #include "tests/runtime/collider/analytic_collider.h"

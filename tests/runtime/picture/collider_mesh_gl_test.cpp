@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 #include "runtime/picture/collider_renderer.h"
 #include "runtime/picture/frame.h"

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/image_units.h"
 #include "runtime/gl/storage_units.h"
 #include "runtime/picture/frame.h"

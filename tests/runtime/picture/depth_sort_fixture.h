@@ -11,6 +11,7 @@
 #include <memory>
 #include <vector>
 
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 #include "runtime/particles/emitter.h"
 #include "runtime/picture/depth_sort.h"

@@ -7,6 +7,7 @@
 #include <functional>
 #include <numeric>
 
+#include "runtime/gl/gl_functions.h"
 #include "tests/runtime/picture/depth_sort_fixture.h"
 #include "tests/runtime/picture/disorder.h"
 

@@ -8,6 +8,8 @@
 #include <string>
 
 #include "runtime/depth_maps/depth_map_renderer.h"
+#include "runtime/gl/gl_capabilities.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/particles/particle_system.h"
 #include "runtime/picture/collider_renderer.h"
 #include "runtime/picture/frame.h"
@@ -398,14 +400,26 @@ TEST_P(RendererGlTest, TheCallersStateIsKeptAndDoesNoHarm) {
         check("ParticleSystem::create");
         EXPECT_TRUE(particles->setCollider(&*textures_));
         check("setCollider");
+        EXPECT_TRUE(particles->setEvents(EventOptions{.lasting = true}));
+        check("setEvents");
         particles->setForces({{0.0F, -1.0F, 0.0F}, {}, 0.0F});
         particles->spawn(births);
+        std::vector<float> hits;
         for (int step = 0; step < 40; ++step) {  // sets the clock back on its way
             particles->step(1.0F / 60.0F);
+            check("step");
+            EXPECT_TRUE(particles->requestEvents(0));
+            check("requestEvents");
+            const auto events = particles->waitEvents();
+            check("waitEvents");
+            for (const ParticleEvent& hit : (*events)->events) {
+                hits.insert(hits.end(), {hit.position.x, hit.position.y, hit.position.z, hit.speed});
+            }
         }
-        check("step");
-        const auto raw = particles->readRaw();
+        EXPECT_FALSE(hits.empty());
+        auto raw = particles->readRaw();
         check("readRaw");
+        raw->position.insert(raw->position.end(), hits.begin(), hits.end());
         auto frame = Frame::create(kWidth, kHeight);
         check("Frame::create");
         auto renderer = ColliderRenderer::create(view());

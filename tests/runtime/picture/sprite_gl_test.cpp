@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "runtime/gl/gl_functions.h"
 #include "runtime/picture/particle_renderer.h"
 #include "tests/runtime/gl/gl_test.h"
 

@@ -1,0 +1,227 @@
+"""The package relief against the tools and against closed forms."""
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import relief
+
+BIN = pathlib.Path(os.environ["RELIEF_BIN"])
+BUNNY = "/usr/share/glmark2/models/bunny.obj"
+
+
+def sphere(stacks=64, slices=128):
+    """A unit sphere's vertices and triangles, wound outwards."""
+    theta = np.linspace(0, np.pi, stacks + 1)[1:-1]
+    phi = np.linspace(0, 2 * np.pi, slices, endpoint=False)
+    ring = np.stack([np.outer(np.sin(theta), np.cos(phi)), np.outer(np.cos(theta), np.ones(slices)),
+                     np.outer(np.sin(theta), np.sin(phi))], axis=-1).reshape(-1, 3)
+    vertices = np.vstack([[0, 1, 0], ring, [0, -1, 0]])
+    at = lambda i, j: 1 + i * slices + j % slices
+    triangles = []
+    for j in range(slices):
+        triangles.append((0, at(0, j + 1), at(0, j)))
+        triangles.append((len(vertices) - 1, at(stacks - 2, j), at(stacks - 2, j + 1)))
+        for i in range(stacks - 2):
+            triangles.append((at(i, j), at(i, j + 1), at(i + 1, j + 1)))
+            triangles.append((at(i, j), at(i + 1, j + 1), at(i + 1, j)))
+    return vertices, np.array(triangles)
+
+
+@pytest.fixture(scope="module")
+def bunny(tmp_path_factory):
+    path = tmp_path_factory.mktemp("bunny") / "bunny.relief"
+    subprocess.run([BIN / "relief", "bake", BUNNY, "-q", "-o", path, "--budget", "200kB"], check=True)
+    return path
+
+
+def random_points(count, seed=1):
+    return np.random.default_rng(seed).uniform(-1.1, 1.1, (count, 3)).astype(np.float32)
+
+
+def test_a_sphere_is_one():
+    collider = relief.bake(*sphere(), budget=200_000)
+    points = random_points(100_000)
+    radius = np.linalg.norm(points.astype(np.float64), axis=1)
+    away = np.abs(radius - 1) > 0.01
+    distance, normal, which = collider.query(points)
+    assert distance.shape == (100_000,) and normal.shape == (100_000, 3) and which.dtype == np.int32
+    assert np.all((distance[away] < 0) == (radius[away] < 1))
+    nearest, normal, _ = collider.query(points, distance="nearest")
+    near = np.abs(radius - 1) < 0.2
+    assert near.sum() > 10_000
+    error = np.abs(nearest - (radius - 1))[near]
+    assert np.median(error) < 0.001 and error.max() < 0.02
+    along = np.sum(normal[near] * points[near] / radius[near, None], axis=1)
+    assert np.quantile(along, 0.01) > 0.99
+    accuracy = relief.check(collider, *sphere(), samples=20_000)
+    assert accuracy.wrong_percent < 0.5 and accuracy.distance_mean < 0.003
+
+
+def test_it_bakes_what_the_tool_bakes(bunny, tmp_path):
+    relief.bake(BUNNY, budget=200_000).save(tmp_path / "own.relief")
+    assert (tmp_path / "own.relief").read_bytes() == bunny.read_bytes()
+
+
+def test_it_says_what_relief_query_says(bunny, tmp_path):
+    points = random_points(10_000)
+    np.savetxt(tmp_path / "points.csv", points, delimiter=",", fmt="%.9g")
+    text = subprocess.run([BIN / "relief", "query", bunny, "--points", tmp_path / "points.csv", "-o", "-",
+                           "--distance", "plane"], check=True, capture_output=True, text=True).stdout
+    rows = [line.split(",") for line in text.splitlines()[1:]]
+    distance, normal, which = relief.load(bunny).query(points)
+    assert len(rows) == 10_000
+    for i, row in enumerate(rows):
+        assert which[i] == (-1 if row[7] == "" else int(row[7]))
+        if row[3] not in ("", "inf"):
+            assert distance[i] == np.float32(row[3])
+            assert list(normal[i]) == [np.float32(value) for value in row[4:7]]
+
+
+def test_files_and_bytes_are_the_same(bunny, tmp_path):
+    collider = relief.load(bunny)
+    collider.save(tmp_path / "plain.relief")
+    collider.save(tmp_path / "packed.relief", compression=19)
+    assert (tmp_path / "plain.relief").read_bytes() == bunny.read_bytes()
+    assert (tmp_path / "packed.relief").stat().st_size < bunny.stat().st_size
+    points = random_points(1000)
+    for other in (relief.load(bunny.read_bytes()), relief.load(tmp_path / "packed.relief")):
+        assert all(np.array_equal(a, b) for a, b in zip(collider.query(points), other.query(points)))
+
+
+def test_maps_are_arrays(bunny):
+    collider = relief.load(bunny)
+    assert len(collider.maps) >= 3 and collider.gpu_bytes <= 200_000
+    assert np.allclose(collider.bounds, [np.min(sphere_of(BUNNY), 0), np.max(sphere_of(BUNNY), 0)], atol=1e-6)
+    for one in collider.maps:
+        texels = one.texels
+        assert texels.shape == (one.faces, one.height, one.width, 4) and not texels.flags.owndata
+        assert not texels.flags.writeable
+        assert np.shares_memory(texels, one.texels)
+        depth = one.depth[np.isfinite(one.depth)]
+        assert depth.size > 0.05 * one.width * one.height and depth.min() >= 0
+        assert depth.max() <= (1 if one.faces == 1 else 1.7321)
+    texels = collider.maps[0].texels
+    before = texels.copy()
+    del collider, one
+    assert np.array_equal(texels, before)  # the array keeps the collider
+
+
+def sphere_of(path):
+    with open(path) as file:
+        return np.array([line.split()[1:4] for line in file if line.startswith("v ")], dtype=np.float64)
+
+
+def test_mistakes_are_exceptions(tmp_path):
+    vertices, triangles = sphere(8, 8)
+    with pytest.raises(relief.FileError, match="missing.relief"):
+        relief.load(tmp_path / "missing.relief")
+    with pytest.raises(relief.InputError):
+        relief.load(b"nonsense")
+    with pytest.raises(relief.Error):
+        relief.bake(tmp_path / "missing.obj")
+    with pytest.raises(relief.InputError, match="uses vertex 1002"):
+        relief.bake(vertices, triangles + 1000)
+    with pytest.raises(relief.UsageError):
+        relief.bake(vertices, triangles - 1)
+    with pytest.raises(relief.UsageError):
+        relief.bake(vertices)
+    with pytest.raises(relief.UsageError, match=r"\(n, 3\)"):
+        relief.bake(vertices, triangles, budget=50_000).query(np.zeros((4, 2)))
+    with pytest.raises(relief.InputError):
+        relief.bake(np.where(vertices == 1, np.nan, vertices), triangles)
+    assert issubclass(relief.InputError, relief.Error)
+
+
+def test_queries_let_other_threads_run(bunny):
+    collider = relief.load(bunny)
+    points = random_points(2_000_000)
+    ticks = 0
+    done = threading.Event()
+
+    def tick():
+        nonlocal ticks
+        while not done.is_set():
+            ticks += 1
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    begun = time.perf_counter()
+    collider.query(points)
+    took = time.perf_counter() - begun
+    done.set()
+    thread.join()
+    assert ticks > 5 or took < 0.05
+
+
+def test_the_sample_makes_three_plots(tmp_path):
+    sample = pathlib.Path(os.environ["RELIEF_SOURCE"]) / "samples/python/plots.py"
+    subprocess.run([sys.executable, sample, BUNNY], cwd=tmp_path, check=True)
+    for name in ("slice.png", "maps.png", "budgets.png"):
+        assert (tmp_path / name).read_bytes().startswith(b"\x89PNG") and (tmp_path / name).stat().st_size > 10_000
+
+
+def test_a_simulation_is_that_of_relief_sim(bunny, tmp_path):
+    scene = tmp_path / "scene.toml"
+    scene.write_text(f'[time]\nsteps = 120\n[collider]\nfile = "bunny.relief"\n[particles]\ncapacity = 5000\n')
+    (tmp_path / "bunny.relief").write_bytes(bunny.read_bytes())
+    subprocess.run([BIN / "relief-sim", scene, "-q", "--dump", tmp_path / "final.ply"], check=True)
+    raw = (tmp_path / "final.ply").read_bytes()
+    body = raw[raw.index(b"end_header\n") + 11:]
+    dump = np.frombuffer(body, dtype=np.dtype([("position", "<f4", 3), ("velocity", "<f4", 3), ("age", "<f4"),
+                                               ("lifetime", "<f4"), ("id", "<u4"), ("type", "<u4")]))
+    simulation = relief.Simulation(scene)
+    simulation.step(100)
+    simulation.step(20)
+    order = np.argsort(simulation.ids)
+    assert simulation.alive == len(dump) > 1000 and abs(simulation.time - 2) < 1e-3
+    assert np.array_equal(simulation.ids[order], dump["id"])
+    assert np.array_equal(simulation.positions[order], dump["position"])
+    assert np.array_equal(simulation.velocities[order], dump["velocity"])
+    assert simulation.collisions.sum() > 0
+
+
+def test_worst_places_are_those_of_the_tool(tmp_path):
+    path = tmp_path / "b.relief"
+    subprocess.run([BIN / "relief", "bake", BUNNY, "-q", "-o", path, "--budget", "60kB"], check=True)
+    said = json.loads(subprocess.run([BIN / "relief", "check", path, "--mesh", BUNNY, "--samples", "20000", "--json"],
+                                     check=True, capture_output=True, text=True).stdout)
+    places = relief.check(relief.load(path), BUNNY, samples=20_000).places
+    assert len(places) == 3
+    for place, other in zip(places, said["worst_places"]):
+        assert place.position == pytest.approx(other["position"], abs=1e-6)
+        assert (place.cause, place.map) == (other["cause"], other["map"])
+        assert place.share_percent == pytest.approx(other["share_percent"])
+
+
+def test_the_stub_has_what_the_module_has():
+    """_relief.pyi names each class, function and member of the compiled module, and nothing else."""
+    import ast
+    import inspect
+
+    from relief import _relief
+
+    def public(thing):
+        return {name for name in vars(thing) if not name.startswith("_")}
+
+    stub = ast.parse(pathlib.Path(relief.__file__).with_name("_relief.pyi").read_text())
+    functions = {f.name: f for f in stub.body if isinstance(f, ast.FunctionDef)}
+    classes = {c.name: c for c in stub.body if isinstance(c, ast.ClassDef)}
+    values = {v.target.id for v in stub.body if isinstance(v, ast.AnnAssign)}
+    assert public(_relief) == functions.keys() | classes.keys() | values
+    for name, declared in classes.items():
+        made = getattr(_relief, name)
+        assert inspect.isclass(made)
+        members = {f.name: f for f in declared.body if isinstance(f, ast.FunctionDef)}
+        assert public(made) == {member for member in members if not member.startswith("__")}
+        assert made.__mro__[1].__name__ in ([base.id for base in declared.bases] or ["pybind11_object"])
+    for name, declared in functions.items():
+        # pybind11 writes the signature into the docstring.
+        assert getattr(_relief, name).__doc__.count("arg") == len(declared.args.posonlyargs), name

@@ -1,0 +1,31 @@
+#include "bake/report/size_report.h"
+
+#include <gtest/gtest.h>
+
+namespace relief {
+namespace {
+
+Bounds box(float x, float y, float z) {
+    return {{0.0F, 0.0F, 0.0F}, {x, y, z}};
+}
+
+TEST(SizeReport, TheBoxHasItsUnit) {
+    EXPECT_EQ(boxText({{-1, -2, -3}, {1, 2, 3.04999F}}, "m"),
+              "2 x 4 x 6.05 m, from (-1, -2, -3) to (1, 2, 3.05)");
+    EXPECT_EQ(boxText(box(1800, 0, 0.001F), ""),
+              "1800 x 0 x 0.001 object units, from (0, 0, 0) to (1800, 0, 0.001)");
+}
+
+TEST(SizeReport, AForgottenUnitIsNamedWithWhatItWouldMake) {
+    EXPECT_FALSE(forgottenUnit(box(99, 99, 99)));
+    EXPECT_FALSE(forgottenUnit(Bounds()));
+    const auto person = forgottenUnit(box(50, 180, 30));
+    ASSERT_TRUE(person);
+    EXPECT_EQ(
+        *person,
+        "no unit is named, and the box is 50 x 180 x 30: with --unit cm 0.5 x 1.8 x 0.3 m, with --unit mm "
+        "0.05 x 0.18 x 0.03 m; say which, or --unit m if these are metres");
+}
+
+}  // namespace
+}  // namespace relief

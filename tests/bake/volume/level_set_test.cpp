@@ -1,0 +1,239 @@
+#include "bake/volume/level_set.h"
+
+#include <gtest/gtest.h>
+#include <openvdb/io/Stream.h>
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/LevelSetMeasure.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <numbers>
+#include <sstream>
+
+#include "tests/bake/meshes.h"
+
+namespace relief {
+namespace {
+
+constexpr glm::dvec3 kCenter(0.31, -0.2, 0.13);
+constexpr double kRadius = 0.7;
+constexpr std::uint32_t kVoxels = 64;
+constexpr double kVoxel = 2.0 * kRadius / kVoxels;
+
+Collider sphere() {
+    const PreparedMesh mesh(test::makeIcosphere(kCenter, kRadius, 6));
+    return test::bakeSpecs(mesh,
+                           {"front-back:dir=+x,decode=plane", "front-back:dir=+y,decode=plane",
+                            "front-back:dir=+z,decode=plane"},
+                           256);
+}
+
+Result<std::vector<std::byte>> levelSetOf(const Collider& collider, std::uint32_t voxels) {
+    return RELIEF_TRY(encodeGrids(collider, {voxels, true, false})).level_set;
+}
+
+Result<std::vector<std::byte>> meshOf(const Collider& collider, std::uint32_t voxels) {
+    return RELIEF_TRY(encodeGrids(collider, {voxels, false, true})).surface;
+}
+
+openvdb::FloatGrid::Ptr gridOf(const std::vector<std::byte>& bytes) {
+    openvdb::initialize();
+    std::istringstream in(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+    openvdb::io::Stream stream(in);
+    const auto grids = stream.getGrids();
+    return grids->size() == 1 ? openvdb::gridPtrCast<openvdb::FloatGrid>((*grids)[0]) : nullptr;
+}
+
+double fromSphere(const openvdb::Vec3d& p) {
+    return glm::distance(glm::dvec3(p.x(), p.y(), p.z()), kCenter) - kRadius;
+}
+
+// Distances, volume and area of a sphere have closed forms.
+TEST(LevelSet, OfASphere) {
+    const auto bytes = levelSetOf(sphere(), kVoxels);
+    ASSERT_TRUE(bytes.has_value()) << bytes.error().message;
+    const auto grid = gridOf(*bytes);
+    ASSERT_NE(grid, nullptr);
+    EXPECT_EQ(grid->getName(), "surface");
+    EXPECT_EQ(grid->getGridClass(), openvdb::GRID_LEVEL_SET);
+    EXPECT_NEAR(grid->voxelSize().x(), kVoxel, 1e-3 * kVoxel);
+    EXPECT_NEAR(grid->background(), 3.0 * kVoxel, 1e-2 * kVoxel);
+
+    // Planes of texels, of facets that lie up to 0.01 voxels within the sphere; the farther, the coarser the search.
+    double worst = 0.0;
+    double sum = 0.0;
+    for (auto value = grid->cbeginValueOn(); value; ++value) {
+        const double truth = fromSphere(grid->indexToWorld(value.getCoord()));
+        worst = std::max(worst, std::abs(double{*value} - truth));
+        sum += std::abs(double{*value} - truth);
+    }
+    EXPECT_LT(worst, 0.15 * kVoxel);
+    EXPECT_LT(sum / static_cast<double>(grid->activeVoxelCount()), 0.02 * kVoxel);
+    // Wherever the sign changes, both voxels are active: the band is whole.
+    const auto all = grid->getConstAccessor();
+    std::size_t torn = 0;
+    for (auto leaf = grid->tree().cbeginLeaf(); leaf; ++leaf) {
+        for (auto value = leaf->cbeginValueAll(); value; ++value) {
+            for (int axis = 0; axis < 3; ++axis) {
+                openvdb::Coord beside = value.getCoord();
+                beside[axis] += 1;
+                const bool change = (all.getValue(beside) < 0.0F) != (*value < 0.0F);
+                torn += change && !(value.isValueOn() && all.isValueOn(beside)) ? 1 : 0;
+            }
+        }
+    }
+    EXPECT_EQ(torn, 0U);
+    const auto wanted = static_cast<double>(grid->activeVoxelCount());
+    // A shell of six voxels.
+    EXPECT_NEAR(wanted * kVoxel * kVoxel * kVoxel, 4.0 * std::numbers::pi * kRadius * kRadius * 6.0 * kVoxel,
+                0.03 * 4.0 * std::numbers::pi * kRadius * kRadius * 6.0 * kVoxel);
+    const auto at = grid->getConstAccessor();
+    EXPECT_FLOAT_EQ(at.getValue(openvdb::Coord::round(grid->worldToIndex({kCenter.x, kCenter.y, kCenter.z}))),
+                    -grid->background());
+    EXPECT_FLOAT_EQ(at.getValue(openvdb::Coord(10000, 0, 0)), grid->background());
+    EXPECT_NEAR(openvdb::tools::levelSetVolume(*grid), 4.0 / 3.0 * std::numbers::pi * std::pow(kRadius, 3),
+                0.01);
+    EXPECT_NEAR(openvdb::tools::levelSetArea(*grid), 4.0 * std::numbers::pi * std::pow(kRadius, 2), 0.05);
+}
+
+TEST(LevelSet, TheSameBytesInEveryRun) {
+    const Collider collider = sphere();
+    const auto bytes = levelSetOf(collider, kVoxels);
+    ASSERT_TRUE(bytes.has_value());
+    EXPECT_EQ(*bytes, *levelSetOf(collider, kVoxels));
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    EXPECT_EQ(*bytes, *levelSetOf(collider, kVoxels));
+    EXPECT_NE(*bytes, *levelSetOf(collider, kVoxels + 1));
+}
+
+/// Vertices and faces of encodeGrids()'s PLY.
+struct Surface {
+    std::vector<glm::vec3> vertices;
+    std::vector<std::vector<std::uint32_t>> faces;
+};
+
+Surface surfaceOf(const std::vector<std::byte>& bytes) {
+    const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const auto count = [&](const std::string& element) {
+        return std::stoul(text.substr(text.find("element " + element) + element.size() + 9));
+    };
+    std::size_t at = text.find("end_header\n") + 11;
+    const auto read = [&](auto& to) {
+        std::memcpy(&to, text.data() + at, sizeof(to));
+        at += sizeof(to);
+    };
+    Surface surface;
+    surface.vertices.resize(count("vertex"));
+    for (glm::vec3& vertex : surface.vertices) {
+        read(vertex);
+    }
+    surface.faces.resize(count("face"));
+    for (auto& face : surface.faces) {
+        std::uint8_t corners = 0;
+        read(corners);
+        face.resize(corners);
+        for (std::uint32_t& corner : face) {
+            read(corner);
+        }
+    }
+    EXPECT_EQ(at, text.size());
+    return surface;
+}
+
+TEST(SurfaceMesh, OfASphereIsClosedAndLooksOutwards) {
+    const auto bytes = meshOf(sphere(), kVoxels);
+    ASSERT_TRUE(bytes.has_value()) << bytes.error().message;
+    const Surface surface = surfaceOf(*bytes);
+    double volume = 0.0;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+    for (const auto& face : surface.faces) {
+        ASSERT_GE(face.size(), 3U);
+        for (std::size_t i = 0; i < face.size(); ++i) {
+            ++edges[{face[i], face[(i + 1) % face.size()]}];
+        }
+        const glm::dvec3 a(surface.vertices[face[0]]);
+        for (std::size_t i = 2; i < face.size(); ++i) {
+            const glm::dvec3 b(surface.vertices[face[i - 1]]);
+            const glm::dvec3 c(surface.vertices[face[i]]);
+            volume += glm::dot(a - kCenter, glm::cross(b - kCenter, c - kCenter)) / 6.0;
+        }
+    }
+    for (const auto& [edge, times] : edges) {
+        ASSERT_EQ(times, 1);
+        ASSERT_EQ(edges.count({edge.second, edge.first}), 1U);
+    }
+    EXPECT_EQ(static_cast<long>(surface.vertices.size()) - static_cast<long>(edges.size() / 2) +
+                  static_cast<long>(surface.faces.size()),
+              2);
+    EXPECT_NEAR(volume, 4.0 / 3.0 * std::numbers::pi * std::pow(kRadius, 3), 0.01);
+    double worst = 0.0;
+    for (const glm::vec3& vertex : surface.vertices) {
+        worst = std::max(worst, std::abs(fromSphere({vertex.x, vertex.y, vertex.z})));
+    }
+    EXPECT_LT(worst, 0.1 * kVoxel);
+}
+
+TEST(LevelSet, ASheetThinnerThanAVoxelIsRefused) {
+    const PreparedMesh mesh(test::makeBoxMesh({0.0, 0.002, 0.0}, {1.0, 1e-4, 1.0}));
+    const Collider sheet = test::bakeSpecs(mesh, {"front-back:dir=+y"}, 32);
+    const auto bytes = levelSetOf(sheet, 16);
+    ASSERT_FALSE(bytes.has_value());
+    EXPECT_NE(bytes.error().message.find("smaller voxels"), std::string::npos);
+    EXPECT_EQ(levelSetOf(sheet, 4).error().code, ErrorCode::kLimit);
+}
+
+// A thick box, and a plate that no voxel's centre lies in: the box alone remains, and the rest is told of.
+TEST(LevelSet, SaysThatAThinPartIsMissing) {
+    TriangleMesh both = test::makeBoxMesh({0.0, -0.25, 0.0}, {0.2, 0.25, 0.2});
+    const TriangleMesh plate = test::makeBoxMesh({0.0, 0.26, 0.0}, {0.5, 5e-3, 0.5});
+    const auto first = static_cast<std::uint32_t>(both.positions.size());
+    both.positions.insert(both.positions.end(), plate.positions.begin(), plate.positions.end());
+    for (const auto& triangle : plate.triangles) {
+        both.triangles.push_back({triangle[0] + first, triangle[1] + first, triangle[2] + first});
+    }
+    const PreparedMesh mesh(test::finished(both.positions, both.triangles));
+    const Collider collider = test::bakeSpecs(
+        mesh, {"front-back:dir=+y,decode=plane", "front-back:dir=+x,decode=plane", "front-back:dir=+z"}, 128);
+    const auto coarse = encodeGrids(collider, {20});
+    ASSERT_TRUE(coarse.has_value()) << coarse.error().message;
+    EXPECT_GT(coarse->missing, 0.3);
+    const auto fine = encodeGrids(collider, {128, false, false});
+    ASSERT_TRUE(fine.has_value()) << fine.error().message;
+    EXPECT_LT(fine->missing, 1e-3);
+    EXPECT_LT(encodeGrids(sphere(), {kVoxels})->missing, 1e-5);
+}
+
+// The bounds are those of the mesh; what is inside may go deeper, as ground does.
+TEST(LevelSet, HoldsAllThatIsInside) {
+    Collider collider = sphere();
+    collider.bounds.max.y = static_cast<float>(kCenter.y);  // voxels stay the same: x and z are as long
+    const auto grid = gridOf(*levelSetOf(collider, kVoxels));
+    EXPECT_NEAR(openvdb::tools::levelSetVolume(*grid), 4.0 / 3.0 * std::numbers::pi * std::pow(kRadius, 3),
+                0.01);
+}
+
+TEST(LevelSet, AnInsideWithoutEndIsRefused) {
+    const PreparedMesh mesh(test::makeBoxMesh({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}));
+    Collider collider = test::bakeSpecs(mesh, {"float:dir=1/1/1,compare=less"}, 32);
+    collider.maps[0].encloses = false;
+    collider.bounds.min *= 0.5F;
+    collider.bounds.max *= 0.5F;
+    const auto bytes = levelSetOf(collider, 16);
+    ASSERT_FALSE(bytes.has_value());
+    EXPECT_EQ(bytes.error().code, ErrorCode::kInvalidInput);
+    EXPECT_NE(bytes.error().message.find("not closed"), std::string::npos);
+}
+
+TEST(LevelSet, TooFarForItsVoxelsIsRefused) {
+    Collider collider = sphere();
+    collider.bounds.min.x += 1e8F;
+    collider.bounds.max.x = collider.bounds.min.x;
+    const auto bytes = levelSetOf(collider, 1024);
+    ASSERT_FALSE(bytes.has_value());
+    EXPECT_EQ(bytes.error().code, ErrorCode::kLimit);
+}
+
+}  // namespace
+}  // namespace relief

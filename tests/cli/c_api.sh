@@ -1,0 +1,46 @@
+# relief.h and librelief.so, as installed: a program in C99 uses every function, its answers are those of `relief query`,
+# and the library exports what the header declares and nothing else.
+. "$(dirname "$0")/lib.sh"
+
+cmake --install "$RELIEF_BIN/.." --prefix "$work/installed" >log || die "cannot install: $(tail log)"
+PKG_CONFIG_PATH=$(find "$work/installed" -name pkgconfig)
+export PKG_CONFIG_PATH
+read -ra flags < <(pkg-config --cflags --libs relief egl glesv2)
+cc -std=c99 -Wall -Wextra -Wpedantic -Werror "$RELIEF_SOURCE/tests/cli/c_api.c" -o c_api "${flags[@]}" 2>log ||
+    die "does not compile: $(head -20 log)"
+library=$(find "$work/installed" -name 'librelief.so')
+echo '#include <relief.h>
+int main() { return relief_api_version() >= RELIEF_API_VERSION ? 0 : 1; }' >in_cpp.cpp
+g++ -std=c++11 -Wall -Wextra -Werror in_cpp.cpp -o in_cpp "${flags[@]}" || die "does not compile as C++"
+
+python3 - <<'P'
+import random
+random.seed(9)
+with open('points.csv', 'w') as out:
+    for _ in range(10_000):
+        out.write(','.join('%.6f' % random.uniform(-1.1, 1.1) for _ in range(3)) + '\n')
+P
+"$relief" bake "$bunny" -q -o bunny.relief --budget 200kB
+export LD_LIBRARY_PATH
+LD_LIBRARY_PATH=$(dirname "$library")
+./in_cpp || die "the library is older than its header"
+./c_api points.csv bunny.relief >own.csv || die "c_api failed"
+"$relief" query bunny.relief --points points.csv -o reference.csv --distance plane
+python3 - <<'P' || die "c_api and relief query disagree"
+import csv, struct, sys
+single = lambda text: struct.unpack('f', struct.pack('f', float(text)))[0]
+own = list(csv.reader(open('own.csv')))
+reference = list(csv.DictReader(open('reference.csv')))
+assert len(own) == len(reference) == 10_000
+for a, b in zip(own, reference):
+    assert int(a[7]) == (-1 if b['map'] == '' else int(b['map'])), (a, b)
+    if b['f'] not in ('', 'inf'):
+        assert [single(x) for x in a[3:7]] == [single(b[k]) for k in ('f', 'nx', 'ny', 'nz')], (a, b)
+P
+
+# The ABI: every function of the header, and no other symbol.
+grep -oE '\brelief_[a-z_]+\(' "$RELIEF_SOURCE/runtime/c_api/relief.h" | tr -d '(' | sort -u >declared
+nm -D --defined-only "$library" | awk '$2 != "A" { print $3 }' | sed 's/@.*//' | sort -u >exported
+diff declared exported >log || die "the header and the library differ: $(cat log)"
+[ "$(wc -l <exported)" -ge 25 ] || die "only $(wc -l <exported) functions"
+readelf -d "$library" | grep -q 'SONAME.*librelief.so.1' || die "the library has another SONAME"

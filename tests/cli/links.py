@@ -1,0 +1,43 @@
+#!/usr/bin/env python3
+"""links.py FOLDER: every relative link of every .md below FOLDER leads to a file, and its #heading to a heading."""
+import pathlib
+import re
+import sys
+
+
+def prose(text):
+    """Without code, where brackets are no links."""
+    text = re.sub(r'^ *```.*?^ *```', '', text, flags=re.S | re.M)
+    return re.sub(r'`[^`]*`', 'code', text)
+
+
+def headings(text):
+    """The anchors that a page of Markdown has, as Git hosts make them."""
+    words = [re.sub(r'[^\w\- ]', '', line.lower()) for line in re.findall(r'^#+ +(.*?)\s*$', text, flags=re.M)]
+    return {line.replace(' ', '-') for line in words}
+
+
+def main(folder):
+    pages, links, dead = 0, 0, []
+    for page in sorted(pathlib.Path(folder).rglob('*.md')):
+        pages += 1
+        text = page.read_text()
+        # [words](target), ![words](target) and [words]: target.
+        targets = re.findall(r'\]\(\s*<?([^)\s>]+)>?[^)]*\)', prose(text))
+        targets += re.findall(r'^ {0,3}\[[^\]]+\]:\s*<?([^\s>]+)', prose(text), flags=re.M)
+        for target in targets:
+            if re.match(r'[a-z][a-z0-9+.-]*:', target):
+                continue
+            links += 1
+            path, _, anchor = target.partition('#')
+            there = page.parent / path if path else page
+            if not there.exists():
+                dead.append(f'{page}: {target} is not there')
+            elif anchor and there.suffix == '.md' and anchor not in headings(there.read_text()):
+                dead.append(f'{page}: {there.name} has no heading #{anchor}')
+    print('\n'.join(dead) if dead else f'{links} links of {pages} pages')
+    return 1 if dead or pages < 20 or links < 60 else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main(*sys.argv[1:]))

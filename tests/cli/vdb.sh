@@ -1,0 +1,123 @@
+# OpenVDB: particles of relief-sim as points, and a collider's field as a level set and as a mesh, held against vdb_print and
+# relief query; or, in a build without it, one line that says so.
+. "$(dirname "$0")/lib.sh"
+
+"$relief" bake "$bunny" -o b.relief --budget 100kB -q
+cat >s.toml <<'T'
+[collider]
+file = "b.relief"
+[time]
+steps = 60
+[render]
+every = 20
+[emitter]
+rate = 3000.0
+T
+
+if [ "$RELIEF_OPENVDB" != ON ]; then
+    expect_error 5 'no OpenVDB; install libopenvdb-dev' "$relief" export b.relief --vdb b.vdb
+    expect_error 5 'no OpenVDB' "$relief" export b.relief --mesh b.ply
+    expect_error 5 'no OpenVDB' "$relief_sim" s.toml -q --dump s.vdb
+    expect_error 5 'no OpenVDB' "$relief_sim" s.toml -q --dump-frames frames --dump-format vdb
+    [ "$(ls)" = "$(printf 'b.relief\ns.toml\nstderr\nstdout')" ] || die "something was written: $(ls)"
+    exit 0
+fi
+
+# The same particles as in PLY, under the names that other tools know.
+"$relief_sim" s.toml -q --dump s.ply
+"$relief_sim" s.toml -q --dump s.vdb
+"$relief_sim" s.toml -q --dump - --dump-format vdb >again.vdb
+cmp s.vdb again.vdb || die "the same run wrote other bytes"
+count=$(sed -n 's/^element vertex //p;/end_header/q' s.ply | head -1)
+[ "$count" -gt 1000 ] || die "$count particles"
+vdb_print -l s.vdb >printed
+for words in 'name: particles' ptdataidx32 "points: $count\$"; do
+    grep -q "$words" printed || die "vdb_print says no '$words': $(cat printed)"
+done
+"$relief_sim" s.toml -q --dump-frames frames --dump-format vdb
+[ "$(ls frames | tr '\n' ' ')" = "particles_0000.vdb particles_0001.vdb particles_0002.vdb " ] || die "frames: $(ls frames)"
+cmp frames/particles_0002.vdb s.vdb || die "the last frame is not the final dump"
+expect_error 1 'does nothing without --dump' "$relief_sim" s.toml --dump-format vdb
+expect_error 1 'ply' "$relief_sim" s.toml --dump x --dump-format obj
+
+# The level set, as another tool reads it.
+expect 0 "$relief" export b.relief --vdb b.vdb --voxels 64
+vdb_print -l b.vdb >printed
+for words in 'Name: surface' 'level set' 'Tree_float'; do
+    grep -q "$words" printed || die "vdb_print says no '$words': $(cat printed)"
+done
+expect 0 "$relief" export b.relief --vdb - --voxels 64
+cmp stdout b.vdb || die "standard output holds another level set"
+
+# The mesh: closed, and where relief query says that the surface is.
+expect 0 "$relief" export b.relief --mesh b.ply --voxels 96
+python3 - <<'P' >points.csv || die "the mesh is not closed"
+import struct
+head, body = open('b.ply', 'rb').read().split(b'end_header\n', 1)
+vertices = int(head.split(b'element vertex ')[1].split()[0])
+faces = int(head.split(b'element face ')[1].split()[0])
+points = [struct.unpack_from('<3f', body, 12 * i) for i in range(vertices)]
+at, edges = 12 * vertices, {}
+for _ in range(faces):
+    n = body[at]
+    face = struct.unpack_from(f'<{n}I', body, at + 1)
+    at += 1 + 4 * n
+    for a, b in zip(face, face[1:] + face[:1]):
+        edges[a, b] = edges.get((a, b), 0) + 1
+assert at == len(body) and faces > 10000
+assert all(edges.get((b, a), 0) == times for (a, b), times in edges.items())
+for p in points:
+    print(','.join(map(repr, p)))
+P
+"$relief" query b.relief --points points.csv -o answers.csv
+python3 - <<'P' || die "the mesh lies elsewhere than the field's surface"
+import csv, statistics
+rows = list(csv.reader(open('answers.csv')))
+distances = sorted(abs(float(row[3])) for row in rows if row[3] and row[0] != 'x')
+assert statistics.median(distances) < 0.1 * 2 / 96, statistics.median(distances)
+assert distances[int(0.99 * len(distances))] < 1.0 * 2 / 96, distances[int(0.99 * len(distances))]
+P
+# What no voxel's centre lies in is missing, and that is said.
+cat >plate.obj <<'T'
+v -0.2 -0.5 -0.2
+v -0.2 -0.5 0.2
+v -0.2 0.001 -0.2
+v -0.2 0.001 0.2
+v 0.2 -0.5 -0.2
+v 0.2 -0.5 0.2
+v 0.2 0.001 -0.2
+v 0.2 0.001 0.2
+v -0.5 0.251 -0.5
+v -0.5 0.251 0.5
+v -0.5 0.257 -0.5
+v -0.5 0.257 0.5
+v 0.5 0.251 -0.5
+v 0.5 0.251 0.5
+v 0.5 0.257 -0.5
+v 0.5 0.257 0.5
+f 1 2 4 3
+f 5 7 8 6
+f 1 5 6 2
+f 3 4 8 7
+f 1 3 7 5
+f 2 6 8 4
+f 9 10 12 11
+f 13 15 16 14
+f 9 13 14 10
+f 11 12 16 15
+f 9 11 15 13
+f 10 14 16 12
+T
+"$relief" bake plate.obj -o plate.relief --map front-back:dir=+y -q
+expect 0 "$relief" export plate.relief --mesh plate.ply --voxels 20
+grep -q 'plate.relief.*surface is missing: parts thinner than a voxel, 0.05 wide.*--voxels 20' stderr ||
+    die "nothing says that the plate is missing: $(cat stderr)"
+expect 0 "$relief" export b.relief --mesh again.ply --voxels 64
+! grep -q missing stderr || die "the bunny is said to miss something: $(cat stderr)"
+
+expect_error 1 'nothing to write' "$relief" export b.relief
+expect_error 1 'does nothing without' "$relief" export b.relief -o maps --voxels 64
+expect_error 1 'voxels' "$relief" export b.relief --vdb x.vdb --voxels 4
+expect_error 1 'output .* is the input' "$relief" export b.relief --vdb b.relief
+expect_error 2 'folder' "$relief" export b.relief --vdb nowhere/x.vdb
+[ ! -e x.vdb ] || die "a refused export left a file"

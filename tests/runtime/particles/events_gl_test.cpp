@@ -1,0 +1,533 @@
+// The list of what happened in a step: closed forms, counts that must agree with the particles' own, both paths bit by
+// bit, and nothing of it where nobody asks.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "runtime/particles/random.h"
+#include "tests/runtime/particles/collision_test.h"
+#include "tests/runtime/particles/reference_step.h"
+
+namespace relief {
+namespace {
+
+class EventsGlTest : public CollisionTest {
+  protected:
+    StepEvents taken(std::uint64_t tag = 0) {
+        EXPECT_TRUE(particles_->requestEvents(tag));
+        auto events = particles_->waitEvents();
+        EXPECT_TRUE(events) << events.error().message;
+        EXPECT_TRUE(events && *events);
+        return events && *events ? **events : StepEvents{};
+    }
+};
+
+// A ball of radius r at height h over the floor, at rest. After n steps of semi-implicit Euler its height is
+// h - g dt² n (n + 1) / 2 and its speed g dt n; within a step its way is straight. It stops where it touches.
+TEST_P(EventsGlTest, ADroppedBallHitsOnceWhereAndWhenAndAsFastAsComputed) {
+    constexpr double kG = 9.81;
+    constexpr double kH = 1.7;
+    constexpr double kR = 0.13;
+    constexpr double kGround = 0.25;
+    const auto dt = static_cast<double>(kDt);
+    int n = 1;
+    const auto bottom = [&](int steps) { return kH - kR - kGround - kG * dt * dt * steps * (steps + 1) / 2; };
+    while (bottom(n) > 0) {
+        ++n;
+    }
+    const double share = bottom(n - 1) / (bottom(n - 1) - bottom(n));
+    for (const auto& [integrator, sweep] :
+         {std::pair(Integrator::kEuler, 0.0F), std::pair(Integrator::kVerlet, 0.0F),
+          std::pair(Integrator::kEuler, 0.03F), std::pair(Integrator::kVerlet, 0.03F)}) {
+        SCOPED_TRACE(std::string(integrator == Integrator::kVerlet ? "Verlet" : "Euler") +
+                     (sweep > 0.0F ? ", swept" : ""));
+        make({.capacity = 10, .integrator = integrator});
+        ASSERT_TRUE(particles_->setSweep(sweep));
+        particles_->setForces({.gravity = {0.0F, static_cast<float>(-kG), 0.0F}});
+        particles_->setGround(static_cast<float>(kGround));
+        ParticleType type;
+        type.radius = static_cast<float>(kR);
+        type.on_collision = OnCollision::kStop;
+        setType(type);
+        ASSERT_TRUE(particles_->setEvents(EventOptions{.lasting = true}));
+        const std::vector<Birth> births{
+            {{5.0F, 100.0F, 0.0F}, {}, 100.0F, 0},
+            {{0.5F, static_cast<float>(kH), -2.0F}, {0.3F, 0.0F, 0.0F}, 100.0F, 7}};
+        ASSERT_EQ(particles_->spawn(births), 2U);
+        std::size_t hits = 0;
+        for (int step = 1; step <= 2 * n; ++step) {
+            particles_->step(kDt);
+            const StepEvents got = taken(static_cast<std::uint64_t>(step));
+            EXPECT_EQ(got.tag, static_cast<std::uint64_t>(step));
+            EXPECT_EQ(got.time, particles_->time());
+            EXPECT_EQ(got.dropped, 0U);
+            for (const ParticleEvent& hit : got.events) {
+                ++hits;
+                const double time = (n - 1 + share) * dt;
+                EXPECT_EQ(step, n);
+                EXPECT_TRUE(hit.hit && !hit.lasts && !hit.death);
+                EXPECT_EQ(hit.id, 1U);
+                EXPECT_EQ(hit.index, 1U);
+                EXPECT_EQ(hit.type, 7U);
+                EXPECT_EQ(hit.body, -1);
+                EXPECT_NEAR(hit.time, time, 2e-5);
+                EXPECT_NEAR(hit.speed, kG * dt * n, 1e-4);
+                EXPECT_EQ(hit.normal, glm::vec3(0.0F, 1.0F, 0.0F));
+                EXPECT_NEAR(hit.position.x, 0.5 + 0.3 * time, 1e-5);
+                EXPECT_NEAR(hit.position.y, kGround, 1e-5);
+                EXPECT_NEAR(hit.position.z, -2.0, 1e-6);
+                EXPECT_NEAR(hit.velocity.x, 0.3, 1e-4);
+                EXPECT_NEAR(hit.velocity.y, -kG * dt * n, 1e-4);
+            }
+        }
+        EXPECT_EQ(hits, 1U);
+    }
+}
+
+// A plate that moves against the particle: speed is relative to it, and the meeting point lies where both are at once.
+TEST_P(EventsGlTest, AHitOnAMovingBodyIsRelativeToIt) {
+    const Collider box = boxCollider();  // its top is at 0.2
+    const ColliderBody body{&box, {{0.0F, -1.0F, 0.0F}}, 1.0F, 0.0F};
+    make({.capacity = 4});
+    collideWith(ColliderTextures::create(std::span(&body, 1)));
+    ASSERT_TRUE(particles_->setEvents(EventOptions{}));
+    spawnOne({{0.05F, 0.3F, 0.07F}, {0.0F, -1.2F, 0.0F}, 100.0F, 0});
+    constexpr double kUp = 1.8;
+    std::size_t hits = 0;
+    for (int step = 1; step <= 25; ++step) {
+        const Pose pose{{0.0F, static_cast<float>(-1.0 + kUp * step * static_cast<double>(kDt)), 0.0F}};
+        textures_->setPoses(std::span(&pose, 1));
+        particles_->step(kDt);
+        for (const ParticleEvent& hit : taken().events) {
+            ++hits;
+            const double meet = 1.1 / (1.2 + kUp);
+            EXPECT_NEAR(hit.time, meet, 2e-5);
+            EXPECT_NEAR(hit.position.y, 0.3 - 1.2 * meet, 2e-5);
+            EXPECT_NEAR(hit.speed, 1.2 + kUp, 1e-4);
+            EXPECT_NEAR(hit.velocity.y, -1.2, 1e-5);
+            EXPECT_EQ(hit.body, 0);
+            EXPECT_LT(glm::length(hit.normal - glm::vec3(0.0F, 1.0F, 0.0F)), 1e-3F);
+        }
+        if (hits > 0) {
+            break;
+        }
+    }
+    EXPECT_EQ(hits, 1U);
+}
+
+struct Played {
+    std::vector<StepEvents> events;
+    std::vector<ParticleState> state;
+    std::map<std::uint32_t, std::uint32_t> caught;  // steps in which each id was found inside and turned out
+};
+
+/// Particles on a box and a floor, some of which die; among them those of many rows and levels.
+Played played(ParticleSystem& particles, const ColliderTextures& textures, std::uint32_t count, int steps,
+              OnCollision reaction, bool ask, bool count_caught = false) {
+    Played out;
+    EXPECT_TRUE(particles.setCollider(&textures));
+    particles.setForces({{0.1F, -3.0F, 0.0F}, {0.4F, 0.0F, -0.3F}, 0.5F});
+    particles.setGround(-0.7F);
+    ParticleType type;
+    type.restitution = 0.5F;
+    type.friction = 0.2F;
+    type.on_collision = reaction;
+    EXPECT_TRUE(particles.setTypes(std::span(&type, 1)));
+    Pcg32 random(5);
+    for (int step = 0; step < steps; ++step) {
+        std::vector<Birth> births;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const float x = random.between(-0.8F, 0.8F);
+            const float y = random.between(0.3F, 0.8F);
+            const float z = random.between(-0.8F, 0.8F);
+            const float vx = random.between(-1.0F, 1.0F);
+            births.push_back(
+                {{x, y, z}, {vx, random.between(-3.0F, 0.0F), 0.0F}, random.between(0.2F, 2.0F), i % 5});
+        }
+        particles.spawn(births);
+        particles.step(kDt);
+        if (ask) {
+            EXPECT_TRUE(particles.requestEvents(static_cast<std::uint64_t>(step)));
+        }
+        const auto state = count_caught ? particles.readState() : std::vector<ParticleState>{};
+        EXPECT_TRUE(state);
+        for (const ParticleState& particle : *state) {
+            if (particle.contact == Contact::kCaught) {
+                ++out.caught[particle.id];
+            }
+        }
+        // Late: some steps after, when indices have passed to others.
+        while (particles.eventsInFlight() > (step + 1 < steps ? 4 : 0)) {
+            auto got = particles.waitEvents();
+            EXPECT_TRUE(got && *got);
+            out.events.push_back(std::move(**got));
+        }
+    }
+    auto state = particles.readState();
+    EXPECT_TRUE(state);
+    out.state = std::move(*state);
+    return out;
+}
+
+// Every step in contact is a hit, but for those that found the particle inside: with all hits listed, lasting ones too,
+// the sums agree particle by particle.
+TEST_P(EventsGlTest, HitsAreTheCollisionsOfEachParticle) {
+    make({.capacity = 5000, .epoch_seconds = 0.5});
+    auto textures = ColliderTextures::create(boxCollider());
+    ASSERT_TRUE(textures);
+    ASSERT_TRUE(particles_->setEvents(EventOptions{.lasting = true, .deaths = true}));
+    const Played run = played(*particles_, *textures, 40, 150, OnCollision::kBounce, true, true);
+    std::map<std::uint32_t, std::uint32_t> hits;
+    std::set<std::uint32_t> dead;
+    for (const StepEvents& step : run.events) {
+        std::uint32_t last = 0;
+        for (std::size_t i = 0; i < step.events.size(); ++i) {
+            const ParticleEvent& event = step.events[i];
+            EXPECT_TRUE(i == 0 || event.index > last) << "not in the order of indices";
+            last = event.index;
+            EXPECT_EQ(event.type, event.id % 40 % 5);
+            EXPECT_GT(event.time, step.time - 1.01 * static_cast<double>(kDt));
+            EXPECT_LE(event.time, step.time + 1e-6);
+            EXPECT_FALSE(dead.contains(event.id)) << "an event of a dead particle";
+            hits[event.id] += event.hit ? 1 : 0;
+            if (event.hit) {
+                EXPECT_NEAR(glm::length(event.normal), 1.0F, 1e-5F);
+            }
+            if (event.death) {
+                dead.insert(event.id);
+            }
+        }
+    }
+    EXPECT_EQ(dead.size(), particles_->counts().died);
+    EXPECT_GT(dead.size(), 1000U);
+    std::size_t touched = 0;
+    for (const ParticleState& particle : run.state) {
+        const auto caught = run.caught.find(particle.id);
+        EXPECT_EQ(hits[particle.id] + (caught == run.caught.end() ? 0 : caught->second), particle.collisions)
+            << particle.id;
+        EXPECT_FALSE(dead.contains(particle.id));
+        touched += particle.collisions > 0 ? 1 : 0;
+    }
+    EXPECT_EQ(dead.size() + run.state.size(), particles_->counts().born);
+    EXPECT_GT(touched, 500U);
+}
+
+// Each hit is what the CPU makes of the state before: the way with the step's forces ends inside, the deepest surface
+// there says the normal and how long before that end the depth was 0.
+TEST_P(EventsGlTest, HitsEqualTheReference) {
+    const Collider ball = analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, 0.5), 128);
+    ReferenceSettings settings;
+    settings.collider = &ball;
+    settings.ground = -0.3F;
+    settings.forces = {{0.2F, -3.0F, 0.0F}, {0.4F, 0.0F, -0.3F}, 0.6F};
+    make({.capacity = 3000});
+    collideWith(ColliderTextures::create(ball));
+    particles_->setForces(settings.forces);
+    particles_->setGround(settings.ground);
+    ParticleType type;
+    type.restitution = 0.4F;
+    setType(type);
+    ASSERT_TRUE(particles_->setEvents(EventOptions{.lasting = true}));
+    Pcg32 random(3);
+    std::map<std::uint32_t, ParticleState> before;
+    std::size_t compared = 0;
+    std::size_t excused = 0;
+    std::map<int, std::size_t> bodies;
+    for (int step = 0; step < 60; ++step) {
+        std::vector<Birth> births;
+        for (int i = 0; i < 40; ++i) {
+            const float x = random.between(-0.8F, 0.8F);
+            const float z = random.between(-0.8F, 0.8F);
+            births.push_back(
+                {{x, random.between(0.5F, 0.8F), z}, {0.0F, random.between(-3.0F, 0.0F), 0.0F}, 100.0F, 0});
+        }
+        particles_->spawn(births);
+        particles_->step(kDt);
+        for (const ParticleEvent& hit : taken().events) {
+            const auto it = before.find(hit.index);
+            if (it == before.end()) {
+                continue;  // born in this step
+            }
+            const ParticleState& was = it->second;
+            const float drag = settings.forces.drag;
+            const glm::vec3 v =
+                (was.velocity + kDt * (settings.forces.gravity + drag * settings.forces.wind)) *
+                (1.0F / (1.0F + kDt * drag));
+            const glm::vec3 end = was.position + kDt * v;
+            const ReferenceSolid solid = solidAt(settings, end);
+            const float vn = dot(v, solid.normal);
+            const float ago = vn < 0.0F ? std::min(solid.distance / vn, kDt) : 0.0F;
+            ++compared;
+            ++bodies[hit.body];
+            const bool same = hit.body == solid.body && glm::length(hit.normal - solid.normal) < 1e-5F &&
+                              glm::length(hit.velocity - v) < 1e-5F &&
+                              std::abs(hit.speed - std::max(-vn, 0.0F)) < 1e-5F &&
+                              glm::length(hit.position - (end - ago * v)) < 1e-4F;
+            if (!same) {
+                ++excused;
+                EXPECT_TRUE(isAmbiguous(ball, end) || isAmbiguous(ball, was.position) || std::abs(vn) < 0.1F)
+                    << "step " << step << " index " << hit.index << ", normals "
+                    << glm::length(hit.normal - solid.normal) << ", positions "
+                    << glm::length(hit.position - (end - ago * v)) << ", bodies " << hit.body << " "
+                    << solid.body;
+            }
+        }
+        before.clear();
+        for (const ParticleState& particle : state()) {
+            before[particle.index] = particle;
+        }
+    }
+    EXPECT_GT(compared, 1500U);
+    EXPECT_GT(bodies[-1], 500U);
+    EXPECT_GT(bodies[0], 500U);
+    EXPECT_LT(excused, compared / 20);
+}
+
+// What a hit kills is dead once: hit and death in one event, and no death of age later.
+TEST_P(EventsGlTest, AHitThatKillsIsADeathToo) {
+    make({.capacity = 5000});
+    auto textures = ColliderTextures::create(boxCollider());
+    ASSERT_TRUE(textures);
+    ASSERT_TRUE(particles_->setEvents(EventOptions{.deaths = true}));
+    const Played run = played(*particles_, *textures, 20, 120, OnCollision::kDie, true);
+    std::set<std::uint32_t> dead;
+    std::size_t hits = 0;
+    for (const StepEvents& step : run.events) {
+        for (const ParticleEvent& event : step.events) {
+            EXPECT_TRUE(event.death);
+            EXPECT_TRUE(dead.insert(event.id).second) << event.id << " dies twice";
+            hits += event.hit ? 1 : 0;
+        }
+    }
+    EXPECT_GT(hits, 500U);
+    EXPECT_GT(dead.size(), hits);
+    EXPECT_EQ(dead.size() + run.state.size(), particles_->counts().born);
+}
+
+// The extent shrinks with those who die, and the clock may be set back in the same step: their events are still there,
+// with their time, place, id and type.
+TEST_P(EventsGlTest, TheLastOfTheirRowsDieInFullView) {
+    constexpr std::uint32_t kMany = 2500;
+    const auto dt = static_cast<double>(kDt);
+    make({.capacity = kMany, .epoch_seconds = 2.9 * dt});
+    ASSERT_TRUE(particles_->setEvents(EventOptions{.hits = false, .deaths = true}));
+    std::vector<Birth> births(kMany);
+    for (std::uint32_t i = 0; i < kMany; ++i) {
+        births[i] = {
+            {static_cast<float>(i), 0.0F, 0.0F}, {0.0F, 6.0F, 0.0F}, i == 0 ? 100.0F : 2.5F * kDt, i % 7};
+    }
+    particles_->spawn(births);
+    for (int step = 1; step <= 3; ++step) {
+        particles_->step(kDt);
+        const StepEvents events = taken();
+        ASSERT_EQ(events.events.size(), step == 3 ? kMany - 1 : 0U);
+        for (std::uint32_t i = 1; step == 3 && i < kMany; ++i) {
+            const ParticleEvent& event = events.events[i - 1];
+            ASSERT_TRUE(event.death && !event.hit && event.id == i && event.index == i && event.type == i % 7)
+                << i;
+            ASSERT_NEAR(event.time, 2.5 * dt, 1e-5);
+            ASSERT_LT(glm::length(event.position - glm::vec3(i, 15.0F * kDt, 0.0F)), 1e-4F);
+        }
+    }
+    EXPECT_EQ(particles_->extent(), 1U);
+}
+
+// Slow hits and lasting ones are left out on the GPU; a short list holds the lowest indices and says what is missing.
+TEST_P(EventsGlTest, TheListKeepsWhatIsAskedFor) {
+    auto textures = ColliderTextures::create(boxCollider());
+    ASSERT_TRUE(textures);
+    const auto run = [&](const EventOptions& options) {
+        make({.capacity = 70'000});
+        EXPECT_TRUE(particles_->setEvents(options));
+        return played(*particles_, *textures, 1500, 25, OnCollision::kBounce, true).events;
+    };
+    const auto all = run({.lasting = true});
+    const auto fast = run({.lasting = false, .min_speed = 1.5F});
+    const auto few = run({.lasting = true, .most = 7});
+    ASSERT_EQ(all.size(), 25U);
+    std::size_t left_out = 0;
+    std::size_t lasting = 0;
+    std::uint32_t dropped = 0;
+    for (std::size_t step = 0; step < all.size(); ++step) {
+        std::size_t next = 0;
+        for (std::size_t i = 0; i < all[step].events.size(); ++i) {
+            const ParticleEvent& event = all[step].events[i];
+            lasting += event.lasts ? 1 : 0;
+            if (!event.lasts && event.speed >= 1.5F) {
+                ASSERT_LT(next, fast[step].events.size());
+                EXPECT_EQ(fast[step].events[next].id, event.id);
+                ++next;
+            } else {
+                ++left_out;
+            }
+            if (i < few[step].events.size()) {
+                EXPECT_EQ(few[step].events[i].id, event.id);
+            }
+        }
+        EXPECT_EQ(next, fast[step].events.size());
+        EXPECT_EQ(all[step].dropped, 0U);
+        EXPECT_EQ(few[step].events.size() + few[step].dropped, all[step].events.size());
+        EXPECT_LE(few[step].events.size(), 7U);
+        dropped += few[step].dropped;
+    }
+    EXPECT_GT(left_out, 100U);
+    EXPECT_GT(lasting, 10U);
+    EXPECT_GT(dropped, 100U);
+}
+
+// The particles are the same to the last bit whether somebody asks or not, and without setEvents nothing is made.
+TEST_P(EventsGlTest, AskingChangesNoParticle) {
+    auto textures = ColliderTextures::create(boxCollider());
+    ASSERT_TRUE(textures);
+    std::vector<std::vector<ParticleState>> states;
+    for (const bool ask : {false, true}) {
+        make({.capacity = 5000});
+        EXPECT_EQ(particles_->eventList(), nullptr);
+        EXPECT_FALSE(particles_->requestEvents(0));
+        const auto nothing = particles_->waitEvents();
+        EXPECT_TRUE(nothing && !*nothing);
+        if (ask) {
+            ASSERT_TRUE(particles_->setEvents(EventOptions{}));
+        }
+        states.push_back(played(*particles_, *textures, 30, 60, OnCollision::kBounce, ask).state);
+    }
+    ASSERT_EQ(states[0].size(), states[1].size());
+    ASSERT_GT(states[0].size(), 500U);
+    for (std::size_t i = 0; i < states[0].size(); ++i) {
+        const ParticleState& a = states[0][i];
+        const ParticleState& b = states[1][i];
+        EXPECT_TRUE(a.id == b.id && a.position == b.position && a.velocity == b.velocity &&
+                    a.collisions == b.collisions)
+            << a.id;
+    }
+    ASSERT_TRUE(particles_->setEvents(std::nullopt));
+    EXPECT_EQ(particles_->eventList(), nullptr);
+    particles_->step(kDt);
+    EXPECT_FALSE(particles_->requestEvents(0));
+}
+
+// So many that every level of counts is needed, all in one step.
+TEST_P(EventsGlTest, AQuarterOfAMillionHitsAreAllThere) {
+    constexpr std::uint32_t kMany = (1U << 18) + 1000;
+    make({.capacity = kMany});
+    particles_->setGround(0.0F);
+    ASSERT_TRUE(particles_->setEvents(EventOptions{.most = ParticleSystem::kCapacityMax}));
+    std::vector<Birth> births(kMany);
+    for (std::uint32_t i = 0; i < kMany; ++i) {
+        births[i].position = {static_cast<float>(i), 0.01F, 0.0F};
+        births[i].velocity = {0.0F, i % 3 == 0 ? 1.0F : -2.0F, 0.0F};
+    }
+    particles_->spawn(births);
+    particles_->step(kDt);
+    const StepEvents events = taken();
+    ASSERT_EQ(events.events.size(), kMany - (kMany + 2) / 3);
+    EXPECT_EQ(events.dropped, 0U);
+    for (std::size_t i = 0; i < events.events.size(); ++i) {
+        const auto id = static_cast<std::uint32_t>(3 * (i / 2) + 1 + i % 2);
+        ASSERT_EQ(events.events[i].id, id);
+        ASSERT_EQ(events.events[i].position, glm::vec3(id, 0.0F, 0.0F));
+    }
+}
+
+// The list on the GPU is the one that comes back.
+TEST_P(EventsGlTest, TheListIsThereForShaders) {
+    make({.capacity = 5000});
+    auto textures = ColliderTextures::create(boxCollider());
+    ASSERT_TRUE(textures);
+    ASSERT_TRUE(particles_->setEvents(EventOptions{.lasting = true, .most = 2000}));
+    played(*particles_, *textures, 60, 40, OnCollision::kBounce, false);
+    const StepEvents events = taken();
+    ASSERT_GT(events.events.size(), 20U);
+    const EventList* list = particles_->eventList();
+    ASSERT_NE(list, nullptr);
+    const auto total = readTextureFloats(list->total(), 1, 1);
+    ASSERT_TRUE(total);
+    EXPECT_EQ(total->front(), static_cast<float>(events.events.size()));
+    std::array<std::vector<float>, 4> planes;
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+        auto plane = readTextureFloats(list->textures()[i], kEventsWidth, 1);
+        ASSERT_TRUE(plane);
+        planes[i] = std::move(*plane);
+    }
+    for (std::size_t i = 0; i < events.events.size(); ++i) {
+        const ParticleEvent& event = events.events[i];
+        const auto three = [&](std::size_t plane) {
+            return glm::vec3(planes[plane][4 * i], planes[plane][4 * i + 1], planes[plane][4 * i + 2]);
+        };
+        EXPECT_EQ(three(0), event.position);
+        EXPECT_EQ(three(1), event.normal);
+        EXPECT_EQ(planes[1][4 * i + 3], event.speed);
+        EXPECT_EQ(three(2), event.velocity);
+        EXPECT_EQ(planes[2][4 * i + 3], static_cast<float>(event.body));
+        EXPECT_EQ(three(3), glm::vec3(event.index, event.id, event.type));
+    }
+}
+
+TEST_P(EventsGlTest, WrongOptionsAreRefused) {
+    make({.capacity = 10});
+    for (const EventOptions& wrong : {EventOptions{.most = 0}, EventOptions{.most = (1U << 24) + 1},
+                                      EventOptions{.min_speed = -1.0F}, EventOptions{.min_speed = NAN}}) {
+        const auto set = particles_->setEvents(wrong);
+        ASSERT_FALSE(set);
+        EXPECT_EQ(set.error().code, ErrorCode::kUsage);
+    }
+    ASSERT_TRUE(particles_->setEvents(EventOptions{}));
+    EXPECT_TRUE(taken().events.empty()) << "nobody was there";
+    for (int i = 0; i < EventList::kInFlightMax; ++i) {
+        EXPECT_TRUE(particles_->requestEvents(0));
+    }
+    EXPECT_FALSE(particles_->requestEvents(0)) << "more lists than there is room for";
+}
+
+RELIEF_INSTANTIATE_STEP_TESTS(EventsGlTest);
+
+class EventPathsGlTest : public GlTest {};
+
+// Both paths list the same events: on one processor bit by bit. A GPU rounds differently in them, and bounces drive such
+// particles apart; there they list as many, nearly.
+TEST_P(EventPathsGlTest, BothPathsGiveTheSameEvents) {
+    auto textures = ColliderTextures::create(boxCollider());
+    ASSERT_TRUE(textures);
+    std::vector<std::vector<StepEvents>> runs;
+    for (const StepPath path : {StepPath::kFragment, StepPath::kCompute}) {
+        auto particles = ParticleSystem::create({.capacity = 20'000, .path = path});
+        ASSERT_TRUE(particles) << particles.error().message;
+        ASSERT_TRUE(particles->setSweep(0.03F));
+        ASSERT_TRUE(particles->setEvents(EventOptions{.lasting = true, .deaths = true}));
+        runs.push_back(played(*particles, *textures, 200, 60, OnCollision::kBounce, true).events);
+    }
+    ASSERT_EQ(runs[0].size(), runs[1].size());
+    if (!context_->software()) {
+        std::size_t listed[2] = {0, 0};
+        for (int run = 0; run < 2; ++run) {
+            for (const StepEvents& step : runs[run]) {
+                listed[run] += step.events.size();
+            }
+        }
+        EXPECT_GT(listed[0], 1000U);
+        EXPECT_NEAR(static_cast<double>(listed[0]), static_cast<double>(listed[1]),
+                    0.01 * static_cast<double>(listed[0]));
+        return;
+    }
+    std::size_t compared = 0;
+    for (std::size_t step = 0; step < runs[0].size(); ++step) {
+        ASSERT_EQ(runs[0][step].events.size(), runs[1][step].events.size()) << step;
+        for (std::size_t i = 0; i < runs[0][step].events.size(); ++i) {
+            const ParticleEvent& a = runs[0][step].events[i];
+            const ParticleEvent& b = runs[1][step].events[i];
+            ASSERT_TRUE(a.id == b.id && a.index == b.index && a.type == b.type && a.time == b.time &&
+                        a.position == b.position && a.velocity == b.velocity && a.normal == b.normal &&
+                        a.speed == b.speed && a.body == b.body && a.hit == b.hit && a.lasts == b.lasts &&
+                        a.death == b.death);
+            ++compared;
+        }
+    }
+    EXPECT_GT(compared, 1000U);
+}
+
+RELIEF_INSTANTIATE_GL_TESTS(EventPathsGlTest);
+
+}  // namespace
+}  // namespace relief

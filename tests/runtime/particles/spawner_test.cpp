@@ -1,0 +1,176 @@
+// Births by hits and deaths, in closed form.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "runtime/particles/spawner.h"
+
+namespace relief {
+namespace {
+
+ParticleEvent hitOf(std::uint32_t id, std::uint32_t type, float speed) {
+    ParticleEvent hit;
+    hit.id = id;
+    hit.type = type;
+    hit.hit = true;
+    hit.position = {static_cast<float>(id), 2.0F, 3.0F};
+    hit.normal = {0.0F, 0.0F, 1.0F};
+    hit.velocity = {1.0F, 2.0F, -speed};
+    hit.speed = speed;
+    return hit;
+}
+
+StepEvents stepOf(std::vector<ParticleEvent> events) {
+    StepEvents step;
+    step.events = std::move(events);
+    return step;
+}
+
+TEST(Spawner, AHitMakesWhatItSays) {
+    SpawnSettings settings;
+    settings.type = 1;
+    settings.count_min = settings.count_max = 200;
+    settings.inherit = 0.5F;
+    settings.speed_min = 2.0F;
+    settings.speed_max = 3.0F;
+    settings.kick = 0.25F;
+    settings.cone_degrees = 30.0F;
+    settings.lifetime_min = 0.5F;
+    settings.lifetime_max = 0.75F;
+    Spawner spawner(settings, 4);
+    std::vector<ParticleType> types(2);
+    types[1].radius = 0.125F;
+    std::vector<Birth> births;
+    EXPECT_EQ(spawner.spawn(stepOf({hitOf(7, 0, 4.0F)}), types, 1000, births), 0U);
+    ASSERT_EQ(births.size(), 200U);
+    float widest = 1.0F;
+    float slowest = 10.0F;
+    float fastest = 0.0F;
+    for (const Birth& birth : births) {
+        EXPECT_EQ(birth.position, glm::vec3(7.0F, 2.0F, 3.125F));
+        EXPECT_EQ(birth.type, 1U);
+        EXPECT_EQ(birth.age, 0.0F);
+        EXPECT_TRUE(birth.lifetime >= 0.5F && birth.lifetime <= 0.75F);
+        // Half of the velocity along the surface, (1, 2, 0), and on top 2…3 and a quarter of 4 about the normal.
+        const glm::vec3 thrown = birth.velocity - glm::vec3(0.5F, 1.0F, 0.0F);
+        const float speed = glm::length(thrown);
+        EXPECT_TRUE(speed >= 2.9999F && speed <= 4.0001F) << speed;
+        widest = std::min(widest, thrown.z / speed);
+        slowest = std::min(slowest, speed);
+        fastest = std::max(fastest, speed);
+    }
+    EXPECT_NEAR(widest, std::cos(30.0 * 3.14159265 / 180.0), 0.01);
+    EXPECT_LT(slowest, 3.05F);
+    EXPECT_GT(fastest, 3.95F);
+}
+
+TEST(Spawner, OnlyWhatIsAskedForCounts) {
+    SpawnSettings settings;
+    settings.of = 1;
+    settings.min_speed = 2.0F;
+    settings.count_min = settings.count_max = 3;
+    auto lasting = hitOf(3, 1, 5.0F);
+    lasting.lasts = true;
+    ParticleEvent age;
+    age.type = 1;
+    age.death = true;
+    auto killed = hitOf(5, 1, 1.0F);
+    killed.death = true;
+    const StepEvents step =
+        stepOf({hitOf(0, 0, 5.0F), hitOf(1, 1, 5.0F), hitOf(2, 1, 1.9F), lasting, age, killed});
+    std::vector<Birth> births;
+    Spawner(settings, 1).spawn(step, {}, 1000, births);
+    ASSERT_EQ(births.size(), 3U);
+    EXPECT_EQ(births[0].position.x, 1.0F);
+    births.clear();
+    settings.on = SpawnOn::kDeath;
+    Spawner(settings, 1).spawn(step, {}, 1000, births);
+    EXPECT_EQ(births.size(), 6U) << "one of age and one killed";
+    settings.of.reset();
+    settings.on = SpawnOn::kCollision;
+    settings.min_speed = 0.0F;
+    births.clear();
+    Spawner(settings, 1).spawn(step, {}, 1000, births);
+    EXPECT_EQ(births.size(), 12U);
+}
+
+// Births and refusals are all that were due, whatever the limits; the same seed gives the same.
+TEST(Spawner, NothingIsLostAboveTheLimits) {
+    SpawnSettings settings;
+    settings.count_min = 2;
+    settings.count_max = 6;
+    std::vector<ParticleEvent> hits;
+    for (std::uint32_t i = 0; i < 1000; ++i) {
+        hits.push_back(hitOf(i, 0, 1.0F));
+    }
+    const StepEvents step = stepOf(hits);
+    std::vector<Birth> all;
+    EXPECT_EQ(Spawner(settings, 9).spawn(step, {}, 1'000'000, all), 0U);
+    EXPECT_NEAR(static_cast<double>(all.size()), 4000.0, 200.0);
+    for (const auto& [most, room] : {std::pair(10'000U, 1500U), std::pair(1234U, 50'000U)}) {
+        settings.most = most;
+        std::vector<Birth> some;
+        const std::uint64_t refused = Spawner(settings, 9).spawn(step, {}, room, some);
+        EXPECT_EQ(some.size(), std::min(most, room));
+        EXPECT_EQ(some[77].position, all[77].position);
+        EXPECT_EQ(some[77].velocity, all[77].velocity);
+        EXPECT_GT(refused, 2000U);
+    }
+    settings.most = 10'000;
+    settings.count_max = settings.count_min = 5;
+    std::vector<Birth> some;
+    EXPECT_EQ(Spawner(settings, 9).spawn(step, {}, 4321, some), 5000U - 4321U);
+}
+
+TEST(Spawner, DeathsOfAgeThrowAllRoundOrAlongTheWay) {
+    ParticleEvent age;
+    age.death = true;
+    age.velocity = {3.0F, 0.0F, 0.0F};
+    SpawnSettings settings;
+    settings.on = SpawnOn::kDeath;
+    settings.count_min = settings.count_max = 3000;
+    settings.speed_min = settings.speed_max = 1.0F;
+    settings.inherit = 2.0F;
+    std::vector<Birth> births;
+    Spawner(settings, 2).spawn(stepOf({age}), {}, 10'000, births);
+    glm::vec3 mean{0.0F};
+    for (const Birth& birth : births) {
+        const glm::vec3 thrown = birth.velocity - glm::vec3(6.0F, 0.0F, 0.0F);
+        EXPECT_NEAR(glm::length(thrown), 1.0F, 1e-5F);
+        mean += thrown / 3000.0F;
+    }
+    EXPECT_LT(glm::length(mean), 0.05F);
+    settings.cone_degrees = 0.0F;
+    settings.count_min = settings.count_max = 1;
+    births.clear();
+    Spawner(settings, 2).spawn(stepOf({age}), {}, 10'000, births);
+    EXPECT_LT(glm::length(births[0].velocity - glm::vec3(7.0F, 0.0F, 0.0F)), 1e-6F);
+    age.velocity = {};
+    births.clear();
+    Spawner(settings, 2).spawn(stepOf({age}), {}, 10'000, births);
+    EXPECT_LT(glm::length(births[0].velocity - glm::vec3(0.0F, 1.0F, 0.0F)), 1e-6F);
+}
+
+TEST(Spawner, WrongSettingsAreNamed) {
+    EXPECT_TRUE(Spawner::check({}));
+    const auto refused = [](const char* part, auto change) {
+        SpawnSettings settings;
+        change(settings);
+        const auto checked = Spawner::check(settings);
+        ASSERT_FALSE(checked) << part;
+        EXPECT_EQ(checked.error().code, ErrorCode::kUsage);
+        EXPECT_NE(checked.error().message.find(part), std::string::npos) << checked.error().message;
+    };
+    refused("count", [](SpawnSettings& s) { s.count_min = 2; });
+    refused("count", [](SpawnSettings& s) { s.count_min = s.count_max = 0; });
+    refused("most", [](SpawnSettings& s) { s.most = 0; });
+    refused("lifetime", [](SpawnSettings& s) { s.lifetime_min = 0.0F; });
+    refused("lifetime", [](SpawnSettings& s) { s.lifetime_max = 0.5F; });
+    refused("speed", [](SpawnSettings& s) { s.speed_min = 1.0F; });
+    refused("kick", [](SpawnSettings& s) { s.kick = NAN; });
+    refused("inherit", [](SpawnSettings& s) { s.inherit = -1.0F; });
+    refused("cone", [](SpawnSettings& s) { s.cone_degrees = 181.0F; });
+}
+
+}  // namespace
+}  // namespace relief
