@@ -651,6 +651,11 @@ ReliefField reliefUnion(vec3 p, float radius, bool whole, out int body) {
     ReliefField best = ReliefField(RELIEF_FAR_OUTSIDE, vec3(0.0), -1);
     body = -1;
     for (int b = 0; b < RELIEF_BODIES; ++b) {
+#if defined(RELIEF_MASKS)  // of a step, alone: step_mask.glsl
+        if (!collidesWith(b)) {
+            continue;
+        }
+#endif
         float scale = u_relief_bodies[b].response.x;
         ReliefField field = reliefBodyField(b, reliefBodyNow(b, p), radius, whole);
         if (field.map >= 0 && scale * field.distance < best.distance) {

@@ -10,6 +10,10 @@
 
 uniform highp sampler2D u_position;
 uniform highp sampler2D u_birth;
+#ifdef RELIEF_STRETCH
+uniform highp sampler2D u_second;  // velocities; where u_rate_before is above 0, positions before
+uniform float u_rate_before;
+#endif
 uniform highp usampler2D u_order;  // row by row: the index of the i-th sprite; 0 where there is none
 uniform bool u_ordered;
 uniform int u_width;
@@ -51,6 +55,10 @@ struct Sprite {
     float rotation;
     float cell;      // of the atlas; -1: a round grain
     Grain grain;
+#ifdef RELIEF_STRETCH
+    vec3 tail;       // view space, from the center: where a stretched sprite's other end is
+    bool stretched;
+#endif
 };
 
 // The i-th sprite; false where there is none.
@@ -78,6 +86,12 @@ bool spriteOf(int rank, out Sprite sprite) {
     // A grain's edge falls off over a third of the radius, and over a pixel at least.
     float per_edge = min(1.0 / GRAIN_EDGE, 0.5 * sprite.pixels);
     sprite.grain = Grain(look.color, look.opacity * cover * cover, 1.0, 1.0, per_edge, look.lit > 0.5);
+#ifdef RELIEF_STRETCH
+    vec3 second = texelFetch(u_second, texel, 0).xyz;
+    vec3 velocity = u_rate_before > 0.0 ? (position.xyz - second) * u_rate_before : second;
+    sprite.tail = -look.stretch * (mat3(u_view) * velocity);
+    sprite.stretched = look.stretch > 0.0;
+#endif
     receiveLight(position.xyz, look.size, birth.w, sprite.grain);
     if (sprite.grain.lit && sprite.pixels < GRAIN_FLAT_PIXELS) {
         sprite.grain.color *= grainLight(GRAIN_FLAT_NORMAL, sprite.grain.sun, sprite.grain.sky);

@@ -9,6 +9,9 @@ struct Look {
     vec3 color;      // linear
     float cell;      // of the atlas; -1: a round grain
     float lit;       // 1: the light falls on it, 0: it shines
+#ifdef RELIEF_STRETCH
+    float stretch;   // seconds of its way that it covers
+#endif
 };
 
 // Uniform in [-1, 1), different for every particle and salt.
@@ -31,10 +34,14 @@ Look lookOf(vec4 birth, float now) {
     float left = birth.y - now;
     float part = clamp(age / max(birth.y - birth.x, 1e-6), 0.0, 1.0);
 
+    // The last key at or before this age, or the first.
     int count = int(light.w);
     int low = 0;
-    while (low + 1 < count && texelFetch(u_looks, ivec2(keyTexel(low + 1), row), 0).x <= part) {
-        ++low;
+    for (int end = count; end - low > 1;) {
+        int middle = (low + end) / 2;
+        bool reached = texelFetch(u_looks, ivec2(keyTexel(middle), row), 0).x <= part;
+        low = reached ? middle : low;
+        end = reached ? end : middle;
     }
     int high = min(low + 1, count - 1);
     vec4 before = texelFetch(u_looks, ivec2(keyTexel(low), row), 0);
@@ -51,5 +58,8 @@ Look lookOf(vec4 birth, float now) {
                      texelFetch(u_looks, ivec2(keyTexel(high) + 1, row), 0).rgb, share);
     look.cell = cells.z < 0.0 ? -1.0 : cells.z + min(floor(part * cells.w), cells.w - 1.0);
     look.lit = light.x;
+#ifdef RELIEF_STRETCH
+    look.stretch = texelFetch(u_looks, ivec2(2, row), 0).x;
+#endif
     return look;
 }

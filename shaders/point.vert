@@ -41,6 +41,17 @@ float nearerShare(float size, float distance) {
     return max(1.0 - 0.5 * size / distance, clamp(1.01 * near / distance, 0.05, 1.0));
 }
 
+#ifdef RELIEF_STRETCH
+// Pixels from a sprite's centre to its tail, as far as that is in front of the viewer.
+vec2 tailOf(Sprite sprite) {
+    float near = -u_depth.y / u_depth.x;
+    float share = sprite.tail.z > 0.0 ? min((sprite.distance - 1.01 * near) / sprite.tail.z, 1.0) : 1.0;
+    vec4 head = u_projection * vec4(sprite.center, 1.0);
+    vec4 tail = u_projection * vec4(sprite.center + max(share, 0.0) * sprite.tail, 1.0);
+    return 0.5 * u_target * (tail.xy / tail.w - head.xy / head.w);
+}
+#endif
+
 void main() {
 #ifdef RELIEF_QUADS
     int rank = gl_VertexID / RELIEF_QUAD_VERTICES;
@@ -62,13 +73,28 @@ void main() {
 #if defined(RELIEF_CELLS) || defined(RELIEF_QUADS)
     vec2 turn = vec2(cos(sprite.rotation), sin(sprite.rotation));
 #endif
+#ifdef RELIEF_STRETCH
+    // A cell's right side is the head.
+    vec2 tail = sprite.stretched ? tailOf(sprite) : vec2(0.0);
+    float tail_pixels = length(tail);
+    if (sprite.stretched) {
+        turn = tail_pixels > 0.0 ? -tail / tail_pixels : vec2(1.0, 0.0);
+    }
+#endif
 #ifdef RELIEF_CELLS
     v_cell = vec4(turn, sprite.cell, pixels);
 #endif
 #ifdef RELIEF_QUADS
     vec2 own = vec2(corner == 1 || corner == 2 || corner == 4 ? 1.0 : -1.0, corner == 2 || corner >= 4 ? 1.0 : -1.0);
-    v_at = vec2(turn.x * own.x - turn.y * own.y, turn.y * own.x + turn.x * own.y);
-    gl_Position.xy += v_at * (pixels / u_target) * gl_Position.w;
+    vec2 along = own.x * turn;
+    vec2 across = own.y * vec2(-turn.y, turn.x);
+    v_at = along + across;
+#ifdef RELIEF_STRETCH
+    vec2 offset = (pixels + tail_pixels) * along + pixels * across + tail;
+#else
+    vec2 offset = pixels * v_at;
+#endif
+    gl_Position.xy += offset / u_target * gl_Position.w;
 #else
     gl_PointSize = pixels;
 #endif

@@ -80,6 +80,7 @@ std::string makeConstants() {
     define("STOP", asFloat(OnCollision::kStop));
     define("SLIDE", asFloat(OnCollision::kSlide));
     define("DIE", asFloat(OnCollision::kDie));
+    define("GROUND", kGroundBit);
     define("FREE", asFloat(Contact::kNone));
     define("COLLIDED", asFloat(Contact::kCollided));
     define("CAUGHT", asFloat(Contact::kCaught));

@@ -25,6 +25,9 @@ enum class OnCollision : std::uint8_t {
     kDie = 3,     ///< out of sight at once; its place is free again at the end of its lifetime
 };
 
+/// The bit of the floor in ParticleType::collides; those below it are of bodies.
+inline constexpr int kGroundBit = 8;
+
 /// What the last step did to a particle. The state texture holds kStopped for the floor and kStopped + 1 + b for
 /// body b.
 enum class Contact : std::uint8_t {
@@ -92,7 +95,7 @@ inline constexpr int kCurlPatterns = 128;
 enum class DeformKind : std::uint8_t { kBend = 0, kTwist = 1, kWobble = 2 };
 
 /// Texels before the keys in a row of looks, and texels of a key.
-inline constexpr int kLookHeadTexels = 2;
+inline constexpr int kLookHeadTexels = 3;
 inline constexpr int kLookKeyTexels = 2;
 
 /// Radius of the sun's disc at distance 1, and how far shade of the sky reaches, in longest sides of the collider.

@@ -1,4 +1,5 @@
 // A step among the floor and colliders.
+//!include step_mask.glsl
 //!include collider.glsl
 //!include air.glsl
 //!include step.glsl

@@ -21,6 +21,7 @@ struct ParticleType {
     float drag;       // 1/s
     float behaviour;  // RELIEF_BOUNCE, RELIEF_STOP, RELIEF_SLIDE or RELIEF_DIE
     float loss;       // seconds of life that a collision costs
+    float gravity;    // factor of u_gravity
 };
 
 // A point is inside where distance is negative; then normal is the way out, map the depth map that says so, and body
@@ -49,6 +50,9 @@ vec2 bodyResponse(int body);
 Solid solidOrGround(vec3 p, float radius) {
     Solid deepest = solid(p, radius);
     float above = p.y - radius - u_ground;
+#if defined(RELIEF_MASKS)
+    above = collidesWith(RELIEF_GROUND) ? above : RELIEF_FAR_OUTSIDE;
+#endif
     if (above < deepest.distance) {
         deepest = Solid(above, vec3(0.0, 1.0, 0.0), -1, -1, vec3(0.0));
     }
@@ -78,14 +82,14 @@ void rest(State state) {
 
 // The velocity after gravity, fields and drag. Drag is integrated implicitly, v' = v + dt (g + k (w - v')): it
 // approaches the wind for any dt, while the explicit form overshoots for dt k > 1 and grows without bound for dt k > 2.
-vec3 pushed(vec3 p, vec3 v, float drag) {
-    vec3 acceleration = u_gravity;
+vec3 pushed(vec3 p, vec3 v, ParticleType type) {
+    vec3 acceleration = type.gravity * u_gravity;
     vec3 air = u_wind;
 #if defined(RELIEF_HAS_AIR)
     acceleration += fieldAcceleration(p, v, u_air_time);
     air += airVelocity(p, u_air_time);
 #endif
-    return (v + u_dt * (acceleration + drag * air)) * (1.0 / (1.0 + u_dt * drag));
+    return (v + u_dt * (acceleration + type.drag * air)) * (1.0 / (1.0 + u_dt * type.drag));
 }
 
 // The velocity that a bounce leaves, relative to the surface. v_begin and `relative`, relative too, are those before
@@ -98,7 +102,8 @@ vec3 bounced(vec3 v_begin, vec3 relative, float vn, vec3 along, vec3 n, Particle
     float arrives = min(max(-dot(v_begin, n), 0.0), abs(vn));
     vec3 left = slide * along + (response.x * arrives) * n;
     // A thousandth of what gravity gives in a step is rounding, and would creep.
-    return dot(left, left) > u_still * u_still ? left : vec3(0.0);
+    float still = type.gravity * u_still;
+    return dot(left, left) > still * still ? left : vec3(0.0);
 }
 
 // The reaction (paper, section 3.3.2) to way.met, with v split along the normal n where the step would end:
@@ -144,7 +149,7 @@ void react(State state, Way way, ParticleType type) {
 }
 
 void move(State state, ParticleType type) {
-    Way way = wayOf(state.position, pushed(state.position, state.velocity, type.drag), type.radius);
+    Way way = wayOf(state.position, pushed(state.position, state.velocity, type), type.radius);
     if (way.met.distance < 0.0) {
         react(state, way, type);
     } else {
@@ -156,7 +161,10 @@ ParticleType typeOf(vec4 birth) {
     int type = RELIEF_TYPES == 1 ? 0 : clamp(int(birth.z), 0, RELIEF_TYPES - 1);
     vec4 a = u_types[2 * type];
     vec4 b = u_types[2 * type + 1];
-    return ParticleType(a.x, a.y, a.z, a.w, b.x, b.y, b.z);
+#if defined(RELIEF_MASKS)
+    g_collides = u_collides[type];
+#endif
+    return ParticleType(a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w);
 }
 
 void stepAt(ivec2 texel) {

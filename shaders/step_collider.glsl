@@ -22,6 +22,11 @@ bool insideBefore(vec3 p, float radius, Solid s) {
 #endif
 
 Solid solid(vec3 p, float radius) {
+#if defined(RELIEF_MASKS)
+    if (!collidesWith(0)) {
+        return Solid(RELIEF_FAR_OUTSIDE, vec3(0.0), -1, -1, vec3(0.0));
+    }
+#endif
     ReliefField field = fieldOf(p, radius);
     // Where no map votes nothing is known to be solid.
     return Solid(reliefInside(field) ? field.distance : RELIEF_FAR_OUTSIDE, field.normal, field.map, 0, vec3(0.0));

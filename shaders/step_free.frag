@@ -1,4 +1,5 @@
 // A step with nothing solid but the floor.
+//!include step_mask.glsl
 //!include air.glsl
 //!include step.glsl
 //!include step_still.glsl

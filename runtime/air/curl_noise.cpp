@@ -97,7 +97,8 @@ float curlTime(const CurlNoise& noise, double seconds) {
         return 0.0F;
     }
     const double period = kCurlPatterns * static_cast<double>(noise.scale) / static_cast<double>(noise.drift);
-    return static_cast<float>(std::fmod(seconds, period));
+    const double rest = std::fmod(seconds, period);
+    return static_cast<float>(rest < 0.0 ? rest + period : rest);
 }
 
 glm::vec3 curlVelocity(const CurlNoise& noise, const glm::vec3& p, float t) {

@@ -59,6 +59,19 @@ void addOutputs(CLI::App& app, SimCommand& command) {
            "--video", player.video,
            "Write the frames as a video (.mp4, .mkv, .mov or .webm) in the scene's time; needs ffmpeg")
         ->option_text("OUT.mp4");
+    app.add_option("--first-frame", player.overrides.first_frame,
+                   "Step of the first frame of --frames, --dump-frames and --video, instead of the scene's "
+                   "render.first; 0: before the first step")
+        ->option_text("N")
+        ->transform(wholeNumber(0, kStepsMax));
+    app.add_option("--last-frame", player.overrides.last_frame,
+                   "Step of the last frame, instead of the scene's render.last; the run goes on to its end")
+        ->option_text("N")
+        ->transform(wholeNumber(0, kStepsMax));
+    app.add_option("--frame-every", player.overrides.frame_every,
+                   "Steps from frame to frame, instead of the scene's render.every")
+        ->option_text("N")
+        ->transform(wholeNumber(1, kStepsMax));
     app.add_option("--stats", player.stats,
                    "Write statistics while playing, a line of JSON each; - for standard output")
         ->option_text("OUT.jsonl");
@@ -95,6 +108,17 @@ Result<void> checkTogether(const SimCommand& command) {
     }
     if (command.size && player.frames.empty() && player.video.empty()) {
         return usage("--size does nothing without --frames or --video; add --frames DIR");
+    }
+    const SceneOverrides& scene = player.overrides;
+    const bool frames = !(player.frames.empty() && player.video.empty() && player.dump_frames.empty());
+    if ((scene.first_frame || scene.last_frame || scene.frame_every) && !frames) {
+        return usage(std::string(scene.first_frame  ? "--first-frame"
+                                 : scene.last_frame ? "--last-frame"
+                                                    : "--frame-every") +
+                     " does nothing without --frames, --dump-frames or --video; add --frames DIR");
+    }
+    if (scene.first_frame && scene.last_frame && *scene.first_frame > *scene.last_frame) {
+        return usage("--first-frame comes after --last-frame; exchange them");
     }
     if (player.stats_every && player.stats.empty()) {
         return usage("--stats-every does nothing without --stats; add --stats OUT.jsonl");

@@ -247,13 +247,16 @@ glm::vec3 Emitter::aimed(const glm::vec3& normal) {
     return speed * direction;
 }
 
-std::uint64_t emitAll(std::span<Emitter> emitters, double dt, std::uint64_t room,
-                      std::vector<Birth>& births) {
+std::uint64_t emitAll(std::span<Emitter> emitters, double dt, std::uint64_t room, std::vector<Birth>& births,
+                      std::span<const EmitterMotion> motions, double time) {
     std::uint64_t refused = 0;
-    for (Emitter& emitter : emitters) {
+    for (std::size_t i = 0; i < emitters.size(); ++i) {
         const std::size_t before = births.size();
-        refused += emitter.emit(dt, room, births);
+        refused += emitters[i].emit(dt, room, births);
         room -= births.size() - before;
+        if (i < motions.size()) {
+            carry(motions[i], time, std::span(births).subspan(before));
+        }
     }
     return refused;
 }

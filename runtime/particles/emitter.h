@@ -11,21 +11,12 @@
 #include <vector>
 
 #include "formats/base/result.h"
+#include "runtime/particles/birth.h"
+#include "runtime/particles/emitter_motion.h"
 #include "runtime/particles/point_list.h"
 #include "runtime/particles/random.h"
 
 namespace relief {
-
-/// One particle to be born.
-struct Birth {
-    glm::vec3 position{0.0F};  ///< object units
-    glm::vec3 velocity{0.0F};  ///< object units a second
-    float lifetime = 1.0F;     ///< seconds, > 0
-    std::uint32_t type = 0;    ///< carried along for the renderer, below 2^24
-    /// Seconds that it has lived already when it enters the next step, ≥ 0. The particle system moves it on
-    /// by as much, so that those born within one step do not all start from one place.
-    float age = 0.0F;
-};
 
 /// Where births take place. All are uniform: in volume, over the area, or among the points.
 enum class EmitterShape : std::uint8_t {
@@ -116,7 +107,10 @@ class Emitter {
 };
 
 /// emit() of each in turn: where there is too little room, the earlier ones take it.
+/// \param motions  of as many, or none: they carry the births along, at once.
+/// \param time     of the beginning of these `dt` seconds, on the clock of the motions.
 /// \return the sum.
-std::uint64_t emitAll(std::span<Emitter> emitters, double dt, std::uint64_t room, std::vector<Birth>& births);
+std::uint64_t emitAll(std::span<Emitter> emitters, double dt, std::uint64_t room, std::vector<Birth>& births,
+                      std::span<const EmitterMotion> motions = {}, double time = 0.0);
 
 }  // namespace relief

@@ -44,7 +44,12 @@ Result<ParticleSystem> ParticleSystem::create(const ParticleSystemOptions& optio
         return fail(ErrorCode::kUsage, "epoch_seconds must be above 0 and at most 65536");
     }
     ParticleSystem system(options.capacity);
+    if (!std::isfinite(options.start_time)) {
+        return fail(ErrorCode::kUsage, "start_time must be finite");
+    }
     system.epoch_seconds_ = options.epoch_seconds;
+    system.time_ = options.start_time;
+    system.epoch_ = options.start_time;
     system.integrator_ = options.integrator;
     system.path_ = RELIEF_TRY(chosenPath(options.path));
     system.width_ = std::min(options.capacity, kStateWidth);
@@ -115,6 +120,8 @@ StepFeatures ParticleSystem::featuresFor(const ColliderTextures* collider) const
             sweep_ > 0.0F,
             radius && collider != nullptr,
             path_ == StepPath::kCompute,
+            std::any_of(types_.begin(), types_.end(),
+                        [](const ParticleType& t) { return t.collides != kCollidesWithAll; }),
             static_cast<int>(types_.size()),
             events_ != nullptr};
 }
@@ -149,11 +156,12 @@ Result<void> ParticleSystem::setTypes(std::span<const ParticleType> types) {
     const auto share = [](float value) { return value >= 0.0F && value <= 1.0F; };
     for (const ParticleType& type : types) {
         if (!(type.mass >= kParticleMassMin && type.radius >= 0.0F && share(type.restitution) &&
-              share(type.friction) && type.friction_threshold >= 0.0F && type.lifetime_loss >= 0.0F)) {
+              std::isfinite(type.gravity) && type.collides <= kCollidesWithAll && share(type.friction) &&
+              type.friction_threshold >= 0.0F && type.lifetime_loss >= 0.0F)) {
             return fail(ErrorCode::kUsage,
                         "a type of particles needs a mass of at least 1e-15, a radius, friction threshold "
-                        "and loss of "
-                        "lifetime of at least 0, and restitution and friction from 0 to 1");
+                        "and loss of lifetime of at least 0, restitution and friction from 0 to 1, a finite "
+                        "gravity, and bits of kCollidesWithAll alone");
         }
     }
     types_.assign(types.begin(), types.end());
@@ -288,9 +296,11 @@ std::size_t ParticleSystem::spawn(std::span<const Birth> births) {
         const float born = now - birth.age;
         const float death = born + birth.lifetime;
         // The same free flight as a step's, for as long as the particle has lived.
-        const float drag = dragRate(forces_, types_[std::min<std::size_t>(birth.type, types_.size() - 1)]);
-        const glm::vec3 velocity = (birth.velocity + birth.age * (forces_.gravity + drag * wind)) *
-                                   (1.0F / (1.0F + birth.age * drag));
+        const ParticleType& type = types_[std::min<std::size_t>(birth.type, types_.size() - 1)];
+        const float drag = dragRate(forces_, type);
+        const glm::vec3 velocity =
+            (birth.velocity + birth.age * (type.gravity * forces_.gravity + drag * wind)) *
+            (1.0F / (1.0F + birth.age * drag));
         const auto id = static_cast<std::uint32_t>(born_ + accepted);
         if (events_) {
             replaced_.push_back({steps_, *index, ids_[*index]});

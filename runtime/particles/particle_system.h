@@ -58,6 +58,7 @@ struct ParticleSystemOptions {
     Integrator integrator = Integrator::kEuler;
     double epoch_seconds = 4096.0;  ///< how far the GPU's clock runs before it is set back
     StepPath path = StepPath::kAuto;
+    double start_time = 0.0;  ///< what time() is at first, seconds; also below 0, where a run is warmed up
 };
 
 struct ParticleCounts {
@@ -108,9 +109,9 @@ class ParticleSystem {
     /// One type of particles, without radius, that bounces.
     void setCollision(const Collision& collision);
     /// The types of particles: Birth::type is an index here, and the last one for what lies beyond. Compiles
-    /// the step where their number changes, or the first gets a radius.
+    /// the step where their number changes, or the first gets a radius or collides with less than all.
     /// Errors: kUsage (none or more than kParticleTypesMax; a mass below kParticleMassMin, a negative radius, a
-    /// share outside 0…1), kFailure (the driver's compiler).
+    /// share outside 0…1, a gravity that is not finite, unknown bits), kFailure (the driver's compiler).
     [[nodiscard]] Result<void> setTypes(std::span<const ParticleType> types);
     /// Above 0 a step tests its way in pieces no longer than this, world units, and never ends inside what it
     /// did not begin in: nothing crosses a body at rest that is thicker than this. What moves farther than
@@ -155,7 +156,7 @@ class ParticleSystem {
     /// Places left for spawn().
     [[nodiscard]] std::uint32_t room() const { return allocator_.capacity() - allocator_.liveCount(); }
     [[nodiscard]] ParticleCounts counts() const;
-    [[nodiscard]] double time() const { return time_; }  ///< seconds since the beginning
+    [[nodiscard]] double time() const { return time_; }  ///< seconds since time 0
     [[nodiscard]] bool isLive(std::uint32_t index) const { return allocator_.isLive(index); }
 
     // For renderers: particle i < extent() lies at texel (i mod width, i / width). Births since the last step

@@ -2,20 +2,27 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "shaders/shader_constants.h"
 
 namespace relief {
 
+/// Bits of ParticleType::collides: body b of the collider, of which a single one is body 0, has bit b.
+inline constexpr std::uint32_t kCollidesWithGround = 1U << kGroundBit;
+inline constexpr std::uint32_t kCollidesWithAll = 2 * kCollidesWithGround - 1;
+
 struct ParticleType {
-    float mass = 1.0F;    ///< divides the drag; at least kParticleMassMin
-    float radius = 0.0F;  ///< of collision, world units, ≥ 0
+    float gravity = 1.0F;  ///< factor of Forces::gravity, finite; below 0 it rises
+    float mass = 1.0F;     ///< divides the drag; at least kParticleMassMin
+    float radius = 0.0F;   ///< of collision, world units, ≥ 0
     /// ε, 0…1: how much comes back of the normal speed at the beginning of the step.
     float restitution = 0.0F;
     float friction = 0.0F;            ///< ν, 0…1: how much of the tangential speed is lost
     float friction_threshold = 0.0F;  ///< no friction below this speed, world units a second
     OnCollision on_collision = OnCollision::kBounce;
-    float lifetime_loss = 0.0F;  ///< seconds of life that each step in contact costs, ≥ 0
+    float lifetime_loss = 0.0F;                 ///< seconds of life that each step in contact costs, ≥ 0
+    std::uint32_t collides = kCollidesWithAll;  ///< what it does not go through: a sum of bits
 };
 
 inline constexpr std::size_t kParticleTypesMax = 16;

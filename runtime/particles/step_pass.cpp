@@ -22,6 +22,7 @@ Result<StepPass> StepPass::create(const StepFeatures& features) {
     defineIf(features.sweep, "RELIEF_SWEEP " + std::to_string(kSweepPieces));
     defineIf(features.radius, "RELIEF_RADIUS");
     defineIf(features.events, "RELIEF_EVENTS");
+    defineIf(features.masks, "RELIEF_MASKS");
     if (features.air != nullptr) {
         defines += features.air->defines();
     }
@@ -46,6 +47,7 @@ Result<StepPass> StepPass::create(const StepFeatures& features) {
     pass.sweep_ = at("u_sweep");
     pass.air_time_ = at("u_air_time");
     pass.types_ = at("u_types");
+    pass.collides_ = at("u_collides");
     pass.size_ = at("u_size");
     glUseProgram(pass.program_.name());
     glUniform1i(at("u_position"), kPositionUnit);
@@ -79,6 +81,7 @@ void StepPass::use(const Values& values) const {
     glUniform1f(sweep_, values.sweep);
     glUniform1f(air_time_, values.air_time);
     std::array<float, 8 * kParticleTypesMax> types{};
+    std::array<GLint, kParticleTypesMax> collides{};
     for (std::size_t i = 0; i < values.types.size(); ++i) {
         const ParticleType& type = values.types[i];
         const std::array<float, 8> row{type.radius,
@@ -88,10 +91,14 @@ void StepPass::use(const Values& values) const {
                                        dragRate(forces, type),
                                        static_cast<float>(type.on_collision),
                                        type.lifetime_loss,
-                                       0.0F};
+                                       type.gravity};
+        collides[i] = static_cast<GLint>(type.collides);
         std::copy(row.begin(), row.end(), types.begin() + static_cast<std::ptrdiff_t>(8 * i));
     }
     glUniform4fv(types_, 2 * features_.types, types.data());
+    if (features_.masks) {
+        glUniform1iv(collides_, features_.types, collides.data());
+    }
 }
 
 void StepPass::dispatch(std::uint32_t width, std::uint32_t rows) const {

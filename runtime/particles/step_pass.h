@@ -30,6 +30,7 @@ struct StepFeatures {
     bool sweep = false;
     bool radius = false;   ///< some type has a radius
     bool compute = false;  ///< the program is a compute shader: dispatch()
+    bool masks = false;    ///< some type does not collide with all
     int types = 1;
     bool events = false;  ///< writes what happened, too (shaders/step_event.glsl)
     friend bool operator==(const StepFeatures&, const StepFeatures&) = default;
@@ -73,7 +74,7 @@ class StepPass {
     StepFeatures features_;
     GlProgram program_;
     GLint now_ = -1, dt_ = -1, rate_before_ = -1, gravity_ = -1, wind_ = -1, still_ = -1, ground_ = -1,
-          sweep_ = -1, air_time_ = -1, types_ = -1, size_ = -1;
+          sweep_ = -1, air_time_ = -1, types_ = -1, collides_ = -1, size_ = -1;
 };
 
 }  // namespace relief

@@ -41,7 +41,7 @@ std::string lookProblem(const ParticleLook& look) {
     }
     constexpr float kHuge = 1e30F;
     bool good = within(look.turn, 0.0F, kHuge) && within(look.spin, 0.0F, kHuge) &&
-                within(look.fade_in.value_or(0.0F), 0.0F, kHuge) &&
+                within(look.stretch, 0.0F, kHuge) && within(look.fade_in.value_or(0.0F), 0.0F, kHuge) &&
                 within(look.fade_out.value_or(0.0F), 0.0F, kHuge);
     for (const auto& key : look.size) {
         good = good && within(key.value, 0.0F, kHuge);
@@ -73,12 +73,8 @@ void addAges(const AgeTrack<T>& track, std::vector<float>& ages) {
     }
 }
 
-void packRow(const ParticleLook& look, const LookDefaults& defaults, glm::vec4* row) {
-    AgeTrack<glm::vec3> color = look.color;
-    for (AgeKey<glm::vec3>& key : color) {
-        key.value = linearColor(key.value);
-    }
-    const glm::vec3 plain = linearColor(defaults.color);
+/// The ages that any track has a key at, rising; at least one.
+std::vector<float> agesOf(const ParticleLook& look) {
     std::vector<float> ages;
     addAges(look.size, ages);
     addAges(look.color, ages);
@@ -89,6 +85,16 @@ void packRow(const ParticleLook& look, const LookDefaults& defaults, glm::vec4* 
     if (ages.empty()) {
         ages.push_back(0.0F);
     }
+    return ages;
+}
+
+void packRow(const ParticleLook& look, const LookDefaults& defaults, std::span<const float> ages,
+             glm::vec4* row) {
+    AgeTrack<glm::vec3> color = look.color;
+    for (AgeKey<glm::vec3>& key : color) {
+        key.value = linearColor(key.value);
+    }
+    const glm::vec3 plain = linearColor(defaults.color);
     row[0] = {look.turn, look.spin, -1.0F, 0.0F};
     if (look.cell_first) {
         row[0].z = static_cast<float>(*look.cell_first);
@@ -96,6 +102,7 @@ void packRow(const ParticleLook& look, const LookDefaults& defaults, glm::vec4* 
     }
     row[1] = {look.lit ? 1.0F : 0.0F, look.fade_in.value_or(defaults.fade_in),
               look.fade_out.value_or(defaults.fade_out), static_cast<float>(ages.size())};
+    row[2] = {look.stretch, 0.0F, 0.0F, 0.0F};
     for (std::size_t k = 0; k < ages.size(); ++k) {
         glm::vec4* const key = row + kLookHeadTexels + kLookKeyTexels * k;
         key[0] = {ages[k], valueAt(look.size, ages[k], defaults.size),
@@ -106,7 +113,7 @@ void packRow(const ParticleLook& look, const LookDefaults& defaults, glm::vec4* 
 
 }  // namespace
 
-Result<std::vector<glm::vec4>> packLooks(std::span<const ParticleLook> looks, const LookDefaults& defaults) {
+Result<PackedLooks> packLooks(std::span<const ParticleLook> looks, const LookDefaults& defaults) {
     if (looks.size() > kLooksMax) {
         return fail(ErrorCode::kUsage, std::to_string(looks.size()) +
                                            " looks of particles are more than the " +
@@ -117,12 +124,19 @@ Result<std::vector<glm::vec4>> packLooks(std::span<const ParticleLook> looks, co
             return fail(ErrorCode::kUsage, "the look of particle type " + std::to_string(i) + ": " + problem);
         }
     }
-    const std::size_t rows = std::max<std::size_t>(looks.size(), 1);
-    std::vector<glm::vec4> texels(rows * kLookTexels, glm::vec4(0.0F));
-    for (std::size_t i = 0; i < rows; ++i) {
-        packRow(looks.empty() ? ParticleLook{} : looks[i], defaults, &texels[i * kLookTexels]);
+    const std::vector<ParticleLook> plain(looks.empty() ? 1 : 0);
+    const std::span<const ParticleLook> rows = looks.empty() ? std::span<const ParticleLook>(plain) : looks;
+    std::vector<std::vector<float>> ages;
+    PackedLooks packed;
+    for (const ParticleLook& look : rows) {
+        ages.push_back(agesOf(look));
+        packed.width = std::max(packed.width, kLookHeadTexels + kLookKeyTexels * ages.back().size());
     }
-    return texels;
+    packed.texels.resize(rows.size() * packed.width, glm::vec4(0.0F));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        packRow(rows[i], defaults, ages[i], &packed.texels[i * packed.width]);
+    }
+    return packed;
 }
 
 }  // namespace relief

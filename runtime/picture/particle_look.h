@@ -3,8 +3,11 @@
 //
 //     row = type     texel 0            turn, spin, first cell (-1: a round grain), number of cells
 //                    texel 1            lit, fade in, fade out, number of keys
-//                    texels 2 + 2k      age, size, opacity, rotation of key k
-//                    texels 3 + 2k      linear colour of key k
+//                    texel 2            stretch
+//                    texels 3 + 2k      age, size, opacity, rotation of key k
+//                    texels 4 + 2k      linear colour of key k
+//
+// Rows are as long as the longest needs.
 //
 // The tracks of a look may have keys at different ages: a row has a key wherever a track has one, with the
 // other tracks' values there, which changes nothing of straight lines.
@@ -40,6 +43,9 @@ struct ParticleLook {
     AgeTrack<float> rotation;   ///< radians, anticlockwise on the picture; empty: 0
     float turn = 0.0F;  ///< radians, ≥ 0: each particle starts turned by its own angle within ± turn
     float spin = 0.0F;  ///< radians a second, ≥ 0: each turns at its own speed within ± spin
+    /// Seconds, ≥ 0. Above 0 a sprite reaches along its way from where it is back to where it was so long ago at its present
+    /// velocity, as in a picture exposed so long; rotation, turn and spin then do nothing. For quads alone.
+    float stretch = 0.0F;
     /// The cells of the atlas played from birth to death, counted row by row from the top left; nullopt: a
     /// round grain.
     std::optional<std::uint32_t> cell_first;
@@ -62,9 +68,8 @@ struct LookDefaults {
 };
 
 inline constexpr std::size_t kLooksMax = 16;
-inline constexpr std::size_t kLookKeysMax = 8;  ///< of one track
-/// Texels of a row: the head, and those of a key for each age that any of the four tracks can have.
-inline constexpr std::size_t kLookTexels = kLookHeadTexels + kLookKeyTexels * 4 * kLookKeysMax;
+/// Of one track. Texels of a row with all four tracks full are no more than OpenGL ES 3.0 gives a texture: 2048.
+inline constexpr std::size_t kLookKeysMax = 255;
 
 /// A track at an age; `otherwise` where it is empty.
 template <class T>
@@ -85,9 +90,14 @@ template <class T>
     return (1.0F - share) * low.value + share * high.value;
 }
 
-/// The rows above, kLookTexels texels each; one row of the defaults if there are no looks.
+/// The rows above; one row of the defaults if there are no looks.
+struct PackedLooks {
+    std::size_t width = 0;  ///< texels of a row
+    std::vector<glm::vec4> texels;
+    friend bool operator==(const PackedLooks&, const PackedLooks&) = default;
+};
 /// Errors: kUsage (too many looks or keys, ages that do not rise or leave 0…1, values out of range).
-[[nodiscard]] Result<std::vector<glm::vec4>> packLooks(std::span<const ParticleLook> looks,
-                                                       const LookDefaults& defaults);
+[[nodiscard]] Result<PackedLooks> packLooks(std::span<const ParticleLook> looks,
+                                            const LookDefaults& defaults);
 
 }  // namespace relief

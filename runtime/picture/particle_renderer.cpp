@@ -14,8 +14,10 @@ namespace {
 // Sampler k of the program is unit k.
 constexpr std::array<const char*, 6> kSamplers{"u_position", "u_birth", "u_looks",
                                                "u_order",    "u_atlas", "u_behind"};
+// The atlas is behind a program of cells alone, and velocities are of stretched ones alone.
 constexpr int kLightUnit = kSamplers.size();  // of two
-static_assert(kLightUnit + 2 <= PassState::kUnits);
+constexpr int kSecondUnit = kLightUnit + 2;
+static_assert(kSecondUnit + 1 <= PassState::kUnits);
 
 // A smaller sprite would miss the centres of most pixels.
 constexpr float kPixelsMin = 1.5F;
@@ -23,6 +25,11 @@ constexpr float kPixelsMin = 1.5F;
 bool anyLit(const ParticleStyle& style) {
     return style.looks.empty() || std::any_of(style.looks.begin(), style.looks.end(),
                                               [](const ParticleLook& look) { return look.lit; });
+}
+
+bool anyStretched(const ParticleStyle& style) {
+    return std::any_of(style.looks.begin(), style.looks.end(),
+                       [](const ParticleLook& look) { return look.stretch > 0.0F; });
 }
 
 std::uint32_t spriteCount(const ParticleSystem& particles, const ParticleOrder& order) {
@@ -56,6 +63,9 @@ void setUniforms(const GlProgram& program, const ParticleSystem& particles, cons
         glUniform2i(at("u_cells"), style.atlas->columns(), style.atlas->rows());
         glUniform1f(at("u_levels_max"), static_cast<float>(style.atlas->lastLevel()));
     }
+    if (anyStretched(style)) {
+        glUniform1f(at("u_rate_before"), particles.rateBefore());
+    }
 }
 
 }  // namespace
@@ -83,15 +93,19 @@ Result<ParticleRenderer> ParticleRenderer::create(const std::optional<ColliderVi
 Result<const GlProgram*> ParticleRenderer::programFor(const ParticleStyle& style) {
     const bool quads = style.sprite == Sprite::kQuad;
     const bool cells = style.atlas != nullptr;
-    GlProgram& program = programs_[(quads ? 1U : 0U) + (cells ? 2U : 0U)];
+    const bool stretched = quads && anyStretched(style);
+    GlProgram& program = programs_[(quads ? 1U : 0U) + (cells ? 2U : 0U) + (stretched ? 4U : 0U)];
     if (!program) {
-        const std::string defines = std::string(light_ ? "#define RELIEF_LIT 1\n" : "") +
-                                    (quads ? "#define RELIEF_QUADS 1\n" : "") +
-                                    (cells ? "#define RELIEF_CELLS 1\n" : "");
+        const std::string defines =
+            std::string(light_ ? "#define RELIEF_LIT 1\n" : "") + (quads ? "#define RELIEF_QUADS 1\n" : "") +
+            (cells ? "#define RELIEF_CELLS 1\n" : "") + (stretched ? "#define RELIEF_STRETCH 1\n" : "");
         program = RELIEF_TRY(makeProgram("point.vert", "point.frag", defines));
         glUseProgram(program.name());
         for (std::size_t unit = 0; unit < kSamplers.size(); ++unit) {
             glUniform1i(uniformLocation(program, kSamplers[unit]), static_cast<GLint>(unit));
+        }
+        if (stretched) {
+            glUniform1i(uniformLocation(program, "u_second"), kSecondUnit);
         }
         if (light_) {
             light_->attach(program, kLightUnit);
@@ -106,9 +120,9 @@ Result<void> ParticleRenderer::uploadLooks(const ParticleStyle& style) {
     if (!looks_ || packed != packed_) {
         forgetGlErrors();
         packed_ = std::move(packed);
-        looks_ = makeTexture2D(GL_RGBA32F, static_cast<GLsizei>(kLookTexels),
-                               static_cast<GLsizei>(packed_.size() / kLookTexels), GL_RGBA, GL_FLOAT,
-                               packed_.data());
+        looks_ = makeTexture2D(GL_RGBA32F, static_cast<GLsizei>(packed_.width),
+                               static_cast<GLsizei>(packed_.texels.size() / packed_.width), GL_RGBA, GL_FLOAT,
+                               packed_.texels.data());
         if (auto done = checkAllocated("the looks of the particles", "choose fewer types"); !done) {
             looks_ = {};
             return done;
@@ -132,6 +146,9 @@ void ParticleRenderer::bindTextures(const ParticleSystem& particles, const Parti
     if (light_) {
         light_->bind(kLightUnit);
     }
+    if (anyStretched(style)) {
+        useTexture(kSecondUnit, particles.secondState());
+    }
 }
 
 Result<void> ParticleRenderer::draw(const ParticleSystem& particles, const CameraMatrices& camera,
@@ -139,6 +156,9 @@ Result<void> ParticleRenderer::draw(const ParticleSystem& particles, const Camer
                                     const ParticleOrder& order, const GlTexture* behind) {
     if (!(style.soft >= 0.0F && style.soft < 1e30F)) {
         return fail(ErrorCode::kUsage, "the soft edge of particles is a distance, 0 or more");
+    }
+    if (style.sprite == Sprite::kPoint && anyStretched(style)) {
+        return fail(ErrorCode::kUsage, "points cannot be stretched; choose sprites that are quads");
     }
     const PassState state;
     RELIEF_TRY(uploadLooks(style));

@@ -22,7 +22,7 @@ namespace relief {
 enum class Sprite : std::uint8_t {
     kPoint,  ///< one vertex, but no larger than the GL's points, and cut off where its centre leaves the
              ///< picture
-    kQuad,   ///< six vertices, of any size
+    kQuad,   ///< six vertices, of any size, and stretched where a look says so
 };
 
 enum class Blend : std::uint8_t {
@@ -64,7 +64,7 @@ class ParticleRenderer {
     /// \param behind  what style.soft compares with: window depths of a picture by the same camera and of the
     ///                target's size, not attached to the target, such as ColliderRenderer::depth(). Null:
     ///                style.soft has no effect.
-    /// Errors: kUsage (looks, see packLooks; soft), kUnsupported, kFailure (the driver's compiler), kLimit (no room for
+    /// Errors: kUsage (looks, see packLooks; a stretched look of points; soft), kUnsupported, kFailure (the driver's compiler), kLimit (no room for
     /// the light among the collider).
     Result<void> draw(const ParticleSystem& particles, const CameraMatrices& camera,
                       const ParticleStyle& style, const RenderTarget& target, const ParticleOrder& order = {},
@@ -84,12 +84,12 @@ class ParticleRenderer {
                       const GlTexture* behind) const;
 
     std::optional<ColliderLight> light_;
-    std::array<GlProgram, 4> programs_;  // points, quads; both of an atlas
+    std::array<GlProgram, 8> programs_;  // points or quads, of an atlas, stretched
     GlVertexArray no_attributes_;
     GlTexture no_order_;
     GlTexture nothing_;  // stands for a texture that a draw does without
     GlTexture looks_;
-    std::vector<glm::vec4> packed_;  // what looks_ holds
+    PackedLooks packed_;  // what looks_ holds
 };
 
 }  // namespace relief

@@ -48,8 +48,8 @@ class Run {
           stats_every_(options.stats_every.value_or(scene_.render.every)) {}
 
     Result<void> play() {
-        if (scene_.steps == 0 && outputs_.hasFrames()) {
-            RELIEF_TRY(afterStretch());  // the only frame
+        if (outputs_.hasFrames() && frameDue(scene_, 0)) {
+            RELIEF_TRY(afterStretch());
         }
         while (step_ < scene_.steps) {
             RELIEF_TRY(playStretch(stretchEnd()));
@@ -76,9 +76,12 @@ class Run {
   private:
     /// The step that the next stretch ends with: at a frame, if not before.
     [[nodiscard]] std::uint32_t stretchEnd() const {
-        const std::uint32_t every = scene_.render.every;
-        const std::uint32_t next_frame = outputs_.hasFrames() ? step_ + every - step_ % every : scene_.steps;
-        return std::min({scene_.steps, next_frame, step_ + at_once_});
+        std::uint32_t end = step_ + 1;
+        const std::uint32_t most = std::min(scene_.steps, step_ + at_once_);
+        while (end < most && !(outputs_.hasFrames() && frameDue(scene_, end))) {
+            ++end;
+        }
+        return end;
     }
 
     /// Steps as far as `end`, waits for them, and measures.
@@ -119,9 +122,9 @@ class Run {
         if (options_.progress) {
             options_.progress(step_, scene_.steps);
         }
-        const bool due = step_ % scene_.render.every == 0 || step_ == scene_.steps;
-        return due && outputs_.hasFrames() ? outputs_.writeFrame(simulation_.particles(), report_)
-                                           : Result<void>{};
+        return frameDue(scene_, step_) && outputs_.hasFrames()
+                   ? outputs_.writeFrame(simulation_.particles(), report_)
+                   : Result<void>{};
     }
 
     const PlayerOptions& options_;

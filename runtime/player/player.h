@@ -6,7 +6,7 @@
 
 namespace relief {
 
-/// Frames, of every kind, are written after every scene.render.every steps and after the last one.
+/// Frames, of every kind, are written after the steps that frameDue() of scene.h names.
 /// Fails as loadAll, makeEmitters, GlContext, Simulation and Outputs do; a failed frame or dump ends the run.
 [[nodiscard]] Result<PlayerReport> play(const PlayerOptions& options);
 

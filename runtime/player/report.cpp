@@ -35,6 +35,19 @@ void addPlace(const SceneEmitter& emitter, Json& json) {
     }
 }
 
+void addPose(const Pose& pose, Json& json) {
+    json["position"] = jsonVector(pose.position);
+    const glm::vec3 axis = glm::axis(pose.rotation);
+    json["axis"] = jsonVector(axis);
+    json["angle"] = jsonNumber(glm::degrees(glm::angle(pose.rotation)));
+}
+
+Json keyJson(const PoseKey& key) {
+    Json json{{"time", key.time}};
+    addPose(key.pose, json);
+    return json;
+}
+
 Json emitterSettings(const SceneEmitter& emitter) {
     Json json;
     addPlace(emitter, json);
@@ -61,6 +74,15 @@ Json emitterSettings(const SceneEmitter& emitter) {
     json["type"] = emitter.type;
     json["seed"] = emitter.seed;
     json["spread"] = emitter.spread;
+    if (emitter.attach) {
+        json["attach"] = *emitter.attach;
+    }
+    for (const PoseKey& key : emitter.keys) {
+        json["key"].push_back(keyJson(key));
+    }
+    if (emitter.moves()) {
+        json["inherit"] = jsonNumber(emitter.inherit);
+    }
     return json;
 }
 
@@ -94,6 +116,7 @@ Json lookJson(const ParticleLook& look) {
     add("rotation", look.rotation);
     json["turn"] = jsonNumber(look.turn);
     json["spin"] = jsonNumber(look.spin);
+    json["stretch"] = jsonNumber(look.stretch);
     if (look.cell_first) {
         json["cell"] = {*look.cell_first, look.cell_last};
     }
@@ -104,15 +127,30 @@ Json lookJson(const ParticleLook& look) {
     return json;
 }
 
-Json physicsSettings(const ParticleType& type) {
+Json collidesSettings(const ParticleType& type, const Scene& scene) {
+    Json json = Json::array();
+    for (std::size_t i = 0; i < scene.colliders.size(); ++i) {
+        if ((type.collides >> i & 1U) != 0) {
+            json.push_back(i);
+        }
+    }
+    if (scene.ground.enabled && (type.collides & kCollidesWithGround) != 0) {
+        json.push_back("ground");
+    }
+    return json;
+}
+
+Json physicsSettings(const ParticleType& type, const Scene& scene) {
     static constexpr const char* kOnCollision[] = {"bounce", "stop", "slide", "die"};
-    return {{"mass", jsonNumber(type.mass)},
+    return {{"gravity", jsonNumber(type.gravity)},
+            {"mass", jsonNumber(type.mass)},
             {"radius", jsonNumber(type.radius)},
             {"restitution", jsonNumber(type.restitution)},
             {"friction", jsonNumber(type.friction)},
             {"friction_threshold", jsonNumber(type.friction_threshold)},
             {"on_collision", kOnCollision[static_cast<std::size_t>(type.on_collision)]},
-            {"lifetime_loss", jsonNumber(type.lifetime_loss)}};
+            {"lifetime_loss", jsonNumber(type.lifetime_loss)},
+            {"collides", collidesSettings(type, scene)}};
 }
 
 void addPictures(const Scene& scene, Json& json) {
@@ -132,7 +170,7 @@ void addPictures(const Scene& scene, Json& json) {
         if (!scene.type_names[i].empty()) {
             one["name"] = scene.type_names[i];
         }
-        one.update(physicsSettings(scene.types[i]));
+        one.update(physicsSettings(scene.types[i], scene));
         json["type"].push_back(one);
     }
     if (scene.camera.keys.empty()) {
@@ -147,13 +185,6 @@ void addPictures(const Scene& scene, Json& json) {
                                  {"target", jsonVector(key.target.value_or(*scene.camera.target))},
                                  {"fov", jsonNumber(key.fov.value_or(scene.camera.fov))}});
     }
-}
-
-void addPose(const Pose& pose, Json& json) {
-    json["position"] = jsonVector(pose.position);
-    const glm::vec3 axis = glm::axis(pose.rotation);
-    json["axis"] = jsonVector(axis);
-    json["angle"] = jsonNumber(glm::degrees(glm::angle(pose.rotation)));
 }
 
 Json colliderSettings(const SceneCollider& collider) {
@@ -174,10 +205,8 @@ Json colliderSettings(const SceneCollider& collider) {
     json["scale"] = jsonNumber(collider.pose.scale);
     json["restitution"] = jsonNumber(collider.restitution);
     json["friction"] = jsonNumber(collider.friction);
-    for (const SceneColliderKey& key : collider.keys) {
-        Json one{{"time", key.time}};
-        addPose(key.pose, one);
-        json["key"].push_back(one);
+    for (const PoseKey& key : collider.keys) {
+        json["key"].push_back(keyJson(key));
     }
     return json;
 }
@@ -211,6 +240,7 @@ Json settings(const Scene& scene) {
     }
     json["time"] = {{"dt", jsonNumber(scene.dt)},
                     {"steps", scene.steps},
+                    {"prewarm", scene.prewarm},
                     {"integrator", scene.integrator == Integrator::kVerlet ? "verlet" : "euler"}};
     json["particles"] = {{"capacity", scene.capacity}};
     for (const SceneEmitter& emitter : scene.emitters) {
@@ -242,6 +272,8 @@ Json settings(const Scene& scene) {
                       {"opacity", jsonNumber(scene.render.opacity)},
                       {"background", jsonVector(scene.render.background)},
                       {"every", scene.render.every},
+                      {"first", firstFrame(scene)},
+                      {"last", lastFrame(scene)},
                       {"sort_frames", scene.render.sort_frames}};
     addAirSettings(scene, json);
     addPictures(scene, json);

@@ -43,22 +43,39 @@ std::optional<float> thicknessAt(const Collider& collider, const SurfaceSample& 
     return depth > kThinnest * longest ? std::optional(depth) : std::nullopt;
 }
 
-/// The first births of an emitter.
+/// The first births of an emitter, in the world.
 struct Births {
     std::vector<Birth> births;
-    double start = 0.0;  ///< seconds
+    std::vector<double> moments;  ///< of as many, scene time
 };
 
-Births birthsOf(Emitter emitter, const Scene& scene) {
+Births birthsOf(Emitter emitter, const EmitterMotion& motion, const Scene& scene) {
+    const double dt{scene.dt};
+    const double begin = -dt * prewarmSteps(scene);
+    const double end = dt * scene.steps;
     Births made;
-    made.start = emitter.settings().start;
-    emitter.emit(double{scene.dt} * scene.steps, kBirths, made.births);
+    emitter.emit(end - begin, kBirths, made.births);
+    for (Birth& birth : made.births) {
+        // What has no age is of a burst, the first of which comes at the start.
+        const double moment = birth.age > 0.0F ? end - double{birth.age} : begin + emitter.settings().start;
+        birth.age = 0.0F;
+        carry(motion, moment, std::span(&birth, 1));
+        made.moments.push_back(moment);
+    }
     return made;
 }
 
+ParticleType typeOf(const Birth& birth, const Scene& scene) {
+    return birth.type < scene.types.size() ? scene.types[birth.type] : ParticleType{};
+}
+
+bool meets(const ParticleType& type, std::size_t body) {
+    return (type.collides >> body & 1U) != 0;
+}
+
 /// The speed that a birth has fallen to by the middle of all bodies, if nothing but gravity and drag acts on it.
-float speedAtBodies(const Birth& birth, const LoadedScene& loaded) {
-    const glm::vec3 gravity = *loaded.scene.forces.gravity;
+float speedAtBodies(const Birth& birth, const ParticleType& type, const LoadedScene& loaded) {
+    const glm::vec3 gravity = type.gravity * *loaded.scene.forces.gravity;
     const float pull = glm::length(gravity);
     const float start = glm::length(birth.velocity);
     if (!(pull > 0.0F)) {
@@ -70,30 +87,37 @@ float speedAtBodies(const Birth& birth, const LoadedScene& loaded) {
     return drag > 0.0F ? std::min(free, std::max(start, pull / drag)) : free;
 }
 
-float radiusOf(const Birth& birth, const Scene& scene) {
-    return birth.type < scene.types.size() ? scene.types[birth.type].radius : 0.0F;
+struct Fastest {
+    float speed = 0.0F;
+    float radius = 0.0F;
+};
+
+/// Of what meets a body.
+Fastest fastestAt(std::size_t body, const LoadedScene& loaded, std::span<const Births> births) {
+    Fastest fastest;
+    for (const Births& of : births) {
+        for (const Birth& birth : of.births) {
+            const ParticleType type = typeOf(birth, loaded.scene);
+            const float speed = meets(type, body) ? speedAtBodies(birth, type, loaded) : 0.0F;
+            if (speed > fastest.speed) {
+                fastest = {speed, type.radius};
+            }
+        }
+    }
+    return fastest;
 }
 
 /// Steps that particles pass through a body with.
 void warnOfSteps(const LoadedScene& loaded, std::span<const Births> births,
                  std::vector<std::string>& warnings) {
     const Scene& scene = loaded.scene;
-    float speed = 0.0F;
-    float radius = 0.0F;
-    for (const Births& of : births) {
-        for (const Birth& birth : of.births) {
-            const float reached = speedAtBodies(birth, loaded);
-            if (reached > speed) {
-                speed = reached;
-                radius = radiusOf(birth, scene);
-            }
-        }
-    }
-    const float step = scene.sweep > 0.0F ? std::min(speed * scene.dt, scene.sweep) : speed * scene.dt;
     for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
         const SceneCollider& body = scene.colliders[i];
+        const Fastest fastest = fastestAt(i, loaded, births);
+        const float speed = fastest.speed;
+        const float step = scene.sweep > 0.0F ? std::min(speed * scene.dt, scene.sweep) : speed * scene.dt;
         const auto thickness = body.live ? std::nullopt : typicalThickness(loaded.colliders[i]);
-        const float thick = thickness.value_or(0.0F) * body.pose.scale + 2.0F * radius;
+        const float thick = thickness.value_or(0.0F) * body.pose.scale + 2.0F * fastest.radius;
         if (thickness && step > thick) {
             warnings.push_back("at a speed of " + number(double{speed}) + " a step is " +
                                number(double{step}) + " long, and " + nameOf(body) + " mostly " +
@@ -119,9 +143,13 @@ void warnOfBirthsInside(const LoadedScene& loaded, std::span<const Births> birth
             if (body.live || all.empty()) {
                 continue;
             }
-            const auto inside = std::count_if(all.begin(), all.end(), [&](const Birth& birth) {
-                return isInside(loaded.colliders[k], body, birth, births[i].start);
-            });
+            std::size_t inside = 0;
+            for (std::size_t b = 0; b < all.size(); ++b) {
+                inside += meets(typeOf(all[b], loaded.scene), k) &&
+                                  isInside(loaded.colliders[k], body, all[b], births[i].moments[b])
+                              ? 1
+                              : 0;
+            }
             const double share = static_cast<double>(inside) / static_cast<double>(all.size());
             if (share >= kInsideShare) {
                 warnings.push_back(number(100.0 * share) + " % of the births of emitter " +
@@ -174,8 +202,9 @@ std::optional<float> typicalThickness(const Collider& collider) {
 
 std::vector<std::string> sceneWarnings(const LoadedScene& loaded, std::span<const Emitter> emitters) {
     std::vector<Births> births;
-    for (const Emitter& emitter : emitters) {
-        births.push_back(birthsOf(emitter, loaded.scene));
+    const auto motions = emitterMotions(loaded.scene.emitters, loaded.scene.colliders);
+    for (std::size_t i = 0; i < emitters.size(); ++i) {
+        births.push_back(birthsOf(emitters[i], motions[i], loaded.scene));
     }
     std::vector<std::string> warnings;
     warnOfSteps(loaded, births, warnings);

@@ -7,6 +7,7 @@
 
 #include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
+#include "runtime/gl/gl_fault.h"
 #include "runtime/player/watched.h"
 
 namespace relief {
@@ -45,8 +46,11 @@ Result<void> applyScene(const Scene& scene, ParticleSystem& particles) {
 }
 
 Result<ParticleSystem> makeParticles(const Scene& scene, const ColliderTextures& textures, StepPath path) {
-    auto particles = RELIEF_TRY(
-        ParticleSystem::create({.capacity = scene.capacity, .integrator = scene.integrator, .path = path}));
+    auto particles = RELIEF_TRY(ParticleSystem::create(
+        {.capacity = scene.capacity,
+         .integrator = scene.integrator,
+         .path = path,
+         .start_time = -static_cast<double>(prewarmSteps(scene)) * static_cast<double>(scene.dt)}));
     RELIEF_TRY(particles.setCollider(&textures));
     RELIEF_TRY(applyScene(scene, particles));
     return particles;
@@ -68,6 +72,7 @@ Result<Simulation> Simulation::create(const LoadedScene& loaded, std::vector<Emi
     const Scene& scene = loaded.scene;
     made.scene_ = &scene;
     made.emitters_ = std::move(emitters);
+    made.motions_ = emitterMotions(scene.emitters, scene.colliders);
     made.poses_change_ = std::any_of(scene.colliders.begin(), scene.colliders.end(),
                                      [](const SceneCollider& c) { return !c.keys.empty(); });
     auto textures = RELIEF_TRY(inFront(
@@ -76,16 +81,35 @@ Result<Simulation> Simulation::create(const LoadedScene& loaded, std::vector<Emi
     made.textures_ = std::make_unique<ColliderTextures>(std::move(textures));
     made.live_ =
         RELIEF_TRY(watched(watchdog, "the shaders of colliders", [&] { return LiveBodies::create(loaded); }));
-    RELIEF_TRY(watched(watchdog, "the colliders' first maps",
-                       [&] { return made.live_.show(0.0, *made.textures_); }));
     auto particles = RELIEF_TRY(watched(watchdog, "the shaders of particles",
                                         [&] { return makeParticles(scene, *made.textures_, path); }));
     made.particles_ = std::make_unique<ParticleSystem>(std::move(particles));
+    RELIEF_TRY(watched(watchdog, "the colliders' first maps",
+                       [&] { return made.live_.show(made.particles_->time(), *made.textures_); }));
     RELIEF_TRY(watched(watchdog, "the shaders of events", [&] { return made.setEvents(); }));
+    RELIEF_TRY(made.prewarm(watchdog));
     return made;
 }
 
+Result<void> Simulation::prewarm(Watchdog* watchdog) {
+    // So few at once, and waited for, that no watchdog takes them for a hang.
+    constexpr std::uint32_t kAtOnce = 4;
+    static constexpr const char* kWhat = "warming up";
+    const std::uint32_t steps = prewarmSteps(*scene_);
+    for (std::uint32_t step = 0; step < steps; ++step) {
+        RELIEF_TRY(stepAs(0, scene_->dt, nullptr));
+        if ((step + 1) % kAtOnce == 0 || step + 1 == steps) {
+            RELIEF_TRY(watched(watchdog, kWhat, [] { return waitForGpu(kWhat); }));
+        }
+    }
+    return steps > 0 ? checkAllocated(kWhat, "choose a smaller capacity") : Result<void>{};
+}
+
 Result<void> Simulation::step(float dt, StageTimer* stages) {
+    return stepAs(++steps_, dt, stages);
+}
+
+Result<void> Simulation::stepAs(std::uint64_t tag, float dt, StageTimer* stages) {
     {
         const StageScope scope(stages, Stage::kBirths);
         RELIEF_TRY(takeEvents(kStepsUnderWay));
@@ -94,9 +118,8 @@ Result<void> Simulation::step(float dt, StageTimer* stages) {
     const StageScope scope(stages, Stage::kStep);
     RELIEF_TRY(moveColliders(particles_->time() + static_cast<double>(dt)));
     particles_->step(dt);
-    ++steps_;
     if (particles_->eventList() != nullptr) {
-        particles_->requestEvents(steps_);
+        particles_->requestEvents(tag);
     }
     return {};
 }
@@ -138,7 +161,7 @@ Result<void> Simulation::takeEvents(int in_flight) {
         if (!events) {
             return {};
         }
-        if (event_sink_) {
+        if (event_sink_ && events->tag > 0) {
             RELIEF_TRY(event_sink_(*events));
         }
         refused_ += spawners_.empty() ? 0 : events->dropped;
@@ -155,6 +178,7 @@ Result<void> Simulation::change(std::optional<std::vector<Emitter>> emitters) {
     if (emitters) {
         emitters_ = std::move(*emitters);
     }
+    motions_ = emitterMotions(scene_->emitters, scene_->colliders);
     RELIEF_TRY(applyScene(*scene_, *particles_));
     return setEvents();
 }
@@ -164,7 +188,7 @@ void Simulation::giveBirth(float dt) {
     births_.swap(spawned_);
     const std::uint64_t room =
         particles_->room() - std::min<std::uint64_t>(particles_->room(), births_.size());
-    refused_ += emitAll(emitters_, static_cast<double>(dt), room, births_);
+    refused_ += emitAll(emitters_, static_cast<double>(dt), room, births_, motions_, particles_->time());
     particles_->spawn(births_);
 }
 

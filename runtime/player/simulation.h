@@ -20,7 +20,7 @@ namespace relief {
 
 class Simulation {
   public:
-    /// Needs a current context, as step() does.
+    /// Needs a current context, as step() does. Plays what comes before time 0 (time.prewarm).
     /// \param loaded    must outlive this.
     /// \param path      of the particles' steps.
     /// \param watchdog  may be null.
@@ -29,7 +29,8 @@ class Simulation {
     [[nodiscard]] static Result<Simulation> create(const LoadedScene& loaded, std::vector<Emitter> emitters,
                                                    StepPath path, Watchdog* watchdog);
 
-    /// Births, those of the scene's [[spawn]] by events of the step before the last, then the colliders' poses and shapes at the step's end, then the particles' step.
+    /// Births, those of the scene's [[spawn]] by events of the step before the last, then the colliders' poses and shapes
+    /// at the step's end, then the particles' step.
     /// \param stages  times births and step; may be null.
     /// Fails as LiveBodies::show does.
     [[nodiscard]] Result<void> step(StageTimer* stages) { return step(scene_->dt, stages); }
@@ -66,6 +67,9 @@ class Simulation {
   private:
     Simulation() = default;
     void giveBirth(float dt);
+    [[nodiscard]] Result<void> prewarm(Watchdog* watchdog);
+    /// \param tag  of its events; 0: nobody is told of them.
+    [[nodiscard]] Result<void> stepAs(std::uint64_t tag, float dt, StageTimer* stages);
     [[nodiscard]] Result<void> moveColliders(double time);
     /// Lists what the scene's [[spawn]] and the sink ask for, or nothing.
     [[nodiscard]] Result<void> setEvents();
@@ -75,6 +79,7 @@ class Simulation {
     const Scene* scene_ = nullptr;
     bool poses_change_ = false;
     std::vector<Emitter> emitters_;
+    std::vector<EmitterMotion> motions_;          // as many
     std::unique_ptr<ColliderTextures> textures_;  // at one place: the particles point to it
     LiveBodies live_;
     std::unique_ptr<ParticleSystem> particles_;

@@ -1,5 +1,8 @@
 #include "runtime/scene/loaded_scene.h"
 
+#include <limits>
+#include <string>
+
 #include "formats/bake_first.h"
 #include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
@@ -13,6 +16,8 @@ namespace relief {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::uint32_t kNoLast = std::numeric_limits<std::uint32_t>::max();
 
 Result<Scene> openScene(const fs::path& input, const fs::path& root) {
     const std::string extension = lowerCase(input.extension().native());
@@ -48,6 +53,15 @@ Result<LoadedScene> loadAll(const fs::path& input, const SceneOverrides& overrid
     scene.steps = overrides.steps.value_or(scene.steps);
     scene.render.width = overrides.width.value_or(scene.render.width);
     scene.render.height = overrides.height.value_or(scene.render.height);
+    scene.render.every = overrides.frame_every.value_or(scene.render.every);
+    scene.render.first = overrides.first_frame ? overrides.first_frame : scene.render.first;
+    scene.render.last = overrides.last_frame ? overrides.last_frame : scene.render.last;
+    if (scene.render.first.value_or(0) > scene.render.last.value_or(kNoLast)) {
+        return fail(ErrorCode::kUsage, "the first frame, of step " + std::to_string(*scene.render.first) +
+                                           ", comes after the last, of step " +
+                                           std::to_string(*scene.render.last) +
+                                           "; choose --first-frame and --last-frame in order");
+    }
     for (SceneEmitter& emitter : scene.emitters) {
         emitter.seed = overrides.seed.value_or(emitter.seed);
     }

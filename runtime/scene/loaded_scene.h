@@ -18,7 +18,10 @@ struct SceneOverrides {
     std::optional<std::uint32_t> steps;
     std::optional<std::uint32_t> width;  ///< of pictures, pixels, as is the next
     std::optional<std::uint32_t> height;
-    std::optional<std::uint64_t> seed;  ///< of every emitter
+    std::optional<std::uint64_t> seed;         ///< of every emitter
+    std::optional<std::uint32_t> first_frame;  ///< render.first, and so on
+    std::optional<std::uint32_t> last_frame;
+    std::optional<std::uint32_t> frame_every;
     /// A folder whose files the scene may name beside those of its own; empty: none.
     std::filesystem::path root;
 };

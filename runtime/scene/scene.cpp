@@ -8,6 +8,25 @@
 
 namespace relief {
 
+std::uint32_t prewarmSteps(const Scene& scene) {
+    // What is a whole number of steps but for rounding takes no further one.
+    return static_cast<std::uint32_t>(std::ceil(scene.prewarm / static_cast<double>(scene.dt) - 1e-6));
+}
+
+std::uint32_t firstFrame(const Scene& scene) {
+    return std::min(scene.render.first.value_or(scene.render.every), lastFrame(scene));
+}
+
+std::uint32_t lastFrame(const Scene& scene) {
+    return std::min(scene.render.last.value_or(scene.steps), scene.steps);
+}
+
+bool frameDue(const Scene& scene, std::uint32_t step) {
+    const std::uint32_t first = firstFrame(scene);
+    const std::uint32_t last = lastFrame(scene);
+    return step >= first && step <= last && ((step - first) % scene.render.every == 0 || step == last);
+}
+
 std::string_view cameraProblem(const glm::vec3& eye, const glm::vec3& target) {
     const glm::vec3 d = eye - target;
     const float flat = std::hypot(d.x, d.z);
@@ -33,7 +52,8 @@ Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
     const glm::vec3 center = bounds.center();
     const float away = std::max({std::abs(center.x), std::abs(center.y), std::abs(center.z)});
     const float scale = std::max({bounds.longestSide(), 1e-3F * away, 1e-6F});
-    const double run = static_cast<double>(scene.dt) * scene.steps;
+    const double run = static_cast<double>(scene.dt) *
+                       (static_cast<double>(scene.steps) + static_cast<double>(prewarmSteps(scene)));
     RELIEF_TRY(completeEmitters(scene.emitters, bounds, scale, run, scene.capacity));
     if (!scene.forces.gravity) {
         scene.forces.gravity = glm::vec3(0.0F, -3.0F * scale, 0.0F);

@@ -38,6 +38,7 @@ struct Scene {
 
     float dt = 1.0F / 60.0F;  ///< seconds
     std::uint32_t steps = 300;
+    double prewarm = 0.0;  ///< seconds, in whole steps, that are played before time 0
     std::uint32_t capacity = 65536;
     Integrator integrator = Integrator::kEuler;
 
@@ -80,6 +81,8 @@ struct Scene {
         float opacity = 0.95F;
         glm::vec3 background{0.62F, 0.69F, 0.76F};  ///< sRGB
         std::uint32_t every = 10;                   ///< steps from frame to frame
+        std::optional<std::uint32_t> first;         ///< step of the first frame; nullopt: `every`
+        std::optional<std::uint32_t> last;          ///< of the last; nullopt: the end of the run
         std::uint32_t sort_frames = 0;  ///< that a depth sort is spread over, 2…200; 0: unsorted
         Sprite sprite = Sprite::kPoint;
         Blend blend = Blend::kAlpha;
@@ -93,6 +96,14 @@ struct Scene {
         std::vector<ParticleLook> looks;  ///< of [[type]], in their order
     } render;
 };
+
+/// Steps that are played before time 0.
+[[nodiscard]] std::uint32_t prewarmSteps(const Scene& scene);
+/// The steps after which the first frame and the last are due; 0 is before the first step.
+[[nodiscard]] std::uint32_t firstFrame(const Scene& scene);
+[[nodiscard]] std::uint32_t lastFrame(const Scene& scene);
+/// Whether one is due after so many steps: every `render.every` from the first on, and at the last.
+[[nodiscard]] bool frameDue(const Scene& scene, std::uint32_t step);
 
 /// What is wrong with a camera that looks from `eye` to `target`; "" if nothing is.
 [[nodiscard]] std::string_view cameraProblem(const glm::vec3& eye, const glm::vec3& target);

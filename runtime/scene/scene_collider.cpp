@@ -1,29 +1,12 @@
 #include "runtime/scene/scene_collider.h"
 
-#include <algorithm>
 #include <limits>
+#include <span>
 
 namespace relief {
 
 Pose poseAt(const SceneCollider& collider, double time) {
-    const auto& keys = collider.keys;
-    if (keys.empty()) {
-        return collider.pose;
-    }
-    const auto after =
-        std::find_if(keys.begin(), keys.end(), [&](const SceneColliderKey& key) { return key.time > time; });
-    if (after == keys.begin()) {
-        return keys.front().pose;
-    }
-    const SceneColliderKey& from = *(after - 1);
-    if (after == keys.end()) {
-        return from.pose;
-    }
-    const auto share = static_cast<float>((time - from.time) / (after->time - from.time));
-    Pose pose = from.pose;
-    pose.position += share * (after->pose.position - from.pose.position);
-    pose.rotation = glm::normalize(glm::slerp(from.pose.rotation, after->pose.rotation, share));
-    return pose;
+    return collider.keys.empty() ? collider.pose : poseAt(std::span<const PoseKey>(collider.keys), time);
 }
 
 Bounds worldBounds(const SceneCollider& collider, const Bounds& object) {

@@ -9,15 +9,9 @@
 
 #include "formats/collider.h"
 #include "runtime/collider/deformation.h"
-#include "runtime/collider/pose.h"
+#include "runtime/collider/pose_keys.h"
 
 namespace relief {
-
-/// Where a collider is at a time; straight lines and even turns between two of them.
-struct SceneColliderKey {
-    double time = 0.0;  ///< seconds since the beginning
-    Pose pose;          ///< its scale is that of the collider
-};
 
 /// What [collider] says of `mesh` and `deform`; what is left open depends on the mesh.
 struct SceneLive {
@@ -34,10 +28,10 @@ struct SceneCollider {
     /// Whether anything below was given: else the particles live in the collider's own object space.
     bool posed = false;
     Pose pose;
-    float restitution = 1.0F;            ///< factor of the particles' own
-    float friction = 0.0F;               ///< on top of the particles' own
-    std::optional<SceneLive> live;       ///< deforms: `path` is a mesh, not a container
-    std::vector<SceneColliderKey> keys;  ///< by rising time; empty: at rest at `pose`
+    float restitution = 1.0F;       ///< factor of the particles' own
+    float friction = 0.0F;          ///< on top of the particles' own
+    std::optional<SceneLive> live;  ///< deforms: `path` is a mesh, not a container
+    std::vector<PoseKey> keys;      ///< by rising time; empty: at rest at `pose`
 };
 
 /// Where a collider is; before the first key and after the last it rests.

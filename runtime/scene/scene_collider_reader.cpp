@@ -1,59 +1,11 @@
 // [collider], or [[collider]] as often as wanted.
-#include <algorithm>
-#include <cmath>
-
 #include "runtime/scene/scene_readers.h"
 
 namespace relief {
 namespace {
 
-constexpr std::size_t kMotionKeysMax = 1024;
-constexpr double kTimeMax = 1e7;
 constexpr double kScaleMin = 1e-6;
 constexpr double kScaleMax = 1e6;
-
-/// position, axis and angle of a table; whether any is there.
-bool readPlace(SceneTable& table, Pose& pose) {
-    bool found = table.vector("position", symmetric(kLengthMax), pose.position);
-    glm::vec3 axis{0.0F, 1.0F, 0.0F};
-    float degrees = 0.0F;
-    const bool has_axis = table.vector("axis", symmetric(kLengthMax), axis);
-    const bool has_angle = table.number("angle", symmetric(1e6), degrees);
-    if (has_axis && !has_angle) {
-        table.failUseless("axis", "without " + table.full("angle") + "; give the angle too, in degrees");
-    }
-    // Scaled first: the square of a short axis would vanish.
-    const float largest = std::max({std::abs(axis.x), std::abs(axis.y), std::abs(axis.z)});
-    if (!(largest > 0.0F)) {
-        table.failAt(*table.find("axis"), table.full("axis") + " is no direction; choose one that is not 0");
-    }
-    if (has_angle) {
-        axis /= largest;
-        pose.rotation = glm::normalize(glm::angleAxis(glm::radians(degrees), glm::normalize(axis)));
-    }
-    return found || has_angle;
-}
-
-void readKeys(SceneTable& table, std::string_view file, SceneCollider& collider) {
-    for (const toml::table* one : table.tables("key", kMotionKeysMax)) {
-        SceneTable key_table(one, "collider.key", file);
-        SceneColliderKey key;
-        key.pose = collider.pose;
-        if (!key_table.number("time", {0.0, kTimeMax}, key.time)) {
-            key_table.failAt(one->source().begin, "a [[collider.key]] needs a time, in seconds");
-        }
-        if (!collider.keys.empty() && !(key.time > collider.keys.back().time)) {
-            key_table.failAt(*key_table.find("time"),
-                             "collider.key.time does not rise; order the keys by time");
-        }
-        readPlace(key_table, key.pose);
-        key_table.finish();
-        collider.keys.push_back(key);
-    }
-    if (collider.keys.size() == 1) {
-        table.failAt(*table.find("key"), "one [[collider.key]] moves nothing; give a second, or a position");
-    }
-}
 
 /// collider.file
 void readFileName(SceneTable& table, const toml::source_position& at, const SceneFolder& folder,
@@ -72,11 +24,11 @@ SceneCollider readCollider(SceneTable table, const toml::source_position& at, st
     if (!readLive(table, file, folder, collider)) {
         readFileName(table, at, folder, collider);
     }
-    collider.posed = readPlace(table, collider.pose);
+    collider.posed = readPose(table, collider.pose);
     collider.posed |= table.number("scale", {kScaleMin, kScaleMax}, collider.pose.scale);
     collider.posed |= table.number("restitution", {0.0, 1.0}, collider.restitution);
     collider.posed |= table.number("friction", {0.0, 1.0}, collider.friction);
-    readKeys(table, file, collider);
+    collider.keys = readPoseKeys(table, file, collider.pose, "a position");
     collider.posed |= !collider.keys.empty();
     table.finish();
     return collider;

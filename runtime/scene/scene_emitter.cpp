@@ -143,4 +143,19 @@ Result<std::vector<Emitter>> makeEmitters(std::span<const SceneEmitter> emitters
     return made;
 }
 
+std::vector<EmitterMotion> emitterMotions(std::span<const SceneEmitter> emitters,
+                                          std::span<const SceneCollider> colliders) {
+    std::vector<EmitterMotion> motions;
+    for (const SceneEmitter& emitter : emitters) {
+        EmitterMotion& motion = motions.emplace_back();
+        motion.keys = emitter.keys;
+        motion.inherit = emitter.inherit;
+        if (emitter.attach) {
+            const SceneCollider& body = colliders[*emitter.attach];
+            motion.body = body.keys.empty() ? std::vector<PoseKey>{{0.0, body.pose}} : body.keys;
+        }
+    }
+    return motions;
+}
+
 }  // namespace relief

@@ -12,7 +12,9 @@
 
 #include "formats/base/result.h"
 #include "formats/collider.h"
+#include "runtime/collider/pose_keys.h"
 #include "runtime/particles/emitter.h"
+#include "runtime/scene/scene_collider.h"
 
 namespace relief {
 
@@ -49,6 +51,11 @@ struct SceneEmitter {
     std::string type_origin;  ///< "scene.toml:3:8" of that key
     std::uint64_t seed = 1;
     bool spread = true;
+
+    std::optional<std::uint32_t> attach;  ///< the number of the collider in whose space it is, from 0
+    std::vector<PoseKey> keys;            ///< by rising time; empty: it rests there
+    float inherit = 0.0F;                 ///< share of its own velocity that births take on
+    [[nodiscard]] bool moves() const { return attach.has_value() || !keys.empty(); }
 };
 
 inline constexpr std::uint32_t kEmitterTypeMax = 15;
@@ -73,5 +80,10 @@ inline constexpr std::size_t kEmittersMax = 64;
 /// Fails as loadPointList does, with the place of the key, and with kInvalidInput (points without normals and
 /// without a direction).
 [[nodiscard]] Result<std::vector<Emitter>> makeEmitters(std::span<const SceneEmitter> emitters);
+
+/// What carries the births of each emitter along.
+/// \param colliders  that `attach` counts; those that deform are followed by their pose alone.
+[[nodiscard]] std::vector<EmitterMotion> emitterMotions(std::span<const SceneEmitter> emitters,
+                                                        std::span<const SceneCollider> colliders);
 
 }  // namespace relief

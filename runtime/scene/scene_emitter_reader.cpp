@@ -12,6 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kSeedMax = 9007199254740992.0;
+constexpr double kInheritMax = 1000.0;
 // A step of the longest dt then holds 10,000 bursts.
 constexpr double kBurstEveryMin = 1e-4;
 
@@ -205,13 +206,27 @@ void readLife(SceneTable& table, SceneEmitter& emitter) {
     table.integer("seed", {0.0, kSeedMax}, emitter.seed);
 }
 
+void readWay(SceneTable& table, std::string_view file, std::size_t colliders, SceneEmitter& emitter) {
+    table.integer("attach", {0.0, static_cast<double>(colliders) - 1.0}, emitter.attach);
+    if (emitter.attach && emitter.shape == EmitterShape::kBox && !emitter.box_min) {
+        table.failAt(
+            *table.find("attach"),
+            "emitter.attach needs a place in the collider's space beside it: emitter.point, for example");
+    }
+    emitter.keys = readPoseKeys(table, file, {}, "emitter.point");
+    if (table.number("inherit", {0.0, kInheritMax}, emitter.inherit) && !emitter.moves()) {
+        table.failUseless("inherit", "for an emitter that rests; give it emitter.attach or [[emitter.key]]");
+    }
+}
+
 SceneEmitter readEmitter(SceneTable table, std::string_view file, const SceneFolder& folder,
-                         std::uint32_t capacity) {
+                         std::uint32_t capacity, std::size_t colliders) {
     SceneEmitter emitter;
     readPlace(table, folder, emitter);
     readMoments(table, capacity, emitter);
     readVelocity(table, file, emitter);
     readLife(table, emitter);
+    readWay(table, file, colliders, emitter);
     table.finish();
     return emitter;
 }
@@ -219,12 +234,12 @@ SceneEmitter readEmitter(SceneTable table, std::string_view file, const SceneFol
 }  // namespace
 
 std::vector<SceneEmitter> readEmitters(SceneTable& top, std::string_view file, const SceneFolder& folder,
-                                       std::uint32_t capacity) {
+                                       std::uint32_t capacity, std::size_t colliders) {
     constexpr std::string_view kName = "emitter";
     const toml::node* node = top.find(kName);
     const toml::array* several = node == nullptr ? nullptr : node->as_array();
     if (several == nullptr) {
-        return {readEmitter(top.sub(kName), file, folder, capacity)};
+        return {readEmitter(top.sub(kName), file, folder, capacity, colliders)};
     }
     if (several->empty() || !several->is_array_of_tables()) {
         top.wrongType(*node, kName, "a table, as in [emitter], or several, as in [[emitter]]");
@@ -236,7 +251,7 @@ std::vector<SceneEmitter> readEmitters(SceneTable& top, std::string_view file, c
     }
     std::vector<SceneEmitter> emitters;
     for (const toml::node& one : *several) {
-        emitters.push_back(readEmitter({one.as_table(), kName, file}, file, folder, capacity));
+        emitters.push_back(readEmitter({one.as_table(), kName, file}, file, folder, capacity, colliders));
     }
     return emitters;
 }

@@ -84,7 +84,7 @@ void readCells(SceneTable& table, std::uint32_t cells, ParticleLook& look) {
 
 }  // namespace
 
-void readLook(SceneTable& table, std::uint32_t cells, ParticleLook& look) {
+void readLook(SceneTable& table, std::uint32_t cells, Sprite sprite, ParticleLook& look) {
     readTrack(table, "size", {0.0, kLengthMax}, look.size);
     readTrack(table, "color", {0.0, 1.0}, 3, [&](float age, const std::vector<double>& values) {
         look.color.push_back({age, glm::vec3(values[0], values[1], values[2])});
@@ -93,6 +93,16 @@ void readLook(SceneTable& table, std::uint32_t cells, ParticleLook& look) {
     readTrack(table, "rotation", symmetric(kRadiansMax), look.rotation);
     table.number("turn", {0.0, kRadiansMax}, look.turn);
     table.number("spin", {0.0, kRadiansMax}, look.spin);
+    table.number("stretch", {0.0, kSecondsMax}, look.stretch);
+    if (look.stretch > 0.0F && sprite == Sprite::kPoint) {
+        table.failUseless("stretch", "for points; choose render.sprite = \"quad\"");
+    }
+    for (const std::string_view key : {"rotation", "turn", "spin"}) {
+        if (look.stretch > 0.0F && table.find(key) != nullptr) {
+            table.failUseless(key, "for sprites that " + table.full("stretch") +
+                                       " turns along their way; remove one of them");
+        }
+    }
     readCells(table, cells, look);
     table.boolean("lit", look.lit);
     if (look.opacity.size() > 1) {  // it says how the particle begins and ends

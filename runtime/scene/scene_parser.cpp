@@ -67,6 +67,27 @@ void readCamera(SceneTable table, std::string_view file, Scene& scene) {
     }
 }
 
+/// The steps that are drawn.
+void readFrames(SceneTable& table, Scene& scene) {
+    auto& render = scene.render;
+    table.integer("every", {1.0, kStepsMax}, render.every);
+    const SceneRange steps{0.0, static_cast<double>(scene.steps)};
+    table.integer("first", steps, render.first);
+    table.integer("last", steps, render.last);
+    if (render.last && *render.last < render.first.value_or(0)) {
+        table.failAt(*table.find("last"), "render.last comes before render.first; exchange them");
+    }
+}
+
+/// time.prewarm, after dt.
+void readPrewarm(SceneTable& time, Scene& scene) {
+    if (time.number("prewarm", {0.0, kSecondsMax}, scene.prewarm) &&
+        scene.prewarm > kStepsMax * static_cast<double>(scene.dt)) {
+        time.failAt(*time.find("prewarm"), "time.prewarm is more than " + numberText(kStepsMax) +
+                                               " steps of time.dt; shorten it, or raise time.dt");
+    }
+}
+
 void readRender(SceneTable table, const SceneFolder& folder, Scene& scene) {
     auto& render = scene.render;
     table.pair("size", {1.0, kPixelsMax}, "two whole numbers [width, height]", render.width, render.height);
@@ -76,7 +97,7 @@ void readRender(SceneTable table, const SceneFolder& folder, Scene& scene) {
     table.vector("color", {0.0, 1.0}, render.color);
     table.number("opacity", {0.0, 1.0, false}, render.opacity);
     table.vector("background", {0.0, 1.0}, render.background);
-    table.integer("every", {1.0, kStepsMax}, render.every);
+    readFrames(table, scene);
     table.integer("sort_frames", {0.0, kSortFramesMax}, render.sort_frames);
     // 1 would be a whole sequence each frame, which spreading over frames is there to avoid.
     if (render.sort_frames == 1) {
@@ -107,11 +128,12 @@ Scene readScene(const toml::table& root, const SceneFolder& folder, std::string_
     scene.colliders = readColliders(top, file, folder);
     time.number("dt", {1e-6, 1.0}, scene.dt);
     time.integer("steps", {0.0, kStepsMax}, scene.steps);
+    readPrewarm(time, scene);
     time.word("integrator", {"euler", "verlet"}, scene.integrator);
     time.finish();
     particles.integer("capacity", {1.0, ParticleSystem::kCapacityMax}, scene.capacity);
     particles.finish();
-    scene.emitters = readEmitters(top, file, folder, scene.capacity);
+    scene.emitters = readEmitters(top, file, folder, scene.capacity, scene.colliders.size());
     readForces(forces, scene);
     readAir(top, folder, scene);
     readCollision(collision, scene);

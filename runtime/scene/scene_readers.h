@@ -26,15 +26,27 @@ void readViscosity(SceneTable& forces, Scene& scene);
 // scene_emitter_reader.cpp
 
 /// [emitter], or [[emitter]] as often as wanted; one emitter with every default where there is neither.
-/// \param capacity  of the particles.
+/// \param capacity   of the particles.
+/// \param colliders  as many as emitters may be attached to.
 [[nodiscard]] std::vector<SceneEmitter> readEmitters(SceneTable& top, std::string_view file,
-                                                     const SceneFolder& folder, std::uint32_t capacity);
+                                                     const SceneFolder& folder, std::uint32_t capacity,
+                                                     std::size_t colliders);
 
 // scene_collider_reader.cpp
 
 /// [collider], or [[collider]] as often as wanted.
 [[nodiscard]] std::vector<SceneCollider> readColliders(SceneTable& top, std::string_view file,
                                                        const SceneFolder& folder);
+
+// scene_pose_reader.cpp
+
+/// position, axis and angle; whether any is there.
+bool readPose(SceneTable& table, Pose& pose);
+/// The [[key]] of a table: two or more, or none.
+/// \param pose     what keys leave open.
+/// \param instead  of a single key, in words.
+[[nodiscard]] std::vector<PoseKey> readPoseKeys(SceneTable& table, std::string_view file, const Pose& pose,
+                                                std::string_view instead);
 
 // scene_live_reader.cpp
 
@@ -55,9 +67,9 @@ void readTypes(SceneTable& top, std::string_view file, Scene& scene);
 
 // scene_looks.cpp
 
-/// What a [[type]] says of its look: size, color, opacity, rotation, turn, spin, cell, lit, fade.
+/// What a [[type]] says of its look: size, color, opacity, rotation, turn, spin, stretch, cell, lit, fade.
 /// \param cells  of the atlas; 0: there is none.
-void readLook(SceneTable& type, std::uint32_t cells, ParticleLook& look);
+void readLook(SceneTable& type, std::uint32_t cells, Sprite sprite, ParticleLook& look);
 /// What [render] says of sprites and of the collider's mesh.
 void readSprites(SceneTable& render, const SceneFolder& folder, Scene& scene);
 

@@ -101,3 +101,22 @@ expect 0 "$relief_sim" scene.toml
 # The scenes to copy from are meant.
 expect 0 "$relief_sim" wall.relief --check
 [ ! -s stderr ] || die "a collider alone is warned of: $(cat stderr)"
+
+# What a type goes through is neither passed in one step nor born inside of; what moves is where it is born.
+ghost=('[[type]]' 'collides = ["ground"]')
+scene metres.relief "${quiet_jet[@]}" 'velocity = [0.0, 0.0, -60.0]' 'velocity_spread = [0.0, 0.0, 0.0]' "${ghost[@]}"
+warns ''
+scene metres.relief '[forces]' 'gravity = [0.0, -9.81, 0.0]' '[emitter]' 'point = [0.0, 0.0, 0.0]' \
+    'velocity = [0.0, 0.0, 1.0]' 'velocity_spread = [0.0, 0.0, 0.0]'
+cp scene.toml inside.toml
+warns '100 % of the births of emitter 1 are inside of'
+printf '%s\n' "${ghost[@]}" >>scene.toml
+warns ''
+cp inside.toml scene.toml
+printf '%s\n' '[[emitter.key]]' 'time = 0.0' 'position = [0.0, 0.0, 1.0]' '[[emitter.key]]' 'time = 4.0' \
+    'position = [0.0, 0.0, 2.0]' >>scene.toml
+warns ''
+# Gravity by type: a fall of 100 m at a hundredth of it ends at 4.4 m/s.
+scene metres.relief '[forces]' 'gravity = [0.0, -9.81, 0.0]' 'drag = 0.0' '[emitter]' 'point = [0.0, 100.0, 0.0]' \
+    'velocity = [0.0, 0.0, 0.0]' 'velocity_spread = [0.0, 0.0, 0.0]' '[[type]]' 'gravity = 0.01'
+warns ''

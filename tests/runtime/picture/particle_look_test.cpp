@@ -28,39 +28,45 @@ TEST(ParticleLook, TracksOfDifferentAgesShareARow) {
     look.cell_last = 5;
     look.turn = 0.5F;
     look.spin = 2.0F;
+    look.stretch = 0.125F;
     look.lit = false;
     const std::vector<ParticleLook> looks{ParticleLook{}, look};
     const auto texels = packLooks(looks, {0.1F, glm::vec3(1.0F), 0.9F, 0.2F, 0.3F});
     ASSERT_TRUE(texels) << texels.error().message;
-    ASSERT_EQ(texels->size(), 2 * kLookTexels);
+    ASSERT_EQ(texels->width, 3U + 2U * 4U) << "four ages";
+    ASSERT_EQ(texels->texels.size(), 2 * texels->width);
     // The defaults, as one key.
-    EXPECT_EQ((*texels)[0], glm::vec4(0.0F, 0.0F, -1.0F, 0.0F));
-    EXPECT_EQ((*texels)[1], glm::vec4(1.0F, 0.2F, 0.3F, 1.0F));
-    EXPECT_EQ((*texels)[2], glm::vec4(0.0F, 0.1F, 0.9F, 0.0F));
-    EXPECT_EQ((*texels)[3], glm::vec4(1.0F, 1.0F, 1.0F, 0.0F));
-    const glm::vec4* row = &(*texels)[kLookTexels];
+    const glm::vec4* row = texels->texels.data();
+    EXPECT_EQ(row[0], glm::vec4(0.0F, 0.0F, -1.0F, 0.0F));
+    EXPECT_EQ(row[1], glm::vec4(1.0F, 0.2F, 0.3F, 1.0F));
+    EXPECT_EQ(row[2], glm::vec4(0.0F));
+    EXPECT_EQ(row[3], glm::vec4(0.0F, 0.1F, 0.9F, 0.0F));
+    EXPECT_EQ(row[4], glm::vec4(1.0F, 1.0F, 1.0F, 0.0F));
+    row += texels->width;
     EXPECT_EQ(row[0], glm::vec4(0.5F, 2.0F, 3.0F, 3.0F));
     EXPECT_EQ(row[1], glm::vec4(0.0F, 0.2F, 0.3F, 4.0F));
-    EXPECT_EQ(row[2], glm::vec4(0.0F, 1.0F, 1.0F, 0.0F));
-    EXPECT_EQ(row[4], glm::vec4(0.5F, 1.5F, 1.0F, 0.0F));
-    EXPECT_EQ(row[5], glm::vec4(0.5F, 0.5F, 0.5F, 0.0F)) << "half of the light, not of sRGB";
-    EXPECT_EQ(row[6], glm::vec4(0.75F, 1.75F, 0.0F, 0.0F));
-    EXPECT_EQ(row[8], glm::vec4(1.0F, 2.0F, 0.0F, 0.0F));
+    EXPECT_EQ(row[2], glm::vec4(0.125F, 0.0F, 0.0F, 0.0F));
+    EXPECT_EQ(row[3], glm::vec4(0.0F, 1.0F, 1.0F, 0.0F));
+    EXPECT_EQ(row[5], glm::vec4(0.5F, 1.5F, 1.0F, 0.0F));
+    EXPECT_EQ(row[6], glm::vec4(0.5F, 0.5F, 0.5F, 0.0F)) << "half of the light, not of sRGB";
+    EXPECT_EQ(row[7], glm::vec4(0.75F, 1.75F, 0.0F, 0.0F));
+    EXPECT_EQ(row[9], glm::vec4(1.0F, 2.0F, 0.0F, 0.0F));
 }
 
 TEST(ParticleLook, EveryTrackMayHaveItsOwnAges) {
     ParticleLook look;
     for (std::size_t i = 0; i < kLookKeysMax; ++i) {
-        const float age = static_cast<float>(i) / 8.0F;
-        look.size.push_back({age, 1.0F});
-        look.opacity.push_back({age + 0.03F, 1.0F});
-        look.rotation.push_back({age + 0.06F, 1.0F});
-        look.color.push_back({age + 0.09F, glm::vec3(1.0F)});
+        const auto age = [&](float shift) { return (static_cast<float>(i) + shift) / kLookKeysMax; };
+        look.size.push_back({age(0.0F), 1.0F});
+        look.opacity.push_back({age(0.25F), 1.0F});
+        look.rotation.push_back({age(0.5F), 1.0F});
+        look.color.push_back({age(0.75F), glm::vec3(1.0F)});
     }
     const auto texels = packLooks(std::vector<ParticleLook>{look}, {});
     ASSERT_TRUE(texels) << texels.error().message;
-    EXPECT_EQ((*texels)[1].w, 4.0F * kLookKeysMax);
-    EXPECT_EQ(texels->back(), glm::vec4(1.0F, 1.0F, 1.0F, 0.0F)) << "the row is full";
+    EXPECT_EQ(texels->texels[1].w, 4.0F * kLookKeysMax);
+    EXPECT_EQ(texels->texels.back(), glm::vec4(1.0F, 1.0F, 1.0F, 0.0F)) << "the row is full";
+    EXPECT_LE(texels->width, 2048U) << "more than OpenGL ES 3.0 promises";
 }
 
 TEST(ParticleLook, WhatCannotBeIsRefused) {
@@ -82,6 +88,7 @@ TEST(ParticleLook, WhatCannotBeIsRefused) {
         l.rotation = {{0.0F, std::numeric_limits<float>::quiet_NaN()}};
     }));
     EXPECT_TRUE(refused([](ParticleLook& l) { l.spin = std::numeric_limits<float>::infinity(); }));
+    EXPECT_TRUE(refused([](ParticleLook& l) { l.stretch = -1.0F; }));
     EXPECT_TRUE(refused([](ParticleLook& l) { l.cell_first = 2; }));
     EXPECT_FALSE(packLooks(std::vector<ParticleLook>(kLooksMax + 1), {}));
     EXPECT_TRUE(packLooks(std::vector<ParticleLook>(kLooksMax), {}));

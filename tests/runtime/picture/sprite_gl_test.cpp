@@ -242,6 +242,103 @@ TEST_P(SpriteGlTest, KeyFramesAtExactAges) {
     }
 }
 
+// A curve with as many keys as there may be: a saw, of which each age has its own tooth.
+TEST_P(SpriteGlTest, ManyKeysAtExactAges) {
+    ParticleLook one = look(glm::vec3(1.0F), 1.0F, 1.0F);
+    one.opacity.clear();
+    const auto key = [](int i) { return static_cast<float>(i) / 255.0F; };
+    for (int i = 0; i < static_cast<int>(kLookKeysMax); ++i) {
+        one.opacity.push_back({key(i), 0.125F * static_cast<float>(i % 8)});
+    }
+    style_.looks = {one};
+    for (const int i : {0, 1, 6, 7, 100, 127, 128, 253}) {
+        spawn({0}, 8.0F * (key(i) + 0.25F / 255.0F));
+        draw();
+        const float low = one.opacity[static_cast<std::size_t>(i)].value;
+        const float high = one.opacity[static_cast<std::size_t>(i) + 1].value;
+        EXPECT_NEAR(pixel(32, 32).a, low + 0.25F * (high - low), 5.0F * kHalf) << "behind key " << i;
+    }
+}
+
+// A unit is 32 pixels, so that a sprite of ½ is 16 across; at a speed of 1 and 1 s of stretch 32 more reach back from it,
+// whichever way it goes: right, up, and along a slanted way of the same length. Round ends: the ellipse of the whole.
+TEST_P(SpriteGlTest, AStretchedSpriteReachesBackAlongItsWay) {
+    ParticleLook one = look(glm::vec3(1.0F), 1.0F, 0.5F);
+    one.stretch = 1.0F;
+    style_.looks = {one};
+    constexpr float kDiagonal = 0.70710678F;
+    for (const Integrator integrator : {Integrator::kEuler, Integrator::kVerlet}) {
+        for (const glm::vec3 way :
+             {glm::vec3(1.0F, 0.0F, 0.0F), {0.0F, 1.0F, 0.0F}, {-kDiagonal, kDiagonal, 0.0F}}) {
+            auto particles = ParticleSystem::create({.capacity = 64, .integrator = integrator});
+            ASSERT_TRUE(particles) << particles.error().message;
+            particles_.emplace(std::move(*particles));
+            const Birth birth{glm::vec3(0.0F), way, 8.0F, 0};
+            particles_->spawn(std::span(&birth, 1));
+            for (int i = 0; i < 8; ++i) {
+                particles_->step(0.0625F);
+            }
+            draw();  // its head's centre has come to way / 2, 16 pixels; its tail's to -16
+            const auto at = [&](float along, float across) {
+                const glm::vec2 p =
+                    glm::vec2(32.0F) + along * glm::vec2(way) + across * glm::vec2(-way.y, way.x);
+                return pixel(static_cast<int>(p.x), static_cast<int>(p.y)).a;
+            };
+            EXPECT_NEAR(at(0.0F, 0.0F), 1.0F, kHalf);
+            EXPECT_NEAR(at(13.0F, 0.0F), 1.0F, kHalf)
+                << "a grain is full up to 0.65 of its radius, of 24 along";
+            EXPECT_NEAR(at(-13.0F, 0.0F), 1.0F, kHalf);
+            EXPECT_GT(at(21.0F, 0.0F), 0.0F);
+            EXPECT_GT(at(-21.0F, 0.0F), 0.0F);
+            EXPECT_EQ(at(26.0F, 0.0F), 0.0F);
+            EXPECT_EQ(at(-26.0F, 0.0F), 0.0F);
+            EXPECT_NEAR(at(0.0F, 4.0F), 1.0F, kHalf);
+            EXPECT_GT(at(0.0F, 6.5F), 0.0F);
+            EXPECT_EQ(at(0.0F, 9.5F), 0.0F);
+            EXPECT_EQ(at(0.0F, -9.5F), 0.0F);
+        }
+    }
+}
+
+// The right side of a cell is the head.
+TEST_P(SpriteGlTest, AStretchedCellHasItsRightSideInFront) {
+    useAtlas();
+    ParticleLook one = look(glm::vec3(1.0F), 1.0F, 0.5F);
+    one.stretch = 1.0F;
+    one.cell_first = 1;
+    one.cell_last = 1;
+    style_.looks = {one};
+    auto particles = ParticleSystem::create({.capacity = 64});
+    ASSERT_TRUE(particles);
+    particles_.emplace(std::move(*particles));
+    const Birth birth{glm::vec3(0.0F), glm::vec3(0.0F, -1.0F, 0.0F), 8.0F, 0};
+    particles_->spawn(std::span(&birth, 1));
+    particles_->step(0.5F);
+    draw();  // downwards: 48 pixels long, 16 wide; the cell is turned by a quarter clockwise
+    expectNear(pixel(36, 44), kRed, kHalf, "upper left of the cell: tail, right");
+    expectNear(pixel(36, 19), kGreen, kHalf, "upper right: head, right");
+    expectNear(pixel(27, 44), kBlue, kHalf, "lower left: tail, left");
+    expectNear(pixel(27, 19), kClear, kHalf, "lower right: head, left");
+    expectNear(pixel(32, 57), kClear, 0.0F, "beyond the tail");
+    expectNear(pixel(32, 6), kClear, 0.0F, "beyond the head");
+}
+
+// What comes towards the viewer from behind the picture's plane has its tail there: no sprite turns over.
+TEST_P(SpriteGlTest, ATailBehindTheViewerIsCutOff) {
+    ParticleLook one = look(glm::vec3(1.0F), 1.0F, 0.5F);
+    one.stretch = 8.0F;
+    style_.looks = {one};
+    auto particles = ParticleSystem::create({.capacity = 64});
+    ASSERT_TRUE(particles);
+    particles_.emplace(std::move(*particles));
+    const Birth birth{glm::vec3(0.0F), glm::vec3(0.25F, 0.0F, -1.0F), 80.0F, 0};
+    particles_->spawn(std::span(&birth, 1));
+    particles_->step(0.03125F);
+    draw();  // its tail goes left and towards the viewer, past him
+    EXPECT_GT(pixel(8, 32).a, 0.0F);
+    EXPECT_EQ(pixel(48, 32).a, 0.0F);
+}
+
 TEST_P(SpriteGlTest, CellsArePlayedOverAge) {
     useAtlas();
     ParticleLook one = look(glm::vec3(1.0F), 1.0F, 1.0F);
@@ -361,6 +458,12 @@ TEST_P(SpriteGlTest, WhatCannotBeDrawnIsRefused) {
     const RenderTarget target{framebuffer_.name(), kSide, kSide};
     style_.looks.resize(kLooksMax + 1);
     EXPECT_EQ(renderer_->draw(*particles_, camera_, style_, target).error().code, ErrorCode::kUsage);
+    style_.looks = {look(glm::vec3(1.0F), 1.0F, 1.0F)};
+    style_.looks[0].stretch = 1.0F;
+    style_.sprite = Sprite::kPoint;
+    EXPECT_EQ(renderer_->draw(*particles_, camera_, style_, target).error().code, ErrorCode::kUsage);
+    style_.sprite = Sprite::kQuad;
+    EXPECT_TRUE(renderer_->draw(*particles_, camera_, style_, target));
     style_.looks.clear();
     for (const float soft :
          {-1.0F, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {

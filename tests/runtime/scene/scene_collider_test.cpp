@@ -49,7 +49,7 @@ SceneCollider turning() {
     SceneCollider collider;
     collider.posed = true;
     collider.pose.scale = 2.0F;
-    SceneColliderKey key;
+    PoseKey key;
     key.pose.scale = 2.0F;
     key.time = 2.0;
     key.pose.position = {1.0F, 0.0F, 0.0F};

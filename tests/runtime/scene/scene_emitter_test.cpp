@@ -38,6 +38,42 @@ Bounds unitBounds() {
     return bounds;
 }
 
+TEST(SceneEmitter, WhatMovesIt) {
+    const std::string keys =
+        "[[emitter.key]]\ntime = 1\nposition = [1, 2, 3]\n"
+        "[[emitter.key]]\ntime = 2\nangle = 90\n";
+    const SceneEmitter rests = good("");
+    EXPECT_FALSE(rests.moves());
+    const SceneEmitter moves = good("point = [1, 0, 0]\nattach = 0\ninherit = 0.5\n" + keys);
+    EXPECT_TRUE(moves.moves());
+    EXPECT_EQ(moves.attach, 0U);
+    EXPECT_EQ(moves.inherit, 0.5F);
+    ASSERT_EQ(moves.keys.size(), 2U);
+    EXPECT_EQ(moves.keys[0].pose.position, glm::vec3(1, 2, 3));
+    EXPECT_EQ(moves.keys[1].time, 2.0);
+
+    SceneCollider collider;
+    collider.pose.position = {0.0F, 7.0F, 0.0F};
+    auto motions = emitterMotions(std::span(&moves, 1), std::span(&collider, 1));
+    ASSERT_EQ(motions.size(), 1U);
+    EXPECT_EQ(motions[0].keys.size(), 2U);
+    ASSERT_EQ(motions[0].body.size(), 1U) << "a collider at rest";
+    EXPECT_EQ(motions[0].body[0].pose, collider.pose);
+    EXPECT_EQ(motions[0].inherit, 0.5F);
+    collider.keys = moves.keys;
+    EXPECT_EQ(emitterMotions(std::span(&moves, 1), std::span(&collider, 1))[0].body.size(), 2U);
+    EXPECT_TRUE(emitterMotions(std::span(&rests, 1), std::span(&collider, 1))[0].none());
+
+    expectError("attach = 0\n", "4:10", "emitter.point");
+    expectError("point = [1, 0, 0]\nattach = 1\n", "5:10", "out of range");
+    expectError("point = [1, 0, 0]\nattach = \"0\"\n", "5:10", "whole number");
+    expectError("inherit = 1\n", "4:11", "for an emitter that rests");
+    expectError("[[emitter.key]]\ntime = 1\n", "4:1", "one [[emitter.key]] moves nothing");
+    expectError("[[emitter.key]]\nposition = [1, 2, 3]\n", "4:1", "needs a time");
+    expectError("[[emitter.key]]\ntime = 1\n[[emitter.key]]\ntime = 1\n", "7:8", "does not rise");
+    expectError("[[emitter.key]]\ntime = 1\nscale = 2\n", "6:1", "scale");
+}
+
 TEST(SceneEmitter, Shapes) {
     EXPECT_EQ(good("").shape, EmitterShape::kBox);
     EXPECT_EQ(good("shape = \"box\"\n").shape, EmitterShape::kBox);

@@ -41,7 +41,7 @@ TEST(SceneLooks, EveryKey) {
         "[[type]]\nsize = [[0, 1], [0.5, 2]]\ncolor = [[0, 1, 0, 0], [1, 0, 1, 0]]\nopacity = [[0, 0], [1, "
         "1]]\n"
         "rotation = [[0.25, -3]]\nturn = 1\nspin = 2\ncell = [3, 7]\nlit = false\n[[type]]\ncell = 6\nfade = "
-        "[1, 2]\n");
+        "[1, 2]\nstretch = 0.25\n");
     EXPECT_EQ(scene.render.sprite, Sprite::kQuad);
     EXPECT_EQ(scene.render.blend, Blend::kAdditive);
     EXPECT_EQ(scene.render.soft, 0.5F);
@@ -69,6 +69,7 @@ TEST(SceneLooks, EveryKey) {
     EXPECT_EQ(scene.render.looks[1], second);
     EXPECT_EQ(scene.render.looks[2].cell_last, 6U);
     EXPECT_EQ(scene.render.looks[2].fade_out, 2.0F);
+    EXPECT_EQ(scene.render.looks[2].stretch, 0.25F);
 }
 
 TEST(SceneLooks, Mistakes) {
@@ -109,10 +110,16 @@ TEST(SceneLooks, Mistakes) {
     expectError("[[type]]\nfade = 1\n", "4:8", "[in, out]");
     expectError("[[type]]\nsizes = 1\n", "4:1", "did you mean 'size'?");
     std::string keys;
-    for (int i = 0; i < 9; ++i) {
-        keys += (i > 0 ? ", [0." : "[0.") + std::to_string(i) + ", 1]";
+    for (int i = 0; i < 256; ++i) {
+        keys += (i > 0 ? ", [0." : "[0.") + std::to_string(1000 + i) + ", 1]";
     }
-    expectError("[[type]]\nsize = [" + keys + "]\n", "4:8", "give 8 at most");
+    expectError("[[type]]\nsize = [" + keys + "]\n", "4:8", "give 255 at most");
+    expectError("[[type]]\nstretch = -1\n", "4:11", "out of range");
+    expectError("[[type]]\nstretch = 0.1\n", "4:11", "choose render.sprite = \"quad\"");
+    for (const char* key : {"rotation", "turn", "spin"}) {
+        expectError("[render]\nsprite = \"quad\"\n[[type]]\nstretch = 0.1\n" + std::string(key) + " = 1\n",
+                    "7:" + std::to_string(std::string(key).size() + 4), "turns along their way");
+    }
     std::string types;
     for (int i = 0; i < 17; ++i) {
         types += "[[type]]\n";

@@ -64,6 +64,65 @@ TEST(Scene, DefaultsAreThoseOfTheReadme) {
     EXPECT_EQ(scene.render.sort_frames, 0U);
 }
 
+TEST(Scene, FramesFromOneStepToAnother) {
+    const auto due = [](const std::string& render, const std::string& time = "steps = 25\n") {
+        const Scene scene = good("[time]\n" + time + "[render]\n" + render);
+        std::vector<std::uint32_t> steps;
+        for (std::uint32_t step = 0; step <= scene.steps; ++step) {
+            if (frameDue(scene, step)) {
+                steps.push_back(step);
+            }
+        }
+        return steps;
+    };
+    using Steps = std::vector<std::uint32_t>;
+    EXPECT_EQ(due(""), (Steps{10, 20, 25}));
+    EXPECT_EQ(due("every = 30\n"), (Steps{25}));
+    EXPECT_EQ(due("every = 30\n", "steps = 0\n"), (Steps{0}));
+    EXPECT_EQ(due("first = 0\n"), (Steps{0, 10, 20, 25}));
+    EXPECT_EQ(due("first = 3\nlast = 17\nevery = 7\n"), (Steps{3, 10, 17}));
+    EXPECT_EQ(due("first = 3\nlast = 18\nevery = 7\n"), (Steps{3, 10, 17, 18}));
+    EXPECT_EQ(due("last = 5\n"), (Steps{5}));
+    EXPECT_EQ(due("first = 4\nlast = 4\n"), (Steps{4}));
+    expectError(kHead + "[render]\nfirst = 5\nlast = 4\n", "dir/scene.toml:5:8: ", "exchange them");
+}
+
+TEST(Scene, PrewarmIsWholeSteps) {
+    EXPECT_EQ(prewarmSteps(good("")), 0U);
+    EXPECT_EQ(prewarmSteps(good("[time]\ndt = 0.1\nprewarm = 0.3\n")), 3U) << "0.1 of a float is not 0.1";
+    EXPECT_EQ(prewarmSteps(good("[time]\ndt = 0.1\nprewarm = 0.31\n")), 4U);
+    EXPECT_EQ(prewarmSteps(good("[time]\nprewarm = 2\n")), 120U);
+    expectError(kHead + "[time]\ndt = 1e-5\nprewarm = 101\n", "dir/scene.toml:5:11: ", "shorten it");
+}
+
+TEST(Scene, ATypesGravityAndBodies) {
+    const std::string two = "[[collider]]\nfile = \"a.relief\"\n[[collider]]\nfile = \"b.relief\"\n";
+    const auto collides = [&](const std::string& list, const std::string& more = "") {
+        const auto scene = parse(two + more + "[[type]]\ncollides = " + list + "\n");
+        EXPECT_TRUE(scene) << list << "\n" << scene.error().message;
+        return scene ? scene->types.at(0).collides : 0U;
+    };
+    EXPECT_EQ(good("[[type]]\ngravity = -0.5\n").types.at(0).gravity, -0.5F);
+    EXPECT_EQ(good("[[type]]\n").types.at(0).collides, kCollidesWithAll);
+    EXPECT_EQ(collides("[]"), 0U);
+    EXPECT_EQ(collides("[1]"), 2U);
+    EXPECT_EQ(collides("[0, \"ground\"]"), 1U + kCollidesWithGround);
+    EXPECT_EQ(collides("[1, 0, \"ground\"]"), kCollidesWithAll);
+    EXPECT_EQ(collides("[1, 0]"), 3U);
+    EXPECT_EQ(collides("[1, 0]", "[ground]\nenabled = false\n"), kCollidesWithAll) << "nothing is left out";
+    const auto wrong = [&](const std::string& line, const std::string& place, const std::string& part) {
+        expectError(two + "[[type]]\n" + line + "\n", "dir/scene.toml:" + place + ": ", part);
+    };
+    wrong("gravity = 1001", "6:11", "out of range");
+    wrong("collides = 0", "6:12", "numbers of colliders");
+    wrong("collides = [2]", "6:13", "out of range; choose 0 to 1");
+    wrong("collides = [-1]", "6:13", "out of range");
+    wrong("collides = [1.5]", "6:13", "numbers of colliders");
+    wrong("collides = [\"floor\"]", "6:13", "ground");
+    expectError(two + "[ground]\nenabled = false\n[[type]]\ncollides = [\"ground\"]\n",
+                "dir/scene.toml:8:13: ", "takes away");
+}
+
 TEST(Scene, ASortIsOffOrSpread) {
     EXPECT_EQ(good("[render]\nsort_frames = 0\n").render.sort_frames, 0U);
     EXPECT_EQ(good("[render]\nsort_frames = 2\n").render.sort_frames, 2U);
@@ -162,6 +221,7 @@ INSTANTIATE_TEST_SUITE_P(
     Keys, SceneNumber,
     testing::Values(NumberKey{"time", "dt", "1e-6", "0", "1", "1.0001"},
                     NumberKey{"time", "steps", "0", "-1", "10000000", "10000001", true},
+                    NumberKey{"time", "prewarm", "0", "-1", "1e5", "1.1e6"},
                     NumberKey{"particles", "capacity", "1", "0", "16777216", "16777217", true},
                     NumberKey{"emitter", "rate", "1e-9", "-1", "1e9", "1.1e9"},
                     NumberKey{"emitter", "duration", "1e-9", "0", "1e6", "1.1e6"},
@@ -177,6 +237,8 @@ INSTANTIATE_TEST_SUITE_P(
                     NumberKey{"render", "point_size", "1e-60", "0", "1e9", "2e9"},
                     NumberKey{"render", "opacity", "0.01", "0", "1", "1.1"},
                     NumberKey{"render", "every", "1", "0", "10000000", "10000001", true},
+                    NumberKey{"render", "first", "0", "-1", "300", "301", true},
+                    NumberKey{"render", "last", "0", "-1", "300", "301", true},
                     NumberKey{"render", "sort_frames", "0", "-1", "200", "201", true}),
     [](const auto& key) { return std::string(key.param.table) + "_" + key.param.key; });
 

@@ -1,0 +1,54 @@
+#include "runtime/collider/pose_keys.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <glm/gtc/quaternion.hpp>
+
+namespace relief {
+namespace {
+
+/// The first key after a time; its index is the number of keys if there is none.
+std::size_t after(std::span<const PoseKey> keys, double time) {
+    const auto found =
+        std::find_if(keys.begin(), keys.end(), [&](const PoseKey& key) { return key.time > time; });
+    return static_cast<std::size_t>(found - keys.begin());
+}
+
+}  // namespace
+
+Pose poseAt(std::span<const PoseKey> keys, double time) {
+    const std::size_t next = after(keys, time);
+    if (next == 0 || next == keys.size()) {
+        return next == 0 ? keys.front().pose : keys.back().pose;
+    }
+    const PoseKey& from = keys[next - 1];
+    const PoseKey& to = keys[next];
+    const auto share = static_cast<float>((time - from.time) / (to.time - from.time));
+    Pose pose = from.pose;
+    pose.position += share * (to.pose.position - from.pose.position);
+    pose.rotation = glm::normalize(glm::slerp(from.pose.rotation, to.pose.rotation, share));
+    return pose;
+}
+
+Motion motionAt(std::span<const PoseKey> keys, double time) {
+    const std::size_t next = after(keys, time);
+    if (next == 0 || next == keys.size()) {
+        return {};
+    }
+    const PoseKey& from = keys[next - 1];
+    const PoseKey& to = keys[next];
+    const auto seconds = static_cast<float>(to.time - from.time);
+    glm::quat turn = to.pose.rotation * glm::conjugate(from.pose.rotation);
+    turn = turn.w < 0.0F ? -turn : turn;  // the shorter way, as slerp goes
+    const glm::vec3 axis(turn.x, turn.y, turn.z);
+    const float sine = glm::length(axis);
+    Motion motion;
+    motion.velocity = (to.pose.position - from.pose.position) / seconds;
+    if (sine > 0.0F) {
+        motion.turn = (2.0F * std::atan2(sine, turn.w) / (sine * seconds)) * axis;
+    }
+    return motion;
+}
+
+}  // namespace relief

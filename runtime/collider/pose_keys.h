@@ -1,0 +1,29 @@
+// A way through the world: poses at moments, with straight lines and even turns between them.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <span>
+
+#include "runtime/collider/pose.h"
+
+namespace relief {
+
+struct PoseKey {
+    double time = 0.0;  ///< seconds since the beginning
+    Pose pose;          ///< its scale is that of every other key
+};
+
+/// How a rigid body moves: a point q of it goes with velocity + turn × (q − position of the pose).
+struct Motion {
+    glm::vec3 velocity{0.0F};  ///< of the pose's position, world units a second
+    glm::vec3 turn{0.0F};      ///< right-handed, radians a second
+};
+
+/// The pose at a time; before the first key and after the last it rests. Between two keys it turns the shorter way
+/// round.
+/// \param keys  at least one, their times rising.
+[[nodiscard]] Pose poseAt(std::span<const PoseKey> keys, double time);
+/// How it moves then; at a key as it goes on from there.
+[[nodiscard]] Motion motionAt(std::span<const PoseKey> keys, double time);
+
+}  // namespace relief

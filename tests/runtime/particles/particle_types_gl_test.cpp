@@ -1,0 +1,204 @@
+// What a type alone decides: how gravity acts on it, and which bodies it meets.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "tests/runtime/particles/collision_test.h"
+
+namespace relief {
+namespace {
+
+class ParticleTypesGlTest : public CollisionTest {
+  protected:
+    /// One particle of each type at a place, at rest.
+    void spawnEach(std::size_t types, const glm::vec3& place, float age = 0.0F) {
+        std::vector<Birth> births;
+        for (std::size_t i = 0; i < types; ++i) {
+            births.push_back({place, glm::vec3(0.0F), 1000.0F, static_cast<std::uint32_t>(i), age});
+        }
+        ASSERT_EQ(particles_->spawn(births), types);
+    }
+    void fall(int steps) {
+        for (int step = 0; step < steps; ++step) {
+            particles_->step(kDt);
+        }
+    }
+    [[nodiscard]] std::vector<float> heights() const {
+        std::vector<float> y;
+        for (const ParticleState& particle : state()) {
+            y.push_back(particle.position.y);
+        }
+        return y;
+    }
+};
+
+// Euler from rest: dt² g n (n + 1) / 2 after n steps, times the type's factor; so in the free flight before the first.
+TEST_P(ParticleTypesGlTest, GravityIsScaled) {
+    const std::array<float, 5> factors{1.0F, 0.0F, -0.5F, 2.0F, 1000.0F};
+    std::vector<ParticleType> types(factors.size());
+    for (std::size_t i = 0; i < types.size(); ++i) {
+        types[i].gravity = factors[i];
+    }
+    for (const Integrator integrator : {Integrator::kEuler, Integrator::kVerlet}) {
+        make({.capacity = 16, .integrator = integrator});
+        ASSERT_TRUE(particles_->setTypes(types));
+        particles_->setForces({{0.0F, -8.0F, 0.0F}, {}, 0.0F, 0.0F});
+        spawnEach(types.size(), glm::vec3(0.0F));
+        fall(30);
+        const std::vector<float> y = heights();
+        ASSERT_EQ(y.size(), types.size());
+        for (std::size_t i = 0; i < y.size(); ++i) {
+            const float wanted = -8.0F * factors[i] * kDt * kDt * 30.0F * 31.0F / 2.0F;
+            EXPECT_NEAR(y[i], wanted, 1e-4F * std::max(1.0F, std::abs(wanted))) << factors[i];
+        }
+    }
+    make({.capacity = 16});
+    ASSERT_TRUE(particles_->setTypes(types));
+    particles_->setForces({{0.0F, -8.0F, 0.0F}, {}, 0.0F, 0.0F});
+    spawnEach(types.size(), glm::vec3(0.0F), 0.5F);
+    fall(1);
+    const auto all = state();
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        EXPECT_NEAR(all[i].velocity.y, -8.0F * factors[i] * (0.5F + kDt),
+                    2e-3F * std::abs(factors[i]) + 1e-6F);
+    }
+}
+
+// What little gravity pulls at comes to rest as well, and what it pushes away lies still under a ceiling.
+TEST_P(ParticleTypesGlTest, WhatGravityScalesComesToRest) {
+    make({.capacity = 16});
+    const Collider box = boxCollider();
+    collideWith(ColliderTextures::create(box));
+    std::vector<ParticleType> types(3);
+    for (std::size_t i = 0; i < types.size(); ++i) {
+        types[i].gravity = std::array{0.125F, 1.0F, -1.0F}[i];
+        types[i].restitution = 0.5F;
+        types[i].friction = 0.5F;
+    }
+    ASSERT_TRUE(particles_->setTypes(types));
+    particles_->setForces({{0.0F, -9.81F, 0.0F}, {}, 0.0F});
+    std::vector<Birth> births;
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        births.push_back({{0.1F, i == 2 ? -0.4F : 0.4F, 0.05F}, {0.05F, 0.0F, 0.0F}, 1000.0F, i});
+    }
+    particles_->spawn(births);
+    fall(1500);
+    const auto before = state();
+    fall(500);
+    const auto after = state();
+    ASSERT_EQ(after.size(), 3U);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(after[i].position, before[i].position) << i;
+        EXPECT_NEAR(std::abs(after[i].position.y), 0.2F, 0.02F) << i;
+    }
+}
+
+// One collider in its own space, and the floor: each type stops at what it collides with.
+TEST_P(ParticleTypesGlTest, ATypeGoesThroughWhatItDoesNotCollideWith) {
+    std::vector<ParticleType> types(4);
+    types[1].collides = kCollidesWithGround;
+    types[2].collides = 1;
+    types[3].collides = 0;
+    const Collider box = boxCollider();
+    for (const float radius : {0.0F, 0.05F}) {
+        for (const float sweep : {0.0F, 0.02F}) {
+            make({.capacity = 16});
+            collideWith(ColliderTextures::create(box));
+            for (ParticleType& type : types) {
+                type.radius = radius;
+                type.friction = 1.0F;
+            }
+            ASSERT_TRUE(particles_->setTypes(types));
+            ASSERT_TRUE(particles_->setSweep(sweep));
+            particles_->setForces({{0.0F, -9.81F, 0.0F}, {}, 0.0F});
+            particles_->setGround(-1.0F);
+            spawnEach(4, {0.1F, 0.5F, 0.0F});   // above the box
+            spawnEach(4, {2.0F, 0.5F, 0.0F});   // beside it
+            spawnEach(4, {0.1F, 0.0F, 0.05F});  // in it
+            fall(120);
+            const std::vector<float> y = heights();
+            ASSERT_EQ(y.size(), 12U);
+            const float ground = -1.0F + radius;
+            EXPECT_NEAR(y[0], 0.2F + radius, 0.1F);
+            EXPECT_NEAR(y[1], ground, 0.1F);
+            EXPECT_NEAR(y[2], 0.2F + radius, 0.1F);
+            EXPECT_LT(y[3], -5.0F);
+            EXPECT_NEAR(y[4], ground, 0.1F);
+            EXPECT_NEAR(y[5], ground, 0.1F);
+            EXPECT_LT(y[6], -5.0F);
+            EXPECT_LT(y[7], -5.0F);
+            EXPECT_NEAR(y[9], ground, 0.1F) << "what is inside of a body that it does not meet is not caught";
+            EXPECT_LT(y[11], -5.0F);
+        }
+    }
+}
+
+// Three shelves above each other, and a mask for each of their sets: what falls stops at the highest of its own.
+TEST_P(ParticleTypesGlTest, MasksOfSeveralBodies) {
+    const Collider box = boxCollider();
+    std::vector<ColliderBody> bodies;
+    for (const float height : {2.0F, 1.0F, 0.0F}) {
+        bodies.push_back({&box, {{0.0F, height, 0.0F}, {1.0F, 0.0F, 0.0F, 0.0F}, 1.0F}});
+    }
+    std::vector<ParticleType> types(8);
+    for (std::uint32_t i = 0; i < 8; ++i) {
+        types[i].collides = i;
+        types[i].friction = 1.0F;
+        types[i].on_collision = i % 2 == 0 ? OnCollision::kStop : OnCollision::kBounce;
+    }
+    make({.capacity = 16});
+    collideWith(ColliderTextures::create(bodies));
+    ASSERT_TRUE(particles_->setTypes(types));
+    particles_->setForces({{0.0F, -9.81F, 0.0F}, {}, 0.0F});
+    particles_->setGround(-1.0F);  // nobody's
+    spawnEach(8, {0.1F, 2.5F, 0.0F});
+    fall(150);
+    const std::vector<float> y = heights();
+    ASSERT_EQ(y.size(), 8U);
+    EXPECT_LT(y[0], -5.0F);
+    for (std::uint32_t i = 1; i < 8; ++i) {
+        const float top = (i & 1U) != 0 ? 2.0F : (i & 2U) != 0 ? 1.0F : 0.0F;
+        EXPECT_NEAR(y[i], top + 0.2F, 0.12F) << i;
+    }
+}
+
+TEST_P(ParticleTypesGlTest, BadGravityAndMasksAreErrors) {
+    make({.capacity = 4});
+    ParticleType type;
+    type.gravity = std::nanf("");
+    EXPECT_EQ(particles_->setTypes(std::span(&type, 1)).error().code, ErrorCode::kUsage);
+    type.gravity = 1.0F;
+    type.collides = kCollidesWithAll + 1;
+    EXPECT_EQ(particles_->setTypes(std::span(&type, 1)).error().code, ErrorCode::kUsage);
+    type.collides = kCollidesWithAll;
+    EXPECT_TRUE(particles_->setTypes(std::span(&type, 1)));
+}
+
+// A run that begins before time 0: its clock says so, and no particle notices.
+TEST_P(ParticleTypesGlTest, ARunMayBeginBeforeTimeZero) {
+    std::vector<ParticleState> of[2];
+    for (int i = 0; i < 2; ++i) {
+        make({.capacity = 16, .epoch_seconds = 0.5, .start_time = i == 0 ? 0.0 : -2.0});
+        EXPECT_EQ(particles_->time(), i == 0 ? 0.0 : -2.0);
+        particles_->setForces({{0.0F, -9.81F, 0.0F}, {}, 0.5F});
+        const Birth birth{{}, {1.0F, 0.0F, 0.0F}, 1.5F, 0};
+        spawnOne(birth);
+        fall(60);
+        EXPECT_NEAR(particles_->time(), i == 0 ? 1.0 : -1.0, 1e-6);
+        of[i] = state();
+        fall(31);
+        EXPECT_TRUE(state().empty()) << "it lives for a second and a half";
+    }
+    ASSERT_EQ(of[0].size(), 1U);
+    EXPECT_EQ(of[0][0].position, of[1][0].position);
+    EXPECT_NEAR(of[0][0].age, of[1][0].age, 1e-6F);
+    EXPECT_FALSE(ParticleSystem::create({.capacity = 4, .start_time = std::nan("")}));
+}
+
+}  // namespace
+
+RELIEF_INSTANTIATE_STEP_TESTS(ParticleTypesGlTest);
+
+}  // namespace relief
