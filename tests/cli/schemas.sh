@@ -198,10 +198,32 @@ T
 "$relief_sim" scene.toml --steps 40 --frames frames --stats stats.jsonl --events hits.jsonl --json >sim.json
 [ -s hits.jsonl ] || die "nothing was hit"
 "$relief_sim" b.relief --steps 2 --json >alone.json
+cat >live.toml <<'T'
+[collider]
+mesh = "box.obj"
+resolution = 32
+deform = { kind = "twist", amplitude = 20.0, frequency = 1.0 }
+[time]
+prewarm = 0.1
+[emitter]
+point = [0, 2, 0]
+attach = 0
+inherit = 1
+[[emitter.key]]
+time = 0
+[[emitter.key]]
+time = 1
+angle = 90
+[[type]]
+gravity = 0.5
+collides = [0]
+T
+cp "$models/OBJ/box.obj" .
+"$relief_sim" live.toml --steps 2 --json >live.json
 "$relief_sim" scene.toml --check --json >valid.json
 echo nonsense >bad.toml
 expect 3 "$relief_sim" bad.toml --check --json
 cp stdout invalid.json
-outputs+=(sim-report:sim.json sim-report:alone.json sim-stats:stats.jsonl sim-events:hits.jsonl sim-check:valid.json sim-check:invalid.json)
+outputs+=(sim-report:sim.json sim-report:alone.json sim-report:live.json sim-stats:stats.jsonl sim-events:hits.jsonl sim-check:valid.json sim-check:invalid.json)
 
 python3 validate.py "$RELIEF_SOURCE/formats/schemas" "${outputs[@]}" || die "schemas and outputs differ"
