@@ -17,7 +17,7 @@ if [ "${1-}" = --web ]; then
 fi
 cd "$(dirname "$0")/.."
 
-all=(bunny_in_the_snow fountain linked_tori rain wobbling_torus)
+all=(bunny_in_the_snow catherine_wheel fountain linked_tori rain wobbling_torus)
 names=("$@")
 [ ${#names[@]} -gt 0 ] || names=("${all[@]}")
 for name in "${names[@]}"; do
@@ -40,6 +40,11 @@ prepare() {
     mkdir -p "$out"
     case $name in
     bunny_in_the_snow)
+        bake "$models/bunny.obj" -o "$out/bunny.relief" --prefer inside
+        ;;
+    catherine_wheel)
+        mesh torus.obj
+        bake "$out/torus.obj" -o "$out/torus.relief" --budget 200kB
         bake "$models/bunny.obj" -o "$out/bunny.relief" --prefer inside
         ;;
     fountain)

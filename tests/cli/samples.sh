@@ -79,6 +79,7 @@ play() {
     [ "$colors" -gt 200 ] || die "a frame of $1 has $colors colours: it shows nothing"
 }
 play bunny_in_the_snow 300
+play catherine_wheel 170
 play fountain 150
 play linked_tori 180
 play rain 300
@@ -113,6 +114,28 @@ assert on_bunny > 0.15 * len(flakes), on_bunny
 for radius, kind in ((0.0, 0), (0.012, 1), (0.026, 2)):
     lowest = min(p[1] for p, v, t in flakes if t == kind and v == (0, 0, 0)) - floor
     assert radius - 1e-4 <= lowest <= radius + 0.04, (kind, lowest)
+P
+
+# The wheel, at 17/12 s: new sparks are at the nozzles, which have turned by as much; none is in the ring or below the
+# floor, some lie on the bunny; and smoke is in the ring, and above it.
+python3 - <<'P'
+import math, particles
+floor = -0.991233
+all_of = list(particles.read('catherine_wheel.ply'))
+sparks = [p for p, _, t in all_of if t == 0]
+smoke = [p for p, _, t in all_of if t == 1]
+assert len(sparks) > 400 and len(smoke) > 8, (len(sparks), len(smoke))
+turned = math.radians(600 * 170 / 120)
+nozzles = [(0.36 * 1.29 * math.cos(turned + 2 * math.pi * i / 3), 1.55, -0.36 * 1.29 * math.sin(turned + 2 * math.pi * i / 3))
+           for i in range(3)]
+for nozzle in nozzles:
+    assert min(math.dist(p, nozzle) for p in sparks) < 0.06, nozzle
+def ring(p):
+    return math.hypot(math.hypot(p[0], p[2]) - 0.36, p[1] - 1.55) - 0.36 * 0.26
+assert min(map(ring, sparks)) > -0.005, min(map(ring, sparks))
+assert min(p[1] for p in sparks) > floor - 1e-3
+assert any(floor + 0.3 < p[1] < 0.9 and math.hypot(p[0], p[2]) < 0.8 for p in sparks)
+assert min(map(ring, smoke)) < 0 and max(p[1] for p in smoke) > 1.7, (min(map(ring, smoke)), max(p[1] for p in smoke))
 P
 
 # Fountain: jets rise to their height (0.3 + 2.8² / 2 g), and no water gets below the floor.
