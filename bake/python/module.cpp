@@ -271,14 +271,32 @@ py::dict check(const Collider& collider, TriangleMesh mesh, std::uint32_t sample
 /// A scene without a window. One at a time holds the context of its thread.
 class HeadlessSimulation {
   public:
-    HeadlessSimulation(const std::filesystem::path& scene, std::optional<std::uint64_t> seed)
+    /// \param root  as SceneOverrides has it.
+    /// \param hits  keeps them for takeHits().
+    HeadlessSimulation(const std::filesystem::path& scene, std::optional<std::uint64_t> seed,
+                       const std::filesystem::path& root, bool hits)
         : context_(need(GlContext::create())) {
         SceneOverrides overrides;
         overrides.seed = seed;
+        overrides.root = root;
         loaded_ = std::make_unique<LoadedScene>(need(loadAll(scene, overrides)));
         auto emitters = need(makeEmitters(loaded_->scene.emitters));
         simulation_ = std::make_unique<Simulation>(
             need(Simulation::create(*loaded_, std::move(emitters), StepPath::kAuto, nullptr)));
+        if (hits) {
+            hits_ = std::make_unique<Hits>();
+            const auto listed = simulation_->listHits(0.0F, [to = hits_.get()](const StepEvents& step) {
+                for (const ParticleEvent& event : step.events) {
+                    if (event.hit && !event.lasts) {
+                        to->emplace_back(step.tag, event);
+                    }
+                }
+                return Result<void>();
+            });
+            if (!listed) {
+                raise(listed.error());
+            }
+        }
     }
 
     void step(std::uint32_t count) {
@@ -323,12 +341,58 @@ class HeadlessSimulation {
         return out;
     }
 
+    /// Those of all steps since the last call; waits for the GPU.
+    [[nodiscard]] py::dict takeHits() {
+        if (!hits_) {
+            raise({ErrorCode::kUsage, "this simulation keeps no hits; make it with hits=True"});
+        }
+        if (const Result<void> done = simulation_->finishEvents(); !done) {
+            raise(done.error());
+        }
+        const auto count = static_cast<py::ssize_t>(hits_->size());
+        py::array_t<std::uint64_t> step(count);
+        py::array_t<double> time(count);
+        Indices id(count);
+        Indices type(count);
+        py::array_t<std::int32_t> body(count);
+        Floats position({count, py::ssize_t{3}});
+        Floats normal({count, py::ssize_t{3}});
+        Floats velocity({count, py::ssize_t{3}});
+        Floats speed(count);
+        for (std::size_t i = 0; i < hits_->size(); ++i) {
+            const auto& [number, event] = (*hits_)[i];
+            step.mutable_data()[i] = number;
+            time.mutable_data()[i] = event.time;
+            id.mutable_data()[i] = event.id;
+            type.mutable_data()[i] = event.type;
+            body.mutable_data()[i] = event.body;
+            std::copy_n(&event.position.x, 3, position.mutable_data() + 3 * i);
+            std::copy_n(&event.normal.x, 3, normal.mutable_data() + 3 * i);
+            std::copy_n(&event.velocity.x, 3, velocity.mutable_data() + 3 * i);
+            speed.mutable_data()[i] = event.speed;
+        }
+        hits_->clear();
+        py::dict out;
+        out["step"] = step;
+        out["time"] = time;
+        out["id"] = id;
+        out["type"] = type;
+        out["body"] = body;
+        out["position"] = position;
+        out["normal"] = normal;
+        out["velocity"] = velocity;
+        out["speed"] = speed;
+        return out;
+    }
+
     [[nodiscard]] double time() const { return simulation_->particles().time(); }
     [[nodiscard]] std::uint32_t alive() const { return simulation_->particles().counts().alive; }
 
   private:
     std::unique_ptr<GlContext> context_;
     std::unique_ptr<LoadedScene> loaded_;
+    using Hits = std::vector<std::pair<std::uint64_t, ParticleEvent>>;  // each with the number of its step
+    std::unique_ptr<Hits> hits_;                                        // null: nobody wants them
     std::unique_ptr<Simulation> simulation_;
 };
 
@@ -413,8 +477,10 @@ PYBIND11_MODULE(_relief, m) {
         return check(collider, need(released([&] { return importMeshInWorker(path); })), samples, seed);
     });
     py::class_<HeadlessSimulation>(m, "Simulation")
-        .def(py::init<const std::filesystem::path&, std::optional<std::uint64_t>>())
+        .def(py::init<const std::filesystem::path&, std::optional<std::uint64_t>,
+                      const std::filesystem::path&, bool>())
         .def("step", &HeadlessSimulation::step)
+        .def("take_hits", &HeadlessSimulation::takeHits)
         .def("read", &HeadlessSimulation::read)
         .def_property_readonly("time", &HeadlessSimulation::time)
         .def_property_readonly("alive", &HeadlessSimulation::alive);

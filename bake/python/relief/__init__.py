@@ -22,7 +22,7 @@ from . import _relief
 from ._relief import Error, FileError, InputError, LimitError, UnsupportedError, UsageError
 
 __version__: str = _relief.version
-__all__ = ["Accuracy", "Collider", "DepthMap", "Error", "FileError", "InputError", "LimitError", "Samples", "Simulation",
+__all__ = ["Accuracy", "Collider", "DepthMap", "Error", "FileError", "Hits", "InputError", "LimitError", "Samples", "Simulation",
            "UnsupportedError", "UsageError", "WorstPlace", "bake", "check", "load"]
 
 Path = Union[str, "os.PathLike[str]"]
@@ -206,17 +206,47 @@ def check(collider: Collider, mesh: Any, triangles: Any = None, *, samples: int 
     return Accuracy(**said, places=places)
 
 
+class Hits(NamedTuple):
+    """n hits: a particle touches a body or the ground, and in the step before it touched nothing."""
+
+    step: np.ndarray
+    """(n,) uint64: the step, from 1; it rises."""
+    time: np.ndarray
+    """(n,) float64: seconds, within the step."""
+    id: np.ndarray
+    """(n,) uint32: the particle, as in Simulation.ids."""
+    type: np.ndarray
+    """(n,) uint32"""
+    body: np.ndarray
+    """(n,) int32: which collider of the scene, from 0; -1: the ground."""
+    position: np.ndarray
+    """(n, 3) float32: where the surface was touched."""
+    normal: np.ndarray
+    """(n, 3) float32: of the surface, out of the body."""
+    velocity: np.ndarray
+    """(n, 3) float32: that the particle came with."""
+    speed: np.ndarray
+    """(n,) float32: of approach along the normal, relative to the surface."""
+
+
 class Simulation:
     """A scene of `relief-sim`, without a window. The GPU's context belongs to the thread that makes it."""
 
-    def __init__(self, scene: Path, *, seed: Optional[int] = None) -> None:
-        self._handle = _relief.Simulation(os.fspath(scene), seed)
+    def __init__(self, scene: Path, *, seed: Optional[int] = None, root: Optional[Path] = None,
+                 hits: bool = False) -> None:
+        """seed: of every emitter, instead of the scene's. root: a folder whose files the scene may name beside those of
+        its own. hits: keep them for take_hits(), which costs time in each step."""
+        self._handle = _relief.Simulation(os.fspath(scene), seed, os.fspath(root or ""), hits)
         self._read: Optional[dict[str, np.ndarray]] = None
 
     def step(self, count: int = 1) -> None:
         """So many steps of the scene's length."""
         self._handle.step(count)
         self._read = None
+
+    def take_hits(self) -> Hits:
+        """Those of the steps since the last call, in the order of steps; waits for the GPU. Up to 262,144 a step."""
+        return Hits(**self._handle.take_hits())
 
     @property
     def time(self) -> float:
@@ -246,8 +276,19 @@ class Simulation:
         return self._state("ids")
 
     @property
+    def types(self) -> np.ndarray:
+        """(n,) uint32: the numbers of their [[type]]."""
+        return self._state("types")
+
+    @property
     def ages(self) -> np.ndarray:
+        """(n,) float32: seconds since birth."""
         return self._state("ages")
+
+    @property
+    def lifetimes(self) -> np.ndarray:
+        """(n,) float32: seconds from birth to death."""
+        return self._state("lifetimes")
 
     @property
     def collisions(self) -> np.ndarray:

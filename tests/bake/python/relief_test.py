@@ -188,6 +188,31 @@ def test_a_simulation_is_that_of_relief_sim(bunny, tmp_path):
     assert simulation.collisions.sum() > 0
 
 
+def test_hits_are_those_of_relief_sim(bunny, tmp_path):
+    (tmp_path / "scenes").mkdir()
+    scene = tmp_path / "scenes" / "scene.toml"
+    scene.write_text('[time]\nsteps = 90\nprewarm = 0.2\n[collider]\nfile = "../bunny.relief"\n'
+                     '[particles]\ncapacity = 3000\n[[type]]\n[[type]]\n[[emitter]]\ntype = 0\n[[emitter]]\ntype = 1\n')
+    (tmp_path / "bunny.relief").write_bytes(bunny.read_bytes())
+    with pytest.raises(relief.Error, match="scene.toml:5"):
+        relief.Simulation(scene)
+    subprocess.run([BIN / "relief-sim", scene, "-q", "--root", tmp_path, "--events", tmp_path / "hits.jsonl"], check=True)
+    said = [json.loads(line) for line in open(tmp_path / "hits.jsonl")]
+    simulation = relief.Simulation(scene, root=tmp_path, hits=True)
+    simulation.step(50)
+    parts = [simulation.take_hits()]
+    simulation.step(40)
+    parts.append(simulation.take_hits())
+    assert len(simulation.take_hits().step) == 0 and len(parts[0].step) > 0 and parts[0].step.max() <= 50
+    hits = relief.Hits(*(np.concatenate(both) for both in zip(*parts)))
+    assert len(said) == len(hits.step) > 500 and set(simulation.types) == {0, 1} and simulation.lifetimes.min() > 0
+    for key in ("step", "id", "type", "time", "position", "normal", "velocity", "speed"):
+        assert np.allclose([hit[key] for hit in said], getattr(hits, key), rtol=1e-5, atol=1e-6), key
+    assert [-1 if hit["body"] is None else hit["body"] for hit in said] == hits.body.tolist()
+    with pytest.raises(relief.UsageError, match="hits=True"):
+        relief.Simulation(scene, root=tmp_path).take_hits()
+
+
 def test_worst_places_are_those_of_the_tool(tmp_path):
     path = tmp_path / "b.relief"
     subprocess.run([BIN / "relief", "bake", BUNNY, "-q", "-o", path, "--budget", "60kB"], check=True)
