@@ -9,8 +9,8 @@
 namespace relief {
 
 Result<void> checkVdb() {
-    RELIEF_TRY(vdbWriter());
-    return {};
+    const auto writer = vdbWriter();
+    return writer ? Result<void>() : forward(writer);
 }
 
 Result<std::vector<std::byte>> encodeVdbPoints(std::span<const ParticleState> particles) {

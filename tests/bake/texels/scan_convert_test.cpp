@@ -35,7 +35,6 @@ Scanned scan(const TriangleMesh& mesh, const View& view) {
 }
 
 constexpr int kSide = 64;  // of the box, in quarters
-constexpr int kTexels = 32;
 
 /// What covers a sample, by whole numbers: strictly, or by an edge too.
 struct Covered {
