@@ -10,8 +10,8 @@ namespace {
 
 /// The first key after a time; its index is the number of keys if there is none.
 std::size_t after(std::span<const PoseKey> keys, double time) {
-    const auto found =
-        std::find_if(keys.begin(), keys.end(), [&](const PoseKey& key) { return key.time > time; });
+    const auto found = std::upper_bound(keys.begin(), keys.end(), time,
+                                        [](double at, const PoseKey& key) { return at < key.time; });
     return static_cast<std::size_t>(found - keys.begin());
 }
 

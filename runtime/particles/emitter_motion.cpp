@@ -22,6 +22,9 @@ void carryAlong(std::span<const PoseKey> keys, double time, Birth& birth, glm::v
 }  // namespace
 
 void carry(const EmitterMotion& motion, double time, std::span<Birth> births) {
+    if (motion.none()) {
+        return;
+    }
     for (Birth& birth : births) {
         const double moment = time - static_cast<double>(birth.age);
         glm::vec3 moved(0.0F);

@@ -85,26 +85,31 @@ Result<EmitterSettings> settingsOf(const SceneEmitter& from) {
 
 }  // namespace
 
-Result<void> resolveEmitterTypes(std::span<SceneEmitter> emitters, std::span<const std::string> names) {
+Result<std::uint32_t> resolvedType(const std::string& key, const std::string& name, const std::string& origin,
+                                   std::uint32_t type, std::span<const std::string> names) {
+    if (name.empty()) {
+        if (!names.empty() && type >= names.size()) {
+            return fail(ErrorCode::kInvalidInput, origin + ": " + key + " = " + std::to_string(type) +
+                                                      " is none of the " + std::to_string(names.size()) +
+                                                      " types; the first is 0");
+        }
+        return type;
+    }
     const std::vector<std::string_view> known(names.begin(), names.end());
+    const auto found = std::find(known.begin(), known.end(), name);
+    if (found == known.end()) {
+        const std::string hint = didYouMean(name, known);
+        return fail(ErrorCode::kInvalidInput, origin + ": " + key + " = " +
+                                                  quotedPath(std::filesystem::path(name)) + " is unknown" +
+                                                  (hint.empty() ? "; name a type of this scene" : hint));
+    }
+    return static_cast<std::uint32_t>(found - known.begin());
+}
+
+Result<void> resolveEmitterTypes(std::span<SceneEmitter> emitters, std::span<const std::string> names) {
     for (SceneEmitter& emitter : emitters) {
-        if (emitter.type_name.empty()) {
-            if (!names.empty() && emitter.type >= names.size()) {
-                return fail(ErrorCode::kInvalidInput,
-                            emitter.type_origin + ": emitter.type = " + std::to_string(emitter.type) +
-                                " is none of the " + std::to_string(names.size()) + " types; the first is 0");
-            }
-            continue;
-        }
-        const auto found = std::find(known.begin(), known.end(), emitter.type_name);
-        if (found == known.end()) {
-            const std::string hint = didYouMean(emitter.type_name, known);
-            return fail(ErrorCode::kInvalidInput,
-                        emitter.type_origin +
-                            ": emitter.type = " + quotedPath(std::filesystem::path(emitter.type_name)) +
-                            " is unknown" + (hint.empty() ? "; name a type of this scene" : hint));
-        }
-        emitter.type = static_cast<std::uint32_t>(found - known.begin());
+        emitter.type = RELIEF_TRY(
+            resolvedType("emitter.type", emitter.type_name, emitter.type_origin, emitter.type, names));
     }
     return {};
 }

@@ -61,6 +61,16 @@ struct SceneEmitter {
 inline constexpr std::uint32_t kEmitterTypeMax = 15;
 inline constexpr std::size_t kEmittersMax = 64;
 
+/// The index of a type that a table names, by its name or its number.
+/// \param key     "emitter.type", for messages; origin is its place.
+/// \param name    empty: the number `type` was given.
+/// \param names   of the types there are, in order.
+/// Errors: kInvalidInput, "file:line:column: …", for a name or an index that is not among them; where `names` is empty, for a
+/// name alone.
+[[nodiscard]] Result<std::uint32_t> resolvedType(const std::string& key, const std::string& name,
+                                                 const std::string& origin, std::uint32_t type,
+                                                 std::span<const std::string> names);
+
 /// Turns names of types into indices.
 /// \param names  of the types there are, in order.
 /// Errors: kInvalidInput, "file:line:column: …", for a name or an index that is not among them; where `names`

@@ -189,20 +189,7 @@ void readLife(SceneTable& table, SceneEmitter& emitter) {
         emitter.lifetime_min = positive(span.least);
         emitter.lifetime_max = positive(span.most);
     }
-    if (const toml::node* node = table.find("type"); node != nullptr) {
-        emitter.type_origin = table.place(node->source().begin);
-        if (!node->is_string() && !node->is_integer()) {
-            table.wrongType(*node, "type", "a whole number or the name of a type");
-        }
-        if (node->is_string()) {
-            table.text("type", emitter.type_name);
-            if (emitter.type_name.empty()) {
-                table.failAt(*node, "emitter.type is an empty name; name a type");
-            }
-        } else {
-            table.integer("type", {0.0, kEmitterTypeMax}, emitter.type);
-        }
-    }
+    readTypeOf(table, "type", emitter.type, emitter.type_name, emitter.type_origin);
     table.integer("seed", {0.0, kSeedMax}, emitter.seed);
 }
 

@@ -48,6 +48,30 @@ bool readPose(SceneTable& table, Pose& pose);
 [[nodiscard]] std::vector<PoseKey> readPoseKeys(SceneTable& table, std::string_view file, const Pose& pose,
                                                 std::string_view instead);
 
+// for [emitter] and [[spawn]]
+
+/// The number or the name of a type, and its place; nothing if the key is absent.
+template <class Index>
+void readTypeOf(SceneTable& table, std::string_view key, Index& index, std::string& name,
+                std::string& origin) {
+    const toml::node* node = table.find(key);
+    if (node == nullptr) {
+        return;
+    }
+    origin = table.place(node->source().begin);
+    if (!node->is_string() && !node->is_integer()) {
+        table.wrongType(*node, key, "a whole number or the name of a type");
+    }
+    if (node->is_integer()) {
+        table.integer(key, {0.0, kEmitterTypeMax}, index);
+        return;
+    }
+    table.text(key, name);
+    if (name.empty()) {
+        table.failAt(*node, table.full(key) + " is an empty name; name a type");
+    }
+}
+
 // scene_live_reader.cpp
 
 /// collider.mesh, collider.deform and collider.resolution: sets path, origin and live.

@@ -12,27 +12,6 @@ namespace {
 constexpr double kSeedMax = 9007199254740992.0;
 constexpr double kShareMax = 1000.0;
 
-/// The index or the name of a type, and its place.
-template <class Index>
-void readType(SceneTable& table, std::string_view key, Index& index, std::string& name, std::string& origin) {
-    const toml::node* node = table.find(key);
-    if (node == nullptr) {
-        return;
-    }
-    origin = table.place(node->source().begin);
-    if (!node->is_string() && !node->is_integer()) {
-        table.wrongType(*node, key, "a whole number or the name of a type");
-    }
-    if (node->is_integer()) {
-        table.integer(key, {0.0, kEmitterTypeMax}, index);
-        return;
-    }
-    table.text(key, name);
-    if (name.empty()) {
-        table.failAt(*node, table.full(key) + " is an empty name; name a type");
-    }
-}
-
 void readCount(SceneTable& table, SpawnSettings& settings) {
     const toml::node* node = table.find("count");
     if (node == nullptr) {
@@ -70,8 +49,8 @@ SceneSpawn readSpawn(SceneTable& table, const toml::source_position& at) {
     if (!table.word("on", {"collision", "death"}, settings.on)) {
         table.failAt(at, "spawn.on is missing; choose \"collision\" or \"death\"");
     }
-    readType(table, "of", settings.of, spawn.of_name, spawn.of_origin);
-    readType(table, "type", settings.type, spawn.type_name, spawn.type_origin);
+    readTypeOf(table, "of", settings.of, spawn.of_name, spawn.of_origin);
+    readTypeOf(table, "type", settings.type, spawn.type_name, spawn.type_origin);
     if (table.number("min_speed", {0.0, kSpeedMax}, settings.min_speed) && settings.on == SpawnOn::kDeath) {
         table.failUseless("min_speed", "for spawn.on = \"death\"; remove it");
     }
