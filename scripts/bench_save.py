@@ -39,7 +39,9 @@ def one_round(binaries, mesh, folder):
     figures["bake of six maps / floor"] = seconds([relief, "bake", mesh, "-o", f"{folder}/six.relief", "-q", *SIX_MAPS]) / floor
     figures["planned bake of 1 MB / floor"] = seconds([relief, "bake", mesh, "-o", planned, "-q", "--budget", "1MB"]) / floor
     for path in ("fragment", "compute"):
-        step = printed([f"{binaries}/relief-bench-step", planned, "--path", path, "--particles", PARTICLES])
+        # A few blocks, for rounds are many.
+        step = printed([f"{binaries}/relief-bench-step", planned, "--path", path, "--particles", PARTICLES,
+                        "--blocks", "3"])
         figures[f"{path}: no collider / copy"] = step["copy"]["step_over_copy"]["median"]
         for variant in step["variants"]:
             ratio = variant["over_collider"]["median"]
@@ -58,12 +60,12 @@ def main(arguments):
             renderer, figures = one_round(binaries, mesh, folder)
             for name, value in figures.items():
                 taken.setdefault(name, []).append(value)
-            print(f"round {done + 1} of {rounds}", file=sys.stderr)
-    data = {"machine": f"{platform.machine()}, {os.cpu_count()} processors, {renderer}", "figures": taken}
-    with open(target + ".part", "w", encoding="utf-8") as file:
-        json.dump(data, file, indent=1)
-        file.write("\n")
-    os.replace(target + ".part", target)
+            data = {"machine": f"{platform.machine()}, {os.cpu_count()} processors, {renderer}", "figures": taken}
+            with open(target + ".part", "w", encoding="utf-8") as file:
+                json.dump(data, file, indent=1)
+                file.write("\n")
+            os.replace(target + ".part", target)  # what was taken remains where a later round is cut off
+            print(f"round {done + 1} of {rounds}", file=sys.stderr, flush=True)
 
 
 if __name__ == "__main__":

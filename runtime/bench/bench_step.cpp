@@ -1,5 +1,5 @@
 // What a step costs: relief-bench-step COLLIDER.relief [--large] [--path fragment|compute] [--particles N] [--only NAME]
-// prints JSON.
+// [--blocks N] prints JSON.
 // Nothing here is a test: machines are shared and noisy.
 //
 // A block is some steps between two glFinish. Before each all particles are born anew, so that blocks
@@ -310,6 +310,7 @@ struct Options {
     bool large = false;
     StepPath path = StepPath::kFragment;
     std::uint32_t particles = 0;  ///< of the step, and no frames; 0: as sizesFor() has it
+    int blocks = 0;               ///< of each variant; 0: as sizesFor() has it
     std::string only;             ///< the variant to compare with the collider and with none; empty: all
 };
 
@@ -329,6 +330,10 @@ Result<Options> parse(int argc, char** argv) {
                                                             *count <= ParticleSystem::kCapacityMax) {
             options.particles = static_cast<std::uint32_t>(*count);
             ++i;
+        } else if (const auto blocks = parseUnsigned(value);
+                   word == "--blocks" && blocks && *blocks > 0 && *blocks <= 1000) {
+            options.blocks = static_cast<int>(*blocks);
+            ++i;
         } else if (word == "--only" && !value.empty()) {
             options.only = value;
             ++i;
@@ -340,7 +345,7 @@ Result<Options> parse(int argc, char** argv) {
     if (!known || options.collider.empty()) {
         return fail(ErrorCode::kUsage,
                     "usage: relief-bench-step COLLIDER.relief [--large] [--path fragment|compute] "
-                    "[--particles N, of 1024] [--only NAME]");
+                    "[--particles N, of 1024] [--only NAME] [--blocks N]");
     }
     return options;
 }
@@ -355,6 +360,7 @@ Result<Json> bench(int argc, char** argv) {
         sizes.rounds = options.particles > (1U << 20) ? 3 : sizes.rounds;  // births take the processor long
         sizes.frames.clear();
     }
+    sizes.rounds = options.blocks != 0 ? options.blocks : sizes.rounds;
     Json json;
     json["device"] = context->description();
     json["renderer"] = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
