@@ -12,12 +12,12 @@
 #           GCC is off.
 #   bytes   204 bakes of ten meshes in surroundings that must not matter give one hash each (scripts/determinism.sh)
 #   corpus  536 meshes as artists make them are baked at 1 MB and measured, or refused in one line. An hour or so.
-#   fuzz    libFuzzer looks at containers, scenes, plans, recipes, points and import messages, ten minutes each (scripts/fuzz.sh)
+#   fuzz    libFuzzer looks at all that tests/fuzz has a target for, ten minutes each (scripts/fuzz.sh)
 #   seeds   the generated cases of the tests are others: of seed RELIEF_TEST_SEED, by default the day's date
 #   clang   everything is built by clang too, without a warning, and passes its tests.
 #   load    the release tests pass five times while stress-ng keeps processors, memory and disk busy.
 #   bare    .ci/run, from nothing, in a minimal Debian 12 that mmdebstrap makes; scripts/test.sh there without root; and
-#           what the tools do there without a GL. Needs root, and takes hours.
+#           what the tools do there without a GL. Needs root, and takes more than an hour.
 #   blender the add-on of samples/blender bakes, shows errors and plays particles in Debian's Blender, without a window
 #   packages  cpack's .deb files pass lintian, and their users' programs and commands work in a minimal Debian 12 that has
 #           nothing else (scripts/install/try_packages.sh). Needs root.
