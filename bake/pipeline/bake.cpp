@@ -320,7 +320,6 @@ class Bake {
         }
         const MapBaker baker(*scene, *normals);
         std::optional<TriangleNormals> unit_normals;
-        const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh_));
         for (const Job& job : jobs_) {
             MapReport report{job.spec, 0, job.texels()};
             if (job.spec.decode != Decode::kPlane) {
@@ -334,10 +333,10 @@ class Bake {
                 unit_normals.emplace(*mesh_);
             }
             const FittedMapOptions fit = fitOptions(*mesh_, job.view, options_);
-            DepthMap map = job.view.compare == Compare::kGap
-                               ? bakeGaps(query, *unit_normals, job.view, fit, report)
-                               : bakeFittedMap(*scene, query, *unit_normals, job.view, fit, report.covered,
-                                               rowsDone(job.view));
+            DepthMap map =
+                job.view.compare == Compare::kGap
+                    ? bakeGaps(scene->query(), *unit_normals, job.view, fit, report)
+                    : bakeFittedMap(*scene, *unit_normals, job.view, fit, report.covered, rowsDone(job.view));
             add(std::move(map), std::move(report));
         }
         return {};

@@ -27,11 +27,10 @@ constexpr std::uint32_t kEdgeParts = 63;
 /// Fits the texels of one end, from the hits of a view with `samples` times as many texels each way.
 class EndFitter {
   public:
-    EndFitter(const RayScene& scene, const MeshQuery& query, const DepthMap& map,
-              const TriangleNormals& normals, const View& view, const View& fine, const View& finest,
-              RayEnd end, const FittedMapOptions& options)
+    EndFitter(const RayScene& scene, const DepthMap& map, const TriangleNormals& normals, const View& view,
+              const View& fine, const View& finest, RayEnd end, const FittedMapOptions& options)
         : normals_(normals),
-          deep_(query, map),
+          deep_(scene.query(), map),
           finest_(finest),
           probe_(scene, finest, end),
           probe_other_(scene, finest, end == RayEnd::kNear ? RayEnd::kFar : RayEnd::kNear),
@@ -89,10 +88,11 @@ class EndFitter {
         }
         const TexelRay centre = view_.ray(face, x, y);
         deep_.setTexel((std::size_t{face} * view_.height + y) * view_.width + x);
-        // Of one ray the plane that it meets is as good as is known: one that faces the viewer cuts more of a slope.
+        // Of one ray the plane that it meets is as good as is known: one that faces the viewer cuts more of a slope. But an
+        // edge between rays of which some started in the solid is none.
         const std::optional<FittedPlane> plane = fitSupportingPlane(
             rays_, [&] { return lookAround(here); }, edge_, end_.fromViewer(centre), centre.origin, fit_,
-            samples_ > 1 ? &deep_ : nullptr);
+            samples_ > 1 || !starts_free_ ? &deep_ : nullptr);
         if (!plane) {
             return std::nullopt;
         }
@@ -247,10 +247,9 @@ class EndFitter {
 /// Fits all texels of a map, stripe by stripe.
 class MapFitter {
   public:
-    MapFitter(const RayScene& scene, const MeshQuery& query, const TriangleNormals& normals, const View& view,
+    MapFitter(const RayScene& scene, const TriangleNormals& normals, const View& view,
               const FittedMapOptions& options)
         : scene_(scene),
-          query_(query),
           normals_(normals),
           view_(view),
           fine_(scaled(view, options.samples)),
@@ -303,8 +302,8 @@ class MapFitter {
     }
 
     std::uint64_t fitRows(const RowRange& rows, std::uint32_t first_ray_row) {
-        EndFitter near_fitter(scene_, query_, map_, normals_, view_, fine_, finest_, RayEnd::kNear, options_);
-        EndFitter far_fitter(scene_, query_, map_, normals_, view_, fine_, finest_, RayEnd::kFar, options_);
+        EndFitter near_fitter(scene_, map_, normals_, view_, fine_, finest_, RayEnd::kNear, options_);
+        EndFitter far_fitter(scene_, map_, normals_, view_, fine_, finest_, RayEnd::kFar, options_);
         std::uint64_t covered = 0;
         for (std::uint32_t y = rows.begin; y != rows.end; ++y) {
             for (std::uint32_t x = 0; x < view_.width; ++x) {
@@ -328,7 +327,6 @@ class MapFitter {
     }
 
     const RayScene& scene_;
-    const MeshQuery& query_;
     const TriangleNormals& normals_;
     const View& view_;
     View fine_;    // a texel for each ray of a footprint
@@ -348,10 +346,10 @@ TriangleNormals::TriangleNormals(const TriangleMesh& mesh) : normals_(mesh.trian
     });
 }
 
-DepthMap bakeFittedMap(const RayScene& scene, const MeshQuery& query, const TriangleNormals& normals,
-                       const View& view, const FittedMapOptions& options, std::uint64_t& covered,
+DepthMap bakeFittedMap(const RayScene& scene, const TriangleNormals& normals, const View& view,
+                       const FittedMapOptions& options, std::uint64_t& covered,
                        const std::function<void(std::uint32_t)>& rowsDone) {
-    return MapFitter(scene, query, normals, view, options).run(covered, rowsDone);
+    return MapFitter(scene, normals, view, options).run(covered, rowsDone);
 }
 
 }  // namespace relief

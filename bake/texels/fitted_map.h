@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "bake/mesh/mesh.h"
-#include "bake/mesh/mesh_query.h"
 #include "bake/plan/view.h"
 #include "bake/texels/ray_scene.h"
 #include "formats/depth_map.h"
@@ -42,11 +41,9 @@ class TriangleNormals {
 };
 
 /// Bakes one map with Decode::kPlane, on all cores of the current arena; the same for any number of them.
-/// \param query     of the same mesh
 /// \param rowsDone  called with the number of texel rows finished, from the calling thread.
 /// \param covered   out: texels with a surface.
-[[nodiscard]] DepthMap bakeFittedMap(const RayScene& scene, const MeshQuery& query,
-                                     const TriangleNormals& normals, const View& view,
+[[nodiscard]] DepthMap bakeFittedMap(const RayScene& scene, const TriangleNormals& normals, const View& view,
                                      const FittedMapOptions& options, std::uint64_t& covered,
                                      const std::function<void(std::uint32_t)>& rowsDone);
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "bake/mesh/mesh_query.h"
 #include "bake/mesh/prepared_mesh.h"
 #include "bake/plan/view.h"
 #include "formats/base/result.h"
@@ -49,13 +50,19 @@ class RayScene {
     [[nodiscard]] double winding() const { return winding_; }
     [[nodiscard]] bool closed() const { return closed_; }
     [[nodiscard]] const EmbreeMesh& tree() const { return *tree_; }
+    [[nodiscard]] const MeshQuery& query() const { return query_; }
 
   private:
-    RayScene(PreparedMesh mesh, const EmbreeMesh& tree)
-        : mesh_(std::move(mesh)), tree_(&tree), winding_(mesh_.orientation()), closed_(mesh_.closed()) {}
+    RayScene(PreparedMesh mesh, const EmbreeMesh& tree, MeshQuery query)
+        : mesh_(std::move(mesh)),
+          tree_(&tree),
+          query_(std::move(query)),
+          winding_(mesh_.orientation()),
+          closed_(mesh_.closed()) {}
 
     PreparedMesh mesh_;
     const EmbreeMesh* tree_;  // mesh_ holds it
+    MeshQuery query_;
     double winding_;
     bool closed_;
 };

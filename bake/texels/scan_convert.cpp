@@ -69,6 +69,11 @@ bool comesBefore(const glm::dvec3& a, const glm::dvec3& b) {
     return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
 }
 
+bool raysMayStartInside(const RayScene& scene, const View& view, RayEnd end) {
+    return mayStartInside(scene, view, end) ||
+           (scene.closed() && !view.starts_free[static_cast<std::size_t>(end)]);
+}
+
 }  // namespace
 
 /// Rows, and where their hits go.
@@ -197,6 +202,8 @@ ScanConverter::ScanConverter(const RayScene& scene, const View& view)
     : scene_(scene),
       view_(view),
       cube_(view.projection() == Projection::kCube),
+      may_start_inside_{raysMayStartInside(scene, view, RayEnd::kNear),
+                        raysMayStartInside(scene, view, RayEnd::kFar)},
       planes_(scene.mesh(), view),
       blocks_((view.height + kBlockRows - 1) / kBlockRows) {
     place();
@@ -380,7 +387,20 @@ bool ScanConverter::isBetter(std::uint32_t triangle, double depth, const Hit& th
     const auto scoreOf = [&](std::uint32_t t) {
         return facingScore(scene_.mesh(), t, scene_.winding(), direction);
     };
-    return scoreOf(triangle) > scoreOf(than.triangle());  // of equals the first, which has the lower index
+    const double score = scoreOf(triangle);
+    const double other_score = scoreOf(than.triangle());
+    const bool faces = score > 0.0;
+    if (may_start_inside_[static_cast<std::size_t>(end)] && faces != (other_score > 0.0)) {
+        return faces != startsInside(depth, end, face, x, y);
+    }
+    return score > other_score;  // of equals the first, which has the lower index
+}
+
+bool ScanConverter::startsInside(double depth, RayEnd end, std::uint32_t face, std::uint32_t x,
+                                 std::uint32_t y) const {
+    const TexelRay ray = view_.ray(face, x, y);
+    const double start = end == RayEnd::kNear ? 0.0 : view_.depthMax(ray);
+    return scene_.query().inside(ray.origin + 0.5 * (start + depth) * ray.direction);
 }
 
 bool ScanConverter::atEdge(std::uint32_t triangle, std::uint32_t face, std::uint32_t x,

@@ -4,6 +4,7 @@
 // on every processor, as no ray tracer's arithmetic takes part.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -20,7 +21,9 @@ namespace relief {
 ///
 /// The depth is that of the triangle's plane in double precision. Texels on the edge of two triangles belong to both, bit by
 /// bit: no ray slips through. Of the triangles that share an edge there, and of those in one place, one that faces the ray
-/// counts, of those the one that faces it most, and of equals the one of the lowest index.
+/// counts, of those the one that faces it most, and of equals the one of the lowest index. But where rays may start in the
+/// solid and this one did, one that it leaves the solid by counts: two solids that touch at an edge are left and entered
+/// there at once.
 class ScanConverter {
   public:
     /// \param scene, view  borrowed; must outlive it.
@@ -52,10 +55,14 @@ class ScanConverter {
                                 std::uint32_t face, std::uint32_t x, std::uint32_t y) const;
     [[nodiscard]] bool atEdge(std::uint32_t triangle, std::uint32_t face, std::uint32_t x,
                               std::uint32_t y) const;
+    /// Of a ray whose first surface lies at a depth: whether it runs through the solid up to there.
+    [[nodiscard]] bool startsInside(double depth, RayEnd end, std::uint32_t face, std::uint32_t x,
+                                    std::uint32_t y) const;
 
     const RayScene& scene_;
     const View& view_;
     bool cube_;
+    std::array<bool, 2> may_start_inside_;  // by RayEnd
     SeenPlanes planes_;
     /// The mesh's corners. Orthographic: (x, y) in texels, of which (i, j) is the centre of texel (i, j), and 1. Of a cube
     /// from the centre, in units of its half sides.

@@ -5,11 +5,16 @@
 // Bound. A map's rays know what is solid but for what lies between them: a point that is farther from the surface than
 // its texel's diagonal, where all rays of the texel are in the solid, is inside. For a cube the texel is as large as it
 // is at the point's distance from the centre. A quantum of the depth, and a float's grain, come on top.
+//
+// With Quality::kFast a texel knows one ray, its centre's, and goes on beside it by the plane that it met. Of a ball in
+// the solid about a point, at r from the ray, the ray's chord begins behind the plane: √(ρ² − r²) ≤ r tan θ, where θ is
+// between the ray and the plane's normal, so that ρ ≤ r / cos θ, and r is half a diagonal at most.
 #include <cmath>
 #include <limits>
 #include <random>
 
 #include "bake/mesh/mesh_query.h"
+#include "bake/mesh/triangle_plane.h"
 #include "bake/plan/view_planner.h"
 #include "tests/bake/meshes.h"
 #include "tests/bake/voxels.h"
@@ -20,17 +25,32 @@ namespace {
 
 constexpr int kPoints = 8000;
 
-double boundAt(const DepthMap& map, const glm::vec3& p) {
+/// The cosine between the ray through p and the normal of the surface that decided about p; 1 of planes that stand along
+/// the ray, which lean on more rays.
+double cosineAt(const DepthMap& map, const FieldSample& sample, const glm::vec3& p) {
+    const Affine& rows = map.object_to_map;
+    const glm::dvec3 q = rows.apply(p);
+    const glm::dvec3 along = map.projection() == Projection::kOrthographic
+                                 ? glm::dvec3(rows.row[2].x, rows.row[2].y, rows.row[2].z)
+                                 : q * glm::dvec3(map.object_per_map);
+    const double lengths = length(along) * length(glm::dvec3(sample.normal));
+    const double cosine = std::abs(dot(along, glm::dvec3(sample.normal))) / lengths;
+    return map.decode == Decode::kPlane && cosine >= double{kStandingCosine} ? cosine : 1.0;
+}
+
+/// \param cosine  of one ray a texel: cosineAt; else 1.
+double boundAt(const DepthMap& map, const glm::vec3& p, double cosine = 1.0) {
+    const double beside = std::max(1.0, 0.5 / cosine);
     const glm::dvec3 scale = map.object_per_map;
     const double grain = 1e-6 * std::max({scale.x, scale.y, scale.z});
     const double quantum = map.format == MapFormat::kFrontBackHalf ? 1.0 / 2048.0 : 1.0 / 65534.0;
     if (map.projection() == Projection::kOrthographic) {
-        return std::hypot(scale.x / map.width, scale.y / map.height) + quantum * scale.z + grain;
+        return beside * std::hypot(scale.x / map.width, scale.y / map.height) + quantum * scale.z + grain;
     }
     const glm::dvec3 q = map.object_to_map.apply(p);
     const double radius = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z);
     return std::max({scale.x, scale.y, scale.z}) *
-               (2.0 * std::sqrt(2.0) / map.width * radius + 2.0 * quantum) +
+               (beside * 2.0 * std::sqrt(2.0) / map.width * radius + 2.0 * quantum) +
            grain;
 }
 
@@ -99,7 +119,8 @@ std::vector<std::vector<std::string>> viewsOf(const VoxelGrid& grid, const Trian
 }
 
 /// Points in the grid, in object space and in cells: where the solid is, and how deep.
-void expectNothingDeepOutside(const VoxelGrid& grid, const Collider& collider, std::uint32_t seed) {
+void expectNothingDeepOutside(const VoxelGrid& grid, const Collider& collider, std::uint32_t seed,
+                              Quality quality = Quality::kNormal) {
     std::mt19937 random(seed);
     const auto share = [&] { return static_cast<float>(random() >> 8) * 0x1p-24F; };
     int deep = 0;
@@ -112,24 +133,40 @@ void expectNothingDeepOutside(const VoxelGrid& grid, const Collider& collider, s
             continue;
         }
         const double depth = grid.distance(p, 2);
-        const double bound = boundAt(collider.maps[static_cast<std::size_t>(sample.map)], p);
-        deep += depth > bound ? 1 : 0;
-        ASSERT_LT(deep, 3) << "(" << text(p) << ") is " << depth << " deep, " << depth / bound
-                           << " of the bound, and outside for map " << sample.map;
+        const DepthMap& map = collider.maps[static_cast<std::size_t>(sample.map)];
+        const double bound = boundAt(map, p, quality == Quality::kFast ? cosineAt(map, sample, p) : 1.0);
+        if (depth > bound) {
+            ADD_FAILURE() << "(" << text(p) << ") is " << depth << " deep, " << depth / bound
+                          << " of the bound, and outside for map " << sample.map;
+            if (++deep == 3) {
+                return;
+            }
+        }
     }
-    EXPECT_EQ(deep, 0);
+}
+
+void expectNothingDeepOutsideOfAnyView(std::uint32_t seed, std::initializer_list<Quality> qualities) {
+    const VoxelGrid grid = VoxelGrid::random(seed);
+    const PreparedMesh mesh(grid.mesh());
+    for (const std::vector<std::string>& specs : viewsOf(grid, *mesh, seed)) {
+        for (const Quality quality : qualities) {
+            SCOPED_TRACE(std::to_string(seed) + " " + specs.front() + " " + qualityName(quality));
+            expectNothingDeepOutside(grid, baked(mesh, specs, quality), seed, quality);
+        }
+    }
 }
 
 TEST(Voxels, NothingDeepIsOutside) {
     for (std::uint32_t seed = seedFrom(1), end = seed + 5; seed < end; ++seed) {
-        const VoxelGrid grid = VoxelGrid::random(seed);
-        const PreparedMesh mesh(grid.mesh());
-        for (const std::vector<std::string>& specs : viewsOf(grid, *mesh, seed)) {
-            for (const Quality quality : {Quality::kFast, Quality::kNormal}) {
-                SCOPED_TRACE(std::to_string(seed) + " " + specs.front() + " " + qualityName(quality));
-                expectNothingDeepOutside(grid, baked(mesh, specs, quality), seed);
-            }
-        }
+        expectNothingDeepOutsideOfAnyView(seed, {Quality::kFast, Quality::kNormal});
+    }
+}
+
+/// Grids of other seeds by which this was found wrong: rays that start in the solid and run through an edge into the next
+/// cell, and an edge between such rays that was taken for a silhouette.
+TEST(Voxels, NothingDeepIsOutsideWhereItOnceWas) {
+    for (const std::uint32_t seed : {1'762'264'770U, 5'000'003U, 9'000'002U, 9'000'005U}) {
+        expectNothingDeepOutsideOfAnyView(seed, {Quality::kFast});
     }
 }
 

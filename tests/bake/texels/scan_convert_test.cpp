@@ -8,6 +8,7 @@
 #include "bake/mesh/triangle_plane.h"
 #include "bake/texels/ray_probe.h"
 #include "tests/bake/meshes.h"
+#include "tests/bake/voxels.h"
 #include "tests/seeds.h"
 
 namespace relief::test {
@@ -198,6 +199,47 @@ TEST(ScanConverter, OfSurfacesInOnePlaneTheOneThatFacesTheRayCounts) {
                 const double down = planeOf(mesh, far.triangle()).normal.y;
                 EXPECT_LT(up * down, 0.0) << x << ", " << y;
             }
+        }
+    }
+}
+
+/// Two of four columns that stand about an edge, diagonally: a ray that runs through the edge leaves the one solid and
+/// enters the other there, or passes between the two.
+TEST(ScanConverter, ThroughAnEdgeOfTwoSolidsARayStaysWhereItStarted) {
+    for (const bool starts_inside : {true, false}) {
+        VoxelGrid grid({2, 2, 1});
+        grid.set({0, 0, 0}, starts_inside);
+        grid.set({1, 1, 0}, starts_inside);
+        grid.set({1, 0, 0}, !starts_inside);
+        grid.set({0, 1, 0}, !starts_inside);
+        const TriangleMesh mesh = grid.mesh();
+        const Result<RayScene> scene = RayScene::build(mesh);
+        ASSERT_TRUE(scene);
+
+        // The volume begins and ends in the middle of the columns on its way; the middle column of texels looks at the edge.
+        const View part = viewOf(mesh, "front-back:dir=1/1/0,up=+z,size=33,box=0.25/0.25/0/1.75/1.75/1");
+        ASSERT_EQ(part.starts_free[0], !starts_inside);
+        ASSERT_EQ(part.starts_free[1], !starts_inside);
+        const Scanned hits = scan(mesh, part);
+        for (std::uint32_t y = 1; y < 32; ++y) {
+            for (const Hit& hit : {hits.near[std::size_t{y} * 33 + 16], hits.far[std::size_t{y} * 33 + 16]}) {
+                ASSERT_FALSE(hit.empty());
+                EXPECT_NEAR(hit.depth(), 0.5F, 1e-6F);
+                EXPECT_EQ(hit.fromBehind(), starts_inside) << y;
+            }
+        }
+
+        // A cube whose centre is on the first column's side. The same edge, of which the ray knows two of the six faces.
+        View cube = viewOf(mesh, "cube:size=6,compare=less,box=-2/-1.5/-1.5/2/2.5/2.5");
+        cube.centre_on_surface = true;
+        ASSERT_TRUE(mayStartInside(*scene, cube, RayEnd::kNear));
+        std::vector<Hit> face(36);
+        ScanConverter(*scene, cube).scan({0, 0, 6}, face, {});
+        for (const std::uint32_t x : {2U, 3U}) {
+            const Hit& hit = face[std::size_t{1} * 6 + x];  // y grows downwards: the direction (1, 1/2, ±1/6)
+            ASSERT_FALSE(hit.empty());
+            EXPECT_NEAR(hit.depth(), 0.5 * std::sqrt(1.0 + 1.0 / 4.0 + 1.0 / 36.0), 1e-6);
+            EXPECT_EQ(hit.fromBehind(), starts_inside);
         }
     }
 }
