@@ -1,8 +1,6 @@
 // One sprite: a soft round grain or, with RELIEF_CELLS, a cell of the atlas; either shaded as the half of a ball that
 // faces the viewer.
-//!include grain.glsl
-//!include grain_light.glsl
-//!include srgb.glsl
+//!include grain_paint.glsl
 
 flat in uvec3 v_grain;
 #ifdef RELIEF_CELLS
@@ -16,9 +14,6 @@ uniform highp sampler2D u_atlas;  // linear, premultiplied by alpha
 uniform ivec2 u_cells;            // columns, rows
 uniform float u_levels_max;       // above it cells would run into each other
 uniform highp sampler2D u_behind; // window depth of what lies behind
-uniform float u_soft;             // object units; 0: hard edges
-uniform vec2 u_depth;             // window depth of view distance t: x + y / t
-uniform bool u_srgb;              // the target holds sRGB values
 
 layout(location = 0) out vec4 o_color;  // premultiplied by alpha
 
@@ -45,12 +40,7 @@ vec4 bodyAt(vec2 at, float radius, float per_edge) {
         return max(abs(own.x), abs(own.y)) > 1.0 ? vec4(0.0) : cellAt(own);
     }
 #endif
-    float inside = clamp((1.0 - radius) * per_edge, 0.0, 1.0);
-    return vec4(inside * inside * (3.0 - 2.0 * inside));  // a smooth step
-}
-
-float distanceOf(float depth) {
-    return u_depth.y / (depth - u_depth.x);
+    return vec4(roundAt(radius, per_edge));
 }
 
 void main() {
@@ -63,20 +53,11 @@ void main() {
     float radius = length(at);
     vec4 body = bodyAt(at, radius, grain.per_edge);
     float shown = grain.opacity;
-    if (u_soft > 0.0) {  // a sprite lies where its front is
-        float behind = distanceOf(texelFetch(u_behind, ivec2(gl_FragCoord.xy), 0).r);
-        shown *= clamp((behind - distanceOf(gl_FragCoord.z)) / u_soft, 0.0, 1.0);
+    if (u_soft > 0.0) {
+        shown *= softShare(texelFetch(u_behind, ivec2(gl_FragCoord.xy), 0).r, gl_FragCoord.z);
     }
-    float alpha = shown * body.a;
-    if (alpha <= 0.003) {
+    o_color = paintOf(grain, at, radius, body, shown);
+    if (o_color.a == 0.0) {
         discard;
-    }
-    vec3 light = vec3(1.0);
-    if (grain.lit) {
-        light = grainLight(vec3(at, sqrt(max(1.0 - radius * radius, 0.0))), grain.sun, grain.sky);
-    }
-    o_color = vec4(grain.color * light * (shown * body.rgb), alpha);
-    if (u_srgb) {
-        o_color.rgb = alpha * srgbOf(min(o_color.rgb / alpha, vec3(1.0)));
     }
 }

@@ -7,10 +7,7 @@
 //
 // RELIEF_CELLS: for an atlas.
 //!include grain_make.glsl
-
-uniform mat4 u_projection;
-uniform vec2 u_target;            // pixels
-uniform vec2 u_depth;             // window depth of view distance t: x + y / t
+//!include grain_place.glsl
 
 flat out uvec3 v_grain;
 #ifdef RELIEF_CELLS
@@ -31,14 +28,6 @@ void nothing() {  // beyond the far plane
 #else
     gl_PointSize = 1.0;
 #endif
-}
-
-// How much nearer than its centre a grain's front is, as a share of the view distance. The depth is that of the front,
-// so that grains on a surface are not half sunk into it; the place on the picture that of the centre. A large sprite's
-// front does not pass the near plane before its centre does.
-float nearerShare(float size, float distance) {
-    float near = -u_depth.y / u_depth.x;
-    return max(1.0 - 0.5 * size / distance, clamp(1.01 * near / distance, 0.05, 1.0));
 }
 
 #ifdef RELIEF_STRETCH
@@ -64,10 +53,7 @@ void main() {
         nothing();
         return;
     }
-    gl_Position = u_projection * vec4(sprite.center, 1.0);
-    float nearer = nearerShare(sprite.size, sprite.distance);
-    vec4 front = u_projection * vec4(sprite.center * nearer, 1.0);
-    gl_Position.z = front.z / front.w * gl_Position.w;
+    gl_Position = placeOf(sprite);
     v_grain = packGrain(sprite.grain);
     float pixels = sprite.pixels;
 #if defined(RELIEF_CELLS) || defined(RELIEF_QUADS)

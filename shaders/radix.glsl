@@ -7,7 +7,7 @@
 // its complement. A block is u_turns rows of one element an invocation.
 layout(local_size_x = RELIEF_RADIX_DIGITS) in;
 
-uniform uint u_count;   // elements
+uniform uint u_count;   // elements; with RELIEF_RADIX_COUNTED the word behind b_totals' sums says
 uniform uint u_turns;   // rows of a block
 uniform uint u_blocks;
 uniform uint u_shift;   // of the digit, bits
@@ -20,6 +20,12 @@ uint digitOf(uint key) {
 uint elementIn(uint turn) {
     return (gl_WorkGroupID.x * u_turns + turn) * uint(RELIEF_RADIX_DIGITS) + gl_LocalInvocationIndex;
 }
+
+#if defined(RELIEF_RADIX_COUNTED)
+#define elementCount() b_totals[RELIEF_RADIX_DIGITS]
+#else
+#define elementCount() u_count
+#endif
 
 /// Where u_blocks counts of a digit begin.
 uint countsOf(uint digit) {

@@ -7,6 +7,9 @@ layout(std430, binding = 0) writeonly buffer Elements { uvec2 b_elements[]; };
 layout(std430, binding = 0) readonly buffer Elements { uvec2 b_elements[]; };
 #endif
 layout(std430, binding = 2) writeonly buffer Counts { uint b_counts[]; };
+#if defined(RELIEF_RADIX_COUNTED)
+layout(std430, binding = 3) readonly buffer Totals { uint b_totals[]; };
+#endif
 
 shared uint s_counts[RELIEF_RADIX_DIGITS];
 
@@ -26,7 +29,7 @@ void main() {
     meet();
     for (uint turn = 0u; turn < u_turns; ++turn) {
         uint element = elementIn(turn);
-        if (element < u_count) {
+        if (element < elementCount()) {
             atomicAdd(s_counts[digitOf(keyOf(element))], 1u);
         }
     }

@@ -57,13 +57,13 @@ void main() {
         uint at = elementIn(turn);
         uvec2 element = uvec2(0u);
         uint digit = 0u;
-        if (at < u_count) {
+        if (at < elementCount()) {
             element = b_from[at];
             digit = digitOf(element.y);
             atomicOr(s_flags[word][digit], flag);
         }
         meet();
-        if (at < u_count) {
+        if (at < elementCount()) {
             store(s_next[digit] + before(digit, word, flag), element);
         }
         meet();

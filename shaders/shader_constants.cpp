@@ -99,6 +99,7 @@ std::string makeConstants() {
     define("STEP_GROUP_WIDTH", kStepGroupWidth);
     define("STEP_GROUP_HEIGHT", kStepGroupHeight);
     define("RADIX_DIGITS", kRadixDigits);
+    define("TILE_SIDE", kTileSide);
     define("BIRTH_GROUP", kBirthGroup);
     define("REDUCED_SIDE", kReducedSide);
     define("REDUCED_GROUP", kReducedGroup);

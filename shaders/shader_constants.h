@@ -68,6 +68,8 @@ inline constexpr int kStepGroupHeight = 8;
 
 /// Values of a digit of the radix sort, and invocations of its work groups.
 inline constexpr int kRadixDigits = 256;
+/// Pixels of a side of a tile (tile.glsl).
+inline constexpr int kTileSide = 16;
 
 /// Invocations of a work group of births.
 inline constexpr int kBirthGroup = 64;

@@ -147,8 +147,8 @@ Result<Json> benchSize(const Stage& stage, GLsizei width, GLsizei height, bool s
 
     auto bare = RELIEF_TRY(BarePoints::create("#define RELIEF_ALPHA 0.95\n"));  // as the style's
     auto opaque = RELIEF_TRY(BarePoints::create(""));
-    auto open = RELIEF_TRY(ParticleRenderer::create(std::nullopt));
-    auto lit = RELIEF_TRY(ParticleRenderer::create(stage.view));
+    auto open = RELIEF_TRY(ParticleRenderer::create(std::nullopt, stage.options.path));
+    auto lit = RELIEF_TRY(ParticleRenderer::create(stage.view, stage.options.path));
     auto sorter = RELIEF_TRY(DepthSorter::create(stage.options.particles));
     const auto sort = [&](std::uint32_t passes) {
         sorter.update(particles.positions(), particles.textureWidth(), particles.extent(), camera.eye,

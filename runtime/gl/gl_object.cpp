@@ -111,6 +111,9 @@ void deleteVertexArray(GLuint name) {
 void deleteProgram(GLuint name) {
     glDeleteProgram(name);
 }
+void deleteSampler(GLuint name) {
+    glDeleteSamplers(1, &name);
+}
 
 }  // namespace gl_detail
 
@@ -123,6 +126,14 @@ GlBuffer makeBuffer() {
 }
 GlVertexArray makeVertexArray() {
     return GlVertexArray(generate([](GLsizei n, GLuint* out) { glGenVertexArrays(n, out); }));
+}
+GlSampler makeSampler() {
+    GlSampler sampler(generate([](GLsizei n, GLuint* out) { glGenSamplers(n, out); }));
+    glSamplerParameteri(sampler.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glSamplerParameteri(sampler.name(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glSamplerParameteri(sampler.name(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glSamplerParameteri(sampler.name(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    return sampler;
 }
 namespace {
 

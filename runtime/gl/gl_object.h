@@ -43,6 +43,7 @@ void deleteFramebuffer(GLuint name);
 void deleteBuffer(GLuint name);
 void deleteVertexArray(GLuint name);
 void deleteProgram(GLuint name);
+void deleteSampler(GLuint name);
 }  // namespace gl_detail
 
 using GlTexture = GlName<gl_detail::deleteTexture>;
@@ -50,10 +51,13 @@ using GlFramebuffer = GlName<gl_detail::deleteFramebuffer>;
 using GlBuffer = GlName<gl_detail::deleteBuffer>;
 using GlVertexArray = GlName<gl_detail::deleteVertexArray>;
 using GlProgram = GlName<gl_detail::deleteProgram>;
+using GlSampler = GlName<gl_detail::deleteSampler>;
 
 [[nodiscard]] GlFramebuffer makeFramebuffer();
 [[nodiscard]] GlBuffer makeBuffer();
 [[nodiscard]] GlVertexArray makeVertexArray();
+/// Nearest filter, clamped, and no comparing: to read a texture of the caller's as it is.
+[[nodiscard]] GlSampler makeSampler();
 
 /// A 2-D texture of one level, nearest filter, clamped to its edge; contents undefined unless given.
 /// \param format, type  of `pixels`, tightly packed rows from y = 0; used for allocation alone if it is null.

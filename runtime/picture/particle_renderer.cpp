@@ -36,8 +36,9 @@ std::uint32_t spriteCount(const ParticleSystem& particles, const ParticleOrder& 
     return order.texture != nullptr && particles.extent() > 0 ? order.count : particles.extent();
 }
 
+/// Leaves the program in use.
 void setUniforms(const GlProgram& program, const ParticleSystem& particles, const CameraMatrices& camera,
-                 const ParticleStyle& style, const RenderTarget& target) {
+                 const ParticleStyle& style, const RenderTarget& target, bool ordered, bool soft) {
     const auto at = [&](const char* name) { return uniformLocation(program, name); };
     const glm::vec3 sun = glm::mat3(camera.view) * sunDirection();
     const glm::vec3 up = glm::mat3(camera.view) * glm::vec3(0.0F, 1.0F, 0.0F);
@@ -59,6 +60,9 @@ void setUniforms(const GlProgram& program, const ParticleSystem& particles, cons
     glUniform2f(at("u_depth"), depth.x, depth.y);
     glUniform3f(at("u_sun_view"), sun.x, sun.y, sun.z);
     glUniform3f(at("u_up_view"), up.x, up.y, up.z);
+    glUniform1i(at("u_ordered"), ordered ? 1 : 0);
+    glUniform1i(at("u_srgb"), target.srgb ? 1 : 0);
+    glUniform1f(at("u_soft"), soft ? style.soft : 0.0F);
     if (style.atlas != nullptr) {
         glUniform2i(at("u_cells"), style.atlas->columns(), style.atlas->rows());
         glUniform1f(at("u_levels_max"), static_cast<float>(style.atlas->lastLevel()));
@@ -68,9 +72,17 @@ void setUniforms(const GlProgram& program, const ParticleSystem& particles, cons
     }
 }
 
+void setSamplers(const GlProgram& program) {
+    glUseProgram(program.name());
+    for (std::size_t unit = 0; unit < kSamplers.size(); ++unit) {
+        glUniform1i(uniformLocation(program, kSamplers[unit]), static_cast<GLint>(unit));
+    }
+}
+
 }  // namespace
 
-Result<ParticleRenderer> ParticleRenderer::create(const std::optional<ColliderView>& collider) {
+Result<ParticleRenderer> ParticleRenderer::create(const std::optional<ColliderView>& collider,
+                                                  StepPath path) {
     RELIEF_TRY(checkContext());
     const PassState state;
     ParticleRenderer renderer;
@@ -80,6 +92,9 @@ Result<ParticleRenderer> ParticleRenderer::create(const std::optional<ColliderVi
     for (const Sprite sprite : {Sprite::kPoint, Sprite::kQuad}) {
         [[maybe_unused]] const GlProgram* made = RELIEF_TRY(renderer.programFor({.sprite = sprite}));
     }
+    if (RELIEF_TRY(chosenPath(path)) == StepPath::kCompute) {
+        RELIEF_TRY(renderer.createTiles(path));
+    }
     renderer.no_attributes_ = makeVertexArray();
     forgetGlErrors();
     const std::array<GLubyte, 4> zero{};
@@ -88,6 +103,19 @@ Result<ParticleRenderer> ParticleRenderer::create(const std::optional<ColliderVi
     renderer.no_order_ = makeTexture2D(GL_RG32UI, 1, 1, GL_RG_INTEGER, GL_UNSIGNED_INT, kNoRank.data());
     RELIEF_TRY(checkAllocated("the renderer of the particles", "close what else is on the GPU"));
     return renderer;
+}
+
+Result<void> ParticleRenderer::createTiles(StepPath path) {
+    auto tiles = TilePainter::create(light_.has_value());
+    if (!tiles && path == StepPath::kAuto && tiles.error().code == ErrorCode::kUnsupported) {
+        return {};
+    }
+    tiles_ = RELIEF_TRY(std::move(tiles));
+    setSamplers(tiles_->spriteProgram());
+    if (light_) {
+        light_->attach(tiles_->spriteProgram(), kLightUnit);
+    }
+    return {};
 }
 
 Result<const GlProgram*> ParticleRenderer::programFor(const ParticleStyle& style) {
@@ -100,10 +128,7 @@ Result<const GlProgram*> ParticleRenderer::programFor(const ParticleStyle& style
             std::string(light_ ? "#define RELIEF_LIT 1\n" : "") + (quads ? "#define RELIEF_QUADS 1\n" : "") +
             (cells ? "#define RELIEF_CELLS 1\n" : "") + (stretched ? "#define RELIEF_STRETCH 1\n" : "");
         program = RELIEF_TRY(makeProgram("point.vert", "point.frag", defines));
-        glUseProgram(program.name());
-        for (std::size_t unit = 0; unit < kSamplers.size(); ++unit) {
-            glUniform1i(uniformLocation(program, kSamplers[unit]), static_cast<GLint>(unit));
-        }
+        setSamplers(program);
         if (stretched) {
             glUniform1i(uniformLocation(program, "u_second"), kSecondUnit);
         }
@@ -129,6 +154,20 @@ Result<void> ParticleRenderer::uploadLooks(const ParticleStyle& style) {
         }
     }
     return {};
+}
+
+bool ParticleRenderer::paintTiles(const ParticleSystem& particles, const CameraMatrices& camera,
+                                  const ParticleStyle& style, const RenderTarget& target,
+                                  const ParticleOrder& order, const GlTexture* behind) {
+    if (!tiles_ || style.sprite != Sprite::kPoint || style.atlas != nullptr ||
+        !tiles_->prepare(spriteCount(particles, order), target)) {
+        return false;
+    }
+    for (const GlProgram* program : {&tiles_->spriteProgram(), &tiles_->paintProgram()}) {
+        setUniforms(*program, particles, camera, style, target, order.texture != nullptr, behind != nullptr);
+    }
+    tiles_->paint(style.blend == Blend::kAdditive);
+    return true;
 }
 
 void ParticleRenderer::bindTextures(const ParticleSystem& particles, const ParticleStyle& style,
@@ -169,11 +208,9 @@ Result<void> ParticleRenderer::draw(const ParticleSystem& particles, const Camer
         RELIEF_TRY(light_->update());
     }
     const GlProgram& program = *RELIEF_TRY(programFor(style));
-    setUniforms(program, particles, camera, style, target);
-    glUniform1i(uniformLocation(program, "u_ordered"), order.texture != nullptr ? 1 : 0);
-    glUniform1i(uniformLocation(program, "u_srgb"), target.srgb ? 1 : 0);
-    glUniform1f(uniformLocation(program, "u_soft"), behind != nullptr ? style.soft : 0.0F);
     bindTextures(particles, style, order, behind);
+    const bool tiled = paintTiles(particles, camera, style, target, order, behind);
+    setUniforms(program, particles, camera, style, target, order.texture != nullptr, behind != nullptr);
     glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
     glViewport(0, 0, target.width, target.height);
     glEnable(GL_BLEND);
@@ -183,6 +220,10 @@ Result<void> ParticleRenderer::draw(const ParticleSystem& particles, const Camer
     glDepthFunc(GL_LEQUAL);
     glDepthMask(GL_FALSE);
     glBindVertexArray(no_attributes_.name());
+    if (tiled) {
+        tiles_->show(program);
+        return {};
+    }
     const auto count = static_cast<GLsizei>(spriteCount(particles, order));
     if (style.sprite == Sprite::kQuad) {
         glDrawArrays(GL_TRIANGLES, 0, kQuadVertices * count);

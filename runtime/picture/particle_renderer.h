@@ -16,13 +16,14 @@
 #include "runtime/picture/particle_look.h"
 #include "runtime/picture/render_target.h"
 #include "runtime/picture/sprite_atlas.h"
+#include "runtime/picture/tile_painter.h"
 
 namespace relief {
 
 enum class Sprite : std::uint8_t {
-    kPoint,  ///< one vertex, but no larger than the GL's points, and cut off where its centre leaves the
-             ///< picture
-    kQuad,   ///< six vertices, of any size, and stretched where a look says so
+    kPoint,  ///< one vertex, but no larger than the GL's points; on the fragment path some drivers drop it where its
+             ///< centre leaves the picture
+    kQuad,  ///< six vertices, of any size, and stretched where a look says so
 };
 
 enum class Blend : std::uint8_t {
@@ -55,8 +56,11 @@ struct ParticleOrder {
 class ParticleRenderer {
   public:
     /// \param collider  shades the particles; nullopt: they lie in the open.
-    /// Errors: kFailure (the driver's compiler).
-    [[nodiscard]] static Result<ParticleRenderer> create(const std::optional<ColliderView>& collider);
+    /// \param path      kCompute: round points are painted by compute shaders (tile_painter.h) where the target's depth is a
+    ///                  plain texture, which stays as it is; the same picture but for rounding. The system's, as a rule.
+    /// Errors: kUnsupported (kCompute without compute shaders), kFailure (the driver's compiler).
+    [[nodiscard]] static Result<ParticleRenderer> create(const std::optional<ColliderView>& collider,
+                                                         StepPath path = StepPath::kAuto);
 
     /// Draws over what the target shows, in linear light or as the target says, hidden where its depth is nearer; depth stays as it
     /// is. Nothing is read back, nothing waits for the GPU.
@@ -77,13 +81,19 @@ class ParticleRenderer {
     }
 
   private:
+    [[nodiscard]] Result<void> createTiles(StepPath path);
     [[nodiscard]] Result<void> uploadLooks(const ParticleStyle& style);
     /// The program of the style, compiled when it is first wanted.
     [[nodiscard]] Result<const GlProgram*> programFor(const ParticleStyle& style);
+    /// By tiles. \return false if these are to be drawn as points.
+    [[nodiscard]] bool paintTiles(const ParticleSystem& particles, const CameraMatrices& camera,
+                                  const ParticleStyle& style, const RenderTarget& target,
+                                  const ParticleOrder& order, const GlTexture* behind);
     void bindTextures(const ParticleSystem& particles, const ParticleStyle& style, const ParticleOrder& order,
                       const GlTexture* behind) const;
 
     std::optional<ColliderLight> light_;
+    std::optional<TilePainter> tiles_;
     std::array<GlProgram, 8> programs_;  // points or quads, of an atlas, stretched
     GlVertexArray no_attributes_;
     GlTexture no_order_;

@@ -41,6 +41,9 @@ void glDispatchCompute(GLuint, GLuint, GLuint) {
 void glMemoryBarrier(GLbitfield) {
     std::abort();
 }
+void glDrawArraysIndirect(GLenum, const void*) {
+    std::abort();
+}
 void glBindImageTexture(GLuint, GLuint, GLint, GLboolean, GLint, GLenum, GLenum) {
     std::abort();
 }

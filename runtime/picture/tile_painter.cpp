@@ -1,0 +1,272 @@
+#include "runtime/picture/tile_painter.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+
+#include "runtime/gl/gl_fault.h"
+#include "runtime/gl/gl_functions.h"
+#include "runtime/gl/image_units.h"
+#include "runtime/gl/storage_units.h"
+#include "shaders/shader_constants.h"
+
+namespace relief {
+namespace {
+
+// Storage units, as the shaders have them.
+constexpr GLuint kSprites = 0, kEntries = 1, kCounts = 2, kWork = 3;  // tile_*.comp, but for
+constexpr GLuint kPaintEntries = 0, kPaintSprites = 1;                // tile_paint.comp, and
+constexpr GLuint kFrom = 0, kTo = 1, kTotals = 3;                     // radix_*.comp
+
+constexpr std::uint32_t kGroup = kRadixDigits;
+constexpr std::uint32_t kDigitBits = 8;
+constexpr std::uint32_t kDigitsOfTile = 2;
+constexpr std::uint32_t kTilesMax = 1U << (kDigitBits * kDigitsOfTile);
+constexpr std::uint32_t kBlocksMax = 2048;
+constexpr std::uint32_t kEntriesASprite = 3;
+constexpr std::uint32_t kEntriesMin = 1U << 18;
+constexpr GLsizeiptr kWord = sizeof(std::uint32_t);
+
+std::uint32_t dividedUp(std::uint32_t a, std::uint32_t b) {
+    return (a + b - 1) / b;
+}
+
+std::uint32_t entriesFor(std::uint32_t sprites) {
+    return std::max(kEntriesASprite * sprites, kEntriesMin);
+}
+static_assert(kEntriesASprite * TilePainter::kSpritesMax < 0xffffff);  // tile_scan.comp counts no further
+
+/// The texture that a framebuffer has its depth in, to be read; 0: it has none; nullopt: it cannot be read as a plain
+/// texture.
+std::optional<GLuint> depthTextureOf(GLuint framebuffer) {
+    if (framebuffer == 0) {
+        return std::nullopt;
+    }
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    const auto of = [](GLenum what) {
+        GLint value = 0;
+        glGetFramebufferAttachmentParameteriv(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, what, &value);
+        return value;
+    };
+    GLint samples = 0;
+    glGetIntegerv(GL_SAMPLES, &samples);
+    const GLint type = of(GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE);
+    if (type == GL_NONE) {
+        return samples == 0 ? std::optional<GLuint>(0) : std::nullopt;
+    }
+    if (type != GL_TEXTURE || samples != 0 || of(GL_FRAMEBUFFER_ATTACHMENT_TEXTURE_LEVEL) != 0 ||
+        of(GL_FRAMEBUFFER_ATTACHMENT_TEXTURE_CUBE_MAP_FACE) != 0 ||
+        of(GL_FRAMEBUFFER_ATTACHMENT_TEXTURE_LAYER) != 0) {
+        return std::nullopt;
+    }
+    const auto name = static_cast<GLuint>(of(GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME));
+    forgetGlErrors();
+    useTexture(TilePainter::kHidesUnit, name);
+    return glGetError() == GL_NO_ERROR ? std::optional(name) : std::nullopt;  // a layer of an array, say
+}
+
+void setUnsigned(const GlProgram& program, const char* name, std::uint32_t value) {
+    glUniform1ui(uniformLocation(program, name), value);
+}
+
+}  // namespace
+
+Result<TilePainter> TilePainter::create(bool lit) {
+    GLint together = 0;
+    glGetIntegerv(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, &together);
+    if (together < kTileSide * kTileSide || together < kRadixDigits) {
+        return fail(ErrorCode::kUnsupported, "this GL's work groups are too small to paint tiles");
+    }
+    TilePainter painter;
+    RELIEF_TRY(painter.makePrograms(lit));
+    painter.plain_ = makeSampler();
+    return painter;
+}
+
+Result<void> TilePainter::makePrograms(bool lit) {
+    const std::string light = lit ? "#define RELIEF_LIT 1\n" : "";
+    const std::string counted = "#define RELIEF_RADIX_COUNTED\n";
+    sprites_ = RELIEF_TRY(makeComputeProgram("tile_sprites.comp", light));
+    scan_ = RELIEF_TRY(makeComputeProgram("tile_scan.comp"));
+    entries_ = RELIEF_TRY(makeComputeProgram("tile_entries.comp"));
+    count_ = RELIEF_TRY(makeComputeProgram("radix_count.comp", counted));
+    digits_ = RELIEF_TRY(makeComputeProgram("radix_scan.comp"));
+    move_ = RELIEF_TRY(makeComputeProgram("radix_move.comp", counted));
+    paint_ = RELIEF_TRY(makeComputeProgram("tile_paint.comp", light));
+    layer_program_ = RELIEF_TRY(makeProgram("quad.vert", "tile_layer.frag"));
+    glUseProgram(paint_.name());
+    glUniform1i(uniformLocation(paint_, "u_hides"), kHidesUnit);
+    glUniform1i(uniformLocation(paint_, "u_behind"), kBehindUnit);
+    glUseProgram(layer_program_.name());
+    glUniform1i(uniformLocation(layer_program_, "u_layer"), 0);
+    return {};
+}
+
+bool TilePainter::prepare(std::uint32_t sprites, const RenderTarget& target) {
+    const auto tiles = [](GLsizei pixels) {
+        return dividedUp(static_cast<std::uint32_t>(pixels), kTileSide);
+    };
+    if (sprites > kSpritesMax ||
+        std::uint64_t{tiles(target.width)} * tiles(target.height) > std::uint64_t{kTilesMax}) {
+        return false;
+    }
+    const std::optional<GLuint> depth = depthTextureOf(target.framebuffer);
+    if (!depth || !makeRoom(sprites) || !makeLayer(target)) {
+        return false;
+    }
+    depth_ = *depth;
+    count_of_sprites_ = sprites;
+    return true;
+}
+
+bool TilePainter::makeRoom(std::uint32_t sprites) {
+    if (sprites <= room_) {
+        return true;
+    }
+    GLint64 most = 0;
+    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
+    // Little by little, as a scene's extent grows.
+    const std::uint32_t room = std::min(std::max(sprites + sprites / 2, 1U << 16), kSpritesMax);
+    const std::uint32_t entries = entriesFor(room);
+    if (most < GLint64{entries} * 2 * kWord || most < GLint64{room} * 8 * kWord) {
+        return false;
+    }
+    const StorageUnits storage;
+    forgetGlErrors();
+    room_ = 0;
+    sprite_buffer_ = StorageUnits::make(GLsizeiptr{room} * 8 * kWord);
+    for (GlBuffer& buffer : entry_buffers_) {
+        buffer = StorageUnits::make(GLsizeiptr{entries} * 2 * kWord);
+    }
+    const std::uint32_t blocks = std::min(dividedUp(entries, kGroup), kBlocksMax);
+    counts_ = StorageUnits::make(
+        std::max(GLsizeiptr{kRadixDigits} * blocks, GLsizeiptr{kSpritesMax / kGroup}) * kWord);
+    totals_ = StorageUnits::make((GLsizeiptr{kRadixDigits} + 1) * kWord);
+    work_ = StorageUnits::make(5 * kWord);
+    if (!checkAllocated("the entries of tiles", "")) {
+        sprite_buffer_ = {};
+        entry_buffers_[0] = {};
+        entry_buffers_[1] = {};
+        return false;
+    }
+    room_ = room;
+    return true;
+}
+
+bool TilePainter::makeLayer(const RenderTarget& target) {
+    const auto width = static_cast<std::uint32_t>(target.width);
+    const auto height = static_cast<std::uint32_t>(target.height);
+    if (layer_ && width == width_ && height == height_) {
+        return true;
+    }
+    forgetGlErrors();
+    layer_ = makeImageTexture2D(GL_RGBA16F, target.width, target.height);
+    if (!checkAllocated("the layer of tiles", "")) {
+        layer_ = {};
+        return false;
+    }
+    width_ = width;
+    height_ = height;
+    return true;
+}
+
+void TilePainter::paint(bool adds) {
+    const StorageUnits storage;
+    const ImageUnits images;
+    const std::uint32_t groups = dividedUp(count_of_sprites_, kGroup);
+    const auto columns = static_cast<GLint>(dividedUp(width_, kTileSide));
+    const auto rows = static_cast<GLint>(dividedUp(height_, kTileSide));
+    const auto run = [&](const GlProgram& program, std::uint32_t x, std::uint32_t y) {
+        glUseProgram(program.name());
+        setUnsigned(program, "u_count", count_of_sprites_);
+        glUniform2i(uniformLocation(program, "u_tiles"), columns, rows);
+        glUniform2i(uniformLocation(program, "u_picture"), static_cast<GLint>(width_),
+                    static_cast<GLint>(height_));
+        glDispatchCompute(x, y, 1);
+        StorageUnits::order();
+    };
+    StorageUnits::order();  // the last picture's may still be read
+    StorageUnits::bind(kSprites, sprite_buffer_);
+    StorageUnits::bind(kEntries, entry_buffers_[0]);
+    StorageUnits::bind(kCounts, counts_);
+    StorageUnits::bind(kWork, work_);
+    run(sprites_, groups, 1);
+    glUseProgram(scan_.name());
+    setUnsigned(scan_, "u_blocks", groups);
+    setUnsigned(scan_, "u_room", entriesFor(count_of_sprites_));
+    run(scan_, 1, 1);
+    run(entries_, groups, 1);
+    sortEntries();
+
+    StorageUnits::bind(kPaintEntries, entry_buffers_[0]);
+    StorageUnits::bind(kPaintSprites, sprite_buffer_);
+    StorageUnits::bind(kWork, work_);
+    ImageUnits::write(0, layer_, GL_RGBA16F);
+    glUseProgram(paint_.name());
+    glUniform1i(uniformLocation(paint_, "u_adds"), adds ? 1 : 0);
+    glUniform1i(uniformLocation(paint_, "u_hidden"), depth_ != 0 ? 1 : 0);
+    if (depth_ != 0) {
+        useTexture(kHidesUnit, depth_);
+        glBindSampler(kHidesUnit, plain_.name());
+    }
+    run(paint_, static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rows));
+    ImageUnits::finish();
+    if (depth_ != 0) {
+        glBindSampler(kHidesUnit, 0);
+        useTexture(kHidesUnit, 0);  // it is drawn to again
+    }
+}
+
+void TilePainter::sortEntries() const {
+    // How many there are is the GPU's to know: blocks for all that there is room for, of which some stay empty.
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    GLint bound[2] = {0, 0};
+    glGetIntegerv(GL_COPY_READ_BUFFER_BINDING, &bound[0]);
+    glGetIntegerv(GL_COPY_WRITE_BUFFER_BINDING, &bound[1]);
+    glBindBuffer(GL_COPY_READ_BUFFER, work_.name());
+    glBindBuffer(GL_COPY_WRITE_BUFFER, totals_.name());
+    glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, GLintptr{kRadixDigits} * kWord, kWord);
+    glBindBuffer(GL_COPY_READ_BUFFER, static_cast<GLuint>(bound[0]));
+    glBindBuffer(GL_COPY_WRITE_BUFFER, static_cast<GLuint>(bound[1]));
+
+    const std::uint32_t lines = dividedUp(entriesFor(count_of_sprites_), kGroup);
+    const std::uint32_t turns = dividedUp(lines, kBlocksMax);
+    const std::uint32_t blocks = dividedUp(lines, turns);
+    StorageUnits::bind(kCounts, counts_);
+    StorageUnits::bind(kTotals, totals_);
+    for (std::uint32_t digit = 0; digit < kDigitsOfTile; ++digit) {
+        StorageUnits::bind(kFrom, entry_buffers_[digit % 2]);
+        StorageUnits::bind(kTo, entry_buffers_[1 - digit % 2]);
+        for (const GlProgram* part : {&count_, &digits_, &move_}) {
+            glUseProgram(part->name());
+            setUnsigned(*part, "u_turns", turns);
+            setUnsigned(*part, "u_blocks", blocks);
+            setUnsigned(*part, "u_shift", digit * kDigitBits);
+            glDispatchCompute(part == &digits_ ? kGroup : blocks, 1, 1);
+            StorageUnits::order();
+        }
+    }
+}
+
+void TilePainter::show(const GlProgram& points) const {
+    glDisable(GL_DEPTH_TEST);
+    glUseProgram(layer_program_.name());
+    GLint bound_texture = 0;
+    glActiveTexture(GL_TEXTURE0);
+    glGetIntegerv(GL_TEXTURE_BINDING_2D, &bound_texture);
+    useTexture(0, layer_);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    useTexture(0, static_cast<GLuint>(bound_texture));
+
+    glEnable(GL_DEPTH_TEST);
+    glMemoryBarrier(GL_COMMAND_BARRIER_BIT);
+    GLint bound = 0;
+    glGetIntegerv(GL_DRAW_INDIRECT_BUFFER_BINDING, &bound);
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, work_.name());
+    glUseProgram(points.name());
+    const std::uintptr_t first_word = kWord;
+    glDrawArraysIndirect(GL_POINTS, reinterpret_cast<const void*>(first_word));
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, static_cast<GLuint>(bound));
+}
+
+}  // namespace relief

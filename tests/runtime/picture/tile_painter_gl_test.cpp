@@ -1,0 +1,307 @@
+// Points painted by tiles against the same points drawn by the GL, in OpenGL 4.3 and in OpenGL ES 3.1: in every style, before
+// and behind a collider, at the picture's edges, of all sizes, and where the tiles have no room.
+#include "runtime/picture/tile_painter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/gl/storage_units.h"
+#include "runtime/particles/random.h"
+#include "runtime/picture/collider_renderer.h"
+#include "runtime/picture/depth_sort.h"
+#include "runtime/picture/particle_renderer.h"
+#include "tests/runtime/collider/analytic_collider.h"
+#include "tests/runtime/gl/gl_test.h"
+
+namespace relief {
+namespace {
+
+// No multiples of a tile's side.
+constexpr GLsizei kWidth = 150;
+constexpr GLsizei kHeight = 101;
+constexpr int kMargin = 7;  // half a sprite's pixels
+
+class TilePainterGlTest : public GlTest {
+  protected:
+    void SetUp() override {
+        GlTest::SetUp();
+        if (HasFatalFailure()) {
+            return;
+        }
+        collider_ = analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, 0.5), 64);
+        auto textures = ColliderTextures::create(collider_);
+        ASSERT_TRUE(textures) << textures.error().message;
+        textures_.emplace(std::move(*textures));
+        auto collider_renderer = ColliderRenderer::create(view());
+        ASSERT_TRUE(collider_renderer) << collider_renderer.error().message;
+        collider_renderer_.emplace(std::move(*collider_renderer));
+        for (const StepPath path : {StepPath::kFragment, StepPath::kCompute}) {
+            auto renderer = ParticleRenderer::create(view(), path);
+            ASSERT_TRUE(renderer) << renderer.error().message;
+            renderers_.push_back(std::move(*renderer));
+        }
+        color_ = makeTexture2D(GL_RGBA16F, kWidth, kHeight, GL_RGBA, GL_HALF_FLOAT);
+        depth_ = makeTexture2D(GL_DEPTH_COMPONENT32F, kWidth, kHeight, GL_DEPTH_COMPONENT, GL_FLOAT);
+        const std::array<GLuint, 1> colors{color_.name()};
+        auto framebuffer = makeFramebuffer(colors, depth_.name());
+        ASSERT_TRUE(framebuffer) << framebuffer.error().message;
+        framebuffer_ = std::move(*framebuffer);
+        camera_.eye = {0.3F, 0.4F, 3.0F};
+        camera_.fov = 30.0F;
+        camera_.near_plane = 0.5F;
+        camera_.far_plane = 50.0F;
+        style_.fade_in = 0.0F;
+        style_.fade_out = 0.0F;
+        style_.diameter = 0.05F;
+        style_.opacity = 0.6F;
+    }
+    void TearDown() override {
+        particles_.reset();
+        renderers_.clear();
+        collider_renderer_.reset();
+        textures_.reset();
+        framebuffer_ = GlFramebuffer();
+        color_ = GlTexture();
+        depth_ = GlTexture();
+        GlTest::TearDown();
+    }
+
+    [[nodiscard]] ColliderView view() const {
+        return {&*textures_, collider_.bounds, finestTexel(collider_)};
+    }
+    [[nodiscard]] RenderTarget target() const { return {framebuffer_.name(), kWidth, kHeight, srgb_}; }
+
+    /// All about the sphere, and beyond the picture; one in nine has died.
+    void spawn(std::uint32_t count, float reach = 1.2F) {
+        auto particles = ParticleSystem::create({.capacity = count});
+        ASSERT_TRUE(particles) << particles.error().message;
+        particles_.emplace(std::move(*particles));
+        Pcg32 random(7);
+        std::vector<Birth> births;
+        const auto coordinate = [&] { return random.between(-reach, reach); };
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const float x = coordinate();
+            const float y = coordinate();
+            births.push_back({{x, y, coordinate()}, glm::vec3(0.0F), i % 9 == 0 ? 0.1F : 8.0F, i % 3});
+        }
+        particles_->spawn(births);
+        particles_->step(1.0F);
+    }
+
+    std::vector<float> draw(ParticleRenderer& renderer, bool ordered, bool among_collider) {
+        glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
+        const std::array<GLfloat, 4> blue{0.1F, 0.2F, 0.4F, 1.0F};
+        const GLfloat far = 1.0F;
+        glClearBufferfv(GL_COLOR, 0, blue.data());
+        glClearBufferfv(GL_DEPTH, 0, &far);
+        glBindFramebuffer(GL_FRAMEBUFFER, 0);
+        if (among_collider) {
+            EXPECT_TRUE(collider_renderer_->draw(camera_, ColliderStyle{}, target()));
+        }
+        ParticleOrder order;
+        const std::uint32_t sorted = std::max(particles_->extent(), 1U);
+        auto sorter = DepthSorter::create(sorted, StepPath::kCompute);
+        EXPECT_TRUE(sorter);
+        if (ordered) {
+            sorter->update(particles_->positions(), particles_->textureWidth(), particles_->extent(),
+                           camera_.eye, 0);
+            order = {&sorter->order(), sorter->count()};
+        }
+        const auto drawn = renderer.draw(*particles_, camera_, style_, target(), order,
+                                         among_collider ? &collider_renderer_->depth() : nullptr);
+        EXPECT_TRUE(drawn) << drawn.error().message;
+        auto pixels = readTextureFloats(color_, kWidth, kHeight);
+        EXPECT_TRUE(pixels);
+        return *pixels;
+    }
+
+    struct Difference {
+        double mean = 0.0;
+        double most = 0.0;
+    };
+    /// \param width, height  of both pictures. \param margin  pixels at their edges that are left out: some drivers drop
+    ///                        points whose centre is out of the picture.
+    static Difference between(const std::vector<float>& a, const std::vector<float>& b, int margin = 0,
+                              int width = kWidth, int height = kHeight) {
+        Difference difference;
+        const int parts = 4 * (width - 2 * margin) * (height - 2 * margin);
+        for (int y = margin; y < height - margin; ++y) {
+            for (int i = 4 * (y * width + margin); i < 4 * ((y + 1) * width - margin); ++i) {
+                const auto at = static_cast<std::size_t>(i);
+                const double apart = std::abs(static_cast<double>(a[at]) - static_cast<double>(b[at]));
+                EXPECT_FALSE(std::isnan(apart));
+                difference.mean += apart / parts;
+                difference.most = std::max(difference.most, apart);
+            }
+        }
+        return difference;
+    }
+
+    /// Both ways give one picture. Points are placed on the 256th part of a pixel, and blended in half floats.
+    void expectTheSame(const char* what, bool ordered, bool among_collider) {
+        SCOPED_TRACE(what);
+        const std::vector<float> points = draw(renderers_[0], ordered, among_collider);
+        const std::vector<float> tiles = draw(renderers_[1], ordered, among_collider);
+        const Difference difference = between(points, tiles, kMargin);
+        EXPECT_LT(difference.mean, 0.001);
+        EXPECT_LT(difference.most, 0.04);
+        const ParticleStyle shown = style_;
+        style_.opacity = 0.0F;
+        EXPECT_GT(between(points, draw(renderers_[1], ordered, among_collider)).mean, 0.01)
+            << "nothing is drawn";
+        style_ = shown;
+    }
+
+    bool srgb_ = false;
+    Collider collider_;
+    Camera camera_;
+    ParticleStyle style_;
+    std::optional<ColliderTextures> textures_;
+    std::optional<ColliderRenderer> collider_renderer_;
+    std::vector<ParticleRenderer> renderers_;
+    std::optional<ParticleSystem> particles_;
+    GlTexture color_;
+    GlTexture depth_;
+    GlFramebuffer framebuffer_;
+};
+
+TEST_P(TilePainterGlTest, EveryStyleLooksAsPointsDo) {
+    spawn(1500);
+    expectTheSame("in order", true, true);
+    expectTheSame("as they come", false, false);
+    style_.soft = 0.3F;
+    expectTheSame("soft", true, true);
+    style_.soft = 0.0F;
+    style_.blend = Blend::kAdditive;
+    style_.opacity = 0.1F;
+    expectTheSame("added", false, true);
+    style_.blend = Blend::kAlpha;
+    style_.opacity = 0.6F;
+    srgb_ = true;
+    expectTheSame("sRGB", true, true);
+    srgb_ = false;
+    for (const glm::vec3& color :
+         {glm::vec3(1.0F, 0.2F, 0.1F), glm::vec3(0.1F, 0.3F, 1.0F), glm::vec3(1.0F)}) {
+        ParticleLook& look = style_.looks.emplace_back();
+        look.color = {{0.0F, color}};
+        look.size = {{0.0F, 0.02F}, {0.5F, 0.1F}};
+        look.lit = style_.looks.size() != 2;
+    }
+    expectTheSame("types", true, true);
+}
+
+TEST_P(TilePainterGlTest, SpritesOfEverySize) {
+    spawn(300);
+    for (const float diameter : {0.001F, 0.02F, 0.2F, 0.4F}) {
+        style_.diameter = diameter;
+        style_.opacity = diameter < 0.01F ? 1.0F : 0.5F;
+        const std::vector<float> points = draw(renderers_[0], true, true);
+        const Difference difference = between(points, draw(renderers_[1], true, true), 25);
+        EXPECT_LT(difference.mean, 0.001) << diameter;
+        EXPECT_LT(difference.most, 0.04) << diameter;
+    }
+}
+
+// The order matters, so that the same picture says that the tiles keep it.
+TEST_P(TilePainterGlTest, TheOrderIsKept) {
+    spawn(4000);
+    style_.opacity = 0.9F;
+    for (const glm::vec3& color : {glm::vec3(1.0F, 0.1F, 0.1F), glm::vec3(0.1F, 0.1F, 1.0F)}) {
+        style_.looks.emplace_back().color = {{0.0F, color}};
+    }
+    expectTheSame("many colours", true, false);
+    const Difference other = between(draw(renderers_[1], true, false), draw(renderers_[1], false, false));
+    EXPECT_GT(other.mean, 0.005);
+    EXPECT_GT(other.most, 0.4);
+}
+
+// Tiles have room for 2^18 entries of few sprites. Then points are drawn, the very same.
+TEST_P(TilePainterGlTest, WithoutRoomThePointsAreDrawn) {
+    spawn(8000, 0.7F);
+    style_.diameter = 2.0F;
+    style_.opacity = 0.01F;
+    const std::vector<float> points = draw(renderers_[0], true, false);
+    EXPECT_EQ(points, draw(renderers_[1], true, false));
+    // And tiles are painted again afterwards.
+    style_.diameter = 0.05F;
+    style_.opacity = 0.6F;
+    expectTheSame("after that", true, false);
+}
+
+TEST_P(TilePainterGlTest, NothingAliveAndNothingInSight) {
+    spawn(300);
+    const std::vector<float> seen = draw(renderers_[1], true, false);
+    camera_.target = {0.0F, 0.0F, 9.0F};  // all lie behind the viewer
+    EXPECT_EQ(draw(renderers_[0], true, false), draw(renderers_[1], true, false));
+    EXPECT_NE(seen, draw(renderers_[1], true, false));
+    camera_.target = glm::vec3(0.0F);
+    particles_->step(20.0F);
+    EXPECT_EQ(draw(renderers_[0], true, false), draw(renderers_[1], true, false));
+}
+
+TEST_P(TilePainterGlTest, APictureOfAnotherSizeAndATargetWithoutDepth) {
+    spawn(500);
+    for (const GLsizei side : {40, 17, 300}) {
+        const GlTexture color = makeTexture2D(GL_RGBA16F, side, side, GL_RGBA, GL_HALF_FLOAT);
+        const auto framebuffer = makeFramebuffer(std::array<GLuint, 1>{color.name()});
+        ASSERT_TRUE(framebuffer);
+        std::vector<std::vector<float>> pictures;
+        for (ParticleRenderer& renderer : renderers_) {
+            glBindFramebuffer(GL_FRAMEBUFFER, framebuffer->name());
+            const std::array<GLfloat, 4> black{};
+            glClearBufferfv(GL_COLOR, 0, black.data());
+            glBindFramebuffer(GL_FRAMEBUFFER, 0);
+            ASSERT_TRUE(renderer.draw(*particles_, camera_, style_, {framebuffer->name(), side, side}));
+            pictures.push_back(*readTextureFloats(color, side, side));
+        }
+        const Difference difference = between(pictures[0], pictures[1], side < 100 ? 3 : 9, side, side);
+        EXPECT_LT(difference.mean, 0.002) << side;
+        EXPECT_LT(difference.most, 0.06) << side;
+    }
+}
+
+// A renderbuffer of depth cannot be read: points are drawn, the very same.
+TEST_P(TilePainterGlTest, DepthThatIsNoTexture) {
+    spawn(500);
+    GLuint depth = 0;
+    glGenRenderbuffers(1, &depth);
+    glBindRenderbuffer(GL_RENDERBUFFER, depth);
+    glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, kWidth, kHeight);
+    glBindRenderbuffer(GL_RENDERBUFFER, 0);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    EXPECT_EQ(draw(renderers_[0], true, true), draw(renderers_[1], true, true));
+    glDeleteRenderbuffers(1, &depth);
+}
+
+TEST_P(TilePainterGlTest, TheCallersBuffersStayBound) {
+    spawn(500);
+    std::array<GLuint, 3> buffers{};
+    glGenBuffers(3, buffers.data());
+    constexpr std::array<GLenum, 3> kTargets{GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER,
+                                             GL_DRAW_INDIRECT_BUFFER};
+    constexpr std::array<GLenum, 3> kBindings{GL_COPY_READ_BUFFER_BINDING, GL_COPY_WRITE_BUFFER_BINDING,
+                                              GL_DRAW_INDIRECT_BUFFER_BINDING};
+    for (std::size_t i = 0; i < 3; ++i) {
+        glBindBuffer(kTargets[i], buffers[i]);
+        glBufferData(kTargets[i], 64, nullptr, GL_STATIC_DRAW);
+    }
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, buffers[1]);
+    const std::vector<float> tiles = draw(renderers_[1], true, true);
+    for (std::size_t i = 0; i < 3; ++i) {
+        GLint bound = 0;
+        glGetIntegerv(kBindings[i], &bound);
+        EXPECT_EQ(static_cast<GLuint>(bound), buffers[i]);
+    }
+    GLint bound = 0;
+    glGetIntegeri_v(GL_SHADER_STORAGE_BUFFER_BINDING, 2, &bound);
+    EXPECT_EQ(static_cast<GLuint>(bound), buffers[1]);
+    glDeleteBuffers(3, buffers.data());
+    EXPECT_EQ(tiles, draw(renderers_[1], true, true));
+}
+
+RELIEF_INSTANTIATE_GL_TESTS(TilePainterGlTest);
+
+}  // namespace
+}  // namespace relief
