@@ -7,11 +7,42 @@ uniform float u_soft;             // object units; 0: hard edges
 uniform vec2 u_depth;             // window depth of view distance t: x + y / t
 uniform bool u_srgb;              // the target holds sRGB values
 
-// A round grain, by the share of its radius: its edge is a smooth step.
-float roundAt(float radius, float per_edge) {
-    float inside = clamp((1.0 - radius) * per_edge, 0.0, 1.0);
-    return inside * inside * (3.0 - 2.0 * inside);
+#ifdef RELIEF_CELLS
+uniform highp sampler2D u_atlas;  // linear, premultiplied by alpha
+uniform ivec2 u_cells;            // columns, rows
+uniform float u_levels_max;       // above it cells would run into each other
+
+// A cell of the atlas at a place of it, -1…1, y upwards, where it is so many pixels wide.
+vec4 cellAt(vec2 at, float number, float pixels) {
+    vec2 size = vec2(textureSize(u_atlas, 0)) / vec2(u_cells);
+    // The level at which a texel is a pixel: known, as the sprite's size is.
+    float level = clamp(floor(log2(max(size.x, size.y) / pixels) + 0.5), 0.0, u_levels_max);
+    vec2 edge = 0.5 * exp2(level) / size;  // half a texel: filtering must not reach the next cell
+    int cell = int(number) % (u_cells.x * u_cells.y);
+    vec2 inside = clamp(vec2(0.5, -0.5) * at + 0.5, edge, 1.0 - edge);
+    return textureLod(u_atlas, (vec2(cell % u_cells.x, cell / u_cells.x) + inside) / vec2(u_cells), level);
 }
+#endif
+
+// A round grain, by the share of its radius: its edge is a smooth step.
+vec4 bodyAt(vec2 at, float radius, float per_edge) {
+    float inside = clamp((1.0 - radius) * per_edge, 0.0, 1.0);
+    return vec4(inside * inside * (3.0 - 2.0 * inside));
+}
+
+#ifdef RELIEF_CELLS
+// The sprite at `at`, of which the picture's frame is: colour times alpha, and alpha.
+// `cell`: cosine and sine of its rotation; cell, -1: a round grain; pixels
+vec4 bodyAt(vec2 at, float radius, float per_edge, vec4 cell) {
+    if (cell.z >= 0.0) {
+        // Its own frame turns.
+        vec2 own = vec2(cell.x * at.x + cell.y * at.y, cell.x * at.y - cell.y * at.x);
+        // The corners of a turned cell stand out of its point.
+        return max(abs(own.x), abs(own.y)) > 1.0 ? vec4(0.0) : cellAt(own, cell.z, cell.w);
+    }
+    return bodyAt(at, radius, per_edge);
+}
+#endif
 
 float distanceOf(float depth) {
     return u_depth.y / (depth - u_depth.x);

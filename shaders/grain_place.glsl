@@ -19,3 +19,28 @@ vec4 placeOf(Sprite sprite) {
     place.z = front.z / front.w * place.w;
     return place;
 }
+
+#ifdef RELIEF_STRETCH
+// Pixels from a sprite's centre to its tail, as far as that is in front of the viewer.
+vec2 tailOf(Sprite sprite) {
+    if (!sprite.stretched) {
+        return vec2(0.0);
+    }
+    float near = -u_depth.y / u_depth.x;
+    float share = sprite.tail.z > 0.0 ? min((sprite.distance - 1.01 * near) / sprite.tail.z, 1.0) : 1.0;
+    vec4 head = u_projection * vec4(sprite.center, 1.0);
+    vec4 tail = u_projection * vec4(sprite.center + max(share, 0.0) * sprite.tail, 1.0);
+    return 0.5 * u_target * (tail.xy / tail.w - head.xy / head.w);
+}
+#endif
+
+// Cosine and sine of what a sprite is turned by in the picture. A stretched one's right side is its head.
+vec2 turnOf(Sprite sprite, vec2 tail) {
+#ifdef RELIEF_STRETCH
+    if (sprite.stretched) {
+        float pixels = length(tail);
+        return pixels > 0.0 ? -tail / pixels : vec2(1.0, 0.0);
+    }
+#endif
+    return vec2(cos(sprite.rotation), sin(sprite.rotation));
+}

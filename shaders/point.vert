@@ -30,17 +30,6 @@ void nothing() {  // beyond the far plane
 #endif
 }
 
-#ifdef RELIEF_STRETCH
-// Pixels from a sprite's centre to its tail, as far as that is in front of the viewer.
-vec2 tailOf(Sprite sprite) {
-    float near = -u_depth.y / u_depth.x;
-    float share = sprite.tail.z > 0.0 ? min((sprite.distance - 1.01 * near) / sprite.tail.z, 1.0) : 1.0;
-    vec4 head = u_projection * vec4(sprite.center, 1.0);
-    vec4 tail = u_projection * vec4(sprite.center + max(share, 0.0) * sprite.tail, 1.0);
-    return 0.5 * u_target * (tail.xy / tail.w - head.xy / head.w);
-}
-#endif
-
 void main() {
 #ifdef RELIEF_QUADS
     int rank = gl_VertexID / RELIEF_QUAD_VERTICES;
@@ -56,16 +45,12 @@ void main() {
     gl_Position = placeOf(sprite);
     v_grain = packGrain(sprite.grain);
     float pixels = sprite.pixels;
-#if defined(RELIEF_CELLS) || defined(RELIEF_QUADS)
-    vec2 turn = vec2(cos(sprite.rotation), sin(sprite.rotation));
-#endif
-#ifdef RELIEF_STRETCH
-    // A cell's right side is the head.
-    vec2 tail = sprite.stretched ? tailOf(sprite) : vec2(0.0);
+#if defined(RELIEF_STRETCH)
+    vec2 tail = tailOf(sprite);
     float tail_pixels = length(tail);
-    if (sprite.stretched) {
-        turn = tail_pixels > 0.0 ? -tail / tail_pixels : vec2(1.0, 0.0);
-    }
+    vec2 turn = turnOf(sprite, tail);
+#elif defined(RELIEF_CELLS) || defined(RELIEF_QUADS)
+    vec2 turn = turnOf(sprite, vec2(0.0));
 #endif
 #ifdef RELIEF_CELLS
     v_cell = vec4(turn, sprite.cell, pixels);

@@ -9,20 +9,15 @@ layout(std430, binding = 3) readonly buffer Work { uint b_work[5]; };
 
 void main() {
     uint rank = gl_WorkGroupID.x * uint(RELIEF_RADIX_DIGITS) + gl_LocalInvocationIndex;
-    ivec4 tiles = ivec4(0, 0, -1, -1);
-    if (rank < u_count) {
-        vec4 place = uintBitsToFloat(b_sprites[2u * rank]);
-        if (place.z > 0.0) {
-            tiles = tilesOf(place.xy, place.z);
-        }
-    }
+    uvec2 tiles = rank < u_count ? b_sprites[3u * rank + 2u].xy : NO_TILES;
     uint at = b_counts[gl_WorkGroupID.x] + sumBefore(tileCount(tiles));
     if (b_work[0] == 0u) {
         return;
     }
-    for (int y = tiles.y; y <= tiles.w; ++y) {
-        for (int x = tiles.x; x <= tiles.z; ++x) {
-            b_entries[at++] = uvec2(rank, uint(y * u_tiles.x + x));
+    uvec4 t = unpackTiles(tiles);
+    for (uint y = t.y; y <= t.w; ++y) {
+        for (uint x = t.x; x <= t.z; ++x) {
+            b_entries[at++] = uvec2(rank, y * uint(u_tiles.x) + x);
         }
     }
 }

@@ -16,15 +16,39 @@ uniform bool u_adds;               // sprites are added, and hide nothing
 const uint BATCH = uint(RELIEF_TILE_SIDE * RELIEF_TILE_SIDE);
 // What is less to be seen cannot be told in eight bits a channel.
 const float CLEAR = 1.0 / 1024.0;
+// Of a sprite's place: corners of a cell count, those of a round grain do not.
+#ifdef RELIEF_CELLS
+const float MOST_SQUARE = 2.01;
+#else
+const float MOST_SQUARE = 1.0;
+#endif
 
 shared uint s_bounds[2];  // of the tile's entries
 shared uint s_open;       // somebody still sees what lies behind
 shared uvec4 s_place[RELIEF_TILE_SIDE * RELIEF_TILE_SIDE];
 shared uvec4 s_paint[RELIEF_TILE_SIDE * RELIEF_TILE_SIDE];
+#if defined(RELIEF_CELLS) || defined(RELIEF_STRETCH)
+#define TURNS 1
+shared uvec2 s_turn[RELIEF_TILE_SIDE * RELIEF_TILE_SIDE];
+#endif
 
 void meet() {
     memoryBarrierShared();
     barrier();
+}
+
+// Where a sprite has a pixel, whose centre is `away` from its middle: in the picture's frame, -1…1 where it does not turn.
+// Beyond 2: nowhere.
+vec2 placeIn(uint i, vec2 away, float pixels) {
+#if defined(RELIEF_QUADS) && defined(TURNS)
+    vec2 turn = unpackSnorm2x16(s_turn[i].x);
+    float longer = uintBitsToFloat(s_turn[i].y);
+    vec2 own = 2.0 * vec2(dot(away, turn) / (pixels + longer), (away.y * turn.x - away.x * turn.y) / pixels);
+    return max(abs(own.x), abs(own.y)) > 1.0 ? vec2(9.0) : own.x * turn + own.y * vec2(-turn.y, turn.x);
+#else
+    vec2 at = away * (2.0 / pixels);
+    return max(abs(at.x), abs(at.y)) > 1.0 ? vec2(9.0) : at;
+#endif
 }
 
 // How many entries are of higher tiles, which come first.
@@ -59,22 +83,31 @@ void main() {
         uint count = min(end - first, BATCH);
         if (self < count) {
             uint rank = b_entries[end - 1u - self].x;
-            s_place[self] = b_sprites[2u * rank];
-            s_paint[self] = b_sprites[2u * rank + 1u];
+            s_place[self] = b_sprites[3u * rank];
+            s_paint[self] = b_sprites[3u * rank + 1u];
+#ifdef TURNS
+            s_turn[self] = b_sprites[3u * rank + 2u].zw;
+#endif
         }
         s_open = 0u;
         meet();
         for (uint i = 0u; i < count && clear > CLEAR; ++i) {
             vec4 place = uintBitsToFloat(s_place[i]);
-            vec2 at = (vec2(pixel) + 0.5 - place.xy) * (2.0 / place.z);
+            vec2 at = placeIn(i, vec2(pixel) + 0.5 - place.xy, place.z);
             float square = dot(at, at);
-            if (square >= 1.0 || place.w > hides) {
+            if (square > MOST_SQUARE || place.w > hides) {
                 continue;
             }
             Grain grain = unpackGrain(s_paint[i].xyz);
             float radius = sqrt(square);
+#ifdef RELIEF_CELLS
+            vec4 cell = vec4(unpackSnorm2x16(s_turn[i].x), uintBitsToFloat(s_paint[i].w), place.z);
+            vec4 body = bodyAt(at, radius, grain.per_edge, cell);
+#else
+            vec4 body = bodyAt(at, radius, grain.per_edge);
+#endif
             float shown = grain.opacity * (u_soft > 0.0 ? softShare(behind, place.w) : 1.0);
-            vec4 paint = paintOf(grain, at, radius, vec4(roundAt(radius, grain.per_edge)), shown);
+            vec4 paint = paintOf(grain, at, radius, body, shown);
             sum += clear * paint;
             clear *= u_adds ? 1.0 : 1.0 - paint.a;
         }

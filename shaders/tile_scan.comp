@@ -4,7 +4,8 @@
 layout(std430, binding = 2) buffer Counts { uint b_counts[]; };  // of u_blocks groups
 layout(std430, binding = 3) writeonly buffer Work { uint b_work[5]; };
 
-uniform uint u_room;  // entries, less than MOST
+uniform uint u_room;      // entries, less than MOST
+uniform uint u_vertices;  // of a sprite
 
 // An invocation's sum counts no further, so that theirs together are no more than 32 bits; this many have no room anyway.
 const uint MOST = 0xffffffu;
@@ -22,7 +23,7 @@ void main() {
     if (self == uint(RELIEF_RADIX_DIGITS - 1)) {
         bool fits = sum + mine <= u_room;
         b_work[0] = fits ? sum + mine : 0u;
-        b_work[1] = fits ? 0u : u_count;
+        b_work[1] = fits ? 0u : u_count * u_vertices;
         b_work[2] = 1u;
         b_work[3] = 0u;
         b_work[4] = 0u;

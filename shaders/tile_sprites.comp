@@ -17,6 +17,7 @@ void main() {
     meet();
     uvec4 place = uvec4(0u);
     uvec4 paint = uvec4(0u);
+    uvec4 shape = uvec4(NO_TILES, 0u, 0u);
     Sprite sprite;
     if (rank < u_count && spriteOf(int(rank), sprite)) {
         vec4 clip = placeOf(sprite);
@@ -24,14 +25,31 @@ void main() {
         if (clip.w > 0.0 && abs(clip.z) <= clip.w) {
             vec3 window = 0.5 * clip.xyz / clip.w + 0.5;
             vec2 at = window.xy * u_target;
+            vec2 turn = vec2(1.0, 0.0);
+            float longer = 0.0;
+#ifdef RELIEF_STRETCH
+            vec2 tail = tailOf(sprite);
+            at += 0.5 * tail;
+            longer = length(tail);
+            turn = turnOf(sprite, tail);
+#elif defined(RELIEF_CELLS)
+            turn = turnOf(sprite, vec2(0.0));
+#endif
+            vec2 reach = vec2(0.5 * sprite.pixels);
+#ifdef RELIEF_QUADS
+            vec2 along = abs(turn);
+            reach = 0.5 * ((sprite.pixels + longer) * along + sprite.pixels * along.yx);
+#endif
             place = floatBitsToUint(vec4(at, sprite.pixels, window.z));
-            paint = uvec4(packGrain(sprite.grain), 0u);
-            atomicAdd(s_count, tileCount(tilesOf(at, sprite.pixels)));
+            paint = uvec4(packGrain(sprite.grain), floatBitsToUint(sprite.cell));
+            shape = uvec4(tilesOf(at, reach), packSnorm2x16(turn), floatBitsToUint(longer));
+            atomicAdd(s_count, tileCount(shape.xy));
         }
     }
     if (rank < u_count) {
-        b_sprites[2u * rank] = place;
-        b_sprites[2u * rank + 1u] = paint;
+        b_sprites[3u * rank] = place;
+        b_sprites[3u * rank + 1u] = paint;
+        b_sprites[3u * rank + 2u] = shape;
     }
     meet();
     if (self == 0u) {

@@ -36,6 +36,11 @@ std::uint32_t spriteCount(const ParticleSystem& particles, const ParticleOrder& 
     return order.texture != nullptr && particles.extent() > 0 ? order.count : particles.extent();
 }
 
+TilePainter::Vertices verticesOf(const ParticleStyle& style) {
+    return style.sprite == Sprite::kQuad ? TilePainter::Vertices{GL_TRIANGLES, kQuadVertices}
+                                         : TilePainter::Vertices{GL_POINTS, 1};
+}
+
 /// Leaves the program in use.
 void setUniforms(const GlProgram& program, const ParticleSystem& particles, const CameraMatrices& camera,
                  const ParticleStyle& style, const RenderTarget& target, bool ordered, bool soft) {
@@ -72,13 +77,6 @@ void setUniforms(const GlProgram& program, const ParticleSystem& particles, cons
     }
 }
 
-void setSamplers(const GlProgram& program) {
-    glUseProgram(program.name());
-    for (std::size_t unit = 0; unit < kSamplers.size(); ++unit) {
-        glUniform1i(uniformLocation(program, kSamplers[unit]), static_cast<GLint>(unit));
-    }
-}
-
 }  // namespace
 
 Result<ParticleRenderer> ParticleRenderer::create(const std::optional<ColliderView>& collider,
@@ -93,7 +91,10 @@ Result<ParticleRenderer> ParticleRenderer::create(const std::optional<ColliderVi
         [[maybe_unused]] const GlProgram* made = RELIEF_TRY(renderer.programFor({.sprite = sprite}));
     }
     if (RELIEF_TRY(chosenPath(path)) == StepPath::kCompute) {
-        RELIEF_TRY(renderer.createTiles(path));
+        auto tiles = TilePainter::create();
+        if (tiles || path == StepPath::kCompute || tiles.error().code != ErrorCode::kUnsupported) {
+            renderer.tiles_ = RELIEF_TRY(std::move(tiles));
+        }
     }
     renderer.no_attributes_ = makeVertexArray();
     forgetGlErrors();
@@ -105,17 +106,22 @@ Result<ParticleRenderer> ParticleRenderer::create(const std::optional<ColliderVi
     return renderer;
 }
 
-Result<void> ParticleRenderer::createTiles(StepPath path) {
-    auto tiles = TilePainter::create(light_.has_value());
-    if (!tiles && path == StepPath::kAuto && tiles.error().code == ErrorCode::kUnsupported) {
-        return {};
+std::string ParticleRenderer::definesOf(const ParticleStyle& style) const {
+    const bool quads = style.sprite == Sprite::kQuad;
+    return std::string(light_ ? "#define RELIEF_LIT 1\n" : "") + (quads ? "#define RELIEF_QUADS 1\n" : "") +
+           (style.atlas != nullptr ? "#define RELIEF_CELLS 1\n" : "") +
+           (quads && anyStretched(style) ? "#define RELIEF_STRETCH 1\n" : "");
+}
+
+void ParticleRenderer::setSamplers(const GlProgram& program) const {
+    glUseProgram(program.name());
+    for (std::size_t unit = 0; unit < kSamplers.size(); ++unit) {
+        glUniform1i(uniformLocation(program, kSamplers[unit]), static_cast<GLint>(unit));
     }
-    tiles_ = RELIEF_TRY(std::move(tiles));
-    setSamplers(tiles_->spriteProgram());
+    glUniform1i(uniformLocation(program, "u_second"), kSecondUnit);
     if (light_) {
-        light_->attach(tiles_->spriteProgram(), kLightUnit);
+        light_->attach(program, kLightUnit);
     }
-    return {};
 }
 
 Result<const GlProgram*> ParticleRenderer::programFor(const ParticleStyle& style) {
@@ -124,17 +130,8 @@ Result<const GlProgram*> ParticleRenderer::programFor(const ParticleStyle& style
     const bool stretched = quads && anyStretched(style);
     GlProgram& program = programs_[(quads ? 1U : 0U) + (cells ? 2U : 0U) + (stretched ? 4U : 0U)];
     if (!program) {
-        const std::string defines =
-            std::string(light_ ? "#define RELIEF_LIT 1\n" : "") + (quads ? "#define RELIEF_QUADS 1\n" : "") +
-            (cells ? "#define RELIEF_CELLS 1\n" : "") + (stretched ? "#define RELIEF_STRETCH 1\n" : "");
-        program = RELIEF_TRY(makeProgram("point.vert", "point.frag", defines));
+        program = RELIEF_TRY(makeProgram("point.vert", "point.frag", definesOf(style)));
         setSamplers(program);
-        if (stretched) {
-            glUniform1i(uniformLocation(program, "u_second"), kSecondUnit);
-        }
-        if (light_) {
-            light_->attach(program, kLightUnit);
-        }
     }
     return &program;
 }
@@ -156,17 +153,24 @@ Result<void> ParticleRenderer::uploadLooks(const ParticleStyle& style) {
     return {};
 }
 
-bool ParticleRenderer::paintTiles(const ParticleSystem& particles, const CameraMatrices& camera,
-                                  const ParticleStyle& style, const RenderTarget& target,
-                                  const ParticleOrder& order, const GlTexture* behind) {
-    if (!tiles_ || style.sprite != Sprite::kPoint || style.atlas != nullptr ||
-        !tiles_->prepare(spriteCount(particles, order), target)) {
+Result<bool> ParticleRenderer::paintTiles(const ParticleSystem& particles, const CameraMatrices& camera,
+                                          const ParticleStyle& style, const RenderTarget& target,
+                                          const ParticleOrder& order, const GlTexture* behind) {
+    if (!tiles_ || !tiles_->prepare(spriteCount(particles, order), target)) {
         return false;
     }
-    for (const GlProgram* program : {&tiles_->spriteProgram(), &tiles_->paintProgram()}) {
+    const std::string defines = definesOf(style);
+    const TilePainter::Programs* programs = tiles_->programs(defines);
+    if (programs == nullptr) {
+        programs = RELIEF_TRY(tiles_->makePrograms(defines));
+        setSamplers(programs->sprites);
+        setSamplers(programs->paint);
+    }
+    for (const GlProgram* program : {&programs->sprites, &programs->paint}) {
         setUniforms(*program, particles, camera, style, target, order.texture != nullptr, behind != nullptr);
     }
-    tiles_->paint(style.blend == Blend::kAdditive);
+    bindTextures(particles, style, order, behind);
+    tiles_->paint(*programs, verticesOf(style), style.blend == Blend::kAdditive);
     return true;
 }
 
@@ -208,8 +212,8 @@ Result<void> ParticleRenderer::draw(const ParticleSystem& particles, const Camer
         RELIEF_TRY(light_->update());
     }
     const GlProgram& program = *RELIEF_TRY(programFor(style));
+    const bool tiled = RELIEF_TRY(paintTiles(particles, camera, style, target, order, behind));
     bindTextures(particles, style, order, behind);
-    const bool tiled = paintTiles(particles, camera, style, target, order, behind);
     setUniforms(program, particles, camera, style, target, order.texture != nullptr, behind != nullptr);
     glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
     glViewport(0, 0, target.width, target.height);
@@ -220,15 +224,12 @@ Result<void> ParticleRenderer::draw(const ParticleSystem& particles, const Camer
     glDepthFunc(GL_LEQUAL);
     glDepthMask(GL_FALSE);
     glBindVertexArray(no_attributes_.name());
+    const TilePainter::Vertices vertices = verticesOf(style);
     if (tiled) {
-        tiles_->show(program);
-        return {};
-    }
-    const auto count = static_cast<GLsizei>(spriteCount(particles, order));
-    if (style.sprite == Sprite::kQuad) {
-        glDrawArrays(GL_TRIANGLES, 0, kQuadVertices * count);
+        tiles_->show(program, vertices);
     } else {
-        glDrawArrays(GL_POINTS, 0, count);
+        const std::uint32_t count = vertices.count * spriteCount(particles, order);
+        glDrawArrays(vertices.mode, 0, static_cast<GLsizei>(count));
     }
     return {};
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "formats/base/result.h"
@@ -56,7 +57,7 @@ struct ParticleOrder {
 class ParticleRenderer {
   public:
     /// \param collider  shades the particles; nullopt: they lie in the open.
-    /// \param path      kCompute: round points are painted by compute shaders (tile_painter.h) where the target's depth is a
+    /// \param path      kCompute: particles are painted by compute shaders (tile_painter.h) where the target's depth is a
     ///                  plain texture, which stays as it is; the same picture but for rounding. The system's, as a rule.
     /// Errors: kUnsupported (kCompute without compute shaders), kFailure (the driver's compiler).
     [[nodiscard]] static Result<ParticleRenderer> create(const std::optional<ColliderView>& collider,
@@ -81,14 +82,16 @@ class ParticleRenderer {
     }
 
   private:
-    [[nodiscard]] Result<void> createTiles(StepPath path);
+    [[nodiscard]] std::string definesOf(const ParticleStyle& style) const;
+    /// Leaves the program in use.
+    void setSamplers(const GlProgram& program) const;
     [[nodiscard]] Result<void> uploadLooks(const ParticleStyle& style);
     /// The program of the style, compiled when it is first wanted.
     [[nodiscard]] Result<const GlProgram*> programFor(const ParticleStyle& style);
-    /// By tiles. \return false if these are to be drawn as points.
-    [[nodiscard]] bool paintTiles(const ParticleSystem& particles, const CameraMatrices& camera,
-                                  const ParticleStyle& style, const RenderTarget& target,
-                                  const ParticleOrder& order, const GlTexture* behind);
+    /// By tiles. \return false if these are to be drawn otherwise.
+    [[nodiscard]] Result<bool> paintTiles(const ParticleSystem& particles, const CameraMatrices& camera,
+                                          const ParticleStyle& style, const RenderTarget& target,
+                                          const ParticleOrder& order, const GlTexture* behind);
     void bindTextures(const ParticleSystem& particles, const ParticleStyle& style, const ParticleOrder& order,
                       const GlTexture* behind) const;
 

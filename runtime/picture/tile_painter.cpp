@@ -26,6 +26,7 @@ constexpr std::uint32_t kBlocksMax = 2048;
 constexpr std::uint32_t kEntriesASprite = 3;
 constexpr std::uint32_t kEntriesMin = 1U << 18;
 constexpr GLsizeiptr kWord = sizeof(std::uint32_t);
+constexpr GLsizeiptr kSpriteBytes = 12 * kWord;
 
 std::uint32_t dividedUp(std::uint32_t a, std::uint32_t b) {
     return (a + b - 1) / b;
@@ -71,35 +72,38 @@ void setUnsigned(const GlProgram& program, const char* name, std::uint32_t value
 
 }  // namespace
 
-Result<TilePainter> TilePainter::create(bool lit) {
+Result<TilePainter> TilePainter::create() {
     GLint together = 0;
     glGetIntegerv(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, &together);
     if (together < kTileSide * kTileSide || together < kRadixDigits) {
         return fail(ErrorCode::kUnsupported, "this GL's work groups are too small to paint tiles");
     }
+    const std::string counted = "#define RELIEF_RADIX_COUNTED\n";
     TilePainter painter;
-    RELIEF_TRY(painter.makePrograms(lit));
+    painter.scan_ = RELIEF_TRY(makeComputeProgram("tile_scan.comp"));
+    painter.entries_ = RELIEF_TRY(makeComputeProgram("tile_entries.comp"));
+    painter.count_ = RELIEF_TRY(makeComputeProgram("radix_count.comp", counted));
+    painter.digits_ = RELIEF_TRY(makeComputeProgram("radix_scan.comp"));
+    painter.move_ = RELIEF_TRY(makeComputeProgram("radix_move.comp", counted));
+    painter.layer_program_ = RELIEF_TRY(makeProgram("quad.vert", "tile_layer.frag"));
+    glUseProgram(painter.layer_program_.name());
+    glUniform1i(uniformLocation(painter.layer_program_, "u_layer"), 0);
     painter.plain_ = makeSampler();
     return painter;
 }
 
-Result<void> TilePainter::makePrograms(bool lit) {
-    const std::string light = lit ? "#define RELIEF_LIT 1\n" : "";
-    const std::string counted = "#define RELIEF_RADIX_COUNTED\n";
-    sprites_ = RELIEF_TRY(makeComputeProgram("tile_sprites.comp", light));
-    scan_ = RELIEF_TRY(makeComputeProgram("tile_scan.comp"));
-    entries_ = RELIEF_TRY(makeComputeProgram("tile_entries.comp"));
-    count_ = RELIEF_TRY(makeComputeProgram("radix_count.comp", counted));
-    digits_ = RELIEF_TRY(makeComputeProgram("radix_scan.comp"));
-    move_ = RELIEF_TRY(makeComputeProgram("radix_move.comp", counted));
-    paint_ = RELIEF_TRY(makeComputeProgram("tile_paint.comp", light));
-    layer_program_ = RELIEF_TRY(makeProgram("quad.vert", "tile_layer.frag"));
-    glUseProgram(paint_.name());
-    glUniform1i(uniformLocation(paint_, "u_hides"), kHidesUnit);
-    glUniform1i(uniformLocation(paint_, "u_behind"), kBehindUnit);
-    glUseProgram(layer_program_.name());
-    glUniform1i(uniformLocation(layer_program_, "u_layer"), 0);
-    return {};
+const TilePainter::Programs* TilePainter::programs(const std::string& defines) const {
+    const auto found = programs_.find(defines);
+    return found == programs_.end() ? nullptr : &found->second;
+}
+
+Result<const TilePainter::Programs*> TilePainter::makePrograms(const std::string& defines) {
+    Programs made;
+    made.sprites = RELIEF_TRY(makeComputeProgram("tile_sprites.comp", defines));
+    made.paint = RELIEF_TRY(makeComputeProgram("tile_paint.comp", defines));
+    glUseProgram(made.paint.name());
+    glUniform1i(uniformLocation(made.paint, "u_hides"), kHidesUnit);
+    return &(programs_[defines] = std::move(made));
 }
 
 bool TilePainter::prepare(std::uint32_t sprites, const RenderTarget& target) {
@@ -128,13 +132,13 @@ bool TilePainter::makeRoom(std::uint32_t sprites) {
     // Little by little, as a scene's extent grows.
     const std::uint32_t room = std::min(std::max(sprites + sprites / 2, 1U << 16), kSpritesMax);
     const std::uint32_t entries = entriesFor(room);
-    if (most < GLint64{entries} * 2 * kWord || most < GLint64{room} * 8 * kWord) {
+    if (most < GLint64{entries} * 2 * kWord || most < GLint64{room} * kSpriteBytes) {
         return false;
     }
     const StorageUnits storage;
     forgetGlErrors();
     room_ = 0;
-    sprite_buffer_ = StorageUnits::make(GLsizeiptr{room} * 8 * kWord);
+    sprite_buffer_ = StorageUnits::make(GLsizeiptr{room} * kSpriteBytes);
     for (GlBuffer& buffer : entry_buffers_) {
         buffer = StorageUnits::make(GLsizeiptr{entries} * 2 * kWord);
     }
@@ -170,7 +174,7 @@ bool TilePainter::makeLayer(const RenderTarget& target) {
     return true;
 }
 
-void TilePainter::paint(bool adds) {
+void TilePainter::paint(const Programs& programs, const Vertices& vertices, bool adds) {
     const StorageUnits storage;
     const ImageUnits images;
     const std::uint32_t groups = dividedUp(count_of_sprites_, kGroup);
@@ -190,9 +194,10 @@ void TilePainter::paint(bool adds) {
     StorageUnits::bind(kEntries, entry_buffers_[0]);
     StorageUnits::bind(kCounts, counts_);
     StorageUnits::bind(kWork, work_);
-    run(sprites_, groups, 1);
+    run(programs.sprites, groups, 1);
     glUseProgram(scan_.name());
     setUnsigned(scan_, "u_blocks", groups);
+    setUnsigned(scan_, "u_vertices", vertices.count);
     setUnsigned(scan_, "u_room", entriesFor(count_of_sprites_));
     run(scan_, 1, 1);
     run(entries_, groups, 1);
@@ -202,14 +207,14 @@ void TilePainter::paint(bool adds) {
     StorageUnits::bind(kPaintSprites, sprite_buffer_);
     StorageUnits::bind(kWork, work_);
     ImageUnits::write(0, layer_, GL_RGBA16F);
-    glUseProgram(paint_.name());
-    glUniform1i(uniformLocation(paint_, "u_adds"), adds ? 1 : 0);
-    glUniform1i(uniformLocation(paint_, "u_hidden"), depth_ != 0 ? 1 : 0);
+    glUseProgram(programs.paint.name());
+    glUniform1i(uniformLocation(programs.paint, "u_adds"), adds ? 1 : 0);
+    glUniform1i(uniformLocation(programs.paint, "u_hidden"), depth_ != 0 ? 1 : 0);
     if (depth_ != 0) {
         useTexture(kHidesUnit, depth_);
         glBindSampler(kHidesUnit, plain_.name());
     }
-    run(paint_, static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rows));
+    run(programs.paint, static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rows));
     ImageUnits::finish();
     if (depth_ != 0) {
         glBindSampler(kHidesUnit, 0);
@@ -248,7 +253,7 @@ void TilePainter::sortEntries() const {
     }
 }
 
-void TilePainter::show(const GlProgram& points) const {
+void TilePainter::show(const GlProgram& sprites, const Vertices& vertices) const {
     glDisable(GL_DEPTH_TEST);
     glUseProgram(layer_program_.name());
     GLint bound_texture = 0;
@@ -263,9 +268,9 @@ void TilePainter::show(const GlProgram& points) const {
     GLint bound = 0;
     glGetIntegerv(GL_DRAW_INDIRECT_BUFFER_BINDING, &bound);
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, work_.name());
-    glUseProgram(points.name());
+    glUseProgram(sprites.name());
     const std::uintptr_t first_word = kWord;
-    glDrawArraysIndirect(GL_POINTS, reinterpret_cast<const void*>(first_word));
+    glDrawArraysIndirect(vertices.mode, reinterpret_cast<const void*>(first_word));
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, static_cast<GLuint>(bound));
 }
 

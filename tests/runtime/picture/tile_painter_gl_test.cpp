@@ -1,9 +1,10 @@
-// Points painted by tiles against the same points drawn by the GL, in OpenGL 4.3 and in OpenGL ES 3.1: in every style, before
-// and behind a collider, at the picture's edges, of all sizes, and where the tiles have no room.
+// Sprites painted by tiles against the same sprites drawn by the GL, in OpenGL 4.3 and in OpenGL ES 3.1: in every style,
+// before and behind a collider, at the picture's edges, of all sizes, and where the tiles have no room.
 #include "runtime/picture/tile_painter.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "runtime/gl/storage_units.h"
 #include "runtime/particles/random.h"
@@ -82,7 +83,9 @@ class TilePainterGlTest : public GlTest {
         for (std::uint32_t i = 0; i < count; ++i) {
             const float x = coordinate();
             const float y = coordinate();
-            births.push_back({{x, y, coordinate()}, glm::vec3(0.0F), i % 9 == 0 ? 0.1F : 8.0F, i % 3});
+            const float z = coordinate();
+            const glm::vec3 velocity = 0.2F * glm::vec3(z, x, y);
+            births.push_back({{x, y, z}, velocity, i % 9 == 0 ? 0.1F : 8.0F, i % 3});
         }
         particles_->spawn(births);
         particles_->step(1.0F);
@@ -137,19 +140,23 @@ class TilePainterGlTest : public GlTest {
         return difference;
     }
 
-    /// Both ways give one picture. Points are placed on the 256th part of a pixel, and blended in half floats.
-    void expectTheSame(const char* what, bool ordered, bool among_collider) {
+    /// Both ways give one picture. The GL places vertices on the 256th part of a pixel, and blends in half floats.
+    void expectTheSame(const char* what, bool ordered, bool among_collider, double most = 0.04) {
         SCOPED_TRACE(what);
-        const std::vector<float> points = draw(renderers_[0], ordered, among_collider);
+        const std::vector<float> drawn = draw(renderers_[0], ordered, among_collider);
         const std::vector<float> tiles = draw(renderers_[1], ordered, among_collider);
-        const Difference difference = between(points, tiles, kMargin);
-        EXPECT_LT(difference.mean, 0.001);
-        EXPECT_LT(difference.most, 0.04);
-        const ParticleStyle shown = style_;
-        style_.opacity = 0.0F;
-        EXPECT_GT(between(points, draw(renderers_[1], ordered, among_collider)).mean, 0.01)
+        const Difference difference = between(drawn, tiles, kMargin);
+        EXPECT_LT(difference.mean, 0.002);
+        EXPECT_LT(difference.most, most);
+        const std::vector<ParticleLook> looks = style_.looks;
+        for (ParticleLook& look : style_.looks) {
+            look.opacity = {{0.0F, 0.0F}};
+        }
+        const float opacity = std::exchange(style_.opacity, 0.0F);
+        EXPECT_GT(between(drawn, draw(renderers_[1], ordered, among_collider)).mean, 0.01)
             << "nothing is drawn";
-        style_ = shown;
+        style_.looks = looks;
+        style_.opacity = opacity;
     }
 
     bool srgb_ = false;
@@ -188,6 +195,53 @@ TEST_P(TilePainterGlTest, EveryStyleLooksAsPointsDo) {
         look.lit = style_.looks.size() != 2;
     }
     expectTheSame("types", true, true);
+}
+
+// Cells turn in the picture, and stretched sprites lie along their way; both have corners.
+TEST_P(TilePainterGlTest, QuadsCellsAndStretchedSprites) {
+    // Two cells that fade towards their edges: a picture that is no grain's, and smooth.
+    constexpr std::uint32_t kSide = 32;
+    std::vector<std::uint8_t> rgba;
+    for (std::uint32_t y = 0; y < kSide; ++y) {
+        for (std::uint32_t x = 0; x < 2 * kSide; ++x) {
+            const std::uint32_t in_cell = x % kSide;
+            const std::uint32_t to_edge = std::min({in_cell, kSide - 1 - in_cell, y, kSide - 1 - y});
+            rgba.insert(rgba.end(), {static_cast<std::uint8_t>(8 * in_cell), static_cast<std::uint8_t>(8 * y),
+                                     static_cast<std::uint8_t>(x < kSide ? 255 : 0),
+                                     static_cast<std::uint8_t>(15 * to_edge)});
+        }
+    }
+    const auto atlas = SpriteAtlas::create(rgba, 2 * kSide, kSide, 2, 1);
+    ASSERT_TRUE(atlas) << atlas.error().message;
+    spawn(800);
+    style_.diameter = 0.08F;
+    style_.looks.resize(3);
+    style_.looks[0].cell_first = 0;
+    style_.looks[0].turn = 3.0F;
+    style_.looks[1].cell_first = 1;
+    style_.looks[1].cell_last = 1;
+    style_.looks[1].rotation = {{0.0F, 0.6F}};
+    constexpr double kCellSteps = 0.1;  // texels are the nearest ones
+    for (const bool quads : {false, true}) {
+        style_.sprite = quads ? Sprite::kQuad : Sprite::kPoint;
+        style_.atlas = nullptr;
+        expectTheSame(quads ? "quads" : "points", true, true);
+        style_.atlas = &*atlas;
+        expectTheSame(quads ? "quads of cells" : "points of cells", true, true, kCellSteps);
+    }
+    style_.looks[0].stretch = 0.8F;
+    style_.looks[2].stretch = 2.0F;
+    expectTheSame("stretched cells", true, true, kCellSteps);
+    style_.atlas = nullptr;
+    expectTheSame("stretched", true, true);
+    style_.blend = Blend::kAdditive;
+    style_.opacity = 0.2F;
+    expectTheSame("stretched, added", false, false);
+    // Without room: the quads are drawn, the very same.
+    style_.diameter = 1.5F;
+    style_.opacity = 0.01F;
+    spawn(10'000, 0.7F);
+    EXPECT_EQ(draw(renderers_[0], true, false), draw(renderers_[1], true, false));
 }
 
 TEST_P(TilePainterGlTest, SpritesOfEverySize) {
