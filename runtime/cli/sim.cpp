@@ -235,7 +235,8 @@ void defineSim(CLI::App& app, SimCommand& command) {
         app, "--path", command.player.path,
         WordsFor<StepPath>{
             {"auto", StepPath::kAuto}, {"fragment", StepPath::kFragment}, {"compute", StepPath::kCompute}},
-        "How particles step: fragment shaders, compute shaders (OpenGL 4.3, OpenGL ES 3.1), or auto "
+        "How particles step, are sorted and drawn: fragment shaders, compute shaders (OpenGL 4.3, OpenGL ES "
+        "3.1), or auto "
         "(default): "
         "compute on a GPU that has it");
     addGpuOptions(app, command.gpu);
