@@ -6,6 +6,9 @@
 layout(std430, binding = 0) writeonly buffer Sprites { uvec4 b_sprites[]; };
 layout(std430, binding = 2) writeonly buffer Counts { uint b_counts[]; };
 
+// Sprites that are larger or farther away from the picture are no sprites.
+const float MOST_PIXELS = 1e20;
+
 shared uint s_count;
 
 void main() {
@@ -40,10 +43,12 @@ void main() {
             vec2 along = abs(turn);
             reach = 0.5 * ((sprite.pixels + longer) * along + sprite.pixels * along.yx);
 #endif
-            place = floatBitsToUint(vec4(at, sprite.pixels, window.z));
-            paint = uvec4(packGrain(sprite.grain), floatBitsToUint(sprite.cell));
-            shape = uvec4(tilesOf(at, reach), packSnorm2x16(turn), floatBitsToUint(longer));
-            atomicAdd(s_count, tileCount(shape.xy));
+            if (all(lessThan(abs(at) + reach, vec2(MOST_PIXELS)))) {  // not so of what is no number
+                place = floatBitsToUint(vec4(at, sprite.pixels, window.z));
+                paint = uvec4(packGrain(sprite.grain), floatBitsToUint(sprite.cell));
+                shape = uvec4(tilesOf(at, reach), packSnorm2x16(turn), floatBitsToUint(longer));
+                atomicAdd(s_count, tileCount(shape.xy));
+            }
         }
     }
     if (rank < u_count) {
