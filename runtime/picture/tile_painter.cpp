@@ -25,8 +25,9 @@ constexpr std::uint32_t kTilesMax = 1U << (kDigitBits * kDigitsOfTile);
 constexpr std::uint32_t kBlocksMax = 2048;
 constexpr std::uint32_t kEntriesASprite = 3;
 constexpr std::uint32_t kEntriesMin = 1U << 18;
-constexpr GLsizeiptr kWord = sizeof(std::uint32_t);
-constexpr GLsizeiptr kSpriteBytes = 12 * kWord;
+constexpr std::uint64_t kWordBytes = sizeof(std::uint32_t);
+constexpr std::uint64_t kSpriteBytes = 12 * kWordBytes;
+constexpr std::uint64_t kEntryBytes = 2 * kWordBytes;
 
 std::uint32_t dividedUp(std::uint32_t a, std::uint32_t b) {
     return (a + b - 1) / b;
@@ -132,21 +133,22 @@ bool TilePainter::makeRoom(std::uint32_t sprites) {
     // Little by little, as a scene's extent grows.
     const std::uint32_t room = std::min(std::max(sprites + sprites / 2, 1U << 16), kSpritesMax);
     const std::uint32_t entries = entriesFor(room);
-    if (most < GLint64{entries} * 2 * kWord || most < GLint64{room} * kSpriteBytes) {
+    const std::uint64_t largest = std::max(entries * kEntryBytes, room * kSpriteBytes);
+    if (most < 0 || static_cast<std::uint64_t>(most) < largest) {
         return false;
     }
+    const auto make = [](std::uint64_t bytes) { return StorageUnits::make(static_cast<GLsizeiptr>(bytes)); };
     const StorageUnits storage;
     forgetGlErrors();
     room_ = 0;
-    sprite_buffer_ = StorageUnits::make(GLsizeiptr{room} * kSpriteBytes);
+    sprite_buffer_ = make(room * kSpriteBytes);
     for (GlBuffer& buffer : entry_buffers_) {
-        buffer = StorageUnits::make(GLsizeiptr{entries} * 2 * kWord);
+        buffer = make(entries * kEntryBytes);
     }
     const std::uint32_t blocks = std::min(dividedUp(entries, kGroup), kBlocksMax);
-    counts_ = StorageUnits::make(
-        std::max(GLsizeiptr{kRadixDigits} * blocks, GLsizeiptr{kSpritesMax / kGroup}) * kWord);
-    totals_ = StorageUnits::make((GLsizeiptr{kRadixDigits} + 1) * kWord);
-    work_ = StorageUnits::make(5 * kWord);
+    counts_ = make(std::max(kGroup * blocks, kSpritesMax / kGroup) * kWordBytes);
+    totals_ = make((kGroup + 1) * kWordBytes);
+    work_ = make(5 * kWordBytes);
     if (!checkAllocated("the entries of tiles", "")) {
         sprite_buffer_ = {};
         entry_buffers_[0] = {};
@@ -230,7 +232,8 @@ void TilePainter::sortEntries() const {
     glGetIntegerv(GL_COPY_WRITE_BUFFER_BINDING, &bound[1]);
     glBindBuffer(GL_COPY_READ_BUFFER, work_.name());
     glBindBuffer(GL_COPY_WRITE_BUFFER, totals_.name());
-    glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, GLintptr{kRadixDigits} * kWord, kWord);
+    constexpr auto kWord = static_cast<GLsizeiptr>(kWordBytes);
+    glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, kRadixDigits * kWord, kWord);
     glBindBuffer(GL_COPY_READ_BUFFER, static_cast<GLuint>(bound[0]));
     glBindBuffer(GL_COPY_WRITE_BUFFER, static_cast<GLuint>(bound[1]));
 
@@ -269,8 +272,8 @@ void TilePainter::show(const GlProgram& sprites, const Vertices& vertices) const
     glGetIntegerv(GL_DRAW_INDIRECT_BUFFER_BINDING, &bound);
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, work_.name());
     glUseProgram(sprites.name());
-    const std::uintptr_t first_word = kWord;
-    glDrawArraysIndirect(vertices.mode, reinterpret_cast<const void*>(first_word));
+    constexpr std::uintptr_t kFirstWord = kWordBytes;
+    glDrawArraysIndirect(vertices.mode, reinterpret_cast<const void*>(kFirstWord));
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, static_cast<GLuint>(bound));
 }
 
