@@ -1,5 +1,5 @@
 // What a picture of particles costs: relief-bench-picture COLLIDER.relief [--particles N] [--path fragment|compute]
-// prints JSON. Nothing here is a test: machines are shared and noisy.
+// prints JSON. Nothing here is a test: machines are shared and noisy. A software renderer draws points on either path.
 //
 // The particles are those of relief-bench-step, born all through the collider's box. `bare` draws the same points, as
 // large and opaque as they are, in one colour (a GPU need not read what a wholly opaque one covers); then the parts of a picture one by one, and all of them. A block is
@@ -147,8 +147,9 @@ Result<Json> benchSize(const Stage& stage, GLsizei width, GLsizei height, bool s
 
     auto bare = RELIEF_TRY(BarePoints::create("#define RELIEF_ALPHA 0.95\n"));  // as the style's
     auto opaque = RELIEF_TRY(BarePoints::create(""));
-    auto open = RELIEF_TRY(ParticleRenderer::create(std::nullopt, stage.options.path));
-    auto lit = RELIEF_TRY(ParticleRenderer::create(stage.view, stage.options.path));
+    const StepPath path = picturePath(stage.options.path);
+    auto open = RELIEF_TRY(ParticleRenderer::create(std::nullopt, path));
+    auto lit = RELIEF_TRY(ParticleRenderer::create(stage.view, path));
     auto sorter = RELIEF_TRY(DepthSorter::create(stage.options.particles));
     const auto sort = [&](std::uint32_t passes) {
         sorter.update(particles.positions(), particles.textureWidth(), particles.extent(), camera.eye,

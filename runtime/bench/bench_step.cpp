@@ -255,7 +255,7 @@ Result<void> benchFrames(const Collider& collider, std::uint32_t particles, cons
     scene.path = path;
     auto system = RELIEF_TRY(makeColliderSystem(scene));
     auto renderer = RELIEF_TRY(ParticleRenderer::create(
-        ColliderView{system.textures.get(), collider.bounds, finestTexel(collider)}, path));
+        ColliderView{system.textures.get(), collider.bounds, finestTexel(collider)}, picturePath(path)));
     const GlTexture color = makeTexture2D(GL_RGBA16F, kPictureWidth, kPictureHeight, GL_RGBA, GL_HALF_FLOAT);
     const GlTexture depth =
         makeTexture2D(GL_DEPTH_COMPONENT32F, kPictureWidth, kPictureHeight, GL_DEPTH_COMPONENT, GL_FLOAT);

@@ -40,7 +40,7 @@ Result<ScenePicture> ScenePicture::create(const LoadedScene& loaded, const Colli
         mesh = RELIEF_TRY(loadColliderMesh(scene, loaded.bounds));
     }
     auto collider = RELIEF_TRY(ColliderRenderer::create(view, live ? &live->mesh() : mesh.get()));
-    auto particles = RELIEF_TRY(ParticleRenderer::create(view, path));
+    auto particles = RELIEF_TRY(ParticleRenderer::create(view, picturePath(path)));
     ScenePicture picture(loaded, std::move(frame), std::move(collider), std::move(particles));
     if (scene.render.sort_frames > 0) {
         picture.sorter_ = RELIEF_TRY(DepthSorter::create(scene.capacity, path));
