@@ -1,6 +1,7 @@
 #include "runtime/picture/tile_painter.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <string>
 
@@ -111,7 +112,9 @@ bool TilePainter::prepare(std::uint32_t sprites, const RenderTarget& target) {
     const auto tiles = [](GLsizei pixels) {
         return dividedUp(static_cast<std::uint32_t>(pixels), kTileSide);
     };
-    if (sprites > kSpritesMax ||
+    std::array<GLfloat, 2> range{0.0F, 1.0F};
+    glGetFloatv(GL_DEPTH_RANGE, range.data());
+    if (sprites > kSpritesMax || range != std::array<GLfloat, 2>{0.0F, 1.0F} ||
         std::uint64_t{tiles(target.width)} * tiles(target.height) > std::uint64_t{kTilesMax}) {
         return false;
     }

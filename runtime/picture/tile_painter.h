@@ -45,8 +45,8 @@ class TilePainter {
     /// Errors: kFailure (the driver's compiler).
     [[nodiscard]] Result<const Programs*> makePrograms(const std::string& defines);
 
-    /// Makes room. \return false if these cannot be painted by tiles: too many sprites or pixels, no memory, or the target's
-    /// depth is not a plain texture, as that of a window.
+    /// Makes room. \return false if these cannot be painted by tiles: too many sprites or pixels, no memory, a depth range of
+    /// the caller's, or the target's depth is not a plain texture, as that of a window.
     [[nodiscard]] bool prepare(std::uint32_t sprites, const RenderTarget& target);
 
     /// How a sprite is drawn where tiles have no room.
