@@ -100,6 +100,8 @@ std::string makeConstants() {
     define("STEP_GROUP_HEIGHT", kStepGroupHeight);
     define("RADIX_DIGITS", kRadixDigits);
     define("TILE_SIDE", kTileSide);
+    define("TILE_WORDS", kTileWords);
+    define("TILE_ENTRIES_MAX", kTileEntriesMax);
     define("BIRTH_GROUP", kBirthGroup);
     define("REDUCED_SIDE", kReducedSide);
     define("REDUCED_GROUP", kReducedGroup);

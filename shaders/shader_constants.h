@@ -70,6 +70,10 @@ inline constexpr int kStepGroupHeight = 8;
 inline constexpr int kRadixDigits = 256;
 /// Pixels of a side of a tile (tile.glsl).
 inline constexpr int kTileSide = 16;
+/// Of b_work.
+inline constexpr int kTileWords = 7;
+/// Of one tile, painted in a millisecond.
+inline constexpr int kTileEntriesMax = 1 << 16;
 
 /// Invocations of a work group of births.
 inline constexpr int kBirthGroup = 64;

@@ -7,7 +7,9 @@
 //                                   than wide it is, in pixels
 //     entries                   x: rank, y: tile; sorted by tile, of one tile in the order of ranks (radix.glsl)
 //     b_work                    0: entries, if there was room for all; else 0. Then the four words of an indirect draw
-//                               of the sprites: all of them if there was no room, else none
+//                               of the sprites: all of them if they are not painted, else none. 5: vertices of all;
+//                               6: some tile has too many
+//     b_bounds                  the first entry of each tile, and the one behind its last
 //
 // Points are squares, which stand upright; with RELIEF_QUADS they turn, as point.vert says. Round grains are the same in both.
 uniform ivec2 u_tiles;    // columns, rows

@@ -5,7 +5,7 @@
 layout(std430, binding = 0) readonly buffer Sprites { uvec4 b_sprites[]; };
 layout(std430, binding = 1) writeonly buffer Entries { uvec2 b_entries[]; };
 layout(std430, binding = 2) readonly buffer Counts { uint b_counts[]; };
-layout(std430, binding = 3) readonly buffer Work { uint b_work[5]; };
+layout(std430, binding = 3) readonly buffer Work { uint b_work[RELIEF_TILE_WORDS]; };
 
 void main() {
     uint rank = gl_WorkGroupID.x * uint(RELIEF_RADIX_DIGITS) + gl_LocalInvocationIndex;

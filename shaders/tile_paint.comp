@@ -5,7 +5,8 @@ layout(local_size_x = RELIEF_TILE_SIDE, local_size_y = RELIEF_TILE_SIDE) in;
 //!include tile.glsl
 layout(std430, binding = 0) readonly buffer Entries { uvec2 b_entries[]; };
 layout(std430, binding = 1) readonly buffer Sprites { uvec4 b_sprites[]; };
-layout(std430, binding = 3) readonly buffer Work { uint b_work[5]; };
+layout(std430, binding = 2) readonly buffer Bounds { uvec2 b_bounds[]; };
+layout(std430, binding = 3) readonly buffer Work { uint b_work[RELIEF_TILE_WORDS]; };
 layout(rgba16f, binding = 0) writeonly uniform highp image2D u_layer;
 
 uniform highp sampler2D u_hides;   // window depth of the target
@@ -23,7 +24,6 @@ const float MOST_SQUARE = 2.01;
 const float MOST_SQUARE = 1.0;
 #endif
 
-shared uint s_bounds[2];  // of the tile's entries
 shared uint s_open;       // somebody still sees what lies behind
 shared uvec4 s_place[RELIEF_TILE_SIDE * RELIEF_TILE_SIDE];
 shared uvec4 s_paint[RELIEF_TILE_SIDE * RELIEF_TILE_SIDE];
@@ -51,35 +51,17 @@ vec2 placeIn(uint i, vec2 away, float pixels) {
 #endif
 }
 
-// How many entries are of higher tiles, which come first.
-uint entriesAbove(int tile) {
-    uint low = 0u;
-    uint high = b_work[0];
-    while (low < high) {
-        uint middle = (low + high) / 2u;
-        if (int(b_entries[middle].y) > tile) {
-            low = middle + 1u;
-        } else {
-            high = middle;
-        }
-    }
-    return low;
-}
-
 void main() {
     uint self = gl_LocalInvocationIndex;
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     ivec2 known = min(pixel, u_picture - 1);
-    if (self < 2u) {
-        s_bounds[self] = entriesAbove(int(gl_WorkGroupID.y) * u_tiles.x + int(gl_WorkGroupID.x) - int(self));
-    }
+    uvec2 bounds = b_bounds[int(gl_WorkGroupID.y) * u_tiles.x + int(gl_WorkGroupID.x)];
+    uint first = bounds.x;
     float hides = u_hidden ? texelFetch(u_hides, known, 0).r : 1.0;
     float behind = u_soft > 0.0 ? texelFetch(u_behind, known, 0).r : 1.0;
     vec4 sum = vec4(0.0);
     float clear = known == pixel ? 1.0 : 0.0;  // of what lies behind is seen
-    meet();
-    uint first = s_bounds[0];
-    for (uint end = s_bounds[1]; end > first;) {
+    for (uint end = b_work[6] == 0u ? bounds.y : first; end > first;) {
         uint count = min(end - first, BATCH);
         if (self < count) {
             uint rank = b_entries[end - 1u - self].x;

@@ -2,7 +2,7 @@
 //!include radix.glsl
 //!include radix_sum.glsl
 layout(std430, binding = 2) buffer Counts { uint b_counts[]; };  // of u_blocks groups
-layout(std430, binding = 3) writeonly buffer Work { uint b_work[5]; };
+layout(std430, binding = 3) writeonly buffer Work { uint b_work[RELIEF_TILE_WORDS]; };
 
 uniform uint u_room;      // entries, less than MOST
 uniform uint u_vertices;  // of a sprite
@@ -27,6 +27,8 @@ void main() {
         b_work[2] = 1u;
         b_work[3] = 0u;
         b_work[4] = 0u;
+        b_work[5] = u_count * u_vertices;
+        b_work[6] = 0u;
     }
     for (uint block = first; block < last; ++block) {
         uint count = b_counts[block];

@@ -92,7 +92,7 @@ class EndFitter {
         // edge between rays of which some started in the solid is none.
         const std::optional<FittedPlane> plane = fitSupportingPlane(
             rays_, [&] { return lookAround(here); }, edge_, end_.fromViewer(centre), centre.origin, fit_,
-            samples_ > 1 || !starts_free_ ? &deep_ : nullptr);
+            samples_ > 1 || !starts_free_ || may_start_inside_ ? &deep_ : nullptr);
         if (!plane) {
             return std::nullopt;
         }
@@ -219,7 +219,7 @@ class EndFitter {
             std::copy_n(middle, 2, hit.empty() ? off : on);
             last = hit.empty() ? last : hit;
         }
-        if (isOwn(here, on[0] / kEdgeParts, on[1] / kEdgeParts)) {
+        if (isOwn(here, on[0] / kEdgeParts, on[1] / kEdgeParts) && !startsInside(last)) {
             const Hit other = other_starts_free_ ? probe_other_.trace(here.face, on[0], on[1]) : Hit();
             edge_.push_back(footprintRay(finest_.ray(here.face, on[0], on[1]), last, other));
         }

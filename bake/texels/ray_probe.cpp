@@ -36,6 +36,8 @@ RayProbe::RayProbe(const RayScene& scene, const View& view, RayEnd end)
       end_(end),
       inside_out_(scene.winding() < 0.0),
       closed_(scene.closed()),
+      query_(scene.query()),
+      may_start_inside_(raysMayStartInside(scene, view, end)),
       planes_(scene.mesh(), view) {}
 
 RayProbe::Segment RayProbe::segmentOf(const TexelRay& ray) const {
@@ -143,6 +145,11 @@ Hit RayProbe::lookAgain(std::uint32_t face, std::uint32_t x, std::uint32_t y, co
         if (where[i] <= nearest + tie) {
             touched[as_near++] = touched[i];
         }
+    }
+    // Of a ray that starts in the solid the surface that it leaves by counts, which is `hit`.
+    if (may_start_inside_ &&
+        query_.inside(segment.origin + 0.5 * static_cast<double>(nearest) * segment.direction)) {
+        return hit;
     }
     const std::uint32_t best = bestFacing(std::span(touched).first(as_near), segment.direction);
     const Hit found = hitOf(face, x, y, best);

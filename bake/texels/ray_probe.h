@@ -58,6 +58,8 @@ class RayProbe {
     RayEnd end_;
     bool inside_out_;
     bool closed_;
+    const MeshQuery& query_;
+    bool may_start_inside_;
     SeenPlanes planes_;
     std::array<SeenPlane, kKnownPlanes>
         known_planes_;  // neighbouring texels mostly see the same few triangles

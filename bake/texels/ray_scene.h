@@ -72,4 +72,10 @@ class RayScene {
     return view.centre_on_surface && end == RayEnd::kNear && scene.closed();
 }
 
+/// Of a closed mesh: rays of this end may start in the solid, because of that or of a volume that cuts it.
+[[nodiscard]] inline bool raysMayStartInside(const RayScene& scene, const View& view, RayEnd end) {
+    return mayStartInside(scene, view, end) ||
+           (scene.closed() && !view.starts_free[static_cast<std::size_t>(end)]);
+}
+
 }  // namespace relief

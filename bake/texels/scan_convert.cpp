@@ -69,11 +69,6 @@ bool comesBefore(const glm::dvec3& a, const glm::dvec3& b) {
     return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
 }
 
-bool raysMayStartInside(const RayScene& scene, const View& view, RayEnd end) {
-    return mayStartInside(scene, view, end) ||
-           (scene.closed() && !view.starts_free[static_cast<std::size_t>(end)]);
-}
-
 }  // namespace
 
 /// Rows, and where their hits go.

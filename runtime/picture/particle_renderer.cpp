@@ -91,8 +91,9 @@ Result<ParticleRenderer> ParticleRenderer::create(const std::optional<ColliderVi
         [[maybe_unused]] const GlProgram* made = RELIEF_TRY(renderer.programFor({.sprite = sprite}));
     }
     if (RELIEF_TRY(chosenPath(path)) == StepPath::kCompute) {
+        renderer.needs_tiles_ = path == StepPath::kCompute;
         auto tiles = TilePainter::create();
-        if (tiles || path == StepPath::kCompute || tiles.error().code != ErrorCode::kUnsupported) {
+        if (tiles || renderer.needs_tiles_) {
             renderer.tiles_ = RELIEF_TRY(std::move(tiles));
         }
     }
@@ -162,7 +163,12 @@ Result<bool> ParticleRenderer::paintTiles(const ParticleSystem& particles, const
     const std::string defines = definesOf(style);
     const TilePainter::Programs* programs = tiles_->programs(defines);
     if (programs == nullptr) {
-        programs = RELIEF_TRY(tiles_->makePrograms(defines));
+        auto made = tiles_->makePrograms(defines);
+        if (!made && !needs_tiles_) {
+            tiles_.reset();
+            return false;
+        }
+        programs = RELIEF_TRY(std::move(made));
         setSamplers(programs->sprites);
         setSamplers(programs->paint);
     }

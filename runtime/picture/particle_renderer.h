@@ -64,7 +64,8 @@ class ParticleRenderer {
   public:
     /// \param collider  shades the particles; nullopt: they lie in the open.
     /// \param path      kCompute: particles are painted by compute shaders (tile_painter.h) where the target's depth is a
-    ///                  plain texture, which stays as it is; the same picture but for rounding. picturePath() of the system's,
+    ///                  plain texture, which stays as it is; the same picture but for rounding (tile_painter.h). kAuto where
+    ///                  a GPU draws whose driver compiles that. picturePath() of the system's,
     ///                  as a rule.
     /// Errors: kUnsupported (kCompute without compute shaders), kFailure (the driver's compiler).
     [[nodiscard]] static Result<ParticleRenderer> create(const std::optional<ColliderView>& collider,
@@ -104,6 +105,7 @@ class ParticleRenderer {
 
     std::optional<ColliderLight> light_;
     std::optional<TilePainter> tiles_;
+    bool needs_tiles_ = false;           // a driver that cannot compile them is an error
     std::array<GlProgram, 8> programs_;  // points or quads, of an atlas, stretched
     GlVertexArray no_attributes_;
     GlTexture no_order_;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "runtime/gl/gl_capabilities.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/image_units.h"
@@ -39,9 +40,29 @@ std::uint32_t entriesFor(std::uint32_t sprites) {
 }
 static_assert(kEntriesASprite * TilePainter::kSpritesMax < 0xffffff);  // tile_scan.comp counts no further
 
-/// The texture that a framebuffer has its depth in, to be read; 0: it has none; nullopt: it cannot be read as a plain
-/// texture.
-std::optional<GLuint> depthTextureOf(GLuint framebuffer) {
+/// Window depth is 0…1 from the near to the far plane, and nothing beyond is drawn.
+bool depthIsUsual() {
+    std::array<GLfloat, 2> range{0.0F, 1.0F};
+    glGetFloatv(GL_DEPTH_RANGE, range.data());
+    bool usual = range == std::array<GLfloat, 2>{0.0F, 1.0F};
+#if !defined(__EMSCRIPTEN__)
+    if (!isGles()) {
+        usual = usual && glIsEnabled(GL_DEPTH_CLAMP) == GL_FALSE;
+        if (hasGlExtension("GL_ARB_clip_control")) {
+            GLint origin = GL_LOWER_LEFT;
+            GLint mode = GL_NEGATIVE_ONE_TO_ONE;
+            glGetIntegerv(GL_CLIP_ORIGIN, &origin);
+            glGetIntegerv(GL_CLIP_DEPTH_MODE, &mode);
+            usual = usual && origin == GL_LOWER_LEFT && mode == GL_NEGATIVE_ONE_TO_ONE;
+        }
+    }
+#endif
+    return usual;
+}
+
+/// The texture that a framebuffer, which it leaves bound, has its depth in; 0: it has none; nullopt: something that is no
+/// plain texture.
+std::optional<GLuint> depthAttachmentOf(GLuint framebuffer) {
     if (framebuffer == 0) {
         return std::nullopt;
     }
@@ -62,10 +83,19 @@ std::optional<GLuint> depthTextureOf(GLuint framebuffer) {
         of(GL_FRAMEBUFFER_ATTACHMENT_TEXTURE_LAYER) != 0) {
         return std::nullopt;
     }
-    const auto name = static_cast<GLuint>(of(GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME));
+    return static_cast<GLuint>(of(GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME));
+}
+
+/// A texture of the caller's is one that can be read as depth, not a layer of an array, say, or one whose name is gone.
+bool isReadable(GLuint texture) {
+    if (glIsTexture(texture) == GL_FALSE) {
+        return false;
+    }
     forgetGlErrors();
-    useTexture(TilePainter::kHidesUnit, name);
-    return glGetError() == GL_NO_ERROR ? std::optional(name) : std::nullopt;  // a layer of an array, say
+    useTexture(TilePainter::kHidesUnit, texture);
+    GLint mode = GL_DEPTH_COMPONENT;
+    glGetTexParameteriv(GL_TEXTURE_2D, GL_DEPTH_STENCIL_TEXTURE_MODE, &mode);
+    return glGetError() == GL_NO_ERROR && mode == GL_DEPTH_COMPONENT;
 }
 
 void setUnsigned(const GlProgram& program, const char* name, std::uint32_t value) {
@@ -84,6 +114,7 @@ Result<TilePainter> TilePainter::create() {
     TilePainter painter;
     painter.scan_ = RELIEF_TRY(makeComputeProgram("tile_scan.comp"));
     painter.entries_ = RELIEF_TRY(makeComputeProgram("tile_entries.comp"));
+    painter.bounds_ = RELIEF_TRY(makeComputeProgram("tile_bounds.comp"));
     painter.count_ = RELIEF_TRY(makeComputeProgram("radix_count.comp", counted));
     painter.digits_ = RELIEF_TRY(makeComputeProgram("radix_scan.comp"));
     painter.move_ = RELIEF_TRY(makeComputeProgram("radix_move.comp", counted));
@@ -112,14 +143,14 @@ bool TilePainter::prepare(std::uint32_t sprites, const RenderTarget& target) {
     const auto tiles = [](GLsizei pixels) {
         return dividedUp(static_cast<std::uint32_t>(pixels), kTileSide);
     };
-    std::array<GLfloat, 2> range{0.0F, 1.0F};
-    glGetFloatv(GL_DEPTH_RANGE, range.data());
-    if (sprites > kSpritesMax || range != std::array<GLfloat, 2>{0.0F, 1.0F} ||
+    if (sprites == 0 || sprites > kSpritesMax || !depthIsUsual() ||
         std::uint64_t{tiles(target.width)} * tiles(target.height) > std::uint64_t{kTilesMax}) {
         return false;
     }
-    const std::optional<GLuint> depth = depthTextureOf(target.framebuffer);
-    if (!depth || !makeRoom(sprites) || !makeLayer(target)) {
+    const std::optional<GLuint> depth = depthAttachmentOf(target.framebuffer);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);  // what is drawn to is not read
+    if (!depth || (*depth != 0 && *depth != depth_ && !isReadable(*depth)) || !makeRoom(sprites) ||
+        !makeLayer(target)) {
         return false;
     }
     depth_ = *depth;
@@ -134,10 +165,11 @@ bool TilePainter::makeRoom(std::uint32_t sprites) {
     GLint64 most = 0;
     glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
     // Little by little, as a scene's extent grows.
-    const std::uint32_t room = std::min(std::max(sprites + sprites / 2, 1U << 16), kSpritesMax);
+    const auto room = static_cast<std::uint32_t>(
+        std::clamp<std::int64_t>(most / static_cast<std::int64_t>(kSpriteBytes), 0,
+                                 std::min(std::max(sprites + sprites / 2, 1U << 16), kSpritesMax)));
     const std::uint32_t entries = entriesFor(room);
-    const std::uint64_t largest = std::max(entries * kEntryBytes, room * kSpriteBytes);
-    if (most < 0 || static_cast<std::uint64_t>(most) < largest) {
+    if (room < sprites || static_cast<std::uint64_t>(most) < entries * kEntryBytes || sprites >= refused_) {
         return false;
     }
     const auto make = [](std::uint64_t bytes) { return StorageUnits::make(static_cast<GLsizeiptr>(bytes)); };
@@ -151,8 +183,10 @@ bool TilePainter::makeRoom(std::uint32_t sprites) {
     const std::uint32_t blocks = std::min(dividedUp(entries, kGroup), kBlocksMax);
     counts_ = make(std::max(kGroup * blocks, kSpritesMax / kGroup) * kWordBytes);
     totals_ = make((kGroup + 1) * kWordBytes);
-    work_ = make(5 * kWordBytes);
+    work_ = make(kTileWords * kWordBytes);
+    tile_bounds_ = make(kTilesMax * kEntryBytes);
     if (!checkAllocated("the entries of tiles", "")) {
+        refused_ = sprites;
         sprite_buffer_ = {};
         entry_buffers_[0] = {};
         entry_buffers_[1] = {};
@@ -165,14 +199,18 @@ bool TilePainter::makeRoom(std::uint32_t sprites) {
 bool TilePainter::makeLayer(const RenderTarget& target) {
     const auto width = static_cast<std::uint32_t>(target.width);
     const auto height = static_cast<std::uint32_t>(target.height);
-    if (layer_ && width == width_ && height == height_) {
-        return true;
-    }
-    forgetGlErrors();
-    layer_ = makeImageTexture2D(GL_RGBA16F, target.width, target.height);
-    if (!checkAllocated("the layer of tiles", "")) {
+    if (!layer_ || width > layer_width_ || height > layer_height_) {
+        forgetGlErrors();
+        layer_width_ = std::max(width, layer_width_);
+        layer_height_ = std::max(height, layer_height_);
         layer_ = {};
-        return false;
+        layer_ = makeImageTexture2D(GL_RGBA16F, static_cast<GLsizei>(layer_width_),
+                                    static_cast<GLsizei>(layer_height_));
+        if (!checkAllocated("the layer of tiles", "")) {
+            layer_ = {};
+            layer_width_ = layer_height_ = 0;
+            return false;
+        }
     }
     width_ = width;
     height_ = height;
@@ -210,7 +248,9 @@ void TilePainter::paint(const Programs& programs, const Vertices& vertices, bool
 
     StorageUnits::bind(kPaintEntries, entry_buffers_[0]);
     StorageUnits::bind(kPaintSprites, sprite_buffer_);
+    StorageUnits::bind(kCounts, tile_bounds_);
     StorageUnits::bind(kWork, work_);
+    run(bounds_, dividedUp(static_cast<std::uint32_t>(columns * rows), kGroup), 1);
     ImageUnits::write(0, layer_, GL_RGBA16F);
     glUseProgram(programs.paint.name());
     glUniform1i(uniformLocation(programs.paint, "u_adds"), adds ? 1 : 0);

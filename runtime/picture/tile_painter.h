@@ -3,15 +3,17 @@
 //
 // The picture is cut into tiles of 16 × 16 pixels. Each sprite is made once; each tile that it reaches gets an entry;
 // entries are sorted by tile, and each tile is painted front to back into a layer, which then goes over the target. The
-// layer has more bits than the target, so that a pixel may differ from a drawn one by as much as the target rounds.
+// layer has sixteen bits a channel, so that a pixel may differ from a drawn one by as much as the target rounds, and by what
+// a target of eight bits cuts off of sprites brighter than white that others lie before.
 //
-//     bytes on the GPU = 96 · sprites (at least 7 MB) + 8 · pixels and up to 2 MB
+//     bytes on the GPU = 96 · room + 8 · pixels and up to 3 MB; room for up to 1.5 times the sprites, and at least 65,536
 //         sprites   48 bytes each
 //         entries   2 × 8 bytes (double-buffered) for 3 a sprite
 //         layer     RGBA16F
 //
 // Nothing is read back. Whether all entries have room is known on the GPU alone; where they have not, as with a thousand
-// sprites as large as the picture, the layer stays empty, and an indirect draw draws the sprites.
+// sprites as large as the picture, or where a tile has more than 65,536, as of a cloud far away, the layer stays empty, and an
+// indirect draw draws the sprites.
 #pragma once
 
 #include <cstdint>
@@ -54,7 +56,7 @@ class TilePainter {
         GLenum mode;
         std::uint32_t count;
     };
-    /// Fills the layer; what prepare() made room for last. Leaves no texture bound to kHidesUnit.
+    /// Fills the layer; what prepare() made room for last. What is bound to kHidesUnit is not kept.
     /// \param adds  Blend::kAdditive.
     void paint(const Programs& programs, const Vertices& vertices, bool adds);
     /// Blends the layer over the target, then draws the sprites if the layer had no room for them. With the target, the
@@ -68,15 +70,17 @@ class TilePainter {
     void sortEntries() const;
 
     std::map<std::string, Programs> programs_;  // by their defines
-    GlProgram scan_, entries_, count_, digits_, move_, layer_program_;
-    GlBuffer sprite_buffer_, counts_, work_, totals_;
+    GlProgram scan_, entries_, bounds_, count_, digits_, move_, layer_program_;
+    GlBuffer sprite_buffer_, counts_, work_, totals_, tile_bounds_;
     GlBuffer entry_buffers_[2];
     GlTexture layer_;
     GlSampler plain_;         // for a texture of the caller's
     std::uint32_t room_ = 0;  // sprites
     std::uint32_t count_of_sprites_ = 0;
-    std::uint32_t width_ = 0, height_ = 0;  // of the layer
-    GLuint depth_ = 0;                      // the target's; 0: none
+    std::uint32_t refused_ = 0xffffffff;    // so many sprites had no memory
+    std::uint32_t width_ = 0, height_ = 0;  // of the picture
+    std::uint32_t layer_width_ = 0, layer_height_ = 0;
+    GLuint depth_ = 0;  // the target's; 0: none
 };
 
 }  // namespace relief

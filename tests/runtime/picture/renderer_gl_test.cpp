@@ -430,6 +430,10 @@ TEST_P(RendererGlTest, TheCallersStateIsKeptAndDoesNoHarm) {
         check("ColliderRenderer::draw");
         points->draw(*particles, camera_, ParticleStyle{.diameter = 0.1F}, frame->target());
         check("ParticleRenderer::draw");
+        auto tiles = ParticleRenderer::create(view(), StepPath::kCompute);
+        check("ParticleRenderer::create, tiles");
+        EXPECT_TRUE(tiles->draw(*particles, camera_, ParticleStyle{.diameter = 0.1F}, frame->target()));
+        check("ParticleRenderer::draw, tiles");
         const std::vector<std::uint8_t> rgba(16, 200);
         const auto atlas = SpriteAtlas::create(rgba, 2, 2, 2, 1);
         check("SpriteAtlas::create");

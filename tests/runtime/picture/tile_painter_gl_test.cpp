@@ -148,6 +148,7 @@ class TilePainterGlTest : public GlTest {
         const Difference difference = between(drawn, tiles, kMargin);
         EXPECT_LT(difference.mean, 0.002);
         EXPECT_LT(difference.most, most);
+        EXPECT_NE(drawn, tiles) << "tiles round otherwise: they were not painted";
         const std::vector<ParticleLook> looks = style_.looks;
         for (ParticleLook& look : style_.looks) {
             look.opacity = {{0.0F, 0.0F}};
@@ -266,7 +267,9 @@ TEST_P(TilePainterGlTest, SpritesOfEverySize) {
     }
     for (const float diameter : {1e12F, 1e30F}) {  // rasterisers disagree on what these look like
         style_.diameter = diameter;
-        draw(renderers_[1], true, true);
+        for (const float part : draw(renderers_[1], true, true)) {
+            ASSERT_FALSE(std::isnan(part));
+        }
     }
 }
 
@@ -294,6 +297,29 @@ TEST_P(TilePainterGlTest, WithoutRoomThePointsAreDrawn) {
     style_.diameter = 0.05F;
     style_.opacity = 0.6F;
     expectTheSame("after that", true, false);
+}
+
+// So far away that all particles are in a few tiles, whose work groups would walk all of them: points are drawn.
+TEST_P(TilePainterGlTest, ACloudFarAway) {
+    spawn(90'000);
+    style_.diameter = 0.2F;
+    camera_.far_plane = 1000.0F;
+    camera_.eye = {0.0F, 0.0F, 200.0F};
+    const std::vector<float> points = draw(renderers_[0], true, false);
+    EXPECT_EQ(points, draw(renderers_[1], true, false));
+    camera_.eye = {0.0F, 0.0F, 3.0F};
+    EXPECT_NE(points, draw(renderers_[1], true, false));
+}
+
+// Before its first update a sorter has no ranks.
+TEST_P(TilePainterGlTest, NoRanks) {
+    spawn(300);
+    const auto sorter = DepthSorter::create(300, StepPath::kCompute);
+    ASSERT_TRUE(sorter);
+    ASSERT_EQ(sorter->count(), 0U);
+    for (ParticleRenderer& renderer : renderers_) {
+        EXPECT_TRUE(renderer.draw(*particles_, camera_, style_, target(), {&sorter->order(), 0}));
+    }
 }
 
 TEST_P(TilePainterGlTest, NothingAliveAndNothingInSight) {
