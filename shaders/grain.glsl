@@ -16,6 +16,7 @@ struct Grain {
 };
 
 const float GRAIN_EDGE = 0.35;  // the least
+const float GRAIN_UNSEEN = 0.003;  // what is no more opaque is left out
 
 uint grainSteps(float value, float steps) {
     return uint(clamp(value, 0.0, 1.0) * steps + 0.5);

@@ -57,7 +57,7 @@ float softShare(float behind, float depth) {
 // `body`: what the sprite is there, premultiplied; `shown`: how much of it.
 vec4 paintOf(Grain grain, vec2 at, float radius, vec4 body, float shown) {
     float alpha = shown * body.a;
-    if (alpha <= 0.003) {
+    if (alpha <= GRAIN_UNSEEN) {
         return vec4(0.0);
     }
     vec3 light = vec3(1.0);

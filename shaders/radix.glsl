@@ -5,6 +5,7 @@
 //
 // Elements are x: index of a particle, y: its key (sort_key.glsl). The greatest key comes first, so digits are those of
 // its complement. A block is u_turns rows of one element an invocation.
+//!include meet.glsl
 layout(local_size_x = RELIEF_RADIX_DIGITS) in;
 
 uniform uint u_count;   // elements; with RELIEF_RADIX_COUNTED the word behind b_totals' sums says
@@ -30,10 +31,4 @@ uint elementIn(uint turn) {
 /// Where u_blocks counts of a digit begin.
 uint countsOf(uint digit) {
     return digit * u_blocks;
-}
-
-/// Everybody in the group has come so far, and sees what all have written to shared memory.
-void meet() {
-    memoryBarrierShared();
-    barrier();
 }

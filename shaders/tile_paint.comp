@@ -3,6 +3,7 @@
 layout(local_size_x = RELIEF_TILE_SIDE, local_size_y = RELIEF_TILE_SIDE) in;
 //!include grain_paint.glsl
 //!include tile.glsl
+//!include meet.glsl
 layout(std430, binding = 0) readonly buffer Entries { uvec2 b_entries[]; };
 layout(std430, binding = 1) readonly buffer Sprites { uvec4 b_sprites[]; };
 layout(std430, binding = 2) readonly buffer Bounds { uvec2 b_bounds[]; };
@@ -31,11 +32,6 @@ shared uvec4 s_paint[RELIEF_TILE_SIDE * RELIEF_TILE_SIDE];
 #define TURNS 1
 shared uvec2 s_turn[RELIEF_TILE_SIDE * RELIEF_TILE_SIDE];
 #endif
-
-void meet() {
-    memoryBarrierShared();
-    barrier();
-}
 
 // Where a sprite has a pixel, whose centre is `away` from its middle: in the picture's frame, -1…1 where it does not turn.
 // Beyond 2: nowhere.

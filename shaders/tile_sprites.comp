@@ -8,8 +8,6 @@ layout(std430, binding = 2) writeonly buffer Counts { uint b_counts[]; };
 
 // Sprites that are larger or farther away from the picture are no sprites.
 const float MOST_PIXELS = 1e20;
-// Less than this paintOf leaves out, and no sprite is more opaque than its grain.
-const float LEAST_OPACITY = 0.003;
 
 shared uint s_count;
 
@@ -26,8 +24,9 @@ void main() {
     Sprite sprite;
     if (rank < u_count && spriteOf(int(rank), sprite)) {
         vec4 clip = placeOf(sprite);
-        // Between the near and the far plane. Its centre may be out of the picture.
-        if (clip.w > 0.0 && abs(clip.z) <= clip.w && sprite.grain.opacity > LEAST_OPACITY - 1e-4) {
+        // Between the near and the far plane. Its centre may be out of the picture. It is no more opaque than its grain, which
+        // packing rounds.
+        if (clip.w > 0.0 && abs(clip.z) <= clip.w && sprite.grain.opacity > GRAIN_UNSEEN - 1e-4) {
             vec3 window = 0.5 * clip.xyz / clip.w + 0.5;
             vec2 at = window.xy * u_target;
             vec2 turn = vec2(1.0, 0.0);

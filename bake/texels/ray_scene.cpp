@@ -4,8 +4,7 @@ namespace relief {
 
 Result<RayScene> RayScene::build(PreparedMesh mesh) {
     const EmbreeMesh* const tree = RELIEF_TRY(mesh.tree());
-    MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
-    return RayScene(std::move(mesh), *tree, std::move(query));
+    return RayScene(RELIEF_TRY(MeshQuery::build(std::move(mesh))), *tree);
 }
 
 }  // namespace relief

@@ -45,7 +45,7 @@ class RayScene {
     /// Shares the mesh's tree. Errors: those of EmbreeMesh::build.
     [[nodiscard]] static Result<RayScene> build(PreparedMesh mesh);
 
-    [[nodiscard]] const TriangleMesh& mesh() const { return *mesh_; }
+    [[nodiscard]] const TriangleMesh& mesh() const { return query_.mesh(); }
     /// orientation() of the mesh.
     [[nodiscard]] double winding() const { return winding_; }
     [[nodiscard]] bool closed() const { return closed_; }
@@ -53,16 +53,14 @@ class RayScene {
     [[nodiscard]] const MeshQuery& query() const { return query_; }
 
   private:
-    RayScene(PreparedMesh mesh, const EmbreeMesh& tree, MeshQuery query)
-        : mesh_(std::move(mesh)),
+    RayScene(MeshQuery query, const EmbreeMesh& tree)
+        : query_(std::move(query)),
           tree_(&tree),
-          query_(std::move(query)),
-          winding_(mesh_.orientation()),
-          closed_(mesh_.closed()) {}
+          winding_(query_.prepared().orientation()),
+          closed_(query_.watertight()) {}
 
-    PreparedMesh mesh_;
-    const EmbreeMesh* tree_;  // mesh_ holds it
     MeshQuery query_;
+    const EmbreeMesh* tree_;  // query_ holds it
     double winding_;
     bool closed_;
 };
