@@ -5,12 +5,11 @@
 
 #include "bake/mesh/oriented_box.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <exception>
 #include <glm/geometric.hpp>
+#include <utility>
 
 // What CGAL would assert is checked here beforehand, or after it; its own assertions would print.
 #ifndef CGAL_NDEBUG
@@ -18,6 +17,8 @@
 #endif
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/optimal_bounding_box.h>
+
+#include "bake/mesh/vertex_blocks.h"
 
 namespace relief {
 namespace {
@@ -100,18 +101,11 @@ double extent(const std::vector<glm::dvec3>& points, const glm::dvec3& axis) {
 }  // namespace
 
 std::vector<glm::dvec3> extremeVertices(const TriangleMesh& mesh) {
-    const std::vector<glm::dvec3> directions = fixedDirections();
-    std::vector<std::size_t> farthest(directions.size(), 0);
-    tbb::parallel_for(std::size_t{0}, directions.size(), [&](std::size_t d) {
-        double best = glm::dot(glm::dvec3(mesh.positions[0]), directions[d]);
-        for (std::size_t i = 1; i < mesh.positions.size(); ++i) {
-            const double along = glm::dot(glm::dvec3(mesh.positions[i]), directions[d]);
-            if (along > best) {
-                best = along;
-                farthest[d] = i;
-            }
-        }
-    });
+    const VertexBlocks blocks(mesh.positions);
+    std::vector<std::size_t> farthest;
+    for (const glm::dvec3& direction : fixedDirections()) {
+        farthest.push_back(blocks.farthest(direction));
+    }
     std::sort(farthest.begin(), farthest.end());
     farthest.erase(std::unique(farthest.begin(), farthest.end()), farthest.end());
     std::vector<glm::dvec3> points;
@@ -163,6 +157,12 @@ std::optional<std::array<glm::dvec3, 3>> orientedBoxAxes(std::span<const glm::dv
         axes[i] += 0.0;  // no −0
     }
     return axes;
+}
+
+std::optional<OrientedBox> orientedBox(const TriangleMesh& mesh) {
+    std::vector<glm::dvec3> corners = extremeVertices(mesh);
+    const std::optional<std::array<glm::dvec3, 3>> axes = orientedBoxAxes(corners);
+    return axes ? std::optional(OrientedBox{std::move(corners), *axes}) : std::nullopt;
 }
 
 }  // namespace relief

@@ -23,4 +23,12 @@ namespace relief {
 /// start from a fixed seed, and it runs on one thread.
 [[nodiscard]] std::optional<std::array<glm::dvec3, 3>> orientedBoxAxes(std::span<const glm::dvec3> points);
 
+/// Of the extreme vertices.
+struct OrientedBox {
+    std::vector<glm::dvec3> corners;  ///< the extreme vertices
+    std::array<glm::dvec3, 3> axes;
+};
+/// nullopt: as above.
+[[nodiscard]] std::optional<OrientedBox> orientedBox(const TriangleMesh& mesh);
+
 }  // namespace relief

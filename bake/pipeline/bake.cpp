@@ -168,6 +168,7 @@ RefineOptions refineOptions(const TriangleMesh& mesh, const BakeOptions& bake) {
     if (bake.quality == Quality::kBest) {
         options.sweeps = 2;
         options.points_per_texel *= 3.0;
+        options.worth_mending = 0.0;
     }
     return options;
 }

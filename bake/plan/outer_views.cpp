@@ -11,7 +11,6 @@
 #include <limits>
 #include <optional>
 
-#include "bake/mesh/oriented_box.h"
 #include "bake/mesh/triangle_plane.h"
 #include "bake/plan/view.h"
 #include "formats/base/portable_math.h"
@@ -31,34 +30,6 @@ struct Candidate {
     std::optional<glm::dvec3> up;
 };
 
-/// Directions of the octahedron's lattice, one of each opposite pair, and the diagonals of the box.
-std::vector<glm::dvec3> outerDirections(const Bounds& bounds) {
-    std::vector<glm::dvec3> directions = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    const glm::dvec3 size = bounds.size();
-    for (const double y : {-1.0, 1.0}) {
-        for (const double z : {-1.0, 1.0}) {
-            directions.emplace_back(size.x, y * size.y, z * size.z);
-        }
-    }
-    constexpr int kLattice = 4;
-    for (int j = -kLattice; j <= kLattice; ++j) {
-        for (int i = -kLattice; i <= kLattice; ++i) {
-            const int k = kLattice - std::abs(i) - std::abs(j);
-            const bool opposite_comes = k == 0 && (j < 0 || (j == 0 && i < 0));
-            const bool axis = (i == 0) + (j == 0) + (k == 0) == 2;
-            if (k >= 0 && !opposite_comes && !axis) {
-                directions.emplace_back(i, j, k);
-            }
-        }
-    }
-    const double least = 1e-6 * length(size);
-    std::erase_if(directions, [&](const glm::dvec3& d) { return !(length(d) > std::min(least, 0.5)); });
-    for (glm::dvec3& direction : directions) {
-        direction /= length(direction);
-    }
-    return directions;
-}
-
 /// Area of the rectangle round the points as a view with this frame shows them.
 double rectangleArea(const std::vector<glm::dvec3>& points, const glm::dvec3& direction,
                      const glm::dvec3& up) {
@@ -76,20 +47,16 @@ double rectangleArea(const std::vector<glm::dvec3>& points, const glm::dvec3& di
 
 /// The outer directions and the axes of the oriented box, each turned by the axis of that box that makes its
 /// rectangle clearly smaller than the rule of view.h does.
-std::vector<Candidate> outerCandidates(const TriangleMesh& mesh, bool oriented_box) {
+std::vector<Candidate> outerCandidates(const Bounds& bounds, const std::optional<OrientedBox>& box) {
     std::vector<Candidate> candidates;
-    for (const glm::dvec3& direction : outerDirections(mesh.bounds)) {
+    for (const glm::dvec3& direction : outerDirections(bounds)) {
         candidates.push_back({direction, std::nullopt});
     }
-    if (!oriented_box) {
+    if (!box) {
         return candidates;
     }
-    const std::vector<glm::dvec3> corners = extremeVertices(mesh);
-    const std::optional<std::array<glm::dvec3, 3>> axes = orientedBoxAxes(corners);
-    if (!axes) {
-        return candidates;
-    }
-    for (const glm::dvec3& axis : *axes) {
+    const std::vector<glm::dvec3>& corners = box->corners;
+    for (const glm::dvec3& axis : box->axes) {
         const bool known = std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& candidate) {
             return std::abs(dot(candidate.direction, axis)) > 1.0 - 1e-9;
         });
@@ -99,7 +66,7 @@ std::vector<Candidate> outerCandidates(const TriangleMesh& mesh, bool oriented_b
     }
     for (Candidate& candidate : candidates) {
         double least = 0.99 * rectangleArea(corners, candidate.direction, defaultUp(candidate.direction));
-        for (const glm::dvec3& axis : *axes) {
+        for (const glm::dvec3& axis : box->axes) {
             if (std::abs(dot(candidate.direction, axis)) > 0.9) {
                 continue;
             }
@@ -139,8 +106,9 @@ double rowsArea(const std::vector<glm::dvec3>& points, const glm::dvec3& right, 
 }
 
 /// Turns an image so that its rows, from one end of the silhouette to the other, take up least.
-Result<void> turn(OuterView& view, const TriangleMesh& mesh, const std::vector<glm::dvec3>& points) {
-    const View first = RELIEF_TRY(makeView(view.spec, mesh));
+Result<void> turn(OuterView& view, const TriangleMesh& mesh, const VertexBlocks& blocks,
+                  const std::vector<glm::dvec3>& points) {
+    const View first = RELIEF_TRY(makeView(view.spec, mesh, &blocks));
     const glm::dvec3 right = first.axis[0] / length(first.axis[0]);
     const glm::dvec3 up = first.axis[1] / length(first.axis[1]);
     view.area = rowsArea(points, right, up);
@@ -161,7 +129,7 @@ Result<void> turn(OuterView& view, const TriangleMesh& mesh, const std::vector<g
 }
 
 /// The view of a candidate, and how large it is.
-Result<void> measure(const Candidate& candidate, const TriangleMesh& mesh,
+Result<void> measure(const Candidate& candidate, const TriangleMesh& mesh, const VertexBlocks& blocks,
                      const std::vector<glm::dvec3>& points, OuterView& view) {
     view.spec.format = MapFormat::kFrontBackFixed;
     view.spec.decode = Decode::kPlane;
@@ -170,8 +138,8 @@ Result<void> measure(const Candidate& candidate, const TriangleMesh& mesh,
         view.spec.up = glm::vec3(*candidate.up);
     }
     view.spec.width = view.spec.height = 64;  // any: the extents do not depend on it
-    RELIEF_TRY(turn(view, mesh, points));
-    const View frame = RELIEF_TRY(makeView(view.spec, mesh));
+    RELIEF_TRY(turn(view, mesh, blocks, points));
+    const View frame = RELIEF_TRY(makeView(view.spec, mesh, &blocks));
     // The inner 62 of 64 texels cover the mesh.
     view.width = length(frame.axis[0]) * 62.0 / 64.0;
     view.height = length(frame.axis[1]) * 62.0 / 64.0;
@@ -180,13 +148,43 @@ Result<void> measure(const Candidate& candidate, const TriangleMesh& mesh,
 
 }  // namespace
 
+std::vector<glm::dvec3> outerDirections(const Bounds& bounds) {
+    // Of the octahedron's lattice.
+    std::vector<glm::dvec3> directions = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const glm::dvec3 size = bounds.size();
+    for (const double y : {-1.0, 1.0}) {
+        for (const double z : {-1.0, 1.0}) {
+            directions.emplace_back(size.x, y * size.y, z * size.z);
+        }
+    }
+    constexpr int kLattice = 4;
+    for (int j = -kLattice; j <= kLattice; ++j) {
+        for (int i = -kLattice; i <= kLattice; ++i) {
+            const int k = kLattice - std::abs(i) - std::abs(j);
+            const bool opposite_comes = k == 0 && (j < 0 || (j == 0 && i < 0));
+            const bool axis = (i == 0) + (j == 0) + (k == 0) == 2;
+            if (k >= 0 && !opposite_comes && !axis) {
+                directions.emplace_back(i, j, k);
+            }
+        }
+    }
+    const double least = 1e-6 * length(size);
+    std::erase_if(directions, [&](const glm::dvec3& d) { return !(length(d) > std::min(least, 0.5)); });
+    for (glm::dvec3& direction : directions) {
+        direction /= length(direction);
+    }
+    return directions;
+}
+
 Result<std::vector<OuterView>> outerViews(const TriangleMesh& mesh, const std::vector<glm::dvec3>& points,
-                                          bool oriented_box) {
-    const std::vector<Candidate> candidates = outerCandidates(mesh, oriented_box);
+                                          const std::optional<OrientedBox>& box) {
+    const std::vector<Candidate> candidates = outerCandidates(mesh.bounds, box);
+    const VertexBlocks blocks(mesh.positions);
     std::vector<OuterView> views(candidates.size());
     std::vector<Result<void>> done(candidates.size());
-    tbb::parallel_for(std::size_t{0}, candidates.size(),
-                      [&](std::size_t i) { done[i] = measure(candidates[i], mesh, points, views[i]); });
+    tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t i) {
+        done[i] = measure(candidates[i], mesh, blocks, points, views[i]);
+    });
     for (Result<void>& result : done) {
         RELIEF_TRY(std::move(result));
     }

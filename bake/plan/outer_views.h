@@ -2,9 +2,11 @@
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <optional>
 #include <vector>
 
 #include "bake/mesh/mesh.h"
+#include "bake/mesh/oriented_box.h"
 #include "bake/plan/map_spec.h"
 #include "formats/base/result.h"
 
@@ -18,12 +20,15 @@ struct OuterView {
     double area = 0.0;  ///< that its rows take up (formats/row_spans.h), object units squared
 };
 
-/// Along directions spread over the sphere, the axes of the box and of the oriented box; but for those that see a flat
-/// mesh edge-on.
+/// Directions spread over the sphere, one of each opposite pair, and the diagonals of the box; of unit length.
+[[nodiscard]] std::vector<glm::dvec3> outerDirections(const Bounds& bounds);
+
+/// Along the outer directions, and then the axes of the oriented box, if it is given, by which images are turned, too; but
+/// for those that see a flat mesh edge-on.
 /// \param points  near the surface and all over it: they show how much rows take up.
 /// Errors: those of makeView.
 [[nodiscard]] Result<std::vector<OuterView>> outerViews(const TriangleMesh& mesh,
                                                         const std::vector<glm::dvec3>& points,
-                                                        bool oriented_box);
+                                                        const std::optional<OrientedBox>& box);
 
 }  // namespace relief

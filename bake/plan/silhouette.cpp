@@ -42,9 +42,20 @@ Silhouette::Silhouette(const TriangleMesh& mesh, const View& view) : strips_(kSt
         if (a.y > b.y) {
             std::swap(a, b);
         }
-        const double slope = b.y > a.y ? (b.x - a.x) / (b.y - a.y) : 0.0;
+        const std::size_t first = stripAt(a.y - kSlack);
         const std::size_t last = stripAt(b.y + kSlack);
-        for (std::size_t k = stripAt(a.y - kSlack); k <= last; ++k) {
+        // Most edges lie well within what is known already.
+        const auto low_end = static_cast<float>(std::min(a.x, b.x) - 2.0 * kSlack);
+        const auto high_end = static_cast<float>(std::max(a.x, b.x) + 2.0 * kSlack);
+        std::size_t k = first;
+        while (k <= last && strips_[k].low <= low_end && strips_[k].high >= high_end) {
+            ++k;
+        }
+        if (k > last) {
+            return;
+        }
+        const double slope = b.y > a.y ? (b.x - a.x) / (b.y - a.y) : 0.0;
+        for (; k <= last; ++k) {
             const double from = std::clamp(static_cast<double>(k) / kStrips - kSlack, a.y, b.y);
             const double to = std::clamp(static_cast<double>(k + 1) / kStrips + kSlack, a.y, b.y);
             double low = a.x + (from - a.y) * slope;

@@ -48,13 +48,21 @@ std::array<glm::dvec3, 3> orthographicFrame(const glm::vec3& direction, const st
 
 std::array<Range, 3> projectedRanges(const Bounds& box, const std::array<glm::dvec3, 3>& frame);
 
-std::array<Range, 3> projectedRanges(const TriangleMesh& mesh, const std::array<glm::dvec3, 3>& frame) {
+std::array<Range, 3> projectedRanges(const TriangleMesh& mesh, const VertexBlocks* blocks,
+                                     const std::array<glm::dvec3, 3>& frame) {
     // Along the axes of object space the bounds say it all, exactly.
     if (frame[0].x * frame[0].y == 0.0 && frame[0].y * frame[0].z == 0.0 && frame[0].z * frame[0].x == 0.0 &&
         std::abs(frame[2].x) + std::abs(frame[2].y) + std::abs(frame[2].z) == 1.0) {
         return projectedRanges(mesh.bounds, frame);
     }
     std::array<Range, 3> ranges;
+    if (blocks != nullptr) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            ranges[i].add(dot(frame[i], mesh.positions[blocks->farthest(-frame[i])]));
+            ranges[i].add(dot(frame[i], mesh.positions[blocks->farthest(frame[i])]));
+        }
+        return ranges;
+    }
     for (const glm::vec3& p : mesh.positions) {
         for (std::size_t i = 0; i < 3; ++i) {
             ranges[i].add(dot(frame[i], p));
@@ -100,9 +108,10 @@ glm::vec4 affineRow(const glm::dvec3& direction, double offset, double scale) {
             static_cast<float>(direction.z * scale + 0.0), static_cast<float>(-offset * scale + 0.0)};
 }
 
-void placeOrthographic(View& view, const MapSpec& spec, const TriangleMesh& mesh) {
+void placeOrthographic(View& view, const MapSpec& spec, const TriangleMesh& mesh,
+                       const VertexBlocks* blocks) {
     const std::array<glm::dvec3, 3> frame = orthographicFrame(spec.direction, spec.up);
-    const std::array<Range, 3> of_mesh = projectedRanges(mesh, frame);
+    const std::array<Range, 3> of_mesh = projectedRanges(mesh, blocks, frame);
     std::array<Range, 3> volume;
     if (spec.box) {
         volume = projectedRanges(*spec.box, frame);
@@ -260,7 +269,7 @@ Result<MapSpec> completeSpec(MapSpec spec, const PreparedMesh& mesh, std::uint32
     return spec;
 }
 
-Result<View> makeView(const MapSpec& spec, const TriangleMesh& mesh) {
+Result<View> makeView(const MapSpec& spec, const TriangleMesh& mesh, const VertexBlocks* blocks) {
     if (const Result<void> up = checkUp(spec); !up) {
         return fail(up.error().code, "--map '" + toString(spec) + "': " + up.error().message);
     }
@@ -272,7 +281,7 @@ Result<View> makeView(const MapSpec& spec, const TriangleMesh& mesh) {
     if (view.projection() == Projection::kCube) {
         placeCube(view, spec, mesh);
     } else {
-        placeOrthographic(view, spec, mesh);
+        placeOrthographic(view, spec, mesh, blocks);
         view.encloses = view.encloses && view.compare != Compare::kGap;
     }
     if (!isFinite(view)) {

@@ -20,6 +20,7 @@
 #include <glm/vec3.hpp>
 
 #include "bake/mesh/prepared_mesh.h"
+#include "bake/mesh/vertex_blocks.h"
 #include "bake/plan/map_spec.h"
 #include "formats/base/result.h"
 #include "formats/depth_map.h"
@@ -75,8 +76,10 @@ struct View {
 /// Errors: kUsage, kLimit (as checkMapSize).
 [[nodiscard]] Result<MapSpec> completeSpec(MapSpec spec, const PreparedMesh& mesh, std::uint32_t resolution);
 
-/// \param spec  complete.
+/// \param spec    complete.
+/// \param blocks  of the mesh's positions, where many views are made; the view is the same without.
 /// Errors: kUsage: a box that lies where floats cannot tell its texels apart; up along the direction.
-[[nodiscard]] Result<View> makeView(const MapSpec& spec, const TriangleMesh& mesh);
+[[nodiscard]] Result<View> makeView(const MapSpec& spec, const TriangleMesh& mesh,
+                                    const VertexBlocks* blocks = nullptr);
 
 }  // namespace relief

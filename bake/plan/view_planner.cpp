@@ -1,12 +1,14 @@
 #include "bake/plan/view_planner.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
+#include <iterator>
 #include <optional>
 
 #include "bake/mesh/triangle_plane.h"
@@ -68,12 +70,27 @@ class Planner {
         for (const PlanPoint& point : points_) {
             positions.push_back(point.position);
         }
-        const std::vector<OuterView> outer = RELIEF_TRY(outerViews(mesh_, positions, options_.oriented_box));
-        std::vector<RatedView> views;
-        for (const OuterView& view : outer) {
-            views.push_back({view, {}});
+        // The box is one thread's work for a while, the rays are not.
+        std::vector<RatedView> spread;
+        for (const glm::dvec3& direction : outerDirections(mesh_.bounds)) {
+            spread.emplace_back().spec.direction = glm::vec3(direction) + 0.0F;
         }
-        rateViews(views);
+        std::optional<OrientedBox> box;
+        tbb::parallel_invoke([&] { box = options_.oriented_box ? orientedBox(mesh_) : std::nullopt; },
+                             [&] { rateViews(spread); });
+        std::vector<RatedView> views;
+        std::vector<RatedView> along_box;
+        for (OuterView& view : RELIEF_TRY(outerViews(mesh_, positions, box))) {
+            const auto rated = std::ranges::find_if(
+                spread, [&](const RatedView& other) { return other.spec.direction == view.spec.direction; });
+            if (rated == spread.end()) {
+                along_box.push_back({std::move(view), {}});
+            } else {
+                views.push_back({std::move(view), std::move(rated->service)});
+            }
+        }
+        rateViews(along_box);
+        std::ranges::move(along_box, std::back_inserter(views));
         RELIEF_TRY(addViews(views));
         // Gaps are kept that no map before them sees.
         std::stable_partition(
@@ -108,16 +125,16 @@ class Planner {
             const glm::dvec3 along(views[v].spec.direction);
             views[v].service.resize(points_.size());
             for (std::size_t i = 0; i < points_.size(); ++i) {
-                float best = 0.0F;
-                int free = 0;
-                for (const double sign : {1.0, -1.0}) {
-                    const float value = service(sign * dot(points_[i].normal, along));
-                    if (query_.rayIsFree(points_[i].position, sign * along)) {
-                        best = std::max(best, value);
-                        ++free;
-                    }
+                const double cosine = dot(points_[i].normal, along);
+                const double sign = cosine < 0.0 ? -1.0 : 1.0;
+                float best = service(sign * cosine);
+                const bool free = query_.rayIsFree(points_[i].position, sign * along);
+                if (!free || best < kSilhouette) {  // else the ray away from the surface has said it all
+                    const bool back_free = query_.rayIsFree(points_[i].position, -sign * along);
+                    best = free ? (back_free ? kSilhouette : best)
+                                : (back_free ? service(-sign * cosine) : 0.0F);
                 }
-                views[v].service[i] = free == 2 ? std::max(best, kSilhouette) : best;
+                views[v].service[i] = best;
             }
         });
     }

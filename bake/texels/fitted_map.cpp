@@ -19,8 +19,8 @@
 namespace relief {
 namespace {
 
-/// Rays traced before their texels are fitted: bounds the memory for hits to 64 MiB whatever a map's size.
-constexpr std::uint64_t kStripeRays = std::uint64_t{1} << 22;
+/// Rays traced before their texels are fitted: few, so that their hits (16 MiB) stay in the cache until they are read.
+constexpr std::uint64_t kStripeRays = std::uint64_t{1} << 19;
 /// Parts of the way between two rays of a footprint to which the edge of a surface is found; odd.
 constexpr std::uint32_t kEdgeParts = 63;
 

@@ -82,13 +82,14 @@ class RayTable {
         return std::max(most[0], most[1]);
     }
 
-    /// The sum over all rays of the length of what is free but behind the plane, each at most `reach`.
-    [[nodiscard]] double freeSpaceBehind(double offset, double reach) const {
+    /// The sum over all rays of the length of what is free but behind the plane, each at most `reach`; or, once it is no less
+    /// than `enough`, a part of that sum.
+    [[nodiscard]] double freeSpaceBehind(double offset, double reach, double enough) const {
         const Lanes none = {};
         const Lanes endless = none + kInfinity;
         const Lanes most = none + reach;
         double sum = 0.0;
-        for (std::size_t b = 0; b < blocks_; ++b) {
+        for (std::size_t b = 0; b < blocks_ && sum < enough; ++b) {
             const Block& block = table_[b];
             const Lanes at_plane = (offset - block.at_start) / block.along;
             // A plane that is met from its free side; one that is met from behind.
@@ -289,7 +290,7 @@ class PlaneSearch {
         }
         const double stored = stands ? (2.0 * scaled / kDepthCodes - 1.0) * options_.range - from_zero
                                      : scaled / kDepthCodes * options_.u_max * along;
-        double cost = table_.freeSpaceBehind(stored, options_.reach);
+        double cost = table_.freeSpaceBehind(stored, options_.reach, best_cost_);
         if (options_.let_back > 0.0) {
             for (const FootprintRay& ray : rays_) {
                 cost += solidInFront(ray, normal, stored);

@@ -28,6 +28,8 @@ constexpr double kMargin = 3.0;
 /// seen the last surfaces too, may choose them.
 constexpr double kSteepest = 0.2;
 constexpr std::size_t kNormalsTried = 12;
+/// One in so many points is drawn to see whether there is anything to mend.
+constexpr std::size_t kTrialShare = 4;
 constexpr std::uint16_t kSettledVotes = 4;
 constexpr std::int32_t kAbstains = -1;
 constexpr std::int32_t kOutside = -2;
@@ -46,23 +48,33 @@ struct Ray {
     double length;
 };
 
+/// One end of a texel, in object space.
+struct Plane {
+    glm::dvec3 normal;
+    double offset;  ///< n·(P − O) of its points
+    glm::dvec3 origin;
+    /// It calls p outside.
+    [[nodiscard]] bool sees(const glm::dvec3& p) const { return dot(normal, p - origin) - offset >= 0.0; }
+};
+
 /// The votes of a map's texels, end by end.
 class TexelVotes {
   public:
     explicit TexelVotes(DepthMap& map)
-        : map_(map), depth_max_(map.projection() == Projection::kCube ? double{kCubeDepthMax} : 1.0) {
+        : map_(map),
+          changeable_(map.decode == Decode::kPlane &&
+                      std::string_view(depthEncodingName(map.format)) == "unorm16"),
+          depth_max_(map.projection() == Projection::kCube ? double{kCubeDepthMax} : 1.0) {
         range_ = standingRange(map.projection(), map.object_per_map, map.width, map.height);
         const TexelRay first = texelRay(map, 0, 0, 0);
         if (map.projection() == Projection::kOrthographic) {
-            first_ = first;
+            first_ = rayOf(first);
             column_step_ = texelRay(map, 0, 1, 0).origin - first.origin;
             row_step_ = texelRay(map, 0, 0, 1).origin - first.origin;
         }
     }
 
-    [[nodiscard]] bool changeable() const {
-        return map_.decode == Decode::kPlane && std::string_view(depthEncodingName(map_.format)) == "unorm16";
-    }
+    [[nodiscard]] bool changeable() const { return changeable_; }
     /// Of a gap both ends have to see a point outside.
     [[nodiscard]] bool isGap() const { return map_.compare == Compare::kGap; }
     [[nodiscard]] int ends() const { return isFrontBack(map_.format) ? 2 : 1; }
@@ -96,15 +108,15 @@ class TexelVotes {
     }
 
     [[nodiscard]] Ray ray(std::size_t texel) const {
-        const auto x = static_cast<std::uint32_t>(texel % map_.width);
-        const auto row = static_cast<std::uint32_t>(texel / map_.width);
-        TexelRay ray = first_;
+        const auto at = static_cast<std::uint32_t>(texel);  // 32 bits divide faster
+        const std::uint32_t x = at % map_.width;
+        const std::uint32_t row = at / map_.width;
         if (map_.projection() == Projection::kOrthographic) {
+            Ray ray = first_;
             ray.origin += static_cast<double>(x) * column_step_ + static_cast<double>(row) * row_step_;
-        } else {
-            ray = texelRay(map_, row / map_.width, x, row % map_.width);
+            return ray;
         }
-        return {ray.origin, ray.direction, std::sqrt(dot(ray.direction, ray.direction))};
+        return rayOf(texelRay(map_, row / map_.width, x, row % map_.width));
     }
 
     [[nodiscard]] Code code(std::size_t texel, int end) const {
@@ -155,12 +167,10 @@ class TexelVotes {
         return {normal_code, static_cast<std::uint16_t>(1 + static_cast<int>(scaled))};
     }
 
-    [[nodiscard]] bool sawOutside(const Code& code, const Ray& ray, const glm::dvec3& p) const {
-        if (code.depth == 0) {
-            return map_.empty_is_outside && ends() == 1;
-        }
-        const glm::dvec3& normal = decodedNormals()[code.normal];
-        return dot(normal, p - ray.origin) - offsetOf(code, normal, ray) >= 0.0;
+    /// Of a code that is not empty.
+    [[nodiscard]] Plane planeOf(const Code& code, const Ray& ray) const {
+        const glm::dvec3& normal = normals_[code.normal];
+        return {normal, offsetOf(code, normal, ray), ray.origin};
     }
 
     /// How many of a texel's votes say outside: of each end, or of a gap.
@@ -168,7 +178,7 @@ class TexelVotes {
         int votes = 0;
         for (int end = 0; end < ends(); ++end) {
             const Code here = code(texel, end);
-            votes += here.depth != 0 && sawOutside(here, ray, p) ? 1 : 0;
+            votes += here.depth != 0 && planeOf(here, ray).sees(p) ? 1 : 0;
         }
         return static_cast<std::uint16_t>(isGap() ? votes / 2 : votes);
     }
@@ -190,10 +200,16 @@ class TexelVotes {
     [[nodiscard]] const DepthMap& map() const { return map_; }
 
   private:
+    static Ray rayOf(const TexelRay& ray) {
+        return {ray.origin, ray.direction, std::sqrt(dot(ray.direction, ray.direction))};
+    }
+
     DepthMap& map_;
+    const std::array<glm::dvec3, 65536>& normals_ = decodedNormals();
+    bool changeable_;
     double depth_max_;
     double range_ = 0.0;
-    TexelRay first_{};
+    Ray first_{};
     glm::dvec3 column_step_{0.0};
     glm::dvec3 row_step_{0.0};
 };
@@ -339,26 +355,23 @@ class PlaneChoice {
 
 class Refinement {
   public:
-    Refinement(Collider& collider, const MeshQuery& query, std::vector<LabelledPoint> points,
-               const RefineOptions& options)
-        : query_(query), options_(options), points_(std::move(points)), outside_votes_(points_.size(), 0) {
+    Refinement(Collider& collider, const MeshQuery& query, const RefineOptions& options)
+        : query_(query), options_(options) {
         for (DepthMap& map : collider.maps) {
             maps_.emplace_back(map);
         }
     }
 
-    void run() {
-        for (const TexelVotes& map : maps_) {
-            countVotes(map);
-        }
-        dropSettled();
-        for (int sweep = 0; sweep < options_.sweeps; ++sweep) {
-            for (TexelVotes& map : maps_) {
-                if (map.changeable()) {
-                    refine(map);
-                }
+    /// \return the share of the mistakes at all points so far, weighted, that a sweep over the maps mends.
+    double refineFor(std::vector<LabelledPoint> points) {
+        countVotes(std::move(points));
+        const double before = costOfMistakes();
+        for (TexelVotes& map : maps_) {
+            if (map.changeable()) {
+                refine(map);
             }
         }
+        return before > 0.0 ? 1.0 - costOfMistakes() / before : 0.0;
     }
 
   private:
@@ -371,41 +384,16 @@ class Refinement {
         });
     }
 
-    void countVotes(const TexelVotes& map) {
-        locateAll(map);
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points_.size(), 4096), [&](const auto& range) {
-            for (std::size_t i = range.begin(); i != range.end(); ++i) {
-                const std::int32_t texel = texel_of_[i];
-                if (settled(i)) {
-                    continue;
-                }
-                if (!map.changeable()) {
-                    const std::optional<Vote> v = vote(map.map(), points_[i].position);
-                    if (v && v->distance >= 0.0F) {
-                        ++outside_votes_[i];
-                    }
-                } else if (texel == kOutside) {
-                    ++outside_votes_[i];
-                } else if (texel >= 0) {
-                    const auto at = static_cast<std::size_t>(texel);
-                    if (map.emptyIsOutside(at)) {
-                        ++outside_votes_[i];
-                        continue;
-                    }
-                    outside_votes_[i] = static_cast<std::uint16_t>(
-                        outside_votes_[i] + map.outsideVotes(at, map.ray(at), points_[i].position));
-                }
-            }
-        });
-    }
-
-    /// Free points that many ends see need no texel to be chosen for them.
-    [[nodiscard]] bool settled(std::size_t i) const {
-        return !points_[i].inside && outside_votes_[i] >= kSettledVotes;
-    }
-    void dropSettled() {
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < points_.size(); ++i) {
+    /// Adds points, but for the settled.
+    void countVotes(std::vector<LabelledPoint> points) {
+        const std::size_t first = points_.size();
+        points_.insert(points_.end(), points.begin(), points.end());
+        outside_votes_.resize(points_.size(), 0);
+        for (const TexelVotes& map : maps_) {
+            countVotes(map, first);
+        }
+        std::size_t kept = first;
+        for (std::size_t i = first; i < points_.size(); ++i) {
             if (!settled(i)) {
                 points_[kept] = points_[i];
                 outside_votes_[kept] = outside_votes_[i];
@@ -414,6 +402,49 @@ class Refinement {
         }
         points_.resize(kept);
         outside_votes_.resize(kept);
+    }
+
+    /// Of the points from `first` on.
+    void countVotes(const TexelVotes& map, std::size_t first) {
+        tbb::parallel_for(
+            tbb::blocked_range<std::size_t>(first, points_.size(), 4096), [&](const auto& range) {
+                for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                    if (settled(i)) {
+                        continue;
+                    }
+                    const std::int32_t texel = map.locate(points_[i].position);
+                    if (!map.changeable()) {
+                        const std::optional<Vote> v = vote(map.map(), points_[i].position);
+                        if (v && v->distance >= 0.0F) {
+                            ++outside_votes_[i];
+                        }
+                    } else if (texel == kOutside) {
+                        ++outside_votes_[i];
+                    } else if (texel >= 0) {
+                        const auto at = static_cast<std::size_t>(texel);
+                        if (map.emptyIsOutside(at)) {
+                            ++outside_votes_[i];
+                            continue;
+                        }
+                        outside_votes_[i] = static_cast<std::uint16_t>(
+                            outside_votes_[i] + map.outsideVotes(at, map.ray(at), points_[i].position));
+                    }
+                }
+            });
+    }
+
+    /// Free points that many ends see need no texel to be chosen for them.
+    [[nodiscard]] bool settled(std::size_t i) const {
+        return !points_[i].inside && outside_votes_[i] >= kSettledVotes;
+    }
+    [[nodiscard]] double costOfMistakes() const {
+        double cost = 0.0;
+        for (std::size_t i = 0; i < points_.size(); ++i) {
+            if (points_[i].inside != (outside_votes_[i] == 0)) {
+                cost += points_[i].inside ? options_.false_outside : options_.false_inside;
+            }
+        }
+        return cost;
     }
 
     void refine(TexelVotes& map) {
@@ -453,23 +484,22 @@ class Refinement {
         choice.setTexel(texel);
         for (int end = 0; end < map.ends(); ++end) {
             const Code current = map.code(texel, end);
-            if (current.depth == 0) {
+            const Code other = map.isGap() ? map.code(texel, 1 - end) : current;
+            if (current.depth == 0 || other.depth == 0) {
                 continue;
             }
-            const Code other = map.isGap() ? map.code(texel, 1 - end) : Code{};
+            const Plane plane = map.planeOf(current, ray);
+            const Plane other_plane = map.planeOf(other, ray);
             if (map.isGap()) {
-                if (other.depth == 0) {
-                    continue;
-                }
                 choice.setOther(other, ray);
             }
             // What the other end of a gap sees inside is not for this one to decide.
             const auto mayDecide = [&](std::uint32_t i) {
-                return !map.isGap() || map.sawOutside(other, ray, points_[i].position);
+                return !map.isGap() || other_plane.sees(points_[i].position);
             };
             choice.points.clear();
             for (const std::uint32_t i : members) {
-                const int own = map.sawOutside(current, ray, points_[i].position) ? 1 : 0;
+                const int own = plane.sees(points_[i].position) ? 1 : 0;
                 if (mayDecide(i) && outside_votes_[i] == own) {
                     choice.points.push_back(
                         {glm::dvec3(points_[i].position) - ray.origin, points_[i].normal, points_[i].inside});
@@ -480,12 +510,13 @@ class Refinement {
                 continue;
             }
             map.setCode(texel, end, best);
+            const Plane better = map.planeOf(best, ray);
             for (const std::uint32_t i : members) {
                 if (!mayDecide(i)) {
                     continue;
                 }
-                const int before = map.sawOutside(current, ray, points_[i].position) ? 1 : 0;
-                const int after = map.sawOutside(best, ray, points_[i].position) ? 1 : 0;
+                const int before = plane.sees(points_[i].position) ? 1 : 0;
+                const int after = better.sees(points_[i].position) ? 1 : 0;
                 outside_votes_[i] = static_cast<std::uint16_t>(outside_votes_[i] + after - before);
             }
         }
@@ -499,6 +530,20 @@ class Refinement {
     std::vector<TexelVotes> maps_;
 };
 
+/// Of the points' distance from the surface: where most of the maps' mistakes lie.
+double sigmaOf(const Collider& collider, double longest_side, const RefineOptions& options) {
+    double texels = 0.0;
+    double sides = 0.0;
+    for (const DepthMap& map : collider.maps) {
+        const auto count = static_cast<double>(std::size_t{map.faceCount()} * map.width * map.height);
+        const double across = map.projection() == Projection::kCube ? 2.0 : 1.0;
+        const auto& size = map.object_per_map;
+        texels += count;
+        sides += count * across * std::sqrt(double{size.x} / map.width * double{size.y} / map.height);
+    }
+    return std::min(options.sigma_texels * sides / texels, options.sigma_share_max * longest_side);
+}
+
 }  // namespace
 
 void refineTexels(Collider& collider, const MeshQuery& query, const RefineOptions& options) {
@@ -509,8 +554,17 @@ void refineTexels(Collider& collider, const MeshQuery& query, const RefineOption
     const auto count = static_cast<std::size_t>(std::clamp(ends * options.points_per_texel,
                                                            static_cast<double>(kRefinePointsMin),
                                                            static_cast<double>(kRefinePointsMax)));
-    const double sigma = options.sigma_share * query.mesh().bounds.longestSide();
-    Refinement(collider, query, drawNearSurface(query, count, sigma, options.seed), options).run();
+    const double sigma = sigmaOf(collider, query.mesh().bounds.longestSide(), options);
+    Refinement refinement(collider, query, options);
+    const std::size_t trial = count / kTrialShare;
+    const double mended = refinement.refineFor(drawNearSurface(query, trial, sigma, options.seed));
+    if (mended < options.worth_mending) {
+        return;
+    }
+    refinement.refineFor(drawNearSurface(query, count - trial, sigma, options.seed + 1));
+    for (int sweep = 1; sweep < options.sweeps; ++sweep) {
+        refinement.refineFor({});
+    }
 }
 
 }  // namespace relief

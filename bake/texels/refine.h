@@ -22,7 +22,13 @@ struct RefineOptions {
     double false_outside = 2.0;
     int sweeps = 1;                 ///< over all maps
     double points_per_texel = 4.0;  ///< and end of a map; at least kRefinePointsMin in all
-    double sigma_share = 0.005;     ///< of the points' offset, in units of the mesh's longest side
+    /// Standard deviation of the points' distance from the surface, in texels; and at most, in units of the mesh's longest
+    /// side.
+    double sigma_texels = 0.25;
+    double sigma_share_max = 0.005;
+    /// A quarter of the points is asked first; the others only where that mended such a share of the mistakes. Smooth meshes
+    /// have nothing to mend.
+    double worth_mending = 0.012;
     std::uint64_t seed = 1;
 };
 
