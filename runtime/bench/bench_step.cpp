@@ -1,5 +1,6 @@
 // What a step costs: relief-bench-step COLLIDER.relief [--large] [--path fragment|compute] [--particles N] [--only NAME]
-// [--blocks N] prints JSON.
+// [--blocks N] [--sorted] prints JSON. --sorted: particles lie on the GPU in the order of their places, so that the lanes of a
+// warp do the same; what that gains is what a warp loses by waiting for its slowest lane.
 // Nothing here is a test: machines are shared and noisy.
 //
 // A block is some steps between two glFinish. Before each all particles are born anew, so that blocks
@@ -311,6 +312,7 @@ struct Options {
     StepPath path = StepPath::kFragment;
     std::uint32_t particles = 0;  ///< of the step, and no frames; 0: as sizesFor() has it
     int blocks = 0;               ///< of each variant; 0: as sizesFor() has it
+    bool sorted = false;          ///< particles by their places
     std::string only;             ///< the variant to compare with the collider and with none; empty: all
 };
 
@@ -322,6 +324,8 @@ Result<Options> parse(int argc, char** argv) {
         const std::string_view value = i + 1 < argc ? argv[i + 1] : "";
         if (word == "--large") {
             options.large = true;
+        } else if (word == "--sorted") {
+            options.sorted = true;
         } else if (word == "--path" && (value == "fragment" || value == "compute")) {
             options.path = value == "compute" ? StepPath::kCompute : StepPath::kFragment;
             ++i;
@@ -345,7 +349,7 @@ Result<Options> parse(int argc, char** argv) {
     if (!known || options.collider.empty()) {
         return fail(ErrorCode::kUsage,
                     "usage: relief-bench-step COLLIDER.relief [--large] [--path fragment|compute] "
-                    "[--particles N, of 1024] [--only NAME] [--blocks N]");
+                    "[--particles N, of 1024] [--only NAME] [--blocks N] [--sorted]");
     }
     return options;
 }
@@ -368,7 +372,8 @@ Result<Json> bench(int argc, char** argv) {
     json["ratios_of"] = sizes.software ? "CPU time" : "wall clock";
     json["path"] = options.path == StepPath::kCompute ? "compute" : "fragment";
     json["collider"] = {{"maps", collider.maps.size()}};
-    BenchScene scene = makeBenchScene(collider, sizes.particles);
+    json["sorted"] = options.sorted;
+    BenchScene scene = makeBenchScene(collider, sizes.particles, options.sorted);
     scene.path = options.path;
     RELIEF_TRY(benchSteps(scene, sizes, options.only, json));
     for (const std::uint32_t particles : sizes.frames) {

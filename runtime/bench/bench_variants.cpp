@@ -1,5 +1,6 @@
 #include "runtime/bench/bench_variants.h"
 
+#include <algorithm>
 #include <glm/gtc/quaternion.hpp>
 #include <utility>
 
@@ -197,9 +198,23 @@ BenchVariant listed(std::string name, std::string what) {
     return {std::move(name), std::move(what), make};
 }
 
+/// A point's place on a Morton curve through the bounds.
+std::uint32_t mortonCode(const glm::vec3& p, const Bounds& bounds) {
+    constexpr std::uint32_t kBits = 10;
+    std::uint32_t code = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const float share = (p[axis] - bounds.min[axis]) / bounds.longestSide();
+        const auto cell = static_cast<std::uint32_t>(std::clamp(share, 0.0F, 0.9999F) * float(1U << kBits));
+        for (std::uint32_t bit = 0; bit < kBits; ++bit) {
+            code |= (cell >> bit & 1U) << (3 * bit + static_cast<std::uint32_t>(axis));
+        }
+    }
+    return code;
+}
+
 }  // namespace
 
-BenchScene makeBenchScene(Collider collider, std::uint32_t particles) {
+BenchScene makeBenchScene(Collider collider, std::uint32_t particles, bool sorted) {
     BenchScene scene;
     scene.collider = std::move(collider);
     const Bounds& bounds = scene.collider.bounds;
@@ -215,6 +230,10 @@ BenchScene makeBenchScene(Collider collider, std::uint32_t particles) {
     settings.lifetime_min = settings.lifetime_max = kBenchLifetime;
     Emitter emitter(settings, 1);
     emitter.emit(1.0, particles, scene.births);
+    if (sorted) {
+        std::ranges::stable_sort(scene.births, {},
+                                 [&](const Birth& birth) { return mortonCode(birth.position, bounds); });
+    }
     for (std::size_t i = 0; i < scene.births.size(); ++i) {
         scene.births[i].type = static_cast<std::uint32_t>(i % kParticleTypesMax);
     }

@@ -32,7 +32,8 @@ struct BenchScene {
     StepPath path = StepPath::kFragment;  ///< of the systems
 };
 
-[[nodiscard]] BenchScene makeBenchScene(Collider collider, std::uint32_t particles);
+/// \param sorted  neighbours in space are neighbours on the GPU; else these are anywhere, as an emitter's are
+[[nodiscard]] BenchScene makeBenchScene(Collider collider, std::uint32_t particles, bool sorted = false);
 
 /// A particle system with what it collides with.
 struct BenchSystem {
