@@ -167,8 +167,8 @@ RefineOptions refineOptions(const TriangleMesh& mesh, const BakeOptions& bake) {
     }
     if (bake.quality == Quality::kBest) {
         options.sweeps = 2;
-        options.points_per_texel *= 3.0;
-        options.worth_mending = 0.0;
+        options.points_per_texel = 12.0;
+        options.worth_mending = options.worth_all = 0.0;
     }
     return options;
 }

@@ -28,8 +28,8 @@ constexpr double kMargin = 3.0;
 /// seen the last surfaces too, may choose them.
 constexpr double kSteepest = 0.2;
 constexpr std::size_t kNormalsTried = 12;
-/// One in so many points is drawn to see whether there is anything to mend.
-constexpr std::size_t kTrialShare = 4;
+/// Of the points, those that are drawn to see how much there is to mend.
+constexpr double kTrialShare = 0.25;
 constexpr std::uint16_t kSettledVotes = 4;
 constexpr std::int32_t kAbstains = -1;
 constexpr std::int32_t kOutside = -2;
@@ -530,18 +530,18 @@ class Refinement {
     std::vector<TexelVotes> maps_;
 };
 
-/// Of the points' distance from the surface: where most of the maps' mistakes lie.
-double sigmaOf(const Collider& collider, double longest_side, const RefineOptions& options) {
+/// Side of a texel, object units, in the mean over all texels.
+double meanTexel(const Collider& collider) {
     double texels = 0.0;
     double sides = 0.0;
     for (const DepthMap& map : collider.maps) {
-        const auto count = static_cast<double>(std::size_t{map.faceCount()} * map.width * map.height);
+        const auto count = static_cast<double>(map.faceCount()) * map.width * map.height;
         const double across = map.projection() == Projection::kCube ? 2.0 : 1.0;
-        const auto& size = map.object_per_map;
+        const glm::vec3& size = map.object_per_map;
         texels += count;
         sides += count * across * std::sqrt(double{size.x} / map.width * double{size.y} / map.height);
     }
-    return std::min(options.sigma_texels * sides / texels, options.sigma_share_max * longest_side);
+    return sides / texels;
 }
 
 }  // namespace
@@ -551,17 +551,24 @@ void refineTexels(Collider& collider, const MeshQuery& query, const RefineOption
     for (const DepthMap& map : collider.maps) {
         ends += static_cast<double>(gpuBytes(map)) / 4.0;
     }
-    const auto count = static_cast<std::size_t>(std::clamp(ends * options.points_per_texel,
-                                                           static_cast<double>(kRefinePointsMin),
-                                                           static_cast<double>(kRefinePointsMax)));
-    const double sigma = sigmaOf(collider, query.mesh().bounds.longestSide(), options);
+    const double count =
+        std::clamp(ends * options.points_per_texel, double{kRefinePointsMin}, double{kRefinePointsMax});
+    const double far = options.sigma_share * query.mesh().bounds.longestSide();
+    const double near = std::min(options.sigma_texels * meanTexel(collider), far);
+    std::uint64_t seed = options.seed;
+    const auto draw = [&](double share) {
+        const auto half = static_cast<std::size_t>(0.5 * share * count);
+        std::vector<LabelledPoint> points = drawNearSurface(query, half, near, seed++);
+        const std::vector<LabelledPoint> others = drawNearSurface(query, half, far, seed++);
+        points.insert(points.end(), others.begin(), others.end());
+        return points;
+    };
     Refinement refinement(collider, query, options);
-    const std::size_t trial = count / kTrialShare;
-    const double mended = refinement.refineFor(drawNearSurface(query, trial, sigma, options.seed));
+    const double mended = refinement.refineFor(draw(kTrialShare));
     if (mended < options.worth_mending) {
         return;
     }
-    refinement.refineFor(drawNearSurface(query, count - trial, sigma, options.seed + 1));
+    refinement.refineFor(draw((mended < options.worth_all ? 0.5 : 1.0) * (1.0 - kTrialShare)));
     for (int sweep = 1; sweep < options.sweeps; ++sweep) {
         refinement.refineFor({});
     }

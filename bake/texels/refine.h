@@ -21,14 +21,15 @@ struct RefineOptions {
     double false_inside = 1.0;
     double false_outside = 2.0;
     int sweeps = 1;                 ///< over all maps
-    double points_per_texel = 4.0;  ///< and end of a map; at least kRefinePointsMin in all
-    /// Standard deviation of the points' distance from the surface, in texels; and at most, in units of the mesh's longest
-    /// side.
+    double points_per_texel = 4.0;  ///< and end of a map, at most; at least kRefinePointsMin in all
+    /// Standard deviations of the points' distances from the surface, half of them each: in texels, where most mistakes lie,
+    /// but at most the other; and in units of the mesh's longest side, for what lies in layers.
     double sigma_texels = 0.25;
-    double sigma_share_max = 0.005;
-    /// A quarter of the points is asked first; the others only where that mended such a share of the mistakes. Smooth meshes
-    /// have nothing to mend.
+    double sigma_share = 0.005;
+    /// A quarter of the points is asked first. Where it mended a smaller share of the mistakes than `worth_mending`, that is
+    /// all: smooth meshes have nothing to mend. Below `worth_all` half of the others are asked, else all.
     double worth_mending = 0.012;
+    double worth_all = 0.2;
     std::uint64_t seed = 1;
 };
 

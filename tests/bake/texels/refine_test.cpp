@@ -60,6 +60,34 @@ TEST(Refine, MakesFewerMistakesAmongPointsItNeverSaw) {
     EXPECT_GE(better, 2);  // the turned box has little left to gain
 }
 
+/// The rest of the points is asked only where a part of them had something to mend.
+TEST(Refine, GoesOnWhereSomethingWasMended) {
+    const auto refined = [](Collider collider, const MeshQuery& query, double worth_mending) {
+        RefineOptions options;
+        options.worth_mending = worth_mending;
+        refineTexels(collider, query, options);
+        return collider;
+    };
+    const double as_usual = RefineOptions().worth_mending;
+    constexpr double kAlways = -1e9;
+    constexpr double kNever = 1e9;
+    {
+        const TriangleMesh torus = makeTorusMesh(1.0, 0.4, 64, 32);
+        const MeshQuery query = queryOf(torus);
+        const Collider coarse = bakePlanned(torus, query, Quality::kFast, Prefer::kNeither);
+        const Collider after = refined(coarse, query, as_usual);
+        EXPECT_EQ(after.maps[0].texels, refined(coarse, query, kAlways).maps[0].texels);
+        EXPECT_NE(after.maps[0].texels, refined(coarse, query, kNever).maps[0].texels);
+    }
+    {  // a smooth mesh has nothing to mend, not even for all points
+        const TriangleMesh ball = makeIcosphere({1, 2, 3}, 2.0, 4);
+        const MeshQuery query = queryOf(ball);
+        const Collider smooth = bakePlanned(ball, query, Quality::kNormal, Prefer::kNeither);
+        EXPECT_EQ(refined(smooth, query, as_usual).maps[0].texels, smooth.maps[0].texels);
+        EXPECT_EQ(refined(smooth, query, kAlways).maps[0].texels, smooth.maps[0].texels);
+    }
+}
+
 TEST(Refine, LeavesMapsOfProjectedDepthAlone) {
     const TriangleMesh mesh = makeTorusMesh(1.0, 0.4, 48, 24);
     const MeshQuery query = queryOf(mesh);
