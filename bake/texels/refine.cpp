@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <utility>
+#include <span>
 #include <vector>
 
 #include "bake/mesh/surface_sampler.h"
@@ -363,8 +363,8 @@ class Refinement {
     }
 
     /// \return the share of the mistakes at all points so far, weighted, that a sweep over the maps mends.
-    double refineFor(std::vector<LabelledPoint> points) {
-        countVotes(std::move(points));
+    double refineFor(std::span<const LabelledPoint> points) {
+        countVotes(points);
         const double before = costOfMistakes();
         for (TexelVotes& map : maps_) {
             if (map.changeable()) {
@@ -385,7 +385,7 @@ class Refinement {
     }
 
     /// Adds points, but for the settled.
-    void countVotes(std::vector<LabelledPoint> points) {
+    void countVotes(std::span<const LabelledPoint> points) {
         const std::size_t first = points_.size();
         points_.insert(points_.end(), points.begin(), points.end());
         outside_votes_.resize(points_.size(), 0);
