@@ -18,8 +18,6 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/optimal_bounding_box.h>
 
-#include "bake/mesh/vertex_blocks.h"
-
 namespace relief {
 namespace {
 
@@ -100,17 +98,16 @@ double extent(const std::vector<glm::dvec3>& points, const glm::dvec3& axis) {
 
 }  // namespace
 
-std::vector<glm::dvec3> extremeVertices(const TriangleMesh& mesh) {
-    const VertexBlocks blocks(mesh.positions);
+std::vector<glm::dvec3> extremeVertices(const VertexBlocks& vertices) {
     std::vector<std::size_t> farthest;
     for (const glm::dvec3& direction : fixedDirections()) {
-        farthest.push_back(blocks.farthest(direction));
+        farthest.push_back(vertices.farthest(direction));
     }
     std::sort(farthest.begin(), farthest.end());
     farthest.erase(std::unique(farthest.begin(), farthest.end()), farthest.end());
     std::vector<glm::dvec3> points;
     for (const std::size_t i : farthest) {
-        points.emplace_back(mesh.positions[i]);
+        points.emplace_back(vertices.positions()[i]);
     }
     return points;
 }
@@ -159,8 +156,8 @@ std::optional<std::array<glm::dvec3, 3>> orientedBoxAxes(std::span<const glm::dv
     return axes;
 }
 
-std::optional<OrientedBox> orientedBox(const TriangleMesh& mesh) {
-    std::vector<glm::dvec3> corners = extremeVertices(mesh);
+std::optional<OrientedBox> orientedBox(const VertexBlocks& vertices) {
+    std::vector<glm::dvec3> corners = extremeVertices(vertices);
     const std::optional<std::array<glm::dvec3, 3>> axes = orientedBoxAxes(corners);
     return axes ? std::optional(OrientedBox{std::move(corners), *axes}) : std::nullopt;
 }

@@ -9,13 +9,13 @@
 #include <span>
 #include <vector>
 
-#include "bake/mesh/mesh.h"
+#include "bake/mesh/vertex_blocks.h"
 
 namespace relief {
 
 /// The vertices that lie farthest along 146 fixed directions, each once, in the order of their indices: few,
 /// whatever the mesh, and among them the corners of all that has flat sides. Object space.
-[[nodiscard]] std::vector<glm::dvec3> extremeVertices(const TriangleMesh& mesh);
+[[nodiscard]] std::vector<glm::dvec3> extremeVertices(const VertexBlocks& vertices);
 
 /// The axes of the box round these points: right-handed, of unit length to rounding, the longest side's
 /// first. Components that differ from 0 by rounding alone are 0. nullopt: the points lie (nearly) in a plane,
@@ -25,10 +25,10 @@ namespace relief {
 
 /// Of the extreme vertices.
 struct OrientedBox {
-    std::vector<glm::dvec3> corners;  ///< the extreme vertices
+    std::vector<glm::dvec3> corners;  ///< those vertices
     std::array<glm::dvec3, 3> axes;
 };
 /// nullopt: as above.
-[[nodiscard]] std::optional<OrientedBox> orientedBox(const TriangleMesh& mesh);
+[[nodiscard]] std::optional<OrientedBox> orientedBox(const VertexBlocks& vertices);
 
 }  // namespace relief

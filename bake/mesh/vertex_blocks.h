@@ -21,6 +21,8 @@ class VertexBlocks {
     /// look at each, to the last bit: rounding keeps the order, so that no corner of a box falls short of what is in it.
     [[nodiscard]] std::size_t farthest(const glm::dvec3& direction) const;
 
+    [[nodiscard]] std::span<const glm::vec3> positions() const { return positions_; }
+
   private:
     struct Block {
         Bounds box;

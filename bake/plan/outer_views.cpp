@@ -176,10 +176,10 @@ std::vector<glm::dvec3> outerDirections(const Bounds& bounds) {
     return directions;
 }
 
-Result<std::vector<OuterView>> outerViews(const TriangleMesh& mesh, const std::vector<glm::dvec3>& points,
+Result<std::vector<OuterView>> outerViews(const TriangleMesh& mesh, const VertexBlocks& blocks,
+                                          const std::vector<glm::dvec3>& points,
                                           const std::optional<OrientedBox>& box) {
     const std::vector<Candidate> candidates = outerCandidates(mesh.bounds, box);
-    const VertexBlocks blocks(mesh.positions);
     std::vector<OuterView> views(candidates.size());
     std::vector<Result<void>> done(candidates.size());
     tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t i) {

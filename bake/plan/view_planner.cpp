@@ -70,23 +70,24 @@ class Planner {
         for (const PlanPoint& point : points_) {
             positions.push_back(point.position);
         }
+        const VertexBlocks blocks(mesh_.positions);
         // The box is one thread's work for a while, the rays are not.
         std::vector<RatedView> spread;
         for (const glm::dvec3& direction : outerDirections(mesh_.bounds)) {
             spread.emplace_back().spec.direction = glm::vec3(direction) + 0.0F;
         }
         std::optional<OrientedBox> box;
-        tbb::parallel_invoke([&] { box = options_.oriented_box ? orientedBox(mesh_) : std::nullopt; },
+        tbb::parallel_invoke([&] { box = options_.oriented_box ? orientedBox(blocks) : std::nullopt; },
                              [&] { rateViews(spread); });
         std::vector<RatedView> views;
         std::vector<RatedView> along_box;
-        for (OuterView& view : RELIEF_TRY(outerViews(mesh_, positions, box))) {
+        for (OuterView& view : RELIEF_TRY(outerViews(mesh_, blocks, positions, box))) {
             const auto rated = std::ranges::find_if(
                 spread, [&](const RatedView& other) { return other.spec.direction == view.spec.direction; });
             if (rated == spread.end()) {
                 along_box.push_back({std::move(view), {}});
             } else {
-                views.push_back({std::move(view), std::move(rated->service)});
+                views.push_back({std::move(view), rated->service});  // a copy: directions may coincide
             }
         }
         rateViews(along_box);
@@ -125,16 +126,16 @@ class Planner {
             const glm::dvec3 along(views[v].spec.direction);
             views[v].service.resize(points_.size());
             for (std::size_t i = 0; i < points_.size(); ++i) {
-                const double cosine = dot(points_[i].normal, along);
-                const double sign = cosine < 0.0 ? -1.0 : 1.0;
-                float best = service(sign * cosine);
-                const bool free = query_.rayIsFree(points_[i].position, sign * along);
-                if (!free || best < kSilhouette) {  // else the ray away from the surface has said it all
-                    const bool back_free = query_.rayIsFree(points_[i].position, -sign * along);
-                    best = free ? (back_free ? kSilhouette : best)
-                                : (back_free ? service(-sign * cosine) : 0.0F);
+                const PlanPoint& point = points_[i];
+                const double cosine = dot(point.normal, along);
+                const glm::dvec3 away = cosine < 0.0 ? -along : along;
+                const bool free = query_.rayIsFree(point.position, away);
+                float value = free ? service(std::abs(cosine)) : 0.0F;
+                // Where the ray away from the surface serves well, the other one has nothing to add.
+                if (value < kSilhouette && query_.rayIsFree(point.position, -away)) {
+                    value = free ? kSilhouette : service(-std::abs(cosine));
                 }
-                views[v].service[i] = best;
+                views[v].service[i] = value;
             }
         });
     }

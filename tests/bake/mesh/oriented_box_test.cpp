@@ -18,6 +18,10 @@ namespace {
 
 const glm::dmat3 kTurned = rotation({1, 2, 3}, 33.0) * rotation({0, 1, 0}, 17.0);
 
+std::vector<glm::dvec3> verticesOf(const TriangleMesh& mesh) {
+    return extremeVertices(VertexBlocks(mesh.positions));
+}
+
 double largestCosine(const glm::dvec3& direction, const glm::dmat3& axes) {
     double largest = 0.0;
     for (int i = 0; i < 3; ++i) {
@@ -28,7 +32,7 @@ double largestCosine(const glm::dvec3& direction, const glm::dmat3& axes) {
 
 TEST(OrientedBox, FindsTheAxesOfATurnedBox) {
     const TriangleMesh mesh = makeBoxMesh({5, -2, 1}, {1, 3, 2}, kTurned);
-    const auto axes = orientedBoxAxes(extremeVertices(mesh));
+    const auto axes = orientedBoxAxes(verticesOf(mesh));
     ASSERT_TRUE(axes);
     const int sorted[] = {1, 2, 0};  // the longest side first
     for (std::size_t i = 0; i < 3; ++i) {
@@ -40,7 +44,7 @@ TEST(OrientedBox, FindsTheAxesOfATurnedBox) {
 }
 
 TEST(OrientedBox, AxesOfSpaceAreExact) {
-    const auto axes = orientedBoxAxes(extremeVertices(makeBoxMesh({0.1, 0.2, 0.3}, {3, 1, 2})));
+    const auto axes = orientedBoxAxes(verticesOf(makeBoxMesh({0.1, 0.2, 0.3}, {3, 1, 2})));
     ASSERT_TRUE(axes);
     EXPECT_EQ(glm::abs((*axes)[0]), glm::dvec3(1, 0, 0));
     EXPECT_EQ(glm::abs((*axes)[1]), glm::dvec3(0, 0, 1));
@@ -49,12 +53,12 @@ TEST(OrientedBox, AxesOfSpaceAreExact) {
 
 TEST(OrientedBox, SameBitsEveryTime) {
     const TriangleMesh mesh = makeIcosphere({1, 2, 3}, 1.5, 4);
-    const std::vector<glm::dvec3> points = extremeVertices(mesh);
+    const std::vector<glm::dvec3> points = verticesOf(mesh);
     EXPECT_LE(points.size(), 146U);
     const auto first = orientedBoxAxes(points);
     ASSERT_TRUE(first);
     for (int repeat = 0; repeat < 3; ++repeat) {
-        EXPECT_EQ(extremeVertices(mesh), points);
+        EXPECT_EQ(verticesOf(mesh), points);
         EXPECT_EQ(*orientedBoxAxes(points), *first);
     }
 }
@@ -63,7 +67,7 @@ TEST(OrientedBox, WithoutVolumeThereIsNone) {
     EXPECT_FALSE(orientedBoxAxes({}));
     EXPECT_FALSE(orientedBoxAxes(std::vector<glm::dvec3>(3, glm::dvec3(1, 2, 3))));
     EXPECT_FALSE(orientedBoxAxes(std::vector<glm::dvec3>(100, glm::dvec3(1, 2, 3))));
-    EXPECT_FALSE(orientedBoxAxes(extremeVertices(makePlane(3.0F, 10))));
+    EXPECT_FALSE(orientedBoxAxes(verticesOf(makePlane(3.0F, 10))));
     std::vector<glm::dvec3> line;
     std::vector<glm::dvec3> plane;
     std::mt19937 random(3);

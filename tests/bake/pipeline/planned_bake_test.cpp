@@ -9,6 +9,7 @@
 #include "bake/measure/accuracy.h"
 #include "bake/mesh/triangle_plane.h"
 #include "bake/pipeline/planned_bake.h"
+#include "bake/plan/outer_views.h"
 #include "bake/plan/view_planner.h"
 #include "bake/texels/plane_fit.h"
 #include "formats/container.h"
@@ -205,6 +206,29 @@ TEST(ViewPlanner, KeepsTheBudgetAndSeesAllOfAConvexShape) {
         const PlannedBake made = madeOf(mesh, budget);
         EXPECT_EQ(made.plan.unseen_percent, 0.0);
         EXPECT_LE(made.baked.collider.gpuBytes(), budget);
+    }
+}
+
+/// Of a box twice as long as wide a diagonal is one of the directions that are spread over the sphere.
+TEST(ViewPlanner, DirectionsMayCoincide) {
+    for (const glm::dvec3& half :
+         {glm::dvec3(0.5, 0.5, 1.0), glm::dvec3(0.5, 1.0, 0.5), glm::dvec3(1.0, 0.5, 0.5)}) {
+        const TriangleMesh mesh = makeBoxMesh({0, 0, 0}, half);
+        const std::vector<glm::dvec3> directions = outerDirections(mesh.bounds);
+        bool coincide = false;
+        for (std::size_t i = 0; i < directions.size(); ++i) {
+            for (std::size_t j = 0; j < i; ++j) {
+                coincide = coincide || glm::vec3(directions[i]) == glm::vec3(directions[j]);
+            }
+        }
+        EXPECT_TRUE(coincide);
+        double serves = 0.0;
+        const Plan plan = planOf(mesh);
+        for (const PlannedMap& map : plan.maps) {
+            serves += map.serves;
+        }
+        EXPECT_GT(serves, 0.9);
+        EXPECT_LE(serves, 1.0);
     }
 }
 
