@@ -7,8 +7,18 @@
 namespace relief {
 namespace {
 
+bool isSet(std::byte b) {
+    return b != std::byte{0};
+}
+
 bool isEmpty(std::span<const std::byte> texel) {
-    return std::all_of(texel.begin(), texel.end(), [](std::byte b) { return b == std::byte{0}; });
+    return std::ranges::none_of(texel, isSet);
+}
+
+/// The texels of a row, one behind the other.
+std::span<const std::byte> rowOf(const DepthMap& map, std::uint32_t y) {
+    const std::size_t bytes = map.width * texelSize(map.format);
+    return std::span(map.texels).subspan(y * bytes, bytes);
 }
 
 std::uint16_t loadWord(std::span<const std::byte> bytes, std::size_t at) {
@@ -29,17 +39,14 @@ tl::unexpected<Error> invalidRow(std::size_t row, const std::string& fault) {
 
 std::vector<RowSpan> rowSpans(const DepthMap& map) {
     std::vector<RowSpan> spans(map.height);
+    const auto texel = static_cast<std::ptrdiff_t>(texelSize(map.format));
     for (std::uint32_t y = 0; y < map.height; ++y) {
-        std::uint32_t first = 0;
-        std::uint32_t end = map.width;
-        while (first < end && isEmpty(map.texelAt(0, first, y))) {
-            ++first;
-        }
-        while (end > first && isEmpty(map.texelAt(0, end - 1, y))) {
-            --end;
-        }
-        if (first < end) {
-            spans[y] = {static_cast<std::uint16_t>(first), static_cast<std::uint16_t>(end)};
+        const std::span<const std::byte> row = rowOf(map, y);
+        const auto first = std::find_if(row.begin(), row.end(), isSet);
+        if (first != row.end()) {
+            const auto end = std::find_if(row.rbegin(), row.rend(), isSet).base();
+            spans[y] = {static_cast<std::uint16_t>((first - row.begin()) / texel),
+                        static_cast<std::uint16_t>((end - row.begin() + texel - 1) / texel)};
         }
     }
     return spans;
@@ -67,11 +74,10 @@ std::vector<std::byte> packRows(const DepthMap& map) {
         storeWord(packed, span.first);
         storeWord(packed, span.end);
     }
+    const std::size_t size = texelSize(map.format);
     for (std::uint32_t y = 0; y < map.height; ++y) {
-        for (std::uint32_t x = spans[y].first; x < spans[y].end; ++x) {
-            const std::span<const std::byte> texel = map.texelAt(0, x, y);
-            packed.insert(packed.end(), texel.begin(), texel.end());
-        }
+        const auto texels = rowOf(map, y).subspan(spans[y].first * size, spans[y].texels() * size);
+        packed.insert(packed.end(), texels.begin(), texels.end());
     }
     return packed;
 }
