@@ -291,7 +291,11 @@ Result<void> readMesh(BakeRun& run) {
     care.report = command.json || !command.common.quiet;
     run.progress.begin(care.repair.empty() ? "examining the mesh" : "repairing the mesh");
     run.cared = RELIEF_TRY(careFor(std::move(mesh), care));
-    return command.holes == Holes::kClose ? shape(run) : Result<void>();
+    if (command.holes == Holes::kClose) {
+        return shape(run);
+    }
+    run.cared.mesh.freeEdges();
+    return {};
 }
 
 /// Chooses the maps and bakes them.

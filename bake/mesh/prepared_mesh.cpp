@@ -20,6 +20,7 @@ struct PreparedMesh::State {
     std::optional<bool> several_shells;
     std::optional<double> orientation;
     std::optional<AreaTable> areas;
+    std::optional<VertexBlocks> vertex_blocks;  // positions never change
     std::optional<EmbreeMesh> tree;
     std::vector<std::uint32_t> bodies;
 
@@ -95,6 +96,13 @@ const AreaTable& PreparedMesh::areas() const {
         state_->areas.emplace(state_->mesh);
     }
     return *state_->areas;
+}
+
+const VertexBlocks& PreparedMesh::vertexBlocks() const {
+    if (!state_->vertex_blocks) {
+        state_->vertex_blocks.emplace(state_->mesh.positions);
+    }
+    return *state_->vertex_blocks;
 }
 
 Result<const EmbreeMesh*> PreparedMesh::tree() const {

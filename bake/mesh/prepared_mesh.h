@@ -8,6 +8,7 @@
 #include "bake/mesh/area_table.h"
 #include "bake/mesh/mesh.h"
 #include "bake/mesh/mesh_edges.h"
+#include "bake/mesh/vertex_blocks.h"
 #include "formats/base/result.h"
 
 namespace relief {
@@ -40,6 +41,8 @@ class PreparedMesh {
     /// the enclosed volume.
     [[nodiscard]] double orientation() const;
     [[nodiscard]] const AreaTable& areas() const;
+    /// Of its positions. Lives as long as a copy of this handle.
+    [[nodiscard]] const VertexBlocks& vertexBlocks() const;
     /// Lives as long as a copy of this handle. Errors: those of EmbreeMesh::build.
     [[nodiscard]] Result<const EmbreeMesh*> tree() const;
 

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 #include <iterator>
 #include <optional>
+#include <utility>
 
 #include "bake/mesh/triangle_plane.h"
 #include "bake/plan/cavities.h"
@@ -38,6 +40,11 @@ constexpr double kUnserved = 0.5;
 constexpr double kCavityShare = 0.002;
 /// Rounds in a row in which no place within is worth its price.
 constexpr int kIdleRounds = 3;
+/// An eighth of the points tell the worse half of the outer views, a fourth of them the worse half of the others, and so
+/// on; all points are asked about the rest.
+constexpr std::size_t kFirstStride = 8;
+/// Points per task.
+constexpr std::size_t kBlock = 1024;
 /// Of the area of an outer view, what the gaps along its direction take up: a guess, until one is chosen.
 constexpr double kGapShare = 0.3;
 /// Texels of a map of gaps across one of an outer view: what is seen by no other map is in much of it.
@@ -50,48 +57,45 @@ std::string text(const char* format, double a, double b = 0.0, double c = 0.0, d
 }
 
 struct RatedView : OuterView {
-    std::vector<float> service;  ///< of each point
+    std::vector<float> service;  ///< of each point that was asked about
+    std::size_t stride = 0;      ///< of these, among all points; 0: none was
 };
 
 class Planner {
   public:
     Planner(const MeshQuery& query, const ViewOptions& options)
-        : mesh_(query.mesh()),
-          query_(query),
-          options_(options),
-          points_(drawPlanPoints(query, options.seed)),
-          served_(points_.size(), 0.0F),
-          cavities_(query, points_) {
+        : mesh_(query.mesh()), query_(query), options_(options), cavities_(query, points_) {
         choice_.mesh_name = mesh_.name;
     }
 
     Result<ViewChoice> run() {
-        std::vector<glm::dvec3> positions;
-        for (const PlanPoint& point : points_) {
-            positions.push_back(point.position);
-        }
-        const VertexBlocks blocks(mesh_.positions);
-        // The box is one thread's work for a while, the rays are not.
+        const VertexBlocks& blocks = query_.prepared().vertexBlocks();
         std::vector<RatedView> spread;
         for (const glm::dvec3& direction : outerDirections(mesh_.bounds)) {
             spread.emplace_back().spec.direction = glm::vec3(direction) + 0.0F;
         }
         std::optional<OrientedBox> box;
+        // The box is one thread's work for a while, the rays are not.
         tbb::parallel_invoke([&] { box = options_.oriented_box ? orientedBox(blocks) : std::nullopt; },
-                             [&] { rateViews(spread); });
+                             [&] {
+                                 points_ = drawPlanPoints(query_, options_.seed);
+                                 rate(pointersTo(spread), kFirstStride);
+                             });
+        served_.assign(points_.size(), 0.0F);
+        std::vector<glm::dvec3> positions;
+        for (const PlanPoint& point : points_) {
+            positions.push_back(point.position);
+        }
         std::vector<RatedView> views;
-        std::vector<RatedView> along_box;
         for (OuterView& view : RELIEF_TRY(outerViews(mesh_, blocks, positions, box))) {
             const auto rated = std::ranges::find_if(
                 spread, [&](const RatedView& other) { return other.spec.direction == view.spec.direction; });
-            if (rated == spread.end()) {
-                along_box.push_back({std::move(view), {}});
-            } else {
-                views.push_back({std::move(view), rated->service});  // a copy: directions may coincide
+            views.push_back({std::move(view), {}, 0});
+            if (rated != spread.end()) {
+                views.back().service = rated->service;  // a copy: directions may coincide
+                views.back().stride = rated->stride;
             }
         }
-        rateViews(along_box);
-        std::ranges::move(along_box, std::back_inserter(views));
         RELIEF_TRY(addViews(views));
         // Gaps are kept that no map before them sees.
         std::stable_partition(
@@ -115,33 +119,55 @@ class Planner {
         if (chosen.map.spec.format != MapFormat::kCube8 && !chosen.silhouette) {
             MapSpec spec = chosen.map.spec;
             spec.width = spec.height = 64;  // any: its outline does not depend on it
-            chosen.silhouette.emplace(mesh_, RELIEF_TRY(makeView(spec, mesh_)));
+            chosen.silhouette.emplace(mesh_,
+                                      RELIEF_TRY(makeView(spec, mesh_, &query_.prepared().vertexBlocks())));
         }
         return {};
     }
 
-    /// How well each view serves each point.
-    void rateViews(std::vector<RatedView>& views) const {
-        tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t v) {
-            const glm::dvec3 along(views[v].spec.direction);
-            views[v].service.resize(points_.size());
-            for (std::size_t i = 0; i < points_.size(); ++i) {
-                const PlanPoint& point = points_[i];
-                const double cosine = dot(point.normal, along);
-                const glm::dvec3 away = cosine < 0.0 ? -along : along;
-                const bool free = query_.rayIsFree(point.position, away);
-                float value = free ? service(std::abs(cosine)) : 0.0F;
-                // Where the ray away from the surface serves well, the other one has nothing to add.
-                if (value < kSilhouette && query_.rayIsFree(point.position, -away)) {
-                    value = free ? kSilhouette : service(-std::abs(cosine));
+    static std::vector<RatedView*> pointersTo(std::vector<RatedView>& views) {
+        std::vector<RatedView*> pointers;
+        for (RatedView& view : views) {
+            pointers.push_back(&view);
+        }
+        return pointers;
+    }
+
+    /// How well views serve every stride-th point.
+    void rate(const std::vector<RatedView*>& views, std::size_t stride) const {
+        for (RatedView* view : views) {
+            view->service.resize(points_.size());
+        }
+        const std::size_t blocks = (points_.size() + kBlock - 1) / kBlock;
+        tbb::parallel_for(std::size_t{0}, views.size() * blocks, [&](std::size_t task) {
+            RatedView& view = *views[task / blocks];
+            const std::size_t begin = task % blocks * kBlock;
+            static_assert(kBlock % kFirstStride == 0);
+            for (std::size_t i = begin; i < std::min(begin + kBlock, points_.size()); i += stride) {
+                if (view.stride == 0 || i % view.stride != 0) {
+                    view.service[i] = serviceOf(points_[i], glm::dvec3(view.spec.direction));
                 }
-                views[v].service[i] = value;
             }
         });
+        for (RatedView* view : views) {
+            view->stride = view->stride == 0 ? stride : std::min(view->stride, stride);
+        }
+    }
+
+    [[nodiscard]] float serviceOf(const PlanPoint& point, const glm::dvec3& along) const {
+        const double cosine = dot(point.normal, along);
+        const glm::dvec3 away = cosine < 0.0 ? -along : along;
+        const bool free = query_.rayIsFree(point.position, away);
+        const float value = free ? service(std::abs(cosine)) : 0.0F;
+        // Where the ray away from the surface serves well, the other one has nothing to add.
+        if (value < kSilhouette && query_.rayIsFree(point.position, -away)) {
+            return free ? kSilhouette : service(-std::abs(cosine));
+        }
+        return value;
     }
 
     /// Takes views, from outside and from within, while one more is worth its price.
-    [[nodiscard]] Result<void> addViews(const std::vector<RatedView>& views) {
+    [[nodiscard]] Result<void> addViews(std::vector<RatedView>& views) {
         int idle_rounds = 0;
         std::optional<Gaps> gaps;
         std::size_t gaps_after = 0;  // so many maps they were looked for
@@ -199,23 +225,40 @@ class Planner {
         const RatedView* view = nullptr;
         double gain = 0.0;  ///< in the mean service
     };
-    [[nodiscard]] OuterChoice bestOuterView(const std::vector<RatedView>& views) const {
-        OuterChoice best;
-        double best_score = 0.0;
-        for (const RatedView& view : views) {
-            double gain = 0.0;
-            for (std::size_t i = 0; i < points_.size(); ++i) {
-                gain += std::max(0.0F, view.service[i] - served_[i]);
+    [[nodiscard]] OuterChoice bestOuterView(std::vector<RatedView>& views) const {
+        std::vector<RatedView*> left = pointersTo(views);
+        std::vector<std::pair<double, RatedView*>> scored;
+        for (std::size_t stride = kFirstStride;; stride /= 2) {
+            rate(left, stride);
+            scored.clear();
+            for (RatedView* view : left) {
+                // By the root of its bytes: an image of half the size, seen at a slant, has texels as large on the
+                // surface, and silhouettes as long.
+                const double gain = gainOf(*view, stride);
+                scored.emplace_back(gain > 0.0 ? gain / std::sqrt(view->area) : 0.0, view);
             }
-            // By the root of its bytes: an image of half the size, seen at a slant, has texels as large on the surface,
-            // and silhouettes as long.
-            const double score = gain / std::sqrt(view.area);
-            if (score > best_score) {
-                best = {&view, gain / total()};
-                best_score = score;
+            std::ranges::stable_sort(scored, std::greater<>(), [](const auto& entry) { return entry.first; });
+            if (stride == 1) {
+                break;
+            }
+            left.clear();
+            for (std::size_t i = 0; i < (scored.size() + 1) / 2; ++i) {
+                left.push_back(scored[i].second);
             }
         }
-        return best;
+        if (scored.empty() || !(scored[0].first > 0.0)) {
+            return {};
+        }
+        return {scored[0].second, gainOf(*scored[0].second, 1) / total()};
+    }
+
+    /// What a view adds to the service of every stride-th point.
+    [[nodiscard]] double gainOf(const RatedView& view, std::size_t stride) const {
+        double gain = 0.0;
+        for (std::size_t i = 0; i < points_.size(); i += stride) {
+            gain += std::max(0.0F, view.service[i] - served_[i]);
+        }
+        return gain;
     }
 
     /// \param gain  in the service of all points.
@@ -354,7 +397,8 @@ class Planner {
         chosen.height = gaps.view->height;
         MapSpec spec = chosen.map.spec;
         spec.width = spec.height = 64;  // any
-        GapGrid grid(query_, RELIEF_TRY(makeView(spec, mesh_)), isSeenByTaken());
+        GapGrid grid(query_, RELIEF_TRY(makeView(spec, mesh_, &query_.prepared().vertexBlocks())),
+                     isSeenByTaken());
         chosen.area = 8.0 * kGapDetail * kGapDetail * grid.area();
         chosen.silhouette = grid.silhouette();
         gap_grids_.push_back(std::move(grid));

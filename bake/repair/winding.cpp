@@ -54,13 +54,13 @@ class Winder {
     /// For each triangle, whether it must be turned.
     Result<std::vector<bool>> run() {
         findNeighbours();
-        prepared_.freeEdges();
         findPatches();
         const bool consistent = std::all_of(patches_.begin(), patches_.end(),
                                             [](const Patch& patch) { return patch.turned == 0; });
         if (consistent && patches_.size() == 1) {
             return std::vector<bool>(turn_.size(), false);
         }
+        prepared_.freeEdges();
         // Parity does not care about the winding: asked before anything is turned.
         const MeshQuery query = RELIEF_TRY(MeshQuery::build(prepared_));
         tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t i) {

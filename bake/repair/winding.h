@@ -20,7 +20,8 @@ struct Winding {
 /// (by parity) find the outside behind most of it. Where neither is clear, on sheets, it keeps what
 /// most of its triangles say.
 ///
-/// A mesh of one patch that is wound consistently stays as it is, inside out or not: orientation() tells.
+/// A mesh of one patch that is wound consistently stays as it is, inside out or not: orientation() tells. It keeps its
+/// edges() too, which shapeMesh asks for next; those of others are freed.
 /// The same for any number of threads.
 /// Errors: those of MeshQuery::build.
 /// \param mesh  move it: a mesh that is shared is copied.
