@@ -5,6 +5,8 @@
 // process: import, tree, the bare loop, and writing a container of that size. Prints JSON; its sum is to be
 // compared with the time of a process `relief bake MESH -o OUT.relief --decode projected --depth half
 // --map front-back:dir=-x --map …`, run in turns.
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -12,7 +14,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "bake/bench/bench_bare_loop.h"
 #include "bake/import/mesh_import.h"
@@ -65,6 +69,21 @@ int printFloor(const relief::TriangleMesh& mesh, const std::vector<relief::View>
                                          {"sum", import_ms + bare.buildMs() + trace_ms + write_ms}};
     std::printf("%s\n", json.dump(2).c_str());
     return 0;
+}
+
+/// What a bake has traced, on all cores.
+void scanAll(const relief::RayScene& scene, const relief::View& view, std::vector<relief::Hit>& near,
+             std::vector<relief::Hit>& far) {
+    constexpr std::uint32_t kRows = 32;
+    static_assert(kResolution % kRows == 0);
+    const relief::ScanConverter scan(scene, view);
+    tbb::parallel_for(0U, kResolution / kRows, [&](std::uint32_t block) {
+        const auto of = [&](std::vector<relief::Hit>& hits) {
+            return std::span(hits).subspan(std::size_t{block} * kRows * kResolution,
+                                           std::size_t{kRows} * kResolution);
+        };
+        scan.scan({0, block * kRows, (block + 1) * kRows}, of(near), of(far));
+    });
 }
 
 }  // namespace
@@ -123,7 +142,7 @@ int main(int argc, char** argv) {
         our_hits = 0;
         times["trace"].push_back(milliseconds([&] {
             for (const View& view : views) {
-                ScanConverter(*scene, view).scan({0, 0, kResolution}, hits, far_hits);
+                scanAll(*scene, view, hits, far_hits);
             }
         }));
         const PreparedMesh fresh(*mesh);
@@ -136,7 +155,7 @@ int main(int argc, char** argv) {
     }
     std::filesystem::remove(output);
     for (const View& view : views) {
-        ScanConverter(*scene, view).scan({0, 0, kResolution}, hits, far_hits);
+        scanAll(*scene, view, hits, far_hits);
         for (const std::vector<Hit>& end : {hits, far_hits}) {
             our_hits += static_cast<std::uint64_t>(
                 std::count_if(end.begin(), end.end(), [](const Hit& hit) { return !hit.empty(); }));

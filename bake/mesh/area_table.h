@@ -14,7 +14,8 @@ class AreaTable {
   public:
     explicit AreaTable(const TriangleMesh& mesh);
     /// \param share  in [0, 1]: of the area, how much lies before the point that is looked for.
-    [[nodiscard]] std::uint32_t triangleAt(double share) const;
+    /// \param from   what a lower share gave: looked for from there on, which is soon found where shares grow by little.
+    [[nodiscard]] std::uint32_t triangleAt(double share, std::uint32_t from = 0) const;
 
   private:
     std::vector<double> up_to_;  // twice the area, up to and including each triangle

@@ -29,7 +29,10 @@ struct NearDraw {
 
 SurfaceDraw drawOnSurface(const TriangleMesh& mesh, const AreaTable& areas, double at,
                           MersenneRandom& random) {
-    const std::uint32_t triangle = areas.triangleAt(at);
+    return drawOnTriangle(mesh, areas.triangleAt(at), random);
+}
+
+SurfaceDraw drawOnTriangle(const TriangleMesh& mesh, std::uint32_t triangle, MersenneRandom& random) {
     const double root = std::sqrt(random.uniform());
     const double along = random.uniform();
     const glm::uvec3& t = mesh.triangles[triangle];
@@ -46,9 +49,11 @@ std::vector<LabelledPoint> drawNearSurface(const MeshQuery& query, std::size_t c
     const AreaTable& areas = query.prepared().areas();
     const double winding = query.prepared().orientation();
     const double clear = 1e-5 * mesh.bounds.longestSide();  // of the surface itself, for rays
-    const auto draw = [&](std::size_t i, std::size_t of, MersenneRandom& random) {
-        const double at = (static_cast<double>(i) + random.uniform()) / static_cast<double>(of);
-        SurfaceDraw surface = drawOnSurface(mesh, areas, at, random);
+    // `triangle` is that of the point before, and becomes this one's.
+    const auto draw = [&](std::size_t i, std::size_t of, MersenneRandom& random, std::uint32_t& triangle) {
+        triangle =
+            areas.triangleAt((static_cast<double>(i) + random.uniform()) / static_cast<double>(of), triangle);
+        SurfaceDraw surface = drawOnTriangle(mesh, triangle, random);
         surface.normal *= winding;
         return NearDraw{surface, sigma * random.normal()};
     };
@@ -65,8 +70,9 @@ std::vector<LabelledPoint> drawNearSurface(const MeshQuery& query, std::size_t c
     double crossings = 0.0;  // of a ray in the mean
     double asked = 0.0;      // share of the points that rays are asked about
     MersenneRandom trial(seed);
+    std::uint32_t trial_triangle = 0;
     for (std::size_t i = 0; i < kTrials; ++i) {
-        const NearDraw near = draw(i, kTrials, trial);
+        const NearDraw near = draw(i, kTrials, trial, trial_triangle);
         const glm::vec3 position(near.position());
         const bool free = isFree(near);
         asked += free ? 0.0 : 1.0 / static_cast<double>(kTrials);
@@ -88,8 +94,9 @@ std::vector<LabelledPoint> drawNearSurface(const MeshQuery& query, std::size_t c
     std::vector<LabelledPoint> points(count);
     tbb::parallel_for(std::size_t{0}, (count + kBlock - 1) / kBlock, [&](std::size_t block) {
         MersenneRandom random(seed * 0x9e3779b97f4a7c15ULL + block);
+        std::uint32_t triangle = 0;
         for (std::size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i) {
-            const NearDraw near = draw(i, count, random);
+            const NearDraw near = draw(i, count, random, triangle);
             const glm::vec3 position(near.position());
             const bool inside = trusted ? insideByWinding(near) : query.inside(position);
             // Without trust in the winding the normal points to the free side of its own surface.

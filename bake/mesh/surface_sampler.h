@@ -57,6 +57,10 @@ struct SurfaceDraw {
     glm::dvec3 normal;  ///< unit length, by the triangle's winding
 };
 
+/// Anywhere on a triangle.
+[[nodiscard]] SurfaceDraw drawOnTriangle(const TriangleMesh& mesh, std::uint32_t triangle,
+                                         MersenneRandom& random);
+
 /// \param at  in [0, 1]: the share of the area that lies before the point's triangle; stratify over it.
 [[nodiscard]] SurfaceDraw drawOnSurface(const TriangleMesh& mesh, const AreaTable& areas, double at,
                                         MersenneRandom& random);

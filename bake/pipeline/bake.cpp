@@ -7,7 +7,10 @@
 
 #include <algorithm>
 #include <glm/common.hpp>
+#include <mutex>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "bake/mesh/inside.h"
 #include "bake/mesh/mesh_query.h"
@@ -29,6 +32,12 @@ constexpr std::uint64_t kStripeTexels = std::uint64_t{1} << 20;
 /// Texels that one task traces and then encodes: few, so that their hits stay in the cache and cost no fresh
 /// pages (a first touch of 12 MB takes 8 ms).
 constexpr std::uint64_t kBlockTexels = std::uint64_t{1} << 13;
+
+/// Triangles, times maps, that are begun at the same time.
+constexpr std::size_t kTrianglesAtOnce = std::size_t{1} << 21;
+
+/// So many views look for the mesh's extents sooner among boxes of vertices, these being made first.
+constexpr std::size_t kManyViews = 3;
 
 /// In units of the longest side.
 constexpr double kOnSurface = 1e-5;
@@ -61,9 +70,10 @@ Result<std::vector<Job>> planJobs(const PreparedMesh& mesh, const BakeOptions& o
     }
     std::vector<Job> jobs;
     std::uint64_t bytes = 0;
+    const VertexBlocks* const blocks = specs.size() >= kManyViews ? &mesh.vertexBlocks() : nullptr;
     for (const MapSpec& spec : specs) {
         const MapSpec complete = RELIEF_TRY(completeSpec(spec, mesh, options.resolution));
-        View view = RELIEF_TRY(makeView(complete, *mesh));
+        View view = RELIEF_TRY(makeView(complete, *mesh, blocks));
         if (options.rasterize && view.compare == Compare::kGap) {
             return fail(ErrorCode::kUsage,
                         "--map '" + toString(complete) +
@@ -81,8 +91,8 @@ Result<std::vector<Job>> planJobs(const PreparedMesh& mesh, const BakeOptions& o
     return jobs;
 }
 
-/// \param bytes  that the baked maps take on the GPU.
-std::string effectiveOptions(const std::vector<Job>& jobs, const BakeOptions& options, std::uint64_t bytes) {
+std::string effectiveOptions(const std::vector<Job>& jobs, const BakeOptions& options,
+                             const Collider& collider) {
     std::string text;
     bool has_planes = false;
     for (const Job& job : jobs) {
@@ -97,7 +107,7 @@ std::string effectiveOptions(const std::vector<Job>& jobs, const BakeOptions& op
             text.append(" --prefer ").append(preferName(options.prefer));
         }
     }
-    if (options.planned_budget > 0 && bytes <= options.planned_budget) {
+    if (options.planned_budget > 0 && collider.gpuBytes() <= options.planned_budget) {
         text.append(" --budget ").append(std::to_string(options.planned_budget));
     }
     return text;
@@ -179,22 +189,18 @@ class MapBaker {
     MapBaker(const RayScene& scene, const NormalTable& normals) : scene_(scene), normals_(normals) {}
 
     /// \param stripeDone  called with the number of texels finished.
-    DepthMap bake(const View& view, BakeReport& report, std::uint64_t& covered,
+    /// \param scan  of the view.
+    DepthMap bake(const View& view, const ScanConverter& scan, BakeReport& report, std::uint64_t& covered,
                   const std::function<void(std::uint64_t)>& stripeDone) const {
         DepthMap map = view.emptyMap();
         const auto rows_of = [&](std::uint64_t texels) {
             return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(texels / view.width, 4, view.height));
         };
         const std::uint32_t stripe_rows = rows_of(kStripeTexels);
-        std::optional<ScanConverter> scan;
-        {
-            const TimeAdder watch(report.trace_ms);
-            scan.emplace(scene_, view);
-        }
         for (std::uint32_t face = 0; face < view.faceCount(); ++face) {
             for (std::uint32_t y = 0; y < view.height; y += stripe_rows) {
                 const RowRange stripe{face, y, std::min(y + stripe_rows, view.height)};
-                covered += bakeStripe(view, *scan, stripe, rows_of(kBlockTexels), report, map);
+                covered += bakeStripe(view, scan, stripe, rows_of(kBlockTexels), report, map);
                 stripeDone(std::uint64_t{stripe.end - stripe.begin} * view.width);
             }
         }
@@ -248,7 +254,7 @@ class MapBaker {
             worker.hits[static_cast<std::size_t>(end)].resize(
                 view.keeps(end) ? std::size_t{rows.end - rows.begin} * view.width : 0);
         }
-        scan.scanAlone(rows, worker.hits[0], worker.hits[1]);
+        scan.scan(rows, worker.hits[0], worker.hits[1]);
     }
 
     const RayScene& scene_;
@@ -273,12 +279,13 @@ class Bake {
         baked_.collider.unit = mesh_->unit;
         baked_.collider.provenance = {mesh_->name, mesh_->content_hash, mesh_->sourceTriangles(),
                                       "relief " RELIEF_VERSION,
-                                      effectiveOptions(jobs_, options_, baked_.collider.gpuBytes())};
+                                      effectiveOptions(jobs_, options_, baked_.collider)};
         return std::move(baked_);
     }
 
   private:
     void finish(std::uint64_t texels) {
+        const std::lock_guard lock(finish_);
         done_ += texels;
         if (options_.progress) {
             options_.progress(static_cast<double>(done_) / static_cast<double>(texels_));
@@ -321,38 +328,91 @@ class Bake {
         }
         const MapBaker baker(*scene, *normals);
         std::optional<TriangleNormals> unit_normals;
-        for (const Job& job : jobs_) {
-            MapReport report{job.spec, 0, job.texels()};
-            if (job.spec.decode != Decode::kPlane) {
-                DepthMap map = baker.bake(job.view, baked_.report, report.covered,
-                                          [this](std::uint64_t texels) { finish(texels); });
-                add(std::move(map), std::move(report));
+        for (auto job = jobs_.begin(); job != jobs_.end();) {
+            const Kind kind = kindOf(*job);
+            // A map of gaps looks at all before it.
+            const std::ptrdiff_t most = kind == Kind::kGaps ? 1 : std::min(atOnce(), jobs_.end() - job);
+            const auto end = std::find_if(job, job + most, [&](const Job& j) { return kindOf(j) != kind; });
+            const std::span<const Job> jobs(job, end);
+            job = end;
+            if (kind == Kind::kSurfaces) {
+                traceMaps(*scene, baker, jobs);
                 continue;
             }
             const TimeAdder watch(baked_.report.fit_ms);
             if (!unit_normals) {
                 unit_normals.emplace(*mesh_);
             }
-            const FittedMapOptions fit = fitOptions(*mesh_, job.view, options_);
-            DepthMap map =
-                job.view.compare == Compare::kGap
-                    ? bakeGaps(scene->query(), *unit_normals, job.view, fit, report)
-                    : bakeFittedMap(*scene, *unit_normals, job.view, fit, report.covered, rowsDone(job.view));
-            add(std::move(map), std::move(report));
+            if (kind == Kind::kPlanes) {
+                fitMaps(*scene, *unit_normals, jobs);
+            } else {
+                bakeGaps(scene->query(), *unit_normals, jobs.front());
+            }
         }
         return {};
     }
 
+    enum class Kind : std::uint8_t { kSurfaces, kPlanes, kGaps };
+    static Kind kindOf(const Job& job) {
+        return job.spec.decode != Decode::kPlane   ? Kind::kSurfaces
+               : job.view.compare == Compare::kGap ? Kind::kGaps
+                                                   : Kind::kPlanes;
+    }
+
+    /// Maps that are begun at the same time, at most: each takes about eighty bytes a triangle meanwhile.
+    [[nodiscard]] std::ptrdiff_t atOnce() const {
+        return std::max<std::ptrdiff_t>(
+            1, static_cast<std::ptrdiff_t>(kTrianglesAtOnce /
+                                           std::max<std::size_t>(mesh_->triangles.size(), 1)));
+    }
+
+    void traceMaps(const RayScene& scene, const MapBaker& baker, std::span<const Job> jobs) {
+        std::vector<std::optional<ScanConverter>> scans(jobs.size());
+        {
+            const TimeAdder watch(baked_.report.trace_ms);
+            tbb::parallel_for(std::size_t{0}, jobs.size(),
+                              [&](std::size_t i) { scans[i].emplace(scene, jobs[i].view); });
+        }
+        for (std::size_t i = 0; i < jobs.size(); ++i) {
+            const Job& job = jobs[i];
+            MapReport report{job.spec, 0, job.texels()};
+            DepthMap map = baker.bake(job.view, *scans[i], baked_.report, report.covered,
+                                      [this](std::uint64_t texels) { finish(texels); });
+            add(std::move(map), std::move(report));
+            scans[i].reset();
+        }
+    }
+
+    /// Where one map's work runs out, the next one's has begun.
+    void fitMaps(const RayScene& scene, const TriangleNormals& normals, std::span<const Job> jobs) {
+        struct Fitted {
+            DepthMap map;
+            MapReport report;
+        };
+        std::vector<Fitted> fitted(jobs.size());
+        tbb::parallel_for(std::size_t{0}, jobs.size(), [&](std::size_t i) {
+            const Job& job = jobs[i];
+            fitted[i].report = {job.spec, 0, job.texels()};
+            fitted[i].map = bakeFittedMap(scene, normals, job.view, fitOptions(*mesh_, job.view, options_),
+                                          fitted[i].report.covered, rowsDone(job.view));
+        });
+        for (Fitted& f : fitted) {
+            add(std::move(f.map), std::move(f.report));
+        }
+    }
+
     /// Of gaps that the maps baked so far see little of.
-    DepthMap bakeGaps(const MeshQuery& query, const TriangleNormals& normals, const View& view,
-                      const FittedMapOptions& fit, MapReport& report) {
+    void bakeGaps(const MeshQuery& query, const TriangleNormals& normals, const Job& job) {
         const IsKnown is_known = [&](const glm::vec3& p) {
             return std::ranges::any_of(baked_.collider.maps, [&](const DepthMap& map) {
                 const std::optional<Vote> said = vote(map, p);
                 return said && said->distance >= 0.0F;
             });
         };
-        return bakeGapMap(query, normals, view, fit, is_known, report.covered, rowsDone(view));
+        MapReport report{job.spec, 0, job.texels()};
+        DepthMap map = bakeGapMap(query, normals, job.view, fitOptions(*mesh_, job.view, options_), is_known,
+                                  report.covered, rowsDone(job.view));
+        add(std::move(map), std::move(report));
     }
 
     [[nodiscard]] Result<void> checkCovered() const {
@@ -380,6 +440,7 @@ class Bake {
     const BakeOptions& options_;
     std::vector<Job> jobs_;
     std::uint64_t texels_ = 0;  // of all jobs
+    std::mutex finish_;
     std::uint64_t done_ = 0;
     bool has_planes_ = false;
     Baked baked_;

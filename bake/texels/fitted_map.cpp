@@ -1,11 +1,14 @@
 #include "bake/texels/fitted_map.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "bake/mesh/triangle_plane.h"
@@ -19,8 +22,10 @@
 namespace relief {
 namespace {
 
-/// Rays traced before their texels are fitted: few, so that their hits (16 MiB) stay in the cache until they are read.
-constexpr std::uint64_t kStripeRays = std::uint64_t{1} << 19;
+/// Rows of rays of one task, about, and rays, at most: so few that its hits stay in the core's own cache until they are
+/// read.
+constexpr std::uint32_t kTaskRows = 32;
+constexpr std::uint32_t kTaskRays = 1 << 18;
 /// Parts of the way between two rays of a footprint to which the edge of a surface is found; odd.
 constexpr std::uint32_t kEdgeParts = 63;
 
@@ -62,9 +67,13 @@ class EndFitter {
     /// \param hits        of this end in the fine view, from row `first_row` of the face on, the rows next to
     ///                    the texel's included
     /// \param other_hits  of the other end; may be empty
+    /// \param other       of the other end, if it has fitted this texel before
     std::optional<Surface> fit(std::uint32_t face, std::uint32_t x, std::uint32_t y, std::uint32_t first_row,
-                               std::span<const Hit> hits, std::span<const Hit> other_hits) {
+                               std::span<const Hit> hits, std::span<const Hit> other_hits,
+                               const EndFitter* other = nullptr) {
         const Footprint here{face, x, y, first_row, hits, other_hits};
+        found_.clear();
+        prefetch(here);
         const auto [any, all] = whatMeets(here);
         if (!any) {
             return std::nullopt;
@@ -82,9 +91,18 @@ class EndFitter {
                     fine_.ray(face, column, row), hit, other_hits.empty() ? Hit() : other_hits[at]);
             }
         }
-        edge_.clear();
-        if (!all) {
+        if (!all && other != nullptr && sharesEdges()) {
+            for (const EdgeHits& edge : other->found_) {
+                found_.push_back({edge.x, edge.y, edge.other, edge.last});
+            }
+        } else if (!all) {
             findEdge(here);
+        }
+        edge_.clear();
+        for (const EdgeHits& edge : found_) {
+            if (!edge.last.empty()) {
+                edge_.push_back(footprintRay(finest_.ray(face, edge.x, edge.y), edge.last, edge.other));
+            }
         }
         const TexelRay centre = view_.ray(face, x, y);
         deep_.setTexel((std::size_t{face} * view_.height + y) * view_.width + x);
@@ -100,6 +118,28 @@ class EndFitter {
     }
 
   private:
+    /// A texel, and the hits of the fine view from row `first_row` of its face on.
+    struct Footprint {
+        std::uint32_t face;
+        std::uint32_t x;
+        std::uint32_t y;
+        std::uint32_t first_row;
+        std::span<const Hit> hits;
+        std::span<const Hit> other_hits;
+    };
+
+    /// Normals of a texel to come, which lie anywhere in memory.
+    void prefetch(const Footprint& here) const {
+        constexpr std::uint32_t kAhead = 2;
+        const std::uint32_t column = (here.x + kAhead) * samples_;
+        for (std::uint32_t j = 0; column < fine_.width && j < samples_; ++j) {
+            const Hit& hit = here.hits[indexOf(here, column, here.y * samples_ + j)];
+            if (!hit.empty()) {
+                __builtin_prefetch(&normals_[hit.triangle()]);
+            }
+        }
+    }
+
     [[nodiscard]] FootprintRay footprintRay(const TexelRay& along, const Hit& hit, const Hit& other) const {
         FootprintRay ray = end_.fromViewer(along);
         if (!hit.empty()) {
@@ -122,16 +162,6 @@ class EndFitter {
         const glm::dvec3 direction = view_.ray(face, x, y).direction;
         return {0.0F, glm::vec3(direction / -length(direction))};
     }
-
-    /// A texel, and the hits of the fine view from row `first_row` of its face on.
-    struct Footprint {
-        std::uint32_t face;
-        std::uint32_t x;
-        std::uint32_t y;
-        std::uint32_t first_row;
-        std::span<const Hit> hits;
-        std::span<const Hit> other_hits;
-    };
 
     [[nodiscard]] std::size_t indexOf(const Footprint& here, std::uint32_t column, std::uint32_t row) const {
         return std::size_t{row - here.first_row} * fine_.width + column;
@@ -197,6 +227,19 @@ class EndFitter {
         });
     }
 
+    /// Where all rays start in free space from either end, a surface that one end meets the other does.
+    [[nodiscard]] bool sharesEdges() const {
+        return starts_free_ && other_starts_free_ && !may_start_inside_;
+    }
+
+    /// In the finest grid, the last ray that meets a surface, and what it meets from either end.
+    struct EdgeHits {
+        std::uint32_t x;
+        std::uint32_t y;
+        Hit last;
+        Hit other;  // empty where it does not matter
+    };
+
     void findEdgeBetween(const Footprint& here, std::uint32_t column, std::uint32_t row, std::uint32_t right,
                          std::uint32_t up) {
         const bool meets = !here.hits[indexOf(here, column, row)].empty();
@@ -220,8 +263,8 @@ class EndFitter {
             last = hit.empty() ? last : hit;
         }
         if (isOwn(here, on[0] / kEdgeParts, on[1] / kEdgeParts) && !startsInside(last)) {
-            const Hit other = other_starts_free_ ? probe_other_.trace(here.face, on[0], on[1]) : Hit();
-            edge_.push_back(footprintRay(finest_.ray(here.face, on[0], on[1]), last, other));
+            found_.push_back({on[0], on[1], last,
+                              other_starts_free_ ? probe_other_.trace(here.face, on[0], on[1]) : Hit()});
         }
     }
 
@@ -241,10 +284,11 @@ class EndFitter {
     PlaneFitOptions fit_;
     std::vector<FootprintRay> rays_;
     std::vector<FootprintRay> around_;
+    std::vector<EdgeHits> found_;  // of the texel at hand
     std::vector<FootprintRay> edge_;
 };
 
-/// Fits all texels of a map, stripe by stripe.
+/// Fits all texels of a map, a few rows a task.
 class MapFitter {
   public:
     MapFitter(const RayScene& scene, const TriangleNormals& normals, const View& view,
@@ -261,20 +305,40 @@ class MapFitter {
     }
 
     DepthMap run(std::uint64_t& covered, const std::function<void(std::uint32_t)>& rowsDone) {
-        const auto stripe_rows = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(
-            kStripeRays / (std::uint64_t{fine_.width} * options_.samples), 1, view_.height));
-        covered = 0;
-        for (std::uint32_t face = 0; face < view_.faceCount(); ++face) {
-            for (std::uint32_t y = 0; y < view_.height; y += stripe_rows) {
-                const RowRange stripe{face, y, std::min(y + stripe_rows, view_.height)};
-                covered += fitStripe(stripe);
-                rowsDone(stripe.end - stripe.begin);
-            }
-        }
+        const std::uint32_t task_rows =
+            std::max(1U, std::min(kTaskRows, kTaskRays / fine_.width) / options_.samples);
+        const std::uint32_t tasks_per_face = (view_.height + task_rows - 1) / task_rows;
+        tbb::enumerable_thread_specific<Worker> workers([&] { return Worker(*this); });
+        covered = tbb::parallel_reduce(
+            tbb::blocked_range<std::uint32_t>(0, view_.faceCount() * tasks_per_face), std::uint64_t{0},
+            [&](const auto& tasks, std::uint64_t count) {
+                Worker& worker = workers.local();
+                for (std::uint32_t task = tasks.begin(); task != tasks.end(); ++task) {
+                    const std::uint32_t begin = task % tasks_per_face * task_rows;
+                    const RowRange rows{task / tasks_per_face, begin,
+                                        std::min(begin + task_rows, view_.height)};
+                    count += fitRows(rows, worker);
+                    rowsDone(rows.end - rows.begin);
+                }
+                return count;
+            },
+            std::plus<>());
         return std::move(map_);
     }
 
   private:
+    /// What a thread keeps from one task to the next.
+    struct Worker {
+        explicit Worker(const MapFitter& map)
+            : near_fitter(map.fitter(RayEnd::kNear)), far_fitter(map.fitter(RayEnd::kFar)) {}
+        EndFitter near_fitter;
+        EndFitter far_fitter;
+        std::array<std::vector<Hit>, 2> hits;  // by RayEnd
+    };
+    [[nodiscard]] EndFitter fitter(RayEnd end) const {
+        return {scene_, map_, normals_, view_, fine_, finest_, end, options_};
+    }
+
     static View scaled(View view, std::uint32_t factor) {
         view.width *= factor;
         view.height *= factor;
@@ -282,38 +346,31 @@ class MapFitter {
     }
 
     /// \return the number of texels with a surface.
-    std::uint64_t fitStripe(const RowRange& stripe) {
+    std::uint64_t fitRows(const RowRange& rows, Worker& worker) {
         // One more row on either side, for the rings about the texels.
-        const RowRange rays{stripe.face, stripe.begin * options_.samples - (stripe.begin > 0 ? 1 : 0),
-                            std::min(stripe.end * options_.samples + 1, fine_.height)};
+        const RowRange rays{rows.face, rows.begin * options_.samples - (rows.begin > 0 ? 1 : 0),
+                            std::min(rows.end * options_.samples + 1, fine_.height)};
         for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
             if (view_.keeps(end)) {
-                std::vector<Hit>& hits = hits_[static_cast<std::size_t>(end)];
-                hits.resize(std::size_t{rays.end - rays.begin} * fine_.width);
+                worker.hits[static_cast<std::size_t>(end)].resize(std::size_t{rays.end - rays.begin} *
+                                                                  fine_.width);
             }
         }
-        scan_.scan(rays, hits_[0], hits_[1]);
-        return tbb::parallel_reduce(
-            tbb::blocked_range<std::uint32_t>(stripe.begin, stripe.end), std::uint64_t{0},
-            [&](const auto& block, std::uint64_t count) {
-                return count + fitRows({stripe.face, block.begin(), block.end()}, rays.begin);
-            },
-            std::plus<>());
-    }
-
-    std::uint64_t fitRows(const RowRange& rows, std::uint32_t first_ray_row) {
-        EndFitter near_fitter(scene_, map_, normals_, view_, fine_, finest_, RayEnd::kNear, options_);
-        EndFitter far_fitter(scene_, map_, normals_, view_, fine_, finest_, RayEnd::kFar, options_);
+        const auto& [near_hits, far_hits] = worker.hits;
+        scan_.scan(rays, worker.hits[0], worker.hits[1]);
         std::uint64_t covered = 0;
         for (std::uint32_t y = rows.begin; y != rows.end; ++y) {
             for (std::uint32_t x = 0; x < view_.width; ++x) {
                 Texel texel;
                 if (!isBorder(view_, x, y)) {
                     if (view_.keeps(RayEnd::kNear)) {
-                        texel.front = near_fitter.fit(rows.face, x, y, first_ray_row, hits_[0], hits_[1]);
+                        texel.front =
+                            worker.near_fitter.fit(rows.face, x, y, rays.begin, near_hits, far_hits);
                     }
                     if (view_.keeps(RayEnd::kFar)) {
-                        texel.back = far_fitter.fit(rows.face, x, y, first_ray_row, hits_[1], hits_[0]);
+                        texel.back =
+                            worker.far_fitter.fit(rows.face, x, y, rays.begin, far_hits, near_hits,
+                                                  view_.keeps(RayEnd::kNear) ? &worker.near_fitter : nullptr);
                     }
                     if (view_.compare == Compare::kGreater) {
                         texel.front.swap(texel.back);  // a map of one surface holds it as its front
@@ -333,8 +390,7 @@ class MapFitter {
     View finest_;  // and for each place between two rays where an edge is looked for
     const FittedMapOptions& options_;
     DepthMap map_;
-    ScanConverter scan_;                    // of fine_
-    std::array<std::vector<Hit>, 2> hits_;  // of the stripe, by RayEnd
+    ScanConverter scan_;  // of fine_
 };
 
 }  // namespace

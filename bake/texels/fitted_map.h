@@ -41,7 +41,7 @@ class TriangleNormals {
 };
 
 /// Bakes one map with Decode::kPlane, on all cores of the current arena; the same for any number of them.
-/// \param rowsDone  called with the number of texel rows finished, from the calling thread.
+/// \param rowsDone  called with the number of texel rows finished, from several threads at once.
 /// \param covered   out: texels with a surface.
 [[nodiscard]] DepthMap bakeFittedMap(const RayScene& scene, const TriangleNormals& normals, const View& view,
                                      const FittedMapOptions& options, std::uint64_t& covered,

@@ -123,6 +123,68 @@ class RayTable {
     std::array<Block, (kFootprintRaysMax + kLanes - 1) / kLanes> table_;
 };
 
+/// A footprint whose rays run side by side and all meet a surface: of a plane that faces the viewer all that counts are the
+/// points met. Most footprints are such, and are asked about in a quarter of the time.
+class PointTable {
+  public:
+    static bool holds(std::span<const FootprintRay> rays) {
+        return std::ranges::all_of(rays, [&](const FootprintRay& ray) {
+            return ray.u >= 0.0 && ray.direction == rays.front().direction;
+        });
+    }
+
+    /// \param reach  the most that counts of a ray, in u
+    PointTable(std::span<const FootprintRay> rays, const glm::dvec3& origin, double reach)
+        : blocks_((rays.size() + kLanes - 1) / kLanes) {
+        assert(rays.size() <= kFootprintRaysMax);
+        for (std::size_t i = 0; i < blocks_ * kLanes; ++i) {
+            const FootprintRay& ray = rays[std::min(i, rays.size() - 1)];  // a point more changes no maximum
+            Block& block = table_[i / kLanes];
+            const std::size_t lane = i % kLanes;
+            const glm::dvec3 point = ray.origin + ray.u * ray.direction - origin;
+            for (int axis = 0; axis < 3; ++axis) {
+                block.point[axis][lane] = point[axis];
+            }
+            block.most[lane] = i < rays.size() ? std::min(ray.u, reach) : 0.0;  // and no sum
+        }
+    }
+
+    /// As RayTable::support of a plane that faces the viewer.
+    [[nodiscard]] double support(const glm::dvec3& n) {
+        Lanes most = {-kInfinity, -kInfinity};
+        for (std::size_t b = 0; b < blocks_; ++b) {
+            Block& block = table_[b];
+            block.at = n.x * block.point[0] + (n.y * block.point[1] + n.z * block.point[2]);
+            most = block.at > most ? block.at : most;
+        }
+        return std::max(most[0], most[1]);
+    }
+
+    /// As RayTable::freeSpaceBehind, of the normal that support() was asked about last.
+    /// \param along  the normal along the rays; negative
+    [[nodiscard]] double freeSpaceBehind(double offset, double along) const {
+        const double per_offset = -1.0 / along;
+        const Lanes none = {};
+        Lanes sum = none;
+        for (std::size_t b = 0; b < blocks_; ++b) {
+            const Block& block = table_[b];
+            const Lanes length = (offset - block.at) * per_offset;
+            const Lanes positive = length > 0.0 ? length : none;
+            sum += positive < block.most ? positive : block.most;
+        }
+        return sum[0] + sum[1];
+    }
+
+  private:
+    struct Block {
+        Lanes point[3];  // met, from the centre ray's start
+        Lanes most;      // that counts of the free space on the ray
+        Lanes at;        // along the normal at hand
+    };
+    std::size_t blocks_;
+    std::array<Block, (kFootprintRaysMax + kLanes - 1) / kLanes> table_;
+};
+
 /// The search for one texel's plane.
 class PlaneSearch {
   public:
@@ -130,14 +192,17 @@ class PlaneSearch {
                 std::span<const FootprintRay> edge, const FootprintRay& centre, const glm::dvec3& zero_depth,
                 const PlaneFitOptions& options, DeepSolid* deep)
         : rays_(rays),
-          table_(rays, centre.origin, options.u_max),
           around_(around),
           edge_(edge),
           centre_(centre),
           from_zero_(centre.origin - zero_depth),
           options_(options),
           deep_(deep),
-          direction_length_(std::sqrt(dot(centre.direction, centre.direction))) {}
+          direction_length_(std::sqrt(dot(centre.direction, centre.direction))) {
+        if (PointTable::holds(rays)) {
+            points_.emplace(rays, centre.origin, options.reach);
+        }
+    }
 
     std::optional<FittedPlane> run() {
         glm::dvec3 sum(0.0);
@@ -261,7 +326,7 @@ class PlaneSearch {
         }
         tried_[tried_count_++ % tried_.size()] = code;
 
-        const glm::dvec3& normal = decodedNormals()[code];
+        const glm::dvec3 normal(decodedNormals()[code]);
         const double along = dot(normal, centre_.direction);
         const double cosine = along / direction_length_;
         const bool stands = std::abs(cosine) < kStandingMax;
@@ -269,8 +334,8 @@ class PlaneSearch {
             return;
         }
         // Pushed until no sampled surface point lies in front.
-        table_.setNormal(normal);
-        double offset = table_.support();
+        const bool by_points = points_ && along < 0.0;
+        double offset = by_points ? points_->support(normal) : table(normal).support();
         if (cosine > -kSteepCosine) {
             offset = std::max(offset, supportOf(edge_, normal));
         }
@@ -290,7 +355,8 @@ class PlaneSearch {
         }
         const double stored = stands ? (2.0 * scaled / kDepthCodes - 1.0) * options_.range - from_zero
                                      : scaled / kDepthCodes * options_.u_max * along;
-        double cost = table_.freeSpaceBehind(stored, options_.reach, best_cost_);
+        double cost = by_points ? points_->freeSpaceBehind(stored, along)
+                                : table_->freeSpaceBehind(stored, options_.reach, best_cost_);
         if (options_.let_back > 0.0) {
             for (const FootprintRay& ray : rays_) {
                 cost += solidInFront(ray, normal, stored);
@@ -306,6 +372,14 @@ class PlaneSearch {
         }
         best_cost_ = cost;
         best_ = {normal, unpackNormal(code), stands, static_cast<std::uint16_t>(scaled)};
+    }
+
+    const RayTable& table(const glm::dvec3& normal) {
+        if (!table_) {
+            table_.emplace(rays_, centre_.origin, options_.u_max);
+        }
+        table_->setNormal(normal);
+        return *table_;
     }
 
     std::span<const FootprintRay> around() {
@@ -417,11 +491,13 @@ class PlaneSearch {
         }
         const double scaled = std::floor(std::clamp(nearest / options_.u_max, 0.0, 1.0) * kDepthCodes);
         const std::uint16_t code = codeOf(facing);
-        best_ = {decodedNormals()[code], unpackNormal(code), false, static_cast<std::uint16_t>(scaled)};
+        best_ = {glm::dvec3(decodedNormals()[code]), unpackNormal(code), false,
+                 static_cast<std::uint16_t>(scaled)};
     }
 
     std::span<const FootprintRay> rays_;
-    RayTable table_;
+    std::optional<PointTable> points_;
+    std::optional<RayTable> table_;  // once it is asked
     const AroundRays& around_;
     std::span<const FootprintRay> around_rays_;
     bool around_asked_ = false;
@@ -441,11 +517,11 @@ class PlaneSearch {
 
 }  // namespace
 
-const std::array<glm::dvec3, 65536>& decodedNormals() {
+const std::array<glm::vec3, 65536>& decodedNormals() {
     static const auto* const table = [] {
-        auto* t = new std::array<glm::dvec3, 65536>;
+        auto* t = new std::array<glm::vec3, 65536>;
         for (std::size_t code = 0; code < t->size(); ++code) {
-            (*t)[code] = glm::dvec3(decodeNormal(unpackNormal(static_cast<std::uint16_t>(code))));
+            (*t)[code] = decodeNormal(unpackNormal(static_cast<std::uint16_t>(code)));
         }
         return t;
     }();

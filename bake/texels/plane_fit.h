@@ -70,8 +70,8 @@ struct FittedPlane {
     std::uint16_t code = 0;
 };
 
-/// The decoded vectors of all packed normals, in double: candidates are looked up thousands of times a row.
-[[nodiscard]] const std::array<glm::dvec3, 65536>& decodedNormals();
+/// The decoded vectors of all packed normals: candidates are looked up thousands of times a row.
+[[nodiscard]] const std::array<glm::vec3, 65536>& decodedNormals();
 
 using AroundRays = std::function<std::span<const FootprintRay>()>;
 

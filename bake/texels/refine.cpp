@@ -28,8 +28,9 @@ constexpr double kMargin = 3.0;
 /// seen the last surfaces too, may choose them.
 constexpr double kSteepest = 0.2;
 constexpr std::size_t kNormalsTried = 12;
-/// Of the points, those that are drawn to see how much there is to mend.
-constexpr double kTrialShare = 0.25;
+/// Of the points, those that are drawn to see how much there is to mend; of few more, as fewer would tell little.
+constexpr double kTrialShare = 0.125;
+constexpr double kTrialPointsMin = 65'536.0;
 constexpr std::uint16_t kSettledVotes = 4;
 constexpr std::int32_t kAbstains = -1;
 constexpr std::int32_t kOutside = -2;
@@ -169,7 +170,7 @@ class TexelVotes {
 
     /// Of a code that is not empty.
     [[nodiscard]] Plane planeOf(const Code& code, const Ray& ray) const {
-        const glm::dvec3& normal = normals_[code.normal];
+        const glm::dvec3 normal(decodedNormals()[code.normal]);
         return {normal, offsetOf(code, normal, ray), ray.origin};
     }
 
@@ -205,7 +206,6 @@ class TexelVotes {
     }
 
     DepthMap& map_;
-    const std::array<glm::dvec3, 65536>& normals_ = decodedNormals();
     bool changeable_;
     double depth_max_;
     double range_ = 0.0;
@@ -238,7 +238,7 @@ class PlaneChoice {
     }
     /// Of a gap the other end has its say too.
     void setOther(const Code& other, const Ray& ray) {
-        const glm::dvec3& normal = decodedNormals()[other.normal];
+        const glm::dvec3 normal(decodedNormals()[other.normal]);
         within_ = deep_.depthsOf(normal, votes_.offsetOf(other, normal, ray));
     }
 
@@ -246,7 +246,7 @@ class PlaneChoice {
         ray_ = &ray;
         end_ = end;
         best_ = current;
-        const glm::dvec3& normal = decodedNormals()[current.normal];
+        const glm::dvec3 normal(decodedNormals()[current.normal]);
         best_cost_ = costOf(normal, votes_.offsetOf(current, normal, ray)) - margin_;
         if (best_cost_ < 0.0) {
             return current;
@@ -302,7 +302,7 @@ class PlaneChoice {
             return;
         }
         tried_[tried_count_++] = code;
-        const glm::dvec3& normal = decodedNormals()[code];
+        const glm::dvec3 normal(decodedNormals()[code]);
         if (!votes_.allowed(normal, *ray_, end_, steepest_)) {
             return;
         }
@@ -362,9 +362,19 @@ class Refinement {
         }
     }
 
+    /// Adds points, but for the settled.
+    void add(std::vector<LabelledPoint> points) {
+        const std::size_t first = points_.size();
+        if (points_.empty()) {
+            points_ = std::move(points);
+        } else {
+            points_.insert(points_.end(), points.begin(), points.end());
+        }
+        countVotes(first);
+    }
+
     /// \return the share of the mistakes at all points so far, weighted, that a sweep over the maps mends.
-    double refineFor(std::span<const LabelledPoint> points) {
-        countVotes(points);
+    double sweep() {
         const double before = costOfMistakes();
         for (TexelVotes& map : maps_) {
             if (map.changeable()) {
@@ -384,10 +394,8 @@ class Refinement {
         });
     }
 
-    /// Adds points, but for the settled.
-    void countVotes(std::span<const LabelledPoint> points) {
-        const std::size_t first = points_.size();
-        points_.insert(points_.end(), points.begin(), points.end());
+    /// Of the points from `first` on, of which the settled are dropped.
+    void countVotes(std::size_t first) {
         outside_votes_.resize(points_.size(), 0);
         for (const TexelVotes& map : maps_) {
             countVotes(map, first);
@@ -556,21 +564,21 @@ void refineTexels(Collider& collider, const MeshQuery& query, const RefineOption
     const double far = options.sigma_share * query.mesh().bounds.longestSide();
     const double near = std::min(options.sigma_texels * meanTexel(collider), far);
     std::uint64_t seed = options.seed;
+    Refinement refinement(collider, query, options);
     const auto draw = [&](double share) {
         const auto half = static_cast<std::size_t>(0.5 * share * count);
-        std::vector<LabelledPoint> points = drawNearSurface(query, half, near, seed++);
-        const std::vector<LabelledPoint> others = drawNearSurface(query, half, far, seed++);
-        points.insert(points.end(), others.begin(), others.end());
-        return points;
+        refinement.add(drawNearSurface(query, half, near, seed++));
+        refinement.add(drawNearSurface(query, half, far, seed++));
     };
-    Refinement refinement(collider, query, options);
-    const double mended = refinement.refineFor(draw(kTrialShare));
+    const double trial = std::max(kTrialShare, std::min(kTrialPointsMin / count, 1.0));
+    draw(trial);
+    const double mended = refinement.sweep();
     if (mended < options.worth_mending) {
         return;
     }
-    refinement.refineFor(draw((mended < options.worth_all ? 0.5 : 1.0) * (1.0 - kTrialShare)));
-    for (int sweep = 1; sweep < options.sweeps; ++sweep) {
-        refinement.refineFor({});
+    draw((mended < options.worth_all ? 0.5 : 1.0) * (1.0 - trial));
+    for (int sweep = 0; sweep < options.sweeps; ++sweep) {
+        refinement.sweep();
     }
 }
 

@@ -26,8 +26,9 @@ struct RefineOptions {
     /// but at most the other; and in units of the mesh's longest side, for what lies in layers.
     double sigma_texels = 0.25;
     double sigma_share = 0.005;
-    /// A quarter of the points is asked first. Where it mended a smaller share of the mistakes than `worth_mending`, that is
-    /// all: smooth meshes have nothing to mend. Below `worth_all` half of the others are asked, else all.
+    /// An eighth of the points is asked first, or more where they are few. Where that mended a smaller share of the mistakes
+    /// than `worth_mending`, that is all: smooth meshes have nothing to mend. Below `worth_all` half of the others are asked,
+    /// else all.
     double worth_mending = 0.012;
     double worth_all = 0.2;
     std::uint64_t seed = 1;

@@ -71,11 +71,10 @@ bool comesBefore(const glm::dvec3& a, const glm::dvec3& b) {
 
 }  // namespace
 
-/// Rows, and where their hits go.
+/// Where the hits of some rows go.
 struct ScanConverter::Block {
     std::uint32_t face;
     std::uint32_t begin;
-    std::uint32_t end;
     std::span<Hit> near;  // from row `begin` on
     std::span<Hit> far;
 };
@@ -224,82 +223,102 @@ void ScanConverter::place() {
 void ScanConverter::sortIntoBlocks() {
     const std::size_t faces = view_.faceCount();
     const std::size_t count = scene_.mesh().triangles.size();
-    // Which blocks of rows a triangle may have texels in, [first, end), by face.
-    std::vector<std::array<std::uint16_t, 2>> ranges(faces * count);
+    // The rows that a triangle may have texels in, by face: by block, and by row of the first and the last.
+    struct Rows {
+        std::uint16_t first_block = 0;
+        std::uint16_t end_block = 0;
+        std::uint8_t begin = 0;
+        std::uint8_t end = 0;
+    };
+    std::vector<Rows> rows_of(faces * count);
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
         for (std::size_t face = 0; face < faces; ++face) {
             const Shape shape(*this, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(face));
             const auto [row, row_end] = shape.rangeOf(1, view_.height);
             const auto [column, column_end] = shape.rangeOf(0, view_.width);
             if (!shape.edgeOn() && row < row_end && column < column_end) {
-                ranges[faces * i + face] = {static_cast<std::uint16_t>(row / kBlockRows),
-                                            static_cast<std::uint16_t>((row_end - 1) / kBlockRows + 1)};
+                rows_of[faces * i + face] = {static_cast<std::uint16_t>(row / kBlockRows),
+                                             static_cast<std::uint16_t>((row_end - 1) / kBlockRows + 1),
+                                             static_cast<std::uint8_t>(row % kBlockRows),
+                                             static_cast<std::uint8_t>((row_end - 1) % kBlockRows + 1)};
             }
         }
     });
     const auto forEachBlock = [&](const auto& visit) {
         for (std::size_t i = 0; i < count; ++i) {
             for (std::size_t face = 0; face < faces; ++face) {
-                const auto [begin, end] = ranges[faces * i + face];
-                for (std::size_t block = begin; block < end; ++block) {
-                    visit(face * blocks_ + block, static_cast<std::uint32_t>(i));
+                const Rows& rows = rows_of[faces * i + face];
+                for (std::uint32_t block = rows.first_block; block < rows.end_block; ++block) {
+                    const auto begin = block == rows.first_block ? rows.begin : std::uint8_t{0};
+                    const auto end = block + 1U == rows.end_block ? rows.end : std::uint8_t{kBlockRows};
+                    visit(face * blocks_ + block, Entry{static_cast<std::uint32_t>(i), begin, end});
                 }
             }
         }
     };
     first_.assign(faces * blocks_ + 1, 0);
-    forEachBlock([&](std::size_t block, std::uint32_t) { ++first_[block + 1]; });
+    forEachBlock([&](std::size_t block, const Entry&) { ++first_[block + 1]; });
     for (std::size_t block = 1; block < first_.size(); ++block) {
         first_[block] += first_[block - 1];
     }
-    triangles_.resize(first_.back());
+    entries_.resize(first_.back());
     std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-    forEachBlock([&](std::size_t block, std::uint32_t triangle) { triangles_[next[block]++] = triangle; });
+    forEachBlock([&](std::size_t block, const Entry& entry) { entries_[next[block]++] = entry; });
 }
 
-std::span<const std::uint32_t> ScanConverter::trianglesOf(std::uint32_t face, std::uint32_t block) const {
+std::span<const ScanConverter::Entry> ScanConverter::entriesOf(std::uint32_t face,
+                                                               std::uint32_t block) const {
     const std::size_t at = std::size_t{face} * blocks_ + block;
-    return std::span(triangles_).subspan(first_[at], first_[at + 1] - first_[at]);
+    return std::span(entries_).subspan(first_[at], first_[at + 1] - first_[at]);
+}
+
+void ScanConverter::prefetch(std::span<const Entry> entries, std::size_t i) const {
+    constexpr std::size_t kAhead = 8;
+    const TriangleMesh& mesh = scene_.mesh();
+    if (i + 2 * kAhead < entries.size()) {
+        __builtin_prefetch(&mesh.triangles[entries[i + 2 * kAhead].triangle]);
+    }
+    if (i + kAhead < entries.size()) {
+        const glm::uvec3& t = mesh.triangles[entries[i + kAhead].triangle];
+        for (const std::uint32_t corner : {t.x, t.y, t.z}) {
+            __builtin_prefetch(&places_[corner]);
+            __builtin_prefetch(&mesh.positions[corner]);
+        }
+    }
 }
 
 void ScanConverter::scan(const RowRange& rows, std::span<Hit> near, std::span<Hit> far) const {
-    tbb::parallel_for(rows.begin / kBlockRows, (rows.end + kBlockRows - 1) / kBlockRows,
-                      [&](std::uint32_t block) {
-                          const RowRange part{rows.face, std::max(rows.begin, block * kBlockRows),
-                                              std::min(rows.end, (block + 1) * kBlockRows)};
-                          const std::size_t first = std::size_t{part.begin - rows.begin} * view_.width;
-                          const std::size_t count = std::size_t{part.end - part.begin} * view_.width;
-                          const auto of = [&](std::span<Hit> hits) {
-                              return hits.empty() ? hits : hits.subspan(first, count);
-                          };
-                          scanAlone(part, of(near), of(far));
-                      });
-}
-
-void ScanConverter::scanAlone(const RowRange& rows, std::span<Hit> near, std::span<Hit> far) const {
     std::ranges::fill(near, Hit());
     std::ranges::fill(far, Hit());
     for (std::uint32_t begin = rows.begin; begin < rows.end;) {
         const std::uint32_t block = begin / kBlockRows;
-        const std::uint32_t end = std::min(rows.end, (block + 1) * kBlockRows);
+        const std::uint32_t first_row = block * kBlockRows;
+        const std::uint32_t end = std::min(rows.end, first_row + kBlockRows);
         const std::size_t at = std::size_t{begin - rows.begin} * view_.width;
         const auto part = [&](std::span<Hit> hits) { return hits.empty() ? hits : hits.subspan(at); };
-        const Block here{rows.face, begin, end, part(near), part(far)};
-        for (const std::uint32_t triangle : trianglesOf(rows.face, block)) {
-            draw(triangle, here);
+        const Block here{rows.face, begin, part(near), part(far)};
+        const std::span<const Entry> entries = entriesOf(rows.face, block);
+        for (std::size_t i = 0; i < entries.size(); ++i) {
+            prefetch(entries, i);
+            const Entry& entry = entries[i];
+            const std::uint32_t first = std::max(begin, first_row + entry.begin);
+            const std::uint32_t last = std::min(end, first_row + entry.end);
+            if (first < last) {
+                draw(entry.triangle, first, last, here);
+            }
         }
         begin = end;
     }
 }
 
-void ScanConverter::draw(std::uint32_t triangle, const Block& block) const {
+void ScanConverter::draw(std::uint32_t triangle, std::uint32_t begin, std::uint32_t end,
+                         const Block& block) const {
     const Shape shape(*this, triangle, block.face);
     const Grid& grid = shape.grid();
     const std::array<Edge, 3> edges = shape.edges();
-    const auto [first_row, end_row] = shape.rangeOf(1, view_.height);
     const auto [first_column, end_column] = shape.rangeOf(0, view_.width);
     const SeenPlane plane = planes_.of(triangle);
-    for (std::uint32_t row = std::max(first_row, block.begin); row < std::min(end_row, block.end); ++row) {
+    for (std::uint32_t row = begin; row < end; ++row) {
         const double y = grid.y(row);
         const auto holds = [&](std::int64_t column) {
             const double x = grid.x(static_cast<double>(column));

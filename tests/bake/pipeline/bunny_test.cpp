@@ -1,4 +1,5 @@
 // The whole pipeline on a real mesh: determinism, provenance, round trip, and known signs.
+#include <atomic>
 #include <fstream>
 
 #include "bake/import/mesh_import.h"
@@ -183,15 +184,23 @@ TEST(BakeBunny, TheNearestSurfaceIsTheNearestTriangle) {
 }
 
 TEST(BakeProgress, RunsFromNothingToOne) {
-    double last = 0.0;
-    BakeOptions options;
-    options.resolution = 16;
-    options.progress = [&](double share) {
-        EXPECT_GT(share, last);
-        last = share;
-    };
-    ASSERT_TRUE(bake(makeBoxMesh({0, 0, 0}, {1, 1, 1}), options));
-    EXPECT_EQ(last, 1.0);
+    for (const char* decode : {"projected", "plane"}) {
+        double last = 0.0;
+        std::atomic<int> within = 0;
+        BakeOptions options;
+        for (const char* direction : {"-x", "-y", "-z"}) {
+            options.maps.push_back(*parseMapSpec(std::string("front-back:size=130,depth=unorm16,dir=") +
+                                                 direction + ",decode=" + decode));
+        }
+        options.progress = [&](double share) {
+            EXPECT_EQ(++within, 1);  // from one thread at a time
+            EXPECT_GT(share, last);
+            last = share;
+            --within;
+        };
+        ASSERT_TRUE(bake(makeBoxMesh({0, 0, 0}, {1, 1, 1}), options));
+        EXPECT_EQ(last, 1.0);
+    }
 }
 
 }  // namespace

@@ -266,7 +266,7 @@ TEST(Pinholes, RaysAimedAtVerticesAndEdgesAreMet) {
                     if (i % 16 < 2) {  // the whole mesh is scanned for the few texels of each
                         std::array<Hit, 64> near;
                         std::array<Hit, 64> far;
-                        ScanConverter(*scene, view).scanAlone({0, 0, 8}, near, far);
+                        ScanConverter(*scene, view).scan({0, 0, 8}, near, far);
                         count((end == RayEnd::kNear ? near : far)[4 * 8 + 3]);
                     }
                 }

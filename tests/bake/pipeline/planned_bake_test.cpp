@@ -103,7 +103,7 @@ TEST(PlaneFit, NoSampledSurfacePointLiesInFrontOfThePlane) {
             rays[i].origin = {texel * (static_cast<double>(i % 4) - 1.5) / 4,
                               texel * (static_cast<double>(i / 4) - 1.5) / 4, 0};
             rays[i].direction = {0, 0, 1};
-            if (unit(random) < 0.8) {
+            if (repeat % 2 == 0 || unit(random) < 0.8) {
                 rays[i].u = 0.3 + 0.05 * unit(random);
                 rays[i].normal =
                     glm::normalize(glm::dvec3(unit(random) - 0.5, unit(random) - 0.5, -unit(random)));
@@ -122,6 +122,60 @@ TEST(PlaneFit, NoSampledSurfacePointLiesInFrontOfThePlane) {
             }
         }
     }
+}
+
+/// Footprints whose rays run side by side and all meet a surface are asked about in another way than those of which one
+/// runs askew, if by far less than matters: both find planes that are as good.
+TEST(PlaneFit, RaysSideBySideAreAskedInAnotherWayForTheSame) {
+    std::mt19937 random(6);
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    PlaneFitOptions options;
+    options.reach = 0.05;
+    int same = 0;
+    constexpr int kRepeats = 2000;
+    for (int repeat = 0; repeat < kRepeats; ++repeat) {
+        const std::size_t count = repeat % 3 == 0 ? 9 : 16;  // also what no block of lanes divides
+        const std::size_t across = repeat % 3 == 0 ? 3 : 4;
+        const glm::dvec3 slope(0.6 * unit(random), 0.6 * unit(random), 0.0);
+        // Some lie so near the viewer that planes begin in front of it.
+        const double depth = repeat % 5 == 0 ? 0.002 : 0.3;
+        std::vector<FootprintRay> rays(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            // Off the lattice, on which several planes may be the best.
+            rays[i].origin = {0.005 * (double(i % across) + 0.3 * unit(random)) - 0.007,
+                              0.005 * (double(i / across) + 0.3 * unit(random)) - 0.007, 0};
+            rays[i].direction = {0, 0, 1};
+            rays[i].u = std::max(
+                0.0, depth + dot(slope, rays[i].origin) + (repeat % 4 == 0 ? 0.0 : 0.004 * unit(random)));
+            rays[i].u_last = 1.0;
+            rays[i].normal =
+                glm::normalize(glm::dvec3(slope.x + 0.2 * unit(random), slope.y + 0.2 * unit(random), -1.0));
+        }
+        const FootprintRay center{{0, 0, 0}, {0, 0, 1}, -1.0, glm::dvec3(0.0)};
+        const auto fit = [&] {
+            return fitSupportingPlane(rays, nullptr, {}, center, center.origin, options);
+        };
+        const std::optional<FittedPlane> straight = fit();
+        rays.back().direction.x = 1e-15;
+        const std::optional<FittedPlane> askew = fit();
+        ASSERT_TRUE(straight);
+        ASSERT_TRUE(askew);
+        // Of planes that are equally good one may be taken for the other.
+        const auto costOf = [&](const FittedPlane& plane) {
+            double cost = 0.0;
+            for (const FootprintRay& ray : rays) {
+                const glm::dvec3 met = ray.origin + ray.u * ray.direction;
+                const glm::dvec3 stored(0, 0, plane.code / 65534.0);
+                const double free = dot(plane.normal, met - stored) / plane.normal.z;
+                EXPECT_GT(free, -1e-12);
+                cost += std::min({free, ray.u, options.reach});
+            }
+            return cost;
+        };
+        EXPECT_NEAR(costOf(*straight), costOf(*askew), 1e-12);
+        same += straight->code == askew->code && straight->normal == askew->normal ? 1 : 0;
+    }
+    EXPECT_GT(same, 0.99 * kRepeats);
 }
 
 TEST(PlaneFit, FootprintWithoutSurfaceIsEmpty) {
@@ -187,6 +241,38 @@ TEST(FittedMap, SameBytesForAnyNumberOfThreads) {
     const auto bytes = [&](unsigned threads) { return *writeContainer(bakePlan(mesh, plan, threads)); };
     EXPECT_EQ(bytes(1), bytes(2));
     EXPECT_EQ(bytes(1), bytes(7));
+}
+
+/// Several maps are fitted, or traced, at the same time: each as it would be alone.
+TEST(FittedMap, MapsBakedTogetherAreAsAlone) {
+    const TriangleMesh mesh = makeTorusMesh(1.0, 0.4, 48, 24);
+    const std::vector<std::string> specs = {"front-back:dir=-z,size=40x52,depth=unorm16,decode=plane",
+                                            "front-back:dir=1/2/3,size=61x33,depth=unorm16,decode=plane",
+                                            "cube:size=24,decode=plane,box=-1.5/-1.5/-1.5/1.5/1.5/1.5",
+                                            "front-back:dir=-y,size=44,depth=half,decode=projected",
+                                            "float:dir=-x,size=47x31",
+                                            "front-back:dir=-y,size=35x21,depth=unorm16,decode=plane"};
+    // Refined together, planes would differ.
+    BakeOptions options;
+    options.quality = Quality::kFast;
+    const auto baked = [&](const std::vector<std::string>& texts) {
+        options.maps.clear();
+        for (const std::string& text : texts) {
+            options.maps.push_back(*parseMapSpec(text));
+        }
+        Result<Baked> result = bake(mesh, options);
+        EXPECT_TRUE(result) << result.error().message;
+        return result ? std::move(*result) : Baked{};
+    };
+    const Baked together = baked(specs);
+    ASSERT_EQ(together.collider.maps.size(), specs.size());
+    for (std::size_t i = 0; i < specs.size(); ++i) {
+        const Baked alone = baked({specs[i]});
+        ASSERT_EQ(alone.collider.maps.size(), 1U);
+        EXPECT_EQ(together.collider.maps[i].texels, alone.collider.maps[0].texels) << specs[i];
+        EXPECT_EQ(together.report.maps[i].covered, alone.report.maps[0].covered) << specs[i];
+        EXPECT_EQ(toString(together.report.maps[i].spec), toString(alone.report.maps[0].spec));
+    }
 }
 
 TEST(FittedMap, SupportingPlanesHardlyEverCallAnInsidePointOutside) {
