@@ -12,7 +12,7 @@ bool isSet(std::byte b) {
 }
 
 bool isEmpty(std::span<const std::byte> texel) {
-    return std::ranges::none_of(texel, isSet);
+    return std::none_of(texel.begin(), texel.end(), isSet);
 }
 
 /// The texels of a row, one behind the other.

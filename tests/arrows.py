@@ -2,7 +2,8 @@
 """Every #include goes along an arrow of the build files: arrows.py SOURCE FOLDERS_TXT
 
 FOLDERS_TXT is what CMake writes of relief_folder(): "FOLDER: USED USED…", a line each. Also fails on circles among
-files (a .cpp and its .h count as one), and on third parties outside of the folders that may know them.
+files (a .cpp and its .h count as one), on third parties outside of the folders that may know them, and on what the
+standard library of the WebAssembly build lacks (LLVM 14), in the files that it compiles.
 """
 import pathlib
 import re
@@ -71,6 +72,26 @@ def circles(graph):
     return groups
 
 
+# Algorithms of std::ranges (std::ranges::size() and others that are none are there), and casts of bits.
+NOT_FOR_WEB = re.compile(r'\bstd::ranges::(?!(?:size|data|begin|end|empty)\b)\w+\(|\bstd::bit_cast\b')
+
+
+def web_faults(source):
+    """What runtime/web/CMakeLists.txt names in web_sources(FOLDER FILE…), all of FOLDER but the files, must do without."""
+    web = (source / 'runtime/web/CMakeLists.txt').read_text()
+    faults, files = [], 0
+    for folder, left_out in re.findall(r'^web_sources\(([^\s)]+)([^)]*)\)', web, re.MULTILINE):
+        for path in sorted((source / folder).glob('*')):
+            if path.suffix not in ('.h', '.cpp') or path.stem + '.cpp' in left_out.split():
+                continue
+            files += 1
+            for number, line in enumerate(path.read_text().split('\n'), 1):
+                found = NOT_FOR_WEB.search(line.split('//')[0])
+                if found:
+                    faults.append(f'{path.relative_to(source)}:{number}: the WebAssembly build has no {found[0].rstrip("(")}')
+    return faults if files >= 50 else [f'runtime/web/CMakeLists.txt: only {files} files of web_sources() were found']
+
+
 def main(source, folders_file):
     source = pathlib.Path(source)
     uses = {}
@@ -106,6 +127,7 @@ def main(source, folders_file):
             if stem != other:
                 graph.setdefault(stem, set()).add(other)
     faults += ['a circle: ' + ', '.join(group) for group in circles(graph)]
+    faults += web_faults(source)
     print('\n'.join(faults) if faults else f'{files} files in {len(uses)} folders, no arrow runs back')
     return 1 if faults or files < 100 else 0
 
