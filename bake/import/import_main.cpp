@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <filesystem>
@@ -21,6 +22,7 @@
 #include "bake/import/import_source.h"
 #include "formats/base/descriptor.h"
 #include "formats/base/file_io.h"
+#include "formats/base/heap.h"
 #include "formats/base/text.h"
 
 namespace relief {
@@ -28,6 +30,8 @@ namespace {
 
 /// The stack that importRaw reserves, and little things.
 constexpr std::uint64_t kMemoryBeside = (std::uint64_t{1} << 30) + (std::uint64_t{64} << 20);
+/// Of the heap, whose pages may be large.
+constexpr std::uint64_t kHeapBytes = std::uint64_t{64} << 20;
 
 std::uint64_t fileSize(int file) {
     struct stat status {};
@@ -98,6 +102,7 @@ int work(std::span<char*> arguments) {
     if (memory == 0 || seconds == 0 || seconds > UINT32_MAX || triangles == 0 || triangles > kTriangleMax) {
         return kImportExitArguments;
     }
+    prepareHeap(static_cast<std::size_t>(std::min(memory / 4, kHeapBytes)));
     const std::uint64_t size = fileSize(kImportMeshFd);
     void* const pages = ::mmap(nullptr, size, PROT_READ, MAP_SHARED | MAP_POPULATE, kImportMeshFd, 0);
     const int folder = isFolder(kImportFolderFd) ? kImportFolderFd : -1;
@@ -133,9 +138,7 @@ int main(int argc, char** argv) {
     if (argc < 7) {
         return relief::kImportExitArguments;
     }
-    // assimp allocates much in little pieces: fewer, larger steps of one heap, that the limit is exact for.
-    mallopt(M_ARENA_MAX, 1);
-    mallopt(M_TOP_PAD, 16 << 20);
+    mallopt(M_ARENA_MAX, 1);  // one heap, that the limit is exact for
     int code = relief::kImportExitMemory;
     try {
         code = relief::work({argv, static_cast<std::size_t>(argc)});

@@ -1,0 +1,95 @@
+// The heap's first part consists of large pages where the system has them, and freed memory stays.
+#include "formats/base/heap.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+
+namespace relief {
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kOwnHeap = false;  // a sanitizer's
+#else
+constexpr bool kOwnHeap = true;
+#endif
+
+/// The kernel's flags of the mapping that an address is in, as " rd wr … "; "" if there is none.
+std::string flagsAt(const void* address) {
+    const auto wanted = reinterpret_cast<std::uintptr_t>(address);
+    std::ifstream maps("/proc/self/smaps");
+    std::string line;
+    bool here = false;
+    while (std::getline(maps, line)) {
+        std::istringstream words(line);
+        std::uintptr_t begin = 0;
+        std::uintptr_t end = 0;
+        char dash = 0;
+        if (words >> std::hex >> begin >> dash >> end && dash == '-') {
+            here = begin <= wanted && wanted < end;
+        } else if (here && line.starts_with("VmFlags:")) {
+            return line.substr(8) + " ";
+        }
+    }
+    return "";
+}
+
+long pageFaults() {
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_minflt;
+}
+
+/// Touches as much as half of a bake's largest blocks.
+void touch(std::size_t bytes) {
+    const std::unique_ptr<char[]> block(new char[bytes]);
+    std::memset(block.get(), 1, bytes);
+    EXPECT_EQ(block[bytes / 2], 1);
+}
+
+// In a process of its own, as the heap of this one is in use.
+TEST(Heap, AsksForLargePagesAndKeepsWhatIsFreed) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+        prepareHeap(std::size_t{64} << 20);
+        const std::unique_ptr<char[]> block(new char[24 << 20]);
+        const bool large = flagsAt(block.get() + (12 << 20)).find(" hg ") != std::string::npos;
+        touch(8 << 20);
+        const long before = pageFaults();
+        touch(8 << 20);
+        const bool kept = pageFaults() - before < 64;  // 2048 of 4 kB, if they were new
+        ::_exit(kOwnHeap ? (large ? 0 : 1) + (kept ? 0 : 2) : 0);
+    }
+    ASSERT_GT(child, 0);
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status) & 1, 0) << "no large pages are asked for";
+    EXPECT_EQ(WEXITSTATUS(status) & 2, 0) << "what was freed went back to the system";
+}
+
+// Where less can be had, by ulimit -v say, it goes on with that.
+TEST(Heap, TakesNoMoreThanItMay) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+        const rlimit none{0, 0};
+        bool good = !kOwnHeap || ::setrlimit(RLIMIT_DATA, &none) == 0;
+        prepareHeap(std::size_t{1} << 30);
+        ::_exit(good ? 0 : 1);
+    }
+    ASSERT_GT(child, 0);
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+}
+
+}  // namespace
+}  // namespace relief
