@@ -28,6 +28,17 @@ glm::vec3 decodeNormal(NormalIndex index) {
     return v / std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
 }
 
+const std::array<glm::vec3, 65536>& decodedNormals() {
+    static const auto* const table = [] {
+        auto* t = new std::array<glm::vec3, 65536>;
+        for (std::size_t code = 0; code < t->size(); ++code) {
+            (*t)[code] = decodeNormal(unpackNormal(static_cast<std::uint16_t>(code)));
+        }
+        return t;
+    }();
+    return *table;
+}
+
 NormalIndex lowestAround(const glm::vec3& normal) {
     // Double throughout: tiny or huge vectors must not lose their direction on the way to the octahedron.
     const double x = normal.x;
@@ -54,6 +65,7 @@ NormalIndex encodeNormal(const glm::vec3& normal) {
     const double y = normal.y;
     const double z = normal.z;
     const double norm = std::abs(x) + std::abs(y) + std::abs(z);
+    const std::array<glm::vec3, 65536>& decoded_normals = decodedNormals();
     const NormalIndex low = lowestAround(normal);
     NormalIndex best;
     double best_cosine = -std::numeric_limits<double>::infinity();
@@ -61,7 +73,7 @@ NormalIndex encodeNormal(const glm::vec3& normal) {
         for (int ds = 0; ds <= 1; ++ds) {
             const NormalIndex candidate{static_cast<std::uint8_t>(low.s + ds),
                                         static_cast<std::uint8_t>(low.t + dt)};
-            const glm::vec3 decoded = decodeNormal(candidate);
+            const glm::vec3& decoded = decoded_normals[packNormal(candidate)];
             const double cosine = x * decoded.x + y * decoded.y + z * decoded.z;
             // A clear improvement is needed, so that ties go to the lower index on every machine.
             if (cosine > best_cosine + 1e-9 * norm) {

@@ -1,6 +1,7 @@
 // Unit vectors as two bytes: the L1 (octahedral) parametrisation of the paper, section 4.2, equation 3.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
 
@@ -25,6 +26,9 @@ struct NormalIndex {
 
 /// The unit vector of an index. Every pair of bytes has one; never NaN.
 [[nodiscard]] glm::vec3 decodeNormal(NormalIndex index);
+
+/// decodeNormal() of all packed indices, kept from the first call on: a bake looks millions up.
+[[nodiscard]] const std::array<glm::vec3, 65536>& decodedNormals();
 
 /// Of the four indices that surround a vector in the square, the one of the lowest s and t; the others are one further
 /// along s, t or both.

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/vec3.hpp>
-#include <random>
 #include <vector>
 
 #include "bake/mesh/area_table.h"
+#include "bake/mesh/mersenne.h"
 #include "bake/mesh/mesh.h"
 #include "bake/mesh/mesh_query.h"
 
@@ -48,7 +48,7 @@ class MersenneRandom {
     }
 
   private:
-    std::mt19937_64 engine_;
+    Mersenne64 engine_;
 };
 
 /// A point on the surface.

@@ -321,12 +321,7 @@ class Bake {
             const TimeAdder watch(baked_.report.build_ms);
             scene = RELIEF_TRY(RayScene::build(mesh_));
         }
-        std::optional<NormalTable> normals;
-        {
-            const TimeAdder watch(baked_.report.encode_ms);
-            normals.emplace(*mesh_, scene->winding(), texels_);
-        }
-        const MapBaker baker(*scene, *normals);
+        std::optional<NormalTable> packed_normals;
         std::optional<TriangleNormals> unit_normals;
         for (auto job = jobs_.begin(); job != jobs_.end();) {
             const Kind kind = kindOf(*job);
@@ -336,7 +331,11 @@ class Bake {
             const std::span<const Job> jobs(job, end);
             job = end;
             if (kind == Kind::kSurfaces) {
-                traceMaps(*scene, baker, jobs);
+                if (!packed_normals) {
+                    const TimeAdder watch(baked_.report.encode_ms);
+                    packed_normals.emplace(*mesh_, scene->winding(), texels_);
+                }
+                traceMaps(*scene, MapBaker(*scene, *packed_normals), jobs);
                 continue;
             }
             const TimeAdder watch(baked_.report.fit_ms);

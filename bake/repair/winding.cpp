@@ -53,11 +53,14 @@ class Winder {
 
     /// For each triangle, whether it must be turned.
     Result<std::vector<bool>> run() {
+        if (isOnePatch()) {
+            return std::vector<bool>(turn_.size(), false);
+        }
         findNeighbours();
         findPatches();
         const bool consistent = std::all_of(patches_.begin(), patches_.end(),
                                             [](const Patch& patch) { return patch.turned == 0; });
-        if (consistent && patches_.size() == 1) {
+        if (consistent && patches_.size() == 1) {  // one-sided
             return std::vector<bool>(turn_.size(), false);
         }
         prepared_.freeEdges();
@@ -80,6 +83,21 @@ class Winder {
     }
 
   private:
+    /// Most meshes are one patch, and wound alike.
+    [[nodiscard]] bool isOnePatch() const {
+        const std::vector<EdgeUse>& uses = prepared_.edges().uses;
+        DisjointSets patches(turn_.size());
+        std::size_t count = turn_.size();
+        bool alike = true;
+        forEachEdge(uses, [&](std::size_t begin, std::size_t end) {
+            if (end - begin == 2) {
+                alike = alike && uses[begin].down != uses[begin + 1].down;
+                count -= patches.join(uses[begin].triangle, uses[begin + 1].triangle) ? 1U : 0U;
+            }
+        });
+        return alike && count == 1;
+    }
+
     void findNeighbours() {
         neighbours_.resize(3 * mesh_.triangles.size());
         const std::vector<EdgeUse>& uses = prepared_.edges().uses;

@@ -29,11 +29,39 @@ constexpr std::uint32_t kTaskRays = 1 << 18;
 /// Parts of the way between two rays of a footprint to which the edge of a surface is found; odd.
 constexpr std::uint32_t kEdgeParts = 63;
 
+/// The rays of a view, as View::ray() gives them. An orthographic one has few different terms, and a ray many uses.
+class RayGrid {
+  public:
+    explicit RayGrid(const View& view) : view_(view) {
+        if (view.projection() != Projection::kOrthographic) {
+            return;
+        }
+        for (std::uint32_t x = 0; x < view.width; ++x) {
+            columns_.push_back((static_cast<double>(x) + 0.5) / static_cast<double>(view.width) *
+                               view.axis[0]);
+        }
+        for (std::uint32_t y = 0; y < view.height; ++y) {
+            rows_.push_back((static_cast<double>(y) + 0.5) / static_cast<double>(view.height) * view.axis[1]);
+        }
+    }
+    [[nodiscard]] TexelRay at(std::uint32_t face, std::uint32_t x, std::uint32_t y) const {
+        return columns_.empty() ? view_.ray(face, x, y)
+                                : TexelRay{view_.origin + (columns_[x] + rows_[y]), view_.axis[2]};
+    }
+
+  private:
+    const View& view_;
+    std::vector<glm::dvec3> columns_;
+    std::vector<glm::dvec3> rows_;
+};
+
 /// Fits the texels of one end, from the hits of a view with `samples` times as many texels each way.
 class EndFitter {
   public:
+    /// \param fine_rays  of `fine`
     EndFitter(const RayScene& scene, const DepthMap& map, const TriangleNormals& normals, const View& view,
-              const View& fine, const View& finest, RayEnd end, const FittedMapOptions& options)
+              const View& fine, const RayGrid& fine_rays, const View& finest, RayEnd end,
+              const FittedMapOptions& options)
         : normals_(normals),
           deep_(scene.query(), map),
           finest_(finest),
@@ -41,6 +69,7 @@ class EndFitter {
           probe_other_(scene, finest, end == RayEnd::kNear ? RayEnd::kFar : RayEnd::kNear),
           view_(view),
           fine_(fine),
+          fine_rays_(fine_rays),
           end_(view, end),
           samples_(options.samples),
           inside_out_(scene.winding() < 0.0),
@@ -88,7 +117,7 @@ class EndFitter {
                 }
                 const std::size_t at = std::size_t{row - first_row} * fine_.width + column;
                 rays_[std::size_t{j} * samples_ + i] = footprintRay(
-                    fine_.ray(face, column, row), hit, other_hits.empty() ? Hit() : other_hits[at]);
+                    fine_rays_.at(face, column, row), hit, other_hits.empty() ? Hit() : other_hits[at]);
             }
         }
         if (!all && other != nullptr && sharesEdges()) {
@@ -206,7 +235,7 @@ class EndFitter {
             const std::size_t at = indexOf(here, column, row);
             const Hit& hit = here.hits[at];
             if (!isOwn(here, column, row) && !hit.empty() && !startsInside(hit)) {
-                around_.push_back(footprintRay(fine_.ray(here.face, column, row), hit,
+                around_.push_back(footprintRay(fine_rays_.at(here.face, column, row), hit,
                                                here.other_hits.empty() ? Hit() : here.other_hits[at]));
             }
         });
@@ -275,6 +304,7 @@ class EndFitter {
     RayProbe probe_other_;
     const View& view_;
     const View& fine_;
+    const RayGrid& fine_rays_;
     EndView end_;
     std::uint32_t samples_;
     bool inside_out_;
@@ -297,6 +327,7 @@ class MapFitter {
           normals_(normals),
           view_(view),
           fine_(scaled(view, options.samples)),
+          fine_rays_(fine_),
           finest_(scaled(fine_, kEdgeParts)),
           options_(options),
           map_(view.emptyMap()),
@@ -336,7 +367,7 @@ class MapFitter {
         std::array<std::vector<Hit>, 2> hits;  // by RayEnd
     };
     [[nodiscard]] EndFitter fitter(RayEnd end) const {
-        return {scene_, map_, normals_, view_, fine_, finest_, end, options_};
+        return {scene_, map_, normals_, view_, fine_, fine_rays_, finest_, end, options_};
     }
 
     static View scaled(View view, std::uint32_t factor) {
@@ -386,7 +417,8 @@ class MapFitter {
     const RayScene& scene_;
     const TriangleNormals& normals_;
     const View& view_;
-    View fine_;    // a texel for each ray of a footprint
+    View fine_;  // a texel for each ray of a footprint
+    RayGrid fine_rays_;
     View finest_;  // and for each place between two rays where an edge is looked for
     const FittedMapOptions& options_;
     DepthMap map_;

@@ -517,17 +517,6 @@ class PlaneSearch {
 
 }  // namespace
 
-const std::array<glm::vec3, 65536>& decodedNormals() {
-    static const auto* const table = [] {
-        auto* t = new std::array<glm::vec3, 65536>;
-        for (std::size_t code = 0; code < t->size(); ++code) {
-            (*t)[code] = decodeNormal(unpackNormal(static_cast<std::uint16_t>(code)));
-        }
-        return t;
-    }();
-    return *table;
-}
-
 std::optional<FittedPlane> fitSupportingPlane(std::span<const FootprintRay> rays, const AroundRays& around,
                                               std::span<const FootprintRay> edge, const FootprintRay& centre,
                                               const glm::dvec3& zero_depth, const PlaneFitOptions& options,

@@ -13,7 +13,6 @@
 // Both ends of a map are fitted the same way, seen from where their rays start.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <glm/vec3.hpp>
@@ -69,9 +68,6 @@ struct FittedPlane {
     /// plane its offset from zero_depth, (2 · code / 65534 − 1) · range.
     std::uint16_t code = 0;
 };
-
-/// The decoded vectors of all packed normals: candidates are looked up thousands of times a row.
-[[nodiscard]] const std::array<glm::vec3, 65536>& decodedNormals();
 
 using AroundRays = std::function<std::span<const FootprintRay>()>;
 

@@ -1,0 +1,54 @@
+// The 64-bit Mersenne Twister (Nishimura 2000), for few numbers of many seeds.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace relief {
+
+/// Gives the numbers of std::mt19937_64, but works each out when it is asked for: the library's makes 312 of them at a time
+/// and fills all of its state first, where a random point takes six.
+class Mersenne64 {
+  public:
+    explicit Mersenne64(std::uint64_t seed) { words_[0] = seed; }
+
+    std::uint64_t operator()() {
+        const std::size_t second = next_ + 1 < kWords ? next_ + 1 : 0;
+        const std::size_t middle = next_ < kWords - kMiddle ? next_ + kMiddle : next_ + kMiddle - kWords;
+        seedUpTo(middle);
+        const std::uint64_t joined = (words_[next_] & kUpper) | (words_[second] & ~kUpper);
+        const std::uint64_t word =
+            words_[middle] ^ (joined >> 1U) ^ ((joined & 1U) != 0 ? 0xb5026f5aa96619e9U : 0U);
+        words_[next_] = word;
+        next_ = second;
+        return tempered(word);
+    }
+
+  private:
+    static constexpr std::size_t kWords = 312;
+    static constexpr std::size_t kMiddle = 156;
+    static constexpr std::uint64_t kUpper = ~std::uint64_t{0} << 31U;
+
+    /// The words that the seed gives, up to and with this one; later ones need none of those that have been replaced.
+    void seedUpTo(std::size_t last) {
+        for (; seeded_ <= last; ++seeded_) {
+            const std::uint64_t before = words_[seeded_ - 1];
+            words_[seeded_] = 6364136223846793005U * (before ^ (before >> 62U)) + seeded_;
+        }
+    }
+
+    static std::uint64_t tempered(std::uint64_t z) {
+        z ^= (z >> 29U) & 0x5555555555555555U;
+        z ^= (z << 17U) & 0x71d67fffeda60000U;
+        z ^= (z << 37U) & 0xfff7eee000000000U;
+        return z ^ (z >> 43U);
+    }
+
+    std::array<std::uint64_t, kWords>
+        words_;  // those before seeded_; of the round at hand those before next_ are new
+    std::size_t seeded_ = 1;
+    std::size_t next_ = 0;
+};
+
+}  // namespace relief
