@@ -13,7 +13,7 @@
 layout(std140) uniform ReliefAir {
     vec4 air_wind;         // xyz
     ivec4 air_count;       // attractors, vortices, octaves of noise, the noise's seed as bits
-    vec4 air_curl;         // gain, cells per object unit, patterns a second
+    vec4 air_curl;         // gain, lattice units per object unit, patterns a second, 1
     vec4 air_flow_min;     // xyz; w: gain
     vec4 air_flow_max;     // xyz; w: 1 if the edge goes on outside, else 0
     vec4 air_flow_scale;   // xyz: nodes per object unit
@@ -59,7 +59,7 @@ vec3 airVelocity(vec3 p, float t) {
     velocity += reliefFlow(p);
 #endif
 #ifdef RELIEF_HAS_CURL
-    velocity += curlVelocity(p, t, air_curl.xyz, air_count.z, uint(air_count.w));
+    velocity += curlVelocity(p, t, air_curl, air_count.z, uint(air_count.w));
 #endif
     return velocity;
 }

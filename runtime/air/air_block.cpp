@@ -44,8 +44,7 @@ Block blockOf(const AirSettings& air, const glm::vec4 (&flow)[3]) {
         const CurlNoise& noise = *air.curl_noise;
         block.count[2] = noise.octaves;
         std::memcpy(&block.count[3], &noise.seed, sizeof(noise.seed));
-        const float per_unit = 1.0F / noise.scale;
-        block.curl = glm::vec4(curlGain(noise), per_unit, noise.drift * per_unit, 0.0F);
+        block.curl = glm::vec4(curlGain(noise), curlUnits(noise), noise.drift / noise.scale, 1.0F);
     }
     std::copy(std::begin(flow), std::end(flow), std::begin(block.flow));
     for (std::size_t i = 0; i < air.attractors.size(); ++i) {
