@@ -311,6 +311,38 @@ void ScanConverter::scan(const RowRange& rows, std::span<Hit> near, std::span<Hi
     }
 }
 
+inline bool ScanConverter::isInView(double depth, std::uint32_t face, std::uint32_t x,
+                                    std::uint32_t y) const {
+    if (!cube_) {
+        return depth >= -kDepthSlack && depth <= 1.0 + kDepthSlack;
+    }
+    return depth >= 0.0 && (view_.encloses || depth <= view_.depthMax(view_.ray(face, x, y)) + kDepthSlack);
+}
+
+inline void ScanConverter::meet(const SeenPlane& plane, std::uint32_t x, std::uint32_t y, const Block& block) const {
+    const auto [depth, along] = planes_.at(plane, block.face, x, y);
+    const double most = cube_ ? double{kCubeDepthMax} : 1.0;
+    if (!isInView(depth, block.face, x, y)) {
+        return;
+    }
+    const auto stored = static_cast<float>(std::clamp(depth, 0.0, most));
+    const std::size_t at = std::size_t{y - block.begin} * view_.width + x;
+    for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
+        const bool near = end == RayEnd::kNear;
+        const std::span<Hit> hits = near ? block.near : block.far;
+        if (hits.empty()) {
+            continue;
+        }
+        Hit& hit = hits[at];
+        const float before = near ? hit.depth() - stored : stored - hit.depth();
+        constexpr auto kTie = static_cast<float>(kTieDepth);
+        if (hit.empty() || before > kTie ||
+            (before >= -kTie && isBetter(plane.triangle, depth, hit, end, block.face, x, y))) {
+            hit = Hit(stored, plane.triangle, near ? along > 0.0 : along < 0.0);
+        }
+    }
+}
+
 void ScanConverter::draw(std::uint32_t triangle, std::uint32_t begin, std::uint32_t end,
                          const Block& block) const {
     const Shape shape(*this, triangle, block.face);
@@ -352,38 +384,6 @@ void ScanConverter::draw(std::uint32_t triangle, std::uint32_t begin, std::uint3
             }
         }
     }
-}
-
-void ScanConverter::meet(const SeenPlane& plane, std::uint32_t x, std::uint32_t y, const Block& block) const {
-    const auto [depth, along] = planes_.at(plane, block.face, x, y);
-    const double most = cube_ ? double{kCubeDepthMax} : 1.0;
-    if (!isInView(depth, block.face, x, y)) {
-        return;
-    }
-    const auto stored = static_cast<float>(std::clamp(depth, 0.0, most));
-    const std::size_t at = std::size_t{y - block.begin} * view_.width + x;
-    for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
-        const bool near = end == RayEnd::kNear;
-        const std::span<Hit> hits = near ? block.near : block.far;
-        if (hits.empty()) {
-            continue;
-        }
-        Hit& hit = hits[at];
-        const float before = near ? hit.depth() - stored : stored - hit.depth();
-        constexpr auto kTie = static_cast<float>(kTieDepth);
-        if (hit.empty() || before > kTie ||
-            (before >= -kTie && isBetter(plane.triangle, depth, hit, end, block.face, x, y))) {
-            hit = Hit(stored, plane.triangle, near ? along > 0.0 : along < 0.0);
-        }
-    }
-}
-
-bool ScanConverter::isInView(double depth, std::uint32_t face, std::uint32_t x, std::uint32_t y) const {
-    if (cube_ && view_.encloses) {
-        return depth >= 0.0;
-    }
-    const double most = cube_ ? view_.depthMax(view_.ray(face, x, y)) : 1.0;
-    return depth >= (cube_ ? 0.0 : -kDepthSlack) && depth <= most + kDepthSlack;
 }
 
 bool ScanConverter::isBetter(std::uint32_t triangle, double depth, const Hit& than, RayEnd end,

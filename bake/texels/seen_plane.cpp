@@ -36,6 +36,7 @@ double insideTriangle(const TriangleMesh& mesh, std::uint32_t triangle, const Te
 SeenPlanes::SeenPlanes(const TriangleMesh& mesh, const View& view)
     : mesh_(mesh),
       view_(view),
+      orthographic_(view.projection() == Projection::kOrthographic),
       first_ray_(view.ray(0, 0, 0)),
       column_step_(view.axis[0] / static_cast<double>(view.width)),
       row_step_(view.axis[1] / static_cast<double>(view.height)) {}
@@ -46,7 +47,7 @@ SeenPlane SeenPlanes::of(std::uint32_t triangle) const {
     seen.triangle = triangle;
     seen.normal = plane.normal;
     seen.ahead = dot(plane.normal, plane.point - first_ray_.origin);
-    if (view_.projection() == Projection::kOrthographic) {
+    if (orthographic_) {
         seen.along = dot(plane.normal, first_ray_.direction);
         seen.grazing = isGrazing(plane.normal, first_ray_.direction, seen.along);
         const double per_along = 1.0 / seen.along;
@@ -57,12 +58,10 @@ SeenPlane SeenPlanes::of(std::uint32_t triangle) const {
     return seen;
 }
 
-PlaneHit SeenPlanes::at(const SeenPlane& plane, std::uint32_t face, std::uint32_t x, std::uint32_t y) const {
-    if (view_.projection() == Projection::kOrthographic) {
-        const double depth =
-            plane.base + static_cast<double>(x) * plane.per_column + static_cast<double>(y) * plane.per_row;
-        return {plane.grazing ? insideTriangle(mesh_, plane.triangle, view_.ray(face, x, y), depth) : depth,
-                plane.along};
+PlaneHit SeenPlanes::atAnyRay(const SeenPlane& plane, std::uint32_t face, std::uint32_t x,
+                              std::uint32_t y) const {
+    if (orthographic_) {
+        return {insideTriangle(mesh_, plane.triangle, view_.ray(face, x, y), depthAt(plane, x, y)), plane.along};
     }
     const TexelRay ray = view_.ray(face, x, y);
     const double along = dot(plane.normal, ray.direction);

@@ -39,11 +39,23 @@ class SeenPlanes {
 
     /// What the ray of a texel meets of a plane, held within the triangle if that is seen almost edge-on.
     [[nodiscard]] PlaneHit at(const SeenPlane& plane, std::uint32_t face, std::uint32_t x,
-                              std::uint32_t y) const;
+                              std::uint32_t y) const {
+        if (orthographic_ && !plane.grazing) {  // nearly all; here, as a bake asks it millions of times
+            return {depthAt(plane, x, y), plane.along};
+        }
+        return atAnyRay(plane, face, x, y);
+    }
 
   private:
+    static double depthAt(const SeenPlane& plane, std::uint32_t x, std::uint32_t y) {
+        return plane.base + static_cast<double>(x) * plane.per_column + static_cast<double>(y) * plane.per_row;
+    }
+    [[nodiscard]] PlaneHit atAnyRay(const SeenPlane& plane, std::uint32_t face, std::uint32_t x,
+                                    std::uint32_t y) const;
+
     const TriangleMesh& mesh_;
     const View& view_;
+    bool orthographic_;
     TexelRay first_ray_;
     glm::dvec3 column_step_;
     glm::dvec3 row_step_;
