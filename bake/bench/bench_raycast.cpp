@@ -5,6 +5,8 @@
 // process: import, tree, the bare loop, and writing a container of that size. Prints JSON; its sum is to be
 // compared with the time of a process `relief bake MESH -o OUT.relief --decode projected --depth half
 // --map front-back:dir=-x --map …`, run in turns.
+#include <malloc.h>
+
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -23,6 +25,7 @@
 #include "bake/pipeline/bake.h"
 #include "bake/plan/view.h"
 #include "bake/texels/scan_convert.h"
+#include "formats/base/heap.h"
 #include "formats/base/stopwatch.h"
 #include "formats/container.h"
 
@@ -93,6 +96,8 @@ int main(int argc, char** argv) {
     if (argc != 2 && argc != 3) {
         return failure({ErrorCode::kUsage, "usage: relief-bench-raycast MESH [OUT.relief]"});
     }
+    prepareHeap(std::size_t{128} << 20);  // as `relief` does, and its importer
+    mallopt(M_ARENA_MAX, 1);
     std::optional<Result<TriangleMesh>> imported;
     const double first_import_ms = milliseconds([&] { imported.emplace(importMesh(argv[1])); });
     const Result<TriangleMesh>& mesh = *imported;

@@ -319,7 +319,8 @@ inline bool ScanConverter::isInView(double depth, std::uint32_t face, std::uint3
     return depth >= 0.0 && (view_.encloses || depth <= view_.depthMax(view_.ray(face, x, y)) + kDepthSlack);
 }
 
-inline void ScanConverter::meet(const SeenPlane& plane, std::uint32_t x, std::uint32_t y, const Block& block) const {
+inline void ScanConverter::meet(const SeenPlane& plane, std::uint32_t x, std::uint32_t y,
+                                const Block& block) const {
     const auto [depth, along] = planes_.at(plane, block.face, x, y);
     const double most = cube_ ? double{kCubeDepthMax} : 1.0;
     if (!isInView(depth, block.face, x, y)) {

@@ -61,7 +61,8 @@ SeenPlane SeenPlanes::of(std::uint32_t triangle) const {
 PlaneHit SeenPlanes::atAnyRay(const SeenPlane& plane, std::uint32_t face, std::uint32_t x,
                               std::uint32_t y) const {
     if (orthographic_) {
-        return {insideTriangle(mesh_, plane.triangle, view_.ray(face, x, y), depthAt(plane, x, y)), plane.along};
+        return {insideTriangle(mesh_, plane.triangle, view_.ray(face, x, y), depthAt(plane, x, y)),
+                plane.along};
     }
     const TexelRay ray = view_.ray(face, x, y);
     const double along = dot(plane.normal, ray.direction);

@@ -48,7 +48,8 @@ class SeenPlanes {
 
   private:
     static double depthAt(const SeenPlane& plane, std::uint32_t x, std::uint32_t y) {
-        return plane.base + static_cast<double>(x) * plane.per_column + static_cast<double>(y) * plane.per_row;
+        return plane.base + static_cast<double>(x) * plane.per_column +
+               static_cast<double>(y) * plane.per_row;
     }
     [[nodiscard]] PlaneHit atAnyRay(const SeenPlane& plane, std::uint32_t face, std::uint32_t x,
                                     std::uint32_t y) const;
