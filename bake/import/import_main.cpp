@@ -102,7 +102,6 @@ int work(std::span<char*> arguments) {
     if (memory == 0 || seconds == 0 || seconds > UINT32_MAX || triangles == 0 || triangles > kTriangleMax) {
         return kImportExitArguments;
     }
-    prepareHeap(static_cast<std::size_t>(std::min(memory / 4, kHeapBytes)));
     const std::uint64_t size = fileSize(kImportMeshFd);
     void* const pages = ::mmap(nullptr, size, PROT_READ, MAP_SHARED | MAP_POPULATE, kImportMeshFd, 0);
     const int folder = isFolder(kImportFolderFd) ? kImportFolderFd : -1;
@@ -120,6 +119,7 @@ int work(std::span<char*> arguments) {
     if (orphaned()) {
         return kImportExitArguments;
     }
+    prepareHeap(static_cast<std::size_t>(std::min(memory / 4, kHeapBytes)));  // within the limit
     std::set_new_handler([] { ::_exit(kImportExitMemory); });
     const Result<TriangleMesh> raw = importRaw({quotedPath(path),
                                                 path.filename().string(),

@@ -53,7 +53,7 @@ class Winder {
 
     /// For each triangle, whether it must be turned.
     Result<std::vector<bool>> run() {
-        if (isOnePatch()) {
+        if (isOnePatchWoundAlike()) {
             return std::vector<bool>(turn_.size(), false);
         }
         findNeighbours();
@@ -83,8 +83,8 @@ class Winder {
     }
 
   private:
-    /// Most meshes are one patch, and wound alike.
-    [[nodiscard]] bool isOnePatch() const {
+    /// As most meshes are.
+    [[nodiscard]] bool isOnePatchWoundAlike() const {
         const std::vector<EdgeUse>& uses = prepared_.edges().uses;
         DisjointSets patches(turn_.size());
         std::size_t count = turn_.size();

@@ -44,6 +44,7 @@ class RayGrid {
             rows_.push_back((static_cast<double>(y) + 0.5) / static_cast<double>(view.height) * view.axis[1]);
         }
     }
+    [[nodiscard]] const View& view() const { return view_; }
     [[nodiscard]] TexelRay at(std::uint32_t face, std::uint32_t x, std::uint32_t y) const {
         return columns_.empty() ? view_.ray(face, x, y)
                                 : TexelRay{view_.origin + (columns_[x] + rows_[y]), view_.axis[2]};
@@ -58,17 +59,16 @@ class RayGrid {
 /// Fits the texels of one end, from the hits of a view with `samples` times as many texels each way.
 class EndFitter {
   public:
-    /// \param fine_rays  of `fine`
+    /// \param fine_rays  of the view with `samples` times as many texels each way
     EndFitter(const RayScene& scene, const DepthMap& map, const TriangleNormals& normals, const View& view,
-              const View& fine, const RayGrid& fine_rays, const View& finest, RayEnd end,
-              const FittedMapOptions& options)
+              const RayGrid& fine_rays, const View& finest, RayEnd end, const FittedMapOptions& options)
         : normals_(normals),
           deep_(scene.query(), map),
           finest_(finest),
           probe_(scene, finest, end),
           probe_other_(scene, finest, end == RayEnd::kNear ? RayEnd::kFar : RayEnd::kNear),
           view_(view),
-          fine_(fine),
+          fine_(fine_rays.view()),
           fine_rays_(fine_rays),
           end_(view, end),
           samples_(options.samples),
@@ -367,7 +367,7 @@ class MapFitter {
         std::array<std::vector<Hit>, 2> hits;  // by RayEnd
     };
     [[nodiscard]] EndFitter fitter(RayEnd end) const {
-        return {scene_, map_, normals_, view_, fine_, fine_rays_, finest_, end, options_};
+        return {scene_, map_, normals_, view_, fine_rays_, finest_, end, options_};
     }
 
     static View scaled(View view, std::uint32_t factor) {

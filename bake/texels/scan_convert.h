@@ -56,8 +56,9 @@ class ScanConverter {
     void prefetch(std::span<const Entry> entries, std::size_t i) const;
     /// The rows [begin, end) of a triangle, which lie in a block.
     void draw(std::uint32_t triangle, std::uint32_t begin, std::uint32_t end, const Block& block) const;
-    void meet(const SeenPlane& plane, std::uint32_t x, std::uint32_t y, const Block& block) const;
-    [[nodiscard]] bool isInView(double depth, std::uint32_t face, std::uint32_t x, std::uint32_t y) const;
+    inline void meet(const SeenPlane& plane, std::uint32_t x, std::uint32_t y, const Block& block) const;
+    [[nodiscard]] inline bool isInView(double depth, std::uint32_t face, std::uint32_t x,
+                                       std::uint32_t y) const;
     /// Whether a hit counts more than one of almost the same depth.
     [[nodiscard]] bool isBetter(std::uint32_t triangle, double depth, const Hit& than, RayEnd end,
                                 std::uint32_t face, std::uint32_t x, std::uint32_t y) const;

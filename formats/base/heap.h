@@ -5,9 +5,12 @@
 
 namespace relief {
 
-/// Keeps freed memory instead of giving it back to the system, and asks for large pages for the first `bytes` of the
-/// heap, as far as it can be had: where the system clears 4 kB at a time, a bake spends a fifth of its time on that. Takes no
-/// memory before it is used. Call it once, first of all, in an executable of our own: a library leaves the heap alone, and this header is not installed.
+/// Keeps freed blocks of up to 32 MB instead of giving them back to the system, and makes room for `bytes` more, with large
+/// pages if the system has them: where it clears 4 kB at a time, a bake spends a fifth of its time on that. Without so much
+/// address space there is no room made. Takes no memory before it is used.
+///
+/// Call it once, before threads and large blocks, in an executable of our own: a library leaves the heap alone, and this
+/// header is not installed.
 void prepareHeap(std::size_t bytes);
 
 }  // namespace relief

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <memory>
@@ -48,7 +49,6 @@ long pageFaults() {
     return usage.ru_minflt;
 }
 
-/// Touches as much as half of a bake's largest blocks.
 void touch(std::size_t bytes) {
     const std::unique_ptr<char[]> block(new char[bytes]);
     std::memset(block.get(), 1, bytes);
@@ -62,10 +62,11 @@ TEST(Heap, AsksForLargePagesAndKeepsWhatIsFreed) {
         prepareHeap(std::size_t{64} << 20);
         const std::unique_ptr<char[]> block(new char[24 << 20]);
         const bool large = flagsAt(block.get() + (12 << 20)).find(" hg ") != std::string::npos;
-        touch(8 << 20);
+        constexpr std::size_t kBytes = 24 << 20;  // more than a step of the heap, less than its largest block
+        touch(kBytes);
         const long before = pageFaults();
-        touch(8 << 20);
-        const bool kept = pageFaults() - before < 64;  // 2048 of 4 kB, if they were new
+        touch(kBytes);
+        const bool kept = pageFaults() - before < 64;  // 6144 of 4 kB, if they were new
         ::_exit(kOwnHeap ? (large ? 0 : 1) + (kept ? 0 : 2) : 0);
     }
     ASSERT_GT(child, 0);
@@ -76,19 +77,28 @@ TEST(Heap, AsksForLargePagesAndKeepsWhatIsFreed) {
     EXPECT_EQ(WEXITSTATUS(status) & 2, 0) << "what was freed went back to the system";
 }
 
-// Where less can be had, by ulimit -v say, it goes on with that.
+// Where less can be had, by ulimit -v say, the heap stays as it is, and serves.
 TEST(Heap, TakesNoMoreThanItMay) {
     const pid_t child = ::fork();
     if (child == 0) {
-        const rlimit none{0, 0};
-        bool good = !kOwnHeap || ::setrlimit(RLIMIT_DATA, &none) == 0;
+        std::ifstream sizes("/proc/self/statm");
+        std::uint64_t pages = 0;
+        sizes >> pages;
+        const rlim_t limit = pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)) + (rlim_t{60} << 20);
+        const rlimit some{limit, limit};
+        const bool limited = !kOwnHeap || ::setrlimit(RLIMIT_AS, &some) == 0;
+        const void* const end = ::sbrk(0);
         prepareHeap(std::size_t{1} << 30);
-        ::_exit(good ? 0 : 1);
+        const bool grown = kOwnHeap && ::sbrk(0) != end;
+        void* volatile block = std::malloc(std::size_t{1} << 20);
+        ::_exit((limited ? 0 : 1) + (grown ? 2 : 0) + (block != nullptr ? 0 : 4));
     }
     ASSERT_GT(child, 0);
     int status = 0;
     ASSERT_EQ(::waitpid(child, &status, 0), child);
-    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    ASSERT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 0)
+        << "1: no limit could be set; 2: the heap grew beyond it; 4: it serves no more";
 }
 
 }  // namespace
