@@ -8,7 +8,8 @@
 // median of the ratios within each turn: other work on the machine meets both sides of it. With llvmpipe
 // ratios are of the process's CPU time, which that other work hardly changes; else of the time by the clock
 // on the wall. `call_ms` is how long the calls took of that: where it is nearly the whole, a GPU waited for
-// the CPU (which llvmpipe is).
+// the CPU (which llvmpipe is). Each step, and each copy, is flushed, as the end of a frame flushes a game's: else a driver
+// may keep the calls of a whole block until glFinish, and the GPU would idle while they are made.
 //
 // `copy` is a draw, or with --path compute a dispatch, that only copies the two state textures: it reads and writes 32
 // bytes a particle; a step reads the 16 of the birth texture besides.
@@ -72,6 +73,7 @@ struct Times {
         const Stopwatch watch;
         for (int i = 0; i < steps; ++i) {
             step();
+            glFlush();
         }
         calls.push_back(watch.ms() / steps);
         glFinish();
