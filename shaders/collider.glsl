@@ -57,6 +57,39 @@ layout(std140) uniform ReliefCollider {
     ReliefMap u_relief_maps[RELIEF_MAP_CAPACITY];
 };
 
+// In a tour (collider_tour.glsl) each lane of a warp is at a map of its own. A block then serves one after the other, shared
+// memory nearly all at once: there all below reads the work group's copy instead. It comes from the same buffer bound as
+// storage, which is read as fast as the block is not.
+#if defined(RELIEF_TOUR)
+layout(std140, binding = RELIEF_TOUR_STORAGE) readonly buffer ReliefColliderStorage {
+    ivec4 b_relief_count;
+#if RELIEF_BODIES > 0
+    ReliefBody b_relief_bodies[RELIEF_BODIES];
+#endif
+    ReliefMap b_relief_maps[RELIEF_MAP_CAPACITY];
+};
+shared ReliefMap s_relief_maps[RELIEF_MAP_CAPACITY];
+#if RELIEF_BODIES > 0
+shared ReliefBody s_relief_bodies[RELIEF_BODIES];
+#endif
+
+// To be called first, by every invocation of a group of so many lanes.
+void reliefShare(int lane, int lanes) {
+    for (int i = lane; i < RELIEF_MAP_CAPACITY; i += lanes) {
+        s_relief_maps[i] = b_relief_maps[i];
+    }
+#if RELIEF_BODIES > 0
+    for (int b = lane; b < RELIEF_BODIES; b += lanes) {
+        s_relief_bodies[b] = b_relief_bodies[b];
+    }
+#endif
+    barrier();
+}
+
+#define u_relief_maps s_relief_maps
+#define u_relief_bodies s_relief_bodies
+#endif
+
 // Texels of all maps in a row, wrapped at the texture's width: texel i is at (i mod width, i / width). So maps of
 // any sizes lie together without a gap.
 uniform highp sampler2D u_relief_float;

@@ -98,6 +98,7 @@ std::string makeConstants() {
     define("DEAD_COLLISIONS", kDeadCollisions);
     define("STEP_GROUP_WIDTH", kStepGroupWidth);
     define("STEP_GROUP_HEIGHT", kStepGroupHeight);
+    define("TOUR_STORAGE", kTourStorage);
     define("RADIX_DIGITS", kRadixDigits);
     define("TILE_SIDE", kTileSide);
     define("TILE_WORDS", kTileWords);

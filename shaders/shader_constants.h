@@ -66,6 +66,9 @@ inline constexpr float kDeadCollisions = -1.0F;
 inline constexpr int kStepGroupWidth = 8;
 inline constexpr int kStepGroupHeight = 8;
 
+/// The shader storage binding of the collider in a tour (collider_tour.glsl).
+inline constexpr int kTourStorage = 0;
+
 /// Values of a digit of the radix sort, and invocations of its work groups.
 inline constexpr int kRadixDigits = 256;
 /// Pixels of a side of a tile (tile.glsl).

@@ -1,6 +1,9 @@
 // A step among the floor and colliders.
 //!include step_mask.glsl
 //!include collider.glsl
+#if defined(RELIEF_TOUR)
+//!include collider_tour.glsl
+#endif
 //!include air.glsl
 //!include step.glsl
 #if RELIEF_BODIES == 0

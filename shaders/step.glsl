@@ -34,8 +34,6 @@ struct Solid {
     vec3 motion;  // inside a live body: the way of its surface in this step, in its object space; or zero
 };
 
-// Of everything but the floor, at the end of the step; what a ball about p touches.
-Solid solid(vec3 p, float radius);
 // Whether a ball about p, where the step began, was in the body of s at that time: its centre, or the point of it that is
 // nearest to the surface met. (That it touched another side then does not count: a ball on a floor bounces off a wall.)
 bool insideBefore(vec3 p, float radius, Solid s);
@@ -46,17 +44,50 @@ vec3 pointNow(int body, vec3 p);
 // Restitution and 1 - friction of a body, factors of the particle's own.
 vec2 bodyResponse(int body);
 
-// Union with the floor y < u_ground. Inside both, the deeper one decides.
-Solid solidOrGround(vec3 p, float radius) {
-    Solid deepest = solid(p, radius);
+// Height above the floor y < u_ground.
+float aboveGround(vec3 p, float radius) {
     float above = p.y - radius - u_ground;
 #if defined(RELIEF_MASKS)
     above = collidesWith(RELIEF_GROUND) ? above : RELIEF_FAR_OUTSIDE;
 #endif
+    return above;
+}
+
+// Union with the floor. Inside both, the deeper one decides.
+Solid orGround(Solid deepest, vec3 p, float radius) {
+    float above = aboveGround(p, radius);
     if (above < deepest.distance) {
         deepest = Solid(above, vec3(0.0, 1.0, 0.0), -1, -1, vec3(0.0));
     }
     return deepest;
+}
+
+// Of everything but the floor, at the end of the step; what a ball about p touches.
+Solid solid(vec3 p, float radius);
+
+#if defined(RELIEF_TOUR)
+
+// What a tour has found at p.
+Solid solidOf(ReliefTour tour, vec3 p, float radius);
+
+// As solid(); of a single collider map `start` is asked first.
+Solid solidFrom(vec3 p, float radius, int start) {
+    ReliefTour tour;
+    reliefEnter(tour, p, start);
+    while (reliefGoesOn(tour)) {
+        reliefAsk(tour);
+    }
+    return solidOf(tour, p, radius);
+}
+
+Solid solid(vec3 p, float radius) {
+    return solidFrom(p, radius, 0);
+}
+
+#endif
+
+Solid solidOrGround(vec3 p, float radius) {
+    return orGround(solid(p, radius), p, radius);
 }
 
 //!include step_way.glsl
@@ -208,6 +239,9 @@ uniform ivec2 u_size;  // of the texels that hold particles
 
 void main() {
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+#if defined(RELIEF_TOUR)
+    reliefShare(int(gl_LocalInvocationIndex), RELIEF_STEP_GROUP_WIDTH * RELIEF_STEP_GROUP_HEIGHT);
+#endif
     if (texel.x < u_size.x && texel.y < u_size.y) {
         stepAt(texel);
         imageStore(u_position_out, texel, o_position);

@@ -1,7 +1,5 @@
 // For step.glsl: bodies that have a pose at the step's beginning and one at its end, and may be live.
-Solid solid(vec3 p, float radius) {
-    int body;
-    ReliefField field = reliefUnion(p, radius, false, body);
+Solid solidOf(ReliefField field, int body, vec3 p, float radius) {
     bool inside = reliefInside(field);
     vec3 motion = vec3(0.0);
     if (inside) {
@@ -10,6 +8,22 @@ Solid solid(vec3 p, float radius) {
     }
     return Solid(inside ? field.distance : RELIEF_FAR_OUTSIDE, field.normal, field.map, body, motion);
 }
+
+#if defined(RELIEF_TOUR)
+
+Solid solidOf(ReliefTour tour, vec3 p, float radius) {
+    return solidOf(reliefToured(tour), tour.best_body, p, radius);
+}
+
+#else
+
+Solid solid(vec3 p, float radius) {
+    int body;
+    ReliefField field = reliefUnion(p, radius, false, body);
+    return solidOf(field, body, p, radius);
+}
+
+#endif
 
 // The maps of a live body show the surface at the end of the step alone. So the particle goes with the piece of surface
 // that it met, and is asked for at the end: right where all of the surface near it moves alike, as it does but for

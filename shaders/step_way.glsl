@@ -39,6 +39,32 @@ Way wayOf(vec3 p, vec3 v, float radius) {
     vec3 from = p;
     vec3 to = p + (share * u_dt) * v;
     float end = share;
+#if defined(RELIEF_TOUR)
+    // One loop for all maps of all pieces, and a flag that ends it: with a break inside a compiler makes loops within loops of
+    // it, in which lanes wait for each other at every piece.
+    ReliefTour tour;
+    reliefEnter(tour, to, 0);
+    int i = 1;
+    bool going = true;
+    while (going) {
+        if (reliefGoesOn(tour)) {
+            reliefAsk(tour);
+        }
+        if (!reliefGoesOn(tour)) {
+            going = i < RELIEF_SWEEP && float(i) < pieces && tour.best.distance >= 0.0 &&
+                    !(aboveGround(to, radius) < 0.0);
+            if (going) {
+                from = to;
+                end = (float(i) + 1.0) * share;
+                to = p + (end * u_dt) * v;
+                ++i;
+                // The map that saw that the last point is outside knows most often that this one is.
+                reliefEnter(tour, to, tour.map);
+            }
+        }
+    }
+    Solid next = orGround(solidOf(tour, to, radius), to, radius);
+#else
     Solid next = solidOrGround(to, radius);
     for (int i = 1; i < RELIEF_SWEEP && float(i) < pieces && next.distance >= 0.0; ++i) {
         from = to;
@@ -46,6 +72,7 @@ Way wayOf(vec3 p, vec3 v, float radius) {
         to = p + (end * u_dt) * v;
         next = solidOrGround(to, radius);
     }
+#endif
     return Way(v, from, to, share, from == p, end, next);
 }
 
@@ -60,7 +87,12 @@ vec3 goneOn(Way way, vec3 carried, vec3 v) {
 // The same of what was outside: it stays there, whatever lies beside.
 vec3 goneOnOutside(Way way, vec3 carried, vec3 v, float radius) {
     vec3 to = goneOn(way, carried, v);
-    if (solidOrGround(to, radius).distance < 0.0) {
+#if defined(RELIEF_TOUR)
+    bool inside = aboveGround(to, radius) < 0.0 || solidFrom(to, radius, max(way.met.map, 0)).distance < 0.0;
+#else
+    bool inside = solidOrGround(to, radius).distance < 0.0;
+#endif
+    if (inside) {
         to = way.first ? way.from + u_dt * carried : way.from;
     }
     return to;

@@ -11,6 +11,7 @@
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
+#include "runtime/gl/storage_units.h"
 
 namespace relief {
 namespace {
@@ -214,6 +215,10 @@ void ColliderTextures::bind(const Binding& binding) const {
         useTexture(binding.first_unit + static_cast<int>(kind), textures_[kind]);
     }
     glBindBufferBase(GL_UNIFORM_BUFFER, static_cast<GLuint>(binding.uniform_block), block_.name());
+}
+
+void ColliderTextures::bindStorage(int binding) const {
+    StorageUnits::bind(static_cast<GLuint>(binding), block_);
 }
 
 }  // namespace relief

@@ -84,6 +84,8 @@ class ColliderTextures {
     void attach(GLuint program, const Binding& binding) const;  ///< of a program of the caller's own
     /// Binds textures and block for the next draw.
     void bind(const Binding& binding) const;
+    /// Binds the block's buffer as shader storage as well, for a compute shader (collider_tour.glsl). Needs hasCompute().
+    void bindStorage(int binding) const;
 
     /// 0 for one collider in its own space.
     [[nodiscard]] std::size_t bodyCount() const { return bodies_.size(); }

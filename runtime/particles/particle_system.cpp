@@ -10,6 +10,7 @@
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/image_units.h"
 #include "runtime/gl/pass_state.h"
+#include "runtime/gl/storage_units.h"
 
 namespace relief {
 namespace {
@@ -367,6 +368,10 @@ void ParticleSystem::runStep(float dt, float now) {
     useTexture(StepPass::kPositionUnit, position_[current_]);
     useTexture(StepPass::kVelocityUnit, verlet() ? position_[(current_ + 2) % 3] : velocity_[current_]);
     useTexture(StepPass::kBirthUnit, birth_);
+    std::optional<StorageUnits> storage;
+    if (step_.usesStorage()) {
+        storage.emplace();
+    }
     Forces forces = forces_;
     if (air_) {
         forces.wind = glm::vec3(0.0F);  // its own is among the rest

@@ -7,6 +7,21 @@
 #include "shaders/shader_constants.h"
 
 namespace relief {
+namespace {
+
+/// Maps that a work group copies at most: 144 bytes each, and eight bodies of 128, of the 16 KB of shared memory that OpenGL ES
+/// 3.1 promises.
+constexpr int kTourMapsMax = 64;
+
+/// Whether lanes go on by themselves, from body to body or along their ways (shaders/collider_tour.glsl). For one point of one
+/// collider this gains nothing, and a ball's points are as well asked in loops.
+bool toursMaps(const StepFeatures& features) {
+    return features.compute && features.collider != nullptr && !features.radius &&
+           (features.sweep || features.collider->bodyCount() > 1) &&
+           features.collider->mapCount() <= kTourMapsMax;
+}
+
+}  // namespace
 
 float dragRate(const Forces& forces, const ParticleType& type) {
     return forces.viscosity > 0.0F ? stokesRate(forces.viscosity, type.radius, type.mass)
@@ -33,6 +48,8 @@ Result<StepPass> StepPass::create(const StepFeatures& features) {
     if (among) {
         defines += features.collider->defines();
     }
+    pass.tours_ = toursMaps(features);
+    defineIf(pass.tours_, "RELIEF_TOUR");
     pass.program_ = RELIEF_TRY(
         features.compute ? makeComputeProgram(among ? "step.comp" : "step_free.comp", defines)
                          : makeProgram("quad.vert", among ? "step.frag" : "step_free.frag", defines));
@@ -66,6 +83,9 @@ void StepPass::use(const Values& values) const {
     glUseProgram(program_.name());
     if (features_.collider != nullptr) {
         features_.collider->bind(kColliderBinding);
+        if (tours_) {
+            features_.collider->bindStorage(kTourStorage);
+        }
     }
     if (features_.air != nullptr) {
         features_.air->bind(kAirBinding);

@@ -63,15 +63,18 @@ class StepPass {
     /// Errors: kFailure (the driver's compiler).
     [[nodiscard]] static Result<StepPass> create(const StepFeatures& features);
 
-    /// Makes the program current and sets its uniforms; binds the collider's textures.
+    /// Makes the program current and sets its uniforms; binds the collider's textures, and where usesStorage() shader storage
+    /// binding kTourStorage.
     void use(const Values& values) const;
     /// With StepFeatures::compute, after use(): steps the particles of the first `rows` rows of `width` texels into image
     /// units 0 (positions), without verlet 1 (velocities), and with events the next two.
     void dispatch(std::uint32_t width, std::uint32_t rows) const;
     [[nodiscard]] const StepFeatures& features() const { return features_; }
+    [[nodiscard]] bool usesStorage() const { return tours_; }
 
   private:
     StepFeatures features_;
+    bool tours_ = false;
     GlProgram program_;
     GLint now_ = -1, dt_ = -1, rate_before_ = -1, gravity_ = -1, wind_ = -1, still_ = -1, ground_ = -1,
           sweep_ = -1, air_time_ = -1, types_ = -1, collides_ = -1, size_ = -1;

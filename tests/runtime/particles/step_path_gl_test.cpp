@@ -1,6 +1,9 @@
 // The paths of a step: the same particles, whichever is taken, and the caller's image units as they were.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
 #include <vector>
 
 #include "runtime/gl/gl_functions.h"
@@ -23,13 +26,91 @@ struct Features {
     float radius = 0.0F;
     float sweep = 0.0F;
     bool air = false;
+    int bodies = 0;      ///< that move
+    bool masks = false;  ///< every other particle collides with body 1 and the floor alone
+    int repeats = 0;     ///< of six maps, each of which sees the box from one side alone
 };
+
+/// Bodies whose first maps differ in what may be known of a point that these do not look at.
+class Bodies {
+  public:
+    [[nodiscard]] std::vector<ColliderBody> first(int count) const {
+        std::vector<ColliderBody> bodies;
+        for (int i = 0; i < count; ++i) {
+            bodies.push_back({&colliders_[static_cast<std::size_t>(i) % colliders_.size()], pose(i, 0),
+                              i % 2 == 0 ? 1.0F : 0.5F, 0.1F});
+        }
+        return bodies;
+    }
+    /// Near each other, so that some overlap.
+    static Pose pose(int body, int step) {
+        const auto i = static_cast<float>(body);
+        const auto angle = 0.02F * static_cast<float>(step) + i;
+        return {{0.35F * std::cos(2.0F * i), 0.12F * i - 0.1F, 0.35F * std::sin(2.0F * i)},
+                glm::angleAxis(angle, glm::normalize(glm::vec3(1.0F, i, 0.5F))),
+                0.6F + 0.15F * i};
+    }
+
+  private:
+    std::array<Collider, 5> colliders_{boxCollider(), half(), layer(), Collider{}, cube()};
+
+    /// A ball of which the first map has one side, and abstains beyond.
+    static Collider half() {
+        const analytic::Shape ball = analytic::sphere(analytic::Vec(0.0), 0.3);
+        const analytic::Shape side = analytic::box({-0.3, -0.3, -0.3}, {0.0, 0.3, 0.3});
+        Collider collider;
+        collider.bounds = ball.bounds;
+        collider.maps = {
+            analytic::orthographicMap(side, MapFormat::kFrontBackHalf, Compare::kBoth, {1, true}, 48),
+            analytic::cubeMap(ball, Compare::kGreater, analytic::Vec(0.0), analytic::Vec(0.35), 32)};
+        collider.maps[0].encloses = collider.maps[0].empty_is_outside = false;
+        return collider;
+    }
+    static Collider cube() {
+        Collider ball = half();
+        ball.maps.erase(ball.maps.begin());
+        return ball;
+    }
+    /// A box of which the first map has a layer, with texels that abstain at any depth.
+    static Collider layer() {
+        const analytic::Shape thin = analytic::box({-0.4, -0.2, -0.05}, {0.4, 0.2, 0.05});
+        DepthMap first =
+            analytic::orthographicMap(thin, MapFormat::kFrontBackHalf, Compare::kBoth, {2, true}, 48);
+        first.empty_is_outside = false;
+        for (std::uint32_t y = 0; y < first.height; ++y) {
+            for (std::uint32_t x = 0; x < first.width / 2; ++x) {
+                encodeTexel(first.format, Texel{}, first.texelAt(0, x, y));
+            }
+        }
+        Collider box = boxCollider();
+        box.maps.insert(box.maps.begin(), first);
+        return box;
+    }
+};
+
+/// None of whose maps can be left out: each alone knows that it is free where it looks from.
+Collider sidesOf(int repeats) {
+    analytic::Shape box = analytic::box({-0.4, -0.2, -0.3}, {0.4, 0.2, 0.3});
+    box.bounds.add(glm::vec3(-0.7F));
+    box.bounds.add(glm::vec3(0.7F));
+    Collider collider;
+    collider.bounds = box.bounds;
+    for (int i = 0; i < 6 * repeats; ++i) {
+        collider.maps.push_back(
+            analytic::orthographicMap(box, MapFormat::kFixed8, Compare::kLess, {i % 3, i % 6 < 3}, 48));
+        collider.maps.back().empty_is_outside = false;
+    }
+    return collider;
+}
 
 class StepPathGlTest : public GlTest {
   protected:
     /// Particles that are born in two goes, collide and die.
     static std::vector<ParticleState> played(const Features& features, StepPath path, int steps) {
-        auto textures = ColliderTextures::create(boxCollider());
+        const Collider box = features.repeats > 0 ? sidesOf(features.repeats) : boxCollider();
+        const Bodies bodies;
+        auto textures = features.bodies > 0 ? ColliderTextures::create(bodies.first(features.bodies))
+                                            : ColliderTextures::create(box);
         EXPECT_TRUE(textures);
         auto made = ParticleSystem::create({.capacity = kParticles + 100,
                                             .integrator = features.integrator,
@@ -44,7 +125,12 @@ class StepPathGlTest : public GlTest {
         type.restitution = 0.5F;
         type.friction = 0.2F;
         type.radius = features.radius;
-        EXPECT_TRUE(particles.setTypes(std::span(&type, 1)));
+        std::vector<ParticleType> types{type};
+        if (features.masks) {
+            types.push_back(type);
+            types[1].collides = 2U | kCollidesWithGround;
+        }
+        EXPECT_TRUE(particles.setTypes(types));
         EXPECT_TRUE(particles.setSweep(features.sweep));
         if (features.air) {
             AirSettings air;
@@ -61,7 +147,7 @@ class StepPathGlTest : public GlTest {
                 {{random.between(-0.8F, 0.8F), random.between(-0.2F, 0.8F), random.between(-0.8F, 0.8F)},
                  {random.between(-1.0F, 1.0F), random.between(-3.0F, 0.0F), random.between(-1.0F, 1.0F)},
                  random.between(0.2F, 2.0F),
-                 0});
+                 i % static_cast<std::uint32_t>(types.size())});
         }
         const auto half = static_cast<std::ptrdiff_t>(kParticles / 2);
         particles.spawn({births.begin(), births.begin() + half});
@@ -69,6 +155,11 @@ class StepPathGlTest : public GlTest {
             if (i == steps / 2) {
                 particles.spawn({births.begin() + half, births.end()});
             }
+            std::vector<Pose> poses;
+            for (int body = 0; body < features.bodies; ++body) {
+                poses.push_back(Bodies::pose(body, i));
+            }
+            textures->setPoses(poses);
             particles.step(kDt);
         }
         auto state = particles.readState();
@@ -83,7 +174,18 @@ constexpr Features kAll[] = {
     {"Verlet", Integrator::kVerlet},
     {"a radius", Integrator::kEuler, true, 0.03F},
     {"swept", Integrator::kEuler, true, 0.0F, 0.02F},
+    {.name = "swept, maps of one side", .sweep = 0.02F, .repeats = 1},
     {"swept Verlet with a radius, in moving air", Integrator::kVerlet, true, 0.02F, 0.05F, true},
+    {.name = "swept, with masks", .sweep = 0.02F, .masks = true},
+    {.name = "swept, more maps than a group copies", .sweep = 0.02F, .repeats = 11},
+    {.name = "a body", .bodies = 1},
+    {.name = "bodies, one without maps", .bodies = 5},
+    {.name = "bodies, swept Verlet with masks",
+     .integrator = Integrator::kVerlet,
+     .sweep = 0.02F,
+     .bodies = 3,
+     .masks = true},
+    {.name = "bodies and balls, swept", .radius = 0.02F, .sweep = 0.03F, .bodies = 2},
 };
 
 // One processor runs both paths of a software renderer with the same arithmetic: bit by bit. A GPU may fuse other
@@ -170,6 +272,10 @@ TEST_P(StepPathGlTest, TheCallersImageAndStorageUnitsAreKept) {
     glBindBufferRange(GL_SHADER_STORAGE_BUFFER, 0, storage.name(), 256, 512);
     auto particles = ParticleSystem::create({.capacity = 10, .path = StepPath::kCompute});
     ASSERT_TRUE(particles);
+    const auto textures = ColliderTextures::create(boxCollider());
+    ASSERT_TRUE(textures);
+    ASSERT_TRUE(particles->setCollider(&*textures));
+    ASSERT_TRUE(particles->setSweep(0.1F));  // whose tours use storage
     const Birth birth{{0.0F, 1.0F, 0.0F}, {0.0F, 0.0F, 0.0F}, 10.0F, 0};
     particles->spawn(std::span(&birth, 1));
     particles->step(kDt);

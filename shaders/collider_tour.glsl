@@ -1,0 +1,129 @@
+// What a step asks of the maps as a tour: one map of one point at a time, so that an invocation goes on by itself as soon as it
+// knows, to the next body or to the next piece of its way. In loops over bodies or pieces all lanes of a warp wait at each for
+// the one that needs most maps. What a tour says is what reliefSolid() or reliefUnion() say, where that is inside.
+struct ReliefTour {
+#if RELIEF_BODIES > 0
+    vec3 p;
+#endif
+    vec3 q;           // the point, in the object space of the body that is asked
+    int left;         // bit b: body b is still to be asked, the lowest first
+    int map;          // that is asked next
+    int asked;        // of this body, and the number of its first map
+    int end;          // of its maps
+    int start;        // the one of them that is asked first
+    ReliefBest now;   // of this body
+    ReliefBest best;  // the deepest so far, in world units; outside its distance is RELIEF_FAR_OUTSIDE
+#if RELIEF_BODIES > 0
+    int best_body;
+#endif
+};
+
+bool reliefGoesOn(ReliefTour tour) {
+    return tour.left != 0;
+}
+
+#if RELIEF_BODIES == 0
+
+// To a point, or to another one; map `start` is asked first.
+void reliefEnter(inout ReliefTour tour, vec3 p, int start) {
+    tour.q = p;
+    tour.left = 1;
+#if defined(RELIEF_MASKS)
+    tour.left = collidesWith(0) ? 1 : 0;
+#endif
+    tour.start = start;
+    tour.map = start;
+    tour.asked = 0;
+    tour.end = u_relief_count.x;
+    tour.now = RELIEF_NO_VOTE;
+    tour.best = ReliefBest(RELIEF_FAR_OUTSIDE, RELIEF_NO_CODE, -1);
+}
+
+#else
+
+// False where the first map of a body would say that a point is outside without a look at its texels.
+bool reliefMayHold(int body, vec3 q) {
+    int i = u_relief_bodies[body].maps.x;
+    ivec4 info = u_relief_maps[i].info;
+    vec3 p = vec3(reliefRow(u_relief_maps[i].row[0], q), reliefRow(u_relief_maps[i].row[1], q),
+                  reliefRow(u_relief_maps[i].row[2], q));
+    bool in_window = p.x >= 1.0 && p.y >= 1.0 && p.x < u_relief_maps[i].column[1].w && p.y < u_relief_maps[i].column[2].w;
+    bool in_depth = (p.z >= 0.0 && p.z <= 1.0) || !reliefHas(info, RELIEF_EMPTY_IS_OUTSIDE);
+    return reliefIsCube(info) || !reliefHas(info, RELIEF_ENCLOSES) || (in_window && in_depth);
+}
+
+void reliefEnterBody(inout ReliefTour tour) {
+    int body = findLSB(tour.left);
+    if (body >= 0) {
+        tour.q = reliefBodyNow(body, tour.p);
+        tour.start = u_relief_bodies[body].maps.x;
+        tour.map = tour.start;
+        tour.asked = tour.start;
+        tour.end = tour.start + u_relief_bodies[body].maps.y;
+        tour.now = RELIEF_NO_VOTE;
+    }
+}
+
+// The maps of a body have an order of their own: `start` is for a single collider.
+void reliefEnter(inout ReliefTour tour, vec3 p, int start) {
+    tour.p = p;
+    tour.left = 0;
+    for (int b = 0; b < RELIEF_BODIES; ++b) {
+        bool may = u_relief_bodies[b].maps.y > 0 && reliefMayHold(b, reliefBodyNow(b, p));
+#if defined(RELIEF_MASKS)
+        may = may && collidesWith(b);
+#endif
+        tour.left |= may ? 1 << b : 0;
+    }
+    tour.best = ReliefBest(RELIEF_FAR_OUTSIDE, RELIEF_NO_CODE, -1);
+    tour.best_body = -1;
+    reliefEnterBody(tour);
+}
+
+#endif
+
+void reliefLeaveBody(inout ReliefTour tour) {
+    bool inside = tour.now.map >= 0 && tour.now.distance < 0.0;
+#if RELIEF_BODIES > 0
+    int body = findLSB(tour.left);
+    float distance = u_relief_bodies[body].response.x * tour.now.distance;
+    if (inside && distance < tour.best.distance) {
+        tour.best = ReliefBest(distance, tour.now.normal, tour.now.map);
+        tour.best_body = body;
+    }
+    tour.left &= tour.left - 1;
+    reliefEnterBody(tour);
+#else
+    if (inside) {
+        tour.best = tour.now;
+    }
+    tour.left = 0;
+#endif
+}
+
+// Asks the next map.
+void reliefAsk(inout ReliefTour tour) {
+    ReliefVote vote = reliefVote(tour.map, tour.q, false);
+    // Of equal votes that of the first map counts, as in reliefMaps().
+    if (vote.distance > tour.now.distance || (vote.distance == tour.now.distance && tour.map < tour.now.map)) {
+        tour.now = ReliefBest(vote.distance, vote.normal, tour.map);
+    }
+    ++tour.asked;
+    if (tour.now.distance >= 0.0 || tour.asked == tour.end) {
+        reliefLeaveBody(tour);
+    } else {
+        tour.map = tour.asked <= tour.start ? tour.asked - 1 : tour.asked;
+    }
+}
+
+// Where nothing is met, the normal is zero and the map -1.
+ReliefField reliefToured(ReliefTour tour) {
+    vec3 normal = vec3(0.0);
+    if (tour.best.map >= 0) {
+        normal = reliefDecode(tour.best.normal);
+#if RELIEF_BODIES > 0
+        normal = reliefWorldNormal(tour.best_body, normal);
+#endif
+    }
+    return ReliefField(tour.best.distance, normal, tour.best.map);
+}
