@@ -57,9 +57,9 @@ layout(std140) uniform ReliefCollider {
     ReliefMap u_relief_maps[RELIEF_MAP_CAPACITY];
 };
 
-// In a tour (collider_tour.glsl) each lane of a warp is at a map of its own. A block then serves one after the other, shared
-// memory nearly all at once: there all below reads the work group's copy instead. It comes from the same buffer bound as
-// storage, which is read as fast as the block is not.
+// In a tour (collider_tour.glsl) each lane of a warp is at a map of its own. A block serves lanes at different addresses one
+// after another, shared memory nearly all at once: so all maps and bodies below are the work group's copy there. It is made
+// from the same buffer bound as storage, since copying meets different addresses, too. The counts stay in the block.
 #if defined(RELIEF_TOUR)
 layout(std140, binding = RELIEF_TOUR_STORAGE) readonly buffer ReliefColliderStorage {
     ivec4 b_relief_count;
@@ -83,6 +83,7 @@ void reliefShare(int lane, int lanes) {
         s_relief_bodies[b] = b_relief_bodies[b];
     }
 #endif
+    memoryBarrierShared();
     barrier();
 }
 
@@ -414,7 +415,8 @@ ReliefVote reliefVoteFloat(int i, ivec4 info, ReliefSight sight, out bool found)
 }
 #endif
 
-// Without `whole` any distance that is not below 0 stands for all of them.
+// Without `whole` any distance that is not below 0 stands for all of them. reliefMayHold() in collider_tour.glsl knows when the
+// texel is not looked at: both change together.
 ReliefVote reliefVoteOrthographic(int i, vec3 p, ivec4 place, ivec4 info, bool whole) {
     bool encloses = reliefHas(info, RELIEF_ENCLOSES);
     ReliefVote vote = ReliefVote(encloses ? RELIEF_FAR_OUTSIDE : RELIEF_FAR_INSIDE, RELIEF_NO_CODE);

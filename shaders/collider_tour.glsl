@@ -8,8 +8,8 @@ struct ReliefTour {
     vec3 q;           // the point, in the object space of the body that is asked
     int left;         // bit b: body b is still to be asked, the lowest first
     int map;          // that is asked next
-    int asked;        // of this body, and the number of its first map
-    int end;          // of its maps
+    int asked;        // the number of the body's first map, and how many have been asked
+    int end;          // one past its last map
     int start;        // the one of them that is asked first
     ReliefBest now;   // of this body
     ReliefBest best;  // the deepest so far, in world units; outside its distance is RELIEF_FAR_OUTSIDE

@@ -36,7 +36,14 @@ float asFloat(Code code) {
 std::string makeConstants() {
     std::string lines;
     const auto define = [&](const char* name, auto value) {
-        lines.append("#define RELIEF_").append(name).append(" (").append(literal(value)).append(")\n");
+        // One word is left as it is: GLSL ES has no expressions in layout(…).
+        const std::string text = literal(value);
+        const bool word = text.front() != '-' && text.find(' ') == std::string::npos;
+        lines.append("#define RELIEF_")
+            .append(name)
+            .append(word ? " " : " (")
+            .append(text)
+            .append(word ? "\n" : ")\n");
     };
     define("FLOAT32", static_cast<int>(MapFormat::kFloat32));
     define("FRONT_BACK_HALF", static_cast<int>(MapFormat::kFrontBackHalf));

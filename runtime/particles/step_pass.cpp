@@ -9,8 +9,8 @@
 namespace relief {
 namespace {
 
-/// Maps that a work group copies at most: 144 bytes each, and eight bodies of 128, of the 16 KB of shared memory that OpenGL ES
-/// 3.1 promises.
+/// Maps that a work group copies at most. OpenGL ES 3.1 promises 16 KB of shared memory: room for 106 maps of 144 bytes beside
+/// eight bodies of 128; but each group of 64 particles makes a copy, and what many maps cost then was not measured.
 constexpr int kTourMapsMax = 64;
 
 /// Whether lanes go on by themselves, from body to body or along their ways (shaders/collider_tour.glsl). For one point of one

@@ -180,6 +180,7 @@ constexpr Features kAll[] = {
     {.name = "swept, more maps than a group copies", .sweep = 0.02F, .repeats = 11},
     {.name = "a body", .bodies = 1},
     {.name = "bodies, one without maps", .bodies = 5},
+    {.name = "bodies, swept", .sweep = 0.02F, .bodies = 3},
     {.name = "bodies, swept Verlet with masks",
      .integrator = Integrator::kVerlet,
      .sweep = 0.02F,
@@ -216,7 +217,47 @@ TEST_P(StepPathGlTest, BothPathsGiveTheSameParticles) {
         }
         EXPECT_LE(others, bits ? 0 : fragment.size() / 1000);
         EXPECT_GT(touched, 0U);
+        if (features.collider) {  // and not the floor alone
+            Features floor = features;
+            floor.collider = false;
+            const std::vector<ParticleState> free = played(floor, StepPath::kFragment, steps);
+            ASSERT_EQ(free.size(), fragment.size());
+            std::size_t met = 0;
+            for (std::size_t i = 0; i < free.size(); ++i) {
+                met += free[i].velocity != fragment[i].velocity ? 1 : 0;
+            }
+            EXPECT_GT(met, 20U);
+        }
     }
+}
+
+// Whether lanes go on by themselves: else the test above says nothing of it.
+TEST_P(StepPathGlTest, ToursAreForSweepsAndSeveralBodies) {
+    const auto tours = [](const Result<ColliderTextures>& textures, StepFeatures features) {
+        EXPECT_TRUE(textures);
+        features.collider = &*textures;
+        const auto pass = StepPass::create(features);
+        EXPECT_TRUE(pass);
+        return pass->usesStorage();
+    };
+    const Bodies bodies;
+    const auto box = ColliderTextures::create(boxCollider());
+    const auto body = ColliderTextures::create(bodies.first(1));
+    const auto several = ColliderTextures::create(bodies.first(2));
+    Collider many = boxCollider();
+    many.maps.resize(64, many.maps.front());
+    const auto most = ColliderTextures::create(many);
+    many.maps.resize(65, many.maps.front());
+    const auto more = ColliderTextures::create(many);
+    EXPECT_TRUE(tours(box, {.sweep = true, .compute = true}));
+    EXPECT_TRUE(tours(body, {.sweep = true, .compute = true}));
+    EXPECT_TRUE(tours(several, {.compute = true}));
+    EXPECT_TRUE(tours(most, {.sweep = true, .compute = true}));
+    EXPECT_FALSE(tours(more, {.sweep = true, .compute = true}));
+    EXPECT_FALSE(tours(box, {.compute = true}));
+    EXPECT_FALSE(tours(body, {.compute = true}));
+    EXPECT_FALSE(tours(several, {.radius = true, .compute = true}));
+    EXPECT_FALSE(tours(several, {.sweep = true}));
 }
 
 TEST_P(StepPathGlTest, AutoTakesComputeWhereAGpuDraws) {
@@ -293,6 +334,9 @@ TEST_P(StepPathGlTest, TheCallersImageAndStorageUnitsAreKept) {
     EXPECT_EQ(unit(GL_SHADER_STORAGE_BUFFER_BINDING, 0), static_cast<GLint>(storage.name()));
     EXPECT_EQ(unit(GL_SHADER_STORAGE_BUFFER_START, 0), 256);
     EXPECT_EQ(unit(GL_SHADER_STORAGE_BUFFER_SIZE, 0), 512);
+    GLint bound = 0;
+    glGetIntegerv(GL_SHADER_STORAGE_BUFFER_BINDING, &bound);
+    EXPECT_EQ(bound, static_cast<GLint>(storage.name()));
 }
 
 RELIEF_INSTANTIATE_GL_TESTS(StepPathGlTest);
