@@ -4,7 +4,7 @@
 #include "runtime/tool/command_line.h"
 
 int main(int argc, char** argv) {
-    relief::prepareHeap(std::size_t{128} << 20);
+    relief::prepareHeap(relief::kBakeHeapBytes);
     return relief::runProgram(
         [&] { return relief::runRelief(argc, argv); }, relief::reportError,
         {relief::ErrorCode::kFailure, "out of memory; use smaller maps or a smaller mesh"});

@@ -199,6 +199,21 @@ float reliefRow(vec4 r, vec3 p) {
     return r.x * p.x + (r.y * p.y + (r.z * p.z + r.w));
 }
 
+// A point of object space in the space of map i.
+vec3 reliefInMap(int i, vec3 p) {
+    return vec3(reliefRow(u_relief_maps[i].row[0], p), reliefRow(u_relief_maps[i].row[1], p),
+                reliefRow(u_relief_maps[i].row[2], p));
+}
+
+// Whether an orthographic map has texels for a point p of its own space but those of its rim, which are empty.
+bool reliefInWindow(int i, vec3 p) {
+    return p.x >= 1.0 && p.y >= 1.0 && p.x < u_relief_maps[i].column[1].w && p.y < u_relief_maps[i].column[2].w;
+}
+
+bool reliefInDepth(vec3 p) {
+    return p.z >= 0.0 && p.z <= 1.0;
+}
+
 // In the order of the CPU's twin: what dot() adds first is the driver's choice.
 float reliefDot(vec3 a, vec3 b) {
     return a.x * b.x + (a.y * b.y + a.z * b.z);
@@ -420,8 +435,8 @@ ReliefVote reliefVoteFloat(int i, ivec4 info, ReliefSight sight, out bool found)
 ReliefVote reliefVoteOrthographic(int i, vec3 p, ivec4 place, ivec4 info, bool whole) {
     bool encloses = reliefHas(info, RELIEF_ENCLOSES);
     ReliefVote vote = ReliefVote(encloses ? RELIEF_FAR_OUTSIDE : RELIEF_FAR_INSIDE, RELIEF_NO_CODE);
-    bool in_window = p.x >= 1.0 && p.y >= 1.0 && p.x < u_relief_maps[i].column[1].w && p.y < u_relief_maps[i].column[2].w;
-    bool in_depth = p.z >= 0.0 && p.z <= 1.0;
+    bool in_window = reliefInWindow(i, p);
+    bool in_depth = reliefInDepth(p);
     // Before and behind the volume only the distance, or whether the map abstains, is asked of the texel.
     bool sees_beyond = encloses && (whole || !reliefHas(info, RELIEF_EMPTY_IS_OUTSIDE));
     if (in_window && (in_depth || sees_beyond)) {
@@ -480,10 +495,7 @@ ReliefVote reliefVoteCube(int i, vec3 p, ivec4 place, ivec4 info) {
 }
 
 ReliefVote reliefVote(int i, vec3 p, bool whole) {
-    vec4 row0 = u_relief_maps[i].row[0];
-    vec4 row1 = u_relief_maps[i].row[1];
-    vec4 row2 = u_relief_maps[i].row[2];
-    vec3 in_map = vec3(reliefRow(row0, p), reliefRow(row1, p), reliefRow(row2, p));
+    vec3 in_map = reliefInMap(i, p);
     ivec4 place = u_relief_maps[i].place;
     ivec4 info = u_relief_maps[i].info;
     ReliefVote vote;
@@ -528,8 +540,7 @@ ReliefField reliefMaps(int first, int end, vec3 p, bool whole) {
 // From p to the nearest point of what map i looks at; zero where p is in it. Beyond an edge of the volume, where no
 // map may see anything, it is the way to what lies nearest there.
 vec3 reliefToVolume(int i, vec3 p) {
-    vec3 in_map = vec3(reliefRow(u_relief_maps[i].row[0], p), reliefRow(u_relief_maps[i].row[1], p),
-                       reliefRow(u_relief_maps[i].row[2], p));
+    vec3 in_map = reliefInMap(i, p);
     vec3 low = vec3(-1.0);
     vec3 high = vec3(1.0);
     if (!reliefIsCube(u_relief_maps[i].info)) {  // its rim has nothing
@@ -716,8 +727,7 @@ ReliefField reliefEvaluate(vec3 p) {
 // The way that the surface of map i at a point p of object space has gone since the update before, in object units. Of
 // two ends it is the one whose normal is more like `normal`. Zero where the map has no surface.
 vec3 reliefMotion(int i, vec3 p, vec3 normal) {
-    vec3 in_map = vec3(reliefRow(u_relief_maps[i].row[0], p), reliefRow(u_relief_maps[i].row[1], p),
-                       reliefRow(u_relief_maps[i].row[2], p));
+    vec3 in_map = reliefInMap(i, p);
     ivec4 place = u_relief_maps[i].place;
     ivec4 info = u_relief_maps[i].info;
     ivec2 at;

@@ -45,11 +45,9 @@ void reliefEnter(inout ReliefTour tour, vec3 p, int start) {
 bool reliefMayHold(int body, vec3 q) {
     int i = u_relief_bodies[body].maps.x;
     ivec4 info = u_relief_maps[i].info;
-    vec3 p = vec3(reliefRow(u_relief_maps[i].row[0], q), reliefRow(u_relief_maps[i].row[1], q),
-                  reliefRow(u_relief_maps[i].row[2], q));
-    bool in_window = p.x >= 1.0 && p.y >= 1.0 && p.x < u_relief_maps[i].column[1].w && p.y < u_relief_maps[i].column[2].w;
-    bool in_depth = (p.z >= 0.0 && p.z <= 1.0) || !reliefHas(info, RELIEF_EMPTY_IS_OUTSIDE);
-    return reliefIsCube(info) || !reliefHas(info, RELIEF_ENCLOSES) || (in_window && in_depth);
+    vec3 p = reliefInMap(i, q);
+    bool looks = reliefInWindow(i, p) && (reliefInDepth(p) || !reliefHas(info, RELIEF_EMPTY_IS_OUTSIDE));
+    return reliefIsCube(info) || !reliefHas(info, RELIEF_ENCLOSES) || looks;
 }
 
 void reliefEnterBody(inout ReliefTour tour) {

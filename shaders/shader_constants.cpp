@@ -39,11 +39,7 @@ std::string makeConstants() {
         // One word is left as it is: GLSL ES has no expressions in layout(…).
         const std::string text = literal(value);
         const bool word = text.front() != '-' && text.find(' ') == std::string::npos;
-        lines.append("#define RELIEF_")
-            .append(name)
-            .append(word ? " " : " (")
-            .append(text)
-            .append(word ? "\n" : ")\n");
+        lines += std::string("#define RELIEF_") + name + " " + (word ? text : "(" + text + ")") + "\n";
     };
     define("FLOAT32", static_cast<int>(MapFormat::kFloat32));
     define("FRONT_BACK_HALF", static_cast<int>(MapFormat::kFrontBackHalf));

@@ -70,7 +70,7 @@ Solid solid(vec3 p, float radius);
 // What a tour has found at p.
 Solid solidOf(ReliefTour tour, vec3 p, float radius);
 
-// As solid(); of a single collider map `start` is asked first.
+// As solid(); in a tour of a single collider map `start` is asked first.
 Solid solidFrom(vec3 p, float radius, int start) {
     ReliefTour tour;
     reliefEnter(tour, p, start);
@@ -82,6 +82,12 @@ Solid solidFrom(vec3 p, float radius, int start) {
 
 Solid solid(vec3 p, float radius) {
     return solidFrom(p, radius, 0);
+}
+
+#else
+
+Solid solidFrom(vec3 p, float radius, int start) {
+    return solid(p, radius);
 }
 
 #endif

@@ -87,12 +87,7 @@ vec3 goneOn(Way way, vec3 carried, vec3 v) {
 // The same of what was outside: it stays there, whatever lies beside.
 vec3 goneOnOutside(Way way, vec3 carried, vec3 v, float radius) {
     vec3 to = goneOn(way, carried, v);
-#if defined(RELIEF_TOUR)
-    bool inside = aboveGround(to, radius) < 0.0 || solidFrom(to, radius, max(way.met.map, 0)).distance < 0.0;
-#else
-    bool inside = solidOrGround(to, radius).distance < 0.0;
-#endif
-    if (inside) {
+    if (aboveGround(to, radius) < 0.0 || solidFrom(to, radius, max(way.met.map, 0)).distance < 0.0) {
         to = way.first ? way.from + u_dt * carried : way.from;
     }
     return to;

@@ -96,8 +96,8 @@ int main(int argc, char** argv) {
     if (argc != 2 && argc != 3) {
         return failure({ErrorCode::kUsage, "usage: relief-bench-raycast MESH [OUT.relief]"});
     }
-    prepareHeap(std::size_t{128} << 20);  // as `relief` does
-    mallopt(M_ARENA_MAX, 1);              // and its importer, which has a thread of its own
+    prepareHeap(kBakeHeapBytes);
+    mallopt(M_ARENA_MAX, 1);  // as relief's importer, which has a thread of its own
     std::optional<Result<TriangleMesh>> imported;
     const double first_import_ms = milliseconds([&] { imported.emplace(importMesh(argv[1])); });
     mallopt(M_ARENA_MAX, 128);

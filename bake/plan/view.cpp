@@ -184,12 +184,29 @@ bool View::emptyIsOutside() const {
            ((keeps(RayEnd::kNear) && starts_free[0]) || (keeps(RayEnd::kFar) && starts_free[1]));
 }
 
+namespace {
+
+/// Where the centre of a texel is, as a share of so many.
+double centreOf(std::uint32_t texel, std::uint32_t count) {
+    return (static_cast<double>(texel) + 0.5) / static_cast<double>(count);
+}
+
+}  // namespace
+
+glm::dvec3 View::columnOffset(std::uint32_t x) const {
+    return centreOf(x, width) * axis[0];
+}
+
+glm::dvec3 View::rowOffset(std::uint32_t y) const {
+    return centreOf(y, height) * axis[1];
+}
+
 TexelRay View::ray(std::uint32_t face, std::uint32_t x, std::uint32_t y) const {
-    const double s = (static_cast<double>(x) + 0.5) / static_cast<double>(width);
-    const double t = (static_cast<double>(y) + 0.5) / static_cast<double>(height);
     if (projection() == Projection::kOrthographic) {
-        return {origin + (s * axis[0] + t * axis[1]), axis[2]};
+        return {origin + (columnOffset(x) + rowOffset(y)), axis[2]};
     }
+    const double s = centreOf(x, width);
+    const double t = centreOf(y, height);
     // In double, what cubeDirection of depth_map.h gives in float.
     const double sc = 2.0 * s - 1.0;
     const double tc = 2.0 * t - 1.0;

@@ -60,6 +60,9 @@ struct View {
     /// A texel without surface says "outside": one of the kept ends saw the whole ray from free space.
     [[nodiscard]] bool emptyIsOutside() const;
 
+    /// Of an orthographic view: what its origin is moved by to where the rays of a column, and of a row, begin.
+    [[nodiscard]] glm::dvec3 columnOffset(std::uint32_t x) const;
+    [[nodiscard]] glm::dvec3 rowOffset(std::uint32_t y) const;
     /// The ray of a texel's centre.
     [[nodiscard]] TexelRay ray(std::uint32_t face, std::uint32_t x, std::uint32_t y) const;
     /// Depth at which the texel's ray leaves the volume.

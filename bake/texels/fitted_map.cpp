@@ -37,11 +37,10 @@ class RayGrid {
             return;
         }
         for (std::uint32_t x = 0; x < view.width; ++x) {
-            columns_.push_back((static_cast<double>(x) + 0.5) / static_cast<double>(view.width) *
-                               view.axis[0]);
+            columns_.push_back(view.columnOffset(x));
         }
         for (std::uint32_t y = 0; y < view.height; ++y) {
-            rows_.push_back((static_cast<double>(y) + 0.5) / static_cast<double>(view.height) * view.axis[1]);
+            rows_.push_back(view.rowOffset(y));
         }
     }
     [[nodiscard]] const View& view() const { return view_; }

@@ -5,6 +5,9 @@
 
 namespace relief {
 
+/// The room of a bake: of `relief`, and of what is timed against it.
+inline constexpr std::size_t kBakeHeapBytes = std::size_t{128} << 20;
+
 /// Keeps freed blocks of up to 32 MB instead of giving them back to the system, and makes room for `bytes` more, with large
 /// pages if the system has them: where it clears 4 kB at a time, a bake spends a fifth of its time on that. Without so much
 /// address space there is no room made. Takes no memory before it is used.
