@@ -1,0 +1,75 @@
+"""Random cases, as scripts/soak.sh cases runs them: the frame that the generators beside this file share.
+
+A generator is a program, NAME_cases.py BIN [--seed N] [--cases N]. It draws its cases from Cases.random alone, so that
+a seed repeats them, runs the tools in BIN, and calls fail() for each answer that is wrong.
+"""
+
+import argparse
+import datetime
+import pathlib
+import random
+import resource
+import subprocess
+import sys
+import tempfile
+
+# Exit codes that bake/cli/README.md documents. Anything else, a signal above all, is a crash.
+EXIT_CODES = range(0, 8)
+
+
+class Cases:
+    """Runs a number of cases in a folder of their own, and counts which of them fail."""
+
+    def __init__(self, name, default_cases):
+        parser = argparse.ArgumentParser(description=f"random cases: {name}")
+        parser.add_argument("bin", type=lambda path: pathlib.Path(path).resolve(), help="folder of the executables")
+        today = int(datetime.date.today().strftime("%Y%m%d"))
+        parser.add_argument("--seed", type=int, default=today, help="default: the day's date")
+        parser.add_argument("--cases", type=int, default=default_cases)
+        options = parser.parse_args()
+        self.name, self.bin, self.seed, self.count = name, options.bin, options.seed, options.cases
+        self.random = random.Random(f"{name} {self.seed}")
+        self.failures = {}
+        self.case = 0
+
+    def each(self):
+        """Yields (number, empty folder) once a case."""
+        for self.case in range(self.count):
+            with tempfile.TemporaryDirectory(prefix="relief-case-") as folder:
+                yield self.case, pathlib.Path(folder)
+
+    def run(self, *command, seconds=60, memory=4 << 30, **keywords):
+        """Runs a tool, command[0] being its name in BIN. A hang, a signal, an undocumented exit code, more than
+        `memory` bytes, or an error without a message of one to three lines is a failure of the case. Returns the
+        subprocess.CompletedProcess, or None after a hang."""
+        command = [str(self.bin / command[0]), *map(str, command[1:])]
+
+        def limit():
+            resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+
+        try:
+            done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=seconds,
+                                  preexec_fn=limit, **keywords)
+        except subprocess.TimeoutExpired:
+            self.fail(f"took more than {seconds} s: {' '.join(command)}")
+            return None
+        if done.returncode not in EXIT_CODES:
+            self.fail(f"exit code {done.returncode}: {' '.join(command)}: {done.stderr[-300:]}")
+        elif done.returncode != 0 and not done.stderr.strip():
+            self.fail(f"exit code {done.returncode} without a message: {' '.join(command)}")
+        return done
+
+    def expect(self, condition, why):
+        if not condition:
+            self.fail(why)
+        return condition
+
+    def fail(self, why):
+        """Records that the current case failed; its first reason is kept."""
+        if self.failures.setdefault(self.case, why) is why:
+            print(f"{self.name}: seed {self.seed}, case {self.case}: {why}", file=sys.stderr)
+
+    def finish(self):
+        """Prints the count, and exits with 1 if a case failed."""
+        print(f"{self.name}: {self.count - len(self.failures)} passed, {len(self.failures)} failed (seed {self.seed})")
+        sys.exit(1 if self.failures else 0)
