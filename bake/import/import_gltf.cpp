@@ -197,6 +197,8 @@ class GltfReader {
             const GltfMesh& source = meshes_.at(use.mesh);
             for (const GltfPrimitive& part : source.primitives) {
                 const std::uint8_t mark = names.of(use.node, source, part);
+                instances.surface(
+                    {static_cast<std::uint32_t>(use.node), nodes_[use.node].name, part.material});
                 if (use.skin && part.influences) {
                     const GltfPose pose = posed(part.positions, *part.influences, skins_.at(*use.skin));
                     instances.add(pose.positions, pose.mirrored ? turned(part.triangles) : part.triangles,

@@ -4,6 +4,8 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "formats/base/text.h"
+
 namespace relief {
 namespace {
 
@@ -53,6 +55,19 @@ void MeshInstances::begin(bool marked) {
     mesh_.marks.reserve(marked ? triangles_ : 0);
 }
 
+void MeshInstances::surface(SurfaceName name) {
+    name.node = cleanUtf8(name.node, kAskedNameBytesMax);
+    name.material = cleanUtf8(name.material, kAskedNameBytesMax);
+    std::vector<SurfaceName>& names = mesh_.surface_names;
+    if (!names.empty() && names[label_] == name) {
+        return;
+    }
+    if (names.size() < kSurfaceNamesMax) {
+        names.push_back(names.size() + 1 < kSurfaceNamesMax ? std::move(name) : SurfaceName());
+    }
+    label_ = static_cast<std::uint32_t>(names.size() - 1);
+}
+
 void MeshInstances::add(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
                         const Transform& transform, std::uint8_t mark) {
     const auto base = static_cast<std::uint32_t>(mesh_.positions.size());
@@ -64,6 +79,7 @@ void MeshInstances::add(std::span<const glm::vec3> positions, std::span<const gl
         mesh_.triangles.emplace_back(base + t.x, base + (mirrors ? t.z : t.y), base + (mirrors ? t.y : t.z));
     }
     mesh_.marks.resize(marked_ ? mesh_.triangles.size() : 0, mark);
+    mesh_.labels.resize(mesh_.triangles.size(), label_);
 }
 
 Result<TriangleMesh> MeshInstances::finish(const NameMarks& names) {
@@ -72,6 +88,10 @@ Result<TriangleMesh> MeshInstances::finish(const NameMarks& names) {
                     shown_ + ": no triangles; export the surface as polygons, not as points or lines");
     }
     RELIEF_TRY(names.allMet(shown_));
+    if (mesh_.surface_names.size() < 2) {
+        mesh_.surface_names.clear();
+        mesh_.labels.clear();
+    }
     if (flat_ > 0) {
         mesh_.warnings.push_back(std::to_string(flat_) +
                                  " of its parts are scaled to nothing in some direction, and hold no volume");

@@ -43,6 +43,8 @@ class MeshInstances {
     [[nodiscard]] tl::unexpected<Error> tooMany() const { return tooManyTriangles(shown_, triangle_max_); }
     /// \param marked  whether every mesh comes with a mark.
     void begin(bool marked);
+    /// Names the surface of all that is added until the next call. \param name  its strings as the file has them.
+    void surface(SurfaceName name);
     /// \param triangles  of positions that exist. Where the transform mirrors, they are turned over.
     void add(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
              const Transform& transform, std::uint8_t mark = 0);
@@ -57,6 +59,7 @@ class MeshInstances {
     std::uint64_t triangles_ = 0;
     std::uint64_t flat_ = 0;
     bool marked_ = false;
+    std::uint32_t label_ = 0;
 };
 
 }  // namespace relief

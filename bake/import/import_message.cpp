@@ -40,6 +40,64 @@ void copyArray(std::span<const std::byte> bytes, std::vector<T>& out) {
     }
 }
 
+using Surfaces = flatbuffers::Vector<flatbuffers::Offset<import_fb::Surface>>;
+
+flatbuffers::Offset<Surfaces> writeSurfaces(flatbuffers::FlatBufferBuilder& builder,
+                                            const TriangleMesh& raw) {
+    std::vector<flatbuffers::Offset<import_fb::Surface>> surfaces;
+    for (const SurfaceName& name : raw.surface_names) {
+        surfaces.push_back(import_fb::CreateSurfaceDirect(builder, name.node_index, name.node.c_str(),
+                                                          name.material.c_str()));
+    }
+    return builder.CreateVector(surfaces);
+}
+
+/// Runs of equal labels.
+struct LabelRuns {
+    std::vector<std::uint32_t> labels;
+    std::vector<std::uint64_t> triangles;
+};
+LabelRuns runsOf(const std::vector<std::uint32_t>& labels) {
+    LabelRuns runs;
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+        if (i == 0 || labels[i] != labels[i - 1]) {
+            runs.labels.push_back(labels[i]);
+            runs.triangles.push_back(0);
+        }
+        ++runs.triangles.back();
+    }
+    return runs;
+}
+
+/// \return whether the runs are those of the mesh's triangles.
+bool readLabels(const import_fb::Message& message, TriangleMesh& raw) {
+    const auto* surfaces = message.surfaces();
+    const auto* labels = message.run_labels();
+    const auto* triangles = message.run_triangles();
+    if (labels == nullptr || labels->size() == 0) {
+        return true;
+    }
+    if (surfaces == nullptr || triangles == nullptr || triangles->size() != labels->size() ||
+        surfaces->size() > kSurfaceNamesMax) {
+        return false;
+    }
+    for (const import_fb::Surface* surface : *surfaces) {
+        raw.surface_names.push_back({surface->node_index(),
+                                     cleanUtf8(textOf(surface->node()), kAskedNameBytesMax),
+                                     cleanUtf8(textOf(surface->material()), kAskedNameBytesMax)});
+    }
+    std::uint64_t left = message.triangles();
+    raw.labels.reserve(left);
+    for (flatbuffers::uoffset_t i = 0; i < labels->size(); ++i) {
+        if (labels->Get(i) >= surfaces->size() || triangles->Get(i) > left) {
+            return false;
+        }
+        raw.labels.insert(raw.labels.end(), triangles->Get(i), labels->Get(i));
+        left -= triangles->Get(i);
+    }
+    return left == 0;
+}
+
 }  // namespace
 
 ImportMessage makeImportMessage(const Result<TriangleMesh>& raw) {
@@ -60,6 +118,10 @@ ImportMessage makeImportMessage(const Result<TriangleMesh>& raw) {
                                                        raw->dependency_hashes[i].c_str()));
         }
         const auto files = builder.CreateVector(list);
+        const auto surfaces = writeSurfaces(builder, *raw);
+        const LabelRuns runs = runsOf(raw->labels);
+        const auto run_labels = builder.CreateVector(runs.labels);
+        const auto run_triangles = builder.CreateVector(runs.triangles);
         import_fb::MessageBuilder message(builder);
         message.add_unit(unit);
         message.add_warnings(warnings);
@@ -68,6 +130,9 @@ ImportMessage makeImportMessage(const Result<TriangleMesh>& raw) {
         message.add_triangles(raw->triangles.size());
         message.add_unused_vertices(raw->unused_vertices);
         message.add_marks(raw->marks.size());
+        message.add_surfaces(surfaces);
+        message.add_run_labels(run_labels);
+        message.add_run_triangles(run_triangles);
         import_fb::FinishMessageBuffer(builder, message.Finish());
         arrays = 12 * (raw->positions.size() + raw->triangles.size()) + raw->marks.size();
     }
@@ -155,7 +220,7 @@ Result<TriangleMesh> readImportMessage(std::span<const std::byte> bytes, std::ui
     copyArray(bytes.subspan(head, triangles - head), raw.positions);
     copyArray(bytes.subspan(triangles, marks - triangles), raw.triangles);
     copyArray(bytes.subspan(marks, message.marks()), raw.marks);
-    return raw;
+    return readLabels(message, raw) ? Result<TriangleMesh>(std::move(raw)) : noMessage();
 }
 
 }  // namespace relief

@@ -102,6 +102,24 @@ class SceneNames {
         return std::max({mark, meet(textOf(mesh.mName)), meetMaterial(mesh)});
     }
 
+    /// The node, or what bears a name above it, and the material. \param node  null: none uses the mesh.
+    SurfaceName surfaceOf(const aiMesh& mesh, const aiNode* node) {
+        SurfaceName name;
+        name.node_index =
+            indices_.try_emplace(node, static_cast<std::uint32_t>(indices_.size())).first->second;
+        const auto unnamed = [](std::string_view text) { return text.empty() || isMadeUp(text); };
+        while (node != nullptr && unnamed(textOf(node->mName)) && node->mParent != nullptr) {
+            node = node->mParent;
+        }
+        if (node != nullptr && node->mParent != nullptr) {  // the topmost is the file
+            name.node = textOf(node->mName);
+        }
+        if (const std::string material = materialOf(mesh); !isMadeUp(material)) {
+            name.material = material;
+        }
+        return name;
+    }
+
   private:
     std::uint8_t meet(std::string_view name) { return marks_.meet(name, !isMadeUp(name)); }
 
@@ -118,17 +136,24 @@ class SceneNames {
     }
 
     std::uint8_t meetMaterial(const aiMesh& mesh) {
+        const std::string name = materialOf(mesh);
+        return name.empty() ? std::uint8_t{0} : meet(name);
+    }
+
+    /// "" without one.
+    [[nodiscard]] std::string materialOf(const aiMesh& mesh) const {
         aiString name;
         return mesh.mMaterialIndex < scene_.mNumMaterials &&
                        scene_.mMaterials[mesh.mMaterialIndex]->Get(AI_MATKEY_NAME, name) == AI_SUCCESS
-                   ? meet(textOf(name))
-                   : std::uint8_t{0};
+                   ? std::string(textOf(name))
+                   : std::string();
     }
 
     const aiScene& scene_;
     bool is_obj_;
     NameMarks marks_;
-    std::map<const aiNode*, std::uint8_t> nodes_;  // with those above them
+    std::map<const aiNode*, std::uint8_t> nodes_;     // with those above them
+    std::map<const aiNode*, std::uint32_t> indices_;  // of nodes that use a mesh
 };
 
 /// \param out  is cleared.
@@ -237,6 +262,9 @@ Result<TriangleMesh> flatten(const aiScene& scene, const glm::dmat3& linear, con
         positionsOf(source, positions);
         trianglesOf(source, triangles);
         const std::uint8_t mark = names.marks().any() && !triangles.empty() ? names.of(source, node) : 0;
+        if (!triangles.empty()) {
+            instances.surface(names.surfaceOf(source, node));
+        }
         instances.add(positions, triangles, transform, mark);
         return true;
     });

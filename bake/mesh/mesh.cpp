@@ -60,12 +60,16 @@ Result<TriangleMesh> finishMesh(TriangleMesh mesh) {
             if (!mesh.marks.empty()) {
                 mesh.marks[kept] = mesh.marks[triangle];
             }
+            if (!mesh.labels.empty()) {
+                mesh.labels[kept] = mesh.labels[triangle];
+            }
             mesh.triangles[kept++] = t;
         }
     }
     mesh.dropped_triangles += mesh.triangles.size() - kept;
     mesh.triangles.resize(kept);
     mesh.marks.resize(std::min(kept, mesh.marks.size()));
+    mesh.labels.resize(std::min(kept, mesh.labels.size()));
     if (kept == 0) {
         return noArea(mesh);
     }

@@ -12,11 +12,25 @@
 
 namespace relief {
 
+/// TriangleMesh::labels of a triangle that belongs to nothing in the file: a cap.
+inline constexpr std::uint32_t kNoLabel = 0xffffffff;
+
 /// Limit of a mesh, instances counted one by one.
 inline constexpr std::uint64_t kTriangleMax = 100'000'000;
 /// Names that an importer may be asked for at once, and the bytes of one.
 inline constexpr std::size_t kAskedNamesMax = 255;
 inline constexpr std::size_t kAskedNameBytesMax = 256;
+/// Surfaces of a file that are told apart; those beyond count as one without a name.
+inline constexpr std::size_t kSurfaceNamesMax = 65'536;
+
+/// The place of a surface in its file.
+struct SurfaceName {
+    std::uint32_t node_index = 0;  ///< counts the nodes that show something: two of one name are two
+    std::string node;              ///< of OBJ the group or object; "" without a name
+    std::string material;          ///< "" without a name
+
+    friend bool operator==(const SurfaceName&, const SurfaceName&) = default;
+};
 
 /// After finishMesh: at least one triangle, every index valid, every position finite and used by a triangle,
 /// no triangle without area.
@@ -29,6 +43,11 @@ struct TriangleMesh {
     /// For each triangle, which of the names that its importer was asked for it has: 0 for none, else 1 + the index of
     /// the last of them. Empty: nobody asked, or the triangles are no longer the source's.
     std::vector<std::uint8_t> marks;
+    /// For each triangle an index into `surface_names`; empty: the file has one surface, or the triangles are no longer
+    /// the source's.
+    std::vector<std::uint32_t> labels;
+    /// One for each material of each node, in the order of the file.
+    std::vector<SurfaceName> surface_names;
     std::uint64_t dropped_triangles = 0;  ///< without area, left out
     std::uint64_t unused_vertices = 0;    ///< of the source, that no triangle of it uses; left out
     /// The last of `triangles` are no surface of the source's: caps over holes (hole_caps.h), the rims of shells and the
@@ -53,8 +72,8 @@ struct TriangleMesh {
 };
 
 /// Turns raw positions and triangles into a mesh that keeps the invariants above: drops triangles without
-/// area, their marks, and positions without triangle, computes the bounds.
-/// \param mesh  with no marks, or as many as triangles.
+/// area, their marks and labels, and positions without triangle, computes the bounds.
+/// \param mesh  with no marks, or as many as triangles; labels likewise.
 /// Errors, naming mesh.name: kInvalidInput (index out of range, coordinate that is not finite or beyond 1e15,
 /// no triangle with an area), kLimit (kTriangleMax).
 [[nodiscard]] Result<TriangleMesh> finishMesh(TriangleMesh mesh);

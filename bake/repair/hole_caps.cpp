@@ -297,6 +297,9 @@ Result<PreparedMesh> closeHoles(const PreparedMesh& mesh, std::size_t probes) {
     for (const Loop& loop : loopsOf(mesh.oddEdges())) {
         capper.close(loop);
     }
+    if (!with_caps.labels.empty()) {
+        with_caps.labels.resize(with_caps.triangles.size(), kNoLabel);
+    }
     const PreparedMesh closed = mesh.capped(std::move(with_caps));
     const MeshQuery closed_query = RELIEF_TRY(MeshQuery::build(closed));
     return turnsSides(votes, query, closed_query) ? mesh : closed;

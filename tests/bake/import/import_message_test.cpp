@@ -59,6 +59,16 @@ TEST(ImportMessage, CarriesMeshesAndErrors) {
     EXPECT_FALSE(readImportMessage(bytesOf(lie))) << "a mark without a triangle";
     lie.marks.clear();
     EXPECT_TRUE(readImportMessage(bytesOf(lie)));
+    lie.surface_names = {{0, "hut", "wood"}, {1, "tower", ""}};
+    lie.labels = {1};
+    const Result<TriangleMesh> named = readImportMessage(bytesOf(lie));
+    ASSERT_TRUE(named);
+    EXPECT_EQ(named->labels, lie.labels);
+    EXPECT_EQ(named->surface_names, lie.surface_names);
+    for (const std::vector<std::uint32_t>& labels : {std::vector<std::uint32_t>{2}, {0, 0}, {0, 1}}) {
+        lie.labels = labels;
+        EXPECT_FALSE(readImportMessage(bytesOf(lie))) << "a label without a name, or without a triangle";
+    }
 
     const Result<TriangleMesh> error = readImportMessage(bytesOf(fail(ErrorCode::kLimit, "two\nlines \x1b")));
     ASSERT_FALSE(error);

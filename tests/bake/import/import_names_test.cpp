@@ -164,5 +164,47 @@ TEST(ImportNames, AChainOfNodesIsWalkedOnce) {
     EXPECT_EQ(std::count(marks.begin(), marks.end(), 2), 2);
 }
 
+/// "node/material" of each triangle, through the worker and in this process: the same.
+std::vector<std::string> surfacesOf(const std::filesystem::path& file) {
+    const Result<TriangleMesh> mesh = importMeshInWorker(file);
+    const Result<TriangleMesh> here = importMesh(file);
+    EXPECT_TRUE(mesh && here);
+    if (!mesh || !here) {
+        return {};
+    }
+    EXPECT_EQ(mesh->labels, here->labels);
+    EXPECT_EQ(mesh->surface_names, here->surface_names);
+    std::vector<std::string> names;
+    for (const std::uint32_t label : mesh->labels) {
+        const SurfaceName& name = mesh->surface_names[label];
+        names.push_back(name.node + "/" + name.material);
+    }
+    return names;
+}
+
+TEST(ImportNames, EveryTriangleKnowsItsNodeAndItsMaterial) {
+    using Surfaces = std::vector<std::string>;
+    const TemporaryFolder folder;
+    EXPECT_EQ(
+        surfacesOf(folder.write("a.obj", obj("g body\nusemtl paint\nf 1 2 3\nusemtl glass\nf 1 1 4\nf 1 2 4\n"
+                                             "g wheel\nf 2 3 4\n"))),
+        Surfaces({"body/paint", "body/glass", "wheel/glass"}));
+    // One surface needs no names.
+    EXPECT_EQ(surfacesOf(folder.write("one.obj", obj("g body\nf 1 2 3\nf 1 2 4\n"))), Surfaces());
+}
+
+TEST(ImportNames, TwoNodesOfOneNameAreTwo) {
+    const TemporaryFolder folder;
+    const auto file = folder.write(
+        "n.gltf",
+        gltf(R"({"name":"chair","mesh":0},{"name":"chair","translation":[5,0,0],"mesh":0})", "0,1"));
+    EXPECT_EQ(surfacesOf(file),
+              std::vector<std::string>({"chair/paint", "chair/glass", "chair/paint", "chair/glass"}));
+    const Result<TriangleMesh> mesh = importMeshInWorker(file);
+    ASSERT_TRUE(mesh && mesh->surface_names.size() == 4U);
+    EXPECT_EQ(mesh->surface_names[0].node_index, mesh->surface_names[1].node_index);
+    EXPECT_NE(mesh->surface_names[1].node_index, mesh->surface_names[2].node_index);
+}
+
 }  // namespace
 }  // namespace relief::test
