@@ -315,6 +315,7 @@ Result<void> measureBudget(const PreparedMesh& imported, const Arguments& argume
                            std::uint64_t budget, Cache& cache, Measured& measured) {
     if (!(shape.thickness > 0.0)) {
         shape.thickness = defaultThickness(imported->bounds, budget);
+        shape.thickness_by_part = true;
     }
     const ShapedMesh shaped = RELIEF_TRY(shapeMesh(imported, shape));
     const MeshQuery query = RELIEF_TRY(MeshQuery::build(shaped.mesh));

@@ -202,6 +202,7 @@ Result<Collider> bakeMesh(TriangleMesh mesh, const BakeArguments& arguments) {
     CaredMesh cared = RELIEF_TRY(careFor(std::move(mesh), care));
     ShapeOptions shape;
     shape.thickness = arguments.thickness.value_or(defaultThickness(cared.mesh->bounds, arguments.budget));
+    shape.thickness_by_part = !arguments.thickness;
     ShapedMesh shaped = RELIEF_TRY(shapeMesh(cared.mesh, shape));
     const MeshQuery query = RELIEF_TRY(MeshQuery::build(shaped.mesh));
     ViewOptions views;
@@ -236,6 +237,7 @@ py::dict check(const Collider& collider, TriangleMesh mesh, std::uint32_t sample
         ShapeOptions shape = shapeOptionsOf(collider.provenance.options, ShapeOptions{});
         if (shape.thickness <= 0.0) {
             shape.thickness = defaultThickness(cared.mesh->bounds, collider.gpuBytes());
+            shape.thickness_by_part = true;
         }
         ShapedMesh shaped = RELIEF_TRY(shapeMesh(cared.mesh, shape));
         const MeshQuery query = RELIEF_TRY(MeshQuery::build(shaped.mesh));

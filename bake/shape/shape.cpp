@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <glm/common.hpp>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -40,6 +41,13 @@ constexpr double kTwice = 0.9;
 constexpr double kTerrainCover = 0.98;
 constexpr std::size_t kTerrainTriangles = 200;
 constexpr double kTerrainExtent = 0.8;
+/// A shell of the default thickness is at least and at most so thick, in units of its part's longest side.
+constexpr double kShellLeast = 0.004;
+constexpr double kShellMost = 0.25;
+/// More of a shell that nobody asked for is no longer the part that it stands for.
+constexpr double kShellRight = 0.1;
+/// The least that floats tell apart at the far end of a mesh's box, in units of its longest side.
+constexpr double kThicknessFloat = 4e-6;
 /// The ground below a terrain, in units of the longest side.
 constexpr double kGround = 0.05;
 
@@ -49,6 +57,7 @@ TriangleMesh meshOf(const Sheet& sheet, const std::string& name) {
     mesh.name = name;
     mesh.positions = sheet.positions;
     mesh.triangles = sheet.triangles;
+    mesh.labels = sheet.sources;
     return mesh;
 }
 
@@ -80,7 +89,7 @@ std::array<double, 2> sightOf(const Sheet& sheet, std::size_t asked, const MeshQ
 class Shaper {
   public:
     Shaper(const PreparedMesh& mesh, const ShapeOptions& options)
-        : prepared_(mesh), mesh_(*mesh), options_(options), union_(mesh_) {
+        : prepared_(mesh), mesh_(*mesh), options_(options), collected_(mesh_), union_(mesh_) {
         report_.as = options.as;
         for (const NamedShape& named : options.named) {
             report_.named.push_back({named, 0});
@@ -106,21 +115,25 @@ class Shaper {
         std::vector<const Part*> solids;
         std::vector<const Part*> others;
         for (const Part& part : parts_) {
-            (isSolid(part) ? solids : others).push_back(&part);
+            const bool solid = isSolid(part);
+            collected_.add(part.triangles, solid ? PartKind::kSolid : PartKind::kSurface);
+            (solid ? solids : others).push_back(&part);
         }
         if (others.empty()) {
             report_.solids = solids.size();
-            return ShapedMesh{prepared_, report_};
+            return ShapedMesh{prepared_, report_, {std::move(collected_.parts()), collected_.partOf()}};
         }
         for (const Part* part : solids) {
-            union_.addSource(part->triangles, part->balanced ? 0 : ++bodies_);
+            union_.addSource(part->triangles, collected_.partOf(), part->balanced ? 0 : ++bodies_);
         }
         report_.solids = solids.size();
         makeSheets(others);
         RELIEF_TRY(sortSheets());
         RELIEF_TRY(closeParts());
+        RELIEF_TRY(checkThickness());
         addSheets();
-        return ShapedMesh{RELIEF_TRY(union_.finish(report_.thickness)), report_};
+        PreparedMesh mesh = RELIEF_TRY(union_.finish(report_.thickness));
+        return ShapedMesh{std::move(mesh), report_, {std::move(collected_.parts()), union_.takePartOf()}};
     }
 
   private:
@@ -152,10 +165,14 @@ class Shaper {
             if (!rest.marks.empty()) {
                 rest.marks[kept] = mesh_.marks[i];
             }
+            if (!rest.labels.empty()) {
+                rest.labels[kept] = mesh_.labels[i];
+            }
             ++kept;
         }
         rest.triangles.resize(kept);
         rest.marks.resize(std::min(kept, rest.marks.size()));
+        rest.labels.resize(std::min(kept, rest.labels.size()));
         rest = RELIEF_TRY(finishMesh(std::move(rest)));
         const Winding winding = RELIEF_TRY(windOutwards(std::move(rest)));
         ShapedMesh shaped = RELIEF_TRY(Shaper(winding.mesh, options_).run());
@@ -324,6 +341,19 @@ class Shaper {
         return area.y >= std::max(area.x, area.z) ? 1 : area.z >= area.x ? 2 : 0;
     }
 
+    /// The parts of triangles of the source, which are of this kind.
+    [[nodiscard]] std::vector<std::uint32_t> partsFor(std::span<const std::uint32_t> sources, PartKind kind) {
+        std::vector<std::uint32_t> parts;
+        parts.reserve(sources.size());
+        for (const std::uint32_t source : sources) {
+            parts.push_back(source == kNoLabel ? kNoLabel : collected_.partOf()[source]);
+            if (parts.back() != kNoLabel) {
+                collected_.parts()[parts.back()].kind = kind;
+            }
+        }
+        return parts;
+    }
+
     /// A part with holes, closed.
     struct Closed {
         std::optional<PreparedMesh> mesh;
@@ -353,7 +383,8 @@ class Shaper {
 
     void add(const Closed& closed) {
         const TriangleMesh& mesh = **closed.mesh;
-        union_.add(mesh.positions, mesh.triangles, mesh.sourceTriangles(), closed.balanced ? 0 : ++bodies_);
+        union_.add(mesh.positions, mesh.triangles, partsFor(mesh.labels, PartKind::kSolidWithHoles),
+                   mesh.sourceTriangles(), closed.balanced ? 0 : ++bodies_);
         union_.countHoles(mesh.closed_holes);
     }
 
@@ -401,6 +432,7 @@ class Shaper {
             for (const glm::uvec3& t : part->sheet.triangles) {
                 rest.triangles.push_back(t + first);
             }
+            rest.labels.insert(rest.labels.end(), part->sheet.sources.begin(), part->sheet.sources.end());
         }
         rest = RELIEF_TRY(finishMesh(std::move(rest)));
         const Closed closed = RELIEF_TRY(close(rest));
@@ -413,7 +445,8 @@ class Shaper {
         const Enclosure enclosure = measureEnclosure(query);
         if (parts.front()->as == ShapeAs::kSolid ||
             (enclosure.one_sided >= kOneSided && enclosure.agreement >= kAgreement)) {
-            union_.add(rest.positions, rest.triangles, rest.triangles.size(), ++bodies_);
+            union_.add(rest.positions, rest.triangles, partsFor(rest.labels, PartKind::kSolidWithHoles),
+                       rest.triangles.size(), ++bodies_);
             ++report_.solids_with_holes;
             return {};
         }
@@ -423,16 +456,61 @@ class Shaper {
         return {};
     }
 
+    /// Of the shell about a sheet, object units.
+    [[nodiscard]] double thicknessOf(const Sheet& sheet) const {
+        return options_.thickness_by_part ? partThickness(options_.thickness, sizeOf(sheet))
+                                          : options_.thickness;
+    }
+
+    static double sizeOf(const Sheet& sheet) {
+        Bounds bounds;
+        for (const glm::vec3& p : sheet.positions) {
+            bounds.add(p);
+        }
+        return double{bounds.longestSide()};
+    }
+
+    /// A thickness that was asked for is one of the smallest sheet, and of what floats tell apart.
+    [[nodiscard]] Result<void> checkThickness() const {
+        double smallest = std::numeric_limits<double>::max();
+        for (const Open& part : open_) {
+            if (part.role.kind == Kind::kSheet) {
+                smallest = std::min(smallest, sizeOf(part.sheet));
+            }
+        }
+        const auto whole = double{mesh_.bounds.longestSide()};
+        const double least = std::max(kThicknessMin * std::min(smallest, whole), kThicknessFloat * whole);
+        if (options_.thickness_by_part || smallest > whole || options_.thickness >= least) {
+            return {};
+        }
+        return fail(ErrorCode::kUsage, "--thickness is " + shortest(static_cast<float>(options_.thickness)) +
+                                           " but a shell of " + mesh_.name + " can be no thinner than " +
+                                           shortest(static_cast<float>(least)) +
+                                           "; give that or more, or bake its small parts by themselves");
+    }
+
     void addSheets() {
         for (const Open& part : open_) {
             if (part.role.kind == Kind::kSheet) {
-                union_.add(thickened(part.sheet, options_.thickness));
-                report_.thickness = options_.thickness;
+                const double thickness = thicknessOf(part.sheet);
+                add(part.sheet, thickened(part.sheet, thickness), PartKind::kSheet);
+                for (const std::uint32_t source : part.sheet.sources) {
+                    SurfacePart& piece = collected_.parts()[collected_.partOf()[source]];
+                    piece.thickness = thickness;
+                    piece.right_thickness = options_.thickness_by_part
+                                                ? std::min(thickness, kShellRight * sizeOf(part.sheet))
+                                                : thickness;
+                }
+                report_.thickness = std::max(report_.thickness, thickness);
+                report_.thickness_least =
+                    report_.sheets == 0 ? thickness : std::min(report_.thickness_least, thickness);
                 ++report_.sheets;
             } else if (part.role.kind == Kind::kTerrain) {
                 addTerrain(part.sheet, part.role.axis);
             }
         }
+        report_.default_thickness =
+            options_.thickness_by_part && report_.sheets > 0 ? options_.thickness : 0.0;
     }
 
     void addTerrain(const Sheet& sheet, int axis) {
@@ -440,8 +518,18 @@ class Shaper {
         for (const glm::vec3& p : sheet.positions) {
             low = std::min(low, p[axis]);
         }
-        union_.add(extruded(sheet, axis, low - static_cast<float>(kGround) * mesh_.bounds.longestSide()));
+        add(sheet, extruded(sheet, axis, low - static_cast<float>(kGround) * mesh_.bounds.longestSide()),
+            PartKind::kTerrain);
         ++report_.terrains;
+    }
+
+    void add(const Sheet& sheet, const SolidPart& solid, PartKind kind) {
+        std::vector<std::uint32_t> sources;
+        sources.reserve(solid.sources.size());
+        for (const std::uint32_t triangle : solid.sources) {
+            sources.push_back(sheet.sources[triangle]);
+        }
+        union_.add(solid.positions, solid.triangles, partsFor(sources, kind), solid.surface_triangles, 0);
     }
 
     const PreparedMesh& prepared_;
@@ -452,6 +540,7 @@ class Shaper {
     std::vector<ShapeAs> kinds_;  // of the triangles; empty: options_.as
     std::vector<Open> open_;      // of parts_
     std::uint32_t bodies_ = 0;    // that parity decides about: their numbers begin at 1
+    SurfacePartsBuilder collected_;
     SolidUnion union_;
     ShapeReport report_;
 };
@@ -465,7 +554,8 @@ void append(std::string& text, std::uint64_t count, const char* one, const char*
 }  // namespace
 
 std::string shapeOptionsText(const ShapeReport& report) {
-    ShapeOptions options{report.as, report.thickness, {}};
+    const bool by_part = report.default_thickness > 0.0;
+    ShapeOptions options{report.as, by_part ? report.default_thickness : report.thickness, {}, by_part};
     for (const NamedTriangles& named : report.named) {
         options.named.push_back(named.shape);
     }
@@ -486,8 +576,19 @@ double defaultThickness(const Bounds& bounds, std::uint64_t budget_bytes) {
     // Front-back maps along the axes, of eight bytes a texel, and half as many again that look from elsewhere.
     const double area = 12.0 * (size.x * size.y + size.y * size.z + size.z * size.x);
     const double texel = std::sqrt(area / static_cast<double>(std::max<std::uint64_t>(budget_bytes, 1)));
-    const double side = bounds.longestSide();
-    return std::clamp(1.5 * texel, 0.004 * side, 0.04 * side);
+    return std::min(1.5 * texel, 0.04 * double{bounds.longestSide()});
+}
+
+double partThickness(double default_thickness, double part_size) {
+    return std::min(std::max(default_thickness, kShellLeast * part_size), kShellMost * part_size);
+}
+
+SurfaceParts surfacePartsOf(const PreparedMesh& mesh) {
+    SurfacePartsBuilder builder(*mesh);
+    for (const Part& part : partsOf(*mesh, mesh.edges())) {
+        builder.add(part.triangles, PartKind::kSurface);
+    }
+    return {std::move(builder.parts()), builder.partOf()};
 }
 
 Result<ShapedMesh> shapeMesh(const PreparedMesh& mesh, const ShapeOptions& options) {

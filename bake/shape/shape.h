@@ -17,16 +17,19 @@
 #include <vector>
 
 #include "bake/mesh/prepared_mesh.h"
+#include "bake/mesh/surface_parts.h"
 #include "bake/shape/shape_options.h"
 #include "formats/base/result.h"
 
 namespace relief {
 
-/// A texel and a half of a planned bake of a box like this: a wall that fills its texels.
+/// A texel and a half of a planned bake of a box like this: a wall that fills its texels; at most 4 % of its longest side.
 /// \param budget_bytes  of all texels.
 [[nodiscard]] double defaultThickness(const Bounds& bounds, std::uint64_t budget_bytes);
+/// The same for a part of that box: 0.4 to 25 % of its own longest side.
+[[nodiscard]] double partThickness(double default_thickness, double part_size);
 
-/// The least and the largest --thickness, in units of the longest side.
+/// The least --thickness, in units of the longest side of the smallest sheet, and the largest, in units of the mesh's.
 inline constexpr double kThicknessMin = 1e-4;
 inline constexpr double kThicknessMax = 0.5;
 
@@ -44,7 +47,9 @@ struct ShapeReport {
     std::uint64_t sheets = 0;
     std::uint64_t terrains = 0;
     std::uint64_t coincident_triangles = 0;  ///< left out of sheets, and of solids closed without them
-    double thickness = 0.0;                  ///< of the shells, object units; 0: there are none
+    double thickness = 0.0;                  ///< of the thickest shell, object units; 0: there are none
+    double thickness_least = 0.0;            ///< of the thinnest
+    double default_thickness = 0.0;          ///< from which each part's is derived; 0: it was asked for
 
     /// "2 solids, 1 sheet"
     [[nodiscard]] std::string text() const;
@@ -56,11 +61,15 @@ struct ShapeReport {
 struct ShapedMesh {
     PreparedMesh mesh;  ///< the mesh that came if it is solid already
     ShapeReport report;
+    SurfaceParts parts;
 };
 
 /// \param mesh  as windOutwards leaves it. Its marks count options.named; without marks, nothing is named.
 /// The same for any number of threads.
-/// Errors: those of MeshQuery::build; kLimit (kTriangleMax).
+/// Errors: those of MeshQuery::build; kLimit (kTriangleMax); kUsage (a thickness below kThicknessMin).
 [[nodiscard]] Result<ShapedMesh> shapeMesh(const PreparedMesh& mesh, const ShapeOptions& options);
+
+/// The parts of a mesh that is baked as it is.
+[[nodiscard]] SurfaceParts surfacePartsOf(const PreparedMesh& mesh);
 
 }  // namespace relief

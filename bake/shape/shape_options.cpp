@@ -13,6 +13,8 @@ namespace {
 constexpr std::array<std::string_view, kShapeAsCount> kAsNames = {"auto", "solid", "shell", "terrain"};
 /// What a name is recorded by as it is, beside all beyond ASCII.
 constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._+/:,-";
+/// Before a default thickness, of which each part takes its own.
+constexpr std::string_view kByPart = "auto=";
 constexpr std::string_view kHex = "0123456789ABCDEF";
 
 bool isPlain(char c) {
@@ -126,17 +128,22 @@ std::string recordedShape(const ShapeOptions& options) {
     for (const NamedShape& named : options.named) {
         text.append(" --as ").append(encoded(named.name)).append("=").append(shapeAsName(named.as));
     }
-    return text +
-           (options.thickness > 0.0 ? " --thickness " + shortest(static_cast<float>(options.thickness)) : "");
+    if (options.thickness > 0.0) {
+        text += " --thickness " + std::string(options.thickness_by_part ? kByPart : "") +
+                shortest(static_cast<float>(options.thickness));
+    }
+    return text;
 }
 
 bool readRecordedShape(std::string_view option, std::string_view value, ShapeOptions& options) {
     if (option == "--thickness") {
-        const std::optional<float> thickness = parseFloat(value);
+        const bool by_part = value.starts_with(kByPart);
+        const std::optional<float> thickness = parseFloat(value.substr(by_part ? kByPart.size() : 0));
         if (!thickness || !(*thickness > 0.0F)) {
             return false;
         }
         options.thickness = double{*thickness};
+        options.thickness_by_part = by_part;
         return true;
     }
     const std::size_t equals = value.find('=');

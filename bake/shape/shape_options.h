@@ -34,6 +34,8 @@ struct ShapeOptions {
     double thickness = 0.0;  ///< of shells, object units, above 0: see defaultThickness
     /// What goes before `as`; each name once, at most kAskedNamesMax. Where a triangle has several, the last counts.
     std::vector<NamedShape> named = {};
+    /// `thickness` is a default, of which each sheet takes what suits its own size (partThickness).
+    bool thickness_by_part = false;
 
     [[nodiscard]] std::vector<std::string> names() const;  ///< of `named`, in that order
 };
@@ -41,7 +43,7 @@ struct ShapeOptions {
 /// The values of --as: KIND at most once, and NAME=KIND, split at the last "=". Errors: kUsage, kLimit.
 [[nodiscard]] Result<ShapeOptions> parseShapeOptions(const std::vector<std::string>& words);
 
-/// " --as shell --as glass=auto --thickness 0.01": what is not the default, as a container records it. Of a name, all is
+/// " --as shell --as glass=auto --thickness 0.01" (by part: "auto=0.01"): what is not the default, as a container records it. Of a name, all is
 /// %XX that could mean something to a shell or to who reads the record.
 [[nodiscard]] std::string recordedShape(const ShapeOptions& options);
 /// Reads one option of such a record. \return whether it is one, and its value makes sense; otherwise nothing is changed.

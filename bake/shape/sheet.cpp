@@ -168,16 +168,19 @@ class PartBuilder {
         part_.positions.emplace_back(p);
         return static_cast<std::uint32_t>(part_.positions.size() - 1);
     }
-    void addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    /// \param source  the sheet's triangle that it is for.
+    void addTriangle(std::uint32_t source, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
         const glm::uvec3 t(a, b, c);
         if (hasArea(planeOf(part_.positions, t))) {
             part_.triangles.push_back(t);
+            part_.sources.push_back(source);
         }
     }
     /// Below the side from a to b of a triangle that is seen from above.
-    void addWall(const std::array<std::uint32_t, 2>& a, const std::array<std::uint32_t, 2>& b) {
-        addTriangle(b[0], a[0], a[1]);
-        addTriangle(b[0], a[1], b[1]);
+    void addWall(std::uint32_t source, const std::array<std::uint32_t, 2>& a,
+                 const std::array<std::uint32_t, 2>& b) {
+        addTriangle(source, b[0], a[0], a[1]);
+        addTriangle(source, b[0], a[1], b[1]);
     }
     void endSurface() { part_.surface_triangles = part_.triangles.size(); }
     SolidPart take() { return std::move(part_); }
@@ -233,6 +236,7 @@ Sheet sheetOf(const TriangleMesh& mesh, std::span<const std::uint32_t> welded,
     std::sort(keyed.begin(), keyed.end(), [](const Keyed& a, const Keyed& b) { return a.source < b.source; });
     for (const Keyed& k : keyed) {
         sheet.triangles.push_back(k.triangle);
+        sheet.sources.push_back(k.source);
     }
     joinEdges(sheet);
     return sheet;
@@ -262,14 +266,14 @@ SolidPart thickened(const Sheet& sheet, double thickness) {
     };
     for (std::uint32_t i = 0; i < sheet.triangles.size(); ++i) {
         const auto [a, b, c] = std::array{endsOf(i, 0), endsOf(i, 1), endsOf(i, 2)};
-        builder.addTriangle(a[0], b[0], c[0]);
-        builder.addTriangle(a[1], c[1], b[1]);
+        builder.addTriangle(i, a[0], b[0], c[0]);
+        builder.addTriangle(i, a[1], c[1], b[1]);
     }
     builder.endSurface();
     for (std::uint32_t i = 0; i < sheet.triangles.size(); ++i) {
         for (std::uint32_t side = 0; side < 3; ++side) {
             if (sheet.neighbours[i][static_cast<int>(side)] == Sheet::kNoTriangle) {
-                builder.addWall(endsOf(i, side), endsOf(i, (side + 1) % 3));
+                builder.addWall(i, endsOf(i, side), endsOf(i, (side + 1) % 3));
             }
         }
     }
@@ -304,18 +308,18 @@ SolidPart extruded(const Sheet& sheet, int axis, float bottom) {
     };
     for (std::uint32_t i = 0; i < sheet.triangles.size(); ++i) {
         const glm::uvec3 t = corners(i);
-        builder.addTriangle(t.x, t.y, t.z);
+        builder.addTriangle(i, t.x, t.y, t.z);
     }
     builder.endSurface();
     for (std::uint32_t i = 0; i < sheet.triangles.size(); ++i) {
         const glm::uvec3 t = corners(i);
-        builder.addTriangle(count + t.x, count + t.z, count + t.y);
+        builder.addTriangle(i, count + t.x, count + t.z, count + t.y);
         for (int side = 0; side < 3; ++side) {
             if (sheet.neighbours[i][side] == Sheet::kNoTriangle) {
                 const glm::uvec3& s = sheet.triangles[i];
                 const auto [from, to] = std::pair{s[side], s[(side + 1) % 3]};
                 const auto [a, b] = turn ? std::pair{to, from} : std::pair{from, to};
-                builder.addWall({a, count + a}, {b, count + b});
+                builder.addWall(i, {a, count + a}, {b, count + b});
             }
         }
     }

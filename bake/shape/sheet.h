@@ -20,8 +20,9 @@ namespace relief {
 /// Triangles of a mesh whose edges are joined where two of them meet: what the functions below work on. No two triangles
 /// have the same three vertices.
 struct Sheet {
-    std::vector<glm::vec3> positions;   ///< no two are equal
-    std::vector<glm::uvec3> triangles;  ///< indices into positions, wound consistently across joined edges
+    std::vector<glm::vec3> positions;    ///< no two are equal
+    std::vector<glm::uvec3> triangles;   ///< indices into positions, wound consistently across joined edges
+    std::vector<std::uint32_t> sources;  ///< for each of them the mesh's triangle that it is
     /// For each side of each triangle, from corner i to the next: the triangle that it is joined to, or kNoTriangle (at
     /// the border, where three or more triangles meet, at a one-sided strip's seam, and at folds sharper than
     /// kFoldCosine).
@@ -44,6 +45,8 @@ inline constexpr double kFoldCosine = -0.5;
 struct SolidPart {
     std::vector<glm::vec3> positions;
     std::vector<glm::uvec3> triangles;
+    std::vector<std::uint32_t>
+        sources;  ///< for each of them the sheet's triangle that it stands for or closes
     std::size_t surface_triangles = 0;  ///< the first of them stand for the sheet; the others close it
 };
 

@@ -6,21 +6,24 @@ namespace relief {
 
 SolidUnion::SolidUnion(const TriangleMesh& source) : source_(source), positions_(source.positions) {}
 
-void SolidUnion::addSource(const std::vector<std::uint32_t>& triangles, std::uint32_t body) {
+void SolidUnion::addSource(const std::vector<std::uint32_t>& triangles,
+                           std::span<const std::uint32_t> part_of, std::uint32_t body) {
     for (const std::uint32_t i : triangles) {
         surface_.triangles.push_back(source_.triangles[i]);
         surface_.bodies.push_back(body);
+        surface_.parts.push_back(part_of[i]);
     }
 }
 
 void SolidUnion::add(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
-                     std::size_t surface, std::uint32_t body) {
+                     std::span<const std::uint32_t> parts, std::size_t surface, std::uint32_t body) {
     const auto first = static_cast<std::uint32_t>(positions_.size());
     positions_.insert(positions_.end(), positions.begin(), positions.end());
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         Half& half = i < surface ? surface_ : caps_;
         half.triangles.push_back(triangles[i] + first);
         half.bodies.push_back(body);
+        half.parts.push_back(i < surface ? parts[i] : kNoLabel);
     }
 }
 
@@ -42,6 +45,7 @@ Result<PreparedMesh> SolidUnion::finish(double shell_thickness) {
     mesh.shell_thickness = shell_thickness;
     std::vector<std::uint32_t> bodies = std::move(surface_.bodies);
     bodies.insert(bodies.end(), caps_.bodies.begin(), caps_.bodies.end());
+    surface_.parts.insert(surface_.parts.end(), caps_.parts.begin(), caps_.parts.end());
     mesh = RELIEF_TRY(finishMesh(std::move(mesh)));
     if (mesh.triangles.size() != bodies.size()) {
         return fail(ErrorCode::kFailure,

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "bake/mesh/prepared_mesh.h"
-#include "bake/shape/sheet.h"
 #include "formats/base/result.h"
 
 namespace relief {
@@ -18,21 +18,26 @@ class SolidUnion {
     explicit SolidUnion(const TriangleMesh& source);
 
     /// Triangles of the source, as they are. \param body  as PreparedMesh::unionOf has it.
-    void addSource(const std::vector<std::uint32_t>& triangles, std::uint32_t body);
+    /// \param part_of  of all triangles of the source (SurfaceParts).
+    void addSource(const std::vector<std::uint32_t>& triangles, std::span<const std::uint32_t> part_of,
+                   std::uint32_t body);
+    /// \param parts    of each of the triangles.
     /// \param surface  how many of the triangles, the first, are no caps.
-    void add(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles, std::size_t surface,
-             std::uint32_t body);
-    void add(const SolidPart& part) { add(part.positions, part.triangles, part.surface_triangles, 0); }
+    void add(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
+             std::span<const std::uint32_t> parts, std::size_t surface, std::uint32_t body);
     void countHoles(std::uint64_t holes) { holes_ += holes; }
 
     /// Named and described as the source is. \param shell_thickness  as TriangleMesh has it.
     /// Errors: those of finishMesh; kFailure (triangles without area).
     [[nodiscard]] Result<PreparedMesh> finish(double shell_thickness);
+    /// Behind finish(): SurfaceParts::part_of of that mesh.
+    [[nodiscard]] std::vector<std::uint32_t> takePartOf() { return std::move(surface_.parts); }
 
   private:
     struct Half {
         std::vector<glm::uvec3> triangles;
         std::vector<std::uint32_t> bodies;
+        std::vector<std::uint32_t> parts;
     };
 
     const TriangleMesh& source_;

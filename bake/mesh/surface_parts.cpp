@@ -1,0 +1,122 @@
+#include "bake/mesh/surface_parts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "bake/mesh/triangle_plane.h"
+
+namespace relief {
+namespace {
+
+/// The most area that strays have, and the most that is left of the box's longest side without them.
+constexpr double kStrayArea = 0.01;
+constexpr double kStrayRest = 0.1;
+
+double distanceTo(const glm::dvec3& center, const Bounds& bounds) {
+    const glm::dvec3 low = center - glm::dvec3(bounds.min);
+    const glm::dvec3 high = glm::dvec3(bounds.max) - center;
+    return std::max({std::abs(low.x), std::abs(low.y), std::abs(low.z), std::abs(high.x), std::abs(high.y),
+                     std::abs(high.z)});
+}
+
+/// The middle of the area along each axis: strays do not move it.
+glm::dvec3 medianOf(const std::vector<SurfacePart>& parts, double area) {
+    glm::dvec3 median(0.0);
+    std::vector<std::size_t> order(parts.size());
+    for (int axis = 0; axis < 3; ++axis) {
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+            return parts[a].bounds.center()[axis] < parts[b].bounds.center()[axis];
+        });
+        double sum = 0.0;
+        for (const std::size_t i : order) {
+            sum += parts[i].area;
+            if (2.0 * sum >= area) {
+                median[axis] = static_cast<double>(parts[i].bounds.center()[axis]);
+                break;
+            }
+        }
+    }
+    return median;
+}
+
+}  // namespace
+
+const char* partKindName(PartKind kind) {
+    constexpr std::array<const char*, 5> kNames = {"solid", "solid with holes", "sheet", "terrain",
+                                                   "surface"};
+    return kNames[static_cast<std::size_t>(kind)];
+}
+
+SurfacePartsBuilder::SurfacePartsBuilder(const TriangleMesh& mesh)
+    : mesh_(mesh), part_of_(mesh.triangles.size(), kNoLabel) {}
+
+void SurfacePartsBuilder::add(const std::vector<std::uint32_t>& triangles, PartKind kind) {
+    std::map<std::uint32_t, std::uint32_t> part_of_label;
+    for (const std::uint32_t i : triangles) {
+        const std::uint32_t label = mesh_.labels.empty() ? kNoLabel : mesh_.labels[i];
+        const auto [found, is_new] =
+            part_of_label.try_emplace(label, static_cast<std::uint32_t>(parts_.size()));
+        if (is_new) {
+            parts_.emplace_back().kind = kind;
+            if (label < mesh_.surface_names.size()) {
+                const SurfaceName& name = mesh_.surface_names[label];
+                parts_.back().node_index = name.node_index;
+                parts_.back().node = name.node;
+                parts_.back().material = name.material;
+            }
+        }
+        SurfacePart& part = parts_[found->second];
+        const glm::uvec3& t = mesh_.triangles[i];
+        for (const std::uint32_t corner : {t.x, t.y, t.z}) {
+            part.bounds.add(mesh_.positions[corner]);
+        }
+        const glm::dvec3 normal = planeOf(mesh_, i).normal;
+        part.area += 0.5 * std::sqrt(dot(normal, normal));
+        ++part.triangles;
+        part_of_[i] = found->second;
+    }
+}
+
+Strays straysOf(const std::vector<SurfacePart>& parts) {
+    double area = 0.0;
+    Bounds whole;
+    for (const SurfacePart& part : parts) {
+        area += part.area;
+        whole.add(part.bounds.min);
+        whole.add(part.bounds.max);
+    }
+    Strays strays;
+    if (parts.size() < 2) {
+        return strays;
+    }
+    const glm::dvec3 median = medianOf(parts, area);
+    std::vector<std::uint32_t> order(parts.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return distanceTo(median, parts[a].bounds) < distanceTo(median, parts[b].bounds);
+    });
+    // The farthest parts of a hundredth of the area; they are strays from the first on whose loss shrinks the box.
+    double kept = 0.0;
+    Bounds rest;
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        const SurfacePart& part = parts[order[k]];
+        const bool may_go = kept >= (1.0 - kStrayArea) * area;
+        if (may_go && double{rest.longestSide()} <= kStrayRest * double{whole.longestSide()} &&
+            distanceTo(median, part.bounds) > 2.0 * double{rest.longestSide()}) {
+            strays.parts.assign(order.begin() + static_cast<std::ptrdiff_t>(k), order.end());
+            std::sort(strays.parts.begin(), strays.parts.end());
+            strays.rest = rest;
+            return strays;
+        }
+        kept += part.area;
+        rest.add(part.bounds.min);
+        rest.add(part.bounds.max);
+    }
+    return strays;
+}
+
+}  // namespace relief
