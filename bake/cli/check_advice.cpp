@@ -158,8 +158,14 @@ class Advisor {
     }
 
     void tryBudget(std::uint64_t budget, const char* about) {
-        attempt(command() + " --budget " + budgetWord(budget) + input_.recorded.words(), about, budget,
-                [&] { return wrongOfPlan(input_.baked, budget, truth_); });
+        attempt(command() + " --budget " + budgetWord(budget) + input_.recorded.words(), about, budget, [&] {
+            if (input_.shape.default_thickness > 0.0 && input_.recorded.repair.empty()) {
+                RecordedBake recorded = input_.recorded;
+                recorded.shape.thickness = defaultThickness(input_.imported->bounds, budget);
+                return wrongOfShape(recorded, budget);
+            }
+            return wrongOfPlan(input_.baked, budget, truth_);
+        });
     }
 
     /// More maps than a plan has by default, where there are as many.
@@ -235,12 +241,11 @@ class Advisor {
                 [&] { return wrongOf(input_.baked, options, truth_); });
     }
 
-    /// Planned maps of as many bytes for another solid, against that solid.
-    Result<double> wrongOfShape(const RecordedBake& recorded) const {
+    /// Planned maps for another solid, against that solid.
+    Result<double> wrongOfShape(const RecordedBake& recorded, std::uint64_t budget) const {
         const ShapedMesh shaped = RELIEF_TRY(shapedMesh(recorded, input_.imported));
         const MeshQuery query = RELIEF_TRY(MeshQuery::build(shaped.mesh));
-        return wrongOfPlan(shaped.mesh, roundBudget(input_.collider.gpuBytes()),
-                           sampleTruth(query, truth_.options));
+        return wrongOfPlan(shaped.mesh, budget, sampleTruth(query, truth_.options));
     }
 
     /// A bake without --holes keep.
@@ -252,8 +257,10 @@ class Advisor {
         recorded.keeps_holes = false;
         const std::uint64_t budget = roundBudget(input_.collider.gpuBytes());
         recorded.shape.thickness = defaultThickness(input_.imported->bounds, budget);
+        recorded.shape.thickness_by_part = true;
         attempt(command() + " --budget " + budgetWord(budget) + recorded.words("--holes"),
-                "holes closed, and sheets made shells", budget, [&] { return wrongOfShape(recorded); });
+                "holes closed, and sheets made shells", budget,
+                [&] { return wrongOfShape(recorded, budget); });
     }
 
     void tryThicker() {
@@ -263,10 +270,11 @@ class Advisor {
         }
         const float thickness = rounded(2.0 * input_.shape.thickness);
         recorded.shape.thickness = double{thickness};
+        recorded.shape.thickness_by_part = false;
         const std::uint64_t budget = roundBudget(input_.collider.gpuBytes());
         attempt(command() + " --budget " + budgetWord(budget) + recorded.words("--thickness") +
                     " --thickness " + shortest(thickness),
-                "sheets twice as thick", budget, [&] { return wrongOfShape(recorded); });
+                "sheets twice as thick", budget, [&] { return wrongOfShape(recorded, budget); });
     }
 
     const AdviceInput& input_;

@@ -17,6 +17,7 @@
 #include "bake/cli/preflight.h"
 #include "bake/cli/progress.h"
 #include "bake/measure/accuracy.h"
+#include "bake/measure/part_accuracy.h"
 #include "bake/mesh/mesh_query.h"
 #include "bake/pipeline/bake.h"
 #include "bake/pipeline/budget_search.h"
@@ -27,6 +28,7 @@
 #include "bake/repair/mesh_care.h"
 #include "bake/report/accuracy_report.h"
 #include "bake/report/bake_report.h"
+#include "bake/report/parts_report.h"
 #include "bake/report/report.h"
 #include "bake/report/size_report.h"
 #include "formats/base/file_io.h"
@@ -41,6 +43,9 @@ namespace {
 
 /// Points that a planned bake measures itself at: one in a hundred is then known to a sixth of that.
 constexpr std::uint32_t kSelfCheckPoints = 4000;
+/// Of each part: a lost one has a quarter of its points on the wrong side.
+const PartOptions kSelfCheckParts{
+    .points = 64, .points_min = 16, .points_all = 16'384, .parts_max = 1024, .detail = {}};
 /// Percent of them on the wrong side, above which the bake warns.
 constexpr double kSelfCheckWarns = 5.0;
 /// What one more map would have served, from which on the warning speaks of more maps.
@@ -210,6 +215,8 @@ struct BakeRun {
     std::uint64_t unused_vertices = 0;     ///< of the mesh file: a repaired mesh knows them no more
     CaredMesh cared;
     ShapeReport shape;
+    SurfaceParts parts;
+    std::optional<PartsAccuracy> part_accuracy;  ///< of a planned bake of several parts
     std::optional<PlanReport> plan;
     Baked baked;
     std::optional<WrongShare> wrong;  ///< near the surface; of a planned bake
@@ -248,22 +255,23 @@ Result<void> shape(BakeRun& run) {
     const BakeCommand& command = run.command;
     const Bounds& bounds = run.cared.mesh->bounds;
     ShapeOptions options = run.settings.shape;
+    options.thickness_by_part = !command.thickness;
     options.thickness =
         command.thickness
             ? double{*command.thickness}
             : defaultThickness(bounds,
                                command.max_error ? kBudgetDefault : command.budget.value_or(kBudgetDefault));
-    const double share = options.thickness / double{bounds.longestSide()};
-    if (!(share >= kThicknessMin && share <= kThicknessMax)) {
+    if (command.thickness && !(options.thickness <= kThicknessMax * double{bounds.longestSide()})) {
         return fail(ErrorCode::kUsage, "--thickness is " + shortest(*command.thickness) + " but " +
                                            run.cared.mesh->name + " is " + shortest(bounds.longestSide()) +
-                                           " long; give between " + shortest(float(kThicknessMin)) + " and " +
-                                           shortest(float(kThicknessMax)) + " of that");
+                                           " long; give at most " + shortest(float(kThicknessMax)) +
+                                           " of that");
     }
     run.progress.begin("making a solid of the mesh");
     ShapedMesh shaped = RELIEF_TRY(shapeMesh(run.cared.mesh, options));
     run.cared.mesh = std::move(shaped.mesh);
     run.shape = std::move(shaped.report);
+    run.parts = std::move(shaped.parts);
     return {};
 }
 
@@ -294,6 +302,7 @@ Result<void> readMesh(BakeRun& run) {
     if (command.holes == Holes::kClose) {
         return shape(run);
     }
+    run.parts = surfacePartsOf(run.cared.mesh);
     run.cared.mesh.freeEdges();
     return {};
 }
@@ -305,6 +314,11 @@ Result<void> makeCollider(BakeRun& run) {
                                        run.times, run.progress);
     if (run.backend.raster) {
         run.backend.gl.watchdog->rest();
+    }
+    if (!baked && baked.error().code != ErrorCode::kUsage) {
+        if (const auto stray = strayText(run.parts, mesh->unit)) {
+            return fail(baked.error().code, mesh->name + ": " + *stray);
+        }
     }
     run.baked = RELIEF_TRY(std::move(baked));
     run.baked.collider.provenance.options += (run.command.holes == Holes::kKeep ? " --holes keep" : "") +
@@ -341,11 +355,20 @@ Result<void> checkItself(BakeRun& run) {
     const MeshQuery query = RELIEF_TRY(MeshQuery::build(run.cared.mesh));
     AccuracyOptions options;
     options.samples = kSelfCheckPoints;
-    run.wrong = measureNear(sampleNear(query, options), fieldOf(run.baked.collider));
+    const Field field = fieldOf(run.baked.collider);
+    run.wrong = measureNear(sampleNear(query, options), field);
+    if (run.parts.parts.size() > 1) {
+        run.part_accuracy = measureParts(query, run.parts, field, kSelfCheckParts);
+    }
     run.times.check_ms = watch.ms();
     if (run.wrong->total() > kSelfCheckWarns) {
         run.baked.report.warnings.push_back(run.cared.mesh->name + ": " + shortNumber(run.wrong->total()) +
                                             " % wrong near the surface; " + cureOf(run));
+    }
+    if (run.part_accuracy) {
+        if (const auto lost = lostPartsWarning(*run.part_accuracy, run.parts, run.baked.collider)) {
+            run.baked.report.warnings.push_back(run.cared.mesh->name + ": " + *lost);
+        }
     }
     return {};
 }
@@ -374,6 +397,9 @@ void tellNotices(BakeRun& run) {
     // A terrain of hundreds of metres is nothing special.
     if (forgotten && run.shape.terrains == 0) {
         warnings.insert(warnings.begin(), mesh.name + ": " + *forgotten);
+    }
+    for (const std::string& warning : partWarnings(run.parts, mesh.unit)) {
+        warnings.insert(warnings.begin(), mesh.name + ": " + warning);
     }
     warnings.insert(warnings.begin(), mesh.warnings.begin(), mesh.warnings.end());
     for (const std::string& warning : warnings) {
@@ -414,9 +440,9 @@ Result<void> writeOutputs(BakeRun& run) {
 
 Result<void> report(const BakeRun& run) {
     const BakeCommand& command = run.command;
-    const BakeSummary summary{*run.cared.mesh, run.baked,           run.plan,
-                              run.times,       run.cared.care,      run.shape,
-                              run.wrong,       run.unused_vertices, command.common.verbose};
+    const BakeSummary summary{*run.cared.mesh,        run.baked, run.plan,         run.times,
+                              run.cared.care,         run.shape, run.wrong,        run.unused_vertices,
+                              command.common.verbose, run.parts, run.part_accuracy};
     if (command.json) {
         const ContainerInfo info = RELIEF_TRY(readContainerInfo(run.bytes));
         auto json =

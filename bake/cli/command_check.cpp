@@ -12,6 +12,7 @@
 #include "bake/measure/worst_places.h"
 #include "bake/report/accuracy_page.h"
 #include "bake/report/accuracy_report.h"
+#include "bake/report/parts_report.h"
 #include "bake/report/places_report.h"
 #include "bake/report/shape_report.h"
 #include "formats/base/file_io.h"
@@ -55,7 +56,9 @@ Result<void> prepare(const CheckCommand& command) {
 
 /// What to do about the places.
 void addAdvice(const CheckCommand& command, CheckRun& run) {
-    run.passed = !command.max_error || run.original.accuracy.field.near.total() <= double{*command.max_error};
+    run.passed =
+        !command.max_error || (run.original.accuracy.field.near.total() <= double{*command.max_error} &&
+                               run.part_accuracy.countOf(PartVerdict::kLost) == 0);
     if (run.passed && run.wrongPercent() <= kGoodPercent) {
         return;
     }
@@ -70,9 +73,9 @@ Result<void> writePage(const CheckCommand& command, const CheckRun& run) {
     if (command.html.empty()) {
         return {};
     }
-    const std::string page =
-        RELIEF_TRY(accuracyPage({inputName(command.file), run.collider, *run.query, run.judged().samples,
-                                 run.judged().accuracy, run.places, run.advice}));
+    const std::string page = RELIEF_TRY(
+        accuracyPage({inputName(command.file), run.collider, *run.query, run.judged().samples,
+                      run.judged().accuracy, run.parts, run.part_accuracy, run.places, run.advice}));
     return writeFile(command.html, std::as_bytes(std::span(page)));
 }
 
@@ -97,7 +100,11 @@ nlohmann::ordered_json jsonCheck(const CheckCommand& command, const CheckRun& ru
           {"shape", jsonShape(run.shape)},
           {"baked_from_it", run.same_file}}},
         {"unit", run.collider.unit},
-        {"verdict", {{"wrong_percent", run.wrongPercent()}, {"grade", gradeOf(run.wrongPercent())}}},
+        {"verdict",
+         {{"wrong_percent", run.wrongPercent()},
+          {"lost_parts", run.part_accuracy.countOf(PartVerdict::kLost)},
+          {"grade", gradeOf(run.wrongPercent(), run.part_accuracy)}}},
+        {"parts", jsonParts(run.part_accuracy, run.parts, run.collider)},
         {"worst_places", jsonPlaces(run.places, run.collider)},
         {"advice", jsonAdvice(run.advice)},
         {"sampling", jsonSamples(samples)},
@@ -115,14 +122,16 @@ nlohmann::ordered_json jsonCheck(const CheckCommand& command, const CheckRun& ru
 
 std::string checkText(const CheckCommand& command, const CheckRun& run) {
     const auto& [samples, accuracy] = run.judged();
-    std::string text = inputName(command.file) + ": " + verdictText(run.wrongPercent()) + "\n";
+    std::string text =
+        inputName(command.file) + ": " + verdictText(run.wrongPercent(), run.part_accuracy) + "\n";
     if (run.repaired) {
         text += "That is against the mesh repaired by " + run.recorded.repair + ", " +
                 std::to_string(run.baked->triangles.size()) + " triangles; against " + run.mesh->name +
                 " as it came: " + shortNumber(run.original.accuracy.field.near.total()) + " %\n";
     }
     for (const std::string& part :
-         {placesText(run.places, run.collider), adviceText(run.advice, run.wrongPercent())}) {
+         {partsText(run.part_accuracy, run.parts, run.collider), placesText(run.places, run.collider),
+          adviceText(run.advice, run.wrongPercent())}) {
         text += part.empty() ? "" : "\n" + part;
     }
     return text + "\nMeasured against " + run.mesh->name + (run.repaired ? " repaired, " : ", ") +
@@ -143,6 +152,10 @@ Result<void> runCheck(const CheckCommand& command) {
     addAdvice(command, run);
     RELIEF_TRY(writePage(command, run));
     RELIEF_TRY(printOut(command.json ? jsonText(jsonCheck(command, run)) : checkText(command, run)));
+    if (!run.passed && run.original.accuracy.field.near.total() <= double{*command.max_error}) {
+        return fail(ErrorCode::kDifference, *lostPartsWarning(run.part_accuracy, run.parts, run.collider) +
+                                                "; --detail LENGTH leaves smaller ones out");
+    }
     if (!run.passed) {
         return fail(ErrorCode::kDifference, shortNumber(run.original.accuracy.field.near.total()) +
                                                 " % of the points near the surface are on the wrong side" +
@@ -174,7 +187,7 @@ void addCheck(CLI::App& app, Action& action) {
     CLI::Option* mesh = addMeshCheckOptions(verb, command->settings);
     verb.add_option("--max-error", command->max_error,
                     "Exit with 7 if more than this share of the points near the surface, in percent, is on "
-                    "the wrong side")
+                    "the wrong side, or a part is lost")
         ->option_text("PCT")
         ->transform(percent())
         ->needs(mesh);

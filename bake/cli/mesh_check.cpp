@@ -59,6 +59,7 @@ Result<void> readMesh(const MeshCheckSettings& settings, MeshCheck& run) {
     ShapedMesh shaped = RELIEF_TRY(shapedMesh(run.recorded, run.imported));
     run.mesh = std::move(shaped.mesh);
     run.shape = std::move(shaped.report);
+    run.parts = std::move(shaped.parts);
     RELIEF_TRY(checkSameMesh(run.collider, *run.mesh));
     const Provenance& from = run.collider.provenance;
     run.same_file = from.mesh_hash == run.mesh->content_hash;
@@ -84,6 +85,7 @@ void makeBakedMesh(MeshCheck& run) {
         if (baked) {
             run.baked = std::move(baked->mesh);
             run.shape = std::move(baked->report);
+            run.parts = std::move(baked->parts);
             return;
         }
         reason = baked.error().message;
@@ -110,6 +112,13 @@ Result<void> measure(const MeshCheckSettings& settings, MeshCheck& run) {
     spdlog::debug("truth {:.2f} s, field {:.2f} s", run.original.samples.seconds,
                   run.original.accuracy.field.seconds);
     run.query = is_repaired ? baked : query;
+    PartOptions part_options;
+    part_options.seed = settings.seed;
+    part_options.points_all = settings.samples;
+    if (settings.detail) {
+        part_options.detail = double{*settings.detail};
+    }
+    run.part_accuracy = measureParts(*run.query, run.parts, fieldOf(run.collider), part_options);
     const Sights sights(run.collider.maps, *run.query);
     run.places = worstPlaces(run.judged().samples, *run.query, sights, run.collider);
     return {};
@@ -127,6 +136,13 @@ CLI::Option* addMeshCheckOptions(CLI::App& verb, MeshCheckSettings& settings) {
     verb.add_option("--seed", settings.seed, "Of the points; default 1")
         ->option_text("S")
         ->transform(wholeNumber())
+        ->needs(mesh);
+    verb.add_option(
+            "--detail", settings.detail,
+            "Judge each part of the mesh that is at least so long by itself; default: a thousandth of\n"
+            "the longest part, in metres at most 0.1")
+        ->option_text("LENGTH")
+        ->transform(number(0.0F, 1e15F, "a length of at least 0, in the collider's units"))
         ->needs(mesh);
     return mesh;
 }

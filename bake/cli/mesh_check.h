@@ -10,6 +10,7 @@
 #include "bake/cli/import_options.h"
 #include "bake/cli/recorded_bake.h"
 #include "bake/measure/accuracy.h"
+#include "bake/measure/part_accuracy.h"
 #include "bake/measure/worst_places.h"
 #include "bake/mesh/mesh_query.h"
 #include "bake/mesh/prepared_mesh.h"
@@ -28,10 +29,11 @@ struct MeshCheckSettings {
     std::string mesh;
     std::uint64_t samples = 200'000;
     std::uint64_t seed = 1;
+    std::optional<float> detail;  ///< smaller parts do not count, object units
     ImportSettings import;
 };
 
-/// Adds --mesh, and --samples and --seed, which need it.
+/// Adds --mesh, and --samples, --seed and --detail, which need it.
 /// \return --mesh
 CLI::Option* addMeshCheckOptions(CLI::App& verb, MeshCheckSettings& settings);
 
@@ -56,6 +58,8 @@ struct MeshCheck {
     bool watertight = false;
     Measured original;
     std::optional<Measured> repaired;  ///< if the collider is of a repaired mesh
+    SurfaceParts parts;                ///< of what is judged
+    PartsAccuracy part_accuracy;
     std::vector<WorstPlace> places;
 
     /// Against the mesh that was baked.

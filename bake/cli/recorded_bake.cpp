@@ -95,7 +95,9 @@ RecordedBake recordedBake(const std::string& options) {
         }
         bake.understood = take(option, value, bake) && bake.understood;
         const bool is_default = option == "--quality" && bake.quality == Quality::kNormal;
-        if (option != "--map" && option != "--budget" && option != "--backend" && !is_default) {
+        // A default thickness follows the budget of the next bake.
+        const bool by_part = option == "--thickness" && bake.shape.thickness_by_part;
+        if (option != "--map" && option != "--budget" && option != "--backend" && !is_default && !by_part) {
             bake.options.emplace_back(option, value);
         }
     }
@@ -114,11 +116,12 @@ std::string RecordedBake::words(std::string_view without) const {
 
 Result<ShapedMesh> shapedMesh(const RecordedBake& recorded, const PreparedMesh& mesh) {
     if (recorded.keeps_holes) {
-        return ShapedMesh{mesh, {}};
+        return ShapedMesh{mesh, {}, surfacePartsOf(mesh)};
     }
     ShapeOptions options = recorded.shape;
     if (!(options.thickness > 0.0)) {
         options.thickness = defaultThickness(mesh->bounds, kBudgetDefault);
+        options.thickness_by_part = true;
     }
     return shapeMesh(mesh, options);
 }

@@ -81,8 +81,8 @@ Result<MadePage> colliderPage(Page page) {
     }
     page.input.mesh = &*check.imported;
     const Measured& judged = check.judged();
-    page.input.check.emplace(
-        ViewCheck{check.collider, *check.query, source.check.samples, judged.accuracy.field, check.places});
+    page.input.check.emplace(ViewCheck{check.collider, *check.query, source.check.samples,
+                                       judged.accuracy.field, check.places, check.part_accuracy});
     return page.make();
 }
 

@@ -16,6 +16,7 @@
 #include "bake/picture/slice_image.h"
 #include "bake/report/accuracy_report.h"
 #include "bake/report/base64.h"
+#include "bake/report/parts_report.h"
 #include "bake/report/report.h"
 
 namespace relief {
@@ -139,6 +140,7 @@ class Page {
                 " measured</title>\n<meta name=viewport content=\"width=device-width\">\n<style>" + kStyle +
                 "</style>\n<main>\n";
         addHead();
+        addParts();
         // In braces, which have an order.
         for (const Result<void>& added : {addPlaces(), addNumbers(), addHeatMaps(), addSlices(), addMaps()}) {
             if (!added) {
@@ -157,8 +159,8 @@ class Page {
 
     [[nodiscard]] std::string verdict() const {
         const double wrong = input_.accuracy.field.near.total();
-        const std::string text = verdictText(wrong);
-        const std::string grade = gradeOf(wrong);
+        const std::string text = verdictText(wrong, input_.part_accuracy);
+        const std::string grade = gradeOf(wrong, input_.part_accuracy);
         return text.substr(0, text.size() - grade.size()) + "<b class=" + grade + ">" + grade + "</b>";
     }
 
@@ -178,6 +180,18 @@ class Page {
         tile(shortNumber(field.normal_mean) + "&deg;", "mean error of the normal");
         tile(bytesText(input_.accuracy.gpu_bytes), "on the GPU");
         html_ += "</div>\n";
+    }
+
+    /// The parts that are lost or coarse by their own size.
+    void addParts() {
+        const std::string text = partsText(input_.part_accuracy, input_.parts, input_.collider);
+        if (!text.empty()) {
+            html_ +=
+                "<h2>Parts</h2>\n<p>Each part of the mesh is measured by itself, at points 0.5&#8239;% of "
+                "its own "
+                "longest side off its surface.</p>\n<pre>" +
+                escaped(text) + "</pre>\n";
+        }
     }
 
     /// Pictures round each of the worst places, and what to do about them.

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "bake/measure/accuracy.h"
+#include "bake/measure/part_accuracy.h"
 #include "bake/measure/worst_places.h"
 #include "bake/report/places_report.h"
 #include "formats/base/result.h"
@@ -18,6 +19,8 @@ struct AccuracyPageInput {
     const MeshQuery& query;
     const TruthSamples& samples;
     const ColliderAccuracy& accuracy;
+    const SurfaceParts& parts;
+    const PartsAccuracy& part_accuracy;
     std::span<const WorstPlace> places;
     std::span<const Advice> advice;
 };

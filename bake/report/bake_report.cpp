@@ -5,6 +5,7 @@
 
 #include "bake/report/accuracy_report.h"
 #include "bake/report/care_report.h"
+#include "bake/report/parts_report.h"
 #include "bake/report/report.h"
 #include "bake/report/shape_report.h"
 #include "bake/report/size_report.h"
@@ -139,6 +140,9 @@ Json jsonBake(const BakeSummary& summary, const ContainerInfo& info, const Json&
     json["plan"] = summary.plan ? jsonPlan(*summary.plan) : Json(nullptr);
     json["shape"] = jsonShape(summary.shape);
     json["wrong_percent"] = summary.wrong ? Json(summary.wrong->total()) : Json(nullptr);
+    json["parts"] = summary.part_accuracy
+                        ? jsonParts(*summary.part_accuracy, summary.parts, summary.baked.collider)
+                        : Json(nullptr);
     json["closed_holes"] = summary.mesh.closed_holes;
     json["cap_triangles"] = summary.mesh.cap_triangles;
     json["dropped_triangles"] = summary.mesh.dropped_triangles;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bake/measure/accuracy.h"
+#include "bake/measure/part_accuracy.h"
 #include "bake/mesh/mesh.h"
 #include "bake/pipeline/bake.h"
 #include "bake/pipeline/budget_search.h"
@@ -45,6 +46,8 @@ struct BakeSummary {
     const std::optional<WrongShare>& wrong;  ///< near the surface, as a planned bake measures itself
     std::uint64_t unused_vertices = 0;       ///< of the mesh file (TriangleMesh)
     bool verbose = false;
+    const SurfaceParts& parts;
+    const std::optional<PartsAccuracy>& part_accuracy;  ///< of a planned bake of several parts
 };
 
 /// For people: a few lines and a table. \param output  as the user names it.

@@ -13,8 +13,9 @@ std::string shapeText(const ShapeReport& report, const std::string& unit) {
         return text;
     }
     if (report.thickness > 0.0) {
-        text += "; sheets are " + shortNumber(report.thickness) + " " +
-                (unit.empty() ? "object units" : unit) + " thick";
+        const bool alike = report.thickness_least == report.thickness;
+        text += "; sheets are " + (alike ? "" : shortNumber(report.thickness_least) + " to ") +
+                shortNumber(report.thickness) + " " + (unit.empty() ? "object units" : unit) + " thick";
     }
     if (report.coincident_triangles > 0) {
         text += "; " + std::to_string(report.coincident_triangles) + " coincident triangles count once";
@@ -34,15 +35,19 @@ nlohmann::ordered_json jsonShape(const ShapeReport& report) {
     for (const auto& [shape, triangles] : report.named) {
         named.push_back({{"name", shape.name}, {"as", shapeAsName(shape.as)}, {"triangles", triangles}});
     }
-    return {
-        {"as", shapeAsName(report.as)},
-        {"named", named},
-        {"solids", report.solids},
-        {"solids_with_holes", report.solids_with_holes},
-        {"sheets", report.sheets},
-        {"terrains", report.terrains},
-        {"coincident_triangles", report.coincident_triangles},
-        {"thickness", report.thickness > 0.0 ? jsonNumber(static_cast<float>(report.thickness)) : nullptr}};
+    const auto length = [](double value) {
+        return value > 0.0 ? jsonNumber(static_cast<float>(value)) : nlohmann::ordered_json(nullptr);
+    };
+    return {{"as", shapeAsName(report.as)},
+            {"named", named},
+            {"solids", report.solids},
+            {"solids_with_holes", report.solids_with_holes},
+            {"sheets", report.sheets},
+            {"terrains", report.terrains},
+            {"coincident_triangles", report.coincident_triangles},
+            {"thickness", length(report.thickness)},
+            {"thickness_least", length(report.thickness_least)},
+            {"thickness_asked", report.thickness > 0.0 && report.default_thickness == 0.0}};
 }
 
 }  // namespace relief

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bake/report/base64.h"
+#include "bake/report/parts_report.h"
 #include "bake/report/places_report.h"
 #include "bake/report/report.h"
 #include "runtime/tool/json_text.h"
@@ -65,8 +66,8 @@ Json jsonCheck(const ViewCheck& check) {
                           {"why", causeText(place, check.collider)}});
     }
     return {{"points", check.points},
-            {"verdict", verdictText(check.field.near.total())},
-            {"grade", gradeOf(check.field.near.total())},
+            {"verdict", verdictText(check.field.near.total(), check.parts)},
+            {"grade", gradeOf(check.field.near.total(), check.parts)},
             {"near_percent", check.field.near.total()},
             {"uniform_percent", check.field.uniform.total()},
             {"distance_mean", check.field.distance_mean},

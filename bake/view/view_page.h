@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bake/measure/accuracy.h"
+#include "bake/measure/part_accuracy.h"
 #include "bake/measure/worst_places.h"
 #include "bake/mesh/mesh_query.h"
 #include "formats/base/result.h"
@@ -27,6 +28,7 @@ struct ViewCheck {
     std::uint64_t points = 0;
     const FieldAccuracy& field;
     std::span<const WorstPlace> places;
+    const PartsAccuracy& parts;
 };
 
 struct ViewPageInput {

@@ -1,0 +1,83 @@
+// How well a field keeps to each part of a mesh, measured by the part's own size: a prop on a terrain is judged as if it had
+// been baked alone.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "bake/measure/accuracy.h"
+#include "bake/mesh/mesh_query.h"
+#include "bake/mesh/surface_parts.h"
+
+namespace relief {
+
+/// Of a part's points: more than kPartCoarse percent on the wrong side, and it is coarse; more than kPartLost, and it is
+/// lost. Of a part that is absent about half of the points are wrong.
+inline constexpr double kPartCoarse = 10.0;
+inline constexpr double kPartLost = 25.0;
+
+struct PartOptions {
+    std::uint32_t points = 1000;         ///< of each part, at most
+    std::uint32_t points_min = 48;       ///< of each part, at least
+    std::uint64_t points_all = 200'000;  ///< of all parts; more than this and points_min of each allow
+    std::size_t parts_max = 10'000;      ///< the largest are measured
+    std::uint64_t seed = 1;
+    double sigma_share = 0.005;    ///< as AccuracyOptions has it, in units of the part's longest side
+    std::optional<double> detail;  ///< smaller parts do not count, object units; by default defaultDetail
+};
+
+/// A thousandth of the longest side of the largest part; in metres at most 0.1.
+[[nodiscard]] double defaultDetail(const SurfaceParts& parts, const std::string& unit);
+
+enum class PartVerdict : std::uint8_t {
+    kHeld,    ///< up to kPartCoarse
+    kCoarse,  ///< up to kPartLost
+    kLost,
+    kHidden,  ///< inside other parts, where nothing meets it
+    kSmall,   ///< below the detail that counts; not measured
+    kRest,    ///< not measured, since there are more than parts_max
+};
+inline constexpr std::size_t kPartVerdicts = 6;
+/// "held", "coarse", "lost", "hidden", "small", "rest"
+[[nodiscard]] const char* partVerdictName(PartVerdict state);
+
+struct PartAccuracy {
+    std::uint32_t part = 0;  ///< index into SurfaceParts::parts
+    PartVerdict state = PartVerdict::kHeld;
+    std::uint32_t points = 0;  ///< near the part, by its exposed surface
+    WrongShare wrong;          ///< percent of them
+    double sigma = 0.0;        ///< standard deviation of their distance from the part, object units
+};
+
+/// A node or a material of several parts: their points, weighted by their areas.
+struct GroupAccuracy {
+    std::string name;
+    bool is_material = false;
+    std::uint64_t parts = 0;
+    std::uint64_t lost = 0;
+    Bounds bounds;
+    WrongShare wrong;  ///< percent
+};
+
+struct PartsAccuracy {
+    double detail = 0.0;  ///< object units
+    std::vector<PartAccuracy>
+        parts;  ///< of all parts: lost ones first, then the coarse, and within a state by wrong points times size
+    std::vector<GroupAccuracy>
+        groups;  ///< named nodes, then materials, each where there are several; the most wrong first
+    std::uint64_t count[kPartVerdicts] = {};  ///< of parts in each state
+
+    [[nodiscard]] std::uint64_t countOf(PartVerdict state) const {
+        return count[static_cast<std::size_t>(state)];
+    }
+};
+
+/// Points near each part's surface, as they lie in the solid that is baked: area-weighted, with an isotropic Gaussian offset.
+/// Truth is the side of the whole mesh, but for what a shell has beyond its right_thickness, which is outside. The same for
+/// any number of threads.
+/// \param query  of the solid that `parts` are of.
+[[nodiscard]] PartsAccuracy measureParts(const MeshQuery& query, const SurfaceParts& parts,
+                                         const Field& field, const PartOptions& options);
+
+}  // namespace relief

@@ -1,0 +1,296 @@
+#include "bake/report/parts_report.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "bake/measure/worst_places.h"
+#include "bake/report/accuracy_report.h"
+#include "bake/report/places_report.h"
+#include "bake/report/report.h"
+#include "formats/base/text.h"
+#include "runtime/tool/json_text.h"
+
+namespace relief {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kShownParts = 5;
+constexpr std::size_t kShownGroups = 5;
+constexpr std::size_t kListedMax = 100;
+/// A part is kept by texels of this share of its middle extent: three across a pillar.
+constexpr double kTexelsAcross = 1.0 / 3.0;
+/// Budgets beyond are not advised for the sake of a part.
+constexpr double kBudgetAdvisedMax = 1e9;
+/// An asked-for shell is said to swallow a part from this share of the part's longest side on.
+constexpr double kSwallows = 0.25;
+constexpr std::size_t kNameBytesMax = 80;
+
+std::string roundly(double value) {
+    char text[32];
+    std::snprintf(text, sizeof(text), value >= 99.5 ? "%.3g" : "%.2g", value);
+    return text;
+}
+
+std::string lengthText(double value, const std::string& unit) {
+    return roundly(value) + (unit.empty() ? "" : " " + unit);
+}
+
+/// The finest texels that the collider has at the middle of a part; 0 without maps.
+double texelOf(const SurfacePart& part, const Collider& collider) {
+    double texel = 0.0;
+    for (const DepthMap& map : collider.maps) {
+        const double here = texelAt(map, part.bounds.center());
+        texel = here > 0.0 && (texel == 0.0 || here < texel) ? here : texel;
+    }
+    return texel;
+}
+
+double middleExtent(const SurfacePart& part) {
+    const glm::dvec3 size = part.bounds.size();
+    std::array<double, 3> extents = {size.x, size.y, size.z};
+    std::sort(extents.begin(), extents.end());
+    return extents[1];
+}
+
+/// What would keep a part: a budget, a thickness, a bake of its own.
+std::string cureOf(const SurfacePart& part, const Collider& collider) {
+    std::string cure;
+    if (part.right_thickness < part.thickness) {
+        cure = "its shell is " + lengthText(part.thickness, collider.unit) + " thick; --thickness " +
+               shortest(std::stof(roundly(part.right_thickness)));
+    }
+    const double texel = texelOf(part, collider);
+    const double across = part.kind == PartKind::kSheet ? part.right_thickness : middleExtent(part);
+    const double needed = std::min(kTexelsAcross * across, 0.5 * texel);
+    if (!(needed > 0.0)) {
+        return cure;
+    }
+    const double bytes = static_cast<double>(collider.gpuBytes()) * (texel / needed) * (texel / needed);
+    cure += cure.empty() ? "its texels are " + lengthText(texel, collider.unit) + " wide; " : " with ";
+    cure += "texels of " + lengthText(needed, collider.unit) + " take ";
+    cure +=
+        bytes <= kBudgetAdvisedMax ? "--budget " + roundly(std::ceil(bytes / 1e5) / 10.0) + "MB, or " : "";
+    return cure + (part.node.empty() ? "a bake of this part by itself" : "a bake of its node by itself");
+}
+
+std::string sideText(const PartAccuracy& accuracy) {
+    const double inside = accuracy.wrong.false_inside / std::max(accuracy.wrong.total(), 1e-9);
+    return inside > 0.9 ? "called inside" : inside < 0.1 ? "called outside" : "called either";
+}
+
+std::string countText(std::uint64_t count, const char* what) {
+    return std::to_string(count) + (count == 1 ? " part is " : " parts are ") + what;
+}
+
+/// "27 of 82 parts are lost"
+std::string ofMeasured(std::uint64_t count, const PartsAccuracy& accuracy, const char* what) {
+    const std::uint64_t measured = accuracy.countOf(PartVerdict::kHeld) +
+                                   accuracy.countOf(PartVerdict::kCoarse) +
+                                   accuracy.countOf(PartVerdict::kLost);
+    const bool all = accuracy.countOf(PartVerdict::kSmall) + accuracy.countOf(PartVerdict::kRest) == 0;
+    return std::to_string(count) + " of " + (all ? "" : "the largest ") + std::to_string(measured) +
+           (measured == 1 ? " part" : " parts") + (count == 1 ? " is " : " are ") + what;
+}
+
+Json jsonWrong(const WrongShare& wrong) {
+    return {{"wrong_percent", wrong.total()},
+            {"false_inside_percent", wrong.false_inside},
+            {"false_outside_percent", wrong.false_outside}};
+}
+
+std::string groupsText(const PartsAccuracy& accuracy, bool materials, const std::string& unit) {
+    std::string text;
+    std::size_t shown = 0;
+    for (const GroupAccuracy& group : accuracy.groups) {
+        if (group.is_material != materials || group.lost == 0 || shown == kShownGroups) {
+            continue;
+        }
+        ++shown;
+        text += "  " + cleanUtf8(group.name, kNameBytesMax) + ", " +
+                lengthText(double{group.bounds.longestSide()}, unit) + " long at " +
+                positionText(group.bounds.center()) + ": " + roundly(group.wrong.total()) + " % wrong, " +
+                std::to_string(group.lost) + " of " + std::to_string(group.parts) +
+                (group.parts == 1 ? " part" : " parts") + " lost\n";
+    }
+    return text.empty() ? "" : (materials ? "The worst materials:\n" : "The worst nodes:\n") + text;
+}
+
+}  // namespace
+
+std::string gradeOf(double wrong_percent, const PartsAccuracy& accuracy) {
+    const std::string whole = gradeOf(wrong_percent);
+    if (whole == "poor" || accuracy.countOf(PartVerdict::kLost) > 0) {
+        return "poor";
+    }
+    return accuracy.countOf(PartVerdict::kCoarse) > 0 ? "fair" : whole;
+}
+
+std::string verdictText(double wrong_percent, const PartsAccuracy& accuracy) {
+    const std::string grade = gradeOf(wrong_percent, accuracy);
+    if (grade == gradeOf(wrong_percent)) {
+        return verdictText(wrong_percent);
+    }
+    const std::uint64_t lost = accuracy.countOf(PartVerdict::kLost);
+    return roundly(wrong_percent) + " % wrong near the surface, but " +
+           (lost > 0 ? ofMeasured(lost, accuracy, "lost")
+                     : ofMeasured(accuracy.countOf(PartVerdict::kCoarse), accuracy, "coarse")) +
+           ": " + grade;
+}
+
+std::string partName(const SurfacePart& part, std::size_t index) {
+    const std::string number = "part " + std::to_string(index + 1);
+    const std::string node = cleanUtf8(part.node, kNameBytesMax);
+    const std::string material = cleanUtf8(part.material, kNameBytesMax);
+    if (node.empty()) {
+        return material.empty() ? number : number + " of " + material;
+    }
+    return material.empty() ? node : node + " (" + material + ")";
+}
+
+std::string partText(const PartAccuracy& accuracy, const SurfaceParts& parts, const Collider& collider) {
+    const SurfacePart& part = parts.parts[accuracy.part];
+    const std::string cure = cureOf(part, collider);
+    return lengthText(part.size(), collider.unit) + " long at " + positionText(part.bounds.center()) + ": " +
+           roundly(accuracy.wrong.total()) + " % of the points near it are on the wrong side, " +
+           sideText(accuracy) + (cure.empty() ? "" : "; " + cure);
+}
+
+std::string partsText(const PartsAccuracy& accuracy, const SurfaceParts& parts, const Collider& collider) {
+    std::string text;
+    std::size_t shown = 0;
+    for (const PartAccuracy& part : accuracy.parts) {
+        if ((part.state != PartVerdict::kLost && part.state != PartVerdict::kCoarse) ||
+            shown == kShownParts) {
+            break;
+        }
+        text += "  " + std::to_string(++shown) + "  " + partName(parts.parts[part.part], part.part) + ", " +
+                partText(part, parts, collider) + "\n";
+    }
+    if (!text.empty()) {
+        text =
+            (shown == 1 ? "The worst part, by its own size:\n" : "The worst parts, each by its own size:\n") +
+            text;
+    }
+    text += groupsText(accuracy, false, collider.unit) + groupsText(accuracy, true, collider.unit);
+    const std::uint64_t small = accuracy.countOf(PartVerdict::kSmall);
+    if (small > 0) {
+        text += countText(small, "smaller than ") + lengthText(accuracy.detail, collider.unit) +
+                " and not judged; --detail LENGTH judges them\n";
+    }
+    if (const std::uint64_t rest = accuracy.countOf(PartVerdict::kRest); rest > 0) {
+        text += countText(rest, "not judged: the largest ") +
+                std::to_string(accuracy.parts.size() - rest - small) + " are\n";
+    }
+    return text;
+}
+
+Json jsonParts(const PartsAccuracy& accuracy, const SurfaceParts& parts, const Collider& collider) {
+    Json json = {{"detail", accuracy.detail}, {"count", accuracy.parts.size()}};
+    for (std::size_t i = 0; i < kPartVerdicts; ++i) {
+        json[partVerdictName(static_cast<PartVerdict>(i))] = accuracy.count[i];
+    }
+    Json worst = Json::array();
+    for (const PartAccuracy& one :
+         std::span(accuracy.parts).first(std::min(accuracy.parts.size(), kListedMax))) {
+        const SurfacePart& part = parts.parts[one.part];
+        const glm::vec3 center = part.bounds.center();
+        Json row = {{"part", one.part + 1},
+                    {"node", part.node},
+                    {"material", part.material},
+                    {"kind", partKindName(part.kind)},
+                    {"state", partVerdictName(one.state)},
+                    {"size", part.size()},
+                    {"position", {jsonNumber(center.x), jsonNumber(center.y), jsonNumber(center.z)}},
+                    {"triangles", part.triangles},
+                    {"thickness", part.thickness > 0.0 ? Json(part.thickness) : Json(nullptr)},
+                    {"points", one.points},
+                    {"sigma", one.sigma}};
+        row.update(jsonWrong(one.wrong));
+        row["texel"] = texelOf(part, collider);
+        const bool wants = one.state == PartVerdict::kLost || one.state == PartVerdict::kCoarse;
+        row["cure"] = wants ? Json(cureOf(part, collider)) : Json(nullptr);
+        worst.push_back(std::move(row));
+    }
+    json["worst"] = std::move(worst);
+    Json groups = Json::array();
+    std::array<std::size_t, 2> listed{};
+    for (const GroupAccuracy& group : accuracy.groups) {
+        if (listed[group.is_material ? 1 : 0]++ >= kListedMax) {
+            continue;
+        }
+        const glm::vec3 center = group.bounds.center();
+        Json row = {{"name", group.name},
+                    {"of", group.is_material ? "material" : "node"},
+                    {"parts", group.parts},
+                    {"lost", group.lost},
+                    {"size", double{group.bounds.longestSide()}},
+                    {"position", {jsonNumber(center.x), jsonNumber(center.y), jsonNumber(center.z)}}};
+        row.update(jsonWrong(group.wrong));
+        groups.push_back(std::move(row));
+    }
+    json["groups"] = std::move(groups);
+    return json;
+}
+
+std::optional<std::string> lostPartsWarning(const PartsAccuracy& accuracy, const SurfaceParts& parts,
+                                            const Collider& collider) {
+    const std::uint64_t lost = accuracy.countOf(PartVerdict::kLost);
+    if (lost == 0) {
+        return std::nullopt;
+    }
+    const auto size = [&](const PartAccuracy& one) { return parts.parts[one.part].size(); };
+    const auto end = accuracy.parts.begin() + static_cast<std::ptrdiff_t>(lost);
+    const auto largest =
+        std::max_element(accuracy.parts.begin(), end,
+                         [&](const PartAccuracy& a, const PartAccuracy& b) { return size(a) < size(b); });
+    return ofMeasured(lost, accuracy, "lost") + (lost == 1 ? ": " : ", the largest ") +
+           partName(parts.parts[largest->part], largest->part) + ", " + partText(*largest, parts, collider);
+}
+
+std::optional<std::string> strayText(const SurfaceParts& parts, const std::string& unit) {
+    const Strays strays = straysOf(parts.parts);
+    if (strays.parts.empty()) {
+        return std::nullopt;
+    }
+    const std::uint32_t first = strays.parts.front();
+    const SurfacePart& part = parts.parts[first];
+    const std::size_t others = strays.parts.size() - 1;
+    return partName(part, first) + " (" + std::to_string(part.triangles) +
+           (part.triangles == 1 ? " triangle)" : " triangles)") +
+           (others > 0 ? " and " + std::to_string(others) + " more parts lie" : " lies") + " astray at " +
+           positionText(part.bounds.center()) + ", far from all else, which is " +
+           lengthText(double{strays.rest.longestSide()}, unit) + " long at " +
+           positionText(strays.rest.center()) +
+           ": most texels are spent on the empty space between; delete it from the mesh";
+}
+
+std::vector<std::string> partWarnings(const SurfaceParts& parts, const std::string& unit) {
+    std::vector<std::string> warnings;
+    if (std::optional<std::string> stray = strayText(parts, unit)) {
+        warnings.push_back(std::move(*stray));
+    }
+    std::uint64_t swallowed = 0;
+    std::uint32_t largest = 0;
+    for (std::uint32_t i = 0; i < parts.parts.size(); ++i) {
+        const SurfacePart& part = parts.parts[i];
+        if (part.right_thickness >= kSwallows * part.size() && part.thickness > 0.0) {
+            largest = swallowed == 0 || part.size() > parts.parts[largest].size() ? i : largest;
+            ++swallowed;
+        }
+    }
+    if (swallowed > 0) {
+        const SurfacePart& part = parts.parts[largest];
+        warnings.push_back("shells of --thickness " + shortest(static_cast<float>(part.thickness)) +
+                           " swallow " + std::to_string(swallowed) +
+                           (swallowed == 1 ? " sheet: " : " sheets, the largest ") + partName(part, largest) +
+                           ", " + lengthText(part.size(), unit) + " long at " +
+                           positionText(part.bounds.center()) + "; give a smaller --thickness");
+    }
+    return warnings;
+}
+
+}  // namespace relief
