@@ -15,6 +15,9 @@
 #   fuzz    libFuzzer looks at all that tests/fuzz has a target for, ten minutes each (scripts/fuzz.sh)
 #   seeds   the generated cases of the tests are others: of seed RELIEF_TEST_SEED, by default the day's date, and solids of
 #           unit cubes of the nine seeds after it too
+#   cases   more than 500 random inputs of the generators in tests/cases, by the same seed: none is silently wrong, hangs or
+#           crashes
+#   level   a terrain of a kilometre with 200 pieces of furniture (scripts/level.py): its verdict names what is lost
 #   clang   everything is built by clang too, without a warning, and passes its tests.
 #   load    the release tests pass five times while stress-ng keeps processors, memory and disk busy.
 #   bare    .ci/run, from nothing, in a minimal Debian 12 that mmdebstrap makes; scripts/test.sh there without root; and
@@ -30,7 +33,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/setup.sh
-all_runs=(sweep rest import mutants package headers bytes seeds clang load bare packages embree4 outputs blender slurm
+all_runs=(sweep rest import mutants package headers bytes seeds cases level clang load bare packages embree4 outputs blender slurm
     corpus fuzz)
 runs=("$@")
 [ ${#runs[@]} -gt 0 ] || runs=("${all_runs[@]}")
@@ -268,6 +271,32 @@ seeds() {
         }
     done
     echo "seeds: seed $seed, and of Voxels the nine after it: none is wrong"
+}
+
+cases() {
+    local bin generator status=0
+    bin=$(scripts/build.sh release) || return 1
+    for generator in tests/cases/*_cases.py; do
+        PYTHONDONTWRITEBYTECODE=1 python3 "$generator" "$bin" ${RELIEF_TEST_SEED:+--seed "$RELIEF_TEST_SEED"} || status=1
+    done
+    return "$status"
+}
+
+level() {
+    local bin
+    scripts/setup.sh sweethome3d-furniture || return 1
+    bin=$(scripts/build.sh release relief) || return 1
+    python3 scripts/level.py "$work/level.glb" &&
+        "$bin/relief" bake "$work/level.glb" -o "$work/level.relief" --budget 16MB -q &&
+        "$bin/relief" check "$work/level.relief" --mesh "$work/level.glb" --json >"$work/level.json" || return 1
+    python3 - "$work/level.json" <<'P'
+import json, sys
+d = json.load(open(sys.argv[1]))
+verdict, nodes = d['verdict'], [group for group in d['parts']['groups'] if group['of'] == 'node']
+print(f"level: {verdict['wrong_percent']:.2g} % wrong near the surface, {verdict['lost_parts']} parts lost: {verdict['grade']}; "
+      f"worst nodes: {', '.join('%s %.0f %%' % (node['name'], node['wrong_percent']) for node in nodes[:3])}")
+sys.exit(0 if verdict['grade'] != 'good' and verdict['lost_parts'] > 0 and nodes[0]['name'] != 'terrain' else 1)
+P
 }
 
 clang() {

@@ -41,13 +41,6 @@ constexpr double kTwice = 0.9;
 constexpr double kTerrainCover = 0.98;
 constexpr std::size_t kTerrainTriangles = 200;
 constexpr double kTerrainExtent = 0.8;
-/// A shell of the default thickness is at least and at most so thick, in units of its part's longest side.
-constexpr double kShellLeast = 0.004;
-constexpr double kShellMost = 0.25;
-/// More of a shell that nobody asked for is no longer the part that it stands for.
-constexpr double kShellRight = 0.1;
-/// The least that floats tell apart at the far end of a mesh's box, in units of its longest side.
-constexpr double kThicknessFloat = 4e-6;
 /// The ground below a terrain, in units of the longest side.
 constexpr double kGround = 0.05;
 
@@ -478,15 +471,10 @@ class Shaper {
                 smallest = std::min(smallest, sizeOf(part.sheet));
             }
         }
-        const auto whole = double{mesh_.bounds.longestSide()};
-        const double least = std::max(kThicknessMin * std::min(smallest, whole), kThicknessFloat * whole);
-        if (options_.thickness_by_part || smallest > whole || options_.thickness >= least) {
+        if (options_.thickness_by_part || smallest == std::numeric_limits<double>::max()) {
             return {};
         }
-        return fail(ErrorCode::kUsage, "--thickness is " + shortest(static_cast<float>(options_.thickness)) +
-                                           " but a shell of " + mesh_.name + " can be no thinner than " +
-                                           shortest(static_cast<float>(least)) +
-                                           "; give that or more, or bake its small parts by themselves");
+        return checkShellThickness(options_.thickness, smallest, mesh_);
     }
 
     void addSheets() {
@@ -498,7 +486,7 @@ class Shaper {
                     SurfacePart& piece = collected_.parts()[collected_.partOf()[source]];
                     piece.thickness = thickness;
                     piece.right_thickness = options_.thickness_by_part
-                                                ? std::min(thickness, kShellRight * sizeOf(part.sheet))
+                                                ? rightThickness(thickness, sizeOf(part.sheet))
                                                 : thickness;
                 }
                 report_.thickness = std::max(report_.thickness, thickness);
@@ -569,18 +557,6 @@ std::string ShapeReport::text() const {
     append(text, sheets, "sheet", "sheets");
     append(text, terrains, "terrain", "terrains");
     return text;
-}
-
-double defaultThickness(const Bounds& bounds, std::uint64_t budget_bytes) {
-    const glm::dvec3 size = bounds.size();
-    // Front-back maps along the axes, of eight bytes a texel, and half as many again that look from elsewhere.
-    const double area = 12.0 * (size.x * size.y + size.y * size.z + size.z * size.x);
-    const double texel = std::sqrt(area / static_cast<double>(std::max<std::uint64_t>(budget_bytes, 1)));
-    return std::min(1.5 * texel, 0.04 * double{bounds.longestSide()});
-}
-
-double partThickness(double default_thickness, double part_size) {
-    return std::min(std::max(default_thickness, kShellLeast * part_size), kShellMost * part_size);
 }
 
 SurfaceParts surfacePartsOf(const PreparedMesh& mesh) {

@@ -19,19 +19,10 @@
 #include "bake/mesh/prepared_mesh.h"
 #include "bake/mesh/surface_parts.h"
 #include "bake/shape/shape_options.h"
+#include "bake/shape/thickness.h"
 #include "formats/base/result.h"
 
 namespace relief {
-
-/// A texel and a half of a planned bake of a box like this: a wall that fills its texels; at most 4 % of its longest side.
-/// \param budget_bytes  of all texels.
-[[nodiscard]] double defaultThickness(const Bounds& bounds, std::uint64_t budget_bytes);
-/// The same for a part of that box: 0.4 to 25 % of its own longest side.
-[[nodiscard]] double partThickness(double default_thickness, double part_size);
-
-/// The least --thickness, in units of the longest side of the smallest sheet, and the largest, in units of the mesh's.
-inline constexpr double kThicknessMin = 1e-4;
-inline constexpr double kThicknessMax = 0.5;
 
 /// What a name was taken for.
 struct NamedTriangles {
@@ -66,7 +57,7 @@ struct ShapedMesh {
 
 /// \param mesh  as windOutwards leaves it. Its marks count options.named; without marks, nothing is named.
 /// The same for any number of threads.
-/// Errors: those of MeshQuery::build; kLimit (kTriangleMax); kUsage (a thickness below kThicknessMin).
+/// Errors: those of MeshQuery::build and checkShellThickness; kLimit (kTriangleMax).
 [[nodiscard]] Result<ShapedMesh> shapeMesh(const PreparedMesh& mesh, const ShapeOptions& options);
 
 /// The parts of a mesh that is baked as it is.
