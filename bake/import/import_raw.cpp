@@ -67,6 +67,11 @@ class RawReader {
                                        " are no triangle, which has 9, or 12 with its colour; the file may "
                                        "have been cut off: copy or export it again");
         }
+        for (std::string_view more = text_.word(); !more.empty(); more = text_.word()) {
+            if (beginsNumber(more)) {
+                return wrongLine(line, noNumber(word));  // no name of a texture, with numbers behind it
+            }
+        }
         RawPart& part = partOf(word.empty() && count == kCorners ? kNoTexture : word);
         for (std::size_t i = count - kCorners; i < count; i += 3) {
             part.corners.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
