@@ -59,7 +59,8 @@ class OffReader {
             }
             has_weight_ = name.starts_with('4');
             name.erase(0, has_weight_ ? 1 : 0);
-            if (!name.empty()) {
+            // NOFF has normals, nOFF any number of dimensions.
+            if (!name.empty() || word.ends_with("nOFF")) {
                 return wrongLine(text_.line(),
                                  quotedWord(word) + " is no OFF of three dimensions; save it as OFF");
             }

@@ -153,7 +153,7 @@ class StlText {
     /// Behind endsolid.
     Result<void> passName() {
         for (std::string word = lowerCase(text_.word()); !word.empty(); word = lowerCase(text_.word())) {
-            if (word == "facet") {
+            if (word == "facet" && lowerCase(text_.word()) == "normal") {
                 word_ = "facet";
                 return unexpected("the end of the solid's line");
             }

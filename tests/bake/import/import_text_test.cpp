@@ -153,7 +153,8 @@ TEST(ImportText, Stl) {
     expectTetrahedron("a.stl", stl);
     expectTetrahedron("a.stl", replaced(stl, "\n", "\r"));
     expectTetrahedron("a.stl", replaced(stl, "\n", " "));
-    expectTetrahedron("a.stl", replaced(stl, " ", "\n\t"));
+    expectTetrahedron("a.stl",
+                      "solid t\n" + replaced(stl.substr(8, stl.size() - 19), " ", "\n\t") + "endsolid t");
     expectTetrahedron("a.stl", replaced(stl, "solid t", "solid vertex of a facet"));
     expectTetrahedron("a.stl", replaced(stl, "solid t", "solid"));
     expectTetrahedron("a.stl", replaced(stl, "normal 0 0 1", "normal -nan(ind) 1.#QNAN nan"));
