@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <cstring>
 
-#include "bake/import/import_text.h"
 #include "formats/base/text.h"
+#include "formats/base/text_scanner.h"
 
 namespace relief {
 namespace {
@@ -93,18 +93,19 @@ bool isObj(std::string_view text) {
     constexpr std::array<std::string_view, 11> kStatements = {"v", "vt", "vn",     "vp",     "f", "g",
                                                               "o", "s",  "mtllib", "usemtl", "l"};
     std::size_t vertices = 0;
-    std::size_t lines = 0;
-    while (!text.empty() && lines < kObjLines) {
-        std::string_view line = takeLine(text);
-        const std::string_view word = takeWord(line);
-        if (word.empty() || word.starts_with('#')) {
-            continue;
+    TextScanner scanner(text, {'#', true});
+    for (std::size_t lines = 0; lines < kObjLines;) {
+        if (const std::string_view word = scanner.word(); !word.empty()) {
+            if (std::find(kStatements.begin(), kStatements.end(), word) == kStatements.end()) {
+                // The last may be cut by what is looked at.
+                return !scanner.nextLine() && lines > 0 && vertices > 0;
+            }
+            vertices += word == "v" && parseDouble(scanner.word()).has_value() ? 1 : 0;
+            ++lines;
         }
-        if (std::find(kStatements.begin(), kStatements.end(), word) == kStatements.end()) {
-            return text.empty() && lines > 0 && vertices > 0;  // the last may be cut by what is looked at
+        if (!scanner.nextLine()) {
+            break;
         }
-        vertices += word == "v" && parseDouble(takeWord(line)).has_value() ? 1 : 0;
-        ++lines;
     }
     return vertices > 0;
 }

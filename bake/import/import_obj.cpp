@@ -3,84 +3,227 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <limits>
 #include <string_view>
-#include <vector>
+#include <utility>
 
+#include "bake/import/text_number.h"
 #include "formats/base/text.h"
+#include "formats/base/text_scanner.h"
 
 namespace relief {
 namespace {
 
-constexpr std::uint8_t kByFace = 1;
-constexpr std::uint8_t kByOther = 2;
 constexpr std::array<std::string_view, 6> kFreeForms = {"curv", "surf", "bzp", "bsp", "cdc", "cdp"};
 
-/// Cuts the next statement off: a line, and those that its backslashes join to it. The backslashes stay.
-std::string_view takeStatement(std::string_view& text) {
-    const std::string_view begin = text;
-    std::string_view line = trimmed(takeLine(text));
-    while (line.ends_with('\\') && !text.empty()) {
-        line = trimmed(takeLine(text));
-    }
-    return begin.substr(0, begin.size() - text.size());
-}
-
-class ObjUses {
+class ObjReader {
   public:
-    explicit ObjUses(std::uint64_t vertices) : uses_(vertices) {}
+    explicit ObjReader(std::span<const std::byte> bytes)
+        : text_({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, {'#', true}) {}
 
-    /// \param words  of a face, a line or a point; "7/1/2", or "-1" for the last of the vertices so far.
-    void use(std::string_view words, std::uint64_t so_far, std::uint8_t by) {
-        for (std::string_view word = takeWord(words); !word.empty(); word = takeWord(words)) {
-            std::int64_t number = 0;
-            if (std::from_chars(word.data(), word.data() + word.size(), number).ec != std::errc()) {
-                continue;
-            }
-            const auto index = static_cast<std::uint64_t>(
-                number > 0 ? number - 1 : static_cast<std::int64_t>(so_far) + number);
-            if (number != 0 && index < uses_.size()) {
-                uses_[index] |= by;
-            }
+    Result<ObjMesh> read() {
+        do {
+            RELIEF_TRY(readStatement(text_.word()));
+        } while (text_.nextLine());
+        if (furthest_ >= mesh_.positions.size() && furthest_line_ > 0) {
+            return noVertex(furthest_line_, std::to_string(furthest_ + 1));
         }
-    }
-
-    void addTo(MeshParts& parts) const {
-        for (const std::uint8_t use : uses_) {
-            parts.unused += (use & kByFace) == 0 ? 1 : 0;
-            parts.loose += use == 0 ? 1 : 0;
+        RELIEF_TRY(checkFinite());
+        for (const std::uint32_t vertex : in_others_) {
+            mesh_.in_others.resize(mesh_.positions.size(), 0);
+            mesh_.in_others[vertex] = 1;
         }
+        return std::move(obj_);
     }
 
   private:
-    std::vector<std::uint8_t> uses_;
+    Result<void> readStatement(std::string_view word) {
+        if (word == "v") {
+            return readVertex();
+        }
+        if (word == "f" || word == "fo") {
+            return readFace();
+        }
+        if (word == "l" || word == "p") {
+            return readOther(word == "l");
+        }
+        if (word == "g") {
+            begin(text_.restOfLine());
+            group_ = name_;
+        } else if (word == "o") {
+            begin(text_.word());
+        } else if (word == "usemtl") {
+            if (const std::string_view name = text_.restOfLine(); !name.empty()) {
+                material_ = name;
+                by_material_ = by_material_ || has_faces_;
+                renamed_ = true;
+            }
+        } else if (word == "mtllib") {
+            obj_.libraries.emplace_back(text_.restOfLine());
+        } else if (std::find(kFreeForms.begin(), kFreeForms.end(), word) != kFreeForms.end()) {
+            ++mesh_.others.free_forms;
+        }
+        return {};
+    }
+
+    void begin(std::string_view name) {
+        name_ = name;
+        has_faces_ = by_material_ = false;
+        renamed_ = true;
+    }
+
+    Result<void> readVertex() {
+        std::array<float, 7> numbers{};
+        std::size_t count = 0;
+        const std::size_t line = text_.line();
+        for (std::string_view word = text_.word(); !word.empty(); word = text_.word()) {
+            const std::optional<float> value = readDecimal(word);
+            if (!value) {
+                return wrongLine(text_.line(), noNumber(word));
+            }
+            if (count < numbers.size()) {
+                numbers[count] = *value;
+            }
+            ++count;
+        }
+        if (count < 3 || count == 5 || count > numbers.size()) {
+            return wrongLine(line, "a vertex of " + std::to_string(count) +
+                                       " numbers; write three, and a weight or a colour behind them");
+        }
+        glm::vec3 position(numbers[0], numbers[1], numbers[2]);
+        if (count == 4) {
+            if (numbers[3] == 0.0F) {
+                return wrongLine(line, "a vertex of weight 0 lies nowhere; leave the weight out");
+            }
+            position = {numbers[0] / numbers[3], numbers[1] / numbers[3], numbers[2] / numbers[3]};
+        }
+        const bool finite =
+            std::isfinite(position.x) && std::isfinite(position.y) && std::isfinite(position.z);
+        if (!finite && nowhere_line_ == 0) {
+            nowhere_ = mesh_.positions.size();
+            nowhere_line_ = line;
+        }
+        if (mesh_.positions.size() == 3 * kTriangleMax) {
+            return fail(ErrorCode::kLimit, "it has more than " + std::to_string(3 * kTriangleMax) +
+                                               " vertices; simplify the mesh");
+        }
+        mesh_.positions.push_back(position);
+        return {};
+    }
+
+    /// The vertex that a corner names; it may come later in the file.
+    Result<std::uint32_t> vertexOf(std::string_view corner) {
+        const std::size_t line = text_.line();
+        std::string_view digits = corner.substr(0, corner.find('/'));
+        digits.remove_prefix(digits.starts_with('+') ? 1 : 0);
+        std::int64_t number = 0;
+        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+        const bool whole = end == digits.data() + digits.size() && !digits.empty();
+        if (!whole || (error != std::errc() && error != std::errc::result_out_of_range)) {
+            return wrongLine(line,
+                             quotedWord(corner) + " names no vertex; repair the file or export it again");
+        }
+        const auto so_far = static_cast<std::int64_t>(mesh_.positions.size());
+        const std::int64_t index = number > 0 ? number - 1 : so_far + number;
+        if (error != std::errc() || number == 0 || number < -so_far || index > kIndexMax) {
+            return noVertex(line, quotedWord(digits));
+        }
+        if (static_cast<std::uint64_t>(index) >= furthest_) {
+            furthest_ = static_cast<std::uint64_t>(index);
+            furthest_line_ = line;
+        }
+        return static_cast<std::uint32_t>(index);
+    }
+
+    [[nodiscard]] tl::unexpected<Error> noVertex(std::size_t line, const std::string& number) const {
+        return wrongLine(line, "vertex " + number + " does not exist: there are " +
+                                   std::to_string(mesh_.positions.size()) +
+                                   (furthest_line_ == line ? "" : " so far") +
+                                   "; repair the file or export it again");
+    }
+
+    Result<void> readFace() {
+        const std::size_t line = text_.line();
+        std::uint32_t count = 0;
+        for (std::string_view word = text_.word(); !word.empty(); word = text_.word()) {
+            mesh_.corners.push_back(RELIEF_TRY(vertexOf(word)));
+            ++count;
+        }
+        if (count == 0) {
+            return wrongLine(line, "a face without corners; repair the file or export it again");
+        }
+        if (renamed_) {
+            beginGroup();
+        }
+        has_faces_ = true;
+        mesh_.sizes.push_back(count);
+        triangles_ += count < 3 ? 0 : count - 2;
+        return triangles_ <= kTriangleMax
+                   ? Result<void>()
+                   : fail(ErrorCode::kLimit, "it has more than " + std::to_string(kTriangleMax) +
+                                                 " triangles; simplify the mesh");
+    }
+
+    void beginGroup() {
+        renamed_ = false;
+        PolygonGroup group;
+        group.begin = mesh_.sizes.size();
+        group.words_names.push_back(name_);
+        group.names.push_back(by_material_ && !group_.empty() ? group_ : name_);
+        group.names.push_back(material_);
+        mesh_.groups.push_back(std::move(group));
+    }
+
+    /// A line strip, or points.
+    Result<void> readOther(bool line) {
+        std::uint64_t count = 0;
+        for (std::string_view word = text_.word(); !word.empty(); word = text_.word()) {
+            in_others_.push_back(RELIEF_TRY(vertexOf(word)));
+            ++count;
+        }
+        mesh_.others.lines += line && count > 0 ? count - 1 : 0;
+        mesh_.others.points += line ? 0 : count;
+        return {};
+    }
+
+    Result<void> checkFinite() const {
+        if (nowhere_line_ == 0) {
+            return {};
+        }
+        const bool used = std::any_of(mesh_.corners.begin(), mesh_.corners.end(), [&](std::uint32_t corner) {
+            const glm::vec3& p = mesh_.positions[corner];
+            return !std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z);
+        });
+        return used ? wrongLine(nowhere_line_, "vertex " + std::to_string(nowhere_ + 1) +
+                                                   " has a coordinate that is not finite; repair the mesh")
+                    : Result<void>();
+    }
+
+    static constexpr std::int64_t kIndexMax = std::numeric_limits<std::uint32_t>::max();
+
+    TextScanner text_;
+    ObjMesh obj_;
+    PolygonMesh& mesh_ = obj_.polygons;
+    std::string name_;  // of the group or object that was begun last
+    std::string group_;
+    std::string material_;
+    bool has_faces_ = false;    // name_ has
+    bool by_material_ = false;  // and a material after them
+    bool renamed_ = false;      // since the last face
+    std::vector<std::uint32_t> in_others_;
+    std::uint64_t triangles_ = 0;
+    std::uint64_t furthest_ = 0;  // index that a face names
+    std::size_t furthest_line_ = 0;
+    std::size_t nowhere_ = 0;  // the first vertex that is not finite
+    std::size_t nowhere_line_ = 0;
 };
 
 }  // namespace
 
-MeshParts objPartsOf(std::span<const std::byte> bytes) {
-    const std::string_view whole(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    MeshParts parts;
-    for (std::string_view text = whole; !text.empty();) {
-        std::string_view statement = takeStatement(text);
-        const std::string_view word = takeWord(statement);
-        parts.vertices += word == "v" ? 1 : 0;
-        parts.polygons += word == "f" || word == "fo" ? 1 : 0;
-        parts.free_forms += std::find(kFreeForms.begin(), kFreeForms.end(), word) != kFreeForms.end() ? 1 : 0;
-    }
-    ObjUses uses(parts.vertices);
-    std::uint64_t so_far = 0;
-    for (std::string_view text = whole; !text.empty();) {
-        std::string_view statement = takeStatement(text);
-        const std::string_view word = takeWord(statement);
-        so_far += word == "v" ? 1 : 0;
-        if (word == "f" || word == "fo") {
-            uses.use(statement, so_far, kByFace);
-        } else if (word == "l" || word == "p") {
-            uses.use(statement, so_far, kByOther);
-        }
-    }
-    uses.addTo(parts);
-    return parts;
+Result<ObjMesh> readObj(std::span<const std::byte> bytes) {
+    return ObjReader(bytes).read();
 }
 
 }  // namespace relief

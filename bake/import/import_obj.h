@@ -1,16 +1,27 @@
-// What of an OBJ file assimp leaves out without a word: vertices that no face names, and free-form surfaces.
+// Wavefront OBJ: the statements v, f, l, p, g, o, usemtl and mtllib. Free forms are counted, all other statements passed
+// over.
 #pragma once
 
 #include <cstddef>
 #include <span>
+#include <string>
+#include <vector>
 
-#include "bake/import/import_parts.h"
+#include "bake/import/polygon_mesh.h"
 
 namespace relief {
 
-/// Counts the statements of an OBJ file: `v`, `f`, and the free forms `curv`, `surf`, `bzp`, `bsp`, `cdc`, `cdp`. Whatever
-/// is wrong with it, numbers out of range included, is passed over.
-/// \return without lines and points.
-[[nodiscard]] MeshParts objPartsOf(std::span<const std::byte> bytes);
+struct ObjMesh {
+    PolygonMesh polygons;
+    std::vector<std::string> libraries;  ///< of materials, as mtllib names them
+};
+
+/// Statements may be indented, continued by a backslash, and followed by a comment. A vertex has three coordinates, a weight
+/// by which they are divided, or a colour behind them. Corners are "7", "7/1", "7//3" or "7/1/3"; below 0 they count back
+/// from the last vertex so far. Faces may come before their vertices. A face has the names of its material, and of what was
+/// begun last, its group or its object: a group's line as a whole and each of its words. The group goes on where a material
+/// begins.
+/// Errors, naming the line but not the file: kInvalidInput.
+[[nodiscard]] Result<ObjMesh> readObj(std::span<const std::byte> bytes);
 
 }  // namespace relief

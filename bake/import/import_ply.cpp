@@ -53,20 +53,20 @@ std::string unreadText(const PlyElement& element) {
                      "is not read: faces are those of 'face' and 'tristrips', by their list vertex_indices";
 }
 
-// Errors of this class do not name the file: readPly does.
 class PlyImport {
   public:
-    Result<PlyMesh> run(std::string_view data) {
+    Result<PolygonMesh> run(std::string_view data) {
         const PlyHeader header = RELIEF_TRY(takePlyHeader(data));
         RELIEF_TRY(checkVertices(header));
         if (std::none_of(header.elements.begin(), header.elements.end(), isSurface)) {
             return noFaces(header);
         }
-        PlyNumbers numbers(data, header.encoding);
-        for (const PlyElement& element : header.elements) {
-            RELIEF_TRY(readElement(element, numbers));
+        if (const Result<void> read = readElements(header, data); !read || divided_) {
+            if (header.encoding == PlyEncoding::kAscii) {
+                RELIEF_TRY(checkVertexLines(header, data));
+            }
+            RELIEF_TRY(read);
         }
-        RELIEF_TRY(checkRest(numbers.rest(), header.encoding));
         if (mesh_.sizes.empty()) {
             return noFaces(header);
         }
@@ -100,6 +100,56 @@ class PlyImport {
                                                  std::to_string(3 * kTriangleMax) + "; simplify the mesh");
     }
 
+    Result<void> readElements(const PlyHeader& header, std::string_view data) {
+        PlyNumbers numbers(data, header.encoding, header.lines);
+        for (const PlyElement& element : header.elements) {
+            RELIEF_TRY(readElement(element, numbers));
+        }
+        return checkRest(numbers);
+    }
+
+    /// In text, numbers stand in any lines, so that a count of vertices that is wrong only shifts those behind. Where each
+    /// element has a line, as programs write them, the lines tell.
+    static Result<void> checkVertexLines(const PlyHeader& header, std::string_view data) {
+        const PlyElement& vertices = header.elements.front();
+        std::uint64_t others = 0;  // elements that should follow
+        for (const PlyElement& element : header.elements) {
+            others += &element != &vertices && !element.properties.empty() ? element.count : 0;
+        }
+        const auto fits = [](std::string_view line, const PlyElement& element) {
+            PlyNumbers numbers(line, PlyEncoding::kAscii);
+            for (const PlyProperty& property : element.properties) {
+                if (!pass(property, numbers)) {
+                    return false;
+                }
+            }
+            return numbers.atLineEnd();
+        };
+        std::uint64_t begun = 0;   // lines of a vertex each, in front
+        std::uint64_t behind = 0;  // the other lines
+        bool all_fit = true;       // some element of the others each
+        while (!data.empty()) {
+            const std::string_view line = trimmed(takeLine(data));
+            if (line.empty()) {
+                continue;
+            }
+            if (behind == 0 && fits(line, vertices)) {
+                ++begun;
+                continue;
+            }
+            ++behind;
+            all_fit = all_fit && std::any_of(header.elements.begin() + 1, header.elements.end(),
+                                             [&](const PlyElement& other) { return fits(line, other); });
+        }
+        const bool too_many = begun < vertices.count && behind > 0 && all_fit;
+        const bool too_few = begun > vertices.count && behind == others && all_fit;
+        return vertices.name == "vertex" && begun > 0 && (too_many || too_few)
+                   ? invalidInput("its header announces " + std::to_string(vertices.count) +
+                                  " vertices, but " + std::to_string(begun) +
+                                  " lines of one follow; correct the count, or export it again")
+                   : Result<void>();
+    }
+
     Result<void> readElement(const PlyElement& element, PlyNumbers& numbers) {
         if (element.properties.empty()) {
             return {};
@@ -122,6 +172,7 @@ class PlyImport {
                     RELIEF_TRY(readFace(property, i, numbers));
                 }
             }
+            divided_ = divided_ || (numbers.isText() && !numbers.atLineEnd());
         }
         return {};
     }
@@ -144,6 +195,7 @@ class PlyImport {
             }
             mesh_.positions.push_back(position);
         }
+        divided_ = divided_ || (numbers.isText() && !numbers.atLineEnd());
         return {};
     }
 
@@ -169,7 +221,7 @@ class PlyImport {
                 return plyNumberError(numbers);
             }
             if (!isVertex(*value)) {
-                return noVertex("face", index, *value);
+                return noVertex("face", index, *value, numbers);
             }
             mesh_.corners.push_back(static_cast<std::uint32_t>(*value));
         }
@@ -197,7 +249,7 @@ class PlyImport {
                 continue;
             }
             if (!isVertex(*value)) {
-                return noVertex("tristrips", index, *value);
+                return noVertex("tristrips", index, *value, numbers);
             }
             const auto corner = static_cast<std::uint32_t>(*value);
             // Where corners repeat, the strip only moves on to its next part.
@@ -218,9 +270,9 @@ class PlyImport {
         return value >= 0.0 && value < static_cast<double>(vertices_) && value == std::floor(value);
     }
 
-    [[nodiscard]] tl::unexpected<Error> noVertex(const char* element, std::uint64_t index,
-                                                 double value) const {
-        return invalidInput(std::string("element ") + element + " " + std::to_string(index) +
+    [[nodiscard]] tl::unexpected<Error> noVertex(const char* element, std::uint64_t index, double value,
+                                                 const PlyNumbers& numbers) const {
+        return invalidInput(numbers.where() + "element " + element + " " + std::to_string(index) +
                             " names the vertex " + shortest(static_cast<float>(value)) + ", but there are " +
                             std::to_string(vertices_));
     }
@@ -234,12 +286,15 @@ class PlyImport {
     }
 
     /// In text, a line of more numbers than its element has shifts all behind it: that must not pass for a mesh.
-    Result<void> checkRest(std::string_view rest, PlyEncoding encoding) {
-        if (encoding == PlyEncoding::kAscii && !takeWord(rest).empty()) {
-            return invalidInput("it holds more numbers than its header announces");
+    Result<void> checkRest(PlyNumbers& numbers) {
+        if (numbers.isText()) {
+            static_cast<void>(numbers.next(PlyType::kFloat64));
+            return numbers.ended()
+                       ? Result<void>()
+                       : invalidInput(numbers.where() + "it holds more numbers than its header announces");
         }
-        const bool padding = rest.find_first_not_of(std::string_view("\0 \t\r\n", 5)) == rest.npos;
-        if (encoding != PlyEncoding::kAscii && !padding) {
+        const std::string_view rest = numbers.rest();
+        if (rest.find_first_not_of(std::string_view("\0 \t\r\n", 5)) != std::string_view::npos) {
             mesh_.warnings.push_back(std::to_string(rest.size()) +
                                      " bytes behind the last element of its header are left out");
         }
@@ -263,23 +318,17 @@ class PlyImport {
                    : "; if it is a scan, make a surface of its points first, for example in MeshLab"));
     }
 
-    PlyMesh mesh_;
+    PolygonMesh mesh_;
     std::uint64_t vertices_ = 0;  // the header's count: faces may come first
     std::uint64_t triangles_ = 0;
     std::vector<PlyElement> unread_;  // that look like faces
+    bool divided_ = false;            // an element of a text ends within a line
 };
 
 }  // namespace
 
-Result<PlyMesh> readPly(std::span<const std::byte> bytes, const std::string& shown) {
-    Result<PlyMesh> mesh = PlyImport().run({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-    if (mesh) {
-        return mesh;
-    }
-    const Error& error = mesh.error();
-    const bool cured = error.message.find(';') != std::string::npos;
-    return fail(error.code, "cannot read the mesh " + shown + ": " + error.message +
-                                (cured ? "" : "; repair the file or export it again"));
+Result<PolygonMesh> readPly(std::span<const std::byte> bytes) {
+    return PlyImport().run({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace relief

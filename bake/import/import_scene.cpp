@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "bake/import/import_instances.h"
-#include "formats/base/text.h"
+#include "bake/import/polygon_cutter.h"
 
 namespace relief {
 namespace {
@@ -50,7 +50,7 @@ bool forEachUse(const aiScene& scene, const Transform& root, const Visit& visit)
     return true;
 }
 
-std::vector<const aiMesh*> unplacedMeshes(const aiScene& scene) {
+std::size_t unplacedMeshes(const aiScene& scene) {
     std::set<const aiMesh*> placed;
     if (scene.mRootNode != nullptr) {
         forEachUse(scene, {},
@@ -59,13 +59,10 @@ std::vector<const aiMesh*> unplacedMeshes(const aiScene& scene) {
                        return true;
                    });
     }
-    std::vector<const aiMesh*> others;
-    for (const aiMesh* mesh : std::span(scene.mMeshes, scene.mNumMeshes)) {
-        if (mesh->HasPositions() && mesh->mNumFaces > 0 && placed.count(mesh) == 0) {
-            others.push_back(mesh);
-        }
-    }
-    return others;
+    const std::span meshes(scene.mMeshes, scene.mNumMeshes);
+    return static_cast<std::size_t>(std::count_if(meshes.begin(), meshes.end(), [&](const aiMesh* mesh) {
+        return mesh->HasPositions() && mesh->mNumFaces > 0 && placed.count(mesh) == 0;
+    }));
 }
 
 std::string_view textOf(const aiString& text) {
@@ -83,11 +80,11 @@ class SceneNames {
   public:
     /// \param scene  borrowed, and so is the job.
     SceneNames(const aiScene& scene, const ImportJob& job)
-        : scene_(scene), is_obj_(job.extension == "obj"), marks_(job.options.names, job.file_name) {}
+        : scene_(scene), marks_(job.options.names, job.file_name) {}
 
     [[nodiscard]] const NameMarks& marks() const { return marks_; }
 
-    /// As TriangleMesh::marks has it, for the triangles of a mesh. \param node  that uses it; null: none does.
+    /// As TriangleMesh::marks has it, for the triangles of a mesh. \param node  that uses it.
     std::uint8_t of(const aiMesh& mesh, const aiNode* node) {
         std::vector<const aiNode*> chain;
         const aiNode* above = node;
@@ -96,7 +93,7 @@ class SceneNames {
         }
         std::uint8_t mark = above != nullptr ? nodes_.at(above) : std::uint8_t{0};
         for (auto it = chain.rbegin(); it != chain.rend(); ++it) {
-            mark = std::max(mark, meetNode(**it));
+            mark = std::max(mark, meet(textOf((*it)->mName)));
             nodes_[*it] = mark;
         }
         return std::max({mark, meet(textOf(mesh.mName)), meetMaterial(mesh)});
@@ -123,18 +120,6 @@ class SceneNames {
   private:
     std::uint8_t meet(std::string_view name) { return marks_.meet(name, !isMadeUp(name)); }
 
-    std::uint8_t meetNode(const aiNode& node) {
-        const std::string_view name = textOf(node.mName);
-        std::uint8_t mark = meet(name);
-        if (is_obj_) {
-            std::string_view rest = name;
-            for (std::string_view word = takeWord(rest); !word.empty(); word = takeWord(rest)) {
-                mark = std::max(mark, meet(word));
-            }
-        }
-        return mark;
-    }
-
     std::uint8_t meetMaterial(const aiMesh& mesh) {
         const std::string name = materialOf(mesh);
         return name.empty() ? std::uint8_t{0} : meet(name);
@@ -150,7 +135,6 @@ class SceneNames {
     }
 
     const aiScene& scene_;
-    bool is_obj_;
     NameMarks marks_;
     std::map<const aiNode*, std::uint8_t> nodes_;     // with those above them
     std::map<const aiNode*, std::uint32_t> indices_;  // of nodes that use a mesh
@@ -196,7 +180,7 @@ MeshParts partsOf(const aiScene& scene) {
     constexpr std::uint8_t kByOther = 2;
     MeshParts parts;
     parts.meshes = scene.mNumMeshes;
-    parts.unplaced = unplacedMeshes(scene).size();
+    parts.unplaced = unplacedMeshes(scene);
     for (const aiMesh* mesh : std::span(scene.mMeshes, scene.mNumMeshes)) {
         if (!mesh->HasPositions()) {
             continue;
@@ -236,19 +220,59 @@ void warnOfScene(const aiScene& scene, std::vector<std::string>& warnings) {
     }
 }
 
+void triangulate(aiScene& scene) {
+    PolygonCutter cutter;
+    std::vector<glm::vec3> corners;
+    std::vector<glm::uvec3> triangles;
+    for (aiMesh* mesh : std::span(scene.mMeshes, scene.mNumMeshes)) {
+        const std::span faces(mesh->mFaces, mesh->mNumFaces);
+        std::size_t count = 0;
+        for (const aiFace& face : faces) {
+            count += face.mNumIndices > 3 ? face.mNumIndices - 2 : 1;
+        }
+        if (count == faces.size()) {
+            continue;
+        }
+        auto* const cut = new aiFace[count];
+        aiFace* next = cut;
+        TriangleStarts starts;
+        for (aiFace& face : faces) {
+            if (face.mNumIndices < 3) {
+                next->mNumIndices = face.mNumIndices;
+                next->mIndices = std::exchange(face.mIndices, nullptr);
+                ++next;
+                continue;
+            }
+            corners.clear();
+            for (const unsigned index : std::span(face.mIndices, face.mNumIndices)) {
+                const aiVector3D& v = mesh->mVertices[index];
+                corners.emplace_back(v.x, v.y, v.z);
+            }
+            triangles.clear();
+            for (const glm::uvec3& t : cutter.cut(corners)) {
+                triangles.emplace_back(face.mIndices[t.x], face.mIndices[t.y], face.mIndices[t.z]);
+            }
+            starts.turn(triangles);
+            for (const glm::uvec3& t : triangles) {
+                next->mNumIndices = 3;
+                next->mIndices = new unsigned[3]{t.x, t.y, t.z};
+                ++next;
+            }
+        }
+        delete[] mesh->mFaces;
+        mesh->mFaces = cut;
+        mesh->mNumFaces = static_cast<unsigned>(count);
+        mesh->mPrimitiveTypes &= ~static_cast<unsigned>(aiPrimitiveType_POLYGON);
+        mesh->mPrimitiveTypes |= aiPrimitiveType_TRIANGLE;
+    }
+}
+
 Result<TriangleMesh> flatten(const aiScene& scene, const glm::dmat3& linear, const ImportJob& job,
-                             Unplaced unplaced, TriangleMesh mesh) {
+                             TriangleMesh mesh) {
     const Transform root{linear, glm::dvec3(0.0)};
-    const std::vector<const aiMesh*> others =
-        unplaced == Unplaced::kAtRoot ? unplacedMeshes(scene) : std::vector<const aiMesh*>();
-    const auto for_each_use = [&](const auto& visit) {
-        return forEachUse(scene, root, visit) &&
-               std::all_of(others.begin(), others.end(),
-                           [&](const aiMesh* other) { return visit(*other, root, nullptr); });
-    };
     MeshInstances instances(job.shown, job.triangle_max, std::move(mesh));
-    const bool counted =
-        for_each_use([&](const aiMesh& source, const Transform& transform, const aiNode* /*node*/) {
+    const bool counted = forEachUse(
+        scene, root, [&](const aiMesh& source, const Transform& transform, const aiNode* /*node*/) {
             return instances.count(source.mNumVertices, source.mNumFaces, transform);
         });
     if (!counted) {
@@ -258,7 +282,7 @@ Result<TriangleMesh> flatten(const aiScene& scene, const glm::dmat3& linear, con
     instances.begin(names.marks().any());
     std::vector<glm::vec3> positions;
     std::vector<glm::uvec3> triangles;
-    for_each_use([&](const aiMesh& source, const Transform& transform, const aiNode* node) {
+    forEachUse(scene, root, [&](const aiMesh& source, const Transform& transform, const aiNode* node) {
         positionsOf(source, positions);
         trianglesOf(source, triangles);
         const std::uint8_t mark = names.marks().any() && !triangles.empty() ? names.of(source, node) : 0;

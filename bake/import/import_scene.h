@@ -25,15 +25,14 @@ void warnOfScene(const aiScene& scene, std::vector<std::string>& warnings);
 /// \param scene  one whose indices exist.
 [[nodiscard]] MeshParts partsOf(const aiScene& scene);
 
-/// What becomes of meshes that no node places.
-enum class Unplaced : std::uint8_t { kLeaveOut, kAtRoot };
+/// Cuts the scene's polygons into triangles; lines and points stay. \param scene  one whose indices exist.
+void triangulate(aiScene& scene);
 
 /// Adds every use of every mesh to `mesh`, with the transforms of its nodes applied and then `linear`. A triangle has the
-/// names of its material, of its mesh, and of the node that uses it and of all above that. OBJ's groups and objects are
-/// nodes; a group of several names has each of them, and the line as a whole.
+/// names of its material, of its mesh, and of the node that uses it and of all above that.
 /// \param mesh  has marks then if the job asks for names.
 /// Errors: kLimit (more triangles than the job allows), kInvalidInput (none), kUsage (a name that no triangle has).
 [[nodiscard]] Result<TriangleMesh> flatten(const aiScene& scene, const glm::dmat3& linear,
-                                           const ImportJob& job, Unplaced unplaced, TriangleMesh mesh);
+                                           const ImportJob& job, TriangleMesh mesh);
 
 }  // namespace relief

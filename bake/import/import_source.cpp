@@ -18,9 +18,9 @@ namespace {
 namespace fs = std::filesystem;
 
 // What imports the package's test models rightly or refuses them clearly; the first are what a message names.
-constexpr std::array<std::string_view, 23> kFormats = {
-    "obj", "stl", "ply", "off", "gltf", "glb", "fbx",  "dae", "3ds", "blend", "3mf", "x",
-    "lwo", "ac",  "ase", "b3d", "dxf",  "lxo", "ms3d", "nff", "raw", "smd",   "amf"};
+constexpr std::array<std::string_view, 24> kFormats = {
+    "obj", "stl", "ply", "off", "gltf", "glb", "fbx", "dae",  "3ds", "blend", "3mf", "x",
+    "lwo", "ac",  "acc", "ase", "b3d",  "dxf", "lxo", "ms3d", "nff", "raw",   "smd", "amf"};
 constexpr std::size_t kNamedFormats = 11;
 
 bool isHash(const std::string& text) {

@@ -8,6 +8,7 @@
 #include <pthread.h>
 
 #include <algorithm>
+#include <array>
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <cstring>
@@ -15,16 +16,19 @@
 #include <vector>
 
 #include "bake/import/assimp_io.h"
-#include "bake/import/assimp_ply.h"
+#include "bake/import/import_ac.h"
 #include "bake/import/import_files.h"
 #include "bake/import/import_format.h"
 #include "bake/import/import_gltf.h"
 #include "bake/import/import_obj.h"
+#include "bake/import/import_off.h"
 #include "bake/import/import_parts.h"
 #include "bake/import/import_ply.h"
+#include "bake/import/import_raw.h"
 #include "bake/import/import_scene.h"
 #include "bake/import/import_source.h"
-#include "bake/import/import_text.h"
+#include "bake/import/import_stl.h"
+#include "bake/import/polygon_mesh.h"
 #include "formats/base/file_io.h"
 #include "formats/base/retry.h"
 #include "formats/base/text.h"
@@ -74,11 +78,6 @@ bool isGltf(const ImportJob& job) {
     return job.extension == "gltf" || job.extension == "glb";
 }
 
-/// RAW has no nodes, but groups; assimp's reader makes a node of each, and keeps the last alone.
-bool isRaw(const ImportJob& job) {
-    return job.extension == "raw";
-}
-
 SourceFrame frameOf(const ImportJob& job, const aiScene& scene) {
     if (job.extension == "fbx") {
         return fbxFrame(scene);
@@ -97,15 +96,13 @@ SourceFrame frameOf(const ImportJob& job, const aiScene& scene) {
 
 // --- the importer ---
 
-/// Leaves only the readers that claim the extension: which one reads a file does not depend on its contents. Of PLY,
-/// none: it is read by import_ply.h.
+/// Leaves only the readers that claim the extension: which one reads a file does not depend on its contents.
 void keepReadersOf(const std::string& extension, Assimp::Importer& importer) {
     std::vector<Assimp::BaseImporter*> others;
     for (std::size_t i = 0; i < importer.GetImporterCount(); ++i) {
         const std::string_view claimed = importer.GetImporterInfo(i)->mFileExtensions;
         const std::vector<std::string_view> extensions = split(claimed, ' ');
-        if (extension == "ply" ||
-            std::find(extensions.begin(), extensions.end(), extension) == extensions.end()) {
+        if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end()) {
             others.push_back(importer.GetImporter(i));
         }
     }
@@ -113,19 +110,6 @@ void keepReadersOf(const std::string& extension, Assimp::Importer& importer) {
         importer.UnregisterLoader(other);
         delete other;
     }
-}
-
-/// Chooses the reader. PLY is read here already. \param warnings  what that has to say is added.
-/// Errors: as readPly.
-Result<void> chooseReader(const ImportJob& job, Assimp::Importer& importer,
-                          std::vector<std::string>& warnings) {
-    keepReadersOf(job.extension, importer);
-    if (job.extension == "ply") {
-        PlyMesh ply = RELIEF_TRY(readPly(job.bytes, job.shown));
-        warnings.insert(warnings.end(), ply.warnings.begin(), ply.warnings.end());
-        importer.RegisterLoader(new PlyLoader(std::move(ply)));  // owned by the importer
-    }
-    return {};
 }
 
 /// The error of a file that assimp does not read, with the files that it was not given.
@@ -136,23 +120,6 @@ tl::unexpected<Error> unreadable(const ImportJob& job, const std::string& words,
         text += "; it refers to " + refused;
     }
     return fail(ErrorCode::kInvalidInput, text + "; repair the file or export it again");
-}
-
-/// What the file holds, whether or not assimp hands it on. \param scene  null if it was not read.
-MeshParts partsOfFile(const ImportJob& job, const aiScene* scene) {
-    MeshParts parts = scene != nullptr ? partsOf(*scene) : MeshParts();
-    if (job.extension == "obj") {
-        // assimp hands on a vertex for each corner, and none that has no use.
-        MeshParts obj = objPartsOf(job.bytes);
-        obj.polygons = scene != nullptr ? parts.polygons : obj.polygons;
-        obj.lines = parts.lines;
-        obj.points = parts.points;
-        obj.meshes = parts.meshes;
-        obj.unplaced = parts.unplaced;
-        parts = obj;
-    }
-    parts.unplaced = isRaw(job) ? 0 : parts.unplaced;
-    return parts;
 }
 
 /// Reads the file; the importer owns the scene.
@@ -170,27 +137,13 @@ Result<const aiScene*> readScene(const ImportJob& job, ImportFiles& files, const
         (!indicesExist(*scene) || logged.say("out of range") || logged.say("out-of-range"))) {
         return unreadable(job, "a face uses a vertex that does not exist", files);
     }
-    if (logged.say("Faces with zero indices")) {
-        return fail(ErrorCode::kInvalidInput, "cannot read the mesh " + job.shown +
-                                                  ": it has comments after its counts, or faces of no "
-                                                  "corners or of more than 9, which are not read from OFF; "
-                                                  "triangulate it, or save it as OBJ or PLY");
-    }
-    if (logged.say("number of faces in the header is incorrect")) {
-        return fail(ErrorCode::kInvalidInput,
-                    "cannot read the mesh " + job.shown +
-                        ": it has fewer faces than its header says and was probably cut off; copy or "
-                        "export it again");
-    }
-    parts = partsOfFile(job, scene);
-    if (job.extension == "obj" && parts.vertices == 0) {
-        return unreadable(job, "it has no vertices, and is probably no OBJ file", files);
-    }
+    parts = scene != nullptr ? partsOf(*scene) : MeshParts();
     if (const std::optional<std::string> refusal = partsRefusal(parts)) {
         return fail(ErrorCode::kInvalidInput, "cannot read the mesh " + job.shown + ": " + *refusal);
     }
     if (scene != nullptr) {
-        scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType);
+        triangulate(*const_cast<aiScene*>(scene));  // the importer's own, and no constant
+        scene = importer.ApplyPostProcessing(aiProcess_SortByPType);
     }
     if (scene != nullptr && scene->mRootNode != nullptr) {
         return scene;
@@ -222,7 +175,7 @@ Result<TriangleMesh> importWithAssimp(const ImportJob& job, ImportFiles& files) 
     const LoggedErrors logged;
     Assimp::Importer importer;
     MeshParts parts;
-    RELIEF_TRY(chooseReader(job, importer, mesh.warnings));
+    keepReadersOf(job.extension, importer);
     const aiScene* const scene = RELIEF_TRY(readScene(job, files, logged, importer, parts));
     mesh.unused_vertices = parts.unused;
     warnOfParts(parts, mesh.warnings);
@@ -231,8 +184,64 @@ Result<TriangleMesh> importWithAssimp(const ImportJob& job, ImportFiles& files) 
     for (const std::string& error : logged.errors()) {
         mesh.warnings.push_back("its importer says: " + error);
     }
-    return flatten(*scene, linear, job, isRaw(job) ? Unplaced::kAtRoot : Unplaced::kLeaveOut,
-                   std::move(mesh));
+    return flatten(*scene, linear, job, std::move(mesh));
+}
+
+std::string upperCase(std::string word) {
+    for (char& c : word) {
+        c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    }
+    return word;
+}
+
+bool isReadHere(const ImportJob& job) {
+    constexpr std::array<std::string_view, 5> kReadHere = {"obj", "off", "ply", "raw", "stl"};
+    return std::find(kReadHere.begin(), kReadHere.end(), job.extension) != kReadHere.end();
+}
+
+/// Opens the libraries of an OBJ's materials: nothing in them matters to its shape, but it depends on them. Where one is not
+/// there, that of the mesh's own name stands in.
+void openLibraries(const ImportJob& job, std::span<const std::string> libraries, ImportFiles& files) {
+    for (const std::string& library : libraries) {
+        const std::string own = fs::path(job.file_name).replace_extension("mtl").string();
+        if (!files.open(library) && library != own && files.exists(own)) {
+            static_cast<void>(files.open(own));
+        }
+    }
+}
+
+Result<PolygonMesh> readPolygons(const ImportJob& job, ImportFiles& files) {
+    if (job.extension == "obj") {
+        ObjMesh obj = RELIEF_TRY(readObj(job.bytes));
+        openLibraries(job, obj.libraries, files);
+        return std::move(obj.polygons);
+    }
+    return job.extension == "off"   ? readOff(job.bytes)
+           : job.extension == "ply" ? readPly(job.bytes)
+           : job.extension == "raw" ? readRaw(job.bytes)
+                                    : readStl(job.bytes);
+}
+
+/// OBJ, OFF, PLY, RAW and STL. \param files  of materials.
+Result<TriangleMesh> importPolygons(const ImportJob& job, ImportFiles& files) {
+    const Result<PolygonMesh> polygons = readPolygons(job, files);
+    if (!polygons) {
+        return unreadable(job.shown, polygons.error());
+    }
+    const MeshParts parts = partsOf(*polygons);
+    if (parts.vertices == 0) {
+        return unreadable(job, "it has no vertices, and is probably no " + upperCase(job.extension) + " file",
+                          files);
+    }
+    if (const std::optional<std::string> refusal = partsRefusal(parts)) {
+        return fail(ErrorCode::kInvalidInput, "cannot read the mesh " + job.shown + ": " + *refusal);
+    }
+    TriangleMesh mesh;
+    mesh.warnings = polygons->warnings;
+    mesh.unused_vertices = parts.unused;
+    warnOfParts(parts, mesh.warnings);
+    const glm::dmat3 linear = takeFrame({}, job.options, mesh);
+    return flatten(*polygons, job.extension != "off" && job.extension != "ply", linear, job, std::move(mesh));
 }
 
 Result<TriangleMesh> importGltf(const ImportJob& job, ImportFiles& files) {
@@ -242,11 +251,15 @@ Result<TriangleMesh> importGltf(const ImportJob& job, ImportFiles& files) {
 }
 
 Result<TriangleMesh> importWhatItIs(const ImportJob& job) {
-    if (const std::optional<std::string> fault = textFault(job.extension, job.bytes)) {
-        return fail(ErrorCode::kInvalidInput, "cannot read the mesh " + job.shown + ": " + *fault);
+    if (job.extension == "ac" && isAcCutOff(job.bytes)) {
+        return fail(ErrorCode::kInvalidInput, "cannot read the mesh " + job.shown +
+                                                  ": it holds less than its counts say and was probably cut "
+                                                  "off; copy or export it again");
     }
     ImportFiles files(job.folder, job.file_name, job.bytes);
-    TriangleMesh mesh = RELIEF_TRY(isGltf(job) ? importGltf(job, files) : importWithAssimp(job, files));
+    TriangleMesh mesh = RELIEF_TRY(isGltf(job)       ? importGltf(job, files)
+                                   : isReadHere(job) ? importPolygons(job, files)
+                                                     : importWithAssimp(job, files));
     for (const std::string& refused : files.refused()) {
         mesh.warnings.push_back("left out " + refused);
     }
@@ -308,17 +321,19 @@ Result<TriangleMesh> importRaw(const ImportJob& job) {
                                            " names are asked for at once; ask for fewer");
     }
     ImportJob unmarked = job;
-    unmarked.bytes = withoutByteOrderMark(job.bytes);
+    const std::string_view text(reinterpret_cast<const char*>(job.bytes.data()), job.bytes.size());
+    unmarked.bytes = job.bytes.subspan(job.bytes.size() - withoutByteOrderMark(text).size());
+    if (job.extension == "acc") {
+        unmarked.extension = "ac";  // as racing simulators call it
+    }
     if (const std::optional<std::string> stranger = noMeshAtAll(job.extension, job.bytes)) {
         return fail(ErrorCode::kInvalidInput, "cannot read the mesh " + job.shown + ": " + *stranger);
     }
-    const std::optional<std::string> format = otherFormat(job.extension, unmarked.bytes);
+    const std::optional<std::string> format = otherFormat(unmarked.extension, unmarked.bytes);
     if (format) {
         unmarked.file_name += "." + *format;
         unmarked.extension = *format;
     }
-    const std::optional<std::vector<std::byte>> lower = lowerCaseStl(unmarked.extension, unmarked.bytes);
-    unmarked.bytes = lower ? std::span<const std::byte>(*lower) : unmarked.bytes;
     Import import{unmarked, std::nullopt};
     if (const int failed = retryTransient([&] { return startOnDeepStack(import); })) {
         return fail(ErrorCode::kFailure,

@@ -4,11 +4,7 @@
 
 namespace relief {
 
-CsvReader::CsvReader(std::string_view text) : text_(text) {
-    if (text_.starts_with("\xef\xbb\xbf")) {
-        text_.remove_prefix(3);
-    }
-}
+CsvReader::CsvReader(std::string_view text) : text_(withoutByteOrderMark(text)) {}
 
 bool CsvReader::next() {
     do {

@@ -110,8 +110,14 @@ Result<PlyHeader> takePlyHeader(std::string_view& data) {
     using Kind = PlyHeaderLine::Kind;
     PlyHeader header;
     std::optional<PlyEncoding> encoding;
+    // Behind a header whose lines end with a carriage return alone, a line feed belongs to the numbers.
+    bool returns = false;
     for (bool first = true;; first = false) {
+        const std::string_view before = data;
         const std::optional<PlyHeaderLine> line = takePlyHeaderLine(data);
+        const std::string_view taken = before.substr(0, before.size() - data.size());
+        returns = first ? taken.ends_with('\r') : returns;
+        ++header.lines;
         if (!line) {
             return invalidInput("its header does not end");
         }
@@ -119,6 +125,9 @@ Result<PlyHeader> takePlyHeader(std::string_view& data) {
             return invalidInput("it is no PLY file");
         }
         if (line->kind == Kind::kEnd) {
+            if (returns && taken.ends_with("\r\n")) {
+                data = before.substr(taken.size() - 1);
+            }
             break;
         }
         if (line->kind == Kind::kFormat) {
@@ -141,9 +150,13 @@ std::optional<double> PlyNumbers::next(PlyType type) {
     if (encoding_ != PlyEncoding::kAscii) {
         return nextBytes(type);
     }
-    const std::string_view word = takeWord(data_);
-    ended_ = word.empty();
-    return parseDouble(word);
+    word_ = text_.anyWord();
+    ended_ = word_.empty();
+    return parseDouble(word_);
+}
+
+std::string PlyNumbers::where() const {
+    return isText() ? "line " + std::to_string(lines_before_ + text_.line()) + ": " : "";
 }
 
 std::optional<double> PlyNumbers::nextBytes(PlyType type) {
@@ -175,7 +188,10 @@ std::optional<double> PlyNumbers::nextBytes(PlyType type) {
 }
 
 tl::unexpected<Error> plyNumberError(const PlyNumbers& numbers) {
-    return invalidInput(numbers.ended() ? "it ends too early" : "a word among its numbers is none");
+    constexpr std::size_t kShownMax = 40;  // bytes
+    return invalidInput(numbers.where() + (numbers.ended() ? "it ends too early, by the counts of its header"
+                                                           : "'" + cleanUtf8(numbers.word(), kShownMax) +
+                                                                 "' stands among its numbers, and is none"));
 }
 
 Result<std::uint64_t> takePlyLength(PlyNumbers& numbers, PlyType type) {
@@ -184,7 +200,7 @@ Result<std::uint64_t> takePlyLength(PlyNumbers& numbers, PlyType type) {
         return plyNumberError(numbers);
     }
     if (!(*length >= 0.0 && *length <= 4294967295.0 && *length == std::floor(*length))) {
-        return invalidInput("a list has a length that cannot be");
+        return invalidInput(numbers.where() + "a list has a length that cannot be");
     }
     return static_cast<std::uint64_t>(*length);
 }

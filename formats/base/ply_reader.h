@@ -4,10 +4,12 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "formats/base/result.h"
+#include "formats/base/text_scanner.h"
 
 namespace relief {
 
@@ -53,6 +55,7 @@ struct PlyElement {
 struct PlyHeader {
     PlyEncoding encoding = PlyEncoding::kAscii;
     std::vector<PlyElement> elements;
+    std::size_t lines = 0;  ///< of the header itself
 };
 
 /// Cuts the whole header off `data`, a file from its start.
@@ -63,20 +66,32 @@ struct PlyHeader {
 class PlyNumbers {
   public:
     /// \param data  from the byte after "end_header\n"; or a part of it, such as a line. Borrowed.
-    PlyNumbers(std::string_view data, PlyEncoding encoding) : data_(data), encoding_(encoding) {}
+    /// \param lines_before  of the file.
+    PlyNumbers(std::string_view data, PlyEncoding encoding, std::size_t lines_before = 0)
+        : data_(data), text_(data), encoding_(encoding), lines_before_(lines_before) {}
 
     /// \return nullopt if the data have ended, or where a word is no number.
     [[nodiscard]] std::optional<double> next(PlyType type);
     /// After next() has failed: whether the data have ended.
     [[nodiscard]] bool ended() const { return ended_; }
     /// What comes after the last number.
-    [[nodiscard]] std::string_view rest() const { return data_; }
+    [[nodiscard]] std::string_view rest() const { return isText() ? text_.rest() : data_; }
+    [[nodiscard]] bool isText() const { return encoding_ == PlyEncoding::kAscii; }
+    /// Whether no word follows the last one on its line. \pre isText()
+    [[nodiscard]] bool atLineEnd() { return text_.atLineEnd(); }
+    /// "line 12: ", of the last word; "" where there are no lines.
+    [[nodiscard]] std::string where() const;
+    /// The last word, of a text.
+    [[nodiscard]] std::string_view word() const { return word_; }
 
   private:
     std::optional<double> nextBytes(PlyType type);
 
     std::string_view data_;
+    TextScanner text_;
+    std::string_view word_;
     PlyEncoding encoding_;
+    std::size_t lines_before_;
     bool ended_ = false;
 };
 

@@ -126,10 +126,16 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
+std::string_view withoutByteOrderMark(std::string_view bytes) {
+    return bytes.substr(bytes.substr(0, 3) == "\xef\xbb\xbf" ? 3 : 0);
+}
+
 std::string_view takeLine(std::string_view& text) {
-    const std::size_t end = text.find('\n');
+    const std::size_t end = text.find_first_of("\r\n");
     const std::string_view line = text.substr(0, end);
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    text.remove_prefix(line.size());
+    const bool both = text.substr(0, 2) == "\r\n";
+    text.remove_prefix(text.empty() ? 0 : both ? 2 : 1);
     return line;
 }
 

@@ -29,7 +29,9 @@ void appendShortest(std::string& out, float value);
 [[nodiscard]] std::vector<std::string_view> split(std::string_view text, char separator);
 /// Without spaces, tabs and a carriage return at both ends.
 [[nodiscard]] std::string_view trimmed(std::string_view text);
-/// Cuts the first line off `text`. \return it, without its \n.
+/// `bytes` without a byte order mark of UTF-8 in front.
+[[nodiscard]] std::string_view withoutByteOrderMark(std::string_view bytes);
+/// Cuts the first line off `text`. \return it, without its end: "\n", "\r\n" or "\r".
 [[nodiscard]] std::string_view takeLine(std::string_view& text);
 /// Cuts the first word, and the white space before it, off `text`. \return it; empty if there is none.
 [[nodiscard]] std::string_view takeWord(std::string_view& text);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "formats/base/text.h"
+#include "formats/base/text_scanner.h"
 #include "runtime/files/mesh_file.h"
 
 namespace relief {
@@ -18,17 +19,15 @@ bool readNumber(std::string_view word, float& out) {
 
 class ObjReader {
   public:
-    explicit ObjReader(std::string_view name) : name_(name) {}
+    ObjReader(std::string_view text, std::string_view name) : name_(name), text_(text, {'#', true}) {}
 
-    Result<PictureMesh> read(std::string_view text) {
-        while (!text.empty()) {
-            ++line_;
-            std::string_view line = takeLine(text);
-            const std::string_view statement = takeWord(line);
+    Result<PictureMesh> read() {
+        do {
+            const std::string_view statement = text_.word();
             if (statement == "v" || statement == "f") {
-                RELIEF_TRY(statement == "v" ? readVertex(line) : readFace(line));
+                RELIEF_TRY(statement == "v" ? readVertex() : readFace());
             }
-        }
+        } while (text_.nextLine());
         if (mesh_.triangles.empty()) {
             return fail(ErrorCode::kInvalidInput, std::string(name_) + " has no faces");
         }
@@ -37,17 +36,17 @@ class ObjReader {
 
   private:
     [[nodiscard]] tl::unexpected<Error> failHere(ErrorCode code, const std::string& message) const {
-        return fail(code, std::string(name_) + ", line " + std::to_string(line_) + ": " + message);
+        return fail(code, std::string(name_) + ", line " + std::to_string(text_.line()) + ": " + message);
     }
 
-    Result<void> readVertex(std::string_view line) {
+    Result<void> readVertex() {
         if (mesh_.positions.size() == kMeshVerticesMax) {
             return failHere(ErrorCode::kLimit,
                             "more than " + std::to_string(kMeshVerticesMax) + " vertices; simplify the mesh");
         }
         glm::vec3 p{0.0F};
         for (int i = 0; i < 3; ++i) {
-            if (!readNumber(takeWord(line), p[i])) {
+            if (!readNumber(text_.word(), p[i])) {
                 return failHere(ErrorCode::kInvalidInput, "a vertex needs three finite numbers");
             }
         }
@@ -56,10 +55,9 @@ class ObjReader {
     }
 
     // Corners are "7", "7/1", "7//3" or "7/1/3"; below 0 they count back from the last vertex so far.
-    Result<void> readFace(std::string_view line) {
+    Result<void> readFace() {
         corners_.clear();
-        for (std::string_view word = takeWord(line); !word.empty() && !word.starts_with('#');
-             word = takeWord(line)) {
+        for (std::string_view word = text_.word(); !word.empty(); word = text_.word()) {
             const std::string_view digits = word.substr(0, word.find('/'));
             std::int64_t index = 0;
             const auto [rest, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
@@ -83,7 +81,7 @@ class ObjReader {
     }
 
     std::string_view name_;
-    std::size_t line_ = 0;
+    TextScanner text_;
     std::vector<std::uint32_t> corners_;
     PictureMesh mesh_;
 };
@@ -91,7 +89,7 @@ class ObjReader {
 }  // namespace
 
 Result<PictureMesh> parseObj(std::string_view text, std::string_view name) {
-    return ObjReader(name).read(text);
+    return ObjReader(text, name).read();
 }
 
 }  // namespace relief

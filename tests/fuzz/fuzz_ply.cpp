@@ -1,13 +1,17 @@
-// PLY meshes, OBJ statements, and what a file is: whatever the bytes, polygons whose corners exist, or one line that names
-// the file.
+// OBJ, OFF, PLY, RAW and STL, and what a file is: whatever the bytes, polygons whose corners exist, or one line.
 #include <numeric>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "bake/import/import_ac.h"
 #include "bake/import/import_format.h"
 #include "bake/import/import_obj.h"
+#include "bake/import/import_off.h"
 #include "bake/import/import_ply.h"
-#include "bake/import/import_text.h"
+#include "bake/import/import_raw.h"
+#include "bake/import/import_stl.h"
+#include "bake/import/polygon_cutter.h"
 #include "tests/fuzz/target.h"
 
 namespace {
@@ -16,8 +20,7 @@ bool isLine(const std::string& text) {
     return text.find_first_of(std::string_view("\n\r\x1b\0", 4)) == std::string::npos;
 }
 
-void mustBePolygons(const relief::PlyMesh& mesh) {
-    mustHold(!mesh.sizes.empty(), "a mesh has a polygon");
+void mustBePolygons(const relief::PolygonMesh& mesh) {
     const std::uint64_t corners = std::accumulate(mesh.sizes.begin(), mesh.sizes.end(), std::uint64_t{0});
     mustHold(corners == mesh.corners.size(), "each corner belongs to a polygon");
     for (const std::uint32_t size : mesh.sizes) {
@@ -34,14 +37,31 @@ void mustBePolygons(const relief::PlyMesh& mesh) {
 /// Everything that is said of a file before a reader has it.
 void mustBeJudged(std::span<const std::byte> bytes) {
     for (const char* extension : {"obj", "stl", "ac", "glb", "3mf"}) {
-        for (const auto& words :
-             {relief::noMeshAtAll(extension, bytes), relief::textFault(extension, bytes)}) {
-            mustHold(!words || (isLine(*words) && words->find("; ") != std::string::npos),
-                     "a fault is one line");
-        }
+        const auto words = relief::noMeshAtAll(extension, bytes);
+        mustHold(!words || (isLine(*words) && words->find("; ") != std::string::npos), "a fault is one line");
         mustHold(relief::otherFormat(extension, bytes) != extension, "another format is another");
-        const auto lower = relief::lowerCaseStl(extension, bytes);
-        mustHold(!lower || lower->size() == bytes.size(), "lower case is as long");
+    }
+    static_cast<void>(relief::isAcCutOff(bytes));
+}
+
+void mustBeRead(const relief::Result<relief::PolygonMesh>& mesh) {
+    if (!mesh) {
+        mustHold(isLine(mesh.error().message), "an error is one line");
+        return;
+    }
+    mustBePolygons(*mesh);
+    const relief::MeshParts parts = relief::partsOf(*mesh);
+    mustHold(parts.loose <= parts.unused && parts.unused <= parts.vertices, "loose vertices are unused ones");
+    relief::PolygonCutter cutter;
+    std::vector<glm::vec3> places;
+    std::size_t first = 0;
+    for (const std::uint32_t size : mesh->sizes) {
+        places.clear();
+        for (std::size_t i = first; i < first + size; ++i) {
+            places.push_back(mesh->positions[mesh->corners[i]]);
+        }
+        first += size;
+        mustHold(size < 3 || cutter.cut(places).size() == size - 2, "a polygon becomes its triangles");
     }
 }
 
@@ -50,14 +70,13 @@ void mustBeJudged(std::span<const std::byte> bytes) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const auto bytes = std::as_bytes(std::span(data, size));
     mustBeJudged(bytes);
-    const relief::MeshParts parts = relief::objPartsOf(bytes);
-    mustHold(parts.loose <= parts.unused && parts.unused <= parts.vertices, "loose vertices are unused ones");
-    const relief::Result<relief::PlyMesh> mesh = relief::readPly(bytes, "'m.ply'");
-    if (mesh) {
-        mustBePolygons(*mesh);
-        return 0;
-    }
-    mustHold(mesh.error().message.find("'m.ply'") != std::string::npos, "an error names the file");
-    mustHold(isLine(mesh.error().message), "an error is one line");
+    mustBeRead(relief::readOff(bytes));
+    mustBeRead(relief::readRaw(bytes));
+    mustBeRead(relief::readStl(bytes));
+    const relief::Result<relief::ObjMesh> obj = relief::readObj(bytes);
+    mustBeRead(obj ? relief::Result<relief::PolygonMesh>(obj->polygons) : tl::unexpected(obj.error()));
+    const relief::Result<relief::PolygonMesh> ply = relief::readPly(bytes);
+    mustHold(!ply || !ply->sizes.empty(), "a PLY has a polygon");
+    mustBeRead(ply);
     return 0;
 }

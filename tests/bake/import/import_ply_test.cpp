@@ -105,11 +105,12 @@ double signedVolume(const TriangleMesh& mesh) {
     return volume;
 }
 
-Result<PlyMesh> read(const std::string& text) {
-    return readPly(std::as_bytes(std::span(text)), "'a.ply'");
+Result<PolygonMesh> read(const std::string& text) {
+    Result<PolygonMesh> mesh = readPly(std::as_bytes(std::span(text)));
+    return mesh ? std::move(mesh) : unreadable("'a.ply'", mesh.error());
 }
 
-void expectError(const Result<PlyMesh>& mesh, const std::string& says,
+void expectError(const Result<PolygonMesh>& mesh, const std::string& says,
                  ErrorCode code = ErrorCode::kInvalidInput) {
     ASSERT_FALSE(mesh) << says;
     const std::string& message = mesh.error().message;
@@ -153,7 +154,7 @@ TEST(ImportPly, AStripBakesAsItsTrianglesDo) {
 TEST(ImportPly, StripsBeginEndAndTurn) {
     using Corners = std::vector<std::uint32_t>;
     const auto corners = [](const std::string& text) {
-        const Result<PlyMesh> mesh = read(text);
+        const Result<PolygonMesh> mesh = read(text);
         EXPECT_TRUE(mesh) << mesh.error().message;
         return mesh ? mesh->corners : Corners();
     };
@@ -176,7 +177,7 @@ TEST(ImportPly, StripsBeginEndAndTurn) {
         "ply\nformat ascii 1.0\nelement tristrips 1\nproperty list int int vertex_index\n"
         "element face 1\nproperty list uchar int vertex_indices\nproperty uchar red\n" +
         kHead.substr(kHead.find("element")) + "end_header\n3 0 1 2\n4 3 2 1 0 255\n" + kCorners;
-    const Result<PlyMesh> mesh = read(both);
+    const Result<PolygonMesh> mesh = read(both);
     ASSERT_TRUE(mesh) << mesh.error().message;
     EXPECT_EQ(mesh->corners, (Corners{0, 1, 2, 3, 2, 1, 0}));
     EXPECT_EQ(mesh->sizes, (std::vector<std::uint32_t>{3, 4}));
@@ -197,7 +198,8 @@ TEST(ImportPly, HostileStripsAreRefused) {
     expectError(read(strips("element tristrips 18446744073709551615", "3 0 1 2\n")), "ends too early");
     expectError(read(strips("element tristrips 18446744073709551616", "3 0 1 2\n")), "not understood");
     expectError(read(strips("element tristrips -1", "3 0 1 2\n")), "not understood");
-    expectError(read(strips("element tristrips 1", "3 0 one 2\n")), "a word among its numbers");
+    expectError(read(strips("element tristrips 1", "3 0 one 2\n")),
+                "line 14: 'one' stands among its numbers, and is none");
     expectError(read(strips("element tristrips 1", "4 0 0 1 1\n")), "no faces");
     expectError(
         read("ply\nformat ascii 1.0\nelement vertex 99999999999\nproperty float x\nproperty float y\n"
@@ -226,11 +228,11 @@ TEST(ImportPly, WhatComesBehindTheLastElement) {
     expectError(read(strips("element face 1", "3 0 1 2 9\n", "list uchar int")), "more numbers");
     const std::string binary = boxOfStrips("binary_little_endian");
     for (const std::string& padding : {std::string("\n"), std::string("\r\n"), std::string(3, '\0')}) {
-        const Result<PlyMesh> padded = read(binary + padding);
+        const Result<PolygonMesh> padded = read(binary + padding);
         ASSERT_TRUE(padded) << padded.error().message;
         EXPECT_TRUE(padded->warnings.empty());
     }
-    const Result<PlyMesh> mesh = read(binary + "more");
+    const Result<PolygonMesh> mesh = read(binary + "more");
     ASSERT_TRUE(mesh) << mesh.error().message;
     ASSERT_EQ(mesh->warnings.size(), 1U);
     EXPECT_NE(mesh->warnings[0].find("4 bytes"), std::string::npos) << mesh->warnings[0];
@@ -267,14 +269,14 @@ TEST(ImportPly, FacesOfOtherNamesAreRefusedOrNamed) {
     expectError(read(kHead + "element face 1\nproperty list uchar int corners\nend_header\n" + kCorners +
                      "3 0 1 2\n"),
                 "'face' has no list vertex_indices");
-    const Result<PlyMesh> part =
+    const Result<PolygonMesh> part =
         read(kHead + face + polygon + "end_header\n" + kCorners + "3 0 1 2\n3 1 2 3\n");
     ASSERT_TRUE(part) << part.error().message;
     EXPECT_EQ(part->sizes.size(), 1U);
     ASSERT_EQ(part->warnings.size(), 1U);
     EXPECT_NE(part->warnings[0].find("'polygon' is not read"), std::string::npos) << part->warnings[0];
     // What programs put beside their faces is no reason to warn.
-    const Result<PlyMesh> whole =
+    const Result<PolygonMesh> whole =
         read(kHead + face +
              "property list uchar float texcoord\nproperty int material_index\nelement edge 1\n"
              "property int vertex1\nproperty int vertex2\nelement multi_texture_face 1\n"
@@ -301,7 +303,7 @@ TEST(ImportPly, PointsAndEdgesAreNoSurface) {
 }
 
 TEST(ImportPly, CoordinatesAreTheNearestFloats) {
-    const Result<PlyMesh> mesh = read(
+    const Result<PolygonMesh> mesh = read(
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
         "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
         "0.1 7.941797 -0.927566\n16777217 1e-3 +3.4028235e38\n0 1 0\n3 0 1 2\n");

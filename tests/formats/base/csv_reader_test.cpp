@@ -22,6 +22,17 @@ TEST(CsvReader, PassesOverWhatHoldsNothing) {
     EXPECT_FALSE(CsvReader("").next());
 }
 
+TEST(CsvReader, LinesOfOldMacs) {
+    CsvReader reader("x,y\r1,2\r\r3,4\n5,6\r");
+    for (const char* first : {"x", "1", "3", "5"}) {
+        ASSERT_TRUE(reader.next());
+        ASSERT_EQ(reader.fields().size(), 2U);
+        EXPECT_EQ(reader.fields()[0], first);
+    }
+    EXPECT_EQ(reader.number(), 5U);
+    EXPECT_FALSE(reader.next());
+}
+
 TEST(CsvReader, ALineOfMillionsOfFieldsIsCutShort) {
     const std::string commas(1 << 20, ',');
     CsvReader reader(commas);

@@ -38,6 +38,16 @@ TEST(ObjMesh, VerticesAndFaces) {
     EXPECT_EQ(mesh->triangles, (Triangles{0, 1, 2, 0, 2, 3, 0, 1, 2, 0, 2, 3}));
 }
 
+TEST(ObjMesh, AsPeopleWriteIt) {
+    for (const char* text : {"\xef\xbb\xbfv 0 0 0\rv 1. 0 0\r\tv .5 -.5 1e0\r  f 1 2 3#a note\r",
+                             "v 0 0 0\r\nv 1 0 \\\r\n 0\nv .5 -.5 1\nf -3 \\\n-2 -1"}) {
+        const auto mesh = parseObj(text, "a.obj");
+        ASSERT_TRUE(mesh) << mesh.error().message;
+        EXPECT_EQ(mesh->positions[2], glm::vec3(0.5F, -0.5F, 1.0F));
+        EXPECT_EQ(mesh->triangles, (Triangles{0, 1, 2}));
+    }
+}
+
 TEST(ObjMesh, Hostile) {
     const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     expectError(parseObj("", "a.obj"), "a.obj has no faces");

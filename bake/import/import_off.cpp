@@ -1,0 +1,203 @@
+#include "bake/import/import_off.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "bake/import/text_number.h"
+#include "formats/base/text.h"
+#include "formats/base/text_scanner.h"
+
+namespace relief {
+namespace {
+
+enum class OffLayout : std::uint8_t { kLines, kWords };
+
+class OffReader {
+  public:
+    OffReader(std::string_view text, OffLayout layout) : text_(text, {'#', false}), layout_(layout) {}
+
+    Result<PolygonMesh> read() {
+        RELIEF_TRY(readHeader());
+        for (std::uint64_t i = 0; i < vertices_; ++i) {
+            RELIEF_TRY(readVertex(i));
+        }
+        std::uint64_t triangles = 0;
+        for (std::uint64_t i = 0; i < faces_; ++i) {
+            triangles += RELIEF_TRY(readFace(i));
+            if (triangles > kTriangleMax) {
+                return fail(ErrorCode::kLimit, "it has more than " + std::to_string(kTriangleMax) +
+                                                   " triangles; simplify the mesh");
+            }
+        }
+        if (const std::string_view word = text_.anyWord(); !word.empty()) {
+            return wrongLine(text_.line(), quotedWord(word) + " stands behind the last of the " + counts() +
+                                               " of its header; repair the counts or export it again");
+        }
+        return std::move(mesh_);
+    }
+
+  private:
+    Result<void> readHeader() {
+        std::string_view word = text_.anyWord();
+        std::string name = lowerCase(word);
+        if (name.ends_with("off")) {
+            name.resize(name.size() - 3);
+            if (name.starts_with("st")) {
+                more_ += 2;
+                name.erase(0, 2);
+            }
+            if (name.starts_with('c')) {
+                has_colours_ = true;
+                name.erase(0, 1);
+            }
+            if (name.starts_with('n')) {
+                more_ += 3;
+                name.erase(0, 1);
+            }
+            has_weight_ = name.starts_with('4');
+            name.erase(0, has_weight_ ? 1 : 0);
+            // NOFF has normals, nOFF any number of dimensions.
+            if (!name.empty() || word.ends_with("nOFF")) {
+                return wrongLine(text_.line(),
+                                 quotedWord(word) + " is no OFF of three dimensions; save it as OFF");
+            }
+            word = text_.anyWord();
+            if (lowerCase(word) == "binary") {
+                return wrongLine(text_.line(), "a binary OFF is not read; save it as text, or as PLY");
+            }
+        }
+        vertices_ = RELIEF_TRY(countOf(word));
+        faces_ = RELIEF_TRY(countOf(text_.anyWord()));
+        // The count of edges is of no use to anyone, and some writers leave it out.
+        if (text_.atLineEnd()) {
+            TextScanner ahead = text_;
+            const bool alone = parseUnsigned(ahead.anyWord()) && ahead.atLineEnd();
+            text_ = alone ? ahead : text_;
+        } else {
+            static_cast<void>(RELIEF_TRY(countOf(text_.word())));
+        }
+        if (vertices_ > 3 * kTriangleMax) {
+            return fail(ErrorCode::kLimit, "its header announces " + std::to_string(vertices_) +
+                                               " vertices, more than the limit of " +
+                                               std::to_string(3 * kTriangleMax) + "; simplify the mesh");
+        }
+        return {};
+    }
+
+    Result<std::uint64_t> countOf(std::string_view word) const {
+        if (const std::optional<std::uint64_t> count = parseUnsigned(word)) {
+            return *count;
+        }
+        return wrongLine(text_.line(), quotedWord(word) +
+                                           " is no count; an OFF begins with OFF and its counts of vertices, "
+                                           "faces and edges: repair the file or export it again");
+    }
+
+    [[nodiscard]] std::string counts() const {
+        return std::to_string(vertices_) + " vertices and " + std::to_string(faces_) + " faces";
+    }
+
+    /// Of the file's end, where more should be.
+    [[nodiscard]] tl::unexpected<Error> cutOff(const std::string& where) const {
+        return wrongLine(text_.line(), "it ends " + where + ", though its header announces " + counts() +
+                                           ": it was probably cut off; copy or export it again");
+    }
+
+    Result<float> number(std::string_view word, const char* element, std::uint64_t index) const {
+        if (const std::optional<float> value = readDecimal(word)) {
+            return *value;
+        }
+        return word.empty()
+                   ? Result<float>(cutOff("in " + std::string(element) + " " + std::to_string(index)))
+                   : Result<float>(wrongLine(text_.line(), noNumber(word)));
+    }
+
+    Result<void> readVertex(std::uint64_t index) {
+        glm::vec3 position(0.0F);
+        for (int i = 0; i < 3; ++i) {
+            position[i] = RELIEF_TRY(number(text_.anyWord(), "vertex", index));
+        }
+        if (has_weight_) {
+            const float weight = RELIEF_TRY(number(text_.anyWord(), "vertex", index));
+            if (weight == 0.0F) {
+                return wrongLine(text_.line(), "a vertex of weight 0 lies nowhere; save the mesh as OFF");
+            }
+            position = {position.x / weight, position.y / weight, position.z / weight};
+        }
+        mesh_.positions.push_back(position);
+        if (layout_ == OffLayout::kLines) {
+            return passLine("vertex", index);
+        }
+        for (int i = 0; i < more_ + (has_colours_ ? 4 : 0); ++i) {
+            RELIEF_TRY(number(text_.anyWord(), "vertex", index));
+        }
+        return {};
+    }
+
+    /// \return how many triangles it becomes.
+    Result<std::uint64_t> readFace(std::uint64_t index) {
+        const std::string_view word = text_.anyWord();
+        if (word.empty()) {
+            return cutOff("after face " + std::to_string(index) + " of " + std::to_string(faces_));
+        }
+        const std::optional<std::uint64_t> corners = parseUnsigned(word);
+        if (!corners || *corners == 0) {
+            return wrongLine(text_.line(), quotedWord(word) +
+                                               " is no count of a face's corners; repair the file or export "
+                                               "it again");
+        }
+        for (std::uint64_t i = 0; i < *corners; ++i) {
+            const std::string_view corner = text_.anyWord();
+            const std::optional<std::uint64_t> vertex = parseUnsigned(corner);
+            if (corner.empty()) {
+                return cutOff("in face " + std::to_string(index));
+            }
+            if (!vertex || *vertex >= vertices_) {
+                return wrongLine(text_.line(), "face " + std::to_string(index) + " names the vertex " +
+                                                   quotedWord(corner) + ", but there are " +
+                                                   std::to_string(vertices_) +
+                                                   ", from 0; repair the file or export it again");
+            }
+            mesh_.corners.push_back(static_cast<std::uint32_t>(*vertex));
+        }
+        mesh_.sizes.push_back(static_cast<std::uint32_t>(*corners));
+        if (layout_ == OffLayout::kLines) {
+            RELIEF_TRY(passLine("face", index));
+        }
+        return *corners < 3 ? 0 : *corners - 2;
+    }
+
+    /// What stands behind an element's own numbers.
+    Result<void> passLine(const char* element, std::uint64_t index) {
+        for (std::string_view word = text_.word(); !word.empty(); word = text_.word()) {
+            RELIEF_TRY(number(word, element, index));
+        }
+        return {};
+    }
+
+    TextScanner text_;
+    OffLayout layout_;
+    int more_ = 0;  // numbers of a vertex, beside its place and its colour
+    bool has_colours_ = false;
+    bool has_weight_ = false;
+    std::uint64_t vertices_ = 0;
+    std::uint64_t faces_ = 0;
+    PolygonMesh mesh_;
+};
+
+}  // namespace
+
+Result<PolygonMesh> readOff(std::span<const std::byte> bytes) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    Result<PolygonMesh> mesh = OffReader(text, OffLayout::kLines).read();
+    if (!mesh && mesh.error().code == ErrorCode::kInvalidInput) {
+        Result<PolygonMesh> words = OffReader(text, OffLayout::kWords).read();
+        return words ? std::move(words) : std::move(mesh);
+    }
+    return mesh;
+}
+
+}  // namespace relief

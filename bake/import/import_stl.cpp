@@ -1,0 +1,219 @@
+#include "bake/import/import_stl.h"
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "bake/import/text_number.h"
+#include "formats/base/text.h"
+#include "formats/base/text_scanner.h"
+
+namespace relief {
+namespace {
+
+constexpr std::size_t kHeader = 84;    // bytes, the count included
+constexpr std::size_t kTriangle = 50;  // bytes: a normal, three corners, two that programs use as they like
+
+tl::unexpected<Error> tooMany() {
+    return fail(ErrorCode::kLimit,
+                "it has more than " + std::to_string(kTriangleMax) + " triangles; simplify the mesh");
+}
+
+void addTriangle(const std::array<glm::vec3, 3>& corners, PolygonMesh& mesh) {
+    for (const glm::vec3& corner : corners) {
+        mesh.corners.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+        mesh.positions.push_back(corner);
+    }
+    mesh.sizes.push_back(3);
+}
+
+std::uint64_t announced(std::span<const std::byte> bytes) {
+    std::uint32_t count = 0;
+    std::memcpy(&count, bytes.data() + kHeader - sizeof(count), sizeof(count));
+    return count;
+}
+
+Result<PolygonMesh> readBinary(std::span<const std::byte> bytes) {
+    if (bytes.size() < kHeader) {
+        return invalidInput(
+            "it does not begin with 'solid', and is shorter than a binary STL's header; copy or "
+            "export it again");
+    }
+    const std::uint64_t count = announced(bytes);
+    if (const std::uint64_t held = (bytes.size() - kHeader) / kTriangle; held < count) {
+        return invalidInput("its header announces " + std::to_string(count) + " triangles, but it holds " +
+                            std::to_string(held) + " and was probably cut off; copy or export it again");
+    }
+    if (count > kTriangleMax) {
+        return tooMany();
+    }
+    PolygonMesh mesh;
+    const std::byte* at = bytes.data() + kHeader;
+    for (std::uint64_t i = 0; i < count; ++i, at += kTriangle) {
+        std::array<float, 9> numbers{};
+        std::memcpy(numbers.data(), at + 12, sizeof(numbers));
+        std::array<glm::vec3, 3> corners{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            corners[k] = {numbers[3 * k], numbers[3 * k + 1], numbers[3 * k + 2]};
+        }
+        addTriangle(corners, mesh);
+    }
+    if (const auto behind = static_cast<std::uint64_t>(bytes.data() + bytes.size() - at); behind > 0) {
+        mesh.warnings.push_back("left out " + std::to_string(behind) + " bytes behind the " +
+                                std::to_string(count) + " triangles of its header");
+    }
+    return mesh;
+}
+
+class StlText {
+  public:
+    explicit StlText(std::string_view text) : text_(text) {}
+
+    Result<PolygonMesh> read() {
+        for (std::string word = next(); !word.empty(); word = next()) {
+            if (word.starts_with('#')) {
+                static_cast<void>(text_.restOfLine());
+            } else if (word == "solid") {
+                RELIEF_TRY(readSolid());
+            } else if (word == "endsolid") {
+                RELIEF_TRY(passName());  // once more, as some writers have it
+            } else {
+                return unexpected("'solid'");
+            }
+        }
+        return std::move(mesh_);
+    }
+
+  private:
+    /// The next word in lower case; "endfacet" for "end facet". Its first form stays in word_.
+    std::string next() {
+        word_ = text_.anyWord();
+        std::string word = lowerCase(word_);
+        if (word == "end") {
+            word_ = text_.word();
+            word += lowerCase(word_);
+        }
+        return word;
+    }
+
+    [[nodiscard]] tl::unexpected<Error> unexpected(const char* wanted) const {
+        if (word_.empty()) {
+            return wrongLine(text_.line(), std::string("it ends without ") + wanted +
+                                               " and was probably cut off; copy or export it again");
+        }
+        return wrongLine(text_.line(), quotedWord(word_) + " stands where " + wanted +
+                                           " should; repair the file or export it again");
+    }
+
+    Result<void> expect(const char* wanted) {
+        return next() == wanted ? Result<void>() : unexpected(("'" + std::string(wanted) + "'").c_str());
+    }
+
+    /// Where everything stands on one line, the name ends before its first facet.
+    void readName() {
+        PolygonGroup group;
+        group.begin = mesh_.sizes.size();
+        for (bool first = true;; first = false) {
+            const TextScanner before = text_;
+            const std::string_view word = text_.word();
+            if (word.empty()) {
+                break;
+            }
+            if (lowerCase(word) == "facet" && lowerCase(text_.word()) == "normal") {
+                text_ = before;
+                break;
+            }
+            if (first) {
+                group.names.emplace_back(word);
+            }
+        }
+        mesh_.groups.push_back(std::move(group));
+    }
+
+    Result<void> readSolid() {
+        readName();
+        for (;;) {
+            const std::string word = next();
+            if (word == "facet") {
+                RELIEF_TRY(readFacet());
+            } else if (word == "endsolid") {
+                return passName();
+            } else if (word.starts_with('#') || word == "color") {
+                static_cast<void>(text_.restOfLine());
+            } else {
+                return unexpected("'facet' or 'endsolid'");
+            }
+        }
+    }
+
+    /// Behind endsolid.
+    Result<void> passName() {
+        for (std::string word = lowerCase(text_.word()); !word.empty(); word = lowerCase(text_.word())) {
+            if (word == "facet" && lowerCase(text_.word()) == "normal") {
+                word_ = "facet";
+                return unexpected("the end of the solid's line");
+            }
+        }
+        return {};
+    }
+
+    Result<void> readFacet() {
+        std::string word = next();
+        if (word == "normal") {
+            // Writers put nan and worse there.
+            do {
+                word = next();
+            } while (!word.empty() && word != "outer" && word != "vertex" && word != "endfacet");
+        }
+        if (word != "outer") {
+            return unexpected("'outer loop'");
+        }
+        RELIEF_TRY(expect("loop"));
+        std::array<glm::vec3, 3> corners{};
+        for (glm::vec3& corner : corners) {
+            RELIEF_TRY(expect("vertex"));
+            for (int i = 0; i < 3; ++i) {
+                const std::string_view number = text_.anyWord();
+                const std::optional<float> value = readDecimal(number);
+                if (!value) {
+                    word_ = number;
+                    return number.empty() ? unexpected("a number")
+                                          : wrongLine(text_.line(), noNumber(number));
+                }
+                corner[i] = *value;
+            }
+        }
+        RELIEF_TRY(expect("endloop"));
+        RELIEF_TRY(expect("endfacet"));
+        addTriangle(corners, mesh_);
+        return mesh_.sizes.size() <= kTriangleMax ? Result<void>() : tooMany();
+    }
+
+    TextScanner text_;
+    std::string_view word_;
+    PolygonMesh mesh_;
+};
+
+bool isText(std::span<const std::byte> bytes) {
+    if (bytes.size() >= kHeader && bytes.size() >= kHeader + announced(bytes) * kTriangle) {
+        return false;
+    }
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    // The header of a binary file that was cut off may begin so too, and is filled with zeros.
+    TextScanner scanner(text);
+    return lowerCase(scanner.anyWord()) == "solid" &&
+           scanner.rest().substr(0, kHeader).find('\0') == std::string_view::npos;
+}
+
+}  // namespace
+
+Result<PolygonMesh> readStl(std::span<const std::byte> bytes) {
+    return isText(bytes) ? StlText({reinterpret_cast<const char*>(bytes.data()), bytes.size()}).read()
+                         : readBinary(bytes);
+}
+
+}  // namespace relief

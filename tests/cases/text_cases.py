@@ -1,0 +1,421 @@
+"""Random valid files of the text formats, written as people write them, and read twice: by relief-import, and by the readers
+below, which were written from the formats' grammars and share nothing with it. Every fourth case is a file with one word
+spoilt, which must be refused with its line.
+
+    text_cases.py BIN [--seed N] [--cases N]      by default 200 files of each format
+"""
+
+import fcntl
+import os
+import re
+import struct
+import subprocess
+
+import cases
+
+FORMATS = ["obj", "off", "ply", "raw", "stl"]
+
+
+# --- the tool ---
+
+
+class Imported:
+    """What relief-import answers (bake/import/import_message.h): triangles as nine floats each, or an error."""
+
+    def __init__(self, data):
+        (size,) = struct.unpack_from("<Q", data, 0)
+        root = 16 + struct.unpack_from("<I", data, 16)[0]
+        table = root - struct.unpack_from("<i", data, root)[0]
+
+        def field(number, kind):
+            length = struct.unpack_from("<H", data, table)[0]
+            at = struct.unpack_from("<H", data, table + 4 + 2 * number)[0] if 4 + 2 * number < length else 0
+            return root + at if at else None if kind is None else 0
+
+        def integer(number, kind):
+            at = field(number, kind)
+            return struct.unpack_from(kind, data, at)[0] if at else 0
+
+        self.error = None
+        self.triangles = []
+        if integer(0, "<I"):
+            at = field(1, None)
+            at += struct.unpack_from("<I", data, at)[0]
+            length = struct.unpack_from("<I", data, at)[0]
+            self.error = data[at + 4 : at + 4 + length].decode()
+            return
+        at = (16 + size + 15) // 16 * 16
+        positions = [struct.unpack_from("<3f", data, at + 12 * i) for i in range(integer(5, "<Q"))]
+        at += 12 * len(positions)
+        for i in range(integer(6, "<Q")):
+            self.triangles.append([positions[k] for k in struct.unpack_from("<3I", data, at + 12 * i)])
+
+
+def imported(run, path):
+    """Starts relief-import as importMeshInWorker does (bake/import/import_protocol.h)."""
+    mesh = os.memfd_create("mesh")
+    os.write(mesh, path.read_bytes())
+    result = os.memfd_create("result", os.MFD_ALLOW_SEALING)
+    os.ftruncate(result, 1 << 26)
+    folder = os.open(path.parent, os.O_PATH)
+    alive, alive_end = os.pipe()
+    files = [fcntl.fcntl(file, fcntl.F_DUPFD, 30) for file in (mesh, folder, result, alive_end)]
+
+    def place():
+        for number, file in enumerate(files, 3):
+            os.dup2(file, number)
+
+    command = [run.bin / "relief-import", path, "-", "-", str(1 << 30), "20", "1000000"]
+    done = subprocess.run(command, preexec_fn=place, pass_fds=(3, 4, 5, 6), timeout=60)
+    answer = None
+    if run.expect(done.returncode == 0, f"relief-import ended with {done.returncode}"):
+        answer = Imported(os.pread(result, os.fstat(result).st_size, 0))
+    for file in (mesh, result, folder, alive, alive_end, *files):
+        os.close(file)
+    return answer
+
+
+# --- the other readers: polygons as lists of positions ---
+
+
+def read_obj(text):
+    vertices, polygons = [], []
+    text = re.sub(r"\\[ \t]*\n", " ", re.sub(r"\r\n?", "\n", text))
+    for line in text.split("\n"):
+        words = line.split("#")[0].split()
+        if words[:1] == ["v"]:
+            numbers = [float(word) for word in words[1:]]
+            vertices.append([x / numbers[3] for x in numbers[:3]] if len(numbers) == 4 else numbers[:3])
+        elif words[:1] == ["f"]:
+            corners = [int(word.split("/")[0]) for word in words[1:]]
+            polygons.append([corner - 1 if corner > 0 else len(vertices) + corner for corner in corners])
+    return [[vertices[corner] for corner in polygon] for polygon in polygons]
+
+
+def read_off(text):
+    lines = [line.split("#")[0] for line in re.sub(r"\r\n?", "\n", text).split("\n")]
+    words = " ".join(lines).split()
+    name = words.pop(0).upper()
+    columns = 3 + 3 * ("N" in name) + 4 * ("C" in name) + 2 * ("ST" in name)
+    vertex_count, face_count = int(words[0]), int(words[1])
+    numbers = iter(words[3:])
+    vertices = [[float(next(numbers)) for _ in range(columns)][:3] for _ in range(vertex_count)]
+    # A face ends its line; colours stand behind it.
+    body = "\n".join(lines)
+    for _ in range(4 + vertex_count * columns):
+        body = re.sub(r"^\s*\S+", "", body, count=1)
+    polygons = []
+    for _ in range(face_count):
+        corners = []
+        match = re.match(r"\s*(\d+)", body)
+        body = body[match.end() :]
+        for _ in range(int(match[1])):
+            match_corner = re.match(r"\s*(\d+)", body)
+            corners.append(vertices[int(match_corner[1])])
+            body = body[match_corner.end() :]
+        body = body[body.find("\n") :] if "\n" in body else ""
+        polygons.append(corners)
+    return polygons
+
+
+def read_ply(text):
+    head, body = re.split(r"end_header[ \t]*(?:\r\n?|\n)", text, maxsplit=1)
+    counts = {name: int(count) for name, count in re.findall(r"element (\w+) (\d+)", head)}
+    names = re.findall(r"property float (\w+)", head)
+    numbers = iter(body.split())
+    vertices = []
+    for _ in range(counts["vertex"]):
+        row = {name: float(next(numbers)) for name in names}
+        vertices.append([row["x"], row["y"], row["z"]])
+    return [[vertices[int(next(numbers))] for _ in range(int(next(numbers)))] for _ in range(counts["face"])]
+
+
+def read_raw(text):
+    groups = {}  # in the order of the file; the last one comes first
+    name = ""
+    for line in re.sub(r"\r\n?", "\n", text).split("\n"):
+        words = line.split("#")[0].split()
+        if not words:
+            continue
+        if re.match(r"[-+.\d]", words[0]) is None:
+            name = words[0]
+            continue
+        texture = words.pop() if len(words) in (10, 13) else "" if len(words) == 12 else None
+        numbers = [float(word) for word in words[-9:]]
+        corners = [numbers[i : i + 3] for i in (0, 3, 6)]
+        groups.setdefault(name, {}).setdefault(texture, []).append(corners)
+    order = list(groups.values())
+    return [corners for group in order[-1:] + order[:-1] for part in group.values() for corners in part]
+
+
+def read_stl(text):
+    text = re.sub(r"(?im)^[ \t]*(end)?solid\b.*$", "", re.sub(r"\r\n?", "\n", text))
+    numbers = re.findall(r"(?i)\bvertex\s+(\S+)\s+(\S+)\s+(\S+)", text)
+    vertices = [[float(number) for number in vertex] for vertex in numbers]
+    return [vertices[i : i + 3] for i in range(0, len(vertices), 3)]
+
+
+READERS = {"obj": read_obj, "off": read_off, "ply": read_ply, "raw": read_raw, "stl": read_stl}
+
+
+# --- files at random ---
+
+
+class Writer:
+    def __init__(self, random):
+        self.random = random
+        self.end = random.choice(["\n", "\r\n", "\r", None])  # None: mixed
+        self.words = []  # places of the numbers of the text, to spoil one of them
+        self.text = ""
+
+    def blank(self, least=1):
+        return "".join(self.random.choice(" \t") for _ in range(self.random.choice([least] * 5 + [2, 4])))
+
+    def put(self, text):
+        self.text += text
+
+    def newline(self, comment=None):
+        if comment and self.random.random() < 0.2:
+            self.put(self.blank(0) + comment + self.random.choice(["", " a note", " 1 2 3"]))
+        self.put(self.blank(0) if self.random.random() < 0.2 else "")
+        self.put(self.end or self.random.choice(["\n", "\r\n", "\r"]))
+
+    def indent(self):
+        self.put(self.blank() if self.random.random() < 0.2 else "")
+
+    def number(self, value):
+        """A decimal number in one of its forms."""
+        text = self.random.choice(["%.6f", "%.3f", "%g", "%.9g", "%e", "%.2E"]) % value
+        mantissa, exponent = re.match(r"([-+.\d]+)(.*)", text).groups()
+        if self.random.random() < 0.3 and "." in mantissa:
+            mantissa = mantissa.rstrip("0")
+        if self.random.random() < 0.3:
+            mantissa = re.sub(r"^(-?)0\.(?=\d)", r"\1.", mantissa)
+        if self.random.random() < 0.2 and "." not in mantissa:
+            mantissa += "."
+        plus = "+" if value >= 0 and not mantissa.startswith("-") and self.random.random() < 0.1 else ""
+        return plus + mantissa + exponent
+
+    def word(self, word):
+        self.words.append((len(self.text), len(word)))
+        self.put(word)
+
+    def numbers(self, values, between=None):
+        for i, value in enumerate(values):
+            if i:
+                self.put((between or self.blank)())
+            self.word(self.number(value))
+
+
+def polygons_of(random, most):
+    """Vertices, and polygons that are flat and convex, as lists of their indices; some far from the origin."""
+    vertices, polygons = [], []
+    far = random.choice([0, 0, 10, 1.4e5])
+    for _ in range(random.randint(1, 12)):
+        count = random.randint(3, most)
+        centre = [random.uniform(-1, 1) * (far or 1) for _ in range(3)]
+        size = max(1.0, far / 100) * random.uniform(0.5, 2)
+        axes = random.sample(range(3), 2)
+        begin = len(vertices)
+        for i in range(count):
+            # On a parabola: convex without sines.
+            at = list(centre)
+            at[axes[0]] += size * i
+            at[axes[1]] += size * i * i
+            vertices.append(at)
+        polygons.append(list(range(begin, begin + count)))
+    return vertices, polygons
+
+
+def write_obj(w, vertices, polygons):
+    def gap():
+        return w.random.choice([w.blank()] * 9 + [" \\" + (w.end or "\n") + w.blank(0)])
+
+    done = 0
+    w.put(w.random.choice(["", "\ufeff", "# by hand" + (w.end or "\n")]))
+    for polygon in polygons:
+        while done <= max(polygon):
+            w.indent()
+            w.put("v" + w.blank())
+            w.numbers(vertices[done] + w.random.choice([[], [], [1.0], [0.5, 0.25, 1.0]]), gap)
+            w.newline("#")
+            done += 1
+        if w.random.random() < 0.3:
+            w.put(w.random.choice(["g a b # c", "o thing", "usemtl red", "s off", "vt .5 .5", "vn 0 0 1", ""]))
+            w.newline()
+        w.indent()
+        w.put("f")
+        back = w.random.random() < 0.4
+        for corner in polygon:
+            w.put(gap())
+            w.word(str(corner - done if back else corner + 1))
+            w.put(w.random.choice(["", "", "/1", "//1", "/1/1"]))
+        w.newline("#")
+
+
+def write_off(w, vertices, polygons):
+    name = w.random.choice(["OFF", "off", "COFF", "NOFF", "CNOFF", "STOFF", "STCNOFF"])
+    w.put(name)
+    w.newline("#") if w.random.random() < 0.7 else w.put(w.blank())
+    w.put(f"{len(vertices)}{w.blank()}{len(polygons)}{w.blank()}0")
+    w.newline("#")
+    more = 3 * ("N" in name) + 4 * ("C" in name) + 2 * ("ST" in name)
+    for vertex in vertices:
+        w.indent()
+        w.numbers(vertex + [0.5] * more)
+        w.newline("#")
+    for polygon in polygons:
+        w.indent()
+        w.put(str(len(polygon)))
+        for corner in polygon:
+            w.newline("#") if w.random.random() < 0.05 else w.put(w.blank())
+            w.word(str(corner))
+        w.put(w.random.choice(["", "", " 255 0 0", " .5 .5 .5 1"]))
+        w.newline("#")
+
+
+def write_ply(w, vertices, polygons):
+    more = w.random.choice([[], ["nx", "ny", "nz"], ["quality"]])
+    names = ["x", "y", "z"] + more
+    for line in ["ply", "format ascii 1.0", "comment by hand", f"element vertex {len(vertices)}",
+                 *[f"property float {name}" for name in names], f"element face {len(polygons)}",
+                 "property list uchar int vertex_indices", "end_header"]:
+        w.put(line + (w.end or "\n"))
+    loose = w.random.random() < 0.5
+
+    def gap():
+        return w.random.choice([" ", "\t", "\n", "\r\n", " \n\n "]) if loose else w.blank()
+
+    for vertex in vertices:
+        w.numbers(vertex + [0.25] * len(more), gap)
+        w.put(gap()) if loose else w.newline()
+    for polygon in polygons:
+        w.put(str(len(polygon)))
+        for corner in polygon:
+            w.put(gap())
+            w.word(str(corner))
+        w.put(gap()) if loose else w.newline()
+
+
+def write_raw(w, vertices, polygons):
+    for polygon in polygons:
+        if w.random.random() < 0.2:
+            w.put(w.random.choice(["lid", "body", "a-b"]))
+            w.newline()
+        w.indent()
+        colour = w.random.choice([[], [0.5, 0.5, 0.5]])
+        w.numbers(colour + [x for corner in polygon for x in vertices[corner]])
+        w.put(w.random.choice(["", "", " wood.png", "\tbrick.jpg"]))
+        w.newline()
+
+
+def write_stl(w, vertices, polygons):
+    case = w.random.choice([str, str, str.upper, str.capitalize])
+    loose = w.random.random() < 0.3
+
+    def gap():
+        return w.random.choice([" ", "\n", "\t\r\n"]) if loose else w.blank()
+
+    def line():
+        w.put(gap()) if loose else w.newline()
+
+    w.put(case("solid") + w.random.choice(["", " thing", " vertex of facets", " a b c"]))
+    w.newline()
+    for polygon in polygons:
+        if w.random.random() < 0.1:
+            w.put(case("endsolid"))
+            w.newline()
+            w.put(case("solid") + " vertex 1 2 3")
+            w.newline()
+        w.put(w.blank(0) + case("facet") + gap() + case("normal") + gap())
+        w.put(w.random.choice(["0 0 1", "nan nan nan", "-nan(ind) 1.#QNAN 0", "1e-3 .5 -.5"]))
+        line()
+        w.put(case("outer") + gap() + case("loop"))
+        line()
+        for corner in polygon:
+            w.put(w.blank(0) + case("vertex") + gap())
+            w.numbers(vertices[corner], gap)
+            line()
+        w.put(case("endloop"))
+        line()
+        w.put(case("endfacet"))
+        line()
+    w.newline()
+    w.put(case("endsolid") + w.random.choice(["", " thing"]))
+    w.newline()
+
+
+WRITERS = {"obj": write_obj, "off": write_off, "ply": write_ply, "raw": write_raw, "stl": write_stl}
+
+
+# --- the comparison ---
+
+
+def near(a, b):
+    """Within the rounding of floats."""
+    return all(abs(x - y) <= 2e-7 * abs(y) + 1e-44 for x, y in zip(a, b))
+
+
+def area(corners):
+    """The area of a polygon as a vector, twice."""
+    total = [0.0, 0.0, 0.0]
+    for one, other in zip(corners[1:], corners[2:]):
+        u = [x - y for x, y in zip(one, corners[0])]
+        v = [x - y for x, y in zip(other, corners[0])]
+        for k in range(3):
+            total[k] += u[k - 2] * v[k - 1] - u[k - 1] * v[k - 2]
+    return total
+
+
+def difference(triangles, polygons):
+    """What differs, or None. A polygon of n corners is n - 2 triangles of them, with its area."""
+    if len(triangles) != sum(len(polygon) - 2 for polygon in polygons):
+        return f"{len(triangles)} triangles of {len(polygons)} polygons"
+    at = 0
+    for number, polygon in enumerate(polygons):
+        parts = triangles[at : at + len(polygon) - 2]
+        at += len(parts)
+        if any(not any(near(corner, other) for other in polygon) for part in parts for corner in part):
+            return f"corners of polygon {number}"
+        whole = area(polygon)
+        sums = [sum(area(part)[k] for part in parts) for k in range(3)]
+        reach = max(abs(x) for corner in polygon for x in corner)
+        size = max(abs(x - y) for corner in polygon for x, y in zip(corner, polygon[0]))
+        if max(abs(x - y) for x, y in zip(whole, sums)) > 1e-6 * size * (size + reach):
+            return f"area of polygon {number}"
+    return None
+
+
+def line_of(text, at):
+    return len(re.findall(r"\r\n?|\n", text[:at])) + 1
+
+
+def main():
+    run = cases.Cases("text", 200 * len(FORMATS))
+    for number, folder in run.each():
+        kind = FORMATS[number % len(FORMATS)]
+        writer = Writer(run.random)
+        vertices, polygons = polygons_of(run.random, 3 if kind in ("raw", "stl") else 8)
+        WRITERS[kind](writer, vertices, polygons)
+        text = writer.text
+        spoilt = number // len(FORMATS) % 4 == 3
+        if spoilt:
+            at, length = run.random.choice(writer.words)
+            text = text[:at] + run.random.choice(["x", "1,5", "0x10", "--2", "1.2.3"]) + text[at + length :]
+        path = folder / f"m.{kind}"
+        path.write_bytes(text.encode())
+        mesh = imported(run, path)
+        if mesh is None:
+            continue
+        if spoilt:
+            error = mesh.error or ""
+            said = re.search(r"line (\d+): ", error)
+            run.expect(said and int(said[1]) == line_of(text, at) and ";" in error and "\n" not in error,
+                       f"{kind}: line {line_of(text, at)} is spoilt: {error or 'read'}")
+        elif run.expect(mesh.error is None, f"{kind}: {mesh.error}"):
+            different = difference(mesh.triangles, READERS[kind](text.lstrip("\ufeff")))
+            run.expect(different is None, f"{kind}: {different}: {text[:300]!r}")
+    run.finish()
+
+
+main()
