@@ -1,5 +1,6 @@
 #include "bake/import/import_instances.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <utility>
@@ -58,14 +59,20 @@ void MeshInstances::begin(bool marked) {
 void MeshInstances::surface(SurfaceName name) {
     name.node = cleanUtf8(name.node, kAskedNameBytesMax);
     name.material = cleanUtf8(name.material, kAskedNameBytesMax);
+    surface_ = std::move(name);
+}
+
+std::uint32_t MeshInstances::labelOfSurface() {
     std::vector<SurfaceName>& names = mesh_.surface_names;
-    if (!names.empty() && names[label_] == name) {
-        return;
+    if (names.empty() || names[label_] != surface_) {
+        const auto next = static_cast<std::uint32_t>(std::min(names.size(), kSurfaceNamesMax - 1));
+        const auto [found, is_new] = labels_.try_emplace(surface_, next);
+        label_ = found->second;
+        if (is_new && names.size() < kSurfaceNamesMax) {
+            names.push_back(names.size() + 1 < kSurfaceNamesMax ? surface_ : SurfaceName());
+        }
     }
-    if (names.size() < kSurfaceNamesMax) {
-        names.push_back(names.size() + 1 < kSurfaceNamesMax ? std::move(name) : SurfaceName());
-    }
-    label_ = static_cast<std::uint32_t>(names.size() - 1);
+    return label_;
 }
 
 void MeshInstances::add(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
@@ -79,7 +86,9 @@ void MeshInstances::add(std::span<const glm::vec3> positions, std::span<const gl
         mesh_.triangles.emplace_back(base + t.x, base + (mirrors ? t.z : t.y), base + (mirrors ? t.y : t.z));
     }
     mesh_.marks.resize(marked_ ? mesh_.triangles.size() : 0, mark);
-    mesh_.labels.resize(mesh_.triangles.size(), label_);
+    if (!triangles.empty()) {
+        mesh_.labels.resize(mesh_.triangles.size(), labelOfSurface());
+    }
 }
 
 Result<TriangleMesh> MeshInstances::finish(const NameMarks& names) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+#include <map>
 #include <span>
 #include <string>
 
@@ -52,6 +53,8 @@ class MeshInstances {
     [[nodiscard]] Result<TriangleMesh> finish(const NameMarks& names);
 
   private:
+    std::uint32_t labelOfSurface();
+
     std::string shown_;
     std::uint64_t triangle_max_;
     TriangleMesh mesh_;
@@ -59,7 +62,9 @@ class MeshInstances {
     std::uint64_t triangles_ = 0;
     std::uint64_t flat_ = 0;
     bool marked_ = false;
-    std::uint32_t label_ = 0;
+    SurfaceName surface_;
+    std::uint32_t label_ = 0;                      // of the triangles that were added last
+    std::map<SurfaceName, std::uint32_t> labels_;  // of TriangleMesh::surface_names
 };
 
 }  // namespace relief

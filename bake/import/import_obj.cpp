@@ -173,6 +173,8 @@ class ObjReader {
         group.words_names.push_back(name_);
         group.names.push_back(by_material_ && !group_.empty() ? group_ : name_);
         group.names.push_back(material_);
+        group.node = name_;
+        group.material = material_;
         mesh_.groups.push_back(std::move(group));
     }
 

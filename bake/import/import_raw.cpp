@@ -108,6 +108,7 @@ class RawReader {
             PolygonGroup group;
             group.begin = mesh.sizes.size();
             group.names.emplace_back(part.group);
+            group.node = part.group;
             mesh.groups.push_back(std::move(group));
             mesh.positions.insert(mesh.positions.end(), part.corners.begin(), part.corners.end());
             mesh.sizes.resize(mesh.sizes.size() + part.corners.size() / 3, 3);

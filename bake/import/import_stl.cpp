@@ -131,6 +131,7 @@ class StlText {
                 group.names.emplace_back(word);
             }
         }
+        group.node = group.names.empty() ? std::string() : group.names.front();
         mesh_.groups.push_back(std::move(group));
     }
 

@@ -1,6 +1,7 @@
 #include "bake/import/polygon_mesh.h"
 
 #include <algorithm>
+#include <map>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -133,6 +134,9 @@ Result<TriangleMesh> flatten(const PolygonMesh& polygons, bool apart, const glm:
     instances.begin(marks.any());
     Triangles cut(polygons, apart);
     std::uint8_t mark = file_mark;
+    std::map<std::string_view, std::uint32_t> nodes;
+    SurfaceName surface;
+    instances.surface(surface);
     std::size_t group = 0;
     bool met = false;  // a triangle of the last group that was begun
     forEachPolygon(polygons, [&](std::size_t polygon, std::span<const std::uint32_t> corners) {
@@ -143,11 +147,18 @@ Result<TriangleMesh> flatten(const PolygonMesh& polygons, bool apart, const glm:
         if (corners.size() < 3) {
             return;
         }
-        if (marks.any() && !met && group > 0) {
-            const std::uint8_t next = std::max(file_mark, markOf(polygons.groups[group - 1], marks));
-            if (next != mark) {
+        if (!met && group > 0) {
+            const PolygonGroup& begun = polygons.groups[group - 1];
+            const std::uint8_t next =
+                marks.any() ? std::max(file_mark, markOf(begun, marks)) : std::uint8_t{0};
+            const auto node = static_cast<std::uint32_t>(nodes.size() + 1);
+            const SurfaceName name{nodes.try_emplace(begun.node, node).first->second, begun.node,
+                                   begun.material};
+            if (next != mark || name != surface) {
                 cut.handOver(root, mark, instances);
                 mark = next;
+                surface = name;
+                instances.surface(surface);
             }
             met = true;
         }

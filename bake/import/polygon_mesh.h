@@ -20,6 +20,8 @@ struct PolygonGroup {
     std::size_t begin = 0;                 ///< index of the first; it ends where the next group begins
     std::vector<std::string> names;        ///< as the file has them
     std::vector<std::string> words_names;  ///< the same, but each of their words is a name as well
+    std::string node;      ///< of SurfaceName: the group, object or solid; one of a name is one node
+    std::string material;  ///< of SurfaceName
 };
 
 struct PolygonMesh {

@@ -1,6 +1,7 @@
 // Triangles in object space: what every importer makes and what the baker bakes.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <string>
@@ -29,7 +30,7 @@ struct SurfaceName {
     std::string node;              ///< of OBJ the group or object; "" without a name
     std::string material;          ///< "" without a name
 
-    friend bool operator==(const SurfaceName&, const SurfaceName&) = default;
+    friend auto operator<=>(const SurfaceName&, const SurfaceName&) = default;
 };
 
 /// After finishMesh: at least one triangle, every index valid, every position finite and used by a triangle,
