@@ -2,7 +2,6 @@
 
 #include <array>
 
-#include "bake/cli/preflight.h"
 #include "bake/plan/map_spec.h"
 
 namespace relief {
@@ -106,34 +105,21 @@ Result<BakeSettings> settingsOf(const BakeCommand& command) {
     settings.bake.prefer = command.prefer.value_or(settings.bake.prefer);
     settings.bake.threads = command.threads.value_or(settings.bake.threads);
     settings.write.compression_level = command.compress;
-    if (command.json && command.output == "-") {
-        return fail(ErrorCode::kUsage, "--json and -o - both want standard output; give -o a file");
-    }
     return settings;
 }
 
-Result<void> preflight(const BakeCommand& command) {
+Result<void> preflight(const BakeCommand& command, FileGuard& files) {
     if (!command.depfile.empty() && (command.depfile == "-" || command.output == "-")) {
         return fail(ErrorCode::kUsage, "--depfile needs files, and not standard output; name them");
     }
-    RELIEF_TRY(preflightFile(command.output));
-    RELIEF_TRY(preflightDistinct(command.mesh, command.output));
-    if (!command.plan.empty()) {
-        RELIEF_TRY(preflightDistinct(command.plan, command.output));
+    RELIEF_TRY(files.reads(command.mesh));
+    RELIEF_TRY(files.reads(command.plan));
+    if (command.json) {
+        RELIEF_TRY(files.writes("-", "--json"));
     }
-    if (!command.plan_out.empty()) {
-        RELIEF_TRY(preflightFile(command.plan_out));
-        RELIEF_TRY(preflightDistinct(command.mesh, command.plan_out));
-        RELIEF_TRY(preflightTwoOutputs(command.output, command.plan_out));
-    }
-    if (!command.depfile.empty()) {
-        RELIEF_TRY(preflightFile(command.depfile));
-        RELIEF_TRY(preflightDistinct(command.mesh, command.depfile));
-        RELIEF_TRY(preflightDistinct(command.plan, command.depfile));
-        RELIEF_TRY(preflightTwoOutputs(command.output, command.depfile));
-        RELIEF_TRY(preflightTwoOutputs(command.plan_out, command.depfile));
-    }
-    return {};
+    RELIEF_TRY(files.writes(command.output, "-o"));
+    RELIEF_TRY(files.writes(command.plan_out, "--plan-out"));
+    return files.writes(command.depfile, "--depfile");
 }
 
 }  // namespace relief

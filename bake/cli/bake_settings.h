@@ -75,6 +75,6 @@ struct BakeSettings {
 [[nodiscard]] Result<BakeSettings> settingsOf(const BakeCommand& command);
 
 /// Whether every output can be written, and none is an input or another output.
-[[nodiscard]] Result<void> preflight(const BakeCommand& command);
+[[nodiscard]] Result<void> preflight(const BakeCommand& command, FileGuard& files);
 
 }  // namespace relief

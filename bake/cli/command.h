@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 
+#include "formats/base/file_guard.h"
 #include "formats/base/result.h"
 
 namespace CLI {
@@ -12,8 +13,8 @@ class App;
 
 namespace relief {
 
-/// What a verb does once the command line is parsed.
-using Action = std::function<Result<void>()>;
+/// What a verb does once the command line is parsed. \param files  knows the response files.
+using Action = std::function<Result<void>(FileGuard& files)>;
 
 struct CommonOptions {
     bool quiet = false;     ///< errors only

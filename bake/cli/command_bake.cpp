@@ -14,7 +14,6 @@
 #include "bake/cli/command.h"
 #include "bake/cli/command_line.h"
 #include "bake/cli/command_recipe.h"
-#include "bake/cli/preflight.h"
 #include "bake/cli/progress.h"
 #include "bake/measure/accuracy.h"
 #include "bake/measure/part_accuracy.h"
@@ -202,9 +201,11 @@ nlohmann::ordered_json jsonSettings(const BakeCommand& command, const BakeSettin
 
 /// A bake, and what its stages leave for the next.
 struct BakeRun {
-    explicit BakeRun(const BakeCommand& command_of_run) : command(command_of_run) {}
+    BakeRun(const BakeCommand& command_of_run, FileGuard& files_of_run)
+        : command(command_of_run), files(files_of_run) {}
 
     const BakeCommand& command;
+    FileGuard& files;
     Stopwatch total;
     Progress progress{{quotedPath(command.mesh), !command.common.quiet, command.time_limit, reportError}};
     BakeTimes times;
@@ -229,7 +230,7 @@ Result<void> prepare(BakeRun& run) {
     const BakeCommand& command = run.command;
     run.settings = RELIEF_TRY(settingsOf(command));
     RELIEF_TRY(checkMeshCare(command.care));
-    RELIEF_TRY(preflight(command));
+    RELIEF_TRY(preflight(command, run.files));
     if (run.settings.source == MapSource::kPlanFile) {
         // Before it is read: should it change meanwhile, the hash is that of neither, or of the older one.
         const auto plan_bytes = readFile(command.plan);
@@ -460,18 +461,15 @@ Result<void> report(const BakeRun& run) {
 
 /// None of the files that the mesh refers to, a buffer or a material, may be lost to an output.
 Result<void> protectInputs(const BakeRun& run) {
-    const BakeCommand& command = run.command;
     for (const std::string& file : run.cared.mesh->dependencies) {
-        for (const std::string& output : {command.output, command.plan_out, command.depfile}) {
-            RELIEF_TRY(preflightDistinct(file, output));
-        }
+        RELIEF_TRY(run.files.reads(file));
     }
     return {};
 }
 
-Result<void> runBake(const BakeCommand& command) {
+Result<void> runBake(const BakeCommand& command, FileGuard& files) {
     startLogging(command.common);
-    BakeRun run(command);
+    BakeRun run(command, files);
     RELIEF_TRY(run.progress.ready());
     run.progress.begin("reading its options");
     RELIEF_TRY(prepare(run));
@@ -520,17 +518,17 @@ std::shared_ptr<BakeCommand> registerBake(CLI::App& app, Action& action) {
         "relief bake --recipe colliders.toml -j 4");
     addBakeOptions(verb, *command);
     verb.callback([command, &verb, &action] {
-        action = [command, &verb]() -> Result<void> {
+        action = [command, &verb](FileGuard& files) -> Result<void> {
             if (!command->recipe.recipe.empty()) {
                 return runRecipeCommand(command->recipe,
                                         {verb, command->common, command->output, command->threads,
-                                         command->depfile, command->json, checkArguments});
+                                         command->depfile, command->json, files, checkArguments});
             }
             if (command->mesh.empty() || command->output.empty()) {
                 return fail(ErrorCode::kUsage, std::string(command->mesh.empty() ? "MESH" : "--output") +
                                                    " is required; see relief bake --help");
             }
-            return runBake(*command);
+            return runBake(*command, files);
         };
     });
     return command;

@@ -7,7 +7,6 @@
 #include "bake/cli/check_file.h"
 #include "bake/cli/command.h"
 #include "bake/cli/mesh_check.h"
-#include "bake/cli/preflight.h"
 #include "bake/measure/accuracy.h"
 #include "bake/measure/worst_places.h"
 #include "bake/report/accuracy_page.h"
@@ -41,7 +40,7 @@ struct CheckRun : MeshCheck {
 };
 
 /// Before the long work.
-Result<void> prepare(const CheckCommand& command) {
+Result<void> prepare(const CheckCommand& command, FileGuard& files) {
     RELIEF_TRY(prepareMeshCheck(command.settings));
     if (command.html.empty()) {
         return {};
@@ -49,9 +48,9 @@ Result<void> prepare(const CheckCommand& command) {
     if (command.html == "-") {
         return fail(ErrorCode::kUsage, "--html cannot be standard output, where the report goes");
     }
-    RELIEF_TRY(preflightFile(command.html));
-    RELIEF_TRY(preflightDistinct(command.file, command.html));
-    return preflightDistinct(command.settings.mesh, command.html);
+    RELIEF_TRY(files.reads(command.file));
+    RELIEF_TRY(files.reads(command.settings.mesh));
+    return files.writes(command.html, "--html");
 }
 
 /// What to do about the places.
@@ -141,14 +140,18 @@ std::string checkText(const CheckCommand& command, const CheckRun& run) {
            accuracyText(accuracy, samples, run.collider.unit);
 }
 
-Result<void> runCheck(const CheckCommand& command) {
+Result<void> runCheck(const CheckCommand& command, FileGuard& files) {
     startLogging(command.common);
     if (command.settings.mesh.empty()) {
         return checkFile(command.file, command.json);
     }
-    RELIEF_TRY(prepare(command));
+    RELIEF_TRY(prepare(command, files));
     Collider collider = RELIEF_TRY(loadCollider(command.file));
     CheckRun run{RELIEF_TRY(checkAgainstMesh(command.settings, std::move(collider))), {}};
+    // What the mesh refers to is known only now.
+    for (const std::string& file : run.imported->dependencies) {
+        RELIEF_TRY(files.reads(file));
+    }
     addAdvice(command, run);
     RELIEF_TRY(writePage(command, run));
     RELIEF_TRY(printOut(command.json ? jsonText(jsonCheck(command, run)) : checkText(command, run)));
@@ -197,7 +200,8 @@ void addCheck(CLI::App& app, Action& action) {
         ->needs(mesh);
     addImportOptions(verb, command->settings.import);
     verb.add_flag("--json", command->json, "Print JSON");
-    verb.callback([command, &action] { action = [command] { return runCheck(*command); }; });
+    verb.callback(
+        [command, &action] { action = [command](FileGuard& files) { return runCheck(*command, files); }; });
 }
 
 }  // namespace relief

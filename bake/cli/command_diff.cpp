@@ -143,7 +143,7 @@ void addDiff(CLI::App& app, Action& action) {
                   "Mesh, tool and options of the bake count too; otherwise they are only shown");
     verb.add_flag("--json", command->json, "Print JSON");
     verb.callback([command, &verb, &action] {
-        action = [command, &verb]() -> Result<void> {
+        action = [command, &verb](FileGuard&) -> Result<void> {
             RELIEF_TRY(checkLimits(verb, *command));
             return runDiff(*command);
         };

@@ -5,11 +5,11 @@
 
 #include "bake/cli/command.h"
 #include "bake/cli/gpu_export.h"
-#include "bake/cli/preflight.h"
 #include "bake/picture/map_image.h"
 #include "bake/volume/level_set.h"
 #include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
+#include "formats/base/preflight.h"
 #include "formats/container.h"
 #include "runtime/tool/option_values.h"
 #include "runtime/vdb/vdb_points.h"
@@ -27,9 +27,18 @@ struct ExportCommand {
     std::optional<std::uint32_t> voxels;
 };
 
+/// The names of what exportMaps() writes.
+std::vector<std::string> mapFileNames(const Collider& collider) {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < collider.maps.size(); ++i) {
+        for (std::uint32_t face = 0; face < collider.maps[i].faceCount(); ++face) {
+            names.push_back(mapImageName(collider.maps[i], i, face));
+        }
+    }
+    return names;
+}
+
 Result<void> exportMaps(const Collider& collider, const std::filesystem::path& folder) {
-    RELIEF_TRY(preflightFolder(folder));
-    std::size_t count = 0;
     for (std::size_t i = 0; i < collider.maps.size(); ++i) {
         const DepthMap& map = collider.maps[i];
         for (std::uint32_t face = 0; face < map.faceCount(); ++face) {
@@ -37,10 +46,18 @@ Result<void> exportMaps(const Collider& collider, const std::filesystem::path& f
             const std::vector<std::byte> bytes = RELIEF_TRY(encodeExr(mapImage(map, face, collider.unit)));
             RELIEF_TRY(writeFile(path, bytes));
             spdlog::debug("wrote {}", quotedPath(path));
-            ++count;
         }
     }
-    spdlog::info("wrote {} images into {}", count, quotedPath(folder));
+    return {};
+}
+
+/// Makes a folder for these files, which must replace no other file of the run.
+Result<void> prepareFolder(const std::filesystem::path& folder, const std::vector<std::string>& names,
+                           const char* option, FileGuard& files) {
+    RELIEF_TRY(preflightFolder(folder, option));
+    for (const std::string& name : names) {
+        RELIEF_TRY(files.writes(folder / name, option));
+    }
     return {};
 }
 
@@ -52,9 +69,6 @@ Result<void> checkTogether(const ExportCommand& command) {
     }
     if (command.voxels && !grids) {
         return fail(ErrorCode::kUsage, "--voxels does nothing without --vdb or --mesh; add one of them");
-    }
-    if (command.vdb == "-" && command.mesh == "-") {
-        return fail(ErrorCode::kUsage, "--vdb - and --mesh - both write standard output; name a file");
     }
     return {};
 }
@@ -87,24 +101,32 @@ Result<void> exportGrids(const Collider& collider, const ExportCommand& command)
     return {};
 }
 
-Result<void> runExport(const ExportCommand& command) {
+Result<void> runExport(const ExportCommand& command, FileGuard& files) {
     startLogging(command.common);
     RELIEF_TRY(checkTogether(command));
-    for (const std::string& file : {command.vdb, command.mesh}) {
-        if (!file.empty()) {
-            RELIEF_TRY(checkVdb());
-            RELIEF_TRY(preflightFile(file));
-            RELIEF_TRY(preflightDistinct(command.file, file));
-        }
+    RELIEF_TRY(files.reads(command.file));
+    if (!command.vdb.empty() || !command.mesh.empty()) {
+        RELIEF_TRY(checkVdb());
     }
+    RELIEF_TRY(files.writes(command.vdb, "--vdb"));
+    RELIEF_TRY(files.writes(command.mesh, "--mesh"));
     const Collider collider = RELIEF_TRY(loadCollider(command.file));
+    const std::vector<std::string> maps = mapFileNames(collider);
+    const std::vector<std::string> gpu = gpuFileNames(collider);
     if (!command.output.empty()) {
-        RELIEF_TRY(exportMaps(collider, command.output));
+        RELIEF_TRY(prepareFolder(command.output, maps, "-o", files));
     }
     if (!command.gpu.empty()) {
-        RELIEF_TRY(preflightFolder(command.gpu));
-        const int count = RELIEF_TRY(exportForGpu(collider, command.gpu));
-        spdlog::info("wrote {} files into {}", count, quotedPath(std::filesystem::path(command.gpu)));
+        RELIEF_TRY(prepareFolder(command.gpu, gpu, "--gpu", files));
+    }
+    if (!command.output.empty()) {
+        RELIEF_TRY(exportMaps(collider, command.output));
+        spdlog::info("wrote {} images into {}", maps.size(),
+                     quotedPath(std::filesystem::path(command.output)));
+    }
+    if (!command.gpu.empty()) {
+        RELIEF_TRY(exportForGpu(collider, command.gpu));
+        spdlog::info("wrote {} files into {}", gpu.size(), quotedPath(std::filesystem::path(command.gpu)));
     }
     return exportGrids(collider, command);
 }
@@ -138,7 +160,8 @@ void addExport(CLI::App& app, Action& action) {
     verb.add_option("--voxels", command->voxels, "Of --vdb and --mesh, along the longest side; default 128")
         ->option_text("N")
         ->transform(wholeNumber(kVoxelsMin, kVoxelsMax));
-    verb.callback([command, &action] { action = [command] { return runExport(*command); }; });
+    verb.callback(
+        [command, &action] { action = [command](FileGuard& files) { return runExport(*command, files); }; });
 }
 
 }  // namespace relief

@@ -149,7 +149,7 @@ void addInfo(CLI::App& app, Action& action) {
     verb.add_option("FILE", command->files, "The colliders; - for standard input")->type_name("")->required();
     verb.add_flag("--json", command->json,
                   "Print JSON; of several files a line for each, with its name as file");
-    verb.callback([command, &action] { action = [command] { return runInfo(*command); }; });
+    verb.callback([command, &action] { action = [command](FileGuard&) { return runInfo(*command); }; });
 }
 
 }  // namespace relief

@@ -41,8 +41,9 @@ Result<void> runRelief(int argc, char** argv) {
     CLI::App app("", "relief");
     Action action;
     defineRelief(app, action);
-    std::vector<std::string> arguments = RELIEF_TRY(expandArguments(argumentsOf(argc, argv)));
-    return RELIEF_TRY(parseCommandLine(app, std::move(arguments))) ? action() : Result<void>();
+    FileGuard files;
+    std::vector<std::string> arguments = RELIEF_TRY(expandArguments(argumentsOf(argc, argv), files));
+    return RELIEF_TRY(parseCommandLine(app, std::move(arguments))) ? action(files) : Result<void>();
 }
 
 void reportError(const Error& error) {

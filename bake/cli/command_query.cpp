@@ -8,7 +8,6 @@
 
 #include "bake/cli/command.h"
 #include "bake/cli/gl_options.h"
-#include "bake/cli/preflight.h"
 #include "bake/report/points_csv.h"
 #include "formats/base/file_io.h"
 #include "formats/container.h"
@@ -76,7 +75,7 @@ Result<std::vector<FieldSample>> askGpu(const Collider& collider, std::span<cons
     return samples;
 }
 
-Result<void> runQuery(const QueryCommand& command) {
+Result<void> runQuery(const QueryCommand& command, FileGuard& files) {
     startLogging(command.common);
     if (!command.gpu) {
         RELIEF_TRY(refuseGpuOptions(command.gpu_options, "--gpu"));
@@ -85,9 +84,9 @@ Result<void> runQuery(const QueryCommand& command) {
         return fail(ErrorCode::kUsage,
                     "FILE and --points cannot both be standard input; give one of them a file");
     }
-    RELIEF_TRY(preflightFile(command.output));
-    RELIEF_TRY(preflightDistinct(command.file, command.output));
-    RELIEF_TRY(preflightDistinct(command.points, command.output));
+    RELIEF_TRY(files.reads(command.file));
+    RELIEF_TRY(files.reads(command.points));
+    RELIEF_TRY(files.writes(command.output, "-o"));
     const Collider collider = RELIEF_TRY(loadCollider(command.file));
     const std::vector<std::byte> text = RELIEF_TRY(readFile(command.points));
     const std::vector<glm::vec3> points =
@@ -125,7 +124,8 @@ void addQuery(CLI::App& app, Action& action) {
     verb.add_flag("--gpu", command->gpu,
                   "Evaluate with the simulation's shader (OpenGL 3.3; llvmpipe will do)");
     addGpuOptions(verb, command->gpu_options);
-    verb.callback([command, &action] { action = [command] { return runQuery(*command); }; });
+    verb.callback(
+        [command, &action] { action = [command](FileGuard& files) { return runQuery(*command, files); }; });
 }
 
 }  // namespace relief

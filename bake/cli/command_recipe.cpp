@@ -10,14 +10,16 @@
 #include <set>
 #include <thread>
 
-#include "bake/cli/preflight.h"
 #include "bake/cli/recipe_keys.h"
+#include "bake/recipe/bake_cache.h"
 #include "bake/recipe/child_process.h"
+#include "bake/recipe/prune.h"
 #include "bake/recipe/recipe_run.h"
 #include "bake/recipe/recipe_stamp.h"
 #include "bake/report/recipe_report.h"
 #include "bake/report/report.h"
 #include "formats/base/file_io.h"
+#include "formats/base/preflight.h"
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
 #include "formats/config/confined_path.h"
@@ -35,10 +37,10 @@ constexpr std::uint64_t kShardsMax = 1'000'000;
 constexpr float kTimeoutMax = 1e7F;  // seconds
 
 /// Options of a whole run, not of an asset: they are no keys of a recipe.
-constexpr std::array<std::string_view, 19> kOfTheRun = {
+constexpr std::array<std::string_view, 20> kOfTheRun = {
     "list-devices", "warnings-only", "help",      "quiet",      "verbose", "output", "threads",
     "json",         "depfile",       "plan-out",  "recipe",     "events",  "shard",  "stamp",
-    "root",         "timeout",       "fail-fast", "keep-going", "dry-run"};
+    "root",         "timeout",       "fail-fast", "keep-going", "dry-run", "prune"};
 
 std::vector<RecipeKey> recipeKeys(const CLI::App& verb) {
     std::vector<RecipeKey> keys;
@@ -127,47 +129,51 @@ Result<RecipeRun> runOf(const RecipeOptionsOfBake& options, const RecipeCall& ca
     if (call.output == "-") {
         return fail(ErrorCode::kUsage, "--output is a folder beside --recipe, and not standard output");
     }
-    if (call.json && options.events == "-") {
+    if (options.prune && options.recipe == "-") {
         return fail(ErrorCode::kUsage,
-                    "--json and --events - both want standard output; give --events a file");
+                    "--prune removes what this recipe has baked, and a recipe on standard input has no name "
+                    "to know it by; name a file");
     }
     return run;
 }
 
 /// Files that are written beside the outputs must be none of them, nor any input.
 Result<void> preflight(const RecipeOptionsOfBake& options, const RecipeCall& call, const RecipeRun& run,
-                       const std::vector<RecipeJob>& jobs) {
-    if (!run.dry_run) {
-        RELIEF_TRY(preflightFolder(run.output_folder));
-    }
-    std::vector<std::string> files;
-    for (const std::string& file : {options.stamp, call.depfile, options.events}) {
-        if (file.empty() || (file == "-" && file == options.events)) {
-            continue;
-        }
+                       FileGuard& files) {
+    for (const std::string& file : {options.stamp, call.depfile}) {
         if (file == "-") {
             return fail(ErrorCode::kUsage, "--stamp and --depfile cannot be standard output; name files");
         }
-        RELIEF_TRY(preflightFile(file));
-        RELIEF_TRY(preflightDistinct(options.recipe, file));
-        RELIEF_TRY(preflightTwoOutputs(run.output_folder / kBakeCacheName, file));
-        for (const RecipeJob& job : jobs) {
-            RELIEF_TRY(preflightDistinct(job.mesh_path, file));
-            RELIEF_TRY(preflightTwoOutputs(job.output_path, file));
-        }
-        for (const std::string& other : files) {
-            RELIEF_TRY(preflightTwoOutputs(other, file));
-        }
-        files.push_back(file);
     }
-    return {};
+    if (!run.dry_run) {
+        RELIEF_TRY(preflightFolder(run.output_folder, "--output"));
+    }
+    const fs::path cache = run.output_folder / kBakeCacheName;
+    std::error_code error;
+    // A link of that name is not followed.
+    if (!fs::is_symlink(fs::symlink_status(cache, error))) {
+        if (const FileGuard::File* other = files.claim(cache, "the recipe's cache"); other != nullptr) {
+            return fail(ErrorCode::kUsage, quotedPath(cache) + " is the recipe's cache, and " +
+                                               quotedPath(other->path) +
+                                               " is the same file; rename it, or choose another --output");
+        }
+    }
+    if (call.json) {
+        RELIEF_TRY(files.writes("-", "--json"));
+    }
+    RELIEF_TRY(files.writes(options.stamp, "--stamp"));
+    RELIEF_TRY(files.writes(call.depfile, "--depfile"));
+    return files.writes(options.events, "--events");
 }
 
-Result<void> printDryRun(const std::vector<AssetResult>& assets) {
+Result<void> printDryRun(const std::vector<AssetResult>& assets, const std::vector<PrunedOutput>& pruned) {
     std::vector<std::vector<std::string>> rows = {{"output", "mesh", "why"}};
     for (const AssetResult& asset : assets) {
         rows.push_back({cleanUtf8(asset.job.output), cleanUtf8(asset.job.mesh),
                         asset.reason.empty() ? "up to date" : asset.reason});
+    }
+    for (const PrunedOutput& output : pruned) {
+        rows.push_back({cleanUtf8(output.output), cleanUtf8(output.mesh), prunedReason(output, true)});
     }
     return printOut(table(rows));
 }
@@ -190,6 +196,7 @@ struct RecipeWork {
     RecipeRun run;
     std::vector<RecipeJob> jobs;    ///< of the shard
     std::vector<fs::path> folders;  ///< that patterns looked through
+    FileGuard files;                ///< knows all that is read and written, of other shards too
 };
 
 /// Reads the recipe and plans the run; bakes and writes nothing.
@@ -202,12 +209,14 @@ Result<RecipeWork> plan(const RecipeOptionsOfBake& options, const RecipeCall& ca
     }
     const std::vector<RecipeAsset> assets = RELIEF_TRY(loadRecipe(options.recipe, recipeKeys(call.verb)));
     RELIEF_TRY(checkAssets(assets, call));
-    RecipeJobs all = RELIEF_TRY(recipeJobs(assets, options.recipe, work.run.output_folder, options.root));
+    RecipeJobs all =
+        RELIEF_TRY(recipeJobs(assets, options.recipe, work.run.output_folder, options.root, call.files));
     work.folders = std::move(all.folders);
+    work.files = std::move(all.files);
     const Shard shard = options.shard.value_or(Shard{});
     std::ranges::copy_if(all.jobs, std::back_inserter(work.jobs),
                          [&](const RecipeJob& job) { return inShard(job.output, shard); });
-    RELIEF_TRY(preflight(options, call, work.run, work.jobs));
+    RELIEF_TRY(preflight(options, call, work.run, work.files));
     const auto cores = std::max(1U, std::thread::hardware_concurrency());
     work.run.threads = std::max(
         1U, cores / std::max(1U, std::min(work.run.at_once, static_cast<unsigned>(work.jobs.size()))));
@@ -272,6 +281,38 @@ Result<RecipeResult> bakeAll(RecipeWork& work, bool shown, RecipeEvents& events)
     return result;
 }
 
+/// Removes what is no longer named, once everything that is named is up to date.
+Result<std::vector<PrunedOutput>> prune(const RecipeOptionsOfBake& options, const RecipeCall& call,
+                                        RecipeWork& work, const RecipeCounts& counts, RecipeEvents& events) {
+    if (!options.prune) {
+        return std::vector<PrunedOutput>();
+    }
+    if (counts.failed + counts.cancelled > 0) {
+        spdlog::warn("--prune removes nothing, as not everything is baked");
+        return std::vector<PrunedOutput>();
+    }
+    const RecipeRun& run = work.run;
+    const Shard shard = options.shard.value_or(Shard{});
+    const auto wanted = [&](const std::string& output) {
+        // An output that is still named, an input by now, or written beside the outputs.
+        return !inShard(output, shard) || work.files.claim(run.output_folder / output, "--prune") != nullptr;
+    };
+    std::vector<PrunedOutput> pruned = RELIEF_TRY(
+        pruneOutputs(run.output_folder, recipeName(run.recipe, run.output_folder), wanted, options.dry_run));
+    for (const PrunedOutput& output : pruned) {
+        Json event = {{"event", "pruned"}};
+        event.update(jsonPruned(output, options.dry_run));
+        events.write(event);
+        const std::string line = cleanUtf8(output.output) + ": " + prunedReason(output, options.dry_run);
+        if (!output.kept.empty()) {
+            spdlog::warn(line);
+        } else if (!call.common.quiet && !options.dry_run) {
+            std::fputs((line + "\n").c_str(), stderr);
+        }
+    }
+    return pruned;
+}
+
 void writeSummary(const RecipeResult& result, const RecipeCounts& counts, double ms, RecipeEvents& events) {
     Json summary = {{"event", "summary"}};
     summary.update(jsonCounts(counts));
@@ -282,9 +323,9 @@ void writeSummary(const RecipeResult& result, const RecipeCounts& counts, double
 
 /// Chooses what standard output carries.
 Result<void> printResult(const RecipeOptionsOfBake& options, const RecipeCall& call, const RecipeRun& run,
-                         const RecipeResult& result, double ms) {
+                         const RecipeResult& result, const std::vector<PrunedOutput>& pruned, double ms) {
     if (!call.json) {
-        return options.dry_run && options.events != "-" ? printDryRun(result.assets) : Result<void>();
+        return options.dry_run && options.events != "-" ? printDryRun(result.assets, pruned) : Result<void>();
     }
     Json json = {{"recipe", options.recipe},
                  {"output", run.output_folder.string()},
@@ -295,12 +336,27 @@ Result<void> printResult(const RecipeOptionsOfBake& options, const RecipeCall& c
     for (const AssetResult& asset : result.assets) {
         json["assets"].push_back(jsonAsset(asset));
     }
+    if (options.prune) {
+        json["pruned"] = Json::array();
+        for (const PrunedOutput& output : pruned) {
+            json["pruned"].push_back(jsonPruned(output, options.dry_run));
+        }
+    }
     return printOut(jsonText(json));
 }
 
 /// The files for build systems, once everything is up to date.
-Result<void> writeFiles(const RecipeOptionsOfBake& options, const RecipeCall& call, const RecipeWork& work,
+Result<void> writeFiles(const RecipeOptionsOfBake& options, const RecipeCall& call, RecipeWork& work,
                         const std::vector<AssetResult>& assets) {
+    if (call.depfile.empty() && options.stamp.empty()) {
+        return {};
+    }
+    // What the meshes refer to is known only now.
+    for (const AssetResult& asset : assets) {
+        for (const InputFile& input : asset.inputs) {
+            RELIEF_TRY(work.files.reads(recipeFolder(options.recipe) / input.path));
+        }
+    }
     if (!call.depfile.empty()) {
         const std::vector<std::string> beside = {options.stamp, call.depfile, options.events};
         RELIEF_TRY(writeRecipeDepfile(call.depfile, options.stamp, beside, work.run, work.folders, assets));
@@ -345,6 +401,11 @@ void addRecipeOptions(CLI::App& verb, RecipeOptionsOfBake& options) {
     going->needs(recipe)->excludes(fast);
     verb.add_flag("--dry-run", options.dry_run, "Of --recipe: only say what would be baked, and why")
         ->needs(recipe);
+    verb.add_flag(
+            "--prune", options.prune,
+            "Of --recipe: remove the outputs that it baked earlier and no longer names, as their meshes\n"
+            "are gone; with --dry-run only say which")
+        ->needs(recipe);
 }
 
 Result<void> runRecipeCommand(const RecipeOptionsOfBake& options, const RecipeCall& call) {
@@ -361,6 +422,10 @@ Result<void> runRecipeCommand(const RecipeOptionsOfBake& options, const RecipeCa
         RELIEF_TRY(addKeys(result.assets, work.run));
     }
     const RecipeCounts counts = countAssets(result.assets);
+    std::vector<PrunedOutput> pruned;
+    if (result.signal == 0) {
+        pruned = RELIEF_TRY(prune(options, call, work, counts, events));
+    }
     const double ms = watch.ms();
     writeSummary(result, counts, ms, events);
     if (!call.common.quiet) {
@@ -371,7 +436,7 @@ Result<void> runRecipeCommand(const RecipeOptionsOfBake& options, const RecipeCa
     if (result.signal != 0) {
         ChildProcesses::endBySignal(result.signal);
     }
-    RELIEF_TRY(printResult(options, call, work.run, result, ms));
+    RELIEF_TRY(printResult(options, call, work.run, result, pruned, ms));
     RELIEF_TRY(verdict(result.assets, counts));
     if (options.dry_run) {
         return {};

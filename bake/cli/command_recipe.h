@@ -21,6 +21,7 @@ struct RecipeOptionsOfBake {
     bool fail_fast = false;
     bool keep_going = false;
     bool dry_run = false;
+    bool prune = false;
 };
 
 /// What --recipe shares with a bake of one mesh, and who checks the options of an asset.
@@ -31,6 +32,7 @@ struct RecipeCall {
     std::optional<unsigned> threads;  ///< -j
     const std::string& depfile;
     bool json;
+    FileGuard& files;  ///< knows the response files
     /// Whether `relief bake MESH -o OUT` would take these arguments.
     std::function<Result<void>(const std::vector<std::string>&)> check;
 };

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "bake/cli/command.h"
-#include "bake/cli/preflight.h"
 #include "bake/picture/slice.h"
 #include "bake/picture/slice_image.h"
 #include "formats/base/file_io.h"
@@ -73,10 +72,11 @@ void warnOutside(const SliceCommand& command, const Collider& collider) {
     }
 }
 
-Result<void> runSlice(const SliceCommand& command) {
+Result<void> runSlice(const SliceCommand& command, FileGuard& files) {
     startLogging(command.common);
     const ImageKind kind = RELIEF_TRY(imageKind(command.output));
-    RELIEF_TRY(preflightFile(command.output));
+    RELIEF_TRY(files.reads(command.file));
+    RELIEF_TRY(files.writes(command.output, "-o"));
     const Collider collider = RELIEF_TRY(loadCollider(command.file));
     warnOutside(command, collider);
     const Slice slice = RELIEF_TRY(evaluateSlice(collider, optionsOf(command)));
@@ -108,7 +108,8 @@ void addSlice(CLI::App& app, Action& action) {
     verb.add_option("-o,--output", command->output, "OUT.png or OUT.exr; - for a PNG on standard output")
         ->option_text("OUT")
         ->required();
-    verb.callback([command, &action] { action = [command] { return runSlice(*command); }; });
+    verb.callback(
+        [command, &action] { action = [command](FileGuard& files) { return runSlice(*command, files); }; });
 }
 
 }  // namespace relief

@@ -5,7 +5,6 @@
 
 #include "bake/cli/command.h"
 #include "bake/cli/live_view.h"
-#include "bake/cli/preflight.h"
 #include "bake/cli/view_source.h"
 #include "bake/view/page_server.h"
 #include "formats/base/file_io.h"
@@ -65,20 +64,20 @@ Result<void> serve(const ViewCommand& command) {
     return server.serve([&view] { return view.current(); });
 }
 
-Result<void> runView(const ViewCommand& command) {
+Result<void> runView(const ViewCommand& command, FileGuard& files) {
     startLogging(command.common);
     RELIEF_TRY(checkSource(command.source));
     if (command.serve) {
         return serve(command);
     }
     const std::string output = RELIEF_TRY(outputOf(command));
-    RELIEF_TRY(preflightFile(output));
-    RELIEF_TRY(preflightDistinct(command.source.file, output));
-    RELIEF_TRY(preflightDistinct(command.source.check.mesh, output));
+    RELIEF_TRY(files.reads(command.source.file));
+    RELIEF_TRY(files.reads(command.source.check.mesh));
+    RELIEF_TRY(files.writes(output, "-o"));
     const MadePage page = RELIEF_TRY(makeViewPage(command.source));
     // What the inputs refer to is known only now.
     for (const std::filesystem::path& file : page.files) {
-        RELIEF_TRY(preflightDistinct(file, output));
+        RELIEF_TRY(files.reads(file));
     }
     return writeFile(output, std::as_bytes(std::span(page.html)));
 }
@@ -114,7 +113,8 @@ void addView(CLI::App& app, Action& action) {
         ->option_text("[PORT]")
         ->expected(0, 1)
         ->excludes(output);
-    verb.callback([command, &action] { action = [command] { return runView(*command); }; });
+    verb.callback(
+        [command, &action] { action = [command](FileGuard& files) { return runView(*command, files); }; });
 }
 
 }  // namespace relief

@@ -18,6 +18,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kFormat = 1;
+constexpr const char* kBlock = "block.bin";
+constexpr const char* kGlsl = "collider.glsl";
+constexpr const char* kSizes = "gpu.json";
+constexpr std::array<TexelKind, kTexelKinds> kKinds{kFloatTexels, kFixedTexels, kFrontBackTexels};
 constexpr std::array<const char*, kTexelKinds> kFiles{"float.bin", "fixed.bin", "front_back.bin"};
 
 std::span<const std::byte> bytesOf(std::string_view text) {
@@ -46,31 +50,38 @@ Json describe(const Collider& collider, const GpuImage& image, TexelKind kind) {
 
 }  // namespace
 
-Result<int> exportForGpu(const Collider& collider, const std::filesystem::path& folder) {
+std::vector<std::string> gpuFileNames(const Collider& collider) {
+    std::vector<std::string> names{kBlock, kGlsl, kSizes};
+    for (const TexelKind kind : kKinds) {
+        if (isUsed(collider, kind)) {
+            names.emplace_back(kFiles[kind]);
+        }
+    }
+    return names;
+}
+
+Result<void> exportForGpu(const Collider& collider, const std::filesystem::path& folder) {
     const GpuImage image = RELIEF_TRY(gpuImage(collider));
     const std::string core = RELIEF_TRY(shaderText("collider.glsl"));
-    int count = 3;
     Json textures = Json::array();
-    for (const TexelKind kind : {kFloatTexels, kFixedTexels, kFrontBackTexels}) {
+    for (const TexelKind kind : kKinds) {
         textures.push_back(describe(collider, image, kind));
         if (isUsed(collider, kind)) {
             RELIEF_TRY(writeFile(folder / kFiles[kind], image.textures[kind].texels));
-            ++count;
         }
     }
-    RELIEF_TRY(writeFile(folder / "block.bin", image.block));
-    RELIEF_TRY(writeFile(folder / "collider.glsl", bytesOf(image.defines + core)));
+    RELIEF_TRY(writeFile(folder / kBlock, image.block));
+    RELIEF_TRY(writeFile(folder / kGlsl, bytesOf(image.defines + core)));
     const Json all{
         {"format", kFormat},
         {"tool", collider.provenance.tool_version},
         {"bounds", {{"min", jsonVector(collider.bounds.min)}, {"max", jsonVector(collider.bounds.max)}}},
         {"unit", collider.unit},
         {"maps", collider.maps.size()},
-        {"glsl", "collider.glsl"},
-        {"block", {{"name", "ReliefCollider"}, {"file", "block.bin"}, {"bytes", image.block.size()}}},
+        {"glsl", kGlsl},
+        {"block", {{"name", "ReliefCollider"}, {"file", kBlock}, {"bytes", image.block.size()}}},
         {"textures", textures}};
-    RELIEF_TRY(writeFile(folder / "gpu.json", bytesOf(jsonText(all))));
-    return count;
+    return writeFile(folder / kSizes, bytesOf(jsonText(all)));
 }
 
 }  // namespace relief

@@ -82,7 +82,8 @@ class WordReader {
 };
 
 struct Expander {
-    std::vector<std::string> out;
+    FileGuard& files;
+    std::vector<std::string> out = {};
     bool literal = false;   ///< behind --
     std::size_t total = 0;  ///< words of all files
 
@@ -108,6 +109,7 @@ struct Expander {
                                                " deep; break the circle, or write @@ for a real @");
         }
         const auto bytes = RELIEF_TRY(inFront("response file", readFile(path, kResponseBytesMax)));
+        RELIEF_TRY(files.reads(path));
         const std::vector<std::string> words =
             RELIEF_TRY(responseWords({reinterpret_cast<const char*>(bytes.data()), bytes.size()},
                                      quoted.substr(1, quoted.size() - 2)));
@@ -125,8 +127,9 @@ Result<std::vector<std::string>> responseWords(std::string_view text, const std:
     return WordReader(text, name).read();
 }
 
-Result<std::vector<std::string>> expandArguments(const std::vector<std::string>& arguments) {
-    Expander expander;
+Result<std::vector<std::string>> expandArguments(const std::vector<std::string>& arguments,
+                                                 FileGuard& files) {
+    Expander expander{files};
     RELIEF_TRY(expander.add(arguments, 0));
     return std::move(expander.out);
 }

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/base/file_guard.h"
 #include "formats/base/result.h"
 
 namespace relief {
@@ -28,8 +29,9 @@ inline constexpr std::size_t kResponseWordsMax = 100'000;
 /// …"; kLimit.
 [[nodiscard]] Result<std::vector<std::string>> responseWords(std::string_view text, const std::string& name);
 
-/// All arguments but the program's name, response files expanded.
+/// All arguments but the program's name, response files expanded. \param files  gets to know them.
 /// Errors: kIo (a file cannot be read), kLimit (depth, size, number), those of responseWords.
-[[nodiscard]] Result<std::vector<std::string>> expandArguments(const std::vector<std::string>& arguments);
+[[nodiscard]] Result<std::vector<std::string>> expandArguments(const std::vector<std::string>& arguments,
+                                                               FileGuard& files);
 
 }  // namespace relief

@@ -86,26 +86,11 @@ Result<MadePage> colliderPage(Page page) {
     return page.make();
 }
 
-/// Every file that a scene names.
-std::vector<fs::path> filesOf(const Scene& scene) {
-    std::vector<fs::path> files;
-    for (const SceneCollider& collider : scene.colliders) {
-        files.push_back(collider.path);
-    }
-    for (const SceneEmitter& emitter : scene.emitters) {
-        files.push_back(emitter.points);
-    }
-    files.push_back(scene.render.atlas);
-    files.push_back(scene.render.mesh);
-    std::erase(files, fs::path());
-    std::sort(files.begin(), files.end());
-    files.erase(std::unique(files.begin(), files.end()), files.end());
-    return files;
-}
-
 /// A body that deforms has no container: its mesh at rest, baked, to look at.
-Result<std::vector<std::byte>> bakedAtRest(const SceneCollider& live) {
+/// \param files  gets those that the mesh refers to.
+Result<std::vector<std::byte>> bakedAtRest(const SceneCollider& live, std::vector<fs::path>& files) {
     TriangleMesh mesh = RELIEF_TRY(importMeshInWorker(live.path, {}, {}));
+    files.insert(files.end(), mesh.dependencies.begin(), mesh.dependencies.end());
     const Winding winding = RELIEF_TRY(windOutwards(std::move(mesh)));
     BakeOptions options;
     options.resolution = live.live->resolution;
@@ -126,7 +111,7 @@ Result<void> chooseShown(const Scene& scene, const fs::path& file, Page& page) {
             return {};
         }
     }
-    page.container = RELIEF_TRY(bakedAtRest(scene.colliders.front()));
+    page.container = RELIEF_TRY(bakedAtRest(scene.colliders.front(), page.files));
     return {};
 }
 

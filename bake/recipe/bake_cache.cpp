@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "formats/base/descriptor.h"
+#include "formats/base/destination.h"
 #include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
@@ -44,6 +45,9 @@ BakeCacheEntry entryOf(const Json& json) {
     entry.output_hash = json.at("output_hash").get<std::string>();
     entry.output_bytes = json.at("output_bytes").get_ref<const Json::number_unsigned_t&>();
     entry.options = json.at("options").get<std::vector<std::string>>();
+    if (json.contains("recipe")) {
+        entry.recipe = json.at("recipe").get<std::string>();
+    }
     const Json& inputs = json.at("inputs");
     static_cast<void>(inputs.at(0));  // an entry without inputs would hold for ever
     for (const Json& input : inputs) {
@@ -99,11 +103,14 @@ std::string bakeCacheText(const BakeCacheEntries& entries) {
         for (const InputFile& input : entry.inputs) {
             inputs.push_back({{"file", cleanUtf8(input.path)}, {"hash", input.hash}});
         }
-        outputs[cleanUtf8(name)] = {{"tool", entry.tool},
-                                    {"options", entry.options},
-                                    {"inputs", std::move(inputs)},
-                                    {"output_hash", entry.output_hash},
-                                    {"output_bytes", entry.output_bytes}};
+        Json& output = outputs[cleanUtf8(name)] = {{"tool", entry.tool},
+                                                   {"options", entry.options},
+                                                   {"inputs", std::move(inputs)},
+                                                   {"output_hash", entry.output_hash},
+                                                   {"output_bytes", entry.output_bytes}};
+        if (!entry.recipe.empty()) {
+            output["recipe"] = entry.recipe;
+        }
     }
     const Json json = {{"format", kFormat}, {"version", kCacheVersion}, {"outputs", std::move(outputs)}};
     return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -115,7 +122,8 @@ Result<BakeCacheEntries> loadBakeCache(const fs::path& output_folder) {
     if (!fs::exists(fs::symlink_status(path, error))) {
         return BakeCacheEntries{};
     }
-    if (!fs::is_regular_file(path, error)) {
+    // A link could lead out of the folder.
+    if (!fs::is_regular_file(fs::symlink_status(path, error))) {
         return fail(ErrorCode::kInvalidInput, quotedPath(path) + ": it is not a regular file");
     }
     const auto bytes = RELIEF_TRY(readFile(path, kCacheBytesMax));
@@ -123,19 +131,39 @@ Result<BakeCacheEntries> loadBakeCache(const fs::path& output_folder) {
                    parseBakeCache({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
 }
 
-Result<void> updateBakeCache(const fs::path& output_folder, const BakeCacheEntries& entries) {
+std::string recipeName(const fs::path& recipe, const fs::path& output_folder) {
+    std::error_code error;
+    const fs::path file = destination(recipe, error);
+    const fs::path folder = error ? fs::path() : destination(output_folder, error);
+    return recipe == "-" || error ? "" : cleanUtf8(file.lexically_relative(folder).string());
+}
+
+Result<void> editBakeCache(const fs::path& output_folder,
+                           const std::function<void(BakeCacheEntries&)>& edit) {
     const FolderLock lock(output_folder);
     // A cache that cannot be read is replaced.
     BakeCacheEntries all = loadBakeCache(output_folder).value_or(BakeCacheEntries{});
-    for (const auto& [name, entry] : entries) {
-        all.insert_or_assign(name, entry);
-    }
+    edit(all);
     std::erase_if(all, [&](const auto& named) {
         std::error_code error;
         return !fs::exists(output_folder / named.first, error);
     });
     const std::string text = bakeCacheText(all);
-    return writeFile(output_folder / kBakeCacheName, std::as_bytes(std::span(text)));
+    const fs::path path = output_folder / kBakeCacheName;
+    std::error_code error;
+    if (fs::is_symlink(fs::symlink_status(path, error)) && !fs::remove(path, error)) {
+        return fail(ErrorCode::kIo,
+                    "cannot replace the link " + quotedPath(path) + ": " + error.message() + "; remove it");
+    }
+    return writeFile(path, std::as_bytes(std::span(text)));
+}
+
+Result<void> updateBakeCache(const fs::path& output_folder, const BakeCacheEntries& entries) {
+    return editBakeCache(output_folder, [&](BakeCacheEntries& all) {
+        for (const auto& [name, entry] : entries) {
+            all.insert_or_assign(name, entry);
+        }
+    });
 }
 
 std::optional<std::string> staleness(const RecipeJob& job, const BakeCacheEntry* entry,

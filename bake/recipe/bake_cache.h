@@ -7,6 +7,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -24,6 +25,7 @@ struct BakeCacheEntry {
     std::vector<InputFile> inputs;     ///< from the recipe's folder; the mesh first
     std::string output_hash;           ///< XXH3-128
     std::uint64_t output_bytes = 0;
+    std::string recipe = {};  ///< recipeName() of the run that baked it; empty: unknown
 
     bool operator==(const BakeCacheEntry&) const = default;
 };
@@ -41,9 +43,17 @@ using BakeCacheEntries = std::map<std::string, BakeCacheEntry>;
 [[nodiscard]] Result<BakeCacheEntries> parseBakeCache(std::string_view text);
 [[nodiscard]] std::string bakeCacheText(const BakeCacheEntries& entries);
 
-/// The cache file in an output folder; none is no error.
-/// Errors: kInvalidInput, kIo, kLimit: name the file; everything is to be baked again.
+/// The cache file in an output folder; none is no error. A symbolic link in its place is not followed, and replaced by the
+/// next update. Errors: kInvalidInput, kIo, kLimit: name the file; everything is to be baked again.
 [[nodiscard]] Result<BakeCacheEntries> loadBakeCache(const std::filesystem::path& output_folder);
+
+/// A recipe as the cache beside its outputs names it: from the output folder, whatever links lead there; empty for "-".
+[[nodiscard]] std::string recipeName(const std::filesystem::path& recipe,
+                                     const std::filesystem::path& output_folder);
+
+/// Changes the cache file while nobody else does. Errors: those of updateBakeCache().
+[[nodiscard]] Result<void> editBakeCache(const std::filesystem::path& output_folder,
+                                         const std::function<void(BakeCacheEntries&)>& edit);
 
 /// Puts entries into the cache file, beside those that others have put there meanwhile; entries of outputs
 /// that are gone are left out. Safe against any number of processes at once: the folder is locked (flock)

@@ -1,13 +1,9 @@
 #include "bake/recipe/recipe_jobs.h"
 
-#include <sys/stat.h>
-
 #include <algorithm>
 #include <array>
-#include <map>
 #include <set>
 #include <span>
-#include <system_error>
 
 #include "bake/recipe/glob.h"
 #include "formats/base/file_io.h"
@@ -20,11 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kExtension = ".relief";
 /// Options whose value is a file to be read.
 constexpr std::array<std::string_view, 1> kFileOptions = {"plan"};
-
-using FileId = std::pair<dev_t, ino_t>;
 
 tl::unexpected<Error> at(const RecipePlace& place, const std::string& message,
                          ErrorCode code = ErrorCode::kInvalidInput) {
@@ -38,8 +31,10 @@ std::string inQuotes(const std::string& text) {
 
 class Expander {
   public:
-    Expander(fs::path folder, fs::path output_folder, fs::path root)
-        : folder_(std::move(folder)), output_folder_(std::move(output_folder)), root_(std::move(root)) {}
+    Expander(fs::path folder, fs::path output_folder, fs::path root, FileGuard files)
+        : folder_(std::move(folder)), output_folder_(std::move(output_folder)), root_(std::move(root)) {
+        result_.files = std::move(files);
+    }
 
     Result<void> add(const RecipeAsset& asset) {
         std::vector<std::string> meshes = RELIEF_TRY(meshesOf(asset));
@@ -54,7 +49,7 @@ class Expander {
                 if (!path) {
                     return at(found->second.place, found->first + " " + path.error().message);
                 }
-                inputs_.push_back({*path, found->second.place});
+                inputs_.push_back(*path);
                 value = path->string();
             }
         }
@@ -71,32 +66,24 @@ class Expander {
         return {};
     }
 
-    /// Once all are known: no output may be an input.
+    /// Once all are known: no output may be an input, nor another output under another name.
     Result<RecipeJobs> finish(const fs::path& recipe) {
-        if (recipe != "-") {
-            inputs_.push_back({recipe, ""});
+        FileGuard& files = result_.files;
+        RELIEF_TRY(files.reads(recipe));
+        for (const fs::path& input : inputs_) {
+            RELIEF_TRY(files.reads(input));
         }
-        std::map<FileId, const Input*> ids;
-        struct stat status {};
-        for (const Input& input : inputs_) {
-            if (::stat(input.path.c_str(), &status) == 0) {
-                ids.emplace(FileId(status.st_dev, status.st_ino), &input);
-            }
-        }
-        std::map<FileId, const RecipeJob*> outputs;
         for (std::size_t i = 0; i < result_.jobs.size(); ++i) {
             const RecipeJob& job = result_.jobs[i];
-            if (::stat(job.output_path.c_str(), &status) != 0) {
-                continue;
-            }
-            const FileId id(status.st_dev, status.st_ino);
-            if (const auto input = ids.find(id); input != ids.end()) {
+            const FileGuard::File* other = files.claim(job.output_path, job.mesh);
+            if (other != nullptr && other->input) {
                 return at(places_[i], "the output " + inQuotes(job.output) + " is the input " +
-                                          quotedPath(input->second->path) + "; name another file");
+                                          quotedPath(other->path) + "; name another file");
             }
-            // Different names of one file, by links.
-            if (const auto [other, fresh] = outputs.emplace(id, &job); !fresh) {
-                return collision(i, *other->second);
+            if (other != nullptr) {
+                return at(places_[i], inQuotes(other->option) + " and " + inQuotes(job.mesh) +
+                                          " would both be baked into " + inQuotes(job.output) +
+                                          "; tell them apart by {stem}, {name} or {dir}");
             }
         }
         std::sort(result_.folders.begin(), result_.folders.end());
@@ -106,18 +93,6 @@ class Expander {
     }
 
   private:
-    struct Input {
-        fs::path path;
-        RecipePlace place;
-    };
-
-    [[nodiscard]] tl::unexpected<Error> collision(std::size_t index, const RecipeJob& other) const {
-        const RecipeJob& job = result_.jobs[index];
-        return at(places_[index], inQuotes(other.mesh) + " and " + inQuotes(job.mesh) +
-                                      " would both be baked into " + inQuotes(job.output) +
-                                      "; tell them apart by {stem}, {name} or {dir}");
-    }
-
     /// The "../" at the start of a pattern or a name, where they may climb out of the recipe's folder.
     [[nodiscard]] std::size_t climb(std::string_view text) const {
         constexpr std::string_view kUp = "../";
@@ -224,17 +199,9 @@ class Expander {
         job.output_path = output_folder_ / job.output;
         job.arguments = arguments;
         job.options = options;
-        inputs_.push_back({job.mesh_path, asset.mesh_place});
-        // Where it really is: two names can lead to one place, by linked folders.
-        std::error_code error;
-        const fs::path real = fs::weakly_canonical(fs::absolute(job.output_path, error), error);
-        const auto [other, fresh] =
-            by_output_.emplace(error ? job.output : real.string(), result_.jobs.size());
+        inputs_.push_back(job.mesh_path);
         result_.jobs.push_back(std::move(job));
         places_.push_back(asset.output_place);
-        if (!fresh) {
-            return collision(result_.jobs.size() - 1, result_.jobs[other->second]);
-        }
         return {};
     }
 
@@ -271,7 +238,7 @@ class Expander {
                                               " must be a relative path; choose the folder by --output");
         }
         name = fs::path(name).lexically_normal().string();
-        if (!name.ends_with(kExtension) || fs::path(name).filename() == kExtension) {
+        if (!name.ends_with(kColliderExtension) || fs::path(name).filename() == kColliderExtension) {
             return at(asset.output_place,
                       "the output " + inQuotes(name) + " must end in .relief: a recipe writes nothing else");
         }
@@ -283,8 +250,7 @@ class Expander {
     fs::path root_;
     RecipeJobs result_;
     std::vector<RecipePlace> places_;  // of the jobs' outputs
-    std::map<std::string, std::size_t> by_output_;
-    std::vector<Input> inputs_;
+    std::vector<fs::path> inputs_;
 };
 
 }  // namespace
@@ -294,9 +260,9 @@ fs::path recipeFolder(const fs::path& recipe) {
 }
 
 Result<RecipeJobs> recipeJobs(const std::vector<RecipeAsset>& assets, const fs::path& recipe,
-                              const fs::path& output_folder, const fs::path& root) {
+                              const fs::path& output_folder, const fs::path& root, FileGuard files) {
     const fs::path folder = recipeFolder(recipe);
-    Expander expander(folder, output_folder.empty() ? folder : output_folder, root);
+    Expander expander(folder, output_folder.empty() ? folder : output_folder, root, std::move(files));
     for (const RecipeAsset& asset : assets) {
         RELIEF_TRY(expander.add(asset));
     }

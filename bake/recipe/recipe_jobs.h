@@ -4,14 +4,18 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bake/recipe/recipe.h"
+#include "formats/base/file_guard.h"
 #include "formats/base/result.h"
 
 namespace relief {
 
 inline constexpr std::size_t kRecipeJobsMax = 100'000;
+/// What every output ends in.
+inline constexpr std::string_view kColliderExtension = ".relief";
 /// Beside the outputs: what each was made from.
 inline constexpr const char* kBakeCacheName = ".relief-cache.json";
 
@@ -29,18 +33,20 @@ struct RecipeJob {
 struct RecipeJobs {
     std::vector<RecipeJob> jobs;                 ///< in the order of the recipe
     std::vector<std::filesystem::path> folders;  ///< that patterns looked through; each once
+    FileGuard files;                             ///< knows every input and every output
 };
 
 /// \param recipe         its folder is what meshes are named from and may not lie outside of; "-": the
 /// current one. \param output_folder  need not exist; empty for the recipe's folder.
-/// \param root  another folder whose files may be named, by `..` at the start; empty: none. Errors, at a place of
+/// \param root  another folder whose files may be named, by `..` at the start; empty: none.
+/// \param files  knows what else is read. Errors, at a place of
 /// the recipe: kInvalidInput (a pattern that matches nothing, a file outside of the recipe's folder, an
 /// output outside of the output folder, without .relief at its end, or the same as another output or as an
 /// input), kLimit (kRecipeJobsMax), those of globFiles.
 [[nodiscard]] Result<RecipeJobs> recipeJobs(const std::vector<RecipeAsset>& assets,
                                             const std::filesystem::path& recipe,
                                             const std::filesystem::path& output_folder,
-                                            const std::filesystem::path& root = {});
+                                            const std::filesystem::path& root = {}, FileGuard files = {});
 
 /// The folder of a recipe: never empty.
 [[nodiscard]] std::filesystem::path recipeFolder(const std::filesystem::path& recipe);

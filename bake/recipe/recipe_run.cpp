@@ -228,12 +228,14 @@ class Runner {
         asset.state = AssetState::kBaked;
         asset.hash = *hash;
         asset.bytes = bytes;
-        fresh_[asset.job.output] = {tool_, asset.job.options, asset.inputs, asset.hash, asset.bytes};
+        fresh_[asset.job.output] = {tool_,      asset.job.options, asset.inputs,
+                                    asset.hash, asset.bytes,       recipe_name_};
         tell(run_.ended, asset);
     }
 
     const RecipeRun& run_;
     std::string tool_;
+    std::string recipe_name_ = recipeName(run_.recipe, run_.output_folder);
     ChildProcesses children_;
     RecipeResult result_;
     BakeCacheEntries fresh_;  ///< not yet in the cache file

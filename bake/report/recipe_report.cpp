@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -14,6 +15,7 @@
 #include <span>
 
 #include "bake/report/report.h"
+#include "bake/report/size_report.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 
@@ -42,6 +44,24 @@ std::string seconds(double ms) {
     char text[32];
     std::snprintf(text, sizeof(text), "%.1f s", ms / 1000.0);
     return text;
+}
+
+/// Whether a file that will be emptied holds nothing but events.
+Result<void> checkOlderLog(const std::string& path) {
+    constexpr std::string_view kBegin = R"({"event":)";
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error) || std::filesystem::file_size(path, error) == 0) {
+        return {};
+    }
+    std::array<char, kBegin.size()> begin{};
+    const Descriptor file(openRetry(path.c_str(), O_RDONLY));
+    if (file && ::read(file.get(), begin.data(), begin.size()) == static_cast<ssize_t>(begin.size()) &&
+        std::string_view(begin.data(), begin.size()) == kBegin) {
+        return {};
+    }
+    return fail(ErrorCode::kUsage, quotedPath(path) +
+                                       " holds no events of an earlier run, and would be lost; remove it, or "
+                                       "give --events another file");
 }
 
 /// Whether lines can be drawn again where standard error goes.
@@ -133,6 +153,21 @@ Json jsonCounts(const RecipeCounts& counts) {
             {"bytes", counts.bytes}};
 }
 
+Json jsonPruned(const PrunedOutput& output, bool dry_run) {
+    const char* const state = !output.kept.empty() ? "kept" : dry_run ? "to remove" : "removed";
+    Json json = {{"asset", output.output}, {"mesh", output.mesh}, {"state", state}, {"bytes", output.bytes}};
+    if (!output.kept.empty()) {
+        json["reason"] = output.kept;
+    }
+    return json;
+}
+
+std::string prunedReason(const PrunedOutput& output, bool dry_run) {
+    return output.kept.empty()
+               ? std::string(dry_run ? "to be removed" : "removed") + ", as the recipe no longer names it"
+               : "the recipe no longer names it, but it stays: " + output.kept + "; remove it yourself";
+}
+
 // --- events ---
 
 Result<void> RecipeEvents::open(const std::string& path) {
@@ -140,6 +175,7 @@ Result<void> RecipeEvents::open(const std::string& path) {
     std::signal(SIGPIPE, SIG_IGN);
     path_ = path;
     if (path != "-") {
+        RELIEF_TRY(checkOlderLog(path));
         file_ = Descriptor(openRetry(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666));
     }
     fd_ = path == "-" ? STDOUT_FILENO : file_.get();
@@ -248,7 +284,8 @@ void RecipeDisplay::draw() {
 std::vector<std::string> warningLines(const std::vector<AssetResult>& assets) {
     constexpr std::size_t kNamed = 3;
     struct Group {
-        std::string warning;
+        std::string warning;  // of the first
+        std::string_view kind;
         std::vector<std::string> assets;
     };
     std::vector<Group> groups;
@@ -257,10 +294,13 @@ std::vector<std::string> warningLines(const std::vector<AssetResult>& assets) {
         const std::string mesh = cleanUtf8(std::filesystem::path(asset.job.mesh).filename().string()) + ": ";
         for (const std::string& said : asset.warnings) {
             const std::string warning = said.starts_with(mesh) ? said.substr(mesh.size()) : said;
-            auto group = std::find_if(groups.begin(), groups.end(),
-                                      [&](const Group& one) { return one.warning == warning; });
+            // Only the size of the box differs.
+            const std::string_view kind = warning.starts_with(kNoUnit) ? kNoUnit : "";
+            auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& one) {
+                return one.warning == warning || (!kind.empty() && one.kind == kind);
+            });
             if (group == groups.end()) {
-                groups.push_back({warning, {}});
+                groups.push_back({warning, kind, {}});
                 group = groups.end() - 1;
             }
             group->assets.push_back(cleanUtf8(asset.job.output));
@@ -276,8 +316,9 @@ std::vector<std::string> warningLines(const std::vector<AssetResult>& assets) {
         if (count > kNamed) {
             names += ", and " + std::to_string(count - kNamed) + " more";
         }
+        const std::string whose = count > 1 && !group.kind.empty() ? "of the first: " : "";
         out.push_back((count == 1 ? names : std::to_string(count) + " assets (" + names + ")") + ": " +
-                      group.warning);
+                      whose + group.warning);
     }
     return out;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bake/recipe/prune.h"
 #include "bake/recipe/recipe_run.h"
 #include "formats/base/descriptor.h"
 #include "formats/base/stopwatch.h"
@@ -30,10 +31,17 @@ struct RecipeCounts {
 [[nodiscard]] nlohmann::ordered_json jsonAsset(const AssetResult& asset);
 [[nodiscard]] nlohmann::ordered_json jsonCounts(const RecipeCounts& counts);
 
+/// asset, mesh, state, bytes, and reason where it stays.
+[[nodiscard]] nlohmann::ordered_json jsonPruned(const PrunedOutput& output, bool dry_run);
+/// "removed, as the recipe no longer names it", or why it stays.
+[[nodiscard]] std::string prunedReason(const PrunedOutput& output, bool dry_run);
+
 /// Lines of JSON, each written as it happens.
 class RecipeEvents {
   public:
-    /// \param path  empties the file; "-": standard output. Errors: kIo.
+    /// \param path  a log of an earlier run is emptied; "-": standard output.
+    /// Errors: kIo; kUsage: it is another kind of file, whose contents would be lost: what meshes refer to is not known
+    /// before they are read.
     [[nodiscard]] Result<void> open(const std::string& path);
     /// Does nothing if open() was not called. What cannot be written is told by finish().
     void write(const nlohmann::ordered_json& event);
@@ -85,7 +93,7 @@ class RecipeDisplay {
 };
 
 /// "2 assets (a.relief, b.relief): it is skinned": the warnings, one line each, in the order of the assets; one that several
-/// have is told once.
+/// have is told once, that of a missing unit too, with the size of the first.
 [[nodiscard]] std::vector<std::string> warningLines(const std::vector<AssetResult>& assets);
 
 /// "the slowest: a.relief 12.3 s, b.relief 4.0 s": up to three that were baked and took more than twice the median; "" where

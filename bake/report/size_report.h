@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "formats/collider.h"
 
@@ -10,6 +11,9 @@ namespace relief {
 
 /// Longest sides from here on are few in metres, and common in centimetres and millimetres.
 inline constexpr float kForgottenUnitFrom = 100.0F;
+
+/// What forgottenUnit() begins with.
+inline constexpr std::string_view kNoUnit = "no unit is named";
 
 /// "2 x 4 x 6 m, from (-1, -2, -3) to (1, 2, 3)"; "object units" without a unit.
 [[nodiscard]] std::string boxText(const Bounds& bounds, const std::string& unit);

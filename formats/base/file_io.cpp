@@ -123,32 +123,6 @@ int followLinks(fs::path& path) {
     return ELOOP;
 }
 
-/// The number in /dev/fd/N and its like; nullopt: some other path. Opened by its name a file would be written
-/// from its begin on, whatever the shell has appended to it before; or replaced, and the shell's left behind.
-std::optional<int> descriptorOf(const fs::path& path) {
-    if (path == "/dev/stdin") {
-        return STDIN_FILENO;
-    }
-    if (path == "/dev/stdout") {
-        return STDOUT_FILENO;
-    }
-    if (path == "/dev/stderr") {
-        return STDERR_FILENO;
-    }
-    for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
-        const std::string_view name = path.native();
-        if (name.starts_with(folder)) {
-            int number = 0;
-            const auto [end, error] =
-                std::from_chars(name.data() + folder.size(), name.data() + name.size(), number);
-            if (error == std::errc() && end == name.data() + name.size()) {
-                return number;
-            }
-        }
-    }
-    return std::nullopt;
-}
-
 bool isStream(mode_t mode) {
     return S_ISFIFO(mode) || S_ISSOCK(mode) || S_ISBLK(mode);
 }
@@ -200,6 +174,30 @@ Result<void> replaceFile(const fs::path& target, const std::string& name, std::s
 }
 
 }  // namespace
+
+std::optional<int> descriptorOf(const fs::path& path) {
+    if (path == "/dev/stdin") {
+        return STDIN_FILENO;
+    }
+    if (path == "/dev/stdout") {
+        return STDOUT_FILENO;
+    }
+    if (path == "/dev/stderr") {
+        return STDERR_FILENO;
+    }
+    for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
+        const std::string_view name = path.native();
+        if (name.starts_with(folder)) {
+            int number = 0;
+            const auto [end, error] =
+                std::from_chars(name.data() + folder.size(), name.data() + name.size(), number);
+            if (error == std::errc() && end == name.data() + name.size()) {
+                return number;
+            }
+        }
+    }
+    return std::nullopt;
+}
 
 bool mayBlock(const fs::path& path) {
     struct stat status {};

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,6 +17,10 @@ namespace relief {
 /// Whether a path names a pipe, a socket or a disk: who opens one may wait for ever, and so they are neither read nor
 /// written. /dev/stdin, /dev/fd/N and their like are none: the shell has opened them.
 [[nodiscard]] bool mayBlock(const std::filesystem::path& path);
+
+/// The number in /dev/stdin, /dev/fd/N and their like; nullopt: some other path. What the shell has opened is written as
+/// it is: by its name it would be written from its begin on, or replaced.
+[[nodiscard]] std::optional<int> descriptorOf(const std::filesystem::path& path);
 
 /// Reads a whole file; "-" reads standard input. Devices are read to their end.
 /// \param size_max  refuse (kLimit) anything longer: a regular file before any of it is read, a stream after

@@ -4,50 +4,13 @@
 #include <string>
 #include <system_error>
 
+#include "formats/base/destination.h"
 #include "formats/base/file_io.h"
 
 namespace relief {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int kLinksMax = 40;  // as Linux follows
-
-/// Without any symbolic link but dangling ones, and without `.` and `..`; parts that do not exist stay.
-fs::path settled(const fs::path& path, std::error_code& error) {
-    fs::path result = fs::weakly_canonical(fs::absolute(path, error), error);
-    // A folder that does not exist keeps the slash at its end, which would count as a part.
-    return result.has_filename() ? result : result.parent_path();
-}
-
-/// As settled(), and where dangling links would lead. weakly_canonical takes one for a file that does not
-/// exist yet, but by the time it is opened its target may be there.
-fs::path destination(const fs::path& path, std::error_code& error) {
-    fs::path result = settled(path, error);
-    for (int i = 0; i < kLinksMax && !error; ++i) {
-        fs::path walked;
-        auto part = result.begin();
-        for (; part != result.end(); ++part) {
-            std::error_code none;
-            if (fs::is_symlink(fs::symlink_status(walked / *part, none))) {
-                break;
-            }
-            walked /= *part;
-        }
-        if (part == result.end()) {
-            return result;
-        }
-        fs::path followed = walked / fs::read_symlink(walked / *part, error);
-        for (++part; part != result.end(); ++part) {
-            followed /= *part;
-        }
-        result = settled(followed, error);
-    }
-    if (!error) {
-        error = std::make_error_code(std::errc::too_many_symbolic_link_levels);
-    }
-    return result;
-}
 
 bool liesIn(const fs::path& folder, const fs::path& path) {
     return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
@@ -73,9 +36,9 @@ Result<fs::path> resolveInside(const fs::path& folder, std::string_view text, st
                       "'s folder and name it from there");
     }
     std::error_code error;
-    const fs::path own = settled(folder.empty() ? fs::path(".") : folder, error);
+    const fs::path own = destination(folder.empty() ? fs::path(".") : folder, error);
     const fs::path target = error ? fs::path() : destination(own / path, error);
-    const fs::path other = error || root.empty() ? fs::path() : settled(root, error);
+    const fs::path other = error || root.empty() ? fs::path() : destination(root, error);
     if (error) {
         return refuse("cannot be followed: " + error.message() + "; mend the path");
     }

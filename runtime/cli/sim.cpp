@@ -88,7 +88,7 @@ void addOutputs(CLI::App& app, SimCommand& command) {
         ->transform(number(0.0F, 1e9F, "a speed, 0 or more"));
 }
 
-/// Options that do nothing together, and outputs that would share standard output.
+/// Options that do nothing together.
 Result<void> checkTogether(const SimCommand& command) {
     const PlayerOptions& player = command.player;
     const auto usage = [](const std::string& message) { return fail(ErrorCode::kUsage, message); };
@@ -129,20 +129,6 @@ Result<void> checkTogether(const SimCommand& command) {
     if (player.events_min_speed && player.events.empty()) {
         return usage("--events-min-speed does nothing without --events; add --events OUT.jsonl");
     }
-    if (player.events == "-" && (command.json || player.dump == "-" || player.stats == "-")) {
-        return usage(std::string("--events - and ") +
-                     (command.json         ? "--json"
-                      : player.dump == "-" ? "--dump -"
-                                           : "--stats -") +
-                     " both write standard output; write the events to a file");
-    }
-    if (command.json && player.dump == "-") {
-        return usage("--json and --dump - both write standard output; dump to a file");
-    }
-    if (player.stats == "-" && (command.json || player.dump == "-")) {
-        return usage(std::string("--stats - and ") + (command.json ? "--json" : "--dump -") +
-                     " both write standard output; write the statistics to a file");
-    }
     return {};
 }
 
@@ -181,6 +167,9 @@ Result<void> playScene(SimCommand& command) {
     PlayerOptions& player = command.player;
     const bool named_vdb = lowerCase(player.dump.extension().native()) == ".vdb";
     player.dump_format = command.dump_format.value_or(named_vdb ? DumpFormat::kVdb : DumpFormat::kPly);
+    if (command.json) {
+        RELIEF_TRY(player.guard.writes("-", "--json"));
+    }
     player.api = command.gpu.api;
     player.device = command.gpu.device;
     player.count_collisions = command.json;

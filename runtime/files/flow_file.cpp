@@ -163,16 +163,27 @@ bool fileExists(const fs::path& path) {
     return fs::exists(path, error);
 }
 
+struct SliceCount {
+    std::uint32_t first;
+    std::uint32_t count;  // at most one more than a flow may have
+};
+
+/// The slices that are there, up to the first gap.
+SliceCount countSlices(const fs::path& pattern) {
+    SliceCount slices{fileExists(slicePath(pattern, 0)) ? 0U : 1U, 0};
+    while (slices.count <= FlowField::kSideMax &&
+           fileExists(slicePath(pattern, slices.first + slices.count))) {
+        ++slices.count;
+    }
+    return slices;
+}
+
 Result<void> readSlices(const FlowFile& file, FlowField& flow) {
     if (!hasSliceNumber(file.path.filename().native())) {
         return fail(ErrorCode::kInvalidInput,
                     quotedPath(file.path) + " needs one number, as in 'flow_%03d.exr', in its file name");
     }
-    const std::uint32_t first = fileExists(slicePath(file.path, 0)) ? 0 : 1;
-    std::uint32_t count = 0;
-    while (count <= FlowField::kSideMax && fileExists(slicePath(file.path, first + count))) {
-        ++count;
-    }
+    const auto [first, count] = countSlices(file.path);
     // A missing slice must not be taken for the end.
     for (std::uint32_t i = first + count + 1; i <= first + FlowField::kSideMax; ++i) {
         if (fileExists(slicePath(file.path, i))) {
@@ -269,6 +280,18 @@ Result<FlowField> load(const FlowFile& file) {
 
 bool hasSliceNumber(const std::string& name) {
     return sliceNumber(name).has_value();
+}
+
+std::vector<fs::path> flowPaths(const FlowFile& file) {
+    if (file.kind != FlowFileKind::kSlices || !hasSliceNumber(file.path.filename().native())) {
+        return {file.path};
+    }
+    const SliceCount slices = countSlices(file.path);
+    std::vector<fs::path> paths;
+    for (std::uint32_t i = 0; i < slices.count; ++i) {
+        paths.push_back(slicePath(file.path, slices.first + i));
+    }
+    return paths;
 }
 
 Result<FlowField> loadFlow(const FlowFile& file) {

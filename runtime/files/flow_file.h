@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <glm/vec3.hpp>
 #include <string>
+#include <vector>
 
 #include "formats/base/result.h"
 #include "runtime/air/flow_field.h"
@@ -39,6 +40,9 @@ inline constexpr float kFlowSpeedMax = 1e6F;
 
 /// Whether a file name holds exactly one number for kSlices, of 9 digits at most.
 [[nodiscard]] bool hasSliceNumber(const std::string& name);
+
+/// The files of a flow that are there: those with its number, or the one.
+[[nodiscard]] std::vector<std::filesystem::path> flowPaths(const FlowFile& file);
 
 /// Reads a flow; the files may be hostile.
 /// Errors, with the file's name: kIo, kInvalidInput (not EXR, channels missing, a wrong length, slices of

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "formats/base/descriptor.h"
+#include "formats/base/destination.h"
 #include "formats/base/file_io.h"
 #include "formats/base/process.h"
 #include "formats/base/text.h"
@@ -175,7 +176,7 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::create(const fs::path& path, c
     }
     std::error_code error;
     // The target of a link is replaced, not the link.
-    const fs::path followed = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : path;
+    const fs::path followed = fs::is_symlink(path, error) ? destination(path, error) : path;
     const fs::path folder = followed.has_parent_path() ? followed.parent_path() : fs::path(".");
     if (!fs::is_directory(folder, error)) {
         return fail(ErrorCode::kIo, "cannot write " + quotedPath(path) + ": there is no folder " +

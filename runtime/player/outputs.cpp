@@ -1,13 +1,12 @@
 #include "runtime/player/outputs.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include "formats/base/file_io.h"
+#include "formats/base/numbered_files.h"
+#include "formats/base/preflight.h"
 #include "runtime/files/ply.h"
 #include "runtime/files/png.h"
 #include "runtime/player/watched.h"
@@ -18,23 +17,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Makes the folder, and checks early that it can be written: a run may take long.
-Result<void> prepareFolder(const fs::path& folder, const char* option) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error || !fs::is_directory(folder, error)) {
-        return fail(ErrorCode::kIo, "cannot make the folder " + quotedPath(folder) + " for frames: " +
-                                        (error ? error.message() : "a file of that name is in the way") +
-                                        "; choose another with " + option);
-    }
-    return {};
+NumberedFiles pictureFiles(const PlayerOptions& options, std::uint32_t count) {
+    return {options.frames, "frame_", ".png", count};
 }
 
-/// "frame_", 7, ".png" -> folder/frame_0007.png
-fs::path numberedPath(const fs::path& folder, const char* head, std::uint32_t number, const char* ending) {
-    std::array<char, 48> name{};
-    std::snprintf(name.data(), name.size(), "%s%04u%s", head, number, ending);
-    return folder / name.data();
+NumberedFiles dumpFiles(const PlayerOptions& options, std::uint32_t count) {
+    const char* const ending = options.dump_format == DumpFormat::kVdb ? ".vdb" : ".ply";
+    return {options.dump_frames, "particles_", ending, count};
 }
 
 /// The frame rate at which a video plays in the scene's time, within what players can show.
@@ -44,26 +33,27 @@ double videoRate(const Scene& scene) {
 
 }  // namespace
 
-Result<void> checkDump(const PlayerOptions& options) {
-    const fs::path& dump = options.dump;
-    if (options.dump_format == DumpFormat::kVdb && !(dump.empty() && options.dump_frames.empty())) {
+Result<void> checkOutputs(const PlayerOptions& options, FileGuard& guard) {
+    if (options.dump_format == DumpFormat::kVdb && !(options.dump.empty() && options.dump_frames.empty())) {
         RELIEF_TRY(checkVdb());
     }
-    if (dump.empty()) {
-        return {};
+    RELIEF_TRY(guard.reads(options.input));
+    RELIEF_TRY(guard.writes(options.dump, "--dump"));
+    RELIEF_TRY(guard.writes(options.stats, "--stats"));
+    RELIEF_TRY(guard.writes(options.events, "--events"));
+    return guard.writes(options.video, "--video");
+}
+
+Result<void> checkFrames(const PlayerOptions& options, const Scene& scene, FileGuard& guard) {
+    for (const fs::path& file : filesOf(scene)) {
+        RELIEF_TRY(guard.reads(file));
     }
-    std::error_code error;
-    const fs::path folder = dump.has_parent_path() ? dump.parent_path() : fs::path(".");
-    if (dump != "-" && !fs::is_directory(folder, error)) {
-        return fail(ErrorCode::kIo, "cannot write " + quotedPath(dump) + ": there is no folder " +
-                                        quotedPath(folder) +
-                                        "; make it, or choose another place with --dump");
+    const std::uint32_t count = frameCount(scene);
+    if (!options.frames.empty()) {
+        RELIEF_TRY(guard.writes(pictureFiles(options, count), "--frames"));
     }
-    if (fs::is_directory(dump, error)) {
-        return fail(ErrorCode::kIo,
-                    "cannot write " + quotedPath(dump) + ": it is a folder; name a file with --dump");
-    }
-    return {};
+    return options.dump_frames.empty() ? Result<void>{}
+                                       : guard.writes(dumpFiles(options, count), "--dump-frames");
 }
 
 Outputs::~Outputs() {
@@ -93,10 +83,10 @@ Result<void> Outputs::open() {
         events_ = RELIEF_TRY(EventsLog::create(options_.events, options_.events_min_speed.value_or(0.0F)));
     }
     if (!options_.frames.empty()) {
-        RELIEF_TRY(prepareFolder(options_.frames, "--frames"));
+        RELIEF_TRY(preflightFolder(options_.frames, "--frames"));
     }
     return options_.dump_frames.empty() ? Result<void>{}
-                                        : prepareFolder(options_.dump_frames, "--dump-frames");
+                                        : preflightFolder(options_.dump_frames, "--dump-frames");
 }
 
 Result<std::vector<std::byte>> encodeDump(std::span<const ParticleState> particles, DumpFormat format) {
@@ -126,7 +116,8 @@ Result<void> Outputs::writePicture(const ParticleSystem& particles, PlayerReport
     if (!options_.frames.empty()) {
         const auto& render = loaded_.scene.render;
         const auto png = RELIEF_TRY(encodePng(rgb, render.width, render.height));
-        RELIEF_TRY(writeFile(numberedPath(options_.frames, "frame_", report.frames_written, ".png"), png));
+        RELIEF_TRY(
+            writeFile(pictureFiles(options_, report.frames_written + 1).path(report.frames_written), png));
     }
     if (video_) {
         RELIEF_TRY(video_->add(rgb));
@@ -138,8 +129,7 @@ Result<void> Outputs::writePicture(const ParticleSystem& particles, PlayerReport
 Result<void> Outputs::writeParticles(const ParticleSystem& particles, PlayerReport& report) {
     const auto state = RELIEF_TRY(
         watched(options_.watchdog, "reading particles back", [&] { return particles.readState(); }));
-    const char* const ending = options_.dump_format == DumpFormat::kVdb ? ".vdb" : ".ply";
-    const fs::path path = numberedPath(options_.dump_frames, "particles_", report.dumps_written, ending);
+    const fs::path path = dumpFiles(options_, report.dumps_written + 1).path(report.dumps_written);
     const auto bytes = RELIEF_TRY(encodeDump(state, options_.dump_format));
     RELIEF_TRY(writeFile(path, bytes));
     ++report.dumps_written;

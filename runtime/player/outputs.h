@@ -17,8 +17,12 @@
 
 namespace relief {
 
-/// Whether dumps can be written, as far as that shows before the run. Fails with kIo, and with kUnsupported (OpenVDB).
-[[nodiscard]] Result<void> checkDump(const PlayerOptions& options);
+/// Whether the options' outputs can be written, as far as that shows before the run, and none of them is the input or
+/// another output. \param guard  gets to know them.
+/// Fails as FileGuard does, and with kUnsupported (OpenVDB).
+[[nodiscard]] Result<void> checkOutputs(const PlayerOptions& options, FileGuard& guard);
+/// The same with every file that the scene names, and with the numbered files of its frames.
+[[nodiscard]] Result<void> checkFrames(const PlayerOptions& options, const Scene& scene, FileGuard& guard);
 
 /// Errors: those of encodeVdbPoints.
 [[nodiscard]] Result<std::vector<std::byte>> encodeDump(std::span<const ParticleState> particles,

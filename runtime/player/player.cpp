@@ -169,10 +169,12 @@ Result<void> readBack(const PlayerOptions& options, const ParticleSystem& partic
 
 Result<PlayerReport> play(const PlayerOptions& options) {
     // Cheap checks come first.
+    FileGuard guard = options.guard;
+    RELIEF_TRY(checkOutputs(options, guard));
     const auto loaded = RELIEF_TRY(loadAll(options.input, options.overrides));
     auto emitters = RELIEF_TRY(makeEmitters(loaded.scene.emitters));
     std::vector<std::string> warnings = sceneWarnings(loaded, emitters);
-    RELIEF_TRY(checkDump(options));
+    RELIEF_TRY(checkFrames(options, loaded.scene, guard));
     const auto context = RELIEF_TRY(makeContext(options));
     auto simulation =
         RELIEF_TRY(Simulation::create(loaded, std::move(emitters), options.path, options.watchdog));

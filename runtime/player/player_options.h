@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/base/file_guard.h"
 #include "runtime/gl/gl_context.h"
 #include "runtime/gl/gpu_timer.h"
 #include "runtime/particles/particle_system.h"
@@ -23,6 +24,8 @@ struct PlayerOptions {
     /// A scene (.toml) or a collider (.relief), for which the default scene is played.
     std::filesystem::path input;
     SceneOverrides overrides;
+    /// Knows what else the program reads and writes, a report on standard output for one.
+    FileGuard guard;
     /// Folder for frame_0000.png and so on, made if missing; empty: no pictures.
     std::filesystem::path frames;
     std::filesystem::path dump;  ///< the final particles, "-" for standard output; empty: none

@@ -1,5 +1,6 @@
 #include "runtime/scene/loaded_scene.h"
 
+#include <algorithm>
 #include <limits>
 #include <string>
 
@@ -47,6 +48,26 @@ bool withinLengths(const Bounds& bounds) {
 }
 
 }  // namespace
+
+std::vector<fs::path> filesOf(const Scene& scene) {
+    std::vector<fs::path> files;
+    for (const SceneCollider& collider : scene.colliders) {
+        files.push_back(collider.path);
+    }
+    for (const SceneEmitter& emitter : scene.emitters) {
+        files.push_back(emitter.points);
+    }
+    if (scene.flow) {
+        const std::vector<fs::path> flow = flowPaths(*scene.flow);
+        files.insert(files.end(), flow.begin(), flow.end());
+    }
+    files.push_back(scene.render.atlas);
+    files.push_back(scene.render.mesh);
+    std::sort(files.begin(), files.end());
+    files.erase(std::unique(files.begin(), files.end()), files.end());
+    files.erase(std::remove(files.begin(), files.end(), fs::path()), files.end());
+    return files;
+}
 
 Result<LoadedScene> loadAll(const fs::path& input, const SceneOverrides& overrides) {
     auto scene = RELIEF_TRY(openScene(input, overrides.root));

@@ -35,6 +35,9 @@ struct LoadedScene {
     Bounds bounds;  ///< of what they occupy in the course of time, in the particles' space
 };
 
+/// Every file that a scene names, sorted; without the scene itself.
+[[nodiscard]] std::vector<std::filesystem::path> filesOf(const Scene& scene);
+
 /// Reads a scene (.toml) or a collider (.relief), for which the default scene is made, and every file that it
 /// names. Needs no context.
 /// Fails as the readers of these files do; errors of files that a scene names begin with its line and column.

@@ -21,6 +21,12 @@ std::uint32_t lastFrame(const Scene& scene) {
     return std::min(scene.render.last.value_or(scene.steps), scene.steps);
 }
 
+std::uint32_t frameCount(const Scene& scene) {
+    const std::uint32_t first = firstFrame(scene);
+    const std::uint32_t span = lastFrame(scene) - first;  // first is at most last
+    return 1 + span / scene.render.every + (span % scene.render.every == 0 ? 0 : 1);
+}
+
 bool frameDue(const Scene& scene, std::uint32_t step) {
     const std::uint32_t first = firstFrame(scene);
     const std::uint32_t last = lastFrame(scene);

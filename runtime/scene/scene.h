@@ -104,6 +104,8 @@ struct Scene {
 [[nodiscard]] std::uint32_t lastFrame(const Scene& scene);
 /// Whether one is due after so many steps: every `render.every` from the first on, and at the last.
 [[nodiscard]] bool frameDue(const Scene& scene, std::uint32_t step);
+/// How many are due in the whole run.
+[[nodiscard]] std::uint32_t frameCount(const Scene& scene);
 
 /// What is wrong with a camera that looks from `eye` to `target`; "" if nothing is.
 [[nodiscard]] std::string_view cameraProblem(const glm::vec3& eye, const glm::vec3& target);

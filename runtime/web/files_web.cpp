@@ -7,6 +7,10 @@ bool hasSliceNumber(const std::string&) {
     return true;  // loadFlow() refuses all of them
 }
 
+std::vector<std::filesystem::path> flowPaths(const FlowFile& file) {
+    return {file.path};
+}
+
 Result<FlowField> loadFlow(const FlowFile& file) {
     return fail(ErrorCode::kUnsupported,
                 file.origin + "flow fields are not read in a browser; take relief-sim, or leave them out");

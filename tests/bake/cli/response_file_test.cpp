@@ -62,19 +62,29 @@ class ResponseFiles : public testing::Test {
     }
 
     fs::path folder_;
+    FileGuard files_;
 };
+
+TEST_F(ResponseFiles, AreNoOutputs) {
+    const std::string inner = put("inner", "x");
+    const std::string outer = put("outer", inner);
+    ASSERT_TRUE(expandArguments({outer}, files_));
+    for (const std::string& file : {inner, outer}) {
+        EXPECT_FALSE(files_.writes(file.substr(1), "-o")) << file;
+    }
+}
 
 TEST_F(ResponseFiles, StandWhereTheyAreNamed) {
     const std::string inner = put("inner", "2 3");
     const std::string outer = put("outer", "1 " + inner + " 4 @@5");
-    EXPECT_EQ(*expandArguments({"bake", outer, "6", "@@7", "@", "a@b"}),
+    EXPECT_EQ(*expandArguments({"bake", outer, "6", "@@7", "@", "a@b"}, files_),
               (Words{"bake", "1", "2", "3", "4", "@5", "6", "@7", "@", "a@b"}));
-    EXPECT_EQ(*expandArguments({inner, "--", inner, "@@x"}), (Words{"2", "3", "--", inner, "@@x"}));
+    EXPECT_EQ(*expandArguments({inner, "--", inner, "@@x"}, files_), (Words{"2", "3", "--", inner, "@@x"}));
 }
 
 TEST_F(ResponseFiles, EndSomewhere) {
     const std::string circle = put("circle", "@" + (folder_ / "circle").string());
-    const auto deep = expandArguments({circle});
+    const auto deep = expandArguments({circle}, files_);
     ASSERT_FALSE(deep);
     EXPECT_EQ(deep.error().code, ErrorCode::kLimit);
     EXPECT_NE(deep.error().message.find("circle"), std::string::npos);
@@ -87,13 +97,13 @@ TEST_F(ResponseFiles, EndSomewhere) {
     for (int i = 1; i < 9; ++i) {
         last = put(std::to_string(i).c_str(), last + " " + last);
     }
-    const auto many = expandArguments({last});
+    const auto many = expandArguments({last}, files_);
     ASSERT_FALSE(many);
     EXPECT_EQ(many.error().code, ErrorCode::kLimit);
     EXPECT_NE(many.error().message.find("100000"), std::string::npos) << many.error().message;
-    const auto large = expandArguments({put("large", std::string(kResponseBytesMax + 1, ' '))});
+    const auto large = expandArguments({put("large", std::string(kResponseBytesMax + 1, ' '))}, files_);
     EXPECT_EQ(large.error().code, ErrorCode::kLimit);
-    const auto gone = expandArguments({"@" + (folder_ / "gone").string()});
+    const auto gone = expandArguments({"@" + (folder_ / "gone").string()}, files_);
     EXPECT_EQ(gone.error().code, ErrorCode::kIo);
     EXPECT_NE(gone.error().message.find("gone"), std::string::npos);
 }

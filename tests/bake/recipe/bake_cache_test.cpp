@@ -51,6 +51,28 @@ class BakeCache : public testing::Test {
     BakeCacheEntry entry_;
 };
 
+TEST_F(BakeCache, NoLinkIsFollowed) {
+    const fs::path elsewhere = folder_ / "elsewhere";
+    fs::create_directory(elsewhere);
+    for (const bool dangling : {false, true}) {
+        put("elsewhere/precious", bakeCacheText({{"m.relief", entry_}}));
+        const std::string before = hash("elsewhere/precious");
+        if (dangling) {
+            fs::remove(elsewhere / "precious");
+        }
+        fs::remove(folder_ / kBakeCacheName);
+        fs::create_symlink("elsewhere/precious", folder_ / kBakeCacheName);
+        const auto loaded = loadBakeCache(folder_);
+        ASSERT_FALSE(loaded);
+        EXPECT_EQ(loaded.error().code, ErrorCode::kInvalidInput);
+        ASSERT_TRUE(updateBakeCache(folder_, {{"m.relief", entry_}}));
+        EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(folder_ / kBakeCacheName)))
+            << "the link is replaced";
+        EXPECT_EQ(hash("elsewhere/precious"), dangling ? "none" : before);
+        EXPECT_EQ(loadBakeCache(folder_)->size(), 1U);
+    }
+}
+
 TEST_F(BakeCache, EveryChangeIsSeen) {
     EXPECT_EQ(why(), "up to date");
     fs::last_write_time(folder_ / "m.obj", fs::file_time_type::clock::now() + std::chrono::hours(1));

@@ -203,6 +203,16 @@ TEST_F(RecipeJobsTest, OutputsCollideWithNothing) {
         "[[asset]]\nmesh = 'hill.off'\noutput = 'rocks/x.relief'\n"
         "[[asset]]\nmesh = 'rocks/a.obj'\noutput = 'link/x.relief'\n",
         "would both be baked into 'link/x.relief'");
+    fs::create_symlink("later", folder_ / "to_later");  // made by the first bake
+    fails(
+        "[[asset]]\nmesh = 'hill.off'\noutput = 'later/x.relief'\n"
+        "[[asset]]\nmesh = 'rocks/a.obj'\noutput = 'to_later/x.relief'\n",
+        "'hill.off' and 'rocks/a.obj' would both be baked into 'to_later/x.relief'");
+    fs::create_symlink("fresh.relief", folder_ / "to_fresh.relief");
+    fails(
+        "[[asset]]\nmesh = 'hill.off'\noutput = 'to_fresh.relief'\n"
+        "[[asset]]\nmesh = 'rocks/a.obj'\noutput = 'fresh.relief'\n",
+        "would both be baked into 'fresh.relief'");
     put("one.relief");
     fs::create_hard_link(folder_ / "one.relief", folder_ / "two.relief");
     fails(

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+
+#include "bake/report/size_report.h"
+
 namespace relief {
 namespace {
 
@@ -25,6 +30,43 @@ TEST(RecipeReport, AWarningOfSeveralAssetsIsToldOnce) {
               (std::vector<std::string>{"4 assets (a.relief, c.relief, d.relief, and 1 more): it is skinned",
                                         "a.relief: it is open"}));
     EXPECT_TRUE(warningLines({}).empty());
+}
+
+TEST(RecipeReport, AForgottenUnitIsToldOnce) {
+    const auto told = [](const std::string& name, float side) {
+        return baked(name, 1,
+                     {name + ".obj: " + *forgottenUnit({glm::vec3(0.0F), glm::vec3(side)}),
+                      name + ".obj: " + std::to_string(int(side)) + " % is wrong"});
+    };
+    EXPECT_EQ(
+        warningLines({told("a", 1800.0F), told("b", 200.0F), told("c", 300.0F)}),
+        (std::vector<std::string>{
+            "3 assets (a.relief, b.relief, c.relief): of the first: no unit is named, and the box is 1800 x "
+            "1800 x 1800: with --unit cm 18 x 18 x 18 m, with --unit mm 1.8 x 1.8 x 1.8 m; say which, or "
+            "--unit "
+            "m if these are metres",
+            "a.relief: 1800 % is wrong", "b.relief: 200 % is wrong", "c.relief: 300 % is wrong"}));
+    EXPECT_EQ(
+        warningLines({baked("a", 1, {"a.obj: " + *forgottenUnit({glm::vec3(0.0F), glm::vec3(200.0F)})})})[0]
+            .find("of the first"),
+        std::string::npos);
+}
+
+TEST(RecipeReport, OnlyAnOlderLogIsEmptied) {
+    const std::filesystem::path file =
+        std::filesystem::path(testing::TempDir()) / "relief_recipe_report_events";
+    const auto opens = [&](const std::string& text) {
+        std::ofstream(file) << text;
+        return RecipeEvents().open(file.string()).has_value();
+    };
+    EXPECT_TRUE(opens(""));
+    EXPECT_TRUE(opens("{\"event\":\"start\"}\n"));
+    EXPECT_EQ(std::filesystem::file_size(file), 0U);
+    for (const char* text : {"newmtl a\n", "{", "{\"asset\":{}}"}) {
+        EXPECT_FALSE(opens(text)) << text;
+        EXPECT_GT(std::filesystem::file_size(file), 0U) << text;
+    }
+    std::filesystem::remove(file);
 }
 
 TEST(RecipeReport, NamesWhatTookLong) {

@@ -130,6 +130,9 @@ TEST_F(FlowFileTest, SlicesAreStackedFromZeroOrOneUpAndNoneMayBeLost) {
         const auto flow = loadFlow(from);
         ASSERT_TRUE(flow) << flow.error().message;
         ASSERT_EQ(flow->size, (std::array<std::uint32_t, 3>{4, 2, 12}));
+        const std::vector<fs::path> paths = flowPaths(from);
+        ASSERT_EQ(paths.size(), 12U);
+        EXPECT_EQ(paths.back(), folder_ / (first == 0 ? "flow_011.exr" : "flow_012.exr"));
         for (std::size_t i = 0; i < flow->nodes.size(); ++i) {
             ASSERT_EQ(flow->nodes[i], glm::vec3(static_cast<float>(i / 8)));
         }

@@ -73,6 +73,7 @@ TEST(Scene, FramesFromOneStepToAnother) {
                 steps.push_back(step);
             }
         }
+        EXPECT_EQ(frameCount(scene), steps.size()) << time << render;
         return steps;
     };
     using Steps = std::vector<std::uint32_t>;

@@ -1,0 +1,160 @@
+// What a run writes is none of what it reads, and no two outputs are one file, whatever names and links lead there.
+#include "formats/base/file_guard.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+namespace relief {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FileGuardTest : public testing::Test {
+  protected:
+    void SetUp() override {
+        std::string name = testing::TempDir() + "/relief-guard-XXXXXX";
+        ASSERT_NE(::mkdtemp(name.data()), nullptr);
+        folder_ = name;
+        fs::create_directory(folder_ / "real");
+        fs::create_directory_symlink("real", folder_ / "linked");
+        for (const char* file : {"scene", "real/input", "real/old"}) {
+            std::ofstream(folder_ / file) << file;
+        }
+        fs::create_symlink("scene", folder_ / "symbolic");
+        fs::create_hard_link(folder_ / "scene", folder_ / "hard");
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    [[nodiscard]] fs::path in(const std::string& name) const {
+        return name == "-" ? fs::path(name) : folder_ / name;
+    }
+    void reads(const std::string& name) { ASSERT_TRUE(guard_.reads(in(name))) << name; }
+    void writes(const std::string& name, const char* option) {
+        const auto done = guard_.writes(in(name), option);
+        ASSERT_TRUE(done) << done.error().message;
+    }
+    void refuses(const std::string& name, const std::string& says) {
+        const auto done = guard_.writes(in(name), "--new");
+        ASSERT_FALSE(done) << name;
+        EXPECT_EQ(done.error().code, ErrorCode::kUsage) << done.error().message;
+        EXPECT_NE(done.error().message.find(says), std::string::npos) << done.error().message;
+    }
+    Result<void> frames(const std::string& folder, std::uint32_t count = 3) {
+        return guard_.writes({in(folder), "frame_", ".png", count}, "--frames");
+    }
+    void refusesFrames(const std::string& folder, const std::string& says) {
+        const auto done = frames(folder);
+        ASSERT_FALSE(done) << folder;
+        EXPECT_EQ(done.error().code, ErrorCode::kUsage) << done.error().message;
+        EXPECT_NE(done.error().message.find(says), std::string::npos) << done.error().message;
+    }
+
+    fs::path folder_;
+    FileGuard guard_;
+};
+
+TEST_F(FileGuardTest, NoOutputIsAnInput) {
+    reads("scene");
+    reads("real/input");
+    reads("scene");
+    refuses("scene", "scene' is the input; choose another place for --new");
+    refuses("real/../scene", "is the input '");
+    refuses("symbolic", "symbolic' is the input '");
+    refuses("hard", "hard' is the input '");
+    refuses("linked/input", "is the input '");
+    writes("real/old", "--dump");
+    writes("new", "--stats");
+    EXPECT_FALSE(guard_.reads(in("linked/old"))) << "an input that is known late";
+    EXPECT_TRUE(guard_.reads(""));
+    EXPECT_TRUE(guard_.writes("", "--events"));
+}
+
+TEST_F(FileGuardTest, NoTwoOutputsAreOne) {
+    fs::create_symlink("real/later", folder_ / "dangling");
+    fs::create_symlink("dangling", folder_ / "twice");
+    writes("scene", "--dump");
+    refuses("scene", "--dump and --new would both write");
+    refuses("symbolic", "--dump and --new would both write");
+    refuses("hard", "--dump and --new would both write");
+    writes("dangling", "--stats");
+    refuses("linked/later", "--stats and --new would both write");
+    refuses("twice", "--stats and --new would both write");
+    writes("real/fresh", "--events");
+    refuses("linked/fresh", "--events and --new");
+    writes("/dev/null", "--video");
+    writes("/dev/null", "--plan");
+    fs::create_symlink("circle", folder_ / "circle");
+    writes("circle", "-o");  // writing it fails
+}
+
+TEST_F(FileGuardTest, StandardOutputIsOne) {
+    writes("-", "--dump");
+    refuses("-", "--dump and --new would both write standard output");
+    EXPECT_FALSE(guard_.writes("/dev/stdout", "--stats"));
+    EXPECT_FALSE(guard_.writes("/dev/fd/1", "--stats"));
+    EXPECT_TRUE(guard_.reads("-"));
+}
+
+TEST_F(FileGuardTest, FramesReplaceNothingElse) {
+    std::ofstream(folder_ / "real/frame_0001.png") << "old";
+    std::ofstream(folder_ / "real/frame_0003.png") << "beyond the last";
+    std::ofstream(folder_ / "real/frame_00001.png") << "another name";
+    for (const char* name : {"frame_0003.png", "frame_00001.png"}) {
+        reads(std::string("real/") + name);
+    }
+    EXPECT_TRUE(frames("real"));
+    refuses("real/frame_0000.png", "--frames and --new would both write");
+    refuses("linked/frame_0002.png", "--frames and --new would both write");
+    refuses("linked/frame_0001.png", "--frames and --new would both write");
+    writes("real/frame_0004.png", "--dump");
+    EXPECT_FALSE(guard_.reads(in("real/frame_0001.png")));
+    EXPECT_FALSE(guard_.reads(in("real/frame_0000.png")));
+}
+
+TEST_F(FileGuardTest, FramesReplaceNoInputByName) {
+    std::ofstream(folder_ / "real/frame_0002.png") << "atlas";
+    reads("real/frame_0002.png");
+    refusesFrames("linked", "linked/frame_0002.png' is the input");
+}
+
+TEST_F(FileGuardTest, FramesReplaceNoInputThroughALink) {
+    reads("scene");
+    for (const char* kind : {"symbolic", "hard"}) {
+        fs::remove(folder_ / "real/frame_0000.png");
+        if (kind[0] == 's') {
+            fs::create_symlink("../scene", folder_ / "real/frame_0000.png");
+        } else {
+            fs::create_hard_link(folder_ / "scene", folder_ / "real/frame_0000.png");
+        }
+        refusesFrames("real", "frame_0000.png' is the input '");
+    }
+}
+
+TEST_F(FileGuardTest, FramesAreNoOtherOutputNorEachOther) {
+    writes("made", "--dump");
+    refusesFrames("made", "--dump and --frames would both write");
+    refusesFrames("made/deeper", "--dump and --frames would both write");
+    fs::create_symlink("frame_0001.png", folder_ / "real/frame_0002.png");
+    refusesFrames("real", "frame_0002.png' is a link to another file of --frames");
+    EXPECT_TRUE(frames("fresh"));
+    refuses("fresh", "--frames and --new would both write");
+}
+
+TEST_F(FileGuardTest, NumbersHaveFourDigitsOrMore) {
+    const NumberedFiles files{"f", "p_", ".ply", 20'000};
+    EXPECT_EQ(files.path(7), "f/p_0007.ply");
+    EXPECT_EQ(files.path(12'345), "f/p_12345.ply");
+    for (const char* name : {"p_0000.ply", "p_9999.ply", "p_19999.ply"}) {
+        EXPECT_TRUE(files.hold(name)) << name;
+    }
+    for (const char* name :
+         {"p_20000.ply", "p_00001.ply", "p_7.ply", "p_.ply", "p_-001.ply", "q_0001.ply", "p_0001.png"}) {
+        EXPECT_FALSE(files.hold(name)) << name;
+    }
+}
+
+}  // namespace
+}  // namespace relief
