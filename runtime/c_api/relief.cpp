@@ -91,9 +91,8 @@ Result<void> apply(const relief_particles_options& options, ParticleSystem& syst
     type.restitution = options.restitution;
     type.friction = options.friction;
     RELIEF_TRY(system.setTypes(std::span(&type, 1)));
-    system.setForces({vec(options.gravity), vec(options.wind), options.drag, 0.0F});
-    system.setGround(options.has_ground != 0 ? std::optional(options.ground_height) : std::nullopt);
-    return {};
+    RELIEF_TRY(system.setForces({vec(options.gravity), vec(options.wind), options.drag, 0.0F}));
+    return system.setGround(options.has_ground != 0 ? std::optional(options.ground_height) : std::nullopt);
 }
 
 }  // namespace
@@ -232,7 +231,7 @@ int relief_particles_step(relief_particles* particles, float seconds) {
         if (!(seconds > 0.0F && seconds < 1e9F)) {
             return fail(ErrorCode::kUsage, "a step takes more than 0 seconds");
         }
-        particles->system.step(seconds);
+        RELIEF_TRY(particles->system.step(seconds));
         RELIEF_TRY(checkGpu("stepping particles"));
         return 0;
     });
