@@ -131,12 +131,23 @@ class Stage {
                                                          : nullptr;
         return static_cast<std::byte*>(found);
     }
-    void*& handle(const std::string& type) {
-        return reinterpret_cast<void*&>(
-            type.find("collider") != std::string::npos    ? *reinterpret_cast<void**>(&collider)
-            : type.find("textures") != std::string::npos  ? *reinterpret_cast<void**>(&textures)
-            : type.find("particles") != std::string::npos ? *reinterpret_cast<void**>(&particles)
-                                                          : *reinterpret_cast<void**>(&picture));
+    /// The handle of the kind that an argument's type names, as a number.
+    [[nodiscard]] std::uintptr_t handle(const std::string& type) const {
+        const auto names = [&](const char* kind) { return type.find(kind) != std::string::npos; };
+        return names("collider")    ? reinterpret_cast<std::uintptr_t>(collider)
+               : names("textures")  ? reinterpret_cast<std::uintptr_t>(textures)
+               : names("particles") ? reinterpret_cast<std::uintptr_t>(particles)
+                                    : reinterpret_cast<std::uintptr_t>(picture);
+    }
+    /// It has been freed: revive() makes another.
+    void forget(std::uintptr_t handle) {
+        const auto drop = [handle](auto*& one) {
+            one = reinterpret_cast<std::uintptr_t>(one) == handle ? nullptr : one;
+        };
+        drop(collider);
+        drop(textures);
+        drop(particles);
+        drop(picture);
     }
 
     relief_collider* collider = nullptr;
