@@ -13,6 +13,12 @@ HandleTable::Place& HandleTable::at(std::uintptr_t place) const {
     return block[shifted - (std::uintptr_t{1} << bits)];
 }
 
+HandleTable::~HandleTable() {
+    for (const auto& block : blocks_) {
+        delete[] block.load(std::memory_order_relaxed);
+    }
+}
+
 std::uintptr_t HandleTable::add(HandleKind kind, std::shared_ptr<void> object) {
     const std::lock_guard lock(mutex_);
     std::uintptr_t index = free_;

@@ -32,6 +32,11 @@ enum class HandleFault : std::uint8_t {
 /// with any object.
 class HandleTable {
   public:
+    HandleTable() = default;
+    ~HandleTable();
+    HandleTable(const HandleTable&) = delete;
+    HandleTable& operator=(const HandleTable&) = delete;
+
     /// Never 0. Throws std::bad_alloc, also where all places are taken; nothing has changed then.
     [[nodiscard]] std::uintptr_t add(HandleKind kind, std::shared_ptr<void> object);
     /// Null: faultOf() says why.
@@ -60,7 +65,7 @@ class HandleTable {
     }
     [[nodiscard]] Place& at(std::uintptr_t place) const;
 
-    // Block b has 2^(b + kFirstBlockBits) places, so that a place never moves. They are never given back.
+    // Block b has 2^(b + kFirstBlockBits) places, so that a place never moves. They go with the table.
     std::array<std::atomic<Place*>, kPlaceBits> blocks_{};
     std::atomic<std::uintptr_t> used_{0};  // places that have ever been taken
     mutable std::mutex mutex_;             // of what follows, and of all changes
