@@ -189,7 +189,7 @@ Result<void> Simulation::giveBirth(float dt) {
     const std::uint64_t room =
         particles_->room() - std::min<std::uint64_t>(particles_->room(), births_.size());
     refused_ += emitAll(emitters_, static_cast<double>(dt), room, births_, motions_, particles_->time());
-    RELIEF_TRY(particles_->spawn(births_));
+    [[maybe_unused]] const std::size_t accepted = RELIEF_TRY(particles_->spawn(births_));
     return {};
 }
 
