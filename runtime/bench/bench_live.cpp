@@ -69,7 +69,7 @@ Result<ParticleSystem> makeParticles(const Collider& frames, const ColliderTextu
     for (Birth& birth : scene.births) {
         birth.lifetime = 1e6F;
     }
-    particles.setForces(scene.forces);
+    RELIEF_TRY(particles.setForces(scene.forces));
     particles.spawn(scene.births);
     return particles;
 }

@@ -48,8 +48,8 @@ Result<BenchSystem> makeSystem(const BenchScene& scene, Solids solids, Integrato
                                            .path = scene.path}));
     BenchSystem system;
     system.particles = std::make_unique<ParticleSystem>(std::move(particles));
-    system.particles->setForces(scene.forces);
-    system.particles->setCollision(kSnow);
+    RELIEF_TRY(system.particles->setForces(scene.forces));
+    RELIEF_TRY(system.particles->setCollision(kSnow));
     if (solids == Solids::kNone) {
         return system;
     }
@@ -83,8 +83,7 @@ Result<void> setRadius(ParticleSystem& particles, const BenchScene& scene) {
 }
 
 Result<void> setGround(ParticleSystem& particles, const BenchScene& scene) {
-    particles.setGround(scene.collider.bounds.min.y + 0.1F * scene.side);
-    return {};
+    return particles.setGround(scene.collider.bounds.min.y + 0.1F * scene.side);
 }
 
 std::function<Result<void>(ParticleSystem&, const BenchScene&)> sweepOf(float share) {

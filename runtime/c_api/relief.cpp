@@ -2,76 +2,94 @@
 
 #include <algorithm>
 #include <cstring>
-#include <exception>
+#include <limits>
 #include <memory>
-#include <new>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "formats/base/finite.h"
 #include "formats/container.h"
 #include "formats/nearest_surface.h"
+#include "runtime/c_api/call.h"
 #include "runtime/collider/collider_textures.h"
 #include "runtime/gl/gl_fault.h"
+#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/gl_object.h"
 #include "runtime/particles/particle_system.h"
 #include "runtime/picture/particle_renderer.h"
 
-using namespace relief;  // NOLINT: what C sees has C's names
+namespace relief {
+namespace {
 
-struct relief_collider {
-    Collider collider;
-};
-
-struct relief_textures {
+struct TexturesObject {
     ColliderTextures textures;
     std::string glsl;
+    GLint units = 0;   // texture units of the context
+    GLint blocks = 0;  // uniform block bindings
 };
 
-struct relief_particles {
+struct ParticlesObject {
+    std::shared_ptr<const TexturesObject> textures;  // outlives the system, which points to it; may be null
     ParticleSystem system;
     std::vector<Birth> births;  // of a call, kept for its memory
 };
 
-struct relief_picture {
+struct PictureObject {
+    std::shared_ptr<const TexturesObject> textures;  // as above
     ParticleRenderer renderer;
     float diameter = 0.01F;
 };
 
+}  // namespace
+
+template <>
+struct HandleType<relief_collider> {
+    using Object = Collider;
+    static constexpr HandleKind kKind = HandleKind::kCollider;
+    static constexpr const char* kName = "relief_collider";
+};
+template <>
+struct HandleType<relief_textures> {
+    using Object = TexturesObject;
+    static constexpr HandleKind kKind = HandleKind::kTextures;
+    static constexpr const char* kName = "relief_textures";
+};
+template <>
+struct HandleType<relief_particles> {
+    using Object = ParticlesObject;
+    static constexpr HandleKind kKind = HandleKind::kParticles;
+    static constexpr const char* kName = "relief_particles";
+};
+template <>
+struct HandleType<relief_picture> {
+    using Object = PictureObject;
+    static constexpr HandleKind kKind = HandleKind::kPicture;
+    static constexpr const char* kName = "relief_picture";
+};
+
+}  // namespace relief
+
+using namespace relief;  // NOLINT: what C sees has C's names
+
 namespace {
 
-thread_local std::string t_error;
+// The sizes that each structure has had, in each version that changed it. A structure that grows must grow by more than the
+// bytes that fill up its end.
+constexpr std::array kParticlesOptionsSizes{sizeof(relief_particles_options)};
+constexpr std::array kPictureOptionsSizes{sizeof(relief_picture_options)};
+constexpr std::array kViewSizes{sizeof(relief_view)};
 
-/// What f returns, or `failed`; t_error says why. No exception passes.
-template <class T, class F>
-T guarded(T failed, const F& f) {
-    try {
-        auto result = f();
-        if (result) {
-            return std::move(*result);
-        }
-        t_error = std::move(result.error().message);
-    } catch (const std::bad_alloc&) {
-        t_error = "there is not enough memory";
-    } catch (const std::exception& error) {
-        t_error = error.what();
-    } catch (...) {
-        t_error = "an unknown error";
-    }
-    return failed;
-}
-
-/// As much of a caller's structure as it knows, the rest 0.
-template <class T>
-T known(const T* given) {
-    T all{};
-    if (given != nullptr) {
-        std::memcpy(&all, given, std::min(given->size, sizeof(T)));
-    }
-    return all;
-}
+// As relief.h has them. Speeds beyond 10^15 are those of particles that are lost (particles/statistics.h).
+constexpr NumberRange kAny{-1e15, 1e15};
+constexpr NumberRange kNotNegative{0.0, 1e15};
+constexpr NumberRange kShare{0.0, 1.0};
+constexpr NumberRange kLifetime{0.0, 1e15, false};
+constexpr NumberRange kStep{0.0, 1e9, false};
+constexpr NumberRange kPixels{0.0, 65536.0};
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 glm::vec3 vec(const float (&v)[3]) {
     return {v[0], v[1], v[2]};
@@ -85,15 +103,133 @@ glm::vec3 pointAt(const float* points, std::size_t i) {
     return {points[3 * i], points[3 * i + 1], points[3 * i + 2]};
 }
 
+/// Frees an object whose GL names go with it: the context must be current.
+template <class H>
+void freeOnGpu(const char* function, H* handle, const char* argument) noexcept {
+    answer(function, false, [&](const Call& call) -> Result<bool> {
+        if (handle != nullptr) {
+            [[maybe_unused]] const auto* object = RELIEF_TRY(call.object(handle, argument));
+            RELIEF_TRY(call.context());
+            [[maybe_unused]] const auto last =
+                handleTable().remove(HandleType<H>::kKind, reinterpret_cast<std::uintptr_t>(handle));
+        }
+        return true;
+    });
+}
+
+/// Answers each point by answer(collider, point); where that cannot be, by NaN.
+template <class F>
+void query(const char* function, const relief_collider* collider, const float* points, std::size_t count,
+           relief_sample* samples, const F& sampleAt) {
+    const auto unknown = [&](std::size_t i) { samples[i] = {kNan, {0.0F, 0.0F, 0.0F}, -1}; };
+    answer(function, false, [&](const Call& call) -> Result<bool> {
+        RELIEF_TRY(call.array(samples, "samples", count, "count"));
+        for (std::size_t i = 0; i < count; ++i) {
+            unknown(i);
+        }
+        RELIEF_TRY(call.array(points, "points", count, "count"));
+        const Collider& field = *RELIEF_TRY(call.object(collider, "collider"));
+        std::size_t wrong = count;
+        for (std::size_t i = 0; i < count; ++i) {
+            const glm::vec3 point = pointAt(points, i);
+            if (!isFinite(point)) {
+                wrong = std::min(wrong, i);
+                continue;
+            }
+            const auto sample = sampleAt(field, point);
+            samples[i].distance = sample.distance;
+            put(sample.normal, samples[i].normal);
+            samples[i].map = sample.map;
+        }
+        if (wrong < count) {
+            return call.refuse("points[" + std::to_string(wrong) + "] is not finite");
+        }
+        return true;
+    });
+}
+
+Result<relief_particles_options> optionsOf(const Call& call, const relief_particles_options* given) {
+    if (given == nullptr) {
+        return relief_particles_options{};
+    }
+    const auto all =
+        RELIEF_TRY(call.structure(given, "options", "relief_particles_options", kParticlesOptionsSizes));
+    const auto name = [](const char* field) { return NumberName{.argument = "options", .field = field}; };
+    RELIEF_TRY(call.number(all.capacity, {0.0, ParticleSystem::kCapacityMax}, name("capacity")));
+    RELIEF_TRY(call.numbers(all.gravity, kAny, name("gravity")));
+    RELIEF_TRY(call.numbers(all.wind, kAny, name("wind")));
+    RELIEF_TRY(call.number(all.drag, kNotNegative, name("drag")));
+    RELIEF_TRY(call.number(all.restitution, kShare, name("restitution")));
+    RELIEF_TRY(call.number(all.friction, kShare, name("friction")));
+    RELIEF_TRY(call.number(all.radius, kNotNegative, name("radius")));
+    RELIEF_TRY(call.number(all.has_ground, kShare, name("has_ground")));
+    RELIEF_TRY(call.number(all.ground_height, kAny, name("ground_height")));
+    return all;
+}
+
 Result<void> apply(const relief_particles_options& options, ParticleSystem& system) {
     ParticleType type;
     type.radius = options.radius;
     type.restitution = options.restitution;
     type.friction = options.friction;
     RELIEF_TRY(system.setTypes(std::span(&type, 1)));
-    system.setForces({vec(options.gravity), vec(options.wind), options.drag, 0.0F});
-    system.setGround(options.has_ground != 0 ? std::optional(options.ground_height) : std::nullopt);
-    return {};
+    RELIEF_TRY(system.setForces({vec(options.gravity), vec(options.wind), options.drag, 0.0F}));
+    return system.setGround(options.has_ground != 0 ? std::optional(options.ground_height) : std::nullopt);
+}
+
+Result<Birth> birthOf(const Call& call, const relief_birth& birth, std::size_t i) {
+    const auto name = [i](const char* field) { return NumberName{"births", i, field}; };
+    RELIEF_TRY(call.numbers(birth.position, kAny, name("position")));
+    RELIEF_TRY(call.numbers(birth.velocity, kAny, name("velocity")));
+    RELIEF_TRY(call.number(birth.lifetime, kLifetime, name("lifetime")));
+    RELIEF_TRY(call.number(birth.type, {0.0, kBirthTypeMax}, name("type")));
+    return Birth{vec(birth.position), vec(birth.velocity), birth.lifetime, birth.type};
+}
+
+/// Where a program's own shader has the collider.
+Result<ColliderTextures::Binding> bindingOf(const Call& call, const TexturesObject& textures, int first_unit,
+                                            int uniform_block) {
+    RELIEF_TRY(call.number(first_unit, {0.0, static_cast<double>(textures.units - 3)}, {"first_unit"}));
+    RELIEF_TRY(
+        call.number(uniform_block, {0.0, static_cast<double>(textures.blocks - 1)}, {"uniform_block"}));
+    return ColliderTextures::Binding{first_unit, uniform_block};
+}
+
+Result<ParticleStyle> styleOf(const Call& call, const relief_picture_options* given,
+                              const PictureObject& picture) {
+    relief_picture_options all{};
+    if (given != nullptr) {
+        all = RELIEF_TRY(call.structure(given, "options", "relief_picture_options", kPictureOptionsSizes));
+    }
+    const auto name = [](const char* field) { return NumberName{.argument = "options", .field = field}; };
+    RELIEF_TRY(call.number(all.diameter, kNotNegative, name("diameter")));
+    RELIEF_TRY(call.numbers(all.color, kShare, name("color")));
+    RELIEF_TRY(call.number(all.opacity, kShare, name("opacity")));
+    const glm::vec3 color = vec(all.color);
+    ParticleStyle style;
+    style.diameter = all.diameter > 0.0F ? all.diameter : picture.diameter;
+    style.color = color == glm::vec3(0.0F) ? glm::vec3(1.0F) : color;
+    style.opacity = all.opacity > 0.0F ? all.opacity : 0.95F;
+    return style;
+}
+
+Result<relief_view> viewOf(const Call& call, const relief_view* given) {
+    RELIEF_TRY(call.notNull(given, "view"));
+    const auto all = RELIEF_TRY(call.structure(given, "view", "relief_view", kViewSizes));
+    const auto name = [](const char* field) { return NumberName{.argument = "view", .field = field}; };
+    RELIEF_TRY(call.numbers(all.view, kAny, name("view")));
+    RELIEF_TRY(call.numbers(all.projection, kAny, name("projection")));
+    RELIEF_TRY(call.number(all.width, kPixels, name("width")));
+    RELIEF_TRY(call.number(all.height, kPixels, name("height")));
+    RELIEF_TRY(call.number(all.srgb, kShare, name("srgb")));
+    if (all.projection[5] == 0.0F) {
+        return call.refuse("view->projection is no perspective: its number 5 is 0");
+    }
+    if (all.framebuffer != 0 && glIsFramebuffer(all.framebuffer) == GL_FALSE) {
+        return call.refuse("view->framebuffer is " + std::to_string(all.framebuffer) +
+                           ", which is no framebuffer of the context");
+    }
+    return all;
 }
 
 }  // namespace
@@ -107,145 +243,205 @@ const char* relief_version() {
 }
 
 const char* relief_error() {
-    return t_error.c_str();
+    callErrors().read();
+    return callErrors().last();
+}
+
+uint64_t relief_error_count() {
+    return callErrors().count();
 }
 
 // --- colliders, on the CPU
 
 relief_collider* relief_collider_load(const char* path) {
-    return guarded<relief_collider*>(nullptr, [&]() -> Result<relief_collider*> {
-        Collider collider = RELIEF_TRY(loadCollider(path));
-        return new relief_collider{std::move(collider)};
+    return create<relief_collider>(__func__, [&](const Call& call) -> Result<std::shared_ptr<Collider>> {
+        RELIEF_TRY(call.notNull(path, "path"));
+        return std::make_shared<Collider>(RELIEF_TRY(loadCollider(path)));
     });
 }
 
 relief_collider* relief_collider_read(const void* bytes, size_t size) {
-    return guarded<relief_collider*>(nullptr, [&]() -> Result<relief_collider*> {
-        Collider collider = RELIEF_TRY(readContainer({static_cast<const std::byte*>(bytes), size}));
-        return new relief_collider{std::move(collider)};
+    return create<relief_collider>(__func__, [&](const Call& call) -> Result<std::shared_ptr<Collider>> {
+        const auto* first = static_cast<const std::byte*>(bytes);
+        RELIEF_TRY(call.array(first, "bytes", size, "size"));
+        return std::make_shared<Collider>(RELIEF_TRY(readContainer({first, size})));
     });
 }
 
 void relief_collider_free(relief_collider* collider) {
-    delete collider;
+    answer(__func__, false, [&](const Call& call) -> Result<bool> {
+        if (collider != nullptr) {
+            [[maybe_unused]] const auto* object = RELIEF_TRY(call.object(collider, "collider"));
+            [[maybe_unused]] const auto last =
+                handleTable().remove(HandleKind::kCollider, reinterpret_cast<std::uintptr_t>(collider));
+        }
+        return true;
+    });
 }
 
 void relief_collider_bounds(const relief_collider* collider, float min[3], float max[3]) {
-    std::copy_n(&collider->collider.bounds.min.x, 3, min);
-    std::copy_n(&collider->collider.bounds.max.x, 3, max);
+    answer(__func__, false, [&](const Call& call) -> Result<bool> {
+        for (float* out : {min, max}) {
+            if (out != nullptr) {
+                std::fill_n(out, 3, kNan);
+            }
+        }
+        const Bounds& bounds = RELIEF_TRY(call.object(collider, "collider"))->bounds;
+        RELIEF_TRY(call.notNull(min, "min"));
+        RELIEF_TRY(call.notNull(max, "max"));
+        std::copy_n(&bounds.min.x, 3, min);
+        std::copy_n(&bounds.max.x, 3, max);
+        return true;
+    });
 }
 
 size_t relief_collider_map_count(const relief_collider* collider) {
-    return collider->collider.maps.size();
+    return answer(__func__, std::size_t{0}, [&](const Call& call) -> Result<std::size_t> {
+        return RELIEF_TRY(call.object(collider, "collider"))->maps.size();
+    });
 }
 
 const char* relief_collider_unit(const relief_collider* collider) {
-    return collider->collider.unit.c_str();
+    return answer(__func__, "", [&](const Call& call) -> Result<const char*> {
+        return RELIEF_TRY(call.object(collider, "collider"))->unit.c_str();
+    });
 }
 
 void relief_collider_query(const relief_collider* collider, const float* points, size_t count,
                            relief_sample* samples) {
-    for (std::size_t i = 0; i < count; ++i) {
-        const FieldSample sample = evaluate(collider->collider, pointAt(points, i));
-        samples[i].distance = sample.distance;
-        put(sample.normal, samples[i].normal);
-        samples[i].map = sample.map;
-    }
+    query(__func__, collider, points, count, samples,
+          [](const Collider& field, const glm::vec3& point) { return evaluate(field, point); });
 }
 
 void relief_collider_nearest(const relief_collider* collider, const float* points, size_t count,
                              relief_sample* samples) {
-    for (std::size_t i = 0; i < count; ++i) {
-        const SurfaceSample sample = nearestSurface(collider->collider, pointAt(points, i));
-        samples[i].distance = sample.distance;
-        put(sample.normal, samples[i].normal);
-        samples[i].map = sample.map;
-    }
+    query(__func__, collider, points, count, samples,
+          [](const Collider& field, const glm::vec3& point) { return nearestSurface(field, point); });
 }
 
 // --- colliders, on the GPU
 
 relief_textures* relief_textures_create(const relief_collider* collider) {
-    return guarded<relief_textures*>(nullptr, [&]() -> Result<relief_textures*> {
-        auto textures = RELIEF_TRY(ColliderTextures::create(collider->collider));
-        std::string core = RELIEF_TRY(shaderText("collider.glsl"));
-        std::string glsl = textures.defines() + core;
-        return new relief_textures{std::move(textures), std::move(glsl)};
-    });
+    return create<relief_textures>(__func__,
+                                   [&](const Call& call) -> Result<std::shared_ptr<TexturesObject>> {
+                                       const Collider& field = *RELIEF_TRY(call.object(collider, "collider"));
+                                       RELIEF_TRY(call.context());
+                                       auto textures = RELIEF_TRY(ColliderTextures::create(field));
+                                       std::string core = RELIEF_TRY(shaderText("collider.glsl"));
+                                       std::string glsl = textures.defines() + core;
+                                       TexturesObject made{std::move(textures), std::move(glsl)};
+                                       glGetIntegerv(GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS, &made.units);
+                                       glGetIntegerv(GL_MAX_UNIFORM_BUFFER_BINDINGS, &made.blocks);
+                                       return std::make_shared<TexturesObject>(std::move(made));
+                                   });
 }
 
 void relief_textures_free(relief_textures* textures) {
-    delete textures;
+    freeOnGpu(__func__, textures, "textures");
 }
 
 const char* relief_textures_glsl(const relief_textures* textures) {
-    return textures->glsl.c_str();
+    return answer(__func__, "", [&](const Call& call) -> Result<const char*> {
+        return RELIEF_TRY(call.object(textures, "textures"))->glsl.c_str();
+    });
 }
 
 void relief_textures_attach(const relief_textures* textures, uint32_t program, int first_unit,
                             int uniform_block) {
-    textures->textures.attach(program, {first_unit, uniform_block});
+    answer(__func__, false, [&](const Call& call) -> Result<bool> {
+        const TexturesObject& from = *RELIEF_TRY(call.object(textures, "textures"));
+        RELIEF_TRY(call.context());
+        const auto binding = RELIEF_TRY(bindingOf(call, from, first_unit, uniform_block));
+        GLint linked = GL_FALSE;
+        if (glIsProgram(program) == GL_TRUE) {
+            glGetProgramiv(program, GL_LINK_STATUS, &linked);
+        }
+        if (linked != GL_TRUE) {
+            return call.refuse("program is " + std::to_string(program) +
+                               ", which is no program of the context that is linked");
+        }
+        from.textures.attach(program, binding);
+        return true;
+    });
 }
 
 void relief_textures_bind(const relief_textures* textures, int first_unit, int uniform_block) {
-    textures->textures.bind({first_unit, uniform_block});
+    answer(__func__, false, [&](const Call& call) -> Result<bool> {
+        const TexturesObject& from = *RELIEF_TRY(call.object(textures, "textures"));
+        RELIEF_TRY(call.context());
+        from.textures.bind(RELIEF_TRY(bindingOf(call, from, first_unit, uniform_block)));
+        return true;
+    });
 }
 
 // --- particles
 
 relief_particles* relief_particles_create(const relief_textures* textures,
                                           const relief_particles_options* options) {
-    return guarded<relief_particles*>(nullptr, [&]() -> Result<relief_particles*> {
-        const relief_particles_options all = known(options);
-        auto system =
-            RELIEF_TRY(ParticleSystem::create({.capacity = all.capacity == 0 ? 65536 : all.capacity}));
-        RELIEF_TRY(system.setCollider(textures == nullptr ? nullptr : &textures->textures));
-        RELIEF_TRY(apply(all, system));
-        return new relief_particles{std::move(system), {}};
-    });
+    return create<relief_particles>(
+        __func__, [&](const Call& call) -> Result<std::shared_ptr<ParticlesObject>> {
+            const auto among = RELIEF_TRY(call.optional(textures, "textures"));
+            const relief_particles_options all = RELIEF_TRY(optionsOf(call, options));
+            RELIEF_TRY(call.context());
+            auto system =
+                RELIEF_TRY(ParticleSystem::create({.capacity = all.capacity == 0 ? 65536 : all.capacity}));
+            RELIEF_TRY(system.setCollider(among ? &among->textures : nullptr));
+            RELIEF_TRY(apply(all, system));
+            return std::make_shared<ParticlesObject>(ParticlesObject{among, std::move(system), {}});
+        });
 }
 
 void relief_particles_free(relief_particles* particles) {
-    delete particles;
+    freeOnGpu(__func__, particles, "particles");
 }
 
 int relief_particles_set(relief_particles* particles, const relief_particles_options* options) {
-    return guarded(-1, [&]() -> Result<int> {
-        RELIEF_TRY(apply(known(options), particles->system));
+    return answer(__func__, -1, [&](const Call& call) -> Result<int> {
+        ParticlesObject& to = *RELIEF_TRY(call.object(particles, "particles"));
+        RELIEF_TRY(call.notNull(options, "options"));
+        const relief_particles_options all = RELIEF_TRY(optionsOf(call, options));
+        RELIEF_TRY(call.context());
+        RELIEF_TRY(apply(all, to.system));
         return 0;
     });
 }
 
 size_t relief_particles_spawn(relief_particles* particles, const relief_birth* births, size_t count) {
-    return guarded<std::size_t>(0, [&]() -> Result<std::size_t> {
-        particles->births.clear();
-        for (const relief_birth& birth : std::span(births, count)) {
-            particles->births.push_back(
-                {vec(birth.position), vec(birth.velocity), birth.lifetime, birth.type});
+    return answer(__func__, std::size_t{0}, [&](const Call& call) -> Result<std::size_t> {
+        ParticlesObject& to = *RELIEF_TRY(call.object(particles, "particles"));
+        RELIEF_TRY(call.array(births, "births", count, "count"));
+        to.births.clear();
+        for (std::size_t i = 0; i < count; ++i) {
+            to.births.push_back(RELIEF_TRY(birthOf(call, births[i], i)));
         }
-        return particles->system.spawn(particles->births);
+        return to.system.spawn(to.births);
     });
 }
 
 int relief_particles_step(relief_particles* particles, float seconds) {
-    return guarded(-1, [&]() -> Result<int> {
-        if (!(seconds > 0.0F && seconds < 1e9F)) {
-            return fail(ErrorCode::kUsage, "a step takes more than 0 seconds");
-        }
-        particles->system.step(seconds);
+    return answer(__func__, -1, [&](const Call& call) -> Result<int> {
+        ParticlesObject& of = *RELIEF_TRY(call.object(particles, "particles"));
+        RELIEF_TRY(call.number(seconds, kStep, {"seconds"}));
+        RELIEF_TRY(call.context());
+        RELIEF_TRY(of.system.step(seconds));
         RELIEF_TRY(checkGpu("stepping particles"));
         return 0;
     });
 }
 
 relief_counts relief_particles_counts(const relief_particles* particles) {
-    const ParticleCounts counts = particles->system.counts();
-    return {counts.born, counts.died, counts.refused, counts.alive};
+    return answer(__func__, relief_counts{}, [&](const Call& call) -> Result<relief_counts> {
+        const ParticleCounts counts = RELIEF_TRY(call.object(particles, "particles"))->system.counts();
+        return relief_counts{counts.born, counts.died, counts.refused, counts.alive};
+    });
 }
 
 int64_t relief_particles_read(const relief_particles* particles, relief_particle* out, size_t room) {
-    return guarded<int64_t>(-1, [&]() -> Result<int64_t> {
-        const auto states = RELIEF_TRY(particles->system.readState());
+    return answer(__func__, int64_t{-1}, [&](const Call& call) -> Result<int64_t> {
+        const ParticlesObject& of = *RELIEF_TRY(call.object(particles, "particles"));
+        RELIEF_TRY(call.array(out, "out", room, "room"));
+        RELIEF_TRY(call.context());
+        const auto states = RELIEF_TRY(of.system.readState());
         for (std::size_t i = 0; i < std::min(room, states.size()); ++i) {
             const ParticleState& from = states[i];
             out[i].id = from.id;
@@ -263,39 +459,43 @@ int64_t relief_particles_read(const relief_particles* particles, relief_particle
 // --- pictures
 
 relief_picture* relief_picture_create(const relief_textures* textures, const relief_collider* collider) {
-    return guarded<relief_picture*>(nullptr, [&]() -> Result<relief_picture*> {
+    return create<relief_picture>(__func__, [&](const Call& call) -> Result<std::shared_ptr<PictureObject>> {
+        const auto among = RELIEF_TRY(call.optional(textures, "textures"));
+        const auto field = RELIEF_TRY(call.optional(collider, "collider"));
+        if ((among == nullptr) != (field == nullptr)) {
+            return call.refuse(std::string(among ? "collider" : "textures") +
+                               " is NULL; give the textures and the collider that they are of, or neither");
+        }
+        RELIEF_TRY(call.context());
         std::optional<ColliderView> view;
         float diameter = 0.01F;
-        if (textures != nullptr && collider != nullptr) {
-            const Collider& body = collider->collider;
-            view = ColliderView{&textures->textures, body.bounds, finestTexel(body)};
-            diameter = 0.01F * body.bounds.longestSide();
+        if (among) {
+            view = ColliderView{&among->textures, field->bounds, finestTexel(*field)};
+            diameter = 0.01F * field->bounds.longestSide();
         }
         auto renderer = RELIEF_TRY(ParticleRenderer::create(view));
-        return new relief_picture{std::move(renderer), diameter};
+        return std::make_shared<PictureObject>(PictureObject{among, std::move(renderer), diameter});
     });
 }
 
 void relief_picture_free(relief_picture* picture) {
-    delete picture;
+    freeOnGpu(__func__, picture, "picture");
 }
 
 int relief_picture_draw(relief_picture* picture, const relief_particles* particles,
                         const relief_picture_options* options, const relief_view* view) {
-    return guarded(-1, [&]() -> Result<int> {
-        const relief_picture_options style = known(options);
-        const relief_view from = known(view);
+    return answer(__func__, -1, [&](const Call& call) -> Result<int> {
+        PictureObject& by = *RELIEF_TRY(call.object(picture, "picture"));
+        const ParticlesObject& shown = *RELIEF_TRY(call.object(particles, "particles"));
+        RELIEF_TRY(call.context());
+        const ParticleStyle style = RELIEF_TRY(styleOf(call, options, by));
+        const relief_view from = RELIEF_TRY(viewOf(call, view));
         glm::mat4 view_matrix;
         glm::mat4 projection;
         std::memcpy(&view_matrix, from.view, sizeof(view_matrix));
         std::memcpy(&projection, from.projection, sizeof(projection));
-        const glm::vec3 color = vec(style.color);
-        ParticleStyle drawn;
-        drawn.diameter = style.diameter > 0.0F ? style.diameter : picture->diameter;
-        drawn.color = color == glm::vec3(0.0F) ? glm::vec3(1.0F) : color;
-        drawn.opacity = style.opacity > 0.0F ? style.opacity : 0.95F;
-        RELIEF_TRY(picture->renderer.draw(particles->system, CameraMatrices(view_matrix, projection), drawn,
-                                          {from.framebuffer, from.width, from.height, from.srgb != 0}));
+        RELIEF_TRY(by.renderer.draw(shown.system, CameraMatrices(view_matrix, projection), style,
+                                    {from.framebuffer, from.width, from.height, from.srgb != 0}));
         return 0;
     });
 }

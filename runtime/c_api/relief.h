@@ -1,15 +1,31 @@
 /* Relief from C and from whatever calls C: colliders on the CPU and on the GPU, particles, pictures of both.
  *
- * librelief.so exports these functions and nothing else; no exception leaves one. A function that makes something returns
- * NULL where it fails, others a negative number, and relief_error() says why, in one line. Handles are freed by the
- * function of their name, once; what depends on another must go first: pictures, then particles, textures, colliders.
+ * librelief.so exports these functions and nothing else; librelief_c.a has the same ones. No exception leaves one.
+ *
+ * Errors. Whatever is passed on is answered and does not crash, but for memory that is shorter than its count, and text
+ * without an end. A call that fails changes nothing; relief_error() names the argument and the cure in one line, and
+ * relief_error_count() tells that there was a failure. What is returned then: NULL by functions that make something, a
+ * negative number by those of type int and int64_t, 0 as a count, "" as a text; what is written: NaN.
+ *
+ * Handles are numbers that are looked up at each call, in some nanoseconds. NULL, a handle that has been freed, one of
+ * another kind and what never was one are errors; no value is given out twice. Freeing NULL does nothing. They are freed by
+ * the function of their name, once, in any order: particles and pictures keep the textures that they were made with, until
+ * they go themselves.
+ * A NULL that a failed call returned brings its error along: relief_textures_create(relief_collider_load(path)) fails as
+ * loading did. Where NULL is also a choice, as for the textures of particles, it is that failure until the thread has called
+ * relief_error(), or has made one of that kind, and the choice from then on.
  *
  * Functions marked (GL) need an OpenGL context (3.3 or OpenGL ES 3.0 with float render targets) current on the calling
- * thread, the same one for all that belongs together, and leave its state as it was. Handles are for one thread at a time;
- * relief_collider_query() may be called by several at once. Lengths are in the mesh's units, times in seconds, vectors of
- * three floats in a row, matrices of sixteen by columns, as OpenGL has them.
+ * thread, the same one for all that belongs together, and leave its state as it was. Where none is current they fail; what is
+ * to be freed then stays.
+ * Several threads may call at once with handles of their own, and relief_collider_query() and relief_collider_nearest()
+ * also with one and the same. Errors are kept for each thread.
  *
- * Structures only ever grow at their end: set `size` to sizeof(the structure), and leave what you do not need 0. */
+ * Lengths are in the mesh's units, times in seconds, vectors of three floats in a row, matrices of sixteen by columns, as
+ * OpenGL has them. Every number is finite; where no range stands beside it, no greater than 1e15 either way.
+ *
+ * Structures only ever grow at their end: set `size` to sizeof(the structure), and leave what you do not need 0. A size that
+ * no version of the structure had, 0 for one, is an error. */
 #ifndef RELIEF_H
 #define RELIEF_H
 
@@ -23,13 +39,15 @@ extern "C" {
 /* What this header describes. A library has relief_api_version() >= the header's, and the same major number, or must not be
  * used with it. */
 #define RELIEF_API_MAJOR 1
-#define RELIEF_API_MINOR 0
+#define RELIEF_API_MINOR 1
 #define RELIEF_API_VERSION (RELIEF_API_MAJOR * 1000 + RELIEF_API_MINOR)
 int relief_api_version(void);
 const char* relief_version(void); /* of the library: "0.1.0" */
 
 /* Why this thread's last call that failed did so; "" before that. Valid until the next call. */
 const char* relief_error(void);
+/* How many of this thread's calls have failed so far. Since 1.1. */
+uint64_t relief_error_count(void);
 
 /* --- colliders, on the CPU --- */
 
@@ -42,16 +60,16 @@ void relief_collider_free(relief_collider* collider);
 
 void relief_collider_bounds(const relief_collider* collider, float min[3], float max[3]);
 size_t relief_collider_map_count(const relief_collider* collider);
-const char* relief_collider_unit(const relief_collider* collider); /* "m", or "" */
+const char* relief_collider_unit(const relief_collider* collider); /* "m", or ""; as long as the collider */
 
 typedef struct relief_sample {
     float
-        distance; /* to the plane that decides the side: negative inside; 1e30: outside, and no more is known */
+        distance; /* to the plane that decides the side: negative inside; 1e30: outside, and no more is known; NaN: an error */
     float normal[3]; /* outwards; zero where no more than "outside" is known */
     int32_t map;     /* that decides; -1: no map says anything */
 } relief_sample;
 
-/* What the particles collide with, at `count` points. */
+/* What the particles collide with, at `count` points. A point that is not finite is an error; the others are answered. */
 void relief_collider_query(const relief_collider* collider, const float* points, size_t count,
                            relief_sample* samples);
 /* To the nearest surface, which is searched for: some thirteen times the work. */
@@ -67,8 +85,8 @@ void relief_textures_free(relief_textures* textures);
 /* What a shader of your own begins with, behind its #version and precision lines: defines and collider.glsl, which has
  * reliefEvaluate(vec3). Valid as long as the textures. */
 const char* relief_textures_glsl(const relief_textures* textures);
-/* Sets the program's samplers to units first_unit … first_unit + 2 and its block to uniform_block; once a program. Leaves
- * the program in use. */
+/* Sets the samplers of a linked program to units first_unit … first_unit + 2 and its block to uniform_block; once a program.
+ * Leaves the program in use. */
 void relief_textures_attach(const relief_textures* textures, uint32_t program, int first_unit,
                             int uniform_block);
 /* Binds textures and block there, before a draw; they stay bound. */
@@ -80,14 +98,14 @@ typedef struct relief_particles relief_particles;
 
 typedef struct relief_particles_options {
     size_t size;
-    uint32_t capacity;  /* particles that may live at once; 0: 65536 */
+    uint32_t capacity;  /* particles that may live at once, up to 16777216; 0: 65536 */
     float gravity[3];   /* units a second squared */
     float wind[3];      /* units a second */
-    float drag;         /* 1/s */
+    float drag;         /* 1/s; 0 or more */
     float restitution;  /* 0…1: speed kept across a surface */
     float friction;     /* 0…1: speed lost along it, per collision */
-    float radius;       /* of collision */
-    int32_t has_ground; /* 1: a floor at ground_height */
+    float radius;       /* of collision; 0 or more */
+    int32_t has_ground; /* 1: a floor at ground_height; 0: none */
     float ground_height;
 } relief_particles_options;
 
@@ -95,7 +113,7 @@ typedef struct relief_birth {
     float position[3];
     float velocity[3];
     float lifetime; /* > 0 */
-    uint32_t type;  /* 0 */
+    uint32_t type;  /* a mark of your own, below 16777216: relief_particle has it again */
 } relief_birth;
 
 typedef struct relief_particle {
@@ -113,14 +131,15 @@ typedef struct relief_counts {
     uint32_t alive;
 } relief_counts;
 
-/* `textures` may be NULL: nothing to collide with. */
+/* `textures` may be NULL: nothing to collide with. `options` may be NULL: all 0. */
 relief_particles* relief_particles_create(const relief_textures* textures,
                                           const relief_particles_options* options);
 void relief_particles_free(relief_particles* particles);
-/* Takes over all but the capacity. */
+/* Takes over all but the capacity. `options` is not NULL. */
 int relief_particles_set(relief_particles* particles, const relief_particles_options* options);
-/* For the next step; returns how many there was room for. */
+/* For the next step; returns how many there was room for. Needs no context. */
 size_t relief_particles_spawn(relief_particles* particles, const relief_birth* births, size_t count);
+/* `seconds`: above 0, up to 1e9. */
 int relief_particles_step(relief_particles* particles, float seconds);
 relief_counts relief_particles_counts(const relief_particles* particles);
 /* Waits for the GPU. Writes at most `room` particles, in the order of their indices; returns how many live, or -1. */
@@ -132,8 +151,8 @@ typedef struct relief_picture relief_picture;
 
 typedef struct relief_picture_options {
     size_t size;
-    float diameter; /* of a particle; 0: a hundredth of the collider's longest side */
-    float color[3]; /* sRGB; all 0: white */
+    float diameter; /* of a particle; 0: a hundredth of the collider's longest side, or 0.01 in the open */
+    float color[3]; /* sRGB, 0…1; all 0: white */
     float opacity;  /* 0…1; 0: 0.95 */
 } relief_picture_options;
 
@@ -142,14 +161,15 @@ typedef struct relief_view {
     float view[16];
     float projection[16];  /* perspective */
     uint32_t framebuffer;  /* with colour and depth; 0: the window's */
-    int32_t width, height; /* its pixels (0, 0) … (width - 1, height - 1) */
+    int32_t width, height; /* its pixels (0, 0) … (width - 1, height - 1); up to 65536 */
     int32_t srgb;          /* 1: it takes sRGB values, as a window does; 0: linear light */
 } relief_view;
 
-/* `textures` and `collider` light the particles; both NULL: they lie in the open. */
+/* `textures` and the `collider` that they are of light the particles; both NULL: they lie in the open. The collider may be
+ * freed at once. */
 relief_picture* relief_picture_create(const relief_textures* textures, const relief_collider* collider);
 void relief_picture_free(relief_picture* picture);
-/* Over what is there, hidden where its depth is nearer. */
+/* Over what is there, hidden where its depth is nearer. `options` may be NULL: all 0. */
 int relief_picture_draw(relief_picture* picture, const relief_particles* particles,
                         const relief_picture_options* options, const relief_view* view);
 

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "formats/base/finite.h"
 #include "runtime/collider/gpu_image.h"
 #include "runtime/collider/shader_texels.h"
 #include "runtime/gl/gl_fault.h"
@@ -82,11 +84,18 @@ Result<ColliderTextures> ColliderTextures::create(std::span<const ColliderBody> 
         return fail(ErrorCode::kLimit, std::to_string(bodies.size()) + " colliders are more than " +
                                            std::to_string(kBodiesMax) + "; bake some of them into one");
     }
+    const auto share = [](float value) { return value >= 0.0F && value <= 1.0F; };
     std::vector<PlacedMap> maps;
     std::vector<BlockBody> blocks;
     for (const ColliderBody& body : bodies) {
         if (!(body.pose.scale > 0.0F)) {
             return fail(ErrorCode::kUsage, "the scale of a collider must be above 0");
+        }
+        if (!isFinite(body.pose.position) ||
+            !std::isfinite(glm::dot(body.pose.rotation, body.pose.rotation)) ||
+            !std::isfinite(body.pose.scale) || !share(body.restitution) || !share(body.friction)) {
+            return fail(ErrorCode::kUsage,
+                        "the pose of a collider must be finite, its restitution and friction from 0 to 1");
         }
         const auto first = static_cast<std::int32_t>(maps.size());
         for (const DepthMap& map : body.collider->maps) {

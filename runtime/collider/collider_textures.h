@@ -64,7 +64,8 @@ class ColliderTextures {
     /// numbers), kUnsupported (no maps).
     [[nodiscard]] static Result<ColliderTextures> create(const Collider& collider);
     /// Uploads up to kBodiesMax of them, which share a world. The maps of those that are live are empty at
-    /// first. Fails as above, and with kLimit (more bodies) and kUsage (a scale that is not above 0).
+    /// first. Fails as above, and with kLimit (more bodies) and kUsage (a scale that is not above 0, a
+    /// pose that is not finite, a share outside 0…1).
     [[nodiscard]] static Result<ColliderTextures> create(std::span<const ColliderBody> bodies);
 
     /// The poses at the end of the next step; those of the call before become those at its beginning. Call it

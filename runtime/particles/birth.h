@@ -1,8 +1,11 @@
 // One particle to be born.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <glm/vec3.hpp>
+
+#include "formats/base/finite.h"
 
 namespace relief {
 
@@ -15,5 +18,14 @@ struct Birth {
     /// by as much, so that those born within one step do not all start from one place.
     float age = 0.0F;
 };
+
+inline constexpr std::uint32_t kBirthTypeMax = (1U << 24) - 1;  // what a float counts exactly
+
+/// Whether a particle system takes it: all numbers are finite and in the ranges above.
+[[nodiscard]] inline bool isValid(const Birth& birth) {
+    return isFinite(birth.position) && isFinite(birth.velocity) && birth.lifetime > 0.0F &&
+           std::isfinite(birth.lifetime) && birth.age >= 0.0F && std::isfinite(birth.age) &&
+           birth.type <= kBirthTypeMax;
+}
 
 }  // namespace relief

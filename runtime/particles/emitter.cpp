@@ -77,8 +77,8 @@ const char* problemOf(const EmitterSettings& s) {
         s.velocity_spread.y < 0.0F || s.velocity_spread.z < 0.0F) {
         return "velocity must be finite, velocity_spread at least 0";
     }
-    if (!(s.lifetime_min > 0.0F && s.lifetime_min <= s.lifetime_max)) {
-        return "lifetime_min must be above 0 and not above lifetime_max";
+    if (!(s.lifetime_min > 0.0F && s.lifetime_min <= s.lifetime_max && std::isfinite(s.lifetime_max))) {
+        return "lifetime_min must be above 0 and not above lifetime_max, which is finite";
     }
     return s.aim ? problemOfAim(s) : nullptr;
 }

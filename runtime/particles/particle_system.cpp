@@ -6,6 +6,7 @@
 #include <string>
 #include <unordered_map>
 
+#include "formats/base/finite.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/image_units.h"
@@ -22,13 +23,31 @@ constexpr std::array<float, 4> kZero{};
 // Below every floor and every particle, and yet finite when a height is subtracted from it.
 constexpr float kNoGround = -1e30F;
 
-constexpr std::uint32_t kIdMask = (1U << 24) - 1;  // what a float counts exactly
+constexpr std::uint32_t kIdMask = kBirthTypeMax;
 
 /// Draws quad.vert's triangle over the first rows of the bound framebuffer.
 void drawRows(const GlVertexArray& no_attributes, std::uint32_t width, std::uint32_t rows) {
     glViewport(0, 0, static_cast<GLsizei>(width), static_cast<GLsizei>(rows));
     glBindVertexArray(no_attributes.name());
     glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+Result<void> checkTypes(std::span<const ParticleType> types) {
+    const auto share = [](float value) { return value >= 0.0F && value <= 1.0F; };
+    const auto finite = [](float value, float low) { return value >= low && std::isfinite(value); };
+    for (const ParticleType& type : types) {
+        if (!(finite(type.mass, kParticleMassMin) && finite(type.radius, 0.0F) && share(type.restitution) &&
+              std::isfinite(type.gravity) && type.collides <= kCollidesWithAll && share(type.friction) &&
+              finite(type.friction_threshold, 0.0F) && finite(type.lifetime_loss, 0.0F))) {
+            return fail(
+                ErrorCode::kUsage,
+                "a type of particles needs numbers that are finite: a mass of at least 1e-15, a radius, "
+                "friction "
+                "threshold and loss of lifetime of at least 0, restitution and friction from 0 to 1; and it "
+                "collides with bodies 0 to 7 and the ground alone");
+        }
+    }
+    return {};
 }
 
 }  // namespace
@@ -141,12 +160,34 @@ Result<void> ParticleSystem::remakeStepIfNeeded() {
     return remakeStep(collider);
 }
 
-void ParticleSystem::setCollision(const Collision& collision) {
+Result<void> ParticleSystem::setForces(const Forces& forces) {
+    const auto rate = [](float value) { return value >= 0.0F && std::isfinite(value); };
+    if (!isFinite(forces.gravity) || !isFinite(forces.wind)) {
+        return fail(ErrorCode::kUsage, "gravity and wind must be finite");
+    }
+    if (!rate(forces.drag) || !rate(forces.viscosity)) {
+        return fail(ErrorCode::kUsage, "drag and viscosity must be at least 0, and finite");
+    }
+    forces_ = forces;
+    return {};
+}
+
+Result<void> ParticleSystem::setGround(std::optional<float> height) {
+    if (height && !std::isfinite(*height)) {
+        return fail(ErrorCode::kUsage, "the height of the ground must be finite");
+    }
+    ground_ = height;
+    return {};
+}
+
+Result<void> ParticleSystem::setCollision(const Collision& collision) {
     ParticleType type;
     type.restitution = collision.restitution;
     type.friction = collision.friction;
     type.friction_threshold = collision.friction_threshold;
+    RELIEF_TRY(checkTypes({&type, 1}));
     types_.assign(types_.size(), type);
+    return {};
 }
 
 Result<void> ParticleSystem::setTypes(std::span<const ParticleType> types) {
@@ -154,24 +195,14 @@ Result<void> ParticleSystem::setTypes(std::span<const ParticleType> types) {
         return fail(ErrorCode::kUsage, std::to_string(types.size()) + " types of particles; choose 1 to " +
                                            std::to_string(kParticleTypesMax));
     }
-    const auto share = [](float value) { return value >= 0.0F && value <= 1.0F; };
-    for (const ParticleType& type : types) {
-        if (!(type.mass >= kParticleMassMin && type.radius >= 0.0F && share(type.restitution) &&
-              std::isfinite(type.gravity) && type.collides <= kCollidesWithAll && share(type.friction) &&
-              type.friction_threshold >= 0.0F && type.lifetime_loss >= 0.0F)) {
-            return fail(ErrorCode::kUsage,
-                        "a type of particles needs a mass of at least 1e-15, a radius, friction threshold "
-                        "and loss of lifetime of at least 0, restitution and friction from 0 to 1, a finite "
-                        "gravity, and bits of kCollidesWithAll alone");
-        }
-    }
+    RELIEF_TRY(checkTypes(types));
     types_.assign(types.begin(), types.end());
     return remakeStepIfNeeded();
 }
 
 Result<void> ParticleSystem::setSweep(float length) {
-    if (!(length >= 0.0F)) {
-        return fail(ErrorCode::kUsage, "the length of a sweep must be at least 0");
+    if (!(length >= 0.0F && std::isfinite(length))) {
+        return fail(ErrorCode::kUsage, "the length of a sweep must be at least 0, and finite");
     }
     sweep_ = length;
     return remakeStepIfNeeded();
@@ -285,7 +316,14 @@ StepEvents ParticleSystem::withIds(EventList::Collected collected) const {
     return std::move(collected.events);
 }
 
-std::size_t ParticleSystem::spawn(std::span<const Birth> births) {
+Result<std::size_t> ParticleSystem::spawn(std::span<const Birth> births) {
+    const auto wrong = std::find_if_not(births.begin(), births.end(), isValid);
+    if (wrong != births.end()) {
+        return fail(ErrorCode::kUsage,
+                    "birth " + std::to_string(wrong - births.begin()) +
+                        " needs a finite position and velocity, a finite lifetime above 0, a "
+                        "finite age of at least 0, and a type below 2^24");
+    }
     const float now = clock();
     const glm::vec3 wind = air_ ? air_settings_.wind : forces_.wind;
     std::size_t accepted = 0;
@@ -322,7 +360,10 @@ std::size_t ParticleSystem::spawn(std::span<const Birth> births) {
     return accepted;
 }
 
-void ParticleSystem::step(float dt) {
+Result<void> ParticleSystem::step(float dt) {
+    if (!(dt > 0.0F && std::isfinite(dt))) {
+        return fail(ErrorCode::kUsage, "a step takes more than 0 seconds, and is finite");
+    }
     const PassState state;
     if (dt_before_ == 0.0F) {
         dt_before_ = dt;
@@ -343,6 +384,7 @@ void ParticleSystem::step(float dt) {
         setEpochForward();
     }
     drawn_extent_ = allocator_.extent();
+    return {};
 }
 
 float ParticleSystem::clock() const {

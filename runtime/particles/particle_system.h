@@ -105,13 +105,15 @@ class ParticleSystem {
     /// \param collider  must outlive its use by the system; null: nothing.
     /// Errors: kFailure (the driver's compiler).
     [[nodiscard]] Result<void> setCollider(const ColliderTextures* collider);
-    void setForces(const Forces& forces) { forces_ = forces; }
+    /// Errors: kUsage (a number that is not finite, a drag or viscosity below 0); the forces then stay as they were.
+    [[nodiscard]] Result<void> setForces(const Forces& forces);
     /// One type of particles, without radius, that bounces.
-    void setCollision(const Collision& collision);
+    /// Errors: kUsage (restitution or friction outside 0…1, a threshold that is below 0 or not finite).
+    [[nodiscard]] Result<void> setCollision(const Collision& collision);
     /// The types of particles: Birth::type is an index here, and the last one for what lies beyond. Compiles
     /// the step where their number changes, or the first gets a radius or collides with less than all.
-    /// Errors: kUsage (none or more than kParticleTypesMax; a mass below kParticleMassMin, a negative radius, a
-    /// share outside 0…1, a gravity that is not finite, unknown bits), kFailure (the driver's compiler).
+    /// Errors: kUsage (none or more than kParticleTypesMax; a number that is not finite, a mass below kParticleMassMin, a
+    /// negative radius, a share outside 0…1, unknown bits), kFailure (the driver's compiler).
     [[nodiscard]] Result<void> setTypes(std::span<const ParticleType> types);
     /// Above 0 a step tests its way in pieces no longer than this, world units, and never ends inside what it
     /// did not begin in: nothing crosses a body at rest that is thicker than this. What moves farther than
@@ -122,7 +124,8 @@ class ParticleSystem {
     /// one. Fails as AirBlock::create does, and with kFailure (the driver's compiler).
     [[nodiscard]] Result<void> setAir(const AirSettings& air);
     /// A floor: everything below this height is solid, in union with the collider. nullopt: none.
-    void setGround(std::optional<float> height) { ground_ = height; }
+    /// Errors: kUsage (a height that is not finite).
+    [[nodiscard]] Result<void> setGround(std::optional<float> height);
 
     /// From the next step on, each step says what happened to every particle. nullopt: no longer, as at first; a step
     /// then costs nothing more, in time or memory. Compiles the step where that changes; what is under way is lost.
@@ -145,10 +148,12 @@ class ParticleSystem {
     /// Gives birth at the start of the next step; what has an age then has moved freely, under the forces,
     /// since its own birth. Texels without a particle are taken in ascending order.
     /// \return how many found a place; the rest are refused and counted.
-    std::size_t spawn(std::span<const Birth> births);
+    /// Errors: kUsage (one that isValid() is not true of, by its number; nobody is born then).
+    Result<std::size_t> spawn(std::span<const Birth> births);
 
     /// Moves everything by `dt` seconds, > 0. Restores the GL state that it touches (runtime/INTEGRATE.md).
-    void step(float dt);
+    /// Errors: kUsage (another `dt`; nothing has moved then). What fails on the GPU, checkGpu() tells (gl_fault.h).
+    Result<void> step(float dt);
 
     /// kFragment or kCompute.
     [[nodiscard]] StepPath path() const { return path_; }

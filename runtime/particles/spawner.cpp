@@ -63,7 +63,12 @@ std::uint64_t Spawner::spawn(const StepEvents& step, std::span<const ParticleTyp
             settings_.count_min + random_.below(settings_.count_max - settings_.count_min + 1);
         const std::uint64_t made = std::min(due, left);
         for (std::uint64_t i = 0; i < made; ++i) {
-            births.push_back(sample(event, radius));
+            const Birth birth = sample(event, radius);
+            if (isValid(birth)) {
+                births.push_back(birth);
+            } else {
+                ++refused;
+            }
         }
         left -= made;
         refused += due - made;

@@ -60,7 +60,8 @@ class Spawner {
     /// \param types   of the particle system: their radii.
     /// \param room    at most so many are made.
     /// \param births  they are added at its end.
-    /// \return how many were due but found no room, or were above `most`.
+    /// \return how many were due but found no room, were above `most`, or have no finite place or velocity, because the
+    /// event has none.
     std::uint64_t spawn(const StepEvents& step, std::span<const ParticleType> types, std::uint64_t room,
                         std::vector<Birth>& births);
 

@@ -1,6 +1,7 @@
 #include "runtime/picture/particle_renderer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/gtc/type_ptr.hpp>
 #include <string>
 
@@ -21,6 +22,11 @@ static_assert(kSecondUnit + 1 <= PassState::kUnits);
 
 // A smaller sprite would miss the centres of most pixels.
 constexpr float kPixelsMin = 1.5F;
+
+bool isFinite(const glm::mat4& matrix) {
+    const float* numbers = glm::value_ptr(matrix);
+    return std::all_of(numbers, numbers + 16, [](float number) { return std::isfinite(number); });
+}
 
 bool anyLit(const ParticleStyle& style) {
     return style.looks.empty() || std::any_of(style.looks.begin(), style.looks.end(),
@@ -205,6 +211,9 @@ Result<void> ParticleRenderer::draw(const ParticleSystem& particles, const Camer
                                     const ParticleOrder& order, const GlTexture* behind) {
     if (!(style.soft >= 0.0F && style.soft < 1e30F)) {
         return fail(ErrorCode::kUsage, "the soft edge of particles is a distance, 0 or more");
+    }
+    if (!isFinite(camera.view) || !isFinite(camera.projection)) {
+        return fail(ErrorCode::kUsage, "the matrices of a camera must be finite");
     }
     if (style.sprite == Sprite::kPoint && anyStretched(style)) {
         return fail(ErrorCode::kUsage, "points cannot be stretched; choose sprites that are quads");

@@ -77,7 +77,7 @@ class ParticleRenderer {
     /// \param behind  what style.soft compares with: window depths of a picture by the same camera and of the
     ///                target's size, not attached to the target, such as ColliderRenderer::depth(). Null:
     ///                style.soft has no effect.
-    /// Errors: kUsage (looks, see packLooks; a stretched look of points; soft), kUnsupported, kFailure (the driver's compiler), kLimit (no room for
+    /// Errors: kUsage (looks, see packLooks; a stretched look of points; soft; a camera that is not finite), kUnsupported, kFailure (the driver's compiler), kLimit (no room for
     /// the light among the collider).
     Result<void> draw(const ParticleSystem& particles, const CameraMatrices& camera,
                       const ParticleStyle& style, const RenderTarget& target, const ParticleOrder& order = {},

@@ -33,16 +33,16 @@ Result<ColliderTextures> makeTextures(const Scene& scene, std::span<const Collid
 }
 
 Result<void> applyScene(const Scene& scene, ParticleSystem& particles) {
-    particles.setForces({*scene.forces.gravity, scene.forces.wind,
-                         scene.air.viscosity ? 0.0F : scene.forces.drag, scene.air.viscosity.value_or(0.0F)});
-    particles.setCollision(scene.collision);
+    RELIEF_TRY(particles.setForces({*scene.forces.gravity, scene.forces.wind,
+                                    scene.air.viscosity ? 0.0F : scene.forces.drag,
+                                    scene.air.viscosity.value_or(0.0F)}));
+    RELIEF_TRY(particles.setCollision(scene.collision));
     if (!scene.types.empty()) {
         RELIEF_TRY(particles.setTypes(scene.types));
     }
     RELIEF_TRY(particles.setSweep(scene.sweep));
     RELIEF_TRY(particles.setAir(scene.air));
-    particles.setGround(scene.ground.enabled ? scene.ground.height : std::nullopt);
-    return {};
+    return particles.setGround(scene.ground.enabled ? scene.ground.height : std::nullopt);
 }
 
 Result<ParticleSystem> makeParticles(const Scene& scene, const ColliderTextures& textures, StepPath path) {
@@ -113,11 +113,11 @@ Result<void> Simulation::stepAs(std::uint64_t tag, float dt, StageTimer* stages)
     {
         const StageScope scope(stages, Stage::kBirths);
         RELIEF_TRY(takeEvents(kStepsUnderWay));
-        giveBirth(dt);
+        RELIEF_TRY(giveBirth(dt));
     }
     const StageScope scope(stages, Stage::kStep);
     RELIEF_TRY(moveColliders(particles_->time() + static_cast<double>(dt)));
-    particles_->step(dt);
+    RELIEF_TRY(particles_->step(dt));
     if (particles_->eventList() != nullptr) {
         particles_->requestEvents(tag);
     }
@@ -183,13 +183,14 @@ Result<void> Simulation::change(std::optional<std::vector<Emitter>> emitters) {
     return setEvents();
 }
 
-void Simulation::giveBirth(float dt) {
+Result<void> Simulation::giveBirth(float dt) {
     births_.clear();
     births_.swap(spawned_);
     const std::uint64_t room =
         particles_->room() - std::min<std::uint64_t>(particles_->room(), births_.size());
     refused_ += emitAll(emitters_, static_cast<double>(dt), room, births_, motions_, particles_->time());
-    particles_->spawn(births_);
+    [[maybe_unused]] const std::size_t accepted = RELIEF_TRY(particles_->spawn(births_));
+    return {};
 }
 
 Result<void> Simulation::moveColliders(double time) {

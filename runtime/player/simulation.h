@@ -32,7 +32,7 @@ class Simulation {
     /// Births, those of the scene's [[spawn]] by events of the step before the last, then the colliders' poses and shapes
     /// at the step's end, then the particles' step.
     /// \param stages  times births and step; may be null.
-    /// Fails as LiveBodies::show does.
+    /// Fails as LiveBodies::show and ParticleSystem::step do.
     [[nodiscard]] Result<void> step(StageTimer* stages) { return step(scene_->dt, stages); }
     /// \param dt  seconds, > 0, instead of the scene's.
     [[nodiscard]] Result<void> step(float dt, StageTimer* stages);
@@ -54,8 +54,10 @@ class Simulation {
     /// Hands on the events that are still under way. Fails as the sink and ParticleSystem::waitEvents do.
     [[nodiscard]] Result<void> finishEvents() { return takeEvents(0); }
 
-    /// Births on top of the emitters', with the next step. Returns how many: see ParticleSystem::spawn.
-    std::size_t spawn(std::span<const Birth> births) { return particles_->spawn(births); }
+    /// Births on top of the emitters', with the next step. Returns how many, and fails, as ParticleSystem::spawn does.
+    [[nodiscard]] Result<std::size_t> spawn(std::span<const Birth> births) {
+        return particles_->spawn(births);
+    }
 
     [[nodiscard]] const ParticleSystem& particles() const { return *particles_; }
     [[nodiscard]] const ColliderTextures& textures() const { return *textures_; }
@@ -66,7 +68,7 @@ class Simulation {
 
   private:
     Simulation() = default;
-    void giveBirth(float dt);
+    [[nodiscard]] Result<void> giveBirth(float dt);
     [[nodiscard]] Result<void> prewarm(Watchdog* watchdog);
     /// \param tag  of its events; 0: nobody is told of them.
     [[nodiscard]] Result<void> stepAs(std::uint64_t tag, float dt, StageTimer* stages);

@@ -365,12 +365,16 @@ EMSCRIPTEN_KEEPALIVE int relief_player_spawn(Player* player, const float* births
     return guarded(-1, [&]() -> Result<int> {
         std::vector<Birth> list;
         for (int i = 0; i < count; ++i, births += 8) {
+            if (!(births[7] >= 0.0F && births[7] <= static_cast<float>(kBirthTypeMax))) {
+                return fail(ErrorCode::kUsage,
+                            "birth " + std::to_string(i) + ": there is no type " + std::to_string(births[7]));
+            }
             list.push_back({{births[0], births[1], births[2]},
                             {births[3], births[4], births[5]},
                             births[6],
                             static_cast<std::uint32_t>(births[7])});
         }
-        return static_cast<int>(player->simulation->spawn(list));
+        return static_cast<int>(RELIEF_TRY(player->simulation->spawn(list)));
     });
 }
 

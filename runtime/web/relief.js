@@ -258,7 +258,7 @@ export async function load(source) {
 }
 
 function query(points, ask) {
-    const xyz = numbers("points", points, 3);
+    const xyz = checkFinite("points", numbers("points", points, 3));
     const count = xyz.length / 3;
     return withMemory([12 * count, 16 * count, 4 * count], (at, fields, maps) => {
         wasm.HEAPF32.set(xyz, at >> 2);

@@ -41,8 +41,8 @@ class Snow {
           body_picture(need(relief::ColliderRenderer::create(view()))),
           snow_picture(need(relief::ParticleRenderer::create(view()))) {
         need(particles.setCollider(&textures));
-        particles.setForces({.gravity = {0.0F, -3.0F * size(), 0.0F}, .drag = 2.5F});
-        particles.setCollision({.restitution = 0.0F, .friction = 1.0F});
+        need(particles.setForces({.gravity = {0.0F, -3.0F * size(), 0.0F}, .drag = 2.5F}));
+        need(particles.setCollision({.restitution = 0.0F, .friction = 1.0F}));
         camera.target = body.bounds.center();
         camera.eye = camera.target + size() * glm::vec3(1.0F, 0.7F, 2.0F);
         relief::setClipPlanes(camera, body.bounds);
@@ -51,8 +51,8 @@ class Snow {
     Snow& operator=(const Snow&) = delete;
 
     void fall(const std::vector<relief::Birth>& births, float seconds) {
-        particles.spawn(births);
-        particles.step(seconds);
+        need(particles.spawn(births));
+        need(particles.step(seconds));
     }
     void draw(const relief::RenderTarget& target) {  // your framebuffer, with colour and depth
         need(body_picture.draw(camera, {}, target));

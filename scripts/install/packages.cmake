@@ -65,7 +65,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS relief)
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "depth map colliders for particles, development files
 Relief bakes the outer shape of a mesh into a few depth maps, and collides a
 million particles with it in one fragment shader. This package has the
-headers, the static library for C++, the shaders, the files for CMake and
+headers, the static libraries, the shaders, the files for CMake and
 pkg-config, the documentation and the samples.")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-relief)

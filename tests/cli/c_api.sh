@@ -1,8 +1,10 @@
-# relief.h and librelief.so, as installed: a program in C99 uses every function, its answers are those of `relief query`,
-# and the library exports what the header declares and nothing else.
+# relief.h, librelief.so and librelief_c.a, as installed: a program in C99 uses every function by either, its answers are
+# those of `relief query`, and the shared library exports what the header declares and nothing else.
 . "$(dirname "$0")/lib.sh"
 
-cmake --install "$RELIEF_BIN/.." --prefix "$work/installed" >log || die "cannot install: $(tail log)"
+for component in development library; do
+    cmake --install "$RELIEF_BIN/.." --prefix "$work/installed" --component $component >log || die "cannot install: $(tail log)"
+done
 PKG_CONFIG_PATH=$(find "$work/installed" -name pkgconfig)
 export PKG_CONFIG_PATH
 read -ra flags < <(pkg-config --cflags --libs relief egl glesv2)
@@ -38,9 +40,36 @@ for a, b in zip(own, reference):
         assert [single(x) for x in a[3:7]] == [single(b[k]) for k in ('f', 'nx', 'ny', 'nz')], (a, b)
 P
 
+# The static library, by pkg-config and by CMake: the same answers, without the shared one.
+unset LD_LIBRARY_PATH
+cat >CMakeLists.txt <<'C'
+cmake_minimum_required(VERSION 3.25)
+project(c LANGUAGES C CXX)
+find_package(Relief 0.1 REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(GL REQUIRED IMPORTED_TARGET egl glesv2)
+foreach(name c c_static)
+    add_executable(by_${name} ${SOURCE})
+    target_compile_features(by_${name} PRIVATE c_std_99)
+    target_link_libraries(by_${name} PRIVATE Relief::${name} PkgConfig::GL)
+endforeach()
+C
+cmake -G Ninja -S . -B by_cmake -DCMAKE_PREFIX_PATH="$work/installed" -DSOURCE="$RELIEF_SOURCE/tests/cli/c_api.c" >log 2>&1 &&
+    cmake --build by_cmake >>log 2>&1 || die "no C by CMake: $(tail -20 log)"
+read -ra flags < <(pkg-config --cflags --libs relief-static egl glesv2)
+cc -std=c99 "$RELIEF_SOURCE/tests/cli/c_api.c" -o c_api_static "${flags[@]}" 2>log || die "does not link: $(head -20 log)"
+for program in ./c_api_static by_cmake/by_c_static by_cmake/by_c; do
+    "$program" points.csv bunny.relief >again.csv || die "$program failed"
+    cmp own.csv again.csv || die "$program gives other answers"
+    case $(ldd "$program" | grep -c 'librelief') in
+        0) [ "$program" != by_cmake/by_c ] || die "Relief::c is not the shared library" ;;
+        *) [ "$program" = by_cmake/by_c ] || die "$program needs the shared library" ;;
+    esac
+done
+
 # The ABI: every function of the header, and no other symbol.
 grep -oE '\brelief_[a-z_]+\(' "$RELIEF_SOURCE/runtime/c_api/relief.h" | tr -d '(' | sort -u >declared
 nm -D --defined-only "$library" | awk '$2 != "A" { print $3 }' | sed 's/@.*//' | sort -u >exported
 diff declared exported >log || die "the header and the library differ: $(cat log)"
-[ "$(wc -l <exported)" -ge 25 ] || die "only $(wc -l <exported) functions"
+[ "$(wc -l <exported)" -ge 27 ] || die "only $(wc -l <exported) functions"
 readelf -d "$library" | grep -q 'SONAME.*librelief.so.1' || die "the library has another SONAME"

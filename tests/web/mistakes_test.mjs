@@ -56,6 +56,8 @@ const kMistakes = {
     "system.spawn([{ velocity: [0, 0, 0] }])": /birth 0 needs a position/,
     "system.spawn([1, 2, 3])": /births: 3 numbers are not 8 for each/,
     "system.spawn([{ position: [0, NaN, 0] }])": /births: number 1 is NaN/,
+    "system.spawn([{ position: [0, 0, 0], lifetime: 0 }])": /birth 0 needs .* lifetime above 0/,
+    "system.spawn([{ position: [0, 0, 0], type: -1 }])": /birth 0: there is no type -1/,
     "system.spawn(3)": /births are an array/,
     "system.set(3)": /set\(\) takes a part of a scene/,
     "system.set({ forces: { gravitation: 3 } })": /gravitation/,
@@ -63,6 +65,8 @@ const kMistakes = {
     // asking
     "collider.query([1, 2])": /points: 2 numbers are not 3 for each/,
     "collider.query()": /points are an array/,
+    "collider.query([1, NaN, 2])": /points: number 1 is NaN/,
+    "gpu.query([1, 2, Infinity])": /points: number 2 is Infinity/,
     "gpu.query([1, 2, 3, 4])": /points: 4 numbers/,
     "collider.texels(99)": /no map 99/,
     "collider.texels('0')": /no map 0/,

@@ -71,7 +71,7 @@ TEST_P(BirthsGlTest, AFastJetShowsNoBands) {
 TEST_P(BirthsGlTest, AnAgeOfOneStepIsOneStep) {
     constexpr float kDt = 1.0F / 64.0F;
     ParticleSystem particles = makeSystem(4);
-    particles.setForces({{0.0F, -9.0F, 0.0F}, {5.0F, 0.0F, 1.0F}, 3.0F});
+    EXPECT_TRUE(particles.setForces({{0.0F, -9.0F, 0.0F}, {5.0F, 0.0F, 1.0F}, 3.0F}));
     const std::vector<Birth> earlier{{{1.0F, 2.0F, 3.0F}, {4.0F, 5.0F, 6.0F}, 1.0F, 0, 0.0F}};
     const std::vector<Birth> aged{{{1.0F, 2.0F, 3.0F}, {4.0F, 5.0F, 6.0F}, 1.0F, 0, kDt}};
     particles.spawn(earlier);

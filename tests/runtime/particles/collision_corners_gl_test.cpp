@@ -21,8 +21,8 @@ class CollisionCornersGlTest : public CollisionTest {};
 TEST_P(CollisionCornersGlTest, ASweptBounceKeepsTheVelocityInBothIntegrators) {
     for (const Integrator integrator : {Integrator::kEuler, Integrator::kVerlet}) {
         make({.capacity = 4, .integrator = integrator});
-        particles_->setGround(0.0F);
-        particles_->setCollision({1.0F, 0.0F, 0.0F});
+        EXPECT_TRUE(particles_->setGround(0.0F));
+        EXPECT_TRUE(particles_->setCollision({1.0F, 0.0F, 0.0F}));
         ASSERT_TRUE(particles_->setSweep(0.005F));
         spawnOne({{0.0F, 0.43F, 0.0F}, {0.5F, -6.0F, 0.0F}, 100.0F, 0});  // 0.1 a step: 20 pieces
         for (int step = 0; step < 8; ++step) {
@@ -51,7 +51,7 @@ TEST_P(CollisionCornersGlTest, SweptVerletStaysInsideAClosedBox) {
     box.maps.push_back(analytic::cubeMap(shape, Compare::kLess, {0.0, 0.0, 0.0}, {0.5, 0.5, 0.5}, 128));
     make({.capacity = 2000, .integrator = Integrator::kVerlet});
     collideWith(ColliderTextures::create(box));
-    particles_->setCollision({1.0F, 0.0F, 0.0F});
+    EXPECT_TRUE(particles_->setCollision({1.0F, 0.0F, 0.0F}));
     ASSERT_TRUE(particles_->setSweep(0.01F));
     Pcg32 random(5);
     std::vector<Birth> births;
@@ -89,7 +89,7 @@ TEST_P(CollisionCornersGlTest, AMovingWallPushesWhatIsSwept) {
             constexpr float kSpeed = 1.2F;
             const ColliderBody body{&box, {}, 1.0F, 0.0F};
             collideWith(ColliderTextures::create(std::span(&body, 1)));
-            particles_->setCollision({0.0F, 0.0F, 0.0F});
+            EXPECT_TRUE(particles_->setCollision({0.0F, 0.0F, 0.0F}));
             ASSERT_TRUE(particles_->setSweep(sweep ? 0.002F : 0.0F));
             spawnOne({{0.45F, -0.15F, 0.02F}, {0.0F, 0.5F, 0.0F}, 100.0F, 0});
             const int steps = 24;
@@ -141,8 +141,8 @@ TEST_P(CollisionCornersGlTest, WhatStoppedOnABodyThatIsGoneStays) {
 TEST_P(CollisionCornersGlTest, WhatHasAnAgeHasMovedInTheAirsWind) {
     for (const bool with_air : {false, true}) {
         make({.capacity = 4});
-        particles_->setForces(
-            {{}, with_air ? glm::vec3(0.0F, 9.0F, 0.0F) : glm::vec3(2.0F, 0.0F, 0.0F), 3.0F});
+        EXPECT_TRUE(particles_->setForces(
+            {{}, with_air ? glm::vec3(0.0F, 9.0F, 0.0F) : glm::vec3(2.0F, 0.0F, 0.0F), 3.0F}));
         if (with_air) {
             AirSettings air;
             air.wind = {2.0F, 0.0F, 0.0F};
@@ -171,8 +171,8 @@ TEST_P(CollisionCornersGlTest, VerletKeepsTheBooksOfEuler) {
     for (const Integrator integrator : {Integrator::kEuler, Integrator::kVerlet}) {
         make({.capacity = 5000, .integrator = integrator, .epoch_seconds = 0.25});
         ASSERT_TRUE(particles_->setTypes(types));
-        particles_->setForces({{0.0F, -4.0F, 0.0F}, {}, 0.2F});
-        particles_->setGround(0.0F);
+        EXPECT_TRUE(particles_->setForces({{0.0F, -4.0F, 0.0F}, {}, 0.2F}));
+        EXPECT_TRUE(particles_->setGround(0.0F));
         Pcg32 random(17);
         for (int step = 0; step < 300; ++step) {
             std::vector<Birth> births;
@@ -366,7 +366,7 @@ TEST_P(CollisionCornersGlTest, NumbersDoNotCompile) {
         return names;
     };
     make({.capacity = 4});
-    particles_->setGround(0.0F);
+    EXPECT_TRUE(particles_->setGround(0.0F));
     std::vector<ParticleType> types(2);
     ASSERT_TRUE(particles_->setTypes(types));
     ASSERT_TRUE(particles_->setSweep(0.1F));
@@ -448,7 +448,7 @@ TEST_P(CollisionCornersGlTest, ABallOnAFloorBouncesOffAWall) {
         type.radius = pose.scale * kRadius;
         type.restitution = 0.5F;
         setType(type);
-        particles_->setForces({});
+        EXPECT_TRUE(particles_->setForces({}));
         // 0.01 in the floor, and at the wall after a step and a half.
         const glm::vec3 at(0.5F - kRadius - 1.5F * 0.03F, kRadius - 0.01F, 0.05F);
         spawnOne({pose.position + turned(at), turned({0.03F / kDt, 0.0F, 0.0F}), 100.0F, 0});
@@ -473,7 +473,7 @@ TEST_P(CollisionCornersGlTest, VerletComesToRest) {
         type.friction = 0.3F;
         setType(type);
         ASSERT_TRUE(particles_->setSweep(sweep));
-        particles_->setForces({{0.0F, -9.81F, 0.0F}, {}, 0.0F});
+        EXPECT_TRUE(particles_->setForces({{0.0F, -9.81F, 0.0F}, {}, 0.0F}));
         Pcg32 random(8);
         std::vector<Birth> births;
         for (int i = 0; i < 200; ++i) {

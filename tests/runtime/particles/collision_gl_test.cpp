@@ -67,8 +67,8 @@ TEST_P(CollisionGlTest, MovingBodiesEqualTheReferenceParticleByParticle) {
         }
         collideWith(ColliderTextures::create(bodies));
         setType(settings.type);
-        particles_->setForces(settings.forces);
-        particles_->setGround(settings.ground);
+        EXPECT_TRUE(particles_->setForces(settings.forces));
+        EXPECT_TRUE(particles_->setGround(settings.ground));
 
         Pcg32 random(11);
         std::uint64_t compared = 0;
@@ -121,9 +121,9 @@ TEST_P(CollisionGlTest, VerletAndEulerTakeTheSameWay) {
     std::array<std::vector<ParticleState>, 2> ends;
     for (const Integrator integrator : {Integrator::kEuler, Integrator::kVerlet}) {
         make({.capacity = 500, .integrator = integrator});
-        particles_->setForces({{0.0F, -2.0F, 0.0F}, {1.0F, 0.0F, 0.0F}, 0.4F});
-        particles_->setGround(-1.0F);
-        particles_->setCollision({0.8F, 0.1F, 0.0F});
+        EXPECT_TRUE(particles_->setForces({{0.0F, -2.0F, 0.0F}, {1.0F, 0.0F, 0.0F}, 0.4F}));
+        EXPECT_TRUE(particles_->setGround(-1.0F));
+        EXPECT_TRUE(particles_->setCollision({0.8F, 0.1F, 0.0F}));
         Pcg32 random(2);
         std::vector<Birth> births;
         for (int i = 0; i < 500; ++i) {
@@ -167,8 +167,8 @@ TEST_P(CollisionGlTest, RadiusIsHonoured) {
         type.radius = kRadius;
         type.friction = 1.0F;
         setType(type);
-        particles_->setForces({{0.0F, -2.0F, 0.0F}, {}, 0.0F});
-        particles_->setGround(-1.0F);
+        EXPECT_TRUE(particles_->setForces({{0.0F, -2.0F, 0.0F}, {}, 0.0F}));
+        EXPECT_TRUE(particles_->setGround(-1.0F));
         std::vector<Birth> births;
         for (int i = 0; i < 400; ++i) {
             const auto x = static_cast<float>(i % 20) * 0.1F - 0.95F;
@@ -206,8 +206,8 @@ TEST_P(CollisionGlTest, EachTypeReactsInItsOwnWay) {
     types[4].lifetime_loss = 4.0F;  // of 10 seconds: two bounces are one too many
     types[5].mass = 4.0F;
     ASSERT_TRUE(particles_->setTypes(types));
-    particles_->setForces({{}, {}, 2.0F});
-    particles_->setGround(0.0F);
+    EXPECT_TRUE(particles_->setForces({{}, {}, 2.0F}));
+    EXPECT_TRUE(particles_->setGround(0.0F));
     // In flight the drag alone: v0 / (1 + dt k)^n with k = drag / mass.
     std::vector<Birth> births;
     for (std::uint32_t t = 0; t < 7; ++t) {
@@ -224,7 +224,7 @@ TEST_P(CollisionGlTest, EachTypeReactsInItsOwnWay) {
         EXPECT_NEAR(flown[t].velocity.x, std::pow(1.0F + kDt * k, -30.0F), 1e-5F) << t;
     }
 
-    particles_->setForces({});
+    EXPECT_TRUE(particles_->setForces({}));
     births.clear();
     for (std::uint32_t t = 0; t < 5; ++t) {
         births.push_back({{0.0F, 0.105F, 0.0F}, {0.5F, -1.0F, 0.0F}, 10.0F, t});
@@ -275,7 +275,7 @@ TEST_P(CollisionGlTest, StokesDragSlowsBySizeAndMass) {
     ASSERT_TRUE(particles_->setTypes(types));
     Forces forces;
     forces.viscosity = 0.5F;
-    particles_->setForces(forces);
+    EXPECT_TRUE(particles_->setForces(forces));
     const std::array<Birth, 2> births{Birth{{}, {1.0F, 0.0F, 0.0F}, 10.0F, 0},
                                       Birth{{}, {1.0F, 0.0F, 0.0F}, 10.0F, 1}};
     particles_->spawn(births);
@@ -344,7 +344,7 @@ TEST_P(CollisionGlTest, AMovingWallPushes) {
         constexpr float kSpeed = 1.2F;
         const ColliderBody body{&box, {}, 1.0F, 0.0F};
         collideWith(ColliderTextures::create(std::span(&body, 1)));
-        particles_->setCollision({restitution, 0.0F, 0.0F});
+        EXPECT_TRUE(particles_->setCollision({restitution, 0.0F, 0.0F}));
         const Birth birth{{0.6F, 0.05F, 0.02F}, {}, 100.0F, 0};
         particles_->spawn(std::span(&birth, 1));
         for (int step = 1; step <= 60; ++step) {
@@ -436,7 +436,7 @@ TEST_P(CollisionGlTest, WhatBouncesComesToRest) {
     type.restitution = 0.6F;
     type.friction = 0.3F;
     setType(type);
-    particles_->setForces({{0.0F, -9.81F, 0.0F}, {}, 0.0F});
+    EXPECT_TRUE(particles_->setForces({{0.0F, -9.81F, 0.0F}, {}, 0.0F}));
     Pcg32 random(8);
     std::vector<Birth> births;
     for (int i = 0; i < 600; ++i) {

@@ -45,8 +45,8 @@ TEST_P(EventsGlTest, ADroppedBallHitsOnceWhereAndWhenAndAsFastAsComputed) {
                      (sweep > 0.0F ? ", swept" : ""));
         make({.capacity = 10, .integrator = integrator});
         ASSERT_TRUE(particles_->setSweep(sweep));
-        particles_->setForces({.gravity = {0.0F, static_cast<float>(-kG), 0.0F}});
-        particles_->setGround(static_cast<float>(kGround));
+        EXPECT_TRUE(particles_->setForces({.gravity = {0.0F, static_cast<float>(-kG), 0.0F}}));
+        EXPECT_TRUE(particles_->setGround(static_cast<float>(kGround)));
         ParticleType type;
         type.radius = static_cast<float>(kR);
         type.on_collision = OnCollision::kStop;
@@ -128,8 +128,8 @@ Played played(ParticleSystem& particles, const ColliderTextures& textures, std::
               OnCollision reaction, bool ask, bool count_caught = false) {
     Played out;
     EXPECT_TRUE(particles.setCollider(&textures));
-    particles.setForces({{0.1F, -3.0F, 0.0F}, {0.4F, 0.0F, -0.3F}, 0.5F});
-    particles.setGround(-0.7F);
+    EXPECT_TRUE(particles.setForces({{0.1F, -3.0F, 0.0F}, {0.4F, 0.0F, -0.3F}, 0.5F}));
+    EXPECT_TRUE(particles.setGround(-0.7F));
     ParticleType type;
     type.restitution = 0.5F;
     type.friction = 0.2F;
@@ -224,8 +224,8 @@ TEST_P(EventsGlTest, HitsEqualTheReference) {
     settings.forces = {{0.2F, -3.0F, 0.0F}, {0.4F, 0.0F, -0.3F}, 0.6F};
     make({.capacity = 3000});
     collideWith(ColliderTextures::create(ball));
-    particles_->setForces(settings.forces);
-    particles_->setGround(settings.ground);
+    EXPECT_TRUE(particles_->setForces(settings.forces));
+    EXPECT_TRUE(particles_->setGround(settings.ground));
     ParticleType type;
     type.restitution = 0.4F;
     setType(type);
@@ -412,7 +412,7 @@ TEST_P(EventsGlTest, AskingChangesNoParticle) {
 TEST_P(EventsGlTest, AQuarterOfAMillionHitsAreAllThere) {
     constexpr std::uint32_t kMany = (1U << 18) + 1000;
     make({.capacity = kMany});
-    particles_->setGround(0.0F);
+    EXPECT_TRUE(particles_->setGround(0.0F));
     ASSERT_TRUE(particles_->setEvents(EventOptions{.most = ParticleSystem::kCapacityMax}));
     std::vector<Birth> births(kMany);
     for (std::uint32_t i = 0; i < kMany; ++i) {

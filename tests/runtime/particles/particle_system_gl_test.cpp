@@ -111,9 +111,9 @@ TEST_P(ParticleSystemGlTest, StepEqualsTheReferenceParticleByParticle) {
     settings.type.friction = 0.3F;
     settings.type.friction_threshold = 0.6F;
     settings.dt = kDt;
-    world.particles->setForces(settings.forces);
-    world.particles->setCollision({0.45F, 0.3F, 0.6F});
-    world.particles->setGround(settings.ground);
+    EXPECT_TRUE(world.particles->setForces(settings.forces));
+    EXPECT_TRUE(world.particles->setCollision({0.45F, 0.3F, 0.6F}));
+    EXPECT_TRUE(world.particles->setGround(settings.ground));
 
     struct Model {
         glm::vec3 position, velocity;
@@ -140,7 +140,7 @@ TEST_P(ParticleSystemGlTest, StepEqualsTheReferenceParticleByParticle) {
                                      randomIn(random, glm::vec3(-1.5F), glm::vec3(1.5F)),
                                      random.between(0.3F, 2.0F)));
         }
-        const std::size_t accepted = world.particles->spawn(births);
+        const std::size_t accepted = world.particles->spawn(births).value();
         for (std::size_t i = 0; i < accepted; ++i) {
             const std::uint32_t index = *free.begin();
             free.erase(free.begin());
@@ -209,10 +209,10 @@ TEST_P(ParticleSystemGlTest, BouncesOnAPlaneInClosedForm) {
         ASSERT_FALSE(HasFatalFailure());
         constexpr double kRestitution = 0.7;
         constexpr double kGravity = 4.0;
-        world.particles->setForces({{0.0F, -static_cast<float>(kGravity), 0.0F}, {}, 0.0F});
-        world.particles->setCollision({static_cast<float>(kRestitution), 0.0F, 0.0F});
+        EXPECT_TRUE(world.particles->setForces({{0.0F, -static_cast<float>(kGravity), 0.0F}, {}, 0.0F}));
+        EXPECT_TRUE(world.particles->setCollision({static_cast<float>(kRestitution), 0.0F, 0.0F}));
         if (by_floor) {
-            world.particles->setGround(0.0F);
+            EXPECT_TRUE(world.particles->setGround(0.0F));
         }
         const glm::vec3 start(0.03F, 1.0F, 0.03F);
         const glm::vec3 push(0.05F, 0.5F, -0.04F);
@@ -268,7 +268,7 @@ TEST_P(ParticleSystemGlTest, DragApproachesTheWindAndNeverOvershoots) {
         World world;
         world.make({.capacity = 1});
         ASSERT_FALSE(HasFatalFailure());
-        world.particles->setForces({{0.0F, -5.0F, 0.0F}, {2.0F, 0.0F, -1.0F}, drag});
+        EXPECT_TRUE(world.particles->setForces({{0.0F, -5.0F, 0.0F}, {2.0F, 0.0F, -1.0F}, drag}));
         const std::array<Birth, 1> births{birthAt(glm::vec3(0.0F), {-8.0F, 3.0F, 7.0F})};
         world.particles->spawn(births);
         glm::vec3 last(-8.0F, 3.0F, 7.0F);
@@ -298,8 +298,8 @@ TEST_P(ParticleSystemGlTest, NoCollisionAddsEnergy) {
         world.collider = mixedCollider();
         world.make({.capacity = 4000});
         ASSERT_FALSE(HasFatalFailure());
-        world.particles->setCollision({restitution, 0.0F, 0.0F});
-        world.particles->setGround(-0.5F);
+        EXPECT_TRUE(world.particles->setCollision({restitution, 0.0F, 0.0F}));
+        EXPECT_TRUE(world.particles->setGround(-0.5F));
         Pcg32 random(5);
         std::vector<Birth> births;
         for (int i = 0; i < 4000; ++i) {
@@ -334,9 +334,9 @@ TEST_P(ParticleSystemGlTest, SnowRestsExactly) {
     world.collider = analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, 0.5), 128);
     world.make({.capacity = 4000});
     ASSERT_FALSE(HasFatalFailure());
-    world.particles->setForces({{0.0F, -9.81F, 0.0F}, {0.7F, 0.0F, 0.2F}, 2.0F});
-    world.particles->setCollision({0.0F, 1.0F, 0.0F});
-    world.particles->setGround(-0.5F);
+    EXPECT_TRUE(world.particles->setForces({{0.0F, -9.81F, 0.0F}, {0.7F, 0.0F, 0.2F}, 2.0F}));
+    EXPECT_TRUE(world.particles->setCollision({0.0F, 1.0F, 0.0F}));
+    EXPECT_TRUE(world.particles->setGround(-0.5F));
     Pcg32 random(3);
     std::vector<Birth> births;
     for (int i = 0; i < 4000; ++i) {
@@ -381,8 +381,8 @@ TEST_P(ParticleSystemGlTest, CaughtParticlesLeave) {
         world.collider = analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, 0.5), 128);
         world.make({.capacity = 3000});
         ASSERT_FALSE(HasFatalFailure());
-        world.particles->setForces({{0.0F, gravity ? -9.81F : 0.0F, 0.0F}, {}, 0.0F});
-        world.particles->setCollision({0.5F, 0.2F, 0.0F});
+        EXPECT_TRUE(world.particles->setForces({{0.0F, gravity ? -9.81F : 0.0F, 0.0F}, {}, 0.0F}));
+        EXPECT_TRUE(world.particles->setCollision({0.5F, 0.2F, 0.0F}));
         Pcg32 random(9);
         std::vector<Birth> births;
         while (births.size() < 3000) {
@@ -429,7 +429,7 @@ TEST_P(ParticleSystemGlTest, DeathsOnCpuAndGpuAgree) {
             births.push_back(birthAt({1.0F, 2.0F, 3.0F}, glm::vec3(0.0F),
                                      random.between(1e-6F, 1.5F) * random.uniform() + 1e-7F));
         }
-        const std::size_t accepted = world.particles->spawn(births);
+        const std::size_t accepted = world.particles->spawn(births).value();
         refused += births.size() - accepted;
         for (std::size_t i = 0; i < accepted; ++i) {
             known[next_id++] = {time, time + static_cast<double>(births[i].lifetime)};
@@ -554,8 +554,8 @@ TEST_P(ParticleSystemGlTest, AHundredThousandFlakesStayOutOfASphere) {
     world.collider = analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, kRadius), kSize);
     world.make({.capacity = 100'000});
     ASSERT_FALSE(HasFatalFailure());
-    world.particles->setForces({{0.0F, -2.0F, 0.0F}, {0.1F, 0.0F, 0.0F}, 1.0F});
-    world.particles->setCollision({0.0F, 1.0F, 0.0F});
+    EXPECT_TRUE(world.particles->setForces({{0.0F, -2.0F, 0.0F}, {0.1F, 0.0F, 0.0F}, 1.0F}));
+    EXPECT_TRUE(world.particles->setCollision({0.0F, 1.0F, 0.0F}));
     Pcg32 random(17);
     std::vector<Birth> births;
     for (int i = 0; i < 100'000; ++i) {
@@ -586,8 +586,8 @@ TEST_P(ParticleSystemGlTest, TheSameBirthsGiveTheSameBits) {
         world.collider = mixedCollider();
         world.make({.capacity = 2000});
         ASSERT_FALSE(HasFatalFailure());
-        world.particles->setForces({{0.0F, -3.0F, 0.0F}, {}, 0.3F});
-        world.particles->setCollision({0.5F, 0.1F, 0.0F});
+        EXPECT_TRUE(world.particles->setForces({{0.0F, -3.0F, 0.0F}, {}, 0.3F}));
+        EXPECT_TRUE(world.particles->setCollision({0.5F, 0.1F, 0.0F}));
         EmitterSettings settings;
         settings.box_min = {-1.0F, 0.7F, -0.5F};
         settings.box_max = {0.5F, 1.0F, 0.5F};

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
+#include <span>
 #include <vector>
 
 #include "tests/runtime/particles/collision_test.h"
@@ -44,7 +46,7 @@ TEST_P(ParticleTypesGlTest, GravityIsScaled) {
     for (const Integrator integrator : {Integrator::kEuler, Integrator::kVerlet}) {
         make({.capacity = 16, .integrator = integrator});
         ASSERT_TRUE(particles_->setTypes(types));
-        particles_->setForces({{0.0F, -8.0F, 0.0F}, {}, 0.0F, 0.0F});
+        EXPECT_TRUE(particles_->setForces({{0.0F, -8.0F, 0.0F}, {}, 0.0F, 0.0F}));
         spawnEach(types.size(), glm::vec3(0.0F));
         fall(30);
         const std::vector<float> y = heights();
@@ -56,7 +58,7 @@ TEST_P(ParticleTypesGlTest, GravityIsScaled) {
     }
     make({.capacity = 16});
     ASSERT_TRUE(particles_->setTypes(types));
-    particles_->setForces({{0.0F, -8.0F, 0.0F}, {}, 0.0F, 0.0F});
+    EXPECT_TRUE(particles_->setForces({{0.0F, -8.0F, 0.0F}, {}, 0.0F, 0.0F}));
     spawnEach(types.size(), glm::vec3(0.0F), 0.5F);
     fall(1);
     const auto all = state();
@@ -78,7 +80,7 @@ TEST_P(ParticleTypesGlTest, WhatGravityScalesComesToRest) {
         types[i].friction = 0.5F;
     }
     ASSERT_TRUE(particles_->setTypes(types));
-    particles_->setForces({{0.0F, -9.81F, 0.0F}, {}, 0.0F});
+    EXPECT_TRUE(particles_->setForces({{0.0F, -9.81F, 0.0F}, {}, 0.0F}));
     std::vector<Birth> births;
     for (std::uint32_t i = 0; i < 3; ++i) {
         births.push_back({{0.1F, i == 2 ? -0.4F : 0.4F, 0.05F}, {0.05F, 0.0F, 0.0F}, 1000.0F, i});
@@ -112,8 +114,8 @@ TEST_P(ParticleTypesGlTest, ATypeGoesThroughWhatItDoesNotCollideWith) {
             }
             ASSERT_TRUE(particles_->setTypes(types));
             ASSERT_TRUE(particles_->setSweep(sweep));
-            particles_->setForces({{0.0F, -9.81F, 0.0F}, {}, 0.0F});
-            particles_->setGround(-1.0F);
+            EXPECT_TRUE(particles_->setForces({{0.0F, -9.81F, 0.0F}, {}, 0.0F}));
+            EXPECT_TRUE(particles_->setGround(-1.0F));
             spawnEach(4, {0.1F, 0.5F, 0.0F});   // above the box
             spawnEach(4, {2.0F, 0.5F, 0.0F});   // beside it
             spawnEach(4, {0.1F, 0.0F, 0.05F});  // in it
@@ -151,8 +153,8 @@ TEST_P(ParticleTypesGlTest, MasksOfSeveralBodies) {
     make({.capacity = 16});
     collideWith(ColliderTextures::create(bodies));
     ASSERT_TRUE(particles_->setTypes(types));
-    particles_->setForces({{0.0F, -9.81F, 0.0F}, {}, 0.0F});
-    particles_->setGround(-1.0F);  // nobody's
+    EXPECT_TRUE(particles_->setForces({{0.0F, -9.81F, 0.0F}, {}, 0.0F}));
+    EXPECT_TRUE(particles_->setGround(-1.0F));  // nobody's
     spawnEach(8, {0.1F, 2.5F, 0.0F});
     fall(150);
     const std::vector<float> y = heights();
@@ -176,13 +178,71 @@ TEST_P(ParticleTypesGlTest, BadGravityAndMasksAreErrors) {
     EXPECT_TRUE(particles_->setTypes(std::span(&type, 1)));
 }
 
+// Numbers that are none are refused wherever they come in, and what was there before goes on.
+TEST_P(ParticleTypesGlTest, NumbersThatAreNoneAreErrors) {
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    make({.capacity = 16});
+    ASSERT_TRUE(particles_->setForces({.gravity = {0.0F, -8.0F, 0.0F}, .drag = 0.0F}));
+    ASSERT_TRUE(particles_->setGround(-100.0F));
+    spawnEach(1, {0.0F, 0.0F, 0.0F});
+    const auto refused = [](const auto& result) {
+        return !result && result.error().code == ErrorCode::kUsage && !result.error().message.empty();
+    };
+    for (const float wrong : {kNan, kInfinity, -kInfinity}) {
+        for (int axis = 0; axis < 3; ++axis) {
+            Forces forces;
+            forces.gravity[axis] = wrong;
+            EXPECT_TRUE(refused(particles_->setForces(forces)));
+            forces = {};
+            forces.wind[axis] = wrong;
+            EXPECT_TRUE(refused(particles_->setForces(forces)));
+            std::vector<Birth> births(2);
+            births[1].position[axis] = wrong;
+            EXPECT_TRUE(refused(particles_->spawn(births)));
+            births[1] = {};
+            births[1].velocity[axis] = wrong;
+            EXPECT_TRUE(refused(particles_->spawn(births)));
+        }
+        EXPECT_TRUE(refused(particles_->setForces({.drag = wrong})));
+        EXPECT_TRUE(refused(particles_->setForces({.viscosity = wrong})));
+        EXPECT_TRUE(refused(particles_->setGround(wrong)));
+        EXPECT_TRUE(refused(particles_->setSweep(wrong)));
+        EXPECT_TRUE(refused(particles_->setCollision({.restitution = wrong})));
+        EXPECT_TRUE(refused(particles_->setCollision({.friction_threshold = wrong})));
+        EXPECT_TRUE(refused(particles_->step(wrong)));
+        for (float ParticleType::*const member :
+             {&ParticleType::gravity, &ParticleType::mass, &ParticleType::radius, &ParticleType::restitution,
+              &ParticleType::friction, &ParticleType::friction_threshold, &ParticleType::lifetime_loss}) {
+            ParticleType type;
+            type.*member = wrong;
+            EXPECT_TRUE(refused(particles_->setTypes(std::span(&type, 1))));
+        }
+        for (float Birth::*const member : {&Birth::lifetime, &Birth::age}) {
+            std::vector<Birth> births(2);
+            births[1].*member = wrong;
+            const auto result = particles_->spawn(births);
+            ASSERT_TRUE(refused(result));
+            EXPECT_NE(result.error().message.find("birth 1 "), std::string::npos) << result.error().message;
+        }
+    }
+    EXPECT_TRUE(refused(particles_->setForces({.drag = -1.0F})));
+    EXPECT_TRUE(refused(particles_->step(0.0F)));
+    for (const Birth& wrong : {Birth{.lifetime = 0.0F}, Birth{.type = 1U << 24}, Birth{.age = -1.0F}}) {
+        EXPECT_TRUE(refused(particles_->spawn(std::span(&wrong, 1))));
+    }
+    EXPECT_EQ(particles_->counts().born, 1U);
+    fall(1);
+    EXPECT_NEAR(state().at(0).velocity.y, -8.0F * kDt, 1e-6F);
+}
+
 // A run that begins before time 0: its clock says so, and no particle notices.
 TEST_P(ParticleTypesGlTest, ARunMayBeginBeforeTimeZero) {
     std::vector<ParticleState> of[2];
     for (int i = 0; i < 2; ++i) {
         make({.capacity = 16, .epoch_seconds = 0.5, .start_time = i == 0 ? 0.0 : -2.0});
         EXPECT_EQ(particles_->time(), i == 0 ? 0.0 : -2.0);
-        particles_->setForces({{0.0F, -9.81F, 0.0F}, {}, 0.5F});
+        EXPECT_TRUE(particles_->setForces({{0.0F, -9.81F, 0.0F}, {}, 0.5F}));
         const Birth birth{{}, {1.0F, 0.0F, 0.0F}, 1.5F, 0};
         spawnOne(birth);
         fall(60);

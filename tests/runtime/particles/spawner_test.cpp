@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "runtime/particles/spawner.h"
 
@@ -149,6 +150,21 @@ TEST(Spawner, DeathsOfAgeThrowAllRoundOrAlongTheWay) {
     births.clear();
     Spawner(settings, 2).spawn(stepOf({age}), {}, 10'000, births);
     EXPECT_LT(glm::length(births[0].velocity - glm::vec3(0.0F, 1.0F, 0.0F)), 1e-6F);
+}
+
+// An event of a particle that is lost makes nothing that is: it counts as refused.
+TEST(Spawner, WhatIsLostHasNoChildren) {
+    SpawnSettings settings;
+    settings.count_min = settings.count_max = 3;
+    settings.inherit = 1.0F;
+    for (const float wrong : {std::nanf(""), std::numeric_limits<float>::infinity()}) {
+        ParticleEvent lost = hitOf(7, 0, 4.0F);
+        lost.velocity.x = wrong;
+        std::vector<Birth> births;
+        EXPECT_EQ(Spawner(settings, 1).spawn(stepOf({lost, hitOf(8, 0, 4.0F)}), {}, 100, births), 3U);
+        ASSERT_EQ(births.size(), 3U);
+        EXPECT_EQ(births[0].position.x, 8.0F);
+    }
 }
 
 TEST(Spawner, WrongSettingsAreNamed) {

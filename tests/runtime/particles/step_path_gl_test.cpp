@@ -119,8 +119,8 @@ class StepPathGlTest : public GlTest {
         EXPECT_TRUE(made) << made.error().message;
         ParticleSystem& particles = *made;
         EXPECT_EQ(particles.path(), path);
-        particles.setForces({{0.1F, -3.0F, 0.0F}, {0.4F, 0.0F, -0.3F}, 0.5F});
-        particles.setGround(-0.19F);  // above some: they touch it in the first step
+        EXPECT_TRUE(particles.setForces({{0.1F, -3.0F, 0.0F}, {0.4F, 0.0F, -0.3F}, 0.5F}));
+        EXPECT_TRUE(particles.setGround(-0.19F));  // above some: they touch it in the first step
         ParticleType type;
         type.restitution = 0.5F;
         type.friction = 0.2F;

@@ -402,7 +402,7 @@ TEST_P(RendererGlTest, TheCallersStateIsKeptAndDoesNoHarm) {
         check("setCollider");
         EXPECT_TRUE(particles->setEvents(EventOptions{.lasting = true}));
         check("setEvents");
-        particles->setForces({{0.0F, -1.0F, 0.0F}, {}, 0.0F});
+        EXPECT_TRUE(particles->setForces({{0.0F, -1.0F, 0.0F}, {}, 0.0F}));
         particles->spawn(births);
         std::vector<float> hits;
         for (int step = 0; step < 40; ++step) {  // sets the clock back on its way

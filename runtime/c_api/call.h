@@ -1,0 +1,206 @@
+// One call of C: its arguments looked at, its outcome kept for relief_error(). No exception passes.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <new>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "formats/base/result.h"
+#include "runtime/c_api/handles.h"
+
+namespace relief {
+
+/// What a handle of C's type H stands for: specialised with Object, kKind and kName.
+template <class H>
+struct HandleType;
+
+/// What this thread's calls have failed with.
+class CallErrors {
+  public:
+    [[nodiscard]] const char* last() const { return shown_; }
+    [[nodiscard]] std::uint64_t count() const { return count_; }
+
+    void fail(const char* message) noexcept;
+    /// Making an object of this kind has failed as last() says: its NULL may be handed on.
+    void failedToMake(HandleKind kind) noexcept;
+    void made(HandleKind kind) noexcept { of(kind).clear(); }
+    /// What a NULL of this kind comes from, if it comes from a failure that nobody has read; else empty.
+    [[nodiscard]] const std::string& unreadOf(HandleKind kind) const {
+        return unread_[static_cast<std::size_t>(kind) - 1];
+    }
+    void read() noexcept;
+
+  private:
+    [[nodiscard]] std::string& of(HandleKind kind) { return unread_[static_cast<std::size_t>(kind) - 1]; }
+
+    std::string text_;
+    const char* shown_ = "";  // text_, or what needs no memory
+    std::uint64_t count_ = 0;
+    std::array<std::string, kHandleKinds> unread_;
+};
+
+[[nodiscard]] CallErrors& callErrors();
+
+/// A number may be anything from low to high.
+struct NumberRange {
+    double low;
+    double high;
+    bool low_included = true;
+
+    [[nodiscard]] bool holds(double value) const {  // false of NaN
+        return (low_included ? value >= low : value > low) && value <= high;
+    }
+};
+
+/// Where a number stands, for messages: "births[3].velocity[1]".
+struct NumberName {
+    static constexpr std::size_t kNone = ~std::size_t{0};
+    const char* argument;
+    std::size_t item = kNone;
+    const char* field = nullptr;
+    std::size_t component = kNone;
+
+    [[nodiscard]] std::string text() const;
+};
+
+/// The part of a caller's structure that its version knew; what came later stays 0.
+/// \param all       of this version, all 0.
+/// \param size      that the caller states.
+/// \param versions  the sizes that the structure has had.
+/// \return whether it had that size.
+[[nodiscard]] bool copyKnown(std::span<std::byte> all, const void* given, std::size_t size,
+                             std::span<const std::size_t> versions);
+
+/// The checks of arguments; an error names the function, the argument and the cure.
+class Call {
+  public:
+    explicit Call(const char* function) : function_(function) {}
+
+    [[nodiscard]] tl::unexpected<Error> refuse(const std::string& what) const {
+        return fail(ErrorCode::kUsage, std::string(function_) + "(): " + what);
+    }
+
+    template <class H>
+    [[nodiscard]] Result<std::shared_ptr<typename HandleType<H>::Object>> shared(const H* handle,
+                                                                                 const char* argument) const {
+        using Object = typename HandleType<H>::Object;
+        const auto number = reinterpret_cast<std::uintptr_t>(handle);
+        if (const auto* found = handleTable().find(HandleType<H>::kKind, number); found != nullptr) {
+            return std::static_pointer_cast<Object>(*found);
+        }
+        return faulty(HandleType<H>::kKind, number, argument, HandleType<H>::kName);
+    }
+    /// As shared(); the caller's handle keeps it.
+    template <class H>
+    [[nodiscard]] Result<typename HandleType<H>::Object*> object(const H* handle,
+                                                                 const char* argument) const {
+        const auto number = reinterpret_cast<std::uintptr_t>(handle);
+        if (const auto* found = handleTable().find(HandleType<H>::kKind, number); found != nullptr) {
+            return static_cast<typename HandleType<H>::Object*>(found->get());
+        }
+        return faulty(HandleType<H>::kKind, number, argument, HandleType<H>::kName);
+    }
+    /// As shared(), null for NULL; but a NULL that a failure handed out, which nobody has read, is that failure.
+    template <class H>
+    [[nodiscard]] Result<std::shared_ptr<typename HandleType<H>::Object>> optional(
+        const H* handle, const char* argument) const {
+        if (handle == nullptr && callErrors().unreadOf(HandleType<H>::kKind).empty()) {
+            return std::shared_ptr<typename HandleType<H>::Object>();
+        }
+        return shared(handle, argument);
+    }
+
+    [[nodiscard]] Result<void> notNull(const void* pointer, const char* argument) const;
+    /// Memory of `count` items of T: not NULL unless there are none, and no more than an address space holds.
+    template <class T>
+    [[nodiscard]] Result<void> array(const T* items, const char* argument, std::size_t count,
+                                     const char* count_argument) const {
+        if (count >= static_cast<std::size_t>(PTRDIFF_MAX) / sizeof(T)) {
+            return refuse(std::string(count_argument) + " is " + std::to_string(count) +
+                          ", more than memory holds");
+        }
+        return count == 0 ? Result<void>() : notNull(items, argument);
+    }
+    /// A structure that begins with its size.
+    /// \param name  the structure's.
+    template <class T, std::size_t N>
+    [[nodiscard]] Result<T> structure(const T* given, const char* argument, const char* name,
+                                      const std::array<std::size_t, N>& versions) const {
+        T all{};
+        std::size_t size = 0;
+        std::memcpy(&size, given, sizeof(size));
+        if (!copyKnown(std::as_writable_bytes(std::span(&all, 1)), given, size, versions)) {
+            return refuse(std::string(argument) + "->size is " + std::to_string(size) +
+                          "; set it to sizeof(" + name + "), which is " + std::to_string(sizeof(T)));
+        }
+        return all;
+    }
+
+    [[nodiscard]] Result<void> number(double value, const NumberRange& range, const NumberName& name) const {
+        return range.holds(value) ? Result<void>() : wrongNumber(value, range, name);
+    }
+    template <class T, std::size_t N>
+    [[nodiscard]] Result<void> numbers(const T (&values)[N], const NumberRange& range,
+                                       NumberName name) const {
+        for (std::size_t i = 0; i < N; ++i) {
+            if (!range.holds(static_cast<double>(values[i]))) {
+                name.component = i;
+                return wrongNumber(static_cast<double>(values[i]), range, name);
+            }
+        }
+        return {};
+    }
+    /// That a context is current, which every function of the GL needs.
+    [[nodiscard]] Result<void> context() const;
+
+  private:
+    [[nodiscard]] tl::unexpected<Error> faulty(HandleKind kind, std::uintptr_t handle, const char* argument,
+                                               const char* type) const;
+    [[nodiscard]] tl::unexpected<Error> wrongNumber(double value, const NumberRange& range,
+                                                    const NumberName& name) const;
+
+    const char* function_;
+};
+
+/// What body(call) returns, or `failed`; callErrors() has why.
+template <class T, class F>
+T answer(const char* function, T failed, const F& body) noexcept {
+    try {
+        Result<T> result = body(Call(function));
+        if (result) {
+            return *std::move(result);
+        }
+        callErrors().fail(result.error().message.c_str());
+    } catch (const std::bad_alloc&) {
+        callErrors().fail("there is not enough memory");
+    } catch (const std::exception& error) {
+        callErrors().fail(error.what());
+    } catch (...) {
+        callErrors().fail("an unknown error");
+    }
+    return failed;
+}
+
+/// A new handle of the object that body(call) makes, or NULL.
+template <class H, class F>
+H* create(const char* function, const F& body) noexcept {
+    constexpr HandleKind kKind = HandleType<H>::kKind;
+    const auto handle = answer(function, std::uintptr_t{0}, [&](const Call& call) -> Result<std::uintptr_t> {
+        return handleTable().add(kKind, RELIEF_TRY(body(call)));
+    });
+    if (handle == 0) {
+        callErrors().failedToMake(kKind);
+    } else {
+        callErrors().made(kKind);
+    }
+    return reinterpret_cast<H*>(handle);
+}
+
+}  // namespace relief

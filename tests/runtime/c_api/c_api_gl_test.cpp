@@ -1,0 +1,455 @@
+// Whatever is passed to a function of relief.h is answered by an error that names it, and leaves the rest as it was: every
+// argument NULL, freed, of another kind, out of range; every field of every structure no number; every size but the right one.
+#include <epoxy/egl.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <random>
+#include <regex>
+#include <set>
+#include <string>
+#include <thread>
+
+#include "tests/runtime/c_api/stage.h"
+#include "tests/seeds.h"
+
+namespace relief::c_api {
+namespace {
+
+#include "c_api_table.inc"
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+const std::set<std::pair<std::string, std::string>> kMayBeNull{
+    {"relief_collider_free", "collider"},    {"relief_textures_free", "textures"},
+    {"relief_particles_free", "particles"},  {"relief_picture_free", "picture"},
+    {"relief_particles_create", "textures"}, {"relief_particles_create", "options"},
+    {"relief_picture_draw", "options"},
+};
+const std::set<std::string> kNeedNoContext{
+    "relief_api_version",   "relief_version",          "relief_error",
+    "relief_error_count",   "relief_collider_load",    "relief_collider_read",
+    "relief_collider_free", "relief_collider_bounds",  "relief_collider_map_count",
+    "relief_collider_unit", "relief_collider_query",   "relief_collider_nearest",
+    "relief_textures_glsl", "relief_particles_counts", "relief_particles_spawn"};
+
+class CApi : public testing::Test {
+  protected:
+    void TearDown() override { EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR)); }
+
+    /// Calls; the stage makes anew what that frees.
+    Outcome call(Arguments arguments) {
+        const Outcome outcome = arguments.function.call(arguments);
+        if (arguments.function.frees() && arguments.other != 0) {
+            stage_.forget(stage_.handle(arguments.function.arguments[0].type));
+            stage_.revive();
+        }
+        return outcome;
+    }
+    void expectGood(const Function& function) {
+        const std::uint64_t before = relief_error_count();
+        EXPECT_NE(call({stage_, function}), Outcome::kFailure) << function.name << ": " << relief_error();
+        EXPECT_EQ(relief_error_count(), before) << function.name << ": " << relief_error();
+    }
+    /// \param says  what the message has besides the function's name.
+    void expectRefused(const Arguments& arguments, const std::string& says) {
+        const std::string what = arguments.function.name + ", " + says;
+        const std::uint64_t before = relief_error_count();
+        EXPECT_NE(call(arguments), Outcome::kSuccess) << what;
+        EXPECT_EQ(relief_error_count(), before + 1) << what << " passes";
+        const std::string message = relief_error();
+        EXPECT_EQ(message.find(arguments.function.name + "(): "), 0U) << what << ": " << message;
+        EXPECT_NE(message.find(says), std::string::npos) << what << ": " << message;
+        static const std::regex kOfCpp("\\bk[A-Z]|::|\\n");
+        EXPECT_FALSE(std::regex_search(message, kOfCpp)) << message;
+    }
+    template <class F>
+    void eachArgument(const F& f) {
+        for (const Function& function : kFunctions) {
+            for (std::size_t i = 0; i < function.arguments.size(); ++i) {
+                f(function, i, function.arguments[i]);
+            }
+        }
+    }
+    /// The functions that read this structure, and where.
+    template <class F>
+    void eachReader(const Structure& structure, const F& f) {
+        eachArgument([&](const Function& function, std::size_t i, const Argument& argument) {
+            if (argument.type == "const " + structure.name + "*") {
+                f(function, i);
+            }
+        });
+    }
+
+    Stage stage_;
+};
+
+TEST_F(CApi, TheTableIsWholeAndEveryFunctionWorks) {
+    EXPECT_GE(kFunctions.size(), 27U);
+    for (const Function& function : kFunctions) {
+        expectGood(function);
+    }
+    for (const auto& [function, argument] : kMayBeNull) {
+        bool found = false;
+        eachArgument(
+            [&, name = function, of = argument](const Function& one, std::size_t, const Argument& at) {
+                found = found || (one.name == name && at.name == of);
+            });
+        EXPECT_TRUE(found) << function << " " << argument;
+    }
+}
+
+TEST_F(CApi, EveryPointerMayBeNull) {
+    eachArgument([&](const Function& function, std::size_t i, const Argument& argument) {
+        if (!argument.isPointer()) {
+            return;
+        }
+        Arguments arguments{stage_, function, i};
+        if (kMayBeNull.contains({function.name, argument.name})) {
+            const std::uint64_t before = relief_error_count();
+            EXPECT_NE(call(arguments), Outcome::kFailure) << function.name;
+            EXPECT_EQ(relief_error_count(), before) << function.name << ": " << relief_error();
+        } else {
+            expectRefused(arguments, argument.name + " is NULL");
+        }
+        expectGood(function);
+    });
+}
+
+TEST_F(CApi, EveryHandleMayBeFreedOrNone) {
+    int at_all = 0;
+    eachArgument([&](const Function& function, std::size_t i, const Argument& argument) {
+        if (!argument.isHandle()) {
+            return;
+        }
+        const std::uintptr_t number = stage_.handle(argument.type);
+        const std::string other =
+            argument.type.find("collider") == std::string::npos ? "collider" : "textures";
+        expectRefused({stage_, function, i, stage_.handle(other)},
+                      argument.name + " is another kind of handle");
+        for (const std::uintptr_t never :
+             {reinterpret_cast<std::uintptr_t>(&number), ~std::uintptr_t{0}, std::uintptr_t{1},
+              std::uintptr_t{8}, number ^ (std::uintptr_t{1} << (8 * sizeof(number) - 2)),
+              number + (std::uintptr_t{1} << 30)}) {
+            expectRefused({stage_, function, i, never}, argument.name + " is no handle of this library");
+        }
+        for (const Function& one : kFunctions) {
+            if (one.frees() && one.arguments[0].type == argument.type.substr(argument.type.find("relief_"))) {
+                Arguments good{stage_, one};
+                one.call(good);
+                stage_.forget(number);
+            }
+        }
+        stage_.revive();  // in the place of the one that was freed
+        EXPECT_NE(stage_.handle(argument.type), number);
+        expectRefused({stage_, function, i, number}, argument.name + " has been freed");
+        expectGood(function);
+        ++at_all;
+    });
+    EXPECT_GE(at_all, 23);
+}
+
+TEST_F(CApi, OtherSizesAreRefused) {
+    int at_all = 0;
+    for (const Structure& structure : kStructures) {
+        if (structure.fields.front().name != "size") {
+            continue;
+        }
+        eachReader(structure, [&](const Function& function, std::size_t i) {
+            for (const std::size_t size : {std::size_t{0}, std::size_t{3}, sizeof(std::size_t),
+                                           structure.bytes - 4, structure.bytes - 1, structure.bytes + 1,
+                                           structure.bytes + 8, std::size_t{4096}, ~std::size_t{0}}) {
+                std::memcpy(stage_.structure(structure.name), &size, sizeof(size));
+                expectRefused({stage_, function}, function.arguments[i].name + "->size is " +
+                                                      std::to_string(size) + "; set it to sizeof(" +
+                                                      structure.name + ")");
+                ++at_all;
+            }
+            stage_.fill();
+            expectGood(function);
+        });
+    }
+    EXPECT_GE(at_all, 36);
+}
+
+TEST_F(CApi, EveryNumberOfEveryStructureIsLookedAt) {
+    int at_all = 0;
+    for (const Structure& structure : kStructures) {
+        eachReader(structure, [&](const Function& function, std::size_t i) {
+            std::byte* bytes = stage_.structure(structure.name);
+            ASSERT_NE(bytes, nullptr) << structure.name;
+            const bool one_of_many = structure.name == "relief_birth";
+            for (const Field& field : structure.fields) {
+                for (std::size_t k = 0; field.name != "size" && k < field.count; ++k) {
+                    std::byte* number = bytes + field.offset + k * field.bytes;
+                    const std::string name = function.arguments[i].name +
+                                             (one_of_many ? "[" + std::to_string(kWrong) + "]." : "->") +
+                                             field.name + (field.array ? "[" + std::to_string(k) + "]" : "") +
+                                             " is ";
+                    if (field.kind == NumberKind::kFloat) {
+                        for (const float wrong : {kNan, kInfinity, -kInfinity, 3e38F, -3e38F, -1.1e15F}) {
+                            std::memcpy(number, &wrong, sizeof(wrong));
+                            expectRefused({stage_, function}, name);
+                        }
+                    } else {
+                        std::memset(number, 0xff, field.bytes);  // -1, or the largest
+                        expectRefused({stage_, function}, name);
+                        number[field.bytes - 1] = std::byte{0x7f};
+                        expectRefused({stage_, function}, name);
+                    }
+                    stage_.fill();
+                    ++at_all;
+                }
+            }
+            expectGood(function);
+        });
+    }
+    EXPECT_GE(at_all, 13 + 13 + 8 + 5 + 36);
+}
+
+TEST_F(CApi, EveryNumberAmongTheArgumentsIsLookedAt) {
+    eachArgument([&](const Function& function, std::size_t i, const Argument& argument) {
+        if (argument.type == "float") {
+            for (const float wrong : {kNan, kInfinity, -kInfinity, 0.0F, -1.0F, 1.1e9F}) {
+                expectRefused({stage_, function, i, 0, wrong}, argument.name + " is ");
+            }
+        } else if (argument.type == "const float*") {
+            for (const float wrong : {kNan, kInfinity, -kInfinity}) {
+                stage_.points[3 * kWrong + 1] = wrong;
+                expectRefused({stage_, function},
+                              argument.name + "[" + std::to_string(kWrong) + "] is not finite");
+                EXPECT_TRUE(std::isnan(stage_.samples[kWrong].distance) && stage_.samples[kWrong].map == -1);
+                EXPECT_TRUE(std::isfinite(stage_.samples[kItems - 1].distance)) << "the others are answered";
+            }
+            stage_.fill();
+        } else if (!argument.isPointer()) {
+            for (const std::uint64_t wrong : {~std::uint64_t{0}, std::uint64_t{INT64_MAX}}) {
+                expectRefused({stage_, function, i, wrong}, argument.name + " is ");
+            }
+        }
+        expectGood(function);
+    });
+}
+
+TEST_F(CApi, WhatIsWrittenWhereACallFailsIsNoNumber) {
+    relief_collider_bounds(nullptr, stage_.low, stage_.high);
+    relief_collider_query(nullptr, stage_.points, kItems, stage_.samples);
+    for (int k = 0; k < 3; ++k) {
+        EXPECT_TRUE(std::isnan(stage_.low[k]) && std::isnan(stage_.high[k]));
+    }
+    for (const relief_sample& sample : stage_.samples) {
+        EXPECT_TRUE(std::isnan(sample.distance) && sample.map == -1 && sample.normal[0] == 0.0F);
+    }
+    EXPECT_STREQ(relief_collider_unit(nullptr), "");
+    EXPECT_STREQ(relief_textures_glsl(nullptr), "");
+    // And what is not there is not looked at.
+    const std::uint64_t before = relief_error_count();
+    relief_collider_query(stage_.collider, nullptr, 0, nullptr);
+    EXPECT_EQ(relief_particles_spawn(stage_.particles, nullptr, 0), 0U);
+    EXPECT_GE(relief_particles_read(stage_.particles, nullptr, 0), 0);
+    EXPECT_EQ(relief_error_count(), before) << relief_error();
+}
+
+TEST_F(CApi, WithoutAContextNothingOfTheGlIsTouched) {
+    EGLDisplay display = eglGetCurrentDisplay();
+    EGLContext context = eglGetCurrentContext();
+    ASSERT_TRUE(eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT));
+    for (const Function& function : kFunctions) {
+        if (kNeedNoContext.contains(function.name)) {
+            if (!function.frees()) {
+                expectGood(function);
+            }
+            continue;
+        }
+        Arguments good{stage_, function};
+        EXPECT_NE(function.call(good), Outcome::kSuccess) << function.name;
+        EXPECT_EQ(relief_error(),
+                  function.name + "(): no OpenGL context is current; make yours current on this thread");
+    }
+    ASSERT_TRUE(eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context));
+    for (const Function& function : kFunctions) {
+        expectGood(function);  // what was to be freed is still there
+    }
+}
+
+TEST_F(CApi, AFailureIsHandedOnWithItsCause) {
+    const char* const kMissing = "no such file.relief";
+    EXPECT_EQ(relief_textures_create(relief_collider_load(kMissing)), nullptr);
+    const std::string cause = relief_error();
+    EXPECT_NE(cause.find(kMissing), std::string::npos) << cause;
+
+    // The whole chain, which nobody looks at: its end knows how it began.
+    relief_collider* collider = relief_collider_load(kMissing);
+    relief_textures* textures = relief_textures_create(collider);
+    relief_particles* particles = relief_particles_create(textures, &stage_.options);
+    EXPECT_EQ(particles, nullptr) << "particles that collide with nothing, by mistake";
+    EXPECT_EQ(relief_particles_spawn(particles, stage_.births, kItems), 0U);
+    EXPECT_EQ(relief_particles_step(particles, 0.01F), -1);
+    EXPECT_EQ(relief_picture_create(textures, collider), nullptr);
+    EXPECT_EQ(relief_error(), cause);
+
+    // Once it has been read, NULL is a choice again.
+    particles = relief_particles_create(textures, &stage_.options);
+    EXPECT_NE(particles, nullptr) << relief_error();
+    relief_particles_free(particles);
+    // Or once one of the kind was made.
+    EXPECT_EQ(relief_textures_create(nullptr), nullptr);
+    relief_textures_free(relief_textures_create(stage_.collider));
+    particles = relief_particles_create(nullptr, &stage_.options);
+    EXPECT_NE(particles, nullptr) << relief_error();
+    relief_particles_free(particles);
+    // Another thread's failures are its own.
+    std::thread([&] {
+        EXPECT_STREQ(relief_error(), "");
+        EXPECT_EQ(relief_error_count(), 0U);
+        EXPECT_EQ(relief_collider_load(kMissing), nullptr);
+    }).join();
+    particles = relief_particles_create(nullptr, &stage_.options);
+    EXPECT_NE(particles, nullptr) << relief_error();
+    relief_particles_free(particles);
+}
+
+// Particles and pictures keep what they need: those whose collider and textures are gone move and look like those whose
+// are not, bit for bit.
+TEST_F(CApi, ThingsMayBeFreedInAnyOrder) {
+    relief_textures* doomed = relief_textures_create(stage_.collider);
+    relief_particles* orphan = relief_particles_create(doomed, &stage_.options);
+    relief_picture* shown = relief_picture_create(doomed, stage_.collider);
+    ASSERT_TRUE(orphan != nullptr && shown != nullptr) << relief_error();
+    relief_textures_free(doomed);
+    relief_collider_free(stage_.collider);
+    stage_.collider = nullptr;
+    // New textures of the context take the names that would be free.
+    relief_collider* flat = relief_collider_load(stage_.good<const char*>("path"));
+    relief_textures* others[8];
+    for (relief_textures*& one : others) {
+        one = relief_textures_create(flat);
+    }
+    relief_particle states[2][kItems];
+    std::array<std::array<unsigned char, 16 * 16 * 4>, 2> pixels;
+    for (int which = 0; which < 2; ++which) {
+        relief_particles* particles = which == 0 ? stage_.particles : orphan;
+        EXPECT_EQ(relief_particles_spawn(particles, stage_.births, kItems), kItems);
+        for (int step = 0; step < 120; ++step) {
+            ASSERT_EQ(relief_particles_step(particles, 1.0F / 60.0F), 0) << relief_error();
+        }
+        ASSERT_EQ(relief_particles_read(particles, states[which], kItems), static_cast<std::int64_t>(kItems));
+        glBindFramebuffer(GL_FRAMEBUFFER, stage_.view.framebuffer);
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        ASSERT_EQ(relief_picture_draw(which == 0 ? stage_.picture : shown, particles, nullptr, &stage_.view),
+                  0);
+        glReadPixels(0, 0, 16, 16, GL_RGBA, GL_UNSIGNED_BYTE, pixels[static_cast<std::size_t>(which)].data());
+    }
+    EXPECT_EQ(std::memcmp(states[0], states[1], sizeof(states[0])), 0);
+    EXPECT_GT(states[1][0].collisions, 0U) << "it fell past the box";
+    EXPECT_EQ(pixels[0], pixels[1]);
+    for (relief_textures* one : others) {
+        relief_textures_free(one);
+    }
+    relief_collider_free(flat);
+    relief_particles_free(orphan);
+    relief_picture_free(shown);
+    stage_.revive();
+}
+
+TEST_F(CApi, FreeingTwiceIsAnError) {
+    relief_particles_free(stage_.particles);
+    const std::uint64_t before = relief_error_count();
+    relief_particles_free(stage_.particles);
+    EXPECT_EQ(relief_error_count(), before + 1);
+    EXPECT_STREQ(relief_error(), "relief_particles_free(): particles has been freed");
+    stage_.particles = nullptr;
+    stage_.revive();
+}
+
+TEST_F(CApi, AFailedSetOrSpawnChangesNothing) {
+    relief_particles_options wrong = stage_.options;
+    wrong.gravity[1] = 5.0F;
+    wrong.ground_height = kNan;
+    EXPECT_EQ(relief_particles_set(stage_.particles, &wrong), -1);
+    stage_.births[kWrong].velocity[0] = kNan;
+    EXPECT_EQ(relief_particles_spawn(stage_.particles, stage_.births, kItems), 0U);
+    EXPECT_EQ(relief_particles_counts(stage_.particles).born, 0U);
+    stage_.fill();
+    EXPECT_EQ(relief_particles_spawn(stage_.particles, stage_.births, 1), 1U);
+    EXPECT_EQ(relief_particles_step(stage_.particles, 0.25F), 0);
+    EXPECT_EQ(relief_particles_step(stage_.particles, 0.25F), 0);
+    EXPECT_EQ(relief_particles_read(stage_.particles, stage_.states, kItems), 1);
+    EXPECT_EQ(stage_.states[0].velocity[1], -0.5F) << "gravity is still 1 downwards";
+}
+
+// Calls in random order, with handles that are alive, freed in any order, NULL or of another kind: a call fails exactly
+// where one of them is wrong.
+TEST_F(CApi, RandomCallsFailWhereAHandleIsWrong) {
+    std::mt19937 random(test::seedFrom(31));
+    const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
+    std::vector<std::uintptr_t> freed;
+    int refused = 0;
+    for (int round = 0; round < 600; ++round) {
+        const Function& function = kFunctions[below(kFunctions.size())];
+        Arguments arguments{stage_, function};
+        std::string says;
+        if (!function.arguments.empty() && below(2) == 0) {
+            const std::size_t at = below(function.arguments.size());
+            const Argument& argument = function.arguments[at];
+            if (argument.isHandle()) {
+                const std::size_t which = below(3);
+                arguments.other = at;
+                if (which == 0 && !kMayBeNull.contains({function.name, argument.name})) {
+                    says = argument.name + " is NULL";
+                } else if (which == 1 && !freed.empty()) {
+                    arguments.whole = freed[below(freed.size())];
+                    says = argument.name;
+                } else {
+                    arguments.whole = (static_cast<std::uint64_t>(random()) << 32) | random();
+                    says = argument.name;
+                }
+            }
+        }
+        if (function.frees() && says.empty()) {
+            freed.push_back(stage_.handle(function.arguments[0].type));
+        }
+        if (says.empty()) {
+            expectGood(function);
+        } else {
+            expectRefused(arguments, says);
+            ++refused;
+        }
+    }
+    EXPECT_GT(refused, 60);
+}
+
+// Threads that make, ask and free colliders of their own and ask one that all share.
+TEST_F(CApi, ThreadsDoNotDisturbEachOther) {
+    relief_sample expected[kItems];
+    relief_collider_query(stage_.collider, stage_.points, kItems, expected);
+    std::vector<std::thread> threads;
+    std::array<int, 4> wrong{};
+    for (int& faults : wrong) {
+        threads.emplace_back([&] {
+            for (int round = 0; round < 60; ++round) {
+                relief_collider* own = relief_collider_load(stage_.good<const char*>("path"));
+                relief_sample samples[kItems];
+                for (const relief_collider* one : {static_cast<const relief_collider*>(own),
+                                                   static_cast<const relief_collider*>(stage_.collider)}) {
+                    relief_collider_query(one, stage_.points, kItems, samples);
+                    faults += std::memcmp(samples, expected, sizeof(samples)) != 0 ? 1 : 0;
+                }
+                relief_collider_free(own);
+                faults += relief_error_count() != static_cast<std::uint64_t>(round) ? 1 : 0;
+                EXPECT_EQ(relief_collider_map_count(own), 0U);  // which is an error
+            }
+        });
+    }
+    for (std::thread& thread : threads) {
+        thread.join();
+    }
+    EXPECT_EQ(wrong, (std::array<int, 4>{}));
+}
+
+}  // namespace
+}  // namespace relief::c_api

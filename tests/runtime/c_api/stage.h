@@ -1,0 +1,290 @@
+// Good arguments for every function of relief.h, and one of them exchanged for another. call_table.py makes the tables of
+// relief.h itself, so that what is new there is tested without being named here.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "formats/container.h"
+#include "runtime/c_api/relief.h"
+#include "runtime/gl/gl_context.h"
+#include "runtime/gl/gl_functions.h"
+#include "runtime/gl/gl_object.h"
+#include "tests/runtime/collider/analytic_collider.h"
+
+namespace relief::c_api {
+
+inline constexpr std::size_t kItems = 4;  // births, points, …
+inline constexpr std::size_t kWrong = 2;  // the one of them that is made wrong
+
+/// A collider, textures, particles and a picture that work, and memory for all that is read and written.
+class Stage {
+  public:
+    Stage() {
+        auto context = GlContext::create(GlApi::kGl33Core);
+        EXPECT_TRUE(context) << context.error().message;
+        context_ = std::move(*context);
+        const Collider box =
+            analytic::frontBackCollider(analytic::box({-0.4, -0.2, -0.3}, {0.4, 0.2, 0.3}), 16);
+        path_ =
+            std::filesystem::path(testing::TempDir()) / ("c_api-" + std::to_string(::getpid()) + ".relief");
+        EXPECT_TRUE(saveCollider(path_, box));
+        const auto bytes = writeContainer(box);
+        EXPECT_TRUE(bytes);
+        bytes_.assign(bytes->begin(), bytes->end());
+        auto program = makeProgram("quad.vert", "rebase.frag");
+        EXPECT_TRUE(program);
+        program_ = std::move(*program);
+        color_ = makeTexture2D(GL_RGBA8, 16, 16, GL_RGBA, GL_UNSIGNED_BYTE);
+        depth_ = makeTexture2D(GL_DEPTH_COMPONENT24, 16, 16, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT);
+        const GLuint color = color_.name();
+        framebuffer_ = makeFramebuffer({&color, 1}, depth_.name()).value();
+        fill();
+        revive();
+    }
+    ~Stage() {
+        relief_picture_free(picture);
+        relief_particles_free(particles);
+        relief_textures_free(textures);
+        relief_collider_free(collider);
+        std::filesystem::remove(path_);
+    }
+    Stage(const Stage&) = delete;
+    Stage& operator=(const Stage&) = delete;
+
+    /// Makes anew what has been freed, which is NULL.
+    void revive() {
+        collider = collider != nullptr ? collider : relief_collider_load(path_.c_str());
+        textures = textures != nullptr ? textures : relief_textures_create(collider);
+        particles = particles != nullptr ? particles : relief_particles_create(textures, &options);
+        picture = picture != nullptr ? picture : relief_picture_create(textures, collider);
+        ASSERT_TRUE(collider != nullptr && textures != nullptr && particles != nullptr && picture != nullptr)
+            << relief_error();
+    }
+    /// Good values of everything that a test may have changed.
+    void fill() {
+        options = {};
+        options.size = sizeof(options);
+        options.capacity = 64;
+        options.gravity[1] = -1.0F;
+        for (std::size_t i = 0; i < kItems; ++i) {
+            births[i] = {};
+            births[i].position[0] = 0.1F * static_cast<float>(i);
+            births[i].position[1] = 1.0F;
+            births[i].lifetime = 100.0F;
+            for (std::size_t k = 0; k < 3; ++k) {
+                points[3 * i + k] = 0.1F * static_cast<float>(i + k);
+            }
+        }
+        picture_options = {};
+        picture_options.size = sizeof(picture_options);
+        view = {};
+        view.size = sizeof(view);
+        for (int k = 0; k < 4; ++k) {
+            view.view[5 * k] = 1.0F;
+        }
+        view.view[14] = -4.0F;
+        view.projection[0] = view.projection[5] = 2.0F;
+        view.projection[10] = view.projection[11] = -1.0F;
+        view.projection[14] = -0.2F;
+        view.framebuffer = framebuffer_.name();
+        view.width = view.height = 16;
+    }
+
+    /// What a function takes at an argument of this type and name.
+    template <class T>
+    T good(const std::string& name) {
+        if constexpr (std::is_same_v<T, const char*>) {
+            return path_.c_str();
+        } else if constexpr (std::is_same_v<T, const void*>) {
+            return bytes_.data();
+        } else if constexpr (std::is_same_v<T, size_t>) {
+            return name == "size" ? bytes_.size() : kItems;
+        } else if constexpr (std::is_same_v<T, float>) {
+            return 0.01F;
+        } else if constexpr (std::is_same_v<T, uint32_t>) {
+            return program_.name();
+        } else if constexpr (std::is_same_v<T, int>) {
+            return 0;
+        } else if constexpr (std::is_same_v<T, float*>) {
+            return name == "min" ? low : high;
+        } else {
+            return pointer(T{});
+        }
+    }
+    /// Where the structures of this name lie that good() gives, at the one that is made wrong; null: no function reads them.
+    std::byte* structure(const std::string& name) {
+        void* found = name == "relief_particles_options" ? static_cast<void*>(&options)
+                      : name == "relief_birth"           ? &births[kWrong]
+                      : name == "relief_picture_options" ? &picture_options
+                      : name == "relief_view"            ? static_cast<void*>(&view)
+                                                         : nullptr;
+        return static_cast<std::byte*>(found);
+    }
+    /// The handle of the kind that an argument's type names, as a number.
+    [[nodiscard]] std::uintptr_t handle(const std::string& type) const {
+        const auto names = [&](const char* kind) { return type.find(kind) != std::string::npos; };
+        return names("collider")    ? reinterpret_cast<std::uintptr_t>(collider)
+               : names("textures")  ? reinterpret_cast<std::uintptr_t>(textures)
+               : names("particles") ? reinterpret_cast<std::uintptr_t>(particles)
+                                    : reinterpret_cast<std::uintptr_t>(picture);
+    }
+    /// It has been freed: revive() makes another.
+    void forget(std::uintptr_t handle) {
+        const auto drop = [handle](auto*& one) {
+            one = reinterpret_cast<std::uintptr_t>(one) == handle ? nullptr : one;
+        };
+        drop(collider);
+        drop(textures);
+        drop(particles);
+        drop(picture);
+    }
+
+    relief_collider* collider = nullptr;
+    relief_textures* textures = nullptr;
+    relief_particles* particles = nullptr;
+    relief_picture* picture = nullptr;
+    relief_particles_options options;
+    relief_birth births[kItems];
+    relief_picture_options picture_options;
+    relief_view view;
+    relief_particle states[kItems];
+    relief_sample samples[kItems];
+    float points[3 * kItems];
+    float low[3];
+    float high[3];
+
+  private:
+    // One for each type of pointer: another in relief.h does not compile.
+    const relief_collider* pointer(const relief_collider* /*type*/) { return collider; }
+    relief_collider* pointer(relief_collider* /*type*/) { return collider; }
+    const relief_textures* pointer(const relief_textures* /*type*/) { return textures; }
+    relief_textures* pointer(relief_textures* /*type*/) { return textures; }
+    const relief_particles* pointer(const relief_particles* /*type*/) { return particles; }
+    relief_particles* pointer(relief_particles* /*type*/) { return particles; }
+    relief_picture* pointer(relief_picture* /*type*/) { return picture; }
+    const relief_particles_options* pointer(const relief_particles_options* /*type*/) { return &options; }
+    const relief_birth* pointer(const relief_birth* /*type*/) { return births; }
+    const relief_picture_options* pointer(const relief_picture_options* /*type*/) { return &picture_options; }
+    const relief_view* pointer(const relief_view* /*type*/) { return &view; }
+    relief_particle* pointer(relief_particle* /*type*/) { return states; }
+    relief_sample* pointer(relief_sample* /*type*/) { return samples; }
+    const float* pointer(const float* /*type*/) { return points; }
+
+    std::unique_ptr<GlContext> context_;
+    std::filesystem::path path_;
+    std::vector<std::byte> bytes_;
+    GlProgram program_;
+    GlTexture color_;
+    GlTexture depth_;
+    GlFramebuffer framebuffer_;
+};
+
+enum class Outcome : std::uint8_t { kNothing, kSuccess, kFailure };
+
+// What a call has made goes at once.
+inline void release(relief_collider* made) {
+    relief_collider_free(made);
+}
+inline void release(relief_textures* made) {
+    relief_textures_free(made);
+}
+inline void release(relief_particles* made) {
+    relief_particles_free(made);
+}
+inline void release(relief_picture* made) {
+    relief_picture_free(made);
+}
+
+template <class T>
+Outcome outcomeOf(const T& returned) {
+    if constexpr (std::is_same_v<T, relief_counts>) {
+        return Outcome::kNothing;  // 0 may be either
+    } else if constexpr (std::is_same_v<T, const char*>) {
+        return returned != nullptr ? Outcome::kNothing : Outcome::kFailure;  // "" may be either
+    } else if constexpr (std::is_pointer_v<T>) {
+        release(returned);
+        return returned != nullptr ? Outcome::kSuccess : Outcome::kFailure;
+    } else if constexpr (std::is_signed_v<T>) {
+        return returned >= 0 ? Outcome::kSuccess : Outcome::kFailure;
+    } else {
+        return returned > 0 ? Outcome::kSuccess : Outcome::kNothing;  // 0 may be either
+    }
+}
+
+struct Argument {
+    std::string name;
+    std::string type;
+    [[nodiscard]] bool isPointer() const { return type.back() == '*'; }
+    [[nodiscard]] bool isHandle() const {
+        const std::string bare =
+            type.substr(type.find("relief_") == std::string::npos ? 0 : type.find("relief_"));
+        return bare == "relief_collider*" || bare == "relief_textures*" || bare == "relief_particles*" ||
+               bare == "relief_picture*";
+    }
+};
+
+struct Arguments;
+struct Function {
+    std::string name;
+    std::vector<Argument> arguments;
+    Outcome (*call)(Arguments&);
+    [[nodiscard]] bool frees() const { return name.ends_with("_free"); }
+};
+
+/// The stage's, but for one.
+struct Arguments {
+    Stage& stage;
+    const Function& function;
+    std::size_t other = ~std::size_t{0};
+    std::uint64_t whole = 0;  // of the other: what it is as a pointer or an integer
+    float real = 0.0F;        // as a float
+
+    template <class T>
+    T get(std::size_t i) {
+        if (i != other) {
+            return stage.good<T>(function.arguments[i].name);
+        }
+        if constexpr (std::is_pointer_v<T>) {
+            return reinterpret_cast<T>(static_cast<std::uintptr_t>(whole));
+        } else if constexpr (std::is_floating_point_v<T>) {
+            return real;
+        } else {
+            return static_cast<T>(whole);
+        }
+    }
+};
+
+enum class NumberKind : std::uint8_t { kFloat, kInteger };
+template <class T>
+struct Number {
+    static constexpr NumberKind kKind =
+        std::is_floating_point_v<T> ? NumberKind::kFloat : NumberKind::kInteger;
+};
+
+struct Field {
+    std::string name;
+    NumberKind kind;
+    std::size_t offset;
+    std::size_t bytes;
+    std::size_t count;
+    bool array;
+};
+
+struct Structure {
+    std::string name;
+    std::size_t bytes;
+    std::vector<Field> fields;
+};
+
+}  // namespace relief::c_api
