@@ -42,6 +42,7 @@ nlohmann::ordered_json jsonShape(const ShapeReport& report) {
         {"sheets", report.sheets},
         {"terrains", report.terrains},
         {"coincident_triangles", report.coincident_triangles},
+        {"near_copies", report.near_copies},
         {"thickness", report.thickness > 0.0 ? jsonNumber(static_cast<float>(report.thickness)) : nullptr}};
 }
 

@@ -26,10 +26,6 @@ namespace relief {
 /// \param budget_bytes  of all texels.
 [[nodiscard]] double defaultThickness(const Bounds& bounds, std::uint64_t budget_bytes);
 
-/// The least and the largest --thickness, in units of the longest side.
-inline constexpr double kThicknessMin = 1e-4;
-inline constexpr double kThicknessMax = 0.5;
-
 /// What a name was taken for.
 struct NamedTriangles {
     NamedShape shape;
@@ -44,7 +40,8 @@ struct ShapeReport {
     std::uint64_t sheets = 0;
     std::uint64_t terrains = 0;
     std::uint64_t coincident_triangles = 0;  ///< left out of sheets, and of solids closed without them
-    double thickness = 0.0;                  ///< of the shells, object units; 0: there are none
+    std::uint64_t near_copies = 0;  ///< closed parts that are left out for a larger one (near_copies.h)
+    double thickness = 0.0;         ///< of the shells, object units; 0: there are none
 
     /// "2 solids, 1 sheet"
     [[nodiscard]] std::string text() const;
