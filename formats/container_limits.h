@@ -7,7 +7,7 @@
 namespace relief {
 
 inline constexpr std::uint16_t kContainerMajor = 1;
-inline constexpr std::uint16_t kContainerMinor = 1;
+inline constexpr std::uint16_t kContainerMinor = 2;
 
 struct ContainerLimits {
     std::uint32_t maps = 1024;

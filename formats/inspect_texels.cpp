@@ -20,6 +20,7 @@ constexpr std::size_t kSurfacePoints = 4096;
 constexpr double kSaturatedShare = 0.25;
 constexpr double kOutsideShare = 0.01;
 constexpr double kInwardShare = 0.25;
+constexpr double kReversedShare = 0.25;  // of gaps: planes that slope may cross at a texel's centre
 // How far a surface point may lie outside of the bounds: of their longest side, beside the spread of a texel.
 constexpr double kBoundsSlack = 0.01;
 // A normal is as good as turned away only where it clearly is, whatever its encoding.
@@ -72,6 +73,8 @@ struct Counts {
     std::size_t covered = 0;
     std::size_t border = 0;  ///< covered, and never looked at
     std::size_t stray = 0;
+    std::size_t gaps = 0;
+    std::size_t reversed = 0;  ///< gaps that are closed before they are opened
     std::size_t surfaces = 0;  ///< of the texels looked at closely, as are the next three
     std::size_t saturated = 0;
     std::size_t inward = 0;
@@ -122,6 +125,10 @@ class MapInspector {
         const bool border = map_.projection() == Projection::kOrthographic &&
                             (x == 0 || y == 0 || x + 1 == map_.width || y + 1 == map_.height);
         counts_.border += border ? 1 : 0;
+        if (map_.compare == Compare::kGap && texel.front && texel.back) {
+            ++counts_.gaps;
+            counts_.reversed += texel.front->depth < texel.back->depth ? 1 : 0;
+        }
         if (index % stride_ != 0) {
             return;
         }
@@ -167,6 +174,9 @@ class MapInspector {
     }
 
     void report() {
+        const auto tooMany = [](std::size_t part, double share, std::size_t whole) {
+            return static_cast<double>(part) > share * static_cast<double>(whole);
+        };
         const auto warn = [&](IssueCode code, std::string message) {
             result_.issues.push_back({code, -1, std::nullopt, std::move(message)});
         };
@@ -174,16 +184,16 @@ class MapInspector {
         if (c.covered == 0) {
             warn(IssueCode::kNothingCovered, "no texel holds a surface; the map sees nothing");
         }
-        if (tooMany(c.saturated, kSaturatedShare)) {
+        if (tooMany(c.saturated, kSaturatedShare, c.surfaces)) {
             warn(IssueCode::kDepthSaturated, percent(c.saturated, c.surfaces) +
                                                  " of its surfaces lie at an end of the depth range "
                                                  "amid the bounds; its volume may cut the mesh off");
         }
-        if (tooMany(c.outside, kOutsideShare)) {
+        if (tooMany(c.outside, kOutsideShare, c.surfaces)) {
             warn(IssueCode::kOutsideBounds,
                  percent(c.outside, c.surfaces) + " of its surfaces lie outside of the bounds");
         }
-        if (tooMany(c.inward, kInwardShare)) {
+        if (tooMany(c.inward, kInwardShare, c.surfaces)) {
             warn(IssueCode::kNormalsInward, percent(c.inward, c.surfaces) +
                                                 " of its normals point into the object; the mesh may be "
                                                 "inside out");
@@ -198,10 +208,11 @@ class MapInspector {
                                             " texels have bits that no writer leaves: a normal without a "
                                             "surface, or an index of 255");
         }
-    }
-
-    [[nodiscard]] bool tooMany(std::size_t part, double share) const {
-        return static_cast<double>(part) > share * static_cast<double>(counts_.surfaces);
+        if (tooMany(c.reversed, kReversedShare, c.gaps)) {
+            warn(IssueCode::kGapReversed, percent(c.reversed, c.gaps) +
+                                              " of its gaps are closed before they are opened; nothing lies "
+                                              "outside of them, and their ends may be exchanged");
+        }
     }
 
     const DepthMap& map_;

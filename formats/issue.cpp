@@ -55,6 +55,8 @@ constexpr std::array kKinds = {
               "the border of a map, which is never looked at, holds surfaces"},
     IssueKind{IssueCode::kTexelBits, Severity::kWarning,
               "empty texels with a normal, or normal indices of 255"},
+    IssueKind{IssueCode::kGapReversed, Severity::kWarning,
+              "more than a quarter of a gap map's texels close their gap before they open it"},
 };
 
 const IssueKind& kindOf(IssueCode code) {

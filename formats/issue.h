@@ -59,6 +59,7 @@ enum class IssueCode : std::uint16_t {
     kNormalsInward = 2206,
     kBorderCovered = 2207,
     kTexelBits = 2208,
+    kGapReversed = 2209,
 };
 
 /// One row of the table of codes.

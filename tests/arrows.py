@@ -14,6 +14,7 @@ THIRD_PARTIES = {
     'assimp': ['bake/import'],
     'seccomp.h': ['bake/import'],
     'draco': ['bake/import'],
+    'zlib.h': ['bake/import'],
     'embree3': ['bake/mesh'],
     'embree4': ['bake/mesh'],
     'CGAL': ['bake/mesh', 'bake/repair'],

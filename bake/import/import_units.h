@@ -1,9 +1,11 @@
 // Units of length and axes of mesh files: what the formats say, and how both become metres and +Y up.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,7 +36,20 @@ struct SourceFrame {
     std::optional<UpAxis> up;
     bool scaled = false;  ///< lengths are in metres already
     bool turned = false;  ///< up is +Y already
+    /// The file's axes are left-handed, and its z is ours turned round.
+    bool mirrored = false;
+    /// What the file says instead of a length or an axis, each as a clause: "its unit is -1 m". "" if it says none.
+    std::string unit_fault{};
+    std::string up_fault{};
 };
+
+/// Of a unit by its name, as 3MF and AMF have it: micron, millimeter, centimeter, inch, foot (or feet) or meter.
+[[nodiscard]] SourceFrame frameOfUnitName(std::string_view name);
+
+/// Whether the frame can be taken: where it has a fault, the caller's word has to stand in for it.
+/// Errors: kInvalidInput, without the file's name, with the option that is the cure.
+[[nodiscard]] Result<void> checkFrame(const SourceFrame& source, std::string_view unit,
+                                      std::optional<UpAxis> up);
 
 /// How to bring positions of that frame into metres and +Y up.
 struct FrameChange {
@@ -50,7 +65,19 @@ struct FrameChange {
 [[nodiscard]] FrameChange changeOf(const SourceFrame& source, std::string_view unit,
                                    std::optional<UpAxis> up);
 
-/// The up axis of a COLLADA document's first <asset>; +y where it says none, as COLLADA does.
-[[nodiscard]] UpAxis colladaUp(std::string_view document);
+/// Of the $INSUNITS in the header of a DXF file in text; +z points upwards there.
+[[nodiscard]] SourceFrame dxfFrame(std::span<const std::byte> document);
+
+/// The UnitScaleFactor of a FBX file, binary or text, of whatever type of number it is.
+struct FbxUnit {
+    std::string text;             ///< as it stands there
+    std::optional<double> value;  ///< nullopt: it is no finite number
+};
+/// \return nullopt: there is none.
+[[nodiscard]] std::optional<FbxUnit> fbxUnit(std::span<const std::byte> document);
+
+/// Of the <asset> of a COLLADA document, where metres and +y are what it says where it says nothing. Of any encoding.
+/// Errors: kInvalidInput (damaged XML before its end), without the file's name.
+[[nodiscard]] Result<SourceFrame> colladaFrame(std::span<const std::byte> document);
 
 }  // namespace relief

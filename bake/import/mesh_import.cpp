@@ -16,7 +16,10 @@
 #include <vector>
 
 #include "bake/import/assimp_io.h"
+#include "bake/import/import_3mf.h"
 #include "bake/import/import_ac.h"
+#include "bake/import/import_amf.h"
+#include "bake/import/import_assembly.h"
 #include "bake/import/import_files.h"
 #include "bake/import/import_format.h"
 #include "bake/import/import_gltf.h"
@@ -55,21 +58,29 @@ std::optional<T> metadata(const aiScene& scene, const char* key) {
 }
 
 /// FBX says its unit in centimetres, and its axes by number and sign; assimp applies neither.
-SourceFrame fbxFrame(const aiScene& scene) {
-    SourceFrame frame{0.01, UpAxis::kPlusY, false, false};
-    double factor = 1.0;
-    if (const auto wide = metadata<double>(scene, "UnitScaleFactor")) {
-        factor = *wide;
-    } else if (const auto narrow = metadata<float>(scene, "UnitScaleFactor")) {
-        factor = double{*narrow};
+SourceFrame fbxFrame(const ImportJob& job, const aiScene& scene) {
+    SourceFrame frame{0.01, UpAxis::kPlusY};
+    double factor = metadata<double>(scene, "UnitScaleFactor").value_or(1.0);
+    // assimp takes 10 of 10,5 and nothing but a number of the type double.
+    const std::optional<FbxUnit> stated = fbxUnit(job.bytes);
+    if (stated && stated->value && std::abs(factor / *stated->value - 1.0) > 1e-6) {
+        factor = *stated->value;
     }
-    if (std::isfinite(factor) && factor > 0.0) {
+    if ((!stated || stated->value) && std::isfinite(factor) && factor > 0.0) {
         frame.metres = 0.01 * factor;
+    } else {
+        frame.metres.reset();
+        frame.unit_fault = "its UnitScaleFactor is " +
+                           (stated ? stated->text : shortest(static_cast<float>(factor))) +
+                           ", which is no length";
     }
     const int axis = metadata<std::int32_t>(scene, "UpAxis").value_or(1);
     const int sign = metadata<std::int32_t>(scene, "UpAxisSign").value_or(1);
     if (axis >= 0 && axis <= 2) {
         frame.up = static_cast<UpAxis>(2 * axis + (sign < 0 ? 1 : 0));
+    } else {
+        frame.up.reset();
+        frame.up_fault = "its UpAxis is " + std::to_string(axis) + ", which is none of 0, 1 and 2";
     }
     return frame;
 }
@@ -78,20 +89,59 @@ bool isGltf(const ImportJob& job) {
     return job.extension == "gltf" || job.extension == "glb";
 }
 
-SourceFrame frameOf(const ImportJob& job, const aiScene& scene) {
+bool isAssembly(const ImportJob& job) {
+    return job.extension == "amf" || job.extension == "3mf";
+}
+
+/// assimp scales the root by the document's unit as it understands it. \param scene  loses that scale where it is another.
+Result<SourceFrame> daeFrame(const ImportJob& job, aiScene& scene) {
+    SourceFrame frame = RELIEF_TRY(colladaFrame(job.bytes));
+    const double applied = double{scene.mRootNode->mTransformation.a1};  // as it was rounded
+    frame.scaled = frame.metres && std::abs(applied / *frame.metres - 1.0) < 1e-5;
+    if (frame.scaled) {
+        frame.metres = applied;
+    } else {
+        scene.mRootNode->mTransformation = aiMatrix4x4();
+    }
+    return frame;
+}
+
+/// assimp turns the root, and divides it by the file's master scale, whatever that is. \param scene  loses that scale where
+/// it is none.
+SourceFrame frameOf3ds(aiScene& scene) {
+    SourceFrame frame{std::nullopt, UpAxis::kPlusZ, false, true};
+    const float scale = scene.mRootNode->mTransformation.a1;
+    if (!(scale > 0.0F && std::isfinite(scale))) {
+        frame.unit_fault = "its master scale is " + shortest(1.0F / scale) + ", which is none";
+        scene.mRootNode->mTransformation = {1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1};
+    }
+    return frame;
+}
+
+/// \param scene  may lose what a reader has applied of it.
+/// Errors: kInvalidInput, without the file's name.
+Result<SourceFrame> frameOf(const ImportJob& job, aiScene& scene) {
     if (job.extension == "fbx") {
-        return fbxFrame(scene);
+        return fbxFrame(job, scene);
     }
     if (job.extension == "dae") {
-        // The root holds nothing but the document's unit.
-        const double metres = double{scene.mRootNode->mTransformation.a1};
-        const std::string_view document(reinterpret_cast<const char*>(job.bytes.data()), job.bytes.size());
-        return {std::isfinite(metres) && metres > 0.0 ? metres : 1.0, colladaUp(document), true, false};
+        return daeFrame(job, scene);
     }
     if (job.extension == "3ds") {
-        return {std::nullopt, UpAxis::kPlusZ, false, true};  // assimp has turned it
+        return frameOf3ds(scene);
     }
-    return {};
+    if (job.extension == "dxf") {
+        return dxfFrame(job.bytes);  // assimp has turned it, as
+    }
+    if (job.extension == "ase") {
+        return SourceFrame{std::nullopt, UpAxis::kPlusZ, false, true};  // this
+    }
+    if (job.extension == "x" || job.extension == "lwo" || job.extension == "lxo" || job.extension == "b3d") {
+        SourceFrame frame;
+        frame.mirrored = true;
+        return frame;
+    }
+    return SourceFrame{};
 }
 
 // --- the importer ---
@@ -137,6 +187,12 @@ Result<const aiScene*> readScene(const ImportJob& job, ImportFiles& files, const
         (!indicesExist(*scene) || logged.say("out of range") || logged.say("out-of-range"))) {
         return unreadable(job, "a face uses a vertex that does not exist", files);
     }
+    if (logged.say("UnitScaleFactor must be non-zero")) {
+        return fail(ErrorCode::kInvalidInput,
+                    "cannot read the mesh " + job.shown +
+                        ": its UnitScaleFactor is 0, which is no length; export it again "
+                        "with a unit");
+    }
     parts = scene != nullptr ? partsOf(*scene) : MeshParts();
     if (const std::optional<std::string> refusal = partsRefusal(parts)) {
         return fail(ErrorCode::kInvalidInput, "cannot read the mesh " + job.shown + ": " + *refusal);
@@ -163,7 +219,9 @@ Result<const aiScene*> readScene(const ImportJob& job, ImportFiles& files, const
 }
 
 /// Takes what changes the mesh into metres and +y. \param mesh  gets its unit and warnings. \return what to apply.
-glm::dmat3 takeFrame(const SourceFrame& frame, const ImportOptions& options, TriangleMesh& mesh) {
+/// Errors: as checkFrame.
+Result<glm::dmat3> takeFrame(const SourceFrame& frame, const ImportOptions& options, TriangleMesh& mesh) {
+    RELIEF_TRY(checkFrame(frame, options.unit, options.up));
     const FrameChange change = changeOf(frame, options.unit, options.up);
     mesh.unit = change.unit;
     mesh.warnings.insert(mesh.warnings.end(), change.warnings.begin(), change.warnings.end());
@@ -180,11 +238,17 @@ Result<TriangleMesh> importWithAssimp(const ImportJob& job, ImportFiles& files) 
     mesh.unused_vertices = parts.unused;
     warnOfParts(parts, mesh.warnings);
     warnOfScene(*scene, mesh.warnings);
-    const glm::dmat3 linear = takeFrame(frameOf(job, *scene), job.options, mesh);
+    // The importer's own; it hands out nothing that could be changed.
+    const Result<SourceFrame> frame = frameOf(job, const_cast<aiScene&>(*scene));
+    const Result<glm::dmat3> linear =
+        frame.and_then([&](const SourceFrame& known) { return takeFrame(known, job.options, mesh); });
+    if (!linear) {
+        return unreadable(job.shown, linear.error());
+    }
     for (const std::string& error : logged.errors()) {
         mesh.warnings.push_back("its importer says: " + error);
     }
-    return flatten(*scene, linear, job, std::move(mesh));
+    return flatten(*scene, *linear, job, std::move(mesh));
 }
 
 std::string upperCase(std::string word) {
@@ -240,13 +304,25 @@ Result<TriangleMesh> importPolygons(const ImportJob& job, ImportFiles& files) {
     mesh.warnings = polygons->warnings;
     mesh.unused_vertices = parts.unused;
     warnOfParts(parts, mesh.warnings);
-    const glm::dmat3 linear = takeFrame({}, job.options, mesh);
+    const glm::dmat3 linear = RELIEF_TRY(takeFrame({}, job.options, mesh));
     return flatten(*polygons, job.extension != "off" && job.extension != "ply", linear, job, std::move(mesh));
+}
+
+Result<TriangleMesh> importAssembly(const ImportJob& job) {
+    Result<AssemblyFile> file = job.extension == "amf" ? readAmf(job.bytes) : read3mf(job.bytes);
+    TriangleMesh mesh;
+    const Result<glm::dmat3> linear =
+        file.and_then([&](const AssemblyFile& read) { return takeFrame(read.frame, job.options, mesh); });
+    if (!linear) {
+        return unreadable(job.shown, linear.error());
+    }
+    mesh.warnings.insert(mesh.warnings.end(), file->warnings.begin(), file->warnings.end());
+    return flatten(file->assembly, *linear, job, std::move(mesh));
 }
 
 Result<TriangleMesh> importGltf(const ImportJob& job, ImportFiles& files) {
     TriangleMesh mesh;
-    const glm::dmat3 linear = takeFrame({1.0, UpAxis::kPlusY, false, false}, job.options, mesh);
+    const glm::dmat3 linear = RELIEF_TRY(takeFrame({1.0, UpAxis::kPlusY}, job.options, mesh));
     return readGltf(job, files, linear, std::move(mesh));
 }
 
@@ -259,6 +335,7 @@ Result<TriangleMesh> importWhatItIs(const ImportJob& job) {
     ImportFiles files(job.folder, job.file_name, job.bytes);
     TriangleMesh mesh = RELIEF_TRY(isGltf(job)       ? importGltf(job, files)
                                    : isReadHere(job) ? importPolygons(job, files)
+                                   : isAssembly(job) ? importAssembly(job)
                                                      : importWithAssimp(job, files));
     for (const std::string& refused : files.refused()) {
         mesh.warnings.push_back("left out " + refused);

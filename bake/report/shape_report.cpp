@@ -45,6 +45,7 @@ nlohmann::ordered_json jsonShape(const ShapeReport& report) {
             {"sheets", report.sheets},
             {"terrains", report.terrains},
             {"coincident_triangles", report.coincident_triangles},
+            {"near_copies", report.near_copies},
             {"thickness", length(report.thickness)},
             {"thickness_least", length(report.thickness_least)},
             {"thickness_asked", report.thickness > 0.0 && report.default_thickness == 0.0}};

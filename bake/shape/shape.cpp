@@ -18,6 +18,7 @@
 #include "bake/mesh/triangle_plane.h"
 #include "bake/repair/hole_caps.h"
 #include "bake/repair/winding.h"
+#include "bake/shape/near_copies.h"
 #include "bake/shape/parts.h"
 #include "bake/shape/sheet.h"
 #include "bake/shape/solid_union.h"
@@ -103,7 +104,11 @@ class Shaper {
         prepared_.freeEdges();
         if (const std::vector<std::uint32_t> copies = copiesInSolids(mesh_, welded_, parts_);
             !copies.empty()) {
-            return runWithout(copies);
+            Result<ShapedMesh> shaped = runWithout(copies, "");
+            if (shaped) {
+                shaped->report.coincident_triangles += copies.size();
+            }
+            return shaped;
         }
         std::vector<const Part*> solids;
         std::vector<const Part*> others;
@@ -111,6 +116,13 @@ class Shaper {
             const bool solid = isSolid(part);
             collected_.add(part.triangles, solid ? PartKind::kSolid : PartKind::kSurface);
             (solid ? solids : others).push_back(&part);
+        }
+        if (const NearCopies copies = nearCopies(mesh_, solids); copies.parts > 0) {
+            Result<ShapedMesh> shaped = runWithout(copies.triangles, copies.text());
+            if (shaped) {
+                shaped->report.near_copies += copies.parts;
+            }
+            return shaped;
         }
         if (others.empty()) {
             report_.solids = solids.size();
@@ -145,8 +157,12 @@ class Shaper {
 
     /// Copies hide where the inside is, and so which way round a surface lies, and which is a hollow's: what is left is
     /// wound again.
-    Result<ShapedMesh> runWithout(const std::vector<std::uint32_t>& copies) {
+    /// \param warning  for the mesh; "" for none.
+    Result<ShapedMesh> runWithout(const std::vector<std::uint32_t>& copies, const std::string& warning) {
         TriangleMesh rest = mesh_;
+        if (!warning.empty()) {
+            rest.warnings.push_back(mesh_.name + ": " + warning);
+        }
         rest.source_triangles = mesh_.sourceTriangles();
         std::size_t kept = 0;
         for (std::size_t i = 0, next = 0; i < mesh_.triangles.size(); ++i) {
@@ -169,7 +185,6 @@ class Shaper {
         rest = RELIEF_TRY(finishMesh(std::move(rest)));
         const Winding winding = RELIEF_TRY(windOutwards(std::move(rest)));
         ShapedMesh shaped = RELIEF_TRY(Shaper(winding.mesh, options_).run());
-        shaped.report.coincident_triangles += copies.size();
         shaped.report.named = report_.named;
         return shaped;
     }

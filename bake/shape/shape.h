@@ -38,9 +38,10 @@ struct ShapeReport {
     std::uint64_t sheets = 0;
     std::uint64_t terrains = 0;
     std::uint64_t coincident_triangles = 0;  ///< left out of sheets, and of solids closed without them
-    double thickness = 0.0;                  ///< of the thickest shell, object units; 0: there are none
-    double thickness_least = 0.0;            ///< of the thinnest
-    double default_thickness = 0.0;          ///< from which each part's is derived; 0: it was asked for
+    std::uint64_t near_copies = 0;   ///< closed parts that are left out for a larger one (near_copies.h)
+    double thickness = 0.0;          ///< of the thickest shell, object units; 0: there are none
+    double thickness_least = 0.0;    ///< of the thinnest
+    double default_thickness = 0.0;  ///< from which each part's is derived; 0: it was asked for
 
     /// "2 solids, 1 sheet"
     [[nodiscard]] std::string text() const;

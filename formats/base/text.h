@@ -18,7 +18,7 @@ void appendShortest(std::string& out, float value);
 /// "a/b/c"
 [[nodiscard]] std::string shortest(const glm::vec3& value);
 
-/// The whole of `text` as a finite float; a leading '+' is allowed. nullopt otherwise.
+/// The whole of `text` as a finite float; a leading '+' is allowed, and what is too small becomes 0. nullopt otherwise.
 [[nodiscard]] std::optional<float> parseFloat(std::string_view text);
 /// The same as a double, which may also be infinite or NaN.
 [[nodiscard]] std::optional<double> parseDouble(std::string_view text);

@@ -8,6 +8,15 @@
 namespace relief {
 namespace {
 
+/// Half a turn whose cosine of half the angle is rounded: 0.0002 degrees.
+constexpr float kHalfTurnCosine = 2e-6F;
+
+/// That of the two quaternions of a rotation which is nearer to `from`. Half a turn has no shorter way: it goes as the
+/// quaternions have it, from one angle about an axis to another angle about it.
+glm::quat nearTo(const glm::quat& from, const glm::quat& to) {
+    return glm::dot(from, to) < -kHalfTurnCosine ? -to : to;
+}
+
 /// The first key after a time; its index is the number of keys if there is none.
 std::size_t after(std::span<const PoseKey> keys, double time) {
     const auto found = std::upper_bound(keys.begin(), keys.end(), time,
@@ -27,7 +36,8 @@ Pose poseAt(std::span<const PoseKey> keys, double time) {
     const auto share = static_cast<float>((time - from.time) / (to.time - from.time));
     Pose pose = from.pose;
     pose.position += share * (to.pose.position - from.pose.position);
-    pose.rotation = glm::normalize(glm::slerp(from.pose.rotation, to.pose.rotation, share));
+    const glm::quat& rotation = from.pose.rotation;
+    pose.rotation = glm::normalize(glm::mix(rotation, nearTo(rotation, to.pose.rotation), share));
     return pose;
 }
 
@@ -39,8 +49,7 @@ Motion motionAt(std::span<const PoseKey> keys, double time) {
     const PoseKey& from = keys[next - 1];
     const PoseKey& to = keys[next];
     const auto seconds = static_cast<float>(to.time - from.time);
-    glm::quat turn = to.pose.rotation * glm::conjugate(from.pose.rotation);
-    turn = turn.w < 0.0F ? -turn : turn;  // the shorter way, as slerp goes
+    const glm::quat turn = nearTo(from.pose.rotation, to.pose.rotation) * glm::conjugate(from.pose.rotation);
     const glm::vec3 axis(turn.x, turn.y, turn.z);
     const float sine = glm::length(axis);
     Motion motion;

@@ -20,7 +20,8 @@ struct Motion {
 };
 
 /// The pose at a time; before the first key and after the last it rests. Between two keys it turns the shorter way
-/// round.
+/// round; half a turn goes as the keys' quaternions have it: from 0 to 180 degrees about an axis right-handed, from 0 to
+/// -180 left-handed.
 /// \param keys  at least one, their times rising.
 [[nodiscard]] Pose poseAt(std::span<const PoseKey> keys, double time);
 /// How it moves then; at a key as it goes on from there.

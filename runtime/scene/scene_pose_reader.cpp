@@ -29,7 +29,9 @@ bool readPose(SceneTable& table, Pose& pose) {
     }
     if (has_angle) {
         axis /= largest;
-        pose.rotation = glm::normalize(glm::angleAxis(glm::radians(degrees), glm::normalize(axis)));
+        // After two turns the quaternion is the same; a small angle is exact to more digits.
+        pose.rotation =
+            glm::normalize(glm::angleAxis(glm::radians(std::fmod(degrees, 720.0F)), glm::normalize(axis)));
     }
     return found || has_angle;
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstring>
 #include <functional>
+#include <glm/geometric.hpp>
 #include <regex>
 #include <set>
 
@@ -14,6 +15,7 @@
 #include "formats/base/hash.h"
 #include "formats/container.h"
 #include "formats/container_header.h"
+#include "formats/plane.h"
 #include "tests/formats/analytic_shapes.h"
 #include "tests/formats/sample_colliders.h"
 
@@ -106,6 +108,22 @@ void forCovered(DepthMap& map, const std::function<void(Surface&)>& change) {
     }
 }
 
+/// Walls across the view, their gap closed and opened at these depths.
+DepthMap gapMap(float front, float back) {
+    DepthMap map = sphereMap(2.0, MapFormat::kFrontBackFixed, Compare::kBoth);
+    map.compare = Compare::kGap;
+    map.decode = Decode::kPlane;
+    map.encloses = map.empty_is_outside = false;
+    std::ranges::fill(map.texels, std::byte{0});
+    for (std::uint32_t y = 1; y + 1 < map.height; ++y) {
+        for (std::uint32_t x = 1; x + 1 < map.width; ++x) {
+            const glm::vec3 ray(glm::normalize(texelRay(map, 0, x, y).direction));
+            encodeTexel(map.format, {Surface{front, -ray}, Surface{back, ray}}, map.texelAt(0, x, y));
+        }
+    }
+    return map;
+}
+
 struct Case {
     IssueCode code;
     Bytes bytes;
@@ -189,6 +207,7 @@ std::vector<Case> casesOfEveryCode() {
              encodeTexel(map.format, {Surface{0.5F, {0, 0, -1}}, {}}, map.texelAt(0, 0, 5));
          })},
         {IssueCode::kTexelBits, changed([](Collider& c) { c.maps[0].texels[0] = std::byte{1}; })},
+        {IssueCode::kGapReversed, changed([](Collider& c) { c.maps = {gapMap(0.4F, 0.6F)}; })},
     };
 }
 
@@ -258,6 +277,15 @@ TEST(Inspect, SoundFilesHaveNothingToSay) {
     // Both ends of both front-back formats, float and cube face their viewer, too.
     EXPECT_FALSE(
         codesOf(inspected(written(test::oneMapOfEveryFormat()))).contains(IssueCode::kNormalsInward));
+}
+
+TEST(Inspect, GapsThatAreOpenedBeforeTheyAreClosedAreSound) {
+    const Inspection inspection = inspected(written([] {
+        Collider collider = soundCollider();
+        collider.maps = {gapMap(0.6F, 0.4F)};
+        return collider;
+    }()));
+    EXPECT_TRUE(inspection.issues.empty()) << listed(inspection);
 }
 
 TEST(Inspect, EveryFlippedBitIsNoticed) {

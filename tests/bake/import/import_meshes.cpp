@@ -54,7 +54,7 @@ std::string tetrahedronStl() {
     return text + "endsolid t\n";
 }
 
-std::string tetrahedron3ds() {
+std::string tetrahedron3ds(float master_scale) {
     const auto bytesOf = [](const auto& values) {
         return std::string(reinterpret_cast<const char*>(values.data()), sizeof(values[0]) * values.size());
     };
@@ -70,7 +70,9 @@ std::string tetrahedron3ds() {
     const std::array<std::uint16_t, 16> faces = {0, 2, 1, 0, 0, 1, 3, 0, 1, 2, 3, 0, 0, 3, 2, 0};
     const std::string mesh =
         chunk(0x4110, bytesOf(four) + bytesOf(corners)) + chunk(0x4120, bytesOf(four) + bytesOf(faces));
-    return chunk(0x4D4D, chunk(0x3D3D, chunk(0x4000, std::string("t\0", 2) + chunk(0x4100, mesh))));
+    const std::array<float, 1> scale = {master_scale};
+    const std::string scaled = master_scale == 1.0F ? "" : chunk(0x0100, bytesOf(scale));
+    return chunk(0x4D4D, chunk(0x3D3D, scaled + chunk(0x4000, std::string("t\0", 2) + chunk(0x4100, mesh))));
 }
 
 std::string tetrahedronDae(const std::string& asset) {

@@ -10,7 +10,8 @@ namespace relief::test {
 [[nodiscard]] std::string tetrahedronPly();
 [[nodiscard]] std::string tetrahedronOff();
 [[nodiscard]] std::string tetrahedronStl();
-[[nodiscard]] std::string tetrahedron3ds();
+/// \param master_scale  1 is none.
+[[nodiscard]] std::string tetrahedron3ds(float master_scale = 1.0F);
 /// \param asset  the elements <unit> and <up_axis>, or nothing.
 [[nodiscard]] std::string tetrahedronDae(const std::string& asset);
 /// \param up    0, 1 or 2 for x, y or z. \param sign  1 or -1. \param unit  in centimetres.

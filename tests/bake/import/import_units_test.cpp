@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <glm/geometric.hpp>
+#include <limits>
+#include <span>
 
 #include "bake/import/mesh_import.h"
 #include "bake/mesh/triangle_plane.h"
@@ -154,16 +156,135 @@ TEST(ImportUnits, AnOptionWinsOverTheFileAndSaysSo) {
 }
 
 TEST(ImportUnits, ColladaHeadersAreReadAsWritten) {
-    EXPECT_EQ(colladaUp("<asset><up_axis> Z_UP\n</up_axis></asset>"), UpAxis::kPlusZ);
-    EXPECT_EQ(colladaUp("<asset><up_axis>X_UP</up_axis></asset>"), UpAxis::kPlusX);
-    EXPECT_EQ(colladaUp("<asset></asset><up_axis>Z_UP</up_axis>"), UpAxis::kPlusY) << "not of the document";
-    EXPECT_EQ(colladaUp(""), UpAxis::kPlusY);
+    const auto frame = [](const std::string& asset, const char* begin = "<asset>") {
+        const std::string text = "<COLLADA>" + (begin + asset) + "</asset></COLLADA>";
+        const Result<SourceFrame> read = colladaFrame(std::as_bytes(std::span(text)));
+        EXPECT_TRUE(read) << read.error().message;
+        return read.value_or(SourceFrame{});
+    };
+    EXPECT_EQ(frame("<up_axis> Z_UP\n</up_axis>").up, UpAxis::kPlusZ);
+    EXPECT_EQ(frame("<up_axis>X_UP</up_axis>").up, UpAxis::kPlusX);
+    EXPECT_EQ(frame("<up_axis>Z_UP</up_axis>", "<asset xmlns='x'><!-- <up_axis>Y_UP</up_axis> -->").up,
+              UpAxis::kPlusZ);
+    EXPECT_EQ(frame("<x><up_axis>Z_UP</up_axis></x>").up, UpAxis::kPlusY) << "not of the document";
+    EXPECT_EQ(frame("").up, UpAxis::kPlusY);
+    EXPECT_EQ(frame("").metres, 1.0);
+    EXPECT_EQ(frame("<unit name='a>b' meter=' 1e-2 '/>").metres, 0.01);
+    EXPECT_EQ(frame("<up_axis>W_UP</up_axis>").up_fault, "its up_axis 'W_UP' is none of COLLADA");
+    EXPECT_EQ(frame("<unit meter='0,010000'/>").metres, 0.01);
+    for (const char* meter : {"-1", "0", "0,0,1", "1,000.5", "nan", "inf", "", "1e-400", "1 m"}) {
+        const SourceFrame faulty = frame("<unit meter='" + std::string(meter) + "'/>");
+        EXPECT_FALSE(faulty.metres) << meter;
+        EXPECT_EQ(faulty.unit_fault, "its unit is '" + std::string(meter) + "' metres, which is no length");
+    }
     // As XML allows it.
     const TemporaryFolder folder;
     const std::string asset = "<unit name=\"meter\"\n meter = '0.5'/><up_axis>\nZ_UP </up_axis>";
     const std::filesystem::path path = folder.write("t.dae", tetrahedronDae(asset));
     expectLiesAt(importMesh(path), {0, 0, -1}, {0.5F, 1.5F, 0}, "m");
     expectLiesAt(importMesh(path, options("m")), {0, 0, -2}, {1, 3, 0}, "m");
+}
+
+/// A file whose unit cannot be meant is refused, and read where the caller names one.
+void expectCured(const std::filesystem::path& path, const std::string& what, const std::string& cure,
+                 const ImportOptions& cured, const glm::vec3& low, const glm::vec3& high) {
+    SCOPED_TRACE(path.filename());
+    const Result<TriangleMesh> refused = importMesh(path);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::kInvalidInput);
+    EXPECT_NE(refused.error().message.find(path.filename().string()), std::string::npos);
+    EXPECT_NE(refused.error().message.find(what), std::string::npos) << refused.error().message;
+    EXPECT_NE(refused.error().message.find(cure), std::string::npos) << refused.error().message;
+    expectLiesAt(importMesh(path, cured), low, high, "m");
+}
+
+TEST(ImportUnits, UnitsThatCannotBeMeantAreRefusedUntilToldOtherwise) {
+    const TemporaryFolder folder;
+    const glm::vec3 low(0.0F);
+    const glm::vec3 high(0.01F, 0.02F, 0.03F);
+    for (const std::string meter : {"-1", "0,0,1", "inf", "none"}) {
+        expectCured(folder.write("t" + meter + ".dae", tetrahedronDae("<unit meter=\"" + meter + "\"/>")),
+                    "'" + meter + "' metres", "--unit", options("cm"), low, high);
+    }
+    for (const std::string factor : {"-100", "nan", "10,5"}) {
+        expectCured(folder.write("t" + factor + ".fbx", tetrahedronFbx(1, 1, factor)), factor, "--unit",
+                    options("cm"), low, high);
+    }
+    expectCured(folder.write("up.fbx", tetrahedronFbx(5, 1, "1")), "UpAxis is 5", "--up",
+                options("", UpAxis::kPlusY), low, high);
+    expectCured(folder.write("up.dae", tetrahedronDae("<unit meter='0.01'/><up_axis>W_UP</up_axis>")),
+                "'W_UP'", "--up", options("", UpAxis::kPlusY), low, high);
+    for (const float scale :
+         {-1.0F, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        expectCured(folder.write("t.3ds", tetrahedron3ds(scale)), "master scale", "--unit",
+                    options("cm", UpAxis::kPlusY), low, high);
+    }
+    // The importer of FBX does not go on there.
+    const Result<TriangleMesh> zero =
+        importMesh(folder.write("zero.fbx", tetrahedronFbx(1, 1, "0")), options("cm"));
+    ASSERT_FALSE(zero);
+    EXPECT_NE(zero.error().message.find("UnitScaleFactor is 0"), std::string::npos) << zero.error().message;
+    EXPECT_NE(zero.error().message.find("export it again"), std::string::npos) << zero.error().message;
+}
+
+TEST(ImportUnits, MasterScalesOf3dsDivide) {
+    const TemporaryFolder folder;
+    expectLiesAt(importMesh(folder.write("t.3ds", tetrahedron3ds(0.5F))), {0, 0, -4}, {2, 6, 0}, "");
+    expectLiesAt(importMesh(folder.write("t.3ds", tetrahedron3ds(0.0F))), {0, 0, -2}, {1, 3, 0}, "");
+}
+
+TEST(ImportUnits, ANumberOfFbxMayBeWhole) {
+    const TemporaryFolder folder;
+    std::string text = tetrahedronFbx(1, 1, "100");
+    const std::string type = R"("double", "Number")";
+    text.replace(text.find(type), type.size(), R"("int", "Integer")");
+    expectLiesAt(importMesh(folder.write("whole.fbx", text)), {0, 0, 0}, {1, 2, 3}, "m");
+}
+
+TEST(ImportUnits, FbxSaysItInTextAndInBytes) {
+    const auto unit = [](const std::string& document) { return fbxUnit(std::as_bytes(std::span(document))); };
+    EXPECT_EQ(
+        unit("; FBX\n P: \"UnitScaleFactor\", \"double\", \"Number\", \"\", 2.54\r\n P: 1").value().value,
+        2.54);
+    EXPECT_EQ(unit("; FBX\nProperty: \"UnitScaleFactor\", \"double\", \"\",100\n").value().value, 100.0);
+    EXPECT_EQ(unit("; FBX\n P: \"UnitScaleFactor\", \"double\", \"Number\", \"\",10,5").value().text, "10,5");
+    EXPECT_FALSE(unit("; FBX\n P: \"UnitScaleFactor\", \"double\", \"Number\", \"\",10,5").value().value);
+    EXPECT_FALSE(unit("; FBX\n P: \"UnitScaleFactor\"").value().value);
+    EXPECT_FALSE(unit("; FBX\n P: \"OriginalUnitScaleFactor\", \"double\", \"Number\", \"\",7"));
+    using namespace std::string_literals;
+    const std::string head =
+        "Kaydara FBX Binary  S\x0f\0\0\0UnitScaleFactorS\x06\0\0\0doubleS\x06\0\0\0NumberS\0\0\0\0"s;
+    EXPECT_EQ(unit(head + "D\0\0\0\0\0\0\x59\x40"s).value().value, 100.0);
+    EXPECT_EQ(unit(head + "I\x64\0\0\0"s).value().value, 100.0);
+    EXPECT_EQ(unit(head + "F\0\0\xc8\xc2"s).value().value, -100.0);
+    EXPECT_FALSE(unit(head + "D\0\0\0\0\0\0\xf8\x7f"s).value().value);
+    EXPECT_FALSE(unit(head + "X").value().value);
+    EXPECT_FALSE(unit(head).value().value);
+    EXPECT_FALSE(unit("Kaydara FBX Binary  "));
+}
+
+TEST(ImportUnits, DxfSaysItByCode) {
+    const auto frame = [](const std::string& header) { return dxfFrame(std::as_bytes(std::span(header))); };
+    EXPECT_FALSE(frame("0\nSECTION\n2\nHEADER\n0\nENDSEC\n").metres);
+    EXPECT_EQ(frame("  9\r\n$INSUNITS\r\n 70\r\n     4\r\n").metres, 0.001);
+    EXPECT_EQ(frame("9\n$INSUNITS\n70\n1\n").metres, 0.0254);
+    EXPECT_FALSE(frame("9\n$INSUNITS\n70\n0\n").metres);
+    EXPECT_EQ(frame("9\n$INSUNITS\n70\n0\n").unit_fault, "");
+    for (const char* code : {"25", "-1", "1.5", "99999999999999999999", ""}) {
+        const SourceFrame faulty = frame("9\n$INSUNITS\n70\n" + std::string(code) + "\n");
+        EXPECT_FALSE(faulty.metres);
+        EXPECT_EQ(faulty.unit_fault, "its $INSUNITS is '" + std::string(code) + "', which is no unit of DXF");
+    }
+}
+
+// What a left-handed file calls z is turned round when it is asked for.
+TEST(ImportUnits, UpOfALeftHandedFileIsItsOwn) {
+    SourceFrame left;
+    left.mirrored = true;
+    EXPECT_EQ(changeOf(left, "", UpAxis::kPlusZ).turn, turnUpwards(UpAxis::kMinusZ));
+    EXPECT_EQ(changeOf(left, "", UpAxis::kMinusZ).turn, turnUpwards(UpAxis::kPlusZ));
+    EXPECT_EQ(changeOf(left, "", UpAxis::kPlusX).turn, turnUpwards(UpAxis::kPlusX));
+    EXPECT_EQ(changeOf(left, "", std::nullopt).turn, glm::dmat3(1.0));
 }
 
 }  // namespace

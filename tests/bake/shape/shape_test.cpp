@@ -218,6 +218,68 @@ TEST(Shape, ASheetWithTwoSidesIsOneSheet) {
     EXPECT_FALSE(query.inside({0.1F, 0.03F, 0.2F}));
 }
 
+TriangleMesh scaled(TriangleMesh mesh, double scale, const glm::dvec3& offset = glm::dvec3(0.0)) {
+    for (glm::vec3& p : mesh.positions) {
+        p = glm::dvec3(p) * scale + offset;
+    }
+    return finished(mesh.positions, mesh.triangles);
+}
+
+// The gap between them is thinner than any wall: it is no hollow, and a warning says so.
+TEST(Shape, NearCopiesOfASolidAreOneSolid) {
+    const TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 3);
+    struct Case {
+        const char* name;
+        TriangleMesh mesh;
+        std::uint64_t copies;
+    };
+    const std::vector<Case> cases = {
+        {"grown by a millionth", joined({ball, scaled(ball, 1.0 + 1e-6)}), 1},
+        {"shrunk, first in the file", joined({scaled(ball, 1.0 - 5e-5), ball}), 1},
+        {"with its back", joined({ball, reversed(scaled(ball, 1.0 + 2e-6))}), 1},
+        {"moved", joined({ball, scaled(ball, 1.0, {1e-5, -2e-5, 0.0})}), 1},
+        {"three", joined({ball, scaled(ball, 1.0 + 3e-6), scaled(ball, 1.0 - 3e-6)}), 2},
+        {"exact ones too", joined({ball, ball, scaled(ball, 1.0 + 1e-6)}), 1}};
+    const MeshQuery truth = queryOf(ball);
+    for (const Case& c : cases) {
+        const ShapedMesh shape = shaped(c.mesh);
+        expectKinds(shape.report, 1, 0, 0, 0);
+        EXPECT_EQ(shape.report.near_copies, c.copies) << c.name;
+        ASSERT_EQ(shape.mesh->warnings.size(), 1U) << c.name;
+        EXPECT_NE(shape.mesh->warnings[0].find("of another one"), std::string::npos)
+            << shape.mesh->warnings[0];
+        const MeshQuery query = queryOf(shape.mesh);
+        MersenneRandom random(3);
+        for (int i = 0; i < 2000; ++i) {
+            const glm::dvec3 share{random.uniform(), random.uniform(), random.uniform()};
+            const glm::dvec3 p = 2.4 * share - 1.2;
+            if (truth.inside(0.9998 * p) == truth.inside(1.0002 * p)) {  // not at the surface
+                ASSERT_EQ(query.inside(p), truth.inside(p)) << c.name;
+            }
+        }
+    }
+}
+
+TEST(Shape, WhatIsNoNearCopyStays) {
+    const TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 3);
+    for (const TriangleMesh& other : {scaled(ball, 0.999), scaled(ball, 1.0, {1e-3, 0.0, 0.0}),
+                                      makeIcosphere(glm::dvec3(0.0), 1.0, 2), scaled(ball, 0.5)}) {
+        const ShapedMesh shape = shaped(joined({ball, other}));
+        expectKinds(shape.report, 2, 0, 0, 0);
+        EXPECT_EQ(shape.report.near_copies, 0U);
+        EXPECT_TRUE(shape.mesh->warnings.empty());
+    }
+    // A hollow stays one.
+    const ShapedMesh hollow = shaped(joined({ball, reversed(scaled(ball, 0.99))}));
+    EXPECT_FALSE(queryOf(hollow.mesh).inside(glm::dvec3(0.0)));
+    // Many parts of one size, near each other, are found apart.
+    std::vector<TriangleMesh> many;
+    for (int i = 0; i < 50; ++i) {
+        many.push_back(makeBoxMesh({0.0, 0.0, double(i)}, glm::dvec3(0.5)));
+    }
+    EXPECT_EQ(shaped(joined(many)).report.near_copies, 0U);
+}
+
 TEST(Shape, CopiesOfASolidAreOneSolid) {
     const TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 3);
     TriangleMesh half = ball;

@@ -37,6 +37,27 @@ TEST(Numbers, ParsersTakeWholeNumbersOnly) {
     }
 }
 
+TEST(Numbers, ThoseTooSmallForAFloatAreZero) {
+    EXPECT_EQ(parseFloat("1e-40"), 1e-40F) << "a subnormal";
+    for (const char* text : {"1e-320", "0.1e-320", "1e-99999999999999999999999", "12345e-400", "+7.5E-60"}) {
+        EXPECT_EQ(parseFloat(text), 0.0F) << text;
+        EXPECT_FALSE(std::signbit(*parseFloat(text))) << text;
+    }
+    EXPECT_TRUE(std::signbit(parseFloat("-1e-320").value_or(1.0F)));
+    EXPECT_EQ(parseFloat("0." + std::string(500, '0') + "1"), 0.0F);
+    EXPECT_EQ(parseFloat("0." + std::string(50, '0') + "1e51"), 1.0F);
+    EXPECT_EQ(parseDouble("1e-320"), 1e-320);
+    EXPECT_EQ(parseDouble("-4e-400"), 0.0);
+    for (const std::string& large :
+         {std::string("1e400"), "1" + std::string(500, '0') + "e-2", std::string("0.1e500")}) {
+        EXPECT_FALSE(parseFloat(large)) << large;
+        EXPECT_FALSE(parseDouble(large)) << large;
+    }
+    for (const char* text : {"1e-320x", "1e-320 ", "1e-", "e-320"}) {
+        EXPECT_FALSE(parseFloat(text)) << text;
+    }
+}
+
 TEST(Words, NearOnesAreGuessed) {
     constexpr std::array<std::string_view, 4> kKnown = {"resolution", "threads", "map", "json"};
     EXPECT_EQ(didYouMean("resolutoin", kKnown), "; did you mean 'resolution'?");

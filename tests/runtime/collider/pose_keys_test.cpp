@@ -53,6 +53,25 @@ TEST(PoseKeys, TurnsTheShorterWayRound) {
     EXPECT_NEAR(glm::angle(poseAt(keys, 2.0).rotation), 0.25F * kPi, 1e-5F);
 }
 
+// No way is the shorter one: it goes as the angles do, whatever they are rounded to.
+TEST(PoseKeys, HalfATurnGoesAsTheAnglesDo) {
+    for (const glm::vec3& axis : {glm::vec3(0.0F, 1.0F, 0.0F), glm::vec3(0.3F, 1.0F, -0.5F)}) {
+        for (const auto& [from, to] :
+             {std::pair{0.0F, 180.0F}, std::pair{0.0F, -180.0F}, std::pair{180.0F, 360.0F},
+              std::pair{-90.0F, 90.0F}, std::pair{100.0F, -80.0F}, std::pair{33.0F, 213.0F},
+              std::pair{540.0F, 360.0F}}) {
+            const std::vector<PoseKey> keys = {{0.0, pose({}, axis, glm::radians(from))},
+                                               {2.0, pose({}, axis, glm::radians(to))}};
+            const Motion motion = motionAt(keys, 1.0);
+            const glm::vec3 expected = glm::radians(0.5F * (to - from)) * glm::normalize(axis);
+            EXPECT_LT(glm::length(motion.turn - expected), 1e-5F) << from << " to " << to;
+            const glm::quat middle = glm::angleAxis(glm::radians(0.5F * (from + to)), glm::normalize(axis));
+            EXPECT_NEAR(std::abs(glm::dot(poseAt(keys, 1.0).rotation, middle)), 1.0F, 1e-6F)
+                << from << " to " << to;
+        }
+    }
+}
+
 // Whatever the turn: velocity + turn × arm is how toWorld() of a point changes.
 TEST(PoseKeys, MotionIsTheDifferenceOfPoses) {
     const auto keys = way();

@@ -1,0 +1,242 @@
+"""Boxes of random units, axes and placements in every format that states any: the collider's size in metres is known in
+closed form. Files that state what cannot be are refused with the option that helps, and read with it."""
+
+import itertools
+import json
+import math
+
+import cases
+import unit_files as files
+
+UNITS = {"m": 1, "cm": 0.01, "mm": 0.001, "um": 1e-6, "km": 1000, "in": 0.0254, "ft": 0.3048, "yd": 0.9144}
+NAMED = {"micron": 1e-6, "millimeter": 0.001, "inch": 0.0254, "meter": 1}
+INSUNITS = {1: 0.0254, 2: 0.3048, 4: 0.001, 5: 0.01, 6: 1, 7: 1000, 10: 0.9144, 13: 1e-6, 14: 0.1}
+UP = {"+x": lambda p: (-p[1], p[0], p[2]), "-x": lambda p: (p[1], -p[0], p[2]), "+y": files.AS_IS,
+      "-y": lambda p: (p[0], -p[1], -p[2]), "+z": files.Z_UP, "-z": lambda p: (p[0], -p[2], p[1])}
+
+
+def bounds(points):
+    return [f(p[axis] for p in points) for f in (min, max) for axis in range(3)]
+
+
+def matrix_3mf(random):
+    """A turn by quarters, a scale and a shift: as 3MF writes it, and as a function."""
+    axes = random.choice(list(itertools.permutations(range(3))))
+    scale = [random.choice((-1, 1)) * random.choice((0.5, 1, 2, 3)) for _ in range(3)]
+    shift = [random.uniform(-50, 50) for _ in range(3)]
+    rows = [[scale[i] if axes[i] == column else 0 for column in range(3)] for i in range(3)]
+    text = " ".join(repr(v) for row in (*rows, shift) for v in row)
+    return text, lambda p: tuple(sum(p[i] * rows[i][c] for i in range(3)) + shift[c] for c in range(3))
+
+
+def turned(degrees, point):
+    """About x, then y, then z."""
+    p = list(point)
+    for axis in range(3):
+        a, b = (axis + 1) % 3, (axis + 2) % 3
+        sine, cosine = math.sin(math.radians(degrees[axis])), math.cos(math.radians(degrees[axis]))
+        p[a], p[b] = cosine * p[a] - sine * p[b], sine * p[a] + cosine * p[b]
+    return tuple(p)
+
+
+class Units(cases.Cases):
+    def box(self):
+        low = [self.random.uniform(-20, 20) for _ in range(3)]
+        return (tuple(low), tuple(v + self.random.uniform(0.5, 30) for v in low))
+
+    def bake(self, path, *options):
+        """Its bounds and its unit, or None for an error, which has been checked to be one line with the file's name."""
+        container = path.parent / "box.relief"
+        done = self.run("relief", "bake", path, "-o", container, "--map", "fixed8:size=128", "-q", *options)
+        if done is None:
+            return None
+        if done.returncode != 0:
+            self.expect(path.name in done.stderr and done.stderr.count("\n") == 1, f"not one line: {done.stderr}")
+            return done
+        info = json.loads(self.run("relief", "info", container, "--json").stdout)
+        return info["bounds"]["min"] + info["bounds"]["max"], info["unit"]
+
+    def expect_box(self, path, points, unit, *options):
+        """`points`: where the corners are to lie, in metres if the unit is "m"."""
+        baked = self.bake(path, *options)
+        if not self.expect(isinstance(baked, tuple), f"{path.name} {options} is refused: {baked}"):
+            return
+        wanted = bounds(points)
+        room = 1e-5 * max(map(abs, wanted))
+        self.expect(all(abs(a - b) <= room for a, b in zip(baked[0], wanted)) and baked[1] == unit,
+                    f"{path.name} {options}: {baked} instead of {wanted} '{unit}'")
+
+    def expect_refused(self, path, cure):
+        done = self.bake(path)
+        self.expect(done is not None and not isinstance(done, tuple) and done.returncode == 3 and cure in done.stderr,
+                    f"{path.name} is not refused with '{cure}': {getattr(done, 'stderr', done)}")
+
+    def told(self, path, points, metres, axes=files.AS_IS, up="+y"):
+        """With and without --unit and --up. `metres`: what the file says, or None. `axes`: where the file's (x, y, z) lies
+        if it is read as it is; `up`: which axis of the file that brings up, or None where --up is taken on top."""
+        def placed(turn, scale):
+            return [tuple(scale * v for v in turn(p)) for p in points]
+
+        self.expect_box(path, placed(axes, metres or 1), "m" if metres else "")
+        unit = self.random.choice(list(UNITS))
+        self.expect_box(path, placed(axes, UNITS[unit]), "m", "--unit", unit)
+        axis = self.random.choice(list(UP))
+        turn = UP[axis]
+        if axes is files.Z_MIRRORED:
+            # The file's axis, in a right-handed frame.
+            seen = {"+z": "-z", "-z": "+z"}.get(axis, axis)
+            turn = lambda p: UP[seen](files.Z_MIRRORED(p))
+        self.expect_box(path, placed(turn, metres or 1), "m" if metres else "", "--up", axis)
+
+
+def main():
+    run = Units("units", 100)
+    kinds = [amf, threemf, threemf_parts, dae, fbx, three_ds, dxf, left_handed, z_up, nothing, wrong, commas]
+    for number, folder in run.each():
+        kinds[number % len(kinds)](run, folder)
+    run.finish()
+
+
+def write(folder, name, data):
+    path = folder / name
+    path.write_bytes(data)
+    return path
+
+
+def amf(run, folder):
+    unit, metres = run.random.choice([(None, 0.001), *NAMED.items(), ("feet", 0.3048)])
+    box = run.box()
+    points = files.corners(box)
+    if run.random.random() < 0.3:
+        run.told(write(folder, "a.amf", files.amf(box, unit)), points, metres)
+        return
+    # Constellations within constellations.
+    text, shown, below = "", [points], "1"
+    for level in range(run.random.randint(1, 3)):
+        instances, above = "", []
+        for _ in range(run.random.randint(1, 3)):
+            delta = [run.random.uniform(-20, 20) for _ in range(3)]
+            degrees = [run.random.choice((0, 90, -90, 180, 450, run.random.uniform(-180, 180))) for _ in range(3)]
+            instances += files.instance(below, delta, degrees)
+            above += [[tuple(v + d for v, d in zip(turned(degrees, p), delta)) for p in one] for one in shown]
+        below, shown = f"c{level}", above
+        text += f"<constellation id='{below}'>{instances}</constellation>"
+    run.expect_box(write(folder, "a.amf", files.amf(box, unit, text)),
+                   [tuple(metres * v for v in p) for one in shown for p in one], "m")
+
+
+def threemf(run, folder):
+    unit, metres = run.random.choice([(None, 0.001), *NAMED.items(), ("centimeter", 0.01), ("foot", 0.3048)])
+    box = run.box()
+    text, place = matrix_3mf(run.random)
+    run.told(write(folder, "a.3mf", files.threemf(box, unit, text)), [place(p) for p in files.corners(box)], metres)
+
+
+def threemf_parts(run, folder):
+    """Components, and an object in another model of the archive."""
+    boxes = [run.box(), run.box()]
+    (outer_text, outer), (a_text, a), (b_text, b) = (matrix_3mf(run.random) for _ in range(3))
+    elsewhere = run.random.random() < 0.5
+    objects = f'<object id="1">{files.mesh_3mf(boxes[0])}</object>'
+    second = f'<object id="2">{files.mesh_3mf(boxes[1])}</object>'
+    path = ' p:path="/3D/Objects/b.model"' if elsewhere else ""
+    objects += ("" if elsewhere else second) + (f'<object id="3"><components><component objectid="1" transform="{a_text}"/>'
+                                                f'<component objectid="2" transform="{b_text}"{path}/></components></object>')
+    root = files.model_3mf(objects, f'<item objectid="3" transform="{outer_text}"/>', "meter",
+                           'requiredextensions="p"' if elsewhere else "")
+    others = [("3D/Objects/b.model", files.model_3mf(second, unit="meter"))] if elsewhere else []
+    points = [outer(place(p)) for box, place in zip(boxes, (a, b)) for p in files.corners(box)]
+    run.expect_box(write(folder, "a.3mf", files.archive_3mf(root, others)), points, "m")
+
+
+def dae(run, folder):
+    box = run.box()
+    metres = run.random.choice((None, 1, 0.01, 0.0254, 1000, run.random.uniform(0.001, 3)))
+    axis, turn = run.random.choice([(None, files.AS_IS), ("Y_UP", files.AS_IS), ("Z_UP", files.Z_UP), ("X_UP", UP["+x"])])
+    number = run.random.choice((repr, files.comma))
+    asset = "" if metres is None else f'<unit name="u" meter="{number(metres)}"/>'
+    asset += "" if axis is None else f"<up_axis>{axis}</up_axis>"
+    if run.random.random() < 0.5:
+        asset = f"<asset xmlns='u'><!-- <unit meter='7'/> --><created/>{asset}</asset>"
+    run.told(write(folder, "a.dae", files.dae(box, asset)), files.corners(box), metres or 1, turn)
+
+
+def fbx(run, folder):
+    box = run.box()
+    factor = run.random.choice((None, 1, 2.54, 100, 100000, run.random.uniform(0.1, 300)))
+    axis = run.random.randrange(3)
+    sign = run.random.choice((1, -1))
+    kind = '"int", "Integer"' if factor in (1, 100) and run.random.random() < 0.5 else '"double", "Number"'
+    data = files.fbx(box, None if factor is None else repr(factor), axis, sign, kind)
+    run.told(write(folder, "a.fbx", data), files.corners(box), 0.01 * (factor or 1),
+             UP[("+" if sign > 0 else "-") + "xyz"[axis]])
+
+
+def three_ds(run, folder):
+    box = run.box()
+    scale = run.random.choice((None, 1, 0.5, 2, run.random.uniform(0.1, 10)))
+    points = [tuple(v / (scale or 1) for v in p) for p in files.corners(box)]
+    run.told(write(folder, "a.3ds", files.three_ds(box, scale)), points, None, files.Z_UP)
+
+
+def dxf(run, folder):
+    box = run.box()
+    code, metres = run.random.choice([(None, None), (0, None), *INSUNITS.items()])
+    run.told(write(folder, "a.dxf", files.dxf(box, code)), files.corners(box), metres, files.Z_UP)
+
+
+def left_handed(run, folder):
+    name = run.random.choice(("x", "b3d", "lwo"))
+    box = run.box()
+    run.told(write(folder, "a." + name, getattr(files, name)(box)), files.corners(box), None, files.Z_MIRRORED)
+
+
+def z_up(run, folder):
+    box = run.box()
+    run.told(write(folder, "a.ase", files.ase(box)), files.corners(box), None, files.Z_UP)
+
+
+def nothing(run, folder):
+    name = run.random.choice(("obj", "ac", "nff", "smd", "ms3d"))
+    box = run.box()
+    run.told(write(folder, "a." + name, getattr(files, name)(box)), files.corners(box), None)
+
+
+def wrong(run, folder):
+    """Units that cannot be meant: refused, and read with --unit."""
+    box = run.box()
+    number = run.random.choice(("-1", "0", "nan", "inf", "0,0,1", "-100", "1e999"))
+    name, data = run.random.choice([
+        ("a.dae", files.dae(box, f'<unit meter="{number}"/>')),
+        ("a.fbx", files.fbx(box, run.random.choice(("-100", "nan", "10,5", "-1e-9")))),
+        ("a.amf", files.amf(box, run.random.choice(("parsec", "", "Inch")))),
+        ("a.3mf", files.threemf(box, run.random.choice(("parsec", "", "mm")))),
+        ("a.dxf", files.dxf(box, run.random.choice(("-1", "99", "m")))),
+        ("a.3ds", files.three_ds(box, run.random.choice((-1.0, float("nan"), float("inf"), -0.5))))])
+    path = write(folder, name, data)
+    run.expect_refused(path, "--unit")
+    unit = run.random.choice(list(UNITS))
+    turn = files.Z_UP if name in ("a.dxf", "a.3ds") else files.AS_IS
+    run.expect_box(path, [tuple(UNITS[unit] * v for v in turn(p)) for p in files.corners(box)], "m", "--unit", unit)
+
+
+def commas(run, folder):
+    """Decimal commas: read as points, or refused; never cut off."""
+    box = run.box()
+    name = run.random.choice(("amf", "threemf", "dae", "dxf", "ase", "nff", "smd"))
+    extension = {"threemf": "3mf"}.get(name, name)
+    path = write(folder, "a." + extension, getattr(files, name)(box, number=files.comma))
+    baked = run.bake(path)
+    if isinstance(baked, tuple):
+        metres = {"amf": 0.001, "threemf": 0.001}.get(name, 1)
+        turn = files.Z_UP if name in ("dxf", "ase") else files.AS_IS
+        wanted = bounds([tuple(metres * v for v in turn(p)) for p in files.corners(box)])
+        room = 1e-5 * max(map(abs, wanted))
+        run.expect(all(abs(a - b) <= room for a, b in zip(baked[0], wanted)), f"{path.name}: {baked} instead of {wanted}")
+    else:
+        run.expect(baked is not None and baked.returncode == 3 and "comma" in baked.stderr,
+                   f"{path.name}: no word of the comma: {getattr(baked, 'stderr', baked)}")
+
+
+if __name__ == "__main__":
+    main()
