@@ -552,6 +552,7 @@ Result<BakedInMemory> bakeInMemory(BakeCommand command, std::optional<TriangleMe
     }
     BakeRun run(command, std::move(checkpoint));
     RELIEF_TRY(bakeCollider(run, std::move(mesh)));
+    run.progress.checkpoint();
     if (!command.plan_out.empty()) {
         RELIEF_TRY(writePlanFile(command.plan_out, *run.plan, run.baked, run.settings.bake));
     }

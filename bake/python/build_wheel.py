@@ -25,8 +25,7 @@ def built_folder(settings):
     """The build folder that the setting build-dir names, as it is; else one of our own, built now."""
     if "build-dir" in settings:
         return pathlib.Path(settings["build-dir"]).resolve()
-    run("cmake", "-S", SOURCE, "-B", BUILD, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DRELIEF_BUILD_TESTS=OFF",
-        "-DRELIEF_BUILD_BENCHMARKS=OFF", "-DRELIEF_BUILD_OPENVDB=OFF")
+    run("cmake", "--preset", "packages", "-S", SOURCE, "-B", BUILD, "-DRELIEF_BUILD_OPENVDB=OFF")
     run("cmake", "--build", BUILD, "--target", "relief_python", "relief-import")
     return BUILD
 

@@ -41,6 +41,20 @@ struct Errors {
 };
 Errors* g_errors = nullptr;
 
+/// A message, which may hold the bytes of a file's name, as Python has such names.
+py::object textOf(const std::string& message) {
+    return py::reinterpret_steal<py::object>(
+        PyUnicode_DecodeUTF8(message.data(), static_cast<py::ssize_t>(message.size()), "surrogateescape"));
+}
+
+py::list textsOf(const std::vector<std::string>& messages) {
+    py::list texts;
+    for (const std::string& message : messages) {
+        texts.append(textOf(message));
+    }
+    return texts;
+}
+
 [[noreturn]] void raise(const Error& error) {
     const py::object* type = &g_errors->base;
     switch (error.code) {
@@ -62,7 +76,7 @@ Errors* g_errors = nullptr;
         default:
             break;
     }
-    PyErr_SetString(type->ptr(), error.message.c_str());
+    PyErr_SetObject(type->ptr(), textOf(error.message).ptr());
     throw py::error_already_set();
 }
 
@@ -135,7 +149,8 @@ Samples sampleAll(const Floats& points, const Ask& ask) {
         });
         raiseSignals();
         begin = end;
-        part *= watch.ms() < static_cast<double>(kSignalInterval.count()) ? 2 : 1;
+        const bool quick = watch.ms() < static_cast<double>(kSignalInterval.count());
+        part = quick ? 2 * part : std::max(kFirstPoints, part / 2);
     }
     return out;
 }
@@ -241,7 +256,7 @@ py::tuple bake(BakeCommand command, std::optional<TriangleMesh> mesh) {
             return bakeInMemory(std::move(command), std::move(mesh), checkpoint);
         },
         seconds));
-    return py::make_tuple(std::make_shared<Collider>(std::move(baked.collider)), baked.warnings);
+    return py::make_tuple(std::make_shared<Collider>(std::move(baked.collider)), textsOf(baked.warnings));
 }
 
 py::list placesOf(const std::vector<WorstPlace>& found) {
@@ -273,7 +288,7 @@ py::tuple check(const SharedCollider& collider, const MeshCheckSettings& setting
     out["normal_mean"] = accuracy.normal_mean;
     out["unknown_percent"] = accuracy.unknown_percent;
     out["places"] = placesOf(run.places);
-    return py::make_tuple(out, run.warnings);
+    return py::make_tuple(out, textsOf(run.warnings));
 }
 
 // --- simulate
@@ -291,8 +306,12 @@ class HeadlessSimulation {
         overrides.root = root;
         loaded_ = std::make_unique<LoadedScene>(need(released([&] { return loadAll(scene, overrides); })));
         auto emitters = need(makeEmitters(loaded_->scene.emitters));
-        simulation_ = std::make_unique<Simulation>(need(released(
-            [&] { return Simulation::create(*loaded_, std::move(emitters), StepPath::kAuto, nullptr); })));
+        simulation_ = std::make_unique<Simulation>(need(released([&] {
+            return Simulation::create(*loaded_, std::move(emitters), StepPath::kAuto, nullptr, [] {
+                const py::gil_scoped_acquire held;
+                raiseSignals();
+            });
+        })));
         if (hits) {
             hits_ = std::make_unique<Hits>();
             need(simulation_->listHits(0.0F, [to = hits_.get()](const StepEvents& step) {

@@ -201,7 +201,7 @@ def _path(value: Any, name: str = "path") -> str:
     path = os.fsdecode(value)
     if "\0" in path:
         raise UsageError(f"{name} holds a null character, which no file's name does")
-    return path
+    return "./-" if path == "-" else path  # else it stands for standard input and output
 
 
 def _is_number(value: Any) -> bool:

@@ -137,6 +137,28 @@ def test_compressions_that_are_none(compression, collider, tmp_path):
     assert not (tmp_path / "x.relief").exists()
 
 
+def test_a_dash_is_a_file(collider, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(relief.FileError):
+        relief.load("-")
+    collider.save("-")
+    assert relief.load("-").to_bytes() == (tmp_path / "-").read_bytes() == collider.to_bytes()
+    with pytest.raises(relief.Error, match="'./-'"):
+        relief.bake("-")
+
+
+def test_names_that_are_no_utf8(collider, tmp_path):
+    name = "\udcff\udcfe"
+    with pytest.raises(relief.FileError, match=name):
+        relief.load(tmp_path / name)
+    collider.save(tmp_path / name)
+    assert relief.load(tmp_path / name).to_bytes() == collider.to_bytes()
+    (tmp_path / f"{name}.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\n")
+    with pytest.warns(relief.ReliefWarning):
+        made = relief.bake(tmp_path / f"{name}.obj", budget="20kB")
+    assert relief.check(made, tmp_path / f"{name}.obj", samples=100).wrong_percent < 100
+
+
 def test_paths_that_are_none(collider, tmp_path):
     for call in (collider.save, relief.load, relief.Simulation):
         for wrong in (None, 3, ["a"]):
