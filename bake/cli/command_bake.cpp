@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 
+#include "bake/cli/bake_in_memory.h"
 #include "bake/cli/bake_settings.h"
 #include "bake/cli/command.h"
 #include "bake/cli/command_line.h"
@@ -89,6 +90,7 @@ Result<Baked> searchBudget(const MeshQuery& query, const MeshQuery& truth, const
     options.max_error_percent = double{*command.max_error};
     options.budget_max = command.budget.value_or(options.budget_max);
     options.bake = settings.bake;
+    options.bake.progress = [&progress](double) { progress.checkpoint(); };
     options.max_maps = command.max_maps;
     options.tried = [&progress](const BudgetTry& made) {
         progress.print([&made] {
@@ -201,13 +203,16 @@ nlohmann::ordered_json jsonSettings(const BakeCommand& command, const BakeSettin
 
 /// A bake, and what its stages leave for the next.
 struct BakeRun {
-    BakeRun(const BakeCommand& command_of_run, FileGuard& files_of_run)
-        : command(command_of_run), files(files_of_run) {}
+    BakeRun(const BakeCommand& command_of_run, FileGuard& files_of_run, std::function<void()> checkpoint = {})
+        : command(command_of_run),
+          files(files_of_run),
+          progress({quotedPath(command.mesh), !command.common.quiet, command.time_limit,
+                    std::move(checkpoint), reportError}) {}
 
     const BakeCommand& command;
     FileGuard& files;
     Stopwatch total;
-    Progress progress{{quotedPath(command.mesh), !command.common.quiet, command.time_limit, reportError}};
+    Progress progress;
     BakeTimes times;
     BakeSettings settings;
     std::string plan_hash;
@@ -277,13 +282,17 @@ Result<void> shape(BakeRun& run) {
 }
 
 /// Reads the mesh and makes it fit to be baked.
-Result<void> readMesh(BakeRun& run) {
+/// \param given  instead of the file's.
+Result<void> readMesh(BakeRun& run, std::optional<TriangleMesh> given = {}) {
     const BakeCommand& command = run.command;
     const Stopwatch watch;
     ImportOptions import = command.import.options;
     import.names = run.settings.shape.names();
     run.progress.begin("reading the mesh");
-    TriangleMesh mesh = RELIEF_TRY(importMeshInWorker(command.mesh, import, command.import.limits));
+    if (!given) {
+        given = RELIEF_TRY(importMeshInWorker(command.mesh, import, command.import.limits));
+    }
+    TriangleMesh mesh = std::move(*given);
     run.times.import_ms = watch.ms();
     run.unused_vertices = mesh.unused_vertices;
     run.progress.print([&mesh] {
@@ -374,16 +383,9 @@ Result<void> checkItself(BakeRun& run) {
     return {};
 }
 
-/// Says what was out of the ordinary. Only now: a bake that fails has one line to say.
-void tellNotices(BakeRun& run) {
+/// All warnings of the bake, in those of its report.
+void gatherWarnings(BakeRun& run) {
     const TriangleMesh& mesh = *run.cared.mesh;
-    if (mesh.closed_holes > 0) {
-        spdlog::info("{}: closed {} hole{} for baking: the mesh is nearly closed", mesh.name,
-                     mesh.closed_holes, mesh.closed_holes == 1 ? "" : "s");
-    }
-    if (!run.backend.reason.empty()) {
-        spdlog::info("backend {}: {}", run.backend.raster ? "raster" : "raycast", run.backend.reason);
-    }
     std::vector<std::string>& warnings = run.baked.report.warnings;
     for (const NamedTriangles& named : run.shape.named) {
         if (named.triangles == 0) {
@@ -403,7 +405,20 @@ void tellNotices(BakeRun& run) {
         warnings.insert(warnings.begin(), mesh.name + ": " + warning);
     }
     warnings.insert(warnings.begin(), mesh.warnings.begin(), mesh.warnings.end());
-    for (const std::string& warning : warnings) {
+}
+
+/// Says what was out of the ordinary. Only now: a bake that fails has one line to say.
+void tellNotices(BakeRun& run) {
+    const TriangleMesh& mesh = *run.cared.mesh;
+    if (mesh.closed_holes > 0) {
+        spdlog::info("{}: closed {} hole{} for baking: the mesh is nearly closed", mesh.name,
+                     mesh.closed_holes, mesh.closed_holes == 1 ? "" : "s");
+    }
+    if (!run.backend.reason.empty()) {
+        spdlog::info("backend {}: {}", run.backend.raster ? "raster" : "raycast", run.backend.reason);
+    }
+    gatherWarnings(run);
+    for (const std::string& warning : run.baked.report.warnings) {
         spdlog::warn(warning);
     }
 }
@@ -467,41 +482,40 @@ Result<void> protectInputs(const BakeRun& run) {
     return {};
 }
 
+/// The bake from the options to the collider.
+/// \param given  as readMesh has it.
+Result<void> bakeCollider(BakeRun& run, std::optional<TriangleMesh> given) {
+    RELIEF_TRY(prepare(run));
+    // Planning and measuring keep to --threads too.
+    std::optional<tbb::global_control> control;
+    if (run.command.threads) {
+        control.emplace(tbb::global_control::max_allowed_parallelism, *run.command.threads);
+    }
+    RELIEF_TRY(readMesh(run, std::move(given)));
+    RELIEF_TRY(protectInputs(run));
+    RELIEF_TRY(makeCollider(run));
+    return checkItself(run);
+}
+
 Result<void> runBake(const BakeCommand& command, FileGuard& files) {
     startLogging(command.common);
     BakeRun run(command, files);
     RELIEF_TRY(run.progress.ready());
     run.progress.begin("reading its options");
-    RELIEF_TRY(prepare(run));
-    // Planning and measuring keep to --threads too.
-    std::optional<tbb::global_control> control;
-    if (command.threads) {
-        control.emplace(tbb::global_control::max_allowed_parallelism, *command.threads);
-    }
-    RELIEF_TRY(readMesh(run));
-    RELIEF_TRY(protectInputs(run));
-    RELIEF_TRY(makeCollider(run));
-    RELIEF_TRY(checkItself(run));
+    RELIEF_TRY(bakeCollider(run, std::nullopt));
     RELIEF_TRY(packContainer(run));
     tellNotices(run);
     RELIEF_TRY(writeOutputs(run));
     return report(run);
 }
 
-/// Adds the verb. \return what its options are read into.
-std::shared_ptr<BakeCommand> registerBake(CLI::App& app, Action& action);
-
 /// Whether the settings that these arguments make can be baked with.
-Result<void> checkArguments(std::vector<std::string> arguments) {
-    CLI::App app("", "relief");
-    Action none;
-    const std::shared_ptr<BakeCommand> command = registerBake(app, none);
-    arguments.insert(arguments.begin(), "bake");
-    static_cast<void>(RELIEF_TRY(parseCommandLine(app, std::move(arguments))));
-    static_cast<void>(RELIEF_TRY(settingsOf(*command)));
+Result<void> checkArguments(const std::vector<std::string>& arguments) {
+    static_cast<void>(RELIEF_TRY(bakeCommandOf(arguments)));
     return {};
 }
 
+/// Adds the verb. \return what its options are read into.
 std::shared_ptr<BakeCommand> registerBake(CLI::App& app, Action& action) {
     auto command = std::make_shared<BakeCommand>();
     CLI::App& verb = addVerb(
@@ -538,6 +552,37 @@ std::shared_ptr<BakeCommand> registerBake(CLI::App& app, Action& action) {
 
 void addBake(CLI::App& app, Action& action) {
     registerBake(app, action);
+}
+
+Result<BakeCommand> bakeCommandOf(std::vector<std::string> options) {
+    CLI::App app("", "relief");
+    Action none;
+    const std::shared_ptr<BakeCommand> command = registerBake(app, none);
+    options.insert(options.begin(), "bake");
+    static_cast<void>(RELIEF_TRY(parseCommandLine(app, std::move(options))));
+    static_cast<void>(RELIEF_TRY(settingsOf(*command)));
+    return *command;
+}
+
+Result<BakedInMemory> bakeInMemory(BakeCommand command, std::optional<TriangleMesh> mesh,
+                                   std::function<void()> checkpoint) {
+    command.output = "-";  // which is never written
+    command.common = {.quiet = true};
+    command.time_limit.reset();
+    const ShapeOptions shape = RELIEF_TRY(parseShapeOptions(command.as));
+    if (mesh && !shape.named.empty()) {
+        return fail(ErrorCode::kUsage,
+                    "--as NAME=KIND is for a mesh that is read from a file; leave NAME= out");
+    }
+    FileGuard files;
+    BakeRun run(command, files, std::move(checkpoint));
+    RELIEF_TRY(bakeCollider(run, std::move(mesh)));
+    run.progress.checkpoint();
+    if (!command.plan_out.empty()) {
+        RELIEF_TRY(writePlanFile(command.plan_out, *run.plan, run.baked, run.settings.bake));
+    }
+    gatherWarnings(run);
+    return BakedInMemory{std::move(run.baked.collider), std::move(run.baked.report.warnings)};
 }
 
 }  // namespace relief

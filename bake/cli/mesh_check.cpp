@@ -9,6 +9,7 @@
 #include "bake/repair/mesh_care.h"
 #include "bake/repair/winding.h"
 #include "formats/base/text.h"
+#include "runtime/tool/command_line.h"
 #include "runtime/tool/option_values.h"
 
 namespace relief {
@@ -51,10 +52,15 @@ Result<TriangleMesh> importFor(const RecordedBake& recorded, const MeshCheckSett
     return mesh;
 }
 
-Result<void> readMesh(const MeshCheckSettings& settings, MeshCheck& run) {
+Result<void> readMesh(const MeshCheckSettings& settings, std::optional<TriangleMesh> given, MeshCheck& run) {
     run.recorded = recordedBake(run.collider.provenance.options);
-    TriangleMesh imported = RELIEF_TRY(importFor(run.recorded, settings));
-    Winding winding = RELIEF_TRY(windOutwards(std::move(imported)));
+    if (!given) {
+        given = RELIEF_TRY(importFor(run.recorded, settings));
+    } else if (!run.recorded.shape.names().empty()) {
+        return fail(ErrorCode::kUsage,
+                    given->name + ": the collider was baked by names in the mesh's file; give that file");
+    }
+    Winding winding = RELIEF_TRY(windOutwards(std::move(*given)));
     run.imported = std::move(winding.mesh);
     ShapedMesh shaped = RELIEF_TRY(shapedMesh(run.recorded, run.imported));
     run.mesh = std::move(shaped.mesh);
@@ -147,6 +153,17 @@ CLI::Option* addMeshCheckOptions(CLI::App& verb, MeshCheckSettings& settings) {
     return mesh;
 }
 
+Result<MeshCheckSettings> meshCheckSettingsOf(std::vector<std::string> options, const std::string& mesh) {
+    CLI::App app("", "relief check");
+    MeshCheckSettings settings;
+    addMeshCheckOptions(app, settings);
+    addImportOptions(app, settings.import);
+    options.emplace_back("--mesh=MESH");  // which others need
+    static_cast<void>(RELIEF_TRY(parseCommandLine(app, std::move(options))));
+    settings.mesh = mesh;
+    return settings;
+}
+
 Result<void> prepareMeshCheck(const MeshCheckSettings& settings) {
     if (settings.samples > kSamplesMax) {
         return fail(ErrorCode::kLimit, "--samples is " + std::to_string(settings.samples) +
@@ -155,11 +172,15 @@ Result<void> prepareMeshCheck(const MeshCheckSettings& settings) {
     return {};
 }
 
-Result<MeshCheck> checkAgainstMesh(const MeshCheckSettings& settings, Collider collider) {
+Result<MeshCheck> checkAgainstMesh(const MeshCheckSettings& settings, Collider collider,
+                                   std::optional<TriangleMesh> given,
+                                   const std::function<void()>& checkpoint) {
     MeshCheck run;
     run.collider = std::move(collider);
-    RELIEF_TRY(readMesh(settings, run));
+    RELIEF_TRY(readMesh(settings, std::move(given), run));
+    checkpoint();
     makeBakedMesh(run);
+    checkpoint();
     for (const std::string& warning : run.warnings) {
         spdlog::warn(warning);
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -67,11 +68,20 @@ struct MeshCheck {
     [[nodiscard]] double wrongPercent() const { return judged().accuracy.field.near.total(); }
 };
 
+/// What a command line says. \param options  its words, without --mesh: "--samples=1000".
+/// Errors: kUsage, as `relief check` has them.
+[[nodiscard]] Result<MeshCheckSettings> meshCheckSettingsOf(std::vector<std::string> options,
+                                                            const std::string& mesh);
+
 /// Before the long work. Errors: kLimit (--samples).
 [[nodiscard]] Result<void> prepareMeshCheck(const MeshCheckSettings& settings);
 
 /// Imports the mesh, measures, and looks for the worst places. Logs warnings.
+/// \param given       as finishMesh leaves it: instead of the file that the settings name.
+/// \param checkpoint  called between stages; what it throws comes out of here and ends the check.
 /// Errors: those of importMeshInWorker, of the shapes and of Embree; kInvalidInput (the mesh of another collider).
-[[nodiscard]] Result<MeshCheck> checkAgainstMesh(const MeshCheckSettings& settings, Collider collider);
+[[nodiscard]] Result<MeshCheck> checkAgainstMesh(
+    const MeshCheckSettings& settings, Collider collider, std::optional<TriangleMesh> given = {},
+    const std::function<void()>& checkpoint = [] {});
 
 }  // namespace relief

@@ -135,7 +135,14 @@ Result<void> Progress::ready() const {
     return {};
 }
 
+void Progress::checkpoint() const {
+    if (impl_->options.checkpoint) {
+        impl_->options.checkpoint();
+    }
+}
+
 void Progress::begin(const std::string& stage) {
+    checkpoint();
     const std::lock_guard lock(impl_->mutex);
     impl_->stage = stage;
     impl_->stage_start = Clock::now();
@@ -143,6 +150,7 @@ void Progress::begin(const std::string& stage) {
 }
 
 void Progress::set(double share) {
+    checkpoint();
     impl_->share = share;
 }
 

@@ -15,6 +15,8 @@ struct ProgressOptions {
     std::string name;              ///< of what is baked: its path, as messages quote it
     bool drawn = true;             ///< false: no line
     std::optional<float> seconds;  ///< that may pass from here to finish(); none: any
+    /// Called whenever a stage begins or has come on. It may throw: that ends the bake.
+    std::function<void()> checkpoint;
     /// Prints the error of a bake whose time is up.
     std::function<void(const Error&)> report;
 };
@@ -39,6 +41,8 @@ class Progress {
 
     /// \param stage  "planning the maps"
     void begin(const std::string& stage);
+    /// Calls ProgressOptions::checkpoint. Any thread may.
+    void checkpoint() const;
     /// \param share  of the stage that is done, in [0, 1].
     void set(double share);
     /// Prints something else, which the line gives way to.

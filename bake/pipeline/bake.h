@@ -26,7 +26,8 @@ struct BakeOptions {
     /// On the GPU (rasterize.h) instead of by rays: needs a current context, and quality and prefer have no
     /// effect. Not the same bytes on every machine.
     bool rasterize = false;
-    /// Called now and then, from any thread but from one at a time, with the share of the work done, in [0, 1].
+    /// Called now and then, from any thread but from one at a time, with the share of the work done, in [0, 1]. It may throw:
+    /// what it throws comes out of bake(), and ends it.
     std::function<void(double)> progress;
 };
 

@@ -1,5 +1,4 @@
 // relief._relief: what the package relief of Python is made of. relief/__init__.py documents it for users.
-#include <pybind11/functional.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -7,20 +6,23 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 
-#include "bake/import/mesh_import.h"
-#include "bake/measure/accuracy.h"
+#include "bake/cli/bake_in_memory.h"
+#include "bake/cli/command.h"
+#include "bake/cli/mesh_check.h"
 #include "bake/measure/worst_places.h"
-#include "bake/mesh/mesh_query.h"
-#include "bake/pipeline/planned_bake.h"
-#include "bake/plan/view_planner.h"
-#include "bake/repair/mesh_care.h"
-#include "bake/shape/shape.h"
+#include "bake/python/interruptible.h"
+#include "formats/base/stopwatch.h"
+#include "formats/base/text.h"
 #include "formats/container.h"
 #include "formats/nearest_surface.h"
+#include "formats/validate.h"
 #include "runtime/gl/gl_context.h"
 #include "runtime/player/simulation.h"
 #include "runtime/scene/loaded_scene.h"
@@ -38,6 +40,20 @@ struct Errors {
     py::object base, usage, input, io, limit, unsupported;
 };
 Errors* g_errors = nullptr;
+
+/// A message, which may hold the bytes of a file's name, as Python has such names.
+py::object textOf(const std::string& message) {
+    return py::reinterpret_steal<py::object>(
+        PyUnicode_DecodeUTF8(message.data(), static_cast<py::ssize_t>(message.size()), "surrogateescape"));
+}
+
+py::list textsOf(const std::vector<std::string>& messages) {
+    py::list texts;
+    for (const std::string& message : messages) {
+        texts.append(textOf(message));
+    }
+    return texts;
+}
 
 [[noreturn]] void raise(const Error& error) {
     const py::object* type = &g_errors->base;
@@ -60,7 +76,7 @@ Errors* g_errors = nullptr;
         default:
             break;
     }
-    PyErr_SetString(type->ptr(), error.message.c_str());
+    PyErr_SetObject(type->ptr(), textOf(error.message).ptr());
     throw py::error_already_set();
 }
 
@@ -73,11 +89,10 @@ T need(Result<T> result) {
     return std::move(*result);
 }
 
-/// f() without the GIL.
-template <class F>
-auto released(const F& f) {
-    const py::gil_scoped_release release;
-    return f();
+void need(const Result<void>& done) {
+    if (!done) {
+        raise(done.error());
+    }
 }
 
 std::span<const glm::vec3> pointsOf(const Floats& points) {
@@ -94,25 +109,49 @@ struct Samples {
     py::array_t<std::int32_t> map;
 };
 
-/// ask(p, distance, normal, map) at all points, on all cores.
+/// Points that are asked before the first look at signals.
+constexpr std::size_t kFirstPoints = std::size_t{1} << 14;
+
+/// ask(p) at all points, on all cores. Of a point that is not finite, which no collider knows anything of, distance and
+/// normal are NaN.
 template <class Ask>
 Samples sampleAll(const Floats& points, const Ask& ask) {
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     const auto at = pointsOf(points);
     const auto count = static_cast<py::ssize_t>(at.size());
     Samples out{Floats(count), Floats({count, py::ssize_t{3}}), py::array_t<std::int32_t>(count)};
     float* const distance = out.distance.mutable_data();
     float* const normal = out.normal.mutable_data();
     std::int32_t* const map = out.map.mutable_data();
-    released([&] {
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, at.size(), 4096), [&](const auto& range) {
-            for (std::size_t i = range.begin(); i != range.end(); ++i) {
-                const auto sample = ask(at[i]);
-                distance[i] = sample.distance;
-                std::copy_n(&sample.normal.x, 3, normal + 3 * i);
-                map[i] = sample.map;
-            }
+    const auto askOne = [&](std::size_t i) {
+        const glm::vec3& p = at[i];
+        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+            distance[i] = kNan;
+            std::fill_n(normal + 3 * i, 3, kNan);
+            map[i] = -1;
+            return;
+        }
+        const auto sample = ask(p);
+        distance[i] = sample.distance;
+        std::copy_n(&sample.normal.x, 3, normal + 3 * i);
+        map[i] = sample.map;
+    };
+    std::size_t part = kFirstPoints;
+    for (std::size_t begin = 0; begin < at.size();) {
+        const Stopwatch watch;
+        const std::size_t end = std::min(begin + part, at.size());
+        released([&] {
+            tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, 4096), [&](const auto& range) {
+                for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                    askOne(i);
+                }
+            });
         });
-    });
+        raiseSignals();
+        begin = end;
+        const bool quick = watch.ms() < static_cast<double>(kSignalInterval.count());
+        part = quick ? 2 * part : std::max(kFirstPoints, part / 2);
+    }
     return out;
 }
 
@@ -189,73 +228,38 @@ py::dict describe(const Collider& collider, std::size_t index) {
 
 // --- bake
 
-struct BakeArguments {
-    std::uint64_t budget = 1'000'000;
-    std::string quality = "normal";
-    std::uint32_t max_maps = kPlannedMapsMax;
-    std::optional<double> thickness;
-};
-
-Result<Collider> bakeMesh(TriangleMesh mesh, const BakeArguments& arguments) {
-    MeshCareOptions care;
-    care.report = false;
-    CaredMesh cared = RELIEF_TRY(careFor(std::move(mesh), care));
-    ShapeOptions shape;
-    shape.thickness = arguments.thickness.value_or(defaultThickness(cared.mesh->bounds, arguments.budget));
-    shape.thickness_by_part = !arguments.thickness;
-    ShapedMesh shaped = RELIEF_TRY(shapeMesh(cared.mesh, shape));
-    const MeshQuery query = RELIEF_TRY(MeshQuery::build(shaped.mesh));
-    ViewOptions views;
-    views.max_maps = arguments.max_maps;
-    const ViewChoice choice = RELIEF_TRY(chooseViews(query, views));
-    BakeOptions options;
-    options.quality = arguments.quality == "fast" ? Quality::kFast : Quality::kNormal;
-    PlannedBake planned = RELIEF_TRY(bakePlanned(query, choice, arguments.budget, options));
-    Collider collider = std::move(planned.baked.collider);
-    collider.provenance.options += careOptionsText(cared.care) + shapeOptionsText(shaped.report);
-    return collider;
-}
-
 Result<TriangleMesh> meshOf(const Floats& vertices, const Indices& triangles, const std::string& name) {
     const auto positions = pointsOf(vertices);
     if (triangles.ndim() != 2 || triangles.shape(1) != 3) {
         return fail(ErrorCode::kUsage, "triangles are an array of indices of shape (n, 3)");
     }
     TriangleMesh mesh;
-    mesh.name = name;
+    mesh.name = cleanUtf8(name);
+    if (mesh.name.size() > kMeshNameMax) {
+        return fail(ErrorCode::kUsage, "name has " + std::to_string(mesh.name.size()) + " bytes, " +
+                                           std::to_string(kMeshNameMax) + " are allowed");
+    }
     mesh.positions.assign(positions.begin(), positions.end());
     const auto* corners = reinterpret_cast<const glm::uvec3*>(triangles.data());
     mesh.triangles.assign(corners, corners + triangles.shape(0));
     return finishMesh(std::move(mesh));
 }
 
-py::dict check(const Collider& collider, TriangleMesh mesh, std::uint32_t samples, std::uint64_t seed) {
-    const auto measured = released([&]() -> Result<std::pair<FieldAccuracy, std::vector<WorstPlace>>> {
-        MeshCareOptions care;
-        care.report = false;
-        CaredMesh cared = RELIEF_TRY(careFor(std::move(mesh), care));
-        ShapeOptions shape = shapeOptionsOf(collider.provenance.options, ShapeOptions{});
-        if (shape.thickness <= 0.0) {
-            shape.thickness = defaultThickness(cared.mesh->bounds, collider.gpuBytes());
-            shape.thickness_by_part = true;
-        }
-        ShapedMesh shaped = RELIEF_TRY(shapeMesh(cared.mesh, shape));
-        const MeshQuery query = RELIEF_TRY(MeshQuery::build(shaped.mesh));
-        AccuracyOptions options;
-        options.samples = samples;
-        options.seed = seed;
-        const TruthSamples truth = sampleTruth(query, options);
-        FieldAccuracy accuracy = measureField(truth, nearestFieldOf(collider));
-        return std::pair(accuracy, worstPlaces(truth, query, Sights(collider.maps, query), collider));
-    });
-    const auto& [accuracy, found] = need(measured);
-    py::dict out;
-    out["false_inside_percent"] = accuracy.near.false_inside;
-    out["false_outside_percent"] = accuracy.near.false_outside;
-    out["distance_mean"] = accuracy.distance_mean;
-    out["distance_p99"] = accuracy.distance_p99;
-    out["normal_mean"] = accuracy.normal_mean;
-    out["unknown_percent"] = accuracy.unknown_percent;
+using Words = std::vector<std::string>;
+using SharedCollider = std::shared_ptr<Collider>;
+
+/// The collider, and the warnings of its bake. \param mesh  instead of the command's.
+py::tuple bake(BakeCommand command, std::optional<TriangleMesh> mesh) {
+    const std::optional<float> seconds = command.time_limit;
+    BakedInMemory baked = need(interruptible<BakedInMemory>(
+        [command = std::move(command), mesh = std::move(mesh)](const auto& checkpoint) mutable {
+            return bakeInMemory(std::move(command), std::move(mesh), checkpoint);
+        },
+        seconds));
+    return py::make_tuple(std::make_shared<Collider>(std::move(baked.collider)), textsOf(baked.warnings));
+}
+
+py::list placesOf(const std::vector<WorstPlace>& found) {
     py::list places;
     for (const WorstPlace& place : found) {
         places.append(py::dict(
@@ -264,8 +268,27 @@ py::dict check(const Collider& collider, TriangleMesh mesh, std::uint32_t sample
             py::arg("inside_percent") = place.inside_percent, py::arg("map") = place.map,
             py::arg("cause") = std::string(wrongCauseName(place.cause))));
     }
-    out["places"] = places;
-    return out;
+    return places;
+}
+
+/// The fields of relief.Accuracy, and the warnings of the check. \param mesh  instead of the settings'.
+py::tuple check(const SharedCollider& collider, const MeshCheckSettings& settings,
+                std::optional<TriangleMesh> mesh) {
+    need(prepareMeshCheck(settings));
+    const MeshCheck run = need(interruptible<MeshCheck>(
+        [collider, settings, mesh = std::move(mesh)](const auto& checkpoint) mutable {
+            return checkAgainstMesh(settings, *collider, std::move(mesh), checkpoint);
+        }));
+    const FieldAccuracy& accuracy = run.judged().accuracy.field;
+    py::dict out;
+    out["false_inside_percent"] = accuracy.near.false_inside;
+    out["false_outside_percent"] = accuracy.near.false_outside;
+    out["distance_mean"] = accuracy.distance_mean;
+    out["distance_p99"] = accuracy.distance_p99;
+    out["normal_mean"] = accuracy.normal_mean;
+    out["unknown_percent"] = accuracy.unknown_percent;
+    out["places"] = placesOf(run.places);
+    return py::make_tuple(out, textsOf(run.warnings));
 }
 
 // --- simulate
@@ -281,39 +304,51 @@ class HeadlessSimulation {
         SceneOverrides overrides;
         overrides.seed = seed;
         overrides.root = root;
-        loaded_ = std::make_unique<LoadedScene>(need(loadAll(scene, overrides)));
+        loaded_ = std::make_unique<LoadedScene>(need(released([&] { return loadAll(scene, overrides); })));
         auto emitters = need(makeEmitters(loaded_->scene.emitters));
-        simulation_ = std::make_unique<Simulation>(
-            need(Simulation::create(*loaded_, std::move(emitters), StepPath::kAuto, nullptr)));
+        simulation_ = std::make_unique<Simulation>(need(released([&] {
+            return Simulation::create(*loaded_, std::move(emitters), StepPath::kAuto, nullptr, [] {
+                const py::gil_scoped_acquire held;
+                raiseSignals();
+            });
+        })));
         if (hits) {
             hits_ = std::make_unique<Hits>();
-            const auto listed = simulation_->listHits(0.0F, [to = hits_.get()](const StepEvents& step) {
+            need(simulation_->listHits(0.0F, [to = hits_.get()](const StepEvents& step) {
                 for (const ParticleEvent& event : step.events) {
                     if (event.hit && !event.lasts) {
                         to->emplace_back(step.tag, event);
                     }
                 }
                 return Result<void>();
-            });
-            if (!listed) {
-                raise(listed.error());
-            }
+            }));
         }
     }
+    ~HeadlessSimulation() {
+        // Collected by another thread, it leaves the context's objects alone: only the one that has it may free them.
+        if (simulation_ && !context_->makeCurrent()) {
+            static_cast<void>(simulation_.release());
+            static_cast<void>(loaded_.release());
+        }
+    }
+    HeadlessSimulation(const HeadlessSimulation&) = delete;
+    HeadlessSimulation& operator=(const HeadlessSimulation&) = delete;
 
     void step(std::uint32_t count) {
-        const Result<void> done = released([&]() -> Result<void> {
-            for (std::uint32_t i = 0; i < count; ++i) {
-                RELIEF_TRY(simulation_->step(nullptr));
-            }
-            return {};
-        });
-        if (!done) {
-            raise(done.error());
+        need(context_->makeCurrent());
+        for (std::uint32_t i = 0; i < count; raiseSignals()) {
+            need(released([&]() -> Result<void> {
+                const Stopwatch watch;
+                do {
+                    RELIEF_TRY(simulation_->step(nullptr));
+                } while (++i < count && watch.ms() < static_cast<double>(kSignalInterval.count()));
+                return {};
+            }));
         }
     }
 
     [[nodiscard]] py::dict read() const {
+        need(context_->makeCurrent());
         const auto states = need(simulation_->particles().readState());
         const auto count = static_cast<py::ssize_t>(states.size());
         Floats position({count, py::ssize_t{3}});
@@ -348,9 +383,8 @@ class HeadlessSimulation {
         if (!hits_) {
             raise({ErrorCode::kUsage, "this simulation keeps no hits; make it with hits=True"});
         }
-        if (const Result<void> done = simulation_->finishEvents(); !done) {
-            raise(done.error());
-        }
+        need(context_->makeCurrent());
+        need(simulation_->finishEvents());
         const auto count = static_cast<py::ssize_t>(hits_->size());
         py::array_t<std::uint64_t> step(count);
         py::array_t<double> time(count);
@@ -407,6 +441,7 @@ py::tuple vectorOf(const glm::vec3& v) {
 
 PYBIND11_MODULE(_relief, m) {
     using namespace relief;  // NOLINT: a module is one scope
+    startLogging({.quiet = true});
     m.attr("version") = RELIEF_VERSION;
 
     auto errors = std::make_unique<Errors>();
@@ -418,14 +453,15 @@ PYBIND11_MODULE(_relief, m) {
         return made;
     };
     errors->base = derive("Error", py::reinterpret_borrow<py::object>(PyExc_RuntimeError));
-    errors->usage = derive("UsageError", errors->base);
+    // Also Python's own, for what a function cannot do anything with.
+    errors->usage = derive("UsageError", py::make_tuple(errors->base, py::handle(PyExc_ValueError)));
     errors->input = derive("InputError", errors->base);
     errors->io = derive("FileError", errors->base);
     errors->limit = derive("LimitError", errors->base);
     errors->unsupported = derive("UnsupportedError", errors->base);
     g_errors = errors.release();  // as long as the process
 
-    py::class_<Collider, std::shared_ptr<Collider>>(m, "Collider")
+    py::class_<Collider, SharedCollider>(m, "Collider")
         .def_property_readonly(
             "bounds",
             [](const Collider& c) { return py::make_tuple(vectorOf(c.bounds.min), vectorOf(c.bounds.max)); })
@@ -448,35 +484,31 @@ PYBIND11_MODULE(_relief, m) {
     m.def("save", [](const Collider& collider, const std::filesystem::path& path, int compression) {
         ContainerWriteOptions options;
         options.compression_level = compression;
-        const Result<void> done = released([&] { return saveCollider(path, collider, options); });
-        if (!done) {
-            raise(done.error());
-        }
+        need(released([&] { return saveCollider(path, collider, options); }));
     });
-    const auto make = [](TriangleMesh mesh, std::uint64_t budget, const std::string& quality,
-                         std::uint32_t max_maps, std::optional<double> thickness) {
-        const BakeArguments arguments{budget, quality, max_maps, thickness};
-        return std::make_shared<Collider>(
-            need(released([&] { return bakeMesh(std::move(mesh), arguments); })));
-    };
-    m.def("bake_mesh", [make](const Floats& vertices, const Indices& triangles, const std::string& name,
-                              std::uint64_t budget, const std::string& quality, std::uint32_t max_maps,
-                              std::optional<double> thickness) {
-        return make(need(meshOf(vertices, triangles, name)), budget, quality, max_maps, thickness);
+    m.def("to_bytes", [](const Collider& collider, int compression) {
+        ContainerWriteOptions options;
+        options.compression_level = compression;
+        const auto bytes = need(released([&] { return writeContainer(collider, options); }));
+        return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     });
-    m.def("bake_file",
-          [make](const std::filesystem::path& path, std::uint64_t budget, const std::string& quality,
-                 std::uint32_t max_maps, std::optional<double> thickness) {
-              return make(need(released([&] { return importMeshInWorker(path); })), budget, quality, max_maps,
-                          thickness);
+    m.def("bake_file", [](const Words& options, const std::filesystem::path& path) {
+        BakeCommand command = need(bakeCommandOf(options));
+        command.mesh = path;
+        return bake(std::move(command), std::nullopt);
+    });
+    m.def("bake_mesh", [](const Words& options, const Floats& vertices, const Indices& triangles,
+                          const std::string& name) {
+        return bake(need(bakeCommandOf(options)), need(meshOf(vertices, triangles, name)));
+    });
+    m.def("check_file",
+          [](const SharedCollider& collider, const Words& options, const std::filesystem::path& path) {
+              return check(collider, need(meshCheckSettingsOf(options, path)), std::nullopt);
           });
-    m.def("check_mesh", [](const Collider& collider, const Floats& vertices, const Indices& triangles,
-                           std::uint32_t samples, std::uint64_t seed) {
-        return check(collider, need(meshOf(vertices, triangles, "mesh")), samples, seed);
-    });
-    m.def("check_file", [](const Collider& collider, const std::filesystem::path& path, std::uint32_t samples,
-                           std::uint64_t seed) {
-        return check(collider, need(released([&] { return importMeshInWorker(path); })), samples, seed);
+    m.def("check_mesh", [](const SharedCollider& collider, const Words& options, const Floats& vertices,
+                           const Indices& triangles) {
+        return check(collider, need(meshCheckSettingsOf(options, "mesh")),
+                     need(meshOf(vertices, triangles, "mesh")));
     });
     py::class_<HeadlessSimulation>(m, "Simulation")
         .def(py::init<const std::filesystem::path&, std::optional<std::uint64_t>,

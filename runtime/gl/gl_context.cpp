@@ -75,14 +75,14 @@ struct GlContext::Impl {
             display = EGL_NO_DISPLAY;
             return "not available";
         }
-        std::string problem = makeCurrent();
+        std::string problem = makeContext();
         if (!problem.empty()) {
             close();
         }
         return problem;
     }
 
-    std::string makeCurrent() {
+    std::string makeContext() {
         const bool es = api == GlApi::kGles30;
         const EGLint wanted[] = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE,
                                  es ? EGL_OPENGL_ES3_BIT : EGL_OPENGL_BIT, EGL_NONE};
@@ -224,6 +224,17 @@ Result<std::unique_ptr<GlContext>> GlContext::create(const GlContextOptions& opt
 
 Result<std::unique_ptr<GlContext>> GlContext::create(GlApi api) {
     return create(GlContextOptions{.api = api, .platform = GlPlatform::kAny, .device = std::nullopt});
+}
+
+Result<void> GlContext::makeCurrent() {
+    // Each thread has an API of its own, whose context it is.
+    if (eglBindAPI(impl_->api == GlApi::kGles30 ? EGL_OPENGL_ES_API : EGL_OPENGL_API) != EGL_TRUE ||
+        (eglGetCurrentContext() != impl_->context &&
+         eglMakeCurrent(impl_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, impl_->context) != EGL_TRUE)) {
+        return fail(ErrorCode::kUsage, "the OpenGL context cannot be used by this thread (" + eglErrorText() +
+                                           "); use it on the thread that made it");
+    }
+    return {};
 }
 
 GlApi GlContext::api() const {

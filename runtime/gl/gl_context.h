@@ -39,6 +39,10 @@ class GlContext {
     GlContext(const GlContext&) = delete;
     GlContext& operator=(const GlContext&) = delete;
 
+    /// Makes it current on this thread, where another context may have become so since.
+    /// Errors: kUsage: it is current on another thread.
+    [[nodiscard]] Result<void> makeCurrent();
+
     [[nodiscard]] GlApi api() const;
     /// "OpenGL 4.5 (Core Profile) Mesa 22.3.6, llvmpipe (…), surfaceless": for reports.
     [[nodiscard]] const std::string& description() const;

@@ -67,7 +67,7 @@ std::vector<Pose> posesAt(const Scene& scene, double time) {
 }  // namespace
 
 Result<Simulation> Simulation::create(const LoadedScene& loaded, std::vector<Emitter> emitters, StepPath path,
-                                      Watchdog* watchdog) {
+                                      Watchdog* watchdog, const std::function<void()>& checkpoint) {
     Simulation made;
     const Scene& scene = loaded.scene;
     made.scene_ = &scene;
@@ -87,11 +87,11 @@ Result<Simulation> Simulation::create(const LoadedScene& loaded, std::vector<Emi
     RELIEF_TRY(watched(watchdog, "the colliders' first maps",
                        [&] { return made.live_.show(made.particles_->time(), *made.textures_); }));
     RELIEF_TRY(watched(watchdog, "the shaders of events", [&] { return made.setEvents(); }));
-    RELIEF_TRY(made.prewarm(watchdog));
+    RELIEF_TRY(made.prewarm(watchdog, checkpoint));
     return made;
 }
 
-Result<void> Simulation::prewarm(Watchdog* watchdog) {
+Result<void> Simulation::prewarm(Watchdog* watchdog, const std::function<void()>& checkpoint) {
     // So few at once, and waited for, that no watchdog takes them for a hang.
     constexpr std::uint32_t kAtOnce = 4;
     static constexpr const char* kWhat = "warming up";
@@ -100,6 +100,9 @@ Result<void> Simulation::prewarm(Watchdog* watchdog) {
         RELIEF_TRY(stepAs(0, scene_->dt, nullptr));
         if ((step + 1) % kAtOnce == 0 || step + 1 == steps) {
             RELIEF_TRY(watched(watchdog, kWhat, [] { return waitForGpu(kWhat); }));
+            if (checkpoint) {
+                checkpoint();
+            }
         }
     }
     return steps > 0 ? checkAllocated(kWhat, "choose a smaller capacity") : Result<void>{};

@@ -24,10 +24,12 @@ class Simulation {
     /// \param loaded    must outlive this.
     /// \param path      of the particles' steps.
     /// \param watchdog  may be null.
+    /// \param checkpoint  called between steps before time 0; what it throws comes out of here. May be empty.
     /// Fails as ColliderTextures, LiveBodies and ParticleSystem do. An error of the textures names the scene's
     /// first collider.
     [[nodiscard]] static Result<Simulation> create(const LoadedScene& loaded, std::vector<Emitter> emitters,
-                                                   StepPath path, Watchdog* watchdog);
+                                                   StepPath path, Watchdog* watchdog,
+                                                   const std::function<void()>& checkpoint = {});
 
     /// Births, those of the scene's [[spawn]] by events of the step before the last, then the colliders' poses and shapes
     /// at the step's end, then the particles' step.
@@ -69,7 +71,7 @@ class Simulation {
   private:
     Simulation() = default;
     [[nodiscard]] Result<void> giveBirth(float dt);
-    [[nodiscard]] Result<void> prewarm(Watchdog* watchdog);
+    [[nodiscard]] Result<void> prewarm(Watchdog* watchdog, const std::function<void()>& checkpoint);
     /// \param tag  of its events; 0: nobody is told of them.
     [[nodiscard]] Result<void> stepAs(std::uint64_t tag, float dt, StageTimer* stages);
     [[nodiscard]] Result<void> moveColliders(double time);

@@ -7,14 +7,20 @@
     print(relief.check(collider, "bunny.obj").wrong_percent)
 
 Points and vertices are arrays of shape (n, 3), triangles of indices (n, 3). Lengths are in the mesh's units, times in
-seconds. Everything that takes long releases the GIL and uses all cores. Errors are relief.Error, or one of those derived
-from it.
+seconds. Everything that takes long releases the GIL, uses all cores and ends at Ctrl-C. Errors are relief.Error, or one
+of those derived from it: relief.UsageError, which is a ValueError too, names the argument and the cure. An argument of a
+wrong type is a TypeError.
 """
 from __future__ import annotations
 
+import contextlib
 import dataclasses
+import inspect
 import os
-from typing import Any, NamedTuple, Optional, Union
+import re
+import warnings
+from collections.abc import Iterator, Sequence
+from typing import Any, NamedTuple, NoReturn, Optional, Union
 
 import numpy as np
 
@@ -22,19 +28,25 @@ from . import _relief
 from ._relief import Error, FileError, InputError, LimitError, UnsupportedError, UsageError
 
 __version__: str = _relief.version
-__all__ = ["Accuracy", "Collider", "DepthMap", "Error", "FileError", "Hits", "InputError", "LimitError", "Samples", "Simulation",
-           "UnsupportedError", "UsageError", "WorstPlace", "bake", "check", "load"]
+__all__ = ["Accuracy", "Collider", "DepthMap", "Error", "FileError", "Hits", "InputError", "LimitError", "ReliefWarning",
+           "Samples", "Simulation", "UnsupportedError", "UsageError", "WorstPlace", "bake", "check", "load"]
 
 Path = Union[str, "os.PathLike[str]"]
+Number = Union[int, float, str]
+"""As the command line has it: 1, 1.5, "1%"; of bytes 1_000_000, 1e6, "1MB"."""
+
+
+class ReliefWarning(UserWarning):
+    """What `relief` would warn of."""
 
 
 class Samples(NamedTuple):
     """What a collider says of n points."""
 
     distance: np.ndarray
-    """(n,) float32: negative inside; 1e30 where a point is outside and no more is known."""
+    """(n,) float32: negative inside; 1e30 where a point is outside and no more is known; NaN where a point is not finite."""
     normal: np.ndarray
-    """(n, 3) float32, outwards; zero where no more than "outside" is known."""
+    """(n, 3) float32, outwards; zero where no more than "outside" is known; NaN where a point is not finite."""
     map: np.ndarray
     """(n,) int32: the map that decides; -1 where no map says anything."""
 
@@ -75,10 +87,22 @@ class DepthMap:
 
 
 class Collider:
-    """Depth maps that stand for a body; made by bake() and load()."""
+    """Depth maps that stand for a body; made by bake() and load(). Nothing changes one, so that a copy is itself; it can
+    be pickled."""
 
     def __init__(self, handle: Any) -> None:
+        if not isinstance(handle, _relief.Collider):
+            raise TypeError("colliders are made by relief.bake() and relief.load()")
         self._handle = handle
+
+    def __copy__(self) -> "Collider":
+        return self
+
+    def __deepcopy__(self, memo: Any) -> "Collider":
+        return self
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return load, (self.to_bytes(),)
 
     @property
     def bounds(self) -> np.ndarray:
@@ -110,11 +134,17 @@ class Collider:
         distance: "plane": to the plane that decides the side, which is what particles collide with; "nearest": to the
         nearest surface, which is searched for, some thirteen times the work.
         """
-        return Samples(*self._handle.query(np.ascontiguousarray(points, dtype=np.float32), distance))
+        if distance not in ("plane", "nearest"):
+            raise UsageError(f"distance is {distance!r} but must be 'plane' or 'nearest'")
+        return Samples(*self._handle.query(_coordinates(points, "points"), distance))
 
     def save(self, path: Path, compression: int = 0) -> None:
         """Writes a .relief file, whole or not at all. compression: zstd's level, 1 to 19; 0: none."""
-        _relief.save(self._handle, os.fspath(path), compression)
+        _relief.save(self._handle, _path(path), _whole(compression, "compression", 0, 19))
+
+    def to_bytes(self, compression: int = 0) -> bytes:
+        """What save() writes, for load()."""
+        return _relief.to_bytes(self._handle, _whole(compression, "compression", 0, 19))
 
     def __repr__(self) -> str:
         return f"<Collider of {self._handle.mesh_name or 'a mesh'}: {self._handle.map_count} maps, {self.gpu_bytes} bytes>"
@@ -161,49 +191,218 @@ class Accuracy:
         return self.false_inside_percent + self.false_outside_percent
 
 
-def _mesh(vertices: Any, triangles: Any) -> tuple[np.ndarray, np.ndarray]:
-    corners = np.asarray(triangles)
-    if corners.size and (corners.dtype.kind not in "iu" or corners.min() < 0):
-        raise UsageError("triangles are indices of vertices, from 0 up")
-    return np.ascontiguousarray(vertices, dtype=np.float32), np.ascontiguousarray(corners, dtype=np.uint32)
+def _wrong_type(value: Any, name: str, wanted: str) -> NoReturn:
+    raise TypeError(f"{name} is of type {type(value).__name__} but must be {wanted}")
 
 
-def _is_path(mesh: Any) -> bool:
-    return isinstance(mesh, (str, os.PathLike))
+def _path(value: Any, name: str = "path") -> str:
+    if not isinstance(value, (str, os.PathLike)):
+        _wrong_type(value, name, "a path")
+    path = os.fsdecode(value)
+    if "\0" in path:
+        raise UsageError(f"{name} holds a null character, which no file's name does")
+    return "./-" if path == "-" else path  # else it stands for standard input and output
 
 
-def bake(mesh: Any, triangles: Any = None, *, budget: int = 1_000_000, quality: str = "normal", max_maps: int = 8,
-         thickness: Optional[float] = None, name: str = "mesh") -> Collider:
-    """Bakes a mesh, as `relief bake` does by default.
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool)
 
-    mesh: a file's path, read in a sandbox of its own; or vertices, (n, 3), with triangles, (m, 3).
-    budget: bytes on the GPU. quality: "normal" or "fast". thickness: of the shells that open parts become, in the mesh's
-    units; None: by size and budget. name: what the container calls the mesh, if it is no file.
-    """
-    if quality not in ("normal", "fast"):
-        raise UsageError("quality is 'normal' or 'fast'")
-    if _is_path(mesh):
-        if triangles is not None:
-            raise UsageError("a file has its own triangles")
-        return Collider(_relief.bake_file(os.fspath(mesh), budget, quality, max_maps, thickness))
+
+def _is_whole(value: Any) -> bool:
+    return bool(np.isfinite(float(value)) if isinstance(value, (float, np.floating)) else True) and value == int(value)
+
+
+def _whole(value: Any, name: str, least: int, most: int) -> int:
+    """A whole number, which a float may hold."""
+    if not _is_number(value):
+        _wrong_type(value, name, "a whole number")
+    if not _is_whole(value) or not least <= value <= most:
+        raise UsageError(f"{name} is {value} but must be a whole number from {least} to {most}")
+    return int(value)
+
+
+def _array(values: Any, name: str, kinds: str, wanted: str) -> np.ndarray:
+    """Values as an array of shape (n, 3), of one of these kinds of numpy's."""
+    if np.ma.is_masked(values):
+        raise UsageError(f"{name} are masked in part; fill them, or leave them out")
+    try:
+        array = np.asarray(values)
+    except ValueError:
+        raise UsageError(f"{name} are an array of shape (n, 3), not rows of several lengths") from None
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise UsageError(f"{name} are an array of shape (n, 3), not {array.shape}")
+    if array.dtype.kind not in kinds:
+        raise TypeError(f"{name} are an array of {wanted}, not of {array.dtype}")
+    return array
+
+
+def _coordinates(values: Any, name: str) -> np.ndarray:
+    array = _array(values, name, "fiu", "numbers")
+    with np.errstate(over="ignore"):  # to infinity, which is no coordinate either
+        return np.ascontiguousarray(array, dtype=np.float32)
+
+
+def _mesh(vertices: Any, triangles: Any, name: str) -> tuple[np.ndarray, np.ndarray]:
     if triangles is None:
         raise UsageError("vertices need triangles")
-    return Collider(_relief.bake_mesh(*_mesh(mesh, triangles), name, budget, quality, max_maps, thickness))
+    positions = _coordinates(vertices, "vertices")
+    corners = _array(triangles, "triangles", "iu", "indices, whole numbers of an integer type")
+    if corners.size and corners.min() < 0:
+        raise UsageError("triangles are indices of vertices, from 0 up")
+    if corners.size and corners.max() > np.iinfo(np.uint32).max:
+        raise InputError(f"{name}: a triangle uses vertex {corners.max()} but there are {len(positions)}; export it again")
+    return positions, np.ascontiguousarray(corners, dtype=np.uint32)
 
 
-def load(source: Union[Path, bytes]) -> Collider:
-    """A .relief file, or its bytes."""
-    return Collider(_relief.read(source) if isinstance(source, bytes) else _relief.load(os.fspath(source)))
+def _is_path(mesh: Any, triangles: Any) -> bool:
+    if not isinstance(mesh, (str, os.PathLike)):
+        return False
+    if triangles is not None:
+        raise UsageError("a file has its own triangles")
+    return True
 
 
-def check(collider: Collider, mesh: Any, triangles: Any = None, *, samples: int = 200_000, seed: int = 1) -> Accuracy:
-    """How wrong a collider is, at random points about the mesh: a file, or vertices and triangles."""
-    if _is_path(mesh):
-        said = _relief.check_file(collider._handle, os.fspath(mesh), samples, seed)
+def _word(value: Any, name: str) -> str:
+    if isinstance(value, (str, os.PathLike)):
+        return os.fsdecode(value)
+    if not _is_number(value):
+        _wrong_type(value, name, "a number or text")
+    return str(int(value)) if _is_whole(value) else repr(float(value))
+
+
+def _pair(option: str, word: str) -> list[str]:
+    return [f"{option}={word}"] if word else [option, ""]  # a word of its own if it is empty: else none is seen
+
+
+def _words(options: dict[str, Any]) -> list[bytes]:
+    """Arguments as the words of a command line: max_error=1 is --max-error=1."""
+    words = []
+    for name, value in options.items():
+        option = _OPTIONS[name]
+        if value is None:
+            continue
+        if name in _FLAGS:
+            if not isinstance(value, (bool, np.bool_)):
+                _wrong_type(value, name, "True or False")
+            words += [option] if value else []
+        elif name in _LISTS and not isinstance(value, str):
+            if not isinstance(value, Sequence) or not all(isinstance(one, str) for one in value):
+                _wrong_type(value, name, "text or a list of texts")
+            for one in value:
+                words += _pair(option, one)
+        else:
+            words += _pair(option, _word(value, name))
+    if any("\0" in word for word in words):
+        raise UsageError("an option holds a null character; leave it out")
+    return [os.fsencode(word) for word in words]
+
+
+def _in_python(text: str) -> str:
+    """A message with the names of arguments, where the command line has options."""
+    return re.sub(r"(?<![\w'-])--[a-z][a-z-]*[a-z]", lambda found: _ARGUMENTS.get(found[0], found[0]), text)
+
+
+@contextlib.contextmanager
+def _python_names() -> Iterator[None]:
+    try:
+        yield
+    except Error as error:
+        raise type(error)(_in_python(str(error))) from None
+
+
+def _warn(texts: Sequence[str]) -> None:
+    for text in texts:
+        warnings.warn(_in_python(text), ReliefWarning, stacklevel=3)
+
+
+def _needs_file(options: dict[str, Any]) -> None:
+    for name in ("unit", "up", "import_memory", "import_time", "max_triangles"):
+        if options[name] is not None:
+            raise UsageError(f"{name} is for a mesh that is read from a file; leave it out")
+
+
+def bake(mesh: Any, triangles: Any = None, *, name: str = "mesh",
+         budget: Optional[Number] = None, max_error: Optional[Number] = None, max_maps: Optional[Number] = None,
+         no_check: bool = False, plan_out: Optional[Path] = None, plan: Optional[Path] = None,
+         maps: Union[str, Sequence[str], None] = None, decode: Optional[str] = None, depth: Optional[str] = None,
+         paper: bool = False, resolution: Optional[Number] = None,
+         quality: Optional[str] = None, prefer: Optional[str] = None,
+         as_: Union[str, Sequence[str], None] = None, thickness: Optional[Number] = None, holes: Optional[str] = None,
+         repair: Optional[str] = None, strict: bool = False, check_intersections: bool = False,
+         unit: Optional[str] = None, up: Optional[str] = None,
+         import_memory: Optional[Number] = None, import_time: Optional[Number] = None,
+         max_triangles: Optional[Number] = None,
+         threads: Optional[Number] = None, time_limit: Optional[Number] = None,
+         backend: Optional[str] = None, device: Optional[Number] = None,
+         gpu_timeout: Optional[Number] = None) -> Collider:
+    """Bakes a mesh as `relief bake` does: the same options and defaults, the same bytes.
+
+    mesh: a file's path, read in a sandbox of its own; or vertices, (n, 3), with triangles, (m, 3).
+    name: what the container calls the mesh, if it is no file.
+
+    The rest are the tool's options (`relief bake --help`, bake/cli/README.md). Those of most use:
+    budget: bytes on the GPU, 1 MB by default. max_error: instead, the fewest bytes that leave so many percent wrong.
+    quality: "fast", "normal" or "best". prefer: "inside", "outside" or "neither".
+    as_: what the parts are, "auto", "solid", "shell", "terrain" or "NAME=KIND"; one or a list.
+    thickness: of shells, in the mesh's units. holes: "close" or "keep". repair: "wrap=0.01", "orient" or "holes".
+    maps: maps of your own instead of planned ones, "FORMAT:key=value,…"; one or a list.
+    plan_out: a file to write the plan to. time_limit: seconds, beyond which it is a LimitError.
+
+    What the tool would warn of is a ReliefWarning.
+    """
+    options = {option: value for option, value in locals().items() if option in _OPTIONS}
+    if _is_path(mesh, triangles):
+        with _python_names():
+            made, said = _relief.bake_file(_words(options), _path(mesh, "mesh"))
     else:
-        said = _relief.check_mesh(collider._handle, *_mesh(mesh, triangles), samples, seed)
-    places = tuple(WorstPlace(**place) for place in said.pop("places"))
-    return Accuracy(**said, places=places)
+        _needs_file(options)
+        if not isinstance(name, str):
+            _wrong_type(name, "name", "text")
+        arrays = _mesh(mesh, triangles, name)
+        with _python_names():
+            made, said = _relief.bake_mesh(_words(options), *arrays, name.encode(errors="replace"))
+    _warn(said)
+    return Collider(made)
+
+
+# The options of the command line that the arguments of bake() and check() stand for.
+_OPTIONS = {name: "--" + {"maps": "map"}.get(name, name.rstrip("_").replace("_", "-"))
+            for name in [*inspect.signature(bake).parameters, "samples", "seed"]
+            if name not in ("mesh", "triangles", "name")}
+_ARGUMENTS = {option: name for name, option in _OPTIONS.items()}
+_FLAGS = ("no_check", "paper", "strict", "check_intersections")
+_LISTS = ("maps", "as_")
+
+
+def load(source: Union[Path, bytes, bytearray, memoryview]) -> Collider:
+    """A .relief file, or its bytes."""
+    if isinstance(source, (bytes, bytearray, memoryview)):
+        return Collider(_relief.read(bytes(source)))
+    return Collider(_relief.load(_path(source, "source")))
+
+
+def check(collider: Collider, mesh: Any, triangles: Any = None, *, samples: Number = 200_000, seed: Number = 1,
+          unit: Optional[str] = None, up: Optional[str] = None, import_memory: Optional[Number] = None,
+          import_time: Optional[Number] = None, max_triangles: Optional[Number] = None) -> Accuracy:
+    """How wrong a collider is, at random points about the mesh that it was baked from: a file, or vertices and triangles.
+
+    The verdict is that of `relief check`, with the same options: against the solid that was baked, the repaired one if it
+    was baked with repair.
+    """
+    if not isinstance(collider, Collider):
+        _wrong_type(collider, "collider", "a relief.Collider")
+    options = {option: value for option, value in locals().items() if option in _OPTIONS}
+    if _is_path(mesh, triangles):
+        with _python_names():
+            measured, said = _relief.check_file(collider._handle, _words(options), _path(mesh, "mesh"))
+    else:
+        _needs_file(options)
+        arrays = _mesh(mesh, triangles, "mesh")
+        with _python_names():
+            measured, said = _relief.check_mesh(collider._handle, _words(options), *arrays)
+    _warn(said)
+    places = tuple(WorstPlace(**place) for place in measured.pop("places"))
+    return Accuracy(**measured, places=places)
 
 
 class Hits(NamedTuple):
@@ -230,19 +429,40 @@ class Hits(NamedTuple):
 
 
 class Simulation:
-    """A scene of `relief-sim`, without a window. The GPU's context belongs to the thread that makes it."""
+    """A scene of `relief-sim`, without a window. It belongs to the thread that makes it; several may take turns there."""
 
     def __init__(self, scene: Path, *, seed: Optional[int] = None, root: Optional[Path] = None,
                  hits: bool = False) -> None:
         """seed: of every emitter, instead of the scene's. root: a folder whose files the scene may name beside those of
         its own. hits: keep them for take_hits(), which costs time in each step."""
-        self._handle = _relief.Simulation(os.fspath(scene), seed, os.fspath(root or ""), hits)
+        self._open: Optional[_relief.Simulation] = None
         self._read: Optional[dict[str, np.ndarray]] = None
+        if seed is not None:
+            seed = _whole(seed, "seed", 0, 2**64 - 1)
+        self._open = _relief.Simulation(_path(scene, "scene"), seed, "" if root is None else _path(root, "root"),
+                                        bool(hits))
+
+    @property
+    def _handle(self) -> "_relief.Simulation":
+        if self._open is None:
+            raise UsageError("the simulation is closed")
+        return self._open
+
+    def close(self) -> None:
+        """Gives its memory back now, as the end of a with block does."""
+        self._open = self._read = None
+
+    def __enter__(self) -> "Simulation":
+        return self
+
+    def __exit__(self, *about: Any) -> None:
+        self.close()
 
     def step(self, count: int = 1) -> None:
-        """So many steps of the scene's length."""
-        self._handle.step(count)
+        """So many steps of the scene's length. Ctrl-C ends it between two of them."""
+        count = _whole(count, "count", 0, 2**32 - 1)
         self._read = None
+        self._handle.step(count)
 
     def take_hits(self) -> Hits:
         """Those of the steps since the last call, in the order of steps; waits for the GPU. Up to 262,144 a step."""
@@ -257,8 +477,9 @@ class Simulation:
         return self._handle.alive
 
     def _state(self, name: str) -> np.ndarray:
+        handle = self._handle
         if self._read is None:
-            self._read = self._handle.read()
+            self._read = handle.read()
         return self._read[name]
 
     @property

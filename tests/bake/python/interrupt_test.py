@@ -1,0 +1,93 @@
+"""Ctrl-C, a real SIGINT to a program of its own, is obeyed within about a second, whatever the package is at."""
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+BIN = pathlib.Path(os.environ["RELIEF_BIN"])
+BUNNY = "/usr/share/glmark2/models/bunny.obj"
+# Prints "begun", works for much more than a second, and tells what ended it.
+PROGRAM = """
+import sys, time
+import numpy as np
+import relief
+{before}
+print("begun", flush=True)
+try:
+    {work}
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+    {after}
+    print("goes on", flush=True)
+"""
+LIMIT = 4.0  # seconds; a moment where nothing else runs, and the work takes at least ten times as long
+BAKE = 'relief.bake("%s", budget="64MB", quality="best")' % BUNNY
+WORK = {
+    "planned": (BAKE, "", 0.3),
+    "baked": (BAKE, "", 2.5),
+    "maps": ('relief.bake("%s", maps=["front-back:dir=-x,size=4096", "cube:size=2048"], quality="best")' % BUNNY, "", 1.0),
+    "searched": ('relief.bake("%s", max_error=0.0001)' % BUNNY, "", 1.0),
+    "wrapped": ('relief.bake("%s", repair="wrap=0.001")' % BUNNY, "", 1.0),
+    "checked": ('relief.check(c, "%s", samples=30_000_000)' % BUNNY, 'c = relief.bake("%s", budget="50kB")' % BUNNY, 0.5),
+    "queried": ("c.query(points, 'nearest')", 'points = np.zeros((40_000_000, 3), np.float32); c = relief.bake("%s", budget="50kB")' % BUNNY,
+                0.5),
+}
+
+
+def interrupt(program, wait):
+    """Runs the program, sends SIGINT a while after it says that it has begun; the seconds it took to obey, and the rest
+    of what it says, its errors and its exit status."""
+    process = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    try:
+        assert process.stdout.readline() == "begun\n", process.stderr.read()
+        time.sleep(wait)
+        begun = time.perf_counter()
+        process.send_signal(signal.SIGINT)
+        first = process.stdout.readline()
+        took = time.perf_counter() - begun
+        said = first + process.stdout.read()
+        return took, said, process.stderr.read(), process.wait(60)
+    finally:
+        process.kill()
+
+
+@pytest.mark.parametrize("name", WORK)
+def test_work_ends_at_once_and_the_program_goes_on(name):
+    work, before, wait = WORK[name]
+    after = 'assert relief.bake("%s", budget="20kB", no_check=True).maps' % BUNNY if name == "baked" else "pass"
+    took, said, errors, status = interrupt(PROGRAM.format(before=before, work=work, after=after), wait)
+    assert (said, status) == ("interrupted\ngoes on\n", 0), errors
+    assert took < LIMIT
+
+
+def test_steps_end_between_two(tmp_path):
+    subprocess.run([BIN / "relief", "bake", BUNNY, "-q", "-o", tmp_path / "b.relief", "--budget", "50kB"], check=True)
+    scene = '[collider]\nfile = "b.relief"\n[particles]\ncapacity = 1000\n'
+    (tmp_path / "s.toml").write_text(scene)
+    (tmp_path / "w.toml").write_text(scene + "[time]\nprewarm = 600\n")
+    begin = f"relief.Simulation({str(tmp_path / 's.toml')!r})"
+    after = "assert 0 < s.time < 1e6 and len(s.ids) == s.alive; s.step(2)"
+    for before, work, after in ((f"s = {begin}", "s.step(2**32 - 1)", after),
+                                ("", begin.replace("s.toml", "w.toml"), f"{begin}.step(2)")):
+        took, said, errors, status = interrupt(PROGRAM.format(before=before, work=work, after=after), 0.5)
+        assert (said, status) == ("interrupted\ngoes on\n", 0), errors
+        assert took < LIMIT
+
+
+def test_a_program_that_catches_nothing_ends_by_the_signal():
+    program = f"import relief\nprint('begun', flush=True)\n{BAKE}"
+    took, said, errors, status = interrupt(program, 2)
+    assert status == -signal.SIGINT and errors.rstrip().endswith("KeyboardInterrupt") and took < LIMIT and said == ""
+
+
+def test_a_handler_of_the_programs_own_is_called():
+    program = ("import relief, signal\nsignal.signal(signal.SIGINT, lambda *_: print('mine', flush=True))\n"
+               "c = []\nprint('begun', flush=True)\n"
+               f'c.append(relief.bake("{BUNNY}", budget="2MB")); print(len(c[0].maps) > 2)')
+    took, said, errors, status = interrupt(program, 0.5)
+    assert (said, status) == ("mine\nTrue\n", 0), errors
+    assert took < LIMIT

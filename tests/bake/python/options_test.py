@@ -1,0 +1,202 @@
+"""relief.bake() and relief.check() are `relief bake` and `relief check`: the same options, bytes and verdicts."""
+import inspect
+import json
+import os
+import pathlib
+import re
+import subprocess
+import warnings
+
+import numpy as np
+import pytest
+
+import relief
+
+BIN = pathlib.Path(os.environ["RELIEF_BIN"])
+
+# Two parts: a closed box, and a sheet over it, which is open.
+SCENE = """o box
+v -1 -1 -1
+v 1 -1 -1
+v 1 1 -1
+v -1 1 -1
+v -1 -1 1
+v 1 -1 1
+v 1 1 1
+v -1 1 1
+f 1 4 3 2
+f 5 6 7 8
+f 1 2 6 5
+f 2 3 7 6
+f 3 4 8 7
+f 4 1 5 8
+o sheet
+v -1 2 -1
+v 1 2 -1
+v 1 2 1
+v -1 2 1
+f 9 10 11 12
+"""
+
+
+@pytest.fixture(scope="module")
+def mesh(tmp_path_factory):
+    path = tmp_path_factory.mktemp("scene") / "scene.obj"
+    path.write_text(SCENE)
+    return path
+
+
+# Each with the words of the command line that mean the same. A planned bake of 60 kB is small and quick.
+PLANNED = {"budget": "60kB", "no_check": True}
+WAYS = [
+    (dict(budget=60_000), ["--budget", "60000"]),
+    (dict(budget=6e4), ["--budget", "60kB"]),
+    (dict(budget=np.int64(60_000)), ["--budget", "60kB"]),
+    (dict(budget="60kB", max_maps=3), ["--budget", "60kB", "--max-maps", "3"]),
+    (dict(PLANNED, quality="best"), ["--budget", "60kB", "--quality", "best"]),
+    (dict(PLANNED, quality="fast", threads=1), ["--budget", "60kB", "--quality", "fast", "--threads", "1"]),
+    (dict(PLANNED, prefer="inside"), ["--budget", "60kB", "--prefer", "inside"]),
+    (dict(PLANNED, as_="shell"), ["--budget", "60kB", "--as", "shell"]),
+    (dict(PLANNED, as_=["sheet=terrain", "box=solid"]), ["--budget", "60kB", "--as", "sheet=terrain", "--as", "box=solid"]),
+    (dict(PLANNED, thickness=0.1), ["--budget", "60kB", "--thickness", "0.1"]),
+    (dict(PLANNED, holes="keep"), ["--budget", "60kB", "--holes", "keep"]),
+    (dict(PLANNED, repair="wrap=0.05"), ["--budget", "60kB", "--repair", "wrap=0.05"]),
+    (dict(PLANNED, repair="holes", strict=True), ["--budget", "60kB", "--repair", "holes", "--strict"]),
+    (dict(PLANNED, unit="mm", up="+z", check_intersections=True),
+     ["--budget", "60kB", "--unit", "mm", "--up", "+z", "--check-intersections"]),
+    (dict(PLANNED, import_memory="1GB", import_time=9, max_triangles=100, time_limit=500),
+     ["--budget", "60kB", "--import-memory", "1GB", "--import-time", "9", "--max-triangles", "100"]),
+    (dict(max_error="20%", budget="1MB"), ["--max-error", "20", "--budget", "1MB"]),
+    (dict(paper=True, resolution=32), ["--paper", "--resolution", "32"]),
+    (dict(maps="cube:size=32"), ["--map", "cube:size=32"]),
+    (dict(maps=["front-back:dir=-x", "fixed8:dir=+y,size=16x8"], resolution=24, decode="projected", depth="half"),
+     ["--map", "front-back:dir=-x", "--map", "fixed8:dir=+y,size=16x8", "--resolution", "24", "--decode", "projected",
+      "--depth", "half"]),
+    (dict(maps="front-back:dir=-z,size=32", backend="raster", device=0, gpu_timeout=60),
+     ["--map", "front-back:dir=-z,size=32", "--backend", "raster"]),
+]
+
+
+def tool(*words):
+    return subprocess.run([BIN / "relief", *words], capture_output=True, text=True)
+
+
+@pytest.mark.parametrize("arguments,words", WAYS, ids=[" ".join(words) for _, words in WAYS])
+def test_every_option_gives_the_bytes_and_warnings_of_the_tool(arguments, words, mesh, tmp_path):
+    done = tool("bake", mesh, "--warnings-only", "-o", tmp_path / "tool.relief", *words,
+                *(["--no-check"] if arguments.get("no_check") else []))
+    assert done.returncode == 0, done.stderr
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        collider = relief.bake(mesh, **arguments)
+    assert collider.to_bytes() == (tmp_path / "tool.relief").read_bytes()
+    assert [issubclass(one.category, relief.ReliefWarning) for one in caught] == [True] * done.stderr.count("warning: ")
+
+
+def test_no_option_of_the_tool_is_missing():
+    """Those left out are about the command's output and about recipes; compress is save()'s."""
+    said = set(re.findall(r"(?:^ +| -.,)--([a-z][a-z-]*)", tool("bake", "--help").stdout, re.MULTILINE))
+    others = {"help", "quiet", "verbose", "warnings-only", "output", "json", "depfile", "compress", "list-devices", "recipe",
+              "events", "shard", "stamp", "root", "timeout", "fail-fast", "keep-going", "dry-run"}
+    has = {name for name in inspect.signature(relief.bake).parameters if name not in ("mesh", "triangles", "name")}
+    assert others < said
+    assert {"map" if name == "maps" else name.rstrip("_").replace("_", "-") for name in has} == said - others
+    used = set().union(*(arguments for arguments, _ in WAYS))
+    assert has - used == {"plan", "plan_out"}  # the next test's
+
+
+def test_plans_are_written_and_read(mesh, tmp_path):
+    assert tool("bake", mesh, "-q", "-o", tmp_path / "a.relief", "--budget", "60kB", "--plan-out",
+                tmp_path / "tool.toml").returncode == 0
+    planned = relief.bake(mesh, budget="60kB", plan_out=tmp_path / "own.toml", no_check=True)
+    assert (tmp_path / "own.toml").read_bytes() == (tmp_path / "tool.toml").read_bytes()
+    assert tool("bake", mesh, "-q", "-o", tmp_path / "b.relief", "--plan", tmp_path / "own.toml").returncode == 0
+    assert planned.to_bytes() == (tmp_path / "a.relief").read_bytes()
+    assert relief.bake(mesh, plan=tmp_path / "own.toml").to_bytes() == (tmp_path / "b.relief").read_bytes()
+    with pytest.raises(relief.InputError, match="none.toml|own.toml"):
+        (tmp_path / "own.toml").write_text("maps = 1")
+        relief.bake(mesh, plan=tmp_path / "own.toml")
+    with pytest.raises(relief.UsageError, match="is the input"):
+        relief.bake(mesh, budget="60kB", plan_out=mesh)
+    assert mesh.read_text() == SCENE
+
+
+def test_arrays_are_baked_as_their_file_is(mesh):
+    rows = [line.split() for line in SCENE.splitlines()]
+    vertices = np.array([row[1:] for row in rows if row[0] == "v"], dtype=float)
+    quads = np.array([row[1:] for row in rows if row[0] == "f"], dtype=int) - 1
+    triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]]).astype(np.uint64)
+    collider = relief.bake(vertices, triangles, name="own", budget=60_000, as_="shell")
+    # Strides, byte orders and types do not matter.
+    odd = np.asfortranarray(vertices.astype(">f8"))[::1]
+    other = relief.bake(odd, np.repeat(triangles.astype(np.int16), 2, axis=0)[::2], name="own", budget=60_000, as_="shell")
+    assert other.to_bytes() == collider.to_bytes() and "own" in repr(collider)
+    assert relief.check(collider, vertices, triangles, samples=2000).wrong_percent < 5
+
+
+@pytest.mark.parametrize("words", [["--holes", "keep"], ["--repair", "wrap=0.05"], ["--as", "shell"],
+                                   ["--as", "sheet=terrain"], ["--thickness", "0.3"]], ids=" ".join)
+def test_checks_judge_the_solid_that_the_tool_judges(words, mesh, tmp_path):
+    path = tmp_path / "a.relief"
+    assert tool("bake", mesh, "-q", "-o", path, "--budget", "60kB", "--no-check", *words).returncode == 0
+    done = tool("check", path, "--mesh", mesh, "--samples", "4000", "--seed", "7", "--json")
+    said = json.loads(done.stdout)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        accuracy = relief.check(relief.load(path), mesh, samples=4e3, seed=7)
+    assert accuracy.wrong_percent == pytest.approx(said["verdict"]["wrong_percent"], abs=1e-12)
+    assert [place.position for place in accuracy.places] == [
+        pytest.approx(place["position"], abs=1e-6) for place in said["worst_places"]]
+    assert [str(one.message) for one in caught] == said["warnings"]
+
+
+def test_checks_refuse_other_meshes(mesh, tmp_path):
+    collider = relief.bake(mesh, budget="60kB", as_="sheet=terrain")
+    (tmp_path / "other.obj").write_text(SCENE.replace("v 1 2 1", "v 1 2 9"))
+    with pytest.raises(relief.InputError, match="the mesh that it was baked from"):
+        relief.check(collider, tmp_path / "other.obj")
+    with pytest.raises(relief.UsageError, match="baked by names"):
+        relief.check(collider, np.eye(3), [[0, 1, 2]])
+
+
+@pytest.mark.parametrize("arguments,words", [
+    (dict(budget="much"), r"^budget is 'much' but must be a number of bytes, such as 1MB"),
+    (dict(budget=-1), "^budget is '-1' but must be a number of bytes"),
+    (dict(budget=0.5), "^budget is '0.5' but must be a number of bytes"),
+    (dict(budget=float("nan")), "^budget is 'nan' but must be a number of bytes"),
+    (dict(budget=10**40), "^budget is '10000000000000000000000000000000000000000' but must be"),
+    (dict(budget=1e300), "^budget is '1000000"),
+    (dict(quality="worst"), "^quality is 'worst' but must be one of fast, normal, best"),
+    (dict(prefer=""), "^prefer is '' but must be one of"), (dict(repair=""), "^repair is given without a value"),
+    (dict(max_maps=0), "^max_maps is '0' but must be a whole number from 1 to"),
+    (dict(maps="cube", paper=True), "^maps and paper are two ways to choose the maps"),
+    (dict(maps=["cube:size=0"]), "size"),
+    (dict(as_="sheets"), "sheets"),
+    (dict(as_="nothing=shell"), "nothing"),
+    (dict(thickness=float("inf")), "^thickness is 'inf' but must be a length"),
+    (dict(repair="all"), "all"),
+    (dict(max_error=-1), "^max_error is '-1' but must be a share in percent"),
+    (dict(budget="--paper"), "^budget is '--paper' but must be"),
+    (dict(unit="ell"), "^unit is 'ell' but must be"),
+    (dict(device=3), "^device does nothing|^device"),
+])
+def test_wrong_values_are_value_errors_that_name_the_argument(arguments, words, mesh):
+    with pytest.raises(ValueError, match=words) as error:
+        relief.bake(mesh, **arguments)
+    assert isinstance(error.value, relief.UsageError) and "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("arguments", [dict(budget=[]), dict(budget=True), dict(paper=1), dict(maps=[1]), dict(as_={"a": 1}),
+                                       dict(quality=b"fast"), dict(budget=1j), dict(name=3), dict(budget=np.ones(2))])
+def test_wrong_types_are_type_errors_that_name_the_argument(arguments):
+    with pytest.raises(TypeError, match=f"^{next(iter(arguments))} is of type .* but must be"):
+        relief.bake(np.eye(3), [[0, 1, 2]], **arguments)
+
+
+def test_the_time_limit_is_kept(mesh):
+    with pytest.raises(relief.LimitError, match="time_limit"):
+        relief.bake(mesh, budget="64MB", quality="best", time_limit=0.05)
+    with pytest.raises(relief.UsageError, match="^unit is for a mesh that is read from a file"):
+        relief.bake(np.eye(3), [[0, 1, 2]], unit="mm")
+    with pytest.raises(relief.UsageError, match="NAME=KIND is for a mesh that is read from a file"):
+        relief.bake(np.eye(3), [[0, 1, 2]], as_="a=shell")
