@@ -566,6 +566,9 @@ export class ParticleSystem {
         this.#ready();
         const before = this.#scene;
         this.#scene = merged(before, patch);
+        if (Array.isArray(before.collider) && patch.collider?.length === before.collider.length) {
+            this.#scene.collider = before.collider.map((one, i) => merged(one, patch.collider[i] ?? {}));
+        }
         const emitters = JSON.stringify(this.#scene.emitter) !== JSON.stringify(before.emitter);
         try {
             this.#tell(() =>
