@@ -35,7 +35,8 @@ Result<fs::path> findPage() {
         }
     }
     return fail(ErrorCode::kUnsupported,
-                "there is no page to put a collider in; run scripts/build.sh web in the sources once, which makes it, "
+                "there is no page to put a collider in; run scripts/build.sh web in the sources once, which "
+                "makes it, "
                 "or name one with RELIEF_VIEW_PAGE");
 }
 

@@ -18,7 +18,11 @@ const contexts = new WeakMap(); // WebGL2 context to what is known of it, see kn
 let nowhere = 0; // emscripten's handle of a context that does nothing
 let folders = 0;
 
-export function init({ wasmUrl, ...options } = {}) {
+// Vite's development server serves this module from its cache of dependencies, where no file lies beside it.
+const cached = /^(.*\/node_modules\/)\.vite\/deps[^/]*\//.exec(import.meta.url);
+const besides = cached ? `${cached[1]}relief-particles/relief_wasm.wasm` : null;
+
+export function init({ wasmUrl = besides, ...options } = {}) {
     loading ??= createReliefWasm({
         ...(wasmUrl ? { locateFile: () => String(wasmUrl) } : {}),
         ...options,

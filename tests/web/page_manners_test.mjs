@@ -133,6 +133,7 @@ test("no tip covers a word, and a tab of a folded panel unfolds it", { timeout: 
     const open = await viewer(t, folder);
     for (const viewport of [{ width: 1000, height: 700 }, { width: 700, height: 640 }]) {
         const { page, close } = await open(data, { viewport });
+        await page.evaluate(() => (reliefView.particles.paused = true));
         await page.click("#tab-particles");
         await page.click("[data-value=rain]");
         for (const button of await page.locator("[data-tip]:visible").all()) {

@@ -20,7 +20,7 @@ for (let i = 0; i < 10; ++i) {
 window.answer = { ...system.info, error: gl.getError() };
 `;
 
-test("npm pack, install and vite build give a page that plays", { timeout: 120_000 }, async (t) => {
+test("npm pack, install and vite build give a page that plays", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     const npm = (...words) => execFileSync("npm", [...words, "--no-audit", "--no-fund", "--loglevel=error"],
                                            { cwd: folder, encoding: "utf8" });
@@ -36,7 +36,7 @@ test("npm pack, install and vite build give a page that plays", { timeout: 120_0
             assert.ok(existsSync(path.join(installed, target)), `${name} links to ${target}, which the package has not`);
         }
     }
-    writeFileSync(path.join(folder, "index.html"), `<!doctype html><title>A page</title><canvas></canvas>
+    writeFileSync(path.join(folder, "index.html"), `<!doctype html><link rel="icon" href="data:,"><title>A page</title><canvas></canvas>
 <script type="module" src="/main.js"></script>`);
     writeFileSync(path.join(folder, "main.js"), kMain);
     mkdirSync(path.join(folder, "public"));
@@ -61,7 +61,7 @@ test("npm pack, install and vite build give a page that plays", { timeout: 120_0
     });
     for (const url of [server.url, `http://${/127\.0\.0\.1:\d+/.exec(told)[0]}`]) {
         const { page, said } = await openPage(browser, url);
-        await page.waitForFunction("window.answer", undefined, { timeout: 30_000 });
+        await page.waitForFunction("window.answer", undefined, { timeout: 120_000 });
         const answer = await page.evaluate("window.answer");
         assert.ok(answer.alive > 50, `${answer.alive} particles`);
         assert.equal(answer.time.toFixed(3), "0.167");
