@@ -35,8 +35,9 @@ Result<fs::path> findPage() {
         }
     }
     return fail(ErrorCode::kUnsupported,
-                "there is no page to put a collider in; scripts/build.sh web makes it, or name one with "
-                "RELIEF_VIEW_PAGE");
+                "there is no page to put a collider in; run scripts/build.sh web in the sources once, which "
+                "makes it, "
+                "or name one with RELIEF_VIEW_PAGE");
 }
 
 std::string textOf(const std::vector<std::byte>& bytes) {

@@ -60,6 +60,7 @@ Json jsonCheck(const ViewCheck& check) {
         const glm::vec3 normal(glm::normalize(planeOf(check.query.mesh(), closest.triangle).normal));
         places.push_back({{"position", jsonVector(place.position)},
                           {"normal", jsonVector(normal)},
+                          {"size", place.size()},
                           {"share_percent", place.share_percent},
                           {"kind", wrongCauseName(place.cause)},
                           {"map", place.map},

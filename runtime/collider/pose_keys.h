@@ -11,6 +11,7 @@ namespace relief {
 struct PoseKey {
     double time = 0.0;  ///< seconds since the beginning
     Pose pose;          ///< its scale is that of every other key
+    friend bool operator==(const PoseKey&, const PoseKey&) = default;
 };
 
 /// How a rigid body moves: a point q of it goes with velocity + turn × (q − position of the pose).

@@ -75,6 +75,7 @@ Result<Simulation> Simulation::create(const LoadedScene& loaded, std::vector<Emi
     made.motions_ = emitterMotions(scene.emitters, scene.colliders);
     made.poses_change_ = std::any_of(scene.colliders.begin(), scene.colliders.end(),
                                      [](const SceneCollider& c) { return !c.keys.empty(); });
+    made.poses_ = posesAt(scene, 0.0);
     auto textures = RELIEF_TRY(inFront(
         quotedPath(scene.colliders.front().path),
         watched(watchdog, "uploading the collider", [&] { return makeTextures(scene, loaded.colliders); })));
@@ -182,6 +183,7 @@ Result<void> Simulation::change(std::optional<std::vector<Emitter>> emitters) {
         emitters_ = std::move(*emitters);
     }
     motions_ = emitterMotions(scene_->emitters, scene_->colliders);
+    poses_change_ = poses_change_ || posesAt(*scene_, particles_->time()) != poses_;
     RELIEF_TRY(applyScene(*scene_, *particles_));
     return setEvents();
 }

@@ -39,8 +39,9 @@ class Simulation {
     /// \param dt  seconds, > 0, instead of the scene's.
     [[nodiscard]] Result<void> step(float dt, StageTimer* stages);
 
-    /// Takes over what a scene that was changed since says of forces, collision, types, air and ground; particles stay.
-    /// The scene is that of create(), whose colliders, capacity and integrator are as they were.
+    /// Takes over the forces, collision, types, air, ground and poses of a scene that was changed since; particles stay.
+    /// The scene is that of create(), whose capacity and integrator are as they were, and its colliders but for the poses of
+    /// those that share a world. Where a pose has changed, the collider passes from the old one to it during the next step.
     /// \param emitters  instead of those there are; nullopt: these go on.
     /// Fails as ParticleSystem's setters do.
     [[nodiscard]] Result<void> change(std::optional<std::vector<Emitter>> emitters);
@@ -82,6 +83,7 @@ class Simulation {
 
     const Scene* scene_ = nullptr;
     bool poses_change_ = false;
+    std::vector<Pose> poses_;  // at the beginning
     std::vector<Emitter> emitters_;
     std::vector<EmitterMotion> motions_;          // as many
     std::unique_ptr<ColliderTextures> textures_;  // at one place: the particles point to it

@@ -168,7 +168,38 @@ Result<Player*> createPlayer(const char* path, bool shaded) {
     return player.release();
 }
 
-/// Everything of the scene at `path` that needs no new colliders, no other capacity and no other integrator.
+/// The colliders with the poses that are wanted of them, which is all of a collider that may change as it plays.
+Result<void> takePoses(std::vector<SceneCollider>& now, const std::vector<SceneCollider>& wanted) {
+    for (std::size_t i = 0; i < now.size(); ++i) {
+        SceneCollider& body = now[i];
+        const SceneCollider& to = wanted[i];
+        if (to.path != body.path || to.live.has_value() != body.live.has_value() || to.keys != body.keys ||
+            to.pose.scale != body.pose.scale || to.restitution != body.restitution ||
+            to.friction != body.friction) {
+            return fail(ErrorCode::kUsage,
+                        "collider " + std::to_string(i) +
+                            ": of a collider that plays only position, axis and angle change; "
+                            "make a new system for the rest");
+        }
+        if (to.pose == body.pose) {
+            continue;
+        }
+        if (!body.keys.empty()) {
+            return fail(ErrorCode::kUsage,
+                        "collider " + std::to_string(i) +
+                            " follows its keys; leave out its 'key', and set() may place it");
+        }
+        if (now.size() == 1 && !body.posed && !body.live) {
+            return fail(ErrorCode::kUsage,
+                        "a single collider moves if it had a pose from the beginning; make the system with "
+                        "collider: { position: [0, 0, 0] } in its scene");
+        }
+        body.pose = to.pose;
+    }
+    return {};
+}
+
+/// Everything of the scene at `path` that needs no other colliders, no other capacity and no other integrator.
 Result<bool> changePlayer(Player& player, const char* path, bool emitters) {
     const PassState state;
     Scene& now = player.loaded.scene;
@@ -183,9 +214,11 @@ Result<bool> changePlayer(Player& player, const char* path, bool emitters) {
     if (emitters) {
         made = RELIEF_TRY(makeEmitters(wanted.emitters));
     }
+    std::vector<SceneCollider> colliders = now.colliders;
+    RELIEF_TRY(takePoses(colliders, wanted.colliders));
     wanted.air.flow = now.air.flow;
     wanted.render.atlas = now.render.atlas;
-    wanted.colliders = now.colliders;
+    wanted.colliders = std::move(colliders);
     if (wanted.render.sort_frames > 0 && !player.sorter) {
         auto sorter = RELIEF_TRY(DepthSorter::create(wanted.capacity, StepPath::kFragment));
         player.sorter = std::make_unique<DepthSorter>(std::move(sorter));

@@ -118,9 +118,28 @@ export class GpuCollider {
 type SceneValue = string | number | boolean | readonly SceneValue[] | ArrayBufferView | { readonly [key: string]: SceneValue | undefined };
 type Table = { readonly [key: string]: SceneValue | undefined };
 
+/** Where a collider stands: turned by `angle` degrees about `axis`, then moved. */
+export interface ColliderPose {
+    position?: Vec3;
+    axis?: Vec3;
+    angle?: number;
+}
+
+/** A collider of a scene. What it leaves out of its pose is 0. */
+export interface SceneCollider extends ColliderPose {
+    file?: string;
+    scale?: number;
+    restitution?: number;
+    friction?: number;
+    key?: readonly (ColliderPose & { time: number })[];
+    mesh?: string;
+    deform?: Table;
+    resolution?: number;
+}
+
 /** A scene with the keys of scene.toml, as runtime/scene/README.md of the Relief sources lists them. */
 export interface Scene {
-    collider?: Table | readonly Table[];
+    collider?: SceneCollider | readonly SceneCollider[];
     time?: { dt?: number; steps?: number; integrator?: "euler" | "verlet" };
     particles?: { capacity?: number };
     emitter?: Table | readonly Table[];
@@ -217,7 +236,12 @@ export class ParticleSystem {
     draw(options: DrawOptions): void;
     /** Births on top of the emitters'. Also 8 numbers each: position, velocity, lifetime, type. Returns how many found room. */
     spawn(births: readonly Birth[] | Numbers): number;
-    /** Changes a part of a scene given as an object; not its colliders, capacity or integrator. */
+    /**
+     * Changes a part of a scene given as an object; not its capacity or integrator, and of its colliders only the pose:
+     * `set({ collider: { position, axis, angle } })`, or a list with one for each of several, {} for those that stay. Before
+     * each step of a collider that moves: it pushes what it meets on its way there. A single collider moves if the scene gave it
+     * a pose from the beginning, such as `collider: { position: [0, 0, 0] }`.
+     */
     set(patch: Scene): void;
     /** Starts over with nothing alive; also after 'webglcontextrestored'. */
     restart(): void;

@@ -18,7 +18,11 @@ const contexts = new WeakMap(); // WebGL2 context to what is known of it, see kn
 let nowhere = 0; // emscripten's handle of a context that does nothing
 let folders = 0;
 
-export function init({ wasmUrl, ...options } = {}) {
+// Vite's development server serves this module from its cache of dependencies, where no file lies beside it.
+const cached = /^(.*\/node_modules\/)\.vite\/deps[^/]*\//.exec(import.meta.url);
+const besides = cached ? `${cached[1]}relief-particles/relief_wasm.wasm` : null;
+
+export function init({ wasmUrl = besides, ...options } = {}) {
     loading ??= createReliefWasm({
         ...(wasmUrl ? { locateFile: () => String(wasmUrl) } : {}),
         ...options,
@@ -566,6 +570,9 @@ export class ParticleSystem {
         this.#ready();
         const before = this.#scene;
         this.#scene = merged(before, patch);
+        if (Array.isArray(before.collider) && patch.collider?.length === before.collider.length) {
+            this.#scene.collider = before.collider.map((one, i) => merged(one, patch.collider[i] ?? {}));
+        }
         const emitters = JSON.stringify(this.#scene.emitter) !== JSON.stringify(before.emitter);
         try {
             this.#tell(() =>

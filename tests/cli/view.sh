@@ -66,8 +66,9 @@ assert c['uniform_percent'] == check['accuracy']['uniform']['wrong_percent']
 assert (c['distance_mean'], c['distance_p99']) == tuple(check['accuracy']['distance_error'][k] for k in ('mean', 'p99'))
 assert len(c['places']) == 3
 for place, said in zip(c['places'], check['worst_places']):
-    assert set(place) == {'position', 'normal', 'share_percent', 'kind', 'map', 'why'}
+    assert set(place) == {'position', 'normal', 'size', 'share_percent', 'kind', 'map', 'why'}
     assert (place['position'], place['kind'], place['why']) == (said['position'], said['cause'], said['why'])
+    assert place['size'] == said['size']
     assert place['map'] == (-1 if said['map'] is None else said['map'])
     assert abs(sum(x * x for x in place['normal']) - 1) < 1e-5 and place['share_percent'] == said['share_percent']
 assert d['mesh']['name'] == 'bunny.obj'
@@ -177,7 +178,8 @@ RELIEF_VIEW_PAGE=$work/twice.html refuses 3 'scripts/build.sh web' b.relief -o e
 mkdir -p tree/release/bin tree/web/bin tree/release/share/relief
 cp "$relief" "$RELIEF_BIN/relief-import" tree/release/bin/
 unset RELIEF_VIEW_PAGE
-expect_error 5 'scripts/build.sh web' tree/release/bin/relief view b.relief -o errors/o.html
+expect_error 5 'run scripts/build.sh web in the sources once' tree/release/bin/relief view b.relief -o errors/o.html
+grep -q 'relief view.* page .*`scripts/build.sh web`' "$RELIEF_SOURCE/README.md" || die "README does not say what makes the page"
 sed 's/stub/web/' stub.html >tree/web/bin/view.html
 expect 0 tree/release/bin/relief view b.relief -o web.html
 grep -q '<title>web' web.html || die "the build's page is not found"

@@ -21,6 +21,12 @@ export async function everything(gl: WebGL2RenderingContext, program: WebGLProgr
     const births: Birth[] = [{ position: [0, 1, 0], velocity: new Float32Array(3), lifetime: 2 }];
     const accepted: number = system.spawn(births) + system.spawn(new Float32Array(8));
     system.set({ forces: { wind: [1, 0, 0], drag: 1 } });
+    system.set({ collider: { position: [0, 1, 0], axis: [0, 1, 0], angle: 30 } });
+    system.set({ collider: [{}, { position: [0, 1, 0] }] });
+    // @ts-expect-error: a position is three numbers
+    system.set({ collider: { position: 1 } });
+    // @ts-expect-error: a collider has no such key
+    system.set({ collider: { positoin: [0, 1, 0] } });
     system.step();
     system.step(1 / 60);
     const view = new Float32Array(16);

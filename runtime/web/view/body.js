@@ -1,15 +1,17 @@
-// A collider in space: its textures, its triangles, and the programs that ask it.
+// A collider in space: its textures, the box that it is drawn in, and the programs that ask it.
 import { GpuCollider } from "./relief.js";
-import { identity, inverseSimilarity, boxOf, transform } from "./math.js";
+import { add, identity, inverseSimilarity, boxOf, sub, transform } from "./math.js";
+import { cellsOf } from "./cells.js";
 import { Geometry, program } from "./gl.js";
 import { kBodyVertex, kHeatFragment, kSliceFragment, kSurfaceFragment } from "./body_shaders.js";
-import { surfaceOf } from "./surface.js";
 
-const kCells = [40, 144]; // along the longest side: at once, and then in peace
+const kSlack = 0.0035; // round the bounds, in longest sides: what a map calls inside farther out is not the body
+const kDeep = 0.014;
+const kFarUnit = 3; // behind those of the collider
+const kBoxSides = [0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5];
 
 export class Body {
     #programs = {};
-    #alive = true;
 
     /** @param name  of its file */
     constructor(gl, collider, name, model = identity()) {
@@ -17,23 +19,21 @@ export class Body {
         this.box = boxOf(collider.bounds);
         this.toObject = inverseSimilarity(model);
         this.gpu = new GpuCollider(gl, collider);
-        this.surface = null;
-        this.spacing = 0;
-    }
-
-    /** Triangles, coarse and then fine; changed() after each. */
-    async build(changed) {
-        for (const cells of kCells) {
-            const found = await surfaceOf(this.collider, this.box, cells, () => this.#alive);
-            if (!found) {
-                return;
-            }
-            this.surface?.dispose();
-            this.surface = new Geometry(this.gl, { a_position: found.vertices }, found.indices);
-            this.triangles = found.indices.length / 3;
-            this.spacing = found.spacing;
-            changed();
-        }
+        const slack = [0, 0, 0].fill(kSlack * this.box.longest);
+        this.drawn = { min: sub(this.box.min, slack), max: add(this.box.max, slack) };
+        const corners = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((i) =>
+            [0, 1, 2].map((k) => ((i >> k) & 1 ? this.drawn.max : this.drawn.min)[k]));
+        this.cells = cellsOf(collider, this.drawn);
+        this.far = gl.createTexture();
+        gl.bindTexture(gl.TEXTURE_3D, this.far);
+        gl.texStorage3D(gl.TEXTURE_3D, 1, gl.R8, ...this.cells.n);
+        gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+        gl.texSubImage3D(gl.TEXTURE_3D, 0, 0, 0, 0, ...this.cells.n, gl.RED, gl.UNSIGNED_BYTE, this.cells.far);
+        gl.pixelStorei(gl.UNPACK_ALIGNMENT, 4);
+        gl.texParameteri(gl.TEXTURE_3D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+        gl.texParameteri(gl.TEXTURE_3D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+        gl.bindTexture(gl.TEXTURE_3D, null);
+        this.sides = new Geometry(gl, { a_position: Float32Array.from(corners) }, Uint32Array.from(kBoxSides));
     }
 
     /** A program with the field's functions in it, ready to be drawn with. */
@@ -47,6 +47,27 @@ export class Body {
         return this.#programs[kind];
     }
 
+    /** What the maps call inside, up to the texel. values: what all bodies have in common. */
+    drawSurface(eye, values) {
+        const { gl, box, drawn } = this;
+        const { maps, finest_texel: texel } = this.collider.info;
+        this.use("surface").set({
+            ...values, u_model: this.model, u_eye_object: this.eyeInObject(eye), u_box_min: drawn.min, u_box_max: drawn.max,
+            u_deep: kDeep * box.longest, u_tiny: Math.max(1e-3 * texel, 1e-6 * box.longest),
+            u_far: { int: kFarUnit }, u_cells_from: this.cells.from, u_cell: this.cells.side,
+            // A ray crosses each row and each column of a map once.
+            u_steps: { int: Math.min(maps.reduce((sum, map) => sum + 2 * (map.width + map.height), 256), 60000) },
+        });
+        gl.activeTexture(gl.TEXTURE0 + kFarUnit);
+        gl.bindTexture(gl.TEXTURE_3D, this.far);
+        gl.enable(gl.CULL_FACE);
+        gl.cullFace(gl.FRONT);
+        this.sides.draw();
+        gl.bindTexture(gl.TEXTURE_3D, null);
+        gl.cullFace(gl.BACK);
+        gl.disable(gl.CULL_FACE);
+    }
+
     place(model) {
         this.model = model;
         this.toObject = inverseSimilarity(model);
@@ -57,8 +78,8 @@ export class Body {
     }
 
     dispose() {
-        this.#alive = false;
-        this.surface?.dispose();
+        this.sides.dispose();
+        this.gl.deleteTexture(this.far);
         Object.values(this.#programs).forEach((one) => this.gl.deleteProgram(one.name));
         this.gpu.dispose();
     }

@@ -1,5 +1,6 @@
 // Shaders that draw a body: what its maps see, its mesh, a slice through it, the floor.
 import { kColorsGlsl } from "./colors.js";
+import { kRayGlsl } from "./ray_shader.js";
 
 export const kBodyVertex = `
 in vec3 a_position;
@@ -60,37 +61,68 @@ vec3 shade(vec3 base, vec3 n) {
 }
 `;
 
-// The triangles are near the surface: the maps say where on the pixel's ray it is, its normal, and who decides.
-export const kSurfaceFragment = `${kColorsGlsl}${kShade}
+// Drawn on the far sides of the collider's box: each pixel's ray is followed through the maps to the first point inside.
+export const kSurfaceFragment = `${kColorsGlsl}${kShade}${kRayGlsl}
+uniform mat4 u_camera;
 uniform vec3 u_eye_object;
-uniform float u_spacing;
-uniform int u_map;  // whose texels are coloured; -1: none, -2: all, each its own colour
+uniform vec3 u_box_min;
+uniform vec3 u_box_max;
+uniform float u_deep;   // a vote deeper than this is of no surface nearby: a map's box ends, and its side is flat
+uniform int u_map;      // whose texels are coloured; -1: none, -2: all, each its own colour
 void main() {
-    cut();
     vec3 d = normalize(v_object - u_eye_object);
-    vec3 flat_normal = cross(dFdx(v_world), dFdy(v_world));
-    flat_normal *= dot(flat_normal, u_eye - v_world) < 0.0 ? -1.0 : 1.0;
-    vec3 outer = v_object - u_spacing * d;
-    vec3 inner = v_object + u_spacing * d;
-    bool met = !reliefInside(reliefSolid(outer)) && reliefInside(reliefSolid(inner));
-    for (int i = 0; i < 7 && met; ++i) {
-        vec3 middle = 0.5 * (outer + inner);
-        if (reliefInside(reliefSolid(middle))) {
-            inner = middle;
-        } else {
-            outer = middle;
+    vec3 enters, leaves;
+    slabs(u_eye_object, d, u_box_min, u_box_max, enters, leaves);
+    float to_box = max(max(enters.x, enters.y), enters.z);
+    float from = max(to_box, 0.0);
+    float until = min(min(leaves.x, leaves.y), leaves.z);
+    vec3 side = enters.x == to_box ? vec3(sign(d.x), 0.0, 0.0) : enters.y == to_box ? vec3(0.0, sign(d.y), 0.0)
+        : vec3(0.0, 0.0, sign(d.z));
+    vec3 n = -(mat3(u_model) * side);  // of a body that begins where the box does
+    float before = dot(u_cut.xyz, u_eye) - u_cut.w;
+    float rate = dot(u_cut.xyz, mat3(u_model) * d);
+    float behind = 0.0;
+    if (before > 0.0) {
+        float plane = rate < 0.0 ? -before / rate : NEVER;
+        if (plane > from) {
+            from = plane;
+            n = u_cut.xyz;
+            behind = 1.0;
         }
+    } else if (rate > 0.0) {
+        until = min(until, -before / rate);
     }
-    ReliefField field = reliefSolid(inner);
-    if (!met) {
-        // A sheet thinner than the grid, or the edge of the picture: whoever is nearest there.
-        field = reliefEvaluate(v_object);
+    if (from >= until) {
+        discard;
     }
-    // Where the field is deep, a map's box ends and no surface of it: its side is flat.
-    bool known = field.map >= 0 && abs(field.distance) < 2.0 * u_spacing;
-    vec3 n = known ? mat3(u_model) * field.normal : flat_normal;
-    n = dot(n, n) > 0.0 ? normalize(n) : normalize(flat_normal);
-    n *= !met && dot(n, u_eye - v_world) < 0.0 ? -1.0 : 1.0;
+    vec3 origin = u_eye_object + from * d;
+    float far = until - from;
+    Hit hit;
+    bool within = false;  // the eye is in the body: its far side is looked for
+    bool begins = false;  // the body does where the ray does
+    for (int k = 0; k < 2; ++k) {  // one call for both, since compilers copy it
+        hit = follow(origin, d, 0.0, far, within);
+        begins = begins || hit.t == 0.0;
+        if (within || !begins || from > 0.0) {
+            break;
+        }
+        within = true;
+    }
+    if (hit.t >= far) {
+        discard;
+    }
+    float inwards = within ? -u_tiny : min(0.5 * (hit.ends - hit.t), 20.0 * u_tiny);
+    ReliefField field = reliefSolid(origin + (hit.t + inwards) * d);
+    bool known = field.map >= 0 && abs(field.distance) < u_deep;
+    if (!begins || within) {
+        n = known && dot(field.normal, field.normal) > 0.0 ? field.normal : -d;
+        if (!known && hit.map >= 0 && hit.border >= 0) {
+            n = u_relief_maps[hit.map].row[hit.border].xyz;
+            n *= -sign(dot(n, d));
+        }
+        n = mat3(u_model) * (within ? -n : n);
+    }
+    n = normalize(n);
     vec3 base = u_base;
     if (u_map == -2) {
         base = field.map < 0 ? base : mapColor(field.map);
@@ -98,6 +130,10 @@ void main() {
         base = field.map == u_map ? mapColor(u_map) : mix(base, vec3(dot(base, vec3(0.333))), 0.7) * 0.75;
     }
     o_color = vec4(shade(base, n), 1.0);
+    // What the slice cuts lies behind the picture of the slice.
+    float at = hit.t + (begins && !within ? behind * 100.0 * u_tiny : 0.0);
+    vec4 clip = u_camera * (u_model * vec4(origin + at * d, 1.0));
+    gl_FragDepth = clamp(0.5 + 0.5 * clip.z / clip.w, 0.0, 1.0);
 }`;
 
 const kMeshNormal = `

@@ -83,6 +83,35 @@ export function tabs(chosen) {
     }, "aria-selected", (button) => button.id);
 }
 
+const kTipGap = 8; // pixels
+
+/** What a button does, beside the card that holds it, so that it covers none of the card's words. */
+export function followTips() {
+    const tip = $("tip");
+    const show = (button) => {
+        tip.hidden = !button;
+        if (!button) {
+            return;
+        }
+        tip.textContent = button.dataset.tip;
+        const at = button.getBoundingClientRect();
+        const card = button.closest(".card").getBoundingClientRect();
+        const { offsetWidth: width, offsetHeight: height } = tip;
+        const middle = [at.left + at.width / 2 - width / 2, at.top + at.height / 2 - height / 2];
+        const [x, y] = card.left - kTipGap - width > 0 ? [card.left - kTipGap - width, middle[1]]
+            : card.bottom + kTipGap + height < innerHeight ? [middle[0], card.bottom + kTipGap]
+            : [middle[0], card.top - kTipGap - height];
+        tip.style.transform = `translate(${Math.round(Math.min(Math.max(x, 4), innerWidth - width - 4))}px, ${Math.round(y)}px)`;
+    };
+    const over = (event) => show(event.target.closest?.("[data-tip]"));
+    if (matchMedia("(hover: hover)").matches) {
+        addEventListener("pointerover", over);
+    }
+    addEventListener("focusin", (event) => event.target.matches?.(":focus-visible") && over(event));
+    addEventListener("focusout", () => show(null));
+    addEventListener("pointerdown", () => show(null));
+}
+
 /** One sentence in place of a frozen page; null: none. */
 export function say(message) {
     $("message").hidden = !message;

@@ -2,6 +2,13 @@
 
 export class GlFailure extends Error {}
 
+/** Whether no GPU draws. */
+export function drawnBySoftware(gl) {
+    const name = gl.getParameter(gl.RENDERER);
+    const info = /^WebKit/.test(name) ? gl.getExtension("WEBGL_debug_renderer_info") : null; // some browsers hide it there
+    return /llvmpipe|softpipe|swrast|SwiftShader|Software|Basic Render/i.test(info ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : name);
+}
+
 /** The attributes a_… get their places in this order. */
 const kAttributes = ["a_position", "a_normal", "a_other", "a_color"];
 

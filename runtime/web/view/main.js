@@ -10,6 +10,7 @@ import { meshBounds, readMesh } from "./mesh_file.js";
 import { followDrops, readPageData, readWasm } from "./page_data.js";
 import { Panel } from "./panel.js";
 import { Particles } from "./particles.js";
+import { Quality } from "./quality.js";
 import { View, project } from "./view.js";
 
 const canvas = $("canvas");
@@ -20,6 +21,16 @@ const kSentences = {
         "try another browser, or newer drivers.",
     memory: "There is too little memory for this: open a smaller collider, or ask for fewer particles.",
 };
+
+const kOpens = ".relief, .toml, .obj and .ply files";
+const kOtherMesh = /\.(3ds|3mf|ac|amf|ase|b3d|blend|dae|dxf|fbx|glb|gltf|lwo|lxo|ms3d|nff|off|raw|smd|stl|x)$/i;
+
+function unknownFile(name) {
+    return `"${name}": this page opens ${kOpens}` +
+        (kOtherMesh.test(name) ? `; bake it with 'relief bake ${name} -o ${name.replace(/\.\w+$/, "")}.relief', and drop that here` : "");
+}
+
+const calm = matchMedia("(prefers-reduced-motion: reduce)");
 
 const sentenceOf = (error) => {
     const text = error instanceof RangeError && /alloc|memory|length/i.test(error.message) ? kSentences.memory
@@ -34,6 +45,8 @@ class App {
         this.floorWanted = true;
         this.opened = null; // { name, file (the name of its bytes), bytes, mesh, check, scene, files }
         this.camera = new Camera(() => this.changed());
+        this.quality = new Quality();
+        this.thinned = null; // particles of a preset, once they were made fewer to keep up
         this.lastChange = 0;
         this.lastFrame = 0;
         this.frames = 0;
@@ -142,21 +155,15 @@ class App {
             this.mesh = mesh;
         }
         document.title = `${name} · Relief`;
-        if (this.body) {
-            // The first triangles come before the first picture; the finer ones in peace.
-            await new Promise((done) => {
-                this.attempt(() => this.body.build(() => {
-                    this.changed();
-                    done();
-                })).finally(done);
-            });
-        }
         if (scene) {
             this.playScene(scene, { ...files, ...(this.body ? { [file]: bytes } : {}) });
         }
         if (this.mesh && this.body) {
             this.measured = measure(this.body.collider, this.mesh);
             this.measured.check = check ?? null;
+        }
+        if (this.body && !scene && !calm.matches) {
+            this.startPreset("snow");
         }
     }
 
@@ -170,7 +177,7 @@ class App {
         const mesh = named(/\.(obj|ply)$/i);
         let collider = named(/\.relief$/i);
         if (!scene && !mesh && !collider) {
-            throw new Error(`${list[0]?.name ?? "this"} is nothing that the page opens: give it a .relief, .toml, .obj or .ply`);
+            throw new Error(list.length ? unknownFile(list[0].name) : `no file was dropped; this page opens ${kOpens}`);
         }
         const before = this.opened;
         const next = collider ? { name: collider, file: collider, bytes: files[collider], mesh: null, check: null }
@@ -217,7 +224,6 @@ class App {
         const { bodies } = this.particles.info;
         const kept = [];
         const live = [];
-        const made = [];
         for (const [i, { file, deforms, matrix }] of bodies.entries()) {
             if (deforms) {
                 live.push({ index: i, mesh: () => system.mesh(i), model: Float32Array.from(matrix) });
@@ -226,9 +232,7 @@ class App {
                 this.body.place(Float32Array.from(matrix));
                 kept.push(this.body);
             } else {
-                const body = new Body(this.gl, await load(files[file]), file, Float32Array.from(matrix));
-                made.push(body);
-                kept.push(body);
+                kept.push(new Body(this.gl, await load(files[file]), file, Float32Array.from(matrix)));
             }
         }
         this.view.bodies.filter((one) => one !== this.body && !kept.includes(one)).forEach((one) => one.dispose());
@@ -237,9 +241,6 @@ class App {
         this.view.bodies = [...kept.filter((one) => one === this.body), ...kept.filter((one) => one && one !== this.body)];
         const { min, max } = this.particles.info.bounds;
         this.look.box = boxOf({ min, max });
-        for (const body of made) {
-            await body.build(() => this.changed());
-        }
         this.changed();
     }
 
@@ -273,6 +274,7 @@ class App {
     }
 
     startPreset(preset) {
+        this.thinned = null;
         this.#unplaceBodies();
         if (preset === "none") {
             this.particles.stop();
@@ -308,8 +310,17 @@ class App {
         }
     }
 
-    get pixels() {
-        return Math.min(devicePixelRatio || 1, 2.5);
+    get playing() {
+        return Boolean(this.particles.system) && !this.particles.paused;
+    }
+
+    /** Half as many particles of a preset, unless it has few. */
+    #fewer(least) {
+        const { settings } = this.particles;
+        if (this.playing && settings?.count > least) {
+            this.panel.setCount(settings.count / 2);
+            this.thinned = settings.count / 2;
+        }
     }
 
     #frame(now) {
@@ -325,14 +336,21 @@ class App {
         }
     }
 
-    #drawFrame(now) {
-        const width = Math.max(1, Math.round(canvas.clientWidth * this.pixels));
-        const height = Math.max(1, Math.round(canvas.clientHeight * this.pixels));
+    /** sharp: with all pixels, whatever moves. */
+    #drawFrame(now, sharp = false) {
+        const still = now - this.lastChange > 180;
+        const moving = this.playing || !still || Boolean(this.camera.flight);
+        this.quality.frame(now, moving, (least) => this.#fewer(least));
+        const share = moving && !sharp ? this.quality.pixels : 1;
+        const pixels = share * Math.min(devicePixelRatio || 1, 2.5);
+        const width = Math.max(1, Math.round(canvas.clientWidth * pixels));
+        const height = Math.max(1, Math.round(canvas.clientHeight * pixels));
         if (canvas.width !== width || canvas.height !== height) {
             canvas.width = width;
             canvas.height = height;
             this.view.dirty = true;
         }
+        this.panel.tellQuality(share, this.playing ? this.thinned : null);
         this.camera.shift = this.panel.shift();
         this.camera.advance(now);
         this.particles.advance(Math.min((now - this.lastFrame) / 1000, 0.1));
@@ -342,17 +360,16 @@ class App {
             this.#moveBodies();
         }
         const matrices = this.camera.matrices(width, height);
-        const still = now - this.lastChange > 180;
-        this.view.drawBodies(matrices, width, height, this.look, still);
+        this.view.drawBodies(matrices, width, height, this.look, still && share === 1);
         this.view.copyBodies(width, height);
         const size = 0.007 * (this.look.box?.longest ?? 1);
         const tint = this.look.theme === "dark" ? [1, 0.72, 0.3] : [0.85, 0.38, 0.02];
         this.particles.draw(matrices, width, height, tint, size);
-        this.view.drawLines(matrices.camera, width, height, this.pixels);
+        this.view.drawLines(matrices.camera, width, height, pixels);
         this.panel.place((p) => project(matrices.camera, p, canvas));
         this.frames += 1;
         this.panel.tick(now);
-        if (this.particles.system && !this.particles.paused || !still || this.camera.flight) {
+        if (moving || share < 1) {
             this.asked = true;
             requestAnimationFrame((next) => this.#frame(next));
         }
@@ -360,7 +377,7 @@ class App {
 
     /** Colours of the pixel there, for tests: canvas pixels from the bottom left. */
     pixelsNow() {
-        this.#drawFrame(performance.now());
+        this.#drawFrame(performance.now(), true);
         const { gl } = this;
         const all = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
         gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, all);

@@ -111,3 +111,6 @@ export function shortNumber(v) {
     const text = Math.abs(v) >= 1e7 || (v !== 0 && Math.abs(v) < 1e-4) ? v.toExponential(1) : v.toPrecision(3);
     return (text.includes(".") && !text.includes("e") ? text.replace(/\.?0+$/, "") : text).replace("-", "−");
 }
+
+/** unit: the collider's; empty: it has none. */
+export const lengthText = (v, unit) => shortNumber(v) + (unit ? ` ${unit}` : "");

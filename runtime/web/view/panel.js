@@ -1,8 +1,8 @@
 // The panel and the title: what the buttons and sliders do.
 import { css, mapColor } from "./colors.js";
-import { $, choice, element, legend, linear, powers, say, slider, tabs } from "./controls.js";
+import { $, choice, element, followTips, legend, linear, powers, say, slider, tabs } from "./controls.js";
 import { drawMap, frustum, mapTitle } from "./map_images.js";
-import { add, scale, shortNumber } from "./math.js";
+import { add, lengthText, scale, shortNumber } from "./math.js";
 import { followKeys } from "./keys.js";
 import { sliceRange } from "./slice_range.js";
 
@@ -10,6 +10,8 @@ const narrow = matchMedia("(max-width: 720px)");
 // The causes of wrong places, as `relief check` names them to programs.
 const kKinds = { sheet: "thin sheet", open: "open mesh", unseen: "no map sees it", silhouette: "behind a silhouette",
                  other: "of another mesh", texel: "finer than a texel" };
+const sideText = (inside_percent) => (inside_percent >= 95 ? "called inside" : inside_percent <= 5 ? "called outside"
+    : `${Math.round(inside_percent)} % called inside`);
 const percent = (v) => `${Math.round(100 * v)} %`;
 
 export class Panel {
@@ -19,10 +21,12 @@ export class Panel {
     #queue = 0;
     #lastTick = 0;
     #heatSeen = false;
+    #told = "";
 
     constructor(app) {
         this.app = app;
         this.tabs = tabs((tab) => {
+            this.#setFolded(false);
             if (tab === "errors" && !this.#heatSeen && this.app.measured) {
                 this.#heatSeen = true;
                 $("heat").checked = true;
@@ -38,11 +42,11 @@ export class Panel {
         this.#title();
         this.#splitBar();
         followKeys(app, this);
+        followTips();
     }
 
     show(tab) {
         $(`tab-${tab}`).click();
-        $("panel").classList.remove("folded");
     }
 
     /** How far the picture's middle moves out from under the panel. */
@@ -77,9 +81,19 @@ export class Panel {
     }
 
     fold() {
-        const folded = $("panel").classList.toggle("folded");
+        this.#setFolded(!$("panel").classList.contains("folded"));
+    }
+
+    #setFolded(folded) {
+        $("panel").classList.toggle("folded", folded);
         $("fold").setAttribute("aria-expanded", !folded);
+        $("fold").setAttribute("aria-label", folded ? "Unfold the panel" : "Fold the panel");
         this.app.changed();
+    }
+
+    /** A length as this collider counts them. */
+    #length(v) {
+        return lengthText(v, this.app.body?.collider.info.unit);
     }
 
     frame() {
@@ -149,9 +163,9 @@ export class Panel {
             this.range = sliceRange(body.collider, body.box, this.axis, min[this.axis] + 0.5 * size[this.axis]);
         }
         look.slice = { axis: this.axis, at, range: this.range, key };
-        $("slice-value").textContent = shortNumber(at);
-        $("slice-low").textContent = `${shortNumber(-this.range)} inside`;
-        $("slice-high").textContent = `outside ${shortNumber(this.range)}`;
+        $("slice-value").textContent = this.#length(at);
+        $("slice-low").textContent = `${this.#length(-this.range)} inside`;
+        $("slice-high").textContent = `outside ${this.#length(this.range)}`;
         this.app.changed();
     }
 
@@ -242,29 +256,32 @@ export class Panel {
         const { check } = measured;
         const side = body.box.longest;
         const row = (name, value) => [element("dt", {}, name), element("dd", {}, value)];
-        const length = (v) => `${shortNumber(v)} (${shortNumber(100 * v / side)} %)`;
+        const length = (v) => `${this.#length(v)} (${shortNumber(100 * v / side)} %)`;
         $("measures").replaceChildren(
             ...(check ? [...row("anywhere in the box", `${shortNumber(check.uniform_percent)} % wrong`),
                          ...row("points checked", check.points.toLocaleString("en")),
                          ...row("mean error", length(check.distance_mean)), ...row("99 % below", length(check.distance_p99))]
                       : [...row("median on the mesh", length(measured.median)), ...row("mean", length(measured.mean)),
                          ...row("99 % below", length(measured.p99))]));
-        $("verdict").hidden = !check;
-        $("verdict").className = check?.grade ?? "";
-        $("verdict").textContent = check?.verdict ?? "";
+        $("verdict").className = check?.grade ?? "ungraded";
+        $("verdict").textContent = check?.verdict ?? `${shortNumber(measured.wrong_percent)} % wrong near the surface`;
         $("sheets-note").hidden = measured.depth === 0;
-        $("sheets-note").textContent = `Sheets have a thickness of ${shortNumber(2 * measured.depth)} round the mesh: ` +
+        $("sheets-note").textContent = `Sheets have a thickness of ${this.#length(2 * measured.depth)} round the mesh: ` +
             "white is where they lie in its middle.";
-        $("what-to-do").hidden = !check || check.grade === "good";
+        $("what-to-do").hidden = check?.grade === "good" || (!check && measured.places.length === 0);
         $("advice").textContent = `relief check ${this.app.opened.name} --mesh ${this.app.mesh.name}`;
-        $("heat-low").textContent = `${shortNumber(-measured.range)} inside`;
-        $("heat-high").textContent = `outside ${shortNumber(measured.range)}`;
-        this.places = check?.places?.length ? check.places : measured.places;
-        $("places-title").textContent = check ? "Worst places, by share of what is wrong" : "Worst places";
+        $("heat-low").textContent = `${this.#length(-measured.range)} inside`;
+        $("heat-high").textContent = `outside ${this.#length(measured.range)}`;
+        this.places = check?.places ?? measured.places;
+        $("places-title").textContent = this.places.length ? "Worst places, by their share of what is wrong" : "No place is wrong";
         $("places").replaceChildren(...this.places.map((place, i) => element("li", {}, element("button", {
             onclick: () => this.goTo(i),
-        }, element("b", {}, check ? `${shortNumber(place.share_percent)} %` : shortNumber(place.error)),
-            element("span", {}, `${kKinds[place.kind] ?? place.kind}, ${place.map < 0 ? "no map" : `map ${place.map}`}`)))));
+        }, element("b", {}, `${shortNumber(place.share_percent)} %`), element("span", {}, this.#placeText(place))))));
+    }
+
+    #placeText(place) {
+        return [`${this.#length(place.size)} across`, kKinds[place.kind] ?? sideText(place.false_inside_percent),
+                place.map < 0 ? "no map" : `map ${place.map}`].join(", ");
     }
 
     goTo(i) {
@@ -324,12 +341,12 @@ export class Panel {
 
     #particleSheet() {
         const change = (key) => (value) => this.#change({ [key]: value });
-        const lengths = (v) => `${shortNumber(v * (this.app.look.box?.longest ?? 1))}`;
+        const lengths = (v) => this.#length(v * (this.app.look.box?.longest ?? 1));
         const parts = [
             { id: "bounce", name: "Bounce", scale: linear(0, 1), text: percent },
             { id: "friction", name: "Friction", scale: linear(0, 1), text: percent },
             { id: "radius", name: "Radius", scale: linear(0, 0.03), text: lengths },
-            { id: "wind", name: "Wind", scale: linear(-1.5, 1.5), text: (v) => (Math.abs(v) < 0.02 ? "0" : lengths(v)) },
+            { id: "wind", name: "Wind", scale: linear(-1.5, 1.5), text: (v) => (Math.abs(v) < 0.02 ? "0" : `${lengths(v)}/s`) },
             { id: "rate", name: "Rate", scale: powers(50, 120000, Math.round), text: (v) => `${Math.round(v).toLocaleString("en")}/s` },
             { id: "count", name: "Count", scale: powers(1024, 262144, (v) => 2 ** Math.round(Math.log2(v))),
               text: (v) => v.toLocaleString("en") },
@@ -350,12 +367,30 @@ export class Panel {
     #change(settings) {
         const { particles } = this.app;
         if (settings.count) {
+            this.app.thinned = null;
             // As many births as keep that many alive.
             settings.rate = Math.min(settings.count / particles.settings.seconds, 120000);
             this.sliders.rate.show(settings.rate);
         }
         this.app.attempt(() => particles.change(settings));
         this.app.changed(false);
+    }
+
+    setCount(count) {
+        this.sliders.count.show(count);
+        this.#change({ count });
+    }
+
+    /** share: of the pixels of each side that are drawn; particles: of how many there are, where they are fewer; or null. */
+    tellQuality(share, particles) {
+        const parts = [...(share < 1 ? [`${Math.round(100 * share)} % of the pixels each way`] : []),
+                       ...(particles ? [`${particles.toLocaleString("en")} particles`] : [])];
+        const told = parts.length ? `Coarser, to keep up: ${parts.join(", ")}` : "";
+        if (told !== this.#told) {
+            this.#told = told;
+            $("quality").hidden = !told;
+            $("quality").textContent = told;
+        }
     }
 
     pause() {
@@ -410,18 +445,14 @@ export class Panel {
         const running = Boolean(particles?.system);
         const free = running && particles.preset !== "scene";
         this.presetChoice.show(running ? (free ? particles.preset : "") : "none");
-        for (const id of ["pause", "step", "restart", "copy", "marks"]) {
-            $(id).disabled = !running;
+        $("playing").hidden = !running;
+        $("sliders").hidden = !free;
+        for (const [key, one] of Object.entries(free ? this.sliders : {})) {
+            one.show(particles.settings[key]);
         }
-        for (const [key, one] of Object.entries(this.sliders)) {
-            one.input.disabled = !free;
-            one.label.style.opacity = free ? 1 : 0.45;
-            if (free) {
-                one.show(particles.settings[key]);
-            }
-        }
-        $("scene-note").hidden = !running || free;
-        $("scene-note").textContent = "A scene of its own is playing; the sliders are those of the presets.";
+        $("scene-note").hidden = free;
+        $("scene-note").textContent = running ? "A scene of its own is playing; a preset above takes its place."
+            : this.app.body ? "Nothing falls. Choose rain, snow, a fountain or smoke." : "Particles need a collider: drop a .relief here.";
         $("pause").textContent = particles?.paused ? "Play" : "Pause";
         if (particles) {
             particles.marking = $("marks").checked;

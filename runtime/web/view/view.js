@@ -1,6 +1,6 @@
 // Draws all there is. The bodies are drawn when something about them changes, and kept: particles fall before the kept
 // picture, by its depths.
-import { Geometry, Target, bindTexture, drawScreen, kScreenVertex, program } from "./gl.js";
+import { Geometry, Target, bindTexture, drawScreen, drawnBySoftware, kScreenVertex, program } from "./gl.js";
 import { kBodyVertex, kCopyFragment, kFloorFragment, kLiveVertex, kMeshFragment, kSkyFragment } from "./body_shaders.js";
 import { add, identity, normalize, scale, transform } from "./math.js";
 import { Lines } from "./lines.js";
@@ -26,6 +26,7 @@ export class View {
 
     constructor(gl) {
         this.gl = gl;
+        this.software = drawnBySoftware(gl); // twice as fine would take seconds
         this.bodies = [];
         this.live = []; // { mesh(), model }: meshes that deform (LiveMesh of relief.d.ts)
         this.mesh = null; // Geometry, in the object space of the first body
@@ -48,9 +49,9 @@ export class View {
         this.gl.bufferData(this.gl.ARRAY_BUFFER, Float32Array.from(corners.flat()), this.gl.DYNAMIC_DRAW);
     }
 
-    /** All of a frame but what moves. options: main.js's `look`. */
+    /** All of a frame but what moves. look: main.js's; still: as fine as the machine can. */
     drawBodies(matrices, width, height, look, still) {
-        const fine = still && width * height <= 2.5e6 ? 2 : 1;
+        const fine = still && !this.software && width * height <= 2.5e6 ? 2 : 1;
         if (!this.dirty && fine <= this.#fine && this.#kept?.width === width * this.#fine &&
             this.#kept.height === height * this.#fine) {
             return;
@@ -122,12 +123,8 @@ export class View {
     }
 
     #drawSurfaces(common, theme, look, eye) {
-        for (const body of this.bodies.filter((one) => one.surface)) {
-            const first = body === this.bodies[0];
-            body.use("surface").set({ ...common, u_base: theme.base, u_model: body.model,
-                                      u_eye_object: body.eyeInObject(eye), u_spacing: body.spacing,
-                                      u_map: { int: first ? look.map : -1 } });
-            body.surface.draw();
+        for (const body of this.bodies) {
+            body.drawSurface(eye, { ...common, u_base: theme.base, u_map: { int: body === this.bodies[0] ? look.map : -1 } });
         }
     }
 
@@ -173,6 +170,11 @@ export class View {
                                   u_middle: center, u_radius: r, u_grid: 10 ** Math.round(Math.log10(longest / 4)) });
         this.floor.draw();
         gl.disable(gl.BLEND);
+    }
+
+    /** The picture of the bodies: a Target of gl.js, up to twice as fine as the canvas. */
+    get kept() {
+        return this.#kept;
     }
 
     /** The kept picture to the canvas, and its depths. */

@@ -39,12 +39,12 @@ export function writePage(folder, name, data) {
     return pathToFileURL(file).href;
 }
 
-/** A browser that ends with the test, and what opens pages in it. */
+/** A browser that ends with the test, and what opens pages in it: where nothing falls by itself, but for other options. */
 export async function viewer(t, folder, more = []) {
     const browser = await launch(more);
     t.after(() => browser.close());
     return async (data, options = {}) => {
-        const opened = await openPage(browser, writePage(folder, "page.html", data), options);
+        const opened = await openPage(browser, writePage(folder, "page.html", data), { reducedMotion: "reduce", ...options });
         await opened.page.waitForFunction("window.reliefView?.ready", undefined, { timeout: 60_000 });
         return opened;
     };

@@ -1,0 +1,289 @@
+// A ray through a collider's maps, without steps that a thin sheet could slip through: within a texel what a map says
+// changes only where the ray meets the texel's planes or its border, and those are found in closed form. While one map sees
+// outside, the ray is outside; so it goes on to where that map's stretch ends, and asks again.
+//
+//     map 0   ····o───────────────┐                 o: asks; each stretch of a map that sees outside is one step
+//     map 1                       o─────┐
+//     map 0                             o──┐        here no map sees outside, and one at least sees inside: a hit
+//                                          x━━━━
+//
+// Behind collider.glsl (GpuCollider.glsl), whose votes it takes apart: it changes with those.
+export const kRayGlsl = `
+uniform float u_tiny;       // lengths along a ray below this are none, object units
+uniform int u_steps;        // of a ray, at most
+uniform highp sampler3D u_far;  // cells.js
+uniform vec3 u_cells_from;
+uniform float u_cell;           // their side
+
+const float NEVER = 1e30;
+
+// What a map says of a ray from t on, up to end: 1 outside, -1 inside, 0 nothing. border: what ends it is no surface but a
+// border of the texel, across axis 0, 1 or 2 of the map; else -1.
+struct Stretch {
+    int says;
+    float end;
+    int border;
+};
+
+// The votes of a texel's two surfaces; of a single one the other is inside.
+bool surfaces(int i, ivec4 info, ReliefSight sight, out vec2 votes) {
+    bool found;
+    votes = vec2(RELIEF_FAR_INSIDE);
+    if (reliefIsFrontBack(info)) {
+        uvec4 words = texelFetch(u_relief_front_back, reliefTexel(max(sight.texel, 0), u_relief_count.w), 0);
+        found = sight.texel >= 0 && (words.b != 0u || (words.a != 0u && !sight.plane));
+        float front = reliefFrontBackDepth(info.y, words.b);
+        float back = reliefFrontBackDepth(info.y, words.a);
+        if (sight.plane) {
+            votes = vec2(reliefSightPlane(i, reliefOctahedron(words.r), front, sight),
+                         reliefSightPlane(i, reliefOctahedron(words.g), back, sight));
+        } else {
+            votes.x = words.b != 0u ? sight.scale * (front - sight.z) : RELIEF_FAR_INSIDE;
+            votes.y = words.a != 0u ? sight.scale * (sight.z - back) : RELIEF_FAR_INSIDE;
+        }
+    } else if (reliefIsFloat(info)) {
+        votes.x = reliefVoteFloat(i, info, sight, found).distance;
+    } else {
+        votes.x = reliefVoteFixed(i, info, sight, found).distance;
+    }
+    return found;
+}
+
+// From where to where two votes, which change evenly from (t0, f0) to (t1, f1), are both below 0; empty: from > to.
+vec2 bothBelow(float t0, float t1, vec2 f0, vec2 f1) {
+    vec2 span = vec2(t0, t1);
+    for (int k = 0; k < 2; ++k) {
+        float at = t0 + (t1 - t0) * (f0[k] / (f0[k] - f1[k]));
+        if (f0[k] >= 0.0) {
+            span.x = f1[k] < 0.0 ? max(span.x, at) : NEVER;
+        } else if (f1[k] >= 0.0) {
+            span.y = min(span.y, at);
+        }
+    }
+    return span;
+}
+
+// The part at t of a texel's stretch that ends at t1. span: where it is inside; hollow: where it is outside.
+Stretch partAt(vec2 span, bool hollow, float t, float t1, int border) {
+    float begins = hollow ? span.x : span.x - u_tiny;
+    float ends = hollow ? span.y - u_tiny : span.y;
+    int within = hollow ? 1 : -1;
+    if (span.x >= span.y || t >= ends) {
+        return Stretch(-within, t1, border);
+    }
+    if (t >= begins) {
+        return Stretch(within, span.y, span.y < t1 ? -1 : border);
+    }
+    return Stretch(-within, span.x, -1);
+}
+
+// When a ray enters and leaves low … high along each axis.
+void slabs(vec3 o, vec3 d, vec3 low, vec3 high, out vec3 enters, out vec3 leaves) {
+    vec3 inverse = 1.0 / (d + 1e-20 * (vec3(1.0) - abs(sign(d))));
+    vec3 a = (low - o) * inverse;
+    vec3 b = (high - o) * inverse;
+    enters = min(a, b);
+    leaves = max(a, b);
+}
+
+int leastOf(vec3 v) {
+    return v.x <= v.y && v.x <= v.z ? 0 : v.y <= v.z ? 1 : 2;
+}
+
+// o, d: in the map's space, d for a unit of t. far: where the ray ends.
+Stretch aheadOrthographic(int i, vec3 o, vec3 d, float t, float far) {
+    ivec4 info = u_relief_maps[i].info;
+    ivec4 place = u_relief_maps[i].place;
+    bool encloses = reliefHas(info, RELIEF_ENCLOSES);
+    bool empty_is_outside = reliefHas(info, RELIEF_EMPTY_IS_OUTSIDE);
+    vec2 last = vec2(u_relief_maps[i].column[1].w, u_relief_maps[i].column[2].w);
+    vec3 enters, leaves;
+    slabs(o, d, vec3(1.0, 1.0, 0.0), vec3(last, 1.0), enters, leaves);
+    float window = max(enters.x, enters.y);
+    float window_ends = min(leaves.x, leaves.y);
+    int beyond = encloses ? 1 : 0;
+    if (t >= window_ends || window >= window_ends || t < window) {
+        bool comes = t < window && window < window_ends;
+        return Stretch(beyond, comes ? window : NEVER, comes ? (enters.x > enters.y ? 0 : 1) : -1);
+    }
+    bool in_depth = t >= enters.z && t < leaves.z;
+    float to_depth = t < enters.z ? enters.z : NEVER;
+    if (!in_depth && (!encloses || empty_is_outside)) {
+        return Stretch(beyond, to_depth, 2);
+    }
+    // The texel: a little ahead, so that a border belongs to the next one.
+    vec3 q = o + t * d;
+    ivec2 at = clamp(ivec2(floor(q.xy + 2e-3 * sign(d.xy))), ivec2(1), ivec2(last) - 1);
+    vec3 enters_texel, ends;
+    slabs(o, d, vec3(vec2(at), 0.0), vec3(vec2(at) + 1.0, 1.0), enters_texel, ends);
+    ends.z = in_depth ? ends.z : to_depth;
+    ends = max(ends, t + u_tiny);
+    int border = leastOf(ends);
+    float t1 = min(min(ends.x, ends.y), min(ends.z, max(far, t + u_tiny)));
+    int texel = reliefIsFrontBack(info) ? reliefFrontBackIndex(place, info, at) : place.x + at.y * place.y + at.x;
+    vec3 across = vec3(vec2(at) + 0.5, 0.0);
+    ReliefSight sight = ReliefSight(texel, q.z, reliefIsPlane(info), reliefFromMap(i, q - across),
+                                    u_relief_maps[i].column[2].xyz, u_relief_maps[i].object_per_map.w,
+                                    u_relief_maps[i].object_per_map.z);
+    vec2 votes, votes_then;
+    bool found = surfaces(i, info, sight, votes);
+    if (!in_depth) {
+        return Stretch(found ? 1 : 0, t1, border);
+    }
+    if (!found) {
+        return Stretch(empty_is_outside ? 1 : 0, t1, border);
+    }
+    vec3 then = o + t1 * d;
+    sight.z = then.z;
+    sight.from = reliefFromMap(i, then - across);
+    surfaces(i, info, sight, votes_then);
+    bool gap = reliefIsFrontBack(info) && reliefIsGap(info);
+    float way = gap ? -1.0 : 1.0;  // of a gap both surfaces see outside
+    return partAt(bothBelow(t, t1, way * votes, way * votes_then), gap, t, t1, border);
+}
+
+// On face f of a cube: s and t times the major axis, and that.
+vec3 onFace(int face, vec3 v) {
+    float way = (face & 1) == 0 ? 1.0 : -1.0;
+    return face < 2 ? vec3(-way * v.z, -v.y, way * v.x)
+        : face < 4 ? vec3(v.x, way * v.z, way * v.y) : vec3(way * v.x, -v.y, way * v.z);
+}
+
+Stretch aheadCube(int i, vec3 o, vec3 d, float t, float far) {
+    ivec4 info = u_relief_maps[i].info;
+    ivec4 place = u_relief_maps[i].place;
+    bool encloses = reliefHas(info, RELIEF_ENCLOSES);
+    bool empty_is_outside = reliefHas(info, RELIEF_EMPTY_IS_OUTSIDE);
+    vec3 enters, leaves;
+    slabs(o, d, vec3(-1.0), vec3(1.0), enters, leaves);
+    float volume = max(max(enters.x, enters.y), enters.z);
+    float volume_ends = min(min(leaves.x, leaves.y), leaves.z);
+    bool in_volume = t >= volume && t < volume_ends;
+    float to_volume = t < volume && volume < volume_ends ? volume : NEVER;
+    if (!in_volume && (!encloses || empty_is_outside)) {
+        return Stretch(encloses ? 1 : 0, to_volume, -1);
+    }
+    vec3 q = o + t * d;
+    float width = float(place.w);
+    vec3 a = abs(q);
+    vec3 b = abs(d);
+    vec3 ahead = q + (2e-3 * 2.0 / width) * max(max(a.x, a.y), max(a.z, 1e-6)) * d / max(max(b.x, b.y), b.z);
+    vec3 st_face = reliefCubeCoordinates(reliefUnit(ahead));
+    int face = int(st_face.z);
+    ivec2 at = min(ivec2(st_face.xy * width), ivec2(place.w - 1));
+    // The texel's borders are planes through the centre.
+    vec3 from = onFace(face, o);
+    vec3 way = onFace(face, d);
+    float t1 = in_volume ? volume_ends : to_volume;
+    for (int k = 0; k < 2; ++k) {
+        float low = 2.0 * float(at[k]) / width - 1.0;
+        float high = 2.0 * float(at[k] + 1) / width - 1.0;
+        float rise = way[k] - low * way.z;
+        float fall = high * way.z - way[k];
+        t1 = rise < 0.0 ? min(t1, max((low * from.z - from[k]) / rise, t + u_tiny)) : t1;
+        t1 = fall < 0.0 ? min(t1, max((from[k] - high * from.z) / fall, t + u_tiny)) : t1;
+    }
+    t1 = max(min(t1, far), t + u_tiny);
+    float depth;
+    vec2 index;
+    int texel = place.x + face * place.z + at.y * place.y + at.x;
+    bool found = reliefFixedTexel(texel, RELIEF_CUBE_DEPTH_MAX, depth, index);
+    if (!in_volume) {
+        return Stretch(found ? 1 : 0, t1, -1);
+    }
+    if (!found) {
+        return Stretch(empty_is_outside ? 1 : 0, t1, -1);
+    }
+    if (reliefIsPlane(info)) {
+        vec3 ray = reliefUnit(reliefCubeDirection(vec3((vec2(at) + 0.5) / width, st_face.z)));
+        float standing = RELIEF_STANDING_COSINE * reliefLength(u_relief_maps[i].object_per_map.xyz * ray);
+        vec3 normal = reliefOctahedron(index);
+        vec3 ray_object = reliefFromMap(i, ray);
+        vec2 votes = vec2(RELIEF_FAR_INSIDE);
+        vec2 votes_then = votes;
+        votes.x = reliefOctahedralPlane(i, normal, depth, 0.5 * RELIEF_CUBE_DEPTH_MAX, reliefFromMap(i, q), ray_object, standing);
+        votes_then.x = reliefOctahedralPlane(i, normal, depth, 0.5 * RELIEF_CUBE_DEPTH_MAX, reliefFromMap(i, o + t1 * d), ray_object,
+                                             standing);
+        return partAt(bothBelow(t, t1, votes, votes_then), false, t, t1, -1);
+    }
+    // A sphere: inside it is inside, or outside where the farthest surface is kept the other way round.
+    float half_way = -reliefDot(o, d) / reliefDot(d, d);
+    vec3 nearest = o + half_way * d;
+    float left = depth * depth - reliefDot(nearest, nearest);
+    float reach = left > 0.0 ? sqrt(left / reliefDot(d, d)) : -1.0;
+    vec2 span = vec2(max(half_way - reach, t), min(half_way + reach, t1));
+    bool farthest = (info.z & RELIEF_KEEPS_FARTHEST) != 0;
+    return partAt(reach < 0.0 ? vec2(NEVER, t) : span, !farthest, t, t1, -1);
+}
+
+Stretch ahead(int i, vec3 origin, vec3 d, float t, float far) {
+    vec3 o = reliefInMap(i, origin);
+    vec3 way = vec3(reliefDot(u_relief_maps[i].row[0].xyz, d), reliefDot(u_relief_maps[i].row[1].xyz, d),
+                    reliefDot(u_relief_maps[i].row[2].xyz, d));
+    if (reliefIsCube(u_relief_maps[i].info)) {
+        return aheadCube(i, o, way, t, far);
+    }
+    return aheadOrthographic(i, o, way, t, far);
+}
+
+// Where a ray is inside first, or where it is no longer.
+struct Hit {
+    float t;     // NEVER: nowhere
+    float ends;  // where this part of it ends
+    int map;     // that saw outside last; -1: it begins so
+    int border;  // as Stretch has it
+};
+
+// How many cells around that of a point are outside, as 255ths; and where the ray leaves these cells, or the point's own.
+float cellsAhead(vec3 origin, vec3 d, float t, out float ends) {
+    vec3 o = (origin - u_cells_from) / u_cell;
+    vec3 way = d / u_cell;
+    vec3 cell = clamp(floor(o + t * way + 1e-3 * sign(d)), vec3(0.0), vec3(textureSize(u_far, 0)) - 1.0);
+    float far = floor(255.0 * texelFetch(u_far, ivec3(cell), 0).r + 0.5);
+    float more = max(far - 1.0, 0.0);
+    vec3 enters, leaves;
+    slabs(o, way, cell - more, cell + 1.0 + more, enters, leaves);
+    ends = max(min(min(leaves.x, leaves.y), leaves.z), t + u_tiny);
+    return far;
+}
+
+// d: unit length, object space. inside: what is looked for is the first point outside.
+Hit follow(vec3 origin, vec3 d, float t, float far, bool inside) {
+    Hit hit = Hit(NEVER, NEVER, -1, -1);
+    float cell_ends = t;
+    for (int n = 0; n < u_steps && t < far; ++n) {
+        if (t >= cell_ends && cellsAhead(origin, d, t, cell_ends) > 0.0) {
+            if (inside) {
+                hit.t = t;
+                return hit;
+            }
+            t = cell_ends;
+            continue;
+        }
+        float change = NEVER;
+        bool sees_inside = false;
+        bool sees_outside = false;
+        int first = max(hit.map, 0);
+        int i = first;
+        for (int k = 0; k < u_relief_count.x && !sees_outside; ++k) {
+            Stretch stretch = ahead(i, origin, d, t, far);
+            sees_outside = stretch.says > 0;
+            sees_inside = sees_inside || stretch.says < 0;
+            change = sees_outside ? stretch.end : min(change, stretch.end);
+            if (sees_outside) {
+                hit.map = i;
+                hit.border = stretch.border;
+            }
+            i = k < first ? k : k + 1;
+        }
+        bool is_inside = sees_inside && !sees_outside;
+        if (is_inside != inside) {
+            hit.t = t;
+            hit.ends = min(change, far);
+            return hit;
+        }
+        t = change;
+    }
+    return hit;
+}
+`;

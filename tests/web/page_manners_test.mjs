@@ -1,0 +1,191 @@
+// How the page of `relief view` behaves without being told: it snows, keeps up on a slow machine, covers none of its own words,
+// shows no control that does nothing, and ranks places as `relief check` does.
+import assert from "node:assert/strict";
+import { readFileSync, writeFileSync } from "node:fs";
+import path from "node:path";
+import test from "node:test";
+
+import { bakeCube } from "./lib/cube.mjs";
+import { Quality } from "../../runtime/web/view/quality.js";
+import { bunny, run, scratch } from "./lib/native.mjs";
+import { pageData, viewer } from "./lib/view.mjs";
+
+const phone = { viewport: { width: 390, height: 780 }, hasTouch: true, isMobile: true };
+
+function cube(t) {
+    const folder = scratch(t);
+    bakeCube(folder);
+    return { folder, data: pageData("cube.relief", readFileSync(path.join(folder, "cube.relief"))) };
+}
+
+test("it snows at once, unless motion is unwanted; nothing that plays, no controls for it", { timeout: 300_000 }, async (t) => {
+    const { folder, data } = cube(t);
+    const open = await viewer(t, folder);
+    const moving = await open(data, { reducedMotion: "no-preference", viewport: { width: 300, height: 240 } });
+    await moving.page.waitForFunction("reliefView.particles.preset === 'snow' && reliefView.particles.alive > 100", undefined, { timeout: 200_000 });
+    assert.deepEqual(moving.said, []);
+    await moving.close();
+
+    const { page, said } = await open(data, { viewport: { width: 500, height: 700 } });
+    assert.equal(await page.evaluate("reliefView.particles.system"), null);
+    await page.click("#tab-particles");
+    const controls = "#sheet-particles :is(input, button):not(#preset button)";
+    assert.deepEqual(await page.locator(controls).evaluateAll((all) => all.filter((one) => one.offsetParent).map((one) => one.id)), []);
+    assert.match(await page.locator("#scene-note").textContent(), /Nothing falls/);
+    await page.click("[data-value=rain]");
+    assert.equal(await page.locator(controls).evaluateAll((all) => all.filter((one) => one.offsetParent && !one.disabled).length), 11);
+    await page.click("[data-value=none]");
+    assert.ok(!await page.isVisible("#sliders"));
+    assert.deepEqual(said, []);
+});
+
+test("rain is streaks along its way", { timeout: 300_000 }, async (t) => {
+    const { folder, data } = cube(t);
+    const open = await viewer(t, folder);
+    const { page, said } = await open(data, { viewport: { width: 500, height: 500 }, colorScheme: "dark" });
+    await page.evaluate(() => (reliefView.particles.paused = true));
+    await page.click("#tab-particles");
+    await page.click("[data-value=rain]");
+    const shape = await page.evaluate(() => {
+        const { view, camera, panel, particles, look } = reliefView;
+        const picture = () => {
+            view.dirty = true;
+            return reliefView.pixelsNow();
+        };
+        panel.setCount(1024);
+        look.floor = null;
+        view.bodies = [];
+        camera.pitch = 0;
+        camera.distance *= 0.35;
+        const before = picture();
+        for (let i = 0; i < 30; ++i) particles.step();
+        const { data, width, height } = picture();
+        const wet = (x, y) => Math.abs(data[4 * (y * width + x) + 2] - before.data[4 * (y * width + x) + 2]) > 12;
+        // Runs of pixels that a drop has changed, across and down.
+        const runs = (across) => {
+            const lengths = [];
+            for (let a = 0; a < (across ? height : width); ++a) {
+                let run = 0;
+                for (let b = 0; b <= (across ? width : height); ++b) {
+                    const is = b < (across ? width : height) && (across ? wet(b, a) : wet(a, b));
+                    if (!is && run > 0) lengths.push(run);
+                    run = is ? run + 1 : 0;
+                }
+            }
+            return lengths.reduce((x, y) => x + y, 0) / lengths.length;
+        };
+        return { across: runs(true), down: runs(false) };
+    });
+    assert.ok(shape.down > 4 * shape.across, `drops are ${shape.across.toFixed(1)} pixels wide and ${shape.down.toFixed(1)} long`);
+    assert.deepEqual(said, []);
+});
+
+test("where frames take 50 ms the page draws less, says so, and draws all of it once it rests", { timeout: 300_000 }, async (t) => {
+    const { folder, data } = cube(t);
+    const open = await viewer(t, folder);
+    const { page, said } = await open(data, { viewport: { width: 220, height: 200 } });
+    const drawn = () => page.evaluate(() => reliefView.gl.drawingBufferWidth / document.getElementById("canvas").clientWidth);
+    // The clock of a slow machine.
+    await page.evaluate(() => {
+        let now = performance.now();
+        window.requestAnimationFrame = (f) => setTimeout(() => f((now += 50)), 0);
+        reliefView.startPreset("snow");
+    });
+    await page.waitForFunction("reliefView.particles.settings.count < 65536", undefined, { timeout: 200_000 });
+    assert.ok(await drawn() <= 0.51, `${await drawn()} of the pixels each way`);
+    assert.match(await page.locator("#quality").textContent(), /^Coarser, to keep up: 50 % of the pixels each way, \d+,\d+ particles$/);
+    assert.ok(await page.isVisible("#quality"));
+    await page.evaluate(() => (reliefView.particles.paused = true));
+    await page.waitForFunction("document.getElementById('quality').hidden", undefined, { timeout: 60_000 });
+    assert.equal(await drawn(), 1);
+    assert.deepEqual(said, []);
+});
+
+test("finer pixels come back where frames are quick, and are tried more and more seldom", () => {
+    const quality = new Quality();
+    let now = 0;
+    const frames = (took, ms) => {
+        const seen = new Set();
+        for (const end = now + ms; now < end;) {
+            quality.frame((now += typeof took === "number" ? took : took(quality.pixels)), true, () => {});
+            seen.add(quality.pixels);
+        }
+        return seen;
+    };
+    frames(50, 3000);
+    assert.equal(quality.pixels, 0.5);
+    frames(16, 20_000);
+    assert.equal(quality.pixels, 1);
+    // Where full pixels are too many, it is not for ever that they are tried every few seconds.
+    const slow = (pixels) => (pixels === 1 ? 60 : 16);
+    frames(slow, 10_000);
+    let tries = 0;
+    for (let i = 0; i < 60; ++i) {
+        tries += frames(slow, 2000).has(1);
+    }
+    assert.ok(tries > 0 && tries < 8, `${tries} tries in two minutes`);
+    frames(() => 1500, 20_000); // a page that slept
+    assert.notEqual(quality.pixels, 0.5);
+});
+
+test("no tip covers a word, and a tab of a folded panel unfolds it", { timeout: 300_000 }, async (t) => {
+    const { folder, data } = cube(t);
+    const open = await viewer(t, folder);
+    for (const viewport of [{ width: 1000, height: 700 }, { width: 700, height: 640 }]) {
+        const { page, close } = await open(data, { viewport });
+        await page.evaluate(() => (reliefView.particles.paused = true));
+        await page.click("#tab-particles");
+        await page.click("[data-value=rain]");
+        for (const button of await page.locator("[data-tip]:visible").all()) {
+            await button.scrollIntoViewIfNeeded();
+            await button.hover();
+            const found = await page.evaluate(() => {
+                const tip = [...document.querySelectorAll("#tip")].find((one) => !one.hidden);
+                const at = tip?.getBoundingClientRect();
+                return at && { text: tip.textContent, whole: at.left >= 0 && at.top >= 0 && at.right <= innerWidth && at.bottom <= innerHeight,
+                               covers: [...document.querySelectorAll("#panel *, #title *")].filter((one) => {
+                                   const box = one.getBoundingClientRect();
+                                   return one.checkVisibility() && one.children.length === 0 && one.textContent.trim() &&
+                                       box.left < at.right && box.right > at.left && box.top < at.bottom && box.bottom > at.top;
+                               }).map((one) => one.textContent) };
+            });
+            assert.ok(found, `${await button.getAttribute("id")} has no tip`);
+            assert.deepEqual([found.whole, found.covers], [true, []], found.text);
+        }
+        await close();
+    }
+    const { page, said } = await open(data, phone);
+    await page.tap("#fold");
+    assert.ok(!await page.isVisible("#sheets"));
+    await page.tap("#tab-maps");
+    assert.ok(await page.isVisible("#sheet-maps"));
+    assert.equal(await page.locator("#fold").getAttribute("aria-expanded"), "true");
+    await page.tap("#fold");
+    await page.tap("#tab-maps"); // the one that is chosen already
+    assert.ok(await page.isVisible("#sheet-maps"));
+    assert.deepEqual(said, []);
+});
+
+test("a dropped mesh ranks places as relief check does, by share and in units", { timeout: 300_000 }, async (t) => {
+    const folder = scratch(t);
+    const at = (name) => path.join(folder, name);
+    run("relief", "bake", bunny, "-q", "-o", at("b.relief"), "--paper", "--resolution", "40");
+    writeFileSync(at("bunny.obj"), readFileSync(bunny));
+    const said = JSON.parse(run("relief", "check", at("b.relief"), "--mesh", bunny, "--json"));
+    const open = await viewer(t, folder);
+    const { page, said: console } = await open(pageData("b.relief", readFileSync(at("b.relief"))));
+    await page.setInputFiles("#files", at("bunny.obj"));
+    await page.waitForFunction("reliefView.measured");
+    const { wrong, places, longest } = await page.evaluate(() => ({
+        wrong: reliefView.measured.wrong_percent, places: reliefView.measured.places, longest: reliefView.body.box.longest }));
+    t.diagnostic(JSON.stringify({ wrong, places: places.slice(0, 3), check: said.worst_places }));
+    const first = said.worst_places[0];
+    const same = places.find((one) => Math.hypot(...one.position.map((v, k) => v - first.position[k])) < 0.12 * longest);
+    assert.ok(same && places.indexOf(same) < 2, "the worst place of relief check is not among the page's worst");
+    assert.ok(Math.abs(same.share_percent - first.share_percent) < 0.35 * first.share_percent + 1,
+              `${same.share_percent} % of what is wrong, and ${first.share_percent} %`);
+    assert.equal(same.map, first.map);
+    assert.deepEqual([...places].sort((a, b) => b.share_percent - a.share_percent), places);
+    assert.match(await page.locator("#places button").first().textContent(), /^[\d.]+ %[\d.]+( m)? across, .*map \d/);
+    assert.deepEqual(console, []);
+});

@@ -1,0 +1,150 @@
+// The picture of a collider holds all of it: against rays that ask the CPU's maps step by step. Sheets and struts thinner than
+// any grid would find, in the formats that there are.
+import assert from "node:assert/strict";
+import { readFileSync, writeFileSync } from "node:fs";
+import path from "node:path";
+import test from "node:test";
+
+import { bunny, run, scratch } from "./lib/native.mjs";
+import { pageData, viewer } from "./lib/view.mjs";
+
+/** Boxes as an OBJ file: [x0, y0, z0, x1, y1, z1] each. turn: degrees about an axis of no symmetry. */
+function boxes(list, turn = 0) {
+    const [c, s] = [Math.cos(turn * Math.PI / 180), Math.sin(turn * Math.PI / 180)];
+    const lines = [];
+    list.forEach((box, n) => {
+        for (let i = 0; i < 8; ++i) {
+            const [x, y, z] = [0, 1, 2].map((k) => box[k + 3 * ((i >> k) & 1)]);
+            const [u, v] = [c * x - s * y, s * x + c * y];
+            lines.push(`v ${u} ${c * v - s * z} ${s * v + c * z}`);
+        }
+        for (const face of [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]) {
+            lines.push(`f ${face.map((i) => 8 * n + i + 1).join(" ")}`);
+        }
+    });
+    return `${lines.join("\n")}\n`;
+}
+
+// A table of plates 0.4 % thick, and a tower of struts: legs 0.8 % wide, seven floors.
+const plates = [[-1, 0, -1, 1, 0.008, 1], [-1, 0.5, -0.2, 1, 0.508, 1], [-0.004, 0, -1, 0.004, 0.5, 1]];
+const struts = [
+    ...[[-0.5, -0.5], [0.5, -0.5], [-0.5, 0.5], [0.5, 0.5]].map(([x, z]) => [x - 0.008, -1, z - 0.008, x + 0.008, 1, z + 0.008]),
+    ...[-1, -0.7, -0.4, -0.1, 0.2, 0.5, 0.8].flatMap((y) => [[-0.5, y, -0.508, 0.5, y + 0.016, -0.492],
+                                                              [-0.5, y, 0.492, 0.5, y + 0.016, 0.508],
+                                                              [-0.508, y, -0.5, -0.492, y + 0.016, 0.5],
+                                                              [0.492, y, -0.5, 0.508, y + 0.016, 0.5]])];
+const square = "v -1 0 -1\nv 1 0.3 -1\nv 1 0.3 1\nv -1 0 1\nf 4 3 2 1\n";
+
+/** Runs in the page: of rays through pixels, what the picture has, and what the CPU has. */
+async function compare([columns, rows, steps]) {
+    const { view, camera, body, look, gl } = reliefView;
+    look.floor = null;
+    reliefView.panel.fold();
+    reliefView.panel.frame();
+    view.dirty = true;
+    const { error } = reliefView.pixelsNow();
+    const { width, height, depth } = view.kept;
+    // The depths of the picture.
+    const made = (type, text) => {
+        const shader = gl.createShader(type);
+        gl.shaderSource(shader, `#version 300 es\nprecision highp float;\nprecision highp sampler2D;\n${text}`);
+        gl.compileShader(shader);
+        return shader;
+    };
+    const program = gl.createProgram();
+    gl.attachShader(program, made(gl.VERTEX_SHADER, "void main() { gl_Position = vec4(2 * ((gl_VertexID << 1) & 2) - 1, 2 * (gl_VertexID & 2) - 1, 0, 1); }"));
+    gl.attachShader(program, made(gl.FRAGMENT_SHADER, "uniform sampler2D u; out vec4 o; void main() { o = vec4(texelFetch(u, ivec2(gl_FragCoord.xy), 0).r); }"));
+    gl.linkProgram(program);
+    const texture = gl.createTexture();
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+    gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA32F, width, height);
+    const frame = gl.createFramebuffer();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
+    gl.viewport(0, 0, width, height);
+    gl.disable(gl.DEPTH_TEST);
+    gl.disable(gl.BLEND);
+    gl.useProgram(program);
+    gl.activeTexture(gl.TEXTURE0);
+    gl.bindTexture(gl.TEXTURE_2D, depth);
+    gl.bindVertexArray(null);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    const depths = new Float32Array(4 * width * height);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, depths);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+
+    const { view: V, projection: P, eye } = camera.matrices(width, height);
+    const { min, max, longest } = body.box;
+    const answer = { error, rays: 0, drawn: 0, seen: 0, holes: 0, nothing: 0 };
+    for (let r = 0; r < rows; ++r) {
+        const tries = [];
+        const points = [];
+        for (let c = 0; c < columns; ++c) {
+            const px = Math.floor((c + 0.5) * width / columns);
+            const py = Math.floor((r + 0.5) * height / rows);
+            const x = (2 * (px + 0.5) / width - 1 + P[8]) / P[0];
+            const y = (2 * (py + 0.5) / height - 1 + P[9]) / P[5];
+            const d = [0, 1, 2].map((k) => x * V[4 * k] + y * V[4 * k + 1] - V[4 * k + 2]);
+            let [from, to] = [0, Infinity];
+            for (let k = 0; k < 3; ++k) {
+                const [a, b] = [min[k], max[k]].map((v) => (v - eye[k]) / d[k]);
+                from = Math.max(from, Math.min(a, b));
+                to = Math.min(to, Math.max(a, b));
+            }
+            const z = 2 * depths[4 * (py * width + px)] - 1;
+            const drawn = z < 1 - 1e-6 ? P[14] / (z + P[10]) : Infinity;
+            if (!(from < to)) {
+                continue;
+            }
+            const l = Math.hypot(...d);
+            const at = Array.from({ length: steps }, (_, i) => from + (i + 0.5) / steps * (to - from));
+            tries.push({ at, drawn, slack: 2e-3 * longest / l });
+            at.forEach((t) => points.push(...[0, 1, 2].map((k) => eye[k] + t * d[k])));
+            // And closely about what is drawn, 5 × 5 × 5 points.
+            for (let i = 0; i < 125 && drawn < Infinity; ++i) {
+                points.push(...[0, 1, 2].map((k) => eye[k] + drawn * d[k] + (Math.floor(i / 5 ** k) % 5 - 2) * 1.5e-4 * longest));
+            }
+        }
+        const { distance, map } = body.collider.query(Float32Array.from(points));
+        let i = 0;
+        const inside = () => (map[i] >= 0 && distance[i] < 0 ? ++i : (++i, 0)) > 0;
+        for (const { at, drawn, slack } of tries) {
+            const first = at.map((t) => (inside() ? t : Infinity)).reduce((a, b) => Math.min(a, b), Infinity);
+            const around = Array.from({ length: drawn < Infinity ? 125 : 0 }, inside).some(Boolean);
+            answer.rays += 1;
+            answer.drawn += drawn < Infinity;
+            answer.seen += first < Infinity;
+            answer.holes += first < Infinity && drawn > first + slack; // inside, but drawn farther back or not at all
+            answer.nothing += drawn < Infinity && !around;
+        }
+    }
+    return answer;
+}
+
+test("every sheet and strut of a collider is drawn, and nothing else", { timeout: 300_000 }, async (t) => {
+    const folder = scratch(t);
+    const at = (name) => path.join(folder, name);
+    writeFileSync(at("plates.obj"), boxes(plates, 17));
+    writeFileSync(at("struts.obj"), boxes(struts, 8));
+    writeFileSync(at("square.obj"), square);
+    const cases = {
+        "plates, planned": ["plates.obj", "--budget", "200kB", "--as", "solid"],
+        "plates, the paper's": ["plates.obj", "--paper", "--resolution", "256"],
+        "struts, planned": ["struts.obj", "--budget", "400kB", "--as", "solid"],
+        "an open sheet": ["square.obj", "--budget", "60kB", "--thickness", "0.003"],
+        "bunny, cubes": [bunny, "--map", "cube:size=96"],
+    };
+    const open = await viewer(t, folder);
+    for (const [name, [mesh, ...options]] of Object.entries(cases)) {
+        run("relief", "bake", mesh === bunny ? bunny : at(mesh), "-q", "-o", at("c.relief"), ...options);
+        const { page, said, close } = await open(pageData("c.relief", readFileSync(at("c.relief"))), { viewport: { width: 300, height: 260 } });
+        const found = await page.evaluate(compare, [50, 44, 500]);
+        t.diagnostic(`${name}: ${JSON.stringify(found)}`);
+        assert.equal(found.error, 0, name);
+        assert.ok(found.seen > 20, `${name}: ${found.seen} rays meet it`);
+        assert.equal(found.holes, 0, `${name}: ${found.holes} of ${found.seen} rays that meet the collider are drawn through it`);
+        assert.equal(found.nothing, 0, `${name}: ${found.nothing} of ${found.drawn} points drawn are of nothing`);
+        assert.deepEqual(said, []);
+        await close();
+    }
+});
