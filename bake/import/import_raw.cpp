@@ -56,7 +56,12 @@ class RawReader {
                 return wrongLine(line, noNumber(word));
             }
             group_ = word;
-            return {};
+            // A triangle whose first number is none is no name.
+            std::size_t numbers_behind = 0;
+            for (std::string_view more = text_.word(); !more.empty(); more = text_.word()) {
+                numbers_behind += beginsNumber(more) ? 1 : 0;
+            }
+            return numbers_behind + 1 < kCorners ? Result<void>() : wrongLine(line, noNumber(group_));
         }
         for (; count < numbers.size() && beginsNumber(word); word = text_.word()) {
             numbers[count++] = *readDecimal(word);
