@@ -75,6 +75,7 @@ Result<void> readPlanFile(const BakeCommand& command, BakeSettings& settings) {
         settings.bake.prefer = plan.prefer;
     }
     settings.bake.planned_budget = plan.budget;
+    settings.shape.thickness = plan.thickness;
     for (const PlanFileMap& map : plan.maps) {
         settings.bake.maps.push_back(map.spec);
     }
@@ -163,11 +164,12 @@ Result<Baked> makeCollider(const BakeCommand& command, const PreparedMesh& impor
 }
 
 Result<void> writePlanFile(const std::string& path, const PlanReport& plan, const Baked& baked,
-                           const BakeOptions& options) {
+                           const BakeOptions& options, const ShapeReport& shape) {
     PlanFile file;
     file.quality = options.quality;
     file.prefer = options.prefer;
     file.budget = plan.budget;
+    file.thickness = shape.default_thickness;
     for (std::size_t i = 0; i < plan.plan.maps.size(); ++i) {
         file.maps.push_back({baked.report.maps[i].spec, plan.plan.maps[i].reason});
     }
@@ -262,11 +264,12 @@ Result<void> shape(BakeRun& run) {
     const Bounds& bounds = run.cared.mesh->bounds;
     ShapeOptions options = run.settings.shape;
     options.thickness_by_part = !command.thickness;
-    options.thickness =
-        command.thickness
-            ? double{*command.thickness}
-            : defaultThickness(bounds,
-                               command.max_error ? kBudgetDefault : command.budget.value_or(kBudgetDefault));
+    if (command.thickness) {
+        options.thickness = double{*command.thickness};
+    } else if (!(options.thickness > 0.0)) {  // else it is that of --plan
+        options.thickness = defaultThickness(
+            bounds, command.max_error ? kBudgetDefault : command.budget.value_or(kBudgetDefault));
+    }
     if (command.thickness && !(options.thickness <= kThicknessMax * double{bounds.longestSide()})) {
         return fail(ErrorCode::kUsage, "--thickness is " + shortest(*command.thickness) + " but " +
                                            run.cared.mesh->name + " is " + shortest(bounds.longestSide()) +
@@ -439,7 +442,7 @@ Result<void> writeOutputs(BakeRun& run) {
     const Stopwatch watch;
     RELIEF_TRY(writeFile(command.output, run.bytes));
     if (!command.plan_out.empty()) {
-        RELIEF_TRY(writePlanFile(command.plan_out, *run.plan, run.baked, run.settings.bake));
+        RELIEF_TRY(writePlanFile(command.plan_out, *run.plan, run.baked, run.settings.bake, run.shape));
     }
     run.inputs = inputsOf(command, *run.cared.mesh, run.plan_hash);
     if (!command.depfile.empty()) {
@@ -579,7 +582,7 @@ Result<BakedInMemory> bakeInMemory(BakeCommand command, std::optional<TriangleMe
     RELIEF_TRY(bakeCollider(run, std::move(mesh)));
     run.progress.checkpoint();
     if (!command.plan_out.empty()) {
-        RELIEF_TRY(writePlanFile(command.plan_out, *run.plan, run.baked, run.settings.bake));
+        RELIEF_TRY(writePlanFile(command.plan_out, *run.plan, run.baked, run.settings.bake, run.shape));
     }
     gatherWarnings(run);
     return BakedInMemory{std::move(run.baked.collider), std::move(run.baked.report.warnings)};

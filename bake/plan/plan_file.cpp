@@ -16,7 +16,9 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kPlanBytesMax = std::uint64_t{1} << 20;
 constexpr std::int64_t kVersion = 1;
-constexpr std::array<std::string_view, 5> kTopKeys = {"version", "quality", "prefer", "budget", "map"};
+constexpr double kLengthMax = 1e15;
+constexpr std::array<std::string_view, 6> kTopKeys = {"version", "quality",   "prefer",
+                                                      "budget",  "thickness", "map"};
 
 class Reader {
   public:
@@ -66,6 +68,8 @@ class Reader {
                 done = readPrefer(node, plan);
             } else if (key->str() == "budget") {
                 done = readBudget(node, plan);
+            } else if (key->str() == "thickness") {
+                done = readThickness(node, plan);
             } else if (key->str() == "map") {
                 done = readMaps(node, plan);
             } else if (key->str() != "version") {
@@ -112,6 +116,15 @@ class Reader {
             return invalid(node.source().begin, "budget must be a whole number of bytes above 0");
         }
         plan.budget = static_cast<std::uint64_t>(*bytes);
+        return {};
+    }
+
+    Result<void> readThickness(const toml::node& node, PlanFile& plan) const {
+        const auto length = node.value<double>();
+        if (!node.is_number() || !length || !(*length > 0.0 && *length <= kLengthMax)) {
+            return invalid(node.source().begin, "thickness must be a length above 0 and at most 1e15");
+        }
+        plan.thickness = double{static_cast<float>(*length)};
         return {};
     }
 
@@ -192,6 +205,7 @@ std::string planText(const PlanFile& plan) {
         std::to_string(kVersion) + "\nquality = \"" + qualityName(plan.quality) + "\"\nprefer = \"" +
         preferName(plan.prefer) + "\"\n";
     text += plan.budget == 0 ? "" : "budget = " + std::to_string(plan.budget) + "\n";
+    text += plan.thickness > 0.0 ? "thickness = " + shortest(static_cast<float>(plan.thickness)) + "\n" : "";
     for (const PlanFileMap& map : plan.maps) {
         text += "\n";
         if (!map.comment.empty()) {

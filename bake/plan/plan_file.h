@@ -5,6 +5,7 @@
 //     quality = "normal"
 //     prefer = "neither"
 //     budget = 1000000
+//     thickness = 0.009
 //
 //     # both sides along (0, 0, 1) see 83.1 % of the surface; service +71.4 %
 //     [[map]]
@@ -16,7 +17,8 @@
 //     box = "tight"
 //
 // `budget` is what the maps were planned for, bytes on the GPU; it changes nothing but the collider's record, and may be
-// left out. A map has `format`, `size`, and whichever other keys of map_spec.h it needs; their values are strings, as
+// left out. `thickness` is the default from which each shell takes what suits its part (bake/shape/thickness.h), in the mesh's
+// units; without it the bake takes its own. A map has `format`, `size`, and whichever other keys of map_spec.h it needs; their values are strings, as
 // after --map, and `size` may be a whole number. Numbers are the shortest that read back as the same floats:
 // what was planned and what is baked from its file are the same bytes.
 #pragma once
@@ -42,10 +44,11 @@ struct PlanFile {
     Quality quality = Quality::kNormal;
     Prefer prefer = Prefer::kNeither;
     std::uint64_t budget = 0;  ///< bytes; 0: none is named
+    double thickness = 0.0;    ///< of shells, before their parts bound it; 0: none is named
     std::vector<PlanFileMap> maps;
 };
 
-/// Parsing it gives the same quality, prefer, budget and specs.
+/// Parsing it gives the same quality, prefer, budget, thickness and specs.
 [[nodiscard]] std::string planText(const PlanFile& plan);
 
 /// \param path  for messages.

@@ -18,6 +18,7 @@
 #include "bake/cli/mesh_check.h"
 #include "bake/measure/worst_places.h"
 #include "bake/python/interruptible.h"
+#include "bake/report/parts_report.h"
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
 #include "formats/container.h"
@@ -287,6 +288,8 @@ py::tuple check(const SharedCollider& collider, const MeshCheckSettings& setting
     out["distance_p99"] = accuracy.distance_p99;
     out["normal_mean"] = accuracy.normal_mean;
     out["unknown_percent"] = accuracy.unknown_percent;
+    out["lost_parts"] = run.part_accuracy.countOf(PartVerdict::kLost);
+    out["grade"] = gradeOf(run.wrongPercent(), run.part_accuracy);
     out["places"] = placesOf(run.places);
     return py::make_tuple(out, textsOf(run.warnings));
 }

@@ -22,7 +22,8 @@ double defaultThickness(const Bounds& bounds, std::uint64_t budget_bytes) {
     // Front-back maps along the axes, of eight bytes a texel, and half as many again that look from elsewhere.
     const double area = 12.0 * (size.x * size.y + size.y * size.z + size.z * size.x);
     const double texel = std::sqrt(area / static_cast<double>(std::max<std::uint64_t>(budget_bytes, 1)));
-    return std::min(1.5 * texel, 0.04 * double{bounds.longestSide()});
+    // A float, so that what a container or a plan records is the very thickness of the bake.
+    return double{static_cast<float>(std::min(1.5 * texel, 0.04 * double{bounds.longestSide()}))};
 }
 
 double partThickness(double default_thickness, double part_size) {

@@ -59,6 +59,15 @@ expect 0 "$relief" bake "$mesh" -o q.relief --budget 60kB --plan-out q2.toml --q
 cmp q.toml q2.toml || die "two runs plan differently"
 ! grep -q "$work" q.toml || die "the plan holds a path"
 
+# Shells are as thick by the plan as they were when it was made, whatever the budget.
+printf '%s\n' 'v 0 0 0' 'v 9 0 0' 'v 9 4 0' 'v 0 4 0' 'v 0 0 5' 'v 1 0 5' 'v 1 0 6' 'f 1 2 3 4' 'f 5 6 7' >open.obj
+for how in '--budget 60kB' '--max-error 4%'; do
+    # shellcheck disable=SC2086
+    expect 0 "$relief" bake open.obj -o o.relief $how --plan-out o.toml -q
+    expect 0 "$relief" bake open.obj -o o2.relief --plan o.toml -q
+    cmp o.relief o2.relief || die "the plan's file bakes other bytes than the plan, of sheets and $how"
+done
+
 # A changed plan is followed.
 sed -e '0,/^size = .*/s//size = "33x44"/' -e '0,/^depth = .*/s//depth = "half"/' default.toml >edited.toml
 expect 0 "$relief" bake "$mesh" -o edited.relief --plan edited.toml -q

@@ -182,7 +182,11 @@ class Accuracy:
     normal_mean: float
     """Mean error of normals on the surface, degrees."""
     unknown_percent: float
-    """Of points near the surface: no map says anything."""
+    """Of points near the surface: no map votes."""
+    lost_parts: int
+    """Parts of the mesh of whose points, by the part's own size, more than a quarter are on the wrong side."""
+    grade: str
+    """ "good", "fair" or "poor", as `relief check` grades: the worse of the whole's and the worst part's."""
     places: tuple[WorstPlace, ...] = ()
     """The worst first; at most three."""
 

@@ -16,6 +16,7 @@ TEST(PlanFile, ReadsWhatItWrites) {
     PlanFile plan;
     plan.quality = Quality::kBest;
     plan.budget = 123'456'789'012;
+    plan.thickness = double{0.012F};
     for (const char* text :
          {"front-back:dir=0.1/-0.7/1e-20,up=+x,size=7x9,depth=unorm16,decode=plane,box=tight",
           "front-back:dir=-y,size=16384x3,depth=half,decode=projected,box=-1/-2/-3/0.1/1e+20/3",
@@ -30,6 +31,7 @@ TEST(PlanFile, ReadsWhatItWrites) {
     ASSERT_TRUE(back) << back.error().message << "\n" << text;
     EXPECT_EQ(back->quality, Quality::kBest);
     EXPECT_EQ(back->budget, plan.budget);
+    EXPECT_EQ(back->thickness, plan.thickness);
     ASSERT_EQ(back->maps.size(), plan.maps.size());
     for (std::size_t i = 0; i < plan.maps.size(); ++i) {
         EXPECT_EQ(back->maps[i].spec, plan.maps[i].spec) << toString(plan.maps[i].spec);
@@ -97,6 +99,9 @@ TEST(PlanFile, SaysWhatIsWrongAndWhere) {
         {head + "qualty = 'best'\n" + map, kInvalid,
          "p.toml:2:1: unknown key 'qualty'; did you mean 'quality'"},
         {head + "quality = 'bests'\n" + map, kInvalid, "p.toml:2:11: quality must be"},
+        {head + "thickness = 0\n" + map, kInvalid, "p.toml:2:13: thickness must be"},
+        {head + "thickness = '1'\n" + map, kInvalid, "p.toml:2:13: thickness must be"},
+        {head + "thickness = nan\n" + map, kInvalid, "p.toml:2:13: thickness must be"},
         {head + "quality = 3\n" + map, kInvalid, "p.toml:2:11: quality must be"},
         {head + "[[map]]\nsize = 9\n", kInvalid, "p.toml:2:1: a map needs format"},
         {head + "[[map]]\nformat = 'float'\n", kInvalid, "p.toml:2:1: a map needs size"},

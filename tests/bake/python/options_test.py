@@ -145,6 +145,7 @@ def test_checks_judge_the_solid_that_the_tool_judges(words, mesh, tmp_path):
         warnings.simplefilter("always")
         accuracy = relief.check(relief.load(path), mesh, samples=4e3, seed=7)
     assert accuracy.wrong_percent == pytest.approx(said["verdict"]["wrong_percent"], abs=1e-12)
+    assert (accuracy.grade, accuracy.lost_parts) == (said["verdict"]["grade"], said["verdict"]["lost_parts"])
     assert [place.position for place in accuracy.places] == [
         pytest.approx(place["position"], abs=1e-6) for place in said["worst_places"]]
     assert [str(one.message) for one in caught] == said["warnings"]
