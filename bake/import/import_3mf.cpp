@@ -58,7 +58,7 @@ Result<Transform> transformOf(std::string_view text) {
             return invalidInput("a transform has fewer than 12 numbers");
         }
         if (!number) {
-            return invalidInput(noNumber(word));
+            return invalidInput(noFiniteNumber(word));
         }
         value = *number;
     }
@@ -222,7 +222,7 @@ class ModelReader {
             return wrong("a vertex has no " + std::string(name));
         }
         const std::optional<double> value = finiteNumber(*text);
-        return value ? Result<double>(*value) : wrong(noNumber(*text));
+        return value ? Result<double>(*value) : wrong(noFiniteNumber(*text));
     }
     [[nodiscard]] AssemblyObject& object() { return models_.file.assembly.objects.back(); }
 

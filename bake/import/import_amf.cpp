@@ -204,7 +204,7 @@ class AmfReader {
     }
     [[nodiscard]] Result<double> number() const {
         const std::optional<double> value = finiteNumber(text_);
-        return value ? Result<double>(*value) : wrong(noNumber(text_));
+        return value ? Result<double>(*value) : wrong(noFiniteNumber(text_));
     }
     [[nodiscard]] tl::unexpected<Error> wrong(const std::string& what) const {
         return invalidInput(xml_.where() + what);

@@ -13,7 +13,7 @@ std::optional<double> finiteNumber(std::string_view text) {
     return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-std::string noNumber(std::string_view text) {
+std::string noFiniteNumber(std::string_view text) {
     constexpr std::size_t kQuotedMax = 40;
     std::string point(text);
     std::replace(point.begin(), point.end(), ',', '.');

@@ -77,7 +77,7 @@ class Corners {
                 static_cast<std::int64_t>(cell.z)};
     }
     [[nodiscard]] static std::uint64_t key(const Cell& cell) {
-        constexpr unsigned kBits = 21;  // 1 / kThicknessMin is far less
+        constexpr unsigned kBits = 21;  // 1 / kCopyReach is far less
         return static_cast<std::uint64_t>(cell[0]) << (2 * kBits) |
                static_cast<std::uint64_t>(cell[1]) << kBits | static_cast<std::uint64_t>(cell[2]);
     }
@@ -109,7 +109,7 @@ class Corners {
 
 /// How far apart two parts are; nullopt if they are no near copies.
 std::optional<double> apart(const TriangleMesh& mesh, const Solid& a, const Solid& b) {
-    const double reach = kThicknessMin * double{std::max(a.bounds.longestSide(), b.bounds.longestSide())};
+    const double reach = kCopyReach * double{std::max(a.bounds.longestSide(), b.bounds.longestSide())};
     for (int axis = 0; axis < 3; ++axis) {
         if (std::abs(double{a.bounds.min[axis]} - double{b.bounds.min[axis]}) > reach ||
             std::abs(double{a.bounds.max[axis]} - double{b.bounds.max[axis]}) > reach) {

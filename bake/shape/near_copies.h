@@ -12,6 +12,9 @@
 
 namespace relief {
 
+/// In units of the longer part's longest side: no shell is thinner, so nothing fits between.
+inline constexpr double kCopyReach = 1e-4;
+
 struct NearCopies {
     std::vector<std::uint32_t> triangles;  ///< of all parts but the largest of each group, ascending
     std::uint64_t parts = 0;               ///< whose triangles these are
@@ -21,7 +24,7 @@ struct NearCopies {
     [[nodiscard]] std::string text() const;
 };
 
-/// Two parts are near copies if every corner of each has one of the other within kThicknessMin of their longest side.
+/// Two parts are near copies if every corner of each has one of the other within kCopyReach of their longest side.
 /// \param solids  closed, not flat; borrowed.
 [[nodiscard]] NearCopies nearCopies(const TriangleMesh& mesh, std::span<const Part* const> solids);
 

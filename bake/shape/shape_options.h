@@ -11,10 +11,6 @@
 
 namespace relief {
 
-/// The least and the largest --thickness, in units of the longest side.
-inline constexpr double kThicknessMin = 1e-4;
-inline constexpr double kThicknessMax = 0.5;
-
 /// What parts are taken for.
 enum class ShapeAs : std::uint8_t { kAuto, kSolid, kShell, kTerrain };
 
