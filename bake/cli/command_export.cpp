@@ -11,6 +11,7 @@
 #include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "formats/container.h"
+#include "runtime/tool/memory_option.h"
 #include "runtime/tool/option_values.h"
 #include "runtime/vdb/vdb_points.h"
 
@@ -21,6 +22,7 @@ struct ExportCommand {
     CommonOptions common;
     std::string file;
     std::string output;
+    ContainerLimits limits;
     std::string gpu;
     std::string vdb;
     std::string mesh;
@@ -97,7 +99,7 @@ Result<void> runExport(const ExportCommand& command) {
             RELIEF_TRY(preflightDistinct(command.file, file));
         }
     }
-    const Collider collider = RELIEF_TRY(loadCollider(command.file));
+    const Collider collider = RELIEF_TRY(loadCollider(command.file, command.limits));
     if (!command.output.empty()) {
         RELIEF_TRY(exportMaps(collider, command.output));
     }
@@ -138,6 +140,7 @@ void addExport(CLI::App& app, Action& action) {
     verb.add_option("--voxels", command->voxels, "Of --vdb and --mesh, along the longest side; default 128")
         ->option_text("N")
         ->transform(wholeNumber(kVoxelsMin, kVoxelsMax));
+    addMemoryOption(verb, command->limits);
     verb.callback([command, &action] { action = [command] { return runExport(*command); }; });
 }
 

@@ -14,6 +14,7 @@
 #include "formats/container.h"
 #include "formats/nearest_surface.h"
 #include "runtime/collider/field_query.h"
+#include "runtime/tool/memory_option.h"
 #include "runtime/tool/option_values.h"
 
 namespace relief {
@@ -29,6 +30,7 @@ struct QueryCommand {
     CommonOptions common;
     std::string file;
     std::string points;
+    ContainerLimits limits;
     std::string output;
     DistanceTo distance = DistanceTo::kNearest;
     bool gpu = false;
@@ -88,7 +90,7 @@ Result<void> runQuery(const QueryCommand& command) {
     RELIEF_TRY(preflightFile(command.output));
     RELIEF_TRY(preflightDistinct(command.file, command.output));
     RELIEF_TRY(preflightDistinct(command.points, command.output));
-    const Collider collider = RELIEF_TRY(loadCollider(command.file));
+    const Collider collider = RELIEF_TRY(loadCollider(command.file, command.limits));
     const std::vector<std::byte> text = RELIEF_TRY(readFile(command.points));
     const std::vector<glm::vec3> points =
         RELIEF_TRY(parsePoints({reinterpret_cast<const char*>(text.data()), text.size()},
@@ -125,6 +127,7 @@ void addQuery(CLI::App& app, Action& action) {
     verb.add_flag("--gpu", command->gpu,
                   "Evaluate with the simulation's shader (OpenGL 3.3; llvmpipe will do)");
     addGpuOptions(verb, command->gpu_options);
+    addMemoryOption(verb, command->limits);
     verb.callback([command, &action] { action = [command] { return runQuery(*command); }; });
 }
 
