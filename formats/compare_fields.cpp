@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kMargin = 0.1;  // round the box, of its longest side
 constexpr double kNear = 0.01;   // of the same
-constexpr std::uint64_t kMapsAtAllPoints = 64;
+constexpr std::uint64_t kMapsAtAllPoints = 16;
 constexpr double kShare = 0.99;  // of DifferenceStatistics::percentile_99
 
 /// The digits of i in a base, mirrored at the point: Halton's sequence along one axis, in [0, 1).

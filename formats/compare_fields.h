@@ -32,7 +32,7 @@ struct FieldsDifference {
 };
 
 struct CompareFieldsOptions {
-    /// In the box; fewer where both have more than 64 maps together, each of which is asked about each point. As many near
+    /// In the box; fewer where both have more than 16 maps together, each of which is asked about each point. As many near
     /// each collider's surface, less those from which no surface is found.
     std::uint32_t points = 10'000;
 };

@@ -94,9 +94,9 @@ TEST(CompareFields, ManyMapsAreAskedAboutFewerPoints) {
     while (many.maps.size() < 128) {
         many.maps.push_back(many.maps[many.maps.size() % 3]);
     }
-    EXPECT_EQ(compareFields(many, many, {.points = 40}).box.points, 10U);
-    many.maps.resize(32);
-    EXPECT_EQ(compareFields(many, many, {.points = 40}).box.points, 40U);
+    EXPECT_EQ(compareFields(many, many, {.points = 160}).box.points, 10U);
+    many.maps.resize(8);
+    EXPECT_EQ(compareFields(many, many, {.points = 160}).box.points, 160U);
 }
 
 }  // namespace
