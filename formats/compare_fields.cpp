@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kMargin = 0.1;  // round the box, of its longest side
 constexpr double kNear = 0.01;   // of the same
+constexpr std::uint64_t kMapsAtAllPoints = 16;
 constexpr double kShare = 0.99;  // of DifferenceStatistics::percentile_99
 
 /// The digits of i in a base, mirrored at the point: Halton's sequence along one axis, in [0, 1).
@@ -80,7 +81,9 @@ FieldsDifference compareFields(const Collider& a, const Collider& b, const Compa
     const double longest = std::max({size.x, size.y, size.z});
     Points box;
     Points near;
-    for (std::uint64_t i = 1; i <= options.points; ++i) {
+    const std::uint64_t maps = std::max<std::uint64_t>(a.maps.size() + b.maps.size(), kMapsAtAllPoints);
+    const std::uint64_t points = options.points * kMapsAtAllPoints / maps;
+    for (std::uint64_t i = 1; i <= points; ++i) {
         const glm::dvec3 share(mirrored(i, 2), mirrored(i, 3), mirrored(i, 5));
         const glm::dvec3 offset = glm::dvec3(mirrored(i, 7), mirrored(i, 11), mirrored(i, 13)) * 2.0 - 1.0;
         const glm::vec3 p(low - kMargin * longest + share * (size + 2.0 * kMargin * longest));

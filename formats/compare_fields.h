@@ -32,7 +32,8 @@ struct FieldsDifference {
 };
 
 struct CompareFieldsOptions {
-    /// In the box. As many near each collider's surface, less those from which no surface is found.
+    /// In the box; fewer where both have more than 16 maps together, each of which is asked about each point. As many near
+    /// each collider's surface, less those from which no surface is found.
     std::uint32_t points = 10'000;
 };
 

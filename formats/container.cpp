@@ -188,7 +188,8 @@ std::span<const std::byte> part(std::span<const std::byte> bytes, std::uint64_t 
 }
 
 /// Maps whose frames and sizes are in order, within the limits.
-Result<void> readMaps(ParsedMetadata&& parsed, const ContainerLimits& limits, Description& into) {
+Result<void> readMaps(ParsedMetadata&& parsed, const ContainerLimits& limits, std::uint64_t file_size,
+                      Description& into) {
     if (parsed.maps.empty()) {
         return invalidInput("there is no map");
     }
@@ -201,10 +202,8 @@ Result<void> readMaps(ParsedMetadata&& parsed, const ContainerLimits& limits, De
             return tl::unexpected<Error>(inMap(i, ok.error()));
         }
         texel_bytes += map.payload.info.raw_size;
-        if (texel_bytes > limits.texel_bytes) {
-            return fail(ErrorCode::kLimit, "map " + std::to_string(i) +
-                                               ": with it, the texels take more than the limit of " +
-                                               std::to_string(limits.texel_bytes) + " bytes");
+        if (const auto beyond = texelsBeyond(limits, texel_bytes, file_size)) {
+            return tl::unexpected<Error>(inMap(i, {ErrorCode::kLimit, *beyond}));
         }
         into.maps.push_back(std::move(map));
     }
@@ -212,11 +211,11 @@ Result<void> readMaps(ParsedMetadata&& parsed, const ContainerLimits& limits, De
 }
 
 Result<void> readMetadata(std::span<const std::byte> bytes, const ContainerLimits& limits,
-                          Description& into) {
+                          std::uint64_t file_size, Description& into) {
     ParsedMetadata parsed = RELIEF_TRY(parseMetadata(bytes, limits.maps));
     into.collider = std::move(parsed.collider);
     return validateDescription(into.collider).and_then([&] {
-        return readMaps(std::move(parsed), limits, into);
+        return readMaps(std::move(parsed), limits, file_size, into);
     });
 }
 
@@ -260,7 +259,7 @@ Result<Description> readDescription(std::span<const std::byte> bytes, const Cont
     }
     Description description;
     description.header = header;
-    RELIEF_TRY(readMetadata(metadata, limits, description));
+    RELIEF_TRY(readMetadata(metadata, limits, bytes.size(), description));
     RELIEF_TRY(checkLayout(bytes, description));
     return description;
 }

@@ -53,6 +53,21 @@ std::uint64_t containerSizeMax(const ContainerLimits& limits) {
     return sizeof(ContainerHeader) + kContainerMetadataMax + texel_bytes + limits.maps * kPayloadAlignment;
 }
 
+std::optional<std::string> texelsBeyond(const ContainerLimits& limits, std::uint64_t texel_bytes,
+                                        std::uint64_t file_size) {
+    if (texel_bytes > limits.texel_bytes) {
+        return "with it, the texels take more than the limit of " + std::to_string(limits.texel_bytes) +
+               " bytes";
+    }
+    const std::uint64_t worth = kUnpackedPerStored * std::min(file_size, limits.texel_bytes);
+    if (texel_bytes > std::max(limits.memory, worth)) {
+        return "with it, the texels take " + std::to_string(texel_bytes) + " bytes in memory, " +
+               std::to_string(texel_bytes / std::max<std::uint64_t>(file_size, 1)) +
+               " times the file; if you trust it, allow more with --max-memory";
+    }
+    return std::nullopt;
+}
+
 Result<ParsedMetadata> parseMetadata(std::span<const std::byte> bytes, std::uint32_t maps_max) {
     // Accessors need the alignment that the file has, and that `bytes` need not have.
     const auto aligned = std::make_unique<std::uint64_t[]>(bytes.size() / sizeof(std::uint64_t) + 1);

@@ -4,7 +4,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "formats/base/result.h"
@@ -22,6 +24,10 @@ inline constexpr std::uint64_t kPayloadAlignment = 64;  ///< bytes
 
 /// The longest file that readContainer could take: payloads are never longer than their texels.
 [[nodiscard]] std::uint64_t containerSizeMax(const ContainerLimits& limits);
+
+/// What is wrong with texels of so many bytes in a file of so many; nothing: they may be unpacked.
+[[nodiscard]] std::optional<std::string> texelsBeyond(const ContainerLimits& limits,
+                                                      std::uint64_t texel_bytes, std::uint64_t file_size);
 
 /// One payload in a file, and how to check it.
 struct StoredPayload {

@@ -214,16 +214,14 @@ class Inspector {
             } else if (framed) {
                 texel_bytes = limits_.texel_bytes + 1;
             }
-            if (texel_bytes > limits_.texel_bytes && !limit_passed) {
+            if (const auto beyond = texelsBeyond(limits_, texel_bytes, bytes_.size());
+                beyond && !limit_passed) {
                 limit_passed = true;
-                add(IssueCode::kTexelLimit,
-                    "with it, the texels take more than the limit of " + std::to_string(limits_.texel_bytes) +
-                        " bytes",
-                    {}, index);
+                add(IssueCode::kTexelLimit, *beyond, {}, index);
             }
             if (framed && placed && !limit_passed) {
                 inspectPayload(map, index);
-                map.frame.texels = {};
+                map.frame.texels = std::vector<std::byte>();  // = {} would keep the memory
             }
         }
         // A size that is not the header's has been reported already.

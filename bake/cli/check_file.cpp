@@ -10,10 +10,10 @@
 
 namespace relief {
 
-Result<void> checkFile(const std::string& file, bool json) {
-    const std::vector<std::byte> bytes = RELIEF_TRY(readFile(file, containerSizeMax({})));
+Result<void> checkFile(const std::string& file, bool json, const ContainerLimits& limits) {
+    const std::vector<std::byte> bytes = RELIEF_TRY(readFile(file, containerSizeMax(limits)));
     const std::string quoted = shownInput(file);
-    const Inspection inspection = RELIEF_TRY(inFront(quoted, inspectContainer(bytes)));
+    const Inspection inspection = RELIEF_TRY(inFront(quoted, inspectContainer(bytes, limits)));
     const std::string name = inputName(file);
     const Result<void> printed =
         printOut(json ? inspectionJson(inspection, name) : inspectionText(inspection, name));

@@ -19,6 +19,7 @@
 #include "formats/container.h"
 #include "runtime/tool/command_line.h"
 #include "runtime/tool/json_text.h"
+#include "runtime/tool/memory_option.h"
 #include "runtime/tool/option_values.h"
 
 namespace relief {
@@ -28,6 +29,7 @@ struct CheckCommand {
     CommonOptions common;
     std::string file;
     MeshCheckSettings settings;
+    ContainerLimits limits;
     std::optional<float> max_error;  // percent
     std::string html;
     bool json = false;
@@ -143,10 +145,10 @@ std::string checkText(const CheckCommand& command, const CheckRun& run) {
 Result<void> runCheck(const CheckCommand& command, FileGuard& files) {
     startLogging(command.common);
     if (command.settings.mesh.empty()) {
-        return checkFile(command.file, command.json);
+        return checkFile(command.file, command.json, command.limits);
     }
     RELIEF_TRY(prepare(command, files));
-    Collider collider = RELIEF_TRY(loadCollider(command.file));
+    Collider collider = RELIEF_TRY(loadCollider(command.file, command.limits));
     CheckRun run{RELIEF_TRY(checkAgainstMesh(command.settings, std::move(collider))), {}};
     // What the mesh refers to is known only now.
     for (const std::string& file : run.imported->dependencies) {
@@ -199,6 +201,7 @@ void addCheck(CLI::App& app, Action& action) {
         ->option_text("OUT")
         ->needs(mesh);
     addImportOptions(verb, command->settings.import);
+    addMemoryOption(verb, command->limits);
     verb.add_flag("--json", command->json, "Print JSON");
     verb.callback(
         [command, &action] { action = [command](FileGuard& files) { return runCheck(*command, files); }; });

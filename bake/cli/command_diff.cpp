@@ -7,7 +7,9 @@
 #include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "formats/container.h"
+#include "formats/container_parts.h"
 #include "runtime/tool/command_line.h"
+#include "runtime/tool/memory_option.h"
 #include "runtime/tool/option_values.h"
 
 namespace relief {
@@ -19,6 +21,7 @@ struct DiffCommand {
     CommonOptions common;
     std::string a;
     std::string b;
+    ContainerLimits limits;
     float max_coverage = 0.0F;          // percent
     float max_depth = 0.0F;             // steps
     float max_normal = 0.0F;            // degrees
@@ -34,10 +37,10 @@ struct Loaded {
     Collider collider;
 };
 
-Result<Loaded> load(const std::string& file) {
-    std::vector<std::byte> bytes = RELIEF_TRY(readFile(file));
+Result<Loaded> load(const std::string& file, const ContainerLimits& limits) {
+    std::vector<std::byte> bytes = RELIEF_TRY(readFile(file, containerSizeMax(limits)));
     RELIEF_TRY(refuseMesh(file, bytes));
-    auto collider = RELIEF_TRY(inFront(shownInput(file), readContainer(bytes)));
+    auto collider = RELIEF_TRY(inFront(shownInput(file), readContainer(bytes, limits)));
     return Loaded{std::move(bytes), std::move(collider)};
 }
 
@@ -75,8 +78,8 @@ Result<void> runDiff(const DiffCommand& command) {
     if (command.a == "-" && command.b == "-") {
         return fail(ErrorCode::kUsage, "A and B cannot both be standard input; give one of them a file");
     }
-    const Loaded a = RELIEF_TRY(load(command.a));
-    const Loaded b = RELIEF_TRY(load(command.b));
+    const Loaded a = RELIEF_TRY(load(command.a, command.limits));
+    const Loaded b = RELIEF_TRY(load(command.b, command.limits));
     const ColliderDifference difference = compareColliders(a.collider, b.collider, limits.surface);
     const std::optional<FieldsDifference> fields = fieldsOf(a.collider, b.collider, difference, limits);
     const std::string verdict = diffVerdict(difference, fields, limits);
@@ -141,6 +144,7 @@ void addDiff(CLI::App& app, Action& action) {
         ->transform(number(0.0F, kMost, "a length in object units, 0 or more"));
     verb.add_flag("--strict-metadata", command->strict_metadata,
                   "Mesh, tool and options of the bake count too; otherwise they are only shown");
+    addMemoryOption(verb, command->limits);
     verb.add_flag("--json", command->json, "Print JSON");
     verb.callback([command, &verb, &action] {
         action = [command, &verb](FileGuard&) -> Result<void> {

@@ -11,6 +11,7 @@
 #include "formats/base/file_io.h"
 #include "formats/base/preflight.h"
 #include "formats/container.h"
+#include "runtime/tool/memory_option.h"
 #include "runtime/tool/option_values.h"
 #include "runtime/vdb/vdb_points.h"
 
@@ -21,6 +22,7 @@ struct ExportCommand {
     CommonOptions common;
     std::string file;
     std::string output;
+    ContainerLimits limits;
     std::string gpu;
     std::string vdb;
     std::string mesh;
@@ -110,7 +112,7 @@ Result<void> runExport(const ExportCommand& command, FileGuard& files) {
     }
     RELIEF_TRY(files.writes(command.vdb, "--vdb"));
     RELIEF_TRY(files.writes(command.mesh, "--mesh"));
-    const Collider collider = RELIEF_TRY(loadCollider(command.file));
+    const Collider collider = RELIEF_TRY(loadCollider(command.file, command.limits));
     const std::vector<std::string> maps = mapFileNames(collider);
     const std::vector<std::string> gpu = gpuFileNames(collider);
     if (!command.output.empty()) {
@@ -160,6 +162,7 @@ void addExport(CLI::App& app, Action& action) {
     verb.add_option("--voxels", command->voxels, "Of --vdb and --mesh, along the longest side; default 128")
         ->option_text("N")
         ->transform(wholeNumber(kVoxelsMin, kVoxelsMax));
+    addMemoryOption(verb, command->limits);
     verb.callback(
         [command, &action] { action = [command](FileGuard& files) { return runExport(*command, files); }; });
 }

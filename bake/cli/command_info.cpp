@@ -11,7 +11,9 @@
 #include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
+#include "formats/container_parts.h"
 #include "runtime/tool/command_line.h"
+#include "runtime/tool/memory_option.h"
 
 namespace relief {
 namespace {
@@ -21,6 +23,7 @@ constexpr std::size_t kLineMost = 80;  // characters of options on one line
 struct InfoCommand {
     CommonOptions common;
     std::vector<std::string> files;
+    ContainerLimits limits;
     bool json = false;
 };
 
@@ -86,11 +89,11 @@ struct Shown {
     ContainerInfo info;
 };
 
-Result<Shown> open(const std::string& file) {
-    const std::vector<std::byte> bytes = RELIEF_TRY(readFile(file));
+Result<Shown> open(const std::string& file, const ContainerLimits& limits) {
+    const std::vector<std::byte> bytes = RELIEF_TRY(readFile(file, containerSizeMax(limits)));
     RELIEF_TRY(refuseMesh(file, bytes));
-    Collider collider = RELIEF_TRY(inFront(shownInput(file), readContainer(bytes)));
-    ContainerInfo info = RELIEF_TRY(inFront(shownInput(file), readContainerInfo(bytes)));
+    Collider collider = RELIEF_TRY(inFront(shownInput(file), readContainer(bytes, limits)));
+    ContainerInfo info = RELIEF_TRY(inFront(shownInput(file), readContainerInfo(bytes, limits)));
     return Shown{file, std::move(collider), std::move(info)};
 }
 
@@ -104,7 +107,7 @@ Result<void> runMany(const InfoCommand& command) {
     bool first = true;
     std::optional<Error> failed;
     for (const std::string& file : command.files) {
-        const Result<Shown> shown = open(file);
+        const Result<Shown> shown = open(file, command.limits);
         if (!shown) {
             // The others are shown all the same. The last error is the program's own, with the code of the first.
             const ErrorCode code = failed ? failed->code : shown.error().code;
@@ -132,7 +135,7 @@ Result<void> runInfo(const InfoCommand& command) {
     if (command.files.size() > 1) {
         return runMany(command);
     }
-    const Shown shown = RELIEF_TRY(open(command.files.front()));
+    const Shown shown = RELIEF_TRY(open(command.files.front(), command.limits));
     return printOut(command.json ? colliderJson(shown.collider, shown.info)
                                  : humanReport(shown.collider, shown.info));
 }
@@ -147,6 +150,7 @@ void addInfo(CLI::App& app, Action& action) {
                 "relief info *.relief\n"
                 "relief info bunny.relief --json | jq .maps[0].object_to_map");
     verb.add_option("FILE", command->files, "The colliders; - for standard input")->type_name("")->required();
+    addMemoryOption(verb, command->limits);
     verb.add_flag("--json", command->json,
                   "Print JSON; of several files a line for each, with its name as file");
     verb.callback([command, &action] { action = [command](FileGuard&) { return runInfo(*command); }; });

@@ -13,6 +13,7 @@
 #include "formats/container.h"
 #include "formats/nearest_surface.h"
 #include "runtime/collider/field_query.h"
+#include "runtime/tool/memory_option.h"
 #include "runtime/tool/option_values.h"
 
 namespace relief {
@@ -28,6 +29,7 @@ struct QueryCommand {
     CommonOptions common;
     std::string file;
     std::string points;
+    ContainerLimits limits;
     std::string output;
     DistanceTo distance = DistanceTo::kNearest;
     bool gpu = false;
@@ -87,7 +89,7 @@ Result<void> runQuery(const QueryCommand& command, FileGuard& files) {
     RELIEF_TRY(files.reads(command.file));
     RELIEF_TRY(files.reads(command.points));
     RELIEF_TRY(files.writes(command.output, "-o"));
-    const Collider collider = RELIEF_TRY(loadCollider(command.file));
+    const Collider collider = RELIEF_TRY(loadCollider(command.file, command.limits));
     const std::vector<std::byte> text = RELIEF_TRY(readFile(command.points));
     const std::vector<glm::vec3> points =
         RELIEF_TRY(parsePoints({reinterpret_cast<const char*>(text.data()), text.size()},
@@ -124,6 +126,7 @@ void addQuery(CLI::App& app, Action& action) {
     verb.add_flag("--gpu", command->gpu,
                   "Evaluate with the simulation's shader (OpenGL 3.3; llvmpipe will do)");
     addGpuOptions(verb, command->gpu_options);
+    addMemoryOption(verb, command->limits);
     verb.callback(
         [command, &action] { action = [command](FileGuard& files) { return runQuery(*command, files); }; });
 }

@@ -10,6 +10,7 @@
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "formats/container.h"
+#include "runtime/tool/memory_option.h"
 #include "runtime/tool/option_values.h"
 
 namespace relief {
@@ -26,6 +27,7 @@ struct SliceCommand {
     CommonOptions common;
     std::string file;
     std::string output;
+    ContainerLimits limits;
     Axis axis = Axis::kZ;
     std::optional<Place> place;
     std::uint64_t size = 512;
@@ -77,7 +79,7 @@ Result<void> runSlice(const SliceCommand& command, FileGuard& files) {
     const ImageKind kind = RELIEF_TRY(imageKind(command.output));
     RELIEF_TRY(files.reads(command.file));
     RELIEF_TRY(files.writes(command.output, "-o"));
-    const Collider collider = RELIEF_TRY(loadCollider(command.file));
+    const Collider collider = RELIEF_TRY(loadCollider(command.file, command.limits));
     warnOutside(command, collider);
     const Slice slice = RELIEF_TRY(evaluateSlice(collider, optionsOf(command)));
     const std::vector<std::byte> bytes =
@@ -108,6 +110,7 @@ void addSlice(CLI::App& app, Action& action) {
     verb.add_option("-o,--output", command->output, "OUT.png or OUT.exr; - for a PNG on standard output")
         ->option_text("OUT")
         ->required();
+    addMemoryOption(verb, command->limits);
     verb.callback(
         [command, &action] { action = [command](FileGuard& files) { return runSlice(*command, files); }; });
 }

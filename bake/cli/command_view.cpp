@@ -10,6 +10,7 @@
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "runtime/tool/command_line.h"
+#include "runtime/tool/memory_option.h"
 #include "runtime/tool/option_values.h"
 
 namespace relief {
@@ -103,6 +104,7 @@ void addView(CLI::App& app, Action& action) {
         ->required();
     addMeshCheckOptions(verb, command->source.check);
     addImportOptions(verb, command->source.check.import);
+    addMemoryOption(verb, command->source.limits);
     CLI::Option* output =
         verb.add_option("-o,--output", command->output,
                         "The page; - for standard output; default FILE with .html in place of its extension")

@@ -72,7 +72,8 @@ Result<MadePage> colliderPage(Page page) {
     const ViewSource& source = page.source;
     page.container = RELIEF_TRY(page.read(source.file));
     RELIEF_TRY(refuseMesh(source.file, page.container));
-    Collider collider = RELIEF_TRY(inFront(shownInput(source.file), readContainer(page.container)));
+    Collider collider =
+        RELIEF_TRY(inFront(shownInput(source.file), readContainer(page.container, source.limits)));
     if (source.check.mesh.empty()) {
         return page.make();
     }
@@ -119,7 +120,9 @@ Result<void> chooseShown(const Scene& scene, const fs::path& file, Page& page) {
 Result<MadePage> scenePage(Page page) {
     const fs::path file = page.source.file;
     page.input.scene = textOf(RELIEF_TRY(page.read(file)));
-    const LoadedScene loaded = RELIEF_TRY(loadAll(file, {}));
+    SceneOverrides overrides;
+    overrides.limits = page.source.limits;
+    const LoadedScene loaded = RELIEF_TRY(loadAll(file, overrides));
     RELIEF_TRY(checkPictures(loaded.scene, loaded.bounds));
     if (loaded.scene.flow) {
         return fail(ErrorCode::kUnsupported,

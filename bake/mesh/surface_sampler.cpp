@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include "bake/mesh/inside.h"
+#include "bake/mesh/ray_cost.h"
 #include "bake/mesh/triangle_plane.h"
 
 namespace relief {
@@ -14,6 +15,8 @@ constexpr std::size_t kTrials = 512;
 /// not less than so many. A palm of 40,000 triangles is as wrong with a quarter of them.
 constexpr double kCrossingsMax = 1e7;
 constexpr double kPointsMin = 20'000.0;
+/// Of the points, where rays cost more than those of ordinary meshes.
+constexpr double kShareMin = 0.05;
 /// Rays that inside() asks, about.
 constexpr double kRaysAsked = 4.0;
 /// Points per task.
@@ -85,10 +88,12 @@ std::vector<LabelledPoint> drawNearSurface(const MeshQuery& query, std::size_t c
         count /= 4;
         asked = 1.0;
     }
+    const double share = std::max(affordableRays(mesh), kShareMin);
+    count = static_cast<std::size_t>(share * static_cast<double>(count));
     const double affordable = kCrossingsMax / (kRaysAsked * std::max(crossings * asked, 1.0));
     // Halved until they can be afforded: how often a ray through an edge meets the surface may differ among processors,
     // and moves no point then.
-    while (static_cast<double>(count) > std::max(2.0 * kPointsMin, affordable)) {
+    while (static_cast<double>(count) > std::max(2.0 * share * kPointsMin, affordable)) {
         count /= 2;
     }
     std::vector<LabelledPoint> points(count);

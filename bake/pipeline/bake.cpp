@@ -6,7 +6,9 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
+#include <limits>
 #include <mutex>
 #include <optional>
 #include <span>
@@ -14,6 +16,7 @@
 
 #include "bake/mesh/inside.h"
 #include "bake/mesh/mesh_query.h"
+#include "bake/mesh/ray_cost.h"
 #include "bake/plan/view.h"
 #include "bake/texels/encode.h"
 #include "bake/texels/fitted_map.h"
@@ -22,6 +25,7 @@
 #include "bake/texels/refine.h"
 #include "bake/texels/scan_convert.h"
 #include "formats/base/stopwatch.h"
+#include "formats/base/text.h"
 #include "formats/container.h"
 
 namespace relief {
@@ -409,20 +413,37 @@ class Bake {
             });
         };
         MapReport report{job.spec, 0, job.texels()};
-        DepthMap map = bakeGapMap(query, normals, job.view, fitOptions(*mesh_, job.view, options_), is_known,
-                                  report.covered, rowsDone(job.view));
+        FittedMapOptions options = fitOptions(*mesh_, job.view, options_);
+        options.samples =
+            std::max(1U, static_cast<std::uint32_t>(std::sqrt(affordableRays(*mesh_)) * options.samples));
+        DepthMap map =
+            bakeGapMap(query, normals, job.view, options, is_known, report.covered, rowsDone(job.view));
         add(std::move(map), std::move(report));
     }
 
     [[nodiscard]] Result<void> checkCovered() const {
         const std::vector<MapReport>& maps = baked_.report.maps;
         if (std::all_of(maps.begin(), maps.end(), [](const MapReport& map) { return map.covered == 0; })) {
-            return fail(
-                ErrorCode::kFailure,
-                mesh_->name +
-                    ": no map sees a surface of the mesh; raise the maps' sizes, or change their dir or box");
+            return fail(ErrorCode::kFailure,
+                        mesh_->name + ": no map sees a surface of the mesh" +
+                            (options_.planned_budget > 0
+                                 ? ", whose parts are smaller than a texel of " +
+                                       shortest(static_cast<float>(finestTexel())) + " in a box of " +
+                                       shortest(mesh_->bounds.longestSide()) +
+                                       "; bake parts that lie far apart by themselves, or raise --budget"
+                                 : "; raise the maps' sizes, or change their dir or box"));
         }
         return {};
+    }
+
+    /// Object units.
+    [[nodiscard]] double finestTexel() const {
+        double finest = std::numeric_limits<double>::infinity();
+        for (const Job& job : jobs_) {
+            const glm::dvec3& across = job.view.axis[0];
+            finest = std::min(finest, std::sqrt(dot(across, across)) / job.view.width);
+        }
+        return finest;
     }
 
     Result<void> refine() {

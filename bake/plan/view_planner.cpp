@@ -47,6 +47,10 @@ constexpr std::size_t kFirstStride = 8;
 constexpr std::size_t kBlock = 1024;
 /// Of the area of an outer view, what the gaps along its direction take up: a guess, until one is chosen.
 constexpr double kGapShare = 0.3;
+/// What the rectangles of maps may take beside the budget, which counts what lies between the ends of rows: so many bytes,
+/// or so many budgets.
+constexpr std::uint64_t kRectangleBytes = std::uint64_t{128} << 20;
+constexpr std::uint64_t kRectangleShare = 16;
 /// Texels of a map of gaps across one of an outer view: what is seen by no other map is in much of it.
 constexpr double kGapDetail = 1.4;
 
@@ -487,12 +491,28 @@ Result<ViewChoice> chooseViews(const MeshQuery& query, const ViewOptions& option
     return choice;
 }
 
+namespace {
+
+/// Of all maps, empty ends of rows included: what a bake takes time and memory for. Parts that lie far apart have maps of
+/// little else.
+std::uint64_t rectangleBytes(const Plan& plan) {
+    std::uint64_t bytes = 0;
+    for (const PlannedMap& map : plan.maps) {
+        const std::uint64_t texel = map.spec.format == MapFormat::kCube8 ? 24 : 8;
+        bytes += texel * map.spec.width * map.spec.height;
+    }
+    return bytes;
+}
+
+}  // namespace
+
 std::optional<Plan> sizesWithin(const ViewChoice& choice, std::uint64_t bytes) {
     // Partial texels at the ends of rows take bytes too: shrink until all fit.
     const double least = static_cast<double>(std::max<std::uint64_t>(bytes, 1));
     for (double texel = 0.8 * std::sqrt(choice.area / least);; texel *= 1.002) {
         Plan plan = sizedPlan(choice, texel);
-        if (plan.bytes <= bytes) {
+        if (plan.bytes <= bytes &&
+            rectangleBytes(plan) <= std::max(kRectangleBytes, kRectangleShare * bytes)) {
             return plan;
         }
         const bool smallest = std::all_of(plan.maps.begin(), plan.maps.end(), [](const PlannedMap& map) {

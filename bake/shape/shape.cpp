@@ -14,6 +14,7 @@
 #include "bake/mesh/inside.h"
 #include "bake/mesh/mesh_edges.h"
 #include "bake/mesh/mesh_query.h"
+#include "bake/mesh/ray_cost.h"
 #include "bake/mesh/surface_sampler.h"
 #include "bake/mesh/triangle_plane.h"
 #include "bake/repair/hole_caps.h"
@@ -64,14 +65,15 @@ std::array<double, 2> sightOf(const Sheet& sheet, std::size_t asked, const MeshQ
     MersenneRandom random(1);
     std::array<double, 2> out{};
     const auto rays = static_cast<double>(asked * kParityDirections.size());
-    for (std::size_t k = 0; k < asked && std::min(out[0], out[1]) <= kSheetSight * rays; ++k) {
+    const auto isSheet = [&] { return std::min(out[0], out[1]) > kSheetSight * rays; };
+    for (std::size_t k = 0; k < asked && !isSheet(); ++k) {
         const double at = (static_cast<double>(k) + random.uniform()) / static_cast<double>(asked);
         const auto [on, normal] = drawOnSurface(mesh, areas, at, random);
-        for (std::size_t face = 0; face < 2; ++face) {
-            const glm::dvec3 towards = face == 0 ? normal : -normal;
-            const glm::dvec3 from = on + kSurfaceStep * side * towards;
-            for (const glm::dvec3& way : kParityDirections) {
-                const glm::dvec3 ray = dot(way, towards) < 0.0 ? -way : way;
+        for (auto way = kParityDirections.begin(); way != kParityDirections.end() && !isSheet(); ++way) {
+            for (std::size_t face = 0; face < 2; ++face) {
+                const glm::dvec3 towards = face == 0 ? normal : -normal;
+                const glm::dvec3 from = on + kSurfaceStep * side * towards;
+                const glm::dvec3 ray = dot(*way, towards) < 0.0 ? -*way : *way;
                 out[face] += query.segmentIsFree(from, from + 4.0 * side * ray) ? 1.0 : 0.0;
             }
         }
@@ -282,7 +284,9 @@ class Shaper {
             return {};
         }
         const MeshQuery query = RELIEF_TRY(MeshQuery::build(opaque()));
-        const std::size_t asked = std::max(kSightPointsMin, kSightPoints / unclear.size());
+        const auto least = static_cast<std::size_t>(
+            std::ceil(affordableRays(query.mesh()) * static_cast<double>(kSightPointsMin)));
+        const std::size_t asked = std::max(least, kSightPoints / unclear.size());
         tbb::parallel_for(std::size_t{0}, unclear.size(), [&](std::size_t i) {
             Open& part = *unclear[i];
             const std::array<double, 2> sight = sightOf(part.sheet, asked, query);

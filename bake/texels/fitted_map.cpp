@@ -364,6 +364,7 @@ class MapFitter {
         EndFitter near_fitter;
         EndFitter far_fitter;
         std::array<std::vector<Hit>, 2> hits;  // by RayEnd
+        std::vector<std::uint8_t> busy;  // columns of texels in which or beside which a ray meets something
     };
     [[nodiscard]] EndFitter fitter(RayEnd end) const {
         return {scene_, map_, normals_, view_, fine_rays_, finest_, end, options_};
@@ -373,6 +374,27 @@ class MapFitter {
         view.width *= factor;
         view.height *= factor;
         return view;
+    }
+
+    /// Most texels of parts that lie far apart have nothing to fit: what meets nothing is told by a look at its hits.
+    void findBusy(Worker& worker) const {
+        worker.busy.assign(view_.width, 0);
+        for (const std::vector<Hit>& hits : worker.hits) {
+            for (std::size_t row = 0; row < hits.size(); row += fine_.width) {
+                const Hit* hit = hits.data() + row;
+                for (std::uint32_t x = 0; x < view_.width; ++x) {
+                    bool meets = false;
+                    for (std::uint32_t i = 0; i < options_.samples; ++i) {
+                        meets = meets || !hit[i].empty();
+                    }
+                    hit += options_.samples;
+                    if (meets) {
+                        worker.busy[x] = worker.busy[x > 0 ? x - 1 : 0] = 1;
+                        worker.busy[std::min(x + 1, view_.width - 1)] = 1;
+                    }
+                }
+            }
+        }
     }
 
     /// \return the number of texels with a surface.
@@ -388,11 +410,12 @@ class MapFitter {
         }
         const auto& [near_hits, far_hits] = worker.hits;
         scan_.scan(rays, worker.hits[0], worker.hits[1]);
+        findBusy(worker);
         std::uint64_t covered = 0;
         for (std::uint32_t y = rows.begin; y != rows.end; ++y) {
             for (std::uint32_t x = 0; x < view_.width; ++x) {
                 Texel texel;
-                if (!isBorder(view_, x, y)) {
+                if (worker.busy[x] != 0 && !isBorder(view_, x, y)) {
                     if (view_.keeps(RayEnd::kNear)) {
                         texel.front =
                             worker.near_fitter.fit(rows.face, x, y, rays.begin, near_hits, far_hits);

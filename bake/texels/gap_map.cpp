@@ -30,6 +30,11 @@ constexpr double kCautiousShare = 0.99;
 /// Rows between two calls of the progress function.
 constexpr std::uint32_t kStripeRows = 64;
 
+/// In object units.
+double lengthOf(const LineGap& gap, const glm::dvec3& direction) {
+    return gap.length() * std::sqrt(dot(direction, direction));
+}
+
 /// Fits single texels. Not thread-safe.
 class GapFitter {
   public:
@@ -76,24 +81,29 @@ class GapFitter {
   private:
     /// The gap that counts most.
     [[nodiscard]] std::optional<LineGap> bestGap(const TexelRay& ray) const {
-        std::vector<std::pair<double, LineGap>> rated;
-        for (LineGap gap : query_.gapsAlong(ray.origin, ray.direction)) {
+        std::vector<LineGap> gaps = query_.gapsAlong(ray.origin, ray.direction);
+        for (LineGap& gap : gaps) {
             gap.begin = std::max(gap.begin, 0.0);
             gap.end = std::min(gap.end, 1.0);
-            if (gap.length() > 0.0) {
-                rated.emplace_back(unknownLength(gap, ray.origin, ray.direction, is_known_), gap);
-            }
         }
-        std::ranges::stable_sort(rated, [](const auto& a, const auto& b) { return a.first > b.first; });
-        for (const auto& [counts, gap] : rated) {
-            if (!(counts > shortest_)) {
+        // No gap counts more than its length: the longest first, few are asked about. Of equals the first on the ray.
+        std::ranges::stable_sort(gaps,
+                                 [](const LineGap& a, const LineGap& b) { return a.length() > b.length(); });
+        std::optional<LineGap> best;
+        double most = shortest_;
+        for (const LineGap& gap : gaps) {
+            const double longest = lengthOf(gap, ray.direction);
+            if (!(longest > shortest_) || longest < most) {
                 break;
             }
-            if (!query_.inside(glm::vec3(ray.at(gap.middle())))) {
-                return gap;
+            const double counts = unknownLength(gap, ray.origin, ray.direction, is_known_);
+            const bool better = counts > most || (best && counts == most && gap.begin < best->begin);
+            if (better && !query_.inside(glm::vec3(ray.at(gap.middle())))) {
+                most = counts;
+                best = gap;
             }
         }
-        return std::nullopt;
+        return best;
     }
 
     /// How far the middle of a gap moves in depth for a way across the texel: as the planes at its ends do on average.
@@ -182,7 +192,7 @@ double unknownLength(const LineGap& gap, const glm::dvec3& origin, const glm::dv
         const double at = gap.begin + (i + 0.5) / kParts * gap.length();
         unknown += is_known(glm::vec3(origin + at * direction)) ? 0 : 1;
     }
-    return unknown * gap.length() * std::sqrt(dot(direction, direction)) / kParts;
+    return unknown * lengthOf(gap, direction) / kParts;
 }
 
 DepthMap bakeGapMap(const MeshQuery& query, const TriangleNormals& normals, const View& view,

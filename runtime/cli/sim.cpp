@@ -11,6 +11,7 @@
 #include "runtime/player/scene_check.h"
 #include "runtime/player/simulation.h"
 #include "runtime/tool/command_line.h"
+#include "runtime/tool/memory_option.h"
 #include "runtime/tool/option_values.h"
 
 namespace relief {
@@ -215,6 +216,7 @@ void defineSim(CLI::App& app, SimCommand& command) {
     app.add_option("--root", command.player.overrides.root,
                    "Folder whose files the scene may name too, by ..; default: those of its own folder alone")
         ->option_text("DIR");
+    addMemoryOption(app, command.player.overrides.limits);
     app.add_flag("--check", command.check,
                  "Only check the scene and what it names, without a GPU: one line, or the first mistake");
     addWords(app, "--api", command.gpu.api,

@@ -36,8 +36,8 @@ Result<Scene> openScene(const fs::path& input, const fs::path& root) {
                 quotedPath(input) + " is neither a scene nor a collider; name a .toml or a .relief file");
 }
 
-Result<Collider> openCollider(const SceneCollider& from) {
-    auto collider = loadCollider(from.path);
+Result<Collider> openCollider(const SceneCollider& from, const ContainerLimits& limits) {
+    auto collider = loadCollider(from.path, limits);
     return from.origin.empty() ? std::move(collider)
                                : inFront(from.origin + ": collider.file", std::move(collider));
 }
@@ -92,8 +92,8 @@ Result<LoadedScene> loadAll(const fs::path& input, const SceneOverrides& overrid
         if (from.live) {
             loaded.live.back() = RELIEF_TRY(loadLiveMesh(from));
         }
-        auto collider =
-            RELIEF_TRY(from.live ? Result<Collider>(loaded.live.back()->frames) : openCollider(from));
+        auto collider = RELIEF_TRY(from.live ? Result<Collider>(loaded.live.back()->frames)
+                                             : openCollider(from, overrides.limits));
         const bool posed = from.posed || scene.colliders.size() > 1;
         const Bounds bounds = posed ? worldBounds(from, collider.bounds) : collider.bounds;
         if (!from.origin.empty() && withinLengths(collider.bounds) && !withinLengths(bounds)) {

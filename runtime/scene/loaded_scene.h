@@ -8,6 +8,7 @@
 
 #include "formats/base/result.h"
 #include "formats/collider.h"
+#include "formats/container_limits.h"
 #include "runtime/scene/scene.h"
 #include "runtime/scene/scene_live.h"
 
@@ -24,6 +25,7 @@ struct SceneOverrides {
     std::optional<std::uint32_t> frame_every;
     /// A folder whose files the scene may name beside those of its own; empty: none.
     std::filesystem::path root;
+    ContainerLimits limits;  ///< of each collider
 };
 
 /// A scene and what it names, read and complete.

@@ -88,5 +88,16 @@ TEST(CompareFields, TheOrderSwapsOnlyWhoIsInside) {
     EXPECT_EQ(there, back);
 }
 
+/// Each map is asked about each point: of a thousand maps few points are asked.
+TEST(CompareFields, ManyMapsAreAskedAboutFewerPoints) {
+    Collider many = threeMaps(*makeSphere({0, 0, 0}, 1.0), 1.0, 8);
+    while (many.maps.size() < 128) {
+        many.maps.push_back(many.maps[many.maps.size() % 3]);
+    }
+    EXPECT_EQ(compareFields(many, many, {.points = 160}).box.points, 10U);
+    many.maps.resize(8);
+    EXPECT_EQ(compareFields(many, many, {.points = 160}).box.points, 160U);
+}
+
 }  // namespace
 }  // namespace relief

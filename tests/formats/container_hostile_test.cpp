@@ -15,6 +15,7 @@
 #include "formats/base/hash.h"
 #include "formats/container.h"
 #include "formats/container_header.h"
+#include "formats/inspect.h"
 #include "formats/row_spans.h"
 #include "formats/validate.h"
 #include "tests/formats/sample_colliders.h"
@@ -430,6 +431,38 @@ TEST(Crafted, Limits) {
                       r.maps.push_back(r.maps[0]);
                   }),
                   "map 2: with it, the texels take more than the limit of 2147483648", ErrorCode::kLimit);
+}
+
+/// A file may claim 32768 times its size; a reader that has limits.memory takes 16 times as much, or so many bytes.
+TEST(Crafted, TexelsAreWorthTheirFile) {
+    const auto packed = [](std::uint32_t side) {
+        Recipe recipe;
+        recipe.maps.resize(1);
+        recipe.maps[0].compression = 1;
+        recipe.maps[0].width = recipe.maps[0].height = side;
+        recipe.maps[0].stored = compress(std::vector<std::byte>(std::size_t{4} * side * side));
+        return fileOf(recipe);
+    };
+    const std::vector<std::byte> bomb = packed(1024);  // 4 MiB
+    ASSERT_LT(bomb.size(), 1024U);
+    ContainerLimits limits;
+    EXPECT_TRUE(readContainer(bomb, limits));
+    limits.memory = std::uint64_t{4} << 20;
+    EXPECT_TRUE(readContainer(bomb, limits));
+    EXPECT_FALSE(inspectContainer(bomb, limits)->damaged());
+    --limits.memory;
+    const Result<Collider> refused = readContainer(bomb, limits);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::kLimit);
+    EXPECT_NE(refused.error().message.find("4194304 bytes"), std::string::npos) << refused.error().message;
+    EXPECT_NE(refused.error().message.find("--max-memory"), std::string::npos) << refused.error().message;
+    EXPECT_FALSE(readContainerInfo(bomb, limits));
+    const Result<Inspection> inspection = inspectContainer(bomb, limits);
+    ASSERT_TRUE(inspection);
+    EXPECT_EQ(inspection->errorCode(), ErrorCode::kLimit);
+    // What is not packed is worth its file.
+    limits.memory = 0;
+    EXPECT_TRUE(readContainer(fileOf({}), limits));
 }
 
 TEST(Crafted, ZstdFrames) {

@@ -371,5 +371,33 @@ TEST(ViewPlanner, RefusesABudgetThatIsTooSmall) {
     EXPECT_EQ(plan.error().code, ErrorCode::kUsage);
 }
 
+/// What lies between parts far apart takes no bytes of the budget, but time and memory: it has a limit of its own.
+TEST(PlannedBake, PartsFarApartHaveMapsOfBoundedSize) {
+    const TriangleMesh near = makeBoxMesh({0, 0, 0}, {0.5, 0.5, 0.5});
+    const TriangleMesh far = makeBoxMesh({60'000, 60'000, 60'000}, {0.5, 0.5, 0.5});
+    std::vector<glm::vec3> positions = near.positions;
+    positions.insert(positions.end(), far.positions.begin(), far.positions.end());
+    std::vector<glm::uvec3> triangles = near.triangles;
+    for (const glm::uvec3& t : far.triangles) {
+        triangles.push_back(t + static_cast<std::uint32_t>(near.positions.size()));
+    }
+    const Result<MeshQuery> query = MeshQuery::build(finished(std::move(positions), std::move(triangles)));
+    ASSERT_TRUE(query);
+    const Result<ViewChoice> views = chooseViews(*query, {});
+    ASSERT_TRUE(views) << views.error().message;
+    const auto rectangles = [&](std::uint64_t budget) {
+        const Result<Plan> plan = planSizes(*views, budget);
+        EXPECT_TRUE(plan);
+        std::uint64_t bytes = 0;
+        for (const PlannedMap& map : plan->maps) {
+            bytes += std::uint64_t{map.spec.format == MapFormat::kCube8 ? 24U : 8U} * map.spec.width *
+                     map.spec.height;
+        }
+        return bytes;
+    };
+    EXPECT_LE(rectangles(1'000'000), std::uint64_t{128} << 20);
+    EXPECT_LE(rectangles(16'000'000), std::uint64_t{16} * 16'000'000);
+}
+
 }  // namespace
 }  // namespace relief::test

@@ -2,6 +2,7 @@
 #include "bake/texels/gap_map.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <random>
@@ -100,6 +101,24 @@ TEST(GapMap, KeepsTheGapOfWhichLeastIsKnown) {
     const DepthMap third = gapMap(plates(), "front-back:dir=+z,size=34,compare=gap",
                                   [](const glm::vec3& p) { return p.z < 2.6F; });
     EXPECT_NEAR(vote(third, {0.1F, 0.2F, 2.875F})->distance, 0.125F, 1e-3F);
+}
+
+/// No gap counts more than its length, so that of forty the maps are asked about the longest alone.
+TEST(GapMap, AsksAboutTheLongestGapsFirst) {
+    std::vector<TriangleMesh> stack;
+    double at = 0.0;
+    for (int i = 0; i < 41; ++i) {
+        stack.push_back(makeBoxMesh({0, 0, at}, {20, 20, 0.01}));
+        at += 0.02 + 0.01 * (i % 20 + 1) + (i == 17 ? 1.0 : 0.0);
+    }
+    std::atomic<std::size_t> asked = 0;
+    const DepthMap map =
+        gapMap(joined(stack), "front-back:dir=-z,size=18,compare=gap", [&](const glm::vec3&) {
+            ++asked;
+            return false;
+        });
+    EXPECT_LE(asked, std::size_t{4} * 18 * 18);  // four parts of one gap
+    EXPECT_GT(asked, std::size_t{3} * 16 * 16);
 }
 
 TEST(GapMap, FindsThinGapsAcrossTheLineOfSight) {

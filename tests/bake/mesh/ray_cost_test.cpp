@@ -1,0 +1,42 @@
+// What a ray through a mesh costs, against counts by hand.
+#include "bake/mesh/ray_cost.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+namespace {
+
+TEST(RayCost, OfABoxIsTwoOfItsFacesEachTwice) {
+    // Each face is the box of both of its triangles, and a line crosses two faces.
+    EXPECT_NEAR(boxesOnLine(makeBoxMesh({1, 2, 3}, {1, 2, 3})), 4.0, 1e-6);
+    EXPECT_EQ(affordableRays(makeBoxMesh({0, 0, 0}, {1, 1, 1})), 1.0);
+}
+
+TEST(RayCost, OfAFineBallDoesNotGrowWithItsTriangles) {
+    EXPECT_LT(boxesOnLine(makeIcosphere({0, 0, 0}, 1.0, 5)), 8.0);
+    EXPECT_EQ(affordableRays(makeIcosphere({0, 0, 0}, 1.0, 5)), 1.0);
+}
+
+TEST(RayCost, OfAFanIsMostOfItsTriangles) {
+    constexpr unsigned kBlades = 2000;
+    std::vector<glm::vec3> positions = {{0, 1, 0}};
+    std::vector<glm::uvec3> triangles;
+    for (unsigned i = 0; i < kBlades; ++i) {
+        const double angle = 2.0 * std::numbers::pi * i / kBlades;
+        positions.emplace_back(std::cos(angle), 0.0, std::sin(angle));
+        triangles.emplace_back(0, 1 + i, 1 + (i + 1) % kBlades);
+    }
+    const TriangleMesh fan = finished(std::move(positions), std::move(triangles));
+    const double boxes = boxesOnLine(fan);
+    EXPECT_GT(boxes, 0.1 * kBlades);
+    EXPECT_LT(boxes, 1.0 * kBlades);
+    EXPECT_NEAR(affordableRays(fan) * boxes, 32.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace relief::test

@@ -1,0 +1,163 @@
+#!/usr/bin/env python3
+"""Small inputs that ask for much: containers that claim large maps or hold a thousand tiny ones, meshes of slivers, of walls in
+layers, and of parts far apart. Each must end within tight limits of memory and time, with a result or with a line that names
+the file, and whatever is refused for its size must name the option that allows it."""
+
+import math
+import struct
+
+import containers
+from cases import Cases
+
+SECONDS = 60  # of a machine that others use too
+MEMORY = 1500 << 20
+VERBS = (["info"], ["check"], ["slice", "-o", "slice.png", "--size", "64"], ["export", "-o", "maps"],
+         ["export", "--gpu", "gpu"], ["query", "--points", "points.csv", "-o", "out.csv"])
+
+
+def random_texels(cases, count):
+    r = cases.random
+    return b"".join(struct.pack("<4H", r.randrange(65025), r.randrange(65025), r.randrange(1, 33000),
+                                r.randrange(33000, 65536)) for _ in range(count))
+
+
+def tiny_maps(cases):
+    """Up to the 1024 maps that a file may have."""
+    side = cases.random.randint(3, 6)
+    texels = random_texels(cases, side * side)
+    return containers.container([containers.plain_map(side, side, texels)] * cases.random.choice((100, 700, 1024)))
+
+
+def large_maps(cases):
+    """Maps of up to 2 GiB in a few kilobytes. Returns the bytes, and those of the texels."""
+    form = cases.random.choice((containers.FIXED8, containers.FRONT_BACK))
+    maps, left = [], 2 << 30
+    for _ in range(cases.random.choice((1, 1, 2, 20))):
+        width, height = (2 ** cases.random.randint(9, 14) for _ in range(2))
+        one = containers.empty_map(width, height, form)
+        if one["raw_size"] <= left:
+            left -= one["raw_size"]
+            maps.append(one)
+    maps = maps or [containers.empty_map(512, 512, form)]
+    return containers.container(maps), sum(one["raw_size"] for one in maps)
+
+
+def read_large(cases, folder):
+    data, texels = large_maps(cases)
+    (folder / "a.relief").write_bytes(data)
+    (folder / "points.csv").write_text("0,0,0\n0.3,0.1,-0.2\n")
+    verb = cases.random.choice(VERBS)
+    if cases.random.random() < 0.2:
+        done = cases.run("relief-sim", "a.relief", "--check", cwd=folder, seconds=SECONDS, memory=MEMORY)
+    else:
+        done = cases.run("relief", verb[0], "a.relief", *verb[1:], cwd=folder, seconds=SECONDS, memory=MEMORY)
+    if done is None:
+        return
+    wanted = 0 if texels <= max(160e6, 16 * len(data)) else 6
+    cases.expect(done.returncode == wanted, f"{done.args[1:]} of {texels} bytes of texels: exit code {done.returncode}, "
+                 f"not {wanted}: {done.stderr[-200:]}")
+    if done.returncode == 6:
+        cases.expect("--max-memory" in done.stderr, f"a limit without its option: {done.stderr}")
+
+
+def compare_tiny(cases, folder):
+    for name in ("a", "b"):
+        (folder / f"{name}.relief").write_bytes(tiny_maps(cases))
+    done = cases.run("relief", "diff", "a.relief", "b.relief", cwd=folder, seconds=SECONDS, memory=MEMORY)
+    cases.expect(done is None or done.returncode in (0, 7), "diff of sound files fails")
+
+
+# --- meshes: (positions, faces) ---
+
+
+def box(mesh, at, half):
+    positions, faces = mesh
+    first = len(positions)
+    positions += [tuple(c + (half if k >> i & 1 else -half) for i, c in enumerate(at)) for k in range(8)]
+    faces += [tuple(first + c for c in face)
+              for face in ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))]
+
+
+def boxes_far_apart(cases):
+    mesh = [], []
+    spread = 10 ** cases.random.uniform(2, 9)
+    half = spread * 10 ** cases.random.uniform(-6, -1)
+    for _ in range(cases.random.randint(2, 6)):
+        box(mesh, [cases.random.uniform(-spread, spread) for _ in range(3)], half)
+    return mesh
+
+
+def scattered_triangles(cases):
+    positions, faces = [], []
+    spread = 10 ** cases.random.uniform(0, 9)
+    size = spread * 10 ** cases.random.uniform(-5, -1)
+    for _ in range(12):
+        at = [cases.random.uniform(-spread, spread) for _ in range(3)]
+        faces.append(tuple(range(len(positions), len(positions) + 3)))
+        positions += [tuple(c + cases.random.uniform(-size, size) for c in at) for _ in range(3)]
+    return positions, faces
+
+
+def fan(cases):
+    """Slivers about a point: an umbrella, whole or in blades, or the pages of a book."""
+    count = cases.random.randint(300, 1500)
+    kind = cases.random.choice(("umbrella", "blades", "book"))
+    width = 0.6 if kind == "blades" else 1.0
+    positions, faces = [(0, 1, 0), (0, 0, 0)], []
+    for i in range(count):
+        a, b = (2 * math.pi * (i + s) / count for s in (0, width))
+        positions += [(math.cos(a), 0.1 * math.sin(5 * a), math.sin(a)), (math.cos(b), 0.1 * math.sin(5 * b), math.sin(b))]
+        faces.append((0, 1, 2 * i + 2) if kind == "book" else (0, 2 * i + 2, 2 * i + 3))
+    return positions, faces
+
+
+def cells(cases):
+    """Walls of a block of cells: those inside once, or twice as those of boxes side by side."""
+    n = [cases.random.randint(2, 10) for _ in range(3)]
+    if cases.random.random() < 0.5:
+        mesh = [], []
+        for i in range(n[0]):
+            for j in range(n[1]):
+                for k in range(n[2]):
+                    box(mesh, (i, j, k), 0.5)
+        return mesh
+    positions = [(i, j, k) for i in range(n[0] + 1) for j in range(n[1] + 1) for k in range(n[2] + 1)]
+    index = {p: i for i, p in enumerate(positions)}
+    faces = []
+    for p in positions:
+        for axis in range(3):
+            corners = [tuple(p[i] + (step[0] if i == (axis + 1) % 3 else step[1] if i == (axis + 2) % 3 else 0)
+                             for i in range(3)) for step in ((0, 0), (1, 0), (1, 1), (0, 1))]
+            if all(c in index for c in corners):
+                faces.append(tuple(index[c] for c in corners))
+    return positions, faces
+
+
+def bake(cases, folder):
+    make = cases.random.choice((boxes_far_apart, boxes_far_apart, scattered_triangles, scattered_triangles, fan, cells))
+    positions, faces = make(cases)
+    with open(folder / "a.obj", "w", encoding="ascii") as out:
+        out.writelines("v %.9g %.9g %.9g\n" % p for p in positions)
+        out.writelines("f " + " ".join(str(c + 1) for c in face) + "\n" for face in faces)
+    done = cases.run("relief", "bake", "a.obj", "-o", "a.relief", "--no-check", "-q", cwd=folder, seconds=SECONDS,
+                     memory=MEMORY + (4 << 30))  # the importer's own limit counts as address space
+    if done is None:
+        return
+    if done.returncode == 0:
+        cases.expect((folder / "a.relief").exists(), "exit code 0 without a file")
+        return
+    cases.expect(not (folder / "a.relief").exists(), "an error, and a file")
+    cases.expect(done.returncode in (3, 4, 6) and "a.obj" in done.stderr,
+                 f"{make.__name__}: exit code {done.returncode}: {done.stderr}")
+    for option in ("--map", "dir or box", "--resolution"):
+        cases.expect(option not in done.stderr, f"names what nobody gave: {done.stderr}")
+
+
+def main():
+    cases = Cases("appetite", 60)
+    for _, folder in cases.each():
+        cases.random.choice((read_large, read_large, compare_tiny, bake, bake, bake))(cases, folder)
+    cases.finish()
+
+
+main()
