@@ -145,6 +145,8 @@ test("no tip covers a word, and a tab of a folded panel unfolds it", { timeout: 
                 return at && { text: tip.textContent, whole: at.left >= 0 && at.top >= 0 && at.right <= innerWidth && at.bottom <= innerHeight,
                                covers: [...document.querySelectorAll("#panel *, #title *")].filter((one) => {
                                    const box = one.getBoundingClientRect();
+                                   const seen = one.closest("#sheets")?.getBoundingClientRect(); // the rest is scrolled away
+                                   if (seen && (box.bottom <= seen.top || box.top >= seen.bottom)) return false;
                                    return one.checkVisibility() && one.children.length === 0 && one.textContent.trim() &&
                                        box.left < at.right && box.right > at.left && box.top < at.bottom && box.bottom > at.top;
                                }).map((one) => one.textContent) };
