@@ -131,7 +131,7 @@ test("finer pixels come back where frames are quick, and are tried more and more
 test("no tip covers a word, and a tab of a folded panel unfolds it", { timeout: 300_000 }, async (t) => {
     const { folder, data } = cube(t);
     const open = await viewer(t, folder);
-    for (const viewport of [{ width: 1000, height: 700 }, { width: 700, height: 640 }]) {
+    for (const viewport of [{ width: 800, height: 460 }, { width: 500, height: 560 }]) {
         const { page, close } = await open(data, { viewport });
         await page.evaluate(() => (reliefView.particles.paused = true));
         await page.click("#tab-particles");

@@ -59,6 +59,7 @@ export async function launch(more = []) {
 export async function openPage(browser, url, options = {}) {
     const context = await browser.newContext({ viewport: { width: 1000, height: 700 }, ...options });
     const page = await context.newPage();
+    page.setDefaultTimeout(120_000); // a software renderer on a busy machine
     const said = [];
     page.on("console", (message) => said.push(`${message.type()}: ${message.text()}`));
     page.on("pageerror", (error) => said.push(`error: ${error.message}`));
