@@ -86,6 +86,7 @@ rate = 500.0
     const before = (await places())[1];
     await page.evaluate(() => {
         for (let i = 0; i < 30; ++i) reliefView.particles.step();
+        reliefView.changed(); // a page at rest draws nothing
     });
     await page.waitForFunction((y) => reliefView.view.bodies[1].model[13] > y + 0.2, before[1], { timeout: 60_000 });
     assert.ok(await page.evaluate("reliefView.particles.alive") > 100);

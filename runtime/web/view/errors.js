@@ -47,23 +47,27 @@ export function samplePoints({ vertices, triangles }, count = kPoints) {
 
 const known = (distance, map) => map >= 0 && Math.abs(distance) < 1e29;
 
-/** How deep in their shells sheets lie: half of their thickness, which the record has if there are any; else 0. */
+/**
+ * How deep in their shells sheets lie: half of their thickness, which the record has if there are any; else 0. byPart: that is
+ * a default, of which small parts take less.
+ */
 export function sheetDepth(collider) {
-    return 0.5 * Number(/(?:^| )--thickness ([0-9.e+-]+)/.exec(collider.info.options)?.[1] ?? 0);
+    const [, byPart, thickness] = /(?:^| )--thickness (auto=)?([0-9.e+-]+)/.exec(collider.info.options) ?? [];
+    return { depth: 0.5 * Number(thickness ?? 0), byPart: byPart !== undefined };
 }
 
 /** A distance on the mesh, less that depth where it is nearer to it than to 0. In kHeatFragment too. */
 const offSheet = (d, depth) => (d < -0.5 * depth ? d + depth : d);
 
 /** Points near the mesh that the maps have on the wrong side: { position, normal, map, inside (as the maps have it) }. */
-function wrongPoints(collider, mesh, depth) {
+function wrongPoints(collider, mesh, { depth, byPart }) {
     const { positions, normals } = samplePoints(mesh, kNear);
     const sigma = kSigma * boxOf(meshBounds(mesh.vertices)).longest;
     const next = random(11);
     const near = positions.map((x) => x + sigma * Math.sqrt(-2 * Math.log(1 - next())) * Math.cos(2 * Math.PI * next()));
     const { distance, map } = collider.query(near);
     const shells = /(?:^| )--as shell(?: |$)/.test(collider.info.options);
-    const truth = new MeshTruth(mesh, { depth, shells, reach: 6 * sigma });
+    const truth = new MeshTruth(mesh, { depth, byPart, shells, reach: 6 * sigma });
     const wrong = [];
     for (let i = 0; i < kNear; ++i) {
         const position = [...near.subarray(3 * i, 3 * i + 3)];
@@ -138,13 +142,14 @@ function middleOf(points) {
  */
 export function measure(collider, mesh) {
     const { positions } = samplePoints(mesh);
-    const depth = sheetDepth(collider);
+    const sheets = sheetDepth(collider);
+    const { depth } = sheets;
     const { longest } = boxOf(collider.bounds);
     const { distance: raw, map } = collider.query(positions);
     const errors = [...raw].map((d, i) => (known(d, map[i]) ? Math.abs(offSheet(d, depth)) : -1));
     const valid = errors.filter((e) => e >= 0);
     const mean = valid.reduce((sum, e) => sum + e, 0) / Math.max(valid.length, 1);
-    const wrong = wrongPoints(collider, mesh, depth);
+    const wrong = wrongPoints(collider, mesh, sheets);
     return { range: Math.max(quantile(valid, 0.995), 1e-6 * longest), mean, median: quantile(valid, 0.5),
              p99: quantile(valid, 0.99), depth, unknown: 1 - valid.length / errors.length,
              wrong_percent: 100 * wrong.length / kNear, places: worstPlaces(collider, wrong, kCell * longest) };

@@ -14,8 +14,11 @@ function weld(vertices) {
     });
 }
 
-/** For each triangle whether its part is closed: whether each of the part's edges is gone along as often as back. */
-function closedParts(vertices, triangles) {
+/**
+ * For each triangle whether its part is closed, that is whether each of the part's edges is gone along as often as back;
+ * and the longest side of the part's box.
+ */
+function partsOf(vertices, triangles) {
     const place = weld(vertices);
     const parent = Uint32Array.from(place, (_, i) => i);
     const root = (i) => {
@@ -41,8 +44,27 @@ function closedParts(vertices, triangles) {
             open.add(root(Math.floor(key / 2 ** 26)));
         }
     }
-    return Uint8Array.from({ length: triangles.length / 3 }, (_, t) => (open.has(root(place[triangles[3 * t]])) ? 0 : 1));
+    const boxes = new Map();
+    for (let i = 0; i < place.length; ++i) {
+        const part = root(place[i]);
+        const box = boxes.get(part) ?? { low: [Infinity, Infinity, Infinity], high: [-Infinity, -Infinity, -Infinity] };
+        for (let k = 0; k < 3; ++k) {
+            box.low[k] = Math.min(box.low[k], vertices[3 * i + k]);
+            box.high[k] = Math.max(box.high[k], vertices[3 * i + k]);
+        }
+        boxes.set(part, box);
+    }
+    const sizes = new Map([...boxes].map(([part, box]) => [part, Math.max(...sub(box.high, box.low))]));
+    const partOf = (t) => root(place[triangles[3 * t]]);
+    const count = { length: triangles.length / 3 };
+    return {
+        closed: Uint8Array.from(count, (_, t) => (open.has(partOf(t)) ? 0 : 1)),
+        size: Float64Array.from(count, (_, t) => sizes.get(partOf(t))),
+    };
 }
+
+/** Of a default thickness what a part takes, as bake/shape/thickness.h has it. */
+const partThickness = (thickness, size) => Math.min(Math.max(thickness, 0.004 * size), 0.25 * size);
 
 const kEntriesMax = 4e6; // triangles in cells: some tens of megabytes
 
@@ -132,19 +154,22 @@ function closest(p, a, b, c) {
 export class MeshTruth {
     /**
      * @param depth   of sheets, half of their thickness; 0: open parts are ground
+     * @param byPart  that depth is a default, of which each part takes its own
      * @param shells  closed parts are sheets, too
      * @param reach   how far from the surface points are asked for
      */
-    constructor(mesh, { depth, shells, reach }) {
+    constructor(mesh, { depth, byPart, shells, reach }) {
         this.mesh = mesh;
-        this.depth = depth;
-        const closed = closedParts(mesh.vertices, mesh.triangles);
+        const { closed, size } = partsOf(mesh.vertices, mesh.triangles);
+        this.depths = size.map((one) => (byPart && depth > 0 ? 0.5 * partThickness(2 * depth, one) : depth));
         const all = Array.from(closed.keys());
         const solid = all.filter((t) => closed[t] && !shells);
         const open = all.filter((t) => !closed[t] || shells);
         const fine = Math.min(Math.max(Math.ceil(Math.sqrt(solid.length)), 16), 400);
-        this.rays = solid.length ? [0, 1, 2].map((axis) => new Bins(mesh, solid, [(axis + 1) % 3, (axis + 2) % 3], fine, 0)) : [];
-        this.open = open.length ? new Bins(mesh, open, [0, 1, 2], 64, Math.max(reach, depth)) : null;
+        const columns = (axis) => new Bins(mesh, solid, [(axis + 1) % 3, (axis + 2) % 3], fine, 0);
+        this.rays = solid.length ? [0, 1, 2].map(columns) : [];
+        const reached = open.reduce((most, t) => Math.max(most, this.depths[t]), reach);
+        this.open = open.length ? new Bins(mesh, open, [0, 1, 2], 64, reached) : null;
     }
 
     #corners(t) {
@@ -188,11 +213,14 @@ export class MeshTruth {
             const side = dot(way, scale(normal, 1 / (length(normal) || 1)));
             // Where two triangles are as near, the one that faces the point more squarely knows its side.
             const away = length(way) - 1e-3 * Math.abs(side);
+            if (this.depths[t] > 0 && away < this.depths[t]) {
+                return true;
+            }
             if (away < least) {
                 least = away;
-                behind = side < 0;
+                behind = this.depths[t] === 0 && side < 0;
             }
         }
-        return this.depth > 0 ? least < this.depth : behind;
+        return behind;
     }
 }
