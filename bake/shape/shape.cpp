@@ -468,12 +468,6 @@ class Shaper {
         return {};
     }
 
-    /// Of the shell about a sheet, object units.
-    [[nodiscard]] double thicknessOf(const Sheet& sheet) const {
-        return options_.thickness_by_part ? partThickness(options_.thickness, sizeOf(sheet))
-                                          : options_.thickness;
-    }
-
     static double sizeOf(const Sheet& sheet) {
         Bounds bounds;
         for (const glm::vec3& p : sheet.positions) {
@@ -499,14 +493,15 @@ class Shaper {
     void addSheets() {
         for (const Open& part : open_) {
             if (part.role.kind == Kind::kSheet) {
-                const double thickness = thicknessOf(part.sheet);
+                const double size = sizeOf(part.sheet);
+                const double thickness =
+                    options_.thickness_by_part ? partThickness(options_.thickness, size) : options_.thickness;
+                const double right = options_.thickness_by_part ? rightThickness(thickness, size) : thickness;
                 add(part.sheet, thickened(part.sheet, thickness), PartKind::kSheet);
                 for (const std::uint32_t source : part.sheet.sources) {
                     SurfacePart& piece = collected_.parts()[collected_.partOf()[source]];
                     piece.thickness = thickness;
-                    piece.right_thickness = options_.thickness_by_part
-                                                ? rightThickness(thickness, sizeOf(part.sheet))
-                                                : thickness;
+                    piece.right_thickness = right;
                 }
                 report_.thickness = std::max(report_.thickness, thickness);
                 report_.thickness_least =
