@@ -37,6 +37,7 @@
 #include "formats/base/text.h"
 #include "runtime/tool/command_line.h"
 #include "runtime/tool/json_text.h"
+#include "runtime/tool/memory_option.h"
 
 namespace relief {
 namespace {
@@ -406,6 +407,12 @@ void gatherWarnings(BakeRun& run) {
     }
     for (const std::string& warning : partWarnings(run.parts, mesh.unit)) {
         warnings.insert(warnings.begin(), mesh.name + ": " + warning);
+    }
+    const std::uint64_t in_memory = run.baked.collider.texelBytes();
+    if (!run.bytes.empty() && in_memory > std::max(kToolMemory, kUnpackedPerStored * run.bytes.size())) {
+        warnings.push_back(mesh.name + ": its maps take " + bytesText(in_memory) +
+                           " in memory, for a file of " + bytesText(run.bytes.size()) +
+                           "; other tools read it with --max-memory " + std::to_string(in_memory));
     }
     warnings.insert(warnings.begin(), mesh.warnings.begin(), mesh.warnings.end());
 }

@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 /// A name that recipeJobs() could have made: the cache may be anybody's.
 bool isOutputName(const fs::path& name) {
     if (name.empty() || name.is_absolute() || name != name.lexically_normal() ||
-        !name.native().ends_with(kColliderExtension)) {
+        !name.native().ends_with(kColliderExtension) || name.filename() == kColliderExtension ||
+        name.native().find('\0') != std::string::npos) {
         return false;
     }
     return *name.begin() != "..";

@@ -96,6 +96,11 @@ class Runner {
                 asset.bytes = entry->second.output_bytes;
                 asset.inputs = entry->second.inputs;
                 asset.key = assetKey(tool_, asset.job.options, asset.inputs);
+                if (!run_.dry_run && entry->second.recipe != recipe_name_) {
+                    // It came from another recipe, whose --prune must leave it alone from now on.
+                    fresh_[asset.job.output] = entry->second;
+                    fresh_[asset.job.output].recipe = recipe_name_;
+                }
                 tell(run_.ended, asset);
             } else {
                 asset.reason = *reason;

@@ -1,5 +1,7 @@
 #include "formats/base/text_scanner.h"
 
+#include <algorithm>
+
 #include "formats/base/text.h"
 
 namespace relief {
@@ -99,7 +101,13 @@ std::string_view TextScanner::restOfLine() {
 }
 
 bool TextScanner::nextLine() {
-    static_cast<void>(restOfLine());
+    // A backslash at the end of a comment joins no line.
+    for (bool in_comment = false; at_ != end_ && lineEnd(at_) == 0;) {
+        in_comment = in_comment || (rules_.comment != '\0' && *at_ == rules_.comment);
+        const std::size_t joined = in_comment ? 0 : joint(at_);
+        line_ += joined > 0 ? 1 : 0;
+        at_ += std::max<std::size_t>(joined, 1);
+    }
     at_ += lineEnd(at_);
     ++line_;
     return at_ != end_;

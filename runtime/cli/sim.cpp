@@ -170,6 +170,8 @@ Result<void> playScene(SimCommand& command) {
     player.dump_format = command.dump_format.value_or(named_vdb ? DumpFormat::kVdb : DumpFormat::kPly);
     if (command.json) {
         RELIEF_TRY(player.guard.writes("-", "--json"));
+    } else if (!command.quiet && player.dump != "-" && player.stats != "-" && player.events != "-") {
+        RELIEF_TRY(player.guard.writes("-", "the report"));
     }
     player.api = command.gpu.api;
     player.device = command.gpu.device;

@@ -45,8 +45,8 @@ int main(int argc, char** argv) {
     for (SDL_Event event{}; event.type != SDL_QUIT && frames != 0; --frames) {
         std::vector<relief::Birth> births;
         emitter.emit(1.0 / 60.0, snow.room(), births);
-        snow.spawn(births);
-        snow.step(1.0F / 60.0F);
+        need(snow.spawn(births));
+        need(snow.step(1.0F / 60.0F));
         relief::RenderTarget target{.srgb = true};
         SDL_GL_GetDrawableSize(window, &target.width, &target.height);
         need(body_picture.draw(camera, {}, target));

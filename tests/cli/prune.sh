@@ -49,3 +49,16 @@ sed -E 's/^v (.*) (.*) (.*)$/v \1e3 \2e3 \3e3/' "$models/OBJ/box.obj" >in/large.
 sed -E 's/^v (.*) (.*) (.*)$/v \1e2 \2e2 \3e2/' "$models/OBJ/box.obj" >in/larger.obj
 run
 [ "$(grep -c 'no unit is named' stderr)" -eq 1 ] || die "warnings: $(cat stderr)"
+
+# An asset that moved to another recipe is that one's, although nothing had to be baked.
+mkdir moved
+for mesh in a b; do cp "$models/OBJ/box.obj" moved/$mesh.obj; done
+asset() { printf '[[asset]]\nmesh = "%s.obj"\noutput = "{stem}.relief"\nmap = "cube:size=8"\n' "$1"; }
+moved() { expect 0 "$relief" bake --recipe moved/$1.toml -o moved/out "${@:2}"; }
+{ echo 'version = 1' && asset a && asset b; } >moved/x.toml
+moved x -q
+{ echo 'version = 1' && asset a; } >moved/x.toml
+{ echo 'version = 1' && asset b; } >moved/y.toml
+moved y -q
+moved x --prune
+[ -e moved/out/b.relief ] || die "x.toml removed the collider of y.toml: $(cat stderr)"

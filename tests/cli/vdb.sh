@@ -121,3 +121,6 @@ expect_error 1 'voxels' "$relief" export b.relief --vdb x.vdb --voxels 4
 expect_error 1 'output .* is the input' "$relief" export b.relief --vdb b.relief
 expect_error 2 'folder' "$relief" export b.relief --vdb nowhere/x.vdb
 [ ! -e x.vdb ] || die "a refused export left a file"
+mkdir -p both
+expect_error 1 '--mesh and --gpu would both write' "$relief" export b.relief --mesh both/block.bin --gpu both
+[ -z "$(ls both)" ] || die "a refused export has written something"

@@ -107,7 +107,8 @@ TEST_F(Prune, AHostileCacheReachesNothingElse) {
     for (const std::string& name :
          {std::string("../elsewhere/x.relief"), std::string("sub/../../elsewhere/x.relief"),
           (base_ / "elsewhere/x.relief").string(), std::string("mesh.obj"), std::string(""),
-          std::string(".."), std::string("./mesh.obj")}) {
+          std::string(".."), std::string("./mesh.obj"), std::string("mesh.obj\0.relief", 16),
+          std::string(".relief")}) {
         entries_[name] = entry;
     }
     EXPECT_EQ(prune(), Names{});

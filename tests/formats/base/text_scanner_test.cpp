@@ -41,6 +41,17 @@ TEST(TextScanner, CommentsAndJointsAsTheFormatHasThem) {
     EXPECT_EQ(linesOf("a # b \\\nc"), (std::vector<Words>{{"a"}, {"c"}})) << "a comment is not continued";
 }
 
+TEST(TextScanner, ALineThatIsLeftEarlyEndsWhereItsCommentDoes) {
+    TextScanner scanner("v 0 0 # C:\\tmp\\\nv 1 1 \\\n1\nlast", {'#', true});
+    EXPECT_EQ(scanner.word(), "v");
+    EXPECT_TRUE(scanner.nextLine());
+    EXPECT_EQ(scanner.word(), "v");
+    EXPECT_EQ(scanner.line(), 2U);
+    EXPECT_TRUE(scanner.nextLine());
+    EXPECT_EQ(scanner.word(), "last");
+    EXPECT_EQ(scanner.line(), 4U);
+}
+
 TEST(TextScanner, WordsKnowTheirLine) {
     TextScanner scanner("one \\\ntwo\r\n\rname # of it \nlast", {'#', true});
     EXPECT_EQ(scanner.word(), "one");
