@@ -185,6 +185,9 @@ class ModelReader {
         if (const std::optional<std::string> index = xml_.attribute("p1")) {
             material = Material(xml_.attribute("pid").value_or(material_.first), *index);
         }
+        if (!names_.contains(material.first)) {
+            material = Material();  // a colour, or a place of a texture
+        }
         const auto [found, added] = parts_.emplace(material, object().parts.size());
         if (added) {
             AssemblyPart part;

@@ -38,7 +38,10 @@ class Flattener {
         }
         instances.begin(marks_.any());
         const auto nameOf = [](const std::vector<std::string>& names) {
-            return names.empty() ? std::string() : names.front();
+            // The first is the identifier of what has another name behind it.
+            return names.empty()                           ? std::string()
+                   : names.size() > 1 && !names[1].empty() ? names[1]
+                                                           : names[0];
         };
         std::uint32_t use = 0;
         forEachUse([&](const AssemblyObject& object, const Transform& transform, std::uint8_t above) {
@@ -154,7 +157,7 @@ class Flattener {
     /// Sets positions_ and triangles_ to a part and to those positions that it uses.
     void compact(const std::vector<glm::vec3>& positions, const std::vector<glm::uvec3>& triangles) {
         constexpr std::uint32_t kNone = 0xFFFFFFFF;
-        places_.assign(positions.size(), kNone);
+        places_.resize(std::max(places_.size(), positions.size()), kNone);
         positions_.clear();
         triangles_ = triangles;
         for (glm::uvec3& triangle : triangles_) {
@@ -166,6 +169,10 @@ class Flattener {
                 }
                 triangle[corner] = place;
             }
+        }
+        // Only what was touched: an object may have many parts, or be placed often.
+        for (const glm::uvec3& triangle : triangles) {
+            places_[triangle.x] = places_[triangle.y] = places_[triangle.z] = kNone;
         }
     }
 

@@ -65,11 +65,14 @@ void MeshInstances::surface(SurfaceName name) {
 std::uint32_t MeshInstances::labelOfSurface() {
     std::vector<SurfaceName>& names = mesh_.surface_names;
     if (names.empty() || names[label_] != surface_) {
-        const auto next = static_cast<std::uint32_t>(std::min(names.size(), kSurfaceNamesMax - 1));
-        const auto [found, is_new] = labels_.try_emplace(surface_, next);
-        label_ = found->second;
-        if (is_new && names.size() < kSurfaceNamesMax) {
+        if (const auto found = labels_.find(surface_); found != labels_.end()) {
+            label_ = found->second;
+        } else if (names.size() < kSurfaceNamesMax) {
+            label_ = static_cast<std::uint32_t>(names.size());
             names.push_back(names.size() + 1 < kSurfaceNamesMax ? surface_ : SurfaceName());
+            labels_.emplace(surface_, label_);
+        } else {
+            label_ = kSurfaceNamesMax - 1;
         }
     }
     return label_;

@@ -38,6 +38,9 @@ bool isDent(std::span<const glm::vec3> corners, std::size_t at) {
     return angle(towards(3)) + angle(towards(1)) > kHalfTurn;
 }
 
+/// Larger polygons are not cut by rounded tests, which look at every corner for every ear.
+constexpr std::size_t kRoundedMax = 2000;
+
 }  // namespace
 
 std::span<const glm::uvec3> PolygonCutter::cut(std::span<const glm::vec3> corners) {
@@ -53,6 +56,9 @@ std::span<const glm::uvec3> PolygonCutter::cut(std::span<const glm::vec3> corner
     }
     std::size_t fewest = corners.size() + 1;
     for (const Test test : {Test::kRounded, Test::kInside, Test::kTouching}) {
+        if (test == Test::kRounded && corners.size() > kRoundedMax) {
+            continue;
+        }
         cutEars(test);
         if (const std::size_t wrong = wrongTriangles(corners); wrong < fewest) {
             fewest = wrong;
@@ -122,18 +128,22 @@ void PolygonCutter::cutEars(Test test) {
     reflexes_.clear();
     for (std::uint32_t i = 0; i < count && test != Test::kRounded; ++i) {
         markReflex(i);
-        if (reflex_[i] != 0) {
+        // What is no number lies in no ear, and has no place in an order.
+        if (reflex_[i] != 0 && std::isfinite(points_[i].x) && std::isfinite(points_[i].y)) {
             reflexes_.push_back(i);
         }
     }
+    std::sort(reflexes_.begin(), reflexes_.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return points_[a].x < points_[b].x; });
+    sorted_ = reflexes_.size();
     std::uint32_t corner = 0;
     std::uint32_t tried = 0;
     for (std::uint32_t left = count; left > 3;) {
         bool cuts = isEar(corner, test);
         if (!cuts && ++tried == left) {
             if (test == Test::kRounded) {
-                triangles_.resize(count, glm::uvec3(0));
-                return;  // as good as none
+                triangles_.assign(count, glm::uvec3(0));
+                return;  // as good as none: more are wrong than any other try has
             }
             corner = largestCorner(corner);
             cuts = true;
@@ -164,9 +174,20 @@ bool PolygonCutter::isEar(std::uint32_t corner, Test test) const {
     if (reflex_[corner] != 0) {
         return false;
     }
-    return std::none_of(reflexes_.begin(), reflexes_.end(), [&](std::uint32_t other) {
+    const auto blocks = [&](std::uint32_t other) {
         return reflex_[other] != 0 && holds(corner, points_[other], test);
-    });
+    };
+    const double x[3] = {points_[before_[corner]].x, points_[corner].x, points_[next_[corner]].x};
+    const auto [low, high] = std::minmax({x[0], x[1], x[2]});
+    const auto sorted_end = reflexes_.begin() + static_cast<std::ptrdiff_t>(sorted_);
+    auto other = std::lower_bound(reflexes_.begin(), sorted_end, low,
+                                  [&](std::uint32_t i, double value) { return points_[i].x < value; });
+    for (; other != sorted_end && points_[*other].x <= high; ++other) {
+        if (blocks(*other)) {
+            return false;
+        }
+    }
+    return std::none_of(sorted_end, reflexes_.end(), blocks);
 }
 
 bool PolygonCutter::isRoundedEar(std::uint32_t corner) const {

@@ -49,6 +49,7 @@ class PolygonCutter {
     std::vector<std::uint32_t> next_;
     std::vector<std::uint8_t> reflex_;     // 1: of the corners that are left, one that is not convex
     std::vector<std::uint32_t> reflexes_;  // those that were once
+    std::size_t sorted_ = 0;               // of reflexes_, the first, by their x
     std::vector<glm::uvec3> triangles_;
     std::vector<glm::uvec3> best_;
 };

@@ -39,6 +39,13 @@ std::string lengthText(double value, const std::string& unit) {
     return roundly(value) + (unit.empty() ? "" : " " + unit);
 }
 
+/// At least so many, as --budget reads it: "1.2MB", "320MB".
+std::string megabytes(double bytes) {
+    const auto tenths = static_cast<std::uint64_t>(std::ceil(bytes / 1e5));
+    return tenths < 100 ? std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + "MB"
+                        : std::to_string((tenths + 9) / 10) + "MB";
+}
+
 /// The finest texels that the collider has at the middle of a part; 0 without maps.
 double texelOf(const SurfacePart& part, const Collider& collider) {
     double texel = 0.0;
@@ -61,7 +68,7 @@ std::string cureOf(const SurfacePart& part, const Collider& collider) {
     std::string cure;
     if (part.right_thickness < part.thickness) {
         cure = "its shell is " + lengthText(part.thickness, collider.unit) + " thick; --thickness " +
-               shortest(std::stof(roundly(part.right_thickness)));
+               shortest(parseFloat(roundly(part.right_thickness)).value_or(0.0F));
     }
     const double texel = texelOf(part, collider);
     const double across = part.kind == PartKind::kSheet ? part.right_thickness : middleExtent(part);
@@ -72,8 +79,7 @@ std::string cureOf(const SurfacePart& part, const Collider& collider) {
     const double bytes = static_cast<double>(collider.gpuBytes()) * (texel / needed) * (texel / needed);
     cure += cure.empty() ? "its texels are " + lengthText(texel, collider.unit) + " wide; " : " with ";
     cure += "texels of " + lengthText(needed, collider.unit) + " take ";
-    cure +=
-        bytes <= kBudgetAdvisedMax ? "--budget " + roundly(std::ceil(bytes / 1e5) / 10.0) + "MB, or " : "";
+    cure += bytes <= kBudgetAdvisedMax ? "--budget " + megabytes(bytes) + ", or " : "";
     return cure + (part.node.empty() ? "a bake of this part by itself" : "a bake of its node by itself");
 }
 

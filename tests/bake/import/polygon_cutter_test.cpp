@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <random>
 
 #include "bake/mesh/triangle_plane.h"
@@ -101,6 +102,53 @@ TEST(PolygonCutter, WhatIsNoPolygonStillGetsItsTriangles) {
         for (const glm::uvec3& t : triangles) {
             EXPECT_LT(std::max({t.x, t.y, t.z}), corners.size());
         }
+    }
+}
+
+TEST(PolygonCutter, ACombOfThousandsOfTeethIsCutWhole) {
+    // Its ears were looked for among all corners, for each of all corners: 8,000 took most of a minute.
+    constexpr int kTeeth = 2000;
+    std::vector<glm::vec3> corners;
+    for (int i = 0; i < kTeeth; ++i) {
+        const auto x = static_cast<float>(2 * i);
+        corners.emplace_back(x, 5.0F, 0.0F);
+        corners.emplace_back(x + 1.0F, 0.0F, 0.0F);
+    }
+    corners.emplace_back(2.0F * kTeeth, 5.0F, 0.0F);
+    corners.emplace_back(2.0F * kTeeth, -1.0F, 0.0F);
+    corners.emplace_back(0.0F, -1.0F, 0.0F);
+    PolygonCutter cutter;
+    double area = 0.0;
+    std::size_t count = 0;
+    for (const glm::uvec3& t : cutter.cut(corners)) {
+        const glm::dvec3 normal =
+            glm::cross(glm::dvec3(corners[t.y] - corners[t.x]), glm::dvec3(corners[t.z] - corners[t.x]));
+        EXPECT_LE(normal.z, 0.0) << "turned over";
+        area += 0.5 * std::abs(normal.z);
+        ++count;
+    }
+    EXPECT_EQ(count, corners.size() - 2);
+    // The bar below the teeth, one high, and the triangles between them.
+    double whole = 0.0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const glm::dvec3 a = corners[i];
+        const glm::dvec3 b = corners[(i + 1) % corners.size()];
+        whole += 0.5 * (a.x * b.y - a.y * b.x);
+    }
+    EXPECT_NEAR(area, std::abs(whole), 1e-6 * area);
+}
+
+TEST(PolygonCutter, ACrossingPolygonLosesNothingInSilence) {
+    // A first try that gives up must not win over one that cuts all.
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
+    PolygonCutter cutter;
+    for (int round = 0; round < 3000; ++round) {
+        std::vector<glm::vec3> corners(static_cast<std::size_t>(5 + round % 12));
+        for (glm::vec3& corner : corners) {
+            corner = {unit(random), unit(random), 0.0F};
+        }
+        EXPECT_EQ(cutter.cut(corners).size(), corners.size() - 2) << "round " << round;
     }
 }
 
