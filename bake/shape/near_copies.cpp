@@ -154,8 +154,9 @@ class Places {
     }
 
   private:
+    /// Cells are no smaller than the reach of parts of twice that size, and so hold few that are no copies.
     static glm::dvec3 cellOf(const Solid& solid, int size) {
-        return glm::floor(glm::dvec3(solid.bounds.min) / std::ldexp(1.0, size));
+        return glm::floor(glm::dvec3(solid.bounds.min) / (4.0 * kCopyReach * std::ldexp(1.0, size)));
     }
 
     std::map<std::tuple<int, double, double, double>, std::vector<const Solid*>> solids_;
