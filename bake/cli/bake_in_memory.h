@@ -13,7 +13,7 @@
 
 namespace relief {
 
-/// What a command line says. \param options  its words, without the mesh and the output: "--budget=256kB", "--paper".
+/// The command of a command line. \param options  its words, without the mesh and the output: "--budget=256kB", "--paper".
 /// Errors: kUsage, as `relief bake` has them.
 [[nodiscard]] Result<BakeCommand> bakeCommandOf(std::vector<std::string> options);
 

@@ -259,7 +259,7 @@ Result<void> prepare(BakeRun& run) {
     return {};
 }
 
-/// Makes a solid of what is none.
+/// Turns a non-solid mesh into a solid.
 Result<void> shape(BakeRun& run) {
     const BakeCommand& command = run.command;
     const Bounds& bounds = run.cared.mesh->bounds;

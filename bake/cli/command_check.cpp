@@ -150,7 +150,7 @@ Result<void> runCheck(const CheckCommand& command, FileGuard& files) {
     RELIEF_TRY(prepare(command, files));
     Collider collider = RELIEF_TRY(loadCollider(command.file, command.limits));
     CheckRun run{RELIEF_TRY(checkAgainstMesh(command.settings, std::move(collider))), {}};
-    // What the mesh refers to is known only now.
+    // The files that the mesh refers to are known only now.
     for (const std::string& file : run.imported->dependencies) {
         RELIEF_TRY(files.reads(file));
     }

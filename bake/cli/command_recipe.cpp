@@ -351,7 +351,7 @@ Result<void> writeFiles(const RecipeOptionsOfBake& options, const RecipeCall& ca
     if (call.depfile.empty() && options.stamp.empty()) {
         return {};
     }
-    // What the meshes refer to is known only now.
+    // The files that the meshes refer to are known only now.
     for (const AssetResult& asset : assets) {
         for (const InputFile& input : asset.inputs) {
             RELIEF_TRY(work.files.reads(recipeFolder(options.recipe) / input.path));

@@ -68,7 +68,7 @@ struct MeshCheck {
     [[nodiscard]] double wrongPercent() const { return judged().accuracy.field.near.total(); }
 };
 
-/// What a command line says. \param options  its words, without --mesh: "--samples=1000".
+/// The command of a command line. \param options  its words, without --mesh: "--samples=1000".
 /// Errors: kUsage, as `relief check` has them.
 [[nodiscard]] Result<MeshCheckSettings> meshCheckSettingsOf(std::vector<std::string> options,
                                                             const std::string& mesh);

@@ -34,7 +34,7 @@ Result<std::string> partOf(const ZipArchive& archive, std::string_view path) {
 /// An object by the model that it is in and its id there.
 using Place = std::pair<std::string, std::string>;
 
-/// What is known once every model is read.
+/// Gathered over all models.
 struct Models {
     AssemblyFile file;
     std::map<Place, std::size_t> objects;

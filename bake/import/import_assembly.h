@@ -38,7 +38,7 @@ struct Assembly {
     std::vector<AssemblyUse> roots;  ///< the scene
 };
 
-/// What a file says.
+/// Everything that a file holds.
 struct AssemblyFile {
     Assembly assembly;
     SourceFrame frame;

@@ -128,7 +128,7 @@ void PolygonCutter::cutEars(Test test) {
     reflexes_.clear();
     for (std::uint32_t i = 0; i < count && test != Test::kRounded; ++i) {
         markReflex(i);
-        // What is no number lies in no ear, and has no place in an order.
+        // A point that is not a number lies in no ear and cannot be sorted.
         if (reflex_[i] != 0 && std::isfinite(points_[i].x) && std::isfinite(points_[i].y)) {
             reflexes_.push_back(i);
         }

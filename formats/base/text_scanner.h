@@ -34,7 +34,7 @@ class TextScanner {
 
     /// Number, from 1, of the line that the last word or rest stands in; before those, of the first.
     [[nodiscard]] std::size_t line() const { return word_line_; }
-    /// What has not been read.
+    /// The text that is left to read.
     [[nodiscard]] std::string_view rest() const;
 
   private:

@@ -460,7 +460,7 @@ TEST(Crafted, TexelsAreWorthTheirFile) {
     const Result<Inspection> inspection = inspectContainer(bomb, limits);
     ASSERT_TRUE(inspection);
     EXPECT_EQ(inspection->errorCode(), ErrorCode::kLimit);
-    // What is not packed is worth its file.
+    // Unpacked texels are worth their file.
     limits.memory = 0;
     EXPECT_TRUE(readContainer(fileOf({}), limits));
 }

@@ -1,4 +1,4 @@
-// What a run writes is none of what it reads, and no two outputs are one file, whatever names and links lead there.
+// No output of a run is one of its inputs or another output, whatever names and links lead there.
 #include "formats/base/file_guard.h"
 
 #include <gtest/gtest.h>

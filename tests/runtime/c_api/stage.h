@@ -192,7 +192,7 @@ class Stage {
 
 enum class Outcome : std::uint8_t { kNothing, kSuccess, kFailure };
 
-// What a call has made goes at once.
+// Objects that a call has made are freed at once.
 inline void release(relief_collider* made) {
     relief_collider_free(made);
 }
