@@ -10,12 +10,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json jsonWrong(const WrongShare& share) {
-    return {{"wrong_percent", share.total()},
-            {"false_inside_percent", share.false_inside},
-            {"false_outside_percent", share.false_outside}};
-}
-
 std::string percentText(double value) {
     return shortNumber(value) + " %";
 }
@@ -26,6 +20,22 @@ std::string shortNumber(double value) {
     char text[32];
     std::snprintf(text, sizeof(text), "%.4g", value);
     return text;
+}
+
+std::string roughly(double value) {
+    char text[32];
+    std::snprintf(text, sizeof(text), value >= 99.5 ? "%.3g" : "%.2g", value);
+    return text;
+}
+
+std::string lengthText(double value, const std::string& unit) {
+    return roughly(value) + (unit.empty() ? "" : " " + unit);
+}
+
+Json jsonWrong(const WrongShare& share) {
+    return {{"wrong_percent", share.total()},
+            {"false_inside_percent", share.false_inside},
+            {"false_outside_percent", share.false_outside}};
 }
 
 Json jsonFieldAccuracy(const FieldAccuracy& accuracy, double longest_side) {

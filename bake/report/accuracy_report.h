@@ -10,6 +10,13 @@ namespace relief {
 
 /// Four significant digits, or "0".
 [[nodiscard]] std::string shortNumber(double value);
+/// Two significant digits, which are enough to choose by; three from 99.5 on.
+[[nodiscard]] std::string roughly(double value);
+/// A length of that many digits: "0.41 m". \param unit  "m", or "" for object units.
+[[nodiscard]] std::string lengthText(double value, const std::string& unit);
+
+/// wrong_percent, false_inside_percent, false_outside_percent.
+[[nodiscard]] nlohmann::ordered_json jsonWrong(const WrongShare& share);
 
 /// near and uniform (wrong, false_inside, false_outside), distance_error (mean, p99, and both in percent of
 /// the longest side), far, unknown, normal_error and no_normal. All shares in percent, angles in degrees.

@@ -29,16 +29,6 @@ constexpr double kBudgetAdvisedMax = 1e9;
 constexpr double kSwallows = 0.25;
 constexpr std::size_t kNameBytesMax = 80;
 
-std::string roundly(double value) {
-    char text[32];
-    std::snprintf(text, sizeof(text), value >= 99.5 ? "%.3g" : "%.2g", value);
-    return text;
-}
-
-std::string lengthText(double value, const std::string& unit) {
-    return roundly(value) + (unit.empty() ? "" : " " + unit);
-}
-
 /// At least so many, as --budget reads it: "1.2MB", "320MB".
 std::string megabytes(double bytes) {
     const auto tenths = static_cast<std::uint64_t>(std::ceil(bytes / 1e5));
@@ -68,7 +58,7 @@ std::string cureOf(const SurfacePart& part, const Collider& collider) {
     std::string cure;
     if (part.right_thickness < part.thickness) {
         cure = "its shell is " + lengthText(part.thickness, collider.unit) + " thick; --thickness " +
-               shortest(parseFloat(roundly(part.right_thickness)).value_or(0.0F));
+               shortest(parseFloat(roughly(part.right_thickness)).value_or(0.0F));
     }
     const double texel = texelOf(part, collider);
     const double across = part.kind == PartKind::kSheet ? part.right_thickness : middleExtent(part);
@@ -102,12 +92,6 @@ std::string ofMeasured(std::uint64_t count, const PartsAccuracy& accuracy, const
            (measured == 1 ? " part" : " parts") + (count == 1 ? " is " : " are ") + what;
 }
 
-Json jsonWrong(const WrongShare& wrong) {
-    return {{"wrong_percent", wrong.total()},
-            {"false_inside_percent", wrong.false_inside},
-            {"false_outside_percent", wrong.false_outside}};
-}
-
 std::string groupsText(const PartsAccuracy& accuracy, bool materials, const std::string& unit) {
     std::string text;
     std::size_t shown = 0;
@@ -118,7 +102,7 @@ std::string groupsText(const PartsAccuracy& accuracy, bool materials, const std:
         ++shown;
         text += "  " + cleanUtf8(group.name, kNameBytesMax) + ", " +
                 lengthText(double{group.bounds.longestSide()}, unit) + " long at " +
-                positionText(group.bounds.center()) + ": " + roundly(group.wrong.total()) + " % wrong, " +
+                positionText(group.bounds.center()) + ": " + roughly(group.wrong.total()) + " % wrong, " +
                 std::to_string(group.lost) + " of " + std::to_string(group.parts) +
                 (group.parts == 1 ? " part" : " parts") + " lost\n";
     }
@@ -141,7 +125,7 @@ std::string verdictText(double wrong_percent, const PartsAccuracy& accuracy) {
         return verdictText(wrong_percent);
     }
     const std::uint64_t lost = accuracy.countOf(PartVerdict::kLost);
-    return roundly(wrong_percent) + " % wrong near the surface, but " +
+    return roughly(wrong_percent) + " % wrong near the surface, but " +
            (lost > 0 ? ofMeasured(lost, accuracy, "lost")
                      : ofMeasured(accuracy.countOf(PartVerdict::kCoarse), accuracy, "coarse")) +
            ": " + grade;
@@ -161,7 +145,7 @@ std::string partText(const PartAccuracy& accuracy, const SurfaceParts& parts, co
     const SurfacePart& part = parts.parts[accuracy.part];
     const std::string cure = cureOf(part, collider);
     return lengthText(part.size(), collider.unit) + " long at " + positionText(part.bounds.center()) + ": " +
-           roundly(accuracy.wrong.total()) + " % of the points near it are on the wrong side, " +
+           roughly(accuracy.wrong.total()) + " % of the points near it are on the wrong side, " +
            sideText(accuracy) + (cure.empty() ? "" : "; " + cure);
 }
 

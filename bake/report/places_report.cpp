@@ -1,7 +1,6 @@
 #include "bake/report/places_report.h"
 
 #include <cmath>
-#include <cstdio>
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
@@ -14,20 +13,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Two digits are enough to choose by.
-std::string roughly(double value) {
-    char text[32];
-    std::snprintf(text, sizeof(text), value >= 99.5 ? "%.3g" : "%.2g", value);
-    return text;
-}
-
 std::string percentText(double value) {
     return roughly(value) + " %";
-}
-
-/// "length unit"
-std::string length(double value, const std::string& unit) {
-    return roughly(value) + (unit.empty() ? "" : " " + unit);
 }
 
 std::string sideText(double inside_percent) {
@@ -53,7 +40,7 @@ std::string positionText(const glm::vec3& p) {
 }
 
 std::string placeText(const WorstPlace& place, const std::string& unit) {
-    return length(place.size(), unit) + " across: " + percentText(place.share_percent) +
+    return lengthText(place.size(), unit) + " across: " + percentText(place.share_percent) +
            " of the wrong points, " + sideText(place.inside_percent);
 }
 
@@ -79,7 +66,7 @@ std::string mapWords(const Collider& collider, int map) {
 std::string causeText(const WorstPlace& place, const Collider& collider) {
     const std::string map = mapWords(collider, place.map);
     const std::string decides = place.map < 0 ? "no map votes" : map + " decides";
-    const std::string texels = "texels are " + length(place.texel, collider.unit) + " wide";
+    const std::string texels = "texels are " + lengthText(place.texel, collider.unit) + " wide";
     switch (place.cause) {
         case WrongCause::kSheet:
             return "a sheet: the surface has no inside there; " + decides;
