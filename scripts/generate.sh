@@ -1,0 +1,5 @@
+#!/usr/bin/env bash
+# Writes anew all files that are derived from the fields() of bakes, scenes and reports (formats/fields), and names them.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+"$(scripts/build.sh release relief-generate)/relief-generate" .

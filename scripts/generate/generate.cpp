@@ -1,0 +1,79 @@
+// relief-generate ROOT [--check]: writes the files and parts of files that are derived from fields(), or names the stale ones.
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include "formats/base/file_io.h"
+#include "formats/fields/generated.h"
+
+namespace relief {
+namespace {
+
+namespace fs = std::filesystem;
+
+Result<std::string> readText(const fs::path& path) {
+    const std::vector<std::byte> bytes = RELIEF_TRY(readFile(path));
+    return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+}
+
+/// All that is derived. Each library that declares fields has a function of its own.
+GeneratedTexts all() {
+    GeneratedTexts texts;
+    for (GeneratedTexts (*const of)() : std::initializer_list<GeneratedTexts (*)()>{}) {
+        for (GeneratedText& text : of()) {
+            texts.push_back(std::move(text));
+        }
+    }
+    return texts;
+}
+
+/// The file with its part exchanged: the lines between the two that hold the markers.
+Result<std::string> withPart(const GeneratedText& generated, const std::string& file) {
+    const std::size_t head = file.find("generated: " + generated.part + " ");
+    const std::size_t foot = file.find("end of " + generated.part + " ");
+    if (head == std::string::npos || foot == std::string::npos || foot < head) {
+        return fail(ErrorCode::kInvalidInput, generated.path + " lacks the markers 'generated: " +
+                                                  generated.part + "' and 'end of " + generated.part + "'");
+    }
+    const std::size_t begin = file.find('\n', head) + 1;
+    const std::size_t end = file.rfind('\n', foot) + 1;
+    return file.substr(0, begin) + generated.text + file.substr(end);
+}
+
+Result<int> generate(const fs::path& root, bool check) {
+    int stale = 0;
+    for (const GeneratedText& generated : all()) {
+        const fs::path path = root / generated.path;
+        const std::string old = fs::exists(path) ? RELIEF_TRY(readText(path)) : std::string();
+        const std::string text =
+            generated.part.empty() ? generated.text : RELIEF_TRY(withPart(generated, old));
+        if (text == old) {
+            continue;
+        }
+        ++stale;
+        if (check) {
+            std::fprintf(stderr, "%s is stale; run scripts/generate.sh\n", generated.path.c_str());
+        } else {
+            RELIEF_TRY(writeFile(path, std::as_bytes(std::span(text))));
+            std::printf("%s\n", generated.path.c_str());
+        }
+    }
+    return stale;
+}
+
+}  // namespace
+}  // namespace relief
+
+int main(int argc, char** argv) {
+    const bool check = argc == 3 && std::string_view(argv[2]) == "--check";
+    if (argc != 2 && !check) {
+        std::fputs("usage: relief-generate ROOT [--check]\n", stderr);
+        return 1;
+    }
+    const relief::Result<int> stale = relief::generate(argv[1], check);
+    if (!stale) {
+        std::fprintf(stderr, "relief-generate: %s\n", stale.error().message.c_str());
+        return 4;
+    }
+    return check && *stale > 0 ? 7 : 0;
+}
