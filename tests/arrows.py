@@ -93,6 +93,18 @@ def web_faults(source):
     return faults if files >= 50 else [f'runtime/web/CMakeLists.txt: only {files} files of web_sources() were found']
 
 
+def table_faults(source, uses):
+    """The table of CONTRIBUTING.md has every folder that holds files, two levels deep, and every arrow."""
+    rows = dict(re.findall(r'^\| `([^`]+)` \|[^|]+\|([^|]*)\|$', (source / 'CONTRIBUTING.md').read_text(), re.MULTILINE))
+    faults = [f'CONTRIBUTING.md: the row of {folder} shall list {" ".join(used) or "nothing"}'
+              for folder, used in uses.items() if re.findall('`([^`]+)`', rows.get(folder, '`no row`')) != used]
+    tracked = [path for top in ('formats', 'shaders', 'runtime', 'bake', 'samples', 'scripts') for path in (source / top).rglob('*')
+               if path.is_file() and '__pycache__' not in path.parts and 'node_modules' not in path.parts]
+    folders = {'/'.join(path.relative_to(source).parts[:-1][:2]) for path in tracked}
+    faults += [f'CONTRIBUTING.md: {folder} has no row' for folder in sorted(folders - set(rows))]
+    return faults + [f'CONTRIBUTING.md: there is no {folder}' for folder in rows if not (source / folder).is_dir()]
+
+
 def main(source, folders_file):
     source = pathlib.Path(source)
     uses = {}
@@ -128,7 +140,7 @@ def main(source, folders_file):
             if stem != other:
                 graph.setdefault(stem, set()).add(other)
     faults += ['a circle: ' + ', '.join(group) for group in circles(graph)]
-    faults += web_faults(source)
+    faults += web_faults(source) + table_faults(source, uses)
     print('\n'.join(faults) if faults else f'{files} files in {len(uses)} folders, no arrow runs back')
     return 1 if faults or files < 100 else 0
 

@@ -39,7 +39,7 @@ namespace relief {
 /// Errors: kIo, with the system's words.
 [[nodiscard]] Result<void> writeFile(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
-/// A path for a message: in single quotes, control characters as \xNN so that the message stays one line.
+/// A path for a message: in single quotes, control characters as hexadecimal escapes so that the message stays one line.
 [[nodiscard]] std::string quotedPath(const std::filesystem::path& path);
 
 }  // namespace relief

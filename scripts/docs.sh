@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# Builds the reference of the public headers and of the Python package, with the guides as its pages:
+# scripts/docs.sh [FOLDER] (default out/docs). Fails on any warning of Doxygen and on any link that leads nowhere.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+out=$(realpath -m "${1:-out/docs}")
+
+scripts/setup.sh
+rm -rf "$out"
+mkdir -p "$out"
+{
+    cat scripts/docs/Doxyfile
+    echo "OUTPUT_DIRECTORY = $out"
+    echo "PROJECT_NUMBER = $(sed -n 's/^project(Relief VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)"
+} | doxygen -
+python3 scripts/docs/links.py "$out/html"
+echo "$out/html/index.html"

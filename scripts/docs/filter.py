@@ -1,0 +1,53 @@
+#!/usr/bin/env python3
+"""filter.py FILE: a guide or a header as Doxygen takes it.
+
+Titles of guides get the path as their id, links between guides become references, and other links (to sources, to folders
+without a guide) become plain text. The comment at the head of a header becomes the file's."""
+import os
+import pathlib
+import re
+import sys
+
+
+def page_id(path):
+    return 'mainpage' if path == 'README.md' else 'page_' + re.sub(r'\W', '_', path)
+
+
+def header(text):
+    if text.startswith('/*'):  # C: each comment documents what follows it, or what stands before it on its line
+        text = re.sub(r'^(.*[;,{].*?)/\* ', r'\1/**< ', text, flags=re.M)
+        text = re.sub(r'^( *)/\* (?!---)', r'\1/** ', text, flags=re.M)
+        return text.replace('#version', '\\#version').replace('/** ', '/** @file\n * ', 1)
+    head = re.match(r'(//[^\n]*\n)+', text)
+    if not head:
+        return text
+    return '/// @file\n' + re.sub(r'^//', '///', head[0], flags=re.M).replace('#', '\\#') + text[head.end():]
+
+
+def guide(page, text):
+    text = re.sub(r'^# (.*)$', lambda found: f'# {found[1].replace("`", "")} {{#{page_id(page)}}}', text, count=1, flags=re.M)
+
+    # Doxygen takes <word> for HTML in code too.
+    text = re.sub(r'`[^`\n]*`', lambda code: code[0].replace('<', '\\<') if re.search(r'<[a-z]+>', code[0]) else code[0], text)
+
+    def link(found):
+        words, target = found[1], found[2]
+        if re.match(r'[a-z]+:', target):
+            return found[0]
+        there = os.path.normpath(os.path.join(os.path.dirname(page), target.partition('#')[0])) if target[0] != '#' else page
+        if os.path.isdir(there):
+            there = os.path.join(there, 'README.md')
+        if not os.path.isfile(there) or not there.endswith('.md'):
+            return words
+        return f'[{words.replace("`", "")}](@ref {page_id(there)})'
+
+    # Doxygen finds pictures by their names alone (IMAGE_PATH); one that is a link stays a picture.
+    text = re.sub(r'\[(!\[[^\]]*\]\([^)]*\))\]\([^)]*\)', r'\1', text)
+    text = re.sub(r'(!\[[^\]]*\]\()[^)\s]*/', r'\1', text)
+    text = re.sub(r'(?<!!)\[([^\]]+)\]\(([^)\s]+)\)', link, text)
+    return text
+
+
+path = os.path.relpath(sys.argv[1])
+text = pathlib.Path(path).read_text()
+sys.stdout.write(guide(path, text) if path.endswith('.md') else header(text))
