@@ -1,4 +1,4 @@
-"""bench_compare.py and bench_growth.py, on figures made up here: bench.py SOURCE_DIR"""
+"""scripts/bench.py, on figures made up here: bench.py SOURCE_DIR"""
 import json
 import os
 import random
@@ -9,8 +9,7 @@ import unittest
 
 SOURCE = sys.argv.pop(1)
 sys.path.insert(0, os.path.join(SOURCE, "scripts"))
-import bench_compare  # noqa: E402
-import bench_growth  # noqa: E402
+import bench  # noqa: E402
 
 
 def rounds(seed, median, noise, count=9):
@@ -30,7 +29,7 @@ class Compare(unittest.TestCase):
         return path
 
     def run_on(self, old, new):
-        return subprocess.run([sys.executable, os.path.join(SOURCE, "scripts", "bench_compare.py"), old, new],
+        return subprocess.run([sys.executable, os.path.join(SOURCE, "scripts", "bench.py"), "--compare", old, new],
                               capture_output=True, text=True, check=False)
 
     def compare(self, old, new):
@@ -88,10 +87,10 @@ class Compare(unittest.TestCase):
 
     def test_chance_is_that_of_the_tables(self):
         # Mann and Whitney 1947: of 8 and 8 rounds U may be 13 at most for a one-sided 2.5 %, of 5 and 5 it may be 2.
-        self.assertAlmostEqual(bench_compare.chance([1, 2, 3], [4, 5, 6]), 1 / 20)
+        self.assertAlmostEqual(bench.chance([1, 2, 3], [4, 5, 6]), 1 / 20)
         for count, most in ((8, 13), (5, 2)):
-            below = lambda u: sum(bench_compare.ways(count, count, k) for k in range(u + 1)) / sum(
-                bench_compare.ways(count, count, k) for k in range(count * count + 1))
+            below = lambda u: sum(bench.ways(count, count, k) for k in range(u + 1)) / sum(
+                bench.ways(count, count, k) for k in range(count * count + 1))
             self.assertLessEqual(below(most), 0.025)
             self.assertGreater(below(most + 1), 0.025)
 
@@ -100,31 +99,20 @@ class Growth(unittest.TestCase):
     def test_the_exponent_is_that_of_a_power(self):
         for power in (0.5, 1.0, 1.7):
             points = [(float(x), 3.0 * x ** power) for x in (10, 100, 1000, 10000)]
-            self.assertAlmostEqual(bench_growth.exponent(points), power)
+            self.assertAlmostEqual(bench.exponent(points), power)
 
     def test_the_exponent_is_of_the_upper_half(self):
         # What a start costs hides the growth of small ones.
         points = [(float(2 ** k), 5.0 + 2.0 ** k) for k in range(0, 25)]
-        self.assertAlmostEqual(bench_growth.exponent(points), 1.0, delta=0.02)
+        self.assertAlmostEqual(bench.exponent(points), 1.0, delta=0.02)
 
     def test_one_point_has_none(self):
-        self.assertIsNone(bench_growth.exponent([(1.0, 1.0)]))
-
-    def test_rows_come_back_as_they_were_written(self):
-        rows = [bench_growth.Row("triangles", "bake", 1000.0, 0.25, "here, on a machine")]
-        with tempfile.TemporaryDirectory() as folder:
-            path = os.path.join(folder, "growth.csv")
-            bench_growth.write_rows(path, rows)
-            self.assertEqual(bench_growth.read_rows(path), rows)
-            with open(path, "a", encoding="utf-8") as file:
-                file.write("triangles,bake,0,1,here\n")
-            with self.assertRaisesRegex(SystemExit, "line 3"):
-                bench_growth.read_rows(path)
+        self.assertIsNone(bench.exponent([(1.0, 1.0)]))
 
     def test_the_terrain_has_the_triangles_asked_for(self):
         with tempfile.TemporaryDirectory() as folder:
             for wanted in (1000, 100000):
-                made = bench_growth.write_solid(os.path.join(folder, "mesh.ply"), wanted)
+                made = bench.write_solid(os.path.join(folder, "mesh.ply"), wanted)
                 self.assertAlmostEqual(made / wanted, 1.0, delta=0.05)
 
 
