@@ -1,4 +1,4 @@
-"""scripts/bench.py, on figures made up here: bench.py SOURCE_DIR"""
+"""scripts/bench.py and scripts/accuracy_table.py, on figures made up here: bench.py SOURCE_DIR"""
 import json
 import os
 import random
@@ -9,6 +9,7 @@ import unittest
 
 SOURCE = sys.argv.pop(1)
 sys.path.insert(0, os.path.join(SOURCE, "scripts"))
+import accuracy_table  # noqa: E402
 import bench  # noqa: E402
 
 
@@ -114,6 +115,55 @@ class Growth(unittest.TestCase):
             for wanted in (1000, 100000):
                 made = bench.write_solid(os.path.join(folder, "mesh.ply"), wanted)
                 self.assertAlmostEqual(made / wanted, 1.0, delta=0.05)
+
+
+def contest(mesh, closed, budget, ours, took=1.0):
+    return {"mesh": mesh, "closed": closed, "budget": budget, "ours/volume": ours, "paper/volume": 2.0 * ours,
+            "ours": {"build_seconds": took}}
+
+
+class Accuracy(unittest.TestCase):
+    def test_the_mean_of_reciprocals_is_one(self):
+        # The arithmetic mean would be 1.75.
+        self.assertAlmostEqual(accuracy_table.geometric_mean([4.0, 0.25, 1.0]), 1.0)
+        self.assertAlmostEqual(accuracy_table.geometric_mean([0.1, 0.1, 0.8]), 0.2)
+        self.assertIsNone(accuracy_table.geometric_mean([]))
+
+    def test_half_a_point_stands_for_none(self):
+        self.assertAlmostEqual(accuracy_table.wrong_ratio(0.5, 2.0, 200000), 0.25)
+        # One point of 200,000 is 0.0005 %.
+        self.assertAlmostEqual(accuracy_table.wrong_ratio(0.0, 0.0005, 200000), 0.5)
+        self.assertAlmostEqual(accuracy_table.wrong_ratio(0.0005, 0.0, 200000), 2.0)
+        self.assertAlmostEqual(accuracy_table.wrong_ratio(0.0, 0.0, 200000), 1.0)
+
+    def test_targets_that_are_met(self):
+        found = [contest("a", True, 250000, 0.1, 9.0), contest("b", True, 250000, 0.225),
+                 contest("a", True, 1000000, 0.2, 2.9), contest("b", False, 1000000, 0.05)]
+        text = accuracy_table.summary_text(found)
+        self.assertIn("0.25 MB, 2 meshes: ours/volume 0.15 (target at most 0.2), paper/volume 0.3; worst b", text)
+        self.assertIn("slowest bake a (2.90 s, target", text)
+        self.assertIn("slowest bake a (9.00 s)\n", text)  # bakes are timed at 1 MB
+        self.assertIn("verdict: every target is met", text)
+
+    def test_an_open_mesh_may_be_above_the_volume_a_closed_one_may_not(self):
+        found = [contest("good", True, 4000000, 0.01), contest("bad", False, 4000000, 1.5)]
+        line, missed = accuracy_table.summary(found, 4000000)
+        self.assertIn("worst bad", line)
+        self.assertEqual(missed, [])
+        found[1]["closed"] = True
+        line, missed = accuracy_table.summary(found, 4000000)
+        self.assertIn("above the volume: bad (1.5)", line)
+        self.assertEqual(missed, ["1 closed above the volume at 4 MB"])
+
+    def test_missed_targets_are_named(self):
+        found = [contest("a", True, 250000, 0.21), contest("a", True, 1000000, 0.21, 3.1)]
+        self.assertEqual(len(accuracy_table.summary(found, 250000)[1]), 1)
+        self.assertEqual(len(accuracy_table.summary(found, 1000000)[1]), 2)
+
+    def test_only_measurements_are_judged(self):
+        found = contest("a", True, 1000000, 0.5)
+        del found["ours/volume"]
+        self.assertIn("verdict: ours was not measured", accuracy_table.summary_text([found]))
 
 
 if __name__ == "__main__":
