@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # Wrong points per byte, on the meshes that bake/measure/README.md writes about: a dense signed distance volume, the
 # paper's maps and ours, at 0.25, 1 and 4 MB; then geometric means, and whether the targets are met. Takes a few
-# minutes. Further arguments go to relief-accuracy: --only bunny,camel --budgets 1MB --methods ours --cache FILE for
-# quick rounds of work on the baker; --details, --markdown, --json.
+# minutes. Further arguments go to relief-accuracy, such as --only bunny,camel --budgets 1MB --methods ours for quick rounds
+# of work on the baker.
 #
 #   scripts/accuracy.sh                  the table
-#   scripts/accuracy.sh --markdown       the same as Markdown
+#   scripts/accuracy.sh --json           all that was measured
 #   scripts/accuracy.sh --page           writes it to bake/measure/accuracy.md, whose figures README.md and bake/measure/README.md cite
 #   scripts/accuracy.sh --corpus         sixty meshes as artists make them (corpus.txt), at 1 MB, one row each; with
 #                                        --all 536 of them; --help has --only, --csv, --steps, --markdown and others
@@ -26,7 +26,7 @@ cd "$(dirname "$0")/.."
 bunny=/usr/share/glmark2/models/bunny.obj
 if [ "${1:-}" = --corpus ]; then
     scripts/setup.sh sweethome3d-furniture
-    bin=$(scripts/build.sh release relief relief-accuracy relief-sim)
+    bin=$(scripts/build.sh release relief relief-accuracy relief-bench)
 else
     scripts/setup.sh
     bin=$(scripts/build.sh release relief-accuracy)
@@ -98,9 +98,13 @@ if [ "${1:-}" = --page ]; then
         echo 'Written by `scripts/accuracy.sh --page`. For each mesh and budget: a dense 16-bit signed distance volume on the'
         echo 'tight box, with exact values and trilinear lookup; the maps of the paper; the maps that `relief bake` plans.'
         echo
-        "$bin/relief-accuracy" "${meshes[@]}" --markdown "$@"
+        "$bin/relief-accuracy" "${meshes[@]}" "$@" | python3 scripts/accuracy_table.py --markdown
     } >"$folder/accuracy.md"
     mv "$folder/accuracy.md" bake/measure/accuracy.md
     exit 0
 fi
-"$bin/relief-accuracy" "${meshes[@]}" "$@"
+if [ "${1:-}" = --json ]; then
+    "$bin/relief-accuracy" "${meshes[@]}" "${@:2}"
+    exit 0
+fi
+"$bin/relief-accuracy" "${meshes[@]}" "$@" | python3 scripts/accuracy_table.py

@@ -3,7 +3,7 @@
 
 corpus.py BIN FOLDER THIRTEEN... -- [OPTION]...
 
-BIN has relief, relief-accuracy and relief-sim; FOLDER is for temporary files, and has CGAL's meshes in data/meshes.
+BIN has relief, relief-accuracy and relief-bench; FOLDER is for temporary files, and has CGAL's meshes in data/meshes.
 One model after another is baked as `relief bake --budget 1MB` bakes it, and what was written is measured against a
 distance volume of as many bytes, with the same truth.
 """
@@ -25,7 +25,7 @@ ASSIMP = '/usr/share/assimp/models'
 COLUMNS = ['model', 'triangles', 'kind', 'volume', 'ours', 'ratio', 'maps', 'bake_s', 'step', 'cpu_s']
 LEAST = 0.01  # percent: what a share of no wrong points counts as in a ratio
 PAPER = ['--map', 'front-back:dir=-z,size=512,depth=half,decode=projected', '--map', 'cube:size=512,decode=projected']
-PARTICLES, STEPS, REPEATS = 65536, 12, 3
+PARTICLES, BLOCKS, REPEATS = 65536, 3, 3
 
 
 def listed():
@@ -89,20 +89,14 @@ def processor_seconds():
     return used.ru_utime + used.ru_stime
 
 
-def step_ratio(bin, folder, bounds):
+def step_ratio(bin, folder):
     """A step against planned maps over one against the paper's two: the least of some runs each, in turns."""
-    low, high = bounds['min'], bounds['max']
-    side = max(h - l for l, h in zip(low, high))
-    for name in 'ours', 'paper':
-        with open(f'{folder}/{name}.toml', 'w', encoding='ascii') as scene:
-            scene.write(f'[collider]\nfile = "{name}.relief"\n[particles]\ncapacity = {PARTICLES}\n[emitter]\n'
-                        f'burst = {PARTICLES}\nrate = 0.0\nbox_min = {low}\nbox_max = {high}\n[forces]\ndrag = 2.5\n'
-                        f'wind = [{0.125 * side}, 0.0, {0.05 * side}]\n')
     least = {'ours': math.inf, 'paper': math.inf}
     for _ in range(REPEATS):
         for name in least:
-            text = checked([f'{bin}/relief-sim', f'{folder}/{name}.toml', '--steps', str(STEPS), '--json', '-q'])
-            least[name] = min(least[name], json.loads(text)['ms_per_step_median'])
+            report = json.loads(checked([f'{bin}/relief-bench', 'step', f'{folder}/{name}.relief', '--only', 'collider',
+                                         '--particles', str(PARTICLES), '--blocks', str(BLOCKS)]))
+            least[name] = min(least[name], *(row['ms'] for row in report['tables'][0]['rows'] if row['name'] == 'collider'))
     return least['ours'] / least['paper']
 
 
@@ -122,9 +116,7 @@ def measure(name, path, bin, folder, options):
                                 '--json', '-q'], refusals=(3, 5, 6)))
     seconds, cpu = time.perf_counter() - start, processor_seconds() - cpu_start
     command = [f'{bin}/relief-accuracy', path, '--budget', '1MB', '--methods', 'volume,ours', '--collider', ours,
-               '--samples', str(options.samples), '--json']
-    if options.cache:
-        command += ['--cache', options.cache]
+               '--samples', str(options.samples)]
     report = json.loads(checked(command))
     mesh = report['meshes'][0]
     wrong = {entry['method']: entry['accuracy']['near']['wrong_percent'] for entry in report['results']}
@@ -135,7 +127,7 @@ def measure(name, path, bin, folder, options):
            'warned': any('wrong near the surface' in warning for warning in baked['warnings'])}
     if options.steps:
         checked([f'{bin}/relief', 'bake', path, '-o', f'{folder}/paper.relief', '-q', *PAPER])
-        row['step'] = f"{step_ratio(bin, folder, baked['bounds']):.2f}"
+        row['step'] = f"{step_ratio(bin, folder):.2f}"
     return row
 
 
@@ -204,7 +196,6 @@ def arguments(words):
     parser.add_argument('--samples', type=int, default=20000, metavar='N', help='points of each kind; default 20000')
     parser.add_argument('--steps', action='store_true', help="also time steps against the paper's maps: slow")
     parser.add_argument('--csv', metavar='FILE', help='write rows to this file, as they come')
-    parser.add_argument('--cache', metavar='FILE', help="keep the volumes' figures in this file, for the next run")
     parser.add_argument('--markdown', action='store_true', help='write bake/measure/accuracy_corpus.md')
     options = parser.parse_args(words)
     if options.markdown and (options.all or options.only):

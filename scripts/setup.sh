@@ -24,10 +24,10 @@ packages=(
     # runtime: libepoxy, and Mesa's llvmpipe for machines without a GPU
     libegl-dev libepoxy-dev libgl-dev libgles-dev libpng-dev libtomlplusplus-dev libegl1 libegl-mesa0 libgl1-mesa-dri
     # tests, benchmarks and the demo
-    assimp-testmodels bsdextrautils doxygen fish glmark2-data groff-base imagemagick libbenchmark-dev libcgal-demo libgtest-dev
+    assimp-testmodels bsdextrautils doxygen glmark2-data groff-base imagemagick libcgal-demo libgtest-dev
     libglew-dev libglfw3-dev libjansson-dev libsdl2-dev libstb-dev make man-db mandoc openexr pybind11-dev python3 python3-dev
     python3-jsonschema python3-matplotlib python3-numpy python3-pip python3-pytest python3-venv
-    qemu-user-static strace xauth xvfb zsh
+    qemu-user-static strace xauth xvfb
     "$@"
 )
 

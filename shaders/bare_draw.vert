@@ -1,4 +1,4 @@
-// The cheapest draw of a mesh into a depth map, for relief-bench-depth-maps to compare with.
+// The cheapest draw of a mesh into a depth map, for `relief-bench depth-maps` to compare with.
 layout(location = 0) in vec3 a_position;
 
 uniform mat4 u_clip;

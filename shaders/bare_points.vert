@@ -1,4 +1,4 @@
-// The cheapest draw of particles as points of the size that their sprites have, for relief-bench-picture to compare with.
+// The cheapest draw of particles as points of the size that their sprites have, for `relief-bench picture` to compare with.
 uniform highp sampler2D u_position;
 uniform mat4 u_clip;
 uniform float u_pixels;  // of a sprite at view distance 1

@@ -1,4 +1,4 @@
-// For relief-bench-step alone: the least that a compute step of two state textures can be.
+// For `relief-bench step` alone: the least that a compute step of two state textures can be.
 layout(local_size_x = RELIEF_STEP_GROUP_WIDTH, local_size_y = RELIEF_STEP_GROUP_HEIGHT) in;
 layout(rgba32f, binding = 0) writeonly uniform highp image2D u_position_out;
 layout(rgba32f, binding = 1) writeonly uniform highp image2D u_velocity_out;

@@ -1,4 +1,4 @@
-// For relief-bench-step alone: the least that a step of two state textures can be.
+// For `relief-bench step` alone: the least that a step of two state textures can be.
 uniform highp sampler2D u_position;
 uniform highp sampler2D u_velocity;
 

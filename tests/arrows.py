@@ -27,7 +27,7 @@ THIRD_PARTIES = {
     'xxhash.h': ['formats/base'],
     'pybind11': ['bake/python'],
     'toml++': ['formats/config'],
-    'CLI': ['runtime/tool', 'runtime/cli', 'bake/cli', 'bake/bench'],
+    'CLI': ['runtime/tool', 'runtime/cli', 'runtime/bench', 'bake/cli', 'bake/bench'],
     'spdlog': ['bake/cli'],
     'nlohmann': ['formats/fields', 'bake/import', 'bake/recipe', 'bake/report', 'bake/view', 'bake/cli', 'bake/bench', 'runtime/tool',
                  'runtime/player', 'runtime/web', 'runtime/bench'],

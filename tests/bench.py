@@ -1,4 +1,4 @@
-"""bench_compare.py and bench_growth.py, on figures made up here: bench.py SOURCE_DIR"""
+"""scripts/bench.py and scripts/accuracy_table.py, on figures made up here: bench.py SOURCE_DIR"""
 import json
 import os
 import random
@@ -9,8 +9,8 @@ import unittest
 
 SOURCE = sys.argv.pop(1)
 sys.path.insert(0, os.path.join(SOURCE, "scripts"))
-import bench_compare  # noqa: E402
-import bench_growth  # noqa: E402
+import accuracy_table  # noqa: E402
+import bench  # noqa: E402
 
 
 def rounds(seed, median, noise, count=9):
@@ -30,7 +30,7 @@ class Compare(unittest.TestCase):
         return path
 
     def run_on(self, old, new):
-        return subprocess.run([sys.executable, os.path.join(SOURCE, "scripts", "bench_compare.py"), old, new],
+        return subprocess.run([sys.executable, os.path.join(SOURCE, "scripts", "bench.py"), "--compare", old, new],
                               capture_output=True, text=True, check=False)
 
     def compare(self, old, new):
@@ -88,10 +88,10 @@ class Compare(unittest.TestCase):
 
     def test_chance_is_that_of_the_tables(self):
         # Mann and Whitney 1947: of 8 and 8 rounds U may be 13 at most for a one-sided 2.5 %, of 5 and 5 it may be 2.
-        self.assertAlmostEqual(bench_compare.chance([1, 2, 3], [4, 5, 6]), 1 / 20)
+        self.assertAlmostEqual(bench.chance([1, 2, 3], [4, 5, 6]), 1 / 20)
         for count, most in ((8, 13), (5, 2)):
-            below = lambda u: sum(bench_compare.ways(count, count, k) for k in range(u + 1)) / sum(
-                bench_compare.ways(count, count, k) for k in range(count * count + 1))
+            below = lambda u: sum(bench.ways(count, count, k) for k in range(u + 1)) / sum(
+                bench.ways(count, count, k) for k in range(count * count + 1))
             self.assertLessEqual(below(most), 0.025)
             self.assertGreater(below(most + 1), 0.025)
 
@@ -100,32 +100,70 @@ class Growth(unittest.TestCase):
     def test_the_exponent_is_that_of_a_power(self):
         for power in (0.5, 1.0, 1.7):
             points = [(float(x), 3.0 * x ** power) for x in (10, 100, 1000, 10000)]
-            self.assertAlmostEqual(bench_growth.exponent(points), power)
+            self.assertAlmostEqual(bench.exponent(points), power)
 
     def test_the_exponent_is_of_the_upper_half(self):
         # What a start costs hides the growth of small ones.
         points = [(float(2 ** k), 5.0 + 2.0 ** k) for k in range(0, 25)]
-        self.assertAlmostEqual(bench_growth.exponent(points), 1.0, delta=0.02)
+        self.assertAlmostEqual(bench.exponent(points), 1.0, delta=0.02)
 
     def test_one_point_has_none(self):
-        self.assertIsNone(bench_growth.exponent([(1.0, 1.0)]))
-
-    def test_rows_come_back_as_they_were_written(self):
-        rows = [bench_growth.Row("triangles", "bake", 1000.0, 0.25, "here, on a machine")]
-        with tempfile.TemporaryDirectory() as folder:
-            path = os.path.join(folder, "growth.csv")
-            bench_growth.write_rows(path, rows)
-            self.assertEqual(bench_growth.read_rows(path), rows)
-            with open(path, "a", encoding="utf-8") as file:
-                file.write("triangles,bake,0,1,here\n")
-            with self.assertRaisesRegex(SystemExit, "line 3"):
-                bench_growth.read_rows(path)
+        self.assertIsNone(bench.exponent([(1.0, 1.0)]))
 
     def test_the_terrain_has_the_triangles_asked_for(self):
         with tempfile.TemporaryDirectory() as folder:
             for wanted in (1000, 100000):
-                made = bench_growth.write_solid(os.path.join(folder, "mesh.ply"), wanted)
+                made = bench.write_solid(os.path.join(folder, "mesh.ply"), wanted)
                 self.assertAlmostEqual(made / wanted, 1.0, delta=0.05)
+
+
+def contest(mesh, closed, budget, ours, took=1.0):
+    return {"mesh": mesh, "closed": closed, "budget": budget, "ours/volume": ours, "paper/volume": 2.0 * ours,
+            "ours": {"build_seconds": took}}
+
+
+class Accuracy(unittest.TestCase):
+    def test_the_mean_of_reciprocals_is_one(self):
+        # The arithmetic mean would be 1.75.
+        self.assertAlmostEqual(accuracy_table.geometric_mean([4.0, 0.25, 1.0]), 1.0)
+        self.assertAlmostEqual(accuracy_table.geometric_mean([0.1, 0.1, 0.8]), 0.2)
+        self.assertIsNone(accuracy_table.geometric_mean([]))
+
+    def test_half_a_point_stands_for_none(self):
+        self.assertAlmostEqual(accuracy_table.wrong_ratio(0.5, 2.0, 200000), 0.25)
+        # One point of 200,000 is 0.0005 %.
+        self.assertAlmostEqual(accuracy_table.wrong_ratio(0.0, 0.0005, 200000), 0.5)
+        self.assertAlmostEqual(accuracy_table.wrong_ratio(0.0005, 0.0, 200000), 2.0)
+        self.assertAlmostEqual(accuracy_table.wrong_ratio(0.0, 0.0, 200000), 1.0)
+
+    def test_targets_that_are_met(self):
+        found = [contest("a", True, 250000, 0.1, 9.0), contest("b", True, 250000, 0.225),
+                 contest("a", True, 1000000, 0.2, 2.9), contest("b", False, 1000000, 0.05)]
+        text = accuracy_table.summary_text(found)
+        self.assertIn("0.25 MB, 2 meshes: ours/volume 0.15 (target at most 0.2), paper/volume 0.3; worst b", text)
+        self.assertIn("slowest bake a (2.90 s, target", text)
+        self.assertIn("slowest bake a (9.00 s)\n", text)  # bakes are timed at 1 MB
+        self.assertIn("verdict: every target is met", text)
+
+    def test_an_open_mesh_may_be_above_the_volume_a_closed_one_may_not(self):
+        found = [contest("good", True, 4000000, 0.01), contest("bad", False, 4000000, 1.5)]
+        line, missed = accuracy_table.summary(found, 4000000)
+        self.assertIn("worst bad", line)
+        self.assertEqual(missed, [])
+        found[1]["closed"] = True
+        line, missed = accuracy_table.summary(found, 4000000)
+        self.assertIn("above the volume: bad (1.5)", line)
+        self.assertEqual(missed, ["1 closed above the volume at 4 MB"])
+
+    def test_missed_targets_are_named(self):
+        found = [contest("a", True, 250000, 0.21), contest("a", True, 1000000, 0.21, 3.1)]
+        self.assertEqual(len(accuracy_table.summary(found, 250000)[1]), 1)
+        self.assertEqual(len(accuracy_table.summary(found, 1000000)[1]), 2)
+
+    def test_only_measurements_are_judged(self):
+        found = contest("a", True, 1000000, 0.5)
+        del found["ours/volume"]
+        self.assertIn("verdict: ours was not measured", accuracy_table.summary_text([found]))
 
 
 if __name__ == "__main__":

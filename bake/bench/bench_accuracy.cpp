@@ -1,5 +1,5 @@
-// relief-accuracy: wrong points per byte of a distance volume, of the paper's maps, and of ours.
-// scripts/accuracy.sh runs it on its list of meshes.
+// relief-accuracy: wrong points per byte of a distance volume, of the paper's maps, and of ours, as JSON.
+// scripts/accuracy.sh runs it on its list of meshes, and makes tables of it.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,6 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "bake/bench/accuracy_summary.h"
-#include "bake/bench/accuracy_table.h"
 #include "bake/bench/distance_volume.h"
 #include "bake/import/mesh_import.h"
 #include "bake/measure/accuracy.h"
@@ -22,11 +20,10 @@
 #include "bake/repair/winding.h"
 #include "bake/report/accuracy_report.h"
 #include "bake/report/points_csv.h"
-#include "bake/report/report.h"
 #include "bake/report/shape_report.h"
 #include "bake/shape/shape.h"
+#include "formats/base/byte_count.h"
 #include "formats/base/file_io.h"
-#include "formats/base/hash.h"
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
 #include "formats/container.h"
@@ -37,7 +34,32 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// --- who takes part ---
+/// One mesh, budget and method.
+struct AccuracyEntry {
+    std::string mesh;
+    bool closed = false;
+    std::uint64_t budget = 0;
+    std::string method;  ///< "volume", "paper" or "ours"
+    std::string what;    ///< lattice or maps
+    std::size_t maps = 0;
+    std::uint64_t bytes = 0;
+    std::optional<double> build_seconds;  ///< of maps: acceleration structure, plan, rays and fit
+    Json accuracy;                        ///< of jsonFieldAccuracy or jsonColliderAccuracy
+};
+
+Json toJson(const AccuracyEntry& entry) {
+    return {{"mesh", entry.mesh},
+            {"closed", entry.closed},
+            {"budget", entry.budget},
+            {"method", entry.method},
+            {"what", entry.what},
+            {"maps", entry.maps},
+            {"bytes", entry.bytes},
+            {"build_seconds", entry.build_seconds ? Json(*entry.build_seconds) : Json()},
+            {"accuracy", entry.accuracy}};
+}
+
+// --- the contestants ---
 
 /// Three front-back maps along the axes on tight boxes, texels as square and as equal in size as whole
 /// numbers allow, as many as fit.
@@ -168,73 +190,6 @@ Result<AccuracyEntry> loadAndMeasure(const MeshQuery& query, const TruthSamples&
     return measureMaps(query, samples, "ours", collider);
 }
 
-/// Measured volumes, kept between runs in a file for those who work on the maps: the volume's figures change
-/// with the key alone, which changes with the truth.
-class Cache {
-  public:
-    explicit Cache(std::string path) : path_(std::move(path)) {
-        if (path_.empty()) {
-            return;
-        }
-        if (const Result<std::vector<std::byte>> bytes = readFile(path_); bytes) {
-            const auto* first = reinterpret_cast<const char*>(bytes->data());
-            json_ = Json::parse(first, first + bytes->size(), nullptr, false);
-        }
-        if (!json_.is_object()) {
-            json_ = Json::object();  // no file yet, or none of ours
-        }
-    }
-
-    /// \param truth  stands for the mesh, the points, and what counts as inside.
-    static std::string key(const TruthSamples& truth, std::uint64_t budget) {
-        static_assert(sizeof(TruthPoint) == 4 * sizeof(float), "no padding, whose bytes could be anything");
-        return "volume " + std::to_string(kDistanceVolumeVersion) + ", " + std::to_string(budget) +
-               " bytes, truth near " + xxh3_128Hex(std::as_bytes(std::span(truth.near))) + ", uniform " +
-               xxh3_128Hex(std::as_bytes(std::span(truth.uniform)));
-    }
-
-    [[nodiscard]] std::optional<AccuracyEntry> find(const std::string& key) const {
-        if (!json_.contains(key)) {
-            return std::nullopt;
-        }
-        try {
-            const Json& json = json_[key];
-            AccuracyEntry entry;
-            entry.method = "volume";
-            entry.what = json.at("what");
-            entry.bytes = json.at("bytes");
-            entry.build_seconds = json.at("build_seconds").get<double>();
-            entry.accuracy = json.at("accuracy");
-            // Everything that the tables read, so that a file of another version is measured again.
-            for (const char* name : {"wrong_percent", "false_inside_percent", "false_outside_percent"}) {
-                (void)entry.number("near", name);
-                (void)entry.number("uniform", name);
-            }
-            (void)entry.number("distance_error", "mean_percent");
-            (void)entry.number("distance_error", "p99_percent");
-            (void)entry.number("normal_error_degrees", "mean");
-            (void)entry.accuracy.at("far_percent").get<double>();
-            (void)entry.accuracy.at("unknown_percent").get<double>();
-            return entry;
-        } catch (const Json::exception&) {
-            return std::nullopt;
-        }
-    }
-
-    [[nodiscard]] Result<void> add(const std::string& key, const AccuracyEntry& entry) {
-        if (path_.empty()) {
-            return {};
-        }
-        json_[key] = toJson(entry);
-        const std::string text = json_.dump(1) + "\n";
-        return writeFile(path_, std::as_bytes(std::span(text)));
-    }
-
-  private:
-    std::string path_;
-    Json json_ = Json::object();
-};
-
 // --- the program ---
 
 struct Arguments {
@@ -245,11 +200,7 @@ struct Arguments {
     std::vector<std::string> methods = {"volume", "paper", "ours"};
     std::vector<std::string> only;  ///< stems of meshes; empty: all
     std::string collider;
-    std::string cache;
     std::string values;
-    bool details = false;
-    bool markdown = false;
-    bool json = false;
 };
 
 /// For the cross-check against other tools: what the volume knows of given points, one line for each:
@@ -294,10 +245,28 @@ Result<std::vector<std::string>> chosenMeshes(const Arguments& arguments) {
     return chosen;
 }
 
-/// What was measured so far.
+Result<std::vector<std::uint64_t>> parseBudgets(const std::vector<std::string>& texts) {
+    std::vector<std::uint64_t> budgets;
+    for (const std::string& text : texts) {
+        const std::optional<std::uint64_t> bytes = parseByteCount(text);
+        if (!bytes) {
+            return fail(ErrorCode::kUsage, "--budgets has '" + cleanUtf8(text) + "'; write 0.25MB,1MB,4MB");
+        }
+        if (std::find(budgets.begin(), budgets.end(), *bytes) != budgets.end()) {
+            return fail(ErrorCode::kUsage,
+                        "--budgets has " + std::to_string(*bytes) + " bytes twice; name each budget once");
+        }
+        budgets.push_back(*bytes);
+    }
+    if (budgets.empty()) {
+        return fail(ErrorCode::kUsage, "--budgets names none; write 0.25MB,1MB,4MB");
+    }
+    return budgets;
+}
+
 struct Measured {
-    std::vector<AccuracyEntry> entries;
     Json meshes = Json::array();
+    Json results = Json::array();  ///< those of one mesh and budget are neighbours
 };
 
 /// What the collider that is to be measured was baked of; without one, what the parts are is found.
@@ -312,7 +281,7 @@ Result<ShapeOptions> recordedShapeOf(const Arguments& arguments) {
 /// Measures one mesh at one budget with all methods.
 /// \param shape  thickness 0: the default for the budget.
 Result<void> measureBudget(const PreparedMesh& imported, const Arguments& arguments, ShapeOptions shape,
-                           std::uint64_t budget, Cache& cache, Measured& measured) {
+                           std::uint64_t budget, Measured& measured) {
     if (!(shape.thickness > 0.0)) {
         shape.thickness = defaultThickness(imported->bounds, budget);
         shape.thickness_by_part = true;
@@ -332,45 +301,19 @@ Result<void> measureBudget(const PreparedMesh& imported, const Arguments& argume
     measured.meshes.push_back(std::move(mesh_report));
     for (const std::string& method : arguments.methods) {
         AccuracyEntry entry;
-        const std::string key = Cache::key(samples, budget);
         if (method == "ours" && !arguments.collider.empty()) {
             entry = RELIEF_TRY(loadAndMeasure(query, samples, arguments.collider));
-        } else if (method != "volume") {
-            entry = RELIEF_TRY(bakeAndMeasure(query, samples, method, budget));
-        } else if (std::optional<AccuracyEntry> known = cache.find(key)) {
-            entry = std::move(*known);
-        } else {
+        } else if (method == "volume") {
             entry = measureVolume(query, samples, budget);
-            RELIEF_TRY(cache.add(key, entry));
+        } else {
+            entry = RELIEF_TRY(bakeAndMeasure(query, samples, method, budget));
         }
         entry.mesh = imported->name;
         entry.closed = shaped.report.solids_with_holes + shaped.report.sheets + shaped.report.terrains == 0;
         entry.budget = budget;
-        measured.entries.push_back(std::move(entry));
+        measured.results.push_back(toJson(entry));
     }
     return {};
-}
-
-std::string resultText(const Measured& measured, const Arguments& arguments,
-                       const std::vector<std::uint64_t>& budgets) {
-    const std::vector<BudgetSummary> summaries =
-        summarize(summaryRows(measured.entries, arguments.samples), budgets);
-    if (!arguments.json) {
-        AccuracyTableOptions options;
-        options.accuracy.samples = arguments.samples;
-        options.accuracy.seed = arguments.seed;
-        options.details = arguments.details;
-        options.markdown = arguments.markdown;
-        return accuracyTable(measured.entries, summaries, options);
-    }
-    Json json = {{"meshes", measured.meshes}, {"results", Json::array()}, {"summaries", Json::array()}};
-    for (const AccuracyEntry& entry : measured.entries) {
-        json["results"].push_back(toJson(entry));
-    }
-    for (const BudgetSummary& summary : summaries) {
-        json["summaries"].push_back(toJson(summary));
-    }
-    return jsonText(json);
 }
 
 Result<void> run(const Arguments& arguments) {
@@ -382,7 +325,6 @@ Result<void> run(const Arguments& arguments) {
     const ShapeOptions shape = RELIEF_TRY(recordedShapeOf(arguments));
     ImportOptions import;
     import.names = shape.names();
-    Cache cache(arguments.cache);
     Measured measured;
     for (const std::string& path : paths) {
         const Stopwatch watch;
@@ -393,11 +335,11 @@ Result<void> run(const Arguments& arguments) {
         }
         const auto winding = RELIEF_TRY(windOutwards(std::move(mesh)));
         for (const std::uint64_t budget : budgets) {
-            RELIEF_TRY(measureBudget(winding.mesh, arguments, shape, budget, cache, measured));
+            RELIEF_TRY(measureBudget(winding.mesh, arguments, shape, budget, measured));
         }
         std::fprintf(stderr, "%s: %.1f s\n", winding.mesh->name.c_str(), watch.seconds());
     }
-    const std::string text = resultText(measured, arguments, budgets);
+    const std::string text = jsonText({{"meshes", measured.meshes}, {"results", measured.results}});
     return writeFile("-", std::as_bytes(std::span(text)));
 }
 
@@ -428,13 +370,8 @@ int main(int argc, char** argv) {
     app.add_option(
         "--collider", arguments.collider,
         "Measure this file of `relief bake` as ours, and bake nothing; for one mesh and one budget");
-    app.add_option("--cache", arguments.cache, "Keep the volume's figures in this file (for development)");
     app.add_option("--values", arguments.values,
                    "Only print x,y,z, exact distance, volume's distance for the points of this CSV file");
-    app.add_flag("--details", arguments.details,
-                 "One line for each method, with normals, unseen surface and what was built");
-    app.add_flag("--markdown", arguments.markdown, "Print tables for a README");
-    app.add_flag("--json", arguments.json, "Print JSON");
     CLI11_PARSE(app, argc, argv);
     try {
         const Result<void> done = run(arguments);

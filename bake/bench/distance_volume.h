@@ -25,9 +25,6 @@
 
 namespace relief {
 
-/// Raise whenever the volume's values or its lookup change: measured figures are cached under it.
-inline constexpr int kDistanceVolumeVersion = 2;
-
 /// Where the lattice lies if the sides of the box are not whole numbers of voxels.
 enum class LatticeFit : std::uint8_t {
     kCentered,   ///< cubes, evenly beyond the box on both sides

@@ -8,8 +8,7 @@ cmake --install "$build" --prefix "$prefix" >log || die "cannot install: $(tail 
 export CMAKE_PREFIX_PATH=$prefix
 
 for file in bin/relief bin/relief-sim share/man/man1/relief.1 share/man/man1/relief-bake.1 share/man/man1/relief-sim.1 \
-    share/bash-completion/completions/relief share/zsh/site-functions/_relief-sim \
-    share/fish/vendor_completions.d/relief.fish share/doc/relief/README.md share/doc/relief/formats/README.md \
+    share/bash-completion/completions/relief share/bash-completion/completions/relief-sim share/doc/relief/README.md share/doc/relief/formats/README.md \
     share/relief/samples/embed/embed.cpp share/relief/samples/rain.toml share/relief/schemas/bake.schema.json \
     share/relief/shaders/collider.glsl share/relief/collider.fbs share/relief/samples/own_engine/own_engine.c include/relief/runtime/particles/particle_system.h; do
     [ -s "$prefix/$file" ] || die "$file is not installed"

@@ -1,4 +1,4 @@
-#include "runtime/bench/bench_variants.h"
+#include "runtime/bench/bench_scene.h"
 
 #include <algorithm>
 #include <glm/gtc/quaternion.hpp>
@@ -12,8 +12,6 @@ namespace relief {
 namespace {
 
 constexpr Collision kSnow{.restitution = 0.0F, .friction = 1.0F};
-
-enum class Solids : std::uint8_t { kNone, kCollider, kOneBody, kFourBodies };
 
 std::vector<Pose> posesOf(const BenchScene& scene, Solids solids) {
     if (solids == Solids::kOneBody) {
@@ -39,24 +37,6 @@ Result<ColliderTextures> makeTextures(const BenchScene& scene, Solids solids) {
         bodies.push_back({&scene.collider, pose, 1.0F, 0.0F});
     }
     return ColliderTextures::create(bodies);
-}
-
-Result<BenchSystem> makeSystem(const BenchScene& scene, Solids solids, Integrator integrator) {
-    auto particles =
-        RELIEF_TRY(ParticleSystem::create({.capacity = static_cast<std::uint32_t>(scene.births.size()),
-                                           .integrator = integrator,
-                                           .path = scene.path}));
-    BenchSystem system;
-    system.particles = std::make_unique<ParticleSystem>(std::move(particles));
-    RELIEF_TRY(system.particles->setForces(scene.forces));
-    RELIEF_TRY(system.particles->setCollision(kSnow));
-    if (solids == Solids::kNone) {
-        return system;
-    }
-    auto textures = RELIEF_TRY(makeTextures(scene, solids));
-    system.textures = std::make_unique<ColliderTextures>(std::move(textures));
-    RELIEF_TRY(system.particles->setCollider(system.textures.get()));
-    return system;
 }
 
 ParticleType snowType() {
@@ -86,7 +66,7 @@ Result<void> setGround(ParticleSystem& particles, const BenchScene& scene) {
     return particles.setGround(scene.collider.bounds.min.y + 0.1F * scene.side);
 }
 
-std::function<Result<void>(ParticleSystem&, const BenchScene&)> sweepOf(float share) {
+BenchFeature sweepOf(float share) {
     return [share](ParticleSystem& particles, const BenchScene& scene) {
         return particles.setSweep(share * scene.side);
     };
@@ -130,71 +110,24 @@ AirSettings attractorAir(const BenchScene& scene) {
     return air;
 }
 
-std::function<Result<void>(ParticleSystem&, const BenchScene&)> airOf(
-    AirSettings (*make)(const BenchScene&)) {
+BenchFeature airOf(AirSettings (*make)(const BenchScene&)) {
     return
         [make](ParticleSystem& particles, const BenchScene& scene) { return particles.setAir(make(scene)); };
 }
 
-/// The collider, and `set` on top.
-BenchVariant feature(std::string name, std::string what,
-                     std::function<Result<void>(ParticleSystem&, const BenchScene&)> set) {
-    const auto make = [set = std::move(set)](const BenchScene& scene) -> Result<BenchSystem> {
-        auto system = makeColliderSystem(scene);
-        if (system) {
-            RELIEF_TRY(set(*system->particles, scene));
-        }
-        return system;
-    };
-    return {std::move(name), std::move(what), make};
-}
-
-BenchVariant with(std::string name, std::string what, Solids solids,
-                  Integrator integrator = Integrator::kEuler) {
-    return {std::move(name), std::move(what),
-            [solids, integrator](const BenchScene& scene) { return makeSystem(scene, solids, integrator); }};
-}
-
-/// Bodies that turn by a tenth of a degree each step: what new poses cost.
-BenchVariant turning(std::string name, std::string what, Solids solids) {
-    const auto make = [solids](const BenchScene& scene) -> Result<BenchSystem> {
-        auto system = makeSystem(scene, solids, Integrator::kEuler);
-        if (system) {
-            system->before_step = [textures = system->textures.get(), poses = posesOf(scene, solids),
-                                   step = 0]() mutable {
-                // To and fro, so that every block sees the same poses, all but a degree.
-                const float degrees =
-                    0.1F * static_cast<float>(++step / 16 % 2 == 0 ? step % 16 : 16 - step % 16);
-                for (Pose& pose : poses) {
-                    pose.rotation = glm::angleAxis(glm::radians(degrees), glm::vec3(0.0F, 1.0F, 0.0F));
-                }
-                textures->setPoses(poses);
-            };
-        }
-        return system;
-    };
-    return {std::move(name), std::move(what), make};
-}
-
-Result<void> setEvents(ParticleSystem& particles, const BenchScene&) {
+Result<void> setEvents(ParticleSystem& particles, const BenchScene& /*scene*/) {
     return particles.setEvents(EventOptions{.lasting = true, .deaths = true});
 }
 
-/// Events of every step, listed and brought to the CPU when they are there.
-BenchVariant listed(std::string name, std::string what) {
-    const auto make = [](const BenchScene& scene) -> Result<BenchSystem> {
-        auto system = makeColliderSystem(scene);
-        if (system) {
-            RELIEF_TRY(setEvents(*system->particles, scene));
-            system->before_step = [particles = system->particles.get()] {
-                particles->requestEvents(0);
-                while (particles->pollEvents()) {
-                }
-            };
+/// A tenth of a degree further each step, to and fro, so that every block sees the same poses, all but a degree.
+std::function<void()> turning(ColliderTextures* textures, std::vector<Pose> poses) {
+    return [textures, poses = std::move(poses), step = 0]() mutable {
+        const float degrees = 0.1F * static_cast<float>(++step / 16 % 2 == 0 ? step % 16 : 16 - step % 16);
+        for (Pose& pose : poses) {
+            pose.rotation = glm::angleAxis(glm::radians(degrees), glm::vec3(0.0F, 1.0F, 0.0F));
         }
-        return system;
+        textures->setPoses(poses);
     };
-    return {std::move(name), std::move(what), make};
 }
 
 /// A point's place on a Morton curve through the bounds.
@@ -239,6 +172,12 @@ BenchScene makeBenchScene(Collider collider, std::uint32_t particles, bool sorte
     return scene;
 }
 
+void BenchScene::liveForever() {
+    for (Birth& birth : births) {
+        birth.lifetime = 1e6F;
+    }
+}
+
 void BenchSystem::step() {
     if (before_step) {
         before_step();
@@ -251,29 +190,62 @@ void BenchSystem::begin(const BenchScene& scene) {
     step();
 }
 
-Result<BenchSystem> makeColliderSystem(const BenchScene& scene) {
-    return makeSystem(scene, Solids::kCollider, Integrator::kEuler);
+Result<BenchSystem> makeBenchSystem(const BenchScene& scene, const BenchVariant& variant) {
+    auto particles =
+        RELIEF_TRY(ParticleSystem::create({.capacity = static_cast<std::uint32_t>(scene.births.size()),
+                                           .integrator = variant.integrator,
+                                           .path = scene.path}));
+    BenchSystem system;
+    system.particles = std::make_unique<ParticleSystem>(std::move(particles));
+    RELIEF_TRY(system.particles->setForces(scene.forces));
+    RELIEF_TRY(system.particles->setCollision(kSnow));
+    if (variant.solids != Solids::kNone) {
+        system.textures = std::make_unique<ColliderTextures>(RELIEF_TRY(makeTextures(scene, variant.solids)));
+        RELIEF_TRY(system.particles->setCollider(system.textures.get()));
+    }
+    if (variant.set) {
+        RELIEF_TRY(variant.set(*system.particles, scene));
+    }
+    if (variant.each_step == EachStep::kPoses) {
+        system.before_step = turning(system.textures.get(), posesOf(scene, variant.solids));
+    } else if (variant.each_step == EachStep::kEvents) {
+        system.before_step = [particles = system.particles.get()] {
+            particles->requestEvents(0);
+            while (particles->pollEvents()) {
+            }
+        };
+    }
+    return system;
 }
 
 std::vector<BenchVariant> benchVariants() {
     return {
-        with("no_collider", "nothing solid at all", Solids::kNone),
-        with("collider", "one type, no radius, no ground, Euler", Solids::kCollider),
-        feature("types_16", "16 types in turn", setSixteenTypes),
-        feature("radius", "of half a percent of the longest side", setRadius),
-        feature("sweep", "in pieces of 1 % of the longest side", sweepOf(0.01F)),
-        feature("sweep_fine", "in pieces of 0.25 % of the longest side", sweepOf(0.0025F)),
-        with("verlet", "Verlet instead of Euler", Solids::kCollider, Integrator::kVerlet),
-        with("one_body", "the collider as a body with a pose", Solids::kOneBody),
-        turning("one_body_turning", "the same with a new pose each step", Solids::kOneBody),
-        with("four_bodies", "four of half the size", Solids::kFourBodies),
-        turning("four_bodies_turning", "the same with new poses each step", Solids::kFourBodies),
-        feature("ground", "a floor a tenth of the longest side up", setGround),
-        feature("flow", "a flow field of 32 x 32 x 32 nodes", airOf(flowAir)),
-        feature("curl_noise", "two octaves of curl noise", airOf(curlAir)),
-        feature("attractors", "four attractors", airOf(attractorAir)),
-        feature("events", "writing what happened to each particle", setEvents),
-        listed("events_listed", "and lists of up to 65,536 events, which come to the CPU"),
+        {.name = "no_collider", .what = "nothing solid at all", .solids = Solids::kNone},
+        {.name = "collider", .what = "one type, no radius, no ground, Euler"},
+        {.name = "types_16", .what = "16 types in turn", .set = setSixteenTypes},
+        {.name = "radius", .what = "of half a percent of the longest side", .set = setRadius},
+        {.name = "sweep", .what = "in pieces of 1 % of the longest side", .set = sweepOf(0.01F)},
+        {.name = "sweep_fine", .what = "in pieces of 0.25 % of the longest side", .set = sweepOf(0.0025F)},
+        {.name = "verlet", .what = "Verlet instead of Euler", .integrator = Integrator::kVerlet},
+        {.name = "one_body", .what = "the collider as a body with a pose", .solids = Solids::kOneBody},
+        {.name = "one_body_turning",
+         .what = "the same with a new pose each step",
+         .solids = Solids::kOneBody,
+         .each_step = EachStep::kPoses},
+        {.name = "four_bodies", .what = "four of half the size", .solids = Solids::kFourBodies},
+        {.name = "four_bodies_turning",
+         .what = "the same with new poses each step",
+         .solids = Solids::kFourBodies,
+         .each_step = EachStep::kPoses},
+        {.name = "ground", .what = "a floor a tenth of the longest side up", .set = setGround},
+        {.name = "flow", .what = "a flow field of 32 x 32 x 32 nodes", .set = airOf(flowAir)},
+        {.name = "curl_noise", .what = "two octaves of curl noise", .set = airOf(curlAir)},
+        {.name = "attractors", .what = "four attractors", .set = airOf(attractorAir)},
+        {.name = "events", .what = "writing what happened to each particle", .set = setEvents},
+        {.name = "events_listed",
+         .what = "and lists of up to 65,536 events, which come to the CPU",
+         .set = setEvents,
+         .each_step = EachStep::kEvents},
     };
 }
 

@@ -1,4 +1,4 @@
-// What relief-bench-step compares: one scene, and particle systems that differ in a single feature each.
+// The scene of the cases, and particle systems that differ in a single feature each.
 #pragma once
 
 #include <cstdint>
@@ -30,6 +30,8 @@ struct BenchScene {
     Forces forces;
     std::vector<Birth> births;
     StepPath path = StepPath::kFragment;  ///< of the systems
+
+    void liveForever();
 };
 
 /// \param sorted  neighbours in space are neighbours on the GPU; else these are anywhere, as an emitter's are
@@ -47,17 +49,24 @@ struct BenchSystem {
     void end() { particles->step(kBenchEnd); }
 };
 
+enum class Solids : std::uint8_t { kNone, kCollider, kOneBody, kFourBodies };
+/// Work of each step beside the step: nothing, new poses of the bodies, or lists of events that come to the CPU.
+enum class EachStep : std::uint8_t { kNothing, kPoses, kEvents };
+using BenchFeature = std::function<Result<void>(ParticleSystem&, const BenchScene&)>;
+
 struct BenchVariant {
     std::string name;
     std::string what;  ///< one line for a person
-    std::function<Result<BenchSystem>(const BenchScene&)> make;
+    Solids solids = Solids::kCollider;
+    Integrator integrator = Integrator::kEuler;
+    BenchFeature set = {};  ///< may be empty
+    EachStep each_step = EachStep::kNothing;
 };
 
-/// "no_collider", "collider" (what the others are compared with), and the features one by one. Systems take
-/// the scene's number of particles.
+/// "no_collider", "collider" (what the others are compared with), and the features one by one.
 [[nodiscard]] std::vector<BenchVariant> benchVariants();
 
-/// The system of "collider".
-[[nodiscard]] Result<BenchSystem> makeColliderSystem(const BenchScene& scene);
+/// The system takes the scene's number of particles. Without a variant: that of "collider".
+[[nodiscard]] Result<BenchSystem> makeBenchSystem(const BenchScene& scene, const BenchVariant& variant = {});
 
 }  // namespace relief

@@ -1,0 +1,150 @@
+#include "runtime/bench/bench.h"
+
+#include <time.h>
+
+#include <algorithm>
+
+#include "formats/base/stopwatch.h"
+#include "runtime/gl/gl_functions.h"
+#include "runtime/gl/gpu_timer.h"
+
+namespace relief {
+namespace {
+
+constexpr double kBlockMs = 10.0;
+
+/// Milliseconds that all threads have computed.
+double cpuMs() {
+    timespec t{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
+}
+
+/// Milliseconds of a call, a value a block.
+struct Times {
+    std::vector<double> wall;
+    std::vector<double> calls;
+    std::vector<double> cpu;
+    std::vector<double> gpu;  ///< empty: this GL does not measure it
+};
+
+/// 0 of no values.
+double median(std::vector<double> values) {
+    if (values.empty()) {
+        return 0.0;
+    }
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+Result<double> timeBlock(const Work& work, int calls, GpuTimer& timer, Times& times) {
+    const auto gpuTime = [&] { return timer.times()[static_cast<std::size_t>(Stage::kDraw)]; };
+    glFinish();
+    const StageTime gpu_before = gpuTime();
+    const double cpu_before = cpuMs();
+    const Stopwatch watch;
+    timer.begin(Stage::kDraw);
+    for (int i = 0; i < calls; ++i) {
+        RELIEF_TRY(work.run());
+        glFlush();
+    }
+    timer.end();
+    const double called = watch.ms();
+    glFinish();
+    const double all = watch.ms();
+    times.wall.push_back(all / calls);
+    times.calls.push_back(called / calls);
+    times.cpu.push_back((cpuMs() - cpu_before) / calls);
+    if (const StageTime gpu = gpuTime(); gpu.gpu_runs > gpu_before.gpu_runs) {
+        times.gpu.push_back((gpu.gpu_ms - gpu_before.gpu_ms) / calls);
+    }
+    return all;
+}
+
+Result<int> callsOfBlock(const Work& work, GpuTimer& timer) {
+    Times ignored;
+    int calls = 1;
+    while (RELIEF_TRY(timeBlock(work, calls, timer, ignored)) < kBlockMs) {
+        calls *= 2;
+    }
+    return calls;
+}
+
+Json ratioOf(const std::vector<double>& above, const std::vector<double>& below) {
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < std::min(above.size(), below.size()); ++i) {
+        ratios.push_back(above[i] / below[i]);
+    }
+    if (ratios.empty()) {
+        return nullptr;
+    }
+    const auto [least, most] = std::minmax_element(ratios.begin(), ratios.end());
+    return {{"median", median(ratios)}, {"least", *least}, {"most", *most}};
+}
+
+Result<void> warmUp(const Work& work, const Blocks& blocks) {
+    const Stopwatch watch;
+    while (watch.ms() < blocks.warm_ms) {
+        if (blocks.warm) {
+            blocks.warm();
+        } else {
+            RELIEF_TRY(work.run());
+        }
+        glFinish();
+    }
+    return {};
+}
+
+}  // namespace
+
+Result<Json> timeInTurns(const Bench& bench, const std::vector<Work>& works, const Blocks& blocks) {
+    GpuTimer timer;
+    std::vector<Times> times(works.size());
+    std::vector<int> calls(works.size(), blocks.calls);
+    for (std::size_t i = 0; i < works.size(); ++i) {
+        RELIEF_TRY(works[i].run());
+        glFinish();
+        calls[i] = blocks.calls != 0 ? blocks.calls : RELIEF_TRY(callsOfBlock(works[i], timer));
+    }
+    const int rounds = bench.options.rounds != 0 ? bench.options.rounds : blocks.rounds;
+    for (int round = 0; round < rounds; ++round) {
+        for (std::size_t i = 0; i < works.size(); ++i) {
+            const Work& work = works[i];
+            if (work.before) {
+                work.before();
+            }
+            if (!bench.software) {
+                RELIEF_TRY(warmUp(work, blocks));
+            }
+            RELIEF_TRY(timeBlock(work, calls[i], timer, times[i]));
+            if (work.after) {
+                work.after();
+            }
+        }
+    }
+    const auto compared = [&](const Times& of) -> const std::vector<double>& {
+        return bench.software ? of.cpu : blocks.gpu_clock ? of.gpu : of.wall;
+    };
+    Json rows = Json::array();
+    for (std::size_t i = 0; i < works.size(); ++i) {
+        rows.push_back(
+            {{"name", works[i].name},
+             {"ms", median(times[i].wall)},
+             {"call_ms", median(times[i].calls)},
+             {"cpu_ms", median(times[i].cpu)},
+             {"gpu_ms", bench.software || times[i].gpu.empty() ? Json() : Json(median(times[i].gpu))}});
+        for (std::size_t k = 0; k < works.size(); ++k) {
+            if (works[k].name == works[i].over) {
+                rows.back()["over"] = ratioOf(compared(times[i]), compared(times[k]));
+                rows.back()["over"]["of"] = works[k].name;
+            }
+        }
+    }
+    if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
+        return fail(ErrorCode::kFailure, "the GL reports error " + std::to_string(error));
+    }
+    return rows;
+}
+
+}  // namespace relief
