@@ -7,7 +7,7 @@ set -euo pipefail
 
 if [ "${1-}" = web ]; then
     shift
-    set -- emscripten chromium fonts-liberation "$@"
+    set -- emscripten esbuild chromium fonts-liberation "$@"
     command -v node >/dev/null || set -- nodejs "$@"
     command -v npm >/dev/null || set -- npm "$@"
 fi

@@ -1,5 +1,5 @@
 // The page of `relief view`: what is open, and the loop that draws it.
-import { init, load } from "./relief.js";
+import { init, load } from "relief-particles";
 import { Body } from "./body.js";
 import { Camera, followPointers } from "./camera.js";
 import { $, say } from "./controls.js";
