@@ -7,7 +7,7 @@ set -euo pipefail
 
 if [ "${1-}" = web ]; then
     shift
-    set -- emscripten chromium fonts-liberation "$@"
+    set -- emscripten esbuild chromium fonts-liberation "$@"
     command -v node >/dev/null || set -- nodejs "$@"
     command -v npm >/dev/null || set -- npm "$@"
 fi
@@ -18,8 +18,8 @@ packages=(
     # formats
     flatbuffers-compiler libexpected-dev libflatbuffers-dev libglm-dev libxxhash-dev libzstd-dev
     # bake
-    libassimp-dev libcairo2-dev libcgal-dev libcli11-dev libdraco-dev libeigen3-dev libembree-dev libopenexr-dev
-    libopenvdb-dev libopenvdb-tools libseccomp-dev libspdlog-dev libtbb-dev nlohmann-json3-dev zlib1g-dev
+    libassimp-dev libcairo2-dev libcgal-dev libcli11-dev libcpp-httplib-dev libdraco-dev libeigen3-dev libembree-dev
+    libopenexr-dev libopenvdb-dev libopenvdb-tools libseccomp-dev libspdlog-dev libtbb-dev nlohmann-json3-dev zlib1g-dev
     fonts-dejavu-core
     # runtime: libepoxy, and Mesa's llvmpipe for machines without a GPU
     libegl-dev libepoxy-dev libgl-dev libgles-dev libpng-dev libtomlplusplus-dev libegl1 libegl-mesa0 libgl1-mesa-dri

@@ -29,6 +29,7 @@ THIRD_PARTIES = {
     'toml++': ['formats/config'],
     'CLI': ['runtime/tool', 'runtime/cli', 'runtime/bench', 'bake/cli', 'bake/bench'],
     'spdlog': ['bake/cli'],
+    'httplib.h': ['bake/view'],
     'nlohmann': ['formats/fields', 'bake/import', 'bake/recipe', 'bake/report', 'bake/view', 'bake/cli', 'bake/bench', 'runtime/tool',
                  'runtime/player', 'runtime/web', 'runtime/bench'],
     'epoxy': ['runtime/gl', 'runtime/collider', 'runtime/picture'],

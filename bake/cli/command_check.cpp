@@ -7,16 +7,17 @@
 #include "bake/cli/check_file.h"
 #include "bake/cli/command.h"
 #include "bake/cli/mesh_check.h"
-#include "bake/measure/accuracy.h"
-#include "bake/measure/worst_places.h"
-#include "bake/report/accuracy_page.h"
+#include "bake/cli/view_source.h"
 #include "bake/report/accuracy_report.h"
 #include "bake/report/parts_report.h"
 #include "bake/report/places_report.h"
 #include "bake/report/shape_report.h"
+#include "formats/bake_first.h"
+#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "formats/container.h"
+#include "formats/container_parts.h"
 #include "runtime/tool/command_line.h"
 #include "runtime/tool/json_text.h"
 #include "runtime/tool/memory_option.h"
@@ -35,12 +36,6 @@ struct CheckCommand {
     bool json = false;
 };
 
-/// The measurement, and what it means for this command.
-struct CheckRun : MeshCheck {
-    std::vector<Advice> advice;
-    bool passed = true;
-};
-
 /// Before the long work.
 Result<void> prepare(const CheckCommand& command, FileGuard& files) {
     RELIEF_TRY(prepareMeshCheck(command.settings));
@@ -52,15 +47,14 @@ Result<void> prepare(const CheckCommand& command, FileGuard& files) {
     }
     RELIEF_TRY(files.reads(command.file));
     RELIEF_TRY(files.reads(command.settings.mesh));
+    const std::filesystem::path page = RELIEF_TRY(findViewPage());
+    RELIEF_TRY(files.reads(page));
     return files.writes(command.html, "--html");
 }
 
 /// What to do about the places.
-void addAdvice(const CheckCommand& command, CheckRun& run) {
-    run.passed =
-        !command.max_error || (run.original.accuracy.field.near.total() <= double{*command.max_error} &&
-                               run.part_accuracy.countOf(PartVerdict::kLost) == 0);
-    if (run.passed && run.wrongPercent() <= kGoodPercent) {
+void addAdvice(const CheckCommand& command, MeshCheck& run) {
+    if (run.passes(command.max_error) && run.wrongPercent() <= kGoodPercent) {
         return;
     }
     const std::string output = command.file == "-" ? "out.relief" : command.file;
@@ -70,58 +64,23 @@ void addAdvice(const CheckCommand& command, CheckRun& run) {
 }
 
 /// The page that --html asks for.
-Result<void> writePage(const CheckCommand& command, const CheckRun& run) {
+Result<void> writePage(const CheckCommand& command, std::vector<std::byte> container, const MeshCheck& run) {
     if (command.html.empty()) {
         return {};
     }
-    const std::string page = RELIEF_TRY(
-        accuracyPage({inputName(command.file), run.collider, *run.query, run.judged().samples,
-                      run.judged().accuracy, run.parts, run.part_accuracy, run.places, run.advice}));
+    const std::string page =
+        RELIEF_TRY(makeCheckPage(inputName(command.file), std::move(container), run, command.max_error));
     return writeFile(command.html, std::as_bytes(std::span(page)));
 }
 
-nlohmann::ordered_json jsonRepaired(const CheckRun& run) {
-    if (!run.repaired) {
-        return nullptr;
-    }
-    return {{"repair", run.recorded.repair},
-            {"triangles", run.baked->triangles.size()},
-            {"accuracy", jsonColliderAccuracy(run.repaired->accuracy, run.repaired->samples.longest_side)}};
-}
-
-nlohmann::ordered_json jsonCheck(const CheckCommand& command, const CheckRun& run) {
-    const auto& [samples, accuracy] = run.original;
-    nlohmann::ordered_json json = {
-        {"file", inputName(command.file)},
-        {"mesh",
-         {{"name", run.mesh->name},
-          {"hash", run.mesh->content_hash},
-          {"triangles", run.mesh->sourceTriangles()},
-          {"watertight", run.watertight},
-          {"shape", jsonShape(run.shape)},
-          {"baked_from_it", run.same_file}}},
-        {"unit", run.collider.unit},
-        {"verdict",
-         {{"wrong_percent", run.wrongPercent()},
-          {"lost_parts", run.part_accuracy.countOf(PartVerdict::kLost)},
-          {"grade", gradeOf(run.wrongPercent(), run.part_accuracy)}}},
-        {"parts", jsonParts(run.part_accuracy, run.parts, run.collider)},
-        {"worst_places", jsonPlaces(run.places, run.collider)},
-        {"advice", jsonAdvice(run.advice)},
-        {"sampling", jsonSamples(samples)},
-        {"accuracy", jsonColliderAccuracy(accuracy, samples.longest_side)},
-        {"repaired", jsonRepaired(run)},
-        {"max_error_percent", nullptr},
-        {"passed", run.passed},
-        {"warnings", run.warnings},
-        {"times_ms", {{"truth", 1000.0 * samples.seconds}, {"field", 1000.0 * accuracy.field.seconds}}}};
-    if (command.max_error) {
-        json["max_error_percent"] = jsonNumber(*command.max_error);
-    }
+nlohmann::ordered_json jsonCheck(const CheckCommand& command, const MeshCheck& run) {
+    nlohmann::ordered_json json = jsonMeshCheck(inputName(command.file), run, command.max_error);
+    json["times_ms"] = {{"truth", 1000.0 * run.original.samples.seconds},
+                        {"field", 1000.0 * run.original.accuracy.field.seconds}};
     return json;
 }
 
-std::string checkText(const CheckCommand& command, const CheckRun& run) {
+std::string checkText(const CheckCommand& command, const MeshCheck& run) {
     const auto& [samples, accuracy] = run.judged();
     std::string text =
         inputName(command.file) + ": " + verdictText(run.wrongPercent(), run.part_accuracy) + "\n";
@@ -148,20 +107,24 @@ Result<void> runCheck(const CheckCommand& command, FileGuard& files) {
         return checkFile(command.file, command.json, command.limits);
     }
     RELIEF_TRY(prepare(command, files));
-    Collider collider = RELIEF_TRY(loadCollider(command.file, command.limits));
-    CheckRun run{RELIEF_TRY(checkAgainstMesh(command.settings, std::move(collider))), {}};
+    std::vector<std::byte> container = RELIEF_TRY(readFile(command.file, containerSizeMax(command.limits)));
+    RELIEF_TRY(refuseMesh(command.file, container));
+    Collider collider =
+        RELIEF_TRY(inFront(shownInput(command.file), readContainer(container, command.limits)));
+    MeshCheck run = RELIEF_TRY(checkAgainstMesh(command.settings, std::move(collider)));
     // The files that the mesh refers to are known only now.
     for (const std::string& file : run.imported->dependencies) {
         RELIEF_TRY(files.reads(file));
     }
     addAdvice(command, run);
-    RELIEF_TRY(writePage(command, run));
+    RELIEF_TRY(writePage(command, std::move(container), run));
     RELIEF_TRY(printOut(command.json ? jsonText(jsonCheck(command, run)) : checkText(command, run)));
-    if (!run.passed && run.original.accuracy.field.near.total() <= double{*command.max_error}) {
+    const bool passed = run.passes(command.max_error);
+    if (!passed && run.original.accuracy.field.near.total() <= double{*command.max_error}) {
         return fail(ErrorCode::kDifference, *lostPartsWarning(run.part_accuracy, run.parts, run.collider) +
                                                 "; --detail LENGTH leaves smaller ones out");
     }
-    if (!run.passed) {
+    if (!passed) {
         return fail(ErrorCode::kDifference, shortNumber(run.original.accuracy.field.near.total()) +
                                                 " % of the points near the surface are on the wrong side" +
                                                 (run.repaired ? " of the mesh as it came" : "") +
@@ -197,7 +160,8 @@ void addCheck(CLI::App& app, Action& action) {
         ->transform(percent())
         ->needs(mesh);
     verb.add_option("--html", command->html,
-                    "Also write a page to look at: numbers, error on the surface, slices and maps")
+                    "Also write the page of relief view, with the findings in it: verdict, places to fly to, "
+                    "what to do")
         ->option_text("OUT")
         ->needs(mesh);
     addImportOptions(verb, command->settings.import);

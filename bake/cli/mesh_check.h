@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "bake/measure/worst_places.h"
 #include "bake/mesh/mesh_query.h"
 #include "bake/mesh/prepared_mesh.h"
+#include "bake/report/places_report.h"
 #include "bake/shape/shape.h"
 #include "formats/base/result.h"
 #include "formats/collider.h"
@@ -62,10 +64,13 @@ struct MeshCheck {
     SurfaceParts parts;                ///< of what is judged
     PartsAccuracy part_accuracy;
     std::vector<WorstPlace> places;
+    std::vector<Advice> advice;  ///< left to the caller, for it takes bakes
 
     /// Against the mesh that was baked.
     [[nodiscard]] const Measured& judged() const { return repaired ? *repaired : original; }
     [[nodiscard]] double wrongPercent() const { return judged().accuracy.field.near.total(); }
+    /// Against the mesh as it came; and no part is lost. \param max_error  percent; nullopt: anything passes.
+    [[nodiscard]] bool passes(std::optional<float> max_error) const;
 };
 
 /// The command of a command line. \param options  its words, without --mesh: "--samples=1000".
@@ -83,5 +88,10 @@ struct MeshCheck {
 [[nodiscard]] Result<MeshCheck> checkAgainstMesh(
     const MeshCheckSettings& settings, Collider collider, std::optional<TriangleMesh> given = {},
     const std::function<void()>& checkpoint = [] {});
+
+/// The report of `relief check --json` but for its times, which no two runs share.
+/// \param name  of the collider.
+[[nodiscard]] nlohmann::ordered_json jsonMeshCheck(const std::string& name, const MeshCheck& check,
+                                                   std::optional<float> max_error = {});
 
 }  // namespace relief

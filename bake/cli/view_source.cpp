@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
 
 #include "bake/cli/command.h"
 #include "bake/import/mesh_import.h"
 #include "bake/pipeline/bake.h"
 #include "bake/repair/winding.h"
+#include "bake/report/parts_report.h"
 #include "bake/view/view_page.h"
 #include "formats/bake_first.h"
 #include "formats/base/error_context.h"
@@ -15,30 +18,12 @@
 #include "formats/container.h"
 #include "runtime/scene/loaded_scene.h"
 #include "runtime/scene/scene_pictures.h"
+#include "runtime/tool/json_text.h"
 
 namespace relief {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The page of an installed tool, or of a build beside this one.
-Result<fs::path> findPage() {
-    if (const char* named = std::getenv("RELIEF_VIEW_PAGE"); named != nullptr && *named != '\0') {
-        return fs::path(named);
-    }
-    std::error_code error;
-    const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
-    for (const char* place : {"../share/relief/view.html", "../../web/bin/view.html"}) {
-        const fs::path page = folder / place;
-        if (fs::is_regular_file(page, error)) {
-            return page;
-        }
-    }
-    return fail(ErrorCode::kUnsupported,
-                "there is no page to put a collider in; run scripts/build.sh web in the sources once, which "
-                "makes it, "
-                "or name one with RELIEF_VIEW_PAGE");
-}
 
 std::string textOf(const std::vector<std::byte>& bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -46,7 +31,6 @@ std::string textOf(const std::vector<std::byte>& bytes) {
 
 /// The template, and what is put in.
 struct Page {
-    const ViewSource& source;
     ViewPageInput input;
     std::vector<std::byte> container;
     std::vector<fs::path> files;
@@ -58,18 +42,31 @@ struct Page {
     }
 
     Result<MadePage> make() {
-        const fs::path page = RELIEF_TRY(findPage());
+        const fs::path page = RELIEF_TRY(findViewPage());
         const std::string text = textOf(RELIEF_TRY(read(page)));
         input.container = container;
-        input.events = source.events;
         std::string html = RELIEF_TRY(viewPage(text, quotedPath(page), input));
         std::sort(files.begin(), files.end());
         return MadePage{std::move(html), std::move(files)};
     }
 };
 
-Result<MadePage> colliderPage(Page page) {
-    const ViewSource& source = page.source;
+/// The report, and what the page needs to show it.
+Result<MadePage> checkPage(Page page, const MeshCheck& check, std::optional<float> max_error) {
+    nlohmann::ordered_json report = jsonMeshCheck(page.input.name, check, max_error);
+    report["verdict"]["text"] = verdictText(check.wrongPercent(), check.part_accuracy);
+    report["parts"]["text"] = partsText(check.part_accuracy, check.parts, check.collider);
+    for (std::size_t i = 0; i < check.places.size(); ++i) {
+        const ClosestPoint closest = check.query->closest(check.places[i].position);
+        const glm::dvec3 normal = planeOf(check.query->mesh(), closest.triangle).normal;
+        report["worst_places"][i]["normal"] = jsonVector(glm::vec3(glm::normalize(normal)));
+    }
+    page.input.mesh = &*check.imported;
+    page.input.check = &report;
+    return page.make();
+}
+
+Result<MadePage> colliderPage(const ViewSource& source, Page page) {
     page.container = RELIEF_TRY(page.read(source.file));
     RELIEF_TRY(refuseMesh(source.file, page.container));
     Collider collider =
@@ -81,11 +78,7 @@ Result<MadePage> colliderPage(Page page) {
     for (const std::string& file : check.imported->dependencies) {
         page.files.emplace_back(file);
     }
-    page.input.mesh = &*check.imported;
-    const Measured& judged = check.judged();
-    page.input.check.emplace(ViewCheck{check.collider, *check.query, source.check.samples,
-                                       judged.accuracy.field, check.places, check.part_accuracy});
-    return page.make();
+    return checkPage(std::move(page), check, {});
 }
 
 /// A body that deforms has no container: its mesh at rest, baked, to look at.
@@ -117,11 +110,11 @@ Result<void> chooseShown(const Scene& scene, const fs::path& file, Page& page) {
     return {};
 }
 
-Result<MadePage> scenePage(Page page) {
-    const fs::path file = page.source.file;
+Result<MadePage> scenePage(const ViewSource& source, Page page) {
+    const fs::path file = source.file;
     page.input.scene = textOf(RELIEF_TRY(page.read(file)));
     SceneOverrides overrides;
-    overrides.limits = page.source.limits;
+    overrides.limits = source.limits;
     const LoadedScene loaded = RELIEF_TRY(loadAll(file, overrides));
     RELIEF_TRY(checkPictures(loaded.scene, loaded.bounds));
     if (loaded.scene.flow) {
@@ -143,10 +136,37 @@ bool ViewSource::isScene() const {
     return lowerCase(fs::path(file).extension().native()) == ".toml";
 }
 
+Result<fs::path> findViewPage() {
+    if (const char* named = std::getenv("RELIEF_VIEW_PAGE"); named != nullptr && *named != '\0') {
+        return fs::path(named);
+    }
+    std::error_code error;
+    const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
+    for (const char* place : {"../share/relief/view.html", "../../web/bin/view.html"}) {
+        const fs::path page = folder / place;
+        if (fs::is_regular_file(page, error)) {
+            return page;
+        }
+    }
+    return fail(ErrorCode::kUnsupported,
+                "there is no page to put a collider in; run scripts/build.sh web in the sources once, which "
+                "makes it, or name one with RELIEF_VIEW_PAGE");
+}
+
 Result<MadePage> makeViewPage(const ViewSource& source) {
-    Page page{source, {}, {}, {}};
+    Page page;
     page.input.name = inputName(source.file);
-    return source.isScene() ? scenePage(std::move(page)) : colliderPage(std::move(page));
+    page.input.events = source.events;
+    return source.isScene() ? scenePage(source, std::move(page)) : colliderPage(source, std::move(page));
+}
+
+Result<std::string> makeCheckPage(const std::string& name, std::vector<std::byte> container,
+                                  const MeshCheck& check, std::optional<float> max_error) {
+    Page page;
+    page.input.name = name;
+    page.container = std::move(container);
+    MadePage made = RELIEF_TRY(checkPage(std::move(page), check, max_error));
+    return std::move(made.html);
 }
 
 }  // namespace relief

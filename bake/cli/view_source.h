@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,17 @@ struct MadePage {
     std::vector<std::filesystem::path> files;
 };
 
+/// The template: what RELIEF_VIEW_PAGE names, else that of an installed tool, or of a build beside this one.
+/// Errors: kUnsupported (there is none).
+[[nodiscard]] Result<std::filesystem::path> findViewPage();
+
 /// Reads everything, checks it as `relief check` and `relief-sim` do, and makes the page.
 /// Fails as they do, and as viewPage does; kUnsupported: no template, or a scene that browsers do not play.
 [[nodiscard]] Result<MadePage> makeViewPage(const ViewSource& source);
+
+/// The same page of a check that has been made: `relief check --html`.
+/// \param name  of the collider. \param container  its bytes.
+[[nodiscard]] Result<std::string> makeCheckPage(const std::string& name, std::vector<std::byte> container,
+                                                const MeshCheck& check, std::optional<float> max_error);
 
 }  // namespace relief

@@ -472,16 +472,6 @@ class Figure {
 
 }  // namespace
 
-Result<std::vector<std::byte>> encodePng(const RgbImage& image) {
-    std::vector<std::byte> png;
-    const cairo_status_t status = cairo_surface_write_to_png_stream(surfaceOf(image).get(), append, &png);
-    if (status != CAIRO_STATUS_SUCCESS) {
-        return fail(ErrorCode::kFailure,
-                    std::string("cannot make a picture: ") + cairo_status_to_string(status));
-    }
-    return png;
-}
-
 Result<std::vector<std::byte>> drawSlice(const Slice& slice, const SliceFigureOptions& options) {
     return Figure(slice, options).draw();
 }

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "bake/picture/color.h"
 #include "bake/picture/slice.h"
 #include "formats/base/result.h"
 
@@ -20,9 +19,5 @@ struct SliceFigureOptions {
 /// colour bar and a legend; the zero contour on both. The same slice gives the same bytes.
 /// Errors: kFailure with Cairo's words.
 [[nodiscard]] Result<std::vector<std::byte>> drawSlice(const Slice& slice, const SliceFigureOptions& options);
-
-/// The same image gives the same bytes. \param image  not empty.
-/// Errors: kFailure with Cairo's words.
-[[nodiscard]] Result<std::vector<std::byte>> encodePng(const RgbImage& image);
 
 }  // namespace relief

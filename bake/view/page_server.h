@@ -6,8 +6,11 @@
 #include <memory>
 #include <string>
 
-#include "formats/base/descriptor.h"
 #include "formats/base/result.h"
+
+namespace httplib {
+class Server;
+}
 
 namespace relief {
 
@@ -17,30 +20,31 @@ struct ServedPage {
 };
 
 /// HTTP on 127.0.0.1, for a few windows of one person. Serves `/`, the page, and `/events?page=VERSION`, a stream of
-/// server-sent events that says "data: VERSION" as soon as the page is another one than that.
+/// server-sent events that carries "data: VERSION" as soon as the page is another one than that.
 ///
-/// One thread serves all. No request names a file, so none can leave a folder. Requests above 16 KiB and slow ones are
-/// dropped, and so is the oldest idle one of 64 connections when another comes. A Host that is not this machine's own
-/// is refused, so that no page from elsewhere reads this one by a name that it gave to 127.0.0.1.
+/// No request names a file, so none can leave a folder. Slow requests and those with long heads are dropped. A Host that is
+/// not this machine's own is refused, so that no page from elsewhere reads this one by a name that it gave to 127.0.0.1.
 class PageServer {
   public:
     /// \param port  0: any that is free.
     /// Errors: kIo (the port is taken or not ours to take).
     [[nodiscard]] static Result<PageServer> listen(std::uint16_t port);
+    PageServer(PageServer&&) noexcept;
+    ~PageServer();
 
     /// "http://127.0.0.1:8321/"
     [[nodiscard]] std::string address() const;
 
     /// Serves until a signal ends the program.
-    /// \param current  the page as it is now: asked for at each load, and five times a second.
+    /// \param current  the page as it is now: called at each load, and five times a second; never twice at once.
     /// Errors: kIo.
     [[nodiscard]] Result<void> serve(const std::function<ServedPage()>& current);
 
   private:
-    PageServer(Descriptor listener, std::uint16_t port) : listener_(std::move(listener)), port_(port) {}
+    PageServer(std::unique_ptr<httplib::Server> server, int port);
 
-    Descriptor listener_;
-    std::uint16_t port_;
+    std::unique_ptr<httplib::Server> server_;
+    int port_;
 };
 
 }  // namespace relief

@@ -1,12 +1,10 @@
 #include "bake/view/view_page.h"
 
+#include <algorithm>
 #include <bit>
-#include <glm/geometric.hpp>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 
-#include "bake/report/base64.h"
-#include "bake/report/parts_report.h"
-#include "bake/report/places_report.h"
 #include "bake/report/report.h"
 #include "runtime/tool/json_text.h"
 
@@ -23,6 +21,24 @@ constexpr std::string_view kPlaceEnd = "</script>";
 static_assert(std::endian::native == std::endian::little);
 static_assert(sizeof(glm::vec3) == 12 && sizeof(glm::uvec3) == 12);
 
+/// RFC 4648, with padding and without line ends.
+std::string base64(std::span<const std::byte> bytes) {
+    constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+        std::uint32_t group = 0;
+        for (std::size_t j = 0; j < 3; ++j) {
+            group = group << 8 | (j < count ? std::to_integer<std::uint32_t>(bytes[i + j]) : 0U);
+        }
+        for (std::size_t j = 0; j < 4; ++j) {
+            text += j <= count ? kDigits[group >> (18 - 6 * j) & 63U] : '=';
+        }
+    }
+    return text;
+}
+
 std::uint64_t meshBytes(const TriangleMesh& mesh) {
     return std::uint64_t{12} * (mesh.positions.size() + mesh.triangles.size());
 }
@@ -38,10 +54,10 @@ Result<void> checkSize(const ViewPageInput& input) {
     }
     const std::string limit = "; a page holds " + bytesText(kViewBytesMax);
     if (rest <= kViewBytesMax) {
-        return fail(ErrorCode::kLimit, input.mesh->name + " has " +
-                                           std::to_string(input.mesh->triangles.size()) + " triangles, " +
-                                           bytesText(mesh) + limit +
-                                           "; leave out --mesh, or give it the mesh with fewer triangles");
+        return fail(ErrorCode::kLimit,
+                    input.mesh->name + " has " + std::to_string(input.mesh->triangles.size()) +
+                        " triangles, " + bytesText(mesh) + limit +
+                        "; leave out the page or the mesh, or give it with fewer triangles");
     }
     return fail(ErrorCode::kLimit, input.name + " has " + bytesText(rest) + limit +
                                        "; bake with a smaller --budget, or smaller maps");
@@ -51,29 +67,6 @@ Json jsonMesh(const TriangleMesh& mesh) {
     return {{"name", mesh.name},
             {"vertices", base64(std::as_bytes(std::span(mesh.positions)))},
             {"triangles", base64(std::as_bytes(std::span(mesh.triangles)))}};
-}
-
-Json jsonCheck(const ViewCheck& check) {
-    Json places = Json::array();
-    for (const WorstPlace& place : check.places) {
-        const ClosestPoint closest = check.query.closest(place.position);
-        const glm::vec3 normal(glm::normalize(planeOf(check.query.mesh(), closest.triangle).normal));
-        places.push_back({{"position", jsonVector(place.position)},
-                          {"normal", jsonVector(normal)},
-                          {"size", place.size()},
-                          {"share_percent", place.share_percent},
-                          {"kind", wrongCauseName(place.cause)},
-                          {"map", place.map},
-                          {"why", causeText(place, check.collider)}});
-    }
-    return {{"points", check.points},
-            {"verdict", verdictText(check.field.near.total(), check.parts)},
-            {"grade", gradeOf(check.field.near.total(), check.parts)},
-            {"near_percent", check.field.near.total()},
-            {"uniform_percent", check.field.uniform.total()},
-            {"distance_mean", check.field.distance_mean},
-            {"distance_p99", check.field.distance_p99},
-            {"places", std::move(places)}};
 }
 
 Json jsonFiles(const ViewPageInput& input) {
@@ -111,12 +104,12 @@ Result<std::string> viewPage(std::string_view page, const std::string& page_name
     }
     RELIEF_TRY(checkSize(input));
     const Json json = {
-        {"format", 1},
+        {"format", 2},
         {"name", input.name},
         {"collider", input.shows.empty() ? Json(base64(input.container)) : Json(nullptr)},
         {"shows", input.shows.empty() ? Json(nullptr) : Json(input.shows)},
         {"mesh", input.mesh != nullptr ? jsonMesh(*input.mesh) : Json(nullptr)},
-        {"check", input.check ? jsonCheck(*input.check) : Json(nullptr)},
+        {"check", input.check != nullptr ? *input.check : Json(nullptr)},
         {"scene", input.scene ? Json(*input.scene) : Json(nullptr)},
         {"files", input.scene ? jsonFiles(input) : Json(nullptr)},
         {"serve", input.events.empty() ? Json(nullptr) : Json(input.events)},

@@ -3,41 +3,28 @@
 
 #include <cstddef>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "bake/measure/accuracy.h"
-#include "bake/measure/part_accuracy.h"
-#include "bake/measure/worst_places.h"
-#include "bake/mesh/mesh_query.h"
+#include "bake/mesh/mesh.h"
 #include "formats/base/result.h"
-#include "formats/collider.h"
 
 namespace relief {
 
 /// Bytes of everything that one page holds, before they become text: more, and browsers give up.
 inline constexpr std::uint64_t kViewBytesMax = std::uint64_t{128} << 20;
 
-/// A collider measured against its mesh.
-struct ViewCheck {
-    const Collider& collider;
-    const MeshQuery& query;  ///< of the mesh that was measured against
-    std::uint64_t points = 0;
-    const FieldAccuracy& field;
-    std::span<const WorstPlace> places;
-    const PartsAccuracy& parts;
-};
-
 struct ViewPageInput {
-    std::string name;                      ///< of what is shown, without its folder
-    std::span<const std::byte> container;  ///< what is shown; empty: `shows`
-    std::string shows;                     ///< which of `files` is shown; empty: `container`
-    const TriangleMesh* mesh = nullptr;    ///< null: none
-    std::optional<ViewCheck> check;
-    std::optional<std::string> scene;  ///< text of a scene.toml
+    std::string name;                               ///< of what is shown, without its folder
+    std::span<const std::byte> container;           ///< what is shown; empty: `shows`
+    std::string shows;                              ///< which of `files` is shown; empty: `container`
+    const TriangleMesh* mesh = nullptr;             ///< null: none
+    const nlohmann::ordered_json* check = nullptr;  ///< the report of `relief check`; null: none
+    std::optional<std::string> scene;               ///< text of a scene.toml
     std::map<std::string, std::vector<std::byte>>
         files;           ///< that the scene names, by the names it has for them
     std::string events;  ///< address of the server's events; empty: no server

@@ -10,10 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "formats/base/text.h"
 #include "formats/container.h"
 #include "formats/nearest_surface.h"
 #include "formats/texel.h"
 #include "runtime/collider/field_query.h"
+#include "runtime/files/mesh_file.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/pass_state.h"
 #include "runtime/picture/depth_sort.h"
@@ -327,6 +329,30 @@ EMSCRIPTEN_KEEPALIVE void relief_collider_texels(const Collider* collider, int m
             }
         }
     }
+}
+
+// --- meshes
+
+/// An OBJ or PLY file, by its name's ending.
+/// \param out  its positions, how many there are, its triangles, and how many corners these have.
+EMSCRIPTEN_KEEPALIVE PictureMesh* relief_mesh_read(const char* name, const std::byte* bytes, int size,
+                                                   std::uintptr_t* out) {
+    return guarded<PictureMesh*>(nullptr, [&]() -> Result<PictureMesh*> {
+        const std::span given(bytes, static_cast<std::size_t>(size));
+        const bool ply = lowerCase(name).ends_with(".ply");
+        auto mesh = std::make_unique<PictureMesh>(
+            RELIEF_TRY(ply ? parsePlyMesh(given, name)
+                           : parseObj({reinterpret_cast<const char*>(bytes), given.size()}, name)));
+        out[0] = reinterpret_cast<std::uintptr_t>(mesh->positions.data());
+        out[1] = mesh->positions.size();
+        out[2] = reinterpret_cast<std::uintptr_t>(mesh->triangles.data());
+        out[3] = mesh->triangles.size();
+        return mesh.release();
+    });
+}
+
+EMSCRIPTEN_KEEPALIVE void relief_mesh_free(PictureMesh* mesh) {
+    delete mesh;
 }
 
 // --- colliders, on the GPU

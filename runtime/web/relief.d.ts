@@ -30,6 +30,12 @@ export function init(options?: InitOptions): Promise<unknown>;
 /** Fetches and reads a .relief file. */
 export function load(source: Source): Promise<Collider>;
 
+/**
+ * The mesh of an OBJ or PLY file, by the ending of its name: three numbers a vertex, three indices a triangle. init() must
+ * have ended.
+ */
+export function readMesh(name: string, bytes: Uint8Array): { vertices: Float32Array; triangles: Uint32Array };
+
 export interface Bounds {
     min: Vec3;
     max: Vec3;
@@ -259,6 +265,7 @@ export class ParticleSystem {
 export const Relief: {
     init: typeof init;
     load: typeof load;
+    readMesh: typeof readMesh;
     Collider: typeof Collider;
     GpuCollider: typeof GpuCollider;
     ParticleSystem: typeof ParticleSystem;

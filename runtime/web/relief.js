@@ -261,6 +261,19 @@ export async function load(source) {
     }
 }
 
+export function readMesh(name, bytes) {
+    instance();
+    return withText(String(name), (text) => withMemory([bytes.length, 16], (at, out) => {
+        wasm.HEAPU8.set(bytes, at);
+        const mesh = checked(call("relief_mesh_read", text, at, bytes.length, out));
+        const [positions, count, triangles, corners] = wasm.HEAPU32.subarray(out >> 2, (out >> 2) + 4);
+        const read = { vertices: wasm.HEAPF32.slice(positions >> 2, (positions >> 2) + 3 * count),
+                       triangles: wasm.HEAPU32.slice(triangles >> 2, (triangles >> 2) + corners) };
+        wasm._relief_mesh_free(mesh);
+        return read;
+    }));
+}
+
 function query(points, ask) {
     const xyz = checkFinite("points", numbers("points", points, 3));
     const count = xyz.length / 3;
@@ -704,5 +717,5 @@ export class ParticleSystem {
     }
 }
 
-export const Relief = { init, load, Collider, GpuCollider, ParticleSystem, ReliefError, toToml };
+export const Relief = { init, load, readMesh, Collider, GpuCollider, ParticleSystem, ReliefError, toToml };
 export default Relief;

@@ -52,6 +52,42 @@ test("a check says what relief check says; a sheet is right in the middle of its
     assert.deepEqual(console, []);
 });
 
+test("the page of a check holds its findings: numbers, places to fly to, parts, and what to do", { timeout: 300_000 }, async (t) => {
+    const folder = scratch(t);
+    const at = (name) => path.join(folder, name);
+    // A slab under a ledge that no map of the two sees, with a pillar too thin for their texels, whose name is markup.
+    const lines = [];
+    [["slab", [0, 0, 0], [45, 1, 45]], ["ledge", [0, 12, 0], [40, 1, 40]], ["<b>pillar</b>", [44, 4, 0], [0.25, 3, 0.25]]].forEach(([name, middle, half], n) => {
+        lines.push(`o ${name}`);
+        for (let i = 0; i < 8; ++i) {
+            lines.push(`v ${middle.map((v, k) => v + ((i >> k) & 1 ? half[k] : -half[k])).join(" ")}`);
+        }
+        for (const face of [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]) {
+            lines.push(`f ${face.map((i) => 8 * n + i + 1).join(" ")}`);
+        }
+    });
+    writeFileSync(at("slab.obj"), `${lines.join("\n")}\n`);
+    run("relief", "bake", at("slab.obj"), "-q", "-o", at("slab.relief"), "--map", "fixed8:dir=-y,size=32");
+    const said = JSON.parse(run("relief", "check", at("slab.relief"), "--mesh", at("slab.obj"), "-q", "--samples", "5000", "--json",
+                                "--html", at("slab.html")));
+    assert.ok(said.advice.length > 0 && said.verdict.lost_parts === 1, JSON.stringify(said.verdict));
+    const { page, said: console } = await opened(t, pathToFileURL(at("slab.html")).href);
+    await page.click("#tab-errors");
+    assert.equal(await page.locator("#verdict").getAttribute("class"), said.verdict.grade);
+    assert.deepEqual(await page.locator("#advice li code").allTextContents(),
+                     said.advice.filter((one) => one.helps || !one.tried).map((one) => one.command));
+    assert.match(await page.locator("#parts").textContent(), /<b>pillar<\/b>.*texels/s);
+    assert.match(await page.locator("#measures").textContent(), /surface that no map sees.*points of each kind5,000seed1/);
+    assert.ok(!await page.isVisible("#what-to-do"));
+    const worst = said.worst_places.at(-1);
+    await page.locator("#places button").last().click();
+    await page.waitForFunction("reliefView.camera.flight === null");
+    const target = await page.evaluate("reliefView.camera.target");
+    assert.ok(target.every((v, k) => Math.abs(v - worst.position[k]) < 1e-4), `${target} instead of ${worst.position}`);
+    assert.equal(await page.locator("#pin").textContent(), worst.why);
+    assert.deepEqual(console, []);
+});
+
 test("a scene's bodies are drawn where they stand, and move", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     const at = (name) => path.join(folder, name);

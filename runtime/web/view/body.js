@@ -1,5 +1,5 @@
 // A collider in space: its textures, the box that it is drawn in, and the programs that ask it.
-import { GpuCollider } from "./relief.js";
+import { GpuCollider } from "relief-particles";
 import { add, identity, inverseSimilarity, boxOf, sub, transform } from "./math.js";
 import { cellsOf } from "./cells.js";
 import { Geometry, program } from "./gl.js";

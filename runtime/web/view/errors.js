@@ -1,7 +1,6 @@
 // How far the maps are from a mesh: points of its surface, where the truth is 0, and where points near it are on the wrong
 // side, as `relief check` ranks such places.
-import { boxOf, cross, dot, length, lengthText, normalize, quantile, random, sub } from "./math.js";
-import { meshBounds } from "./mesh_file.js";
+import { boundsOf, boxOf, cross, dot, length, lengthText, normalize, quantile, random, sub } from "./math.js";
 import { MeshTruth } from "./mesh_truth.js";
 
 const kPoints = 40_000;
@@ -62,7 +61,7 @@ const offSheet = (d, depth) => (d < -0.5 * depth ? d + depth : d);
 /** Points near the mesh that the maps have on the wrong side: { position, normal, map, inside (as the maps have it) }. */
 function wrongPoints(collider, mesh, { depth, byPart }) {
     const { positions, normals } = samplePoints(mesh, kNear);
-    const sigma = kSigma * boxOf(meshBounds(mesh.vertices)).longest;
+    const sigma = kSigma * boxOf(boundsOf(mesh.vertices)).longest;
     const next = random(11);
     const near = positions.map((x) => x + sigma * Math.sqrt(-2 * Math.log(1 - next())) * Math.cos(2 * Math.PI * next()));
     const { distance, map } = collider.query(near);
@@ -118,7 +117,7 @@ function worstPlaces(collider, wrong, side) {
         places.push({ middle: middleOf(worst.points), points });
     }
     return places.sort((a, b) => b.points.length - a.points.length).slice(0, kPlaces).map(({ middle, points }) => {
-        const { min, max } = meshBounds(points.flatMap((one) => one.position));
+        const { min, max } = boundsOf(points.flatMap((one) => one.position));
         const byMap = new Map();
         points.forEach((one) => byMap.set(one.map, (byMap.get(one.map) ?? 0) + 1));
         const map = [...byMap].reduce((most, one) => (one[1] > most[1] ? one : most))[0];

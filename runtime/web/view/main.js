@@ -1,12 +1,11 @@
 // The page of `relief view`: what is open, and the loop that draws it.
-import { init, load } from "./relief.js";
+import { init, load, readMesh } from "relief-particles";
 import { Body } from "./body.js";
 import { Camera, followPointers } from "./camera.js";
 import { $, say } from "./controls.js";
 import { Geometry } from "./gl.js";
-import { boxOf, identity, shortNumber } from "./math.js";
+import { boundsOf, boxOf, identity, shortNumber } from "./math.js";
 import { measure } from "./errors.js";
-import { meshBounds, readMesh } from "./mesh_file.js";
 import { followDrops, readPageData, readWasm } from "./page_data.js";
 import { Panel } from "./panel.js";
 import { Particles } from "./particles.js";
@@ -139,7 +138,7 @@ class App {
     }
 
     async #show({ name, file, bytes, mesh, check, scene, files }) {
-        let bounds = mesh && meshBounds(mesh.vertices);
+        let bounds = mesh && boundsOf(mesh.vertices);
         if (bytes) {
             const collider = await load(bytes);
             this.body = new Body(this.gl, collider, file);

@@ -114,3 +114,14 @@ export function shortNumber(v) {
 
 /** unit: the collider's; empty: it has none. */
 export const lengthText = (v, unit) => shortNumber(v) + (unit ? ` ${unit}` : "");
+
+/** Of numbers in threes. */
+export function boundsOf(vertices) {
+    const min = [Infinity, Infinity, Infinity];
+    const max = [-Infinity, -Infinity, -Infinity];
+    vertices.forEach((v, i) => {
+        min[i % 3] = Math.min(min[i % 3], v);
+        max[i % 3] = Math.max(max[i % 3], v);
+    });
+    return { min, max };
+}

@@ -30,8 +30,8 @@ export function readPageData() {
     if (data === null) {
         return null;
     }
-    if (data.format !== 1) {
-        throw new PageFailure(`this page's data has the format ${data.format}, and the page understands 1; make it again ` +
+    if (data.format !== 2) {
+        throw new PageFailure(`this page's data has the format ${data.format}, and the page understands 2; make it again ` +
                               "with the 'relief view' of one release");
     }
     const files = {};

@@ -255,24 +255,24 @@ export class Panel {
         }
         const { check } = measured;
         const side = body.box.longest;
-        const row = (name, value) => [element("dt", {}, name), element("dd", {}, value)];
         const length = (v) => `${this.#length(v)} (${shortNumber(100 * v / side)} %)`;
-        $("measures").replaceChildren(
-            ...(check ? [...row("anywhere in the box", `${shortNumber(check.uniform_percent)} % wrong`),
-                         ...row("points checked", check.points.toLocaleString("en")),
-                         ...row("mean error", length(check.distance_mean)), ...row("99 % below", length(check.distance_p99))]
-                      : [...row("median on the mesh", length(measured.median)), ...row("mean", length(measured.mean)),
-                         ...row("99 % below", length(measured.p99))]));
-        $("verdict").className = check?.grade ?? "ungraded";
-        $("verdict").textContent = check?.verdict ?? `${shortNumber(measured.wrong_percent)} % wrong near the surface`;
+        const rows = check ? checkRows(check, length)
+            : [["median on the mesh", length(measured.median)], ["mean", length(measured.mean)], ["99 % below", length(measured.p99)]];
+        $("measures").replaceChildren(...rows.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)]));
+        $("verdict").className = check?.verdict.grade ?? "ungraded";
+        $("verdict").textContent = check?.verdict.text ?? `${shortNumber(measured.wrong_percent)} % wrong near the surface`;
+        $("parts").textContent = check?.parts.text ?? "";
         $("sheets-note").hidden = measured.depth === 0;
         $("sheets-note").textContent = `Sheets have a thickness of ${this.#length(2 * measured.depth)} round the mesh: ` +
             "white is where they lie in its middle.";
-        $("what-to-do").hidden = check?.grade === "good" || (!check && measured.places.length === 0);
-        $("advice").textContent = `relief check ${this.app.opened.name} --mesh ${this.app.mesh.name}`;
+        $("what-to-do").hidden = check?.verdict.grade === "good" || check?.advice.length > 0 || (!check && measured.places.length === 0);
+        $("check-command").textContent = `relief check ${this.app.opened.name} --mesh ${this.app.mesh.name}`;
+        $("advice-title").hidden = !check?.advice.length;
+        $("advice").replaceChildren(...(check?.advice ?? []).map(({ command, ...one }) => element("li", {},
+            ...(one.tried && !one.helps ? [] : [element("code", {}, command)]), element("p", { class: "hint" }, adviceText(one, check)))));
         $("heat-low").textContent = `${this.#length(-measured.range)} inside`;
         $("heat-high").textContent = `outside ${this.#length(measured.range)}`;
-        this.places = check?.places ?? measured.places;
+        this.places = check?.worst_places ?? measured.places;
         $("places-title").textContent = this.places.length ? "Worst places, by their share of what is wrong" : "No place is wrong";
         $("places").replaceChildren(...this.places.map((place, i) => element("li", {}, element("button", {
             onclick: () => this.goTo(i),
@@ -280,8 +280,8 @@ export class Panel {
     }
 
     #placeText(place) {
-        return [`${this.#length(place.size)} across`, kKinds[place.kind] ?? sideText(place.false_inside_percent),
-                place.map < 0 ? "no map" : `map ${place.map}`].join(", ");
+        return [`${this.#length(place.size)} across`, kKinds[place.cause] ?? sideText(place.false_inside_percent),
+                (place.map ?? -1) < 0 ? "no map" : `map ${place.map}`].join(", ");
     }
 
     goTo(i) {
@@ -488,6 +488,28 @@ export class Panel {
         this.#slice();
         this.refreshParticles();
     }
+}
+
+/** What `relief check` measured against the mesh that was baked. */
+function checkRows({ accuracy: original, repaired, sampling }, length) {
+    const accuracy = repaired?.accuracy ?? original;
+    const percent = (v) => `${shortNumber(v)} %`;
+    const { near, uniform, distance_error: distance, normal_error_degrees: normal } = accuracy;
+    return [["called inside near it", percent(near.false_inside_percent)], ["called outside near it", percent(near.false_outside_percent)],
+            ["wrong anywhere in the box", percent(uniform.wrong_percent)],
+            ["mean error", length(distance.mean)], ["99 % below", length(distance.p99)],
+            ["normal, mean", `${shortNumber(normal.mean)}°`], ["normal, 99 % below", `${shortNumber(normal.p99)}°`],
+            ["surface that no map sees", percent(accuracy.unseen_area_percent)],
+            ["outside without a distance", percent(accuracy.far_percent)], ["no map votes", percent(accuracy.unknown_percent)],
+            ["no normal", percent(accuracy.no_normal_percent)],
+            ["on the GPU", `${accuracy.gpu_bytes.toLocaleString("en")} bytes`],
+            ["points of each kind", sampling.samples.toLocaleString("en")], ["seed", `${sampling.seed}`]];
+}
+
+function adviceText({ about, tried, helps, wrong_percent: left, untried }, { verdict }) {
+    return !tried ? `${about}; not tried: ${untried}` : helps
+        ? `${about}; tried: ${shortNumber(left)} % wrong instead of ${shortNumber(verdict.wrong_percent)} %`
+        : `Tried, and of no help: ${about} (${shortNumber(left)} %)`;
 }
 
 function cross(p, r, tint) {

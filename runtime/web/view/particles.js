@@ -1,5 +1,5 @@
 // The particles on the page: one system of Relief, of a preset or of a scene that was dropped in.
-import { ParticleSystem } from "./relief.js";
+import { ParticleSystem } from "relief-particles";
 import { Marks } from "./marks.js";
 import { kDefaults, presetScene } from "./presets.js";
 

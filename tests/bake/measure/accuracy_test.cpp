@@ -13,7 +13,6 @@
 
 #include "bake/bench/distance_volume.h"
 #include "bake/mesh/inside.h"
-#include "bake/picture/heat_map.h"
 #include "bake/report/accuracy_report.h"
 #include "formats/base/byte_count.h"
 #include "tests/bake/meshes.h"
@@ -473,32 +472,7 @@ TEST(DistanceVolume, ANarrowBandKeepsTheSignsAndItsDistances) {
     EXPECT_LT(accuracy.normal_mean, 5.0);
 }
 
-// --- pictures and reports ---
-
-TEST(HeatMap, ShowsTheErrorAndNothingBesideTheMesh) {
-    const TriangleMesh mesh = makeIcosphere({0, 0, 0}, 1.0, 4);
-    const MeshQuery query = queryOf(mesh);
-    HeatMapOptions options;
-    options.size = 64;
-    options.range = 0.1;
-    const auto middleOf = [&](const Field& field) {
-        const RgbImage image = drawHeatMap(query, field, options);
-        EXPECT_EQ(image.pixels.size(), 64U * 64U);
-        EXPECT_EQ(image.pixels.front(), 0xffffffU);
-        const std::uint32_t pixel = image.pixels[32 * 64 + 32];
-        return glm::ivec3(pixel >> 16, pixel >> 8 & 0xffU, pixel & 0xffU);
-    };
-    const auto constant = [](float f) {
-        return [f](const glm::vec3&) -> std::optional<FieldValue> { return FieldValue{f, glm::vec3(0.0F)}; };
-    };
-    const glm::ivec3 blue = middleOf(constant(-0.1F));
-    EXPECT_GT(blue.z, blue.x + 60);
-    const glm::ivec3 orange = middleOf(constant(0.1F));
-    EXPECT_GT(orange.x, orange.z + 60);
-    const glm::ivec3 neutral = middleOf(constant(0.0F));
-    EXPECT_LT(std::abs(neutral.x - neutral.z), 12);
-    EXPECT_GT(neutral.y, 220);
-}
+// --- reports ---
 
 TEST(AccuracyReport, JsonHasEveryField) {
     const TriangleMesh mesh = makeBoxMesh({0, 0, 0}, {1, 2, 0.5});

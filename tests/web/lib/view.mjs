@@ -27,7 +27,7 @@ export function meshData(file) {
 
 /** Data of a page that shows a collider's bytes. */
 export const pageData = (name, bytes, more = {}) =>
-    ({ format: 1, name, collider: bytes && Buffer.from(bytes).toString("base64"), shows: null, mesh: null, check: null, scene: null,
+    ({ format: 2, name, collider: bytes && Buffer.from(bytes).toString("base64"), shows: null, mesh: null, check: null, scene: null,
        files: null, serve: null, ...more });
 
 /** Writes the page with that data; its address. data: an object, or text as it is. */
