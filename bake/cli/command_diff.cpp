@@ -7,7 +7,7 @@
 #include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "formats/container.h"
-#include "formats/container_parts.h"
+#include "formats/container_reader.h"
 #include "runtime/tool/command_line.h"
 #include "runtime/tool/memory_option.h"
 #include "runtime/tool/option_values.h"
