@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <glm/geometric.hpp>
-#include <numbers>
-#include <span>
+#include <glm/common.hpp>
+#include <glm/vec3.hpp>
 
 #include "formats/base/text.h"
+#include "formats/nearest_surface.h"
 
 namespace relief {
 namespace {
@@ -87,214 +86,109 @@ std::vector<Difference> provenanceDifferences(const Provenance& a, const Provena
     return all.found;
 }
 
-/// The bits that stand for the depth of an end: a code, the bits of a half, or nothing of a float's.
-std::uint16_t depthCode(MapFormat format, std::span<const std::byte> texel, std::size_t end) {
-    if (isFrontBack(format)) {
-        std::uint16_t code = 0;
-        std::memcpy(&code, texel.data() + 2 * (2 + end), sizeof(code));
-        return code;
+constexpr double kMargin = 0.1;  // round the box, of its longest side
+constexpr double kNear = 0.01;   // of the same
+constexpr std::uint64_t kMapsAtAllPoints = 16;
+constexpr double kShare = 0.99;  // of DifferenceStatistics::percentile_99
+
+/// The digits of i in a base, mirrored at the point: Halton's sequence along one axis, in [0, 1).
+double mirrored(std::uint64_t i, std::uint64_t base) {
+    double value = 0.0;
+    double digit = 1.0;
+    for (; i > 0; i /= base) {
+        digit /= static_cast<double>(base);
+        value += digit * static_cast<double>(i % base);
     }
-    return static_cast<std::uint16_t>(std::to_integer<unsigned>(texel[2]) << 8 |
-                                      std::to_integer<unsigned>(texel[3]));
+    return value;
 }
 
-bool hasSurface(MapFormat format, std::span<const std::byte> texel, std::size_t end) {
-    if (format == MapFormat::kFloat32) {
-        float depth = 0.0F;
-        std::memcpy(&depth, texel.data() + 12, sizeof(depth));
-        return depth >= 0.0F;
-    }
-    return depthCode(format, texel, end) != 0;
+bool knowsDistance(const SurfaceSample& sample) {
+    return sample.map >= 0 && std::abs(sample.distance) < kFarOutside;
 }
 
-/// By tangent: the cosine of a small angle says little about it.
-double degreesBetween(const glm::vec3& a, const glm::vec3& b) {
-    if (a == b) {
-        return 0.0;
-    }
-    const glm::dvec3 u(a);
-    const glm::dvec3 v(b);
-    const double angle = std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v));  // libm: for a report
-    return angle * 180.0 / std::numbers::pi;
-}
-
-/// Amounts above 0; how many are 0 follows from `EndDifference::both`. Floats: half the memory, and their
-/// rounding is far below what a depth or a normal is stored with.
-struct Amounts {
-    std::vector<float> depth;
-    std::vector<float> normal;
-    double depth_sum = 0.0;
-    double normal_sum = 0.0;
-};
-
-DifferenceStatistics statisticsOf(std::span<float> amounts, double sum, std::uint64_t count) {
-    DifferenceStatistics result;
-    result.differing = amounts.size();
-    if (amounts.empty()) {
-        return result;
-    }
-    result.max = static_cast<double>(*std::max_element(amounts.begin(), amounts.end()));
-    result.mean = sum / static_cast<double>(count);
-    // The rank-th of all amounts, from 1; the first of them are zeros.
-    const std::uint64_t rank = count - count / 100;
-    const std::uint64_t zeros = count - amounts.size();
-    if (rank > zeros) {
-        const auto at = amounts.begin() + static_cast<std::ptrdiff_t>(rank - zeros - 1);
-        std::nth_element(amounts.begin(), at, amounts.end());
-        result.percentile_99 = static_cast<double>(*at);
-    }
-    return result;
-}
-
-/// Call in the order of the texels, before statisticsOf reorders them.
-double sumOf(std::span<const float> amounts) {
-    double sum = 0.0;
-    for (const float amount : amounts) {
-        sum += static_cast<double>(amount);
-    }
-    return sum;
-}
-
-class MapComparison {
+/// What is said of points, one after the other.
+class Points {
   public:
-    MapComparison(const DepthMap& a, const DepthMap& b, const CompareOptions& options)
-        : a_(a), b_(b), options_(options) {}
-
-    /// \param end  0 the front, 1 the back.
-    EndDifference run(std::size_t end, Amounts& amounts) const {
-        const std::size_t size = texelSize(a_.format);
-        const std::size_t first_depth = amounts.depth.size();
-        const std::size_t first_normal = amounts.normal.size();
-        EndDifference result;
-        result.ends = a_.texels.size() / size;
-        for (std::size_t at = 0; at < a_.texels.size(); at += size) {
-            const auto texel_a = std::span(a_.texels).subspan(at, size);
-            const auto texel_b = std::span(b_.texels).subspan(at, size);
-            const bool in_a = hasSurface(a_.format, texel_a, end);
-            const bool in_b = hasSurface(a_.format, texel_b, end);
-            result.only_a += in_a && !in_b ? 1 : 0;
-            result.only_b += in_b && !in_a ? 1 : 0;
-            if (!in_a || !in_b) {
-                continue;
-            }
-            ++result.both;
-            if (std::memcmp(texel_a.data(), texel_b.data(), size) != 0) {
-                result.beyond += compareSurfaces(texel_a, texel_b, end, amounts) ? 1 : 0;
-            }
+    void add(const SurfaceSample& a, const SurfaceSample& b) {
+        ++result_.points;
+        result_.only_a += a.inside() && !b.inside() ? 1 : 0;
+        result_.only_b += b.inside() && !a.inside() ? 1 : 0;
+        if (knowsDistance(a) != knowsDistance(b)) {
+            ++result_.one_known;
+        } else if (knowsDistance(a)) {
+            distances_.push_back(std::abs(double{a.distance} - double{b.distance}));
         }
-        const std::span<float> depths = std::span(amounts.depth).subspan(first_depth);
-        const std::span<float> normals = std::span(amounts.normal).subspan(first_normal);
-        const double depth_sum = sumOf(depths);
-        const double normal_sum = sumOf(normals);
-        amounts.depth_sum += depth_sum;
-        amounts.normal_sum += normal_sum;
-        result.depth = statisticsOf(depths, depth_sum, result.both);
-        result.normal = statisticsOf(normals, normal_sum, result.both);
-        return result;
     }
 
-    [[nodiscard]] std::uint64_t texelsDiffering() const {
-        const std::size_t size = texelSize(a_.format);
-        std::uint64_t count = 0;
-        for (std::size_t at = 0; at < a_.texels.size(); at += size) {
-            count += std::memcmp(&a_.texels[at], &b_.texels[at], size) != 0 ? 1 : 0;
+    PointsDifference done() {
+        result_.distances = distances_.size();
+        DifferenceStatistics& statistics = result_.distance;
+        double sum = 0.0;
+        std::sort(distances_.begin(), distances_.end());  // first: the sum then has one order
+        for (const double distance : distances_) {
+            sum += distance;
+            statistics.differing += distance > 0.0 ? 1 : 0;
         }
-        return count;
+        if (!distances_.empty()) {
+            const auto count = static_cast<double>(distances_.size());
+            statistics.max = distances_.back();
+            statistics.mean = sum / count;
+            statistics.percentile_99 = distances_[static_cast<std::size_t>(std::ceil(kShare * count)) - 1];
+        }
+        return result_;
     }
 
   private:
-    /// \return whether they differ by more than the options allow.
-    bool compareSurfaces(std::span<const std::byte> texel_a, std::span<const std::byte> texel_b,
-                         std::size_t end, Amounts& amounts) const {
-        const Texel decoded_a = decodeTexel(a_.format, texel_a);
-        const Texel decoded_b = decodeTexel(a_.format, texel_b);
-        const Surface& a = end == 0 ? *decoded_a.front : *decoded_a.back;
-        const Surface& b = end == 0 ? *decoded_b.front : *decoded_b.back;
-        const double depth =
-            a_.format == MapFormat::kFloat32
-                ? std::abs(static_cast<double>(a.depth) - static_cast<double>(b.depth)) * double{kDepthSteps}
-                : std::abs(static_cast<double>(depthCode(a_.format, texel_a, end)) -
-                           static_cast<double>(depthCode(a_.format, texel_b, end)));
-        const double normal = degreesBetween(a.normal, b.normal);
-        if (depth > 0.0) {
-            amounts.depth.push_back(static_cast<float>(depth));
-        }
-        if (normal > 0.0) {
-            amounts.normal.push_back(static_cast<float>(normal));
-        }
-        return depth > options_.max_depth || normal > options_.max_normal;
-    }
-
-    const DepthMap& a_;
-    const DepthMap& b_;
-    const CompareOptions& options_;
+    PointsDifference result_;
+    std::vector<double> distances_;
 };
-
-void addCounts(EndDifference& total, const EndDifference& end) {
-    total.ends += end.ends;
-    total.both += end.both;
-    total.only_a += end.only_a;
-    total.only_b += end.only_b;
-    total.beyond += end.beyond;
-}
-
-double percentOf(std::uint64_t part, std::uint64_t whole) {
-    return whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
-}
 
 }  // namespace
 
-double EndDifference::coveragePercent() const {
-    return percentOf(coverage(), ends);
+bool ColliderDifference::any() const {
+    return !structure.empty() || std::any_of(maps.begin(), maps.end(), [](const MapDifference& map) {
+        return !map.structure.empty() || !map.same_texels;
+    });
 }
 
-double EndDifference::beyondPercent() const {
-    return percentOf(beyond, both);
-}
-
-bool ColliderDifference::structureDiffers() const {
-    return !structure.empty() ||
-           std::any_of(maps.begin(), maps.end(), [](const MapDifference& m) { return !m.structure.empty(); });
-}
-
-bool ColliderDifference::texelsDiffer() const {
-    return std::any_of(maps.begin(), maps.end(),
-                       [](const MapDifference& m) { return m.texels_differing > 0; });
-}
-
-const char* depthUnit(MapFormat format) {
-    return format == MapFormat::kFrontBackHalf ? "ulp" : "1/65534";
-}
-
-ColliderDifference compareColliders(const Collider& a, const Collider& b, const CompareOptions& options) {
+ColliderDifference compareColliders(const Collider& a, const Collider& b) {
     ColliderDifference result;
     result.structure = colliderStructure(a, b);
     result.provenance = provenanceDifferences(a.provenance, b.provenance);
-    Amounts amounts;
     for (std::size_t i = 0; i < std::min(a.maps.size(), b.maps.size()); ++i) {
-        const DepthMap& map_a = a.maps[i];
-        const DepthMap& map_b = b.maps[i];
-        MapDifference& map = result.maps.emplace_back();
-        map.index = i;
-        map.structure = mapStructure(map_a, map_b);
-        map.compared =
-            map_a.format == map_b.format && map_a.width == map_b.width && map_a.height == map_b.height;
-        if (!map.compared) {
-            continue;
-        }
-        const MapComparison comparison(map_a, map_b, options);
-        map.texels = map_a.texels.size() / texelSize(map_a.format);
-        map.texels_differing = comparison.texelsDiffering();
-        map.front = comparison.run(0, amounts);
-        addCounts(result.total, map.front);
-        if (isFrontBack(map_a.format)) {
-            map.back = comparison.run(1, amounts);
-            addCounts(result.total, map.back);
+        result.maps.push_back({mapStructure(a.maps[i], b.maps[i]), a.maps[i].texels == b.maps[i].texels});
+    }
+    return result;
+}
+
+double PointsDifference::sidesPercent() const {
+    return points == 0 ? 0.0 : 100.0 * static_cast<double>(only_a + only_b) / static_cast<double>(points);
+}
+
+FieldsDifference compareFields(const Collider& a, const Collider& b, const CompareFieldsOptions& options) {
+    const glm::dvec3 low = glm::min(glm::dvec3(a.bounds.min), glm::dvec3(b.bounds.min));
+    const glm::dvec3 high = glm::max(glm::dvec3(a.bounds.max), glm::dvec3(b.bounds.max));
+    const glm::dvec3 size = high - low;
+    const double longest = std::max({size.x, size.y, size.z});
+    Points box;
+    Points near;
+    const std::uint64_t maps = std::max<std::uint64_t>(a.maps.size() + b.maps.size(), kMapsAtAllPoints);
+    const std::uint64_t points = options.points * kMapsAtAllPoints / maps;
+    for (std::uint64_t i = 1; i <= points; ++i) {
+        const glm::dvec3 share(mirrored(i, 2), mirrored(i, 3), mirrored(i, 5));
+        const glm::dvec3 offset = glm::dvec3(mirrored(i, 7), mirrored(i, 11), mirrored(i, 13)) * 2.0 - 1.0;
+        const glm::vec3 p(low - kMargin * longest + share * (size + 2.0 * kMargin * longest));
+        const SurfaceSample of_a = nearestSurface(a, p);
+        const SurfaceSample of_b = nearestSurface(b, p);
+        box.add(of_a, of_b);
+        for (const SurfaceSample& of : {of_a, of_b}) {
+            if (knowsDistance(of)) {
+                const glm::vec3 q(glm::dvec3(of.point) + kNear * longest * offset);
+                near.add(nearestSurface(a, q), nearestSurface(b, q));
+            }
         }
     }
-    result.total.depth = statisticsOf(amounts.depth, amounts.depth_sum, result.total.both);
-    result.total.normal = statisticsOf(amounts.normal, amounts.normal_sum, result.total.both);
-    return result;
+    return {box.done(), near.done()};
 }
 
 }  // namespace relief

@@ -1,7 +1,6 @@
-// Two colliders texel by texel: what `relief diff` says.
+// Two colliders: what `relief diff` reports.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -18,7 +17,24 @@ struct Difference {
     friend bool operator==(const Difference&, const Difference&) = default;
 };
 
-/// Statistics of the amounts by which surfaces differ; surfaces that are the same count as 0.
+struct MapDifference {
+    std::vector<Difference> structure;  ///< format, size, compare, decode, transform, flags
+    bool same_texels = false;           ///< in every bit
+};
+
+struct ColliderDifference {
+    std::vector<Difference> structure;   ///< bounds, unit, number of maps
+    std::vector<Difference> provenance;  ///< mesh and tool: where a collider comes from, not what it is
+    std::vector<MapDifference> maps;     ///< of those that both have, in order: map i of a and map i of b
+
+    /// Whether the colliders differ in anything but their provenance.
+    [[nodiscard]] bool any() const;
+};
+
+/// Compares b with a, map by map. \param a, b  valid, as readContainer returns them.
+[[nodiscard]] ColliderDifference compareColliders(const Collider& a, const Collider& b);
+
+/// Statistics of the amounts by which distances differ.
 struct DifferenceStatistics {
     std::uint64_t differing = 0;  ///< amounts above 0
     double max = 0.0;
@@ -27,58 +43,38 @@ struct DifferenceStatistics {
     friend bool operator==(const DifferenceStatistics&, const DifferenceStatistics&) = default;
 };
 
-/// One end of all texels of a map: the front, or the back of a front-back map. The total is of both ends of all maps.
-struct EndDifference {
-    std::uint64_t ends = 0;    ///< looked at: one a texel
-    std::uint64_t both = 0;    ///< with a surface in a and in b
-    std::uint64_t only_a = 0;  ///< with a surface in a alone, and the next in b alone: the coverage
+/// Both colliders, evaluated at the same points.
+struct PointsDifference {
+    std::uint64_t points = 0;
+    std::uint64_t only_a = 0;  ///< inside of a alone, and the next of b alone
     std::uint64_t only_b = 0;
-    std::uint64_t beyond = 0;     ///< of `both`, beyond CompareOptions' depth or normal
-    DifferenceStatistics depth;   ///< over `both`, in the unit that depthUnit names
-    DifferenceStatistics normal;  ///< over `both`, degrees between the decoded normals
+    std::uint64_t distances = 0;  ///< points for which both find a surface
+    std::uint64_t one_known = 0;  ///< points for which only one of them does
+    DifferenceStatistics
+        distance;  ///< over `distances`: signed distances to the nearest surface, object units
 
-    [[nodiscard]] std::uint64_t coverage() const { return only_a + only_b; }
-    /// Shares in percent; 0 of nothing.
-    [[nodiscard]] double coveragePercent() const;  ///< of `ends`
-    [[nodiscard]] double beyondPercent() const;    ///< of `both`
-    friend bool operator==(const EndDifference&, const EndDifference&) = default;
+    /// Points that are on another side, in percent; 0 of no points.
+    [[nodiscard]] double sidesPercent() const;
+    friend bool operator==(const PointsDifference&, const PointsDifference&) = default;
 };
 
-struct MapDifference {
-    std::size_t index = 0;
-    std::vector<Difference> structure;  ///< format, size, compare, decode, transform, flags
-    /// Whether the texels were compared: format, width and height are the same. All below is 0 otherwise.
-    bool compared = false;
-    std::uint64_t texels = 0;            ///< of the map
-    std::uint64_t texels_differing = 0;  ///< in any bit, also in those that no reader looks at
-    EndDifference front;
-    EndDifference back;  ///< of front-back maps
+struct FieldsDifference {
+    /// Spread evenly over the box that holds the bounds of both and a tenth of its longest side around them.
+    PointsDifference box;
+    /// Near the surfaces of both, half of them each: up to a hundredth of that longest side away along each axis.
+    PointsDifference near;
+    friend bool operator==(const FieldsDifference&, const FieldsDifference&) = default;
 };
 
-/// Where a surface may be, and which way it may look, without counting as `beyond`.
-struct CompareOptions {
-    double max_depth = 0.0;   ///< units of depthUnit
-    double max_normal = 0.0;  ///< degrees
+struct CompareFieldsOptions {
+    /// In the box; fewer where both have more than 16 maps together, each of which is evaluated at each point. As many near
+    /// each collider's surface, less those from which no surface is found.
+    std::uint32_t points = 10'000;
 };
 
-struct ColliderDifference {
-    std::vector<Difference> structure;   ///< bounds, unit, number of maps
-    std::vector<Difference> provenance;  ///< mesh and tool: where a collider comes from, not what it is
-    std::vector<MapDifference> maps;     ///< of those that both have, in order: map i of a and map i of b
-    EndDifference total;                 ///< both ends of all maps compared; depths in each map's own unit
-
-    [[nodiscard]] bool structureDiffers() const;  ///< of the collider or of a map
-    [[nodiscard]] bool texelsDiffer() const;      ///< in a bit
-};
-
-/// The step from one stored depth to the next: "1/65534" of the depth range of fixed point and, where
-/// amounts may be fractions, of floats; "ulp" of halves.
-[[nodiscard]] const char* depthUnit(MapFormat format);
-
-/// Compares b with a. Of compare(b, a) only `a` and `b` of each Difference, and only_a and only_b, are
-/// swapped. Takes up to 8 bytes of memory for each pair of surfaces that differ.
-/// \param a, b  valid, as readContainer returns them.
-[[nodiscard]] ColliderDifference compareColliders(const Collider& a, const Collider& b,
-                                                  const CompareOptions& options = {});
+/// The points are those of Halton's sequence, the same each time. Of compareFields(b, a) only only_a and only_b are
+/// swapped. \param a, b  valid, as readContainer returns them, and in one unit.
+[[nodiscard]] FieldsDifference compareFields(const Collider& a, const Collider& b,
+                                             const CompareFieldsOptions& options = {});
 
 }  // namespace relief

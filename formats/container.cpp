@@ -4,16 +4,15 @@
 
 #include <algorithm>
 #include <cstring>
-#include <exception>
 #include <string>
 
 #include "collider_generated.h"
 #include "formats/bake_first.h"
+#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
 #include "formats/compression.h"
-#include "formats/container_header.h"
-#include "formats/container_parts.h"
+#include "formats/container_reader.h"
 #include "formats/row_spans.h"
 #include "formats/validate.h"
 
@@ -21,19 +20,6 @@ namespace relief {
 namespace {
 
 constexpr int kZstdLevelMax = 19;
-
-/// All of a file but its texels.
-struct Description {
-    ContainerHeader header;
-    Collider collider;            ///< without maps
-    std::vector<ParsedMap> maps;  ///< their frames are valid
-};
-
-tl::unexpected<Error> invalidMap(std::size_t index, const std::string& message) {
-    return tl::unexpected<Error>(inMap(index, {ErrorCode::kInvalidInput, message}));
-}
-
-// --- write ---
 
 /// A map's payload as it will lie in the file: `packed`, or the map's own texels where that is empty.
 struct PackedPayload {
@@ -180,144 +166,43 @@ Result<std::vector<std::byte>> writeChecked(const Collider& collider, const Cont
     return bytes;
 }
 
-// --- read ---
-
-/// Bytes that were found to lie within the file.
-std::span<const std::byte> part(std::span<const std::byte> bytes, std::uint64_t offset, std::uint64_t size) {
-    return bytes.subspan(static_cast<std::size_t>(offset), static_cast<std::size_t>(size));
-}
-
-/// Maps whose frames and sizes are in order, within the limits.
-Result<void> readMaps(ParsedMetadata&& parsed, const ContainerLimits& limits, std::uint64_t file_size,
-                      Description& into) {
-    if (parsed.maps.empty()) {
-        return invalidInput("there is no map");
-    }
-    std::uint64_t texel_bytes = 0;
-    for (std::size_t i = 0; i < parsed.maps.size(); ++i) {
-        ParsedMap& map = parsed.maps[i];
-        if (const Result<void> ok =
-                validateFrame(map.frame).and_then([&] { return validatePayloadSizes(map); });
-            !ok) {
-            return tl::unexpected<Error>(inMap(i, ok.error()));
-        }
-        texel_bytes += map.payload.info.raw_size;
-        if (const auto beyond = texelsBeyond(limits, texel_bytes, file_size)) {
-            return tl::unexpected<Error>(inMap(i, {ErrorCode::kLimit, *beyond}));
-        }
-        into.maps.push_back(std::move(map));
-    }
-    return {};
-}
-
-Result<void> readMetadata(std::span<const std::byte> bytes, const ContainerLimits& limits,
-                          std::uint64_t file_size, Description& into) {
-    ParsedMetadata parsed = RELIEF_TRY(parseMetadata(bytes, limits.maps));
-    into.collider = std::move(parsed.collider);
-    return validateDescription(into.collider).and_then([&] {
-        return readMaps(std::move(parsed), limits, file_size, into);
-    });
-}
-
-/// Payloads lie one after the other, each at the next multiple of 64, zeros between, and nothing behind.
-Result<void> checkLayout(std::span<const std::byte> bytes, const Description& description) {
-    std::uint64_t end = description.header.metadata_offset + description.header.metadata_size;
-    for (std::size_t i = 0; i < description.maps.size(); ++i) {
-        const PayloadInfo& info = description.maps[i].payload.info;
-        const std::uint64_t expected = alignPayload(end);
-        if (info.offset != expected) {
-            return invalidMap(i, "its payload's offset is " + std::to_string(info.offset) +
-                                     " where the layout has " + std::to_string(expected));
-        }
-        if (expected > bytes.size() || info.stored_size > bytes.size() - expected) {
-            return invalidMap(i, "its payload at byte " + std::to_string(expected) + " of " +
-                                     std::to_string(info.stored_size) +
-                                     " bytes reaches beyond the end of the file");
-        }
-        const auto padding = part(bytes, end, expected - end);
-        if (const auto at =
-                std::find_if(padding.begin(), padding.end(), [](std::byte b) { return b != std::byte{0}; });
-            at != padding.end()) {
-            return invalidMap(i, "damaged: byte " +
-                                     std::to_string(end + static_cast<std::uint64_t>(at - padding.begin())) +
-                                     ", padding before its payload, is not zero");
-        }
-        end = expected + info.stored_size;
-    }
-    if (end != bytes.size()) {
-        return invalidInput(std::to_string(bytes.size() - end) +
-                            " bytes follow the last payload's end at byte " + std::to_string(end));
-    }
-    return {};
-}
-
-Result<Description> readDescription(std::span<const std::byte> bytes, const ContainerLimits& limits) {
-    const ContainerHeader header = RELIEF_TRY(readContainerHeader(bytes));
-    const auto metadata = part(bytes, header.metadata_offset, header.metadata_size);
-    if (header.metadata_hash != xxh3_64(metadata)) {
-        return invalidInput("damaged: the checksum at byte 48 is not that of the metadata");
-    }
-    Description description;
-    description.header = header;
-    RELIEF_TRY(readMetadata(metadata, limits, bytes.size(), description));
-    RELIEF_TRY(checkLayout(bytes, description));
-    return description;
-}
-
-Result<void> readTexels(std::span<const std::byte> bytes, ParsedMap& map) {
-    const StoredPayload& payload = map.payload;
-    const auto stored = part(bytes, payload.info.offset, payload.info.stored_size);
-    if (payload.hash != xxh3_64(stored)) {
-        return invalidInput("damaged: the checksum of its payload at byte " +
-                            std::to_string(payload.info.offset) + " is wrong");
-    }
-    map.frame.texels = RELIEF_TRY(unpackPayload(stored, map));
-    return validateTexels(map.frame);
-}
-
-Result<Collider> readCollider(std::span<const std::byte> bytes, const ContainerLimits& limits) {
-    Description description = RELIEF_TRY(readDescription(bytes, limits));
-    for (std::size_t i = 0; i < description.maps.size(); ++i) {
-        ParsedMap& map = description.maps[i];
-        if (const Result<void> ok = readTexels(bytes, map); !ok) {
-            return tl::unexpected<Error>(inMap(i, ok.error()));
-        }
-        description.collider.maps.push_back(std::move(map.frame));
-    }
-    return std::move(description.collider);
-}
-
-/// Runs f with the exceptions of allocation, by the standard library and by FlatBuffers, as an Error.
-template <class F>
-auto withoutExceptions(F f) -> decltype(f()) {
-    try {
-        return f();
-    } catch (const std::exception&) {
-        return fail(ErrorCode::kLimit, "the collider does not fit into memory; use fewer or smaller maps");
-    }
-}
-
 }  // namespace
 
 Result<std::vector<std::byte>> writeContainer(const Collider& collider,
                                               const ContainerWriteOptions& options) {
-    return withoutExceptions([&]() -> Result<std::vector<std::byte>> {
+    return withinMemory([&]() -> Result<std::vector<std::byte>> {
         RELIEF_TRY(checkWritable(collider, options));
         return writeChecked(collider, options);
     });
 }
 
 Result<Collider> readContainer(std::span<const std::byte> bytes, const ContainerLimits& limits) {
-    return withoutExceptions([&] { return readCollider(bytes, limits); });
+    return withinMemory([&]() -> Result<Collider> {
+        ContainerReader reader(bytes, limits);
+        reader.readDescription();
+        std::optional<Error> refused = reader.refusal();
+        for (std::size_t i = 0; !refused && i < reader.maps.size(); ++i) {
+            reader.readTexels(i);
+            reader.collider.maps.push_back(std::move(reader.maps[i].frame));
+            refused = reader.refusal();
+        }
+        if (refused) {
+            return tl::unexpected<Error>(std::move(*refused));
+        }
+        return std::move(reader.collider);
+    });
 }
 
 Result<ContainerInfo> readContainerInfo(std::span<const std::byte> bytes, const ContainerLimits& limits) {
-    return withoutExceptions([&]() -> Result<ContainerInfo> {
-        const Description description = RELIEF_TRY(readDescription(bytes, limits));
-        const ContainerHeader& header = description.header;
-        ContainerInfo info{header.major, header.minor, header.file_size, {}};
-        for (const ParsedMap& map : description.maps) {
-            info.payloads.push_back(map.payload.info);
+    return withinMemory([&]() -> Result<ContainerInfo> {
+        ContainerReader reader(bytes, limits);
+        reader.readDescription();
+        if (std::optional<Error> refused = reader.refusal()) {
+            return tl::unexpected<Error>(std::move(*refused));
+        }
+        ContainerInfo info{reader.header.major, reader.header.minor, reader.header.file_size, {}};
+        for (const StoredMap& map : reader.maps) {
+            info.payloads.push_back(map.payload);
         }
         return info;
     });
@@ -326,20 +211,13 @@ Result<ContainerInfo> readContainerInfo(std::span<const std::byte> bytes, const 
 Result<Collider> loadCollider(const std::filesystem::path& path, const ContainerLimits& limits) {
     const std::vector<std::byte> bytes = RELIEF_TRY(readFile(path, containerSizeMax(limits)));
     RELIEF_TRY(refuseMesh(path, bytes));
-    Result<Collider> collider = readContainer(bytes, limits);
-    if (!collider) {
-        return fail(collider.error().code, quotedPath(path) + ": " + collider.error().message);
-    }
-    return collider;
+    return inFront(quotedPath(path), readContainer(bytes, limits));
 }
 
 Result<void> saveCollider(const std::filesystem::path& path, const Collider& collider,
                           const ContainerWriteOptions& options) {
-    const Result<std::vector<std::byte>> bytes = writeContainer(collider, options);
-    if (!bytes) {
-        return fail(bytes.error().code, "cannot write " + quotedPath(path) + ": " + bytes.error().message);
-    }
-    return writeFile(path, *bytes);
+    return writeFile(
+        path, RELIEF_TRY(inFront("cannot write " + quotedPath(path), writeContainer(collider, options))));
 }
 
 }  // namespace relief

@@ -2,11 +2,12 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
-#include "formats/base/result.h"
+#include "formats/base/hash.h"
 #include "formats/container_limits.h"
 
 namespace relief {
@@ -29,15 +30,15 @@ struct ContainerHeader {
     std::uint64_t header_hash = 0;    ///< XXH3-64 of the 56 bytes before it
 
     /// What header_hash has to be.
-    [[nodiscard]] std::uint64_t computeHash() const;
+    [[nodiscard]] std::uint64_t computeHash() const {
+        return xxh3_64(std::as_bytes(std::span(this, 1)).first(offsetof(ContainerHeader, header_hash)));
+    }
 };
+static_assert(std::endian::native == std::endian::little,
+              "containers are little-endian and copied as they are");
 static_assert(sizeof(ContainerHeader) == 64);
 static_assert(offsetof(ContainerHeader, file_size) == 24 && offsetof(ContainerHeader, header_hash) == 56);
 
 inline constexpr std::uint64_t kContainerMetadataMax = std::uint64_t{16} << 20;  ///< bytes
-
-/// The header of a whole file, every field checked against `bytes`: the metadata lies within them.
-/// Errors: kInvalidInput, kUnsupported (another major version), kLimit.
-[[nodiscard]] Result<ContainerHeader> readContainerHeader(std::span<const std::byte> bytes);
 
 }  // namespace relief

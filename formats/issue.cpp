@@ -35,7 +35,6 @@ constexpr std::array kKinds = {
     IssueKind{IssueCode::kPayloadChecksum, Severity::kError, "the checksum of a payload is wrong"},
     IssueKind{IssueCode::kPayloadUnpack, Severity::kError, "a payload does not unpack to its texels"},
     IssueKind{IssueCode::kTexels, Severity::kError, "a texel holds what no texel may hold"},
-    IssueKind{IssueCode::kRefused, Severity::kError, "the reader refuses the file for another reason"},
     IssueKind{IssueCode::kLaterMinor, Severity::kWarning,
               "a later minor version: unknown fields are ignored"},
     IssueKind{IssueCode::kNoMeshHash, Severity::kWarning, "no hash of the mesh"},

@@ -46,7 +46,6 @@ enum class IssueCode : std::uint16_t {
     kPayloadChecksum = 1407,
     kPayloadUnpack = 1408,
     kTexels = 1501,
-    kRefused = 1901,
     kLaterMinor = 2001,
     kNoMeshHash = 2101,
     kNoToolVersion = 2102,

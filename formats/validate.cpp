@@ -28,23 +28,36 @@ std::string words(const glm::vec3& v) {
     return "(" + number(v.x) + ", " + number(v.y) + ", " + number(v.z) + ")";
 }
 
-Result<void> validateText(const char* field, std::string_view text, std::size_t size_max) {
+/// What is wrong with a text of the metadata, or "".
+std::string faultOfText(const char* field, std::string_view text, std::size_t size_max) {
     if (text.size() > size_max) {
-        return invalidInput(std::string(field) + " has " + std::to_string(text.size()) + " bytes, " +
-                            std::to_string(size_max) + " are allowed");
+        return std::string(field) + " has " + std::to_string(text.size()) + " bytes, " +
+               std::to_string(size_max) + " are allowed";
     }
-    if (!isPlainText(text)) {
-        return invalidInput(std::string(field) + " is not UTF-8 without control characters");
+    return isPlainText(text) ? "" : std::string(field) + " is not UTF-8 without control characters";
+}
+
+std::string faultOfBounds(const Bounds& bounds) {
+    if (!isFinite(bounds.min) || !isFinite(bounds.max)) {
+        return "bounds are not finite";
+    }
+    if (bounds.min.x > bounds.max.x || bounds.min.y > bounds.max.y || bounds.min.z > bounds.max.z) {
+        return "bounds.min " + words(bounds.min) + " lies beyond bounds.max " + words(bounds.max);
     }
     return {};
 }
 
-Result<void> validateHash(std::string_view hash) {
+std::string faultOfName(const std::string& name) {
+    return name.find('/') != std::string::npos
+               ? "provenance.mesh_name has a '/': it is a name without its folder"
+               : faultOfText("provenance.mesh_name", name, kMeshNameMax);
+}
+
+std::string faultOfHash(std::string_view hash) {
     const bool digits = hash.find_first_not_of("0123456789abcdef") == std::string_view::npos;
-    if (!digits || (!hash.empty() && hash.size() != 32)) {
-        return invalidInput("provenance.mesh_hash is neither empty nor 32 lower-case hexadecimal digits");
-    }
-    return {};
+    return digits && (hash.empty() || hash.size() == 32)
+               ? ""
+               : "provenance.mesh_hash is neither empty nor 32 lower-case hexadecimal digits";
 }
 
 Result<void> validateSize(const DepthMap& map) {
@@ -144,24 +157,19 @@ bool isPlainText(std::string_view text) {
     return cleanUtf8(text) == text;
 }
 
-Result<void> validateDescription(const Collider& collider) {
-    const Bounds& bounds = collider.bounds;
-    if (!isFinite(bounds.min) || !isFinite(bounds.max)) {
-        return invalidInput("bounds are not finite");
-    }
-    if (bounds.min.x > bounds.max.x || bounds.min.y > bounds.max.y || bounds.min.z > bounds.max.z) {
-        return invalidInput("bounds.min " + words(bounds.min) + " lies beyond bounds.max " +
-                            words(bounds.max));
-    }
+std::vector<Issue> descriptionIssues(const Collider& collider) {
     const Provenance& from = collider.provenance;
-    if (from.mesh_name.find('/') != std::string::npos) {
-        return invalidInput("provenance.mesh_name has a '/': it is a name without its folder");
-    }
-    return validateText("unit", collider.unit, kUnitMax)
-        .and_then([&] { return validateText("provenance.mesh_name", from.mesh_name, kMeshNameMax); })
-        .and_then([&] { return validateHash(from.mesh_hash); })
-        .and_then([&] { return validateText("provenance.tool_version", from.tool_version, kToolVersionMax); })
-        .and_then([&] { return validateText("provenance.options", from.options, kOptionsMax); });
+    using enum IssueCode;
+    std::vector<Issue> issues = {
+        {kBounds, -1, {}, faultOfBounds(collider.bounds)},
+        {kUnit, -1, {}, faultOfText("unit", collider.unit, kUnitMax)},
+        {kProvenance, -1, {}, faultOfName(from.mesh_name)},
+        {kProvenance, -1, {}, faultOfHash(from.mesh_hash)},
+        {kProvenance, -1, {}, faultOfText("provenance.tool_version", from.tool_version, kToolVersionMax)},
+        {kProvenance, -1, {}, faultOfText("provenance.options", from.options, kOptionsMax)},
+    };
+    std::erase_if(issues, [](const Issue& issue) { return issue.message.empty(); });
+    return issues;
 }
 
 Result<void> validateFrame(const DepthMap& map) {
@@ -207,8 +215,8 @@ Result<void> validateTexels(const DepthMap& map) {
 }
 
 Result<void> validate(const Collider& collider) {
-    if (const Result<void> ok = validateDescription(collider); !ok) {
-        return ok;
+    if (const std::vector<Issue> issues = descriptionIssues(collider); !issues.empty()) {
+        return invalidInput(issues.front().message);
     }
     if (collider.maps.empty()) {
         return invalidInput("there is no map");

@@ -1,12 +1,14 @@
 // The invariants of a collider, as formats/README.md words them. The container's writer and its reader both
-// ask here, so that whatever is written can be read back.
+// use them, so that whatever is written can be read back.
 #pragma once
 
 #include <cstddef>
 #include <string_view>
+#include <vector>
 
 #include "formats/base/result.h"
 #include "formats/collider.h"
+#include "formats/issue.h"
 
 namespace relief {
 
@@ -18,11 +20,11 @@ inline constexpr float kUnitLengthTolerance = 1e-3F;    ///< of a float texel's 
 inline constexpr double kFrameCosineMax = 1e-4;         ///< between any two of T's rows, either sign
 inline constexpr double kObjectPerMapTolerance = 1e-3;  ///< relative, against the inverse of T
 
-// All functions fail with kInvalidInput, or with kLimit for a map of too many texels. A message names the field
+// All Results fail with kInvalidInput, or with kLimit for a map of too many texels. A message names the field
 // and its value; the functions for one map leave the map's index to the caller.
 
-/// Bounds, unit and provenance.
-[[nodiscard]] Result<void> validateDescription(const Collider& collider);
+/// What is wrong with bounds (first), unit and provenance.
+[[nodiscard]] std::vector<Issue> descriptionIssues(const Collider& collider);
 
 /// All of a map but its texels, which may be missing.
 [[nodiscard]] Result<void> validateFrame(const DepthMap& map);

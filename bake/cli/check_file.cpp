@@ -5,7 +5,7 @@
 #include "formats/bake_first.h"
 #include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
-#include "formats/container_parts.h"
+#include "formats/container_reader.h"
 #include "runtime/tool/command_line.h"
 
 namespace relief {

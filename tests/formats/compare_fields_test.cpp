@@ -1,5 +1,5 @@
 // The difference of two fields against shapes whose difference is known in closed form.
-#include "formats/compare_fields.h"
+#include "formats/compare.h"
 
 #include <gtest/gtest.h>
 

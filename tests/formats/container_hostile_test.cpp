@@ -259,13 +259,13 @@ TEST(Crafted, HeaderFields) {
     expectRefused(header([](ContainerHeader& h) { h.metadata_offset = ~std::uint64_t{0}; }), fields);
     expectRefused(header([](ContainerHeader& h) { h.file_size += 1; }), "truncated");
     expectRefused(header([](ContainerHeader& h) { h.file_size = ~std::uint64_t{0}; }), "truncated");
-    expectRefused(header([](ContainerHeader& h) { h.file_size -= 1; }), "1 bytes follow its end");
-    expectRefused(header([](ContainerHeader& h) { h.file_size = 0; }), "follow its end");
+    expectRefused(header([](ContainerHeader& h) { h.file_size -= 1; }), "1 bytes more than the header says");
+    expectRefused(header([](ContainerHeader& h) { h.file_size = 0; }), "more than the header says");
     expectRefused(header([](ContainerHeader& h) { h.metadata_size = ~std::uint64_t{0}; }), "metadata_size",
                   ErrorCode::kLimit);
     expectRefused(header([](ContainerHeader& h) { h.metadata_size = 1 << 24; }),
-                  "beyond the end of the file");
-    expectRefused(header([](ContainerHeader& h) { h.metadata_hash ^= 1; }), "checksum at byte 48");
+                  "reaches beyond the end");
+    expectRefused(header([](ContainerHeader& h) { h.metadata_hash ^= 1; }), "the checksum of the metadata is wrong, at byte 48");
 }
 
 TEST(Crafted, MetadataThatIsNoTable) {
@@ -386,14 +386,14 @@ TEST(Crafted, PayloadSizesAndPlaces) {
     expectRefused(second([](MapRecipe& m) { m.offset = ~std::uint64_t{0} - 63; }),
                   "map 1: its payload's offset is");
     expectRefused(second([](MapRecipe& m) { m.hash_change = 1; }),
-                  "map 1: damaged: the checksum of its payload");
+                  "map 1: the checksum of its payload is wrong");
     expectRefused(second([](MapRecipe& m) { m.height = 17; }),
                   "map 1: its stored_size 1024 does not go with");
     expectRefused(second([](MapRecipe& m) {
                       m.height = 17;
                       m.stored_size = 16 * 17 * 4;
                   }),
-                  "map 1: its payload at byte");
+                  "map 1: its payload of 1088 bytes reaches beyond the end");
     expectRefused(with([](Recipe& r) { r.maps[0].offset = 64; }), "map 0: its payload's offset is 64");
     // Bytes that belong to nothing.
     expectRefused(with([](Recipe& r) {
@@ -404,10 +404,10 @@ TEST(Crafted, PayloadSizesAndPlaces) {
                           test::mendChecksums(b);
                       };
                   }),
-                  "64 bytes follow the last payload's end");
+                  "64 bytes follow the last payload");
     expectRefused(
         with([&](Recipe& r) { r.bytes = [&](std::vector<std::byte>& b) { b[first - 1] = std::byte{1}; }; }),
-        "padding before its payload, is not zero");
+        "padding before its payload is not zero");
 }
 
 TEST(Crafted, Limits) {

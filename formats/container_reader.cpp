@@ -1,0 +1,422 @@
+#include "formats/container_reader.h"
+
+#include <flatbuffers/flatbuffers.h>
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <string>
+
+#include "collider_generated.h"
+#include "formats/base/hash.h"
+#include "formats/compression.h"
+#include "formats/row_spans.h"
+#include "formats/validate.h"
+
+namespace relief {
+namespace {
+
+/// zstd packs at most a block of 128 KiB into four bytes, and an empty row of kMapSizeMax texels takes four, so a payload
+/// that claims more is a lie.
+constexpr std::uint64_t kZstdRatioMax = 32768;
+constexpr flatbuffers::uoffset_t kMetadataDepthMax = 4;  // collider, map or provenance
+
+glm::vec3 fromFb(const fb::Vec3& v) {
+    return {v.x(), v.y(), v.z()};
+}
+
+glm::vec4 fromFb(const fb::Row& r) {
+    return {r.x(), r.y(), r.z(), r.w()};
+}
+
+/// A map without its texels.
+DepthMap readFrame(const fb::Map& map) {
+    DepthMap frame;
+    frame.format = static_cast<MapFormat>(map.format());
+    frame.compare = static_cast<Compare>(map.compare());
+    frame.decode = static_cast<Decode>(map.decode());
+    frame.width = map.width();
+    frame.height = map.height();
+    const fb::Transform& transform = *map.object_to_map();
+    frame.object_to_map.row[0] = fromFb(transform.row0());
+    frame.object_to_map.row[1] = fromFb(transform.row1());
+    frame.object_to_map.row[2] = fromFb(transform.row2());
+    frame.object_per_map = fromFb(*map.object_per_map());
+    frame.encloses = map.encloses();
+    frame.empty_is_outside = map.empty_is_outside();
+    return frame;
+}
+
+/// What is wrong with texels of so many bytes in a file of so many; nothing: they may be unpacked.
+std::optional<std::string> texelsBeyond(const ContainerLimits& limits, std::uint64_t texel_bytes,
+                                        std::uint64_t file_size) {
+    if (texel_bytes > limits.texel_bytes) {
+        return "with it, the texels take more than the limit of " + std::to_string(limits.texel_bytes) +
+               " bytes";
+    }
+    const std::uint64_t worth = kUnpackedPerStored * std::min(file_size, limits.texel_bytes);
+    if (texel_bytes > std::max(limits.memory, worth)) {
+        return "with it, the texels take " + std::to_string(texel_bytes) + " bytes in memory, " +
+               std::to_string(texel_bytes / std::max<std::uint64_t>(file_size, 1)) +
+               " times the file; if you trust it, allow more with --max-memory";
+    }
+    return std::nullopt;
+}
+
+/// Checks that a payload's sizes go with its frame, which must be valid. Its place is not looked at.
+Result<void> validatePayloadSizes(const StoredMap& map) {
+    const PayloadInfo& info = map.payload;
+    if (info.packing > Packing::kRows) {
+        return invalidInput("its compression " + std::to_string(static_cast<int>(info.packing)) +
+                            " is unknown");
+    }
+    if (info.packing == Packing::kRows && !isFrontBack(map.frame.format)) {
+        return invalidInput(std::string("its compression \"rows\" does not go with its format \"") +
+                            mapFormatName(map.frame.format) + "\"");
+    }
+    if (info.raw_size != map.frame.texelBytes()) {
+        return invalidInput("its raw_size is " + std::to_string(info.raw_size) +
+                            " where its size and format need " + std::to_string(map.frame.texelBytes()) +
+                            " bytes");
+    }
+    const bool packed = info.packing != Packing::kNone;
+    if (packed ? info.stored_size >= info.raw_size : info.stored_size != info.raw_size) {
+        return invalidInput("its stored_size " + std::to_string(info.stored_size) +
+                            " does not go with its raw_size " + std::to_string(info.raw_size) +
+                            " and its compression");
+    }
+    if (packed && info.raw_size / kZstdRatioMax > info.stored_size) {
+        return invalidInput("its " + std::to_string(info.stored_size) + " stored bytes cannot hold the " +
+                            std::to_string(info.raw_size) + " that they claim");
+    }
+    return {};
+}
+
+/// The texels of a payload, whatever its packing: payload.raw_size bytes, once the sizes have been checked.
+Result<std::vector<std::byte>> unpackPayload(std::span<const std::byte> stored, const StoredMap& map) {
+    switch (map.payload.packing) {
+        case Packing::kZstd:
+            return decompress(stored, map.payload.raw_size);
+        case Packing::kRows:
+            return unpackRows(stored, map.frame);
+        case Packing::kNone:
+            break;
+    }
+    return std::vector<std::byte>(stored.begin(), stored.end());
+}
+
+bool isLimit(IssueCode code) {
+    return code == IssueCode::kMetadataLimit || code == IssueCode::kMapLimit ||
+           code == IssueCode::kMapSizeLimit || code == IssueCode::kTexelLimit;
+}
+
+/// How to come by a file that loads; "" where the message has it.
+std::string cureOf(IssueCode code) {
+    switch (code) {
+        case IssueCode::kTooShort:
+            return "; it is truncated, or no .relief container";
+        case IssueCode::kSignature:
+            return "; it is no .relief container, or a transfer as text has changed it";
+        case IssueCode::kMajorVersion:
+            return "; use a matching Relief";
+        default:
+            return isLimit(code) ? "" : "; copy the file again, or bake it again";
+    }
+}
+
+}  // namespace
+
+std::uint64_t containerSizeMax(const ContainerLimits& limits) {
+    const std::uint64_t texel_bytes = std::min(limits.texel_bytes, std::uint64_t{1} << 62);
+    return sizeof(ContainerHeader) + kContainerMetadataMax + texel_bytes + limits.maps * kPayloadAlignment;
+}
+
+const char* packingName(Packing packing) {
+    switch (packing) {
+        case Packing::kNone:
+            return "none";
+        case Packing::kZstd:
+            return "zstd";
+        case Packing::kRows:
+            return "rows";
+    }
+    return "unknown";
+}
+
+void ContainerReader::add(IssueCode code, std::string message, std::optional<std::uint64_t> offset, int map) {
+    issues.push_back({code, map, offset, std::move(message)});
+}
+
+void ContainerReader::readDescription() {
+    if (readHeader() && checkSizes() && readMetadata()) {
+        checkDescription();
+        checkMaps();
+    }
+}
+
+/// Checks the signature, the checksum and the version, and the fields that version 1 fixes.
+/// \return whether the rest of the header can be understood.
+bool ContainerReader::readHeader() {
+    if (bytes_.size() < sizeof(header)) {
+        add(IssueCode::kTooShort, std::to_string(bytes_.size()) + " bytes, where the header alone has " +
+                                      std::to_string(sizeof(header)));
+        return false;
+    }
+    ContainerHeader read;
+    std::memcpy(&read, bytes_.data(), sizeof(read));
+    if (read.signature != ContainerHeader::kSignature) {
+        add(IssueCode::kSignature, "bytes 0...11 are not the signature of a .relief container", 0);
+        return false;
+    }
+    header = read;
+    header_state = PartState::kDamaged;
+    header_intact_ = header.header_hash == header.computeHash();
+    if (!header_intact_) {
+        add(IssueCode::kHeaderChecksum, "the checksum of the header is wrong", 56);
+    }
+    const ContainerHeader expected;
+    if (header.major != expected.major) {
+        header_state = PartState::kUnreadable;
+        add(IssueCode::kMajorVersion,
+            "container version " + std::to_string(header.major) + "." + std::to_string(header.minor) +
+                ", this program reads version " + std::to_string(kContainerMajor),
+            12);
+        return false;
+    }
+    if (header.header_size != expected.header_size || header.reserved != expected.reserved ||
+        header.metadata_offset != expected.metadata_offset) {
+        add(IssueCode::kHeaderField, "header_size, reserved or metadata_offset is not that of version 1", 16);
+        header.metadata_offset = expected.metadata_offset;
+    }
+    header_state = issues.empty() ? PartState::kSound : PartState::kDamaged;
+    return true;
+}
+
+/// Checks what the header has of the sizes of the file and of the metadata.
+/// \return whether the metadata can be looked at.
+bool ContainerReader::checkSizes() {
+    if (header.file_size > bytes_.size()) {
+        add(IssueCode::kTruncated,
+            "truncated: " + std::to_string(bytes_.size()) + " of " + std::to_string(header.file_size) +
+                " bytes",
+            24);
+    } else if (header.file_size < bytes_.size()) {
+        add(IssueCode::kTrailingBytes,
+            std::to_string(bytes_.size() - header.file_size) + " bytes more than the header says", 24);
+    }
+    if (header_intact_ && header.minor > kContainerMinor) {
+        add(IssueCode::kLaterMinor,
+            "container version " + std::to_string(header.major) + "." + std::to_string(header.minor) +
+                ", this program knows " + std::to_string(kContainerMajor) + "." +
+                std::to_string(kContainerMinor),
+            14);
+    }
+    if (header.metadata_size > kContainerMetadataMax) {
+        add(IssueCode::kMetadataLimit,
+            "metadata_size is " + std::to_string(header.metadata_size) + ", at most " +
+                std::to_string(kContainerMetadataMax) + " are allowed",
+            40);
+        return false;
+    }
+    if (header.metadata_size > bytes_.size() - sizeof(header)) {
+        add(IssueCode::kMetadataPlace,
+            "the metadata of " + std::to_string(header.metadata_size) + " bytes reaches beyond the end", 40);
+        return false;
+    }
+    return true;
+}
+
+/// \return whether there are maps to look at.
+bool ContainerReader::readMetadata() {
+    const auto bytes = bytes_.subspan(header.metadata_offset, header.metadata_size);
+    // A right checksum vouches for the metadata, whatever else is wrong with the header.
+    metadata_intact = header.metadata_hash == xxh3_64(bytes);
+    if (!metadata_intact) {
+        add(IssueCode::kMetadataChecksum, "the checksum of the metadata is wrong", 48);
+    }
+    // Accessors need the alignment that the file has, and that `bytes_` need not have.
+    const auto aligned = std::make_unique<std::uint64_t[]>(bytes.size() / sizeof(std::uint64_t) + 1);
+    std::memcpy(aligned.get(), bytes.data(), bytes.size());
+    const auto* data = reinterpret_cast<const std::uint8_t*>(aligned.get());
+    flatbuffers::Verifier verifier(data, bytes.size(), kMetadataDepthMax);
+    if (!fb::VerifyColliderBuffer(verifier)) {
+        add(IssueCode::kMetadataTable,
+            "the metadata at byte " + std::to_string(sizeof(header)) +
+                " is no FlatBuffers table of a collider",
+            header.metadata_offset);
+        return false;
+    }
+    const fb::Collider& metadata = *fb::GetCollider(data);
+    const auto& stored = *metadata.maps();
+    if (stored.size() > limits_.maps) {
+        add(IssueCode::kMapLimit,
+            std::to_string(stored.size()) + " maps are more than the limit of " +
+                std::to_string(limits_.maps),
+            header.metadata_offset);
+        return false;
+    }
+    collider.bounds = {fromFb(*metadata.bounds_min()), fromFb(*metadata.bounds_max())};
+    collider.unit = metadata.unit()->str();
+    const fb::Provenance& from = *metadata.provenance();
+    collider.provenance = {from.mesh_name()->str(), from.mesh_hash()->str(), from.triangles(),
+                           from.tool_version()->str(), from.options()->str()};
+    for (const fb::Map* map : stored) {
+        const fb::Payload& payload = *map->payload();
+        maps.push_back({readFrame(*map),
+                        {payload.offset(), payload.stored_size(), payload.raw_size(),
+                         static_cast<Packing>(map->compression())},
+                        payload.xxh3()});
+    }
+    metadata_state = metadata_intact ? PartState::kSound : PartState::kDamaged;
+    return true;
+}
+
+void ContainerReader::checkDescription() {
+    std::vector<Issue> invalid = descriptionIssues(collider);
+    bounds_valid = invalid.empty() || invalid.front().code != IssueCode::kBounds;
+    if (!invalid.empty() || maps.empty()) {
+        metadata_state = PartState::kDamaged;
+    }
+    issues.insert(issues.end(), invalid.begin(), invalid.end());
+    const Provenance& from = collider.provenance;
+    if (from.mesh_hash.empty()) {
+        add(IssueCode::kNoMeshHash, "provenance.mesh_hash is empty: nobody can tell which mesh it is of");
+    }
+    if (from.tool_version.empty() || from.options.empty()) {
+        add(IssueCode::kNoToolVersion,
+            "provenance.tool_version or .options is empty: nobody can tell how it was made");
+    }
+    if (from.triangles == 0) {
+        add(IssueCode::kNoTriangles, "provenance.triangles is 0");
+    }
+    if (maps.empty()) {
+        add(IssueCode::kNoMap, "there is no map");
+    }
+}
+
+void ContainerReader::checkMaps() {
+    first_map_issue = issues.size();
+    std::uint64_t end = header.metadata_offset + header.metadata_size;
+    std::uint64_t texel_bytes = 0;
+    bool limit_passed = false;
+    bool all_placed = !maps.empty();
+    for (std::size_t i = 0; i < maps.size(); ++i) {
+        StoredMap& map = maps[i];
+        const int index = static_cast<int>(i);
+        const PayloadInfo& payload = map.payload;
+        const bool sized = checkFrame(map, index);
+        const bool placed = checkPlace(payload, index, end);
+        all_placed = all_placed && placed;
+        if (placed || payload.offset == alignPayload(end)) {
+            // The next payload has its place even in a file that was cut off.
+            constexpr std::uint64_t kFar = std::uint64_t{1} << 60;  // their sum does not wrap
+            end = std::min(payload.offset, kFar) + std::min(payload.stored_size, kFar);
+        }
+        texel_bytes += sized ? payload.raw_size : 0;
+        if (const auto beyond = texelsBeyond(limits_, texel_bytes, bytes_.size()); beyond && !limit_passed) {
+            limit_passed = true;
+            add(IssueCode::kTexelLimit, *beyond, {}, index);
+        }
+        map.readable = sized && placed && !limit_passed;
+    }
+    // A size that is not the header's has been reported already.
+    if (all_placed && header.file_size == bytes_.size() && end < bytes_.size()) {
+        add(IssueCode::kBytesBehind, std::to_string(bytes_.size() - end) + " bytes follow the last payload",
+            end);
+    }
+}
+
+/// \return whether its payload's sizes are valid too.
+bool ContainerReader::checkFrame(StoredMap& map, int index) {
+    if (const Result<void> ok = validateFrame(map.frame); !ok) {
+        const bool limit = ok.error().code == ErrorCode::kLimit;
+        add(limit ? IssueCode::kMapSizeLimit : IssueCode::kFrame, ok.error().message, {}, index);
+        return false;
+    }
+    map.framed = true;
+    if (const Result<void> ok = validatePayloadSizes(map); !ok) {
+        add(IssueCode::kPayloadSize, ok.error().message, {}, index);
+        return false;
+    }
+    return true;
+}
+
+/// Payloads lie one after the other, each at the next multiple of 64, zeros between.
+/// \param end  of what lies before the payload. \return whether the payload lies within the file.
+bool ContainerReader::checkPlace(const PayloadInfo& payload, int index, std::uint64_t end) {
+    const std::uint64_t expected = alignPayload(end);
+    if (payload.offset != expected) {
+        add(IssueCode::kPayloadPlace,
+            "its payload's offset is " + std::to_string(payload.offset) + " where the layout has " +
+                std::to_string(expected),
+            {}, index);
+    }
+    if (payload.offset > bytes_.size() || payload.stored_size > bytes_.size() - payload.offset) {
+        add(IssueCode::kPayloadEnd,
+            "its payload of " + std::to_string(payload.stored_size) + " bytes reaches beyond the end",
+            payload.offset, index);
+        return false;
+    }
+    if (payload.offset != expected) {
+        return true;
+    }
+    const auto padding = bytes_.subspan(end, expected - end);
+    const auto at =
+        std::find_if(padding.begin(), padding.end(), [](std::byte b) { return b != std::byte{0}; });
+    if (at != padding.end()) {
+        add(IssueCode::kPadding, "padding before its payload is not zero",
+            end + static_cast<std::uint64_t>(at - padding.begin()), index);
+    }
+    return true;
+}
+
+bool ContainerReader::readTexels(std::size_t index) {
+    StoredMap& map = maps[index];
+    const auto at = static_cast<int>(index);
+    const auto stored = bytes_.subspan(static_cast<std::size_t>(map.payload.offset),
+                                       static_cast<std::size_t>(map.payload.stored_size));
+    map.intact = map.hash == xxh3_64(stored);
+    if (!map.intact) {
+        add(IssueCode::kPayloadChecksum, "the checksum of its payload is wrong", map.payload.offset, at);
+    }
+    Result<std::vector<std::byte>> unpacked = unpackPayload(stored, map);
+    if (!unpacked) {
+        add(IssueCode::kPayloadUnpack, unpacked.error().message, map.payload.offset, at);
+        return false;
+    }
+    map.frame.texels = std::move(*unpacked);
+    if (const Result<void> ok = validateTexels(map.frame); !ok) {
+        add(IssueCode::kTexels, ok.error().message, map.payload.offset, at);
+        return false;
+    }
+    return true;
+}
+
+std::optional<Error> ContainerReader::refusal() const {
+    const auto of = [&](auto matches) { return std::find_if(issues.begin(), issues.end(), matches); };
+    // A later major version may lay out all the rest differently, its checksum too.
+    auto first = of([](const Issue& issue) { return issue.code == IssueCode::kMajorVersion; });
+    if (first == issues.end()) {
+        first = of([](const Issue& issue) { return issue.severity() != Severity::kWarning; });
+    }
+    if (first == issues.end()) {
+        return std::nullopt;
+    }
+    const Error error{errorCodeOf(issues),
+                      first->message + (first->offset ? ", at byte " + std::to_string(*first->offset) : "") +
+                          cureOf(first->code)};
+    return first->map < 0 ? error : inMap(static_cast<std::size_t>(first->map), error);
+}
+
+ErrorCode errorCodeOf(std::span<const Issue> issues) {
+    bool limits_alone = true;
+    for (const Issue& issue : issues) {
+        if (issue.code == IssueCode::kMajorVersion) {
+            return ErrorCode::kUnsupported;
+        }
+        limits_alone = limits_alone && (issue.severity() == Severity::kWarning || isLimit(issue.code));
+    }
+    return limits_alone ? ErrorCode::kLimit : ErrorCode::kInvalidInput;
+}
+
+}  // namespace relief
