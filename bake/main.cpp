@@ -6,6 +6,6 @@
 int main(int argc, char** argv) {
     relief::prepareHeap(relief::kBakeHeapBytes);
     return relief::runProgram(
-        [&] { return relief::runRelief(argc, argv); }, relief::reportError,
+        "relief", [&] { return relief::runRelief(argc, argv); },
         {relief::ErrorCode::kFailure, "out of memory; use smaller maps or a smaller mesh"});
 }

@@ -28,7 +28,7 @@ THIRD_PARTIES = {
     'pybind11': ['bake/python'],
     'toml++': ['formats/config'],
     'CLI': ['runtime/tool', 'runtime/cli', 'runtime/bench', 'bake/cli', 'bake/bench'],
-    'spdlog': ['bake/cli'],
+    'spdlog': ['runtime/tool', 'runtime/cli', 'bake/cli'],
     'httplib.h': ['bake/view'],
     'nlohmann': ['formats/fields', 'bake/import', 'bake/recipe', 'bake/report', 'bake/view', 'bake/cli', 'bake/bench', 'runtime/tool',
                  'runtime/player', 'runtime/web', 'runtime/bench'],

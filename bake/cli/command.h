@@ -27,7 +27,7 @@ struct CommonOptions {
 CLI::App& addVerb(CLI::App& app, CommonOptions& common, const std::string& name,
                   const std::string& description, const std::string& example);
 
-/// Messages of one line on standard error, "relief: warning: …"; coloured on a terminal without NO_COLOR.
+/// Which messages appear.
 void startLogging(const CommonOptions& common);
 
 /// "standard input" for "-", else the path in quotes: for messages.

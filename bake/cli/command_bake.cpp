@@ -15,7 +15,6 @@
 #include "bake/cli/command.h"
 #include "bake/cli/command_line.h"
 #include "bake/cli/command_recipe.h"
-#include "bake/cli/progress.h"
 #include "bake/measure/accuracy.h"
 #include "bake/measure/part_accuracy.h"
 #include "bake/mesh/mesh_query.h"
@@ -38,6 +37,7 @@
 #include "runtime/tool/command_line.h"
 #include "runtime/tool/json_text.h"
 #include "runtime/tool/memory_option.h"
+#include "runtime/tool/progress.h"
 
 namespace relief {
 namespace {

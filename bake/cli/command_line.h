@@ -22,7 +22,4 @@ void defineRelief(CLI::App& app, Action& action);
 /// Parses the command line and does what it says.
 [[nodiscard]] Result<void> runRelief(int argc, char** argv);
 
-/// "relief: error: …" on standard error.
-void reportError(const Error& error);
-
 }  // namespace relief

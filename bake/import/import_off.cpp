@@ -132,7 +132,7 @@ class OffReader {
             return passLine("vertex", index);
         }
         for (int i = 0; i < more_ + (has_colours_ ? 4 : 0); ++i) {
-            RELIEF_TRY(number(text_.anyWord(), "vertex", index));
+            (void)RELIEF_TRY(number(text_.anyWord(), "vertex", index));
         }
         return {};
     }
@@ -173,7 +173,7 @@ class OffReader {
     /// What stands behind an element's own numbers.
     Result<void> passLine(const char* element, std::uint64_t index) {
         for (std::string_view word = text_.word(); !word.empty(); word = text_.word()) {
-            RELIEF_TRY(number(word, element, index));
+            (void)RELIEF_TRY(number(word, element, index));
         }
         return {};
     }

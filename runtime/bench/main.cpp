@@ -1,7 +1,6 @@
 // relief-bench CASE [FILE]: prints JSON, times of the runtime's parts on this machine. scripts/bench.py reads it.
 #include <CLI/CLI.hpp>
 #include <array>
-#include <cstdio>
 
 #include "runtime/bench/bench.h"
 #include "runtime/gl/gl_context.h"
@@ -85,9 +84,6 @@ Result<void> run(int argc, char** argv) {
 }  // namespace relief
 
 int main(int argc, char** argv) {
-    return relief::runProgram([&] { return relief::run(argc, argv); },
-                              [](const relief::Error& error) {
-                                  std::fprintf(stderr, "relief-bench: error: %s\n", error.message.c_str());
-                              },
+    return relief::runProgram("relief-bench", [&] { return relief::run(argc, argv); },
                               {relief::ErrorCode::kLimit, "out of memory; choose fewer particles"});
 }

@@ -1,10 +1,11 @@
 #include "runtime/cli/sim.h"
 
-#include <unistd.h>
+#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "formats/config/confined_path.h"
 #include "runtime/player/report.h"
@@ -13,6 +14,7 @@
 #include "runtime/tool/command_line.h"
 #include "runtime/tool/memory_option.h"
 #include "runtime/tool/option_values.h"
+#include "runtime/tool/progress.h"
 
 namespace relief {
 namespace {
@@ -137,7 +139,7 @@ Result<void> checkTogether(const SimCommand& command) {
 void showWarnings(const std::vector<std::string>& warnings, bool quiet) {
     for (const std::string& warning : warnings) {
         if (!quiet) {
-            std::fprintf(stderr, "relief-sim: warning: %s\n", warning.c_str());
+            spdlog::warn(warning);
         }
     }
 }
@@ -156,14 +158,6 @@ Result<void> check(const SimCommand& command) {
     return checked ? Result<void>() : forward(checked);
 }
 
-void showProgress(std::uint32_t step, std::uint32_t steps) {
-    constexpr int kWidth = 40;
-    const int done = steps == 0 ? kWidth : static_cast<int>(std::uint64_t{kWidth} * step / steps);
-    std::fprintf(stderr, "\r[%s%s] %u/%u%s", std::string(static_cast<std::size_t>(done), '#').c_str(),
-                 std::string(static_cast<std::size_t>(kWidth - done), '.').c_str(), step, steps,
-                 step >= steps ? "\n" : "");
-}
-
 Result<void> playScene(SimCommand& command) {
     PlayerOptions& player = command.player;
     const bool named_vdb = lowerCase(player.dump.extension().native()) == ".vdb";
@@ -177,19 +171,20 @@ Result<void> playScene(SimCommand& command) {
     player.device = command.gpu.device;
     player.count_collisions = command.json;
     player.time_stages = command.json;
-    if (!command.quiet && ::isatty(STDERR_FILENO) != 0) {
-        player.progress = showProgress;
-    }
+    Progress progress({.name = quotedPath(player.input), .drawn = !command.quiet});
+    progress.begin("playing");
+    player.progress = [&progress](std::uint32_t step, std::uint32_t steps) {
+        progress.set(steps == 0 ? 1.0 : static_cast<double>(step) / steps);
+    };
     Watchdog watchdog(command.gpu.timeout.value_or(defaultGpuTimeout(false)), endProcess("relief-sim"));
     player.watchdog = &watchdog;
     player.default_timeout = !command.gpu.timeout;
     const PlayerReport played = RELIEF_TRY(play(player));
+    progress.finish();
     showWarnings(played.warnings, command.quiet);
     if (played.events_dropped > 0) {
-        std::fprintf(stderr,
-                     "relief-sim: warning: %llu hits are missing in --events: a step lists at most %u; "
-                     "raise --events-min-speed\n",
-                     static_cast<unsigned long long>(played.events_dropped), Simulation::kEventsMax);
+        spdlog::warn("{} hits are missing in --events: a step lists at most {}; raise --events-min-speed",
+                     played.events_dropped, Simulation::kEventsMax);
     }
     if (command.json) {
         return printOut(reportJson(played));

@@ -1,7 +1,11 @@
 #include "runtime/tool/command_line.h"
 
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <span>
@@ -162,6 +166,16 @@ Result<void> refuseEmptyValues(const CLI::App& app) {
     return {};
 }
 
+void startLog(const std::string& program) {
+    auto sink = std::make_shared<spdlog::sinks::stderr_color_sink_mt>();
+    if (const char* no_color = std::getenv("NO_COLOR"); no_color != nullptr && *no_color != '\0') {
+        sink->set_color_mode(spdlog::color_mode::never);
+    }
+    auto logger = std::make_shared<spdlog::logger>(program, std::move(sink));
+    logger->set_pattern(program + ": %^%l%$: %v");
+    spdlog::set_default_logger(std::move(logger));
+}
+
 Result<bool> answer(const std::string& text) {
     RELIEF_TRY(printOut(text));
     return false;
@@ -205,9 +219,14 @@ Result<void> printOut(const std::string& text) {
     return writeFile("-", std::as_bytes(std::span(text)));
 }
 
-int runProgram(const std::function<Result<void>()>& run, const std::function<void(const Error&)>& report,
+void reportError(const Error& error) {
+    spdlog::error(error.message);
+}
+
+int runProgram(const std::string& program, const std::function<Result<void>()>& run,
                const Error& out_of_memory) {
     endCleanlyOnSignals();
+    startLog(program);
     Error error{ErrorCode::kFailure, ""};
     try {
         const Result<void> done = run();
@@ -220,7 +239,7 @@ int runProgram(const std::function<Result<void>()>& run, const std::function<voi
     } catch (const std::exception& thrown) {
         error.message = thrown.what();
     }
-    report(error);
+    reportError(error);
     return static_cast<int>(error.code);
 }
 

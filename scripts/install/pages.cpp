@@ -2,7 +2,6 @@
 // man(7) macros and without a date. A program of the build: it is not installed.
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <span>
 
@@ -191,9 +190,6 @@ Result<void> writeAll(int argc, char** argv) {
 }  // namespace relief
 
 int main(int argc, char** argv) {
-    return relief::runProgram([&] { return relief::writeAll(argc, argv); },
-                              [](const relief::Error& error) {
-                                  std::fprintf(stderr, "relief-pages: error: %s\n", error.message.c_str());
-                              },
+    return relief::runProgram("relief-pages", [&] { return relief::writeAll(argc, argv); },
                               {relief::ErrorCode::kFailure, "out of memory"});
 }

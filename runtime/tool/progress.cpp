@@ -1,4 +1,4 @@
-#include "bake/cli/progress.h"
+#include "runtime/tool/progress.h"
 
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-// What a bake is at: a line on standard error, for people, only where that is a terminal; and an end to it when its time is
+// The state of long work: a line on standard error, for people, only where that is a terminal; and an end to it when its time is
 // up.
 #pragma once
 
@@ -12,13 +12,13 @@
 namespace relief {
 
 struct ProgressOptions {
-    std::string name;              ///< of what is baked: its path, as messages quote it
-    bool drawn = true;             ///< false: no line
-    std::optional<float> seconds;  ///< that may pass from here to finish(); none: any
+    std::string name;                   ///< of what is baked: its path, as messages quote it
+    bool drawn = true;                  ///< false: no line
+    std::optional<float> seconds = {};  ///< that may pass from here to finish(); none: any
     /// Called whenever a stage begins or has come on. It may throw: that ends the bake.
-    std::function<void()> checkpoint;
+    std::function<void()> checkpoint = {};
     /// Prints the error of a bake whose time is up.
-    std::function<void(const Error&)> report;
+    std::function<void(const Error&)> report = {};
 };
 
 /// The line names the stage, how much of it is done where that is known, and how long it has taken. It is drawn ten times
