@@ -74,10 +74,10 @@ g++ -std=c++20 -Wall -Wextra -Werror -fsyntax-only "${flags[@]}" all.cpp 2>log |
 ! grep -rlE '#include <(epoxy|GL|GLES|EGL)' "$prefix/include/relief" || die "a public header brings the GL along"
 
 # The samples with windows, as their page builds them: a million particles' worth of textures, and some frames.
-grep '^ *g++' "$RELIEF_SOURCE/samples/windows/README.md" >commands
-[ "$(wc -l <commands)" -eq 2 ] || die "samples/windows/README.md has other commands"
-cp "$RELIEF_SOURCE"/samples/windows/*.cpp .
-sh -e commands >log 2>&1 || die "samples/windows do not build: $(head -5 log)"
+grep '^ *g++' "$RELIEF_SOURCE/samples/glfw_sdl/README.md" >commands
+[ "$(wc -l <commands)" -eq 2 ] || die "samples/glfw_sdl/README.md has other commands"
+cp "$RELIEF_SOURCE"/samples/glfw_sdl/*.cpp .
+sh -e commands >log 2>&1 || die "samples/glfw_sdl do not build: $(head -5 log)"
 "$relief" bake "$bunny" -q -o windows.relief --budget 100kB
 for program in glfw sdl2; do
     [ "$(wc -l <$program.cpp)" -lt 60 ] || die "$program.cpp is not under 60 lines"
