@@ -7,7 +7,9 @@
 // --map front-back:dir=-x --map …`, run in turns.
 #include <malloc.h>
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -20,8 +22,9 @@
 #include <string>
 #include <vector>
 
-#include "bake/bench/bench_bare_loop.h"
 #include "bake/import/mesh_import.h"
+#include "bake/mesh/embree.h"
+#include "bake/mesh/embree_config.h"
 #include "bake/pipeline/bake.h"
 #include "bake/plan/view.h"
 #include "bake/texels/scan_convert.h"
@@ -29,13 +32,14 @@
 #include "formats/base/stopwatch.h"
 #include "formats/container.h"
 
+namespace relief {
 namespace {
 
 constexpr int kRepeats = 15;
 constexpr std::uint32_t kResolution = 512;  // texels, a multiple of 4
 
 double milliseconds(const std::function<void()>& work) {
-    const relief::Stopwatch watch;
+    const Stopwatch watch;
     work();
     return watch.ms();
 }
@@ -46,22 +50,111 @@ double median(std::vector<double> values) {
     return values[values.size() / 2];
 }
 
-int failure(const relief::Error& error) {
+int failure(const Error& error) {
     std::fprintf(stderr, "relief-bench-raycast: error: %s\n", error.message.c_str());
     return static_cast<int>(error.code);
 }
 
-int printFloor(const relief::TriangleMesh& mesh, const std::vector<relief::View>& views, double import_ms,
+/// The least that tracing six orthographic ends can cost: rtcIntersect16 over the rays, and nothing else.
+class BareLoop {
+  public:
+    explicit BareLoop(const TriangleMesh& mesh) {
+        const Stopwatch watch;
+        device_ = rtcNewDevice(kEmbreeConfig);
+        scene_ = rtcNewScene(device_);
+        RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+        auto* vertices = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                                         RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
+                                                                         mesh.positions.size()));
+        std::copy(mesh.positions.begin(), mesh.positions.end(), vertices);
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                   mesh.triangles.data(), 0, sizeof(glm::uvec3), mesh.triangles.size());
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(scene_, geometry);
+        rtcReleaseGeometry(geometry);
+        rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+        rtcCommitScene(scene_);
+        build_ms_ = watch.ms();
+    }
+    BareLoop(const BareLoop&) = delete;
+    BareLoop& operator=(const BareLoop&) = delete;
+    ~BareLoop() {
+        rtcReleaseScene(scene_);
+        rtcReleaseDevice(device_);
+    }
+
+    /// Milliseconds that building the tree took.
+    [[nodiscard]] double buildMs() const { return build_ms_; }
+
+    /// Traces both ends of every view.
+    /// \return the number of rays that hit.
+    [[nodiscard]] std::uint64_t trace(std::span<const View> views) const {
+        std::uint64_t hits = 0;
+        for (const View& view : views) {
+            for (int end = 0; end < 2; ++end) {
+                const glm::vec3 direction = end == 0 ? view.axis[2] : -view.axis[2];
+                const glm::vec3 corner =
+                    view.ray(0, 0, 0).origin + (end == 0 ? glm::dvec3(0.0) : view.axis[2]);
+                const glm::vec3 right = view.axis[0] / static_cast<double>(view.width);
+                const glm::vec3 up = view.axis[1] / static_cast<double>(view.height);
+                const auto traceRows = [&](const tbb::blocked_range<std::uint32_t>& rows,
+                                           std::uint64_t count) {
+                    alignas(64) int valid[16];
+                    alignas(64) RTCRayHit16 packet{};
+                    RayQuery query(nullptr, RayOrder::kCoherent);
+                    for (int i = 0; i < 16; ++i) {
+                        valid[i] = -1;
+                    }
+                    for (std::uint32_t y = rows.begin() * 4; y < rows.end() * 4; y += 4) {
+                        for (std::uint32_t x = 0; x < view.width; x += 4) {
+                            for (std::uint32_t i = 0; i < 16; ++i) {
+                                const glm::vec3 origin = corner + static_cast<float>(x + i % 4) * right +
+                                                         static_cast<float>(y + i / 4) * up;
+                                packet.ray.org_x[i] = origin.x;
+                                packet.ray.org_y[i] = origin.y;
+                                packet.ray.org_z[i] = origin.z;
+                                packet.ray.dir_x[i] = direction.x;
+                                packet.ray.dir_y[i] = direction.y;
+                                packet.ray.dir_z[i] = direction.z;
+                                packet.ray.tnear[i] = 0.0F;
+                                packet.ray.tfar[i] = 1.0F;
+                                packet.ray.mask[i] = 0xffffffff;
+                                packet.ray.flags[i] = 0;
+                                packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+                                packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+                            }
+                            query.intersect(scene_, valid, packet);
+                            for (unsigned geometry : packet.hit.geomID) {
+                                count += geometry != RTC_INVALID_GEOMETRY_ID ? 1 : 0;
+                            }
+                        }
+                    }
+                    return count;
+                };
+                hits += tbb::parallel_reduce(tbb::blocked_range<std::uint32_t>(0, view.height / 4),
+                                             std::uint64_t{0}, traceRows, std::plus<>());
+            }
+        }
+        return hits;
+    }
+
+  private:
+    RTCDevice device_ = nullptr;
+    RTCScene scene_ = nullptr;
+    double build_ms_ = 0.0;
+};
+
+int printFloor(const TriangleMesh& mesh, const std::vector<View>& views, double import_ms,
                const std::string& output) {
-    relief::Collider collider;
+    Collider collider;
     collider.bounds = mesh.bounds;
-    for (const relief::View& view : views) {
+    for (const View& view : views) {
         collider.maps.push_back(view.emptyMap());
     }
-    const relief::BareLoop bare(mesh);
+    const BareLoop bare(mesh);
     const double trace_ms = milliseconds([&] { (void)bare.trace(views); });
-    relief::Result<void> written;
-    const double write_ms = milliseconds([&] { written = relief::saveCollider(output, collider); });
+    Result<void> written;
+    const double write_ms = milliseconds([&] { written = saveCollider(output, collider); });
     if (!written) {
         return failure(written.error());
     }
@@ -75,13 +168,12 @@ int printFloor(const relief::TriangleMesh& mesh, const std::vector<relief::View>
 }
 
 /// What a bake has traced, on all cores.
-void scanAll(const relief::RayScene& scene, const relief::View& view, std::vector<relief::Hit>& near,
-             std::vector<relief::Hit>& far) {
+void scanAll(const RayScene& scene, const View& view, std::vector<Hit>& near, std::vector<Hit>& far) {
     constexpr std::uint32_t kRows = 32;
     static_assert(kResolution % kRows == 0);
-    const relief::ScanConverter scan(scene, view);
+    const ScanConverter scan(scene, view);
     tbb::parallel_for(0U, kResolution / kRows, [&](std::uint32_t block) {
-        const auto of = [&](std::vector<relief::Hit>& hits) {
+        const auto of = [&](std::vector<Hit>& hits) {
             return std::span(hits).subspan(std::size_t{block} * kRows * kResolution,
                                            std::size_t{kRows} * kResolution);
         };
@@ -90,6 +182,7 @@ void scanAll(const relief::RayScene& scene, const relief::View& view, std::vecto
 }
 
 }  // namespace
+}  // namespace relief
 
 int main(int argc, char** argv) {
     using namespace relief;

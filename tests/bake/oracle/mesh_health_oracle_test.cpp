@@ -19,7 +19,7 @@ using SurfaceMesh = CGAL::Surface_mesh<Kernel::Point_3>;
 namespace pmp = CGAL::Polygon_mesh_processing;
 
 /// Vertices of equal positions once, as the inspection sees them. Every face must fit: the mesh is manifold.
-SurfaceMesh toCgal(const TriangleMesh& mesh) {
+SurfaceMesh toCgalWelded(const TriangleMesh& mesh) {
     SurfaceMesh out;
     const std::vector<std::uint32_t> welded = weldedVertices(mesh);
     std::vector<SurfaceMesh::Vertex_index> vertices(welded.size());
@@ -46,7 +46,7 @@ TEST(MeshHealthOracle, CountsAreCgals) {
         ASSERT_TRUE(mesh) << mesh.error().message;
         const Result<MeshHealth> health = inspectMesh(*mesh, {true});
         ASSERT_TRUE(health) << health.error().message;
-        const SurfaceMesh surface = toCgal(*mesh);
+        const SurfaceMesh surface = toCgalWelded(*mesh);
         std::uint64_t borders = 0;
         for (const SurfaceMesh::Halfedge_index h : surface.halfedges()) {
             borders += surface.is_border(h) ? 1U : 0U;
