@@ -25,6 +25,7 @@
 #   blender the add-on of samples/blender bakes, shows errors and plays particles in Debian's Blender, without a window
 #   packages  cpack's .deb files pass lintian, and their users' programs and commands work in a minimal Debian 12 that has
 #           nothing else (scripts/install/try_packages.sh). Needs root.
+#   query   `relief query` and `--gpu` agree at 100,000 points of each map format (tests/cli/query_gpu.sh)
 #   embree4 a build for Embree 4's functions, done by Embree 3 (tests/bake/mesh/embree4), bakes the same bytes.
 #   slurm   samples/slurm bakes the models of sweethome3d-furniture on a cluster of one node, with a task that is begun again,
 #           one that is killed, and broken meshes; a second run bakes the rest, and a third nothing. Needs root.
@@ -33,7 +34,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/setup.sh
-all_runs=(sweep rest import mutants package headers bytes seeds cases level clang load bare packages embree4 outputs blender slurm
+all_runs=(sweep rest import mutants package headers bytes seeds cases level clang load bare packages query embree4 outputs blender slurm
     corpus fuzz)
 runs=("$@")
 [ ${#runs[@]} -gt 0 ] || runs=("${all_runs[@]}")
@@ -41,12 +42,26 @@ work=$(mktemp -d)
 stress=
 trap '[ -z "$stress" ] || kill "$stress"; rm -rf "$work"' EXIT
 
+# logged NAME COMMAND…: its output shows only where it fails.
+logged() {
+    local log=$work/$1.log
+    "${@:2}" >"$log" 2>&1 || {
+        tail -60 "$log" >&2
+        return 1
+    }
+}
+
+# built NAME OPTION…: a build of another configuration, in $work/NAME.
+built() {
+    logged "$1" cmake -G Ninja -S . -B "$work/$1" -DCMAKE_BUILD_TYPE=RelWithDebInfo "${@:2}" &&
+        logged "$1" cmake --build "$work/$1"
+}
+
 sweep() {
     local bin status=0
     bin=$(scripts/build.sh release relief_runtime_particles_test) || return 1
-    RELIEF_SOAK=1 "$bin/relief_runtime_particles_test" --gtest_filter='*ASweptStepNeverTunnels*' \
-        --gtest_output="json:$work/sweep.json" >"$work/sweep.log" || status=$?
-    [ "$status" = 0 ] || cat "$work/sweep.log" >&2
+    RELIEF_SOAK=1 logged sweep "$bin/relief_runtime_particles_test" --gtest_filter='*ASweptStepNeverTunnels*' \
+        --gtest_output="json:$work/sweep.json" || status=$?
     python3 - "$work/sweep.json" <<'P'
 import json, sys
 tests = [test for suite in json.load(open(sys.argv[1]))['testsuites'] for test in suite['testsuite']]
@@ -59,13 +74,8 @@ P
 }
 
 package() {
-    cmake -G Ninja -S . -B "$work/runtime" -DRELIEF_BUILD_BAKE=OFF -DRELIEF_BUILD_TESTS=OFF \
-        -DRELIEF_BUILD_BENCHMARKS=OFF >"$work/package.log" &&
-        cmake --build "$work/runtime" >>"$work/package.log" &&
-        cmake --install "$work/runtime" --prefix "$work/prefix" >>"$work/package.log" || {
-        tail -20 "$work/package.log" >&2
-        return 1
-    }
+    built runtime -DRELIEF_BUILD_BAKE=OFF -DRELIEF_BUILD_TESTS=OFF -DRELIEF_BUILD_BENCHMARKS=OFF &&
+        logged package cmake --install "$work/runtime" --prefix "$work/prefix" || return 1
     local modules
     modules=$(find "$work/prefix" -name pkgconfig)
     # shellcheck disable=SC2046
@@ -75,12 +85,7 @@ package() {
 }
 
 headers() {
-    cmake -G Ninja -S . -B "$work/headers" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DRELIEF_PRECOMPILE=OFF \
-        -DRELIEF_UNITY=OFF >"$work/headers.log" &&
-        cmake --build "$work/headers" >>"$work/headers.log" || {
-        grep -m5 -E ' error: ' "$work/headers.log" >&2
-        return 1
-    }
+    built headers -DRELIEF_PRECOMPILE=OFF -DRELIEF_UNITY=OFF || return 1
     echo "headers: builds without precompiled headers"
 }
 
@@ -123,11 +128,8 @@ P
 import() {
     local bin
     bin=$(scripts/build.sh release relief_bake_import_test) || return 1
-    RELIEF_SOAK=1 "$bin/relief_bake_import_test" --gtest_filter='*EveryModelOfThePackage*' \
-        --gtest_output="json:$work/import.json" >"$work/import.log" || {
-        cat "$work/import.log" >&2
-        return 1
-    }
+    RELIEF_SOAK=1 logged import "$bin/relief_bake_import_test" --gtest_filter='*EveryModelOfThePackage*' \
+        --gtest_output="json:$work/import.json" || return 1
     python3 - "$work/import.json" <<'P'
 import json, sys
 test = json.load(open(sys.argv[1]))['testsuites'][0]['testsuite'][0]
@@ -140,6 +142,12 @@ bytes() { scripts/determinism.sh; }
 mutants() { scripts/mutants.sh 2000; }
 
 outputs() { scripts/all_or_nothing.sh; }
+
+query() {
+    local bin
+    bin=$(scripts/build.sh release relief) || return 1
+    RELIEF_BIN=$bin RELIEF_SOURCE=$PWD RELIEF_QUERY_POINTS=100000 bash tests/cli/query_gpu.sh
+}
 
 # A cluster of this machine alone, until its function ends.
 slurm_cluster() { # FOLDER
@@ -239,12 +247,9 @@ blender() {
     scripts/setup.sh blender || return 1
     bin=$(scripts/build.sh release relief relief-sim relief_python) || return 1
     mkdir -p "$work/blender"
-    PYTHONPATH=$PWD/build/release/python command blender -b --factory-startup --python-exit-code 1 \
+    PYTHONPATH=$PWD/build/release/python logged blender env blender -b --factory-startup --python-exit-code 1 \
         -P samples/blender/test_addon.py -- "$PWD/samples/blender/relief_collider.py" "$bin/relief" "$bin/relief-sim" \
-        "$work/blender" "$work/blender/errors.png" >"$work/blender.log" 2>&1 || {
-        tail -20 "$work/blender.log" >&2
-        return 1
-    }
+        "$work/blender" "$work/blender/errors.png" || return 1
     [ -s "$work/blender/errors.png" ] && grep '^blender: ' "$work/blender.log"
 }
 
@@ -256,19 +261,13 @@ seeds() {
     local seed=${RELIEF_TEST_SEED:-$(date +%Y%m%d)}
     scripts/build.sh release >/dev/null || return 1
     # Whatever draws its cases by seedFrom() (tests/seeds.h), and the command lines that do.
-    RELIEF_TEST_SEED=$seed RELIEF_MUTANTS=500 RELIEF_SCENES=200 ctest --preset release -j "$(nproc)" \
-        -R '^(Voxels|ImportGltf|ImportFormat|ImportParts|ImportMessage|Shape|Winding|Mutated)[.]|^cli[.](mutants|scenes)$' \
-        >"$work/seeds.log" || {
-        cat "$work/seeds.log" >&2
+    RELIEF_TEST_SEED=$seed RELIEF_MUTANTS=500 RELIEF_SCENES=200 logged seeds ctest --preset release -j "$(nproc)" \
+        -R '^(Voxels|ImportGltf|ImportFormat|ImportParts|ImportMessage|Shape|Winding|Mutated)[.]|^cli[.](mutants|scenes)$' ||
         return 1
-    }
     # The solids of unit cubes, which take seconds, by more of them.
     local next
     for next in 1 2 3 4 5 6 7 8 9; do
-        RELIEF_TEST_SEED=$((seed + next)) ctest --preset release -j "$(nproc)" -R '^Voxels[.]' >"$work/seeds.log" || {
-            cat "$work/seeds.log" >&2
-            return 1
-        }
+        RELIEF_TEST_SEED=$((seed + next)) logged seeds ctest --preset release -j "$(nproc)" -R '^Voxels[.]' || return 1
     done
     echo "seeds: seed $seed, and of Voxels the nine after it: none is wrong"
 }
@@ -301,16 +300,8 @@ P
 
 clang() {
     scripts/setup.sh clang || return 1
-    cmake -G Ninja -S . -B "$work/clang" -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=RelWithDebInfo \
-        -DCMAKE_CXX_FLAGS_RELWITHDEBINFO='-O2 -g1 -DNDEBUG' >"$work/clang.log" &&
-        cmake --build "$work/clang" >>"$work/clang.log" || {
-        grep -m5 -E ' error: ' "$work/clang.log" >&2
-        return 1
-    }
-    ctest --test-dir "$work/clang" -j "$(nproc)" --output-on-failure >"$work/clang.log" || {
-        tail -40 "$work/clang.log" >&2
-        return 1
-    }
+    built clang -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_CXX_FLAGS_RELWITHDEBINFO='-O2 -g1 -DNDEBUG' &&
+        logged clang ctest --test-dir "$work/clang" -j "$(nproc)" --output-on-failure || return 1
     echo "clang: $(clang++ -dumpversion) builds everything, and it passes its tests"
 }
 
@@ -366,20 +357,14 @@ make_bare() {
 bare() {
     make_bare bare ca-certificates,git || return 1
     git clone -q --no-hardlinks . "$work/bare/srv/relief" || return 1
-    in_bare '/srv/relief/.ci/run' >"$work/bare.log" 2>&1 || {
-        tail -60 "$work/bare.log" >&2
-        return 1
-    }
+    logged bare in_bare '/srv/relief/.ci/run' || return 1
     echo "bare: .ci/run passes: $(sed -n 's/^test.sh: //p' "$work/bare.log" | paste -sd, | sed 's/,/, /g')"
     # The same tree, so that its builds are there already: whose they are matters to tests, not to compilers.
-    in_bare 'useradd -m user && chown -R user: /srv/relief &&
-        su user -s /bin/bash -c "/srv/relief/scripts/test.sh"' >"$work/bare.log" 2>&1 || {
-        tail -60 "$work/bare.log" >&2
-        return 1
-    }
+    logged bare in_bare 'useradd -m user && chown -R user: /srv/relief &&
+        su user -s /bin/bash -c "/srv/relief/scripts/test.sh"' || return 1
     echo "bare: scripts/test.sh passes without root"
     # No driver, and no library of EGL: what needs a GPU says so in a line, and what needs none works.
-    in_bare 'apt-get remove -y -qq libegl-mesa0 libegl1 libgl1-mesa-dri
+    logged bare in_bare 'apt-get remove -y -qq libegl-mesa0 libegl1 libgl1-mesa-dri
         cd /root
         bin=/srv/relief/build/release/bin
         refused() { # COMMAND…: exit code 5 and one line that names what to install
@@ -397,10 +382,7 @@ bare() {
         refused $bin/relief query bunny.relief --points points.csv -o gpu.csv --gpu
         refused $bin/relief bake $bunny -o gpu.relief -q --paper --backend raster
         refused $bin/relief-sim bunny.relief --steps 3
-        [ ! -e gpu.csv ] && [ ! -e gpu.relief ]' >"$work/bare.log" 2>&1 || {
-        tail -20 "$work/bare.log" >&2
-        return 1
-    }
+        [ ! -e gpu.csv ] && [ ! -e gpu.relief ]' || return 1
     echo "bare: without a GL the CPU bakes, and what needs a GPU says what to install"
 }
 
@@ -410,18 +392,12 @@ packages() {
     local room=$work/bare/srv/relief names
     mkdir -p "$room/doc"
     # With the page of relief view.
-    { scripts/build.sh web && scripts/build.sh packages; } >"$work/packages.log" 2>&1 || {
-        tail -20 "$work/packages.log" >&2
-        return 1
-    }
+    logged packages scripts/build.sh web && logged packages scripts/build.sh packages || return 1
     # Twice: the same sources give the same packages.
     local round
     for round in 1 2; do
         rm -rf build/packages/deb
-        SOURCE_DATE_EPOCH=$(git log -1 --format=%ct) cpack --preset packages >"$work/packages.log" 2>&1 || {
-            tail -20 "$work/packages.log" >&2
-            return 1
-        }
+        SOURCE_DATE_EPOCH=$(git log -1 --format=%ct) logged packages cpack --preset packages || return 1
         (cd build/packages/deb && sha256sum ./*.deb) >"$work/sums.$round"
     done
     cmp "$work/sums.1" "$work/sums.2" || {
@@ -435,7 +411,7 @@ packages() {
     cp scripts/install/try_packages.sh /usr/share/glmark2/models/bunny.obj "$room/"
     cp --parents README.md bake/python/README.md "$room/doc/"
     # First what users of the tools have, without a compiler or documentation; then what programmers have; then nothing.
-    in_bare 'cd /srv/relief
+    logged packages in_bare 'cd /srv/relief
         export DEBIAN_FRONTEND=noninteractive
         apt-get update -qq
         user() { su nobody -s /bin/bash -c "$*"; }
@@ -445,21 +421,16 @@ packages() {
         user ./try_packages.sh /srv/relief/bunny.obj development >&3
         apt-get remove -y -qq relief librelief1 librelief-dev python3-relief
         left=$(find /usr -ipath "*relief*" ! -path "/usr/share/doc/*")
-        [ -z "$left" ] || { echo "left behind: $left"; exit 1; }' 3>&1 >"$work/packages.log" 2>&1 || {
-        tail -40 "$work/packages.log" >&2
-        return 1
-    }
+        [ -z "$left" ] || { echo "left behind: $left"; exit 1; }' 3>&1 || return 1
     echo "packages: removed, they leave nothing behind"
 }
 
 embree4() {
     local bin mesh options
     bin=$(scripts/build.sh release relief) || return 1
-    cmake --preset packages -B "$work/embree4" -DRELIEF_EMBREE=4 -Dembree_DIR="$PWD/tests/bake/mesh/embree4" \
-        -DRELIEF_BUILD_PYTHON=OFF >"$work/embree4.log" && cmake --build "$work/embree4" --target relief >>"$work/embree4.log" || {
-        tail -20 "$work/embree4.log" >&2
-        return 1
-    }
+    logged embree4 ctest --test-dir build/release --output-on-failure -R '^cli[.]embree4$' || return 1
+    built embree4 -DRELIEF_EMBREE=4 -Dembree_DIR="$PWD/tests/bake/mesh/embree4" -DRELIEF_BUILD_PYTHON=OFF \
+        -DRELIEF_BUILD_TESTS=OFF -DRELIEF_BUILD_BENCHMARKS=OFF || return 1
     # Solids, shells and cavities; scan conversion and rays.
     for mesh in /usr/share/glmark2/models/bunny.obj /usr/share/glmark2/models/horse.3ds \
         /usr/share/assimp/models/OBJ/spider.obj; do
