@@ -1,13 +1,49 @@
-// What the first bytes of a file tell of its format, whatever its name says.
+// The formats of mesh files: a table, and what the first bytes of a file tell of its format, whatever its name says.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
 namespace relief {
+
+/// The code that reads a format (mesh_import.cpp).
+enum class MeshReader : std::uint8_t { kAssimp, kGltf, kObj, kOff, kPly, kRaw, kStl, kAmf, k3mf };
+
+/// How assimp hands the units and axes of a file on (mesh_import.cpp).
+enum class AssimpFrame : std::uint8_t {
+    kAsIs,
+    kMirrored,  ///< it has turned z round
+    kZUp,       ///< it has turned the file's z to +y
+    k3ds,
+    kDae,
+    kDxf,
+    kFbx,
+};
+
+/// One format of mesh files; a new one is a row of kRows (import_format.cpp), and a reader if assimp does not read it.
+struct MeshFormat {
+    std::string_view extension;  ///< lower case, without its dot
+    MeshReader reader = MeshReader::kAssimp;
+    AssimpFrame frame = AssimpFrame::kAsIs;
+    std::array<std::string_view, 2> signatures{};  ///< bytes that no other format begins with
+    std::string_view packed{};                     ///< the beginning of an archive that files may be in
+    std::string_view alias{};  ///< of the format by its other name, whose row has all the rest
+    bool narrow = false;       ///< text of eight bits; XML states its own encoding
+    bool own_words = false;    ///< its text may look like that of other formats
+    bool whole = false;        ///< refers to no other files
+};
+
+/// The formats that are read; the first kNamedFormats are those that a message names.
+[[nodiscard]] std::span<const MeshFormat> meshFormats();
+inline constexpr std::size_t kNamedFormats = 11;
+
+/// \param extension  in any case, without its dot. \return nullptr: there is no such format.
+[[nodiscard]] const MeshFormat* meshFormat(std::string_view extension);
 
 /// The extension of the format that the contents name beyond doubt, such as "glb", "stl" or "dae". nullopt: they name none,
 /// or the one that `extension` says.

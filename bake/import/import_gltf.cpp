@@ -19,6 +19,7 @@
 #include "bake/import/import_instances.h"
 #include "bake/import/import_names.h"
 #include "bake/import/import_parts.h"
+#include "bake/import/polygon_mesh.h"
 #include "formats/base/text.h"
 
 namespace relief {
@@ -296,11 +297,7 @@ Result<TriangleMesh> readGltf(const ImportJob& job, ImportFiles& files, const gl
                               TriangleMesh mesh) {
     GltfReader reader(job, files, linear);
     if (const Result<void> opened = reader.open(); !opened) {
-        const std::string& what = opened.error().message;
-        // What quotes the file has a cure of its own.
-        const bool cured = what.find(';') != std::string::npos;
-        return fail(opened.error().code, "cannot read the mesh " + job.shown + ": " + what +
-                                             (cured ? "" : "; repair the file or export it again"));
+        return unreadable(job.shown, opened.error());
     }
     return reader.flatten(std::move(mesh));
 }

@@ -1,4 +1,4 @@
-// Mesh files of every format of importFormats(), as one TriangleMesh: imported by a process of their own
+// Mesh files of every format of meshFormats(), as one TriangleMesh: imported by a process of their own
 // (importMeshInWorker), as every tool does, or in this one (importMesh), for files that one trusts.
 #pragma once
 

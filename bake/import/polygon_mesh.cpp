@@ -171,10 +171,6 @@ Result<TriangleMesh> flatten(const PolygonMesh& polygons, bool apart, const glm:
     return instances.finish(marks);
 }
 
-tl::unexpected<Error> wrongLine(std::size_t line, const std::string& what) {
-    return invalidInput("line " + std::to_string(line) + ": " + what);
-}
-
 tl::unexpected<Error> unreadable(const std::string& shown, const Error& error) {
     const bool cured = error.message.find(';') != std::string::npos;
     return fail(error.code, "cannot read the mesh " + shown + ": " + error.message +
