@@ -17,7 +17,7 @@ namespace relief {
 namespace {
 
 constexpr std::string_view kModelRelation = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
-/// What a model may require and Relief reads, or what changes no surface.
+/// Extensions that a model may require: Relief reads them, or they change no surface.
 constexpr std::array<std::string_view, 4> kKnownExtensions = {
     "http://schemas.microsoft.com/3dmanufacturing/core/2015/02",
     "http://schemas.microsoft.com/3dmanufacturing/production/2015/06",

@@ -67,7 +67,7 @@ class AmfReader {
             if (xml_.name() != "amf") {
                 return invalidInput("its root is <" + cleanUtf8(xml_.name()) + ">, not <amf>");
             }
-            // As ISO/ASTM 52915 has it where nothing is said.
+            // The default of ISO/ASTM 52915.
             file_.frame = frameOfUnitName(xml_.attribute("unit").value_or("millimeter"));
         } else if (xml_.at({"amf", "object"}) || xml_.at({"amf", "constellation"})) {
             AssemblyObject object;

@@ -21,7 +21,7 @@ std::string_view textOf(std::span<const std::byte> bytes) {
 
 using enum MeshReader;
 
-// What imports the package's test models rightly or refuses them clearly; the first are what a message names.
+// Formats that import assimp's test models correctly, or refuse them clearly.
 constexpr MeshFormat kRows[] = {
     {.extension = "obj", .reader = kObj, .narrow = true},
     {.extension = "stl", .reader = kStl, .narrow = true, .whole = true},
@@ -98,7 +98,7 @@ bool isWideText(std::string_view text) {
     return false;
 }
 
-/// Whether lines that are no comments are all statements of OBJ, some of them vertices.
+/// All lines but comments are statements of OBJ, some of them vertices.
 bool isObj(std::string_view text) {
     constexpr std::array<std::string_view, 11> kStatements = {"v", "vt", "vn",     "vp",     "f", "g",
                                                               "o", "s",  "mtllib", "usemtl", "l"};
@@ -125,7 +125,7 @@ constexpr std::array<std::string_view, 7> kGltfKeys = {"\"asset\"",         "\"a
                                                        "\"scenes\"",        "\"meshes\"",    "\"nodes\"",
                                                        "\"extensionsUsed\""};
 
-/// By what a text says within its first bytes.
+/// By words among the first bytes of a text.
 std::string_view textFormat(std::string_view text) {
     std::string_view rest = text;
     const std::string word = lowerCase(takeWord(rest));
@@ -183,7 +183,7 @@ std::optional<std::string> otherFormat(std::string_view extension, std::span<con
     const std::string_view text = textOf(bytes).substr(0, kLooked);
     std::string_view format = binaryFormat(bytes);
     if (extension == "stl" && format == "stl") {
-        return std::nullopt;  // whatever its header says
+        return std::nullopt;  // whatever its header holds
     }
     for (const MeshFormat& row : kRows) {
         for (const std::string_view begin : row.signatures) {

@@ -1,4 +1,4 @@
-// The formats of mesh files: a table, and what the first bytes of a file tell of its format, whatever its name says.
+// The formats of mesh files as a table, and the format of a file by its first bytes, whatever its name.
 #pragma once
 
 #include <array>
@@ -45,13 +45,13 @@ inline constexpr std::size_t kNamedFormats = 11;
 /// \param extension  in any case, without its dot. \return nullptr: there is no such format.
 [[nodiscard]] const MeshFormat* meshFormat(std::string_view extension);
 
-/// The extension of the format that the contents name beyond doubt, such as "glb", "stl" or "dae". nullopt: they name none,
-/// or the one that `extension` says.
+/// The extension of the format that the contents have beyond doubt, such as "glb", "stl" or "dae". nullopt: there is none, or
+/// it is that of `extension`.
 /// \param extension  lower case, without its dot.
 [[nodiscard]] std::optional<std::string> otherFormat(std::string_view extension,
                                                      std::span<const std::byte> bytes);
 
-/// What the file is instead of a mesh, and the cure: packed, text in UTF-16, a picture, a web page, a placeholder of Git.
+/// The kind of a file that is no mesh, with the cure: packed, text in UTF-16, a picture, a web page, a placeholder of Git.
 /// nullopt: nothing of that kind.
 /// \param extension  lower case, without its dot.
 [[nodiscard]] std::optional<std::string> noMeshAtAll(std::string_view extension,

@@ -70,7 +70,7 @@ Result<void> checkExtensions(const GltfValue& document, std::vector<std::string>
                                                      "', which is not read; export it without");
         }
     }
-    // What changes the surface, and may be passed over all the same.
+    // Optional extensions that change the surface.
     for (const std::string& name : RELIEF_TRY(document.texts("extensionsUsed"))) {
         if (name == "EXT_mesh_gpu_instancing") {
             warnings.emplace_back("instances by EXT_mesh_gpu_instancing are left out; export them as nodes");
@@ -114,7 +114,7 @@ std::vector<Use> usesOf(const std::vector<GltfNode>& nodes, const std::vector<st
     return uses;
 }
 
-/// Tells NameMarks the names of triangles.
+/// Marks of triangles by their names.
 class GltfNames {
   public:
     /// \param nodes  borrowed, and so is the job.

@@ -162,7 +162,7 @@ class OffReader {
         return *corners < 3 ? 0 : *corners - 2;
     }
 
-    /// What stands behind an element's own numbers.
+    /// Passes over the rest of an element's line: numbers such as colours.
     Result<void> passLine(const char* element, std::uint64_t index) {
         for (std::string_view word = text_.word(); !word.empty(); word = text_.word()) {
             RELIEF_TRY(number(word, element, index));

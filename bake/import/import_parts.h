@@ -1,4 +1,4 @@
-// What a mesh file holds beside triangles, and what a reader says of it: nothing is left out without a word.
+// The content of a mesh file beside triangles: nothing is left out without a warning.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace relief {
 
-/// What to do about a file that has vertices or lines, but no polygon. \return nullopt for all others.
+/// The refusal of a file that has vertices or lines, but no polygon. \return nullopt for all others.
 [[nodiscard]] std::optional<std::string> partsRefusal(const MeshParts& parts);
 
 /// Lines, points, free forms and meshes that are left out, and many loose vertices: each a line without the file's name.

@@ -27,7 +27,7 @@ namespace relief {
 ///
 /// Text begins with "solid", words in any case and over any lines; several solids may follow each other, and a triangle has
 /// the first word of its solid's name. Normals are not looked at. A file that is at least as long as the count of its
-/// header says is binary, whatever it begins with; a warning counts the bytes behind its last triangle.
+/// header needs is binary, whatever it begins with; a warning counts the bytes behind its last triangle.
 [[nodiscard]] Result<PolygonMesh> readStl(std::span<const std::byte> bytes);
 
 /// AMF (ISO/ASTM 52915): objects of volumes, and constellations that place them.
@@ -42,8 +42,7 @@ namespace relief {
 /// Errors: also kUnsupported (an extension that the file requires).
 [[nodiscard]] Result<AssemblyFile> read3mf(std::span<const std::byte> bytes);
 
-/// Whether an AC3D file holds less than its counts say; assimp, which reads it, takes zeros for the rest. Files of other
-/// kinds do not.
+/// \return true for an AC3D file that holds less than its counts announce: assimp, which reads it, takes zeros for the rest.
 [[nodiscard]] bool isAcCutOff(std::span<const std::byte> bytes);
 
 }  // namespace relief

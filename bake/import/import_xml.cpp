@@ -48,7 +48,8 @@ struct XmlReader::State {
         if (parser == nullptr) {
             throw std::bad_alloc();
         }
-        XML_SetHashSalt(parser, 1);  // else Expat asks the system for a random one, which the sandbox forbids
+        XML_SetHashSalt(parser,
+                        1);  // else Expat draws a random one by a system call that the sandbox forbids
         XML_SetUserData(parser, this);
         XML_SetElementHandler(parser, begin, end);
         XML_SetCharacterDataHandler(parser, characters);

@@ -40,7 +40,7 @@ class XmlReader {
 
     /// Of the element that the event is of, without its prefix.
     [[nodiscard]] std::string_view name() const;
-    /// Whether the event is of an element of these names, from the root on.
+    /// \return true if the event is of an element of these names, from the root on.
     [[nodiscard]] bool at(std::initializer_list<std::string_view> path) const;
     [[nodiscard]] std::size_t depth() const;  ///< 1: the event is of the root
     /// Of the start tag that was read last. \param name  without a prefix: whatever its prefix is.

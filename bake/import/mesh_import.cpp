@@ -52,7 +52,7 @@ std::optional<T> metadata(const aiScene& scene, const char* key) {
     return value;
 }
 
-/// FBX says its unit in centimetres, and its axes by number and sign; assimp applies neither.
+/// FBX has its unit in centimetres, and its axes by number and sign; assimp applies neither.
 SourceFrame fbxFrame(const ImportJob& job, const aiScene& scene) {
     SourceFrame frame{0.01, UpAxis::kPlusY};
     double factor = metadata<double>(scene, "UnitScaleFactor").value_or(1.0);

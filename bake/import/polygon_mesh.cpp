@@ -76,7 +76,7 @@ class Triangles {
         triangles_.clear();
     }
 
-    /// Whether it is time to hand over, so that there are never two copies of all.
+    /// Handing over in parts avoids a second copy of the whole mesh.
     [[nodiscard]] bool isFull() const { return positions_.size() > kHeldMax; }
 
   private:

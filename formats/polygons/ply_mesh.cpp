@@ -26,9 +26,9 @@ bool isSurface(const PlyElement& element) {
            std::any_of(element.properties.begin(), element.properties.end(), isVertexList);
 }
 
-/// Whether an element that is not read may hold faces. Range grids hold points in rows and columns, no faces.
+/// An element that is not read may hold faces. Range grids hold points in rows and columns, no faces.
 bool looksLikeFaces(const PlyElement& element) {
-    const auto says = [](std::string_view name, auto words) {
+    const auto hasWord = [](std::string_view name, auto words) {
         const std::string lower = lowerCase(name);
         return std::any_of(words.begin(), words.end(),
                            [&](const char* word) { return lower.find(word) != std::string::npos; });
@@ -36,12 +36,12 @@ bool looksLikeFaces(const PlyElement& element) {
     constexpr std::array<const char*, 6> kElements = {"face", "poly", "strip", "triang", "quad", "patch"};
     constexpr std::array<const char*, 3> kLists = {"vert", "index", "indic"};
     constexpr std::array<const char*, 2> kOthers = {"texture", "range_grid"};
-    if (element.count == 0 || element.name == "vertex" || says(element.name, kOthers)) {
+    if (element.count == 0 || element.name == "vertex" || hasWord(element.name, kOthers)) {
         return false;
     }
-    return says(element.name, kElements) ||
+    return hasWord(element.name, kElements) ||
            std::any_of(element.properties.begin(), element.properties.end(),
-                       [&](const PlyProperty& list) { return list.isList() && says(list.name, kLists); });
+                       [&](const PlyProperty& list) { return list.isList() && hasWord(list.name, kLists); });
 }
 
 /// "its element 'polygon' is not read, …"
@@ -219,7 +219,7 @@ class PlyImport {
                 return noVertex("tristrips", index, *value, numbers);
             }
             const auto corner = static_cast<std::uint32_t>(*value);
-            // Where corners repeat, the strip only moves on to its next part.
+            // Repeated corners only lead the strip to its next part.
             if (in_strip >= 2 && before_last != last && last != corner && corner != before_last) {
                 const bool turned = in_strip % 2 == 1;
                 mesh_.corners.insert(mesh_.corners.end(),

@@ -30,7 +30,7 @@ struct PlyProperty {
 
 struct PlyElement {
     std::string_view name;
-    std::uint64_t count = 0;  ///< what the header says; the file may hold fewer
+    std::uint64_t count = 0;  ///< by the header; the file may hold fewer
     std::vector<PlyProperty> properties;
 };
 
@@ -55,12 +55,12 @@ class PlyNumbers {
 
     /// \return nullopt if the data have ended, or where a word is no number.
     [[nodiscard]] std::optional<double> next(PlyType type);
-    /// After next() has failed: whether the data have ended.
+    /// After next() has failed: the data have ended.
     [[nodiscard]] bool ended() const { return ended_; }
-    /// What comes after the last number.
+    /// The data behind the last number.
     [[nodiscard]] std::string_view rest() const { return isText() ? text_.rest() : data_; }
     [[nodiscard]] bool isText() const { return encoding_ == PlyEncoding::kAscii; }
-    /// Whether no word follows the last one on its line. \pre isText()
+    /// \return true if no word follows the last one on its line. \pre isText()
     [[nodiscard]] bool atLineEnd() { return text_.atLineEnd(); }
     /// "line 12: ", of the last word; "" where there are no lines.
     [[nodiscard]] std::string where() const;

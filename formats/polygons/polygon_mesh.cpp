@@ -9,8 +9,8 @@ tl::unexpected<Error> wrongLine(std::size_t line, const std::string& what) {
 Result<void> checkTriangleCount(std::uint64_t triangles) {
     return triangles <= kPolygonTrianglesMax
                ? Result<void>()
-               : fail(ErrorCode::kLimit,
-                      "it has more than " + std::to_string(kPolygonTrianglesMax) + " triangles; simplify the mesh");
+               : fail(ErrorCode::kLimit, "it has more than " + std::to_string(kPolygonTrianglesMax) +
+                                             " triangles; simplify the mesh");
 }
 
 Result<void> checkAnnounced(std::uint64_t vertices) {
@@ -18,7 +18,8 @@ Result<void> checkAnnounced(std::uint64_t vertices) {
                ? Result<void>()
                : fail(ErrorCode::kLimit, "its header announces " + std::to_string(vertices) +
                                              " vertices, more than the limit of " +
-                                             std::to_string(3 * kPolygonTrianglesMax) + "; simplify the mesh");
+                                             std::to_string(3 * kPolygonTrianglesMax) +
+                                             "; simplify the mesh");
 }
 
 }  // namespace relief

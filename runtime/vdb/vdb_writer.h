@@ -1,4 +1,4 @@
-// What writes OpenVDB files. It lies in a module of its own, relief-vdb.so, which is loaded when it is needed: the library
+// The writer of OpenVDB files. It lies in a module of its own, relief-vdb.so, which is loaded when it is needed: the library
 // brings others along that start threads in whatever program loads them.
 #pragma once
 
@@ -46,7 +46,7 @@ class VdbWriter {
 /// Errors: kUnsupported (a build without OpenVDB), kFailure.
 [[nodiscard]] Result<std::vector<std::byte>> encodeVdbPoints(std::span<const ParticleState> particles);
 
-/// Whether this build has OpenVDB. Fails with kUnsupported, and says what to build.
+/// Fails with kUnsupported where this build has no OpenVDB, with the cure.
 [[nodiscard]] Result<void> checkVdb();
 
 /// Loads the module, once. It lies beside the program, or in ../lib/relief.
