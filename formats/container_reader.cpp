@@ -228,7 +228,7 @@ bool ContainerReader::checkSizes() {
 
 /// \return whether there are maps to look at.
 bool ContainerReader::readMetadata() {
-    const auto bytes = bytes_.subspan(header.metadata_offset, header.metadata_size);
+    const auto bytes = part(header.metadata_offset, header.metadata_size);
     // A right checksum vouches for the metadata, whatever else is wrong with the header.
     metadata_intact = header.metadata_hash == xxh3_64(bytes);
     if (!metadata_intact) {
@@ -360,7 +360,7 @@ bool ContainerReader::checkPlace(const PayloadInfo& payload, int index, std::uin
     if (payload.offset != expected) {
         return true;
     }
-    const auto padding = bytes_.subspan(end, expected - end);
+    const auto padding = part(end, expected - end);
     const auto at =
         std::find_if(padding.begin(), padding.end(), [](std::byte b) { return b != std::byte{0}; });
     if (at != padding.end()) {
@@ -373,8 +373,7 @@ bool ContainerReader::checkPlace(const PayloadInfo& payload, int index, std::uin
 bool ContainerReader::readTexels(std::size_t index) {
     StoredMap& map = maps[index];
     const auto at = static_cast<int>(index);
-    const auto stored = bytes_.subspan(static_cast<std::size_t>(map.payload.offset),
-                                       static_cast<std::size_t>(map.payload.stored_size));
+    const auto stored = part(map.payload.offset, map.payload.stored_size);
     map.intact = map.hash == xxh3_64(stored);
     if (!map.intact) {
         add(IssueCode::kPayloadChecksum, "the checksum of its payload is wrong", map.payload.offset, at);

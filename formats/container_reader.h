@@ -77,6 +77,11 @@ class ContainerReader {
     [[nodiscard]] bool checkFrame(StoredMap& map, int index);
     [[nodiscard]] bool checkPlace(const PayloadInfo& payload, int index, std::uint64_t end);
 
+    /// Bytes that were found to lie within the file.
+    [[nodiscard]] std::span<const std::byte> part(std::uint64_t offset, std::uint64_t size) const {
+        return bytes_.subspan(static_cast<std::size_t>(offset), static_cast<std::size_t>(size));
+    }
+
     std::span<const std::byte> bytes_;
     ContainerLimits limits_;
     bool header_intact_ = false;

@@ -15,6 +15,7 @@ THIRD_PARTIES = {
     'seccomp.h': ['bake/import'],
     'draco': ['bake/import'],
     'zlib.h': ['bake/import'],
+    'expat.h': ['bake/import'],
     'embree3': ['bake/mesh'],
     'embree4': ['bake/mesh'],
     'CGAL': ['bake/mesh', 'bake/repair'],

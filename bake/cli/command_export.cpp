@@ -13,7 +13,7 @@
 #include "formats/container.h"
 #include "runtime/tool/memory_option.h"
 #include "runtime/tool/option_values.h"
-#include "runtime/vdb/vdb_points.h"
+#include "runtime/vdb/vdb_writer.h"
 
 namespace relief {
 namespace {

@@ -1,10 +1,10 @@
 #include "bake/cli/recipe_keys.h"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <string>
 
+#include "bake/import/import_format.h"
 #include "bake/import/mesh_import.h"
 #include "bake/recipe/asset_key.h"
 #include "formats/base/text.h"
@@ -16,16 +16,11 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kPlan = "--plan=";
 
-/// Formats that are one file.
-bool isWhole(const fs::path& mesh) {
-    constexpr std::array<std::string_view, 3> kWhole = {".off", ".ply", ".stl"};
-    const std::string extension = lowerCase(mesh.extension().native());
-    return std::find(kWhole.begin(), kWhole.end(), extension) != kWhole.end();
-}
-
 /// The mesh and all that it refers to; nullopt if that cannot be read.
 std::optional<std::vector<InputFile>> filesOfMesh(const RecipeJob& job, const fs::path& folder) {
-    if (isWhole(job.mesh_path)) {
+    const std::string extension = job.mesh_path.extension().string();
+    const MeshFormat* const format = extension.empty() ? nullptr : meshFormat(extension.substr(1));
+    if (format != nullptr && format->whole) {
         const std::optional<std::string> hash = hashOfFile(job.mesh_path);
         return hash ? std::optional(std::vector<InputFile>{{job.mesh, *hash}}) : std::nullopt;
     }

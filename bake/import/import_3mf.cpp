@@ -1,4 +1,4 @@
-#include "bake/import/import_3mf.h"
+#include "bake/import/import_readers.h"
 
 #include <algorithm>
 #include <array>
@@ -17,7 +17,7 @@ namespace relief {
 namespace {
 
 constexpr std::string_view kModelRelation = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
-/// What a model may require and Relief reads, or what changes no surface.
+/// Extensions that a model may require: Relief reads them, or they change no surface.
 constexpr std::array<std::string_view, 4> kKnownExtensions = {
     "http://schemas.microsoft.com/3dmanufacturing/core/2015/02",
     "http://schemas.microsoft.com/3dmanufacturing/production/2015/06",
@@ -26,9 +26,8 @@ constexpr std::array<std::string_view, 4> kKnownExtensions = {
 constexpr std::size_t kQuotedMax = 80;  // bytes of the file shown in a message
 
 /// A model or another part of the archive. \param path  from the archive's root.
-Result<std::string> partOf(const ZipArchive& archive, std::string_view path) {
-    const std::vector<std::byte> bytes = RELIEF_TRY(archive.read(path.substr(path.starts_with('/') ? 1 : 0)));
-    return xmlText(bytes);
+Result<std::vector<std::byte>> partOf(const ZipArchive& archive, std::string_view path) {
+    return archive.read(path.substr(path.starts_with('/') ? 1 : 0));
 }
 
 /// An object by the model that it is in and its id there.
@@ -72,8 +71,8 @@ Result<Transform> transformOf(std::string_view text) {
 class ModelReader {
   public:
     /// \param path  of the model. \param root  whether its <build> is the scene.
-    ModelReader(std::string_view text, std::string path, bool root, Models& models)
-        : xml_(text), path_(std::move(path)), root_(root), models_(models) {}
+    ModelReader(std::span<const std::byte> model, std::string path, bool root, Models& models)
+        : xml_(model), path_(std::move(path)), root_(root), models_(models) {}
 
     Result<void> run() {
         for (;;) {
@@ -246,8 +245,8 @@ class ModelReader {
 
 /// The path of the model that the archive begins with.
 Result<std::string> rootModel(const ZipArchive& archive) {
-    const std::string text = RELIEF_TRY(partOf(archive, "_rels/.rels"));
-    XmlReader xml(text);
+    const std::vector<std::byte> relations = RELIEF_TRY(partOf(archive, "_rels/.rels"));
+    XmlReader xml(relations);
     for (;;) {
         const XmlReader::Event event = RELIEF_TRY(xml.next());
         if (event == XmlReader::Event::kDone) {
@@ -287,8 +286,8 @@ Result<AssemblyFile> read3mf(std::span<const std::byte> bytes) {
     Models models;
     bool root = true;
     for (std::size_t uses = 0; !paths.empty(); paths.pop_front()) {
-        const std::string text = RELIEF_TRY(partOf(archive, paths.front()));
-        RELIEF_TRY(ModelReader(text, paths.front(), root, models).run());
+        const std::vector<std::byte> model = RELIEF_TRY(partOf(archive, paths.front()));
+        RELIEF_TRY(ModelReader(model, paths.front(), root, models).run());
         root = false;
         for (; uses < models.uses.size(); ++uses) {
             if (known.insert(models.uses[uses].of.first).second) {

@@ -1,4 +1,4 @@
-#include "bake/import/import_ac.h"
+#include "bake/import/import_readers.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "bake/import/import_amf.h"
+#include "bake/import/import_readers.h"
 
 #include <cmath>
 #include <map>
@@ -39,7 +39,7 @@ SineCosine sineAndCosine(double degrees) {
 
 class AmfReader {
   public:
-    explicit AmfReader(std::string_view text) : xml_(text) {}
+    explicit AmfReader(std::span<const std::byte> bytes) : xml_(bytes) {}
 
     Result<AssemblyFile> run() {
         for (XmlReader::Event event = RELIEF_TRY(xml_.next()); event != XmlReader::Event::kDone;
@@ -67,7 +67,7 @@ class AmfReader {
             if (xml_.name() != "amf") {
                 return invalidInput("its root is <" + cleanUtf8(xml_.name()) + ">, not <amf>");
             }
-            // As ISO/ASTM 52915 has it where nothing is said.
+            // The default of ISO/ASTM 52915.
             file_.frame = frameOfUnitName(xml_.attribute("unit").value_or("millimeter"));
         } else if (xml_.at({"amf", "object"}) || xml_.at({"amf", "constellation"})) {
             AssemblyObject object;
@@ -234,8 +234,7 @@ class AmfReader {
 }  // namespace
 
 Result<AssemblyFile> readAmf(std::span<const std::byte> bytes) {
-    const std::string text = xmlText(bytes);
-    return AmfReader(text).run();
+    return AmfReader(bytes).run();
 }
 
 }  // namespace relief

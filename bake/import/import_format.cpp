@@ -19,25 +19,35 @@ std::string_view textOf(std::span<const std::byte> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-struct Signature {
-    std::string_view begin;
-    std::string_view format;
-};
+using enum MeshReader;
 
-/// Bytes that no other format begins with.
-constexpr std::array<Signature, 13> kSignatures = {{{"ply\n", "ply"},
-                                                    {"ply\r", "ply"},
-                                                    {"Kaydara FBX Binary", "fbx"},
-                                                    {"; FBX ", "fbx"},
-                                                    {"BLENDER_", "blend"},
-                                                    {"BLENDER-", "blend"},
-                                                    {"BB3D", "b3d"},
-                                                    {"MS3D000000", "ms3d"},
-                                                    {"AC3Db\n", "ac"},
-                                                    {"AC3Db\r", "ac"},
-                                                    {"*3DSMAX_ASCIIEXPORT", "ase"},
-                                                    {"xof 030", "x"},
-                                                    {"glTF\x02", "glb"}}};
+// Formats that import assimp's test models correctly, or refuse them clearly.
+constexpr MeshFormat kRows[] = {
+    {.extension = "obj", .reader = kObj, .narrow = true},
+    {.extension = "stl", .reader = kStl, .narrow = true, .whole = true},
+    {.extension = "ply", .reader = kPly, .signatures = {"ply\n", "ply\r"}, .narrow = true, .whole = true},
+    {.extension = "off", .reader = kOff, .narrow = true, .whole = true},
+    {.extension = "gltf", .reader = kGltf, .narrow = true},
+    {.extension = "glb", .reader = kGltf, .signatures = {"glTF\x02"}, .narrow = true},
+    {.extension = "fbx", .frame = AssimpFrame::kFbx, .signatures = {"Kaydara FBX Binary", "; FBX "}},
+    {.extension = "dae", .frame = AssimpFrame::kDae},
+    {.extension = "3ds", .frame = AssimpFrame::k3ds},
+    {.extension = "blend", .signatures = {"BLENDER_", "BLENDER-"}, .packed = "\x1f\x8b"},
+    {.extension = "3mf", .reader = k3mf, .packed = "PK"},
+    {.extension = "x", .frame = AssimpFrame::kMirrored, .signatures = {"xof 030"}},
+    {.extension = "lwo", .frame = AssimpFrame::kMirrored},
+    {.extension = "ac", .signatures = {"AC3Db\n", "AC3Db\r"}, .narrow = true},
+    {.extension = "acc", .alias = "ac"},  // as racing simulators call it
+    {.extension = "ase", .frame = AssimpFrame::kZUp, .signatures = {"*3DSMAX_ASCIIEXPORT"}, .narrow = true},
+    {.extension = "b3d", .frame = AssimpFrame::kMirrored, .signatures = {"BB3D"}},
+    {.extension = "dxf", .frame = AssimpFrame::kDxf, .narrow = true},
+    {.extension = "lxo", .frame = AssimpFrame::kMirrored},
+    {.extension = "ms3d", .signatures = {"MS3D000000"}},
+    {.extension = "nff", .narrow = true, .own_words = true},
+    {.extension = "raw", .reader = kRaw, .narrow = true, .own_words = true},
+    {.extension = "smd", .narrow = true},
+    {.extension = "amf", .reader = kAmf},
+};
 
 struct Stranger {
     std::string_view begin;
@@ -88,7 +98,7 @@ bool isWideText(std::string_view text) {
     return false;
 }
 
-/// Whether lines that are no comments are all statements of OBJ, some of them vertices.
+/// All lines but comments are statements of OBJ, some of them vertices.
 bool isObj(std::string_view text) {
     constexpr std::array<std::string_view, 11> kStatements = {"v", "vt", "vn",     "vp",     "f", "g",
                                                               "o", "s",  "mtllib", "usemtl", "l"};
@@ -115,7 +125,7 @@ constexpr std::array<std::string_view, 7> kGltfKeys = {"\"asset\"",         "\"a
                                                        "\"scenes\"",        "\"meshes\"",    "\"nodes\"",
                                                        "\"extensionsUsed\""};
 
-/// By what a text says within its first bytes.
+/// By words among the first bytes of a text.
 std::string_view textFormat(std::string_view text) {
     std::string_view rest = text;
     const std::string word = lowerCase(takeWord(rest));
@@ -158,17 +168,31 @@ std::string_view binaryFormat(std::span<const std::byte> bytes) {
 
 }  // namespace
 
+std::span<const MeshFormat> meshFormats() {
+    return kRows;
+}
+
+const MeshFormat* meshFormat(std::string_view extension) {
+    const std::string lower = lowerCase(extension);
+    const auto found = std::find_if(std::begin(kRows), std::end(kRows),
+                                    [&](const MeshFormat& row) { return row.extension == lower; });
+    return found == std::end(kRows) ? nullptr : found;
+}
+
 std::optional<std::string> otherFormat(std::string_view extension, std::span<const std::byte> bytes) {
     const std::string_view text = textOf(bytes).substr(0, kLooked);
     std::string_view format = binaryFormat(bytes);
     if (extension == "stl" && format == "stl") {
-        return std::nullopt;  // whatever its header says
+        return std::nullopt;  // whatever its header holds
     }
-    for (const Signature& signature : kSignatures) {
-        format = format.empty() && text.starts_with(signature.begin) ? signature.format : format;
+    for (const MeshFormat& row : kRows) {
+        for (const std::string_view begin : row.signatures) {
+            const bool begins = !begin.empty() && text.starts_with(begin);
+            format = format.empty() && begins ? row.extension : format;
+        }
     }
-    // These two have words of their own that look like those of others.
-    if (format.empty() && extension != "raw" && extension != "nff") {
+    const MeshFormat* const named = meshFormat(extension);
+    if (format.empty() && (named == nullptr || !named->own_words)) {
         format = textFormat(text);
     }
     // A .gltf may be long before it names its asset.
@@ -181,8 +205,8 @@ std::optional<std::string> otherFormat(std::string_view extension, std::span<con
 
 std::optional<std::string> noMeshAtAll(std::string_view extension, std::span<const std::byte> bytes) {
     const std::string_view text = textOf(bytes).substr(0, kLooked);
-    const bool packed = (extension == "3mf" && text.starts_with("PK")) ||
-                        (extension == "blend" && text.starts_with("\x1f\x8b"));
+    const MeshFormat* const named = meshFormat(extension);
+    const bool packed = named != nullptr && !named->packed.empty() && text.starts_with(named->packed);
     if (packed || (extension == "stl" && binaryFormat(bytes) == "stl")) {
         return std::nullopt;  // as these are
     }
@@ -197,10 +221,7 @@ std::optional<std::string> noMeshAtAll(std::string_view extension, std::span<con
     if ((first == "<!doctype" && second.starts_with("html")) || first.starts_with("<html")) {
         return "it is a web page; download the mesh itself";
     }
-    // XML says its own encoding.
-    constexpr std::array<std::string_view, 12> kNarrow = {"obj", "stl", "ply", "off", "gltf", "glb",
-                                                          "ac",  "ase", "dxf", "nff", "raw",  "smd"};
-    if (std::find(kNarrow.begin(), kNarrow.end(), extension) != kNarrow.end() && isWideText(text)) {
+    if (named != nullptr && named->narrow && isWideText(text)) {
         return "it is text in UTF-16 or UTF-32; save it in UTF-8";
     }
     return std::nullopt;

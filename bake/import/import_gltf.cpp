@@ -19,6 +19,7 @@
 #include "bake/import/import_instances.h"
 #include "bake/import/import_names.h"
 #include "bake/import/import_parts.h"
+#include "bake/import/polygon_mesh.h"
 #include "formats/base/text.h"
 
 namespace relief {
@@ -69,7 +70,7 @@ Result<void> checkExtensions(const GltfValue& document, std::vector<std::string>
                                                      "', which is not read; export it without");
         }
     }
-    // What changes the surface, and may be passed over all the same.
+    // Optional extensions that change the surface.
     for (const std::string& name : RELIEF_TRY(document.texts("extensionsUsed"))) {
         if (name == "EXT_mesh_gpu_instancing") {
             warnings.emplace_back("instances by EXT_mesh_gpu_instancing are left out; export them as nodes");
@@ -113,7 +114,7 @@ std::vector<Use> usesOf(const std::vector<GltfNode>& nodes, const std::vector<st
     return uses;
 }
 
-/// Tells NameMarks the names of triangles.
+/// Marks of triangles by their names.
 class GltfNames {
   public:
     /// \param nodes  borrowed, and so is the job.
@@ -296,11 +297,7 @@ Result<TriangleMesh> readGltf(const ImportJob& job, ImportFiles& files, const gl
                               TriangleMesh mesh) {
     GltfReader reader(job, files, linear);
     if (const Result<void> opened = reader.open(); !opened) {
-        const std::string& what = opened.error().message;
-        // What quotes the file has a cure of its own.
-        const bool cured = what.find(';') != std::string::npos;
-        return fail(opened.error().code, "cannot read the mesh " + job.shown + ": " + what +
-                                             (cured ? "" : "; repair the file or export it again"));
+        return unreadable(job.shown, opened.error());
     }
     return reader.flatten(std::move(mesh));
 }

@@ -1,4 +1,4 @@
-#include "bake/import/import_off.h"
+#include "bake/import/import_readers.h"
 
 #include <cstdint>
 #include <optional>
@@ -6,9 +6,9 @@
 #include <string_view>
 #include <utility>
 
-#include "bake/import/text_number.h"
 #include "formats/base/text.h"
 #include "formats/base/text_scanner.h"
+#include "formats/polygons/decimal.h"
 
 namespace relief {
 namespace {
@@ -27,10 +27,7 @@ class OffReader {
         std::uint64_t triangles = 0;
         for (std::uint64_t i = 0; i < faces_; ++i) {
             triangles += RELIEF_TRY(readFace(i));
-            if (triangles > kTriangleMax) {
-                return fail(ErrorCode::kLimit, "it has more than " + std::to_string(kTriangleMax) +
-                                                   " triangles; simplify the mesh");
-            }
+            RELIEF_TRY(checkTriangleCount(triangles));
         }
         if (const std::string_view word = text_.anyWord(); !word.empty()) {
             return wrongLine(text_.line(), quotedWord(word) + " stands behind the last of the " + counts() +
@@ -79,12 +76,7 @@ class OffReader {
         } else {
             static_cast<void>(RELIEF_TRY(countOf(text_.word())));
         }
-        if (vertices_ > 3 * kTriangleMax) {
-            return fail(ErrorCode::kLimit, "its header announces " + std::to_string(vertices_) +
-                                               " vertices, more than the limit of " +
-                                               std::to_string(3 * kTriangleMax) + "; simplify the mesh");
-        }
-        return {};
+        return checkAnnounced(vertices_);
     }
 
     Result<std::uint64_t> countOf(std::string_view word) const {
@@ -170,7 +162,7 @@ class OffReader {
         return *corners < 3 ? 0 : *corners - 2;
     }
 
-    /// What stands behind an element's own numbers.
+    /// Passes over the rest of an element's line: numbers such as colours.
     Result<void> passLine(const char* element, std::uint64_t index) {
         for (std::string_view word = text_.word(); !word.empty(); word = text_.word()) {
             (void)RELIEF_TRY(number(word, element, index));

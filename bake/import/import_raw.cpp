@@ -1,4 +1,4 @@
-#include "bake/import/import_raw.h"
+#include "bake/import/import_readers.h"
 
 #include <algorithm>
 #include <array>
@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "bake/import/text_number.h"
 #include "formats/base/text_scanner.h"
+#include "formats/polygons/decimal.h"
 
 namespace relief {
 namespace {
@@ -81,10 +81,7 @@ class RawReader {
         for (std::size_t i = count - kCorners; i < count; i += 3) {
             part.corners.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
         }
-        return ++triangles_ <= kTriangleMax
-                   ? Result<void>()
-                   : fail(ErrorCode::kLimit, "it has more than " + std::to_string(kTriangleMax) +
-                                                 " triangles; simplify the mesh");
+        return checkTriangleCount(++triangles_);
     }
 
     RawPart& partOf(std::string_view texture) {

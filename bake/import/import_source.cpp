@@ -4,9 +4,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
+#include "bake/import/import_format.h"
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
 #include "formats/base/text.h"
@@ -17,21 +17,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What imports the package's test models rightly or refuses them clearly; the first are what a message names.
-constexpr std::array<std::string_view, 24> kFormats = {
-    "obj", "stl", "ply", "off", "gltf", "glb", "fbx", "dae",  "3ds", "blend", "3mf", "x",
-    "lwo", "ac",  "acc", "ase", "b3d",  "dxf", "lxo", "ms3d", "nff", "raw",   "smd", "amf"};
-constexpr std::size_t kNamedFormats = 11;
-
 bool isHash(const std::string& text) {
     return text.size() == 32 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 
 }  // namespace
-
-std::span<const std::string_view> importFormats() {
-    return kFormats;
-}
 
 ImportSource::ImportSource(fs::path path, std::string extension, std::vector<std::byte> bytes)
     : path_(std::move(path)),
@@ -45,11 +35,13 @@ ImportSource::ImportSource(fs::path path, std::string extension, std::vector<std
 Result<ImportSource> ImportSource::open(const fs::path& path) {
     std::vector<std::byte> bytes = RELIEF_TRY(readFile(path));
     const std::string extension = lowerCase(path.extension().string());
-    if (extension.empty() || std::find(kFormats.begin(), kFormats.end(),
-                                       std::string_view(extension).substr(1)) == kFormats.end()) {
+    if (extension.empty() || meshFormat(extension.substr(1)) == nullptr) {
+        std::vector<std::string_view> known;
+        for (const MeshFormat& format : meshFormats().first(kNamedFormats)) {
+            known.push_back(format.extension);
+        }
         return fail(ErrorCode::kUnsupported, quotedPath(path) + ": no mesh format has the extension '" +
-                                                 cleanUtf8(extension) + "'; use one of " +
-                                                 listed(std::span(kFormats).first(kNamedFormats)));
+                                                 cleanUtf8(extension) + "'; use one of " + listed(known));
     }
     if (bytes.empty()) {
         return fail(ErrorCode::kInvalidInput,

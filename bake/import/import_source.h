@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "bake/mesh/mesh.h"
@@ -14,9 +13,6 @@
 #include "formats/base/result.h"
 
 namespace relief {
-
-/// Extensions of the formats that are read, lower case, without dot.
-[[nodiscard]] std::span<const std::string_view> importFormats();
 
 /// A mesh file, read but not understood.
 class ImportSource {

@@ -1,4 +1,4 @@
-#include "bake/import/import_stl.h"
+#include "bake/import/import_readers.h"
 
 #include <array>
 #include <cstdint>
@@ -8,20 +8,15 @@
 #include <string_view>
 #include <utility>
 
-#include "bake/import/text_number.h"
 #include "formats/base/text.h"
 #include "formats/base/text_scanner.h"
+#include "formats/polygons/decimal.h"
 
 namespace relief {
 namespace {
 
 constexpr std::size_t kHeader = 84;    // bytes, the count included
 constexpr std::size_t kTriangle = 50;  // bytes: a normal, three corners, two that programs use as they like
-
-tl::unexpected<Error> tooMany() {
-    return fail(ErrorCode::kLimit,
-                "it has more than " + std::to_string(kTriangleMax) + " triangles; simplify the mesh");
-}
 
 void addTriangle(const std::array<glm::vec3, 3>& corners, PolygonMesh& mesh) {
     for (const glm::vec3& corner : corners) {
@@ -48,9 +43,7 @@ Result<PolygonMesh> readBinary(std::span<const std::byte> bytes) {
         return invalidInput("its header announces " + std::to_string(count) + " triangles, but it holds " +
                             std::to_string(held) + " and was probably cut off; copy or export it again");
     }
-    if (count > kTriangleMax) {
-        return tooMany();
-    }
+    RELIEF_TRY(checkTriangleCount(count));
     PolygonMesh mesh;
     const std::byte* at = bytes.data() + kHeader;
     for (std::uint64_t i = 0; i < count; ++i, at += kTriangle) {
@@ -191,7 +184,7 @@ class StlText {
         RELIEF_TRY(expect("endloop"));
         RELIEF_TRY(expect("endfacet"));
         addTriangle(corners, mesh_);
-        return mesh_.sizes.size() <= kTriangleMax ? Result<void>() : tooMany();
+        return checkTriangleCount(mesh_.sizes.size());
     }
 
     TextScanner text_;

@@ -261,8 +261,7 @@ std::optional<FbxUnit> fbxUnit(std::span<const std::byte> document) {
 
 Result<SourceFrame> colladaFrame(std::span<const std::byte> document) {
     SourceFrame frame{1.0, UpAxis::kPlusY};
-    const std::string text = xmlText(document);
-    XmlReader xml(text);
+    XmlReader xml(document);
     std::string up;
     for (;;) {
         const XmlReader::Event event = RELIEF_TRY(xml.next());

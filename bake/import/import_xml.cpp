@@ -1,130 +1,202 @@
 #include "bake/import/import_xml.h"
 
+#include <expat.h>
+
 #include <algorithm>
-#include <cstdint>
+#include <deque>
+#include <exception>
+#include <new>
 
 #include "formats/base/text.h"
 
 namespace relief {
 namespace {
 
-constexpr std::string_view kSpace = " \t\r\n";
+constexpr std::size_t kChunk = 1 << 16;
 constexpr std::size_t kQuotedMax = 40;  // bytes of the file shown in a message
 
-void appendUtf8(std::string& out, std::uint32_t c) {
-    const auto tail = [&](int shift) { out += static_cast<char>(0x80U | ((c >> shift) & 0x3FU)); };
-    if (c < 0x80) {
-        out += static_cast<char>(c);
-    } else if (c < 0x800) {
-        out += static_cast<char>(0xC0U | (c >> 6U));
-        tail(0);
-    } else if (c < 0x10000) {
-        out += static_cast<char>(0xE0U | (c >> 12U));
-        tail(6);
-        tail(0);
-    } else {
-        out += static_cast<char>(0xF0U | (c >> 18U));
-        tail(12);
-        tail(6);
-        tail(0);
-    }
+std::string_view local(std::string_view name) {
+    return name.substr(name.find(':') + 1);  // npos + 1 is 0
 }
 
-std::string fromUtf16(std::span<const std::byte> bytes, bool big_endian) {
-    std::string text;
-    text.reserve(bytes.size() / 2);
-    const auto unit = [&](std::size_t i) {
-        const auto first = std::to_integer<std::uint32_t>(bytes[i]);
-        const auto second = std::to_integer<std::uint32_t>(bytes[i + 1]);
-        return big_endian ? first << 8U | second : second << 8U | first;
-    };
-    for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) {
-        std::uint32_t c = unit(i);
-        if (c >= 0xD800 && c < 0xDC00 && i + 3 < bytes.size()) {
-            const std::uint32_t low = unit(i + 2);
-            if (low >= 0xDC00 && low < 0xE000) {
-                c = 0x10000 + ((c - 0xD800) << 10U) + (low - 0xDC00);
-                i += 2;
-            }
-        }
-        appendUtf8(text, c >= 0xD800 && c < 0xE000 ? 0xFFFD : c);
-    }
-    return text;
+std::string lineText(std::size_t line) {
+    return "line " + std::to_string(line) + ": ";
 }
+
+/// A byte is the character of its number, which is right of Latin letters at least.
+int keepBytes(void* /*data*/, const XML_Char* /*name*/, XML_Encoding* info) {
+    for (int i = 0; i < 256; ++i) {
+        info->map[i] = i;
+    }
+    info->data = nullptr;
+    info->convert = nullptr;
+    info->release = nullptr;
+    return XML_STATUS_OK;
+}
+
+struct Piece {
+    XmlReader::Event event;
+    std::size_t line;
+    std::string words;  // the element's name, or the text
+    std::vector<XmlReader::Attribute> attributes;
+};
 
 }  // namespace
 
-std::string xmlText(std::span<const std::byte> bytes) {
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    using namespace std::string_view_literals;
-    if (text.starts_with("\xff\xfe"sv) || text.starts_with("\xfe\xff"sv)) {
-        return fromUtf16(bytes.subspan(2), text[0] == '\xfe');
+struct XmlReader::State {
+    explicit State(std::span<const std::byte> document) : rest(document), parser(XML_ParserCreate(nullptr)) {
+        if (parser == nullptr) {
+            throw std::bad_alloc();
+        }
+        XML_SetHashSalt(parser,
+                        1);  // else Expat draws a random one by a system call that the sandbox forbids
+        XML_SetUserData(parser, this);
+        XML_SetElementHandler(parser, begin, end);
+        XML_SetCharacterDataHandler(parser, characters);
+        XML_SetEntityDeclHandler(parser, declareEntity);
+        XML_SetSkippedEntityHandler(parser, skipEntity);
+        XML_SetUnknownEncodingHandler(parser, keepBytes, nullptr);
     }
-    if (text.starts_with("<\0"sv) || text.starts_with("\0<"sv)) {
-        return fromUtf16(bytes, text[0] == '\0');
+    ~State() { XML_ParserFree(parser); }
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
+
+    /// Exceptions must not pass Expat's frames.
+    template <class F>
+    static void guarded(void* data, F f) {
+        State& state = *static_cast<State*>(data);
+        try {
+            f(state);
+        } catch (...) {
+            state.thrown = std::current_exception();
+            XML_StopParser(state.parser, XML_FALSE);
+        }
     }
-    return std::string(text.substr(text.starts_with("\xef\xbb\xbf"sv) ? 3 : 0));
-}
+    static void begin(void* data, const XML_Char* name, const XML_Char** attributes) {
+        guarded(data, [&](State& state) {
+            state.open.emplace_back(name);
+            Piece& piece = state.add(Event::kBegin, name);
+            for (; *attributes != nullptr; attributes += 2) {
+                piece.attributes.push_back({attributes[0], attributes[1]});
+            }
+        });
+    }
+    static void end(void* data, const XML_Char* name) {
+        guarded(data, [&](State& state) {
+            state.open.pop_back();
+            state.add(Event::kEnd, name);
+        });
+    }
+    static void characters(void* data, const XML_Char* text, int size) {
+        guarded(data, [&](State& state) { state.words.append(text, static_cast<std::size_t>(size)); });
+    }
+    static void declareEntity(void* data, const XML_Char* name, int, const XML_Char*, int, const XML_Char*,
+                              const XML_Char*, const XML_Char*, const XML_Char*) {
+        refuseEntity(data, name);
+    }
+    static void skipEntity(void* data, const XML_Char* name, int) { refuseEntity(data, name); }
+    static void refuseEntity(void* data, const XML_Char* name) {
+        guarded(data, [&](State& state) {
+            state.refused = "'" + cleanUtf8(name, kQuotedMax) + "' is no character that XML knows";
+            XML_StopParser(state.parser, XML_FALSE);
+        });
+    }
+
+    Piece& add(Event event, std::string name) {
+        const std::size_t line = XML_GetCurrentLineNumber(parser);
+        if (words.find_first_not_of(" \t\r\n") != std::string::npos) {
+            pieces.push_back({Event::kText, line, std::move(words), {}});
+        }
+        words.clear();
+        pieces.push_back({event, line, std::move(name), {}});
+        return pieces.back();
+    }
+
+    /// Reads on until there is a piece, or the end.
+    void read() {
+        while (pieces.empty() && !ended) {
+            const std::size_t size = std::min(rest.size(), kChunk);
+            ended = size == rest.size();
+            const bool good = XML_Parse(parser, reinterpret_cast<const char*>(rest.data()),
+                                        static_cast<int>(size), ended ? 1 : 0) == XML_STATUS_OK;
+            rest = rest.subspan(size);
+            if (thrown != nullptr) {
+                std::rethrow_exception(thrown);
+            }
+            if (!good) {
+                ended = true;
+                failure = "its XML is damaged: " + lineText(XML_GetCurrentLineNumber(parser)) + faultText();
+            }
+        }
+    }
+    [[nodiscard]] std::string faultText() const {
+        const XML_Error error = XML_GetErrorCode(parser);
+        if (error == XML_ERROR_NO_MEMORY) {
+            throw std::bad_alloc();
+        }
+        if (!refused.empty()) {
+            return refused;
+        }
+        const bool cut = error == XML_ERROR_NO_ELEMENTS || error == XML_ERROR_UNCLOSED_TOKEN ||
+                         error == XML_ERROR_PARTIAL_CHAR || error == XML_ERROR_UNCLOSED_CDATA_SECTION;
+        return cut && !open.empty() ? "it ends within <" + cleanUtf8(open.back(), kQuotedMax) +
+                                          ">; it was probably cut off, copy or export it again"
+                                    : XML_ErrorString(error);
+    }
+
+    std::span<const std::byte> rest;
+    XML_Parser parser;
+    std::deque<Piece> pieces;
+    std::string words;              // since the last tag
+    std::vector<std::string> open;  // elements, where Expat is
+    bool ended = false;
+    std::string failure;  // once the pieces are used up
+    std::string refused;
+    std::exception_ptr thrown;
+
+    Piece now{Event::kDone, 1, {}, {}};
+    std::vector<Attribute> attributes;
+    std::vector<std::string> path;  // of the event
+};
+
+XmlReader::XmlReader(std::span<const std::byte> document) : state_(std::make_unique<State>(document)) {}
+XmlReader::~XmlReader() = default;
+XmlReader::XmlReader(XmlReader&&) noexcept = default;
 
 Result<XmlReader::Event> XmlReader::next() {
-    if (ends_) {
-        ends_ = false;
-        leaves_ = true;
-        return Event::kEnd;
+    State& state = *state_;
+    if (state.now.event == Event::kEnd) {
+        state.path.pop_back();
     }
-    if (leaves_) {
-        leaves_ = false;
-        path_.pop_back();
+    state.now.event = Event::kDone;
+    state.read();
+    if (state.pieces.empty()) {
+        return state.failure.empty() ? Result<Event>(Event::kDone) : invalidInput(state.failure);
     }
-    while (at_ < text_.size()) {
-        event_at_ = at_;
-        const std::string_view rest = text_.substr(at_);
-        if (rest[0] != '<' || rest.starts_with("<![CDATA[")) {
-            const bool literal = rest[0] == '<';
-            const std::size_t end = std::min(rest.find(literal ? "]]>" : "<"), rest.size());
-            at_ += std::min(end + (literal ? 3 : 0), rest.size());
-            const std::string_view raw =
-                literal ? rest.substr(9, std::max<std::size_t>(end, 9) - 9) : rest.substr(0, end);
-            if (raw.find_first_not_of(kSpace) == std::string_view::npos) {
-                continue;
-            }
-            if (path_.empty()) {
-                return wrong("text outside of its elements");
-            }
-            piece_ = raw;
-            if (!literal) {
-                piece_ = RELIEF_TRY(unescaped(raw));
-            }
-            return Event::kText;
-        }
-        if (rest.starts_with("<!") || rest.starts_with("<?")) {
-            RELIEF_TRY(skipMarkup());
-            continue;
-        }
-        if (rest.starts_with("</")) {
-            RELIEF_TRY(readEndTag());
-            leaves_ = true;
-            return Event::kEnd;
-        }
-        RELIEF_TRY(readStartTag());
-        return Event::kBegin;
+    state.now = std::move(state.pieces.front());
+    state.pieces.pop_front();
+    if (state.now.event == Event::kBegin) {
+        state.path.push_back(state.now.words);
+        state.attributes = std::move(state.now.attributes);
     }
-    event_at_ = text_.size();
-    if (!path_.empty()) {
-        return wrong("it ends within <" + cleanUtf8(path_.back(), kQuotedMax) +
-                     ">; it was probably cut off, copy or export it again");
-    }
-    return rooted_ ? Result<Event>(Event::kDone) : wrong("it has no element");
+    return state.now.event;
+}
+
+std::string_view XmlReader::name() const {
+    return local(state_->path.back());
 }
 
 bool XmlReader::at(std::initializer_list<std::string_view> path) const {
-    return path.size() == path_.size() &&
-           std::equal(path.begin(), path.end(), path_.begin(),
+    return std::equal(path.begin(), path.end(), state_->path.begin(), state_->path.end(),
                       [](std::string_view a, std::string_view b) { return a == local(b); });
 }
 
+std::size_t XmlReader::depth() const {
+    return state_->path.size();
+}
+
 std::optional<std::string> XmlReader::attribute(std::string_view name) const {
-    for (const Attribute& attribute : attributes_) {
+    for (const Attribute& attribute : state_->attributes) {
         if (local(attribute.name) == name && !attribute.name.starts_with("xmlns:")) {
             return attribute.value;
         }
@@ -132,144 +204,16 @@ std::optional<std::string> XmlReader::attribute(std::string_view name) const {
     return std::nullopt;
 }
 
+const std::vector<XmlReader::Attribute>& XmlReader::attributes() const {
+    return state_->attributes;
+}
+
+const std::string& XmlReader::text() const {
+    return state_->now.words;
+}
+
 std::string XmlReader::where() const {
-    const std::string_view before = text_.substr(0, event_at_);
-    return "line " + std::to_string(1 + std::count(before.begin(), before.end(), '\n')) + ": ";
-}
-
-tl::unexpected<Error> XmlReader::wrong(const std::string& what) const {
-    return fail(ErrorCode::kInvalidInput, "its XML is damaged: " + where() + what);
-}
-
-std::string_view XmlReader::local(std::string_view name) {
-    return name.substr(name.find(':') + 1);  // npos + 1 is 0
-}
-
-Result<void> XmlReader::skipMarkup() {
-    const std::string_view rest = text_.substr(at_);
-    std::size_t end = std::string_view::npos;
-    if (rest.starts_with("<!--")) {
-        end = rest.find("-->", 4);
-        end += end == std::string_view::npos ? 0 : 3;
-    } else if (rest.starts_with("<?")) {
-        end = rest.find("?>", 2);
-        end += end == std::string_view::npos ? 0 : 2;
-    } else {
-        // DOCTYPE, with declarations in brackets.
-        std::size_t nested = 0;
-        for (std::size_t i = 1; i < rest.size() && end == std::string_view::npos; ++i) {
-            nested += rest[i] == '<' || rest[i] == '[' ? 1 : 0;
-            if (rest[i] == ']' || (rest[i] == '>' && nested > 0)) {
-                nested -= nested > 0 ? 1 : 0;
-            } else if (rest[i] == '>') {
-                end = i + 1;
-            }
-        }
-    }
-    if (end == std::string_view::npos) {
-        return wrong("'" + cleanUtf8(rest.substr(0, 9)) + "' has no end");
-    }
-    at_ += end;
-    return {};
-}
-
-Result<void> XmlReader::readStartTag() {
-    if (path_.empty() && rooted_) {
-        return wrong("a second element beside the first");
-    }
-    rooted_ = true;
-    ++at_;
-    const std::string_view name = takeName();
-    if (name.empty()) {
-        return wrong("'<' that begins no element");
-    }
-    attributes_.clear();
-    for (;;) {
-        skipSpace();
-        const std::string_view rest = text_.substr(at_);
-        if (rest.starts_with('>') || rest.starts_with("/>")) {
-            ends_ = rest[0] == '/';
-            at_ += ends_ ? 2 : 1;
-            path_.push_back(name);
-            return {};
-        }
-        const std::string_view key = takeName();
-        skipSpace();
-        if (key.empty() || !text_.substr(at_).starts_with('=')) {
-            return wrong("<" + cleanUtf8(name, kQuotedMax) + "> has an attribute without a value, or no end");
-        }
-        ++at_;
-        skipSpace();
-        const char quote = at_ < text_.size() ? text_[at_] : '\0';
-        const std::size_t end =
-            quote == '"' || quote == '\'' ? text_.find(quote, at_ + 1) : std::string_view::npos;
-        if (end == std::string_view::npos) {
-            return wrong("the value of '" + cleanUtf8(key, kQuotedMax) + "' is not in quotation marks");
-        }
-        std::string value = RELIEF_TRY(unescaped(text_.substr(at_ + 1, end - at_ - 1)));
-        attributes_.push_back({key, std::move(value)});
-        at_ = end + 1;
-    }
-}
-
-Result<void> XmlReader::readEndTag() {
-    at_ += 2;
-    const std::string_view name = takeName();
-    skipSpace();
-    if (path_.empty() || name != path_.back() || !text_.substr(at_).starts_with('>')) {
-        return wrong("</" + cleanUtf8(name, kQuotedMax) + "> ends no element" +
-                     (path_.empty() ? "" : ", where <" + cleanUtf8(path_.back(), kQuotedMax) + "> is open"));
-    }
-    ++at_;
-    return {};
-}
-
-Result<std::string> XmlReader::unescaped(std::string_view raw) const {
-    struct Entity {
-        std::string_view name;
-        std::uint32_t character;
-    };
-    constexpr Entity kEntities[] = {{"lt", '<'}, {"gt", '>'}, {"amp", '&'}, {"quot", '"'}, {"apos", '\''}};
-    std::string text;
-    for (std::size_t i = raw.find('&'); i != std::string_view::npos; i = raw.find('&')) {
-        text += raw.substr(0, i);
-        const std::size_t end = std::min(raw.find(';', i), raw.size());
-        const std::string_view name = raw.substr(i + 1, end - i - 1);
-        std::uint32_t character = 0;
-        for (const Entity& entity : kEntities) {
-            character = name == entity.name ? entity.character : character;
-        }
-        if (name.starts_with('#')) {
-            const bool hexadecimal = name.starts_with("#x");
-            for (const char c : name.substr(hexadecimal ? 2 : 1)) {
-                const std::string_view digits = "0123456789abcdef";
-                const std::size_t digit = digits.find(c >= 'A' && c <= 'F' ? static_cast<char>(c + 32) : c);
-                const std::uint32_t base = hexadecimal ? 16 : 10;
-                character = digit < base && character < 0x110000
-                                ? base * character + static_cast<std::uint32_t>(digit)
-                                : 0x110000;
-            }
-        }
-        if (end == raw.size() || character == 0 || character > 0x10FFFF) {
-            return wrong("'" + cleanUtf8(raw.substr(i, std::min(end - i + 1, kQuotedMax))) +
-                         "' is no character that XML knows");
-        }
-        appendUtf8(text, character);
-        raw.remove_prefix(end + 1);
-    }
-    return text += raw;
-}
-
-std::string_view XmlReader::takeName() {
-    constexpr std::string_view kNoName = " \t\r\n<>/='\"&?";
-    const std::size_t end = std::min(text_.find_first_of(kNoName, at_), text_.size());
-    const std::string_view name = text_.substr(at_, end - at_);
-    at_ = end;
-    return name;
-}
-
-void XmlReader::skipSpace() {
-    at_ = std::min(text_.find_first_not_of(kSpace, at_), text_.size());
+    return lineText(state_->now.line);
 }
 
 }  // namespace relief

@@ -1,8 +1,9 @@
-// XML as mesh formats have it (3MF, AMF, COLLADA): one element, end or text after the other, without memory of what is past.
+// XML as mesh formats have it (3MF, AMF, COLLADA): one element, end or text after the other, by Expat.
 #pragma once
 
 #include <cstddef>
 #include <initializer_list>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,65 +14,45 @@
 
 namespace relief {
 
-/// The document in UTF-8: UTF-16 is told by its mark or its zeros, every other encoding stays as it is.
-[[nodiscard]] std::string xmlText(std::span<const std::byte> bytes);
-
-/// Reads what XML 1.0 calls well-formed, without the parts that no mesh has: entities of a document's own are errors, and
-/// its DOCTYPE is not looked at.
+/// Reads well-formed XML 1.0 of any encoding; the bytes of one that Expat does not know stay as they are. Entities of a
+/// document's own are errors.
 class XmlReader {
   public:
     enum class Event : std::uint8_t {
         kBegin,  ///< a start tag; of an element without content kEnd follows
         kEnd,
-        kText,  ///< of the innermost element; not only white space, comments left out, perhaps in several pieces
+        kText,  ///< of the innermost element, up to the next tag; not only white space, comments left out
         kDone,
     };
+    struct Attribute {
+        std::string name;  ///< with its prefix
+        std::string value;
+    };
 
-    /// \param text  borrowed.
-    explicit XmlReader(std::string_view text) : text_(text) {}
+    /// \param document  borrowed.
+    explicit XmlReader(std::span<const std::byte> document);
+    ~XmlReader();
+    XmlReader(XmlReader&&) noexcept;
+    XmlReader& operator=(XmlReader&&) = delete;
 
-    /// Errors: kInvalidInput, without the file's name.
+    /// Errors: kInvalidInput, without the file's name. Throws std::bad_alloc.
     [[nodiscard]] Result<Event> next();
 
     /// Of the element that the event is of, without its prefix.
-    [[nodiscard]] std::string_view name() const { return local(path_.back()); }
-    /// Whether the event is of an element of these names, from the root on.
+    [[nodiscard]] std::string_view name() const;
+    /// \return true if the event is of an element of these names, from the root on.
     [[nodiscard]] bool at(std::initializer_list<std::string_view> path) const;
-    [[nodiscard]] std::size_t depth() const { return path_.size(); }  ///< 1: the event is of the root
-
+    [[nodiscard]] std::size_t depth() const;  ///< 1: the event is of the root
     /// Of the start tag that was read last. \param name  without a prefix: whatever its prefix is.
     [[nodiscard]] std::optional<std::string> attribute(std::string_view name) const;
-    /// Of the start tag that was read last, with their prefixes.
-    struct Attribute {
-        std::string_view name;
-        std::string value;
-    };
-    [[nodiscard]] const std::vector<Attribute>& attributes() const { return attributes_; }
-    /// Of kText.
-    [[nodiscard]] const std::string& text() const { return piece_; }
-
+    [[nodiscard]] const std::vector<Attribute>& attributes() const;
+    [[nodiscard]] const std::string& text() const;  ///< of kText
     /// "line 12: " of the event, for messages.
     [[nodiscard]] std::string where() const;
 
   private:
-    [[nodiscard]] tl::unexpected<Error> wrong(const std::string& what) const;
-    [[nodiscard]] static std::string_view local(std::string_view name);
-    [[nodiscard]] Result<void> skipMarkup();
-    [[nodiscard]] Result<void> readStartTag();
-    [[nodiscard]] Result<void> readEndTag();
-    [[nodiscard]] Result<std::string> unescaped(std::string_view raw) const;
-    [[nodiscard]] std::string_view takeName();
-    void skipSpace();
-
-    std::string_view text_;
-    std::size_t at_ = 0;
-    std::size_t event_at_ = 0;
-    std::vector<std::string_view> path_;
-    std::vector<Attribute> attributes_;
-    std::string piece_;
-    bool ends_ = false;    ///< the element that was begun has no content
-    bool leaves_ = false;  ///< the event before was the end of the innermost element
-    bool rooted_ = false;
+    struct State;
+    std::unique_ptr<State> state_;
 };
 
 }  // namespace relief

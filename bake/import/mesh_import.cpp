@@ -16,25 +16,20 @@
 #include <vector>
 
 #include "bake/import/assimp_io.h"
-#include "bake/import/import_3mf.h"
-#include "bake/import/import_ac.h"
-#include "bake/import/import_amf.h"
 #include "bake/import/import_assembly.h"
 #include "bake/import/import_files.h"
 #include "bake/import/import_format.h"
 #include "bake/import/import_gltf.h"
-#include "bake/import/import_obj.h"
-#include "bake/import/import_off.h"
 #include "bake/import/import_parts.h"
-#include "bake/import/import_ply.h"
-#include "bake/import/import_raw.h"
+#include "bake/import/import_readers.h"
 #include "bake/import/import_scene.h"
 #include "bake/import/import_source.h"
-#include "bake/import/import_stl.h"
 #include "bake/import/polygon_mesh.h"
 #include "formats/base/file_io.h"
 #include "formats/base/retry.h"
 #include "formats/base/text.h"
+#include "formats/polygons/obj_mesh.h"
+#include "formats/polygons/ply_mesh.h"
 
 namespace relief {
 namespace {
@@ -57,7 +52,7 @@ std::optional<T> metadata(const aiScene& scene, const char* key) {
     return value;
 }
 
-/// FBX says its unit in centimetres, and its axes by number and sign; assimp applies neither.
+/// FBX has its unit in centimetres, and its axes by number and sign; assimp applies neither.
 SourceFrame fbxFrame(const ImportJob& job, const aiScene& scene) {
     SourceFrame frame{0.01, UpAxis::kPlusY};
     double factor = metadata<double>(scene, "UnitScaleFactor").value_or(1.0);
@@ -83,14 +78,6 @@ SourceFrame fbxFrame(const ImportJob& job, const aiScene& scene) {
         frame.up_fault = "its UpAxis is " + std::to_string(axis) + ", which is none of 0, 1 and 2";
     }
     return frame;
-}
-
-bool isGltf(const ImportJob& job) {
-    return job.extension == "gltf" || job.extension == "glb";
-}
-
-bool isAssembly(const ImportJob& job) {
-    return job.extension == "amf" || job.extension == "3mf";
 }
 
 /// assimp scales the root by the document's unit as it understands it. \param scene  loses that scale where it is another.
@@ -120,28 +107,28 @@ SourceFrame frameOf3ds(aiScene& scene) {
 
 /// \param scene  may lose what a reader has applied of it.
 /// Errors: kInvalidInput, without the file's name.
-Result<SourceFrame> frameOf(const ImportJob& job, aiScene& scene) {
-    if (job.extension == "fbx") {
-        return fbxFrame(job, scene);
+Result<SourceFrame> frameOf(AssimpFrame format, const ImportJob& job, aiScene& scene) {
+    SourceFrame frame;
+    switch (format) {
+        case AssimpFrame::kAsIs:
+            break;
+        case AssimpFrame::kMirrored:
+            frame.mirrored = true;
+            break;
+        case AssimpFrame::kZUp:
+            frame.up = UpAxis::kPlusZ;
+            frame.turned = true;
+            break;
+        case AssimpFrame::k3ds:
+            return frameOf3ds(scene);
+        case AssimpFrame::kDae:
+            return daeFrame(job, scene);
+        case AssimpFrame::kDxf:
+            return dxfFrame(job.bytes);
+        case AssimpFrame::kFbx:
+            return fbxFrame(job, scene);
     }
-    if (job.extension == "dae") {
-        return daeFrame(job, scene);
-    }
-    if (job.extension == "3ds") {
-        return frameOf3ds(scene);
-    }
-    if (job.extension == "dxf") {
-        return dxfFrame(job.bytes);  // assimp has turned it, as
-    }
-    if (job.extension == "ase") {
-        return SourceFrame{std::nullopt, UpAxis::kPlusZ, false, true};  // this
-    }
-    if (job.extension == "x" || job.extension == "lwo" || job.extension == "lxo" || job.extension == "b3d") {
-        SourceFrame frame;
-        frame.mirrored = true;
-        return frame;
-    }
-    return SourceFrame{};
+    return frame;
 }
 
 // --- the importer ---
@@ -228,7 +215,7 @@ Result<glm::dmat3> takeFrame(const SourceFrame& frame, const ImportOptions& opti
     return change.scale * change.turn;
 }
 
-Result<TriangleMesh> importWithAssimp(const ImportJob& job, ImportFiles& files) {
+Result<TriangleMesh> importWithAssimp(const MeshFormat& format, const ImportJob& job, ImportFiles& files) {
     TriangleMesh mesh;
     const LoggedErrors logged;
     Assimp::Importer importer;
@@ -239,7 +226,7 @@ Result<TriangleMesh> importWithAssimp(const ImportJob& job, ImportFiles& files) 
     warnOfParts(parts, mesh.warnings);
     warnOfScene(*scene, mesh.warnings);
     // The importer's own; it hands out nothing that could be changed.
-    const Result<SourceFrame> frame = frameOf(job, const_cast<aiScene&>(*scene));
+    const Result<SourceFrame> frame = frameOf(format.frame, job, const_cast<aiScene&>(*scene));
     const Result<glm::dmat3> linear =
         frame.and_then([&](const SourceFrame& known) { return takeFrame(known, job.options, mesh); });
     if (!linear) {
@@ -258,11 +245,6 @@ std::string upperCase(std::string word) {
     return word;
 }
 
-bool isReadHere(const ImportJob& job) {
-    constexpr std::array<std::string_view, 5> kReadHere = {"obj", "off", "ply", "raw", "stl"};
-    return std::find(kReadHere.begin(), kReadHere.end(), job.extension) != kReadHere.end();
-}
-
 /// Opens the libraries of an OBJ's materials: nothing in them matters to its shape, but it depends on them. Where one is not
 /// there, that of the mesh's own name stands in.
 void openLibraries(const ImportJob& job, std::span<const std::string> libraries, ImportFiles& files) {
@@ -274,21 +256,15 @@ void openLibraries(const ImportJob& job, std::span<const std::string> libraries,
     }
 }
 
-Result<PolygonMesh> readPolygons(const ImportJob& job, ImportFiles& files) {
-    if (job.extension == "obj") {
-        ObjMesh obj = RELIEF_TRY(readObj(job.bytes));
-        openLibraries(job, obj.libraries, files);
-        return std::move(obj.polygons);
-    }
-    return job.extension == "off"   ? readOff(job.bytes)
-           : job.extension == "ply" ? readPly(job.bytes)
-           : job.extension == "raw" ? readRaw(job.bytes)
-                                    : readStl(job.bytes);
+Result<PolygonMesh> readObjOf(const ImportJob& job, ImportFiles& files) {
+    ObjMesh obj = RELIEF_TRY(readObj(job.bytes));
+    openLibraries(job, obj.libraries, files);
+    return std::move(obj.polygons);
 }
 
-/// OBJ, OFF, PLY, RAW and STL. \param files  of materials.
-Result<TriangleMesh> importPolygons(const ImportJob& job, ImportFiles& files) {
-    const Result<PolygonMesh> polygons = readPolygons(job, files);
+/// \param apart  as flatten() has it.
+Result<TriangleMesh> importPolygons(const ImportJob& job, ImportFiles& files,
+                                    const Result<PolygonMesh>& polygons, bool apart) {
     if (!polygons) {
         return unreadable(job.shown, polygons.error());
     }
@@ -305,11 +281,10 @@ Result<TriangleMesh> importPolygons(const ImportJob& job, ImportFiles& files) {
     mesh.unused_vertices = parts.unused;
     warnOfParts(parts, mesh.warnings);
     const glm::dmat3 linear = RELIEF_TRY(takeFrame({}, job.options, mesh));
-    return flatten(*polygons, job.extension != "off" && job.extension != "ply", linear, job, std::move(mesh));
+    return flatten(*polygons, apart, linear, job, std::move(mesh));
 }
 
-Result<TriangleMesh> importAssembly(const ImportJob& job) {
-    Result<AssemblyFile> file = job.extension == "amf" ? readAmf(job.bytes) : read3mf(job.bytes);
+Result<TriangleMesh> importAssembly(const ImportJob& job, const Result<AssemblyFile>& file) {
     TriangleMesh mesh;
     const Result<glm::dmat3> linear =
         file.and_then([&](const AssemblyFile& read) { return takeFrame(read.frame, job.options, mesh); });
@@ -326,17 +301,44 @@ Result<TriangleMesh> importGltf(const ImportJob& job, ImportFiles& files) {
     return readGltf(job, files, linear, std::move(mesh));
 }
 
+Result<TriangleMesh> importAs(const MeshFormat& format, const ImportJob& job, ImportFiles& files) {
+    switch (format.reader) {
+        case MeshReader::kAssimp:
+            return importWithAssimp(format, job, files);
+        case MeshReader::kGltf:
+            return importGltf(job, files);
+        case MeshReader::kObj:
+            return importPolygons(job, files, readObjOf(job, files), true);
+        case MeshReader::kOff:
+            return importPolygons(job, files, readOff(job.bytes), false);
+        case MeshReader::kPly:
+            return importPolygons(job, files, readPly(job.bytes), false);
+        case MeshReader::kRaw:
+            return importPolygons(job, files, readRaw(job.bytes), true);
+        case MeshReader::kStl:
+            return importPolygons(job, files, readStl(job.bytes), true);
+        case MeshReader::kAmf:
+            return importAssembly(job, readAmf(job.bytes));
+        case MeshReader::k3mf:
+            return importAssembly(job, read3mf(job.bytes));
+    }
+    return fail(ErrorCode::kUnsupported, "cannot read the mesh " + job.shown + ": it has no reader");
+}
+
 Result<TriangleMesh> importWhatItIs(const ImportJob& job) {
+    const MeshFormat* const format = meshFormat(job.extension);
+    if (format == nullptr) {
+        return fail(ErrorCode::kUnsupported, "cannot read the mesh " + job.shown +
+                                                 ": no mesh format has the extension '" +
+                                                 cleanUtf8(job.extension) + "'");
+    }
     if (job.extension == "ac" && isAcCutOff(job.bytes)) {
         return fail(ErrorCode::kInvalidInput, "cannot read the mesh " + job.shown +
                                                   ": it holds less than its counts say and was probably cut "
                                                   "off; copy or export it again");
     }
     ImportFiles files(job.folder, job.file_name, job.bytes);
-    TriangleMesh mesh = RELIEF_TRY(isGltf(job)       ? importGltf(job, files)
-                                   : isReadHere(job) ? importPolygons(job, files)
-                                   : isAssembly(job) ? importAssembly(job)
-                                                     : importWithAssimp(job, files));
+    TriangleMesh mesh = RELIEF_TRY(importAs(*format, job, files));
     for (const std::string& refused : files.refused()) {
         mesh.warnings.push_back("left out " + refused);
     }
@@ -400,8 +402,9 @@ Result<TriangleMesh> importRaw(const ImportJob& job) {
     ImportJob unmarked = job;
     const std::string_view text(reinterpret_cast<const char*>(job.bytes.data()), job.bytes.size());
     unmarked.bytes = job.bytes.subspan(job.bytes.size() - withoutByteOrderMark(text).size());
-    if (job.extension == "acc") {
-        unmarked.extension = "ac";  // as racing simulators call it
+    if (const MeshFormat* const named = meshFormat(job.extension);
+        named != nullptr && !named->alias.empty()) {
+        unmarked.extension = named->alias;
     }
     if (const std::optional<std::string> stranger = noMeshAtAll(job.extension, job.bytes)) {
         return fail(ErrorCode::kInvalidInput, "cannot read the mesh " + job.shown + ": " + *stranger);

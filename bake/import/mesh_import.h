@@ -1,4 +1,4 @@
-// Mesh files of every format of importFormats(), as one TriangleMesh: imported by a process of their own
+// Mesh files of every format of meshFormats(), as one TriangleMesh: imported by a process of their own
 // (importMeshInWorker), as every tool does, or in this one (importMesh), for files that one trusts.
 #pragma once
 
@@ -13,7 +13,7 @@ namespace relief {
 
 /// Reads a mesh file in a worker process (the program relief-import beside this one, or in ../libexec/relief)
 /// with limits of memory and time, without rights to write any file or to read one that is not below the
-/// mesh's folder. Whatever the worker says is checked like a file from a stranger. Blocks; leaves no process
+/// mesh's folder. The worker's answer is checked like an untrusted file. Blocks; leaves no process
 /// and no file behind. What the mesh means is as in importMesh.
 /// Errors, each naming the file: as importMesh; and kInvalidInput (the importer crashed), kLimit (memory or time is used up), kFailure (the worker could
 /// not be started, or was killed by somebody else).

@@ -76,7 +76,7 @@ class Triangles {
         triangles_.clear();
     }
 
-    /// Whether it is time to hand over, so that there are never two copies of all.
+    /// Handing over in parts avoids a second copy of the whole mesh.
     [[nodiscard]] bool isFull() const { return positions_.size() > kHeldMax; }
 
   private:
@@ -169,10 +169,6 @@ Result<TriangleMesh> flatten(const PolygonMesh& polygons, bool apart, const glm:
     });
     cut.handOver(root, mark, instances);
     return instances.finish(marks);
-}
-
-tl::unexpected<Error> wrongLine(std::size_t line, const std::string& what) {
-    return invalidInput("line " + std::to_string(line) + ": " + what);
 }
 
 tl::unexpected<Error> unreadable(const std::string& shown, const Error& error) {

@@ -12,8 +12,8 @@
 #include <numeric>
 #include <string>
 
-#include "formats/base/bits.h"
 #include "formats/nearest_surface.h"
+#include "formats/polygons/ply_bytes.h"
 #include "runtime/vdb/vdb_writer.h"
 
 namespace relief {
@@ -22,7 +22,7 @@ namespace {
 constexpr int kBand = 3;    // voxels to either side
 constexpr int kMargin = 4;  // voxels of outside about the bounds, so that the band ends within
 
-// What a voxel is to the surface.
+// Kinds of voxels by their place to the surface.
 constexpr char kNone = 0;
 constexpr char kNear = 1;
 constexpr char kBeside = 2;
@@ -196,7 +196,7 @@ class Voxels {
             for (int i = 0; i < count_[0]; ++i) {
                 const std::size_t at = cell(i, j, k);
                 if (band_[at] != kNone) {
-                    // The surface passes between neighbours of two sides, whatever else is said of it.
+                    // The surface passes between neighbours of two sides, whatever the distance.
                     const float most = static_cast<float>(band_[at] == kBeside ? size_ : kBand * size_);
                     const float length = lengthAt(place(i, j, k), most);
                     out[static_cast<std::size_t>(k)].push_back(inside_[at] != 0 ? -length : length);
@@ -308,32 +308,14 @@ Result<Voxels> checkedVoxels(const Collider& collider, const FieldGridOptions& o
     return voxels;
 }
 
-/// Binary PLY of points and faces.
-class PlyText {
-  public:
-    void text(const std::string& text) {
-        for (const char c : text) {
-            bytes_.push_back(static_cast<std::byte>(c));
-        }
-    }
-    void word(std::uint32_t word) {
-        for (int shift = 0; shift < 32; shift += 8) {
-            bytes_.push_back(static_cast<std::byte>(word >> shift & 0xffU));
-        }
-    }
-    template <std::size_t kCount>
-    void face(const std::array<std::uint32_t, kCount>& corners) {
-        bytes_.push_back(static_cast<std::byte>(kCount));
-        std::for_each(corners.begin(), corners.end(), [this](std::uint32_t corner) { word(corner); });
-    }
-    std::vector<std::byte> take() { return std::move(bytes_); }
-
-  private:
-    std::vector<std::byte> bytes_;
-};
+template <std::size_t kCount>
+void addFace(const std::array<std::uint32_t, kCount>& corners, PlyBytes& out) {
+    out.byte(kCount);
+    std::for_each(corners.begin(), corners.end(), [&](std::uint32_t corner) { out.word(corner); });
+}
 
 std::vector<std::byte> plyOf(const GridSurface& surface) {
-    PlyText out;
+    PlyBytes out;
     out.text(
         "ply\nformat binary_little_endian 1.0\ncomment surface of a collider; object units\nelement vertex " +
         std::to_string(surface.points.size()) +
@@ -342,14 +324,14 @@ std::vector<std::byte> plyOf(const GridSurface& surface) {
         "\nproperty list uchar uint vertex_indices\nend_header\n");
     for (const glm::vec3& p : surface.points) {
         for (int i = 0; i < 3; ++i) {
-            out.word(bitCast<std::uint32_t>(p[i]));
+            out.number(p[i]);
         }
     }
     for (const auto& quad : surface.quads) {
-        out.face(quad);
+        addFace(quad, out);
     }
     for (const auto& triangle : surface.triangles) {
-        out.face(triangle);
+        addFace(triangle, out);
     }
     return out.take();
 }

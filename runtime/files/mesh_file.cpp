@@ -1,20 +1,54 @@
 #include "runtime/files/mesh_file.h"
 
-#include <string>
-
+#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
+#include "formats/polygons/obj_mesh.h"
+#include "formats/polygons/ply_mesh.h"
 
 namespace relief {
+namespace {
 
-bool addPolygon(std::span<const std::uint32_t> corners, PictureMesh& mesh) {
-    if (mesh.triangles.size() / 3 + corners.size() > kMeshTrianglesMax + 2) {
-        return false;
+tl::unexpected<Error> tooMany(std::size_t limit, const char* things) {
+    return fail(ErrorCode::kLimit,
+                "it has more than " + std::to_string(limit) + " " + things + "; simplify the mesh");
+}
+
+Result<PictureMesh> triangulated(PolygonMesh polygons) {
+    if (polygons.positions.size() > kMeshVerticesMax) {
+        return tooMany(kMeshVerticesMax, "vertices");
     }
-    for (std::size_t i = 2; i < corners.size(); ++i) {
-        mesh.triangles.insert(mesh.triangles.end(), {corners[0], corners[i - 1], corners[i]});
+    PictureMesh mesh;
+    mesh.positions = std::move(polygons.positions);
+    const std::uint32_t* corner = polygons.corners.data();
+    for (const std::uint32_t size : polygons.sizes) {
+        if (mesh.triangles.size() / 3 + size > kMeshTrianglesMax + 2) {
+            return tooMany(kMeshTrianglesMax, "triangles");
+        }
+        for (std::uint32_t i = 2; i < size; ++i) {
+            mesh.triangles.insert(mesh.triangles.end(), {corner[0], corner[i - 1], corner[i]});
+        }
+        corner += size;
     }
-    return true;
+    if (mesh.triangles.empty()) {
+        return invalidInput("it has no faces");
+    }
+    RELIEF_TRY(checkMesh(mesh));
+    return mesh;
+}
+
+Result<PolygonMesh> readPolygons(std::span<const std::byte> bytes, std::string_view extension) {
+    if (extension == ".ply") {
+        return readPly(bytes);
+    }
+    return std::move(RELIEF_TRY(readObj(bytes)).polygons);
+}
+
+}  // namespace
+
+Result<PictureMesh> parsePictureMesh(std::span<const std::byte> bytes, std::string_view extension,
+                                     const std::string& name) {
+    return inFront(name, readPolygons(bytes, extension).and_then(triangulated));
 }
 
 Result<PictureMesh> loadPictureMesh(const std::filesystem::path& path) {
@@ -24,12 +58,7 @@ Result<PictureMesh> loadPictureMesh(const std::filesystem::path& path) {
             ErrorCode::kUnsupported,
             quotedPath(path) + " is no mesh that a picture can be drawn from; convert it to .obj or .ply");
     }
-    const auto bytes = RELIEF_TRY(readFile(path, kMeshBytesMax));
-    const std::string name = quotedPath(path);
-    if (extension == ".obj") {
-        return parseObj({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name);
-    }
-    return parsePlyMesh(bytes, name);
+    return parsePictureMesh(RELIEF_TRY(readFile(path, kMeshBytesMax)), extension, quotedPath(path));
 }
 
 }  // namespace relief

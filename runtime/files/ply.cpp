@@ -1,21 +1,14 @@
 #include "runtime/files/ply.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <string>
 
-#include "formats/base/bits.h"
+#include "formats/polygons/ply_bytes.h"
 
 namespace relief {
 namespace {
 
 constexpr std::size_t kVertexSize = 40;
-
-void append(std::vector<std::byte>& out, std::uint32_t word) {
-    for (int shift = 0; shift < 32; shift += 8) {
-        out.push_back(static_cast<std::byte>(word >> shift & 0xffU));
-    }
-}
 
 }  // namespace
 
@@ -39,20 +32,18 @@ std::vector<std::byte> encodePly(std::span<const ParticleState> particles) {
     std::sort(ordered.begin(), ordered.end(),
               [](const ParticleState* a, const ParticleState* b) { return a->id < b->id; });
 
-    std::vector<std::byte> out;
+    PlyBytes out;
     out.reserve(header.size() + kVertexSize * particles.size());
-    for (const char c : header) {
-        out.push_back(static_cast<std::byte>(c));
-    }
+    out.text(header);
     for (const ParticleState* p : ordered) {
         for (const float value : {p->position.x, p->position.y, p->position.z, p->velocity.x, p->velocity.y,
                                   p->velocity.z, p->age, p->lifetime}) {
-            append(out, bitCast<std::uint32_t>(value));
+            out.number(value);
         }
-        append(out, p->id);
-        append(out, p->type);
+        out.word(p->id);
+        out.word(p->type);
     }
-    return out;
+    return out.take();
 }
 
 }  // namespace relief

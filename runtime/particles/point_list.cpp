@@ -6,9 +6,10 @@
 #include <string_view>
 
 #include "formats/base/csv_reader.h"
+#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
-#include "formats/base/ply_reader.h"
 #include "formats/base/text.h"
+#include "formats/polygons/ply_reader.h"
 #include "runtime/particles/random.h"
 
 namespace relief {
@@ -17,8 +18,6 @@ namespace {
 constexpr std::array<std::string_view, 6> kNames{"x", "y", "z", "nx", "ny", "nz"};
 constexpr std::size_t kFields = kNames.size();
 using Fields = std::array<double, kFields>;
-
-constexpr std::size_t kHeaderLinesMax = 4096;  // more than any program writes
 
 tl::unexpected<Error> wrong(const std::string& where, const std::string& what) {
     return fail(ErrorCode::kInvalidInput, where + ": " + what);
@@ -91,121 +90,42 @@ Result<PointList> parseCsv(std::string_view text, const std::string& name) {
 
 // --- PLY ---
 
-/// What the header says of the vertices.
-struct Header {
-    std::optional<PlyEncoding> encoding;
-    std::optional<std::uint64_t> vertices;
-    std::vector<PlyType> properties;
-    std::array<int, kFields> place{-1, -1, -1, -1, -1, -1};  // of x … nz among them; −1: not there
-    std::size_t lines = 0;
-
-    [[nodiscard]] bool positions() const { return place[0] >= 0 && place[1] >= 0 && place[2] >= 0; }
-    [[nodiscard]] bool normals() const { return place[3] >= 0 && place[4] >= 0 && place[5] >= 0; }
-};
-
-Result<void> addProperty(const PlyHeaderLine& line, const std::string& where, Header& header) {
-    if (!line.type || line.list) {
-        return wrong(where, "a vertex's properties must be single numbers of a known type");
+/// Errors name no file.
+Result<PlyHeader> takePointsHeader(std::string_view& text) {
+    PlyHeader header = RELIEF_TRY(takePlyHeader(text));
+    if (header.elements.empty() || header.elements.front().name != "vertex") {
+        return invalidInput("vertices must be the first element of a PLY of points");
     }
-    if (header.properties.size() == kPlyPropertiesMax) {
-        return wrong(where, "more than " + std::to_string(kPlyPropertiesMax) + " properties");
+    const std::uint64_t points = header.elements.front().count;
+    if (points > kPointsMax) {
+        return fail(ErrorCode::kLimit, std::to_string(points) + " points are more than " +
+                                           std::to_string(kPointsMax) + "; leave some out");
     }
-    for (std::size_t i = 0; i < kFields; ++i) {
-        if (line.name == kNames[i]) {
-            if (header.place[i] >= 0) {
-                return wrong(where, "a second property " + std::string(line.name));
-            }
-            header.place[i] = static_cast<int>(header.properties.size());
-        }
-    }
-    header.properties.push_back(*line.type);
-    return {};
-}
-
-Result<void> addElement(const PlyHeaderLine& line, const std::string& where, Header& header) {
-    if (line.name != "vertex") {
-        return header.vertices ? Result<void>()
-                               : wrong(where, "vertices must be the first element of a PLY of points");
-    }
-    if (header.vertices || !line.count) {
-        return wrong(where, "vertices need one number");
-    }
-    header.vertices = line.count;
-    return {};
-}
-
-Result<void> checkHeader(const Header& header, const std::string& name, const std::string& where) {
-    if (!header.encoding || !header.positions()) {
-        return wrong(where, "a PLY of points needs a format, and vertices with x, y and z");
-    }
-    if (*header.vertices > kPointsMax) {
-        return fail(ErrorCode::kLimit, name + ": " + std::to_string(*header.vertices) +
-                                           " points are more than " + std::to_string(kPointsMax) +
-                                           "; leave some out");
-    }
-    return {};
-}
-
-/// Everything up to end_header, which is cut off `text`.
-Result<Header> takeHeader(std::string_view& text, const std::string& name) {
-    using Kind = PlyHeaderLine::Kind;
-    Header header;
-    bool in_vertices = false;
-    for (header.lines = 1; header.lines <= kHeaderLinesMax; ++header.lines) {
-        const std::optional<PlyHeaderLine> line = takePlyHeaderLine(text);
-        if (!line) {
-            break;
-        }
-        const std::string where = name + ":" + std::to_string(header.lines);
-        if (line->kind == Kind::kFormat) {
-            header.encoding = line->encoding;
-            if (!line->encoding) {
-                return wrong(where, "unknown PLY format; write ascii or binary_little_endian");
-            }
-        } else if (line->kind == Kind::kElement) {
-            in_vertices = line->name == "vertex";
-            RELIEF_TRY(addElement(*line, where, header));
-        } else if (line->kind == Kind::kProperty && in_vertices) {
-            RELIEF_TRY(addProperty(*line, where, header));
-        } else if (line->kind == Kind::kEnd) {
-            RELIEF_TRY(checkHeader(header, name, where));
-            return header;
-        }
-    }
-    return wrong(name, "a PLY header without end_header");
+    return header;
 }
 
 Result<PointList> parsePly(std::string_view text, const std::string& name) {
-    const Header header = RELIEF_TRY(takeHeader(text, name));
-    const bool ascii = *header.encoding == PlyEncoding::kAscii;
+    const PlyHeader header = RELIEF_TRY(inFront(name, takePointsHeader(text)));
+    const PlyElement& vertices = header.elements.front();
+    const PlyColumns columns(vertices, kNames);
+    const auto once = [&](std::size_t first) {
+        return columns.count(first) == 1 && columns.count(first + 1) == 1 && columns.count(first + 2) == 1;
+    };
+    if (!once(0)) {
+        return wrong(name, "the vertices of a PLY of points need x, y and z, each once");
+    }
+    const bool normals = once(3);
     PointList list;
-    std::vector<double> values(header.properties.size());
-    PlyNumbers numbers(text, *header.encoding);
-    std::size_t line_number = header.lines;
-    for (std::uint64_t vertex = 0; vertex < *header.vertices; ++vertex) {
-        if (ascii) {  // a vertex a line
-            std::string_view line;
-            while (line.empty() && !text.empty()) {
-                line = trimmed(takeLine(text));
-                ++line_number;
-            }
-            numbers = PlyNumbers(line, *header.encoding);
-        }
-        const std::string where =
-            name + (ascii ? ":" + std::to_string(line_number) : ": vertex " + std::to_string(vertex));
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            const std::optional<double> value = numbers.next(header.properties[i]);
-            if (!value) {
-                return wrong(where,
-                             ascii ? "fewer numbers than the header announces" : "the file ends early");
-            }
-            values[i] = *value;
-        }
+    PlyNumbers numbers(text, header.encoding, header.lines);
+    for (std::uint64_t i = 0; i < vertices.count; ++i) {
         Fields fields{};
-        for (std::size_t i = 0; i < kFields; ++i) {
-            fields[i] = header.place[i] >= 0 ? values[static_cast<std::size_t>(header.place[i])] : 0.0;
+        const std::string vertex = name + ": vertex " + std::to_string(i);
+        RELIEF_TRY(inFront(vertex, columns.read(numbers, fields)));
+        if (numbers.isText() && !numbers.atLineEnd()) {
+            return wrong(vertex,
+                         numbers.where() + "more numbers than the header announces; write one vertex a line");
         }
-        RELIEF_TRY(add(list, fields, header.normals(), where));
+        RELIEF_TRY(add(list, fields, normals, vertex));
     }
     return list;
 }

@@ -10,7 +10,7 @@
 #include "runtime/files/ply.h"
 #include "runtime/files/png.h"
 #include "runtime/player/watched.h"
-#include "runtime/vdb/vdb_points.h"
+#include "runtime/vdb/vdb_writer.h"
 
 namespace relief {
 namespace {

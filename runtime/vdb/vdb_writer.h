@@ -1,4 +1,4 @@
-// What writes OpenVDB files. It lies in a module of its own, relief-vdb.so, which is loaded when it is needed: the library
+// The writer of OpenVDB files. It lies in a module of its own, relief-vdb.so, which is loaded when it is needed: the library
 // brings others along that start threads in whatever program loads them.
 #pragma once
 
@@ -38,6 +38,16 @@ class VdbWriter {
     [[nodiscard]] virtual Result<std::vector<std::byte>> levelSet(const NarrowBand& band) = 0;
     [[nodiscard]] virtual Result<GridSurface> surface(const NarrowBand& band) = 0;
 };
+
+/// An OpenVDB file with one grid of points, "particles", in object units. Its attributes have the names of Houdini: P, v
+/// (units a second), age and life (seconds) as floats, id (births before its own) and type as 32-bit integers. Positions
+/// keep single precision of their place in a voxel; some eight points share one. The grid's metadata "points" counts
+/// them. The same for any order of `particles` and any number of threads.
+/// Errors: kUnsupported (a build without OpenVDB), kFailure.
+[[nodiscard]] Result<std::vector<std::byte>> encodeVdbPoints(std::span<const ParticleState> particles);
+
+/// Fails with kUnsupported where this build has no OpenVDB, with the cure.
+[[nodiscard]] Result<void> checkVdb();
 
 /// Loads the module, once. It lies beside the program, or in ../lib/relief.
 /// Errors: kUnsupported: there is none, or what it needs is missing.

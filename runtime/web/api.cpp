@@ -339,10 +339,8 @@ EMSCRIPTEN_KEEPALIVE PictureMesh* relief_mesh_read(const char* name, const std::
                                                    std::uintptr_t* out) {
     return guarded<PictureMesh*>(nullptr, [&]() -> Result<PictureMesh*> {
         const std::span given(bytes, static_cast<std::size_t>(size));
-        const bool ply = lowerCase(name).ends_with(".ply");
-        auto mesh = std::make_unique<PictureMesh>(
-            RELIEF_TRY(ply ? parsePlyMesh(given, name)
-                           : parseObj({reinterpret_cast<const char*>(bytes), given.size()}, name)));
+        const std::string extension = lowerCase(name).ends_with(".ply") ? ".ply" : ".obj";
+        auto mesh = std::make_unique<PictureMesh>(RELIEF_TRY(parsePictureMesh(given, extension, name)));
         out[0] = reinterpret_cast<std::uintptr_t>(mesh->positions.data());
         out[1] = mesh->positions.size();
         out[2] = reinterpret_cast<std::uintptr_t>(mesh->triangles.data());

@@ -4,14 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "bake/import/import_ac.h"
 #include "bake/import/import_format.h"
-#include "bake/import/import_obj.h"
-#include "bake/import/import_off.h"
-#include "bake/import/import_ply.h"
-#include "bake/import/import_raw.h"
-#include "bake/import/import_stl.h"
+#include "bake/import/import_readers.h"
 #include "bake/import/polygon_cutter.h"
+#include "bake/import/polygon_mesh.h"
+#include "formats/polygons/obj_mesh.h"
+#include "formats/polygons/ply_mesh.h"
 #include "tests/fuzz/target.h"
 
 namespace {

@@ -5,8 +5,9 @@
 #include <cstdio>
 #include <random>
 
-#include "bake/import/import_obj.h"
 #include "bake/import/mesh_import.h"
+#include "bake/import/polygon_mesh.h"
+#include "formats/polygons/obj_mesh.h"
 #include "tests/bake/import/import_meshes.h"
 #include "tests/bake/meshes.h"
 #include "tests/bake/voxels.h"

@@ -1,5 +1,5 @@
 // PLY files whose surface is known in closed form: faces, strips, and what is neither.
-#include "bake/import/import_ply.h"
+#include "formats/polygons/ply_mesh.h"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "bake/import/mesh_import.h"
+#include "bake/import/polygon_mesh.h"
 #include "bake/mesh/triangle_plane.h"
 #include "tests/bake/import/import_meshes.h"
 #include "tests/bake/meshes.h"

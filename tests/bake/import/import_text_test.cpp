@@ -4,8 +4,8 @@
 #include <cstring>
 
 #include "bake/import/mesh_import.h"
-#include "bake/import/text_number.h"
 #include "bake/mesh/triangle_plane.h"
+#include "formats/polygons/decimal.h"
 #include "tests/bake/meshes.h"
 
 namespace relief::test {

@@ -12,7 +12,7 @@ using Event = XmlReader::Event;
 
 /// "<a>", "</a>" and text, one after the other; of an error its message.
 std::string eventsOf(const std::string& document) {
-    XmlReader xml(document);
+    XmlReader xml(std::as_bytes(std::span(document)));
     std::string events;
     for (;;) {
         const Result<Event> event = xml.next();
@@ -51,7 +51,7 @@ TEST(ImportXml, EventsFollowTheDocument) {
 
 TEST(ImportXml, PathsAndAttributesHaveNoPrefixes) {
     const std::string document = "<m:model unit='inch' xmlns:path='u'><m:item p:path='/x'/></m:model>";
-    XmlReader xml(document);
+    XmlReader xml(std::as_bytes(std::span(document)));
     ASSERT_EQ(xml.next(), Event::kBegin);
     EXPECT_TRUE(xml.at({"model"}));
     EXPECT_EQ(xml.attribute("unit"), "inch");
@@ -104,15 +104,22 @@ TEST(ImportXml, EveryTruncationIsDamage) {
     }
 }
 
-TEST(ImportXml, Utf16BecomesUtf8) {
-    const auto text = [](const std::string& bytes) { return xmlText(std::as_bytes(std::span(bytes))); };
+TEST(ImportXml, EncodingsBecomeUtf8) {
     using namespace std::string_literals;
-    EXPECT_EQ(text("\xff\xfe<\0a\0/\0>\0"s), "<a/>");
-    EXPECT_EQ(text("\xfe\xff\0<\0a\0/\0>"s), "<a/>");
-    EXPECT_EQ(text("<\0\xe4\0=\xd8\0\xde"s), "<\xc3\xa4\xf0\x9f\x98\x80");
-    EXPECT_EQ(text("<\0\x3d\xd8>\0"s), "<\xef\xbf\xbd>") << "half a pair";
-    EXPECT_EQ(text("\xef\xbb\xbf<a/>"s), "<a/>");
-    EXPECT_EQ(text("<a/>"s), "<a/>");
+    EXPECT_EQ(eventsOf("\xff\xfe<\0a\0/\0>\0"s), "<a></a>");
+    EXPECT_EQ(eventsOf("\xfe\xff\0<\0a\0/\0>"s), "<a></a>");
+    EXPECT_EQ(eventsOf("<\0a\0>\0\xe4\0\x3d\xd8\0\xde<\0/\0a\0>\0"s), "<a>\xc3\xa4\xf0\x9f\x98\x80</a>");
+    EXPECT_TRUE(eventsOf("<\0a\0>\0\x3d\xd8<\0/\0a\0>\0"s).starts_with("its XML is damaged"))
+        << "half a pair";
+    EXPECT_EQ(eventsOf("\xef\xbb\xbf<a/>"), "<a></a>");
+    EXPECT_EQ(eventsOf("<?xml version='1.0' encoding='windows-1252'?><a>\xe4</a>"), "<a>\xc3\xa4</a>");
+}
+
+TEST(ImportXml, EntitiesOfADocumentsOwnAreRefused) {
+    EXPECT_NE(eventsOf("<!DOCTYPE a [<!ENTITY b 'c'>]><a>&b;</a>").find("'b' is no character"),
+              std::string::npos);
+    EXPECT_NE(eventsOf("<!DOCTYPE a SYSTEM 'a.dtd'><a>&b;</a>").find("'b' is no character"),
+              std::string::npos);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "bake/import/text_number.h"
+#include "formats/polygons/decimal.h"
 
 #include <array>
 #include <charconv>

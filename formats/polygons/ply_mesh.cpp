@@ -1,4 +1,4 @@
-#include "bake/import/import_ply.h"
+#include "formats/polygons/ply_mesh.h"
 
 #include <algorithm>
 #include <array>
@@ -7,15 +7,15 @@
 #include <string_view>
 #include <utility>
 
-#include "bake/mesh/mesh.h"
-#include "formats/base/ply_reader.h"
 #include "formats/base/text.h"
+#include "formats/polygons/ply_reader.h"
 
 namespace relief {
 namespace {
 
 constexpr std::size_t kNameMax = 40;  // bytes of a name in a message
 constexpr std::size_t kUnreadMax = 8;
+constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};
 
 bool isVertexList(const PlyProperty& property) {
     return property.isList() && (property.name == "vertex_indices" || property.name == "vertex_index");
@@ -26,9 +26,9 @@ bool isSurface(const PlyElement& element) {
            std::any_of(element.properties.begin(), element.properties.end(), isVertexList);
 }
 
-/// Whether an element that is not read may hold faces. Range grids hold points in rows and columns, no faces.
+/// An element that is not read may hold faces. Range grids hold points in rows and columns, no faces.
 bool looksLikeFaces(const PlyElement& element) {
-    const auto says = [](std::string_view name, auto words) {
+    const auto hasWord = [](std::string_view name, auto words) {
         const std::string lower = lowerCase(name);
         return std::any_of(words.begin(), words.end(),
                            [&](const char* word) { return lower.find(word) != std::string::npos; });
@@ -36,12 +36,12 @@ bool looksLikeFaces(const PlyElement& element) {
     constexpr std::array<const char*, 6> kElements = {"face", "poly", "strip", "triang", "quad", "patch"};
     constexpr std::array<const char*, 3> kLists = {"vert", "index", "indic"};
     constexpr std::array<const char*, 2> kOthers = {"texture", "range_grid"};
-    if (element.count == 0 || element.name == "vertex" || says(element.name, kOthers)) {
+    if (element.count == 0 || element.name == "vertex" || hasWord(element.name, kOthers)) {
         return false;
     }
-    return says(element.name, kElements) ||
+    return hasWord(element.name, kElements) ||
            std::any_of(element.properties.begin(), element.properties.end(),
-                       [&](const PlyProperty& list) { return list.isList() && says(list.name, kLists); });
+                       [&](const PlyProperty& list) { return list.isList() && hasWord(list.name, kLists); });
 }
 
 /// "its element 'polygon' is not read, …"
@@ -84,20 +84,12 @@ class PlyImport {
             return invalidInput("its header does not have the element 'vertex' once");
         }
         const PlyElement& element = *std::find_if(header.elements.begin(), header.elements.end(), is_vertex);
-        for (const char axis : {'x', 'y', 'z'}) {
-            const auto is_axis = [axis](const PlyProperty& property) {
-                return !property.isList() && property.name == std::string_view(&axis, 1);
-            };
-            if (std::count_if(element.properties.begin(), element.properties.end(), is_axis) != 1) {
-                return invalidInput("its vertices do not have x, y and z");
-            }
+        const PlyColumns columns(element, kAxes);
+        if (columns.count(0) != 1 || columns.count(1) != 1 || columns.count(2) != 1) {
+            return invalidInput("its vertices do not have x, y and z");
         }
         vertices_ = element.count;
-        return vertices_ <= 3 * kTriangleMax
-                   ? Result<void>()
-                   : fail(ErrorCode::kLimit, "its header announces " + std::to_string(vertices_) +
-                                                 " vertices, more than the limit of " +
-                                                 std::to_string(3 * kTriangleMax) + "; simplify the mesh");
+        return checkAnnounced(vertices_);
     }
 
     Result<void> readElements(const PlyHeader& header, std::string_view data) {
@@ -119,7 +111,7 @@ class PlyImport {
         const auto fits = [](std::string_view line, const PlyElement& element) {
             PlyNumbers numbers(line, PlyEncoding::kAscii);
             for (const PlyProperty& property : element.properties) {
-                if (!pass(property, numbers)) {
+                if (!passPlyProperty(property, numbers)) {
                     return false;
                 }
             }
@@ -165,7 +157,7 @@ class PlyImport {
         for (std::uint64_t i = 0; i < element.count; ++i) {
             for (const PlyProperty& property : element.properties) {
                 if (!surface || !isVertexList(property)) {
-                    RELIEF_TRY(pass(property, numbers));
+                    RELIEF_TRY(passPlyProperty(property, numbers));
                 } else if (strip) {
                     RELIEF_TRY(readStrips(property, i, numbers));
                 } else {
@@ -178,38 +170,13 @@ class PlyImport {
     }
 
     Result<void> readVertices(const PlyElement& element, PlyNumbers& numbers) {
+        const PlyColumns columns(element, kAxes);
+        std::array<double, 3> place{};
         for (std::uint64_t i = 0; i < element.count; ++i) {
-            glm::vec3 position{0.0F};
-            for (const PlyProperty& property : element.properties) {
-                const bool axis = !property.isList() && property.name.size() == 1 &&
-                                  property.name[0] >= 'x' && property.name[0] <= 'z';
-                if (!axis) {
-                    RELIEF_TRY(pass(property, numbers));
-                    continue;
-                }
-                const std::optional<double> value = numbers.next(property.type);
-                if (!value) {
-                    return plyNumberError(numbers);
-                }
-                position[property.name[0] - 'x'] = static_cast<float>(*value);
-            }
-            mesh_.positions.push_back(position);
+            RELIEF_TRY(columns.read(numbers, place));
+            mesh_.positions.emplace_back(place[0], place[1], place[2]);
         }
         divided_ = divided_ || (numbers.isText() && !numbers.atLineEnd());
-        return {};
-    }
-
-    /// Reads a property that nobody needs.
-    static Result<void> pass(const PlyProperty& property, PlyNumbers& numbers) {
-        std::uint64_t length = 1;
-        if (property.isList()) {
-            length = RELIEF_TRY(takePlyLength(numbers, *property.length_type));
-        }
-        for (std::uint64_t k = 0; k < length; ++k) {
-            if (!numbers.next(property.type)) {
-                return plyNumberError(numbers);
-            }
-        }
         return {};
     }
 
@@ -252,7 +219,7 @@ class PlyImport {
                 return noVertex("tristrips", index, *value, numbers);
             }
             const auto corner = static_cast<std::uint32_t>(*value);
-            // Where corners repeat, the strip only moves on to its next part.
+            // Repeated corners only lead the strip to its next part.
             if (in_strip >= 2 && before_last != last && last != corner && corner != before_last) {
                 const bool turned = in_strip % 2 == 1;
                 mesh_.corners.insert(mesh_.corners.end(),
@@ -279,10 +246,7 @@ class PlyImport {
 
     Result<void> countTriangles(std::uint64_t more) {
         triangles_ += more;
-        return triangles_ <= kTriangleMax
-                   ? Result<void>()
-                   : fail(ErrorCode::kLimit, "it has more than " + std::to_string(kTriangleMax) +
-                                                 " triangles; simplify the mesh");
+        return checkTriangleCount(triangles_);
     }
 
     /// In text, a line of more numbers than its element has shifts all behind it: that must not pass for a mesh.

@@ -1,4 +1,4 @@
-#include "bake/import/import_obj.h"
+#include "formats/polygons/obj_mesh.h"
 
 #include <algorithm>
 #include <array>
@@ -9,9 +9,9 @@
 #include <string_view>
 #include <utility>
 
-#include "bake/import/text_number.h"
 #include "formats/base/text.h"
 #include "formats/base/text_scanner.h"
+#include "formats/polygons/decimal.h"
 
 namespace relief {
 namespace {
@@ -105,8 +105,8 @@ class ObjReader {
             nowhere_ = mesh_.positions.size();
             nowhere_line_ = line;
         }
-        if (mesh_.positions.size() == 3 * kTriangleMax) {
-            return fail(ErrorCode::kLimit, "it has more than " + std::to_string(3 * kTriangleMax) +
+        if (mesh_.positions.size() == 3 * kPolygonTrianglesMax) {
+            return fail(ErrorCode::kLimit, "it has more than " + std::to_string(3 * kPolygonTrianglesMax) +
                                                " vertices; simplify the mesh");
         }
         mesh_.positions.push_back(position);
@@ -160,10 +160,7 @@ class ObjReader {
         has_faces_ = true;
         mesh_.sizes.push_back(count);
         triangles_ += count < 3 ? 0 : count - 2;
-        return triangles_ <= kTriangleMax
-                   ? Result<void>()
-                   : fail(ErrorCode::kLimit, "it has more than " + std::to_string(kTriangleMax) +
-                                                 " triangles; simplify the mesh");
+        return checkTriangleCount(triangles_);
     }
 
     void beginGroup() {

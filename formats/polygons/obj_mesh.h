@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bake/import/polygon_mesh.h"
+#include "formats/polygons/polygon_mesh.h"
 
 namespace relief {
 

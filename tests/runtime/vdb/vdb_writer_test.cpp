@@ -1,4 +1,4 @@
-#include "runtime/vdb/vdb_points.h"
+#include "runtime/vdb/vdb_writer.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/io/Stream.h>

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <span>
 
-#include "bake/import/polygon_mesh.h"
+#include "formats/polygons/polygon_mesh.h"
 
 namespace relief {
 

@@ -1,9 +1,9 @@
-// PLY files, read: the lines of a header and the numbers behind it. What a file must hold, and what an error says,
-// is the caller's.
+// PLY files, read: the header and the numbers behind it. The caller decides what a file must hold.
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,23 +20,6 @@ enum class PlyType : std::uint8_t { kInt8, kUint8, kInt16, kUint16, kInt32, kUin
 inline constexpr std::size_t kPlyPropertiesMax = 256;
 inline constexpr std::size_t kPlyElementsMax = 64;
 
-/// One line of a header. It borrows from the file's bytes.
-struct PlyHeaderLine {
-    enum class Kind : std::uint8_t { kPly, kFormat, kElement, kProperty, kEnd, kOther };
-
-    Kind kind = Kind::kOther;             ///< by its first word
-    std::string_view name;                ///< of an element or a property; empty if the line has another form
-    std::optional<PlyEncoding> encoding;  ///< of a format that is known
-    std::optional<std::uint64_t> count;   ///< of an element
-    bool list = false;                    ///< a property that is a list
-    std::optional<PlyType> type;          ///< of a property, or of a list's items; nullopt if unknown
-    std::optional<PlyType> length_type;   ///< of a list's length
-};
-
-/// Cuts the next line off `data`, a file from its start or from the end of the line before.
-/// \return nullopt at the end of the data.
-[[nodiscard]] std::optional<PlyHeaderLine> takePlyHeaderLine(std::string_view& data);
-
 struct PlyProperty {
     std::string_view name;
     PlyType type = PlyType::kInt8;       ///< of a list: of its items
@@ -47,7 +30,7 @@ struct PlyProperty {
 
 struct PlyElement {
     std::string_view name;
-    std::uint64_t count = 0;  ///< what the header says; the file may hold fewer
+    std::uint64_t count = 0;  ///< by the header; the file may hold fewer
     std::vector<PlyProperty> properties;
 };
 
@@ -72,12 +55,12 @@ class PlyNumbers {
 
     /// \return nullopt if the data have ended, or where a word is no number.
     [[nodiscard]] std::optional<double> next(PlyType type);
-    /// After next() has failed: whether the data have ended.
+    /// After next() has failed: the data have ended.
     [[nodiscard]] bool ended() const { return ended_; }
-    /// What comes after the last number.
+    /// The data behind the last number.
     [[nodiscard]] std::string_view rest() const { return isText() ? text_.rest() : data_; }
     [[nodiscard]] bool isText() const { return encoding_ == PlyEncoding::kAscii; }
-    /// Whether no word follows the last one on its line. \pre isText()
+    /// \return true if no word follows the last one on its line. \pre isText()
     [[nodiscard]] bool atLineEnd() { return text_.atLineEnd(); }
     /// "line 12: ", of the last word; "" where there are no lines.
     [[nodiscard]] std::string where() const;
@@ -100,5 +83,25 @@ class PlyNumbers {
 
 /// The length of a list. Errors: as plyNumberError; kInvalidInput for what is no length.
 [[nodiscard]] Result<std::uint64_t> takePlyLength(PlyNumbers& numbers, PlyType type);
+
+/// Reads a property that is not needed: a number, or a list of them. Errors: as takePlyLength.
+[[nodiscard]] Result<void> passPlyProperty(const PlyProperty& property, PlyNumbers& numbers);
+
+/// The properties of one element that a reader takes, single numbers by their names.
+class PlyColumns {
+  public:
+    /// \param element  borrowed. \param names  as many as the values of read().
+    PlyColumns(const PlyElement& element, std::span<const std::string_view> names);
+
+    /// How many of the element's properties have the name'th name: 1, unless its header is odd.
+    [[nodiscard]] std::size_t count(std::size_t name) const;
+    /// Takes the element's next item. \param values  those that the element has not stay as they are.
+    /// Errors: as takePlyLength.
+    [[nodiscard]] Result<void> read(PlyNumbers& numbers, std::span<double> values) const;
+
+  private:
+    const PlyElement& element_;
+    std::vector<int> places_;  // of each property among the names, -1: none
+};
 
 }  // namespace relief

@@ -1,5 +1,6 @@
-#include "formats/base/ply_reader.h"
+#include "formats/polygons/ply_reader.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -11,6 +12,19 @@
 
 namespace relief {
 namespace {
+
+/// One line of a header. It borrows from the file's bytes.
+struct PlyHeaderLine {
+    enum class Kind : std::uint8_t { kPly, kFormat, kElement, kProperty, kEnd, kOther };
+
+    Kind kind = Kind::kOther;             ///< by its first word
+    std::string_view name;                ///< of an element or a property; empty if the line has another form
+    std::optional<PlyEncoding> encoding;  ///< of a format that is known
+    std::optional<std::uint64_t> count;   ///< of an element
+    bool list = false;                    ///< a property that is a list
+    std::optional<PlyType> type;          ///< of a property, or of a list's items; nullopt if unknown
+    std::optional<PlyType> length_type;   ///< of a list's length
+};
 
 template <class T>
 using Words = std::span<const std::pair<std::string_view, T>>;
@@ -76,9 +90,8 @@ Result<void> addProperty(const PlyHeaderLine& line, PlyHeader& header) {
     return {};
 }
 
-}  // namespace
-
-std::optional<PlyHeaderLine> takePlyHeaderLine(std::string_view& data) {
+/// Cuts the next line off `data`. \return nullopt at the end of the data.
+std::optional<PlyHeaderLine> takeHeaderLine(std::string_view& data) {
     if (data.empty()) {
         return std::nullopt;
     }
@@ -106,6 +119,8 @@ std::optional<PlyHeaderLine> takePlyHeaderLine(std::string_view& data) {
     return line;
 }
 
+}  // namespace
+
 Result<PlyHeader> takePlyHeader(std::string_view& data) {
     using Kind = PlyHeaderLine::Kind;
     PlyHeader header;
@@ -114,7 +129,7 @@ Result<PlyHeader> takePlyHeader(std::string_view& data) {
     bool returns = false;
     for (bool first = true;; first = false) {
         const std::string_view before = data;
-        const std::optional<PlyHeaderLine> line = takePlyHeaderLine(data);
+        const std::optional<PlyHeaderLine> line = takeHeaderLine(data);
         const std::string_view taken = before.substr(0, before.size() - data.size());
         returns = first ? taken.ends_with('\r') : returns;
         ++header.lines;
@@ -203,6 +218,47 @@ Result<std::uint64_t> takePlyLength(PlyNumbers& numbers, PlyType type) {
         return invalidInput(numbers.where() + "a list has a length that cannot be");
     }
     return static_cast<std::uint64_t>(*length);
+}
+
+Result<void> passPlyProperty(const PlyProperty& property, PlyNumbers& numbers) {
+    std::uint64_t length = 1;
+    if (property.isList()) {
+        length = RELIEF_TRY(takePlyLength(numbers, *property.length_type));
+    }
+    for (std::uint64_t k = 0; k < length; ++k) {
+        if (!numbers.next(property.type)) {
+            return plyNumberError(numbers);
+        }
+    }
+    return {};
+}
+
+PlyColumns::PlyColumns(const PlyElement& element, std::span<const std::string_view> names)
+    : element_(element) {
+    for (const PlyProperty& property : element.properties) {
+        const auto name = std::find(names.begin(), names.end(), property.name);
+        places_.push_back(property.isList() || name == names.end() ? -1
+                                                                   : static_cast<int>(name - names.begin()));
+    }
+}
+
+std::size_t PlyColumns::count(std::size_t name) const {
+    return static_cast<std::size_t>(std::count(places_.begin(), places_.end(), static_cast<int>(name)));
+}
+
+Result<void> PlyColumns::read(PlyNumbers& numbers, std::span<double> values) const {
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+        if (places_[i] < 0) {
+            RELIEF_TRY(passPlyProperty(element_.properties[i], numbers));
+            continue;
+        }
+        const std::optional<double> value = numbers.next(element_.properties[i].type);
+        if (!value) {
+            return plyNumberError(numbers);
+        }
+        values[static_cast<std::size_t>(places_[i])] = *value;
+    }
+    return {};
 }
 
 }  // namespace relief
