@@ -17,7 +17,7 @@
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "formats/container.h"
-#include "formats/container_parts.h"
+#include "formats/container_reader.h"
 #include "runtime/tool/command_line.h"
 #include "runtime/tool/json_text.h"
 #include "runtime/tool/memory_option.h"
