@@ -13,8 +13,7 @@
 #include "formats/base/finite.h"
 #include "formats/container.h"
 #include "formats/nearest_surface.h"
-#include "runtime/c_api/call.h"
-#include "runtime/collider/collider_textures.h"
+#include "runtime/c_api/objects.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/gl_object.h"
@@ -23,13 +22,6 @@
 
 namespace relief {
 namespace {
-
-struct TexturesObject {
-    ColliderTextures textures;
-    std::string glsl;
-    GLint units = 0;   // texture units of the context
-    GLint blocks = 0;  // uniform block bindings
-};
 
 struct ParticlesObject {
     std::shared_ptr<const TexturesObject> textures;  // outlives the system, which points to it; may be null
@@ -45,18 +37,6 @@ struct PictureObject {
 
 }  // namespace
 
-template <>
-struct HandleType<relief_collider> {
-    using Object = Collider;
-    static constexpr HandleKind kKind = HandleKind::kCollider;
-    static constexpr const char* kName = "relief_collider";
-};
-template <>
-struct HandleType<relief_textures> {
-    using Object = TexturesObject;
-    static constexpr HandleKind kKind = HandleKind::kTextures;
-    static constexpr const char* kName = "relief_textures";
-};
 template <>
 struct HandleType<relief_particles> {
     using Object = ParticlesObject;

@@ -1,5 +1,6 @@
-// What relief.js calls. Handles are pointers; every function but those that end one fails by returning null or a negative
-// number, and then relief_error() says why. All that touch the GL need a current context, whose state they leave as it was.
+// What relief.js calls beside the functions of runtime/c_api: scenes, and what a page asks of a collider. Objects of this file
+// are pointers; every function but those that end one fails by returning null or a negative number, as relief_error() has it.
+// All that touch the GL need a current context, whose state they leave as it was.
 #include <emscripten.h>
 
 #include <cstdint>
@@ -11,9 +12,9 @@
 #include <vector>
 
 #include "formats/base/text.h"
-#include "formats/container.h"
-#include "formats/nearest_surface.h"
 #include "formats/texel.h"
+#include "runtime/c_api/objects.h"
+#include "runtime/c_api/relief.h"
 #include "runtime/collider/field_query.h"
 #include "runtime/files/mesh_file.h"
 #include "runtime/gl/gl_fault.h"
@@ -30,42 +31,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string g_error;  // of the last call that failed
-std::string g_text;   // what a call that returns text returned last
+std::string g_text;  // what a call that returns text returned last
 
 const char* returned(std::string text) {
     g_text = std::move(text);
     return g_text.c_str();
-}
-
-/// What f returns, or `failed` and the reason in g_error: an error, or an exception of the standard library.
-template <class T, class F>
-T guarded(T failed, F f) {
-    try {
-        auto result = f();
-        if (result) {
-            return std::move(*result);
-        }
-        g_error = result.error().message;
-    } catch (const std::bad_alloc&) {
-        g_error = "out of memory; use fewer particles, or a smaller collider";
-    } catch (const std::exception& error) {
-        g_error = error.what();
-    }
-    return failed;
-}
-
-std::span<const glm::vec3> points(const float* xyz, int count) {
-    static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
-    return {reinterpret_cast<const glm::vec3*>(xyz), static_cast<std::size_t>(count)};
-}
-
-void store(const FieldSample& sample, float* field, std::int32_t* map) {
-    field[0] = sample.normal.x;
-    field[1] = sample.normal.y;
-    field[2] = sample.normal.z;
-    field[3] = sample.distance;
-    *map = sample.map;
 }
 
 Json json(const glm::vec3& v) {
@@ -202,7 +172,7 @@ Result<void> takePoses(std::vector<SceneCollider>& now, const std::vector<SceneC
 }
 
 /// Everything of the scene at `path` that needs no other colliders, no other capacity and no other integrator.
-Result<bool> changePlayer(Player& player, const char* path, bool emitters) {
+Result<int> changePlayer(Player& player, const char* path, bool emitters) {
     const PassState state;
     Scene& now = player.loaded.scene;
     Scene wanted = RELIEF_TRY(loadScene(path));
@@ -228,11 +198,11 @@ Result<bool> changePlayer(Player& player, const char* path, bool emitters) {
     now = std::move(wanted);
     player.style = particleStyle(now, player.atlas.get());
     RELIEF_TRY(player.simulation->change(std::move(made)));
-    return true;
+    return 0;
 }
 
-Result<bool> drawPlayer(Player& player, const glm::mat4& view, const glm::mat4& projection,
-                        const RenderTarget& target) {
+Result<int> drawPlayer(Player& player, const glm::mat4& view, const glm::mat4& projection,
+                       const RenderTarget& target) {
     const PassState state;
     const ParticleSystem& particles = player.simulation->particles();
     const CameraMatrices camera(view, projection);
@@ -244,32 +214,14 @@ Result<bool> drawPlayer(Player& player, const glm::mat4& view, const glm::mat4& 
         order = {&player.sorter->order(), player.sorter->count()};
     }
     RELIEF_TRY(player.renderer->draw(particles, camera, player.style, target, order));
-    return true;
+    return 0;
 }
 
-/// A collider on the GPU, for a page's own shaders.
-struct GpuCollider {
-    ColliderTextures textures;
-    std::optional<FieldQuery> query;
+/// Questions of a page to a collider on the GPU.
+struct GpuQuery {
+    std::shared_ptr<const TexturesObject> textures;  // outlives the query, which points to it
+    FieldQuery query;
 };
-
-Result<GpuCollider*> uploadCollider(const Collider& collider) {
-    const PassState state;
-    auto textures = RELIEF_TRY(ColliderTextures::create(collider));
-    return new GpuCollider{std::move(textures), std::nullopt};
-}
-
-Result<bool> queryOnGpu(GpuCollider& gpu, std::span<const glm::vec3> at, float* fields, std::int32_t* maps) {
-    const PassState state;
-    if (!gpu.query) {
-        gpu.query = RELIEF_TRY(FieldQuery::create(gpu.textures));
-    }
-    const auto samples = RELIEF_TRY(gpu.query->evaluate(at));
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        store(samples[i], fields + 4 * i, maps + i);
-    }
-    return true;
-}
 
 }  // namespace
 }  // namespace relief
@@ -278,57 +230,36 @@ using namespace relief;  // NOLINT: the functions below have C's names
 
 extern "C" {
 
-EMSCRIPTEN_KEEPALIVE const char* relief_error() {
-    return g_error.c_str();
-}
-
-// --- colliders, on the CPU
-
-EMSCRIPTEN_KEEPALIVE Collider* relief_collider_load(const std::byte* bytes, int size) {
-    return guarded<Collider*>(nullptr, [&]() -> Result<Collider*> {
-        Collider collider = RELIEF_TRY(readContainer({bytes, static_cast<std::size_t>(size)}));
-        return new Collider(std::move(collider));
-    });
-}
-
-EMSCRIPTEN_KEEPALIVE void relief_collider_free(Collider* collider) {
-    delete collider;
-}
-
 /// JSON.
-EMSCRIPTEN_KEEPALIVE const char* relief_collider_info(const Collider* collider) {
-    return returned(describe(*collider).dump());
-}
-
-/// fields: 4 · count floats, normal and distance; maps: count.
-EMSCRIPTEN_KEEPALIVE void relief_collider_query(const Collider* collider, const float* xyz, int count,
-                                                float* fields, std::int32_t* maps) {
-    for (const glm::vec3& p : points(xyz, count)) {
-        store(evaluate(*collider, p), fields, maps);
-        fields += 4;
-        ++maps;
-    }
+EMSCRIPTEN_KEEPALIVE const char* relief_collider_info(const relief_collider* collider) {
+    return answer<const char*>(__func__, nullptr, [&](const Call& call) -> Result<const char*> {
+        return returned(describe(*RELIEF_TRY(call.object(collider, "collider"))).dump());
+    });
 }
 
 /// Texels of a map as the reader understands them, from the row y = 0 up, the faces of a cube in their order: for each
 /// the depth and the normal of its front, then those of its back: 8 floats. A depth of NaN: nothing there.
-EMSCRIPTEN_KEEPALIVE void relief_collider_texels(const Collider* collider, int map, float* out) {
-    const DepthMap& from = collider->maps[static_cast<std::size_t>(map)];
-    const auto put = [&](const std::optional<Surface>& surface) {
-        *out++ = surface ? surface->depth : std::numeric_limits<float>::quiet_NaN();
-        for (int i = 0; i < 3; ++i) {
-            *out++ = surface ? surface->normal[i] : 0.0F;
-        }
-    };
-    for (std::uint32_t face = 0; face < from.faceCount(); ++face) {
-        for (std::uint32_t y = 0; y < from.height; ++y) {
-            for (std::uint32_t x = 0; x < from.width; ++x) {
-                const Texel texel = decodeTexel(from.format, from.texelAt(face, x, y));
-                put(texel.front);
-                put(texel.back);
+EMSCRIPTEN_KEEPALIVE int relief_collider_texels(const relief_collider* collider, int map, float* out) {
+    return answer(__func__, -1, [&](const Call& call) -> Result<int> {
+        const Collider& of = *RELIEF_TRY(call.object(collider, "collider"));
+        const DepthMap& from = of.maps[static_cast<std::size_t>(map)];
+        const auto put = [&](const std::optional<Surface>& surface) {
+            *out++ = surface ? surface->depth : std::numeric_limits<float>::quiet_NaN();
+            for (int i = 0; i < 3; ++i) {
+                *out++ = surface ? surface->normal[i] : 0.0F;
+            }
+        };
+        for (std::uint32_t face = 0; face < from.faceCount(); ++face) {
+            for (std::uint32_t y = 0; y < from.height; ++y) {
+                for (std::uint32_t x = 0; x < from.width; ++x) {
+                    const Texel texel = decodeTexel(from.format, from.texelAt(face, x, y));
+                    put(texel.front);
+                    put(texel.back);
+                }
             }
         }
-    }
+        return 0;
+    });
 }
 
 // --- meshes
@@ -337,7 +268,7 @@ EMSCRIPTEN_KEEPALIVE void relief_collider_texels(const Collider* collider, int m
 /// \param out  its positions, how many there are, its triangles, and how many corners these have.
 EMSCRIPTEN_KEEPALIVE PictureMesh* relief_mesh_read(const char* name, const std::byte* bytes, int size,
                                                    std::uintptr_t* out) {
-    return guarded<PictureMesh*>(nullptr, [&]() -> Result<PictureMesh*> {
+    return answer<PictureMesh*>(__func__, nullptr, [&](const Call&) -> Result<PictureMesh*> {
         const std::span given(bytes, static_cast<std::size_t>(size));
         const std::string extension = lowerCase(name).ends_with(".ply") ? ".ply" : ".obj";
         auto mesh = std::make_unique<PictureMesh>(RELIEF_TRY(parsePictureMesh(given, extension, name)));
@@ -355,36 +286,29 @@ EMSCRIPTEN_KEEPALIVE void relief_mesh_free(PictureMesh* mesh) {
 
 // --- colliders, on the GPU
 
-EMSCRIPTEN_KEEPALIVE GpuCollider* relief_gpu_create(const Collider* collider) {
-    return guarded<GpuCollider*>(nullptr, [&] { return uploadCollider(*collider); });
-}
-
-EMSCRIPTEN_KEEPALIVE void relief_gpu_free(GpuCollider* gpu) {
-    delete gpu;
-}
-
-/// As relief_collider_query. 0, or -1.
-EMSCRIPTEN_KEEPALIVE int relief_gpu_query(GpuCollider* gpu, const float* xyz, int count, float* fields,
-                                          std::int32_t* maps) {
-    return guarded(false, [&] { return queryOnGpu(*gpu, points(xyz, count), fields, maps); }) ? 0 : -1;
-}
-
-/// What a shader of one's own begins with, behind its version line: constants, what this collider is, and collider.glsl.
-EMSCRIPTEN_KEEPALIVE const char* relief_gpu_glsl(const GpuCollider* gpu) {
-    return guarded<const char*>(nullptr, [&]() -> Result<const char*> {
-        std::string text = gpu->textures.defines();
-        text +=
-            "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n"
-            "precision highp usampler2D;\nprecision highp sampler3D;\n";
-        text += RELIEF_TRY(shaderText("collider.glsl"));
-        return returned(std::move(text));
+EMSCRIPTEN_KEEPALIVE GpuQuery* relief_gpu_query_create(const relief_textures* textures) {
+    return answer<GpuQuery*>(__func__, nullptr, [&](const Call& call) -> Result<GpuQuery*> {
+        auto of = RELIEF_TRY(call.shared(textures, "textures"));
+        auto query = RELIEF_TRY(FieldQuery::create(of->textures));
+        return new GpuQuery{std::move(of), std::move(query)};
     });
 }
 
-/// Binds its three textures to units from `unit` on, and its block to `block`; the page's program has the samplers and
-/// the block set to these.
-EMSCRIPTEN_KEEPALIVE void relief_gpu_bind(const GpuCollider* gpu, int unit, int block) {
-    gpu->textures.bind({unit, block});
+EMSCRIPTEN_KEEPALIVE void relief_gpu_query_free(GpuQuery* query) {
+    delete query;
+}
+
+/// As relief_collider_query(). 0, or -1.
+EMSCRIPTEN_KEEPALIVE int relief_gpu_query(const GpuQuery* gpu, const float* xyz, std::size_t count,
+                                          relief_sample* samples) {
+    static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
+    return answer(__func__, -1, [&](const Call&) -> Result<int> {
+        const auto found = RELIEF_TRY(gpu->query.evaluate({reinterpret_cast<const glm::vec3*>(xyz), count}));
+        for (const FieldSample& one : found) {
+            *samples++ = {one.distance, {one.normal.x, one.normal.y, one.normal.z}, one.map};
+        }
+        return 0;
+    });
 }
 
 // --- particles
@@ -392,7 +316,7 @@ EMSCRIPTEN_KEEPALIVE void relief_gpu_bind(const GpuCollider* gpu, int unit, int 
 /// \param path    of a scene in emscripten's file system.
 /// \param shaded  1: particles are lit and shaded by the collider.
 EMSCRIPTEN_KEEPALIVE Player* relief_player_create(const char* path, int shaded) {
-    return guarded<Player*>(nullptr, [&] { return createPlayer(path, shaded != 0); });
+    return answer<Player*>(__func__, nullptr, [&](const Call&) { return createPlayer(path, shaded != 0); });
 }
 
 EMSCRIPTEN_KEEPALIVE void relief_player_free(Player* player) {
@@ -401,25 +325,22 @@ EMSCRIPTEN_KEEPALIVE void relief_player_free(Player* player) {
 
 /// 0, or -1.
 EMSCRIPTEN_KEEPALIVE int relief_player_step(Player* player, float dt) {
-    return guarded(false,
-                   [&]() -> Result<bool> {
-                       const PassState state;
-                       RELIEF_TRY(player->simulation->step(dt, nullptr));
-                       RELIEF_TRY(checkGpu("stepping particles"));
-                       return true;
-                   })
-               ? 0
-               : -1;
+    return answer(__func__, -1, [&](const Call&) -> Result<int> {
+        const PassState state;
+        RELIEF_TRY(player->simulation->step(dt, nullptr));
+        RELIEF_TRY(checkGpu("stepping particles"));
+        return 0;
+    });
 }
 
 /// \param emitters  1: those of the scene begin anew.
 EMSCRIPTEN_KEEPALIVE int relief_player_change(Player* player, const char* path, int emitters) {
-    return guarded(false, [&] { return changePlayer(*player, path, emitters != 0); }) ? 0 : -1;
+    return answer(__func__, -1, [&](const Call&) { return changePlayer(*player, path, emitters != 0); });
 }
 
 /// Births on top of the emitters': 8 floats each, position, velocity, lifetime, type. The number accepted.
 EMSCRIPTEN_KEEPALIVE int relief_player_spawn(Player* player, const float* births, int count) {
-    return guarded(-1, [&]() -> Result<int> {
+    return answer(__func__, -1, [&](const Call&) -> Result<int> {
         std::vector<Birth> list;
         for (int i = 0; i < count; ++i, births += 8) {
             if (!(births[7] >= 0.0F && births[7] <= static_cast<float>(kBirthTypeMax))) {
@@ -445,7 +366,7 @@ EMSCRIPTEN_KEEPALIVE int relief_player_draw(Player* player, const float* matrice
     std::memcpy(&view, matrices, sizeof(view));
     std::memcpy(&projection, matrices + 16, sizeof(projection));
     const RenderTarget target{static_cast<GLuint>(framebuffer), width, height, srgb != 0};
-    return guarded(false, [&] { return drawPlayer(*player, view, projection, target); }) ? 0 : -1;
+    return answer(__func__, -1, [&](const Call&) { return drawPlayer(*player, view, projection, target); });
 }
 
 /// JSON.
@@ -500,7 +421,7 @@ EMSCRIPTEN_KEEPALIVE int relief_player_mesh(const Player* player, int body, int*
 
 /// Reads the particles back, and waits for the GPU to that end; how many live, or -1.
 EMSCRIPTEN_KEEPALIVE int relief_player_read(Player* player) {
-    return guarded(-1, [&]() -> Result<int> {
+    return answer(__func__, -1, [&](const Call&) -> Result<int> {
         const PassState state;
         player->read = RELIEF_TRY(player->simulation->particles().readState());
         return static_cast<int>(player->read.size());

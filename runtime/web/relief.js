@@ -277,17 +277,16 @@ export function readMesh(name, bytes) {
 function query(points, ask) {
     const xyz = checkFinite("points", numbers("points", points, 3));
     const count = xyz.length / 3;
-    return withMemory([12 * count, 16 * count, 4 * count], (at, fields, maps) => {
+    return withMemory([12 * count, 20 * count], (at, samples) => {
         wasm.HEAPF32.set(xyz, at >> 2);
-        ask(at, count, fields, maps);
-        const values = wasm.HEAPF32.subarray(fields >> 2, (fields >> 2) + 4 * count);
-        const distance = new Float32Array(count);
-        const normal = new Float32Array(3 * count);
-        for (let i = 0; i < count; ++i) {
-            normal.set(values.subarray(4 * i, 4 * i + 3), 3 * i);
-            distance[i] = values[4 * i + 3];
+        ask(at, count, samples);
+        const answers = { distance: new Float32Array(count), normal: new Float32Array(3 * count), map: new Int32Array(count) };
+        for (let i = 0, from = samples >> 2; i < count; ++i, from += 5) { // relief_sample of runtime/c_api/relief.h
+            answers.distance[i] = wasm.HEAPF32[from];
+            answers.normal.set(wasm.HEAPF32.subarray(from + 1, from + 4), 3 * i);
+            answers.map[i] = wasm.HEAP32[from + 4];
         }
-        return { distance, normal, map: wasm.HEAP32.slice(maps >> 2, (maps >> 2) + count) };
+        return answers;
     });
 }
 
@@ -302,7 +301,7 @@ export class Collider {
         this.bytes = bytes;
         this.#handle = withMemory([bytes.length], (at) => {
             wasm.HEAPU8.set(bytes, at);
-            return checked(call("relief_collider_load", at, bytes.length));
+            return checked(call("relief_collider_read", at, bytes.length));
         });
         Object.assign(this, { info: JSON.parse(wasm.UTF8ToString(call("relief_collider_info", this.handle))) });
     }
@@ -318,15 +317,14 @@ export class Collider {
     }
 
     query(points) {
-        return query(points, (at, count, fields, maps) =>
-            call("relief_collider_query", this.handle, at, count, fields, maps));
+        return query(points, (at, count, samples) => call("relief_collider_query", this.handle, at, count, samples));
     }
 
     texels(map) {
         const { width, height, faces } = this.info.maps[index("map", map, this.info.maps.length)];
         const count = 8 * width * height * faces;
         return withMemory([4 * count], (at) => {
-            call("relief_collider_texels", this.handle, map, at);
+            succeeded(call("relief_collider_texels", this.handle, map, at));
             return wasm.HEAPF32.slice(at >> 2, (at >> 2) + count);
         });
     }
@@ -339,17 +337,20 @@ export class Collider {
     }
 }
 
+const kPrecision = ["float", "int", "sampler2D", "usampler2D", "sampler3D"].map((type) => `precision highp ${type};\n`).join("");
+
 export class GpuCollider {
     #gl;
     #losses;
     #handle;
+    #query = 0;
 
     constructor(gl, from) {
         this.#losses = use(gl);
         this.#gl = gl;
         this.collider = collider("a GpuCollider", from);
-        this.#handle = checked(call("relief_gpu_create", from.handle));
-        this.glsl = wasm.UTF8ToString(checked(call("relief_gpu_glsl", this.#handle)));
+        this.#handle = checked(call("relief_textures_create", from.handle));
+        this.glsl = kPrecision + wasm.UTF8ToString(call("relief_textures_glsl", this.#handle));
     }
 
     #ready() {
@@ -361,8 +362,8 @@ export class GpuCollider {
 
     query(points) {
         this.#ready();
-        return query(points, (at, count, fields, maps) =>
-            succeeded(call("relief_gpu_query", this.#handle, at, count, fields, maps)));
+        this.#query ||= checked(call("relief_gpu_query_create", this.#handle));
+        return query(points, (at, count, samples) => succeeded(call("relief_gpu_query", this.#query, at, count, samples)));
     }
 
     #places(unit, block) {
@@ -395,15 +396,16 @@ export class GpuCollider {
         this.#places(unit, block);
         const gl = this.#gl;
         const [active, buffer] = [gl.ACTIVE_TEXTURE, gl.UNIFORM_BUFFER_BINDING].map((one) => gl.getParameter(one));
-        call("relief_gpu_bind", this.#handle, unit, block);
+        call("relief_textures_bind", this.#handle, unit, block);
         gl.activeTexture(active);
         gl.bindBuffer(gl.UNIFORM_BUFFER, buffer);
     }
 
     dispose() {
         if (this.#handle) {
-            free(this.#gl, this.#losses, "relief_gpu_free", this.#handle);
-            this.#handle = 0;
+            free(this.#gl, this.#losses, "relief_gpu_query_free", this.#query);
+            free(this.#gl, this.#losses, "relief_textures_free", this.#handle);
+            this.#handle = this.#query = 0;
         }
     }
 }
@@ -517,12 +519,7 @@ export class ParticleSystem {
         } else if (!(content instanceof Uint8Array) && typeof content !== "string") {
             throw new ReliefError(`the file '${name}' is a Collider, a Uint8Array or a text`);
         }
-        for (let i = 1; i < parts.length; ++i) {
-            const folder = `${this.#folder}/${parts.slice(0, i).join("/")}`;
-            if (!wasm.FS.analyzePath(folder).exists) {
-                wasm.FS.mkdir(folder);
-            }
-        }
+        wasm.FS.mkdirTree([this.#folder, ...parts.slice(0, -1)].join("/"));
         wasm.FS.writeFile(`${this.#folder}/${name}`, content instanceof Collider ? content.bytes : content);
     }
 
