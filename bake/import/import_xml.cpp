@@ -137,6 +137,9 @@ struct XmlReader::State {
         if (!refused.empty()) {
             return refused;
         }
+        if (error == XML_ERROR_TAG_MISMATCH && !open.empty()) {
+            return "an end tag does not end <" + cleanUtf8(open.back(), kQuotedMax) + ">, which is open";
+        }
         const bool cut = error == XML_ERROR_NO_ELEMENTS || error == XML_ERROR_UNCLOSED_TOKEN ||
                          error == XML_ERROR_PARTIAL_CHAR || error == XML_ERROR_UNCLOSED_CDATA_SECTION;
         return cut && !open.empty() ? "it ends within <" + cleanUtf8(open.back(), kQuotedMax) +

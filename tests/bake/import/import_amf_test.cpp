@@ -107,7 +107,7 @@ TEST_F(ImportAmf, WhatCannotBeIsRefused) {
     expectRefused(with("objectid='a'", "objectid='b'"), "the object 'b', which does not exist");
     expectRefused(with("objectid='a'", "objectid='c'"), "within itself");
     expectRefused(with("id='c'", "id='a'"), "another object with the id 'a'");
-    expectRefused(with("</mesh>", ""), "</object> ends no element");
+    expectRefused(with("</mesh>", ""), "an end tag does not end <mesh>, which is open");
     expectRefused("<stl/>", "not <amf>");
 }
 
