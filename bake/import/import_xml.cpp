@@ -3,9 +3,9 @@
 #include <expat.h>
 
 #include <algorithm>
-#include <deque>
 #include <exception>
 #include <new>
+#include <utility>
 
 #include "formats/base/text.h"
 
@@ -35,8 +35,8 @@ int keepBytes(void* /*data*/, const XML_Char* /*name*/, XML_Encoding* info) {
 }
 
 struct Piece {
-    XmlReader::Event event;
-    std::size_t line;
+    XmlReader::Event event = XmlReader::Event::kDone;
+    std::size_t line = 1;
     std::string words;  // the element's name, or the text
     std::vector<XmlReader::Attribute> attributes;
 };
@@ -75,10 +75,14 @@ struct XmlReader::State {
     static void begin(void* data, const XML_Char* name, const XML_Char** attributes) {
         guarded(data, [&](State& state) {
             state.open.emplace_back(name);
-            Piece& piece = state.add(Event::kBegin, name);
-            for (; *attributes != nullptr; attributes += 2) {
-                piece.attributes.push_back({attributes[0], attributes[1]});
+            std::vector<Attribute>& into = state.add(Event::kBegin, name).attributes;
+            std::size_t count = 0;
+            for (; *attributes != nullptr; attributes += 2, ++count) {
+                into.resize(std::max(into.size(), count + 1));
+                into[count].name = attributes[0];
+                into[count].value = attributes[1];
             }
+            into.resize(count);
         });
     }
     static void end(void* data, const XML_Char* name) {
@@ -102,19 +106,29 @@ struct XmlReader::State {
         });
     }
 
-    Piece& add(Event event, std::string name) {
-        const std::size_t line = XML_GetCurrentLineNumber(parser);
+    Piece& add(Event event, const char* name) {
         if (words.find_first_not_of(" \t\r\n") != std::string::npos) {
-            pieces.push_back({Event::kText, line, std::move(words), {}});
+            addPiece(Event::kText).words = words;
         }
         words.clear();
-        pieces.push_back({event, line, std::move(name), {}});
-        return pieces.back();
+        Piece& piece = addPiece(event);
+        piece.words = name;
+        return piece;
+    }
+    Piece& addPiece(Event event) {
+        if (filled == pieces.size()) {
+            pieces.emplace_back();
+        }
+        Piece& piece = pieces[filled++];
+        piece.event = event;
+        piece.line = XML_GetCurrentLineNumber(parser);
+        return piece;
     }
 
     /// Reads on until there is a piece, or the end.
     void read() {
-        while (pieces.empty() && !ended) {
+        filled = taken = 0;
+        while (filled == 0 && !ended) {
             const std::size_t size = std::min(rest.size(), kChunk);
             ended = size == rest.size();
             const bool good = XML_Parse(parser, reinterpret_cast<const char*>(rest.data()),
@@ -149,7 +163,9 @@ struct XmlReader::State {
 
     std::span<const std::byte> rest;
     XML_Parser parser;
-    std::deque<Piece> pieces;
+    std::vector<Piece> pieces;  // reused, so that their strings keep their memory
+    std::size_t filled = 0;
+    std::size_t taken = 0;
     std::string words;              // since the last tag
     std::vector<std::string> open;  // elements, where Expat is
     bool ended = false;
@@ -157,7 +173,7 @@ struct XmlReader::State {
     std::string refused;
     std::exception_ptr thrown;
 
-    Piece now{Event::kDone, 1, {}, {}};
+    Piece now;
     std::vector<Attribute> attributes;
     std::vector<std::string> path;  // of the event
 };
@@ -172,15 +188,16 @@ Result<XmlReader::Event> XmlReader::next() {
         state.path.pop_back();
     }
     state.now.event = Event::kDone;
-    state.read();
-    if (state.pieces.empty()) {
+    if (state.taken == state.filled) {
+        state.read();
+    }
+    if (state.taken == state.filled) {
         return state.failure.empty() ? Result<Event>(Event::kDone) : invalidInput(state.failure);
     }
-    state.now = std::move(state.pieces.front());
-    state.pieces.pop_front();
+    std::swap(state.now, state.pieces[state.taken++]);
     if (state.now.event == Event::kBegin) {
         state.path.push_back(state.now.words);
-        state.attributes = std::move(state.now.attributes);
+        std::swap(state.attributes, state.now.attributes);
     }
     return state.now.event;
 }
