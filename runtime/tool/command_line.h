@@ -33,7 +33,8 @@ void setUpHelp(CLI::App& app, const std::string& help = "Print this help and exi
 /// The body of main(). Exceptions become errors; signals remove temporary files. spdlog's messages are lines on standard
 /// error, "PROGRAM: warning: …", coloured on a terminal without NO_COLOR.
 /// \return the exit code.
-int runProgram(const std::string& program, const std::function<Result<void>()>& run, const Error& out_of_memory);
+int runProgram(const std::string& program, const std::function<Result<void>()>& run,
+               const Error& out_of_memory);
 
 /// "PROGRAM: error: …"
 void reportError(const Error& error);

@@ -263,9 +263,9 @@ TEST(Crafted, HeaderFields) {
     expectRefused(header([](ContainerHeader& h) { h.file_size = 0; }), "more than the header says");
     expectRefused(header([](ContainerHeader& h) { h.metadata_size = ~std::uint64_t{0}; }), "metadata_size",
                   ErrorCode::kLimit);
-    expectRefused(header([](ContainerHeader& h) { h.metadata_size = 1 << 24; }),
-                  "reaches beyond the end");
-    expectRefused(header([](ContainerHeader& h) { h.metadata_hash ^= 1; }), "the checksum of the metadata is wrong, at byte 48");
+    expectRefused(header([](ContainerHeader& h) { h.metadata_size = 1 << 24; }), "reaches beyond the end");
+    expectRefused(header([](ContainerHeader& h) { h.metadata_hash ^= 1; }),
+                  "the checksum of the metadata is wrong, at byte 48");
 }
 
 TEST(Crafted, MetadataThatIsNoTable) {

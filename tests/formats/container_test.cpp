@@ -171,7 +171,8 @@ TEST(Damage, BytesBehindTheEndAreRefused) {
     bytes.push_back(std::byte{0});
     const Result<Collider> read = readContainer(bytes);
     ASSERT_FALSE(read);
-    EXPECT_NE(read.error().message.find("1 bytes more than the header says"), std::string::npos) << read.error().message;
+    EXPECT_NE(read.error().message.find("1 bytes more than the header says"), std::string::npos)
+        << read.error().message;
 }
 
 TEST(Damage, ATransferAsTextIsNamed) {
