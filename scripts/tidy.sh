@@ -4,16 +4,17 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-scripts/setup.sh clang-tidy
-[ -f build/release/compile_commands.json ] || cmake --preset release >&2
+scripts/setup.sh clang clang-tidy
+build=build/tidy
+[ -f $build/build.ninja ] || cmake -G Ninja -S . -B $build -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_COMPILER=clang++ \
+    -DRELIEF_PRECOMPILE=OFF -DRELIEF_UNITY=OFF >&2
+ninja -C $build formats/collider_generated.h bake/import_message_generated.h >&2
 base=${1:-main}
 if [ "$base" = --all ]; then
-    mapfile -t files < <(git ls-files 'bake/*.cpp' 'formats/*.cpp' 'runtime/*.cpp' ':!runtime/web')
+    list=(git ls-files)
 else
-    mapfile -t files < <(git diff --name-only --diff-filter=d "$(git merge-base "$base" HEAD)" -- 'bake/*.cpp' 'formats/*.cpp' \
-        'runtime/*.cpp' ':!runtime/web')
+    list=(git diff --name-only --diff-filter=d "$(git merge-base "$base" HEAD)")
 fi
+mapfile -t files < <("${list[@]}" -- 'bake/*.cpp' 'formats/*.cpp' 'runtime/*.cpp' ':!runtime/web' ':!bake/python')
 echo "tidy.sh: ${#files[@]} files" >&2
-# The build is GCC's, some of whose warnings clang does not know.
-printf '%s\0' "${files[@]}" |
-    xargs -0 -r -n 4 -P "$(nproc)" clang-tidy -p build/release --quiet --extra-arg=-Wno-unknown-warning-option
+printf '%s\0' "${files[@]}" | xargs -0 -r -n 4 -P "$(nproc)" clang-tidy -p $build --quiet
