@@ -6,7 +6,6 @@
 #include <functional>
 
 #include "bake/mesh/embree.h"
-#include "bake/mesh/embree_config.h"
 #include "formats/base/stopwatch.h"
 
 namespace relief {
