@@ -1,12 +1,10 @@
 #include "bake/picture/heat_map.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "bake/mesh/triangle_plane.h"
+#include "bake/picture/pixels.h"
 
 namespace relief {
 namespace {
@@ -24,7 +22,7 @@ Color colorOf(const std::optional<FieldValue>& value, double range) {
     return distanceColor(static_cast<double>(value->distance) / range);
 }
 
-/// Where a picture looks from.
+/// The camera of a picture.
 class Frame {
   public:
     Frame(const TriangleMesh& mesh, const HeatMapOptions& options)
@@ -43,7 +41,7 @@ class Frame {
     }
 
     [[nodiscard]] const glm::dvec3& forward() const { return forward_; }
-    /// Before the mesh. \param x, y  pixels from the left and the top.
+    /// In front of the mesh. \param x, y  pixels from the left and the top.
     [[nodiscard]] glm::dvec3 origin(double x, double y) const {
         return center_ - 1.01 * radius_ * forward_ + (x - 0.5 * size_) * pixel_ * right_ -
                (y - 0.5 * size_) * pixel_ * up_;
@@ -69,7 +67,7 @@ HeatMapPlace placeOnHeatMap(const MeshQuery& query, const HeatMapOptions& option
     const Frame frame(query.mesh(), options);
     HeatMapPlace place = frame.place(p);
     const glm::dvec3 origin = frame.origin(place.x, place.y);
-    // From the surface beside it: the point itself may lie inside.
+    // By the nearest surface, as the point itself may lie inside.
     const double depth = glm::dot(query.closest(p).point - origin, frame.forward());
     const std::optional<FirstHit> hit = query.firstHit(origin, frame.forward());
     const double slack = 0.01 * static_cast<double>(query.mesh().bounds.longestSide());
@@ -81,30 +79,25 @@ RgbImage drawHeatMap(const MeshQuery& query, const Field& field, const HeatMapOp
     const TriangleMesh& mesh = query.mesh();
     const Frame frame(mesh, options);
     const glm::dvec3& forward = frame.forward();
-    RgbImage image{options.size, options.size, {}};
-    image.pixels.resize(std::size_t{image.width} * image.height);
-    tbb::parallel_for(std::uint32_t{0}, image.height, [&](std::uint32_t y) {
-        for (std::uint32_t x = 0; x < image.width; ++x) {
-            Color sum{0.0, 0.0, 0.0};
-            for (int ray = 0; ray < kRaysAcross * kRaysAcross; ++ray) {
-                const double sub_x = (ray % kRaysAcross + 0.5) / kRaysAcross;
-                const double sub_y = (ray / kRaysAcross + 0.5) / kRaysAcross;
-                const glm::dvec3 origin = frame.origin(x + sub_x, y + sub_y);
-                Color color = kBackground;
-                if (const std::optional<FirstHit> hit = query.firstHit(origin, forward)) {
-                    const glm::vec3 p = origin + hit->along * forward;
-                    const glm::dvec3 normal = glm::normalize(planeOf(mesh, hit->triangle).normal);
-                    const double shade = 0.5 + 0.5 * std::abs(glm::dot(normal, forward));
-                    color = colorOf(field(p), options.range);
-                    color = {color.r * shade, color.g * shade, color.b * shade};
-                }
-                constexpr double kShare = 1.0 / (kRaysAcross * kRaysAcross);
-                sum = {sum.r + kShare * color.r, sum.g + kShare * color.g, sum.b + kShare * color.b};
+    return drawPixels(options.size, options.size, [&](std::uint32_t x, std::uint32_t y) {
+        Color sum{0.0, 0.0, 0.0};
+        for (int ray = 0; ray < kRaysAcross * kRaysAcross; ++ray) {
+            const double sub_x = (ray % kRaysAcross + 0.5) / kRaysAcross;
+            const double sub_y = (ray / kRaysAcross + 0.5) / kRaysAcross;
+            const glm::dvec3 origin = frame.origin(x + sub_x, y + sub_y);
+            Color color = kBackground;
+            if (const std::optional<FirstHit> hit = query.firstHit(origin, forward)) {
+                const glm::vec3 p = origin + hit->along * forward;
+                const glm::dvec3 normal = glm::normalize(planeOf(mesh, hit->triangle).normal);
+                const double shade = 0.5 + 0.5 * std::abs(glm::dot(normal, forward));
+                color = colorOf(field(p), options.range);
+                color = {color.r * shade, color.g * shade, color.b * shade};
             }
-            image.pixels[std::size_t{y} * image.width + x] = toPixel(sum);
+            constexpr double kShare = 1.0 / (kRaysAcross * kRaysAcross);
+            sum = {sum.r + kShare * color.r, sum.g + kShare * color.g, sum.b + kShare * color.b};
         }
+        return sum;
     });
-    return image;
 }
 
 }  // namespace relief

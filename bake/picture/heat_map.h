@@ -1,4 +1,4 @@
-// Pictures of a mesh, coloured by what a field says on its surface, where a perfect field says 0.
+// Pictures of a mesh coloured by a field on its surface, where a perfect field is 0.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -10,19 +10,19 @@
 namespace relief {
 
 struct HeatMapOptions {
-    glm::dvec3 direction{-1.0, -0.6, -1.0};  ///< in which the picture looks; object space, not along ±y
+    glm::dvec3 direction{-1.0, -0.6, -1.0};  ///< of view; object space, not along ±y
     std::uint32_t size = 400;                ///< pixels along both sides
     double range = 1.0;                      ///< object units: the distance of the strongest colour
 };
 
 inline constexpr Color kHeatFarColor{0.62, 0.13, 0.42};      ///< outside without a distance
-inline constexpr Color kHeatUnknownColor{0.35, 0.35, 0.37};  ///< the field does not say
+inline constexpr Color kHeatUnknownColor{0.35, 0.35, 0.37};  ///< no value
 
-/// An orthographic picture, the mesh's box in the middle, y upwards, four rays a pixel; distanceColor() of
-/// f / range, shaded by the triangles' normals.
+/// Orthographic, centred on the mesh's box, y upwards, four rays per pixel: distanceColor() of f / range, shaded by the
+/// triangles' normals.
 [[nodiscard]] RgbImage drawHeatMap(const MeshQuery& query, const Field& field, const HeatMapOptions& options);
 
-/// Where such a picture shows a point.
+/// The place of a point in such a picture.
 struct HeatMapPlace {
     double x = 0.0;       ///< pixels from the left
     double y = 0.0;       ///< pixels from the top
