@@ -6,7 +6,7 @@
 #include <cstring>
 #include <glm/gtc/packing.hpp>
 
-#include "formats/normal_index.h"
+#include "formats/indexed_texel.h"
 
 namespace relief {
 namespace {
@@ -27,13 +27,12 @@ T load(std::span<const std::byte> bytes, std::size_t index) {
 
 constexpr float kSmallestHalfDepth = 6.103515625e-5F;  // 2^-14, the smallest normal half
 
-void encodeFixed(const Texel& texel, float depth_max, std::span<std::byte> bytes) {
+void encodeFixed(const std::optional<IndexedSurface>& front, float depth_max, std::span<std::byte> bytes) {
     std::uint8_t channels[4] = {0, 0, 0, 0};
-    if (texel.front) {
-        const NormalIndex normal = encodeNormal(texel.front->normal);
-        const std::uint16_t depth = encodeFixedDepth(texel.front->depth, depth_max);
-        channels[0] = normal.s;
-        channels[1] = normal.t;
+    if (front) {
+        const std::uint16_t depth = encodeFixedDepth(front->surface.depth, depth_max);
+        channels[0] = front->index.s;
+        channels[1] = front->index.t;
         channels[2] = static_cast<std::uint8_t>(depth >> 8);
         channels[3] = static_cast<std::uint8_t>(depth & 0xff);
     }
@@ -49,17 +48,11 @@ Texel decodeFixed(std::span<const std::byte> bytes, float depth_max) {
     return {Surface{decodeFixedDepth(code, depth_max), decodeNormal({channel(0), channel(1)})}, std::nullopt};
 }
 
-void encodeFrontBack(const Texel& texel, bool half, std::span<std::byte> bytes) {
-    for (std::size_t end = 0; end < 2; ++end) {
-        std::uint16_t normal = 0;
-        std::uint16_t depth = 0;
-        if (const std::optional<Surface>& surface = end == 0 ? texel.front : texel.back) {
-            normal = packNormal(encodeNormal(surface->normal));
-            depth = half ? encodeHalfDepth(surface->depth) : encodeFixedDepth(surface->depth, 1.0F);
-        }
-        store(bytes, end, normal);
-        store(bytes, 2 + end, depth);
-    }
+void encodeEnd(const std::optional<IndexedSurface>& end, std::size_t index, bool half,
+               std::span<std::byte> bytes) {
+    const auto depth = [&](float d) { return half ? encodeHalfDepth(d) : encodeFixedDepth(d, 1.0F); };
+    store(bytes, index, end ? packNormal(end->index) : std::uint16_t{0});
+    store(bytes, 2 + index, end ? depth(end->surface.depth) : std::uint16_t{0});
 }
 
 Texel decodeFrontBack(std::span<const std::byte> bytes, bool half) {
@@ -124,22 +117,36 @@ float decodeHalfDepth(std::uint16_t bits) {
 }
 
 void encodeTexel(MapFormat format, const Texel& texel, std::span<std::byte> bytes) {
+    const auto indexed = [&](const std::optional<Surface>& surface) -> std::optional<IndexedSurface> {
+        if (!surface) {
+            return std::nullopt;
+        }
+        return IndexedSurface{*surface,
+                              format == MapFormat::kFloat32 ? NormalIndex{} : encodeNormal(surface->normal)};
+    };
+    const bool two = isFrontBack(format);
+    encodeTexel(format, indexed(texel.front), two ? indexed(texel.back) : std::nullopt, bytes);
+}
+
+void encodeTexel(MapFormat format, const std::optional<IndexedSurface>& front,
+                 const std::optional<IndexedSurface>& back, std::span<std::byte> bytes) {
     switch (format) {
         case MapFormat::kFloat32: {
-            const Surface surface = texel.front.value_or(Surface{-1.0F, glm::vec3(0.0F)});
+            const Surface surface = front ? front->surface : Surface{-1.0F, glm::vec3(0.0F)};
             const float channels[4] = {surface.normal.x, surface.normal.y, surface.normal.z, surface.depth};
             std::memcpy(bytes.data(), channels, sizeof(channels));
             return;
         }
         case MapFormat::kFixed8:
-            encodeFixed(texel, 1.0F, bytes);
+            encodeFixed(front, 1.0F, bytes);
             return;
         case MapFormat::kCube8:
-            encodeFixed(texel, kCubeDepthMax, bytes);
+            encodeFixed(front, kCubeDepthMax, bytes);
             return;
         case MapFormat::kFrontBackHalf:
         case MapFormat::kFrontBackFixed:
-            encodeFrontBack(texel, format == MapFormat::kFrontBackHalf, bytes);
+            encodeEnd(front, 0, format == MapFormat::kFrontBackHalf, bytes);
+            encodeEnd(back, 1, format == MapFormat::kFrontBackHalf, bytes);
             return;
     }
 }

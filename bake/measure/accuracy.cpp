@@ -1,8 +1,5 @@
 #include "bake/measure/accuracy.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -11,6 +8,7 @@
 
 #include "bake/measure/percent.h"
 #include "bake/measure/sight.h"
+#include "bake/mesh/loops.h"
 #include "formats/base/portable_math.h"
 #include "formats/base/stopwatch.h"
 #include "formats/nearest_surface.h"
@@ -19,16 +17,6 @@ namespace relief {
 namespace {
 
 constexpr double kDegrees = 180.0 / 3.14159265358979323846;
-
-/// Calls visit(i) for all i < count, on all cores.
-template <class Visit>
-void forEachIndex(std::size_t count, const Visit& visit) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 512), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            visit(i);
-        }
-    });
-}
 
 /// Sums in the order of the samples, not in that of the threads.
 struct Spread {
@@ -52,7 +40,7 @@ Spread spreadOf(std::vector<double> values) {
 
 std::vector<std::optional<FieldValue>> evaluateAt(const std::vector<TruthPoint>& points, const Field& field) {
     std::vector<std::optional<FieldValue>> values(points.size());
-    forEachIndex(points.size(), [&](std::size_t i) { values[i] = field(points[i].position); });
+    forEachIndex(0, points.size(), 512, [&](std::size_t i) { values[i] = field(points[i].position); });
     return values;
 }
 
@@ -93,7 +81,7 @@ void compareDistances(const std::vector<TruthPoint>& points,
 void measureNormals(const std::vector<SurfacePoint>& points, const Field& field, FieldAccuracy& accuracy) {
     constexpr double kNone = -1.0;
     std::vector<double> angles(points.size(), kNone);
-    forEachIndex(points.size(), [&](std::size_t i) {
+    forEachIndex(0, points.size(), 512, [&](std::size_t i) {
         const std::optional<FieldValue> value = field(points[i].position);
         if (!points[i].buried && value && glm::dot(value->normal, value->normal) > 0.0F) {
             const glm::dvec3 a = glm::normalize(glm::dvec3(value->normal));
@@ -102,9 +90,8 @@ void measureNormals(const std::vector<SurfacePoint>& points, const Field& field,
             angles[i] = kDegrees * portable::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
         }
     });
-    const auto counted = static_cast<std::uint64_t>(
-        std::count_if(points.begin(), points.end(), [](const SurfacePoint& point) { return !point.buried; }));
-    angles.erase(std::remove(angles.begin(), angles.end(), kNone), angles.end());
+    const std::size_t counted = points.size() - buriedPoints(points);
+    std::erase(angles, kNone);
     accuracy.no_normal_percent = percent(counted - angles.size(), counted);
     const Spread spread = spreadOf(std::move(angles));
     accuracy.normal_mean = spread.mean;
@@ -157,10 +144,7 @@ ColliderAccuracy measureCollider(const TruthSamples& samples, const MeshQuery& q
     accuracy.field = measureField(samples, fieldOf(collider));
     measureDistances(samples, nearestFieldOf(collider), accuracy.field);
     accuracy.unseen_percent = Sights(collider.maps, query).unseenPercent(samples.surface);
-    accuracy.buried_percent = percent(
-        static_cast<std::uint64_t>(std::count_if(samples.surface.begin(), samples.surface.end(),
-                                                 [](const SurfacePoint& point) { return point.buried; })),
-        samples.surface.size());
+    accuracy.buried_percent = percent(buriedPoints(samples.surface), samples.surface.size());
     accuracy.gpu_bytes = collider.gpuBytes();
     return accuracy;
 }

@@ -1,4 +1,4 @@
-// How well a field keeps to a mesh: the same code measures colliders and their rivals.
+// The accuracy of a field against a mesh, for colliders and their rivals alike.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,13 @@
 
 namespace relief {
 
-/// What a field says of a point.
+/// A field at a point.
 struct FieldValue {
-    float distance = 0.0F;   ///< object units, negative inside; kFarOutside: outside, and no more is known
-    glm::vec3 normal{0.0F};  ///< unit length, outwards; zero where it is not known
+    float distance = 0.0F;   ///< object units, negative inside; kFarOutside: outside at an unknown distance
+    glm::vec3 normal{0.0F};  ///< unit length, outwards; zero if unknown
 };
 
-/// A field to be measured. Called from many threads. nullopt: it does not say; particles then fly on, so that
-/// this counts as outside.
+/// A field to be measured. Called from many threads. nullopt: unknown, which counts as outside, as particles fly on.
 using Field = std::function<std::optional<FieldValue>(const glm::vec3&)>;
 
 /// The votes: the side, and the normal of the deciding plane. \param collider  borrowed.
@@ -39,18 +38,17 @@ struct WrongShare {
 struct FieldAccuracy {
     WrongShare near;     ///< points near the surface
     WrongShare uniform;  ///< points in the box
-    /// |f − true signed distance| of the points near the surface for which the field has a distance. Object
-    /// units; the 99th percentile by nearest rank.
+    /// |f − true signed distance| of the points near the surface with a distance. Object units; the 99th percentile by
+    /// nearest rank.
     double distance_mean = 0.0;
     double distance_p99 = 0.0;
     double far_percent = 0.0;      ///< of the points near the surface: outside without a distance
-    double unknown_percent = 0.0;  ///< of the points near the surface: the field does not say
-    /// Angle between the field's normal and the surface's, at surface points that are not buried and where
-    /// the field has a normal. Degrees.
+    double unknown_percent = 0.0;  ///< of the points near the surface: without a value
+    /// Angle between the normals of field and surface, at surface points that are not buried and have both. Degrees.
     double normal_mean = 0.0;
     double normal_p99 = 0.0;
     double no_normal_percent = 0.0;  ///< of the surface points that are not buried
-    double seconds = 0.0;            ///< for asking all that, on all cores
+    double seconds = 0.0;            ///< of the measurement, on all cores
 };
 
 /// \param points  as sampleNear draws them.
@@ -59,15 +57,13 @@ struct FieldAccuracy {
 /// The same for any number of threads, but for `seconds`.
 [[nodiscard]] FieldAccuracy measureField(const TruthSamples& samples, const Field& field);
 
-/// Puts another field's distances in the place of those of the first: the figures distance_… , far_percent and
-/// unknown_percent. Adds to `seconds`.
+/// Replaces distance_…, far_percent and unknown_percent by those of another field. Adds to `seconds`.
 void measureDistances(const TruthSamples& samples, const Field& field, FieldAccuracy& accuracy);
 
 struct ColliderAccuracy {
     FieldAccuracy field;
-    /// Share of the surface's area, buried surface left out, that no map sees (sight.h). Percent.
-    double unseen_percent = 0.0;
-    double buried_percent = 0.0;  ///< share of all surface area
+    double unseen_percent = 0.0;  ///< of the area that is not buried: no map sees it (sight.h)
+    double buried_percent = 0.0;  ///< of the whole area
     std::uint64_t gpu_bytes = 0;
 };
 

@@ -4,64 +4,57 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <functional>
 #include <glm/common.hpp>
 #include <map>
-#include <numeric>
+#include <span>
 #include <utility>
 
 #include "bake/measure/percent.h"
+#include "bake/mesh/loops.h"
 #include "bake/mesh/surface_sampler.h"
-#include "bake/mesh/triangle_plane.h"
 
 namespace relief {
 namespace {
 
 constexpr double kDetailShare = 1e-3;
 constexpr double kDetailMetres = 0.1;
-/// A part of whose points fewer are exposed lies inside others.
+/// A part with a smaller share of exposed points lies inside others.
 constexpr double kExposed = 0.05;
-/// What a coordinate's float resolves, in units of its size, with room for a step to either side of a surface.
+/// Resolution of float coordinates, relative, with room for a step to either side of a surface.
 constexpr double kFloatStep = 1e-6;
 
-/// The triangles of each part, and their areas summed up.
+/// The triangles of each part with cumulative areas.
 class PartTriangles {
   public:
-    PartTriangles(const TriangleMesh& mesh, const SurfaceParts& parts) : begin_(parts.parts.size() + 1, 0) {
-        for (std::size_t i = 0; i < mesh.surfaceTriangles(); ++i) {
-            if (parts.part_of[i] != kNoLabel) {
-                ++begin_[parts.part_of[i] + 1];
+    PartTriangles(const TriangleMesh& mesh, const SurfaceParts& parts)
+        : triangles_(parts.parts.size(), [&](const auto& visit) {
+              for (std::uint32_t i = 0; i < mesh.surfaceTriangles(); ++i) {
+                  if (parts.part_of[i] != kNoLabel) {
+                      visit(parts.part_of[i], i);
+                  }
+              }
+          }) {
+        for (std::size_t part = 0; part < parts.parts.size(); ++part) {
+            double sum = 0.0;
+            for (const std::uint32_t i : triangles_[part]) {
+                sum += length(planeOf(mesh, i).normal);
+                up_to_.push_back(sum);
             }
-        }
-        std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-        triangles_.resize(begin_.back());
-        up_to_.resize(begin_.back());
-        std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
-        for (std::uint32_t i = 0; i < mesh.surfaceTriangles(); ++i) {
-            const std::uint32_t part = parts.part_of[i];
-            if (part == kNoLabel) {
-                continue;
-            }
-            const glm::dvec3 normal = planeOf(mesh, i).normal;
-            const std::size_t at = next[part]++;
-            const double before = at == begin_[part] ? 0.0 : up_to_[at - 1];
-            triangles_[at] = i;
-            up_to_[at] = before + std::sqrt(dot(normal, normal));
         }
     }
 
-    [[nodiscard]] bool empty(std::size_t part) const { return begin_[part] == begin_[part + 1]; }
-    /// \param share  in [0, 1): of the part's area, how much lies before the triangle.
+    [[nodiscard]] bool empty(std::size_t part) const { return triangles_[part].empty(); }
+    /// \param share  in [0, 1): of the part's area before the triangle.
     [[nodiscard]] std::uint32_t triangleAt(std::size_t part, double share) const {
-        const auto first = up_to_.begin() + static_cast<std::ptrdiff_t>(begin_[part]);
-        const auto last = up_to_.begin() + static_cast<std::ptrdiff_t>(begin_[part + 1]) - 1;
-        const auto found = std::upper_bound(first, last, share * *last);
-        return triangles_[static_cast<std::size_t>(found - up_to_.begin())];
+        const std::span<const std::uint32_t> triangles = triangles_[part];
+        const auto up_to = std::span(up_to_).subspan(triangles_.first(part), triangles.size());
+        const auto found = std::upper_bound(up_to.begin(), up_to.end() - 1, share * up_to.back());
+        return triangles[static_cast<std::size_t>(found - up_to.begin())];
     }
 
   private:
-    std::vector<std::size_t> begin_;
-    std::vector<std::uint32_t> triangles_;
+    Buckets<std::uint32_t> triangles_;
     std::vector<double> up_to_;  // twice the area, within the part
 };
 
@@ -90,14 +83,14 @@ class PartMeter {
             return found;
         }
         const std::pair thickness(parts_.parts[part].thickness, parts_.parts[part].right_thickness);
-        MersenneRandom random(options_.seed * 0x9e3779b97f4a7c15U + part);
+        MersenneRandom random(options_.seed, part);
         std::uint32_t false_inside = 0;
         std::uint32_t false_outside = 0;
         for (std::uint32_t k = 0; k < points_; ++k) {
             const double share = (k + random.uniform()) / points_;
             const auto [on, normal] =
                 drawOnTriangle(query_.mesh(), triangles_.triangleAt(part, share), random);
-            // In braces: the arguments of a call are evaluated in an order that the compiler chooses.
+            // Braces, as compilers choose the order of a call's arguments.
             const glm::dvec3 offset{random.normal(), random.normal(), random.normal()};
             if (query_.inside(on + step * normal) && query_.inside(on - step * normal)) {
                 continue;
@@ -131,12 +124,12 @@ class PartMeter {
     PartTriangles triangles_;
 };
 
-/// Adds up parts of one name.
+/// Sums over the parts of each name.
 class Groups {
   public:
     explicit Groups(bool materials) : materials_(materials) {}
 
-    /// \param index  of the name, in whose order groups come.
+    /// \param index  sorts the groups.
     void add(std::uint64_t index, const SurfacePart& part, const PartAccuracy& accuracy) {
         const std::string& name = materials_ ? part.material : part.node;
         if (name.empty() || accuracy.points == 0) {
@@ -147,8 +140,7 @@ class Groups {
         sum.group.is_material = materials_;
         ++sum.group.parts;
         sum.group.lost += accuracy.state == PartVerdict::kLost ? 1 : 0;
-        sum.group.bounds.add(part.bounds.min);
-        sum.group.bounds.add(part.bounds.max);
+        addBounds(sum.group.bounds, part.bounds);
         sum.area += part.area;
         sum.group.wrong.false_inside += part.area * accuracy.wrong.false_inside;
         sum.group.wrong.false_outside += part.area * accuracy.wrong.false_outside;
@@ -158,15 +150,14 @@ class Groups {
         if (sums_.size() < 2) {
             return;
         }
-        const auto first = static_cast<std::ptrdiff_t>(groups.size());
+        const std::size_t first = groups.size();
         for (auto& [key, sum] : sums_) {
             sum.group.wrong.false_inside /= sum.area;
             sum.group.wrong.false_outside /= sum.area;
             groups.push_back(std::move(sum.group));
         }
-        std::stable_sort(
-            groups.begin() + first, groups.end(),
-            [](const GroupAccuracy& a, const GroupAccuracy& b) { return a.wrong.total() > b.wrong.total(); });
+        std::ranges::stable_sort(std::span(groups).subspan(first), std::greater<>(),
+                                 [](const GroupAccuracy& group) { return group.wrong.total(); });
     }
 
   private:
@@ -178,7 +169,7 @@ class Groups {
     std::map<std::pair<std::uint64_t, std::string>, Sum> sums_;
 };
 
-/// Lost, coarse, held; then those that are not measured.
+/// Lost, coarse, held, then the others.
 int rankOf(PartVerdict state) {
     constexpr std::array<int, kPartVerdicts> kRanks = {2, 1, 0, 3, 4, 5};
     return kRanks[static_cast<std::size_t>(state)];
@@ -214,9 +205,7 @@ PartsAccuracy measureParts(const MeshQuery& query, const SurfaceParts& parts, co
             order.push_back(i);
         }
     }
-    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return parts.parts[a].size() > parts.parts[b].size();
-    });
+    std::ranges::stable_sort(order, std::greater<>(), [&](std::uint32_t i) { return parts.parts[i].size(); });
     order.resize(std::min(order.size(), options.parts_max));
     const auto each = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(
         options.points_all / std::max<std::size_t>(order.size(), 1), options.points_min, options.points));
@@ -233,12 +222,11 @@ PartsAccuracy measureParts(const MeshQuery& query, const SurfaceParts& parts, co
     }
     nodes.addTo(all.groups);
     materials.addTo(all.groups);
-    // A large part that is half wrong is worse than a small one that is all wrong.
+    // By size too: a large part that is half wrong is worse than a small one that is all wrong.
     const auto weight = [&](const PartAccuracy& one) {
         return std::pair(rankOf(one.state), -one.wrong.total() * parts.parts[one.part].size());
     };
-    std::stable_sort(all.parts.begin(), all.parts.end(),
-                     [&](const PartAccuracy& a, const PartAccuracy& b) { return weight(a) < weight(b); });
+    std::ranges::stable_sort(all.parts, {}, weight);
     return all;
 }
 

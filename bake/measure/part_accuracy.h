@@ -1,5 +1,4 @@
-// How well a field keeps to each part of a mesh, measured by the part's own size: a prop on a terrain is judged as if it had
-// been baked alone.
+// The accuracy of a field for each part of a mesh, at the part's own scale: a prop on a terrain is judged as if baked alone.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +11,19 @@
 
 namespace relief {
 
-/// Of a part's points: more than kPartCoarse percent on the wrong side, and it is coarse; more than kPartLost, and it is
-/// lost. Of a part that is absent about half of the points are wrong.
+/// Limits in percent of points on the wrong side; of an absent part about half are.
 inline constexpr double kPartCoarse = 10.0;
 inline constexpr double kPartLost = 25.0;
 
 struct PartOptions {
     std::uint32_t points = 1000;         ///< of each part, at most
     std::uint32_t points_min = 48;       ///< of each part, at least
-    std::uint64_t points_all = 200'000;  ///< of all parts; more than this and points_min of each allow
-    std::size_t parts_max = 10'000;      ///< the largest are measured
+    std::uint64_t points_all = 200'000;  ///< of all parts together, but for points_min
+    std::size_t parts_max = 10'000;      ///< the largest ones are measured
     std::uint64_t seed = 1;
-    double sigma_share = 0.005;    ///< as AccuracyOptions has it, in units of the part's longest side
-    std::optional<double> detail;  ///< smaller parts do not count, object units; by default defaultDetail
+    double sigma_share = 0.005;  ///< as in AccuracyOptions, in units of the part's longest side
+    std::optional<double>
+        detail;  ///< size of the smallest part that counts, object units; else defaultDetail
 };
 
 /// A thousandth of the longest side of the largest part; in metres at most 0.1.
@@ -34,9 +33,9 @@ enum class PartVerdict : std::uint8_t {
     kHeld,    ///< up to kPartCoarse
     kCoarse,  ///< up to kPartLost
     kLost,
-    kHidden,  ///< inside other parts, where nothing meets it
-    kSmall,   ///< below the detail that counts; not measured
-    kRest,    ///< not measured, since there are more than parts_max
+    kHidden,  ///< inside other parts, where nothing collides
+    kSmall,   ///< below `detail`; not measured
+    kRest,    ///< beyond parts_max; not measured
 };
 inline constexpr std::size_t kPartVerdicts = 6;
 /// "held", "coarse", "lost", "hidden", "small", "rest"
@@ -63,9 +62,8 @@ struct GroupAccuracy {
 struct PartsAccuracy {
     double detail = 0.0;  ///< object units
     std::vector<PartAccuracy>
-        parts;  ///< of all parts: lost ones first, then the coarse, and within a state by wrong points times size
-    std::vector<GroupAccuracy>
-        groups;  ///< named nodes, then materials, each where there are several; the most wrong first
+        parts;  ///< lost, then coarse, and so on; within a state by wrong points times size
+    std::vector<GroupAccuracy> groups;  ///< several named nodes, then several materials; the most wrong first
     std::uint64_t count[kPartVerdicts] = {};  ///< of parts in each state
 
     [[nodiscard]] std::uint64_t countOf(PartVerdict state) const {
@@ -73,10 +71,9 @@ struct PartsAccuracy {
     }
 };
 
-/// Points near each part's surface, as they lie in the solid that is baked: area-weighted, with an isotropic Gaussian offset.
-/// Truth is the side of the whole mesh, but for what a shell has beyond its right_thickness, which is outside. The same for
-/// any number of threads.
-/// \param query  of the solid that `parts` are of.
+/// Measures at points near each part's surface in the baked solid: area-weighted, with an isotropic Gaussian offset. Truth is
+/// the side of the whole mesh, but a shell beyond its right_thickness is outside. The same for any number of threads.
+/// \param query  of the solid of `parts`.
 [[nodiscard]] PartsAccuracy measureParts(const MeshQuery& query, const SurfaceParts& parts,
                                          const Field& field, const PartOptions& options);
 

@@ -1,15 +1,13 @@
 #include "bake/measure/sight.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <utility>
 
-#include "bake/mesh/triangle_plane.h"
+#include "bake/measure/percent.h"
+#include "bake/mesh/loops.h"
 
 namespace relief {
 
@@ -20,7 +18,7 @@ Sight::Sight(const DepthMap& map, const MeshQuery& query)
         rows_[i] = {t.row[i].x, t.row[i].y, t.row[i].z};
         offset_[i] = t.row[i].w;
     }
-    // The transposed matrix of rows has them as its columns.
+    // glm takes columns.
     to_object_ = glm::inverse(glm::transpose(glm::dmat3(rows_[0], rows_[1], rows_[2])));
 }
 
@@ -140,7 +138,7 @@ bool Sight::isFlat(const std::array<Ray, 9>& rays, bool from_far_end, double tol
         normal = planeOf(query_.mesh(), middle->second).normal;
         normal /= glm::length(normal);
     }
-    return std::all_of(rays.begin(), rays.end(), [&](const Ray& ray) {
+    return std::ranges::all_of(rays, [&](const Ray& ray) {
         const auto hit = hitOf(ray);
         return hit.has_value() == middle.has_value() &&
                (!hit || std::abs(glm::dot(normal, hit->first - middle->first)) <= tolerance);
@@ -168,21 +166,15 @@ Sights::Sights(std::span<const DepthMap> maps, const MeshQuery& query) {
 }
 
 bool Sights::see(const SurfacePoint& point) const {
-    return std::any_of(sights_.begin(), sights_.end(), [&](const Sight& sight) { return sight.sees(point); });
+    return std::ranges::any_of(sights_, [&](const Sight& sight) { return sight.sees(point); });
 }
 
 double Sights::unseenPercent(std::span<const SurfacePoint> points) const {
     std::vector<char> unseen(points.size(), 0);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), 256), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            unseen[i] = !points[i].buried && !see(points[i]) ? 1 : 0;
-        }
-    });
-    const auto counted =
-        std::count_if(points.begin(), points.end(), [](const SurfacePoint& point) { return !point.buried; });
-    return counted == 0 ? 0.0
-                        : 100.0 * static_cast<double>(std::count(unseen.begin(), unseen.end(), 1)) /
-                              static_cast<double>(counted);
+    forEachIndex(0, points.size(), 256,
+                 [&](std::size_t i) { unseen[i] = !points[i].buried && !see(points[i]) ? 1 : 0; });
+    return percent(static_cast<std::size_t>(std::ranges::count(unseen, 1)),
+                   points.size() - buriedPoints(points));
 }
 
 }  // namespace relief

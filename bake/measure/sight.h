@@ -1,4 +1,4 @@
-// What of a surface the maps of a collider see: what a bake says of its plan, and a check of a collider.
+// The visibility of a surface to the maps of a collider or of a plan.
 #pragma once
 
 #include <array>
@@ -15,38 +15,34 @@
 
 namespace relief {
 
-/// A wall that stands along a map's lines of sight is looked for from this far above it, in units of the longest side:
-/// farther than flat walls of artists' meshes are rough.
+/// Offset for walls along a map's lines of sight, in units of the longest side: more than the roughness of flat walls in
+/// artists' meshes.
 inline constexpr double kWallStep = 1e-3;
 
-/// The lines of sight of one map. Its texels do not matter, but those of a map of gaps, which say from where it looks: the
-/// middle of the gap, both ways.
+/// The lines of sight of one map, independent of its texels, but for maps of gaps, which look both ways from the middle of
+/// the gap.
 class Sight {
   public:
     /// \param map, query  borrowed.
     Sight(const DepthMap& map, const MeshQuery& query);
 
-    /// The map holds the surface there: an end that it keeps has, in the map's volume, a free line of sight to the
-    /// front of the surface, kSurfaceStep above it. A wall that stands along the line of sight (its cosine is below
-    /// kStandingCosine) is held by the planes of Decode::kPlane, but not of gaps, and seen if the line is free
-    /// kSurfaceStep or kWallStep above it.
+    /// The map can hold the surface there: an end that it keeps has, within the volume, a free line of sight to the front of
+    /// the surface, kSurfaceStep above it. A wall along the line of sight (of a cosine below kStandingCosine) fits the planes
+    /// of Decode::kPlane, but not of gaps, and is seen if the line is free kSurfaceStep or kWallStep above it.
     [[nodiscard]] bool sees(const SurfacePoint& point) const;
 
-    /// Where a free line of sight to a point begins. nullopt: none of them reaches it, and with texels as fine as one
-    /// likes the map would not say that it is outside.
-    /// \param p  object space; anywhere.
+    /// The start of a free line of sight to a point in object space. nullopt: none, and even the finest texels would not have
+    /// the point outside.
     [[nodiscard]] std::optional<glm::dvec3> reaches(const glm::dvec3& p) const;
 
-    /// Every surface that the texel of a point can hold is flat: the lines of sight through the texel meet it within
-    /// `tolerance` of the plane that the middle one meets, or nothing at all. Its plane then is the surface. Never of a
-    /// map of gaps.
-    /// \param p  object space. \param tolerance  object units.
+    /// The surfaces in the texel of a point are flat: all lines of sight through the texel meet them within `tolerance`,
+    /// object units, of the plane at the middle one, or none does. Always false for maps of gaps.
     [[nodiscard]] bool isFlatRound(const glm::dvec3& p, double tolerance) const;
 
   private:
     struct Line {
         glm::dvec3 start;  ///< where the map's ray starts, object space
-        bool parallel;     ///< to the lines of the points beside it
+        bool parallel;     ///< to the lines of nearby points
     };
     struct Lines {
         std::array<Line, 2> line;
@@ -54,7 +50,7 @@ class Sight {
     };
     [[nodiscard]] glm::dvec3 inMap(const glm::dvec3& p) const;
     [[nodiscard]] bool isInVolume(const glm::dvec3& in_map) const;
-    /// Where the line of sight with these coordinates across the texel of p begins and ends, object space.
+    /// A line of sight at an offset across the texel of p, object space.
     struct Ray {
         glm::dvec3 from;
         glm::dvec3 to;
@@ -80,7 +76,7 @@ class Sights {
     [[nodiscard]] bool see(const SurfacePoint& point) const;
     [[nodiscard]] const std::vector<Sight>& maps() const { return sights_; }
 
-    /// Share of the points that are not buried and that no map sees. Percent; the same for any number of threads.
+    /// Unseen share of the points that are not buried, in percent. The same for any number of threads.
     [[nodiscard]] double unseenPercent(std::span<const SurfacePoint> points) const;
 
   private:

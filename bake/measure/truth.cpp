@@ -1,23 +1,20 @@
 #include "bake/measure/truth.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <cmath>
 
-#include "bake/mesh/triangle_plane.h"
+#include "bake/mesh/loops.h"
+#include "bake/mesh/mersenne.h"
 #include "formats/base/portable_math.h"
 #include "formats/base/stopwatch.h"
 
 namespace relief {
 namespace {
 
-/// The random numbers of one sample: SplitMix64 (Steele, Lea, Flood 2014), begun at a place of its own, so
-/// that samples can be drawn in any order.
+/// SplitMix64 with a seed per sample, so that samples can be drawn in any order.
 class SplitMixRandom {
   public:
     SplitMixRandom(std::uint64_t seed, std::uint64_t kind, std::uint64_t index)
-        : state_(mix(mix(mix(seed) + kind) + index)) {}
+        : state_(splitMix64(splitMix64(splitMix64(seed) + kind) + index)) {}
 
     /// In [0, 1), 53 bits.
     double uniform() { return static_cast<double>(next() >> 11) * 0x1p-53; }
@@ -35,15 +32,9 @@ class SplitMixRandom {
     }
 
   private:
-    static std::uint64_t mix(std::uint64_t z) {
-        z += 0x9e3779b97f4a7c15U;
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebU;
-        return z ^ (z >> 31);
-    }
     std::uint64_t next() {
         state_ += 0x9e3779b97f4a7c15U;
-        return mix(state_);
+        return splitMix64(state_);
     }
 
     std::uint64_t state_;
@@ -66,12 +57,12 @@ class Sampler {
           low_(mesh_.bounds.min),
           size_(glm::dvec3(mesh_.bounds.max) - low_) {}
 
-    [[nodiscard]] SurfacePoint onSurface(std::uint32_t i) const {
+    [[nodiscard]] SurfacePoint onSurface(std::size_t i) const {
         SplitMixRandom random(options_.seed, kSurfaceKind, i);
         const auto [position, triangle] = draw(random);
         const double step = kSurfaceStep * longest_side_;
         glm::dvec3 normal = planeOf(mesh_, triangle).normal;
-        normal *= winding_ / std::sqrt(dot(normal, normal));
+        normal *= winding_ / length(normal);
         const bool front_inside = query_.inside(position + step * normal);
         const bool back_inside = query_.inside(position - step * normal);
         if (front_inside && !back_inside) {
@@ -80,21 +71,21 @@ class Sampler {
         return {position, normal, front_inside && back_inside};
     }
 
-    [[nodiscard]] glm::vec3 positionNear(std::uint32_t i) const {
+    [[nodiscard]] glm::vec3 positionNear(std::size_t i) const {
         SplitMixRandom random(options_.seed, kNearKind, i);
         const glm::dvec3 from = draw(random).position;
         return from + options_.sigma_share * longest_side_ * random.gaussian();
     }
-    [[nodiscard]] TruthPoint nearSurface(std::uint32_t i) const {
+    [[nodiscard]] TruthPoint nearSurface(std::size_t i) const {
         const glm::vec3 near = positionNear(i);
         return {near, static_cast<float>(query_.signedDistance(near))};
     }
-    [[nodiscard]] TruthPoint signNear(std::uint32_t i) const {
+    [[nodiscard]] TruthPoint signNear(std::size_t i) const {
         const glm::vec3 near = positionNear(i);
         return {near, query_.inside(near) ? -1.0F : 1.0F};
     }
 
-    [[nodiscard]] TruthPoint inBox(std::uint32_t i) const {
+    [[nodiscard]] TruthPoint inBox(std::size_t i) const {
         SplitMixRandom random(options_.seed, kUniformKind, i);
         const double x = random.uniform();
         const double y = random.uniform();
@@ -130,11 +121,7 @@ class Sampler {
 std::vector<TruthPoint> sampleNear(const MeshQuery& query, const AccuracyOptions& options) {
     std::vector<TruthPoint> points(options.samples);
     const Sampler sampler(query, options);
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, options.samples, 64), [&](const auto& range) {
-        for (std::uint32_t i = range.begin(); i != range.end(); ++i) {
-            points[i] = sampler.signNear(i);
-        }
-    });
+    forEachIndex(0, options.samples, 64, [&](std::size_t i) { points[i] = sampler.signNear(i); });
     return points;
 }
 
@@ -147,12 +134,10 @@ TruthSamples sampleTruth(const MeshQuery& query, const AccuracyOptions& options)
     samples.uniform.resize(options.samples);
     samples.surface.resize(options.samples);
     const Sampler sampler(query, options);
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, options.samples, 256), [&](const auto& range) {
-        for (std::uint32_t i = range.begin(); i != range.end(); ++i) {
-            samples.surface[i] = sampler.onSurface(i);
-            samples.near[i] = sampler.nearSurface(i);
-            samples.uniform[i] = sampler.inBox(i);
-        }
+    forEachIndex(0, options.samples, 256, [&](std::size_t i) {
+        samples.surface[i] = sampler.onSurface(i);
+        samples.near[i] = sampler.nearSurface(i);
+        samples.uniform[i] = sampler.inBox(i);
     });
     samples.seconds = watch.seconds();
     return samples;
@@ -161,11 +146,7 @@ TruthSamples sampleTruth(const MeshQuery& query, const AccuracyOptions& options)
 std::vector<SurfacePoint> sampleSurface(const MeshQuery& query, const AccuracyOptions& options) {
     std::vector<SurfacePoint> points(options.samples);
     const Sampler sampler(query, options);
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, options.samples, 256), [&](const auto& range) {
-        for (std::uint32_t i = range.begin(); i != range.end(); ++i) {
-            points[i] = sampler.onSurface(i);
-        }
-    });
+    forEachIndex(0, options.samples, 256, [&](std::size_t i) { points[i] = sampler.onSurface(i); });
     return points;
 }
 

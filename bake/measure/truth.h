@@ -1,8 +1,10 @@
-// Random points about a mesh, and the truth at each of them: what every field is measured against.
+// Random points on and near a mesh with the truth at each of them.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 #include "bake/mesh/mesh.h"
@@ -18,11 +20,10 @@ struct AccuracyOptions {
     double sigma_share = 0.005;
 };
 
-/// A point off the surface, or anywhere in the box.
+/// A point near the surface, or anywhere in the box.
 struct TruthPoint {
     glm::vec3 position{0.0F};
-    /// Object units, negative inside. Of uniform points the sign alone is known: ±1.
-    float distance = 0.0F;
+    float distance = 0.0F;  ///< object units, negative inside; of uniform points ±1
 
     [[nodiscard]] bool inside() const { return distance < 0.0F; }
 };
@@ -31,10 +32,11 @@ struct TruthPoint {
 struct SurfacePoint {
     glm::vec3 position{0.0F};
     glm::vec3 normal{0.0F};  ///< of its triangle, unit length, towards the outside
-    /// Both sides are inside: an inner surface of a mesh that meets itself. Nothing ever collides with it, so
-    /// that it does not count.
-    bool buried = false;
+    bool buried = false;     ///< both sides are inside, where nothing collides: it does not count
 };
+[[nodiscard]] inline std::size_t buriedPoints(std::span<const SurfacePoint> points) {
+    return static_cast<std::size_t>(std::ranges::count(points, true, &SurfacePoint::buried));
+}
 
 struct TruthSamples {
     AccuracyOptions options;
@@ -45,12 +47,11 @@ struct TruthSamples {
     double seconds = 0.0;               ///< spent here
 };
 
-/// Points near the surface alone, whose distance is ±1: the sign is known. A fifth of the time of sampleTruth.
+/// Points near the surface alone, with ±1 for distances: a fifth of the time of sampleTruth.
 [[nodiscard]] std::vector<TruthPoint> sampleNear(const MeshQuery& query, const AccuracyOptions& options);
 
-/// The same mesh and options give the same samples, for any number of threads.
-/// Inside is the parity of MeshQuery::inside; a point of a surface both of whose sides are outside (an open
-/// mesh) takes the side of its triangle's winding.
+/// The same for any number of threads. Normals face the outside by MeshQuery::inside; where both sides are outside, as on
+/// open meshes, they follow the winding.
 [[nodiscard]] TruthSamples sampleTruth(const MeshQuery& query, const AccuracyOptions& options);
 
 /// The points on the surface alone: sampleTruth(…).surface.

@@ -1,61 +1,52 @@
 #include "bake/measure/worst_places.h"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 
 #include "bake/measure/percent.h"
-#include "bake/mesh/triangle_plane.h"
+#include "bake/mesh/loops.h"
 
 namespace relief {
 namespace {
 
 /// Side of a cell, in units of the longest side.
 constexpr double kCell = 0.03;
-/// A place reaches this far from its worst cell, in cells, over cells that hold kAsBad of what that one does.
+/// A place reaches this many cells from its worst one, over cells with at least kAsBad of its points.
 constexpr int kReach = 3;
 constexpr double kAsBad = 0.25;
-/// Points of a place whose cause is looked for.
+/// Points of a place whose causes are found.
 constexpr std::size_t kCausesMax = 200;
 
-/// How far off the surface, in texels, the normals and depths of a texel may round a plane.
+/// Error of a plane, in texels, from the rounding of normals and depths.
 constexpr double kRounding = 0.1;
-/// What is called flat round a point on the wrong side, in units of its distance to the surface.
+/// Tolerance of flatness, in units of a point's distance to the surface.
 constexpr double kFlat = 0.25;
 
-/// A point near the surface on the wrong side, and what the collider says of it.
+/// A point near the surface on the wrong side.
 struct Wrong {
     std::uint32_t sample = 0;  ///< index of the point
     int map = -1;
-    bool inside = false;  ///< as the collider has it
+    bool inside = false;  ///< by the collider
 };
 
 std::vector<Wrong> wrongPoints(const TruthSamples& samples, const Collider& collider) {
-    std::vector<Wrong> all(samples.near.size());
-    std::vector<char> is_wrong(samples.near.size(), 0);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, all.size(), 512), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            const FieldSample sample = evaluate(collider, samples.near[i].position);
-            all[i] = {static_cast<std::uint32_t>(i), sample.map, sample.inside()};
-            is_wrong[i] = sample.inside() != samples.near[i].inside() ? 1 : 0;
-        }
+    std::vector<Wrong> points(samples.near.size());
+    forEachIndex(0, points.size(), 512, [&](std::size_t i) {
+        const FieldSample sample = evaluate(collider, samples.near[i].position);
+        points[i] = {static_cast<std::uint32_t>(i), sample.map, sample.inside()};
     });
-    std::vector<Wrong> wrong;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        if (is_wrong[i] != 0) {
-            wrong.push_back(all[i]);
-        }
-    }
-    return wrong;
+    std::erase_if(points, [&](const Wrong& p) { return p.inside == samples.near[p.sample].inside(); });
+    return points;
 }
 
-/// The wrong points by the cells of a grid round the mesh.
+/// The wrong points in a grid round the mesh.
 class Cells {
   public:
     Cells(const TruthSamples& samples, const Bounds& bounds, const std::vector<Wrong>& wrong)
@@ -69,10 +60,9 @@ class Cells {
         }
     }
 
-    /// Indices of wrong points, cell by cell of one place; the worst cell comes first. Empty: none is left.
+    /// Removes the worst place: indices of wrong points by cell, the worst cell first. Empty if none is left.
     std::vector<std::vector<std::uint32_t>> takePlace() {
-        const auto worst = std::max_element(points_.begin(), points_.end(),
-                                            [](const auto& a, const auto& b) { return a.size() < b.size(); });
+        const auto worst = std::ranges::max_element(points_, {}, &std::vector<std::uint32_t>::size);
         if (worst->empty()) {
             return {};
         }
@@ -91,7 +81,7 @@ class Cells {
                 if (points.empty() || std::max({offset.x, offset.y, offset.z}) > kReach) {
                     return;
                 }
-                // The margin of a place belongs to it, but leads nowhere.
+                // The margin of a place belongs to it, but does not extend it.
                 if (static_cast<double>(points.size()) >= least) {
                     waiting.push_back(other);
                 }
@@ -130,10 +120,10 @@ class Cells {
     double side_;
     glm::dvec3 low_;
     glm::ivec3 count_{1};
-    std::vector<std::vector<std::uint32_t>> points_;  // of each cell
+    std::vector<std::vector<std::uint32_t>> points_;  // by cell
 };
 
-/// Finds out why points are on the wrong side.
+/// Finds the causes of wrong points.
 class Causes {
   public:
     Causes(const TruthSamples& samples, const MeshQuery& query, const Sights& sights,
@@ -177,9 +167,9 @@ class Causes {
         return {closest.point, in_front == point.inside() ? -normal : normal, false};
     }
 
-    /// A line of sight that begins in free space comes here.
+    /// A line of sight from free space ends here.
     [[nodiscard]] bool isReached(const glm::vec3& p) const {
-        return std::any_of(sights_.maps().begin(), sights_.maps().end(), [&](const Sight& sight) {
+        return std::ranges::any_of(sights_.maps(), [&](const Sight& sight) {
             const std::optional<glm::dvec3> start = sight.reaches(p);
             return start && !query_.inside(glm::vec3(*start));
         });
@@ -191,13 +181,13 @@ class Causes {
     const Collider& collider_;
 };
 
-/// The most frequent of some small numbers, of equals the smallest, and how many there are of it.
+/// The index of the greatest count, of equals the lowest, and that count.
 std::pair<std::size_t, std::size_t> mostFrequent(const std::vector<std::size_t>& counts) {
     const auto most = std::max_element(counts.begin(), counts.end());
     return {static_cast<std::size_t>(most - counts.begin()), *most};
 }
 
-/// The wrong point that is nearest to the middle of its cell's.
+/// The wrong point nearest to the mean of its cell.
 glm::vec3 middleOf(const std::vector<std::uint32_t>& cell, const std::vector<Wrong>& wrong,
                    const TruthSamples& samples) {
     const auto at = [&](std::uint32_t i) { return glm::dvec3(samples.near[wrong[i].sample].position); };
@@ -206,12 +196,11 @@ glm::vec3 middleOf(const std::vector<std::uint32_t>& cell, const std::vector<Wro
         mean += at(i) / static_cast<double>(cell.size());
     }
     const auto off = [&](std::uint32_t i) { return glm::dot(at(i) - mean, at(i) - mean); };
-    const auto nearest = std::min_element(cell.begin(), cell.end(),
-                                          [&](std::uint32_t a, std::uint32_t b) { return off(a) < off(b); });
+    const auto nearest = std::ranges::min_element(cell, {}, off);
     return samples.near[wrong[*nearest].sample].position;
 }
 
-/// All but the cause.
+/// Without the cause.
 WorstPlace describe(const std::vector<std::uint32_t>& points, const std::vector<Wrong>& wrong,
                     const TruthSamples& samples, const Collider& collider) {
     WorstPlace place;
@@ -271,8 +260,7 @@ std::vector<WorstPlace> worstPlaces(const TruthSamples& samples, const MeshQuery
         place.position = middleOf(parts.front(), wrong, samples);
         found.push_back({place, std::move(points)});
     }
-    std::stable_sort(found.begin(), found.end(),
-                     [](const Found& a, const Found& b) { return a.place.points > b.place.points; });
+    std::ranges::stable_sort(found, std::greater<>(), [](const Found& one) { return one.place.points; });
     found.resize(std::min(found.size(), count));
 
     const Causes causes(samples, query, sights, collider);

@@ -1,4 +1,4 @@
-// Where a collider is wrong most, and why: for people who want to know what to do about it.
+// The places where a collider is most wrong, with causes.
 #pragma once
 
 #include <cstddef>
@@ -15,13 +15,13 @@
 
 namespace relief {
 
-/// Why a point is on the wrong side. The first that is true of it:
+/// The cause of a point on the wrong side: the first that applies.
 enum class WrongCause : std::uint8_t {
     kSheet,       ///< the surface beside it has the outside on both of its sides
     kOpen,        ///< inside, but a line of sight reaches it: the mesh is open, and the map looks in
     kUnseen,      ///< outside, but no line of sight reaches it, nor the surface beside it; or no map votes
     kSilhouette,  ///< for the deciding map, the surface beside it lies behind another part of the mesh
-    kOther,       ///< the deciding map is wrong although a plane a texel would do: it is of another mesh
+    kOther,       ///< the deciding map is wrong although one plane per texel would do: it is of another mesh
     kTexel,       ///< the surface beside it is finer than the texel of the deciding map
 };
 inline constexpr std::size_t kWrongCauses = 6;
@@ -31,11 +31,11 @@ inline constexpr std::size_t kWrongCauses = 6;
 
 /// A part of the surface with many points near it on the wrong side.
 struct WorstPlace {
-    glm::vec3 position{0.0F};     ///< a point on the wrong side, in the thick of it
+    glm::vec3 position{0.0F};     ///< a typical point on the wrong side
     Bounds box;                   ///< of its points on the wrong side
     std::uint64_t points = 0;     ///< on the wrong side
-    double share_percent = 0.0;   ///< of all points near the surface that are on the wrong side
-    double inside_percent = 0.0;  ///< of its points: called inside
+    double share_percent = 0.0;   ///< of all points near the surface on the wrong side
+    double inside_percent = 0.0;  ///< of its points: inside by mistake
     int map = -1;                 ///< that decides most of them; −1: no map votes
     double map_percent = 0.0;     ///< of its points: decided by that map
     double texel = 0.0;           ///< side of that map's texels at `position`, object units; 0 without a map
@@ -46,11 +46,10 @@ struct WorstPlace {
     [[nodiscard]] double size() const { return box.longestSide(); }
 };
 
-/// The places with the most points near the surface on the wrong side, the worst first: each a cell of 3 % of the
-/// longest side and what is about as bad within three cells of it. Fewer than `count` if there are no more.
-/// The same for any number of threads.
-/// \param query  of the mesh that `samples` are of.
-/// \param sights  of the collider's maps, in the mesh as it was baked.
+/// The places with the most points near the surface on the wrong side, the worst first: each a cell of 3 % of the longest side
+/// and the similarly bad cells within three of it. At most `count`; the same for any number of threads.
+/// \param query  of the mesh of `samples`.
+/// \param sights  of the collider's maps, in the baked mesh.
 [[nodiscard]] std::vector<WorstPlace> worstPlaces(const TruthSamples& samples, const MeshQuery& query,
                                                   const Sights& sights, const Collider& collider,
                                                   std::size_t count = 3);

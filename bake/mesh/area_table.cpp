@@ -1,9 +1,6 @@
 #include "bake/mesh/area_table.h"
 
 #include <algorithm>
-#include <cmath>
-
-#include "bake/mesh/triangle_plane.h"
 
 namespace relief {
 
@@ -11,8 +8,7 @@ AreaTable::AreaTable(const TriangleMesh& mesh) {
     up_to_.reserve(mesh.surfaceTriangles());
     double sum = 0.0;
     for (std::uint32_t i = 0; i < mesh.surfaceTriangles(); ++i) {
-        const glm::dvec3 normal = planeOf(mesh, i).normal;
-        sum += std::sqrt(dot(normal, normal));
+        sum += length(planeOf(mesh, i).normal);
         up_to_.push_back(sum);
     }
 }
@@ -35,9 +31,9 @@ glm::dvec3 pointOn(const TriangleMesh& mesh, std::uint32_t triangle, double u, d
         u = 1.0 - u;
         v = 1.0 - v;
     }
-    const glm::uvec3& t = mesh.triangles[triangle];
-    const glm::dvec3 a = mesh.positions[t.x];
-    return a + u * (glm::dvec3(mesh.positions[t.y]) - a) + v * (glm::dvec3(mesh.positions[t.z]) - a);
+    const auto corners = cornersOf(mesh, triangle);
+    const glm::dvec3 a = corners[0];
+    return a + u * (glm::dvec3(corners[1]) - a) + v * (glm::dvec3(corners[2]) - a);
 }
 
 }  // namespace relief

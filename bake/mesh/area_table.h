@@ -1,4 +1,4 @@
-// Points spread evenly over the area of a mesh.
+// Choosing triangles and points of a mesh by area.
 #pragma once
 
 #include <cstdint>
@@ -9,19 +9,19 @@
 
 namespace relief {
 
-/// Finds triangles by their share of the area. Caps have no part in it (TriangleMesh::cap_triangles).
+/// Finds triangles by cumulative area, without caps (TriangleMesh::cap_triangles).
 class AreaTable {
   public:
     explicit AreaTable(const TriangleMesh& mesh);
-    /// \param share  in [0, 1]: of the area, how much lies before the point that is looked for.
-    /// \param from   what a lower share gave: looked for from there on, which is soon found where shares grow by little.
+    /// \param share  in [0, 1]: of the area before the wanted point.
+    /// \param from   the result for a lower share, where the search starts: fast for shares that grow slowly.
     [[nodiscard]] std::uint32_t triangleAt(double share, std::uint32_t from = 0) const;
 
   private:
     std::vector<double> up_to_;  // twice the area, up to and including each triangle
 };
 
-/// A point of a triangle, as likely anywhere on it if u and v are anywhere in [0, 1].
+/// Uniform over the triangle if u and v are uniform in [0, 1].
 [[nodiscard]] glm::dvec3 pointOn(const TriangleMesh& mesh, std::uint32_t triangle, double u, double v);
 
 }  // namespace relief

@@ -1,18 +1,29 @@
-// Embree 3 or 4, as RELIEF_EMBREE says (CMake: -DRELIEF_EMBREE=3|4): the few calls in which they differ. Everything else
-// that Relief takes of Embree is the same in both.
+// The Embree calls that differ between versions 3 and 4 (CMake: -DRELIEF_EMBREE=3|4), and how Embree is configured.
 #pragma once
 
+#include <glm/vec3.hpp>
+
 #ifndef RELIEF_EMBREE
-#error "RELIEF_EMBREE says which Embree it is: 3 or 4"
+#error "RELIEF_EMBREE must be 3 or 4"
 #elif RELIEF_EMBREE == 3
 #include <embree3/rtcore.h>
 #elif RELIEF_EMBREE == 4
 #include <embree4/rtcore.h>
 #else
-#error "RELIEF_EMBREE is 3 or 4"
+#error "RELIEF_EMBREE must be 3 or 4"
 #endif
 
 namespace relief {
+
+/// For rtcNewDevice(). By default Embree runs the widest instruction set of the processor. Fused multiply-add changes
+/// which rays meet an edge, and the vector width which of two surfaces at one depth comes first, so that another
+/// processor would bake other bytes. Hence one set for all, that of every processor since 2008; others get Embree's
+/// error. It costs about a tenth of a planned bake.
+#if defined(__x86_64__)
+inline constexpr const char* kEmbreeConfig = "isa=sse4.2";
+#else
+inline constexpr const char* kEmbreeConfig = nullptr;
+#endif
 
 #if RELIEF_EMBREE == 3
 using EmbreeContext = RTCIntersectContext;
@@ -25,11 +36,10 @@ inline constexpr RTCSceneFlags kEmbreeRayFilters = RTC_SCENE_FLAG_FILTER_FUNCTIO
 
 enum class RayOrder { kIncoherent, kCoherent };
 
-/// What goes with a ray, or with a packet of them. A filter function finds it by of().
+/// The context of a ray or of a packet of rays. Filter functions reach it through of().
 class RayQuery {
   public:
-    /// `filter` is asked about each surface that a ray meets; null: the nearest one counts. It needs a scene with
-    /// kEmbreeRayFilters.
+    /// `filter` runs for each surface on the ray; null: the nearest one counts. It needs a scene with kEmbreeRayFilters.
     explicit RayQuery(RTCFilterFunctionN filter = nullptr, RayOrder order = RayOrder::kIncoherent) {
 #if RELIEF_EMBREE == 3
         rtcInitIntersectContext(&context_);
@@ -43,65 +53,75 @@ class RayQuery {
 #endif
     }
 
-    /// The query that a filter function works for. EmbreeContext is the first member: Embree hands back the pointer that
-    /// it was given.
+    /// The query that a filter function runs for. EmbreeContext is the first member, and Embree hands its pointer back.
     static RayQuery* of(const RTCFilterFunctionNArguments* args) {
         return reinterpret_cast<RayQuery*>(args->context);
     }
 
-    /// Traces the ray; `ray.hit.geomID` stays RTC_INVALID_GEOMETRY_ID where it meets nothing.
+#if RELIEF_EMBREE == 3
+    /// Traces the ray; `ray.hit.geomID` stays RTC_INVALID_GEOMETRY_ID without a hit.
     void intersect(RTCScene scene, RTCRayHit& ray) {
-#if RELIEF_EMBREE == 3
         rtcIntersect1(scene, &context_, &ray);
-#else
-        RTCIntersectArguments arguments;
-        rtcInitIntersectArguments(&arguments);
-        fill(arguments);
-        rtcIntersect1(scene, &ray, &arguments);
-#endif
     }
-
-    /// The same of sixteen rays, of those whose `valid` is −1.
+    /// Traces those of sixteen rays whose `valid` is −1.
     void intersect(RTCScene scene, const int* valid, RTCRayHit16& rays) {
-#if RELIEF_EMBREE == 3
         rtcIntersect16(valid, scene, &context_, &rays);
-#else
-        RTCIntersectArguments arguments;
-        rtcInitIntersectArguments(&arguments);
-        fill(arguments);
-        rtcIntersect16(valid, scene, &rays, &arguments);
-#endif
     }
-
-    /// `ray.tfar` becomes −∞ where the ray meets something.
+    /// `ray.tfar` becomes −∞ on a hit.
     void occluded(RTCScene scene, RTCRay& ray) {
-#if RELIEF_EMBREE == 3
         rtcOccluded1(scene, &context_, &ray);
-#else
-        RTCOccludedArguments arguments;
-        rtcInitOccludedArguments(&arguments);
-        fill(arguments);
-        rtcOccluded1(scene, &ray, &arguments);
-#endif
     }
+#else
+    void intersect(RTCScene scene, RTCRayHit& ray) {
+        auto arguments = withContext(rtcInitIntersectArguments);
+        rtcIntersect1(scene, &ray, &arguments);
+    }
+    void intersect(RTCScene scene, const int* valid, RTCRayHit16& rays) {
+        auto arguments = withContext(rtcInitIntersectArguments);
+        rtcIntersect16(valid, scene, &rays, &arguments);
+    }
+    void occluded(RTCScene scene, RTCRay& ray) {
+        auto arguments = withContext(rtcInitOccludedArguments);
+        rtcOccluded1(scene, &ray, &arguments);
+    }
+#endif
 
   private:
     EmbreeContext context_{};
 #if RELIEF_EMBREE == 4
     template <class Arguments>
-    void fill(Arguments& arguments) {
+    Arguments withContext(void (*init)(Arguments*)) {
+        Arguments arguments;
+        init(&arguments);
         arguments.context = &context_;
         arguments.filter = filter_;
-        // Without this flag Embree asks only the filters of geometries.
+        // Without this flag Embree runs only the filters of geometries.
         const int flags =
             (order_ == RayOrder::kCoherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT) |
             (filter_ != nullptr ? RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER : RTC_RAY_QUERY_FLAG_NONE);
         arguments.flags = static_cast<RTCRayQueryFlags>(flags);
+        return arguments;
     }
 
     RTCFilterFunctionN filter_ = nullptr;
     RayOrder order_ = RayOrder::kIncoherent;
 #endif
 };
+
+/// A ray in Embree's units; `end` in units of its direction.
+[[nodiscard]] inline RTCRayHit rayHit(const glm::vec3& origin, const glm::vec3& direction, float end) {
+    RTCRayHit query{};
+    query.ray.org_x = origin.x;
+    query.ray.org_y = origin.y;
+    query.ray.org_z = origin.z;
+    query.ray.dir_x = direction.x;
+    query.ray.dir_y = direction.y;
+    query.ray.dir_z = direction.z;
+    query.ray.tfar = end;
+    query.ray.mask = 0xffffffff;
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    return query;
+}
 
 }  // namespace relief

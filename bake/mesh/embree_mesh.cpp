@@ -3,8 +3,6 @@
 #include <cmath>
 #include <string>
 
-#include "bake/mesh/embree_config.h"
-
 namespace relief {
 namespace {
 

@@ -1,4 +1,4 @@
-// A mesh as Embree holds it, built the same way for every use.
+// A mesh as an Embree scene.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -18,16 +18,16 @@ struct EmbreeMesh {
     };
 
     std::unique_ptr<RTCDeviceTy, Release> device;
-    /// Robust, for filter functions of a ray's own, and of medium quality, which never splits a triangle:
-    /// each is met at most once a ray, so that crossings can be counted.
+    /// Robust, with filter functions per ray. Medium quality never splits a triangle: a ray meets each at most once,
+    /// so that crossings can be counted.
     std::unique_ptr<RTCSceneTy, Release> scene;
-    /// Embree sees (p − center) · scale: floats are finest there, and no product of coordinates can overflow.
+    /// Embree's coordinates are (p − center) · scale, where floats are finest and no product overflows.
     glm::dvec3 center{0.0};
     double scale = 1.0;  ///< a power of two
 
     [[nodiscard]] glm::dvec3 toLocal(const glm::dvec3& p) const { return (p - center) * scale; }
 
-    /// Embree reads the triangles where they are: `mesh` must outlive the result and keep them.
+    /// Embree shares the triangles of `mesh`, which must outlive the result.
     /// Errors: kLimit (out of memory), kUnsupported (the processor), kFailure.
     [[nodiscard]] static Result<EmbreeMesh> build(const TriangleMesh& mesh);
 };

@@ -15,8 +15,7 @@ struct Crossings {
     std::array<std::int64_t, kDirections> winding{};
 };
 
-/// Moeller and Trumbore (1997): whether the ray from the origin of the corners' space crosses the triangle.
-/// \return 0: it does not; else the direction in which, 1 or -1.
+/// Moeller and Trumbore (1997), for the ray from the origin. \return 0 for a miss, else the side that it crosses to: ±1.
 int crosses(const glm::dvec3& a, const glm::dvec3& edge1, const glm::dvec3& edge2,
             const glm::dvec3& direction) {
     const glm::dvec3 p = cross(direction, edge2);
@@ -42,14 +41,14 @@ bool insideByParity(const PreparedMesh& prepared, const glm::vec3& point) {
     const glm::dvec3 origin = point;
     const auto count = [&](const tbb::blocked_range<std::size_t>& range, Crossings crossings) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            const glm::uvec3& t = mesh.triangles[i];
-            const glm::dvec3 a = glm::dvec3(mesh.positions[t.x]) - origin;
-            const glm::dvec3 edge1 = glm::dvec3(mesh.positions[t.y]) - origin - a;
-            const glm::dvec3 edge2 = glm::dvec3(mesh.positions[t.z]) - origin - a;
+            const auto corners = cornersOf(mesh, static_cast<std::uint32_t>(i));
+            const glm::dvec3 a = glm::dvec3(corners[0]) - origin;
+            const glm::dvec3 edge1 = glm::dvec3(corners[1]) - origin - a;
+            const glm::dvec3 edge2 = glm::dvec3(corners[2]) - origin - a;
             for (std::size_t d = 0; d < kDirections; ++d) {
-                const int way = crosses(a, edge1, edge2, kParityDirections[d]);
-                crossings.count[d] += way != 0 ? 1 : 0;
-                crossings.winding[d] += way;
+                const int side = crosses(a, edge1, edge2, kParityDirections[d]);
+                crossings.count[d] += side != 0 ? 1 : 0;
+                crossings.winding[d] += side;
             }
         }
         return crossings;
@@ -71,7 +70,7 @@ bool insideByParity(const PreparedMesh& prepared, const glm::vec3& point) {
     }
     const bool odd = by_parity > kDirections / 2;
     const bool wound = by_winding > kDirections / 2;
-    // Only where they disagree does it matter whose word counts, which takes longer to find out.
+    // woundShells() is expensive: only where the two disagree.
     return odd == wound || !prepared.woundShells() ? odd : wound;
 }
 

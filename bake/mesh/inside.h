@@ -1,4 +1,4 @@
-// Whether a point lies inside a mesh.
+// Point-in-mesh by ray parity, without a tree.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace relief {
 
-/// Directions of the rays whose crossings are counted; about unit length.
+/// Directions of the rays; about unit length. No model is built along them.
 inline constexpr std::array<glm::dvec3, 7> kParityDirections = {{{0.5773, 0.6137, 0.5386},
                                                                  {-0.7351, 0.3119, 0.6019},
                                                                  {0.2677, -0.8713, 0.4111},
@@ -17,10 +17,9 @@ inline constexpr std::array<glm::dvec3, 7> kParityDirections = {{{0.5773, 0.6137
                                                                  {0.8819, -0.2749, -0.3829},
                                                                  {-0.6131, 0.7717, -0.1693}}};
 
-/// Seven rays from `point` vote: each says "inside" if it crosses the surface an odd number of times. No model
-/// is built along their directions. If PreparedMesh::woundShells, a ray says "inside" if the shells wind round
-/// the point; otherwise the winding does not matter. A few holes do not matter either. Looks at all triangles,
-/// in double precision, on all cores; needs no tree.
+/// The majority of seven rays from `point`. A ray votes "inside" if it crosses the surface an odd number of times, or for
+/// PreparedMesh::woundShells if the shells wind round the point. Tolerates a few holes. Visits all triangles, in double
+/// precision, on all cores.
 [[nodiscard]] bool insideByParity(const PreparedMesh& prepared, const glm::vec3& point);
 
 }  // namespace relief

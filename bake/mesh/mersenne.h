@@ -1,4 +1,4 @@
-// The 64-bit Mersenne Twister (Nishimura 2000), for few numbers of many seeds.
+// Generators of random bits: SplitMix64, and the 64-bit Mersenne Twister (Nishimura 2000) for few numbers from many seeds.
 #pragma once
 
 #include <array>
@@ -7,8 +7,16 @@
 
 namespace relief {
 
-/// Gives the numbers of std::mt19937_64, but works each out when it is asked for: the library's makes 312 of them at a time
-/// and fills all of its state first, where a random point takes six.
+/// The finalizer of SplitMix64 (Steele, Lea, Flood 2014), of the state after `z`.
+[[nodiscard]] constexpr std::uint64_t splitMix64(std::uint64_t z) {
+    z += 0x9e3779b97f4a7c15U;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebU;
+    return z ^ (z >> 31);
+}
+
+/// The numbers of std::mt19937_64, computed one by one. The library's fills its state and makes 312 at a time, where a
+/// random point takes six.
 class Mersenne64 {
   public:
     explicit Mersenne64(std::uint64_t seed) { words_[0] = seed; }
@@ -30,7 +38,7 @@ class Mersenne64 {
     static constexpr std::size_t kMiddle = 156;
     static constexpr std::uint64_t kUpper = ~std::uint64_t{0} << 31U;
 
-    /// The words that the seed gives, up to and with this one; later ones need none of those that have been replaced.
+    /// Seeds the words up to and including this one; they need no word that has been replaced.
     void seedUpTo(std::size_t last) {
         for (; seeded_ <= last; ++seeded_) {
             const std::uint64_t before = words_[seeded_ - 1];
@@ -45,8 +53,7 @@ class Mersenne64 {
         return z ^ (z >> 43U);
     }
 
-    std::array<std::uint64_t, kWords>
-        words_;  // those before seeded_; of the round at hand those before next_ are new
+    std::array<std::uint64_t, kWords> words_;  // valid before seeded_; of the current round before next_
     std::size_t seeded_ = 1;
     std::size_t next_ = 0;
 };

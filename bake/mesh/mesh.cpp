@@ -13,7 +13,7 @@ namespace {
 constexpr float kCoordinateMax = 1e15F;
 constexpr float kSizeMin = 1e-15F;
 
-/// Where coordinates are as large, whole triangles may fall into one point.
+/// From here on, whole triangles may round to one point.
 constexpr float kFar = 1e6F;
 
 tl::unexpected<Error> noArea(const TriangleMesh& mesh) {
@@ -31,6 +31,30 @@ tl::unexpected<Error> noArea(const TriangleMesh& mesh) {
 }
 
 }  // namespace
+
+void moveTriangle(TriangleMesh& mesh, std::size_t from, std::size_t to) {
+    mesh.triangles[to] = mesh.triangles[from];
+    if (!mesh.marks.empty()) {
+        mesh.marks[to] = mesh.marks[from];
+    }
+    if (!mesh.labels.empty()) {
+        mesh.labels[to] = mesh.labels[from];
+    }
+}
+
+void keepTriangles(TriangleMesh& mesh, std::size_t count) {
+    mesh.triangles.resize(count);
+    mesh.marks.resize(std::min(count, mesh.marks.size()));
+    mesh.labels.resize(std::min(count, mesh.labels.size()));
+}
+
+Bounds boundsOf(std::span<const glm::vec3> positions) {
+    Bounds bounds;
+    for (const glm::vec3& p : positions) {
+        bounds.add(p);
+    }
+    return bounds;
+}
 
 Result<TriangleMesh> finishMesh(TriangleMesh mesh) {
     if (mesh.triangles.size() > kTriangleMax) {
@@ -57,19 +81,11 @@ Result<TriangleMesh> finishMesh(TriangleMesh mesh) {
             }
         }
         if (hasArea(planeOf(mesh.positions, t))) {
-            if (!mesh.marks.empty()) {
-                mesh.marks[kept] = mesh.marks[triangle];
-            }
-            if (!mesh.labels.empty()) {
-                mesh.labels[kept] = mesh.labels[triangle];
-            }
-            mesh.triangles[kept++] = t;
+            moveTriangle(mesh, triangle, kept++);
         }
     }
     mesh.dropped_triangles += mesh.triangles.size() - kept;
-    mesh.triangles.resize(kept);
-    mesh.marks.resize(std::min(kept, mesh.marks.size()));
-    mesh.labels.resize(std::min(kept, mesh.labels.size()));
+    keepTriangles(mesh, kept);
     if (kept == 0) {
         return noArea(mesh);
     }

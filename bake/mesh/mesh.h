@@ -1,9 +1,11 @@
-// Triangles in object space: what every importer makes and what the baker bakes.
+// A triangle mesh in object space, as importers make it and bakes take it.
 #pragma once
 
+#include <array>
 #include <compare>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,15 +15,15 @@
 
 namespace relief {
 
-/// TriangleMesh::labels of a triangle that belongs to nothing in the file: a cap.
+/// TriangleMesh::labels of a triangle that is not of the file: a cap.
 inline constexpr std::uint32_t kNoLabel = 0xffffffff;
 
 /// Limit of a mesh, instances counted one by one.
 inline constexpr std::uint64_t kTriangleMax = 100'000'000;
-/// Names that an importer may be asked for at once, and the bytes of one.
+/// Names that one import may select, and bytes per name.
 inline constexpr std::size_t kAskedNamesMax = 255;
 inline constexpr std::size_t kAskedNameBytesMax = 256;
-/// Surfaces of a file that are told apart; those beyond count as one without a name.
+/// Distinct surfaces of a file; those beyond count as one without a name.
 inline constexpr std::size_t kSurfaceNamesMax = 65'536;
 
 /// The place of a surface in its file.
@@ -41,30 +43,26 @@ struct TriangleMesh {
     std::string unit;                   ///< of lengths: "m", or "" where the source does not say
     std::vector<glm::vec3> positions;   ///< object space
     std::vector<glm::uvec3> triangles;  ///< counter-clockwise seen from outside, if the source keeps to that
-    /// For each triangle, which of the names that its importer was asked for it has: 0 for none, else 1 + the index of
-    /// the last of them. Empty: nobody asked, or the triangles are no longer the source's.
+    /// Per triangle, 1 + the index of the last of the selected names that it has, or 0. Empty: no names were selected, or
+    /// the triangles are no longer the source's.
     std::vector<std::uint8_t> marks;
-    /// For each triangle an index into `surface_names`; empty: the file has one surface, or the triangles are no longer
-    /// the source's.
+    /// Per triangle an index into `surface_names`. Empty: one surface, or the triangles are no longer the source's.
     std::vector<std::uint32_t> labels;
-    /// One for each material of each node, in the order of the file.
-    std::vector<SurfaceName> surface_names;
-    std::uint64_t dropped_triangles = 0;  ///< without area, left out
-    std::uint64_t unused_vertices = 0;    ///< of the source, that no triangle of it uses; left out
-    /// The last of `triangles` are no surface of the source's: caps over holes (hole_caps.h), the rims of shells and the
+    std::vector<SurfaceName> surface_names;  ///< one per material of each node, in file order
+    std::uint64_t dropped_triangles = 0;     ///< without area
+    std::uint64_t unused_vertices = 0;       ///< of the source, that no triangle of it uses
+    /// Triangles at the end that are no surface of the source's: caps over holes (hole_caps.h), rims of shells and the
     /// ground below terrains (bake/shape). Nothing is measured on them.
     std::uint64_t cap_triangles = 0;
     std::uint64_t closed_holes = 0;
     std::uint64_t source_triangles =
-        0;  ///< of the file, where `triangles` without caps are not those; 0: they are
-    double shell_thickness =
-        0.0;        ///< of the shells among its parts (bake/shape), object units; 0: there are none
-    Bounds bounds;  ///< of positions
-    /// Files that it was read from: first its own, as its path was given, then whatever that refers to,
-    /// sorted.
-    std::vector<std::string> dependencies;
+        0;                         ///< of the file, where they differ from `triangles` without caps; else 0
+    double shell_thickness = 0.0;  ///< of the shells among its parts (bake/shape), object units; 0: no shells
+    Bounds bounds;                 ///< of positions
+    std::vector<std::string>
+        dependencies;  ///< the file, by the path that was given, then those it refers to, sorted
     std::vector<std::string> dependency_hashes;  ///< XXH3-128 of each file's bytes, in the same order
-    std::vector<std::string> warnings;           ///< what its importer has to say; one line each
+    std::vector<std::string> warnings;           ///< of the import, one line each
 
     [[nodiscard]] std::uint64_t surfaceTriangles() const { return triangles.size() - cap_triangles; }
     [[nodiscard]] std::uint64_t sourceTriangles() const {
@@ -72,16 +70,45 @@ struct TriangleMesh {
     }
 };
 
-/// Turns raw positions and triangles into a mesh that keeps the invariants above: drops triangles without
-/// area, their marks and labels, and positions without triangle, computes the bounds.
+/// Makes the invariants above true: drops triangles without area with their marks and labels, drops positions without a
+/// triangle, and computes the bounds.
 /// \param mesh  with no marks, or as many as triangles; labels likewise.
 /// Errors, naming mesh.name: kInvalidInput (index out of range, coordinate that is not finite or beyond 1e15,
 /// no triangle with an area), kLimit (kTriangleMax).
 [[nodiscard]] Result<TriangleMesh> finishMesh(TriangleMesh mesh);
 
-/// Of a triangle that has an area. \param triangle  index into mesh.triangles.
+/// Keeps the first `count` triangles, their marks and labels. \pre moveTriangle() has filled them.
+void keepTriangles(TriangleMesh& mesh, std::size_t count);
+/// Copies a triangle, its mark and its label.
+void moveTriangle(TriangleMesh& mesh, std::size_t from, std::size_t to);
+
+/// Extends a box by another one.
+inline void addBounds(Bounds& bounds, const Bounds& other) {
+    bounds.add(other.min);
+    bounds.add(other.max);
+}
+
+[[nodiscard]] Bounds boundsOf(std::span<const glm::vec3> positions);
+
+[[nodiscard]] inline std::array<glm::vec3, 3> cornersOf(const TriangleMesh& mesh, std::uint32_t triangle) {
+    const glm::uvec3& t = mesh.triangles[triangle];
+    return {mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]};
+}
+
+/// Extends a box by a triangle.
+inline void addTriangle(Bounds& bounds, const TriangleMesh& mesh, std::uint32_t triangle) {
+    for (const glm::vec3& corner : cornersOf(mesh, triangle)) {
+        bounds.add(corner);
+    }
+}
+
+/// Of a triangle with an area.
 [[nodiscard]] inline TrianglePlane planeOf(const TriangleMesh& mesh, std::uint32_t triangle) {
     return planeOf(mesh.positions, mesh.triangles[triangle]);
+}
+/// By the right-hand rule, of a triangle with an area.
+[[nodiscard]] inline glm::dvec3 unitNormal(const TriangleMesh& mesh, std::uint32_t triangle) {
+    return unit(planeOf(mesh, triangle).normal);
 }
 
 }  // namespace relief

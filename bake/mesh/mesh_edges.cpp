@@ -1,15 +1,13 @@
 #include "bake/mesh/mesh_edges.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <bit>
-#include <numeric>
-#include <span>
 #include <tuple>
 
+#include "bake/mesh/loops.h"
+#include "bake/mesh/mersenne.h"
 #include "formats/base/hash.h"
 
 namespace relief {
@@ -17,42 +15,31 @@ namespace {
 
 constexpr std::ptrdiff_t kLargeBucket = 1 << 16;
 
-/// The last step of SplitMix64 (Steele, Lea, Flood 2014).
-std::uint64_t mixed(std::uint64_t z) {
-    z += 0x9e3779b97f4a7c15U;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebU;
-    return z ^ (z >> 31);
-}
-
-/// The same for equal positions.
+/// Equal for equal positions.
 std::uint64_t hashOf(const glm::vec3& p, std::uint64_t salt) {
-    // −0 equals 0, and plus 0 is the same bits.
+    // + 0 turns −0 into 0.
     const auto bits = [](float value) { return std::uint64_t{std::bit_cast<std::uint32_t>(value + 0.0F)}; };
-    return mixed(mixed((bits(p.x) << 32 | bits(p.y)) ^ salt) + bits(p.z));
+    return splitMix64(splitMix64((bits(p.x) << 32 | bits(p.y)) ^ salt) + bits(p.z));
 }
 
 }  // namespace
 
-// Corners and their edges are counted by 32-bit numbers, and so are twice as many slots, rounded up.
+// Corners, edges and the slots below have 32-bit indices.
 static_assert(6 * kTriangleMax < std::uint64_t{1} << 30);
 
 std::vector<std::uint32_t> weldedVertices(const TriangleMesh& mesh) {
     const std::size_t count = mesh.positions.size();
-    // Linear probing at most half full, of indices + 1. A vertex meets the lower ones alone, so that the
-    // first of equal ones is found whatever the hashes are. Those depend on all positions: no file is easily
-    // made to have them collide.
+    // Linear probing, at most half full, over indices + 1. Only lower vertices are in the table, so that the first of
+    // equal ones is found whatever the hashes are. The salt depends on all positions, against files made to collide.
     const std::uint64_t salt = xxh3_64(std::as_bytes(std::span(mesh.positions)));
     std::vector<std::uint32_t> slots(std::bit_ceil(2 * count + 1), 0);
     const std::size_t mask = slots.size() - 1;
     std::vector<std::uint32_t> welded(count);
     std::vector<std::uint32_t> wanted(count);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            wanted[i] = static_cast<std::uint32_t>(hashOf(mesh.positions[i], salt) & mask);
-        }
+    forEachIndex(0, count, 4096, [&](std::size_t i) {
+        wanted[i] = static_cast<std::uint32_t>(hashOf(mesh.positions[i], salt) & mask);
     });
-    constexpr std::uint32_t kAhead = 16;  // vertices that the walk through the slots is announced to memory
+    constexpr std::uint32_t kAhead = 16;  // vertices to prefetch
     for (std::uint32_t i = 0; i < count; ++i) {
         if (i + kAhead < count) {
             __builtin_prefetch(&slots[wanted[i + kAhead]], 1);
@@ -71,42 +58,33 @@ std::vector<std::uint32_t> weldedVertices(const TriangleMesh& mesh) {
 
 namespace {
 
-/// \param vertexOf  what the corners of triangles stand for.
 template <class VertexOf>
 std::vector<EdgeUse> sortedUses(const std::vector<glm::uvec3>& triangles, std::size_t vertices,
                                 const VertexOf& vertexOf) {
-    std::vector<EdgeUse> uses(3 * triangles.size());
-    const auto forEachSide = [&](auto&& visit) {
+    // Into a bucket per lower vertex, where few are left to sort.
+    Buckets<EdgeUse> by_low(vertices, [&](const auto& visit) {
         for (std::uint32_t i = 0; i < triangles.size(); ++i) {
             const glm::uvec3& t = triangles[i];
             for (std::uint8_t side = 0; side < 3; ++side) {
                 const std::uint32_t a = vertexOf(t[side]);
                 const std::uint32_t b = vertexOf(t[(side + 1) % 3]);
-                visit(EdgeUse{std::min(a, b), std::max(a, b), i, side, a > b});
-            }
-        }
-    };
-    // Into a bucket for each lower vertex, where few are left to sort.
-    std::vector<std::uint32_t> first(vertices + 1, 0);
-    forEachSide([&](const EdgeUse& use) { ++first[use.low + 1]; });
-    std::partial_sum(first.begin(), first.end(), first.begin());
-    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-    forEachSide([&](const EdgeUse& use) { uses[next[use.low]++] = use; });
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, next.size(), 1024), [&](const auto& range) {
-        for (std::size_t v = range.begin(); v != range.end(); ++v) {
-            const auto begin = uses.begin() + first[v];
-            const auto end = uses.begin() + first[v + 1];
-            const auto less = [](const EdgeUse& a, const EdgeUse& b) {
-                return std::tie(a.high, a.triangle, a.side) < std::tie(b.high, b.triangle, b.side);
-            };
-            if (end - begin > kLargeBucket) {  // the hub of a fan
-                tbb::parallel_sort(begin, end, less);
-            } else {
-                std::sort(begin, end, less);
+                visit(std::min(a, b), EdgeUse{std::min(a, b), std::max(a, b), i, side, a > b});
             }
         }
     });
-    return uses;
+    forEachIndex(0, vertices, 1024, [&](std::size_t v) {
+        const auto begin = by_low.values().begin() + by_low.first(v);
+        const auto end = by_low.values().begin() + by_low.first(v + 1);
+        const auto less = [](const EdgeUse& a, const EdgeUse& b) {
+            return std::tie(a.high, a.triangle, a.side) < std::tie(b.high, b.triangle, b.side);
+        };
+        if (end - begin > kLargeBucket) {  // the hub of a fan
+            tbb::parallel_sort(begin, end, less);
+        } else {
+            std::sort(begin, end, less);
+        }
+    });
+    return std::move(by_low.values());
 }
 
 }  // namespace
@@ -120,6 +98,34 @@ MeshEdges edgesOf(const TriangleMesh& mesh) {
     edges.uses = sortedUses(mesh.triangles, mesh.positions.size(),
                             [&](std::uint32_t vertex) { return edges.welded[vertex]; });
     return edges;
+}
+
+TriangleNeighbours neighboursOf(const std::vector<EdgeUse>& uses) {
+    const std::size_t triangles = uses.size() / 3;
+    TriangleNeighbours neighbours{std::vector(triangles, glm::uvec3(TriangleNeighbours::kNone)),
+                                  std::vector(triangles, std::array<bool, 3>{})};
+    forEachEdge(uses, [&](std::size_t begin, std::size_t end) {
+        if (end - begin == 2) {
+            const EdgeUse& a = uses[begin];
+            const EdgeUse& b = uses[begin + 1];
+            neighbours.across[a.triangle][a.side] = b.triangle;
+            neighbours.across[b.triangle][b.side] = a.triangle;
+            neighbours.same[a.triangle][a.side] = neighbours.same[b.triangle][b.side] = a.down == b.down;
+        }
+    });
+    return neighbours;
+}
+
+std::vector<SortedTriangle> sortedTriangles(const TriangleMesh& mesh, std::span<const std::uint32_t> welded,
+                                            std::span<const std::uint32_t> triangles) {
+    std::vector<SortedTriangle> sorted;
+    sorted.reserve(triangles.size());
+    for (const std::uint32_t i : triangles) {
+        const glm::uvec3& t = mesh.triangles[i];
+        sorted.emplace_back(glm::uvec3(welded[t.x], welded[t.y], welded[t.z]), i);
+    }
+    tbb::parallel_sort(sorted);
+    return sorted;
 }
 
 bool isSeveralShells(const MeshEdges& edges) {
@@ -140,13 +146,12 @@ bool isSeveralShells(const MeshEdges& edges) {
 std::vector<OddEdge> oddEdges(const MeshEdges& edges) {
     std::vector<OddEdge> odd;
     forEachEdge(edges.uses, [&](std::size_t begin, std::size_t end) {
-        const auto first = edges.uses.begin() + static_cast<std::ptrdiff_t>(begin);
-        const std::size_t count = end - begin;
-        const auto down = static_cast<std::size_t>(std::count_if(
-            first, first + static_cast<std::ptrdiff_t>(count), [](const EdgeUse& use) { return use.down; }));
-        if (count % 2 == 1) {
-            odd.push_back(2 * down < count ? OddEdge{first->low, first->high}
-                                           : OddEdge{first->high, first->low});
+        const std::span uses = std::span(edges.uses).subspan(begin, end - begin);
+        if (uses.size() % 2 == 1) {
+            const auto down = static_cast<std::size_t>(std::ranges::count(uses, true, &EdgeUse::down));
+            const EdgeUse& edge = uses.front();
+            odd.push_back(2 * down < uses.size() ? OddEdge{edge.low, edge.high}
+                                                 : OddEdge{edge.high, edge.low});
         }
     });
     return odd;

@@ -1,28 +1,31 @@
-// Edges of a mesh, where equal positions are one vertex: importers repeat positions along seams.
+// Edges of a mesh. Equal positions are one vertex, as importers repeat positions along seams.
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <compare>
 #include <cstdint>
 #include <numeric>
+#include <span>
 #include <vector>
 
 #include "bake/mesh/mesh.h"
 
 namespace relief {
 
-/// An edge that belongs to an odd number of triangles: the border of a hole, or of a flap on a closed
-/// surface. Vertices are named by the lowest index of their position.
+/// An edge of an odd number of triangles: the border of a hole, or of a flap on a closed surface. A vertex is the lowest
+/// index of its position.
 struct OddEdge {
-    std::uint32_t from = 0;  ///< from and to in the order of the edge's triangles, of most of them if three
+    std::uint32_t from = 0;  ///< the direction in which most of its triangles run
     std::uint32_t to = 0;
 
     friend bool operator==(const OddEdge&, const OddEdge&) = default;
 };
 
-/// For each vertex, the lowest index of an equal position.
+/// Per vertex, the lowest index of an equal position.
 [[nodiscard]] std::vector<std::uint32_t> weldedVertices(const TriangleMesh& mesh);
 
-/// One side of a triangle, between vertices as welded.
+/// One side of a triangle, between welded vertices.
 struct EdgeUse {
     std::uint32_t low = 0;
     std::uint32_t high = 0;
@@ -31,18 +34,17 @@ struct EdgeUse {
     bool down = false;      ///< from high to low
 };
 
-/// All sides of triangles that name each position once: by edge, then triangle, then side.
-/// \param vertices  how many there are.
+/// All sides of triangles over distinct positions: by edge, then triangle, then side.
+/// \param vertices  number of positions.
 [[nodiscard]] std::vector<EdgeUse> edgeUses(const std::vector<glm::uvec3>& triangles, std::size_t vertices);
 
-/// Welding and sorting take longer than most questions that are asked of them: once for several.
 struct MeshEdges {
     std::vector<std::uint32_t> welded;  ///< weldedVertices
-    std::vector<EdgeUse> uses;          ///< all sides of all triangles: by edge, then triangle, then side
+    std::vector<EdgeUse> uses;          ///< edgeUses of the welded vertices
 };
 [[nodiscard]] MeshEdges edgesOf(const TriangleMesh& mesh);
 
-/// Sets of numbers that are joined one by one.
+/// Union-find.
 class DisjointSets {
   public:
     explicit DisjointSets(std::size_t count) : parent_(count) {
@@ -55,7 +57,7 @@ class DisjointSets {
         }
         return i;
     }
-    /// The lower root stays: the result does not depend on the order. \return whether they were apart.
+    /// The lower root stays, so that the result does not depend on the order. \return the two were apart.
     bool join(std::uint32_t a, std::uint32_t b) {
         a = find(a);
         b = find(b);
@@ -67,7 +69,7 @@ class DisjointSets {
     std::vector<std::uint32_t> parent_;
 };
 
-/// Calls visit(begin, end) for each edge, with the range of its uses.
+/// Calls visit(begin, end) with the range of uses of each edge.
 template <class Visit>
 void forEachEdge(const std::vector<EdgeUse>& uses, const Visit& visit) {
     for (std::size_t begin = 0; begin < uses.size();) {
@@ -80,13 +82,38 @@ void forEachEdge(const std::vector<EdgeUse>& uses, const Visit& visit) {
     }
 }
 
-/// In ascending order of the lower and then of the higher vertex. None: any ray from a point meets the
-/// surface as often, modulo 2, as any other.
+/// Ascending by the lower, then the higher vertex. Without any, all rays from a point cross the surface equally often
+/// modulo 2.
 [[nodiscard]] std::vector<OddEdge> oddEdges(const MeshEdges& edges);
 
-/// Several closed surfaces, each wound consistently: every edge runs as often one way as the other, and the
-/// triangles fall into groups that share no edge. Such surfaces may overlap; how often they wind round a
-/// point, not the parity of a ray's crossings, says then whether it lies in one of them.
+/// The triangle across each side, by edges of exactly two triangles.
+struct TriangleNeighbours {
+    static constexpr std::uint32_t kNone = 0xffffffff;
+    std::vector<glm::uvec3>
+        across;  ///< per triangle and side, from corner i to the next; kNone at other edges
+    std::vector<std::array<bool, 3>> same;  ///< the two run along their edge in the same direction
+};
+[[nodiscard]] TriangleNeighbours neighboursOf(const std::vector<EdgeUse>& uses);
+
+/// A triangle's corners as welded vertices in ascending order: equal for coincident triangles, however they are wound.
+struct SortedTriangle {
+    std::array<std::uint32_t, 3> corners;
+    std::uint32_t index;
+
+    SortedTriangle() = default;
+    SortedTriangle(const glm::uvec3& t, std::uint32_t triangle) : corners{t.x, t.y, t.z}, index(triangle) {
+        std::sort(corners.begin(), corners.end());
+    }
+    friend auto operator<=>(const SortedTriangle&, const SortedTriangle&) = default;
+};
+/// Of these triangles of a mesh, by corners, then index.
+[[nodiscard]] std::vector<SortedTriangle> sortedTriangles(const TriangleMesh& mesh,
+                                                          std::span<const std::uint32_t> welded,
+                                                          std::span<const std::uint32_t> triangles);
+
+/// Several closed surfaces, each wound consistently: every edge runs equally often in both directions, and the triangles
+/// fall into groups that share no edge. Such surfaces may overlap; the winding number of a point, not the parity of a ray's
+/// crossings, then decides if it lies in one of them.
 [[nodiscard]] bool isSeveralShells(const MeshEdges& edges);
 
 }  // namespace relief

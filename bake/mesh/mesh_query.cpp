@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -14,8 +13,26 @@
 namespace relief {
 namespace {
 
-/// Which way the i-th ray crosses the surface it met: 1 out of it, −1 into it.
-int wayOf(const RTCFilterFunctionNArguments* args, unsigned i) {
+/// A query of all surfaces on a ray: visit(args, i) sees each of them, and the ray passes through.
+template <class Visit>
+class EveryHit : public RayQuery {
+  public:
+    explicit EveryHit(const Visit& visit) : RayQuery(filter), visit_(visit) {}
+
+  private:
+    static void filter(const RTCFilterFunctionNArguments* args) {
+        for (unsigned i = 0; i < args->N; ++i) {
+            if (args->valid[i] != 0) {
+                static_cast<EveryHit*>(of(args))->visit_(args, i);
+                args->valid[i] = 0;
+            }
+        }
+    }
+    const Visit& visit_;
+};
+
+/// 1 if the i-th ray leaves by the surface that it met, −1 if it enters.
+int sideOf(const RTCFilterFunctionNArguments* args, unsigned i) {
     const double along =
         static_cast<double>(RTCHitN_Ng_x(args->hit, args->N, i)) * RTCRayN_dir_x(args->ray, args->N, i) +
         static_cast<double>(RTCHitN_Ng_y(args->hit, args->N, i)) * RTCRayN_dir_y(args->ray, args->N, i) +
@@ -23,95 +40,23 @@ int wayOf(const RTCFilterFunctionNArguments* args, unsigned i) {
     return along < 0.0 ? -1 : 1;
 }
 
-/// Counts the surfaces on a ray, and lets it pass through them.
-struct CrossingCounter : RayQuery {
-    unsigned count = 0;
-    int winding = 0;  ///< crossings one way less those the other way
-
-    CrossingCounter() : RayQuery(filter) {}
-
-    static void filter(const RTCFilterFunctionNArguments* args) {
-        auto* self = static_cast<CrossingCounter*>(of(args));
-        for (unsigned i = 0; i < args->N; ++i) {
-            if (args->valid[i] != 0) {
-                ++self->count;
-                self->winding += wayOf(args, i);
-                args->valid[i] = 0;
-            }
-        }
-    }
-};
-
-/// How a ray crosses the bodies of a union, one by one.
-struct BodyCounter : RayQuery {
-    std::span<const std::uint32_t> bodies;
-    int winding = 0;
-    std::vector<std::uint32_t> odd;  ///< bodies crossed an odd number of times so far, but for body 0
-
-    explicit BodyCounter(std::span<const std::uint32_t> body_of) : RayQuery(filter), bodies(body_of) {}
+/// Tracks which bodies of a union a ray is in.
+struct BodyCounter {
+    int winding = 0;                 ///< about body 0
+    std::vector<std::uint32_t> odd;  ///< other bodies, crossed an odd number of times so far
 
     [[nodiscard]] bool inside() const { return winding != 0 || !odd.empty(); }
 
-    void cross(std::uint32_t body, int way) {
+    void cross(std::uint32_t body, int side) {
         if (body == 0) {
-            winding += way;
-        } else if (const auto found = std::find(odd.begin(), odd.end(), body); found != odd.end()) {
+            winding += side;
+        } else if (const auto found = std::ranges::find(odd, body); found != odd.end()) {
             odd.erase(found);
         } else {
             odd.push_back(body);
         }
     }
-
-    static void filter(const RTCFilterFunctionNArguments* args) {
-        auto* self = static_cast<BodyCounter*>(of(args));
-        for (unsigned i = 0; i < args->N; ++i) {
-            if (args->valid[i] != 0) {
-                self->cross(self->bodies[RTCHitN_primID(args->hit, args->N, i)], wayOf(args, i));
-                args->valid[i] = 0;
-            }
-        }
-    }
 };
-
-/// Collects the triangles that a ray meets, and lets it pass through them.
-struct HitCollector : RayQuery {
-    std::vector<std::uint32_t> triangles;
-
-    HitCollector() : RayQuery(filter) {}
-
-    static void filter(const RTCFilterFunctionNArguments* args) {
-        auto* self = static_cast<HitCollector*>(of(args));
-        for (unsigned i = 0; i < args->N; ++i) {
-            if (args->valid[i] != 0) {
-                self->triangles.push_back(RTCHitN_primID(args->hit, args->N, i));
-                args->valid[i] = 0;
-            }
-        }
-    }
-};
-
-template <class Ray>
-void setRay(Ray& ray, const glm::vec3& origin, const glm::vec3& direction, float end) {
-    ray.org_x = origin.x;
-    ray.org_y = origin.y;
-    ray.org_z = origin.z;
-    ray.dir_x = direction.x;
-    ray.dir_y = direction.y;
-    ray.dir_z = direction.z;
-    ray.tnear = 0.0F;
-    ray.tfar = end;
-    ray.time = 0.0F;
-    ray.mask = 0xffffffff;
-    ray.flags = 0;
-}
-
-RTCRayHit rayHit(const glm::vec3& origin, const glm::vec3& direction, float end) {
-    RTCRayHit query{};
-    setRay(query.ray, origin, direction, end);
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    return query;
-}
 
 /// The point of a triangle closest to p. Ericson, "Real-Time Collision Detection" (2005), section 5.1.5.
 glm::dvec3 closestOnTriangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
@@ -152,31 +97,22 @@ glm::dvec3 closestOnTriangle(const glm::dvec3& p, const glm::dvec3& a, const glm
     return a + (vb / sum) * ab + (vc / sum) * ac;
 }
 
-/// How far along a ray the plane of a triangle lies that it meets; held between the triangle's corners, for
-/// planes that are seen edge-on. Embree's own distance has a quotient in it that differs from processor to
-/// processor.
+/// The depth along a ray of the plane of a triangle that it meets, held between the triangle's corners for planes seen
+/// edge-on. Embree's own distance has a quotient that differs among processors.
 double depthAt(const TriangleMesh& mesh, std::uint32_t triangle, const glm::dvec3& origin,
                const glm::dvec3& direction) {
     const TrianglePlane plane = planeOf(mesh, triangle);
     const double depth = dot(plane.normal, plane.point - origin) / dot(plane.normal, direction);
-    const glm::uvec3& t = mesh.triangles[triangle];
-    double low = std::numeric_limits<double>::infinity();
-    double high = -low;
-    for (const std::uint32_t corner : {t.x, t.y, t.z}) {
-        const double at =
-            dot(glm::dvec3(mesh.positions[corner]) - origin, direction) / dot(direction, direction);
-        low = std::min(low, at);
-        high = std::max(high, at);
-    }
-    // Written so that NaN is the nearest corner's.
-    return std::max(0.0, depth >= low ? std::min(depth, high) : low);
+    const LineSpan corners = cornerSpan(mesh, triangle, origin, direction);
+    // Written so that NaN becomes the nearest corner's.
+    return std::max(0.0, depth >= corners.begin ? std::min(depth, corners.end) : corners.begin);
 }
 
-/// Shows the counter all that a ray meets.
-template <class Counter>
-void trace(const EmbreeMesh& tree, const glm::vec3& p, const glm::dvec3& direction, Counter& counter) {
+/// Runs visit(args, i) for all surfaces on a ray from p.
+template <class Visit>
+void trace(const EmbreeMesh& tree, const glm::vec3& p, const glm::dvec3& direction, const Visit& visit) {
     RTCRayHit query = rayHit(tree.toLocal(p), direction, std::numeric_limits<float>::infinity());
-    counter.intersect(tree.scene.get(), query);
+    EveryHit(visit).intersect(tree.scene.get(), query);
 }
 
 /// The part of a line that lies in a box, in units of its direction; begin > end: none.
@@ -204,7 +140,7 @@ struct Search {
     const TriangleMesh& mesh;
     const EmbreeMesh& tree;
     glm::dvec3 p;
-    float slack;  // added to the search radius: Embree's boxes and the query are floats
+    float slack;  // of the search radius: Embree's boxes and the query are floats
     double best_squared = std::numeric_limits<double>::infinity();
     std::uint32_t triangle = RTC_INVALID_GEOMETRY_ID;
     glm::dvec3 point{0.0};
@@ -213,13 +149,12 @@ struct Search {
 
     /// \return true if the triangle is closer than the best so far.
     bool add(std::uint32_t index) {
-        const glm::uvec3& t = mesh.triangles[index];
-        const glm::dvec3 closest =
-            closestOnTriangle(p, tree.toLocal(mesh.positions[t.x]), tree.toLocal(mesh.positions[t.y]),
-                              tree.toLocal(mesh.positions[t.z]));
+        const auto corners = cornersOf(mesh, index);
+        const glm::dvec3 closest = closestOnTriangle(p, tree.toLocal(corners[0]), tree.toLocal(corners[1]),
+                                                     tree.toLocal(corners[2]));
         const glm::dvec3 offset = closest - p;
         const double squared = dot(offset, offset);
-        // Of equals the lowest index: the order of the visits must not matter.
+        // Of equals the lowest index, whatever the order of the visits.
         if (squared < best_squared || (squared == best_squared && index < triangle)) {
             best_squared = squared;
             triangle = index;
@@ -231,16 +166,14 @@ struct Search {
 
     static bool visit(RTCPointQueryFunctionArguments* args) {
         auto* self = static_cast<Search*>(args->userPtr);
-        if (!self->add(args->primID)) {
-            return false;
-        }
-        args->query->radius = self->radius();
-        return true;
+        const bool closer = self->add(args->primID);
+        args->query->radius = closer ? self->radius() : args->query->radius;
+        return closer;
     }
 };
 
-/// The parity directions, each the way that leaves the box sooner, the shortest way first: where leaves and grass lie in
-/// many layers, a ray meets fewer of them.
+/// The parity directions, each turned to leave the box sooner, the shortest first: of many layers of leaves or grass, a ray
+/// meets fewer.
 class WaysOut {
   public:
     WaysOut(const Bounds& box, const glm::vec3& p) {
@@ -256,9 +189,7 @@ class WaysOut {
             }
             ways_[i] = {std::min(ahead, behind), behind < ahead ? -along : along};
         }
-        // Of equals the first.
-        std::stable_sort(ways_.begin(), ways_.end(),
-                         [](const Way& a, const Way& b) { return a.length < b.length; });
+        std::ranges::stable_sort(ways_, {}, &Way::length);
     }
     [[nodiscard]] const glm::dvec3& operator[](std::size_t i) const { return ways_[i].direction; }
 
@@ -272,25 +203,34 @@ class WaysOut {
 
 }  // namespace
 
+LineSpan cornerSpan(const TriangleMesh& mesh, std::uint32_t triangle, const glm::dvec3& origin,
+                    const glm::dvec3& direction) {
+    LineSpan span{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    for (const glm::vec3& corner : cornersOf(mesh, triangle)) {
+        const double at = dot(glm::dvec3(corner) - origin, direction) / dot(direction, direction);
+        span = {std::min(span.begin, at), std::max(span.end, at)};
+    }
+    return span;
+}
+
 Result<MeshQuery> MeshQuery::build(PreparedMesh mesh) {
     const EmbreeMesh* const tree = RELIEF_TRY(mesh.tree());
     return MeshQuery(std::move(mesh), *tree);
 }
 
 bool MeshQuery::inside(const glm::vec3& p) const {
-    const glm::vec3& low = mesh().bounds.min;
-    const glm::vec3& high = mesh().bounds.max;
+    const Bounds& box = mesh().bounds;
     for (int i = 0; i < 3; ++i) {
         // Written so that NaN is outside.
-        if (!(p[i] >= low[i] && p[i] <= high[i])) {
+        if (!(p[i] >= box.min[i] && p[i] <= box.max[i])) {
             return false;
         }
     }
-    // Closed surfaces of a union give every ray the same answer, but for one that passes through an edge. Parity may be
-    // asked of open ones, and of meshes whose winding nobody has seen to.
+    // For closed surfaces of a union all rays agree but those through an edge. By parity, the mesh may be open or wound in
+    // any way.
     const std::size_t rays = !bodies_.empty() && shells_ ? 3 : kParityDirections.size();
     std::size_t votes[2] = {0, 0};
-    const WaysOut ways(mesh().bounds, p);
+    const WaysOut ways(box, p);
     for (std::size_t i = 0; votes[0] <= rays / 2 && votes[1] <= rays / 2; ++i) {
         ++votes[rayIsInside(p, ways[i]) ? 1 : 0];
     }
@@ -299,19 +239,25 @@ bool MeshQuery::inside(const glm::vec3& p) const {
 
 bool MeshQuery::rayIsInside(const glm::vec3& p, const glm::dvec3& direction) const {
     if (bodies_.empty() || shells_) {
-        CrossingCounter counter;
-        trace(*tree_, p, direction, counter);
-        return shells_ ? counter.winding != 0 : counter.count % 2 == 1;
+        unsigned count = 0;
+        int winding = 0;
+        trace(*tree_, p, direction, [&](const RTCFilterFunctionNArguments* args, unsigned i) {
+            ++count;
+            winding += sideOf(args, i);
+        });
+        return shells_ ? winding != 0 : count % 2 == 1;
     }
-    BodyCounter counter(bodies_);
-    trace(*tree_, p, direction, counter);
+    BodyCounter counter;
+    trace(*tree_, p, direction, [&](const RTCFilterFunctionNArguments* args, unsigned i) {
+        counter.cross(bodies_[RTCHitN_primID(args->hit, args->N, i)], sideOf(args, i));
+    });
     return counter.inside();
 }
 
 unsigned MeshQuery::crossings(const glm::vec3& p, const glm::dvec3& direction) const {
-    CrossingCounter counter;
-    trace(*tree_, p, direction, counter);
-    return counter.count;
+    unsigned count = 0;
+    trace(*tree_, p, direction, [&](const RTCFilterFunctionNArguments*, unsigned) { ++count; });
+    return count;
 }
 
 void MeshQuery::hitsAlong(const glm::dvec3& p, const glm::dvec3& direction,
@@ -321,21 +267,18 @@ void MeshQuery::hitsAlong(const glm::dvec3& p, const glm::dvec3& direction,
     if (!(box.begin <= box.end)) {
         return;
     }
-    // From outside of the box to outside of the box.
-    const double margin =
+    const double margin =  // beyond the box at both ends
         1e-3 * (box.end - box.begin) + 1e-3 * mesh().bounds.longestSide() / length(direction);
     const double begin = box.begin - margin;
     const glm::dvec3 start = p + begin * direction;
-    HitCollector collector;
+    const auto add = [&](const RTCFilterFunctionNArguments* args, unsigned i) {
+        const std::uint32_t triangle = RTCHitN_primID(args->hit, args->N, i);
+        hits.push_back({begin + depthAt(mesh(), triangle, start, direction), triangle});
+    };
     RTCRayHit query =
         rayHit(tree_->toLocal(start), direction * tree_->scale, static_cast<float>(box.end + margin - begin));
-    collector.intersect(tree_->scene.get(), query);
-    for (const std::uint32_t triangle : collector.triangles) {
-        hits.push_back({begin + depthAt(mesh(), triangle, start, direction), triangle});
-    }
-    std::sort(hits.begin(), hits.end(), [](const LineHit& a, const LineHit& b) {
-        return a.at < b.at || (a.at == b.at && a.triangle < b.triangle);
-    });
+    EveryHit(add).intersect(tree_->scene.get(), query);
+    std::ranges::sort(hits);
 }
 
 bool MeshQuery::spansInside(const glm::dvec3& p, const glm::dvec3& direction,
@@ -343,14 +286,15 @@ bool MeshQuery::spansInside(const glm::dvec3& p, const glm::dvec3& direction,
     spans.clear();
     std::vector<LineHit> hits;
     hitsAlong(p, direction, hits);
-    BodyCounter counter(bodies_);
+    BodyCounter counter;
+    const bool winds = shells_ || !bodies_.empty();
     bool inside = false;
     bool odd = false;
     for (const LineHit& hit : hits) {
-        const int way = dot(planeOf(mesh(), hit.triangle).normal, direction) < 0.0 ? -1 : 1;
-        counter.cross(shells_ || bodies_.empty() ? 0 : bodies_[hit.triangle], way);
+        const auto [body, side] = crossingOf(hit, direction);
+        counter.cross(body, side);
         odd = !odd;
-        const bool now = shells_ || !bodies_.empty() ? counter.inside() : odd;
+        const bool now = winds ? counter.inside() : odd;
         if (now && !inside) {
             spans.push_back({hit.at, hit.at});
         } else if (!now && inside) {
@@ -359,6 +303,11 @@ bool MeshQuery::spansInside(const glm::dvec3& p, const glm::dvec3& direction,
         inside = now;
     }
     return !inside;
+}
+
+MeshQuery::Crossing MeshQuery::crossingOf(const LineHit& hit, const glm::dvec3& direction) const {
+    return {shells_ || bodies_.empty() ? 0 : bodies_[hit.triangle],
+            dot(planeOf(mesh(), hit.triangle).normal, direction) < 0.0 ? -1 : 1};
 }
 
 ClosestPoint MeshQuery::closest(const glm::vec3& p, std::optional<std::uint32_t> hint) const {
@@ -395,8 +344,7 @@ bool MeshQuery::rayIsFree(const glm::dvec3& origin, const glm::dvec3& direction)
 }
 
 bool MeshQuery::isFree(const glm::dvec3& origin, const glm::dvec3& direction, float end) const {
-    RTCRay ray{};
-    setRay(ray, tree_->toLocal(origin), direction * tree_->scale, end);
+    RTCRay ray = rayHit(tree_->toLocal(origin), direction * tree_->scale, end).ray;
     RayQuery().occluded(tree_->scene.get(), ray);
     return ray.tfar >= 0.0F;
 }
@@ -404,40 +352,36 @@ bool MeshQuery::isFree(const glm::dvec3& origin, const glm::dvec3& direction, fl
 std::vector<LineGap> MeshQuery::gapsAlong(const glm::dvec3& origin, const glm::dvec3& direction) const {
     std::vector<LineHit> hits;
     hitsAlong(origin, direction, hits);
-    struct Crossing {
+    struct Place {
         double along;
-        std::uint32_t body;
-        int way;
+        Crossing crossing;
         std::uint32_t triangle;
+        auto operator<=>(const Place&) const = default;
     };
-    std::vector<Crossing> crossings;
+    std::vector<Place> places;
     for (const LineHit& hit : hits) {
-        const int way = dot(planeOf(mesh(), hit.triangle).normal, direction) < 0.0 ? -1 : 1;
-        const std::uint32_t body = shells_ || bodies_.empty() ? 0 : bodies_[hit.triangle];
-        crossings.push_back({hit.at, body, way, hit.triangle});
+        places.push_back({hit.at, crossingOf(hit, direction), hit.triangle});
     }
-    std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
-        return std::tie(a.along, a.body, a.way, a.triangle) < std::tie(b.along, b.body, b.way, b.triangle);
-    });
+    std::ranges::sort(places);
     const double tie = 1e-7 * mesh().bounds.longestSide() / length(direction);
     std::vector<LineGap> gaps;
-    BodyCounter counter(bodies_);
+    BodyCounter counter;
     const bool winds = shells_ || !bodies_.empty();
     bool odd = false;
-    for (std::size_t i = 0; i < crossings.size(); ++i) {
-        const Crossing& here = crossings[i];
-        // Two triangles of one body that are crossed the same way at the same place share an edge.
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const Place& here = places[i];
+        // Two triangles of one body that are crossed to the same side at one place share an edge.
         bool again = false;
-        for (std::size_t j = i; j > 0 && here.along - crossings[j - 1].along <= tie && !again; --j) {
-            again = crossings[j - 1].body == here.body && crossings[j - 1].way == here.way;
+        for (std::size_t j = i; j > 0 && here.along - places[j - 1].along <= tie && !again; --j) {
+            again = places[j - 1].crossing == here.crossing;
         }
         if (!again && winds) {
-            counter.cross(here.body, here.way);
+            counter.cross(here.crossing.body, here.crossing.side);
         }
         odd = odd != !again;
         const bool free = winds ? !counter.inside() : !odd;
-        if (free && i + 1 < crossings.size() && crossings[i + 1].along - here.along > tie) {
-            gaps.push_back({here.along, crossings[i + 1].along, here.triangle, crossings[i + 1].triangle});
+        if (free && i + 1 < places.size() && places[i + 1].along - here.along > tie) {
+            gaps.push_back({here.along, places[i + 1].along, here.triangle, places[i + 1].triangle});
         }
     }
     return gaps;

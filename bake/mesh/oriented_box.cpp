@@ -1,6 +1,5 @@
-// CGAL turns boxes by libm's functions, whose bits vary with the processor, and its search would end
-// elsewhere. In this file their names are those of portable_math.h; before anything else, as a name is given
-// where it is first met.
+// CGAL rotates boxes by libm's functions, whose bits vary with the processor, and with them the result of its search. This
+// header, included first, replaces them by those of portable_math.h.
 #include "formats/base/portable_libm.h"
 
 #include "bake/mesh/oriented_box.h"
@@ -8,10 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <utility>
 
-// What CGAL would assert is checked here beforehand, or after it; its own assertions would print.
+// CGAL's assertions would print; what they check is checked here before or after the call.
 #ifndef CGAL_NDEBUG
 #define CGAL_NDEBUG 1
 #endif
@@ -23,9 +23,9 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-/// Of the points, in units of their longest side: below it they count as a plane.
+/// Flatter points count as a plane; in units of their longest side.
 constexpr double kThicknessMin = 1e-5;
-/// Far above the rounding of single-precision vertices, far below what a texel can tell.
+/// Far above the rounding of float vertices, far below what a texel resolves.
 constexpr double kRounding = 1e-6;
 
 /// Directions of the octahedron's lattice: spread over the sphere, and the same bits everywhere.
@@ -46,7 +46,7 @@ std::vector<glm::dvec3> fixedDirections() {
     return directions;
 }
 
-/// Centred and scaled to a longest side of 1. Empty: the points are (nearly) one, or not finite.
+/// Centred and scaled to a longest side of 1. Empty if the points coincide or are not finite.
 std::vector<glm::dvec3> normalizedPoints(std::span<const glm::dvec3> points) {
     if (points.empty()) {
         return {};
@@ -69,13 +69,10 @@ std::vector<glm::dvec3> normalizedPoints(std::span<const glm::dvec3> points) {
     return scaled;
 }
 
-/// Whether the points span a volume: from one point to the farthest, to the farthest from their line, to the
-/// farthest from their plane.
-bool haveVolume(const std::vector<glm::dvec3>& points) {
+/// From one point to the farthest, to the farthest from their line, to the farthest from their plane.
+bool spanVolume(const std::vector<glm::dvec3>& points) {
     const auto farthest = [&](const auto& distance) {
-        return *std::max_element(points.begin(), points.end(), [&](const glm::dvec3& a, const glm::dvec3& b) {
-            return distance(a) < distance(b);
-        });
+        return *std::ranges::max_element(points, {}, distance);
     };
     const glm::dvec3 origin = points.front();
     const glm::dvec3 line = farthest([&](const glm::dvec3& p) { return glm::length(p - origin); }) - origin;
@@ -90,9 +87,8 @@ bool haveVolume(const std::vector<glm::dvec3>& points) {
 }
 
 double extent(const std::vector<glm::dvec3>& points, const glm::dvec3& axis) {
-    const auto [low, high] = std::minmax_element(
-        points.begin(), points.end(),
-        [&](const glm::dvec3& a, const glm::dvec3& b) { return glm::dot(a, axis) < glm::dot(b, axis); });
+    const auto [low, high] =
+        std::ranges::minmax_element(points, {}, [&](const glm::dvec3& p) { return glm::dot(p, axis); });
     return glm::dot(*high - *low, axis);
 }
 
@@ -103,7 +99,7 @@ std::vector<glm::dvec3> extremeVertices(const VertexBlocks& vertices) {
     for (const glm::dvec3& direction : fixedDirections()) {
         farthest.push_back(vertices.farthest(direction));
     }
-    std::sort(farthest.begin(), farthest.end());
+    std::ranges::sort(farthest);
     farthest.erase(std::unique(farthest.begin(), farthest.end()), farthest.end());
     std::vector<glm::dvec3> points;
     for (const std::size_t i : farthest) {
@@ -114,7 +110,7 @@ std::vector<glm::dvec3> extremeVertices(const VertexBlocks& vertices) {
 
 std::optional<std::array<glm::dvec3, 3>> orientedBoxAxes(std::span<const glm::dvec3> points) {
     const std::vector<glm::dvec3> scaled = normalizedPoints(points);
-    if (scaled.size() < 4 || !haveVolume(scaled)) {
+    if (scaled.size() < 4 || !spanVolume(scaled)) {
         return std::nullopt;
     }
     std::vector<Kernel::Point_3> input;
@@ -134,15 +130,13 @@ std::optional<std::array<glm::dvec3, 3>> orientedBoxAxes(std::span<const glm::dv
             const double component = to_box.m(i, k);
             axis[k] = std::abs(component) < kRounding ? 0.0 : component;
         }
-        // One of the two opposite axes: the one whose largest component is positive.
+        // Of two opposite axes, the one whose largest component is positive.
         const glm::dvec3 size = glm::abs(axis);
         const int largest = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
         axis *= axis[largest] < 0.0 ? -1.0 : 1.0;
         axis /= glm::length(axis);
     }
-    std::stable_sort(axes.begin(), axes.end(), [&](const glm::dvec3& a, const glm::dvec3& b) {
-        return extent(scaled, a) > extent(scaled, b);
-    });
+    std::ranges::stable_sort(axes, std::greater<>(), [&](const glm::dvec3& a) { return extent(scaled, a); });
     if (glm::dot(glm::cross(axes[0], axes[1]), axes[2]) < 0.0) {
         axes[2] = -axes[2];
     }

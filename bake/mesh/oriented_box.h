@@ -1,6 +1,5 @@
-// The box of (nearly) the least volume round a mesh, turned as it likes. Its axes are those that many parts
-// are built along, however they lie in their file. By CGAL's oriented_bounding_box (Chang, Gorissen and
-// Melchior 2011).
+// The oriented bounding box of (nearly) least volume, by CGAL's oriented_bounding_box (Chang, Gorissen and Melchior 2011).
+// Many parts are built along its axes, however they lie in their file.
 #pragma once
 
 #include <array>
@@ -13,22 +12,19 @@
 
 namespace relief {
 
-/// The vertices that lie farthest along 146 fixed directions, each once, in the order of their indices: few,
-/// whatever the mesh, and among them the corners of all that has flat sides. Object space.
+/// The distinct vertices farthest along 146 fixed directions, by index: few for any mesh, and among them the corners of
+/// whatever has flat sides. Object space.
 [[nodiscard]] std::vector<glm::dvec3> extremeVertices(const VertexBlocks& vertices);
 
-/// The axes of the box round these points: right-handed, of unit length to rounding, the longest side's
-/// first. Components that differ from 0 by rounding alone are 0. nullopt: the points lie (nearly) in a plane,
-/// where no box has the least volume, or CGAL gave up. The same points give the same bits: its random numbers
-/// start from a fixed seed, and it runs on one thread.
+/// The axes of the box round these points: right-handed, of unit length to rounding, the longest side's first. Components
+/// that differ from 0 by rounding alone are 0. The same points give the same bits: fixed seed, one thread.
+/// \return nullopt for points (nearly) in a plane, where the least volume is undefined, or where CGAL gave up.
 [[nodiscard]] std::optional<std::array<glm::dvec3, 3>> orientedBoxAxes(std::span<const glm::dvec3> points);
 
-/// Of the extreme vertices.
 struct OrientedBox {
-    std::vector<glm::dvec3> corners;  ///< those vertices
-    std::array<glm::dvec3, 3> axes;
+    std::vector<glm::dvec3> corners;  ///< extremeVertices
+    std::array<glm::dvec3, 3> axes;   ///< orientedBoxAxes of them
 };
-/// nullopt: as above.
 [[nodiscard]] std::optional<OrientedBox> orientedBox(const VertexBlocks& vertices);
 
 }  // namespace relief

@@ -1,12 +1,10 @@
 #include "bake/mesh/prepared_mesh.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
 
 #include "bake/mesh/embree_mesh.h"
-#include "bake/mesh/triangle_plane.h"
 
 namespace relief {
 
@@ -24,7 +22,10 @@ struct PreparedMesh::State {
     std::optional<EmbreeMesh> tree;
     std::vector<std::uint32_t> bodies;
 
-    void learnFrom(const MeshEdges& from) {
+    /// Computes what depends on the edges, without keeping edges of its own.
+    void learn() {
+        const MeshEdges own = edges ? MeshEdges{} : edgesOf(mesh);
+        const MeshEdges& from = edges ? *edges : own;
         odd_edges = relief::oddEdges(from);
         several_shells = odd_edges->empty() && isSeveralShells(from);
     }
@@ -37,36 +38,32 @@ const TriangleMesh& PreparedMesh::operator*() const {
 }
 
 const MeshEdges& PreparedMesh::edges() const {
-    if (!state_->edges) {
-        state_->edges = edgesOf(state_->mesh);
-    }
-    return *state_->edges;
+    return state_->edges ? *state_->edges : state_->edges.emplace(edgesOf(state_->mesh));
 }
 
 void PreparedMesh::freeEdges() const {
     if (state_->edges) {
-        state_->learnFrom(*state_->edges);
+        state_->learn();
         state_->edges.reset();
     }
 }
 
 const std::vector<OddEdge>& PreparedMesh::oddEdges() const {
     if (!state_->odd_edges) {
-        state_->learnFrom(state_->edges ? *state_->edges : edgesOf(state_->mesh));
+        state_->learn();
     }
     return *state_->odd_edges;
 }
 
 bool PreparedMesh::woundShells() const {
     if (!state_->bodies.empty()) {
-        return std::all_of(state_->bodies.begin(), state_->bodies.end(),
-                           [](std::uint32_t body) { return body == 0; });
+        return std::ranges::all_of(state_->bodies, [](std::uint32_t body) { return body == 0; });
     }
     if (!closed() || !state_->wound_outwards) {
         return false;
     }
     if (!state_->several_shells) {
-        state_->learnFrom(state_->edges ? *state_->edges : edgesOf(state_->mesh));
+        state_->learn();
     }
     return *state_->several_shells;
 }
@@ -83,32 +80,26 @@ double PreparedMesh::orientation() const {
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
         const TrianglePlane plane = planeOf(mesh, i);
         area_vector += plane.normal;
-        area += std::sqrt(dot(plane.normal, plane.normal));
+        area += length(plane.normal);
         volume += dot(plane.point - center, plane.normal);
     }
-    const bool closed = std::sqrt(dot(area_vector, area_vector)) <= 1e-5 * area;
+    const bool closed = length(area_vector) <= 1e-5 * area;
     state_->orientation = closed && volume < 0.0 ? -1.0 : 1.0;
     return *state_->orientation;
 }
 
 const AreaTable& PreparedMesh::areas() const {
-    if (!state_->areas) {
-        state_->areas.emplace(state_->mesh);
-    }
-    return *state_->areas;
+    return state_->areas ? *state_->areas : state_->areas.emplace(state_->mesh);
 }
 
 const VertexBlocks& PreparedMesh::vertexBlocks() const {
-    if (!state_->vertex_blocks) {
-        state_->vertex_blocks.emplace(state_->mesh.positions);
-    }
-    return *state_->vertex_blocks;
+    return state_->vertex_blocks ? *state_->vertex_blocks
+                                 : state_->vertex_blocks.emplace(state_->mesh.positions);
 }
 
 Result<const EmbreeMesh*> PreparedMesh::tree() const {
     if (!state_->tree) {
-        EmbreeMesh tree = RELIEF_TRY(EmbreeMesh::build(state_->mesh));
-        state_->tree = std::move(tree);
+        state_->tree = RELIEF_TRY(EmbreeMesh::build(state_->mesh));
     }
     return &*state_->tree;
 }
@@ -117,7 +108,7 @@ PreparedMesh PreparedMesh::woundOutwards(const std::vector<bool>& turn) && {
     PreparedMesh wound = state_.use_count() == 1 ? std::move(*this) : PreparedMesh(TriangleMesh(**this));
     State& state = *wound.state_;
     state.wound_outwards = true;
-    if (std::find(turn.begin(), turn.end(), true) == turn.end()) {
+    if (std::ranges::find(turn, true) == turn.end()) {
         return wound;
     }
     for (std::size_t i = 0; i < turn.size(); ++i) {
@@ -126,7 +117,7 @@ PreparedMesh PreparedMesh::woundOutwards(const std::vector<bool>& turn) && {
         }
     }
     state.edges.reset();
-    // Odd edges run as most of their triangles do. A closed mesh has none, however it is wound.
+    // The direction of odd edges follows the winding; that a mesh has none does not.
     if (state.odd_edges && !state.odd_edges->empty()) {
         state.odd_edges.reset();
     }

@@ -1,5 +1,4 @@
-// A mesh, and what all stages of a bake want to know of it: how its edges meet, which way it is wound, and the
-// tree that rays search.
+// A mesh with its derived data that all stages of a bake share: edges, winding, and the tree for rays.
 #pragma once
 
 #include <memory>
@@ -15,48 +14,46 @@ namespace relief {
 
 struct EmbreeMesh;
 
-/// A handle on a mesh that does not change any more. Copies are cheap and share what has been worked out.
-/// Each answer is worked out when it is first asked for, and only once. One thread at a time may ask for the
-/// first time: MeshQuery and RayScene ask for all that they need when they are made, and then serve all
-/// threads.
+/// A handle on an immutable mesh. Copies are cheap and share the derived data, each of which is computed once, on first
+/// use. First uses are not thread-safe: MeshQuery and RayScene trigger all that they need when they are built, and then
+/// serve all threads.
 class PreparedMesh {
   public:
-    /// Implicit, so that a mesh alone can be passed where one question is asked of it. Move large meshes in.
+    /// Implicit, so that a plain mesh can be passed for a single query. Move large meshes in.
     PreparedMesh(TriangleMesh mesh);
 
     [[nodiscard]] const TriangleMesh& operator*() const;
     [[nodiscard]] const TriangleMesh* operator->() const { return &**this; }
 
     [[nodiscard]] const MeshEdges& edges() const;
-    /// Edges take more memory than the mesh. What they say of closed() and woundShells() is kept.
+    /// Edges take more memory than the mesh. closed() and woundShells() are kept.
     void freeEdges() const;
     [[nodiscard]] const std::vector<OddEdge>& oddEdges() const;
     /// No odd edge: any ray from a point meets the surface as often, modulo 2, as any other.
     [[nodiscard]] bool closed() const { return oddEdges().empty(); }
-    /// isSeveralShells() of a closed mesh that windOutwards has seen to: how often the surface winds round a
-    /// point, not the parity of a ray's crossings, says whether the point is inside.
+    /// isSeveralShells() of a closed mesh after windOutwards: the winding number of a point, not the parity of a ray's
+    /// crossings, decides if it is inside.
     [[nodiscard]] bool woundShells() const;
-    /// −1 if the mesh is closed and its triangles are clockwise seen from outside (it is inside out), else 1.
-    /// Closed is judged by the triangles' areas, which sum up to zero as vectors, and the side by the sign of
-    /// the enclosed volume.
+    /// −1 if the mesh is closed and inside out (its triangles are clockwise seen from outside), else 1. Closed means that
+    /// the area vectors of the triangles sum to zero; the sign is that of the enclosed volume.
     [[nodiscard]] double orientation() const;
     [[nodiscard]] const AreaTable& areas() const;
-    /// Of its positions. Lives as long as a copy of this handle.
+    /// Of the positions. Lives as long as a copy of this handle.
     [[nodiscard]] const VertexBlocks& vertexBlocks() const;
     /// Lives as long as a copy of this handle. Errors: those of EmbreeMesh::build.
     [[nodiscard]] Result<const EmbreeMesh*> tree() const;
 
-    /// The mesh as windOutwards leaves it. What no turn can change is kept; without a turn, all is.
-    /// \param turn  for each triangle, whether its second and third corner change places.
+    /// The mesh as windOutwards leaves it. Derived data that turns cannot change is kept; without a turn, all is.
+    /// \param turn  per triangle: swap its second and third corner.
     [[nodiscard]] PreparedMesh woundOutwards(const std::vector<bool>& turn) &&;
-    /// Parts that each enclose something; inside is what lies in any of them.
-    /// \param bodies  for each triangle: 0 if how often those of body 0 wind round a point decides, outwards all; else
-    ///     a number whose triangles decide by the parity of a ray's crossings.
+    /// Parts that each enclose a volume; the inside is their union.
+    /// \param bodies  per triangle: 0 for those, wound outwards, whose winding number decides; else the number of a body
+    ///     that decides by the parity of a ray's crossings.
     [[nodiscard]] static PreparedMesh unionOf(TriangleMesh mesh, std::vector<std::uint32_t> bodies);
-    /// As unionOf has them; empty for other meshes.
+    /// As passed to unionOf; empty for other meshes.
     [[nodiscard]] const std::vector<std::uint32_t>& bodies() const;
 
-    /// Another mesh, with caps, that is wound as this one is.
+    /// Another mesh, with caps, whose winding is as trusted as this one's.
     [[nodiscard]] PreparedMesh capped(TriangleMesh mesh) const;
 
   private:

@@ -15,13 +15,11 @@ double halfArea(const Bounds& box) {
 }  // namespace
 
 double boxesOnLine(const TriangleMesh& mesh) {
-    // Of the lines through a convex body, those through another within it are as many as its share of the area (Cauchy).
+    // Cauchy: a line through a convex body meets another within it with the probability of their ratio of areas.
     double sum = 0.0;
-    for (const glm::uvec3& t : mesh.triangles) {
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
         Bounds box;
-        for (const std::uint32_t corner : {t.x, t.y, t.z}) {
-            box.add(mesh.positions[corner]);
-        }
+        addTriangle(box, mesh, i);
         sum += halfArea(box);
     }
     const double whole = halfArea(mesh.bounds);

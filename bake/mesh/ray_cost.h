@@ -1,17 +1,16 @@
-// What a ray through a mesh costs.
+// The cost of a ray through a mesh.
 #pragma once
 
 #include "bake/mesh/mesh.h"
 
 namespace relief {
 
-/// How many boxes of triangles a straight line through the mesh's box meets in the mean: about so many triangles are asked
-/// whether a ray meets them. Of meshes as artists make them it is 2 to 15, of forty layers of walls 70; where triangles are
-/// long and thin and their boxes lie in each other, as in a fan of 20,000, it is 4,000, in whatever tree they are.
+/// Mean number of triangles' boxes on a line through the mesh's box: about as many triangles are tested per ray. Artists'
+/// meshes have 2 to 15, forty layers of walls 70, and a fan of 20,000 long thin triangles 4,000, whatever the tree.
 [[nodiscard]] double boxesOnLine(const TriangleMesh& mesh);
 
-/// Of the rays that a stage asks of an ordinary mesh, the share that is affordable here: 1 up to 32 boxes on a line, and
-/// then so little that all rays together cost the same.
+/// The affordable share of the rays that an ordinary mesh gets: 1 up to 32 boxes on a line, then inversely proportional, so
+/// that the total cost stays the same.
 [[nodiscard]] double affordableRays(const TriangleMesh& mesh);
 
 }  // namespace relief

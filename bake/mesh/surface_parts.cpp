@@ -6,12 +6,10 @@
 #include <map>
 #include <numeric>
 
-#include "bake/mesh/triangle_plane.h"
-
 namespace relief {
 namespace {
 
-/// The most area that strays have, and the most that is left of the box's longest side without them.
+/// Limits of the strays' share of the area, and of the box's longest side without them.
 constexpr double kStrayArea = 0.01;
 constexpr double kStrayRest = 0.1;
 
@@ -22,15 +20,13 @@ double distanceTo(const glm::dvec3& center, const Bounds& bounds) {
                      std::abs(high.z)});
 }
 
-/// The middle of the area along each axis: strays do not move it.
+/// The area-weighted median along each axis, which strays do not move.
 glm::dvec3 medianOf(const std::vector<SurfacePart>& parts, double area) {
     glm::dvec3 median(0.0);
     std::vector<std::size_t> order(parts.size());
     for (int axis = 0; axis < 3; ++axis) {
         std::iota(order.begin(), order.end(), std::size_t{0});
-        std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-            return parts[a].bounds.center()[axis] < parts[b].bounds.center()[axis];
-        });
+        std::ranges::stable_sort(order, {}, [&](std::size_t i) { return parts[i].bounds.center()[axis]; });
         double sum = 0.0;
         for (const std::size_t i : order) {
             sum += parts[i].area;
@@ -70,12 +66,8 @@ void SurfacePartsBuilder::add(const std::vector<std::uint32_t>& triangles, PartK
             }
         }
         SurfacePart& part = parts_[found->second];
-        const glm::uvec3& t = mesh_.triangles[i];
-        for (const std::uint32_t corner : {t.x, t.y, t.z}) {
-            part.bounds.add(mesh_.positions[corner]);
-        }
-        const glm::dvec3 normal = planeOf(mesh_, i).normal;
-        part.area += 0.5 * std::sqrt(dot(normal, normal));
+        addTriangle(part.bounds, mesh_, i);
+        part.area += 0.5 * length(planeOf(mesh_, i).normal);
         ++part.triangles;
         part_of_[i] = found->second;
     }
@@ -86,8 +78,7 @@ Strays straysOf(const std::vector<SurfacePart>& parts) {
     Bounds whole;
     for (const SurfacePart& part : parts) {
         area += part.area;
-        whole.add(part.bounds.min);
-        whole.add(part.bounds.max);
+        addBounds(whole, part.bounds);
     }
     Strays strays;
     if (parts.size() < 2) {
@@ -96,10 +87,8 @@ Strays straysOf(const std::vector<SurfacePart>& parts) {
     const glm::dvec3 median = medianOf(parts, area);
     std::vector<std::uint32_t> order(parts.size());
     std::iota(order.begin(), order.end(), 0U);
-    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return distanceTo(median, parts[a].bounds) < distanceTo(median, parts[b].bounds);
-    });
-    // The farthest parts of a hundredth of the area; they are strays from the first on whose loss shrinks the box.
+    std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return distanceTo(median, parts[i].bounds); });
+    // The farthest hundredth of the area, from the first part on whose loss shrinks the box.
     double kept = 0.0;
     Bounds rest;
     for (std::size_t k = 0; k < order.size(); ++k) {
@@ -108,13 +97,12 @@ Strays straysOf(const std::vector<SurfacePart>& parts) {
         if (may_go && double{rest.longestSide()} <= kStrayRest * double{whole.longestSide()} &&
             distanceTo(median, part.bounds) > 2.0 * double{rest.longestSide()}) {
             strays.parts.assign(order.begin() + static_cast<std::ptrdiff_t>(k), order.end());
-            std::sort(strays.parts.begin(), strays.parts.end());
+            std::ranges::sort(strays.parts);
             strays.rest = rest;
             return strays;
         }
         kept += part.area;
-        rest.add(part.bounds.min);
-        rest.add(part.bounds.max);
+        addBounds(rest, part.bounds);
     }
     return strays;
 }

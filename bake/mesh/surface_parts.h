@@ -1,5 +1,4 @@
-// The parts that a mesh consists of: pieces that hang together and are of one node and one material. Each can be judged by
-// itself and by its own size, however little of the mesh it is.
+// The parts of a mesh: connected pieces of one node and one material, each judged by itself and its own size.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +12,7 @@ namespace relief {
 
 enum class PartKind : std::uint8_t { kSolid, kSolidWithHoles, kSheet, kTerrain, kSurface };
 
-/// "solid", "solid with holes", "sheet", "terrain"; "surface": as it is, with the inside left to the parity of rays.
+/// "solid", "solid with holes", "sheet", "terrain"; "surface": unchanged, its inside by the parity of rays.
 [[nodiscard]] const char* partKindName(PartKind kind);
 
 struct SurfacePart {
@@ -21,19 +20,19 @@ struct SurfacePart {
     std::uint32_t node_index = 0;  ///< SurfaceName
     std::string node;              ///< "" without a name
     std::string material;          ///< "" without a name
-    Bounds bounds;                 ///< of its triangles as they came, object units
+    Bounds bounds;                 ///< of its triangles in the source, object units
     double area = 0.0;             ///< of the same
-    std::uint64_t triangles = 0;   ///< of the same
+    std::uint64_t triangles = 0;   ///< the same
     double thickness = 0.0;        ///< of the shell that stands for a sheet, object units; else 0
-    /// Of that thickness, what is right: all that was asked for; of a default, a tenth of the part's longest side.
-    double right_thickness = 0.0;
+    double right_thickness =
+        0.0;  ///< of it, all that was requested; of a default at most a tenth of the longest side
 
     [[nodiscard]] double size() const { return static_cast<double>(bounds.longestSide()); }
 };
 
 struct SurfaceParts {
     std::vector<SurfacePart> parts;  ///< in the order of their first triangles
-    /// For each triangle of the solid that is baked the part that it stands for; kNoLabel for caps over holes.
+    /// Per triangle of the solid that is baked, its part; kNoLabel for caps over holes.
     std::vector<std::uint32_t> part_of;
 };
 
@@ -42,9 +41,9 @@ class SurfacePartsBuilder {
   public:
     /// \param mesh  borrowed.
     explicit SurfacePartsBuilder(const TriangleMesh& mesh);
-    /// Triangles that hang together; those of another label are another part.
+    /// Connected triangles; each label among them is a part.
     void add(const std::vector<std::uint32_t>& triangles, PartKind kind);
-    /// For each triangle of the mesh; kNoLabel where none was added.
+    /// Per triangle of the mesh; kNoLabel where none was added.
     [[nodiscard]] const std::vector<std::uint32_t>& partOf() const { return part_of_; }
     [[nodiscard]] std::vector<SurfacePart>& parts() { return parts_; }
 
@@ -54,13 +53,12 @@ class SurfacePartsBuilder {
     std::vector<std::uint32_t> part_of_;
 };
 
-/// Parts that lie so far from the others that the box of all is mostly empty: a vertex gone astray, a forgotten helper.
+/// Parts so far from the others that the common box is mostly empty: a stray vertex, a forgotten helper object.
 struct Strays {
-    std::vector<std::uint32_t> parts;  ///< indices, ascending; empty: there are none
+    std::vector<std::uint32_t> parts;  ///< indices, ascending
     Bounds rest;                       ///< of all others
 };
-/// A part is a stray if all such parts together hold at most a hundredth of the area, and without them the box's longest
-/// side is at most a tenth.
+/// All strays together have at most a hundredth of the area, and without them the box's longest side is at most a tenth.
 [[nodiscard]] Strays straysOf(const std::vector<SurfacePart>& parts);
 
 }  // namespace relief

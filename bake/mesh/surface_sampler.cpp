@@ -4,23 +4,20 @@
 
 #include "bake/mesh/inside.h"
 #include "bake/mesh/ray_cost.h"
-#include "bake/mesh/triangle_plane.h"
 
 namespace relief {
 namespace {
 
-/// Points that are asked for by rays before a mesh's winding is trusted.
+/// Points classified by rays before a mesh's winding is trusted.
 constexpr std::size_t kTrials = 512;
-/// Crossings that may be counted for all points together: where leaves lie in dozens of layers, fewer points are drawn, but
-/// not less than so many. A palm of 40,000 triangles is as wrong with a quarter of them.
+/// Crossings for all points together: where leaves lie in dozens of layers, fewer points are drawn, down to kPointsMin.
 constexpr double kCrossingsMax = 1e7;
 constexpr double kPointsMin = 20'000.0;
-/// Of the points, where rays cost more than those of ordinary meshes.
+/// The least share of the points where rays are expensive.
 constexpr double kShareMin = 0.05;
-/// Rays that inside() asks, about.
-constexpr double kRaysAsked = 4.0;
-/// Points per task.
-constexpr std::size_t kBlock = 1024;
+/// Rays per inside(), about.
+constexpr double kRaysPerQuery = 4.0;
+constexpr std::size_t kBlock = 1024;  // points per task
 
 struct NearDraw {
     SurfaceDraw surface;
@@ -38,12 +35,10 @@ SurfaceDraw drawOnSurface(const TriangleMesh& mesh, const AreaTable& areas, doub
 SurfaceDraw drawOnTriangle(const TriangleMesh& mesh, std::uint32_t triangle, MersenneRandom& random) {
     const double root = std::sqrt(random.uniform());
     const double along = random.uniform();
-    const glm::uvec3& t = mesh.triangles[triangle];
-    const glm::dvec3 normal = planeOf(mesh, triangle).normal;
-    return {(1.0 - root) * glm::dvec3(mesh.positions[t.x]) +
-                root * (1.0 - along) * glm::dvec3(mesh.positions[t.y]) +
-                root * along * glm::dvec3(mesh.positions[t.z]),
-            normal / std::sqrt(dot(normal, normal))};
+    const auto corners = cornersOf(mesh, triangle);
+    return {(1.0 - root) * glm::dvec3(corners[0]) + root * (1.0 - along) * glm::dvec3(corners[1]) +
+                root * along * glm::dvec3(corners[2]),
+            unitNormal(mesh, triangle)};
 }
 
 std::vector<LabelledPoint> drawNearSurface(const MeshQuery& query, std::size_t count, double sigma,
@@ -51,8 +46,8 @@ std::vector<LabelledPoint> drawNearSurface(const MeshQuery& query, std::size_t c
     const TriangleMesh& mesh = query.mesh();
     const AreaTable& areas = query.prepared().areas();
     const double winding = query.prepared().orientation();
-    const double clear = 1e-5 * mesh.bounds.longestSide();  // of the surface itself, for rays
-    // `triangle` is that of the point before, and becomes this one's.
+    const double clear = 1e-5 * mesh.bounds.longestSide();  // from the surface, for rays
+    // `triangle`: in, that of the previous point; out, that of this one.
     const auto draw = [&](std::size_t i, std::size_t of, MersenneRandom& random, std::uint32_t& triangle) {
         triangle =
             areas.triangleAt((static_cast<double>(i) + random.uniform()) / static_cast<double>(of), triangle);
@@ -60,7 +55,7 @@ std::vector<LabelledPoint> drawNearSurface(const MeshQuery& query, std::size_t c
         surface.normal *= winding;
         return NearDraw{surface, sigma * random.normal()};
     };
-    // Beside a surface that no other cuts off, the side says it; elsewhere rays do.
+    // No other surface between the point and its own: the side of that one decides. Elsewhere rays do.
     const auto isFree = [&](const NearDraw& near) {
         const double sign = near.offset < 0.0 ? -1.0 : 1.0;
         const glm::dvec3 start = near.surface.position + sign * clear * near.surface.normal;
@@ -70,8 +65,8 @@ std::vector<LabelledPoint> drawNearSurface(const MeshQuery& query, std::size_t c
         return isFree(near) ? near.offset < 0.0 : query.inside(glm::vec3(near.position()));
     };
     bool trusted = query.watertight();
-    double crossings = 0.0;  // of a ray in the mean
-    double asked = 0.0;      // share of the points that rays are asked about
+    double crossings = 0.0;  // per ray
+    double asked = 0.0;      // share of the points that need rays
     MersenneRandom trial(seed);
     std::uint32_t trial_triangle = 0;
     for (std::size_t i = 0; i < kTrials; ++i) {
@@ -90,21 +85,20 @@ std::vector<LabelledPoint> drawNearSurface(const MeshQuery& query, std::size_t c
     }
     const double share = std::max(affordableRays(mesh), kShareMin);
     count = static_cast<std::size_t>(share * static_cast<double>(count));
-    const double affordable = kCrossingsMax / (kRaysAsked * std::max(crossings * asked, 1.0));
-    // Halved until they can be afforded: how often a ray through an edge meets the surface may differ among processors,
-    // and moves no point then.
+    const double affordable = kCrossingsMax / (kRaysPerQuery * std::max(crossings * asked, 1.0));
+    // Halved, not scaled: the crossings of a ray through an edge may differ among processors, and must not move points.
     while (static_cast<double>(count) > std::max(2.0 * share * kPointsMin, affordable)) {
         count /= 2;
     }
     std::vector<LabelledPoint> points(count);
     tbb::parallel_for(std::size_t{0}, (count + kBlock - 1) / kBlock, [&](std::size_t block) {
-        MersenneRandom random(seed * 0x9e3779b97f4a7c15ULL + block);
+        MersenneRandom random(seed, block);
         std::uint32_t triangle = 0;
         for (std::size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i) {
             const NearDraw near = draw(i, count, random, triangle);
             const glm::vec3 position(near.position());
             const bool inside = trusted ? insideByWinding(near) : query.inside(position);
-            // Without trust in the winding the normal points to the free side of its own surface.
+            // Without a trusted winding the normal points to the free side of its surface.
             const bool turned = !trusted && inside != (near.offset < 0.0);
             points[i] = {position, glm::vec3(turned ? -near.surface.normal : near.surface.normal), inside};
         }

@@ -1,5 +1,5 @@
-// The plane of a triangle, in double precision: the one source of depths and normals, so that both are the
-// same on every processor, whatever the ray tracer's own arithmetic is.
+// The plane of a triangle in double precision: the one source of depths and normals, so that both are the same on every
+// processor, independent of the ray tracer's arithmetic.
 #pragma once
 
 #include <cmath>
@@ -19,6 +19,9 @@ namespace relief {
 [[nodiscard]] inline double length(const glm::dvec3& v) {
     return std::sqrt(dot(v, v));
 }
+[[nodiscard]] inline glm::dvec3 unit(const glm::dvec3& v) {
+    return v / length(v);
+}
 
 struct TrianglePlane {
     glm::dvec3 point;  ///< first corner, object space
@@ -33,7 +36,7 @@ struct TrianglePlane {
     return planeOf(positions[t.x], positions[t.y], positions[t.z]);
 }
 
-/// Of corners that need not span a plane: whether they do, so that a float normal can be computed.
+/// The corners span a plane, so that a float normal can be computed.
 [[nodiscard]] inline bool hasArea(const TrianglePlane& plane) {
     return plane.normal != glm::dvec3(0.0);
 }

@@ -2,18 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 
-#include "bake/mesh/triangle_plane.h"
+#include "bake/mesh/loops.h"
+#include "bake/mesh/mesh.h"
 
 namespace relief {
 namespace {
 
-/// Cells along an axis, at most: of a surface some hundreds of them hold vertices.
+/// Cells along an axis, at most; a surface occupies some hundreds of the cube.
 constexpr std::uint32_t kCellsMax = 16;
 constexpr double kVerticesPerCell = 4.0;
 
-/// The corner that reaches farthest along a direction.
 glm::dvec3 cornerAlong(const Bounds& box, const glm::dvec3& direction) {
     return {direction.x < 0.0 ? box.min.x : box.max.x, direction.y < 0.0 ? box.min.y : box.max.y,
             direction.z < 0.0 ? box.min.z : box.max.z};
@@ -21,13 +20,8 @@ glm::dvec3 cornerAlong(const Bounds& box, const glm::dvec3& direction) {
 
 }  // namespace
 
-VertexBlocks::VertexBlocks(std::span<const glm::vec3> positions)
-    : positions_(positions), order_(positions.size()) {
-    Bounds all{positions[0], positions[0]};
-    for (const glm::vec3& p : positions) {
-        all.min = glm::min(all.min, p);
-        all.max = glm::max(all.max, p);
-    }
+VertexBlocks::VertexBlocks(std::span<const glm::vec3> positions) : positions_(positions) {
+    const Bounds all = boundsOf(positions);
     const auto cells = static_cast<std::uint32_t>(std::clamp(
         std::cbrt(static_cast<double>(positions.size()) / kVerticesPerCell), 1.0, double{kCellsMax}));
     const glm::dvec3 size = glm::dvec3(all.max) - glm::dvec3(all.min);
@@ -39,26 +33,20 @@ VertexBlocks::VertexBlocks(std::span<const glm::vec3> positions)
         }
         return cell;
     };
-    std::vector<std::uint32_t> next(std::size_t{cells} * cells * cells + 1, 0);
-    for (const glm::vec3& p : positions) {
-        ++next[cellOf(p) + 1];
-    }
-    for (std::size_t i = 1; i < next.size(); ++i) {
-        next[i] += next[i - 1];
-        if (next[i] > next[i - 1]) {
-            blocks_.push_back({{}, next[i - 1], next[i]});
+    Buckets<std::uint32_t> in_cells(std::size_t{cells} * cells * cells, [&](const auto& visit) {
+        for (std::uint32_t i = 0; i < positions.size(); ++i) {
+            visit(cellOf(positions[i]), i);
+        }
+    });
+    for (std::size_t cell = 0; cell < in_cells.size(); ++cell) {
+        if (!in_cells[cell].empty()) {
+            Block& block = blocks_.emplace_back(Block{{}, in_cells.first(cell), in_cells.first(cell + 1)});
+            for (const std::uint32_t i : in_cells[cell]) {
+                block.box.add(positions[i]);
+            }
         }
     }
-    for (std::uint32_t i = 0; i < positions.size(); ++i) {
-        order_[next[cellOf(positions[i])]++] = i;
-    }
-    for (Block& block : blocks_) {
-        block.box = {positions[order_[block.begin]], positions[order_[block.begin]]};
-        for (std::uint32_t k = block.begin; k < block.end; ++k) {
-            block.box.min = glm::min(block.box.min, positions[order_[k]]);
-            block.box.max = glm::max(block.box.max, positions[order_[k]]);
-        }
-    }
+    order_ = std::move(in_cells.values());
 }
 
 std::size_t VertexBlocks::farthest(const glm::dvec3& direction) const {
@@ -75,7 +63,7 @@ std::size_t VertexBlocks::farthest(const glm::dvec3& direction) const {
             }
         }
     };
-    // The most promising first, so that nearly all others fall short of what it holds.
+    // The most promising block first, so that nearly all others are skipped.
     std::size_t best = 0;
     double best_reach = reach(blocks_[0]);
     for (std::size_t b = 1; b < blocks_.size(); ++b) {

@@ -1,4 +1,4 @@
-// How far a mesh's vertices reach along a direction, without a look at each.
+// The support function of a mesh's vertices, without visiting each of them.
 #pragma once
 
 #include <cstddef>
@@ -11,14 +11,14 @@
 
 namespace relief {
 
-/// Vertices by the cells of a grid: those cells are passed over whose box reaches no farther than what was found.
+/// Vertices by the cells of a grid. Cells whose box reaches no farther than the best so far are skipped.
 class VertexBlocks {
   public:
     /// \param positions  kept, not copied; at least one, and at most 2^32
     explicit VertexBlocks(std::span<const glm::vec3> positions);
 
-    /// The index of the position with the greatest dot(direction, p), in double; of equals the first. The same as by a
-    /// look at each, to the last bit: rounding keeps the order, so that no corner of a box falls short of what is in it.
+    /// The index of the position with the greatest dot(direction, p), in double; of equals the first. Exactly the result of
+    /// a full scan: rounding is monotonic, so that no corner of a box falls short of its content.
     [[nodiscard]] std::size_t farthest(const glm::dvec3& direction) const;
 
     [[nodiscard]] std::span<const glm::vec3> positions() const { return positions_; }

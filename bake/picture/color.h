@@ -1,4 +1,4 @@
-// Colours of figures, and pictures made of them.
+// Colours and pictures of figures.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +14,10 @@ struct Color {
 inline constexpr Color kInsideColor{0.23, 0.29, 0.38};
 inline constexpr Color kOutsideColor{0.94, 0.945, 0.95};
 
-/// Ottosson, "A perceptual color space for image processing" (2020). Hue in degrees; what sRGB does not hold
-/// is clamped.
+/// Ottosson, "A perceptual color space for image processing" (2020). Hue in degrees; clamped to sRGB.
 [[nodiscard]] Color fromOklch(double lightness, double chroma, double hue);
 
-/// Diverging: lightness falls evenly with |u| on both sides, blue inside and orange outside, so that sides
-/// and amounts can be told apart in print and by the colour-blind.
+/// Diverging: lightness falls evenly with |u|, blue inside and orange outside, legible in print and to the colour-blind.
 /// \param u  distance over its largest shown value, clamped to [−1, 1].
 [[nodiscard]] Color distanceColor(double u);
 

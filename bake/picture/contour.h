@@ -1,4 +1,4 @@
-// Lines of equal distance through a slice.
+// Isolines of a slice.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,6 @@
 
 namespace relief {
 
-/// What is known of a sample.
 enum class SampleKind { kDistance, kFar, kAbstained };
 
 [[nodiscard]] inline SampleKind kindOf(const FieldSample& sample) {
@@ -67,7 +66,7 @@ class Contour {
                                      y + kCorner[i][1] + t * (kCorner[j][1] - kCorner[i][1])};
             }
         }
-        // A saddle has four crossings: the sign of the middle says which belong together.
+        // A saddle has four crossings, paired by the sign of the middle.
         const bool middle_inside = value[0] + value[1] + value[2] + value[3] < 0.0;
         const std::size_t shift = count == 4 && (value[0] < 0.0) == middle_inside ? 1 : 0;
         // Shift 1 joins edges 0-1 and 2-3 (corners 1 and 3 cut off); shift 0 joins 3-0 and 1-2.

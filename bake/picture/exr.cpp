@@ -16,7 +16,7 @@
 namespace relief {
 namespace {
 
-/// OpenEXR writes its table of offsets last, at the front: the stream can go back.
+/// Seekable, as OpenEXR writes its table of offsets last, at the front.
 class MemoryStream final : public Imf::OStream {
   public:
     MemoryStream() : Imf::OStream("memory") {}

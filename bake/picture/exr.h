@@ -1,4 +1,4 @@
-// Float images as OpenEXR files. The only file that knows OpenEXR.
+// Float images as OpenEXR files; the only user of OpenEXR.
 #pragma once
 
 #include <cstddef>
@@ -21,16 +21,14 @@ struct FloatImage {
     std::uint32_t width = 0;  ///< pixels
     std::uint32_t height = 0;
     std::vector<Channel> channels;
-    /// Names and texts of string attributes.
-    std::vector<std::pair<std::string, std::string>> attributes;
-    /// Column vectors, as glm has it: camera = world_to_camera · (p, 1). Written transposed, as OpenEXR has
-    /// it.
+    std::vector<std::pair<std::string, std::string>> attributes;  ///< string attributes: name and text
+    /// For column vectors, as in glm: camera = world_to_camera · (p, 1). Written transposed, as in OpenEXR.
     std::optional<glm::dmat4> world_to_camera;
     std::optional<glm::dmat4> world_to_ndc;
 };
 
-/// A scanline file, ZIP-compressed, 32-bit float channels. The same image gives the same bytes: no date.
-/// Errors: kFailure with OpenEXR's words, kLimit when out of memory.
+/// A ZIP-compressed scanline file of 32-bit float channels, without a date. Errors: kFailure with OpenEXR's message, kLimit
+/// (out of memory).
 [[nodiscard]] Result<std::vector<std::byte>> encodeExr(const FloatImage& image);
 
 }  // namespace relief

@@ -3,11 +3,13 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "bake/mesh/cube_faces.h"
+
 namespace relief {
 namespace {
 
 constexpr const char* kFaceNames[6] = {"+x", "-x", "+y", "-y", "+z", "-z"};
-/// Of a cube's faces, in units of the volume: where the image's perspective has its z = 0.
+/// The near plane of a cube face's perspective, in units of the volume.
 constexpr double kNearPlane = 1.0 / 1024.0;
 
 glm::dvec4 row(const Affine& affine, int i) {
@@ -18,8 +20,8 @@ glm::dmat4 fromRows(const glm::dvec4& x, const glm::dvec4& y, const glm::dvec4& 
     return glm::transpose(glm::dmat4(x, y, z, w));
 }
 
-/// Camera space as OpenEXR and RenderMan have it: left-handed, x to the right, y upwards, z into the picture,
-/// object units. NDC: (0, 0) and (1, 1) are the picture's upper left and lower right corners.
+/// Camera space of OpenEXR and RenderMan: left-handed, x right, y up, z into the picture, object units. NDC has (0, 0) and
+/// (1, 1) at the picture's upper left and lower right corners.
 void setOrthographicCamera(const DepthMap& map, FloatImage& image) {
     const glm::dvec4 x = row(map.object_to_map, 0);
     const glm::dvec4 y = row(map.object_to_map, 1);
@@ -30,25 +32,15 @@ void setOrthographicCamera(const DepthMap& map, FloatImage& image) {
     image.world_to_ndc = fromRows(x, one - y, z, one);
 }
 
-/// The axes of a face by OpenGL 3.3, table 3.21, as rows that act on map coordinates.
+/// The axes of a face as rows that act on map coordinates.
 void setFaceCamera(const DepthMap& map, std::uint32_t face, FloatImage& image) {
-    const glm::dvec4 rows[3] = {row(map.object_to_map, 0), row(map.object_to_map, 1),
-                                row(map.object_to_map, 2)};
-    struct Axis {
-        int component;
-        double sign;
+    const auto in_map = [&](const CubeFaceAxes::Axis& axis) {
+        return axis.sign * row(map.object_to_map, axis.component);
     };
-    struct FaceAxes {
-        Axis s, t, major;
-    };
-    constexpr FaceAxes kAxes[6] = {{{2, -1}, {1, -1}, {0, 1}}, {{2, 1}, {1, -1}, {0, -1}},
-                                   {{0, 1}, {2, 1}, {1, 1}},   {{0, 1}, {2, -1}, {1, -1}},
-                                   {{0, 1}, {1, -1}, {2, 1}},  {{0, -1}, {1, -1}, {2, -1}}};
-    const auto in_map = [&](const Axis& axis) { return axis.sign * rows[axis.component]; };
-    const auto in_object = [&](const Axis& axis) {
+    const auto in_object = [&](const CubeFaceAxes::Axis& axis) {
         return static_cast<double>(map.object_per_map[axis.component]) * in_map(axis);
     };
-    const FaceAxes& axes = kAxes[face];
+    const CubeFaceAxes& axes = kCubeFaces[face];
     const glm::dvec4 one(0.0, 0.0, 0.0, 1.0);
     const glm::dvec4 depth = in_map(axes.major);
     image.world_to_camera = fromRows(in_object(axes.s), -in_object(axes.t), in_object(axes.major), one);

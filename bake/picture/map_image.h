@@ -1,10 +1,9 @@
-// Depth maps as float images: what `relief export` writes.
+// Depth maps as float images, for `relief export`.
 //
-// Channels Z and N.X N.Y N.Z: the surface that the map keeps, the front one of front-back maps, whose back
-// one is in ZBack and NBack.X NBack.Y NBack.Z. Z is in object units along the ray, from the near plane of an
-// orthographic map and from the centre of a cube; +inf, with a zero normal, where there is no surface. The
-// top row of an orthographic image is the highest y of the map, that of a cube's face is t = 0, as OpenGL and
-// KTX2 have it. String attributes repeat that, with format, projection, compare and face.
+// Channels Z and N.X N.Y N.Z: the surface of the map, or the front one of a front-back map, with the back one in ZBack and
+// NBack.X NBack.Y NBack.Z. Z is in object units along the ray, from the near plane of an orthographic map or the centre of a
+// cube; +inf, with a zero normal, without a surface. The top row of an orthographic image is the highest y of the map, that
+// of a cube's face is t = 0, as in OpenGL and KTX2. String attributes repeat this, with format, projection, compare and face.
 #pragma once
 
 #include <cstdint>

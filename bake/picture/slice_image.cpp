@@ -10,6 +10,7 @@
 
 #include "bake/picture/color.h"
 #include "bake/picture/contour.h"
+#include "bake/picture/pixels.h"
 #include "formats/base/portable_math.h"
 #include "formats/base/text.h"
 
@@ -25,17 +26,11 @@ struct ContextDestroy {
 using Surface = std::unique_ptr<cairo_surface_t, SurfaceDestroy>;
 using Context = std::unique_ptr<cairo_t, ContextDestroy>;
 
-// --- colours ---
-
 constexpr Color kPaper{1.0, 1.0, 1.0};
 constexpr Color kInk{0.13, 0.14, 0.16};
 constexpr Color kFaintInk{0.42, 0.44, 0.47};
 constexpr Color kFarColor{0.865, 0.87, 0.86};
 constexpr Color kAbstainedColor{0.80, 0.70, 0.82};
-
-void setColor(cairo_t* cr, const Color& color, double alpha = 1.0) {
-    cairo_set_source_rgba(cr, color.r, color.g, color.b, alpha);
-}
 
 cairo_status_t append(void* png, const unsigned char* data, unsigned length) {
     auto* bytes = static_cast<std::vector<std::byte>*>(png);
@@ -44,7 +39,7 @@ cairo_status_t append(void* png, const unsigned char* data, unsigned length) {
     return CAIRO_STATUS_SUCCESS;
 }
 
-/// A surface with the picture's pixels; its status says if it could not be made.
+/// A surface with the picture's pixels; check its status.
 Surface surfaceOf(const RgbImage& image) {
     Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(image.width),
                                                static_cast<int>(image.height)));
@@ -60,8 +55,6 @@ Surface surfaceOf(const RgbImage& image) {
     }
     return surface;
 }
-
-// --- numbers ---
 
 double log10(double value) {
     constexpr double kLogTen = 2.302585092994046;
@@ -103,7 +96,7 @@ std::string tickText(double value, double step) {
     return (value < 0.0 ? "\xe2\x88\x92" : "") + std::string(text);  // a true minus sign
 }
 
-/// The largest distance that the colours tell apart: most of the inside, and as much outside.
+/// The distance of the strongest colours: covers most of the inside, and as much outside.
 double colorRange(const Slice& slice) {
     std::vector<float> inside;
     std::vector<float> outside;
@@ -124,8 +117,6 @@ double colorRange(const Slice& slice) {
     const double range = std::max(quantile(inside, 0.995), 0.5 * quantile(outside, 0.9));
     return range > 0.0 && std::isfinite(range) ? range : slice.spacing * slice.width;
 }
-
-// --- the figure ---
 
 constexpr double kPanelPixelsMin = 440.0;  // of the longer side
 constexpr double kPanelPixelsNormal = 480.0;
@@ -158,21 +149,21 @@ class Figure {
         canvas_height_ = static_cast<int>(std::ceil(top + color_bar_.height + em(6.4)));
         surface_.reset(cairo_image_surface_create(CAIRO_FORMAT_RGB24, canvas_width_, canvas_height_));
         context_.reset(cairo_create(surface_.get()));
+        cr_ = context_.get();
     }
 
     Result<std::vector<std::byte>> draw() {
-        cairo_t* cr = context_.get();
-        if (cairo_status(cr) == CAIRO_STATUS_SUCCESS) {
+        if (cairo_status(cr_) == CAIRO_STATUS_SUCCESS) {
             // Grey antialiasing without hints: the same glyphs on every screen and machine.
             cairo_font_options_t* font = cairo_font_options_create();
             cairo_font_options_set_antialias(font, CAIRO_ANTIALIAS_GRAY);
             cairo_font_options_set_hint_style(font, CAIRO_HINT_STYLE_NONE);
             cairo_font_options_set_hint_metrics(font, CAIRO_HINT_METRICS_OFF);
-            cairo_set_font_options(cr, font);
+            cairo_set_font_options(cr_, font);
             cairo_font_options_destroy(font);
 
-            setColor(cr, kPaper);
-            cairo_paint(cr);
+            setColor(kPaper);
+            cairo_paint(cr_);
             drawTitle();
             drawPanel(inside_panel_, "inside and outside", false);
             drawPanel(distance_panel_, "signed distance", true);
@@ -190,8 +181,26 @@ class Figure {
     }
 
   private:
-    /// Lengths follow the text's size, 12 pixels for a panel of 480.
+    /// Relative to the size of the text, 12 pixels for a panel of 480.
     [[nodiscard]] double em(double n) const { return 12.0 * n * unit_; }
+    [[nodiscard]] double thinLine() const { return std::max(1.0, std::round(unit_)); }
+
+    void setColor(const Color& color, double alpha = 1.0) {
+        cairo_set_source_rgba(cr_, color.r, color.g, color.b, alpha);
+    }
+    void fill(const Color& color) {
+        setColor(color);
+        cairo_fill(cr_);
+    }
+    void stroke(double width, const Color& color, double alpha = 1.0) {
+        cairo_set_line_width(cr_, width);
+        setColor(color, alpha);
+        cairo_stroke(cr_);
+    }
+    void addLine(double x0, double y0, double x1, double y1) {
+        cairo_move_to(cr_, x0, y0);
+        cairo_line_to(cr_, x1, y1);
+    }
     [[nodiscard]] std::string withUnit() const {
         return options_.unit.empty() ? "object units" : options_.unit;
     }
@@ -199,18 +208,17 @@ class Figure {
     /// \param align  0: left of x … 1: right of x.
     void text(double x, double y, const std::string& words, double size, double align, bool bold = false,
               const Color& color = kInk) {
-        cairo_t* cr = context_.get();
-        cairo_select_font_face(cr, "sans-serif", CAIRO_FONT_SLANT_NORMAL,
+        cairo_select_font_face(cr_, "sans-serif", CAIRO_FONT_SLANT_NORMAL,
                                bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
-        cairo_set_font_size(cr, em(size));
-        setColor(cr, color);
-        cairo_move_to(cr, x - align * textWidth(words), y);
-        cairo_show_text(cr, words.c_str());
+        cairo_set_font_size(cr_, em(size));
+        setColor(color);
+        cairo_move_to(cr_, x - align * textWidth(words), y);
+        cairo_show_text(cr_, words.c_str());
     }
     /// In the font that text() selected last.
     [[nodiscard]] double textWidth(const std::string& words) const {
         cairo_text_extents_t extents;
-        cairo_text_extents(context_.get(), words.c_str(), &extents);
+        cairo_text_extents(cr_, words.c_str(), &extents);
         return extents.x_advance;
     }
 
@@ -219,8 +227,8 @@ class Figure {
         const double room = canvas_width_ - x - em(1.0);
         const std::string plane = std::string("plane ") + axisName(slice_.axis) + " = " +
                                   shortest(slice_.at) + (options_.unit.empty() ? "" : " " + options_.unit);
-        cairo_select_font_face(context_.get(), "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_BOLD);
-        cairo_set_font_size(context_.get(), em(1.25));
+        cairo_select_font_face(cr_, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_BOLD);
+        cairo_set_font_size(cr_, em(1.25));
         std::string name = options_.name;
         std::string ellipsis;
         const auto line = [&] { return name + ellipsis + " \xe2\x80\x94 " + plane; };
@@ -236,12 +244,11 @@ class Figure {
     }
 
     void drawPanel(const Rect& panel, const char* caption, bool distance) {
-        cairo_t* cr = context_.get();
         text(panel.x, panel.y - em(0.7), caption, 1.0, 0.0, false, kFaintInk);
         drawSamples(panel, distance);
-        cairo_save(cr);
-        cairo_rectangle(cr, panel.x, panel.y, panel.width, panel.height);
-        cairo_clip(cr);
+        cairo_save(cr_);
+        cairo_rectangle(cr_, panel.x, panel.y, panel.width, panel.height);
+        cairo_clip(cr_);
         if (distance) {
             for (double level = level_step_; level <= range_ * 1.001; level += level_step_) {
                 strokeContour(panel, level, 0.06, 0.32);
@@ -249,32 +256,26 @@ class Figure {
             }
         }
         strokeContour(panel, 0.0, 0.13, 1.0);
-        cairo_restore(cr);
+        cairo_restore(cr_);
         drawAxes(panel);
     }
 
     void drawSamples(const Rect& panel, bool distance) {
-        const auto width = static_cast<int>(slice_.width);
-        const auto height = static_cast<int>(slice_.height);
-        RgbImage samples{slice_.width, slice_.height, {}};
-        for (std::uint32_t y = slice_.height; y-- > 0;) {
-            for (std::uint32_t x = 0; x < slice_.width; ++x) {
-                samples.pixels.push_back(toPixel(sampleColor(slice_.sample(x, y), distance)));
-            }
-        }
-        const Surface image = surfaceOf(samples);
+        const Surface image =
+            surfaceOf(drawPixels(slice_.width, slice_.height, [&](std::uint32_t x, std::uint32_t y) {
+                return sampleColor(slice_.sample(x, slice_.height - 1 - y), distance);
+            }));
         if (cairo_surface_status(image.get()) != CAIRO_STATUS_SUCCESS) {
             return;
         }
-        cairo_t* cr = context_.get();
-        cairo_save(cr);
-        cairo_translate(cr, panel.x, panel.y);
-        cairo_scale(cr, zoom_, zoom_);
-        cairo_set_source_surface(cr, image.get(), 0.0, 0.0);
-        cairo_pattern_set_filter(cairo_get_source(cr), CAIRO_FILTER_NEAREST);
-        cairo_rectangle(cr, 0.0, 0.0, width, height);
-        cairo_fill(cr);
-        cairo_restore(cr);
+        cairo_save(cr_);
+        cairo_translate(cr_, panel.x, panel.y);
+        cairo_scale(cr_, zoom_, zoom_);
+        cairo_set_source_surface(cr_, image.get(), 0.0, 0.0);
+        cairo_pattern_set_filter(cairo_get_source(cr_), CAIRO_FILTER_NEAREST);
+        cairo_rectangle(cr_, 0.0, 0.0, slice_.width, slice_.height);
+        cairo_fill(cr_);
+        cairo_restore(cr_);
     }
 
     [[nodiscard]] Color sampleColor(const FieldSample& sample, bool distance) const {
@@ -293,26 +294,20 @@ class Figure {
     }
 
     void strokeContour(const Rect& panel, double level, double line_width, double alpha) {
-        cairo_t* cr = context_.get();
-        cairo_new_path(cr);
+        cairo_new_path(cr_);
         Contour(slice_, level, 4.0 * slice_.spacing).trace([&](double x0, double y0, double x1, double y1) {
-            cairo_move_to(cr, panel.x + (x0 + 0.5) * zoom_, panel.y + panel.height - (y0 + 0.5) * zoom_);
-            cairo_line_to(cr, panel.x + (x1 + 0.5) * zoom_, panel.y + panel.height - (y1 + 0.5) * zoom_);
+            addLine(panel.x + (x0 + 0.5) * zoom_, panel.y + panel.height - (y0 + 0.5) * zoom_,
+                    panel.x + (x1 + 0.5) * zoom_, panel.y + panel.height - (y1 + 0.5) * zoom_);
         });
-        cairo_set_line_width(cr, em(line_width));
-        cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
-        setColor(cr, kInk, alpha);
-        cairo_stroke(cr);
+        cairo_set_line_cap(cr_, CAIRO_LINE_CAP_ROUND);
+        stroke(em(line_width), kInk, alpha);
     }
 
     void drawAxes(const Rect& panel) {
-        cairo_t* cr = context_.get();
-        const double line = std::max(1.0, std::round(unit_));
-        cairo_set_line_width(cr, line);
-        setColor(cr, kInk);
-        cairo_rectangle(cr, panel.x - 0.5 * line, panel.y - 0.5 * line, panel.width + line,
+        const double line = thinLine();
+        cairo_rectangle(cr_, panel.x - 0.5 * line, panel.y - 0.5 * line, panel.width + line,
                         panel.height + line);
-        cairo_stroke(cr);
+        stroke(line, kInk);
 
         const double per_pixel = slice_.spacing / zoom_;
         const double step = niceAbove(std::max(panel.width, panel.height) * per_pixel / 6.0);
@@ -329,17 +324,17 @@ class Figure {
         const std::string unit = " / " + withUnit();
         text(panel.x + 0.5 * panel.width, panel.y + panel.height + em(2.9), axisName(slice_.right) + unit,
              0.95, 0.5);
-        cairo_save(cr);
-        cairo_translate(cr, panel.x - em(3.4), panel.y + 0.5 * panel.height);
-        cairo_rotate(cr, -1.57079632679489661923);
+        cairo_save(cr_);
+        cairo_translate(cr_, panel.x - em(3.4), panel.y + 0.5 * panel.height);
+        cairo_rotate(cr_, -1.57079632679489661923);
         text(0.0, 0.0, axisName(slice_.up) + unit, 0.95, 0.5);
-        cairo_restore(cr);
+        cairo_restore(cr_);
     }
 
     template <class Visit>
     static void forTicks(double from, double length, double step, const Visit& visit) {
         const double first = std::ceil(from / step - 1e-9);
-        // Counted, so that huge coordinates with a tiny step cannot loop for ever.
+        // Bounded, for huge coordinates with a tiny step.
         for (int i = 0; i < 40; ++i) {
             const double value = (first + i) * step;
             if (!(value <= from + length)) {
@@ -350,16 +345,12 @@ class Figure {
     }
 
     void tick(double x, double y, double dx, double dy) {
-        cairo_t* cr = context_.get();
-        cairo_set_line_width(cr, std::max(1.0, std::round(unit_)));
-        setColor(cr, kInk);
-        cairo_move_to(cr, x, y);
-        cairo_line_to(cr, x + dx, y + dy);
-        cairo_stroke(cr);
+        addLine(x, y, x + dx, y + dy);
+        stroke(thinLine(), kInk);
     }
 
     void drawColorBar() {
-        // The points at both ends say that the colour stays the same beyond them.
+        // The pointed ends stand for all distances beyond.
         const double point = std::floor(em(0.95));
         const Rect bar{color_bar_.x, color_bar_.y + point, color_bar_.width, color_bar_.height - 2.0 * point};
         fillColorBar(bar, point);
@@ -369,50 +360,40 @@ class Figure {
     }
 
     void fillColorBar(const Rect& bar, double point) {
-        cairo_t* cr = context_.get();
         for (int y = 0; y < static_cast<int>(bar.height); ++y) {
-            setColor(cr, distanceColor(1.0 - 2.0 * (y + 0.5) / bar.height));
-            cairo_rectangle(cr, bar.x, bar.y + y, bar.width, 1.0);
-            cairo_fill(cr);
+            cairo_rectangle(cr_, bar.x, bar.y + y, bar.width, 1.0);
+            fill(distanceColor(1.0 - 2.0 * (y + 0.5) / bar.height));
         }
         const double bottom = bar.y + bar.height;
         const auto triangle = [&](double base, double tip) {
-            cairo_move_to(cr, bar.x, base);
-            cairo_line_to(cr, bar.x + 0.5 * bar.width, tip);
-            cairo_line_to(cr, bar.x + bar.width, base);
-            cairo_close_path(cr);
+            cairo_move_to(cr_, bar.x, base);
+            cairo_line_to(cr_, bar.x + 0.5 * bar.width, tip);
+            cairo_line_to(cr_, bar.x + bar.width, base);
+            cairo_close_path(cr_);
         };
         triangle(bar.y, bar.y - point);
-        setColor(cr, distanceColor(1.0));
-        cairo_fill(cr);
+        fill(distanceColor(1.0));
         triangle(bottom, bottom + point);
-        setColor(cr, distanceColor(-1.0));
-        cairo_fill(cr);
+        fill(distanceColor(-1.0));
     }
 
-    /// The outline, and a line and a number for each level.
+    /// The outline, and a line and a number per level.
     void strokeColorBar(const Rect& bar, double point) {
-        cairo_t* cr = context_.get();
         const double bottom = bar.y + bar.height;
-        const double line = std::max(1.0, std::round(unit_));
-        cairo_set_line_width(cr, line);
-        setColor(cr, kInk);
-        cairo_move_to(cr, bar.x, bar.y);
-        cairo_line_to(cr, bar.x + 0.5 * bar.width, bar.y - point);
-        cairo_line_to(cr, bar.x + bar.width, bar.y);
-        cairo_line_to(cr, bar.x + bar.width, bottom);
-        cairo_line_to(cr, bar.x + 0.5 * bar.width, bottom + point);
-        cairo_line_to(cr, bar.x, bottom);
-        cairo_close_path(cr);
-        cairo_stroke(cr);
+        const double line = thinLine();
+        cairo_move_to(cr_, bar.x, bar.y);
+        cairo_line_to(cr_, bar.x + 0.5 * bar.width, bar.y - point);
+        cairo_line_to(cr_, bar.x + bar.width, bar.y);
+        cairo_line_to(cr_, bar.x + bar.width, bottom);
+        cairo_line_to(cr_, bar.x + 0.5 * bar.width, bottom + point);
+        cairo_line_to(cr_, bar.x, bottom);
+        cairo_close_path(cr_);
+        stroke(line, kInk);
         forTicks(-range_, 2.0 * range_, level_step_, [&](double value) {
             const double y = std::round(bar.y + 0.5 * bar.height * (1.0 - value / range_));
             const bool zero = std::abs(value) < 0.5 * level_step_;
-            cairo_set_line_width(cr, em(zero ? 0.13 : 0.06));
-            setColor(cr, kInk, zero ? 1.0 : 0.32);
-            cairo_move_to(cr, bar.x, y);
-            cairo_line_to(cr, bar.x + bar.width, y);
-            cairo_stroke(cr);
+            addLine(bar.x, y, bar.x + bar.width, y);
+            stroke(em(zero ? 0.13 : 0.06), kInk, zero ? 1.0 : 0.32);
             tick(bar.x + bar.width + line, y, em(0.3), 0.0);
             text(bar.x + bar.width + em(0.6), y + em(0.32), tickText(value, level_step_), 0.9, 0.0);
         });
@@ -425,8 +406,7 @@ class Figure {
         };
         std::vector<Entry> entries = {{kInsideColor, "inside"}, {kOutsideColor, "outside"}};
         const auto has = [&](SampleKind kind) {
-            return std::any_of(slice_.samples.begin(), slice_.samples.end(),
-                               [&](const FieldSample& sample) { return kindOf(sample) == kind; });
+            return std::ranges::find(slice_.samples, kind, kindOf) != slice_.samples.end();
         };
         if (has(SampleKind::kFar)) {
             entries.push_back({kFarColor, "outside, no distance known"});
@@ -434,24 +414,18 @@ class Figure {
         if (has(SampleKind::kAbstained)) {
             entries.push_back({kAbstainedColor, "no map votes"});
         }
-        cairo_t* cr = context_.get();
         double x = inside_panel_.x;
         const double y = canvas_height_ - em(1.1);
         for (const Entry& entry : entries) {
-            cairo_rectangle(cr, x, y - em(0.85), em(1.4), em(1.0));
-            setColor(cr, entry.color);
-            cairo_fill_preserve(cr);
-            cairo_set_line_width(cr, std::max(1.0, std::round(unit_)));
-            setColor(cr, kFaintInk);
-            cairo_stroke(cr);
+            cairo_rectangle(cr_, x, y - em(0.85), em(1.4), em(1.0));
+            setColor(entry.color);
+            cairo_fill_preserve(cr_);
+            stroke(thinLine(), kFaintInk);
             text(x + em(1.9), y, entry.words, 0.9, 0.0);
             x += em(1.9) + textWidth(entry.words) + em(1.8);
         }
-        cairo_move_to(cr, x, y - em(0.35));
-        cairo_line_to(cr, x + em(1.4), y - em(0.35));
-        cairo_set_line_width(cr, em(0.13));
-        setColor(cr, kInk);
-        cairo_stroke(cr);
+        addLine(x, y - em(0.35), x + em(1.4), y - em(0.35));
+        stroke(em(0.13), kInk);
         text(x + em(1.9), y, "surface, f = 0", 0.9, 0.0);
     }
 
@@ -468,6 +442,7 @@ class Figure {
     int canvas_height_ = 0;
     Surface surface_;
     Context context_;
+    cairo_t* cr_ = nullptr;  // context_
 };
 
 }  // namespace

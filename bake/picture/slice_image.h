@@ -1,4 +1,4 @@
-// A slice as a figure for people: figure 6 of the paper. The only file that knows Cairo.
+// A slice as a figure, like figure 6 of the paper; the only user of Cairo.
 #pragma once
 
 #include <cstddef>
@@ -15,9 +15,8 @@ struct SliceFigureOptions {
     std::string unit;  ///< of lengths: "m", or "" for object units
 };
 
-/// A PNG: on the left inside and outside, on the right the signed distance in false colours with isolines, a
-/// colour bar and a legend; the zero contour on both. The same slice gives the same bytes.
-/// Errors: kFailure with Cairo's words.
+/// A PNG: inside and outside on the left, the signed distance in false colours with isolines on the right, the zero contour on
+/// both, a colour bar and a legend. The same slice gives the same bytes. Errors: kFailure with Cairo's message.
 [[nodiscard]] Result<std::vector<std::byte>> drawSlice(const Slice& slice, const SliceFigureOptions& options);
 
 }  // namespace relief

@@ -349,7 +349,7 @@ class Bake {
             if (kind == Kind::kPlanes) {
                 fitMaps(*scene, *unit_normals, jobs);
             } else {
-                bakeGaps(scene->query(), *unit_normals, jobs.front());
+                bakeGaps(*scene, *unit_normals, jobs.front());
             }
         }
         return {};

@@ -13,8 +13,7 @@ namespace {
 
 /// Cubes reach this far at most, in units of the longest side.
 constexpr double kReach = 0.65;
-/// Texels of a cube across the mean width of its volume: its faces are nearer to the centre than to the
-/// corners.
+/// Texels of a cube across the mean width of its volume: its faces are nearer to the centre than its corners.
 constexpr double kCubeDensity = 0.775;
 
 }  // namespace
@@ -47,7 +46,7 @@ std::optional<Cavity> CavitySearch::best(const std::vector<std::size_t>& unserve
     return best == nullptr ? std::nullopt : std::optional(lookFromWithin(unserved, served, best->center));
 }
 
-/// A place in free space near some point that is not served.
+/// A place in free space near a badly served point.
 glm::dvec3 CavitySearch::placeWithin(const std::vector<std::size_t>& unserved, std::uint64_t seed) const {
     MersenneRandom random(seed);
     const glm::dvec3 from = points_[unserved[random.below(unserved.size())]].position;
@@ -59,7 +58,7 @@ glm::dvec3 CavitySearch::placeWithin(const std::vector<std::size_t>& unserved, s
     return from + (0.2 + 0.6 * random.uniform()) * free_length * direction;
 }
 
-/// A cube there, and what it would serve of some points.
+/// The cube at a place, and its service to some points.
 Cavity CavitySearch::lookFromWithin(const std::vector<std::size_t>& points, const std::vector<float>& served,
                                     const glm::dvec3& center) const {
     const double side = query_.mesh().bounds.longestSide();

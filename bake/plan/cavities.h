@@ -1,4 +1,4 @@
-// Places within a mesh for cubes, which see what no view from outside does.
+// Places within a mesh for cube maps, which see what no view from outside does.
 #pragma once
 
 #include <cstddef>
@@ -13,15 +13,15 @@
 
 namespace relief {
 
-/// A cube in free space, and what it would serve.
+/// A cube in free space and the points that it would serve.
 struct Cavity {
     glm::dvec3 center{0.0};
     glm::dvec3 half{0.0};                                ///< of the volume
-    std::vector<std::pair<std::size_t, float>> service;  ///< of points, by index
+    std::vector<std::pair<std::size_t, float>> service;  ///< point index and service
     double gain = 0.0;                                   ///< in the service of all points
     double area = 0.0;                                   ///< bytes for texels of side 1
 
-    /// Of a face's image, in object units; texels are as large on the surface as those of other maps.
+    /// Of a face's image, object units; its texels are as large on the surface as those of other maps.
     [[nodiscard]] double width() const;
 };
 
@@ -31,13 +31,13 @@ class CavitySearch {
     CavitySearch(const MeshQuery& query, const std::vector<PlanPoint>& points)
         : query_(query), points_(points) {}
 
-    /// Places that best() tries, each with a seed of its own from `seed` on.
+    /// Places that best() tries, with seeds from `seed` on.
     static constexpr std::size_t kCandidates = 100;
 
-    /// The best of some places near points that are served badly.
-    /// \param unserved  their indices
-    /// \param served    how well each point is served
-    /// \param others_area  bytes for texels of side 1 of the views from outside: a place costs as much more
+    /// The best of some places near badly served points.
+    /// \param unserved  the indices of these points
+    /// \param served    the service of all points so far
+    /// \param others_area  bytes for texels of side 1 of the views from outside, part of the price of a place
     [[nodiscard]] std::optional<Cavity> best(const std::vector<std::size_t>& unserved,
                                              const std::vector<float>& served, double others_area,
                                              std::uint64_t seed) const;

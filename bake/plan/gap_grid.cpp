@@ -5,16 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <utility>
 
 namespace relief {
 namespace {
 
-/// Lines across the image, each way.
+/// Lines of sight across the image, each way.
 constexpr std::uint32_t kLines = 64;
-/// Parts of a gap of which it is asked whether they are seen.
+/// Parts of a gap whose middles are tested.
 constexpr int kParts = 2;
-/// Gaps that count less are none: in units of the mesh's longest side.
+/// The least weight of a gap, in units of the mesh's longest side.
 constexpr double kShortest = 1e-3;
 /// Of a cell: gaps end between two lines.
 constexpr double kBesideLine = 1.0;
@@ -34,16 +35,12 @@ View gridOf(View view) {
 
 /// In units of the direction.
 double shortestKept(const MeshQuery& query, const glm::dvec3& direction) {
-    return kShortest * query.mesh().bounds.longestSide() / std::sqrt(dot(direction, direction));
+    return kShortest * query.mesh().bounds.longestSide() / length(direction);
 }
 
 double unseenLength(const LineGap& gap, const glm::dvec3& origin, const glm::dvec3& direction,
                     const IsSeen& is_seen) {
-    int unseen = 0;
-    for (int i = 0; i < kParts; ++i) {
-        unseen += is_seen(origin + (gap.begin + (i + 0.5) / kParts * gap.length()) * direction) ? 0 : 1;
-    }
-    return unseen * gap.length() / kParts;
+    return unknownParts(gap, origin, direction, kParts, is_seen) * gap.length() / kParts;
 }
 
 }  // namespace
@@ -51,9 +48,8 @@ double unseenLength(const LineGap& gap, const glm::dvec3& origin, const glm::dve
 std::optional<LineGap> keptGap(const MeshQuery& query, const glm::dvec3& origin, const glm::dvec3& direction,
                                const IsSeen& is_seen) {
     std::vector<LineGap> gaps = query.gapsAlong(origin, direction);
-    // Longest first: what is shorter than an unseen part of the best need not be asked.
-    std::ranges::stable_sort(gaps,
-                             [](const LineGap& a, const LineGap& b) { return a.length() > b.length(); });
+    // Longest first: a gap no longer than the best weight so far needs no test.
+    std::ranges::stable_sort(gaps, std::greater<>(), &LineGap::length);
     std::optional<LineGap> best;
     double most = shortestKept(query, direction);
     for (const LineGap& gap : gaps) {
@@ -76,7 +72,7 @@ bool isInKeptGap(const MeshQuery& query, const glm::dvec3& p, const glm::dvec3& 
     if (own == gaps.end()) {
         return false;
     }
-    // Most points lie in a gap that is short or seen, which spares the question what else there is.
+    // Most points lie in a short or seen gap, whatever the others.
     const double shortest = shortestKept(query, direction);
     const double length = own->length() > shortest ? unseenLength(*own, p, direction, is_seen) : 0.0;
     return length > shortest && std::ranges::none_of(gaps, [&](const LineGap& gap) {
@@ -108,20 +104,16 @@ std::vector<RowExtent> GapGrid::rows() const {
     for (std::uint32_t y = 0; y < kLines; ++y) {
         for (std::uint32_t x = 0; x < kLines; ++x) {
             if (cells_[std::size_t{y + 1} * view_.width + x + 1].length() > 0.0) {
-                RowExtent& row = extents[y];
-                row.low = std::min(row.low, static_cast<float>(std::max(0.0, (x - kBesideLine) / kLines)));
-                row.high =
-                    std::max(row.high, static_cast<float>(std::min(1.0, (x + 1.0 + kBesideLine) / kLines)));
+                extents[y].add({static_cast<float>(std::max(0.0, (x - kBesideLine) / kLines)),
+                                static_cast<float>(std::min(1.0, (x + 1.0 + kBesideLine) / kLines))});
             }
         }
     }
-    // Between two lines of sight a row may take up what either of its neighbours does.
+    // Between two lines of sight a row may extend as far as either of its neighbours.
     std::vector<RowExtent> wide = extents;
     for (std::size_t y = 0; y + 1 < extents.size(); ++y) {
-        for (const auto& [to, from] : {std::pair{y, y + 1}, std::pair{y + 1, y}}) {
-            wide[to].low = std::min(wide[to].low, extents[from].low);
-            wide[to].high = std::max(wide[to].high, extents[from].high);
-        }
+        wide[y].add(extents[y + 1]);
+        wide[y + 1].add(extents[y]);
     }
     return wide;
 }

@@ -1,5 +1,5 @@
-// What a map of gaps would hold (bake/texels/gap_map.h), on a coarse grid of lines of sight: enough to choose the maps
-// after it, and to know how much its rows take up.
+// An estimate of a map of gaps (bake/texels/gap_map.h) on a coarse grid of lines of sight: enough to choose the maps after
+// it, and for the extent of its rows.
 #pragma once
 
 #include <cstdint>
@@ -14,26 +14,25 @@
 
 namespace relief {
 
-/// Says of a point of free space whether a map sees it. Called from many threads.
+/// True of points of free space that a map sees. Called from many threads.
 using IsSeen = std::function<bool(const glm::dvec3&)>;
 
-/// Of the gaps on a line the one that counts most: the longest, as far as it is not seen.
-/// \return nullopt if all are seen, or there is none.
+/// The gap on a line with the greatest unseen length. \return nullopt if all are seen, or there is none.
 [[nodiscard]] std::optional<LineGap> keptGap(const MeshQuery& query, const glm::dvec3& origin,
                                              const glm::dvec3& direction, const IsSeen& is_seen);
 
-/// keptGap(query, p, direction, is_seen) is a gap that p lies in or on the end of. Asks less.
+/// p lies in keptGap(query, p, direction, is_seen) or on its end. Cheaper.
 [[nodiscard]] bool isInKeptGap(const MeshQuery& query, const glm::dvec3& p, const glm::dvec3& direction,
                                const IsSeen& is_seen);
 
 class GapGrid {
   public:
-    /// \param view  orthographic, tight round the mesh; its size does not matter.
+    /// \param view  orthographic, tight round the mesh, of any size.
     GapGrid(const MeshQuery& query, View view, const IsSeen& is_seen);
 
-    /// A point of free space lies in a gap that the map holds.
+    /// A point of free space lies in a kept gap.
     [[nodiscard]] bool holds(const glm::dvec3& p) const;
-    /// What its rows take up.
+    /// The extents of its rows.
     [[nodiscard]] const Silhouette& silhouette() const { return silhouette_; }
     [[nodiscard]] double area() const { return area_; }  ///< of its rows, object units squared
 
@@ -41,7 +40,7 @@ class GapGrid {
     [[nodiscard]] std::vector<RowExtent> rows() const;
 
     View view_;
-    std::vector<LineGap> cells_;  // of each texel; empty where it has none
+    std::vector<LineGap> cells_;  // by texel; empty without a gap
     Silhouette silhouette_;
     double area_ = 0.0;
 };

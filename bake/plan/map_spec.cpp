@@ -5,6 +5,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <span>
+#include <utility>
 
 #include "formats/base/text.h"
 
@@ -14,26 +16,17 @@ namespace {
 constexpr std::array<std::string_view, 4> kFormatWords = {"float", "fixed8", "front-back", "cube"};
 constexpr std::array<std::string_view, 8> kKeys = {"dir",    "up",  "size",  "compare",
                                                    "center", "box", "depth", "decode"};
-constexpr std::array<std::string_view, 2> kCompareWords = {"less", "greater"};
-constexpr std::array<std::string_view, 2> kDepthWords = {"half", "unorm16"};
-constexpr std::array<std::string_view, 2> kDecodeWords = {"projected", "plane"};
 
-/// Of the angle between up and dir: below it, rounding would turn the image.
+/// Least sine of the angle between up and dir: below it, rounding would turn the image.
 constexpr double kUpSineMin = 1e-4;
 
 struct AxisWord {
     std::string_view word;
     glm::vec3 direction;
 };
-constexpr std::array<AxisWord, 9> kAxisWords = {{{"+x", {1, 0, 0}},
-                                                 {"-x", {-1, 0, 0}},
-                                                 {"+y", {0, 1, 0}},
-                                                 {"-y", {0, -1, 0}},
-                                                 {"+z", {0, 0, 1}},
-                                                 {"-z", {0, 0, -1}},
-                                                 {"x", {1, 0, 0}},
-                                                 {"y", {0, 1, 0}},
-                                                 {"z", {0, 0, 1}}}};
+constexpr AxisWord kAxisWords[] = {{"+x", {1, 0, 0}},  {"-x", {-1, 0, 0}}, {"+y", {0, 1, 0}},
+                                   {"-y", {0, -1, 0}}, {"+z", {0, 0, 1}},  {"-z", {0, 0, -1}},
+                                   {"x", {1, 0, 0}},   {"y", {0, 1, 0}},   {"z", {0, 0, 1}}};
 
 tl::unexpected<Error> usage(const std::string& message) {
     return fail(ErrorCode::kUsage, message);
@@ -43,16 +36,30 @@ tl::unexpected<Error> badValue(std::string_view key, std::string_view value, con
     return usage(std::string(key) + " is '" + cleanUtf8(value) + "' but must be " + wanted);
 }
 
+tl::unexpected<Error> unknown(const std::string& what, std::string_view word,
+                              std::span<const std::string_view> known) {
+    const std::string guess = didYouMean(word, known);
+    return usage("unknown " + what + " '" + cleanUtf8(word) + "'" +
+                 (guess.empty() ? "; use one of " + listed(known) : guess));
+}
+
+/// The index of one of two words.
+Result<bool> parseWord(std::string_view key, std::string_view value,
+                       const std::array<std::string_view, 2>& words) {
+    if (value != words[0] && value != words[1]) {
+        return badValue(key, value,
+                        std::string(words[0]) + " or " + std::string(words[1]) + didYouMean(value, words));
+    }
+    return value == words[1];
+}
+
 template <std::size_t N>
 std::optional<std::array<float, N>> parseNumbers(std::string_view value) {
     const std::vector<std::string_view> parts = split(value, '/');
-    if (parts.size() != N) {
-        return std::nullopt;
-    }
     std::array<float, N> numbers{};
-    for (std::size_t i = 0; i < N; ++i) {
+    for (std::size_t i = 0; i < parts.size(); ++i) {
         const std::optional<float> number = parseFloat(parts[i]);
-        if (!number) {
+        if (!number || parts.size() != N) {
             return std::nullopt;
         }
         numbers[i] = *number + 0.0F;  // −0 becomes 0, so that one setting has one text
@@ -90,11 +97,9 @@ MapSpecBuilder::MapSpecBuilder(const MapSpecDefaults& defaults) : defaults_(defa
 }
 
 Result<void> MapSpecBuilder::setFormat(std::string_view word) {
-    const auto* found = std::find(kFormatWords.begin(), kFormatWords.end(), word);
+    const auto* found = std::ranges::find(kFormatWords, word);
     if (found == kFormatWords.end()) {
-        const std::string guess = didYouMean(word, kFormatWords);
-        return usage("unknown format '" + cleanUtf8(word) + "'" +
-                     (guess.empty() ? "; use one of " + listed(kFormatWords) : guess));
+        return unknown("format", word, kFormatWords);
     }
     spec_.format = static_cast<MapFormat>(found - kFormatWords.begin());
     if (isFrontBack(spec_.format)) {
@@ -104,40 +109,24 @@ Result<void> MapSpecBuilder::setFormat(std::string_view word) {
 }
 
 bool MapSpecBuilder::knows(std::string_view key) {
-    return std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end();
+    return std::ranges::find(kKeys, key) != kKeys.end();
 }
 
 Result<void> MapSpecBuilder::set(std::string_view key, std::string_view value) {
-    const auto* found = std::find(kKeys.begin(), kKeys.end(), key);
+    const auto* found = std::ranges::find(kKeys, key);
     if (found == kKeys.end()) {
-        const std::string guess = didYouMean(key, kKeys);
-        return usage("unknown key '" + cleanUtf8(key) + "'" +
-                     (guess.empty() ? "; use one of " + listed(kKeys) : guess));
+        return unknown("key", key, kKeys);
     }
-    bool& seen = seen_.at(static_cast<std::size_t>(found - kKeys.begin()));
-    if (seen) {
+    const auto index = static_cast<std::size_t>(found - kKeys.begin());
+    if (std::exchange(seen_.at(index), true)) {
         return usage(std::string(key) + " is given twice; keep one");
     }
-    seen = true;
-    if (key == "dir") {
-        return setDirection(value);
-    }
-    if (key == "up") {
-        return setUp(value);
-    }
-    if (key == "size") {
-        return setSize(value);
-    }
-    if (key == "compare") {
-        return setCompare(value);
-    }
-    if (key == "depth") {
-        return setDepth(value);
-    }
-    if (key == "decode") {
-        return setDecode(value);
-    }
-    return key == "center" ? setCenter(value) : setBox(value);
+    using Set = Result<void> (MapSpecBuilder::*)(std::string_view);
+    constexpr std::array<Set, kKeys.size()> kSetters = {
+        &MapSpecBuilder::setDirection, &MapSpecBuilder::setUp,     &MapSpecBuilder::setSize,
+        &MapSpecBuilder::setCompare,   &MapSpecBuilder::setCenter, &MapSpecBuilder::setBox,
+        &MapSpecBuilder::setDepth,     &MapSpecBuilder::setDecode};
+    return (this->*kSetters.at(index))(value);
 }
 
 Result<MapSpec> MapSpecBuilder::finish() const {
@@ -155,8 +144,7 @@ Result<void> MapSpecBuilder::setDirection(std::string_view value) {
     if (isCube()) {
         return usage("dir does nothing for a cube, which looks all round; leave it out");
     }
-    const glm::vec3 direction = RELIEF_TRY(parseDirection("dir", value));
-    spec_.direction = direction;
+    spec_.direction = RELIEF_TRY(parseDirection("dir", value));
     return {};
 }
 
@@ -164,8 +152,7 @@ Result<void> MapSpecBuilder::setUp(std::string_view value) {
     if (isCube()) {
         return usage("up does nothing for a cube, whose faces lie along the axes; leave it out");
     }
-    const glm::vec3 up = RELIEF_TRY(parseDirection("up", value));
-    spec_.up = up;
+    spec_.up = RELIEF_TRY(parseDirection("up", value));
     return {};
 }
 
@@ -173,18 +160,14 @@ Result<void> MapSpecBuilder::setDepth(std::string_view value) {
     if (!isFrontBack(spec_.format)) {
         return usage("depth does nothing but for front-back; leave it out");
     }
-    if (value != "half" && value != "unorm16") {
-        return badValue("depth", value, "half or unorm16" + didYouMean(value, kDepthWords));
-    }
-    spec_.format = value == "half" ? MapFormat::kFrontBackHalf : MapFormat::kFrontBackFixed;
+    const bool fixed = RELIEF_TRY(parseWord("depth", value, {"half", "unorm16"}));
+    spec_.format = fixed ? MapFormat::kFrontBackFixed : MapFormat::kFrontBackHalf;
     return {};
 }
 
 Result<void> MapSpecBuilder::setDecode(std::string_view value) {
-    if (value != "projected" && value != "plane") {
-        return badValue("decode", value, "projected or plane" + didYouMean(value, kDecodeWords));
-    }
-    spec_.decode = value == "plane" ? Decode::kPlane : Decode::kProjected;
+    const bool plane = RELIEF_TRY(parseWord("decode", value, {"projected", "plane"}));
+    spec_.decode = plane ? Decode::kPlane : Decode::kProjected;
     return {};
 }
 
@@ -195,13 +178,8 @@ Result<void> MapSpecBuilder::setSize(std::string_view value) {
     if (parts.size() > 2 || !width || !height || (isCube() && *width != *height)) {
         return badValue("size", value, isCube() ? "N, as a cube's faces are square" : "N or WxH");
     }
-    const Result<std::uint32_t> w = checkMapSize(*width, spec_.format, "size");
-    const Result<std::uint32_t> h = checkMapSize(*height, spec_.format, "size");
-    if (!w || !h) {
-        return w ? forward(h) : forward(w);
-    }
-    spec_.width = *w;
-    spec_.height = *h;
+    spec_.width = RELIEF_TRY(checkMapSize(*width, spec_.format, "size"));
+    spec_.height = RELIEF_TRY(checkMapSize(*height, spec_.format, "size"));
     return {};
 }
 
@@ -214,10 +192,8 @@ Result<void> MapSpecBuilder::setCompare(std::string_view value) {
         spec_.compare = Compare::kGap;
         return {};
     }
-    if (value != "less" && value != "greater") {
-        return badValue("compare", value, "less or greater" + didYouMean(value, kCompareWords));
-    }
-    spec_.compare = value == "less" ? Compare::kLess : Compare::kGreater;
+    const bool greater = RELIEF_TRY(parseWord("compare", value, {"less", "greater"}));
+    spec_.compare = greater ? Compare::kGreater : Compare::kLess;
     return {};
 }
 
@@ -255,7 +231,7 @@ Result<void> checkUp(const MapSpec& spec) {
     if (!spec.up) {
         return {};
     }
-    // In double, and by the largest components first: squares of floats could overflow or vanish.
+    // In double, by the largest components first: squares of floats could overflow or vanish.
     const auto unit = [](const glm::vec3& v) {
         const float largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
         return glm::normalize(glm::dvec3(v) / static_cast<double>(largest));

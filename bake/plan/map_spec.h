@@ -1,5 +1,5 @@
-// What the user asks of one map: `FORMAT[:key=value,...]`, the argument of `relief bake --map`, and the keys
-// of a [[map]] of a plan file (plan_file.h).
+// The settings of one map: `FORMAT[:key=value,...]` of `relief bake --map`, and the keys of a [[map]] in a plan file
+// (plan_file.h).
 //
 //     float                                     512² floats, seen along −z, nearest surface
 //     fixed8:dir=-y,size=1024x512               from above, 1024 texels wide
@@ -44,24 +44,21 @@ struct MapSpec {
     Decode decode = Decode::kPlane;
     /// The view's direction in object space, of any length but 0; not for cubes.
     glm::vec3 direction{0.0F, 0.0F, -1.0F};
-    /// Upwards in the image, in object space, of any length but 0; its part along `direction` does not count.
-    /// Not for cubes. nullopt: the rule of view.h.
+    /// Upwards in the image, in object space, of any length but 0; its component along `direction` is ignored. Not for cubes.
+    /// nullopt: the rule of view.h.
     std::optional<glm::vec3> up;
-    /// Texels; 0 stands for the default resolution of the bake.
-    std::uint32_t width = 0;
+    std::uint32_t width = 0;  ///< texels; 0: the resolution of the bake
     std::uint32_t height = 0;
-    /// For front-back kGap or nullopt, which is both. Of others nullopt: less; for a cube, greater if its centre lies
-    /// inside the mesh.
+    /// Front-back: kGap, or nullopt for both. Others: nullopt for less, or greater for a cube whose centre lies inside the
+    /// mesh.
     std::optional<Compare> compare;
-    /// Cubes only. nullopt: the middle of the box.
-    std::optional<glm::vec3> center;
-    /// Object space. nullopt: tight, round the whole mesh.
-    std::optional<Bounds> box;
+    std::optional<glm::vec3> center;  ///< cubes only; nullopt: the middle of the box
+    std::optional<Bounds> box;        ///< object space; nullopt: tight round the whole mesh
 
     friend bool operator==(const MapSpec&, const MapSpec&) = default;
 };
 
-/// What a text that does not say it stands for.
+/// Settings that a text leaves out.
 struct MapSpecDefaults {
     Decode decode = Decode::kPlane;
     MapFormat front_back = MapFormat::kFrontBackFixed;  ///< or kFrontBackHalf
@@ -70,21 +67,20 @@ struct MapSpecDefaults {
 /// The texels of the paper.
 inline constexpr MapSpecDefaults kPaperDefaults{Decode::kProjected, MapFormat::kFrontBackHalf};
 
-/// Errors: kUsage (unknown or repeated key, value, a key that does nothing for this format, or up along dir),
-/// kLimit (size above kMapSizeMax). Messages quote `text` and say what would be right.
+/// Errors, quoting `text` and the valid choices: kUsage (unknown or repeated key, value, a key without effect for this
+/// format, up along dir), kLimit (size above kMapSizeMax).
 [[nodiscard]] Result<MapSpec> parseMapSpec(std::string_view text, const MapSpecDefaults& defaults = {});
 
-/// Builds a spec from one key after another: of a --map, or of a plan file. Errors: those of parseMapSpec,
-/// but messages say only what is wrong: the caller puts before them where it is.
+/// Builds a spec key by key. Errors: those of parseMapSpec, without the place, which the caller prepends.
 class MapSpecBuilder {
   public:
     explicit MapSpecBuilder(const MapSpecDefaults& defaults = {});
 
-    /// Call it first: which keys do something depends on the format.
+    /// Call this first: the valid keys depend on the format.
     [[nodiscard]] Result<void> setFormat(std::string_view word);
     [[nodiscard]] Result<void> set(std::string_view key, std::string_view value);
     [[nodiscard]] static bool knows(std::string_view key);
-    /// Checks what no key can tell alone.
+    /// Checks the keys against each other.
     [[nodiscard]] Result<MapSpec> finish() const;
 
   private:
@@ -103,7 +99,7 @@ class MapSpecBuilder {
     std::array<bool, 8> seen_{};  // by key
 };
 
-/// Errors: kUsage if up is (nearly) parallel to the direction, and so is no side of the image.
+/// Errors: kUsage if up is (nearly) parallel to the direction.
 [[nodiscard]] Result<void> checkUp(const MapSpec& spec);
 
 /// The canonical text, with every setting that has an effect: parseMapSpec(toString(s)) == s if s has a size.

@@ -5,48 +5,45 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/common.hpp>
 #include <glm/gtc/constants.hpp>
 #include <glm/vec2.hpp>
 #include <limits>
 #include <optional>
 
-#include "bake/mesh/triangle_plane.h"
 #include "bake/plan/view.h"
 #include "formats/base/portable_math.h"
 
 namespace relief {
 namespace {
 
-/// In how many ways an image is turned, and the share of the bytes that is left where it is worth it.
+/// Rotations of an image that are tried, and the share of the bytes below which one is worth it.
 constexpr int kTurns = 8;
 constexpr double kTurnGain = 0.96;
-/// Views whose silhouette is smaller than this share of the largest look at a flat mesh edge-on.
+/// A view whose silhouette is a smaller share of the largest sees a flat mesh edge-on.
 constexpr double kSmallestView = 0.1;
 
-/// A direction to look along, and how its image is turned; nullopt: by the rule of view.h.
+/// A viewing direction and the image's upward direction; nullopt: by the rule of view.h.
 struct Candidate {
     glm::dvec3 direction;
     std::optional<glm::dvec3> up;
 };
 
-/// Area of the rectangle round the points as a view with this frame shows them.
+/// Area of the rectangle round the points in a view with this frame.
 double rectangleArea(const std::vector<glm::dvec3>& points, const glm::dvec3& direction,
                      const glm::dvec3& up) {
-    const glm::dvec3 right = cross(direction, up) / length(cross(direction, up));
+    const glm::dvec3 right = unit(cross(direction, up));
     const glm::dvec3 upwards = cross(right, direction);
-    glm::dvec2 low(std::numeric_limits<double>::max());
-    glm::dvec2 high(std::numeric_limits<double>::lowest());
+    Range x;
+    Range y;
     for (const glm::dvec3& p : points) {
-        const glm::dvec2 at(dot(p, right), dot(p, upwards));
-        low = glm::min(low, at);
-        high = glm::max(high, at);
+        x.add(dot(p, right));
+        y.add(dot(p, upwards));
     }
-    return (high.x - low.x) * (high.y - low.y);
+    return x.size() * y.size();
 }
 
-/// The outer directions and the axes of the oriented box, each turned by the axis of that box that makes its
-/// rectangle clearly smaller than the rule of view.h does.
+/// The outer directions and the axes of the oriented box, each turned by an axis of that box if its rectangle gets clearly
+/// smaller than by the rule of view.h.
 std::vector<Candidate> outerCandidates(const Bounds& bounds, const std::optional<OrientedBox>& box) {
     std::vector<Candidate> candidates;
     for (const glm::dvec3& direction : outerDirections(bounds)) {
@@ -57,7 +54,7 @@ std::vector<Candidate> outerCandidates(const Bounds& bounds, const std::optional
     }
     const std::vector<glm::dvec3>& corners = box->corners;
     for (const glm::dvec3& axis : box->axes) {
-        const bool known = std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& candidate) {
+        const bool known = std::ranges::any_of(candidates, [&](const Candidate& candidate) {
             return std::abs(dot(candidate.direction, axis)) > 1.0 - 1e-9;
         });
         if (!known) {
@@ -80,37 +77,35 @@ std::vector<Candidate> outerCandidates(const Bounds& bounds, const std::optional
     return candidates;
 }
 
-/// Area between the ends of rows, as the points show them.
+/// Area of the row spans, estimated by the points.
 double rowsArea(const std::vector<glm::dvec3>& points, const glm::dvec3& right, const glm::dvec3& up) {
     constexpr std::size_t kStrips = 64;
     std::vector<glm::dvec2> places;
     places.reserve(points.size());
-    glm::dvec2 y_range(std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest());
+    Range y;
     for (const glm::dvec3& point : points) {
         places.emplace_back(dot(point, right), dot(point, up));
-        y_range = {std::min(y_range.x, places.back().y), std::max(y_range.y, places.back().y)};
+        y.add(places.back().y);
     }
     const double strip =
-        std::max(y_range.y - y_range.x, std::numeric_limits<double>::min()) / static_cast<double>(kStrips);
-    std::array<glm::dvec2, kStrips> ends;
-    ends.fill({std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()});
+        std::max(y.size(), std::numeric_limits<double>::min()) / static_cast<double>(kStrips);
+    std::array<Range, kStrips> ends;
     for (const glm::dvec2& at : places) {
-        glm::dvec2& end = ends[std::min(kStrips - 1, static_cast<std::size_t>((at.y - y_range.x) / strip))];
-        end = {std::min(end.x, at.x), std::max(end.y, at.x)};
+        ends[std::min(kStrips - 1, static_cast<std::size_t>((at.y - y.min) / strip))].add(at.x);
     }
     double width = 0.0;
-    for (const glm::dvec2& end : ends) {
-        width += std::max(0.0, end.y - end.x);
+    for (const Range& end : ends) {
+        width += std::max(0.0, end.size());
     }
     return width * strip;
 }
 
-/// Turns an image so that its rows, from one end of the silhouette to the other, take up least.
+/// Turns an image for the least area of its row spans.
 Result<void> turn(OuterView& view, const TriangleMesh& mesh, const VertexBlocks& blocks,
                   const std::vector<glm::dvec3>& points) {
     const View first = RELIEF_TRY(makeView(view.spec, mesh, &blocks));
-    const glm::dvec3 right = first.axis[0] / length(first.axis[0]);
-    const glm::dvec3 up = first.axis[1] / length(first.axis[1]);
+    const glm::dvec3 right = unit(first.axis[0]);
+    const glm::dvec3 up = unit(first.axis[1]);
     view.area = rowsArea(points, right, up);
     double least = kTurnGain * view.area;
     for (int k = 1; k < kTurns; ++k) {
@@ -128,7 +123,7 @@ Result<void> turn(OuterView& view, const TriangleMesh& mesh, const VertexBlocks&
     return {};
 }
 
-/// The view of a candidate, and how large it is.
+/// The view of a candidate and its size.
 Result<void> measure(const Candidate& candidate, const TriangleMesh& mesh, const VertexBlocks& blocks,
                      const std::vector<glm::dvec3>& points, OuterView& view) {
     view.spec.format = MapFormat::kFrontBackFixed;
@@ -137,7 +132,7 @@ Result<void> measure(const Candidate& candidate, const TriangleMesh& mesh, const
     if (candidate.up) {
         view.spec.up = glm::vec3(*candidate.up);
     }
-    view.spec.width = view.spec.height = 64;  // any: the extents do not depend on it
+    view.spec.width = view.spec.height = 64;  // any: the extents are independent of it
     RELIEF_TRY(turn(view, mesh, blocks, points));
     const View frame = RELIEF_TRY(makeView(view.spec, mesh, &blocks));
     // The inner 62 of 64 texels cover the mesh.
@@ -170,9 +165,7 @@ std::vector<glm::dvec3> outerDirections(const Bounds& bounds) {
     }
     const double least = 1e-6 * length(size);
     std::erase_if(directions, [&](const glm::dvec3& d) { return !(length(d) > std::min(least, 0.5)); });
-    for (glm::dvec3& direction : directions) {
-        direction /= length(direction);
-    }
+    std::ranges::transform(directions, directions.begin(), unit);
     return directions;
 }
 

@@ -1,4 +1,4 @@
-// Views of a whole mesh from outside, from which the planner chooses.
+// Views of a whole mesh from outside: candidates for the planner.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -14,21 +14,19 @@
 namespace relief {
 
 struct OuterView {
-    MapSpec
-        spec;  ///< of a front-back map of planes, turned so that its rows take up little; its size is of no account
+    MapSpec spec;  ///< of a front-back map of planes, turned for the shortest rows; its size is meaningless
     double width = 0.0;  ///< object units
     double height = 0.0;
-    double area = 0.0;  ///< that its rows take up (formats/row_spans.h), object units squared
+    double area = 0.0;  ///< of its row spans (formats/row_spans.h), object units squared
 };
 
-/// Directions spread over the sphere, one of each opposite pair, and the diagonals of the box, which may be among them; of
-/// unit length.
+/// Unit vectors spread over the sphere, one of each opposite pair, and the diagonals of the box, which may be among them.
 [[nodiscard]] std::vector<glm::dvec3> outerDirections(const Bounds& bounds);
 
-/// Along the outer directions, and then the axes of the oriented box, if it is given, by which images are turned, too; but
-/// for those that see a flat mesh edge-on.
+/// Along the outer directions, then the axes of the oriented box if there is one, but for views of a flat mesh edge-on. The
+/// axes of that box also turn the images.
 /// \param blocks  of the mesh's positions.
-/// \param points  near the surface and all over it: they show how much rows take up.
+/// \param points  all over the surface: an estimate of the rows.
 /// Errors: those of makeView.
 [[nodiscard]] Result<std::vector<OuterView>> outerViews(const TriangleMesh& mesh, const VertexBlocks& blocks,
                                                         const std::vector<glm::dvec3>& points,

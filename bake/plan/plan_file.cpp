@@ -1,7 +1,9 @@
 #include "bake/plan/plan_file.h"
 
+#include <algorithm>
 #include <array>
 #include <exception>
+#include <optional>
 
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
@@ -19,6 +21,15 @@ constexpr std::int64_t kVersion = 1;
 constexpr double kLengthMax = 1e15;
 constexpr std::array<std::string_view, 6> kTopKeys = {"version", "quality",   "prefer",
                                                       "budget",  "thickness", "map"};
+
+/// The index of a string among `words`.
+template <std::size_t N>
+std::optional<std::size_t> wordIn(const toml::node& node, const std::array<const char*, N>& words) {
+    const auto word = node.value_exact<std::string>();
+    const auto* const found = std::ranges::find_if(words, [&](const char* known) { return word == known; });
+    return found == words.end() ? std::nullopt
+                                : std::optional(static_cast<std::size_t>(found - words.begin()));
+}
 
 class Reader {
   public:
@@ -44,7 +55,7 @@ class Reader {
                                                 const std::string& message) const {
         return failAt(at, ErrorCode::kInvalidInput, message);
     }
-    /// What a MapSpecBuilder does not take: wrong in a file what is wrong usage of an option.
+    /// An error of a MapSpecBuilder: wrong usage of an option is invalid input in a file.
     [[nodiscard]] tl::unexpected<Error> refused(const toml::source_position& at, const Error& error) const {
         return failAt(at, error.code == ErrorCode::kUsage ? ErrorCode::kInvalidInput : error.code,
                       error.message);
@@ -61,25 +72,22 @@ class Reader {
         PlanFile plan;
         for (const toml::key* key : keysInOrder(root)) {
             const toml::node& node = *root.get(key->str());
-            Result<void> done;
-            if (key->str() == "quality") {
-                done = readQuality(node, plan);
-            } else if (key->str() == "prefer") {
-                done = readPrefer(node, plan);
-            } else if (key->str() == "budget") {
-                done = readBudget(node, plan);
-            } else if (key->str() == "thickness") {
-                done = readThickness(node, plan);
-            } else if (key->str() == "map") {
-                done = readMaps(node, plan);
-            } else if (key->str() != "version") {
+            using Read = Result<void> (Reader::*)(const toml::node&, PlanFile&) const;
+            constexpr std::array<Read, kTopKeys.size()> kReaders = {nullptr,
+                                                                    &Reader::readQuality,
+                                                                    &Reader::readPrefer,
+                                                                    &Reader::readBudget,
+                                                                    &Reader::readThickness,
+                                                                    &Reader::readMaps};
+            const auto* const found = std::ranges::find(kTopKeys, key->str());
+            if (found == kTopKeys.end()) {
                 const std::string guess = didYouMean(key->str(), kTopKeys);
                 return invalid(key->source().begin,
                                "unknown key '" + cleanUtf8(key->str()) + "'" +
                                    (guess.empty() ? "; known are " + listed(kTopKeys) : guess));
             }
-            if (!done) {
-                return forward(done);
+            if (const Read reader = kReaders.at(static_cast<std::size_t>(found - kTopKeys.begin()))) {
+                RELIEF_TRY((this->*reader)(node, plan));
             }
         }
         if (plan.maps.empty()) {
@@ -89,25 +97,21 @@ class Reader {
     }
 
     Result<void> readQuality(const toml::node& node, PlanFile& plan) const {
-        const auto word = node.value_exact<std::string>();
-        for (const Quality quality : {Quality::kFast, Quality::kNormal, Quality::kBest}) {
-            if (word == qualityName(quality)) {
-                plan.quality = quality;
-                return {};
-            }
+        const std::optional<std::size_t> word = wordIn(node, kQualityNames);
+        if (!word) {
+            return invalid(node.source().begin, "quality must be \"fast\", \"normal\" or \"best\"");
         }
-        return invalid(node.source().begin, "quality must be \"fast\", \"normal\" or \"best\"");
+        plan.quality = static_cast<Quality>(*word);
+        return {};
     }
 
     Result<void> readPrefer(const toml::node& node, PlanFile& plan) const {
-        const auto word = node.value_exact<std::string>();
-        for (const Prefer prefer : {Prefer::kNeither, Prefer::kInside, Prefer::kOutside}) {
-            if (word == preferName(prefer)) {
-                plan.prefer = prefer;
-                return {};
-            }
+        const std::optional<std::size_t> word = wordIn(node, kPreferNames);
+        if (!word) {
+            return invalid(node.source().begin, "prefer must be \"neither\", \"inside\" or \"outside\"");
         }
-        return invalid(node.source().begin, "prefer must be \"neither\", \"inside\" or \"outside\"");
+        plan.prefer = static_cast<Prefer>(*word);
+        return {};
     }
 
     Result<void> readBudget(const toml::node& node, PlanFile& plan) const {
@@ -144,8 +148,7 @@ class Reader {
             if (table == nullptr) {
                 return invalid(map.source().begin, "a map must be a table; write [[map]] before each");
             }
-            const MapSpec spec = RELIEF_TRY(readMap(*table));
-            plan.maps.push_back({spec, ""});
+            plan.maps.push_back({RELIEF_TRY(readMap(*table)), ""});
         }
         return {};
     }
@@ -170,7 +173,7 @@ class Reader {
                 continue;
             }
             if (!MapSpecBuilder::knows(key->str())) {
-                // The builder has the words for it; the key is what is wrong, not its value.
+                // The builder has the message; the place is the key's, not the value's.
                 return refused(key->source().begin, builder.set(key->str(), "").error());
             }
             const toml::node& node = *table.get(key->str());
@@ -223,7 +226,7 @@ std::string planText(const PlanFile& plan) {
 }
 
 Result<PlanFile> parsePlan(std::string_view text, const fs::path& path) {
-    // The name without its quotes, as a compiler writes it.
+    // Without the quotes, as compilers write it.
     const std::string quoted = quotedPath(path);
     return Reader(path == "-" ? "standard input" : quoted.substr(1, quoted.size() - 2)).read(text);
 }

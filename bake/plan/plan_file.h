@@ -1,5 +1,5 @@
-// Plan files: the maps of a bake as TOML, for people to read and to change. `relief bake --plan-out` writes
-// them, `relief bake --plan` bakes from them.
+// Plan files: the maps of a bake as TOML, to read and to edit. `relief bake --plan-out` writes them, `relief bake --plan`
+// bakes from them.
 //
 //     version = 1
 //     quality = "normal"
@@ -16,11 +16,10 @@
 //     decode = "plane"
 //     box = "tight"
 //
-// `budget` is what the maps were planned for, bytes on the GPU; it changes nothing but the collider's record, and may be
-// left out. `thickness` is the default from which each shell takes what suits its part (bake/shape/thickness.h), in the mesh's
-// units; without it the bake takes its own. A map has `format`, `size`, and whichever other keys of map_spec.h it needs; their values are strings, as
-// after --map, and `size` may be a whole number. Numbers are the shortest that read back as the same floats:
-// what was planned and what is baked from its file are the same bytes.
+// `budget`, optional, is the number of bytes on the GPU that the maps were planned for, for the collider's record alone.
+// `thickness`, optional, is the default from which each shell derives its own (bake/shape/thickness.h), in the mesh's units.
+// A map has `format`, `size` and other keys of map_spec.h, with strings as after --map; `size` may be a whole number. Numbers
+// are the shortest that read back as the same floats: a plan and its file bake to the same bytes.
 #pragma once
 
 #include <cstdint>
@@ -37,18 +36,18 @@ namespace relief {
 
 struct PlanFileMap {
     MapSpec spec;         ///< with a size
-    std::string comment;  ///< why this map; written as a comment of one line, and not read back
+    std::string comment;  ///< why this map: one line, which is not read back
 };
 
 struct PlanFile {
     Quality quality = Quality::kNormal;
     Prefer prefer = Prefer::kNeither;
-    std::uint64_t budget = 0;  ///< bytes; 0: none is named
-    double thickness = 0.0;    ///< of shells, before their parts bound it; 0: none is named
+    std::uint64_t budget = 0;  ///< bytes; 0: none
+    double thickness = 0.0;    ///< default of shells, before their parts bound it; 0: none
     std::vector<PlanFileMap> maps;
 };
 
-/// Parsing it gives the same quality, prefer, budget, thickness and specs.
+/// parsePlan() reads it back, but for the comments.
 [[nodiscard]] std::string planText(const PlanFile& plan);
 
 /// \param path  for messages.

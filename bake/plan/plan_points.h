@@ -1,4 +1,4 @@
-// The points that a plan is judged by, and how well a view serves one.
+// The sample points of a plan, and the service of a view to a point.
 #pragma once
 
 #include <cstddef>
@@ -16,16 +16,16 @@ struct PlanPoint {
     glm::dvec3 normal;  ///< of the surface, towards the point
 };
 
-/// Spread over the area, a little off it. The same for any number of threads.
+/// Stratified over the area, a little off the surface. The same for any number of threads.
 [[nodiscard]] std::vector<PlanPoint> drawPlanPoints(const MeshQuery& query, std::uint64_t seed);
 
-/// How well a point is served by a view that sees it under this cosine, 0 to 1: hardly, edge-on.
+/// The service, 0 to 1, of a view that sees a point at this cosine of incidence; little when edge-on.
 [[nodiscard]] float service(double cosine);
 
-/// The first of somePoints(), this part, tell what is clearly worse than the rest.
+/// The first of so many parts of somePoints() finds candidates that are clearly worse.
 inline constexpr std::size_t kSomeParts = 8;
 
-/// Some hundred of these indices, in an order in which the first are from everywhere too.
+/// Some hundred of these indices, in an order whose beginning is spread as evenly.
 [[nodiscard]] std::vector<std::size_t> somePoints(const std::vector<std::size_t>& points);
 
 }  // namespace relief

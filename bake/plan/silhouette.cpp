@@ -37,14 +37,14 @@ Silhouette::Silhouette(const TriangleMesh& mesh, const View& view) : strips_(kSt
         return static_cast<std::size_t>(
             std::clamp(std::floor(y * static_cast<double>(kStrips)), 0.0, static_cast<double>(kStrips - 1)));
     };
-    // What a triangle takes up of a strip ends at its edges.
+    // The extent of a triangle in a strip ends at its edges.
     const auto addEdge = [&](glm::dvec2 a, glm::dvec2 b) {
         if (a.y > b.y) {
             std::swap(a, b);
         }
         const std::size_t first = stripAt(a.y - kSlack);
         const std::size_t last = stripAt(b.y + kSlack);
-        // Most edges lie well within what is known already.
+        // Most edges lie well within the extents so far.
         const auto low_end = static_cast<float>(std::min(a.x, b.x) - 2.0 * kSlack);
         const auto high_end = static_cast<float>(std::max(a.x, b.x) + 2.0 * kSlack);
         std::size_t k = first;
@@ -66,9 +66,7 @@ Silhouette::Silhouette(const TriangleMesh& mesh, const View& view) : strips_(kSt
             if (low > high) {
                 std::swap(low, high);
             }
-            RowExtent& strip = strips_[k];
-            strip.low = std::min(strip.low, static_cast<float>(low - kSlack));
-            strip.high = std::max(strip.high, static_cast<float>(high + kSlack));
+            strips_[k].add({static_cast<float>(low - kSlack), static_cast<float>(high + kSlack)});
         }
     };
     for (const glm::uvec3& t : mesh.triangles) {
@@ -93,8 +91,7 @@ std::uint64_t Silhouette::texels(std::uint32_t width, std::uint32_t height) cons
         const std::size_t first = std::size_t{row} * kStrips / rows;
         const std::size_t end = ((std::size_t{row} + 1) * kStrips + rows - 1) / rows;
         for (std::size_t k = first; k < std::min(end, kStrips); ++k) {
-            span.low = std::min(span.low, strips_[k].low);
-            span.high = std::max(span.high, strips_[k].high);
+            span.add(strips_[k]);
         }
         if (span.low <= span.high) {
             const auto columnAt = [&](float x) {

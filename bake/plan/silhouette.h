@@ -1,6 +1,7 @@
-// How many texels the rows of a front-back map will have, before any ray is traced (formats/row_spans.h).
+// The number of texels in the rows of a front-back map (formats/row_spans.h), before any ray is traced.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -9,24 +10,28 @@
 
 namespace relief {
 
-/// Across an image, from 0 to 1; nothing where low > high.
+/// An interval across an image, from 0 to 1; empty where low > high.
 struct RowExtent {
     float low = 1.0F;
     float high = 0.0F;
+
+    void add(const RowExtent& other) {
+        low = std::min(low, other.low);
+        high = std::max(high, other.high);
+    }
 };
 
-/// The outline of a mesh as an orthographic view shows it, as far as rows ask of it: what each of many strips across the
-/// image takes up.
+/// The outline of a mesh in an orthographic view: the extent of each of many strips across the image.
 class Silhouette {
   public:
-    /// \param view  orthographic, tight round the mesh; its size does not matter.
+    /// \param view  orthographic, tight round the mesh, of any size.
     Silhouette(const TriangleMesh& mesh, const View& view);
-    /// \param rows  what rows of equal height take up of the view's inner rectangle, from below
+    /// \param rows  extents of rows of equal height in the view's inner rectangle, from below
     explicit Silhouette(const std::vector<RowExtent>& rows);
 
-    /// Of a map of this size: no fewer texels than the spans of its rows have.
+    /// For a map of this size, an upper bound of the texels in its row spans.
     [[nodiscard]] std::uint64_t texels(std::uint32_t width, std::uint32_t height) const;
-    /// Bytes on the GPU of a map of this size, as gpuBytes() has it at most.
+    /// For a map of this size, an upper bound of gpuBytes().
     [[nodiscard]] std::uint64_t gpuBytes(std::uint32_t width, std::uint32_t height) const;
 
   private:

@@ -6,40 +6,23 @@
 #include <limits>
 
 #include "bake/mesh/inside.h"
-#include "bake/mesh/triangle_plane.h"
 
 namespace relief {
 namespace {
 
-/// Free space added on every side of a tight box, in units of the mesh's longest side: the surface then has
-/// depths that every format can hold, the smallest normal half (6.1e-5) included.
+/// Free space on every side of a tight box, in units of the mesh's longest side: all formats, with 6.1e-5 the smallest normal
+/// half, can then store the surface's depths.
 constexpr double kPadding = 1e-4;
-/// The least extent of a tight box, in the same units, so that a flat mesh has a volume.
+/// The least extent of a tight box, in the same units, for flat meshes.
 constexpr double kExtentMin = 1e-2;
-
-struct Range {
-    double min = std::numeric_limits<double>::max();
-    double max = std::numeric_limits<double>::lowest();
-
-    void add(double value) {
-        min = std::min(min, value);
-        max = std::max(max, value);
-    }
-    [[nodiscard]] double size() const { return max - min; }
-    [[nodiscard]] Range padded(double by) const { return {min - by, max + by}; }
-    [[nodiscard]] bool holds(const Range& other, double slack) const {
-        return min - slack <= other.min && other.max <= max + slack;
-    }
-};
 
 glm::dvec3 normalized(const glm::dvec3& v) {
     // By the largest component first: squares of small floats would vanish.
     const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-    const glm::dvec3 scaled = v / largest;
-    return scaled / std::sqrt(dot(scaled, scaled));
+    return unit(v / largest);
 }
 
-/// Right, up and view direction as above.
+/// Right, up and view direction.
 std::array<glm::dvec3, 3> orthographicFrame(const glm::vec3& direction, const std::optional<glm::vec3>& up) {
     const glm::dvec3 d = normalized(direction);
     const glm::dvec3 right = normalized(cross(d, up ? normalized(*up) : defaultUp(d)));
@@ -50,7 +33,7 @@ std::array<Range, 3> projectedRanges(const Bounds& box, const std::array<glm::dv
 
 std::array<Range, 3> projectedRanges(const TriangleMesh& mesh, const VertexBlocks* blocks,
                                      const std::array<glm::dvec3, 3>& frame) {
-    // Along the axes of object space the bounds say it all, exactly.
+    // Along the axes of object space the bounds are exact.
     if (frame[0].x * frame[0].y == 0.0 && frame[0].y * frame[0].z == 0.0 && frame[0].z * frame[0].x == 0.0 &&
         std::abs(frame[2].x) + std::abs(frame[2].y) + std::abs(frame[2].z) == 1.0) {
         return projectedRanges(mesh.bounds, frame);
@@ -92,11 +75,10 @@ double largestCoordinate(const Bounds& b) {
     return largest;
 }
 
-/// Free space on every side of a tight volume.
-/// \param extent  of the mesh along the axis in question.
+/// Free space on both sides of a tight volume along an axis. \param extent  of the mesh along it.
 double padding(const Bounds& bounds, double extent) {
     const auto longest = static_cast<double>(bounds.longestSide());
-    // More where floats are coarse, far from the origin.
+    // More far from the origin, where floats are coarse.
     const double rounding =
         8.0 * static_cast<double>(std::numeric_limits<float>::epsilon()) * largestCoordinate(bounds);
     return std::max(kPadding * longest + rounding, 0.5 * (kExtentMin * longest - extent));
@@ -186,7 +168,7 @@ bool View::emptyIsOutside() const {
 
 namespace {
 
-/// Where the centre of a texel is, as a share of so many.
+/// The place of a texel's centre, as a share of `count` texels.
 double centreOf(std::uint32_t texel, std::uint32_t count) {
     return (static_cast<double>(texel) + 0.5) / static_cast<double>(count);
 }
@@ -207,7 +189,7 @@ TexelRay View::ray(std::uint32_t face, std::uint32_t x, std::uint32_t y) const {
     }
     const double s = centreOf(x, width);
     const double t = centreOf(y, height);
-    // In double, what cubeDirection of depth_map.h gives in float.
+    // cubeDirection of depth_map.h in double.
     const double sc = 2.0 * s - 1.0;
     const double tc = 2.0 * t - 1.0;
     const glm::dvec3 toward = std::array<glm::dvec3, 6>{{{1.0, -tc, -sc},
@@ -216,8 +198,8 @@ TexelRay View::ray(std::uint32_t face, std::uint32_t x, std::uint32_t y) const {
                                                          {sc, -1.0, -tc},
                                                          {sc, -tc, 1.0},
                                                          {-sc, -tc, -1.0}}}[face];
-    const glm::dvec3 unit = toward / std::sqrt(dot(toward, toward));
-    return {origin, {unit.x * axis[0].x, unit.y * axis[1].y, unit.z * axis[2].z}};
+    const glm::dvec3 d = unit(toward);
+    return {origin, {d.x * axis[0].x, d.y * axis[1].y, d.z * axis[2].z}};
 }
 
 double View::depthMax(const TexelRay& ray) const {

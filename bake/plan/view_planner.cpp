@@ -7,13 +7,13 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vector_relational.hpp>
 #include <iterator>
 #include <optional>
 #include <utility>
 
-#include "bake/mesh/triangle_plane.h"
+#include "bake/mesh/oriented_box.h"
 #include "bake/plan/cavities.h"
 #include "bake/plan/gap_grid.h"
 #include "bake/plan/outer_views.h"
@@ -23,35 +23,30 @@
 namespace relief {
 namespace {
 
-/// How well a point is served that a view sees from both sides: it is off a silhouette, through which a
-/// standing plane passes (plane_fit.h).
+/// Service to a point that a view sees from both sides: it lies off a silhouette, where a standing plane is (plane_fit.h).
 constexpr float kSilhouette = 0.9F;
-/// An outer view that raises the mean service by this much is taken before places within are looked at.
+/// Gain in mean service for which an outer view is taken before places within are tried.
 constexpr double kClearGain = 0.03;
-/// What every map costs, in mean service: a step of a simulation looks at each in turn. Eight maps take about 1.6 times as
-/// long as the paper's two, by llvmpipe.
+/// Price of a map in mean service: every step of a simulation samples all maps.
 constexpr double kMapPrice = 0.0013;
-/// What a map costs that takes as many bytes as all before it: they are taken from those, whose texels grow.
+/// Price of a map with as many bytes as all before it, whose texels grow for it.
 constexpr double kBytePrice = 0.02;
-/// Where free space must be kept free, price is no object.
+/// With Prefer::kOutside, the share of these prices.
 constexpr double kOutsidePriceShare = 0.2;
-/// Points served less than this are looked at from within, while they are more than kCavityShare of all.
+/// Points of less service are badly served. Places within are tried while these are more than kCavityShare of all.
 constexpr double kUnserved = 0.5;
 constexpr double kCavityShare = 0.002;
-/// Rounds in a row in which no place within is worth its price.
+/// Consecutive rounds without a place within that is worth its price.
 constexpr int kIdleRounds = 3;
-/// An eighth of the points tell the worse half of the outer views, a fourth of them the worse half of the others, and so
-/// on; all points are asked about the rest.
+/// An eighth of the points eliminates half of the outer views, a fourth half of the others, and so on.
 constexpr std::size_t kFirstStride = 8;
-/// Points per task.
-constexpr std::size_t kBlock = 1024;
-/// Of the area of an outer view, what the gaps along its direction take up: a guess, until one is chosen.
+constexpr std::size_t kBlock = 1024;  // points per task
+/// Estimated area of the gaps along an outer view's direction, as a share of its area.
 constexpr double kGapShare = 0.3;
-/// What the rectangles of maps may take beside the budget, which counts what lies between the ends of rows: so many bytes,
-/// or so many budgets.
+/// Limit of the maps' rectangles, as the budget counts row spans alone: so many bytes, or so many budgets.
 constexpr std::uint64_t kRectangleBytes = std::uint64_t{128} << 20;
 constexpr std::uint64_t kRectangleShare = 16;
-/// Texels of a map of gaps across one of an outer view: what is seen by no other map is in much of it.
+/// Texels of a map of gaps across one of an outer view: no other map sees much of its content.
 constexpr double kGapDetail = 1.4;
 
 std::string text(const char* format, double a, double b = 0.0, double c = 0.0, double d = 0.0) {
@@ -61,8 +56,8 @@ std::string text(const char* format, double a, double b = 0.0, double c = 0.0, d
 }
 
 struct RatedView : OuterView {
-    std::vector<float> service;  ///< of each point that was asked about
-    std::size_t stride = 0;      ///< of these, among all points; 0: none was
+    std::vector<float> service;  ///< by point
+    std::size_t stride = 0;      ///< of the points with a service; 0: none
 };
 
 class Planner {
@@ -79,7 +74,7 @@ class Planner {
             spread.emplace_back().spec.direction = glm::vec3(direction) + 0.0F;
         }
         std::optional<OrientedBox> box;
-        // The box is one thread's work for a while, the rays are not.
+        // The box takes one thread for a while.
         tbb::parallel_invoke([&] { box = options_.oriented_box ? orientedBox(blocks) : std::nullopt; },
                              [&] {
                                  points_ = drawPlanPoints(query_, options_.seed);
@@ -101,7 +96,7 @@ class Planner {
             }
         }
         RELIEF_TRY(addViews(views));
-        // Gaps are kept that no map before them sees.
+        // Maps of gaps depend on those before them.
         std::stable_partition(
             choice_.views.begin(), choice_.views.end(),
             [](const ViewChoice::Chosen& chosen) { return chosen.map.spec.compare != Compare::kGap; });
@@ -121,12 +116,14 @@ class Planner {
     }
     [[nodiscard]] Result<void> addSilhouette(ViewChoice::Chosen& chosen) const {
         if (chosen.map.spec.format != MapFormat::kCube8 && !chosen.silhouette) {
-            MapSpec spec = chosen.map.spec;
-            spec.width = spec.height = 64;  // any: its outline does not depend on it
-            chosen.silhouette.emplace(mesh_,
-                                      RELIEF_TRY(makeView(spec, mesh_, &query_.prepared().vertexBlocks())));
+            chosen.silhouette.emplace(mesh_, RELIEF_TRY(viewOf(chosen.map.spec)));
         }
         return {};
+    }
+    /// For its outline, which is independent of its size.
+    [[nodiscard]] Result<View> viewOf(MapSpec spec) const {
+        spec.width = spec.height = 64;
+        return makeView(spec, mesh_, &query_.prepared().vertexBlocks());
     }
 
     static std::vector<RatedView*> pointersTo(std::vector<RatedView>& views) {
@@ -137,7 +134,7 @@ class Planner {
         return pointers;
     }
 
-    /// How well views serve every stride-th point.
+    /// Computes the service of views to every stride-th point.
     void rate(const std::vector<RatedView*>& views, std::size_t stride) const {
         for (RatedView* view : views) {
             view->service.resize(points_.size());
@@ -163,18 +160,18 @@ class Planner {
         const glm::dvec3 away = cosine < 0.0 ? -along : along;
         const bool free = query_.rayIsFree(point.position, away);
         const float value = free ? service(std::abs(cosine)) : 0.0F;
-        // Where the ray away from the surface serves well, the other one has nothing to add.
+        // The ray into the surface cannot improve on good service.
         if (value < kSilhouette && query_.rayIsFree(point.position, -away)) {
             return free ? kSilhouette : service(-std::abs(cosine));
         }
         return value;
     }
 
-    /// Takes views, from outside and from within, while one more is worth its price.
+    /// Adds maps while one more is worth its price.
     [[nodiscard]] Result<void> addViews(std::vector<RatedView>& views) {
         int idle_rounds = 0;
         std::optional<Gaps> gaps;
-        std::size_t gaps_after = 0;  // so many maps they were looked for
+        std::size_t gaps_after = 0;  // number of maps at the last search for gaps
         for (std::uint64_t round = 0; idle_rounds < kIdleRounds; ++round) {
             const OuterChoice outer = bestOuterView(views);
             const bool full = choice_.views.size() >= options_.max_maps;
@@ -186,7 +183,7 @@ class Planner {
             const std::optional<Cavity> cavity =
                 cavities_.best(unserved, served_, outer_area_,
                                options_.seed * 1'000'003 + round * CavitySearch::kCandidates);
-            if (choice_.views.size() != gaps_after) {  // else nothing has changed since
+            if (choice_.views.size() != gaps_after) {  // else unchanged
                 gaps_after = choice_.views.size();
                 gaps = bestGaps(views, unserved);
             }
@@ -202,7 +199,7 @@ class Planner {
             }
             if (std::max({outer_value, cavity_value, gap_value}) <= 0.0) {
                 choice_.next_gain = std::max({choice_.next_gain, outer.gain, cavity_gain, gap_gain});
-                idle_rounds = cavity ? idle_rounds + 1 : kIdleRounds;  // places within are tried at random
+                idle_rounds = cavity ? idle_rounds + 1 : kIdleRounds;  // places within are random
                 continue;
             }
             choice_.next_gain = 0.0;
@@ -219,7 +216,7 @@ class Planner {
 
     [[nodiscard]] double total() const { return static_cast<double>(points_.size()); }
 
-    /// What a map is worth that raises the mean service by `gain` and takes `area` from all others.
+    /// The value of a map that raises the mean service by `gain` and takes `area` from the others.
     [[nodiscard]] double valueOf(double gain, double area) const {
         const double share = options_.prefer == Prefer::kOutside ? kOutsidePriceShare : 1.0;
         return gain - share * (kBytePrice * area / choice_.area + kMapPrice);
@@ -236,8 +233,8 @@ class Planner {
             rate(left, stride);
             scored.clear();
             for (RatedView* view : left) {
-                // By the root of its bytes: an image of half the size, seen at a slant, has texels as large on the
-                // surface, and silhouettes as long.
+                // By the root of its bytes: an oblique image of half the size has texels as large on the surface, and
+                // silhouettes as long.
                 const double gain = gainOf(*view, stride);
                 scored.emplace_back(gain > 0.0 ? gain / std::sqrt(view->area) : 0.0, view);
             }
@@ -256,7 +253,7 @@ class Planner {
         return {scored[0].second, gainOf(*scored[0].second, 1) / total()};
     }
 
-    /// What a view adds to the service of every stride-th point.
+    /// The gain of a view in the service of every stride-th point.
     [[nodiscard]] double gainOf(const RatedView& view, std::size_t stride) const {
         double gain = 0.0;
         for (std::size_t i = 0; i < points_.size(); i += stride) {
@@ -272,27 +269,23 @@ class Planner {
             served_[i] = std::max(served_[i], view.service[i]);
             sees += view.service[i] > 0.0F ? 1U : 0U;
         }
-        const auto count = static_cast<double>(points_.size());
-        ViewChoice::Chosen chosen;
-        chosen.map.spec = view.spec;
-        chosen.map.serves = gain / count;
         const glm::vec3& d = view.spec.direction;
-        chosen.map.reason = text("both sides along (%.3g, %.3g, %.3g)", d.x, d.y, d.z) +
-                            text(" see %.1f %% of the surface; service +%.1f %%",
-                                 100.0 * static_cast<double>(sees) / count, 100.0 * gain / count);
-        chosen.width = view.width;
-        chosen.height = view.height;
-        chosen.area = 8.0 * view.area;
-        add(std::move(chosen));
+        add(view.spec, gain,
+            text("both sides along (%.3g, %.3g, %.3g)", d.x, d.y, d.z) +
+                text(" see %.1f %% of the surface; service +%.1f %%",
+                     100.0 * static_cast<double>(sees) / total(), 100.0 * gain / total()),
+            {view.width, view.height}, 8.0 * view.area);
         outer_area_ = choice_.area;
     }
 
-    void add(ViewChoice::Chosen chosen) {
-        choice_.area += chosen.area;
-        choice_.views.push_back(std::move(chosen));
+    ViewChoice::Chosen& add(const MapSpec& spec, double gain, std::string reason, const glm::dvec2& size,
+                            double area) {
+        choice_.area += area;
+        return choice_.views.emplace_back(ViewChoice::Chosen{
+            {spec, gain / total(), std::move(reason)}, size.x, size.y, area, std::nullopt});
     }
 
-    /// Points that are served badly; none where they are too few to look for.
+    /// Badly served points; none if they are too few to matter.
     [[nodiscard]] std::vector<std::size_t> unservedPoints() const {
         std::vector<std::size_t> unserved;
         for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -313,7 +306,7 @@ class Planner {
         double area = 0.0;  ///< bytes for texels of side 1
     };
 
-    /// A map that was taken sees a point of free space.
+    /// A chosen map sees a point of free space.
     [[nodiscard]] bool isSeen(const glm::dvec3& p) const {
         for (const ViewChoice::Chosen& chosen : choice_.views) {
             const MapSpec& spec = chosen.map.spec;
@@ -343,12 +336,12 @@ class Planner {
 
     [[nodiscard]] float serviceOfGap(std::size_t i, const glm::dvec3& along) const {
         const float most = service(std::abs(dot(points_[i].normal, along)));
-        // What would not serve better than today's maps need not be asked.
+        // Only a better service than the maps so far needs the test.
         return most > served_[i] && isInKeptGap(query_, points_[i].position, along, isSeenByTaken()) ? most
                                                                                                      : 0.0F;
     }
 
-    /// Of the directions of all outer views.
+    /// The best of the directions of all outer views.
     [[nodiscard]] std::optional<Gaps> bestGaps(const std::vector<RatedView>& views,
                                                const std::vector<std::size_t>& unserved) const {
         if (unserved.empty() || !options_.gaps) {
@@ -360,7 +353,7 @@ class Planner {
             left[v].view = &views[v];
             left[v].area = 8.0 * kGapDetail * kGapDetail * kGapShare * views[v].area;
         }
-        // A few points tell the worse half of the directions; the others are asked for twice as many.
+        // A few points eliminate half of the directions, twice as many half of the others, and so on.
         std::size_t asked = 0;
         for (std::size_t parts = kSomeParts; parts > 0; parts /= 2) {
             const std::size_t end = tried.size() / parts;
@@ -391,22 +384,15 @@ class Planner {
             gain += std::max(0.0F, values[k] - served);
             served = std::max(served, values[k]);
         }
-        ViewChoice::Chosen chosen;
-        chosen.map.spec = gaps.view->spec;
-        chosen.map.spec.compare = Compare::kGap;
-        chosen.map.serves = gain / total();
-        chosen.map.reason = text("gaps along (%.3g, %.3g, %.3g)", along.x, along.y, along.z) +
-                            text(": service +%.1f %%", 100.0 * gain / total());
-        chosen.width = gaps.view->width;
-        chosen.height = gaps.view->height;
-        MapSpec spec = chosen.map.spec;
-        spec.width = spec.height = 64;  // any
-        GapGrid grid(query_, RELIEF_TRY(makeView(spec, mesh_, &query_.prepared().vertexBlocks())),
-                     isSeenByTaken());
-        chosen.area = 8.0 * kGapDetail * kGapDetail * grid.area();
-        chosen.silhouette = grid.silhouette();
+        MapSpec spec = gaps.view->spec;
+        spec.compare = Compare::kGap;
+        GapGrid grid(query_, RELIEF_TRY(viewOf(spec)), isSeenByTaken());
+        add(spec, gain,
+            text("gaps along (%.3g, %.3g, %.3g)", along.x, along.y, along.z) +
+                text(": service +%.1f %%", 100.0 * gain / total()),
+            {gaps.view->width, gaps.view->height}, 8.0 * kGapDetail * kGapDetail * grid.area())
+            .silhouette = grid.silhouette();
         gap_grids_.push_back(std::move(grid));
-        add(std::move(chosen));
         return {};
     }
 
@@ -414,26 +400,22 @@ class Planner {
         for (const auto& [i, value] : cavity.service) {
             served_[i] = std::max(served_[i], value);
         }
-        const auto total = static_cast<double>(points_.size());
-        ViewChoice::Chosen chosen;
-        chosen.map.spec.format = MapFormat::kCube8;
-        chosen.map.spec.decode = Decode::kPlane;
-        chosen.map.spec.compare = Compare::kLess;
-        chosen.map.spec.box =
-            Bounds{glm::vec3(cavity.center - cavity.half), glm::vec3(cavity.center + cavity.half)};
-        chosen.map.serves = cavity.gain / total;
-        chosen.map.reason = text("a cavity round (%.4g, %.4g, %.4g): service +%.2f %%", cavity.center.x,
-                                 cavity.center.y, cavity.center.z, 100.0 * cavity.gain / total);
-        chosen.width = chosen.height = cavity.width();
-        chosen.area = cavity.area;
-        add(std::move(chosen));
+        MapSpec spec;
+        spec.format = MapFormat::kCube8;
+        spec.decode = Decode::kPlane;
+        spec.compare = Compare::kLess;
+        spec.box = Bounds{glm::vec3(cavity.center - cavity.half), glm::vec3(cavity.center + cavity.half)};
+        add(spec, cavity.gain,
+            text("a cavity round (%.4g, %.4g, %.4g): service +%.2f %%", cavity.center.x, cavity.center.y,
+                 cavity.center.z, 100.0 * cavity.gain / total()),
+            glm::dvec2(cavity.width()), cavity.area);
     }
 
     const TriangleMesh& mesh_;
     const MeshQuery& query_;
     const ViewOptions& options_;
     std::vector<PlanPoint> points_;
-    std::vector<float> served_;  // of each point, 0…1
+    std::vector<float> served_;  // by point, 0…1
     CavitySearch cavities_;
     ViewChoice choice_;
     std::vector<GapGrid> gap_grids_;  // of the maps of gaps
@@ -448,7 +430,7 @@ Result<void> checkBudget(std::uint64_t bytes) {
     return {};
 }
 
-/// The maps with texels of this size, as far as maps may be so small or so large.
+/// The maps with texels of this size, within the limits of maps.
 Plan sizedPlan(const ViewChoice& choice, double texel) {
     Plan plan;
     plan.texel = texel;
@@ -468,6 +450,16 @@ Plan sizedPlan(const ViewChoice& choice, double texel) {
         plan.maps.push_back(std::move(map));
     }
     return plan;
+}
+
+/// Bytes with the empty ends of rows, which cost a bake time and memory; large for parts that lie far apart.
+std::uint64_t rectangleBytes(const Plan& plan) {
+    std::uint64_t bytes = 0;
+    for (const PlannedMap& map : plan.maps) {
+        const std::uint64_t texel = map.spec.format == MapFormat::kCube8 ? 24 : 8;
+        bytes += texel * map.spec.width * map.spec.height;
+    }
+    return bytes;
 }
 
 }  // namespace
@@ -491,23 +483,8 @@ Result<ViewChoice> chooseViews(const MeshQuery& query, const ViewOptions& option
     return choice;
 }
 
-namespace {
-
-/// Of all maps, empty ends of rows included: what a bake takes time and memory for. Parts that lie far apart have maps of
-/// little else.
-std::uint64_t rectangleBytes(const Plan& plan) {
-    std::uint64_t bytes = 0;
-    for (const PlannedMap& map : plan.maps) {
-        const std::uint64_t texel = map.spec.format == MapFormat::kCube8 ? 24 : 8;
-        bytes += texel * map.spec.width * map.spec.height;
-    }
-    return bytes;
-}
-
-}  // namespace
-
 std::optional<Plan> sizesWithin(const ViewChoice& choice, std::uint64_t bytes) {
-    // Partial texels at the ends of rows take bytes too: shrink until all fit.
+    // Because of partial texels at the ends of rows, shrink until all fit.
     const double least = static_cast<double>(std::max<std::uint64_t>(bytes, 1));
     for (double texel = 0.8 * std::sqrt(choice.area / least);; texel *= 1.002) {
         Plan plan = sizedPlan(choice, texel);
@@ -515,9 +492,8 @@ std::optional<Plan> sizesWithin(const ViewChoice& choice, std::uint64_t bytes) {
             rectangleBytes(plan) <= std::max(kRectangleBytes, kRectangleShare * bytes)) {
             return plan;
         }
-        const bool smallest = std::all_of(plan.maps.begin(), plan.maps.end(), [](const PlannedMap& map) {
-            return map.spec.width <= 3 && map.spec.height <= 3;
-        });
+        const bool smallest = std::ranges::all_of(
+            plan.maps, [](const PlannedMap& map) { return map.spec.width <= 3 && map.spec.height <= 3; });
         if (smallest) {
             return std::nullopt;
         }

@@ -1,17 +1,15 @@
-// Which maps a mesh needs: directions and places, and sizes for a budget of bytes.
+// Plans the maps of a mesh: directions and places, and sizes for a budget of bytes.
 //
-// Points just outside the surface are drawn. A view serves a point if it sees it; less so at a grazing angle,
-// where a texel covers much surface. Maps are added greedily while one more is worth its price: the bytes that it takes
-// from the others, and the time that it takes of every step of a simulation. There are three kinds:
+// Points are drawn just outside the surface. A view serves the points that it sees, less at a grazing angle, where a texel
+// covers much surface. Maps are added greedily while one more is worth its price: the bytes that it takes from the others,
+// and its time in every step of a simulation. There are three kinds:
 //
 //   front-back maps of the whole mesh, along directions spread over the sphere and the axes of its box and of its
-//   oriented box (oriented_box.h), each turned so that its rows take up little (outer_views.h);
-//   for what these see badly (cavities, armpits, insides of holes), small cubes in free space that keep the nearest
-//   surface, placed where they see most of it;
+//   oriented box (oriented_box.h), turned for short rows (outer_views.h);
+//   for what these see badly (cavities, armpits, insides of holes), small cubes in free space that keep the nearest surface;
 //   for what lies between solids (shelves, rails, leaves), maps of gaps along one of those directions (gap_grid.h).
 //
-// None of this depends on the budget. Sizes alone follow from it: one texel size for all maps, so that the
-// error is even.
+// The choice is independent of the budget, which decides the sizes alone: one texel size for all maps, for an even error.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +25,7 @@
 
 namespace relief {
 
-/// Maps of a plan, unless more are allowed: a step of a simulation looks at each in turn.
+/// Default limit of maps: every step of a simulation samples them all.
 inline constexpr std::uint32_t kPlannedMapsMax = 8;
 
 struct ViewOptions {
@@ -35,12 +33,12 @@ struct ViewOptions {
     Prefer prefer = Prefer::kNeither;          ///< kOutside: more views, so that less free space is doubtful
     std::uint32_t max_maps = kPlannedMapsMax;  ///< at least 1
     bool gaps = true;                          ///< maps of gaps may be taken (bake/texels/gap_map.h)
-    bool oriented_box = true;  ///< false: do without the axes of the oriented box, to see what they are worth
+    bool oriented_box = true;                  ///< with the axes of the oriented box
 };
 
 struct PlannedMap {
     MapSpec spec;         ///< complete but for compare, which is set for cubes; without sizes in a ViewChoice
-    double serves = 0.0;  ///< share of the points that this map serves and none before it does
+    double serves = 0.0;  ///< gain in mean service over the maps before it
     std::string reason;   ///< for people: "front-back along (0, 1, 0): sees 61.2 % of the surface"
 };
 
@@ -55,7 +53,7 @@ struct ViewChoice {
     };
     std::vector<Chosen> views;
     double area = 0.0;       ///< of all views
-    double next_gain = 0.0;  ///< what the best view that was left out would have served: 0 to 1, as `serves`
+    double next_gain = 0.0;  ///< of the best view that was left out, as `serves`
     std::string mesh_name;
 };
 
@@ -67,22 +65,21 @@ inline constexpr std::uint64_t kPlanBudgetMin = 4096;
 
 struct Plan {
     std::vector<PlannedMap> maps;
-    double texel = 0.0;  ///< side of a texel, object units
-    double unseen_percent =
-        0.0;  ///< of the surface's area: no map sees it (bake/measure/sight.h); 0 until it is baked
-    double next_gain = 0.0;   ///< as ViewChoice has it
-    std::uint64_t bytes = 0;  ///< of all maps on the GPU; about as many, until they are baked
+    double texel = 0.0;           ///< side of a texel, object units
+    double unseen_percent = 0.0;  ///< of the surface's area (bake/measure/sight.h); 0 before the bake
+    double next_gain = 0.0;       ///< as in ViewChoice
+    std::uint64_t bytes = 0;      ///< of all maps on the GPU; an estimate before the bake
 };
 
-/// What bake() takes of a plan.
+/// For bake().
 [[nodiscard]] std::vector<MapSpec> specsOf(const Plan& plan);
 
 /// \param budget_bytes  of all maps together on the GPU (Collider::gpuBytes), at least kPlanBudgetMin
 /// Errors: kUsage (a budget below kPlanBudgetMin or too small for the views).
 [[nodiscard]] Result<Plan> planSizes(const ViewChoice& choice, std::uint64_t budget_bytes);
-/// The same for any number of bytes; nullopt where even the least maps take more.
+/// The same for any number of bytes; nullopt where even the smallest maps take more.
 [[nodiscard]] std::optional<Plan> sizesWithin(const ViewChoice& choice, std::uint64_t bytes);
-/// What planSizes says where they do.
+/// The error of planSizes in that case.
 [[nodiscard]] Error budgetTooSmall(const ViewChoice& choice, std::uint64_t budget_bytes);
 
 struct PlanOptions {
@@ -90,8 +87,8 @@ struct PlanOptions {
     ViewOptions views;
 };
 
-/// Views and sizes, to be seen or changed; bakePlanned() (bake/pipeline/planned_bake.h) also keeps to the budget. Errors:
-/// those of chooseViews and planSizes.
+/// Views and sizes. bakePlanned() (bake/pipeline/planned_bake.h) also keeps to the budget. Errors: those of chooseViews and
+/// planSizes.
 [[nodiscard]] Result<Plan> planViews(const MeshQuery& query, const PlanOptions& options);
 
 }  // namespace relief

@@ -19,7 +19,7 @@
 namespace relief {
 namespace {
 
-/// Points whose side the caps may change, over the points that are inside.
+/// Limit of points whose side the caps change, over the points inside.
 constexpr double kTurnedMax = 0.05;
 
 /// A point, and the share of the rays from it that cross the surface an odd number of times.
@@ -28,14 +28,13 @@ struct Vote {
     double odd = 0.0;
 
     [[nodiscard]] bool inside() const { return odd > 0.5; }
-    /// More than three quarters of the rays say the same.
+    /// More than three quarters of the rays agree.
     [[nodiscard]] bool clear() const { return std::abs(odd - 0.5) > 0.25; }
 };
 
 Vote voteAt(const MeshQuery& query, const glm::vec3& position) {
     unsigned odd = 0;
-    // Opposite directions in pairs, so that no half space outvotes the other: one side of a terrain would be
-    // inside.
+    // In opposite pairs, so that no half space outvotes the other: one side of a terrain would be inside.
     for (const glm::dvec3& direction : kParityDirections) {
         odd += query.crossings(position, direction) % 2;
         odd += query.crossings(position, -direction) % 2;
@@ -62,7 +61,7 @@ std::vector<std::array<Vote, 2>> voteAtSurface(const MeshQuery& query, std::size
         const glm::dvec3 weight = spread(i);
         const glm::dvec3 on = pointOn(mesh, triangle, weight.x, weight.y);
         glm::dvec3 normal = planeOf(mesh, triangle).normal;
-        normal *= step / std::sqrt(dot(normal, normal));
+        normal *= step / length(normal);
         votes[i] = {voteAt(query, on + normal), voteAt(query, on - normal)};
     });
     return votes;
@@ -90,9 +89,7 @@ Enclosure enclosureOf(const std::vector<std::array<Vote, 2>>& votes) {
     return {static_cast<double>(one_sided) / count, agreement / (2.0 * count)};
 }
 
-// --- loops ---
-
-/// One step of a walk along the border of a hole.
+/// One step along the border of a hole.
 struct Step {
     std::uint32_t from = 0;
     std::uint32_t to = 0;
@@ -102,9 +99,9 @@ struct Step {
 
 using Loop = std::vector<Step>;
 
-/// Every odd edge in one loop. Every vertex has an even number of odd edges, so that a walk that takes each
-/// once ends where it began; it is cut wherever it comes to a vertex again. Of several ways on it takes one
-/// against the triangles' direction, to the lowest vertex.
+/// Partitions the odd edges into loops. Every vertex has an even number of odd edges, so that a walk over unused edges ends
+/// where it began; it is cut wherever it meets itself. At a fork it continues against the triangles' direction, to the lowest
+/// vertex.
 std::vector<Loop> loopsOf(const std::vector<OddEdge>& edges) {
     std::vector<Step> steps;  // of all vertices, best first
     steps.reserve(2 * edges.size());
@@ -115,7 +112,7 @@ std::vector<Loop> loopsOf(const std::vector<OddEdge>& edges) {
     std::sort(steps.begin(), steps.end(), [](const Step& a, const Step& b) {
         return std::tuple(a.from, a.against, a.to) < std::tuple(b.from, b.against, b.to);
     });
-    // Of each vertex with odd edges, by rank: its first step that is not known to be taken, its end.
+    // By rank of a vertex with odd edges: its first step that may still be free.
     std::vector<std::uint32_t> vertices;
     std::vector<std::size_t> next;
     for (std::size_t i = 0; i < steps.size(); ++i) {
@@ -126,8 +123,7 @@ std::vector<Loop> loopsOf(const std::vector<OddEdge>& edges) {
     }
     const std::vector<std::size_t> first = next;
     const auto rankOf = [&](std::uint32_t vertex) {
-        return static_cast<std::size_t>(std::lower_bound(vertices.begin(), vertices.end(), vertex) -
-                                        vertices.begin());
+        return static_cast<std::size_t>(std::ranges::lower_bound(vertices, vertex) - vertices.begin());
     };
     std::vector<bool> taken(edges.size(), false);
     const auto take = [&](std::size_t rank) -> const Step* {
@@ -142,7 +138,7 @@ std::vector<Loop> loopsOf(const std::vector<OddEdge>& edges) {
         return &steps[next[rank]];
     };
     constexpr auto kNotOnPath = static_cast<std::size_t>(-1);
-    std::vector<std::size_t> place(vertices.size(), kNotOnPath);  // number of steps before it on the path
+    std::vector<std::size_t> place(vertices.size(), kNotOnPath);  // index on the path
     std::vector<Loop> loops;
     for (std::size_t start = 0; start < vertices.size(); ++start) {
         Loop path;
@@ -167,20 +163,17 @@ std::vector<Loop> loopsOf(const std::vector<OddEdge>& edges) {
     return loops;
 }
 
-// --- caps ---
-
-/// Closes one hole after the other at the end of a mesh.
+/// Appends caps to a mesh, hole by hole.
 class Capper {
   public:
     explicit Capper(TriangleMesh& mesh) : mesh_(mesh) {}
 
-    /// A hole none of whose fans has an area everywhere stays open: triangles without area would break the
-    /// mesh's promise, and leaving them out the parity of the edges.
+    /// A hole without a fan of nonzero areas stays open: such triangles are not allowed, and leaving them out would break the
+    /// parity of edges.
     void close(const Loop& loop) {
         const std::size_t before = mesh_.triangles.size();
         if (loop.size() == 3 && hasArea(planeOf(at(loop[0].from), at(loop[1].from), at(loop[2].from)))) {
-            const auto against =
-                std::count_if(loop.begin(), loop.end(), [](const Step& s) { return s.against; });
+            const auto against = std::ranges::count(loop, true, &Step::against);
             const glm::uvec3 t(loop[0].from, loop[1].from, loop[2].from);
             mesh_.triangles.push_back(against > 1 ? glm::uvec3(t.x, t.z, t.y) : t);
         } else if (const std::optional<glm::vec3> apex = apexOf(loop)) {
@@ -199,8 +192,7 @@ class Capper {
   private:
     [[nodiscard]] glm::dvec3 at(std::uint32_t vertex) const { return mesh_.positions[vertex]; }
 
-    /// The centroid of the loop. Where it lies in line with an edge, a point next to it, and at last farther
-    /// off.
+    /// The centroid of the loop. If it is collinear with an edge, a point near it, and finally farther off.
     [[nodiscard]] std::optional<glm::vec3> apexOf(const Loop& loop) const {
         const glm::dvec3 origin = at(loop.front().from);
         glm::dvec3 moment(0.0);
@@ -210,20 +202,20 @@ class Capper {
         for (const Step& step : loop) {
             const glm::dvec3 a = at(step.from) - origin;
             const glm::dvec3 b = at(step.to) - origin;
-            const double length = std::sqrt(dot(b - a, b - a));
-            moment += 0.5 * length * (a + b);
-            around += length;
+            const double edge = length(b - a);
+            moment += 0.5 * edge * (a + b);
+            around += edge;
             normal += cross(a, b);
-            extent = std::max(extent, std::sqrt(dot(a, a)));
+            extent = std::max(extent, length(a));
         }
         const glm::dvec3 centroid = origin + moment / around;
         if (const std::optional<glm::vec3> apex = usable(loop, centroid)) {
             return apex;
         }
-        const double size = std::sqrt(dot(normal, normal));
+        const double size = length(normal);
         const glm::dvec3 directions[] = {
             size > 0.0 ? normal / size : glm::dvec3(1, 1, 1), {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-        // From a few steps of a float on: what the move adds to the surface must not be seen.
+        // From a few float steps on, so that the bulge stays invisible.
         const glm::dvec3 far = glm::max(glm::abs(mesh_.bounds.min), glm::abs(mesh_.bounds.max));
         for (double step = 0x1p-21 * std::max({far.x, far.y, far.z}); step < extent; step *= 4.0) {
             for (const glm::dvec3& direction : directions) {
@@ -237,20 +229,19 @@ class Capper {
         return std::nullopt;
     }
 
-    /// \return the point as the mesh can hold it, if each triangle of its fan has an area.
+    /// The point as a float, if all triangles of its fan have an area.
     [[nodiscard]] std::optional<glm::vec3> usable(const Loop& loop, const glm::dvec3& point) const {
-        // Rounded, it might leave the box.
+        // Rounding may leave the box.
         const glm::vec3 apex = glm::clamp(glm::vec3(point), mesh_.bounds.min, mesh_.bounds.max);
-        const bool good = std::all_of(loop.begin(), loop.end(), [&](const Step& step) {
-            return hasArea(planeOf(at(step.from), at(step.to), apex));
-        });
+        const bool good = std::ranges::all_of(
+            loop, [&](const Step& step) { return hasArea(planeOf(at(step.from), at(step.to), apex)); });
         return good ? std::optional(apex) : std::nullopt;
     }
 
     TriangleMesh& mesh_;
 };
 
-/// Clear votes that the closed mesh contradicts, over the clear votes for inside.
+/// Clear votes contradicted by the closed mesh, over the clear votes for inside.
 double turnedShare(const std::vector<Vote>& votes, const MeshQuery& closed) {
     std::size_t inside = 0;
     std::size_t turned = 0;
@@ -263,7 +254,7 @@ double turnedShare(const std::vector<Vote>& votes, const MeshQuery& closed) {
     return static_cast<double>(turned) / static_cast<double>(std::max<std::size_t>(inside, 1));
 }
 
-/// On the surface and off it: the caps of patches whose seams do not meet cross the inside.
+/// On and off the surface: caps of patches whose seams do not meet would cross the inside.
 bool turnsSides(const std::vector<std::array<Vote, 2>>& votes, const MeshQuery& open,
                 const MeshQuery& closed) {
     std::vector<Vote> sides;

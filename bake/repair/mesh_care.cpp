@@ -61,7 +61,7 @@ Result<std::optional<Repair>> parseRepair(const std::string& text) {
 Result<TriangleMesh> repaired(const TriangleMesh& mesh, const Repair& repair, MeshCare& care) {
     switch (repair.method) {
         case Method::kWrap:
-            return wrapMesh(mesh, {double{repair.alpha}});
+            return wrapMesh(mesh, double{repair.alpha});
         case Method::kOrient:
             return orientMesh(mesh);
         case Method::kHoles: {
@@ -77,7 +77,7 @@ Result<TriangleMesh> repaired(const TriangleMesh& mesh, const Repair& repair, Me
 /// Looks at the mesh again, and at whether it became what was asked for.
 Result<void> checkRepaired(const PreparedMesh& mesh, const Repair& repair, const MeshCareOptions& options,
                            MeshCare& care) {
-    care.repaired = RELIEF_TRY(inspectMesh(mesh, {options.check_intersections}));
+    care.repaired = RELIEF_TRY(inspectMesh(mesh, options.check_intersections));
     mesh.freeEdges();
     if (repair.method == Method::kWrap && !care.repaired->isSolid()) {
         return fail(ErrorCode::kFailure,
@@ -98,7 +98,7 @@ Result<CaredMesh> careFor(PreparedMesh mesh, const MeshCareOptions& options) {
     const std::optional<Repair> repair = RELIEF_TRY(parseRepair(options.repair));
     MeshCare care;
     if (options.report || options.strict || options.check_intersections || repair) {
-        care.health = RELIEF_TRY(inspectMesh(mesh, {options.check_intersections}));
+        care.health = RELIEF_TRY(inspectMesh(mesh, options.check_intersections));
     }
     if (options.strict && !repair) {
         RELIEF_TRY(requireSolid(*care.health, mesh->name));

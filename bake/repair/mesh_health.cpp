@@ -1,21 +1,17 @@
 #include "bake/repair/mesh_health.h"
 
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
-#include <array>
-#include <tuple>
+#include <numeric>
 #include <utility>
 #include <vector>
 
-#include "bake/mesh/triangle_plane.h"
 #include "bake/repair/mesh_repair.h"
 #include "formats/base/text.h"
 
 namespace relief {
 namespace {
 
-/// Counts a kind of fault, and keeps the place of the first.
+/// Counts faults of one kind and keeps the first place.
 struct First {
     std::uint64_t count = 0;
     glm::vec3 at{0.0F};
@@ -34,7 +30,7 @@ class Inspection {
           inside_out_(mesh.orientation() < 0.0),
           welded_(mesh.edges().welded),
           component_of_(mesh->triangles.size()),
-          // Three corners a triangle: those that share an edge at their vertex are joined.
+          // Corners of triangles; those that share an edge at their vertex are joined.
           corners_(3 * mesh->triangles.size()),
           uses_(mesh.edges().uses) {}
 
@@ -74,14 +70,12 @@ class Inspection {
     }
 
     [[nodiscard]] glm::dvec3 middle(std::uint32_t triangle) const {
-        const glm::uvec3& t = mesh_.triangles[triangle];
-        return (glm::dvec3(mesh_.positions[t.x]) + glm::dvec3(mesh_.positions[t.y]) +
-                glm::dvec3(mesh_.positions[t.z])) /
-               3.0;
+        const auto corners = cornersOf(mesh_, triangle);
+        return (glm::dvec3(corners[0]) + glm::dvec3(corners[1]) + glm::dvec3(corners[2])) / 3.0;
     }
 
   private:
-    /// All uses of one edge.
+    /// The uses [begin, end) of an edge.
     void visitEdge(std::size_t begin, std::size_t end) {
         const EdgeUse& first = uses_[begin];
         const std::size_t count = end - begin;
@@ -139,24 +133,12 @@ class Inspection {
     }
 
     void countDuplicates() {
-        struct Corners {
-            std::array<std::uint32_t, 3> sorted;
-            std::uint32_t triangle;
-        };
-        std::vector<Corners> all;
-        all.reserve(mesh_.triangles.size());
-        for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i) {
-            const glm::uvec3& t = mesh_.triangles[i];
-            std::array<std::uint32_t, 3> sorted = {welded_[t.x], welded_[t.y], welded_[t.z]};
-            std::sort(sorted.begin(), sorted.end());
-            all.push_back({sorted, i});
-        }
-        tbb::parallel_sort(all, [](const Corners& a, const Corners& b) {
-            return std::tie(a.sorted, a.triangle) < std::tie(b.sorted, b.triangle);
-        });
-        for (std::size_t i = 1; i < all.size(); ++i) {
-            if (all[i].sorted == all[i - 1].sorted) {
-                duplicates_.add(middle(all[i].triangle));
+        std::vector<std::uint32_t> all(mesh_.triangles.size());
+        std::iota(all.begin(), all.end(), 0U);
+        const std::vector<SortedTriangle> sorted = sortedTriangles(mesh_, welded_, all);
+        for (std::size_t i = 1; i < sorted.size(); ++i) {
+            if (sorted[i].corners == sorted[i - 1].corners) {
+                duplicates_.add(middle(sorted[i].index));
             }
         }
     }
@@ -177,18 +159,14 @@ class Inspection {
     std::uint64_t closed_components_ = 0;
 };
 
-std::string counted(std::uint64_t count, const std::string& one, const std::string& many) {
-    return std::to_string(count) + " " + (count == 1 ? one : many);
-}
-
 }  // namespace
 
-Result<MeshHealth> inspectMesh(const PreparedMesh& mesh, const MeshHealthOptions& options) {
+Result<MeshHealth> inspectMesh(const PreparedMesh& mesh, bool intersections) {
     MeshHealth health;
     Inspection inspection(mesh);
     inspection.run();
     inspection.write(health);
-    if (options.intersections) {
+    if (intersections) {
         const SelfIntersections found = RELIEF_TRY(selfIntersections(*mesh));
         health.self_intersections = found.pairs;
         if (found.pairs > 0 && !health.first_fault) {
@@ -203,7 +181,7 @@ std::string faultsText(const MeshHealth& health) {
     std::string text;
     const auto add = [&](std::uint64_t count, const std::string& one, const std::string& many) {
         if (count > 0) {
-            text += (text.empty() ? "" : ", ") + counted(count, one, many);
+            text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + (count == 1 ? one : many);
         }
     };
     add(health.boundary_edges, "boundary edge", "boundary edges");

@@ -1,5 +1,5 @@
-// What is wrong with a mesh, in numbers: how far it is from the boundary of a solid. Equal positions are one
-// vertex throughout, as importers repeat positions along seams.
+// Counts of what keeps a mesh from being the boundary of a solid. Equal positions are one vertex throughout, as importers
+// repeat positions along seams.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace relief {
 
-/// The first place of one kind of damage: of the lowest vertex, or the lowest triangle.
+/// The first fault of a kind: of the lowest vertex or triangle.
 struct MeshFault {
     std::string what;    ///< "a boundary edge": with its article
     glm::vec3 at{0.0F};  ///< object space: the middle of the edge or triangle, or the vertex
@@ -21,39 +21,29 @@ struct MeshFault {
 struct MeshHealth {
     std::uint64_t triangles = 0;
     std::uint64_t degenerate_triangles = 0;  ///< without area; left out by the importer
-    /// They have the same three vertices as an earlier triangle, in any order.
-    std::uint64_t duplicate_triangles = 0;
-    std::uint64_t boundary_edges = 0;      ///< of one triangle
-    std::uint64_t nonmanifold_edges = 0;   ///< of three triangles or more
-    std::uint64_t inconsistent_edges = 0;  ///< of two triangles that run along it in the same direction
-    /// Whose triangles fall into several groups that share no edge there.
-    std::uint64_t nonmanifold_vertices = 0;
-    std::uint64_t components = 0;  ///< of triangles that hang together by edges
-    /// Components that are closed() by themselves.
+    std::uint64_t duplicate_triangles = 0;   ///< of the three vertices of an earlier triangle, in any order
+    std::uint64_t boundary_edges = 0;        ///< of one triangle
+    std::uint64_t nonmanifold_edges = 0;     ///< of three triangles or more
+    std::uint64_t inconsistent_edges = 0;    ///< of two triangles that run along it in the same direction
+    std::uint64_t nonmanifold_vertices = 0;  ///< whose triangles fall into groups that share no edge there
+    std::uint64_t components = 0;            ///< of triangles connected by edges
     std::uint64_t closed_components = 0;
-    /// No edge belongs to an odd number of triangles: the mesh has an inside.
-    bool closed = false;
-    /// orientation() is −1: closed, and its triangles are clockwise seen from outside.
-    bool inside_out = false;
-    /// Pairs of triangles that meet elsewhere than in their common vertices and edges; only if asked for.
+    bool closed = false;      ///< no edge has an odd number of triangles: the mesh has an inside
+    bool inside_out = false;  ///< PreparedMesh::orientation is −1
+    /// Pairs of triangles that meet elsewhere than in common vertices and edges; only on request.
     std::optional<std::uint64_t> self_intersections;
-    /// The first fault of the kind that the mesh has least right to; none if it is a closed solid.
-    std::optional<MeshFault> first_fault;
+    std::optional<MeshFault> first_fault;  ///< of the gravest kind; none for a closed solid
 
-    /// Closed, manifold, wound outwards throughout, without duplicates, and as far as it is known without
-    /// intersections. Triangles without area do not count: they are left out.
+    /// Closed, manifold, wound outwards, without duplicates and known intersections. Degenerate triangles do not count.
     [[nodiscard]] bool isSolid() const { return !first_fault.has_value(); }
 };
 
-struct MeshHealthOptions {
-    bool intersections = false;  ///< look for them too: some seconds for a million triangles
-};
-
 /// The same for any number of threads.
-/// Errors: those of selfIntersections (mesh_repair.h); none without options.intersections.
-[[nodiscard]] Result<MeshHealth> inspectMesh(const PreparedMesh& mesh, const MeshHealthOptions& options = {});
+/// \param intersections  count these too: some seconds for a million triangles.
+/// Errors: those of selfIntersections (mesh_repair.h).
+[[nodiscard]] Result<MeshHealth> inspectMesh(const PreparedMesh& mesh, bool intersections = false);
 
-/// "closed" or "12 boundary edges, 3 non-manifold vertices, inside out": what keeps it from being a solid.
+/// "12 boundary edges, 3 non-manifold vertices, inside out"
 [[nodiscard]] std::string faultsText(const MeshHealth& health);
 
 /// Errors: kInvalidInput, with the counts and the first place, if the mesh is not a solid.

@@ -11,7 +11,7 @@
 
 #include "bake/mesh/mesh_edges.h"
 
-// What CGAL would assert is checked here beforehand, or after it; its own assertions would print.
+// CGAL's assertions would print; what they check is checked here before or after the calls.
 #ifndef CGAL_NDEBUG
 #define CGAL_NDEBUG 1
 #endif
@@ -34,11 +34,16 @@ using SurfaceMesh = CGAL::Surface_mesh<Point>;
 using Corners = std::array<std::size_t, 3>;
 namespace pmp = CGAL::Polygon_mesh_processing;
 
-/// Above so many edges a hole is not searched for the best of all triangulations, which takes their cube.
+/// Larger holes do without the search for the best triangulation, which takes cubic time.
 constexpr std::size_t kCubicEdgesMax = 200;
 
-/// Points and triangles as CGAL takes them: in units of the longest side about the middle of the box, where
-/// no product of coordinates leaves the range of a double, each position once.
+glm::uvec3 cornersOf(const Corners& t) {
+    return {static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]),
+            static_cast<std::uint32_t>(t[2])};
+}
+
+/// Distinct points, and triangles, for CGAL: in units of the longest side about the middle of the box, where no product of
+/// coordinates leaves the range of a double.
 struct Soup {
     glm::dvec3 center{0.0};
     double side = 1.0;
@@ -47,7 +52,7 @@ struct Soup {
 
     explicit Soup(const TriangleMesh& mesh)
         : center(0.5 * glm::dvec3(mesh.bounds.min) + 0.5 * glm::dvec3(mesh.bounds.max)),
-          // A power of two: what comes back unchanged has the same bits.
+          // A power of two, so that the conversion back is exact.
           side(std::ldexp(1.0, std::ilogb(mesh.bounds.longestSide()))) {
         const std::vector<std::uint32_t> welded = weldedVertices(mesh);
         std::vector<std::size_t> index(welded.size(), 0);
@@ -63,26 +68,20 @@ struct Soup {
         }
     }
 
-    /// Every set of corners once: the first triangle that has it.
+    /// Keeps the first triangle of each set of corners.
     void dropDuplicates() {
-        std::vector<std::pair<Corners, std::size_t>> sorted;
+        std::vector<SortedTriangle> sorted;
         for (std::size_t i = 0; i < triangles.size(); ++i) {
-            Corners corners = triangles[i];
-            std::sort(corners.begin(), corners.end());
-            sorted.emplace_back(corners, i);
+            sorted.emplace_back(cornersOf(triangles[i]), static_cast<std::uint32_t>(i));
         }
-        std::sort(sorted.begin(), sorted.end());
-        std::vector<std::size_t> kept;
+        std::ranges::sort(sorted);
+        const auto [end, last] = std::ranges::unique(sorted, {}, &SortedTriangle::corners);
+        sorted.erase(end, last);
+        std::ranges::sort(sorted, {}, &SortedTriangle::index);
         for (std::size_t i = 0; i < sorted.size(); ++i) {
-            if (i == 0 || sorted[i].first != sorted[i - 1].first) {
-                kept.push_back(sorted[i].second);
-            }
+            triangles[i] = triangles[sorted[i].index];
         }
-        std::sort(kept.begin(), kept.end());
-        for (std::size_t i = 0; i < kept.size(); ++i) {
-            triangles[i] = triangles[kept[i]];
-        }
-        triangles.resize(kept.size());
+        triangles.resize(sorted.size());
     }
 
     [[nodiscard]] glm::vec3 toObject(const Point& p) const {
@@ -90,7 +89,7 @@ struct Soup {
     }
 };
 
-/// Name, hash and unit of the source, and another surface.
+/// Another surface with the source's name, hash and unit.
 Result<TriangleMesh> meshOf(const TriangleMesh& source, std::vector<glm::vec3> positions,
                             std::vector<glm::uvec3> triangles) {
     TriangleMesh mesh;
@@ -101,11 +100,6 @@ Result<TriangleMesh> meshOf(const TriangleMesh& source, std::vector<glm::vec3> p
     mesh.positions = std::move(positions);
     mesh.triangles = std::move(triangles);
     return finishMesh(std::move(mesh));
-}
-
-glm::uvec3 cornersOf(const Corners& t) {
-    return {static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]),
-            static_cast<std::uint32_t>(t[2])};
 }
 
 Result<TriangleMesh> meshOf(const TriangleMesh& source, const Soup& soup) {
@@ -146,7 +140,7 @@ tl::unexpected<Error> cgalError(const TriangleMesh& mesh, const std::string& wha
                 mesh.name + ": " + what + " failed: " + line + "; repair the mesh by hand");
 }
 
-/// Calls `work`, whose exceptions become errors. CGAL's random numbers start from the same seed each time.
+/// Converts exceptions into errors, and resets CGAL's random numbers.
 template <class T>
 Result<T> guarded(const TriangleMesh& mesh, const std::string& what, const std::function<Result<T>()>& work) {
     try {
@@ -158,8 +152,6 @@ Result<T> guarded(const TriangleMesh& mesh, const std::string& what, const std::
         return cgalError(mesh, what, e.what());
     }
 }
-
-// --- intersections ---
 
 struct TooManyCandidates {};
 
@@ -201,8 +193,8 @@ class IntersectionCounter {
 
     [[nodiscard]] bool meet(const Corners& a, const Corners& b) const {
         std::size_t shared = 0;
-        std::size_t at[2] = {0, 0};   // the corner that is shared, if one is
-        std::size_t sum[2] = {0, 0};  // of the corners that are shared
+        std::size_t at[2] = {0, 0};   // a shared corner
+        std::size_t sum[2] = {0, 0};  // of the shared corners
         for (std::size_t i = 0; i < 3; ++i) {
             for (std::size_t j = 0; j < 3; ++j) {
                 if (a[i] == b[j]) {
@@ -221,7 +213,7 @@ class IntersectionCounter {
                 return CGAL::do_intersect(triangle(a), opposite(b, at[1])) ||
                        CGAL::do_intersect(triangle(b), opposite(a, at[0]));
             case 2: {
-                // Folded onto each other: in one plane, and on the same side of the common edge.
+                // Folded onto each other: coplanar, and on one side of the common edge.
                 const std::size_t free[2] = {3 - sum[0], 3 - sum[1]};
                 const Point& p = soup_.points[a[(free[0] + 1) % 3]];
                 const Point& q = soup_.points[a[(free[0] + 2) % 3]];
@@ -238,9 +230,6 @@ class IntersectionCounter {
     const Soup& soup_;
 };
 
-// --- holes ---
-
-/// Edges of a border, one behind the other.
 std::size_t edgesAround(const SurfaceMesh& surface, SurfaceMesh::Halfedge_index border) {
     std::size_t count = 0;
     SurfaceMesh::Halfedge_index at = border;
@@ -285,11 +274,10 @@ bool hasNonManifoldEdge(const Soup& soup) {
 
 Result<SelfIntersections> selfIntersections(const TriangleMesh& mesh) {
     try {
-        return guarded<SelfIntersections>(mesh, "looking for intersections",
-                                          [&]() -> Result<SelfIntersections> {
-                                              const Soup soup(mesh);
-                                              return IntersectionCounter(soup).run();
-                                          });
+        return guarded<SelfIntersections>(mesh, "looking for intersections", [&] {
+            const Soup soup(mesh);
+            return Result<SelfIntersections>(IntersectionCounter(soup).run());
+        });
     } catch (const TooManyCandidates&) {
         return fail(ErrorCode::kLimit, mesh.name + ": the boxes of more than " +
                                            std::to_string(kIntersectionCandidateMax) +
@@ -298,16 +286,16 @@ Result<SelfIntersections> selfIntersections(const TriangleMesh& mesh) {
     }
 }
 
-Result<TriangleMesh> wrapMesh(const TriangleMesh& mesh, const WrapOptions& options) {
+Result<TriangleMesh> wrapMesh(const TriangleMesh& mesh, double alpha) {
     // Written so that NaN fails too.
-    if (!(options.alpha >= kWrapAlphaMin && options.alpha <= kWrapAlphaMax)) {
+    if (!(alpha >= kWrapAlphaMin && alpha <= kWrapAlphaMax)) {
         return fail(ErrorCode::kUsage, "alpha must be between 0.001 and 0.5 of the longest side");
     }
     return guarded<TriangleMesh>(mesh, "wrapping it", [&]() -> Result<TriangleMesh> {
         const Soup soup(mesh);
-        const double alpha = options.alpha * static_cast<double>(mesh.bounds.longestSide()) / soup.side;
+        const double length = alpha * static_cast<double>(mesh.bounds.longestSide()) / soup.side;
         SurfaceMesh wrap;
-        CGAL::alpha_wrap_3(soup.points, soup.triangles, alpha, alpha / 30.0, wrap);
+        CGAL::alpha_wrap_3(soup.points, soup.triangles, length, length / 30.0, wrap);
         if (wrap.number_of_faces() == 0 || !CGAL::is_closed(wrap)) {
             return fail(ErrorCode::kFailure,
                         mesh.name + ": nothing closed came of wrapping it; try another --repair wrap=ALPHA");

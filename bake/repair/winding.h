@@ -1,5 +1,4 @@
-// Which side of its triangles is out: decided by rays and volumes, not by the order of their corners in a
-// file.
+// Orients triangles outwards by rays and volumes, whatever the order of their corners in the file.
 #pragma once
 
 #include <cstdint>
@@ -11,20 +10,18 @@ namespace relief {
 
 struct Winding {
     PreparedMesh mesh;         ///< the same triangles in the same order
-    std::uint64_t turned = 0;  ///< triangles whose second and third corner changed places
+    std::uint64_t turned = 0;  ///< triangles whose second and third corner were swapped
 };
 
-/// Turns triangles until those that share an edge run along it in opposite directions, and each patch of them
-/// looks outwards. A patch hangs together by edges of two triangles. One that is closed looks out of its
-/// volume, or into the hollow, if all of it lies inside an odd number of others. An open one looks where rays
-/// (by parity) find the outside behind most of it. Where neither is clear, on sheets, it keeps what
-/// most of its triangles say.
+/// Turns triangles until neighbours run along their common edge in opposite directions and each patch faces outwards. A patch
+/// is connected by edges of two triangles. A closed one faces out of its volume, or into it as a hollow if all of it lies
+/// inside an odd number of others. An open one is turned if rays (by parity) find the inside in front of most of it; where
+/// that is unclear, as on sheets, it keeps the winding of most of its triangles.
 ///
-/// A mesh of one patch that is wound consistently stays as it is, inside out or not: orientation() tells. It keeps its
-/// edges() too, which shapeMesh asks for next; those of others are freed.
-/// The same for any number of threads.
+/// A mesh of a single, consistently wound patch stays unchanged, even inside out (see PreparedMesh::orientation), and keeps
+/// its edges() for shapeMesh; those of others are freed. The same for any number of threads.
+/// \param mesh  moved: a shared mesh is copied.
 /// Errors: those of MeshQuery::build.
-/// \param mesh  move it: a mesh that is shared is copied.
 [[nodiscard]] Result<Winding> windOutwards(PreparedMesh mesh);
 
 }  // namespace relief

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <map>
@@ -28,10 +29,7 @@ Solid measured(const TriangleMesh& mesh, const Part& part) {
     Solid solid;
     solid.part = &part;
     for (const std::uint32_t i : part.triangles) {
-        const glm::uvec3& t = mesh.triangles[i];
-        for (const std::uint32_t corner : {t.x, t.y, t.z}) {
-            solid.bounds.add(mesh.positions[corner]);
-        }
+        addTriangle(solid.bounds, mesh, i);
         const TrianglePlane plane = planeOf(mesh, i);
         solid.volume += dot(plane.point - glm::dvec3(mesh.bounds.center()), plane.normal);
     }
@@ -39,7 +37,7 @@ Solid measured(const TriangleMesh& mesh, const Part& part) {
     return solid;
 }
 
-/// The corners of a part, to look for the nearest one within a reach.
+/// The corners of a part in a grid, for the nearest one within a reach.
 class Corners {
   public:
     Corners(const TriangleMesh& mesh, const Solid& solid, double reach)
@@ -50,11 +48,11 @@ class Corners {
                 places_.emplace_back(key(cellOf(mesh.positions[corner])), corner);
             }
         }
-        std::sort(places_.begin(), places_.end());
+        std::ranges::sort(places_);
         places_.erase(std::unique(places_.begin(), places_.end()), places_.end());
     }
 
-    /// \return how far the farthest corner of `other` is from the nearest one; nullopt if that is beyond the reach.
+    /// The greatest distance of a corner of `other` from the nearest one; nullopt if beyond the reach.
     [[nodiscard]] std::optional<double> farthestOf(const Corners& other) const {
         double farthest = 0.0;
         for (const auto& [cell, corner] : other.places_) {
@@ -70,7 +68,7 @@ class Corners {
   private:
     using Cell = std::array<std::int64_t, 3>;
 
-    /// One before the first cell that a corner of the part may be in is 0.
+    /// The lowest neighbour of a cell with corners of the part is 0.
     [[nodiscard]] Cell cellOf(const glm::dvec3& p) const {
         const glm::dvec3 cell = glm::floor((p - low_) / reach_) + 2.0;
         return {static_cast<std::int64_t>(cell.x), static_cast<std::int64_t>(cell.y),
@@ -107,7 +105,7 @@ class Corners {
     std::vector<std::pair<std::uint64_t, std::uint32_t>> places_;  // cell, corner
 };
 
-/// How far apart two parts are; nullopt if they are no near copies.
+/// The distance of two parts; nullopt if they are not near copies.
 std::optional<double> apart(const TriangleMesh& mesh, const Solid& a, const Solid& b) {
     const double reach = kCopyReach * double{std::max(a.bounds.longestSide(), b.bounds.longestSide())};
     for (int axis = 0; axis < 3; ++axis) {
@@ -116,7 +114,7 @@ std::optional<double> apart(const TriangleMesh& mesh, const Solid& a, const Soli
             return std::nullopt;
         }
     }
-    // Within the reach of a's bounds all of b is, as it has to be for its cells.
+    // All of b now lies within reach of a's bounds, as its cells require.
     const Corners of_a(mesh, a, reach);
     const Corners of_b(mesh, b, reach);
     const std::optional<double> one = of_a.farthestOf(of_b);
@@ -124,7 +122,7 @@ std::optional<double> apart(const TriangleMesh& mesh, const Solid& a, const Soli
     return other ? std::optional(std::max(*one, *other)) : std::nullopt;
 }
 
-/// Parts by their size and the cell that they begin in: those of nearly equal bounds are in cells beside each other.
+/// Parts by size and the cell of their lower corner: those of nearly equal bounds are in neighbouring cells.
 class Places {
   public:
     /// Calls visit(solid) until it returns true.
@@ -137,8 +135,7 @@ class Places {
             for (int i = 0; i < 27; ++i) {
                 const auto found =
                     solids_.find({s, cell.x + i % 3 - 1, cell.y + i / 3 % 3 - 1, cell.z + i / 9 - 1});
-                if (found != solids_.end() &&
-                    std::any_of(found->second.begin(), found->second.end(), visit)) {
+                if (found != solids_.end() && std::ranges::any_of(found->second, visit)) {
                     return true;
                 }
             }
@@ -154,7 +151,7 @@ class Places {
     }
 
   private:
-    /// Cells are no smaller than the reach of parts of twice that size, and so hold few that are no copies.
+    /// At least the reach of parts of twice the size, and hardly larger, so that most parts in a cell are copies.
     static glm::dvec3 cellOf(const Solid& solid, int size) {
         return glm::floor(glm::dvec3(solid.bounds.min) / (4.0 * kCopyReach * std::ldexp(1.0, size)));
     }
@@ -183,8 +180,7 @@ NearCopies nearCopies(const TriangleMesh& mesh, std::span<const Part* const> sol
     }
     std::vector<std::size_t> order(measures.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return measures[a].volume > measures[b].volume; });
+    std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t i) { return measures[i].volume; });
     Places kept;
     for (const std::size_t i : order) {
         const Solid& solid = measures[i];
@@ -201,7 +197,7 @@ NearCopies nearCopies(const TriangleMesh& mesh, std::span<const Part* const> sol
             kept.add(solid);
         }
     }
-    std::sort(copies.triangles.begin(), copies.triangles.end());
+    std::ranges::sort(copies.triangles);
     return copies;
 }
 

@@ -1,5 +1,5 @@
-// Closed parts that lie where another one does, but for rounding: an export of two copies, one grown by a millionth. What
-// is between them is thinner than any wall that a collider can have, and would make the solid a hollow.
+// Closed parts that coincide with another one but for rounding, as in an export of two copies, one grown by a millionth. The
+// space between them is thinner than any wall of a collider, and would make the solid hollow.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +12,13 @@
 
 namespace relief {
 
-/// In units of the longer part's longest side: no shell is thinner, so nothing fits between.
+/// In units of the longer part's longest side: the thickness of the thinnest shell.
 inline constexpr double kCopyReach = 1e-4;
 
 struct NearCopies {
     std::vector<std::uint32_t> triangles;  ///< of all parts but the largest of each group, ascending
-    std::uint64_t parts = 0;               ///< whose triangles these are
-    double farthest = 0.0;  ///< of them, from a corner to the nearest of the part that counts: object units
+    std::uint64_t parts = 0;               ///< number of parts of these triangles
+    double farthest = 0.0;                 ///< from a corner to the nearest of the kept part, object units
 
     /// "2 closed parts lie within 1e-06 of another …"
     [[nodiscard]] std::string text() const;

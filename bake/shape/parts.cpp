@@ -11,10 +11,10 @@
 namespace relief {
 namespace {
 
-/// In units of the area to the power of 3/2: with less, triangles enclose nothing. Of a sphere it is 0.094.
+/// The least volume of a solid, in units of its area to the power of 3/2; a sphere has 0.094.
 constexpr double kVolumeMin = 1e-5;
 
-/// Calls visit(uses) for each edge and each kind of triangles that it has.
+/// Calls visit(uses) for each edge and kind of triangles.
 template <class Visit>
 void forEachEdgeOfAKind(const MeshEdges& edges, std::span<const ShapeAs> kinds, const Visit& visit) {
     std::vector<EdgeUse> of_kind;
@@ -58,8 +58,7 @@ std::vector<Part> partsOf(const TriangleMesh& mesh, const MeshEdges& edges, std:
     }
     forEachEdgeOfAKind(edges, kinds, [&](std::span<const EdgeUse> uses) {
         Part& part = parts[part_of[uses.front().triangle]];
-        const auto down = static_cast<std::size_t>(
-            std::count_if(uses.begin(), uses.end(), [](const EdgeUse& use) { return use.down; }));
+        const auto down = static_cast<std::size_t>(std::ranges::count(uses, true, &EdgeUse::down));
         part.closed = part.closed && uses.size() % 2 == 0;
         part.manifold = part.manifold && uses.size() == 2;
         part.balanced = part.balanced && 2 * down == uses.size();
@@ -72,29 +71,21 @@ std::vector<std::uint32_t> copiesInSolids(const TriangleMesh& mesh, std::span<co
     std::vector<std::uint32_t> copies;
     for (const Part& part : parts) {
         if (part.manifold) {
-            continue;  // edges of copies have four triangles and more
+            continue;  // edges of copies have four or more triangles
         }
-        std::vector<std::pair<std::array<std::uint32_t, 3>, std::uint32_t>>
-            keyed;  // corners, sorted; triangle
-        for (const std::uint32_t i : part.triangles) {
-            const glm::uvec3& t = mesh.triangles[i];
-            std::array<std::uint32_t, 3> corners = {welded[t.x], welded[t.y], welded[t.z]};
-            std::sort(corners.begin(), corners.end());
-            keyed.emplace_back(corners, i);
-        }
-        std::sort(keyed.begin(), keyed.end());
+        const std::vector<SortedTriangle> sorted = sortedTriangles(mesh, welded, part.triangles);
         std::vector<std::uint32_t> again;
         std::vector<std::array<std::uint32_t, 2>> edges;  // without copies
-        for (std::size_t k = 0; k < keyed.size(); ++k) {
-            const auto& [corners, triangle] = keyed[k];
-            if (k > 0 && keyed[k - 1].first == corners) {
+        for (std::size_t k = 0; k < sorted.size(); ++k) {
+            const auto& [corners, triangle] = sorted[k];
+            if (k > 0 && sorted[k - 1].corners == corners) {
                 again.push_back(triangle);
             } else {
                 edges.insert(edges.end(),
                              {{corners[0], corners[1]}, {corners[1], corners[2]}, {corners[0], corners[2]}});
             }
         }
-        std::sort(edges.begin(), edges.end());
+        std::ranges::sort(edges);
         bool closed = true;
         for (std::size_t begin = 0, end = 0; closed && begin < edges.size(); begin = end) {
             while (end < edges.size() && edges[end] == edges[begin]) {
@@ -106,7 +97,7 @@ std::vector<std::uint32_t> copiesInSolids(const TriangleMesh& mesh, std::span<co
             copies.insert(copies.end(), again.begin(), again.end());
         }
     }
-    std::sort(copies.begin(), copies.end());
+    std::ranges::sort(copies);
     return copies;
 }
 
@@ -116,7 +107,7 @@ std::optional<double> enclosedVolume(const std::vector<glm::vec3>& positions,
     double volume = 0.0;
     for (const glm::uvec3& t : triangles) {
         const TrianglePlane plane = planeOf(positions, t);
-        area += 0.5 * std::sqrt(dot(plane.normal, plane.normal));
+        area += 0.5 * length(plane.normal);
         volume += dot(plane.point - center, plane.normal) / 6.0;
     }
     return std::abs(volume) < kVolumeMin * area * std::sqrt(area) ? std::nullopt : std::optional(volume);

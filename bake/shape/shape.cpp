@@ -16,7 +16,6 @@
 #include "bake/mesh/mesh_query.h"
 #include "bake/mesh/ray_cost.h"
 #include "bake/mesh/surface_sampler.h"
-#include "bake/mesh/triangle_plane.h"
 #include "bake/repair/hole_caps.h"
 #include "bake/repair/winding.h"
 #include "bake/shape/near_copies.h"
@@ -28,25 +27,25 @@
 namespace relief {
 namespace {
 
-/// Points of all open parts that are asked what they see, and of each at least.
+/// Sight samples of all open parts, and the least of each.
 constexpr std::size_t kSightPoints = 4096;
 constexpr std::size_t kSightPointsMin = 8;
-/// Probes of a small part whose holes are to be closed.
+/// Least number of probes for closing the holes of a part.
 constexpr std::size_t kPartProbesMin = 64;
-/// A part is a sheet if more than this share of the rays from its darker side lead out.
+/// A sheet: more than this share of the rays from its darker side lead out.
 constexpr double kSheetSight = 0.1;
-/// A part is seen from outside at all if more than this share of the rays from its lighter side lead out.
+/// A visible part: more than this share of the rays from its lighter side lead out.
 constexpr double kSeen = 0.02;
-/// Share of the area of a closed part that lies twice in the same place: a sheet with two sides.
+/// A two-sided sheet: this share of a closed part's triangles coincide in pairs.
 constexpr double kTwice = 0.9;
-/// A terrain covers this share of its rectangle, has as many triangles, and is this part of the mesh's extent.
+/// A terrain covers this share of its rectangle, and has this many triangles and this share of the mesh's extent.
 constexpr double kTerrainCover = 0.98;
 constexpr std::size_t kTerrainTriangles = 200;
 constexpr double kTerrainExtent = 0.8;
 /// The ground below a terrain, in units of the longest side.
 constexpr double kGround = 0.05;
 
-/// A sheet as a mesh of its own, not finished.
+/// Before finishMesh.
 TriangleMesh meshOf(const Sheet& sheet, const std::string& name) {
     TriangleMesh mesh;
     mesh.name = name;
@@ -56,24 +55,24 @@ TriangleMesh meshOf(const Sheet& sheet, const std::string& name) {
     return mesh;
 }
 
-/// Share of the rays that lead out of the mesh, from either side of a sheet of it; at least so many, once it is more than
-/// kSheetSight on both.
-std::array<double, 2> sightOf(const Sheet& sheet, std::size_t asked, const MeshQuery& query) {
+/// Share of the rays from either side of a sheet that lead out of the mesh; a lower bound once both exceed kSheetSight.
+std::array<double, 2> sightOf(const Sheet& sheet, std::size_t samples, const MeshQuery& query) {
     const double side = query.mesh().bounds.longestSide();
     const TriangleMesh mesh = meshOf(sheet, "");
     const AreaTable areas(mesh);
     MersenneRandom random(1);
     std::array<double, 2> out{};
-    const auto rays = static_cast<double>(asked * kParityDirections.size());
+    const auto rays = static_cast<double>(samples * kParityDirections.size());
     const auto isSheet = [&] { return std::min(out[0], out[1]) > kSheetSight * rays; };
-    for (std::size_t k = 0; k < asked && !isSheet(); ++k) {
-        const double at = (static_cast<double>(k) + random.uniform()) / static_cast<double>(asked);
+    for (std::size_t k = 0; k < samples && !isSheet(); ++k) {
+        const double at = (static_cast<double>(k) + random.uniform()) / static_cast<double>(samples);
         const auto [on, normal] = drawOnSurface(mesh, areas, at, random);
-        for (auto way = kParityDirections.begin(); way != kParityDirections.end() && !isSheet(); ++way) {
+        for (std::size_t i = 0; i < kParityDirections.size() && !isSheet(); ++i) {
+            const glm::dvec3& direction = kParityDirections[i];
             for (std::size_t face = 0; face < 2; ++face) {
                 const glm::dvec3 towards = face == 0 ? normal : -normal;
                 const glm::dvec3 from = on + kSurfaceStep * side * towards;
-                const glm::dvec3 ray = dot(*way, towards) < 0.0 ? -*way : *way;
+                const glm::dvec3 ray = dot(direction, towards) < 0.0 ? -direction : direction;
                 out[face] += query.segmentIsFree(from, from + 4.0 * side * ray) ? 1.0 : 0.0;
             }
         }
@@ -81,7 +80,6 @@ std::array<double, 2> sightOf(const Sheet& sheet, std::size_t asked, const MeshQ
     return {out[0] / rays, out[1] / rays};
 }
 
-/// Takes a mesh apart and puts it together again.
 class Shaper {
   public:
     Shaper(const PreparedMesh& mesh, const ShapeOptions& options)
@@ -93,15 +91,13 @@ class Shaper {
     }
 
     Result<ShapedMesh> run() {
-        {
-            const MeshEdges& edges = prepared_.edges();
-            welded_ = edges.welded;
-            parts_ = partsOf(mesh_, edges);
-            kinds_ = kindsOfTriangles();
-            if (!kinds_.empty()) {
-                keepSolidsWhole();
-                parts_ = partsOf(mesh_, edges, kinds_);
-            }
+        const MeshEdges& edges = prepared_.edges();
+        welded_ = edges.welded;
+        parts_ = partsOf(mesh_, edges);
+        kinds_ = kindsOfTriangles();
+        if (!kinds_.empty()) {
+            keepSolidsWhole();
+            parts_ = partsOf(mesh_, edges, kinds_);
         }
         prepared_.freeEdges();
         if (const std::vector<std::uint32_t> copies = copiesInSolids(mesh_, welded_, parts_);
@@ -150,16 +146,15 @@ class Shaper {
         int axis = 1;  ///< of a terrain's heights
     };
 
-    /// A part that is no solid as it is.
+    /// An open part.
     struct Open {
         Sheet sheet;
         ShapeAs as = ShapeAs::kAuto;
         Role role;
     };
 
-    /// Copies hide where the inside is, and so which way round a surface lies, and which is a hollow's: what is left is
-    /// wound again.
-    /// \param warning  for the mesh; "" for none.
+    /// Restarts without copies, which hide the inside: the rest has to be wound again.
+    /// \param warning  for the mesh, or "".
     Result<ShapedMesh> runWithout(const std::vector<std::uint32_t>& copies, const std::string& warning) {
         TriangleMesh rest = mesh_;
         if (!warning.empty()) {
@@ -170,20 +165,11 @@ class Shaper {
         for (std::size_t i = 0, next = 0; i < mesh_.triangles.size(); ++i) {
             if (next < copies.size() && copies[next] == i) {
                 ++next;
-                continue;
+            } else {
+                moveTriangle(rest, i, kept++);
             }
-            rest.triangles[kept] = mesh_.triangles[i];
-            if (!rest.marks.empty()) {
-                rest.marks[kept] = mesh_.marks[i];
-            }
-            if (!rest.labels.empty()) {
-                rest.labels[kept] = mesh_.labels[i];
-            }
-            ++kept;
         }
-        rest.triangles.resize(kept);
-        rest.marks.resize(std::min(kept, rest.marks.size()));
-        rest.labels.resize(std::min(kept, rest.labels.size()));
+        keepTriangles(rest, kept);
         rest = RELIEF_TRY(finishMesh(std::move(rest)));
         const Winding winding = RELIEF_TRY(windOutwards(std::move(rest)));
         ShapedMesh shaped = RELIEF_TRY(Shaper(winding.mesh, options_).run());
@@ -191,7 +177,7 @@ class Shaper {
         return shaped;
     }
 
-    /// What each triangle is taken for, and in the report how many have which name. Empty: all are taken for the same.
+    /// The kind of each triangle, counting names in the report. Empty: all of one kind.
     [[nodiscard]] std::vector<ShapeAs> kindsOfTriangles() {
         if (options_.named.empty() || mesh_.marks.size() != mesh_.triangles.size()) {
             return {};
@@ -207,17 +193,16 @@ class Shaper {
         return kinds;
     }
 
-    /// What is closed is a solid whatever it is taken for, if nothing of it is to be a wall.
+    /// A closed part of several kinds is a solid, unless some of it is to be a shell.
     void keepSolidsWhole() {
         for (const Part& part : parts_) {
-            const auto is = [&](ShapeAs as) {
-                return [this, as](std::uint32_t triangle) { return kinds_[triangle] == as; };
+            const auto count = [&](ShapeAs as) {
+                return static_cast<std::size_t>(std::ranges::count(
+                    part.triangles, as, [&](std::uint32_t triangle) { return kinds_[triangle]; }));
             };
-            const auto& triangles = part.triangles;
-            const bool mixed = !std::all_of(triangles.begin(), triangles.end(), is(kinds_[triangles[0]]));
-            const bool wall = std::any_of(triangles.begin(), triangles.end(), is(ShapeAs::kShell));
-            if (part.closed && mixed && !wall && !isFlat(part)) {
-                for (const std::uint32_t triangle : triangles) {
+            const bool mixed = count(kinds_[part.triangles[0]]) < part.triangles.size();
+            if (part.closed && mixed && count(ShapeAs::kShell) == 0 && !isFlat(part)) {
+                for (const std::uint32_t triangle : part.triangles) {
                     kinds_[triangle] = ShapeAs::kSolid;
                 }
             }
@@ -233,7 +218,7 @@ class Shaper {
         return part.closed && as != ShapeAs::kShell && (as == ShapeAs::kSolid || !isFlat(part));
     }
 
-    /// Closed, but without a volume, as a sheet with two sides is.
+    /// Closed, but without a volume, as a two-sided sheet.
     [[nodiscard]] bool isFlat(const Part& part) const {
         std::vector<glm::uvec3> triangles;
         triangles.reserve(part.triangles.size());
@@ -244,20 +229,16 @@ class Shaper {
             return true;
         }
         if (part.manifold) {
-            return false;  // two triangles in one place have their edges to themselves, and enclose nothing
+            return false;  // a coincident pair with manifold edges is a part of its own, without a volume
         }
-        std::vector<std::array<std::uint32_t, 3>> corners;
-        for (const glm::uvec3& t : triangles) {
-            corners.push_back({welded_[t.x], welded_[t.y], welded_[t.z]});
-            std::sort(corners.back().begin(), corners.back().end());
-        }
-        std::sort(corners.begin(), corners.end());
-        const auto once = static_cast<double>(std::unique(corners.begin(), corners.end()) - corners.begin());
+        std::vector<SortedTriangle> sorted = sortedTriangles(mesh_, welded_, part.triangles);
+        const auto copies = std::ranges::unique(sorted, {}, &SortedTriangle::corners);
+        const auto once = static_cast<double>(copies.begin() - sorted.begin());
         const auto all = static_cast<double>(part.triangles.size());
         return 2.0 * (all - once) > kTwice * all;
     }
 
-    /// The parts as sheets for the time being.
+    /// All open parts as sheets, for now.
     void makeSheets(const std::vector<const Part*>& parts) {
         open_.resize(parts.size());
         tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
@@ -268,7 +249,7 @@ class Shaper {
         }
     }
 
-    /// Which of the open parts are solids with holes, and which terrains.
+    /// Finds the solids with holes and the terrains among the open parts.
     Result<void> sortSheets() {
         std::vector<Open*> unclear;
         for (Open& part : open_) {
@@ -286,10 +267,10 @@ class Shaper {
         const MeshQuery query = RELIEF_TRY(MeshQuery::build(opaque()));
         const auto least = static_cast<std::size_t>(
             std::ceil(affordableRays(query.mesh()) * static_cast<double>(kSightPointsMin)));
-        const std::size_t asked = std::max(least, kSightPoints / unclear.size());
+        const std::size_t samples = std::max(least, kSightPoints / unclear.size());
         tbb::parallel_for(std::size_t{0}, unclear.size(), [&](std::size_t i) {
             Open& part = *unclear[i];
-            const std::array<double, 2> sight = sightOf(part.sheet, asked, query);
+            const std::array<double, 2> sight = sightOf(part.sheet, samples, query);
             const auto [dark, light] = std::minmax(sight[0], sight[1]);
             if (dark <= kSheetSight && light > kSeen) {
                 part.role.kind = Kind::kHoled;
@@ -300,7 +281,7 @@ class Shaper {
         return {};
     }
 
-    /// The mesh without what is to be a shell: there is free space on both sides of that, however dark it is there.
+    /// The mesh without future shells, which have free space on both sides, however dark.
     [[nodiscard]] PreparedMesh opaque() const {
         TriangleMesh mesh;
         for (std::size_t i = 0; i < kinds_.size(); ++i) {
@@ -314,22 +295,18 @@ class Shaper {
         mesh.name = mesh_.name;
         mesh.positions = mesh_.positions;
         Result<TriangleMesh> finished = finishMesh(std::move(mesh));
-        return finished ? PreparedMesh(std::move(*finished)) : prepared_;  // it may be too small for a mesh
+        return finished ? PreparedMesh(std::move(*finished)) : prepared_;  // may be too small for a mesh
     }
 
-    /// The axis of the heights of a sheet that is the ground of its mesh.
+    /// The height axis of a sheet that is the ground of its mesh.
     [[nodiscard]] std::optional<int> terrainAxis(const Sheet& sheet) const {
         if (sheet.triangles.size() < kTerrainTriangles) {
             return std::nullopt;
         }
-        Bounds bounds;
-        for (const glm::vec3& p : sheet.positions) {
-            bounds.add(p);
-        }
-        const glm::dvec3 size = bounds.size();
+        const glm::dvec3 size = boundsOf(sheet.positions).size();
         const glm::dvec3 whole = mesh_.bounds.size();
         const Shadow shadow = shadowOf(sheet);
-        // Where the file says its unit, the importer has turned +y upwards. Elsewhere +z may point there as well.
+        // With a unit, the importer has turned +y upwards. Otherwise +z may be up as well.
         for (const int axis : {1, 2}) {
             const int across = (axis + 1) % 3;
             const int along = (axis + 2) % 3;
@@ -337,7 +314,7 @@ class Shaper {
             const bool ground = size[axis] < 0.7 * std::min(size[across], size[along]) &&
                                 size[across] >= kTerrainExtent * whole[across] &&
                                 size[along] >= kTerrainExtent * whole[along];
-            // All of it looks one way, and so covers nothing twice.
+            // All of it faces one way, and so covers nothing twice.
             const bool heights = std::abs(shadow.signed_area[axis]) >= 0.9999 * shadow.area[axis] &&
                                  0.5 * shadow.area[axis] >= kTerrainCover * rectangle;
             if (ground && heights && (axis == 1 || (mesh_.unit.empty() && parts_.size() == 1))) {
@@ -347,13 +324,13 @@ class Shaper {
         return std::nullopt;
     }
 
-    /// The axis that sees most of a sheet.
+    /// The axis of the largest projection.
     static int flattestAxis(const Sheet& sheet) {
         const glm::dvec3 area = glm::abs(shadowOf(sheet).signed_area);
         return area.y >= std::max(area.x, area.z) ? 1 : area.z >= area.x ? 2 : 0;
     }
 
-    /// The parts of triangles of the source, which are of this kind.
+    /// The parts of some source triangles; sets their kind.
     [[nodiscard]] std::vector<std::uint32_t> partsFor(std::span<const std::uint32_t> sources, PartKind kind) {
         std::vector<std::uint32_t> parts;
         parts.reserve(sources.size());
@@ -372,7 +349,7 @@ class Shaper {
         bool balanced = true;
     };
 
-    /// \return nothing in it if its holes cannot be closed, or it encloses nothing then.
+    /// Without a mesh if the holes cannot be closed, or the result encloses nothing.
     [[nodiscard]] Result<Closed> close(const TriangleMesh& open) const {
         const std::size_t probes = std::clamp(open.triangles.size() / 8, kPartProbesMin, kEnclosureProbes);
         const PreparedMesh closed = RELIEF_TRY(closeHoles(open, probes));
@@ -400,7 +377,7 @@ class Shaper {
         union_.countHoles(mesh.closed_holes);
     }
 
-    /// Each part with holes by itself, and then what is left of them together: panels whose seams do not meet.
+    /// Each part with holes by itself, then the rest together: panels whose seams do not meet.
     Result<void> closeParts() {
         std::vector<Open*> holed;
         for (Open& part : open_) {
@@ -411,11 +388,11 @@ class Shaper {
         std::vector<Result<Closed>> closed(holed.size(), Closed{});
         tbb::parallel_for(std::size_t{0}, holed.size(), [&](std::size_t i) {
             const Result<TriangleMesh> mesh = finishMesh(meshOf(holed[i]->sheet, mesh_.name));
-            if (mesh) {  // else it is too small for a mesh of its own
+            if (mesh) {  // else too small for a mesh
                 closed[i] = close(*mesh);
             }
         });
-        std::array<std::vector<Open*>, kShapeAsCount> left;  // by what they are taken for
+        std::array<std::vector<Open*>, kShapeAsCount> left;  // by kind
         for (std::size_t i = 0; i < holed.size(); ++i) {
             const Closed part = RELIEF_TRY(std::move(closed[i]));
             if (part.mesh) {
@@ -433,7 +410,7 @@ class Shaper {
         return {};
     }
 
-    /// \param parts  taken for the same.
+    /// \param parts  of one kind.
     Result<void> closeTogether(const std::vector<Open*>& parts) {
         TriangleMesh rest;
         rest.name = mesh_.name;
@@ -468,15 +445,9 @@ class Shaper {
         return {};
     }
 
-    static double sizeOf(const Sheet& sheet) {
-        Bounds bounds;
-        for (const glm::vec3& p : sheet.positions) {
-            bounds.add(p);
-        }
-        return double{bounds.longestSide()};
-    }
+    static double sizeOf(const Sheet& sheet) { return double{boundsOf(sheet.positions).longestSide()}; }
 
-    /// A thickness that was asked for is one of the smallest sheet, and of what floats tell apart.
+    /// A given thickness must suit the smallest sheet and the resolution of floats.
     [[nodiscard]] Result<void> checkThickness() const {
         double smallest = std::numeric_limits<double>::max();
         for (const Open& part : open_) {
@@ -516,10 +487,7 @@ class Shaper {
     }
 
     void addTerrain(const Sheet& sheet, int axis) {
-        float low = sheet.positions.front()[axis];
-        for (const glm::vec3& p : sheet.positions) {
-            low = std::min(low, p[axis]);
-        }
+        const float low = boundsOf(sheet.positions).min[axis];
         add(sheet, extruded(sheet, axis, low - static_cast<float>(kGround) * mesh_.bounds.longestSide()),
             PartKind::kTerrain);
         ++report_.terrains;
@@ -541,7 +509,7 @@ class Shaper {
     std::vector<Part> parts_;
     std::vector<ShapeAs> kinds_;  // of the triangles; empty: options_.as
     std::vector<Open> open_;      // of parts_
-    std::uint32_t bodies_ = 0;    // that parity decides about: their numbers begin at 1
+    std::uint32_t bodies_ = 0;    // by parity, numbered from 1
     SurfacePartsBuilder collected_;
     SolidUnion union_;
     ShapeReport report_;

@@ -1,15 +1,13 @@
-// What a mesh is, part by part, and the solid that stands for it. A part hangs together by edges, where equal positions
-// are one vertex:
+// Classifies the parts of a mesh and makes the solid that is baked. Parts are connected by edges (equal positions are one
+// vertex) between triangles of one kind:
 //
-//   solid             closed: its inside is what it encloses
+//   solid             closed
 //   solid with holes  open, but hardly any ray leads out from behind its surface: the holes are closed
-//   sheet             both sides are seen from outside: it becomes a shell of a given thickness (sheet.h)
-//   terrain           a height field that covers its rectangle: it becomes the ground below it
+//   sheet             both sides are seen from outside: becomes a shell (sheet.h)
+//   terrain           a height field that covers its rectangle: becomes the ground below it
 //
-// Triangles that are taken for different things do not hang together, whatever edges they share.
-//
-// Coincident triangles count once. What a point is inside of is the union of all parts: solids that overlap, shells that
-// cross a solid, and a sheet within a solid, which is never met.
+// Coincident triangles count once. The inside is the union of all parts: solids may overlap, shells may cross a solid, and a
+// sheet within a solid has no effect.
 #pragma once
 
 #include <cstdint>
@@ -24,10 +22,9 @@
 
 namespace relief {
 
-/// What a name was taken for.
 struct NamedTriangles {
     NamedShape shape;
-    std::uint64_t triangles = 0;  ///< of the mesh, that no later name has too
+    std::uint64_t triangles = 0;  ///< of the mesh, without those of later names
 };
 
 struct ShapeReport {
@@ -37,31 +34,31 @@ struct ShapeReport {
     std::uint64_t solids_with_holes = 0;
     std::uint64_t sheets = 0;
     std::uint64_t terrains = 0;
-    std::uint64_t coincident_triangles = 0;  ///< left out of sheets, and of solids closed without them
-    std::uint64_t near_copies = 0;   ///< closed parts that are left out for a larger one (near_copies.h)
-    double thickness = 0.0;          ///< of the thickest shell, object units; 0: there are none
-    double thickness_least = 0.0;    ///< of the thinnest
-    double default_thickness = 0.0;  ///< from which each part's is derived; 0: it was asked for
+    std::uint64_t coincident_triangles = 0;  ///< dropped from sheets, and from solids closed without them
+    std::uint64_t near_copies = 0;           ///< closed parts dropped for a larger one (near_copies.h)
+    double thickness = 0.0;                  ///< of the thickest shell, object units; 0: no shells
+    double thickness_least = 0.0;            ///< of the thinnest
+    double default_thickness = 0.0;          ///< from which each part's is derived; 0: it was given
 
     /// "2 solids, 1 sheet"
     [[nodiscard]] std::string text() const;
 };
 
-/// " --as shell --as glass=auto --thickness 0.01", or less: for the options that a container records.
+/// " --as shell --as glass=auto --thickness 0.01", as containers record it.
 [[nodiscard]] std::string shapeOptionsText(const ShapeReport& report);
 
 struct ShapedMesh {
-    PreparedMesh mesh;  ///< the mesh that came if it is solid already
+    PreparedMesh mesh;  ///< the source if it is solid already
     ShapeReport report;
     SurfaceParts parts;
 };
 
-/// \param mesh  as windOutwards leaves it. Its marks count options.named; without marks, nothing is named.
+/// \param mesh  after windOutwards. Its marks refer to options.named; without marks, nothing is named.
 /// The same for any number of threads.
 /// Errors: those of MeshQuery::build and checkShellThickness; kLimit (kTriangleMax).
 [[nodiscard]] Result<ShapedMesh> shapeMesh(const PreparedMesh& mesh, const ShapeOptions& options);
 
-/// The parts of a mesh that is baked as it is.
+/// The parts of a mesh that is baked unchanged.
 [[nodiscard]] SurfaceParts surfacePartsOf(const PreparedMesh& mesh);
 
 }  // namespace relief

@@ -7,37 +7,22 @@
 #include <glm/matrix.hpp>
 #include <utility>
 
-#include "bake/mesh/mesh_edges.h"
-#include "bake/mesh/triangle_plane.h"
-
 namespace relief {
 namespace {
 
 /// The longest mitre, in units of half the thickness: that of kFoldCosine.
 constexpr double kMitreMax = 2.0;
-/// What keeps the search for a mitre defined where all normals are alike, in units of their number.
+/// Keeps the mitre defined where all normals are alike, in units of their number.
 constexpr double kMitreDamping = 1e-4;
 
 glm::dvec3 unitNormal(const std::vector<glm::vec3>& positions, const glm::uvec3& t) {
-    const glm::dvec3 n = planeOf(positions, t).normal;
-    return n / std::sqrt(dot(n, n));
+    return unit(planeOf(positions, t).normal);
 }
 
-/// Winds neighbours against each other along their common edges, and cuts the joints where that cannot be done.
-void windConsistently(Sheet& sheet) {
+/// Winds neighbours consistently, and cuts joints of one-sided surfaces.
+void windConsistently(Sheet& sheet, const std::vector<std::array<bool, 3>>& same) {
     std::vector<std::uint8_t> state(sheet.triangles.size(), 0);  // 1: as it is, 2: turned
     std::vector<std::uint32_t> queue;
-    const auto runsAlong = [&](std::uint32_t a, std::uint32_t side, std::uint32_t b) {
-        const glm::uvec3& t = sheet.triangles[a];
-        const glm::uvec3& u = sheet.triangles[b];
-        const auto [from, to] = std::pair{t[side], t[(side + 1) % 3]};
-        for (int i = 0; i < 3; ++i) {
-            if (u[i] == from && u[(i + 1) % 3] == to) {
-                return true;
-            }
-        }
-        return false;
-    };
     for (std::uint32_t first = 0; first < sheet.triangles.size(); ++first) {
         if (state[first] != 0) {
             continue;
@@ -46,13 +31,12 @@ void windConsistently(Sheet& sheet) {
         queue.assign(1, first);
         for (std::size_t at = 0; at < queue.size(); ++at) {
             const std::uint32_t here = queue[at];
-            for (std::uint32_t side = 0; side < 3; ++side) {
+            for (std::uint8_t side = 0; side < 3; ++side) {
                 const std::uint32_t next = sheet.neighbours[here][side];
                 if (next == Sheet::kNoTriangle) {
                     continue;
                 }
-                const bool turn = runsAlong(here, side, next) != (state[here] == 2);
-                const std::uint8_t wanted = turn ? 2 : 1;
+                const std::uint8_t wanted = same[here][side] != (state[here] == 2) ? 2 : 1;
                 if (state[next] == 0) {
                     state[next] = wanted;
                     queue.push_back(next);
@@ -66,9 +50,9 @@ void windConsistently(Sheet& sheet) {
                 }
             }
         }
-        // What most of the patch's triangles say.
-        const auto turned = static_cast<std::size_t>(std::count_if(
-            queue.begin(), queue.end(), [&](std::uint32_t triangle) { return state[triangle] == 2; }));
+        // By majority of the patch.
+        const auto turned = static_cast<std::size_t>(
+            std::ranges::count(queue, 2, [&](std::uint32_t triangle) { return state[triangle]; }));
         for (const std::uint32_t triangle : queue) {
             if ((state[triangle] == 2) != (2 * turned > queue.size())) {
                 std::swap(sheet.triangles[triangle].y, sheet.triangles[triangle].z);
@@ -78,19 +62,11 @@ void windConsistently(Sheet& sheet) {
     }
 }
 
-/// Joins triangles across edges of two, and cuts the folds. Folds are known only once neighbours are wound alike.
+/// Joins triangles across edges of two, and cuts the folds, which show once neighbours are wound alike.
 void joinEdges(Sheet& sheet) {
-    sheet.neighbours.assign(sheet.triangles.size(), glm::uvec3(Sheet::kNoTriangle));
-    const std::vector<EdgeUse> sides = edgeUses(sheet.triangles, sheet.positions.size());
-    forEachEdge(sides, [&](std::size_t begin, std::size_t end) {
-        if (end - begin == 2) {
-            const EdgeUse& a = sides[begin];
-            const EdgeUse& b = sides[begin + 1];
-            sheet.neighbours[a.triangle][a.side] = b.triangle;
-            sheet.neighbours[b.triangle][b.side] = a.triangle;
-        }
-    });
-    windConsistently(sheet);
+    TriangleNeighbours neighbours = neighboursOf(edgeUses(sheet.triangles, sheet.positions.size()));
+    sheet.neighbours = std::move(neighbours.across);
+    windConsistently(sheet, neighbours.same);
     for (std::uint32_t i = 0; i < sheet.triangles.size(); ++i) {
         for (int side = 0; side < 3; ++side) {
             const std::uint32_t next = sheet.neighbours[i][side];
@@ -103,10 +79,9 @@ void joinEdges(Sheet& sheet) {
     }
 }
 
-/// The sum of n·nᵀ and of n over the normals at a corner, whose mitre m has n·m = 1 for each of them, as nearly as can
-/// be.
+/// The least-squares mitre m of a corner, n·m = 1 for each of its normals n.
 struct Mitre {
-    glm::dmat3 squares{0.0};
+    glm::dmat3 squares{0.0};  // sum of n·nᵀ
     glm::dvec3 sum{0.0};
     double weight = 0.0;
 
@@ -121,9 +96,8 @@ struct Mitre {
     [[nodiscard]] glm::dvec3 solve() const {
         const double damping = kMitreDamping * weight;
         const glm::dmat3 damped = squares + damping * glm::dmat3(1.0);
-        glm::dvec3 mitre = (1.0 + kMitreDamping) * (glm::inverse(damped) * sum);
-        const double length = std::sqrt(dot(mitre, mitre));
-        return length > kMitreMax ? mitre * (kMitreMax / length) : mitre;
+        const glm::dvec3 mitre = (1.0 + kMitreDamping) * (glm::inverse(damped) * sum);
+        return length(mitre) > kMitreMax ? mitre * (kMitreMax / length(mitre)) : mitre;
     }
 };
 
@@ -132,11 +106,11 @@ double angleAt(const std::vector<glm::vec3>& positions, const glm::uvec3& t, int
     const glm::dvec3 a = glm::dvec3(positions[t[(corner + 1) % 3]]) - at;
     const glm::dvec3 b = glm::dvec3(positions[t[(corner + 2) % 3]]) - at;
     const double size = std::sqrt(dot(a, a) * dot(b, b));
-    // Any weight will do that grows with the angle and needs no arc cosine.
+    // Any weight that grows with the angle; an arc cosine is not needed.
     return size > 0.0 ? 1.0 - std::clamp(dot(a, b) / size, -1.0, 1.0) + 1e-3 : 1e-3;
 }
 
-/// Corners of a sheet's triangles, those about one vertex that hang together by joined edges as one.
+/// Per corner of a sheet's triangles, the lowest of those around its vertex that are connected by joined edges.
 std::vector<std::uint32_t> joinedCorners(const Sheet& sheet) {
     DisjointSets corners(3 * sheet.triangles.size());
     for (std::uint32_t i = 0; i < sheet.triangles.size(); ++i) {
@@ -161,14 +135,14 @@ std::vector<std::uint32_t> joinedCorners(const Sheet& sheet) {
     return roots;
 }
 
-/// Adds triangles that have an area.
+/// Drops triangles without area.
 class PartBuilder {
   public:
     std::uint32_t addPosition(const glm::dvec3& p) {
         part_.positions.emplace_back(p);
         return static_cast<std::uint32_t>(part_.positions.size() - 1);
     }
-    /// \param source  the sheet's triangle that it is for.
+    /// \param source  the sheet's triangle.
     void addTriangle(std::uint32_t source, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
         const glm::uvec3 t(a, b, c);
         if (hasArea(planeOf(part_.positions, t))) {
@@ -176,7 +150,7 @@ class PartBuilder {
             part_.sources.push_back(source);
         }
     }
-    /// Below the side from a to b of a triangle that is seen from above.
+    /// Below the side from a to b of a triangle seen from above.
     void addWall(std::uint32_t source, const std::array<std::uint32_t, 2>& a,
                  const std::array<std::uint32_t, 2>& b) {
         addTriangle(source, b[0], a[0], a[1]);
@@ -200,43 +174,30 @@ Sheet sheetOf(const TriangleMesh& mesh, std::span<const std::uint32_t> welded,
             used.push_back(welded[mesh.triangles[i][corner]]);
         }
     }
-    std::sort(used.begin(), used.end());
+    std::ranges::sort(used);
     used.erase(std::unique(used.begin(), used.end()), used.end());
     const auto indexOf = [&](std::uint32_t vertex) {
-        const auto found = std::lower_bound(used.begin(), used.end(), welded[vertex]);
-        return static_cast<std::uint32_t>(found - used.begin());
+        return static_cast<std::uint32_t>(std::ranges::lower_bound(used, welded[vertex]) - used.begin());
     };
     for (const std::uint32_t vertex : used) {
         sheet.positions.push_back(mesh.positions[vertex]);
     }
-    // By their sorted corners, the first of equals first.
-    struct Keyed {
-        std::array<std::uint32_t, 3> corners;
-        std::uint32_t source;
-        glm::uvec3 triangle;
-    };
-    std::vector<Keyed> keyed;
+    std::vector<std::uint32_t> with_area;
     for (const std::uint32_t i : triangles) {
         const glm::uvec3& t = mesh.triangles[i];
-        const glm::uvec3 triangle(indexOf(t.x), indexOf(t.y), indexOf(t.z));
-        if (hasArea(planeOf(sheet.positions, triangle))) {
-            std::array<std::uint32_t, 3> corners = {triangle.x, triangle.y, triangle.z};
-            std::sort(corners.begin(), corners.end());
-            keyed.push_back({corners, i, triangle});
+        if (hasArea(planeOf(mesh.positions, {welded[t.x], welded[t.y], welded[t.z]}))) {
+            with_area.push_back(i);
         }
     }
-    const auto less = [](const Keyed& a, const Keyed& b) {
-        return std::tie(a.corners, a.source) < std::tie(b.corners, b.source);
-    };
-    std::sort(keyed.begin(), keyed.end(), less);
-    const auto end = std::unique(keyed.begin(), keyed.end(),
-                                 [](const Keyed& a, const Keyed& b) { return a.corners == b.corners; });
-    sheet.duplicates = static_cast<std::uint64_t>(keyed.end() - end);
-    keyed.erase(end, keyed.end());
-    std::sort(keyed.begin(), keyed.end(), [](const Keyed& a, const Keyed& b) { return a.source < b.source; });
-    for (const Keyed& k : keyed) {
-        sheet.triangles.push_back(k.triangle);
-        sheet.sources.push_back(k.source);
+    std::vector<SortedTriangle> sorted = sortedTriangles(mesh, welded, with_area);
+    const auto [end, last] = std::ranges::unique(sorted, {}, &SortedTriangle::corners);
+    sheet.duplicates = static_cast<std::uint64_t>(last - end);
+    sorted.erase(end, last);
+    std::ranges::sort(sorted, {}, &SortedTriangle::index);
+    for (const SortedTriangle& kept : sorted) {
+        const glm::uvec3& t = mesh.triangles[kept.index];
+        sheet.triangles.emplace_back(indexOf(t.x), indexOf(t.y), indexOf(t.z));
+        sheet.sources.push_back(kept.index);
     }
     joinEdges(sheet);
     return sheet;
@@ -253,7 +214,7 @@ SolidPart thickened(const Sheet& sheet, double thickness) {
         }
     }
     PartBuilder builder;
-    std::vector<std::array<std::uint32_t, 2>> ends(roots.size());  // above and below, of each root
+    std::vector<std::array<std::uint32_t, 2>> ends(roots.size());  // above and below, by root
     for (std::uint32_t i = 0; i < roots.size(); ++i) {
         if (roots[i] == i) {
             const glm::dvec3 at = sheet.positions[sheet.triangles[i / 3][static_cast<int>(i % 3)]];
@@ -300,7 +261,7 @@ SolidPart extruded(const Sheet& sheet, int axis, float bottom) {
         p[axis] = bottom;
         builder.addPosition(p);
     }
-    // The sheet looks up whichever way it is wound.
+    // Upwards, however the sheet is wound.
     const bool turn = !(shadowOf(sheet).signed_area[axis] > 0.0);
     const auto corners = [&](std::uint32_t i) {
         const glm::uvec3& t = sheet.triangles[i];

@@ -1,4 +1,4 @@
-// The closed surfaces that take a mesh's place.
+// The closed surfaces that replace a mesh.
 #pragma once
 
 #include <cstdint>
@@ -17,20 +17,20 @@ class SolidUnion {
     /// \param source  borrowed.
     explicit SolidUnion(const TriangleMesh& source);
 
-    /// Triangles of the source, as they are. \param body  as PreparedMesh::unionOf has it.
-    /// \param part_of  of all triangles of the source (SurfaceParts).
+    /// Triangles of the source. \param body  as in PreparedMesh::unionOf.
+    /// \param part_of  per triangle of the source (SurfaceParts).
     void addSource(const std::vector<std::uint32_t>& triangles, std::span<const std::uint32_t> part_of,
                    std::uint32_t body);
-    /// \param parts    of each of the triangles.
-    /// \param surface  how many of the triangles, the first, are no caps.
+    /// \param parts    per triangle.
+    /// \param surface  number of triangles before the caps.
     void add(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
              std::span<const std::uint32_t> parts, std::size_t surface, std::uint32_t body);
     void countHoles(std::uint64_t holes) { holes_ += holes; }
 
-    /// Named and described as the source is. \param shell_thickness  as TriangleMesh has it.
+    /// With the source's name and metadata. \param shell_thickness  as in TriangleMesh.
     /// Errors: those of finishMesh; kFailure (triangles without area).
     [[nodiscard]] Result<PreparedMesh> finish(double shell_thickness);
-    /// Behind finish(): SurfaceParts::part_of of that mesh.
+    /// After finish(): SurfaceParts::part_of of that mesh.
     [[nodiscard]] std::vector<std::uint32_t> takePartOf() { return std::move(surface_.parts); }
 
   private:

@@ -12,22 +12,22 @@ constexpr double kShellLeast = 0.004;
 constexpr double kShellMost = 0.25;
 constexpr double kShellRight = 0.1;
 constexpr double kThicknessMin = 1e-4;
-/// The least that floats tell apart at the far end of a mesh's box, in units of its longest side.
+/// The resolution of floats at the far end of a mesh's box, in units of its longest side.
 constexpr double kThicknessFloat = 4e-6;
 
 }  // namespace
 
 double defaultThickness(const Bounds& bounds, std::uint64_t budget_bytes) {
     const glm::dvec3 size = bounds.size();
-    // Front-back maps along the axes, of eight bytes a texel, and half as many again that look from elsewhere.
+    // Front-back maps along the axes, at eight bytes per texel, and half as many others.
     const double area = 12.0 * (size.x * size.y + size.y * size.z + size.z * size.x);
     const double texel = std::sqrt(area / static_cast<double>(std::max<std::uint64_t>(budget_bytes, 1)));
-    // A float, so that what a container or a plan records is the very thickness of the bake.
+    // A float, which containers and plans record exactly.
     return double{static_cast<float>(std::min(1.5 * texel, 0.04 * double{bounds.longestSide()}))};
 }
 
 double partThickness(double default_thickness, double part_size) {
-    return std::min(std::max(default_thickness, kShellLeast * part_size), kShellMost * part_size);
+    return std::clamp(default_thickness, kShellLeast * part_size, kShellMost * part_size);
 }
 
 double rightThickness(double thickness, double part_size) {

@@ -1,4 +1,4 @@
-// How thick the shell is that stands for a sheet.
+// The thickness of shells.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,15 @@ namespace relief {
 /// The largest --thickness, in units of the mesh's longest side.
 inline constexpr double kThicknessMax = 0.5;
 
-/// A texel and a half of a planned bake of a box like this: a wall that fills its texels; at most 4 % of its longest side.
+/// One and a half texels of a planned bake of this box, for walls that fill their texels; at most 4 % of its longest side.
 /// \param budget_bytes  of all texels.
 [[nodiscard]] double defaultThickness(const Bounds& bounds, std::uint64_t budget_bytes);
 /// The same for a part of that box: 0.4 to 25 % of its own longest side.
 [[nodiscard]] double partThickness(double default_thickness, double part_size);
-/// How much of a thickness that nobody asked for still counts as the part: a tenth of its longest side.
+/// How much of a default thickness still counts as the part: a tenth of its longest side.
 [[nodiscard]] double rightThickness(double thickness, double part_size);
 
-/// Whether shells can be so thin: 1e-4 of the smallest sheet's longest side, and what floats resolve.
-/// Errors: kUsage.
+/// Errors: kUsage, if shells would be thinner than 1e-4 of the smallest sheet's longest side or than floats resolve.
 [[nodiscard]] Result<void> checkShellThickness(double thickness, double smallest_sheet,
                                                const TriangleMesh& mesh);
 

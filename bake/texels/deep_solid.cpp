@@ -1,20 +1,17 @@
 #include "bake/texels/deep_solid.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-
-#include "bake/mesh/triangle_plane.h"
 
 namespace relief {
 namespace {
 
-/// A line, from the texel's centre, in texels. They run on no lines of a grid that texels may be aligned to.
+/// A line, in texels from the texel's centre; off the lines of any grid that texels may be aligned to.
 struct Place {
     double x;
     double y;
-    /// Of a ball of one diagonal about a point of the texel, which is at most √(1 − half_chord²) diagonals away, this part
-    /// of a diagonal of the line at least is within the ball, on either side.
+    /// In diagonals: a ball of one diagonal about any point of the texel holds at least this much of the line to either
+    /// side, as the point is at most √(1 − half_chord²) diagonals off the line.
     double half_chord;
 };
 constexpr std::array<Place, 5> kPlaces = {{{0.0131, -0.0173, 0.84},
@@ -22,10 +19,6 @@ constexpr std::array<Place, 5> kPlaces = {{{0.0131, -0.0173, 0.84},
                                            {0.4723, 0.4849, 0.18},
                                            {0.4849, -0.4801, 0.18},
                                            {-0.4771, 0.4837, 0.18}}};
-
-double distance(const glm::dvec3& a, const glm::dvec3& b) {
-    return length(a - b);
-}
 
 }  // namespace
 
@@ -41,13 +34,13 @@ void DeepSolid::place() {
     for (std::size_t i = 0; i < kCorners; ++i) {
         corners_[i] = rayThrough(map_, face, x + (i % 2 == 0 ? 0.0 : 1.0), y + (i < 2 ? 0.0 : 1.0));
     }
-    diagonal_ = std::max(distance(corners_[0].at(1.0), corners_[3].at(1.0)),
-                         distance(corners_[1].at(1.0), corners_[2].at(1.0))) /
+    diagonal_ = std::max(length(corners_[0].at(1.0) - corners_[3].at(1.0)),
+                         length(corners_[1].at(1.0) - corners_[2].at(1.0))) /
                 length(centre_.direction);
     known_ = true;
     any_known_ = false;
     asked_ = 0;
-    spans_.assign(1, {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()});
+    spans_.assign(1, kAllDepths);
 }
 
 void DeepSolid::narrow() {
@@ -59,7 +52,7 @@ void DeepSolid::narrow() {
     any_known_ = true;
     both_.clear();
     const bool cube = map_.projection() == Projection::kCube;
-    // Both lists run along the line.
+    // Both lists are in order.
     auto other = spans_.begin();
     for (LineSpan span : of_line_) {
         // The diagonal of a cube's texel grows with the depth.
@@ -117,7 +110,7 @@ bool DeepSolid::cutBy(const glm::dvec3& normal, double offset, const LineSpan& w
         const double end = std::min(span.end, within.end);
         return begin < end && (begin < reach.up_to || end > reach.from);
     };
-    while (std::any_of(spans_.begin(), spans_.end(), isCut)) {
+    while (std::ranges::any_of(spans_, isCut)) {
         if (asked_ == kLines) {
             return any_known_ || query_.watertight();
         }

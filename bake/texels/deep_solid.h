@@ -1,13 +1,12 @@
-// What no texel may call outside: points so deep in the solid that all of their texel is solid about them.
+// Deep solid: points around which the texel's whole cross-section is solid, and which no plane may cut.
 //
-// The points that planes are chosen by lie near the surface (refine.h). A steep plane reaches far deeper, and so does a
-// plane that was moved by what it gains near one layer of several; nothing that was drawn would tell. So a few lines
-// along the texel are asked instead, all of whose crossings are known. A ball about a point deeper than the texel's
-// diagonal holds the whole cross-section of the texel there:
+// The sample points that planes are chosen by lie near the surface (refine.h). A steep plane reaches far deeper, and so does
+// one moved for its gain near one layer of several, without any sample to show it. So a few lines along the texel are
+// intersected instead. A ball about a point deeper than the texel's diagonal holds the cross-section of the texel there:
 //
-//     |‾‾|‾‾‾‾‾‾|‾‾|      where one of the lines is not inside,
-//     |  |  .P  |  |      some way before and behind P's depth,
-//     |__|______|__|      P is not deep: cut it, if that is right for the points near the surface
+//     |‾‾|‾‾‾‾‾‾|‾‾|      where one of the lines is outside for some way before and behind P's depth, P is not deep and may
+//     |  |  .P  |  |      be cut for the sake of the points near the surface
+//     |__|______|__|
 #pragma once
 
 #include <array>
@@ -22,7 +21,7 @@
 
 namespace relief {
 
-/// The texels of one map, one after the other. Lines are traced when they are needed. Not thread-safe.
+/// For one texel of a map after the other. Lines are traced on demand. Not thread-safe.
 class DeepSolid {
   public:
     /// \param query, map  borrowed; must outlive it.
@@ -34,13 +33,13 @@ class DeepSolid {
         known_ = false;
     }
 
-    /// Whether the half-space n·(P − O) ≥ offset, with O where the texel's centre ray has depth 0, may hold a point of the
-    /// texel that is deeper in the solid than the texel's diagonal there. False positives are rare, false negatives are
-    /// none; of an open mesh, whose lines do not add up, it knows nothing.
-    /// \param within  depths that count: where another plane of the texel, of a gap, holds nothing does not matter.
+    /// The half-space n·(P − O) ≥ offset, with O at depth 0 of the texel's centre ray, may hold a point of the texel deeper in
+    /// the solid than the texel's diagonal there. False positives are rare, false negatives impossible but for open meshes,
+    /// whose lines do not balance.
+    /// \param within  limits the depths, for gaps: beyond the texel's other plane nothing is outside.
     [[nodiscard]] bool cutBy(const glm::dvec3& normal, double offset, const LineSpan& within = kAllDepths);
 
-    /// The depths at which such a half-space has a point of the texel.
+    /// The depths at which such a half-space holds a point of the texel.
     [[nodiscard]] LineSpan depthsOf(const glm::dvec3& normal, double offset);
 
     static constexpr LineSpan kAllDepths = {-std::numeric_limits<double>::infinity(),
@@ -50,28 +49,28 @@ class DeepSolid {
     static constexpr std::size_t kLines = 5;
     static constexpr std::size_t kCorners = 4;
 
-    /// The lines of texel_.
+    /// Sets up the lines of texel_.
     void place();
-    /// A half-space has points of the texel up to a depth, or from one on, by each corner.
+    /// Along the corners, a half-space holds points up to a depth, or from a depth on.
     struct Reach {
         double up_to;
         double from;
     };
     [[nodiscard]] Reach reachOf(const glm::dvec3& normal, double offset);
-    /// Keeps of spans_ what is deep by the next line too.
+    /// Intersects spans_ with what is deep by the next line.
     void narrow();
 
     const MeshQuery& query_;
     const DepthMap& map_;
     std::size_t texel_ = 0;
-    bool known_ = false;  // what follows is of texel_
+    bool known_ = false;  // the members below are of texel_
     std::array<TexelRay, kLines> lines_;
     std::array<TexelRay, kCorners> corners_;
     TexelRay centre_;
     double diagonal_ = 0.0;  // of the cross-section, in units of depth, at depth 1
     std::size_t asked_ = 0;  // lines
     bool any_known_ = false;
-    std::vector<LineSpan> spans_;  // that may be deep
+    std::vector<LineSpan> spans_;  // may be deep
     std::vector<LineSpan> of_line_;
     std::vector<LineSpan> both_;
 };

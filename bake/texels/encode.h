@@ -1,4 +1,4 @@
-// Samples become texels: depth and outward normal, quantised as the map's format has it.
+// Encodes hits as texels: depth and outward normal, quantised by the map's format.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,12 @@
 
 namespace relief {
 
-/// The encoded outward normal of every triangle: encoding is dear, and texels mostly outnumber triangles.
+/// The encoded outward normals of all triangles: encoding is expensive, and texels mostly outnumber triangles.
 class NormalTable {
   public:
-    /// \param mesh  borrowed; must outlive the table.
-    /// \param winding  orientation(mesh)
-    /// \param texels  of all maps that will be encoded: with fewer than triangles, normals are encoded when
-    ///                they are asked for.
+    /// \param mesh  borrowed.
+    /// \param winding  PreparedMesh::orientation
+    /// \param texels  of all maps: with fewer than triangles, normals are encoded on demand.
     NormalTable(const TriangleMesh& mesh, double winding, std::uint64_t texels);
 
     /// \param from_behind  the normal of the side from which the corners run clockwise.
@@ -27,16 +26,15 @@ class NormalTable {
 
   private:
     const TriangleMesh& mesh_;
-    bool from_behind_;  // the side that the table holds
+    bool from_behind_;  // the side in the table
     std::vector<NormalIndex> table_;
 };
 
-/// Encodes rows of a map from the hits of both ends (empty for an end that the map does not keep).
+/// Encodes rows of a map from the hits of both ends (empty for an end that the map does not keep), on the calling thread.
 ///
-/// Normals are the triangles' own and point out of the solid: towards the free space in which the ray
-/// started. Where it may have started inside, a surface met from its inner side is left out; of a cube
-/// whose centre lies on the surface the texel then holds the centre, behind which all is inside. Runs on the
-/// calling thread. \return the number of texels with a surface.
+/// Normals are those of the triangles, towards the free space in which the ray started. Where a ray may start inside,
+/// surfaces met from their inner side are left out; of a cube whose centre lies on the surface the texel then holds the
+/// centre, behind which all is inside. \return the number of texels with a surface.
 std::uint64_t encodeRows(const RayScene& scene, const NormalTable& normals, const View& view,
                          const RowRange& rows, std::span<const Hit> near_hits, std::span<const Hit> far_hits,
                          DepthMap& map);

@@ -1,10 +1,11 @@
-// One end of a view, as the fits of its texels see it (plane_fit.h): from where its rays start.
+// One end of a view for the fits of its texels (plane_fit.h), seen from where its rays start.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
 
 #include "bake/plan/view.h"
+#include "bake/texels/fitted_map.h"
 #include "bake/texels/plane_fit.h"
 #include "formats/depth_map.h"
 #include "formats/texel.h"
@@ -15,6 +16,19 @@ namespace relief {
 [[nodiscard]] inline bool isBorder(const View& view, std::uint32_t x, std::uint32_t y) {
     return view.projection() == Projection::kOrthographic &&
            (x == 0 || y == 0 || x + 1 == view.width || y + 1 == view.height);
+}
+
+/// The settings of fits that follow from a view and the options of its map.
+[[nodiscard]] inline PlaneFitOptions fitOptions(const View& view, const FittedMapOptions& map) {
+    const double unit = view.depthUnit();
+    PlaneFitOptions fit;
+    fit.u_max = view.projection() == Projection::kCube ? double{kCubeDepthMax} : 1.0;
+    fit.range = standingRange(view.projection(), view.object_per_map, view.width, view.height);
+    fit.reach = map.reach / unit;
+    fit.pixel_cost = map.good_enough / unit;
+    fit.refinements = map.refinements;
+    fit.let_back = map.let_back;
+    return fit;
 }
 
 /// u grows away from the viewer.
@@ -32,9 +46,9 @@ class EndView {
     }
     [[nodiscard]] double uOf(double depth) const { return far_ ? u_max_ - depth : depth; }
 
-    /// What a texel stores of a plane: in half floats its depth is one on the viewer's side.
+    /// As a texel stores it; half-float depths are rounded to the viewer's side.
     [[nodiscard]] Surface surfaceOf(const FittedPlane& plane, MapFormat format) const {
-        // Exact in double: both count in the same 65534 parts.
+        // Exact in double: both have the same 65534 steps.
         constexpr double kCodes = kDepthSteps;
         const double code = plane.code;
         const double depth = (far_ && !plane.stands ? kCodes - code : code) / kCodes * u_max_;

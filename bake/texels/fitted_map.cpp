@@ -7,11 +7,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <functional>
 #include <optional>
 
-#include "bake/mesh/triangle_plane.h"
 #include "bake/texels/deep_solid.h"
 #include "bake/texels/fitted_end.h"
 #include "bake/texels/plane_fit.h"
@@ -22,14 +20,13 @@
 namespace relief {
 namespace {
 
-/// Rows of rays of one task, about, and rays, at most: so few that its hits stay in the core's own cache until they are
-/// read.
+/// Rows of rays per task, about, and rays, at most: few enough for their hits to stay in the core's cache.
 constexpr std::uint32_t kTaskRows = 32;
 constexpr std::uint32_t kTaskRays = 1 << 18;
-/// Parts of the way between two rays of a footprint to which the edge of a surface is found; odd.
+/// Resolution of edges of surfaces between two rays of a footprint; odd.
 constexpr std::uint32_t kEdgeParts = 63;
 
-/// The rays of a view, as View::ray() gives them. An orthographic one has few different terms, and a ray many uses.
+/// The rays of View::ray(), from tables for orthographic views.
 class RayGrid {
   public:
     explicit RayGrid(const View& view) : view_(view) {
@@ -58,51 +55,41 @@ class RayGrid {
 /// Fits the texels of one end, from the hits of a view with `samples` times as many texels each way.
 class EndFitter {
   public:
-    /// \param fine_rays  of the view with `samples` times as many texels each way
     EndFitter(const RayScene& scene, const DepthMap& map, const TriangleNormals& normals, const View& view,
               const RayGrid& fine_rays, const View& finest, RayEnd end, const FittedMapOptions& options)
         : normals_(normals),
-          deep_(scene.query(), map),
+          deep_(scene, map),
           finest_(finest),
           probe_(scene, finest, end),
-          probe_other_(scene, finest, end == RayEnd::kNear ? RayEnd::kFar : RayEnd::kNear),
+          probe_other_(scene, finest, otherEnd(end)),
           view_(view),
           fine_(fine_rays.view()),
           fine_rays_(fine_rays),
           end_(view, end),
           samples_(options.samples),
-          inside_out_(scene.winding() < 0.0),
+          inside_out_(scene.insideOut()),
           may_start_inside_(mayStartInside(scene, view, end)),
-          starts_free_(view.starts_free[static_cast<std::size_t>(end)]),
+          starts_free_(view.startsFree(end)),
           other_starts_free_(view.projection() == Projection::kOrthographic &&
-                             view.starts_free[end == RayEnd::kNear ? 1 : 0]) {
-        // One unit of u in object units: the length of the depth axis, or of a cube's mean half side.
-        const double unit = view.projection() == Projection::kCube
-                                ? (length(view.axis[0]) + length(view.axis[1]) + length(view.axis[2])) / 3.0
-                                : length(view.axis[2]);
-        fit_.u_max = end_.uMax();
-        fit_.range = standingRange(view.projection(), view.object_per_map, view.width, view.height);
-        fit_.reach = options.reach / unit;
-        fit_.pixel_cost = options.good_enough / unit;
-        fit_.refinements = options.refinements;
-        fit_.let_back = options.let_back;
+                             view.startsFree(otherEnd(end))),
+          fit_(fitOptions(view, options)) {
         fit_.cautious = options.cautious;
         fit_.rays_apart = 0.5 / samples_;
         fit_.starts_free = starts_free_;
         rays_.resize(std::size_t{samples_} * samples_);
     }
 
-    /// \param hits        of this end in the fine view, from row `first_row` of the face on, the rows next to
-    ///                    the texel's included
+    /// \param hits        of this end in the fine view, from row `first_row` of the face on, including the rows next to
+    ///                    the texel's
     /// \param other_hits  of the other end; may be empty
-    /// \param other       of the other end, if it has fitted this texel before
+    /// \param other       the fitter of the other end, if it has fitted this texel before
     std::optional<Surface> fit(std::uint32_t face, std::uint32_t x, std::uint32_t y, std::uint32_t first_row,
                                std::span<const Hit> hits, std::span<const Hit> other_hits,
                                const EndFitter* other = nullptr) {
         const Footprint here{face, x, y, first_row, hits, other_hits};
         found_.clear();
         prefetch(here);
-        const auto [any, all] = whatMeets(here);
+        const auto [any, all] = hitsOf(here);
         if (!any) {
             return std::nullopt;
         }
@@ -110,13 +97,11 @@ class EndFitter {
             const std::uint32_t row = y * samples_ + j;
             for (std::uint32_t i = 0; i < samples_; ++i) {
                 const std::uint32_t column = x * samples_ + i;
-                const Hit& hit = hits[std::size_t{row - first_row} * fine_.width + column];
-                if (!hit.empty() && startsInside(hit)) {  // what lies before this surface is not free
+                const Hit& hit = hits[indexOf(here, column, row)];
+                if (!hit.empty() && startsInside(hit)) {  // the ray is not free up to this surface
                     return may_start_inside_ ? std::optional(allInside(face, x, y)) : std::nullopt;
                 }
-                const std::size_t at = std::size_t{row - first_row} * fine_.width + column;
-                rays_[std::size_t{j} * samples_ + i] = footprintRay(
-                    fine_rays_.at(face, column, row), hit, other_hits.empty() ? Hit() : other_hits[at]);
+                rays_[std::size_t{j} * samples_ + i] = rayAt(here, column, row);
             }
         }
         if (!all && other != nullptr && sharesEdges()) {
@@ -134,15 +119,11 @@ class EndFitter {
         }
         const TexelRay centre = view_.ray(face, x, y);
         deep_.setTexel((std::size_t{face} * view_.height + y) * view_.width + x);
-        // Of one ray the plane that it meets is as good as is known: one that faces the viewer cuts more of a slope. But an
-        // edge between rays of which some started in the solid is none.
+        // A single ray knows no better plane than the one that it meets: facing the viewer would cut more of a slope.
         const std::optional<FittedPlane> plane = fitSupportingPlane(
             rays_, [&] { return lookAround(here); }, edge_, end_.fromViewer(centre), centre.origin, fit_,
             samples_ > 1 || !starts_free_ || may_start_inside_ ? &deep_ : nullptr);
-        if (!plane) {
-            return std::nullopt;
-        }
-        return end_.surfaceOf(*plane, view_.format);
+        return plane ? std::optional(end_.surfaceOf(*plane, view_.format)) : std::nullopt;
     }
 
   private:
@@ -156,7 +137,7 @@ class EndFitter {
         std::span<const Hit> other_hits;
     };
 
-    /// Normals of a texel to come, which lie anywhere in memory.
+    /// The normals of a following texel, which are scattered in memory.
     void prefetch(const Footprint& here) const {
         constexpr std::uint32_t kAhead = 2;
         const std::uint32_t column = (here.x + kAhead) * samples_;
@@ -180,12 +161,18 @@ class EndFitter {
         return ray;
     }
 
+    [[nodiscard]] FootprintRay rayAt(const Footprint& here, std::uint32_t column, std::uint32_t row) const {
+        const std::size_t at = indexOf(here, column, row);
+        return footprintRay(fine_rays_.at(here.face, column, row), here.hits[at],
+                            here.other_hits.empty() ? Hit() : here.other_hits[at]);
+    }
+
     /// The ray of a hit started in the solid.
     [[nodiscard]] bool startsInside(const Hit& hit) const {
         return (!starts_free_ || may_start_inside_) && hit.fromBehind() != inside_out_;
     }
 
-    /// What a cube holds where its rays start in the solid: a plane through its centre.
+    /// The texel of a cube whose rays start in the solid: a plane through its centre.
     [[nodiscard]] Surface allInside(std::uint32_t face, std::uint32_t x, std::uint32_t y) const {
         const glm::dvec3 direction = view_.ray(face, x, y).direction;
         return {0.0F, glm::vec3(direction / -length(direction))};
@@ -195,8 +182,7 @@ class EndFitter {
         return std::size_t{row - here.first_row} * fine_.width + column;
     }
 
-    /// Calls visit(column, row) for the rays of a footprint and of the ring about it, as far as they are on
-    /// its face.
+    /// Calls visit(column, row) for the rays of a footprint and the ring around it, within the face.
     template <class Visit>
     void forEachAround(const Footprint& here, const Visit& visit) const {
         const auto bounds = [&](std::uint32_t texel, std::uint32_t size) {
@@ -216,8 +202,8 @@ class EndFitter {
         return row / samples_ == here.y && column / samples_ == here.x;
     }
 
-    /// Whether any and all of the rays of a footprint and about it meet a surface.
-    [[nodiscard]] std::pair<bool, bool> whatMeets(const Footprint& here) const {
+    /// Any, and all, of the rays of a footprint and the ring around it meet a surface.
+    [[nodiscard]] std::pair<bool, bool> hitsOf(const Footprint& here) const {
         bool any = false;
         bool all = true;
         forEachAround(here, [&](std::uint32_t column, std::uint32_t row) {
@@ -231,19 +217,16 @@ class EndFitter {
     std::span<const FootprintRay> lookAround(const Footprint& here) {
         around_.clear();
         forEachAround(here, [&](std::uint32_t column, std::uint32_t row) {
-            const std::size_t at = indexOf(here, column, row);
-            const Hit& hit = here.hits[at];
+            const Hit& hit = here.hits[indexOf(here, column, row)];
             if (!isOwn(here, column, row) && !hit.empty() && !startsInside(hit)) {
-                around_.push_back(footprintRay(fine_rays_.at(here.face, column, row), hit,
-                                               here.other_hits.empty() ? Hit() : here.other_hits[at]));
+                around_.push_back(rayAt(here, column, row));
             }
         });
         return around_;
     }
 
-    /// Where the edges of surfaces run through the texel: between neighbours of which one meets a surface and
-    /// the other does not, the last ray that does. One of the neighbours may be of the ring about the texel:
-    /// a wall an eighth of a texel away from its border is as much of a wall.
+    /// Finds edges of surfaces in the texel: between neighbouring rays of which one misses, the last ray with a hit. One of
+    /// the two may be of the ring, for walls up to an eighth of a texel inside the border.
     void findEdge(const Footprint& here) {
         forEachAround(here, [&](std::uint32_t column, std::uint32_t row) {
             for (const auto& [right, up] : {std::pair{1U, 0U}, std::pair{0U, 1U}}) {
@@ -255,17 +238,17 @@ class EndFitter {
         });
     }
 
-    /// Where all rays start in free space from either end, a surface that one end meets the other does.
+    /// Where all rays of both ends start in free space, both ends meet the same edges.
     [[nodiscard]] bool sharesEdges() const {
         return starts_free_ && other_starts_free_ && !may_start_inside_;
     }
 
-    /// In the finest grid, the last ray that meets a surface, and what it meets from either end.
+    /// The last ray of the finest grid with a hit, from either end.
     struct EdgeHits {
         std::uint32_t x;
         std::uint32_t y;
         Hit last;
-        Hit other;  // empty where it does not matter
+        Hit other;  // may be empty
     };
 
     void findEdgeBetween(const Footprint& here, std::uint32_t column, std::uint32_t row, std::uint32_t right,
@@ -274,7 +257,7 @@ class EndFitter {
         if (meets == !here.hits[indexOf(here, column + right, row + up)].empty()) {
             return;
         }
-        // In the finest grid, whose odd count of parts has a texel at the centre of each sample's.
+        // In the finest grid: an odd number of parts has one at the centre of each sample.
         std::uint32_t on[2] = {column * kEdgeParts + kEdgeParts / 2, row * kEdgeParts + kEdgeParts / 2};
         std::uint32_t off[2] = {on[0] + right * kEdgeParts, on[1] + up * kEdgeParts};
         if (!meets) {
@@ -313,7 +296,7 @@ class EndFitter {
     PlaneFitOptions fit_;
     std::vector<FootprintRay> rays_;
     std::vector<FootprintRay> around_;
-    std::vector<EdgeHits> found_;  // of the texel at hand
+    std::vector<EdgeHits> found_;  // of the current texel
     std::vector<FootprintRay> edge_;
 };
 
@@ -325,9 +308,9 @@ class MapFitter {
         : scene_(scene),
           normals_(normals),
           view_(view),
-          fine_(scaled(view, options.samples)),
+          fine_(view.scaled(options.samples)),
           fine_rays_(fine_),
-          finest_(scaled(fine_, kEdgeParts)),
+          finest_(fine_.scaled(kEdgeParts)),
           options_(options),
           map_(view.emptyMap()),
           scan_(scene, fine_) {
@@ -357,26 +340,20 @@ class MapFitter {
     }
 
   private:
-    /// What a thread keeps from one task to the next.
+    /// Per thread.
     struct Worker {
         explicit Worker(const MapFitter& map)
             : near_fitter(map.fitter(RayEnd::kNear)), far_fitter(map.fitter(RayEnd::kFar)) {}
         EndFitter near_fitter;
         EndFitter far_fitter;
         std::array<std::vector<Hit>, 2> hits;  // by RayEnd
-        std::vector<std::uint8_t> busy;  // columns of texels in which or beside which a ray meets something
+        std::vector<std::uint8_t> busy;        // by column of texels: a ray in or beside it has a hit
     };
     [[nodiscard]] EndFitter fitter(RayEnd end) const {
         return {scene_, map_, normals_, view_, fine_rays_, finest_, end, options_};
     }
 
-    static View scaled(View view, std::uint32_t factor) {
-        view.width *= factor;
-        view.height *= factor;
-        return view;
-    }
-
-    /// Most texels of parts that lie far apart have nothing to fit: what meets nothing is told by a look at its hits.
+    /// Skips columns without hits: between parts that lie far apart most texels are empty.
     void findBusy(Worker& worker) const {
         worker.busy.assign(view_.width, 0);
         for (const std::vector<Hit>& hits : worker.hits) {
@@ -399,7 +376,7 @@ class MapFitter {
 
     /// \return the number of texels with a surface.
     std::uint64_t fitRows(const RowRange& rows, Worker& worker) {
-        // One more row on either side, for the rings about the texels.
+        // One more row on either side, for the rings around the texels.
         const RowRange rays{rows.face, rows.begin * options_.samples - (rows.begin > 0 ? 1 : 0),
                             std::min(rows.end * options_.samples + 1, fine_.height)};
         for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
@@ -426,7 +403,7 @@ class MapFitter {
                                                   view_.keeps(RayEnd::kNear) ? &worker.near_fitter : nullptr);
                     }
                     if (view_.compare == Compare::kGreater) {
-                        texel.front.swap(texel.back);  // a map of one surface holds it as its front
+                        texel.front.swap(texel.back);  // a map of one surface stores it as the front
                     }
                 }
                 encodeTexel(map_.format, texel, map_.texelAt(rows.face, x, y));
@@ -439,9 +416,9 @@ class MapFitter {
     const RayScene& scene_;
     const TriangleNormals& normals_;
     const View& view_;
-    View fine_;  // a texel for each ray of a footprint
+    View fine_;  // a texel per ray of a footprint
     RayGrid fine_rays_;
-    View finest_;  // and for each place between two rays where an edge is looked for
+    View finest_;  // and per place of an edge between two rays
     const FittedMapOptions& options_;
     DepthMap map_;
     ScanConverter scan_;  // of fine_
@@ -450,10 +427,8 @@ class MapFitter {
 }  // namespace
 
 TriangleNormals::TriangleNormals(const TriangleMesh& mesh) : normals_(mesh.triangles.size()) {
-    tbb::parallel_for(std::size_t{0}, normals_.size(), [&](std::size_t i) {
-        const glm::dvec3 n = planeOf(mesh, static_cast<std::uint32_t>(i)).normal;
-        normals_[i] = n / std::sqrt(dot(n, n));
-    });
+    tbb::parallel_for(std::size_t{0}, normals_.size(),
+                      [&](std::size_t i) { normals_[i] = unitNormal(mesh, static_cast<std::uint32_t>(i)); });
 }
 
 DepthMap bakeFittedMap(const RayScene& scene, const TriangleNormals& normals, const View& view,

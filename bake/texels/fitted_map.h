@@ -1,4 +1,4 @@
-// One map of supporting planes (plane_fit.h): traces the footprint of every texel, and fits a plane to it.
+// A map of supporting planes (plane_fit.h): traces the footprint of every texel and fits a plane to it.
 #pragma once
 
 #include <cstdint>
@@ -13,24 +13,21 @@
 namespace relief {
 
 struct FittedMapOptions {
-    /// Rays along each side of a texel's footprint: samples · samples in all, at the centres of as many
-    /// parts.
-    std::uint32_t samples = 4;
-    /// Rounds of search among neighbouring normals.
-    int refinements = 3;
-    /// Object units. Free space behind a plane counts up to this length along a ray: beyond it a point is
-    /// hardly ever looked up in this texel alone.
+    std::uint32_t samples =
+        4;                ///< rays along each side of a texel's footprint, at the centres of as many parts
+    int refinements = 3;  ///< rounds of search among neighbouring normals
+    /// Object units. Free space behind a plane counts up to this length along a ray; a point farther off is hardly ever
+    /// looked up in this texel alone.
     double reach = 1.0;
-    /// Object units. A plane that leaves less free space than this, on average, is not improved any further.
-    double good_enough = 0.0;
-    /// Surface points half a sample beyond the texel may not lie in front of its plane either: half as many
-    /// points are called outside wrongly, and half as many again inside.
+    double good_enough =
+        0.0;  ///< mean free space behind a plane that is not improved any further, object units
+    /// Surface points half a sample beyond the texel may not lie in front of its plane either: half as many points are
+    /// outside by mistake, and half as many again inside.
     bool cautious = false;
-    /// As PlaneFitOptions::let_back.
-    double let_back = 0.0;
+    double let_back = 0.0;  ///< as PlaneFitOptions::let_back
 };
 
-/// What the fits of all maps share: the unit normal of every triangle.
+/// The unit normals of all triangles, for the fits of all maps.
 class TriangleNormals {
   public:
     explicit TriangleNormals(const TriangleMesh& mesh);

@@ -17,14 +17,14 @@
 namespace relief {
 namespace {
 
-/// Parts of a gap of which the maps before are asked.
+/// Parts of a gap whose middles are looked up in the earlier maps.
 constexpr int kParts = 4;
-/// Gaps that count less are none: in units of the mesh's longest side.
+/// The least weight of a gap, in units of the mesh's longest side.
 constexpr double kShortest = 1e-3;
-/// |cosine| of a plane with the ray: a steeper one would reach far into the solid beyond the end of the gap.
+/// Least |cosine| of a plane with the ray: a steeper one would reach far into the solid beyond the end of the gap.
 constexpr double kSteepest = 0.1;
-/// More than this share of a texel's rays have to be free in the middle of the gap: a wall along the line of sight, which
-/// no plane of the texel spares, may be as thin as a texel. Sheets are twice as thick (defaultThickness).
+/// More than this share of a texel's rays must be free in the middle of the gap: a wall along the line of sight, which no
+/// plane of the texel spares, may be as thin as a texel. Sheets are twice as thick (defaultThickness).
 constexpr double kFreeShare = 0.5;
 constexpr double kCautiousShare = 0.99;
 /// Rows between two calls of the progress function.
@@ -32,7 +32,7 @@ constexpr std::uint32_t kStripeRows = 64;
 
 /// In object units.
 double lengthOf(const LineGap& gap, const glm::dvec3& direction) {
-    return gap.length() * std::sqrt(dot(direction, direction));
+    return gap.length() * length(direction);
 }
 
 /// Fits single texels. Not thread-safe.
@@ -47,17 +47,11 @@ class GapFitter {
           samples_(options.samples),
           is_known_(is_known),
           winding_(query.prepared().orientation() < 0.0 ? -1.0 : 1.0),
-          ends_{EndView(view, RayEnd::kNear), EndView(view, RayEnd::kFar)} {
-        const double unit = length(view.axis[2]);
-        shortest_ = kShortest * query.mesh().bounds.longestSide();
-        fit_.u_max = 1.0;
-        fit_.range = standingRange(view.projection(), view.object_per_map, view.width, view.height);
-        fit_.reach = options.reach / unit;
-        fit_.pixel_cost = options.good_enough / unit;
-        fit_.refinements = options.refinements;
-        fit_.let_back = options.let_back;
+          shortest_(kShortest * query.mesh().bounds.longestSide()),
+          share_(options.cautious ? kCautiousShare : kFreeShare),
+          ends_{EndView(view, RayEnd::kNear), EndView(view, RayEnd::kFar)},
+          fit_(fitOptions(view, options)) {
         fit_.steepest = kSteepest;
-        share_ = options.cautious ? kCautiousShare : kFreeShare;
     }
 
     [[nodiscard]] Texel fit(std::uint32_t x, std::uint32_t y) {
@@ -79,16 +73,15 @@ class GapFitter {
     }
 
   private:
-    /// The gap that counts most.
+    /// The gap of the greatest weight.
     [[nodiscard]] std::optional<LineGap> bestGap(const TexelRay& ray) const {
         std::vector<LineGap> gaps = query_.gapsAlong(ray.origin, ray.direction);
         for (LineGap& gap : gaps) {
             gap.begin = std::max(gap.begin, 0.0);
             gap.end = std::min(gap.end, 1.0);
         }
-        // No gap counts more than its length: the longest first, few are asked about. Of equals the first on the ray.
-        std::ranges::stable_sort(gaps,
-                                 [](const LineGap& a, const LineGap& b) { return a.length() > b.length(); });
+        // No weight exceeds the length: with the longest first, few are looked up. Of equals the first on the ray.
+        std::ranges::stable_sort(gaps, std::greater<>(), &LineGap::length);
         std::optional<LineGap> best;
         double most = shortest_;
         for (const LineGap& gap : gaps) {
@@ -96,32 +89,33 @@ class GapFitter {
             if (!(longest > shortest_) || longest < most) {
                 break;
             }
-            const double counts = unknownLength(gap, ray.origin, ray.direction, is_known_);
-            const bool better = counts > most || (best && counts == most && gap.begin < best->begin);
+            const double weight = unknownParts(gap, ray.origin, ray.direction, kParts,
+                                               [&](const glm::dvec3& p) { return is_known_(glm::vec3(p)); }) *
+                                  longest / kParts;
+            const bool better = weight > most || (best && weight == most && gap.begin < best->begin);
             if (better && !query_.inside(glm::vec3(ray.at(gap.middle())))) {
-                most = counts;
+                most = weight;
                 best = gap;
             }
         }
         return best;
     }
 
-    /// How far the middle of a gap moves in depth for a way across the texel: as the planes at its ends do on average.
+    /// The depth of the gap's middle at an offset across the texel, along the mean of the planes at its ends.
     [[nodiscard]] double middleBeside(const LineGap& gap, const TexelRay& centre,
-                                      const glm::dvec3& way) const {
+                                      const glm::dvec3& offset) const {
         double moved = 0.0;
         for (const std::uint32_t triangle : {gap.first, gap.last}) {
             const glm::dvec3& normal = normals_[triangle];
             const double along = dot(normal, centre.direction);
             if (std::abs(along) > kSteepest * length(centre.direction)) {
-                moved -= 0.5 * dot(normal, way) / along;
+                moved -= 0.5 * dot(normal, offset) / along;
             }
         }
         return gap.middle() + moved;
     }
 
-    /// What the texel's rays meet, from the middle of the gap on.
-    /// \return false if too few of them are free there.
+    /// Traces the texel's rays from the middle of the gap. \return false if too few of them are free there.
     bool look(std::uint32_t x, std::uint32_t y, const TexelRay& centre, const LineGap& gap) {
         rays_[0].clear();
         rays_[1].clear();
@@ -129,17 +123,16 @@ class GapFitter {
         const std::uint32_t count = samples_ * samples_;
         for (std::uint32_t k = 0; k < count; ++k) {
             if (!(static_cast<double>(rays_[0].size() + (count - k)) > least)) {
-                return false;  // whatever the others meet
+                return false;  // whatever the others
             }
             const TexelRay along = fine_.ray(0, x * samples_ + k % samples_, y * samples_ + k / samples_);
             for (const double middle :
                  {middleBeside(gap, centre, along.origin - centre.origin), gap.middle()}) {
-                const std::optional<FootprintRay> closes = lookOneWay(along, middle, 0);
-                const std::optional<FootprintRay> opens =
-                    closes ? lookOneWay(along, middle, 1) : std::nullopt;
-                if (opens) {
-                    rays_[0].push_back(*closes);
-                    rays_[1].push_back(*opens);
+                const std::optional<FootprintRay> ahead = lookOneWay(along, middle, 0);
+                const std::optional<FootprintRay> back = ahead ? lookOneWay(along, middle, 1) : std::nullopt;
+                if (back) {
+                    rays_[0].push_back(*ahead);
+                    rays_[1].push_back(*back);
                     break;
                 }
             }
@@ -149,21 +142,20 @@ class GapFitter {
 
     [[nodiscard]] std::optional<FootprintRay> lookOneWay(const TexelRay& along, double middle,
                                                          std::size_t end) const {
-        const double way = end == 0 ? 1.0 : -1.0;
+        const double sign = end == 0 ? 1.0 : -1.0;
         if (!(middle > 0.0 && middle < 1.0)) {
             return std::nullopt;
         }
-        const auto hit = query_.firstHit(along.at(middle), way * along.direction);
+        const auto hit = query_.firstHit(along.at(middle), sign * along.direction);
         if (!hit) {
-            return std::nullopt;  // past an edge of the mesh, which is no gap
+            return std::nullopt;  // past an edge of the mesh: not a gap
         }
         const glm::dvec3& normal = normals_[hit->triangle];
-        const double cosine = way * winding_ * dot(normal, along.direction);
-        if (cosine > 0.0) {
+        if (sign * winding_ * dot(normal, along.direction) > 0.0) {
             return std::nullopt;  // from within a solid
         }
         FootprintRay ray = ends_[end].fromViewer(along);
-        ray.u = ends_[end].uOf(std::clamp(middle + way * hit->along, 0.0, 1.0));
+        ray.u = ends_[end].uOf(std::clamp(middle + sign * hit->along, 0.0, 1.0));
         ray.u_last = 1.0;
         ray.normal = winding_ * normal;
         return ray;
@@ -176,8 +168,8 @@ class GapFitter {
     std::uint32_t samples_;
     const IsKnown& is_known_;
     double winding_;
-    double shortest_ = 0.0;
-    double share_ = kFreeShare;
+    double shortest_;
+    double share_;
     EndView ends_[2];
     PlaneFitOptions fit_;
     std::array<std::vector<FootprintRay>, 2> rays_;  // by RayEnd
@@ -185,22 +177,10 @@ class GapFitter {
 
 }  // namespace
 
-double unknownLength(const LineGap& gap, const glm::dvec3& origin, const glm::dvec3& direction,
-                     const IsKnown& is_known) {
-    int unknown = 0;
-    for (int i = 0; i < kParts; ++i) {
-        const double at = gap.begin + (i + 0.5) / kParts * gap.length();
-        unknown += is_known(glm::vec3(origin + at * direction)) ? 0 : 1;
-    }
-    return unknown * lengthOf(gap, direction) / kParts;
-}
-
 DepthMap bakeGapMap(const MeshQuery& query, const TriangleNormals& normals, const View& view,
                     const FittedMapOptions& options, const IsKnown& is_known, std::uint64_t& covered,
                     const std::function<void(std::uint32_t)>& rowsDone) {
-    View fine = view;
-    fine.width *= options.samples;
-    fine.height *= options.samples;
+    const View fine = view.scaled(options.samples);
     DepthMap map = view.emptyMap();
     map.decode = Decode::kPlane;
     covered = 0;

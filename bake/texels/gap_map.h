@@ -1,13 +1,13 @@
-// One map of gaps between solids (Compare::kGap): insides of cupboards, what lies between shelves, leaves and rails, where
-// rays from outside meet something first.
+// A map of gaps between solids (Compare::kGap): insides of cupboards, and the space between shelves, leaves and rails, which
+// rays from outside do not reach.
 //
-//     viewer ──▶   ██      ████             ██     The ray of a texel's centre crosses gaps. Each counts by its length as
-//                    ╰────╯    ╰───────────╯       far as no map before this one says that it is outside; the one that
-//                      gap     the longest gap     counts most is kept.
+//     viewer ──▶   ██      ████             ██     The ray of a texel's centre crosses gaps. A gap's weight is its length
+//                    ╰────╯    ╰───────────╯       that no earlier map has outside; the one of the greatest weight is kept.
+//                      gap     the longest gap
 //
-// From the middle of that gap the texel's rays look both ways, and a plane is fitted to what they meet at either end, as to
-// the outer surfaces (plane_fit.h). Rays whose middle is not free do not count; where they are many, the texel stays
-// empty. No plane stands along the rays: a gap has an end.
+// From the middle of that gap the texel's rays are traced both ways, and a plane is fitted to the hits at either end, as to
+// outer surfaces (plane_fit.h). Rays whose middle is not free do not count; where they are many, the texel stays empty. No
+// plane stands along the rays, since a gap is bounded.
 #pragma once
 
 #include <cstdint>
@@ -20,17 +20,13 @@
 
 namespace relief {
 
-/// Says of a point of free space, in object space, whether another map knows that it is outside. Called from many threads.
+/// True of points of free space, in object space, that another map has outside. Called from many threads.
 using IsKnown = std::function<bool(const glm::vec3&)>;
 
-/// How much of a gap counts: object units. \param direction  of a unit of the gap's parameter.
-[[nodiscard]] double unknownLength(const LineGap& gap, const glm::dvec3& origin, const glm::dvec3& direction,
-                                   const IsKnown& is_known);
-
-/// Bakes one map of gaps, on all cores of the current arena; the same for any number of them.
+/// Bakes a map of gaps, on all cores of the current arena; the same for any number of them.
 /// \param view      orthographic, of Compare::kGap
+/// \param covered   receives the number of texels with a gap.
 /// \param rowsDone  called with the number of texel rows finished, from the calling thread.
-/// \param covered   out: texels with a gap.
 [[nodiscard]] DepthMap bakeGapMap(const MeshQuery& query, const TriangleNormals& normals, const View& view,
                                   const FittedMapOptions& options, const IsKnown& is_known,
                                   std::uint64_t& covered, const std::function<void(std::uint32_t)>& rowsDone);

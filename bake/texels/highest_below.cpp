@@ -9,12 +9,12 @@
 namespace relief {
 namespace {
 
-/// Exchanges, at most: of random points a dozen are needed, so more mean that rounding turns them in a circle.
+/// Random points take a dozen exchanges; more mean that rounding makes them cycle.
 constexpr int kExchanges = 64;
-/// Of the points' extent: less is rounding.
+/// Rounding, in units of the points' extent.
 constexpr double kTiny = 1e-9;
 
-/// (x, y) as a mean of the triangle's corners, weighted.
+/// Barycentric coordinates of (x, y).
 std::array<double, 3> weightsOf(const std::array<glm::dvec3, 3>& corners, double x, double y) {
     const glm::dvec3& a = corners[0];
     const glm::dvec3 b = corners[1] - a;
@@ -42,7 +42,7 @@ std::optional<glm::dvec2> highestBelow(std::span<const glm::dvec3> points) {
     if (!(std::min(extent.x, extent.y) > 0.0)) {
         return std::nullopt;
     }
-    // Three corners far out and high up hold the origin for certain; they leave one by one.
+    // Three auxiliary corners, far out and high up, surely hold the origin; they leave one by one.
     const double far = 8.0 * (extent.x + extent.y);
     const double high = 1e3 * (extent.z + extent.x + extent.y);
     std::array<glm::dvec3, 3> corners = {{{-far, -far, high}, {far, -far, high}, {0.0, far, high}}};

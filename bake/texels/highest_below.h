@@ -1,9 +1,9 @@
-// The plane that lies below all of some points, and highest on average: what a supporting plane of a texel comes to
-// (plane_fit.h) where all its rays run side by side and meet a surface.
+// The highest plane, on average, below all of some points: the supporting plane of a texel (plane_fit.h) whose rays are
+// parallel and all meet a surface.
 //
-// Below all points means below their lower convex hull, and on average over points that lie about the origin a plane is
-// as high as over the origin. So it is the hull's facet there. Three points whose triangle holds the origin span a plane;
-// as long as some point is below it, the lowest takes the place of one of the three (the dual simplex method):
+// With the points centred on the origin, that is the facet of their lower convex hull over the origin. Start from three
+// points whose triangle holds the origin; while some point is below their plane, the lowest one replaces one of the three
+// (the dual simplex method):
 //
 //      ·       ·
 //        \   ·          · points, heights upwards

@@ -16,34 +16,31 @@ namespace {
 
 constexpr double kDepthCodes = kDepthSteps;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Below this cosine a plane cuts off what lies between the outermost ray that meets a surface and the
-/// surface's edge: the edge itself has to support it. Others pass over it, and lose more by that than they
-/// gain.
+/// Below this cosine a plane would cut off what lies between the outermost ray that meets a surface and the surface's
+/// edge, so that the edge has to support it. Flatter planes pass over it, and would lose more than they gain.
 constexpr double kSteepCosine = 0.35;
-/// Planes steeper than this cut deep: a surface that stands out of the footprint's rays, in the rim of the
-/// texel, would leave a pit in the solid. The rays about the footprint have to lie behind them too.
+/// Steeper planes cut deep: a surface that rises between the footprint's rays and the rim of the texel would leave a pit in
+/// the solid. The rays around the footprint have to lie behind them too.
 constexpr double kDeepCosine = 0.1;
-/// Planes between this and kPlaneGrazingMin are not stored: a reader's rounding could take them for the other
-/// kind.
+/// Cosines between this and kPlaneGrazingMin are not stored, as a reader's rounding could mistake the kind of plane.
 constexpr double kStandingMax = double{kStandingCosine} - 1e-4;
 
 std::uint16_t codeOf(const glm::dvec3& normal) {
     return packNormal(encodeNormal(glm::vec3(normal)));
 }
 
-/// Doubles that are calculated with together, each as it would be alone.
+/// SIMD: each lane is rounded as a scalar would be.
 using Lanes [[gnu::vector_size(16)]] = double;
 constexpr std::size_t kLanes = 2;
 
-/// The rays of a footprint, component by component: what is asked of all of them, for each candidate, is asked of some
-/// at a time.
+/// The rays of a footprint as a structure of arrays, since every candidate plane visits them all.
 class RayTable {
   public:
     RayTable(std::span<const FootprintRay> rays, const glm::dvec3& origin, double u_max)
         : count_(rays.size()), blocks_((rays.size() + kLanes - 1) / kLanes) {
         assert(count_ <= kFootprintRaysMax);
         for (std::size_t i = 0; i < blocks_ * kLanes; ++i) {
-            const FootprintRay& ray = rays[std::min(i, count_ - 1)];  // a ray more changes no maximum
+            const FootprintRay& ray = rays[std::min(i, count_ - 1)];  // a repeated ray changes no maximum
             Block& block = table_[i / kLanes];
             const std::size_t lane = i % kLanes;
             const glm::dvec3 start = ray.origin - origin;
@@ -59,7 +56,7 @@ class RayTable {
         }
     }
 
-    /// Of the planes that are asked about, until the next is set.
+    /// For the planes of the following calls.
     void setNormal(const glm::dvec3& n) {
         for (std::size_t b = 0; b < blocks_; ++b) {
             Block& block = table_[b];
@@ -68,8 +65,8 @@ class RayTable {
         }
     }
 
-    /// The least offset of a plane with no surface point in front of it. One that leans away from the viewer must not cut
-    /// what lies behind the surface that a ray meets.
+    /// The least offset of a plane with no surface point in front of it. One that faces away from the viewer must not cut
+    /// what lies behind the surface on a ray.
     [[nodiscard]] double support() const {
         Lanes most = {-kInfinity, -kInfinity};
         for (std::size_t b = 0; b < blocks_; ++b) {
@@ -82,8 +79,8 @@ class RayTable {
         return std::max(most[0], most[1]);
     }
 
-    /// The sum over all rays of the length of what is free but behind the plane, each at most `reach`; or, once it is no less
-    /// than `enough`, a part of that sum.
+    /// The summed length of free space behind the plane over all rays, each at most `reach`; a partial sum once that is at
+    /// least `enough`.
     [[nodiscard]] double freeSpaceBehind(double offset, double reach, double enough) const {
         const Lanes none = {};
         const Lanes endless = none + kInfinity;
@@ -92,7 +89,7 @@ class RayTable {
         for (std::size_t b = 0; b < blocks_ && sum < enough; ++b) {
             const Block& block = table_[b];
             const Lanes at_plane = (offset - block.at_start) / block.along;
-            // A plane that is met from its free side; one that is met from behind.
+            // A plane met from its free side, and one met from behind.
             const Lanes facing = block.free_end - (at_plane > 0.0 ? at_plane : none);
             const Lanes until = block.along > 0.0 ? at_plane : endless;
             const Lanes until_end = until < block.free_end ? until : block.free_end;
@@ -111,7 +108,7 @@ class RayTable {
     struct Block {
         Lanes start[3];
         Lanes direction[3];
-        Lanes least;  // what its support must be above: nothing is, of a ray that meets nothing
+        Lanes least;  // lower bound of its support; +∞ for a ray without a hit
         Lanes first;
         Lanes last;
         Lanes free_end;
@@ -123,8 +120,8 @@ class RayTable {
     std::array<Block, (kFootprintRaysMax + kLanes - 1) / kLanes> table_;
 };
 
-/// A footprint whose rays run side by side and all meet a surface: of a plane that faces the viewer all that counts are the
-/// points met. Most footprints are such, and are asked about in a quarter of the time.
+/// The hits of a footprint whose rays are parallel and all meet a surface, which is all that matters to a plane that faces
+/// the viewer. Most footprints are such, and take a quarter of the time.
 class PointTable {
   public:
     static bool holds(std::span<const FootprintRay> rays) {
@@ -133,19 +130,20 @@ class PointTable {
         });
     }
 
-    /// \param reach  the most that counts of a ray, in u
+    /// \param reach  limit of free space per ray, in u
     PointTable(std::span<const FootprintRay> rays, const glm::dvec3& origin, double reach)
         : blocks_((rays.size() + kLanes - 1) / kLanes) {
         assert(rays.size() <= kFootprintRaysMax);
         for (std::size_t i = 0; i < blocks_ * kLanes; ++i) {
-            const FootprintRay& ray = rays[std::min(i, rays.size() - 1)];  // a point more changes no maximum
+            const FootprintRay& ray =
+                rays[std::min(i, rays.size() - 1)];  // a repeated point changes no maximum
             Block& block = table_[i / kLanes];
             const std::size_t lane = i % kLanes;
             const glm::dvec3 point = ray.origin + ray.u * ray.direction - origin;
             for (int axis = 0; axis < 3; ++axis) {
                 block.point[axis][lane] = point[axis];
             }
-            block.most[lane] = i < rays.size() ? std::min(ray.u, reach) : 0.0;  // and no sum
+            block.most[lane] = i < rays.size() ? std::min(ray.u, reach) : 0.0;  // nor a sum
         }
     }
 
@@ -160,7 +158,7 @@ class PointTable {
         return std::max(most[0], most[1]);
     }
 
-    /// As RayTable::freeSpaceBehind, of the normal that support() was asked about last.
+    /// As RayTable::freeSpaceBehind, for the normal of the last support().
     /// \param along  the normal along the rays; negative
     [[nodiscard]] double freeSpaceBehind(double offset, double along) const {
         const double per_offset = -1.0 / along;
@@ -177,9 +175,9 @@ class PointTable {
 
   private:
     struct Block {
-        Lanes point[3];  // met, from the centre ray's start
-        Lanes most;      // that counts of the free space on the ray
-        Lanes at;        // along the normal at hand
+        Lanes point[3];  // hits, from the centre ray's start
+        Lanes most;      // limit of the free space on the ray
+        Lanes at;        // along the current normal
     };
     std::size_t blocks_;
     std::array<Block, (kFootprintRaysMax + kLanes - 1) / kLanes> table_;
@@ -198,7 +196,7 @@ class PlaneSearch {
           from_zero_(centre.origin - zero_depth),
           options_(options),
           deep_(deep),
-          direction_length_(std::sqrt(dot(centre.direction, centre.direction))) {
+          direction_length_(length(centre.direction)) {
         if (PointTable::holds(rays)) {
             points_.emplace(rays, centre.origin, options.reach);
         }
@@ -223,7 +221,7 @@ class PlaneSearch {
             return best_cost_ < kInfinity ? std::optional(best_) : std::nullopt;
         }
         // The mean first: on a smooth surface nothing else is needed.
-        const double sum_length = std::sqrt(dot(sum, sum));
+        const double sum_length = length(sum);
         tryCode(codeOf(sum_length > 1e-6 ? sum / sum_length : facing));
         if (best_cost_ > good_enough_ && trySupported()) {
             return best_;
@@ -254,8 +252,7 @@ class PlaneSearch {
     }
 
   private:
-    /// Where all rays meet one surface, and run side by side as far as a texel is wide, the best plane is known.
-    /// \return false if there is more to be tried.
+    /// Where all rays meet one surface and are nearly parallel, the best plane is known. \return false: continue the search.
     bool trySupported() {
         if (options_.refinements == 0 || options_.let_back > 0.0 || options_.cautious ||
             hits_ < static_cast<int>(rays_.size())) {
@@ -281,9 +278,9 @@ class PlaneSearch {
         if (!slope) {
             return false;
         }
-        // Of the plane's tangents, x + slope.x · ray and y + slope.y · ray, the product: of length 1 at right angles.
+        // The cross product of the tangents x + slope.x · ray and y + slope.y · ray.
         const glm::dvec3 normal = slope->x * x + slope->y * y - ray;
-        const NormalIndex low = lowestAround(glm::vec3(normal / std::sqrt(dot(normal, normal))));
+        const NormalIndex low = lowestAround(glm::vec3(unit(normal)));
         for (int i = 0; i < 4; ++i) {
             tryCode(packNormal(
                 {static_cast<std::uint8_t>(low.s + i % 2), static_cast<std::uint8_t>(low.t + i / 2)}));
@@ -291,38 +288,23 @@ class PlaneSearch {
         return best_cost_ < options_.reach * static_cast<double>(rays_.size()) / 8.0;
     }
 
-    /// Of the length of v.
+    /// Perpendicular to v, of its length.
     static glm::dvec3 anyAcross(const glm::dvec3& v) {
-        const bool along_x = std::abs(v.x) > 0.6 * std::sqrt(dot(v, v));
+        const bool along_x = std::abs(v.x) > 0.6 * length(v);
         const glm::dvec3 across = cross(v, along_x ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(1.0, 0.0, 0.0));
         return across * std::sqrt(dot(v, v) / dot(across, across));
     }
 
     void refine() {
         for (int step = 1 << options_.refinements >> 1; step > 0 && best_cost_ > good_enough_; step /= 2) {
-            tryNeighbours(step);
-        }
-    }
-
-    void tryNeighbours(int step) {
-        const NormalIndex from = best_.index;
-        for (int dt = -step; dt <= step; dt += step) {
-            for (int ds = -step; ds <= step; ds += step) {
-                const int s = from.s + ds;
-                const int t = from.t + dt;
-                if (s >= 0 && s <= 254 && t >= 0 && t <= 254) {
-                    tryCode(packNormal({static_cast<std::uint8_t>(s), static_cast<std::uint8_t>(t)}));
-                }
-            }
+            forNeighbours(best_.index, step, [&](NormalIndex index) { tryCode(packNormal(index)); });
         }
     }
 
     void tryCode(std::uint16_t code) {
-        const std::size_t seen_end = std::min(tried_count_, tried_.size());
-        for (std::size_t i = 0; i < seen_end; ++i) {
-            if (tried_[i] == code) {
-                return;
-            }
+        const auto tried = std::span(tried_).first(std::min(tried_count_, tried_.size()));
+        if (std::ranges::find(tried, code) != tried.end()) {
+            return;
         }
         tried_[tried_count_++ % tried_.size()] = code;
 
@@ -333,7 +315,6 @@ class PlaneSearch {
         if (std::abs(cosine) < options_.steepest || (!stands && !(cosine <= -kPlaneGrazingMin))) {
             return;
         }
-        // Pushed until no sampled surface point lies in front.
         const bool by_points = points_ && along < 0.0;
         double offset = by_points ? points_->support(normal) : table(normal).support();
         if (cosine > -kSteepCosine) {
@@ -406,7 +387,7 @@ class PlaneSearch {
         return offset;
     }
 
-    /// A plane that leans away from the viewer must not cut what lies behind the surface that the ray meets.
+    /// As RayTable::support.
     [[nodiscard]] double supportOf(std::span<const FootprintRay> rays, const glm::dvec3& normal) const {
         double offset = -kInfinity;
         for (const FootprintRay& ray : rays) {
@@ -419,12 +400,12 @@ class PlaneSearch {
         return offset;
     }
 
-    /// The wall between the rays that meet a surface and those that pass by it, seen edge-on.
+    /// The wall, seen edge-on, between the rays that meet a surface and those that miss it.
     void tryStanding() {
-        const glm::dvec3 unit = centre_.direction / direction_length_;
+        const glm::dvec3 forward = centre_.direction / direction_length_;
         const auto at = [&](const FootprintRay& ray, double u) {
             const glm::dvec3 p = ray.origin + u * ray.direction - centre_.origin;
-            return p - dot(p, unit) * unit;
+            return p - dot(p, forward) * forward;
         };
         double u = 0.0;
         for (const FootprintRay& ray : edge_) {
@@ -445,7 +426,7 @@ class PlaneSearch {
         }
         const glm::dvec3 towards = passed - met;
         tryAcross(towards);
-        // Along the edge: the two of its points that are farthest apart.
+        // The direction of the edge, by its two points that are farthest apart.
         double longest = 0.0;
         glm::dvec3 along(0.0);
         for (std::size_t i = 0; i < edge_.size(); ++i) {
@@ -457,18 +438,17 @@ class PlaneSearch {
                 }
             }
         }
-        const glm::dvec3 normal = cross(along, unit);
+        const glm::dvec3 normal = cross(along, forward);
         tryAcross(dot(normal, towards) < 0.0 ? -normal : normal);
     }
 
     void tryAcross(const glm::dvec3& direction) {
-        const double length = std::sqrt(dot(direction, direction));
-        if (length > 0.0) {
-            tryCode(codeOf(direction / length));
+        if (length(direction) > 0.0) {
+            tryCode(codeOf(unit(direction)));
         }
     }
 
-    /// Length of the part of a ray that is solid but in front of the plane.
+    /// Length of a ray's solid part in front of the plane.
     [[nodiscard]] double solidInFront(const FootprintRay& ray, const glm::dvec3& normal,
                                       double offset) const {
         const double along = dot(normal, ray.direction);
@@ -479,7 +459,7 @@ class PlaneSearch {
         return std::clamp(at_plane - ray.u, 0.0, options_.reach);
     }
 
-    /// The last resort, where every plane leaves the depth range: facing the viewer, at the nearest sample.
+    /// Fallback where every plane leaves the depth range: facing the viewer, at the nearest sample.
     void takeFacing(const glm::dvec3& facing) {
         double nearest = kInfinity;
         for (const FootprintRay& ray : rays_) {
@@ -497,7 +477,7 @@ class PlaneSearch {
 
     std::span<const FootprintRay> rays_;
     std::optional<PointTable> points_;
-    std::optional<RayTable> table_;  // once it is asked
+    std::optional<RayTable> table_;  // made on demand
     const AroundRays& around_;
     std::span<const FootprintRay> around_rays_;
     bool around_asked_ = false;

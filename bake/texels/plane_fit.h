@@ -1,16 +1,16 @@
 // Supporting planes: the plane that a texel stores when its map's decode is "plane".
 //
-// A texel speaks for a footprint, not for one ray. Its footprint is sampled by a block of rays. Of the planes
-// with a normal from the footprint, each is pushed towards the viewer until no sampled surface point lies in
-// front of it, quantised so that it stays there, and the one that leaves the least free space behind it wins:
+// A texel's footprint is sampled by a block of rays. Candidate planes take their normals from the footprint. Each is pushed
+// towards the viewer until no sampled surface point lies in front of it, and quantised so that this stays true; the one that
+// leaves the least free space behind it wins:
 //
-//       viewer            The texel says "outside" in front of its plane and "inside" behind it. Pushed
-//      | | | | |          planes never call a sampled surface point's inside "outside"; what they may call
-//     --.-----.-- plane   "inside" wrongly is the space between plane and surface, which is what is
-//       |\   /|           minimised. Another map that sees this space says so: more views only help.
+//       viewer            In front of its plane a texel is outside, behind it inside. A pushed plane never puts the inside
+//      | | | | |          of a sampled surface point outside. The space between plane and surface, inside by mistake, is
+//     --.-----.-- plane   what is minimised; other maps that see this space correct it, so that more views only help.
+//       |\   /|
 //      surface
 //
-// Both ends of a map are fitted the same way, seen from where their rays start.
+// Both ends of a map are fitted alike, from where their rays start.
 #pragma once
 
 #include <cstdint>
@@ -28,34 +28,32 @@ namespace relief {
 
 /// One ray of a footprint.
 struct FootprintRay {
-    /// From the viewer on: the point at u is origin + u · direction, u in units of map depth.
+    /// From the viewer: the point at u is origin + u · direction, u in units of map depth.
     glm::dvec3 origin{0.0};
     glm::dvec3 direction{0.0};
-    double u = -1.0;         ///< of the surface; negative: the ray meets none
+    double u = -1.0;         ///< of the surface; negative without one
     glm::dvec3 normal{0.0};  ///< unit length, of the surface, towards the viewer
-    double u_last = -1.0;    ///< of the last surface on the ray: nothing behind it is solid
+    double u_last = -1.0;    ///< of the last surface on the ray, behind which nothing is solid
 };
 
-/// Rays of a footprint, at most.
 inline constexpr std::size_t kFootprintRaysMax = 64;
 
 struct PlaneFitOptions {
     double u_max = 1.0;       ///< depth range: map depth 1, or kCubeDepthMax
     double reach = 1.0;       ///< free space behind the plane counts up to this length, in u
     double range = 0.0;       ///< standingRange of the map, object units
-    double pixel_cost = 0.0;  ///< per ray: a fit whose mean error is below this, in u, is good enough, in u
-    bool cautious = false;    ///< all planes keep behind the rays about the footprint, not only steep ones
-    /// |cosine| with the ray from which on a plane is steep enough to be left out; above kStandingCosine none stands.
+    double pixel_cost = 0.0;  ///< mean free space per ray, in u, below which a fit is good enough
+    bool cautious = false;    ///< all planes respect the rays around the footprint, not only steep ones
+    /// Planes of a smaller |cosine| with the ray are left out; above kStandingCosine none stands.
     double steepest = 0.0;
     int refinements = 3;  ///< rounds of search among neighbouring normals; 0: none
-    /// Above 0 a plane is let back inwards by this part of the spread of the sampled points about it, so that
-    /// it cuts some of the solid and spares as much free space; not at steps, whose spread is more than
-    /// `range`/4.
+    /// Moves planes inwards by this share of the spread of the sampled points about them, which trades solid for free
+    /// space; not at steps, whose spread is more than `range`/4.
     double let_back = 0.0;
-    /// The farthest that a point of the texel is from a ray, in units of the texel's diagonal. A plane of a smaller cosine
-    /// drops, between two rays, by more than the diagonal.
+    /// The greatest distance of a point of the texel from a ray, in texel diagonals. A plane of a smaller cosine drops by
+    /// more than the diagonal between two rays.
     double rays_apart = 0.0;
-    /// Rays start in free space. Otherwise one that meets nothing may have run through the solid all the way.
+    /// Rays start in free space. Otherwise one without a hit may lie in the solid entirely.
     bool starts_free = true;
 };
 
@@ -64,22 +62,34 @@ struct FittedPlane {
     glm::dvec3 normal{0.0};  ///< unit length, of the free side; as decodeNormal gives it
     NormalIndex index;
     bool stands = false;  ///< along the ray (depth_map.h, kStandingCosine)
-    /// 16-bit fixed point. Where the centre ray meets the plane, u = code / 65534 · u_max; of a standing
-    /// plane its offset from zero_depth, (2 · code / 65534 − 1) · range.
+    /// 16-bit fixed point: the centre ray meets the plane at u = code / 65534 · u_max; a standing plane has the offset
+    /// (2 · code / 65534 − 1) · range from zero_depth.
     std::uint16_t code = 0;
 };
 
 using AroundRays = std::function<std::span<const FootprintRay>()>;
 
+/// Calls visit(index) for the index and its neighbours `step` away in s, t or both, as far as they exist.
+template <class Visit>
+void forNeighbours(NormalIndex from, int step, const Visit& visit) {
+    for (int t = from.t - step; t <= from.t + step; t += step) {
+        for (int s = from.s - step; s <= from.s + step; s += step) {
+            if (s >= 0 && s <= 2 * kNormalHalfRange && t >= 0 && t <= 2 * kNormalHalfRange) {
+                visit(NormalIndex{static_cast<std::uint8_t>(s), static_cast<std::uint8_t>(t)});
+            }
+        }
+    }
+}
+
 /// Fits one texel.
-/// \param rays    the footprint; at least one, at most kFootprintRaysMax.
-/// \param around  rays beside the footprint, whose surface points may not lie in front of steep planes either; asked for
-///                when the first such plane is tried, and not after the call. May be null.
-/// \param edge    rays that just meet a surface, beside ones that meet none: what a standing plane leans on.
-/// \param centre  the texel's centre ray, from the viewer on: where the plane's depth is stored.
-/// \param zero_depth  the point of that ray whose map depth is 0.
-/// \param deep  of the texel: planes that the rays alone do not vouch for may not cut what is deep. May be null.
-/// \return nullopt if no ray meets a surface: the texel is empty. Without starts_free also if nothing is known.
+/// \param rays    the footprint: 1 to kFootprintRaysMax.
+/// \param around  rays beside the footprint, whose surface points may not lie in front of steep planes either; called for
+///                the first such plane, at most once. May be null.
+/// \param edge    rays that just meet a surface, beside ones that miss: they support standing planes.
+/// \param centre  the texel's centre ray, from the viewer: the plane's depth is measured on it.
+/// \param zero_depth  the point of that ray at map depth 0.
+/// \param deep  of the texel: planes not justified by the rays alone may not cut deep solid. May be null.
+/// \return nullopt for an empty texel: no ray meets a surface, or without starts_free nothing is known.
 [[nodiscard]] std::optional<FittedPlane> fitSupportingPlane(
     std::span<const FootprintRay> rays, const AroundRays& around, std::span<const FootprintRay> edge,
     const FootprintRay& centre, const glm::dvec3& zero_depth, const PlaneFitOptions& options,

@@ -1,11 +1,8 @@
 #include "bake/texels/rasterize.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <vector>
-
-#include "bake/mesh/triangle_plane.h"
 
 namespace relief {
 namespace {
@@ -33,7 +30,6 @@ std::uint64_t copyRow(std::span<const std::byte> row, MapFormat format, std::spa
     return covered;
 }
 
-/// What the renderer needs to know of a view.
 DepthMapFrame frameOf(const View& view, Decode decode, const PreparedMesh& mesh) {
     DepthMapFrame frame;
     frame.format = view.format;
@@ -47,10 +43,8 @@ DepthMapFrame frameOf(const View& view, Decode decode, const PreparedMesh& mesh)
     std::copy(std::begin(view.starts_free), std::end(view.starts_free), std::begin(frame.starts_free));
     frame.inside_out = mesh.orientation() < 0.0;
     frame.exact = true;
-    // A hundredth of a texel, as the ray caster has it.
-    const auto length = [&](int k) { return std::sqrt(dot(view.axis[k], view.axis[k])); };
-    const double unit =
-        view.projection() == Projection::kCube ? (length(0) + length(1) + length(2)) / 3.0 : length(2);
+    // A hundredth of a texel, as for rays.
+    const double unit = view.depthUnit();
     frame.good_enough =
         0.01 * static_cast<double>(mesh->bounds.longestSide()) / std::max(view.width, view.height) / unit;
     return frame;

@@ -1,5 +1,4 @@
-// A view and a mesh make a map on the GPU: the other way to what scan_convert.h and encode.h do together, one ray
-// through the centre of each texel.
+// Maps rendered on the GPU, one ray through the centre of each texel: the alternative to scan_convert.h and encode.h.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +13,7 @@
 
 namespace relief {
 
-/// A mesh on the GPU. Made once, rendered for any number of views, all on one thread.
+/// A mesh on the GPU, rendered for any number of views, all on one thread.
 class Rasterizer {
   public:
     /// Needs a current context (gl_context.h), which must outlive it.
@@ -23,7 +22,7 @@ class Rasterizer {
 
     /// Renders one map, tile by tile: a map may be larger than the GL's textures.
     /// \param covered   receives the number of texels with a surface.
-    /// \param rowsDone  called now and then with the number of rows that are finished, of all faces together.
+    /// \param rowsDone  called with the number of rows finished, of any face.
     /// Errors: those of DepthMapTarget and DepthMapRenderer.
     [[nodiscard]] Result<DepthMap> bake(const View& view, Decode decode, std::uint64_t& covered,
                                         const std::function<void(std::uint32_t)>& rowsDone);

@@ -9,14 +9,13 @@
 namespace relief {
 namespace {
 
-/// How far beside a ray that may have slipped through others look, and how near to it a triangle must come to
-/// count as met. Embree's units: the mesh is one to two long. Floats there are 6e-8 apart.
+/// Offset of the rays beside one that may have slipped through, and the distance from it within which a triangle counts as
+/// met. In Embree's units, where the mesh is one to two long and floats are 6e-8 apart.
 constexpr double kBeside = 0x1p-17;
 constexpr double kTouching = 1e-6;
 constexpr int kBesideRays = 8;
 
-/// Sines and cosines of the places round a ray where lookAgain looks: the first two on either side, none
-/// along an edge of a grid.
+/// Sines and cosines of these rays' places: the first two on opposite sides, none along an edge of a grid.
 constexpr std::array<std::array<double, 2>, kBesideRays> kBesideDirections = {{{0.1951, 0.9808},
                                                                                {-0.2588, -0.9659},
                                                                                {0.9877, -0.1564},
@@ -29,20 +28,14 @@ constexpr std::array<std::array<double, 2>, kBesideRays> kBesideDirections = {{{
 }  // namespace
 
 RayProbe::RayProbe(const RayScene& scene, const View& view, RayEnd end)
-    : mesh_(scene.mesh()),
-      tree_(scene.tree()),
-      winding_(scene.winding()),
+    : scene_(scene),
       view_(view),
       end_(end),
-      inside_out_(scene.winding() < 0.0),
-      closed_(scene.closed()),
-      query_(scene.query()),
       may_start_inside_(raysMayStartInside(scene, view, end)),
       planes_(scene.mesh(), view) {}
 
 RayProbe::Segment RayProbe::segmentOf(const TexelRay& ray) const {
     const double depth_max = view_.depthMax(ray);
-    // A cube's rays start in its very centre.
     const bool from_point = view_.projection() == Projection::kCube && end_ == RayEnd::kNear;
     const double slack = from_point ? 0.0 : kDepthSlack;
     if (end_ == RayEnd::kNear) {
@@ -63,30 +56,19 @@ Hit RayProbe::hitOf(std::uint32_t face, std::uint32_t x, std::uint32_t y, std::u
 }
 
 Hit RayProbe::trace(std::uint32_t face, std::uint32_t x, std::uint32_t y) {
-    RTCRayHit query = queryOf(segmentOf(view_.ray(face, x, y)));
-    RayQuery().intersect(tree_.scene.get(), query);
+    const RTCRayHit query = traced(segmentOf(view_.ray(face, x, y)));
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
         return {};
     }
     const Hit hit = hitOf(face, x, y, query.hit.primID);
-    // Alone, a ray is doubted only where no ray from free space may get: at the inner side of a closed mesh.
-    return closed_ && metInside(hit) ? lookAgain(face, x, y, hit) : hit;
+    // A ray is doubted only where none from free space can get: at the inner side of a closed mesh.
+    return scene_.closed() && metInside(hit) ? lookAgain(face, x, y, hit) : hit;
 }
 
-RTCRayHit RayProbe::queryOf(const Segment& segment) const {
-    const glm::vec3 origin = tree_.toLocal(segment.origin);
-    const glm::vec3 direction = segment.direction * tree_.scale;
-    RTCRayHit query{};
-    query.ray.org_x = origin.x;
-    query.ray.org_y = origin.y;
-    query.ray.org_z = origin.z;
-    query.ray.dir_x = direction.x;
-    query.ray.dir_y = direction.y;
-    query.ray.dir_z = direction.z;
-    query.ray.tfar = static_cast<float>(segment.length);
-    query.ray.mask = 0xffffffff;
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+RTCRayHit RayProbe::traced(const Segment& segment) const {
+    RTCRayHit query = rayHit(scene_.tree().toLocal(segment.origin), segment.direction * scene_.tree().scale,
+                             static_cast<float>(segment.length));
+    RayQuery().intersect(scene_.tree().scene.get(), query);
     return query;
 }
 
@@ -95,7 +77,7 @@ std::uint32_t RayProbe::bestFacing(std::span<const std::uint32_t> triangles,
     std::uint32_t best = triangles.front();
     double best_score = -2.0;
     for (const std::uint32_t triangle : triangles) {
-        const double score = facingScore(mesh_, triangle, winding_, direction);
+        const double score = facingScore(scene_.mesh(), triangle, scene_.winding(), direction);
         if (score > best_score || (score == best_score && triangle < best)) {
             best = triangle;
             best_score = score;
@@ -106,30 +88,29 @@ std::uint32_t RayProbe::bestFacing(std::span<const std::uint32_t> triangles,
 
 Hit RayProbe::lookAgain(std::uint32_t face, std::uint32_t x, std::uint32_t y, const Hit& hit) {
     const Segment segment = segmentOf(view_.ray(face, x, y));
-    const glm::dvec3 direction = segment.direction * tree_.scale;
-    const double length = std::sqrt(dot(direction, direction));
-    const glm::dvec3 unit = direction / length;
-    const glm::dvec3 other = std::abs(unit.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-    glm::dvec3 right = cross(unit, other);
-    right = right / std::sqrt(dot(right, right));
-    const glm::dvec3 up = cross(right, unit);
+    const EmbreeMesh& tree = scene_.tree();
+    const glm::dvec3 direction = segment.direction * tree.scale;
+    const double length = relief::length(direction);
+    const glm::dvec3 along = direction / length;
+    const glm::dvec3 other = std::abs(along.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+    const glm::dvec3 right = unit(cross(along, other));
+    const glm::dvec3 up = cross(right, along);
 
-    // The nearest triangle that is touched, and all that are as near, for edges meet there.
+    // The nearest triangle that is touched, and all others that meet it there.
     std::array<std::uint32_t, kBesideRays> touched{};
     std::array<float, kBesideRays> where{};
     std::size_t count = 0;
     float nearest = std::numeric_limits<float>::max();
     for (std::size_t i = 0; i < kBesideDirections.size(); ++i) {
         if (i == 2 && count == 0) {
-            return hit;  // beside a silhouette: as good as all that is doubted
+            return hit;  // beside a silhouette, as nearly all doubted hits
         }
         const auto& [sine, cosine] = kBesideDirections[i];
         Segment shifted = segment;
-        shifted.origin += (kBeside / tree_.scale) * (cosine * right + sine * up);
-        RTCRayHit query = queryOf(shifted);
-        RayQuery().intersect(tree_.scene.get(), query);
+        shifted.origin += (kBeside / tree.scale) * (cosine * right + sine * up);
+        const RTCRayHit query = traced(shifted);
         if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID &&
-            touches((segment.origin - tree_.center) * tree_.scale, right, up, query.hit.primID)) {
+            touches((segment.origin - tree.center) * tree.scale, right, up, query.hit.primID)) {
             touched[count] = query.hit.primID;
             where[count++] = query.ray.tfar;
             nearest = std::min(nearest, query.ray.tfar);
@@ -138,7 +119,7 @@ Hit RayProbe::lookAgain(std::uint32_t face, std::uint32_t x, std::uint32_t y, co
     if (count == 0) {
         return hit;
     }
-    // Triangles beside the ray lie a little before or behind where it meets them.
+    // Beside the ray, triangles are met a little sooner or later than on it.
     const float tie = static_cast<float>(64.0 * kBeside / length);
     std::size_t as_near = 0;
     for (std::size_t i = 0; i < count; ++i) {
@@ -146,9 +127,9 @@ Hit RayProbe::lookAgain(std::uint32_t face, std::uint32_t x, std::uint32_t y, co
             touched[as_near++] = touched[i];
         }
     }
-    // Of a ray that starts in the solid the surface that it leaves by counts, which is `hit`.
+    // A ray that starts in the solid counts where it leaves it, which is `hit`.
     if (may_start_inside_ &&
-        query_.inside(segment.origin + 0.5 * static_cast<double>(nearest) * segment.direction)) {
+        scene_.inside(segment.origin + 0.5 * static_cast<double>(nearest) * segment.direction)) {
         return hit;
     }
     const std::uint32_t best = bestFacing(std::span(touched).first(as_near), segment.direction);
@@ -160,13 +141,12 @@ Hit RayProbe::lookAgain(std::uint32_t face, std::uint32_t x, std::uint32_t y, co
 
 bool RayProbe::touches(const glm::dvec3& origin, const glm::dvec3& right, const glm::dvec3& up,
                        std::uint32_t triangle) const {
-    const glm::uvec3& t = mesh_.triangles[triangle];
     double x[3];
     double y[3];
-    for (int i = 0; i < 3; ++i) {
-        const glm::dvec3 p = (glm::dvec3(mesh_.positions[t[i]]) - tree_.center) * tree_.scale - origin;
+    for (int i = 0; const glm::vec3& corner : cornersOf(scene_.mesh(), triangle)) {
+        const glm::dvec3 p = scene_.tree().toLocal(corner) - origin;
         x[i] = dot(p, right);
-        y[i] = dot(p, up);
+        y[i++] = dot(p, up);
     }
     int sides = 0;
     double closest = std::numeric_limits<double>::max();

@@ -1,4 +1,4 @@
-// Single rays of one end of a view, by Embree, for where scan_convert.h knows no texel: between two of them.
+// Single rays of one end of a view, by Embree: between texels, where scan_convert.h has no result.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace relief {
 
-/// Not thread-safe: it remembers the triangles that it met last.
+/// Not thread-safe: it caches the planes of recent triangles.
 class RayProbe {
   public:
     /// \param scene, view  borrowed; must outlive it.
@@ -24,7 +24,7 @@ class RayProbe {
   private:
     static constexpr std::size_t kKnownPlanes = 256;
 
-    /// A ray as it is traced: from a little outside the volume, along or against the depth.
+    /// From a little outside the volume, along or against the depth.
     struct Segment {
         glm::dvec3 origin;
         glm::dvec3 direction;
@@ -34,31 +34,25 @@ class RayProbe {
     /// The hit of a texel's ray with a triangle.
     [[nodiscard]] Hit hitOf(std::uint32_t face, std::uint32_t x, std::uint32_t y, std::uint32_t triangle);
     /// The ray met the side that a closed mesh turns inwards.
-    [[nodiscard]] bool metInside(const Hit& hit) const { return hit.fromBehind() != inside_out_; }
-    /// Robust or not, Embree lets some rays that are aimed exactly at a vertex or edge pass. So others look
-    /// beside the ray: what they meet before `hit` counts if the ray itself touches it.
+    [[nodiscard]] bool metInside(const Hit& hit) const { return hit.fromBehind() != scene_.insideOut(); }
+    /// Robust or not, Embree lets some rays that are aimed exactly at a vertex or edge pass. What rays beside this one meet
+    /// before `hit` counts if this one touches it.
     [[nodiscard]] Hit lookAgain(std::uint32_t face, std::uint32_t x, std::uint32_t y, const Hit& hit);
-    /// The segment in Embree's units.
-    [[nodiscard]] RTCRayHit queryOf(const Segment& segment) const;
+    [[nodiscard]] RTCRayHit traced(const Segment& segment) const;
     /// \param along  dot(normal, direction of growing depth)
     [[nodiscard]] bool isFromBehind(double along) const {
         return end_ == RayEnd::kNear ? along > 0.0 : along < 0.0;
     }
-    /// Whether a line through `origin`, square to `right` and `up`, passes a triangle within kTouching.
+    /// A line through `origin`, perpendicular to `right` and `up`, passes the triangle within kTouching.
     [[nodiscard]] bool touches(const glm::dvec3& origin, const glm::dvec3& right, const glm::dvec3& up,
                                std::uint32_t triangle) const;
     /// Of equals the one of the lowest index.
     [[nodiscard]] std::uint32_t bestFacing(std::span<const std::uint32_t> triangles,
                                            const glm::dvec3& direction) const;
 
-    const TriangleMesh& mesh_;
-    const EmbreeMesh& tree_;
-    double winding_;
+    const RayScene& scene_;
     const View& view_;
     RayEnd end_;
-    bool inside_out_;
-    bool closed_;
-    const MeshQuery& query_;
     bool may_start_inside_;
     SeenPlanes planes_;
     std::array<SeenPlane, kKnownPlanes>

@@ -1,17 +1,16 @@
-// The mesh that rays are cast at, and what a ray meets.
+// The mesh that rays are traced in, and their hits.
 #pragma once
 
 #include <cstdint>
 #include <utility>
 
 #include "bake/mesh/mesh_query.h"
-#include "bake/mesh/prepared_mesh.h"
 #include "bake/plan/view.h"
 #include "formats/base/result.h"
 
 namespace relief {
 
-/// What the ray of one texel meets first, from the end it starts at.
+/// The first surface on the ray of a texel, from the end where the ray starts.
 class Hit {
   public:
     Hit() = default;
@@ -40,40 +39,33 @@ struct RowRange {
 };
 
 /// A mesh to be traced, for any number of views, from any thread.
-class RayScene {
+class RayScene : public MeshQuery {
   public:
     /// Shares the mesh's tree. Errors: those of EmbreeMesh::build.
-    [[nodiscard]] static Result<RayScene> build(PreparedMesh mesh);
+    [[nodiscard]] static Result<RayScene> build(PreparedMesh mesh) {
+        return RayScene(RELIEF_TRY(MeshQuery::build(std::move(mesh))));
+    }
 
-    [[nodiscard]] const TriangleMesh& mesh() const { return query_.mesh(); }
-    /// orientation() of the mesh.
-    [[nodiscard]] double winding() const { return winding_; }
+    [[nodiscard]] double winding() const { return winding_; }  ///< PreparedMesh::orientation
+    [[nodiscard]] bool insideOut() const { return winding_ < 0.0; }
     [[nodiscard]] bool closed() const { return closed_; }
-    [[nodiscard]] const EmbreeMesh& tree() const { return *tree_; }
-    [[nodiscard]] const MeshQuery& query() const { return query_; }
 
   private:
-    RayScene(MeshQuery query, const EmbreeMesh& tree)
-        : query_(std::move(query)),
-          tree_(&tree),
-          winding_(query_.prepared().orientation()),
-          closed_(query_.watertight()) {}
+    explicit RayScene(MeshQuery query)
+        : MeshQuery(std::move(query)), winding_(prepared().orientation()), closed_(watertight()) {}
 
-    MeshQuery query_;
-    const EmbreeMesh* tree_;  // query_ holds it
     double winding_;
     bool closed_;
 };
 
-/// Rays of this end that meet an inner side have started in the solid, although the view's empty texels are free.
+/// Rays of this end that meet an inner side started in the solid, although the view's empty texels are free.
 [[nodiscard]] inline bool mayStartInside(const RayScene& scene, const View& view, RayEnd end) {
     return view.centre_on_surface && end == RayEnd::kNear && scene.closed();
 }
 
-/// Of a closed mesh: rays of this end may start in the solid, because of that or of a volume that cuts it.
+/// Rays of this end may start in a closed solid, for that reason or because the volume cuts it.
 [[nodiscard]] inline bool raysMayStartInside(const RayScene& scene, const View& view, RayEnd end) {
-    return mayStartInside(scene, view, end) ||
-           (scene.closed() && !view.starts_free[static_cast<std::size_t>(end)]);
+    return mayStartInside(scene, view, end) || (scene.closed() && !view.startsFree(end));
 }
 
 }  // namespace relief

@@ -1,8 +1,5 @@
 #include "bake/texels/refine.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "bake/mesh/loops.h"
 #include "bake/mesh/surface_sampler.h"
-#include "bake/mesh/triangle_plane.h"
 #include "bake/texels/deep_solid.h"
 #include "bake/texels/plane_fit.h"
 #include "formats/plane.h"
@@ -22,13 +19,13 @@ namespace relief {
 namespace {
 
 constexpr double kDepthCodes = kDepthSteps;
-/// Points: a change must be worth as many of them; with few points a texel, less is noise.
+/// The least gain of a change, in points: with few points per texel, less is noise.
 constexpr double kMargin = 3.0;
-/// Planes steeper than this reach deep into the solid, where no points are drawn; only the fit, which has
-/// seen the last surfaces too, may choose them.
+/// Steeper planes reach deep into the solid, where no points are drawn; only the fit, which has the last surfaces on its
+/// rays too, may choose them.
 constexpr double kSteepest = 0.2;
 constexpr std::size_t kNormalsTried = 12;
-/// Of the points, those that are drawn to see how much there is to mend; of few more, as fewer would tell little.
+/// The share of points of the trial, and their least number.
 constexpr double kTrialShare = 0.125;
 constexpr double kTrialPointsMin = 65'536.0;
 constexpr std::uint16_t kSettledVotes = 4;
@@ -42,11 +39,8 @@ struct Code {
     friend bool operator==(const Code&, const Code&) = default;
 };
 
-/// A texel's ray in object space, in double.
-struct Ray {
-    glm::dvec3 origin;
-    glm::dvec3 direction;
-    double length;
+struct Ray : TexelRay {
+    double length = 0.0;  ///< of `direction`
 };
 
 /// One end of a texel, in object space.
@@ -54,7 +48,7 @@ struct Plane {
     glm::dvec3 normal;
     double offset;  ///< n·(P − O) of its points
     glm::dvec3 origin;
-    /// It calls p outside.
+    /// p is outside.
     [[nodiscard]] bool sees(const glm::dvec3& p) const { return dot(normal, p - origin) - offset >= 0.0; }
 };
 
@@ -63,8 +57,8 @@ class TexelVotes {
   public:
     explicit TexelVotes(DepthMap& map)
         : map_(map),
-          changeable_(map.decode == Decode::kPlane &&
-                      std::string_view(depthEncodingName(map.format)) == "unorm16"),
+          changeable_(map.decode == Decode::kPlane && map.format != MapFormat::kFloat32 &&
+                      map.format != MapFormat::kFrontBackHalf),
           depth_max_(map.projection() == Projection::kCube ? double{kCubeDepthMax} : 1.0) {
         range_ = standingRange(map.projection(), map.object_per_map, map.width, map.height);
         const TexelRay first = texelRay(map, 0, 0, 0);
@@ -76,14 +70,14 @@ class TexelVotes {
     }
 
     [[nodiscard]] bool changeable() const { return changeable_; }
-    /// Of a gap both ends have to see a point outside.
+    /// In a gap, a point is outside only by both ends.
     [[nodiscard]] bool isGap() const { return map_.compare == Compare::kGap; }
     [[nodiscard]] int ends() const { return isFrontBack(map_.format) ? 2 : 1; }
     [[nodiscard]] std::size_t texels() const {
         return std::size_t{map_.faceCount()} * map_.width * map_.height;
     }
 
-    /// The index of the texel that votes for p, kAbstains or kOutside; as vote() of depth_map.h.
+    /// The texel that votes on p, kAbstains or kOutside; as vote() of depth_map.h.
     [[nodiscard]] std::int32_t locate(const glm::vec3& p) const {
         const glm::vec3 q = map_.object_to_map.apply(p);
         const auto width = static_cast<float>(map_.width);
@@ -109,7 +103,7 @@ class TexelVotes {
     }
 
     [[nodiscard]] Ray ray(std::size_t texel) const {
-        const auto at = static_cast<std::uint32_t>(texel);  // 32 bits divide faster
+        const auto at = static_cast<std::uint32_t>(texel);  // 32-bit division is faster
         const std::uint32_t x = at % map_.width;
         const std::uint32_t row = at / map_.width;
         if (map_.projection() == Projection::kOrthographic) {
@@ -156,7 +150,7 @@ class TexelVotes {
                                    : depth * depth_max_ * dot(normal, ray.direction);
     }
 
-    /// The nearest code of an offset; depth 0 if there is none.
+    /// The nearest code of an offset; depth 0 if it is out of range.
     [[nodiscard]] Code codeOf(std::uint16_t normal_code, const glm::dvec3& normal, double offset,
                               const Ray& ray) const {
         const double unit = stands(normal, ray) ? 0.5 * (offset / range_ + 1.0)
@@ -174,23 +168,37 @@ class TexelVotes {
         return {normal, offsetOf(code, normal, ray), ray.origin};
     }
 
-    /// How many of a texel's votes say outside: of each end, or of a gap.
-    [[nodiscard]] std::uint16_t outsideVotes(std::size_t texel, const Ray& ray, const glm::dvec3& p) const {
+    /// Number of a texel's votes for outside: one per end, or one per gap.
+    [[nodiscard]] int outsideVotes(std::size_t texel, const Ray& ray, const glm::dvec3& p) const {
         int votes = 0;
         for (int end = 0; end < ends(); ++end) {
             const Code here = code(texel, end);
             votes += here.depth != 0 && planeOf(here, ray).sees(p) ? 1 : 0;
         }
-        return static_cast<std::uint16_t>(isGap() ? votes / 2 : votes);
+        return isGap() ? votes / 2 : votes;
     }
 
-    /// Both ends of a texel are empty, and that means outside.
+    /// The texel is empty, and that means outside.
     [[nodiscard]] bool emptyIsOutside(std::size_t texel) const {
         return map_.empty_is_outside && code(texel, 0).depth == 0 &&
                (ends() == 1 || code(texel, 1).depth == 0);
     }
 
-    /// The normal looks towards the viewer of this end, or stands; and is no steeper than it may be.
+    /// Number of votes for p outside: one per end, or one per gap.
+    [[nodiscard]] int votesOn(const glm::vec3& p) const {
+        if (!changeable_) {
+            const std::optional<Vote> v = vote(map_, p);
+            return v && v->distance >= 0.0F ? 1 : 0;
+        }
+        const std::int32_t texel = locate(p);
+        if (texel < 0) {
+            return texel == kOutside ? 1 : 0;
+        }
+        const auto at = static_cast<std::size_t>(texel);
+        return emptyIsOutside(at) ? 1 : outsideVotes(at, ray(at), p);
+    }
+
+    /// The normal faces the viewer of this end, or stands, and is not too steep.
     [[nodiscard]] bool allowed(const glm::dvec3& normal, const Ray& ray, int end, double steepest) const {
         const bool sees_far = map_.compare == Compare::kGreater || end == 1;
         const double cosine = dot(normal, ray.direction) / ray.length * (sees_far ? 1.0 : -1.0);
@@ -201,9 +209,7 @@ class TexelVotes {
     [[nodiscard]] const DepthMap& map() const { return map_; }
 
   private:
-    static Ray rayOf(const TexelRay& ray) {
-        return {ray.origin, ray.direction, std::sqrt(dot(ray.direction, ray.direction))};
-    }
+    static Ray rayOf(const TexelRay& ray) { return {ray, relief::length(ray.direction)}; }
 
     DepthMap& map_;
     bool changeable_;
@@ -214,14 +220,14 @@ class TexelVotes {
     glm::dvec3 row_step_{0.0};
 };
 
-/// The points of one texel that it decides.
+/// A point that the texel decides.
 struct Decided {
     glm::dvec3 from_ray;  ///< P − O
     glm::vec3 normal;
     bool inside;
 };
 
-/// The search for one end's plane among the points it decides.
+/// The search for one end's plane by the points that it decides.
 class PlaneChoice {
   public:
     PlaneChoice(const TexelVotes& votes, const MeshQuery& query, const RefineOptions& options)
@@ -236,7 +242,7 @@ class PlaneChoice {
         deep_.setTexel(texel);
         within_ = DeepSolid::kAllDepths;
     }
-    /// Of a gap the other end has its say too.
+    /// In a gap, the other end limits the depths.
     void setOther(const Code& other, const Ray& ray) {
         const glm::dvec3 normal(decodedNormals()[other.normal]);
         within_ = deep_.depthsOf(normal, votes_.offsetOf(other, normal, ray));
@@ -267,16 +273,8 @@ class PlaneChoice {
             tryCode(packNormal(encodeNormal(points[i * points.size() / count].normal)));
         }
         for (int step = 4; step > 0 && best_cost_ > 0.0; step /= 2) {
-            const NormalIndex from = unpackNormal(best_.normal);
-            for (int dt = -step; dt <= step; dt += step) {
-                for (int ds = -step; ds <= step; ds += step) {
-                    const int s = from.s + ds;
-                    const int t = from.t + dt;
-                    if (s >= 0 && s <= 254 && t >= 0 && t <= 254) {
-                        tryCode(packNormal({static_cast<std::uint8_t>(s), static_cast<std::uint8_t>(t)}));
-                    }
-                }
-            }
+            forNeighbours(unpackNormal(best_.normal), step,
+                          [&](NormalIndex index) { tryCode(packNormal(index)); });
         }
         return best_;
     }
@@ -295,10 +293,10 @@ class PlaneChoice {
         return cost;
     }
 
-    /// The best offset for a normal lies between two neighbours of the points' projections on it.
+    /// The best offset for a normal lies between two neighbouring projections of the points on it.
     void tryCode(std::uint16_t code) {
-        const auto tried_end = tried_.begin() + static_cast<std::ptrdiff_t>(tried_count_);
-        if (tried_count_ == tried_.size() || std::find(tried_.begin(), tried_end, code) != tried_end) {
+        const auto tried = std::span(tried_).first(tried_count_);
+        if (tried_count_ == tried_.size() || std::ranges::find(tried, code) != tried.end()) {
             return;
         }
         tried_[tried_count_++] = code;
@@ -312,8 +310,8 @@ class PlaneChoice {
             along_.emplace_back(dot(normal, point.from_ray), point.inside);
             cost += point.inside ? priceOf(true) : 0.0;
         }
-        std::sort(along_.begin(), along_.end());
-        // All outside at first; then one point after the other comes behind the plane.
+        std::ranges::sort(along_);
+        // From all outside, one point after the other falls behind the plane.
         double least = best_cost_;
         double offset = 0.0;
         for (std::size_t i = 0; i < along_.size(); ++i) {
@@ -362,7 +360,7 @@ class Refinement {
         }
     }
 
-    /// Adds points, but for the settled.
+    /// Adds points that are not settled.
     void add(std::vector<LabelledPoint> points) {
         const std::size_t first = points_.size();
         if (points_.empty()) {
@@ -373,7 +371,7 @@ class Refinement {
         countVotes(first);
     }
 
-    /// \return the share of the mistakes at all points so far, weighted, that a sweep over the maps mends.
+    /// \return the share of the errors at all points so far, weighted, that a sweep over the maps corrects.
     double sweep() {
         const double before = costOfMistakes();
         for (TexelVotes& map : maps_) {
@@ -385,16 +383,7 @@ class Refinement {
     }
 
   private:
-    void locateAll(const TexelVotes& map) {
-        texel_of_.resize(points_.size());
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points_.size(), 4096), [&](const auto& range) {
-            for (std::size_t i = range.begin(); i != range.end(); ++i) {
-                texel_of_[i] = map.locate(points_[i].position);
-            }
-        });
-    }
-
-    /// Of the points from `first` on, of which the settled are dropped.
+    /// Counts the votes on the points from `first` on, and drops those that are settled.
     void countVotes(std::size_t first) {
         outside_votes_.resize(points_.size(), 0);
         for (const TexelVotes& map : maps_) {
@@ -412,36 +401,16 @@ class Refinement {
         outside_votes_.resize(kept);
     }
 
-    /// Of the points from `first` on.
     void countVotes(const TexelVotes& map, std::size_t first) {
-        tbb::parallel_for(
-            tbb::blocked_range<std::size_t>(first, points_.size(), 4096), [&](const auto& range) {
-                for (std::size_t i = range.begin(); i != range.end(); ++i) {
-                    if (settled(i)) {
-                        continue;
-                    }
-                    const std::int32_t texel = map.locate(points_[i].position);
-                    if (!map.changeable()) {
-                        const std::optional<Vote> v = vote(map.map(), points_[i].position);
-                        if (v && v->distance >= 0.0F) {
-                            ++outside_votes_[i];
-                        }
-                    } else if (texel == kOutside) {
-                        ++outside_votes_[i];
-                    } else if (texel >= 0) {
-                        const auto at = static_cast<std::size_t>(texel);
-                        if (map.emptyIsOutside(at)) {
-                            ++outside_votes_[i];
-                            continue;
-                        }
-                        outside_votes_[i] = static_cast<std::uint16_t>(
-                            outside_votes_[i] + map.outsideVotes(at, map.ray(at), points_[i].position));
-                    }
-                }
-            });
+        forEachIndex(first, points_.size(), 4096, [&](std::size_t i) {
+            if (!settled(i)) {
+                outside_votes_[i] =
+                    static_cast<std::uint16_t>(outside_votes_[i] + map.votesOn(points_[i].position));
+            }
+        });
     }
 
-    /// Free points that many ends see need no texel to be chosen for them.
+    /// Free points that many ends have outside need no texel to be refined for them.
     [[nodiscard]] bool settled(std::size_t i) const {
         return !points_[i].inside && outside_votes_[i] >= kSettledVotes;
     }
@@ -456,31 +425,21 @@ class Refinement {
     }
 
     void refine(TexelVotes& map) {
-        locateAll(map);
-        // Points by texel.
-        std::vector<std::uint32_t> first(map.texels() + 1, 0);
-        for (const std::int32_t texel : texel_of_) {
-            if (texel >= 0) {
-                ++first[static_cast<std::size_t>(texel) + 1];
+        texel_of_.resize(points_.size());
+        forEachIndex(0, points_.size(), 4096,
+                     [&](std::size_t i) { texel_of_[i] = map.locate(points_[i].position); });
+        const Buckets<std::uint32_t> members(map.texels(), [&](const auto& visit) {
+            for (std::uint32_t i = 0; i < texel_of_.size(); ++i) {
+                if (texel_of_[i] >= 0) {
+                    visit(static_cast<std::size_t>(texel_of_[i]), i);
+                }
             }
-        }
-        for (std::size_t i = 1; i < first.size(); ++i) {
-            first[i] += first[i - 1];
-        }
-        std::vector<std::uint32_t> members(first.back());
-        std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-        for (std::size_t i = 0; i < texel_of_.size(); ++i) {
-            if (texel_of_[i] >= 0) {
-                members[next[static_cast<std::size_t>(texel_of_[i])]++] = static_cast<std::uint32_t>(i);
-            }
-        }
+        });
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, map.texels(), 256), [&](const auto& range) {
             PlaneChoice choice(map, query_, options_);
             for (std::size_t texel = range.begin(); texel != range.end(); ++texel) {
-                const std::span<const std::uint32_t> here(members.data() + first[texel],
-                                                          first[texel + 1] - first[texel]);
-                if (static_cast<double>(here.size()) > kMargin) {
-                    refineTexel(map, texel, here, choice);
+                if (static_cast<double>(members[texel].size()) > kMargin) {
+                    refineTexel(map, texel, members[texel], choice);
                 }
             }
         });
@@ -501,7 +460,7 @@ class Refinement {
             if (map.isGap()) {
                 choice.setOther(other, ray);
             }
-            // What the other end of a gap sees inside is not for this one to decide.
+            // A point that the other end of a gap has inside is not decided here.
             const auto mayDecide = [&](std::uint32_t i) {
                 return !map.isGap() || other_plane.sees(points_[i].position);
             };
@@ -533,12 +492,12 @@ class Refinement {
     const MeshQuery& query_;
     const RefineOptions& options_;
     std::vector<LabelledPoint> points_;
-    std::vector<std::uint16_t> outside_votes_;  // a point's: how many ends of maps see it outside
-    std::vector<std::int32_t> texel_of_;        // a point's, in the map at hand
+    std::vector<std::uint16_t> outside_votes_;  // by point
+    std::vector<std::int32_t> texel_of_;        // by point, in the current map
     std::vector<TexelVotes> maps_;
 };
 
-/// Side of a texel, object units, in the mean over all texels.
+/// Mean side of all texels, object units.
 double meanTexel(const Collider& collider) {
     double texels = 0.0;
     double sides = 0.0;

@@ -8,43 +8,23 @@
 #include <limits>
 #include <utility>
 
-#include "bake/mesh/triangle_plane.h"
+#include "bake/mesh/cube_faces.h"
 #include "formats/depth_map.h"
 
 namespace relief {
 namespace {
 
-/// This near to an edge, in barycentric coordinates, a hit may as well be the neighbour's; surfaces this near in depth meet
-/// there.
+/// So near to an edge, in barycentric coordinates, a hit may as well be the neighbour's; surfaces so near in depth meet.
 constexpr double kEdgeWidth = 1e-4;
 constexpr double kTieDepth = 1e-5;
-/// Surfaces this near in depth are one, also away from edges.
+/// Surfaces so near in depth are one, also away from edges.
 constexpr double kSameDepth = 1e-9;
-/// An edge whose side changes along a row by less than this part of its value says too little about where it crosses the
-/// row.
+/// An edge whose side function changes less along a row, relative to its value, does not give its crossing with the row.
 constexpr double kFlat = 1e-9;
 
-/// How the point (x, y, 1) of a face, both in [−1, 1], lies in the cube: View::ray has the same table.
-struct Face {
-    struct Axis {
-        int index;
-        double sign;
-        [[nodiscard]] double of(const glm::dvec3& v) const { return sign * v[index]; }
-    };
-    Axis x;
-    Axis y;
-    Axis towards;
-};
-constexpr std::array<Face, 6> kFaces = {{{{2, -1.0}, {1, -1.0}, {0, 1.0}},
-                                         {{2, 1.0}, {1, -1.0}, {0, -1.0}},
-                                         {{0, 1.0}, {2, 1.0}, {1, 1.0}},
-                                         {{0, 1.0}, {2, -1.0}, {1, -1.0}},
-                                         {{0, 1.0}, {1, -1.0}, {2, 1.0}},
-                                         {{0, -1.0}, {1, -1.0}, {2, -1.0}}}};
-
-/// Texels of one face, as coordinates in which its rays are (x, y, 1).
+/// The texels of a face in coordinates in which its rays are (x, y, 1).
 struct Grid {
-    const Face* face = nullptr;  ///< null: orthographic
+    const CubeFaceAxes* face = nullptr;  ///< null: orthographic
     double columns = 1.0;
     double rows = 1.0;
 
@@ -58,10 +38,10 @@ struct Grid {
         return face == nullptr ? x : 0.5 * (x + 1.0) * columns - 0.5;
     }
     [[nodiscard]] double row(double y) const { return face == nullptr ? y : 0.5 * (y + 1.0) * rows - 0.5; }
-    /// A corner as x, y and the height of its ray above the centre: it is at (x, y) / height.
+    /// A corner as x, y and height above the centre: its ray is (x, y) / height.
     [[nodiscard]] glm::dvec3 of(const glm::dvec3& place) const {
         return face == nullptr ? place
-                               : glm::dvec3(face->x.of(place), face->y.of(place), face->towards.of(place));
+                               : glm::dvec3(face->s.of(place), face->t.of(place), face->major.of(place));
     }
 };
 
@@ -71,7 +51,7 @@ bool comesBefore(const glm::dvec3& a, const glm::dvec3& b) {
 
 }  // namespace
 
-/// Where the hits of some rows go.
+/// The output for some rows.
 struct ScanConverter::Block {
     std::uint32_t face;
     std::uint32_t begin;
@@ -79,8 +59,8 @@ struct ScanConverter::Block {
     std::span<Hit> far;
 };
 
-/// The half of a face's plane on one side of an edge: what a triangle with this edge has rays in. The same bits for both
-/// triangles of the edge, but for the sign.
+/// The half plane of a face on the triangle's side of an edge. The same bits for both triangles of the edge, but for the
+/// sign.
 class ScanConverter::Edge {
   public:
     /// \param from, to  as Grid::of has them.
@@ -103,7 +83,7 @@ class ScanConverter::Edge {
     }
 
     /// Shrinks the range of x to this side of the edge, along the row of y.
-    /// \return false if the row runs along the edge: its texels must be asked one by one.
+    /// \return false if the row runs along the edge: test its texels one by one.
     [[nodiscard]] bool clip(double y, double& low, double& high) const {
         const double at_start = side_.y * (y - start_.y) + side_.z;
         const double change = side_.x;
@@ -128,20 +108,20 @@ class ScanConverter::Edge {
     glm::dvec3 start_{0.0};
 };
 
-/// A triangle as a face of the view sees it.
+/// A triangle projected on a face of the view.
 class ScanConverter::Shape {
   public:
     Shape(const ScanConverter& scan, std::uint32_t triangle, std::uint32_t face)
-        : grid_{scan.cube_ ? &kFaces[face] : nullptr, static_cast<double>(scan.view_.width),
+        : grid_{scan.cube_ ? &kCubeFaces[face] : nullptr, static_cast<double>(scan.view_.width),
                 static_cast<double>(scan.view_.height)},
           corners_(cornersOf(scan, triangle, grid_)),
           volume_(scan.cube_ ? dot(corners_[0], cross(corners_[1], corners_[2]))
                              : cross(corners_[1] - corners_[0], corners_[2] - corners_[0]).z) {}
 
-    /// No ray meets more than its edge.
+    /// Rays meet its edges at most.
     [[nodiscard]] bool edgeOn() const { return !(std::abs(volume_) > 0.0); }
 
-    /// Of some number of columns (axis 0) or rows (1), those whose rays may meet the triangle, [first, end).
+    /// Of `count` columns (axis 0) or rows (1), those whose rays may meet the triangle: [first, end).
     [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> rangeOf(int axis, std::uint32_t count) const {
         double low = std::numeric_limits<double>::infinity();
         double high = -low;
@@ -159,11 +139,11 @@ class ScanConverter::Shape {
         if (behind == 3) {
             return {0, 0};
         }
-        const double last = count;
-        if (behind > 0) {  // it passes by the centre, and may be seen anywhere
+        if (behind > 0) {  // it passes the centre, and may project anywhere
             return {0, count};
         }
-        // A cube's texels are rounded on the way there and back.
+        const double last = count;
+        // For the rounding of a cube's texel coordinates.
         const double slack = grid_.face == nullptr ? 0.0 : 1e-6;
         return {static_cast<std::uint32_t>(std::clamp(std::ceil(low - slack), 0.0, last)),
                 static_cast<std::uint32_t>(std::clamp(std::floor(high + slack) + 1.0, 0.0, last))};
@@ -178,7 +158,7 @@ class ScanConverter::Shape {
     [[nodiscard]] const Grid& grid() const { return grid_; }
 
   private:
-    /// Of a corner in front of the centre, in half sides of the cube: less is beside it.
+    /// Of a corner in front of the centre, in half sides of the cube.
     static constexpr double kLeastHeight = 1e-6;
 
     static std::array<glm::dvec3, 3> cornersOf(const ScanConverter& scan, std::uint32_t triangle,
@@ -223,7 +203,7 @@ void ScanConverter::place() {
 void ScanConverter::sortIntoBlocks() {
     const std::size_t faces = view_.faceCount();
     const std::size_t count = scene_.mesh().triangles.size();
-    // The rows that a triangle may have texels in, by face: by block, and by row of the first and the last.
+    // The rows of a triangle on a face: blocks, and rows within the first and the last block.
     struct Rows {
         std::uint16_t first_block = 0;
         std::uint16_t end_block = 0;
@@ -244,7 +224,7 @@ void ScanConverter::sortIntoBlocks() {
             }
         }
     });
-    const auto forEachBlock = [&](const auto& visit) {
+    entries_ = Buckets<Entry, std::size_t>(faces * blocks_, [&](const auto& visit) {
         for (std::size_t i = 0; i < count; ++i) {
             for (std::size_t face = 0; face < faces; ++face) {
                 const Rows& rows = rows_of[faces * i + face];
@@ -255,21 +235,7 @@ void ScanConverter::sortIntoBlocks() {
                 }
             }
         }
-    };
-    first_.assign(faces * blocks_ + 1, 0);
-    forEachBlock([&](std::size_t block, const Entry&) { ++first_[block + 1]; });
-    for (std::size_t block = 1; block < first_.size(); ++block) {
-        first_[block] += first_[block - 1];
-    }
-    entries_.resize(first_.back());
-    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-    forEachBlock([&](std::size_t block, const Entry& entry) { entries_[next[block]++] = entry; });
-}
-
-std::span<const ScanConverter::Entry> ScanConverter::entriesOf(std::uint32_t face,
-                                                               std::uint32_t block) const {
-    const std::size_t at = std::size_t{face} * blocks_ + block;
-    return std::span(entries_).subspan(first_[at], first_[at + 1] - first_[at]);
+    });
 }
 
 void ScanConverter::prefetch(std::span<const Entry> entries, std::size_t i) const {
@@ -297,7 +263,7 @@ void ScanConverter::scan(const RowRange& rows, std::span<Hit> near, std::span<Hi
         const std::size_t at = std::size_t{begin - rows.begin} * view_.width;
         const auto part = [&](std::span<Hit> hits) { return hits.empty() ? hits : hits.subspan(at); };
         const Block here{rows.face, begin, part(near), part(far)};
-        const std::span<const Entry> entries = entriesOf(rows.face, block);
+        const std::span<const Entry> entries = entries_[std::size_t{rows.face} * blocks_ + block];
         for (std::size_t i = 0; i < entries.size(); ++i) {
             prefetch(entries, i);
             const Entry& entry = entries[i];
@@ -358,8 +324,8 @@ void ScanConverter::draw(std::uint32_t triangle, std::uint32_t begin, std::uint3
             return edges[0].sideOf(x, y) >= 0.0 && edges[1].sideOf(x, y) >= 0.0 &&
                    edges[2].sideOf(x, y) >= 0.0;
         };
-        // About where the row enters and leaves the triangle. There the edges themselves are asked, and all along one that
-        // the row runs along.
+        // Estimates of where the row enters and leaves the triangle. Texels there, or along an edge that the row runs along,
+        // are tested exactly.
         double low = grid.x(first_column);
         double high = grid.x(end_column - 1.0);
         bool clear = true;
@@ -408,14 +374,14 @@ bool ScanConverter::isBetter(std::uint32_t triangle, double depth, const Hit& th
     if (may_start_inside_[static_cast<std::size_t>(end)] && faces != (other_score > 0.0)) {
         return faces != startsInside(depth, end, face, x, y);
     }
-    return score > other_score;  // of equals the first, which has the lower index
+    return score > other_score;  // of equals the first, of the lower index
 }
 
 bool ScanConverter::startsInside(double depth, RayEnd end, std::uint32_t face, std::uint32_t x,
                                  std::uint32_t y) const {
     const TexelRay ray = view_.ray(face, x, y);
     const double start = end == RayEnd::kNear ? 0.0 : view_.depthMax(ray);
-    return scene_.query().inside(ray.origin + 0.5 * (start + depth) * ray.direction);
+    return scene_.inside(ray.origin + 0.5 * (start + depth) * ray.direction);
 }
 
 bool ScanConverter::atEdge(std::uint32_t triangle, std::uint32_t face, std::uint32_t x,

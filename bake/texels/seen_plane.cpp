@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "bake/mesh/triangle_plane.h"
+#include "bake/mesh/mesh_query.h"
 #include "formats/depth_map.h"
 
 namespace relief {
-
 namespace {
 
-/// The plane is seen so nearly edge-on that its depth may leave the triangle's.
+/// Seen so nearly edge-on that the depth of the plane may leave the triangle's.
 bool isGrazing(const glm::dvec3& normal, const glm::dvec3& direction, double along) {
     return !(along * along >
              kGrazingCosine * kGrazingCosine * dot(normal, normal) * dot(direction, direction));
@@ -19,16 +17,8 @@ bool isGrazing(const glm::dvec3& normal, const glm::dvec3& direction, double alo
 
 /// A depth on a triangle seen almost edge-on, held between the depths of its corners.
 double insideTriangle(const TriangleMesh& mesh, std::uint32_t triangle, const TexelRay& ray, double depth) {
-    const glm::uvec3& t = mesh.triangles[triangle];
-    const double per_depth = dot(ray.direction, ray.direction);
-    double low = std::numeric_limits<double>::max();
-    double high = -low;
-    for (const std::uint32_t corner : {t.x, t.y, t.z}) {
-        const double at = dot(glm::dvec3(mesh.positions[corner]) - ray.origin, ray.direction) / per_depth;
-        low = std::min(low, at);
-        high = std::max(high, at);
-    }
-    return depth >= low && depth <= high ? depth : std::isnan(depth) || depth < low ? low : high;
+    const LineSpan corners = cornerSpan(mesh, triangle, ray.origin, ray.direction);
+    return depth >= corners.begin ? std::min(depth, corners.end) : corners.begin;  // of NaN the begin
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The depth of a triangle's plane at the rays of a view.
+// Depths of a triangle's plane on the rays of a view.
 #pragma once
 
 #include <cstdint>
@@ -8,19 +8,16 @@
 
 namespace relief {
 
-/// A triangle's plane, as the rays of a view meet it.
 struct SeenPlane {
     std::uint32_t triangle = 0xffffffff;
     glm::dvec3 normal{0.0};
-    // Of an orthographic view, whose rays all run the same way: the depth at the ray of texel (x, y) is
-    // base + x · per_column + y · per_row.
+    // Orthographic, with parallel rays: the depth at texel (x, y) is base + x · per_column + y · per_row.
     double base = 0.0;
     double per_column = 0.0;
     double per_row = 0.0;
     double along = 0.0;  ///< dot(normal, direction of growing depth)
     bool grazing = false;
-    // Of a cube, whose rays begin in one point.
-    double ahead = 0.0;  ///< dot(normal, point of the plane − centre)
+    double ahead = 0.0;  ///< dot(normal, point of the plane − origin of the rays)
 };
 
 /// Where a ray meets a plane.
@@ -29,7 +26,7 @@ struct PlaneHit {
     double along;  ///< dot(normal, direction of growing depth)
 };
 
-/// What is the same for all triangles of a view.
+/// Makes the planes of a view.
 class SeenPlanes {
   public:
     /// \param mesh, view  borrowed; must outlive it.
@@ -37,10 +34,10 @@ class SeenPlanes {
 
     [[nodiscard]] SeenPlane of(std::uint32_t triangle) const;
 
-    /// What the ray of a texel meets of a plane, held within the triangle if that is seen almost edge-on.
+    /// The hit of a texel's ray, held within the triangle if that is seen almost edge-on.
     [[nodiscard]] PlaneHit at(const SeenPlane& plane, std::uint32_t face, std::uint32_t x,
                               std::uint32_t y) const {
-        if (orthographic_ && !plane.grazing) {  // nearly all; here, as a bake asks it millions of times
+        if (orthographic_ && !plane.grazing) {  // nearly all; inline, for millions of calls per bake
             return {depthAt(plane, x, y), plane.along};
         }
         return atAnyRay(plane, face, x, y);
@@ -62,8 +59,7 @@ class SeenPlanes {
     glm::dvec3 row_step_;
 };
 
-/// How a surface that a ray meets faces it: of surfaces that meet there, the one of the highest score counts. One that
-/// faces the ray always beats one that does not.
+/// Of surfaces that meet on a ray, the one of the highest score counts. Facing the ray always beats facing away.
 /// \param winding  orientation() of the mesh.
 [[nodiscard]] double facingScore(const TriangleMesh& mesh, std::uint32_t triangle, double winding,
                                  const glm::dvec3& direction);

@@ -44,7 +44,7 @@ TEST(MeshHealthOracle, CountsAreCgals) {
         const Result<TriangleMesh> mesh =
             importMesh(folder.path() / "data/meshes" / (std::string(name) + ".off"));
         ASSERT_TRUE(mesh) << mesh.error().message;
-        const Result<MeshHealth> health = inspectMesh(*mesh, {true});
+        const Result<MeshHealth> health = inspectMesh(*mesh, true);
         ASSERT_TRUE(health) << health.error().message;
         const SurfaceMesh surface = toCgalWelded(*mesh);
         std::uint64_t borders = 0;

@@ -18,7 +18,7 @@ namespace relief::test {
 namespace {
 
 MeshHealth healthOf(const TriangleMesh& mesh, bool intersections = false) {
-    const Result<MeshHealth> health = inspectMesh(mesh, {intersections});
+    const Result<MeshHealth> health = inspectMesh(mesh, intersections);
     EXPECT_TRUE(health) << health.error().message;
     return health.value_or(MeshHealth{});
 }
@@ -318,7 +318,7 @@ TEST(MeshRepair, AWrapIsASolidThatHoldsTheMesh) {
     open.triangles.resize(open.triangles.size() - 2);
     const TriangleMesh soup = joined(withRandomFlips(open, 3), unitBox({6.5, 0.5, 0.1}));
     for (const double alpha : {0.1, 0.05}) {
-        const Result<TriangleMesh> wrap = wrapMesh(soup, {alpha});
+        const Result<TriangleMesh> wrap = wrapMesh(soup, alpha);
         ASSERT_TRUE(wrap) << wrap.error().message;
         const MeshHealth health = healthOf(*wrap, true);
         EXPECT_TRUE(health.isSolid()) << faultsText(health);
@@ -335,13 +335,13 @@ TEST(MeshRepair, AWrapIsASolidThatHoldsTheMesh) {
         for (const glm::vec3& p : wrap->positions) {
             EXPECT_NEAR(source->closest(p).distance, offset, 0.01 * offset);
         }
-        const Result<TriangleMesh> again = wrapMesh(soup, {alpha});
+        const Result<TriangleMesh> again = wrapMesh(soup, alpha);
         ASSERT_TRUE(again);
         EXPECT_EQ(again->positions, wrap->positions);
         EXPECT_EQ(again->triangles, wrap->triangles);
     }
     for (const double alpha : {0.0, -1.0, 1.0, std::nan("")}) {
-        const Result<TriangleMesh> wrap = wrapMesh(soup, {alpha});
+        const Result<TriangleMesh> wrap = wrapMesh(soup, alpha);
         ASSERT_FALSE(wrap);
         EXPECT_EQ(wrap.error().code, ErrorCode::kUsage);
     }
