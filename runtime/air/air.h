@@ -1,5 +1,5 @@
 // What pushes a particle besides collision and gravity: moving air, which acts through drag, and fields,
-// which accelerate. Plain settings, and on the CPU what shaders/air.glsl computes on the GPU; air_block.h
+// which accelerate. Plain settings, and on the CPU what shaders/air/air.glsl computes on the GPU; air_block.h
 // puts the settings there.
 #pragma once
 
@@ -12,7 +12,7 @@
 #include "formats/base/result.h"
 #include "runtime/air/curl_noise.h"
 #include "runtime/air/flow_field.h"
-#include "shaders/shader_constants.h"
+#include "shaders/air/constants.h"
 
 namespace relief {
 

@@ -1,4 +1,4 @@
-// AirSettings on the GPU: a uniform block and, for a flow, a 3-D texture, read by shaders/air.glsl.
+// AirSettings on the GPU: a uniform block and, for a flow, a 3-D texture, read by shaders/air/air.glsl.
 #pragma once
 
 #include <glm/vec4.hpp>

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
-#include "shaders/shader_constants.h"
+#include "shaders/air/constants.h"
 
 namespace relief {
 namespace {

@@ -1,4 +1,4 @@
-// Velocities on a grid over a box: the C++ side of reliefFlow() in shaders/air.glsl.
+// Velocities on a grid over a box: the C++ side of reliefFlow() in shaders/air/air.glsl.
 #pragma once
 
 #include <array>

@@ -90,22 +90,14 @@ class Call {
     template <class H>
     [[nodiscard]] Result<std::shared_ptr<typename HandleType<H>::Object>> shared(const H* handle,
                                                                                  const char* argument) const {
-        using Object = typename HandleType<H>::Object;
-        const auto number = reinterpret_cast<std::uintptr_t>(handle);
-        if (const auto* found = handleTable().find(HandleType<H>::kKind, number); found != nullptr) {
-            return std::static_pointer_cast<Object>(*found);
-        }
-        return faulty(HandleType<H>::kKind, number, argument, HandleType<H>::kName);
+        const std::shared_ptr<void>& found = *RELIEF_TRY(find(handle, argument));
+        return std::static_pointer_cast<typename HandleType<H>::Object>(found);
     }
     /// As shared(); the caller's handle keeps it.
     template <class H>
     [[nodiscard]] Result<typename HandleType<H>::Object*> object(const H* handle,
                                                                  const char* argument) const {
-        const auto number = reinterpret_cast<std::uintptr_t>(handle);
-        if (const auto* found = handleTable().find(HandleType<H>::kKind, number); found != nullptr) {
-            return static_cast<typename HandleType<H>::Object*>(found->get());
-        }
-        return faulty(HandleType<H>::kKind, number, argument, HandleType<H>::kName);
+        return static_cast<typename HandleType<H>::Object*>(RELIEF_TRY(find(handle, argument))->get());
     }
     /// As shared(), null for NULL; but a NULL that a failure handed out, which nobody has read, is that failure.
     template <class H>
@@ -161,6 +153,14 @@ class Call {
     [[nodiscard]] Result<void> context() const;
 
   private:
+    template <class H>
+    [[nodiscard]] Result<const std::shared_ptr<void>*> find(const H* handle, const char* argument) const {
+        const auto number = reinterpret_cast<std::uintptr_t>(handle);
+        if (const auto* found = handleTable().find(HandleType<H>::kKind, number); found != nullptr) {
+            return found;
+        }
+        return faulty(HandleType<H>::kKind, number, argument, HandleType<H>::kName);
+    }
     [[nodiscard]] tl::unexpected<Error> faulty(HandleKind kind, std::uintptr_t handle, const char* argument,
                                                const char* type) const;
     [[nodiscard]] tl::unexpected<Error> wrongNumber(double value, const NumberRange& range,

@@ -1,4 +1,4 @@
-// Colliders on the GPU: three textures and a uniform block, read by shaders/collider.glsl. One collider in
+// Colliders on the GPU: three textures and a uniform block, read by shaders/collider/collider.glsl. One collider in
 // its own object space, or several bodies with poses in a world.
 //
 // Maps of one texel layout share a 2-D texture: RGBA32F for float, RGBA8 for fixed8 and cube, RGBA16UI for

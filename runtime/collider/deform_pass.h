@@ -1,4 +1,4 @@
-// Deforms the vertices of a mesh on the GPU, by shaders/deform.vert and transform feedback, into a buffer:
+// Deforms the vertices of a mesh on the GPU, by shaders/collider/deform.vert and transform feedback, into a buffer:
 // for LiveCollider::setPositions(buffer), and for the mesh's picture.
 //
 //     bytes on the GPU = 24 · vertices, and the buffers that are written: 12 or 24 a vertex

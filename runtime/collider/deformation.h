@@ -1,4 +1,4 @@
-// Deformations of a mesh in the course of time, on the CPU: the truth of shaders/deform.vert, and what a
+// Deformations of a mesh in the course of time, on the CPU: the truth of shaders/collider/deform.vert, and what a
 // scene needs to choose boxes that hold the whole motion.
 //
 //     twist   p turns about the line (center, axis) by angle · share(s)         s = (p − center)·axis
@@ -18,7 +18,7 @@
 
 #include "formats/base/result.h"
 #include "formats/collider.h"
-#include "shaders/shader_constants.h"
+#include "shaders/collider/constants.h"
 
 namespace relief {
 

@@ -80,9 +80,7 @@ class LiveCollider {
     std::vector<std::size_t> target_of_;
     std::vector<DepthMapTarget> targets_;
     GlProgram motion_program_;
-    GLint motion_end_ = -1, motion_origin_ = -1;
     GlFramebuffer texel_target_, motion_target_;
-    GlVertexArray no_attributes_;
     bool shown_ = false;   // by a first update
     bool moved_ = false;   // since the last update
     bool moving_ = false;  // the motion shown is not zero

@@ -40,16 +40,11 @@ class DepthMapRenderer {
                                       const DepthMapTarget& target, std::uint32_t x = 0, std::uint32_t y = 0);
 
   private:
-    struct Program {
-        GlProgram program;
-        GLint shift, center, row, object, window, residual, origin, scale, width;
-        GLint far, starts_free, inside_out, ray, range, good_enough, corner, reach;
-    };
-    [[nodiscard]] Result<const Program*> programFor(const DepthMapFrame& frame, bool motion);
-    static void setUniforms(const Program& program, const GpuMesh& mesh, const DepthMapFrame& frame,
+    [[nodiscard]] Result<const GlProgram*> programFor(const DepthMapFrame& frame, bool motion);
+    static void setUniforms(const GlProgram& program, const GpuMesh& mesh, const DepthMapFrame& frame,
                             const TexelWindow& window, std::uint32_t x, std::uint32_t y);
 
-    std::map<std::string, Program> programs_;  // by their defines
+    std::map<std::string, GlProgram> programs_;  // by their defines
 };
 
 }  // namespace relief

@@ -49,8 +49,6 @@ class BirthPass {
     GlBuffer newborn_;
     GlVertexArray array_;  // of the points
     GlProgram program_;
-    GLint dt_before_ = -1;
-    GLint count_ = -1;
 };
 
 }  // namespace relief

@@ -9,7 +9,7 @@
 //     (96 · texels once the clock has been set back for the first time; 32 · texels more with setEvents())
 //
 // A step, in this order: births are written into the textures (birth_pass.h); one pass over the occupied rows
-// decides deaths, moves and collides (shaders/step.glsl); the CPU frees the indices of the dead.
+// decides deaths, moves and collides (shaders/particles/step.glsl); the CPU frees the indices of the dead.
 //
 // Time. The CPU counts in double. The GPU sees floats relative to an epoch that is set forward whenever
 // epoch_seconds have passed, so that a float resolves half a millisecond even after days. A particle dies at
@@ -247,13 +247,11 @@ class ParticleSystem {
     GlFramebuffer step_target_[3];   // position and velocity
     GlFramebuffer birth_target_[3];  // position, velocity or position before, birth
     GlFramebuffer rebase_target_;    // birth_spare_
-    GlVertexArray no_attributes_;
     BirthPass birth_pass_;
     GlProgram rebase_program_;
-    GLint rebase_shift_ = -1;
     StepPass step_;
     std::unique_ptr<EventList> events_;
-    GlTexture event_way_;  // as step_event.glsl writes them
+    GlTexture event_velocity_;  // as step_event.glsl writes them
     GlTexture event_surface_;
     GlFramebuffer event_target_[3];  // step_target_'s and both of these
     double step_begin_ = 0.0;

@@ -59,7 +59,6 @@ class ColliderRenderer {
     GlProgram coarse_program_;
     GlProgram trace_program_;
     GlProgram copy_program_;
-    GlVertexArray no_attributes_;
     std::optional<Drawn> drawn_;  // what the textures below show
     GlTexture color_;
     GlTexture depth_;

@@ -37,17 +37,14 @@ glm::vec3 linearColor(const glm::vec3& srgb) {
 }
 
 void setLightUniforms(const GlProgram& program, const ColliderView& view, const LightRays& rays) {
-    glUseProgram(program.name());
-    const glm::vec3 low = view.bounds.min - glm::vec3(2.0F * view.texel);
-    const glm::vec3 high = view.bounds.max + glm::vec3(2.0F * view.texel);
-    const glm::vec3 sun = sunDirection();
-    glUniform3f(uniformLocation(program, "u_bounds_min"), low.x, low.y, low.z);
-    glUniform3f(uniformLocation(program, "u_bounds_max"), high.x, high.y, high.z);
-    glUniform1f(uniformLocation(program, "u_scale"), view.bounds.longestSide());
-    glUniform1f(uniformLocation(program, "u_texel"), view.texel);
-    glUniform3f(uniformLocation(program, "u_sun"), sun.x, sun.y, sun.z);
-    glUniform2i(uniformLocation(program, "u_rays"), rays.sun, rays.sky);
-    glUniform2i(uniformLocation(program, "u_ray_steps"), rays.sun_steps, rays.sky_steps);
+    program.use();
+    program.set("u_bounds_min", view.bounds.min - glm::vec3(2.0F * view.texel));
+    program.set("u_bounds_max", view.bounds.max + glm::vec3(2.0F * view.texel));
+    program.set("u_scale", view.bounds.longestSide());
+    program.set("u_texel", view.texel);
+    program.set("u_sun", sunDirection());
+    program.set("u_rays", glm::ivec2(rays.sun, rays.sky));
+    program.set("u_ray_steps", glm::ivec2(rays.sun_steps, rays.sky_steps));
 }
 
 }  // namespace relief

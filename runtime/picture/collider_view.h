@@ -1,4 +1,4 @@
-// Links a program that includes shaders/light.glsl to a collider: its textures, bounds and the sun.
+// Links a program that includes shaders/picture/light.glsl to a collider: its textures, bounds and the sun.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -94,19 +94,6 @@ class DepthSorter {
     [[nodiscard]] static std::uint32_t passesPerFrame(std::uint32_t extent, std::uint32_t frames);
 
   private:
-    struct KeysProgram {
-        GlProgram program;
-        GLint kept = -1;
-        GLint width = -1;
-        GLint extent = -1;
-        GLint eye = -1;
-    };
-    struct PassProgram {
-        GlProgram program;
-        GLint block = -1;
-        GLint stride = -1;
-    };
-
     explicit DepthSorter(std::uint32_t capacity) : capacity_(capacity) {}
     [[nodiscard]] Result<void> createTextures();
     [[nodiscard]] Result<void> createPrograms();
@@ -114,7 +101,7 @@ class DepthSorter {
                std::uint32_t passes);
     void drawPass();
     void endSequence(std::uint32_t extent);
-    void drawNext();
+    void drawNext(const GlProgram& program);
 
     std::uint32_t capacity_ = 0;
     std::uint32_t count_ = 0;
@@ -125,9 +112,8 @@ class DepthSorter {
     int current_ = 0;           // which of the two buffers holds the order
     GlTexture order_[2];
     GlFramebuffer target_[2];
-    GlVertexArray no_attributes_;
-    KeysProgram keys_;
-    PassProgram pass_;
+    GlProgram keys_;
+    GlProgram pass_;
     std::optional<RadixSort> radix_;  // instead of all the above
 };
 

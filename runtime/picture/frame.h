@@ -37,7 +37,6 @@ class Frame {
     GlTexture finished_;
     GlFramebuffer large_;
     GlFramebuffer small_;
-    GlVertexArray no_attributes_;
     GlProgram program_;
 };
 

@@ -20,18 +20,19 @@ constexpr GLsizei kBandRows = 64;
 }  // namespace
 
 void setRayUniforms(const GlProgram& program, const ColliderView& view) {
-    glUseProgram(program.name());
-    glUniform1f(uniformLocation(program, "u_step"), kStepTexels * view.texel);
-    glUniform1i(uniformLocation(program, "u_steps_max"), kRayStepsMax);
-    glUniform1i(uniformLocation(program, "u_bisections"), kBisections);
+    program.use();
+    program.set("u_step", kStepTexels * view.texel);
+    program.set("u_steps_max", kRayStepsMax);
+    program.set("u_bisections", kBisections);
 }
 
-void drawInBands(GLsizei width, GLsizei height) {
+void drawInBands(const GlProgram& program, GLuint framebuffer, GLsizei width, GLsizei height) {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     glViewport(0, 0, width, height);
     glEnable(GL_SCISSOR_TEST);
     for (GLsizei y = 0; y < height; y += kBandRows) {
         glScissor(0, y, width, std::min(kBandRows, height - y));
-        glDrawArrays(GL_TRIANGLES, 0, 3);
+        program.drawScreen();
         glFlush();
     }
     glDisable(GL_SCISSOR_TEST);

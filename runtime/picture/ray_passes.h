@@ -1,4 +1,4 @@
-// What the passes share that follow rays through a collider's field (shaders/trace.glsl).
+// What the passes share that follow rays through a collider's field (shaders/picture/trace.glsl).
 #pragma once
 
 #include "runtime/gl/gl_object.h"
@@ -12,8 +12,7 @@ inline constexpr GLsizei kCoarseStride = 4;
 /// Sets trace.glsl's uniforms; leaves the program current.
 void setRayUniforms(const GlProgram& program, const ColliderView& view);
 
-/// Draws quad.vert's triangle over the whole of the bound framebuffer, band by band: a driver may take a draw of
-/// several seconds for a hang. An empty vertex array is bound.
-void drawInBands(GLsizei width, GLsizei height);
+/// GlProgram::drawScreen() band by band: a driver may take a draw of several seconds for a hang.
+void drawInBands(const GlProgram& program, GLuint framebuffer, GLsizei width, GLsizei height);
 
 }  // namespace relief

@@ -1,4 +1,4 @@
-// Draws sprites by compute shaders, tile by tile (shaders/tile.glsl), where ParticleRenderer draws them as the GL's points
+// Draws sprites by compute shaders, tile by tile (shaders/picture/tile.glsl), where ParticleRenderer draws them as the GL's points
 // or triangles otherwise: GPUs that compute more than they draw are several times as fast so.
 //
 // The picture is cut into tiles of 16 × 16 pixels. Each sprite is made once; each tile that it reaches gets an entry;
@@ -35,8 +35,8 @@ class TilePainter {
 
     /// Of sprites of one kind; their uniforms and textures are the caller's.
     struct Programs {
-        GlProgram sprites;  ///< makes them, as grain_make.glsl and grain_place.glsl say
-        GlProgram paint;    ///< paints them, as grain_paint.glsl says
+        GlProgram sprites;  ///< makes them, as sprite.glsl and sprite_place.glsl say
+        GlProgram paint;    ///< paints them, as sprite_paint.glsl says
     };
 
     /// Errors: kUnsupported (work groups of this GL are too small), kFailure (the driver's compiler).
