@@ -23,7 +23,7 @@ struct Block {
 };
 static_assert(sizeof(Block) == (6 + 16 + 24) * 16);
 
-// What a program may be compiled without.
+// Kinds that a program may be compiled without.
 enum Kind : unsigned { kAir = 1, kFlow = 2, kCurl = 4, kAttractors = 8, kVortices = 16 };
 constexpr const char* kKindNames[] = {"AIR", "FLOW", "CURL", "ATTRACTORS", "VORTICES"};
 

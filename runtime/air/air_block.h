@@ -42,7 +42,7 @@ class AirBlock {
   private:
     GlBuffer block_;
     GlTexture flow_;
-    glm::vec4 flow_block_[3] = {};  // what the block says of the flow
+    glm::vec4 flow_block_[3] = {};  // of the block
     unsigned kinds_ = 0;
     std::size_t bytes_ = 0;
     std::string defines_;

@@ -44,10 +44,10 @@ struct CurlNoise {
 /// however long a run takes.
 [[nodiscard]] float curlTime(const CurlNoise& noise, double seconds);
 
-/// What the shader is told: the first octave's factor of the potential's derivative.
+/// For the shader: the first octave's factor of the potential's derivative.
 [[nodiscard]] float curlGain(const CurlNoise& noise);
 
-/// What the shader is told: the first octave's units of the lattice per object unit.
+/// For the shader: the first octave's units of the lattice per object unit.
 [[nodiscard]] float curlUnits(const CurlNoise& noise);
 
 }  // namespace relief

@@ -168,7 +168,7 @@ Result<Birth> birthOf(const Call& call, const relief_birth& birth, std::size_t i
     return Birth{vec(birth.position), vec(birth.velocity), birth.lifetime, birth.type};
 }
 
-/// Where a program's own shader has the collider.
+/// The binding of the collider in a program's own shader.
 Result<ColliderTextures::Binding> bindingOf(const Call& call, const TexturesObject& textures, int first_unit,
                                             int uniform_block) {
     RELIEF_TRY(call.number(first_unit, {0.0, static_cast<double>(textures.units - 3)}, {"first_unit"}));

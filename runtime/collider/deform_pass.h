@@ -17,7 +17,7 @@ namespace relief {
 
 class DeformPass {
   public:
-    /// What of a vertex is written.
+    /// The output of a vertex.
     enum class Output : std::uint8_t {
         kPositions,           ///< three floats, tightly packed
         kPositionsAndNormals  ///< six: position and normal, as ColliderMesh's vertices

@@ -19,7 +19,7 @@ constexpr int kMotionZUnit = 1;
 constexpr float kPadding = 1e-4F;
 constexpr float kThinnest = 1e-2F;
 
-/// Whether a vertex is where the map looks.
+/// True if a vertex lies in the volume of the map.
 bool holds(const DepthMap& map, const glm::vec3& p) {
     const glm::vec3 q = map.object_to_map.apply(p);
     if (map.projection() == Projection::kCube) {

@@ -49,7 +49,7 @@ class LiveCollider {
     /// kInvalidInput (not finite). Nothing then changes.
     [[nodiscard]] Result<void> setPositions(std::span<const glm::vec3> positions);
     /// The same from a buffer of the GPU: tightly packed triples of floats from `offset` bytes on; copied by
-    /// the GPU when its time comes. Nobody looks at the numbers. Errors: kUsage (called twice;
+    /// the GPU in the order of commands. The numbers are not checked. Errors: kUsage (called twice;
     /// GpuMesh::setPositions).
     [[nodiscard]] Result<void> setPositions(GLuint buffer, std::size_t offset = 0);
     /// The last change was a jump, as if the vertices had always been there: the next update() has no motion.

@@ -58,7 +58,7 @@ Row mapRow(const DepthMapFrame& frame, int k) {
     return {direction, -glm::dot(direction, frame.origin)};
 }
 
-/// What depth_map.vert takes a point of object space to.
+/// Object space to the space of depth_map.vert.
 std::array<Row, 3> rowsOf(const DepthMapFrame& frame, const TexelWindow& window) {
     if (!isCube(frame)) {
         return {double(frame.width) * mapRow(frame, 0) + Row{{}, -double(window.x)},
@@ -99,7 +99,7 @@ Result<void> checkWindow(const DepthMapFrame& frame, const TexelWindow& window, 
     return {};
 }
 
-/// What a program is compiled for.
+/// The defines of a program.
 std::string definesOf(const DepthMapFrame& frame, bool motion) {
     std::string defines;
     const auto define = [&](const char* name) { defines.append("#define ").append(name).append(" 1\n"); };
@@ -136,7 +136,7 @@ std::string definesOf(const DepthMapFrame& frame, bool motion) {
     return defines;
 }
 
-/// What PassState leaves alone because no other pass depends on it: the depth range, and on desktop GL the
+/// State that PassState leaves alone because no other pass depends on it: the depth range, and on desktop GL the
 /// provoking vertex and depth clamping.
 class DrawState {
   public:
@@ -232,7 +232,7 @@ Result<const GlProgram*> DepthMapRenderer::programFor(const DepthMapFrame& frame
 void DepthMapRenderer::setUniforms(const GlProgram& program, const GpuMesh& mesh, const DepthMapFrame& frame,
                                    const TexelWindow& window, std::uint32_t x, std::uint32_t y) {
     program.set("u_shift", glm::ivec2(mesh.vertexShift(), mesh.triangleShift()));
-    // The middle of an orthographic volume, or a cube's, as a float: points are told from it exactly.
+    // The middle of an orthographic volume, or a cube's, as a float: points are relative to it exactly.
     glm::dvec3 middle = frame.origin;
     if (!isCube(frame)) {
         middle += 0.5 * (frame.axis[0] + frame.axis[1] + frame.axis[2]);

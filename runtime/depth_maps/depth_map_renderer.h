@@ -2,7 +2,7 @@
 // `relief bake --backend raycast` makes them from one ray through the centre of each texel, to a unit of the
 // last place of the depth.
 //
-// The rasteriser only says which triangle a texel's ray meets; the depth is that of the triangle's own plane
+// The rasteriser only finds the triangle that a texel's ray meets; the depth is that of the triangle's own plane
 // at the texel's centre, because rasterisers move vertices to a grid of 1/256 pixel (see DepthMapFrame::exact
 // for what that grid still decides). Of surfaces on one ray LESS keeps the nearest, GREATER the farthest;
 // front-back maps are drawn twice into one target.

@@ -90,7 +90,7 @@ tl::unexpected<Error> tooLarge(const std::string& what, std::uint64_t count, std
                                        "; simplify the mesh");
 }
 
-/// Whether this GL's textures and draws have room for so many vertices and triangles.
+/// Checks that this GL's textures and draws have room for so many vertices and triangles.
 Result<void> checkSize(std::size_t vertices, std::size_t triangles) {
     GLint side = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side);

@@ -130,7 +130,7 @@ bool EventList::request(const Step& step) {
     slot.begin = step.begin;
     slot.end = step.end;
     slot.rows = rowsOf(std::min(options_.most, step.extent));
-    if (slot.rows == 0) {  // what is on the GPU says so, too
+    if (slot.rows == 0) {  // the list on the GPU becomes empty, too
         const std::array<float, 4> zero{};
         glBindFramebuffer(GL_FRAMEBUFFER, counts_.back().target.name());
         glClearBufferfv(GL_COLOR, 0, zero.data());

@@ -498,7 +498,7 @@ Result<RawState> ParticleSystem::readRaw() const {
             return forward(done);
         }
     }
-    // What the shader would take: step_state.glsl.
+    // As in step_state.glsl.
     for (std::size_t i = 0; verlet() && i < raw.position.size(); i += 4) {
         const float rate = rateBefore();
         for (std::size_t k = i; k < i + 3; ++k) {

@@ -1,4 +1,4 @@
-// What the particles do as a whole, summed up on the GPU: passes that each sum 4 × 4 texels into one, down to
+// Sums over all particles on the GPU: passes that each sum 4 × 4 texels into one, down to
 // a single texel, which is copied into a buffer; or, on StepPath::kCompute, the same sums in the same order by work groups
 // that each sum 64 × 64 texels into one. Nothing waits for the GPU but wait(): a sample is asked for
 // after a step and collected some steps later.
@@ -34,16 +34,16 @@ struct StatisticsSample {
 
 class Statistics {
   public:
-    static constexpr int kInFlightMax = 16;  ///< samples asked for and not yet collected
+    static constexpr int kInFlightMax = 16;  ///< requests not yet collected
 
     /// For systems of this capacity. Needs a current context, as every call does.
     /// \param path  how it sums, of systems of either path: the system's, as a rule.
     /// Errors: kUsage (0 or above ParticleSystem::kCapacityMax), kLimit, kUnsupported, kFailure.
     [[nodiscard]] static Result<Statistics> create(std::uint32_t capacity, StepPath path = StepPath::kAuto);
 
-    /// Asks for a sample of the particles as they are now; restores the GL state.
+    /// Requests a sample of the particles as they are now; restores the GL state.
     /// \param tag  comes back with it, the number of the step for example.
-    /// \return false, and nothing is asked for, while kInFlightMax samples are under way, or if the system is
+    /// \return false, and nothing is requested, while kInFlightMax samples are under way, or if the system is
     ///         larger than the capacity.
     bool request(const ParticleSystem& particles, std::uint64_t tag);
 
@@ -65,7 +65,7 @@ class Statistics {
         GlBuffer buffer;
         GlFence fence;
         std::uint64_t tag = 0;
-        bool empty = false;  // no particles: nothing was asked of the GPU
+        bool empty = false;  // no particles, and no work of the GPU
     };
 
     Statistics() = default;

@@ -14,7 +14,7 @@ namespace {
 /// eight bodies of 128; but each group of 64 particles makes a copy, and what many maps cost then was not measured.
 constexpr int kTourMapsMax = 64;
 
-/// Whether lanes go on by themselves, from body to body or along their ways (shaders/collider/collider_tour.glsl). For one point of one
+/// True if lanes proceed on their own, from body to body or along their paths (shaders/collider/collider_tour.glsl). For one point of one
 /// collider this gains nothing, and a ball's points are as well asked in loops.
 bool toursMaps(const StepFeatures& features) {
     return features.compute && features.collider != nullptr && !features.radius &&

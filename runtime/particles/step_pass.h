@@ -19,10 +19,10 @@ struct Forces {
     float viscosity = 0.0F;   ///< above 0: Stokes drag 6π · viscosity · radius instead of `drag`
 };
 
-/// How fast a type takes on the velocity of the air, 1/s.
+/// The rate at which a type takes on the velocity of the air, 1/s.
 [[nodiscard]] float dragRate(const Forces& forces, const ParticleType& type);
 
-/// What the program is made for. A change of any of these needs another one.
+/// The features that the program is compiled for. A change of any of these needs another one.
 struct StepFeatures {
     const ColliderTextures* collider = nullptr;  ///< null: nothing solid but the floor
     const AirBlock* air = nullptr;               ///< null: still, but for the wind of Forces
@@ -32,7 +32,7 @@ struct StepFeatures {
     bool compute = false;  ///< the program is a compute shader: dispatch()
     bool masks = false;    ///< some type does not collide with all
     int types = 1;
-    bool events = false;  ///< writes what happened, too (shaders/particles/step_event.glsl)
+    bool events = false;  ///< writes events, too (shaders/particles/step_event.glsl)
     friend bool operator==(const StepFeatures&, const StepFeatures&) = default;
 };
 

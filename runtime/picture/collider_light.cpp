@@ -7,7 +7,6 @@
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
-#include "runtime/picture/ray_passes.h"
 #include "shaders/picture/constants.h"
 
 namespace relief {
@@ -124,7 +123,7 @@ Result<void> ColliderLight::createTextures() {
     coarse_target_ = RELIEF_TRY(makeFramebuffer(std::array<GLuint, 1>{coarse_.name()}));
     RELIEF_TRY(occupied_.allocate());
     RELIEF_TRY(sky_.allocate());
-    // Last: that it is there says that all of them are.
+    // Last: its existence stands for that of all.
     sun_target_ = RELIEF_TRY(makeFramebuffer(std::array<GLuint, 1>{sun_map_.name()}));
     return {};
 }

@@ -4,7 +4,7 @@
 //
 //     bytes on the GPU ≈ 4 · kSunSide² + 2 · voxels: 1.0 MB and, of a cube, 0.9 MB
 //
-// How exact it is. Behind a sheet, however thin, the sun may shine as far as sunBias(), and the sky as far as 1.5
+// Accuracy. Behind a sheet, however thin, the sun may shine as far as sunBias(), and the sky as far as 1.5
 // voxels: voxel() is 1/40 of the collider's longest side. The sun's map misses what is thinner than four of its texels
 // across the light.
 #pragma once

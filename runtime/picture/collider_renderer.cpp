@@ -6,7 +6,6 @@
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
-#include "runtime/picture/ray_passes.h"
 
 namespace relief {
 namespace {

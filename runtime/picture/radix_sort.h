@@ -23,14 +23,14 @@ class RadixSort {
     [[nodiscard]] static Result<RadixSort> create(std::uint32_t capacity, std::uint32_t width);
 
     /// Sorts the particles of the indices below `extent`, 1…capacity; the rest as DepthSorter::update(). Leaves program and
-    /// textures as they fall, image and storage units as they were.
+    /// textures changed; restores image and storage units.
     void sort(const GlTexture& positions, std::uint32_t width, std::uint32_t extent, const glm::vec3& eye);
 
     /// x: index, y: key of the rank; `extent` of the last sort() ranks.
     [[nodiscard]] const GlTexture& order() const { return order_; }
 
   private:
-    /// How the elements are cut into blocks.
+    /// The division of the elements into blocks.
     struct Cut {
         std::uint32_t count, turns, blocks;
     };

@@ -263,7 +263,7 @@ void TilePainter::paint(const Programs& programs, const Vertices& vertices, bool
 }
 
 void TilePainter::sortEntries() const {
-    // How many there are is the GPU's to know: blocks for all that there is room for, of which some stay empty.
+    // Only the GPU knows their number: blocks for all that there is room for, of which some stay empty.
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     constexpr auto kWord = static_cast<GLsizeiptr>(kWordBytes);
     copyBuffer(work_, totals_, kRadixDigits * kWord, kWord);
