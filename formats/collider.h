@@ -1,5 +1,5 @@
 // A collider: a set of depth maps that together represent the outer shape of an object, and what they say of
-// a point. CPU truth of shaders/collider.glsl.
+// a point. CPU truth of shaders/collider/collider.glsl.
 #pragma once
 
 #include <cstdint>

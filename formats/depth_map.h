@@ -1,5 +1,5 @@
 // One depth map: its place in object space, its texels, and its vote for a point. CPU truth of
-// shaders/collider.glsl.
+// shaders/collider/collider.glsl.
 //
 // An orthographic map looks along +z of its map coordinates. T = object_to_map carries the map's volume to
 // the unit cube; x runs to the right and y upwards in the texture (row 0 is y = 0), z from near to far:
@@ -19,7 +19,6 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
-#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -86,6 +85,10 @@ inline constexpr double kGrazingCosine = 1e-3;
 /// no infinity; reports print it as "inf".
 inline constexpr float kFarOutside = 1e30F;
 
+/// The distance of no vote: the lowest float, -(2^24 - 1) 2^104. Shaders share this form of it, since ANGLE, which browsers
+/// compile with, takes its shortest digits for infinite.
+inline constexpr float kFarInside = -16777215.0F * 2.028240960365167e31F;
+
 /// Limits that every map keeps; `container.h` refuses files beyond them.
 inline constexpr std::uint32_t kMapSizeMax = 16384;  ///< texels along one side
 inline constexpr std::uint32_t kMapSizeMin = 3;      ///< orthographic: one texel inside the border
@@ -125,9 +128,8 @@ struct DepthMap {
 
 /// What a map, or a whole collider, says of a point.
 struct Vote {
-    /// Object units, positive outside; "far inside" at first.
-    float distance = -std::numeric_limits<float>::max();
-    glm::vec3 normal{0.0F};  ///< unit length, outwards; zero where the vote is only "far outside"
+    float distance = kFarInside;  ///< object units, positive outside
+    glm::vec3 normal{0.0F};       ///< unit length, outwards; zero where the vote is only "far outside"
 };
 
 /// The rule that combines votes, in any order (paper section 4.1, rule 2): outside as soon as one vote is

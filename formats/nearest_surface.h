@@ -1,5 +1,5 @@
 // The nearest surface of a collider, found by asking its maps again and again. CPU truth of reliefNearest in
-// shaders/nearest_surface.glsl; README.md, "The nearest surface", in words.
+// shaders/collider/nearest_surface.glsl; README.md, "The nearest surface", in words.
 //
 // A vote knows one plane: that of the texel that P falls on. Its distance is the surface's where the surface is that
 // plane, and wrong beside a silhouette, off an edge, or in a pocket, where another part is nearer. So the search
@@ -15,7 +15,6 @@
 #pragma once
 
 #include <glm/vec3.hpp>
-#include <limits>
 
 #include "formats/collider.h"
 
@@ -34,19 +33,20 @@ struct SurfaceSample {
     [[nodiscard]] bool inside() const { return map >= 0 && distance < 0.0F; }
 };
 
-/// The numbers of the search, which the shader shares; nearest_surface.cpp says where each counts.
+/// The numbers of the search, shared with the shader (shaders/embed.cmake); nearest_surface.cpp uses each.
 struct NearestSearch {
     /// No search asks a collider about more points. Near the surface it asks about 20 in the mean; outside, most of them
     /// cost one vote.
     static constexpr int kEvaluationsMax = 192;
     static constexpr int kSteps = 8;           // from the plane of the vote at P
     static constexpr int kStepsFromProbe = 4;  // from a plane met beside it
-    static constexpr float kBeyond = 0x1p-6F;  // of the way to a plane: how far behind it the maps are asked
-    static constexpr float kBeyondMin = 0x1p-16F;  // of the longest side
-    static constexpr float kBeyondMax = 0x1p-8F;   // of the longest side: thin parts must not be stepped over
-    static constexpr float kNearer =
-        1.0F - 0x1p-7F;                    // a plane must be nearer by that to be worth another step
-    static constexpr int kFinestRing = 5;  // of radius 2⁻⁵ of the longest side
+    static constexpr float kBeyond =
+        0.015625F;  // of the way to a plane: how far behind it the maps are evaluated
+    static constexpr float kBeyondMin = 1.52587890625e-5F;  // 2⁻¹⁶ of the longest side
+    static constexpr float kBeyondMax =
+        0.00390625F;                              // of the longest side, so that no thin part is stepped over
+    static constexpr float kNearer = 0.9921875F;  // a plane must be nearer by that to be worth another step
+    static constexpr int kFinestRing = 5;         // of radius 2⁻⁵ of the longest side
     static constexpr int kFinestWholeRing = 3;
     static constexpr int kHalvings = 4;
     static constexpr int kRounds = 2;
@@ -54,10 +54,11 @@ struct NearestSearch {
     static constexpr float kShareFar = 0.9F;
     static constexpr int kTurns = 12;
     static constexpr float kTilt = 0.5F;
-    static constexpr float kTiltMin = 0x1p-4F;
+    static constexpr float kTiltMin = 0.0625F;
     static constexpr float kReachMax = 1e15F;  // so that squares do not overflow
     static constexpr float kReachMin = 1e-12F;
-    static constexpr float kDistanceMin = std::numeric_limits<float>::min();  // no distance of 0 says inside
+    static constexpr float kDistanceMin =
+        1.17549435e-38F;  // the least normal float: a distance of 0 would be neither side
 };
 
 /// The distance from P to the nearest surface that the maps know of.

@@ -62,7 +62,7 @@ std::vector<std::string> gpuFileNames(const Collider& collider) {
 
 Result<void> exportForGpu(const Collider& collider, const std::filesystem::path& folder) {
     const GpuImage image = RELIEF_TRY(gpuImage(collider));
-    const std::string core = RELIEF_TRY(shaderText("collider.glsl"));
+    const std::string core = RELIEF_TRY(shaderText("collider/collider.glsl"));
     Json textures = Json::array();
     for (const TexelKind kind : kKinds) {
         textures.push_back(describe(collider, image, kind));

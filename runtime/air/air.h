@@ -1,5 +1,5 @@
-// What pushes a particle besides collision and gravity: moving air, which acts through drag, and fields,
-// which accelerate. Plain settings, and on the CPU what shaders/air.glsl computes on the GPU; air_block.h
+// Forces on a particle besides collision and gravity: moving air, which acts through drag, and fields,
+// which accelerate. Plain settings, and on the CPU what shaders/air/air.glsl computes on the GPU; air_block.h
 // puts the settings there.
 #pragma once
 
@@ -12,7 +12,7 @@
 #include "formats/base/result.h"
 #include "runtime/air/curl_noise.h"
 #include "runtime/air/flow_field.h"
-#include "shaders/shader_constants.h"
+#include "shaders/air/constants.h"
 
 namespace relief {
 
@@ -61,7 +61,7 @@ struct AirSettings {
 /// \param t  seconds, as airTime() gives them.
 [[nodiscard]] glm::vec3 airVelocity(const AirSettings& air, const glm::vec3& p, float t);
 
-/// What attractors and vortices do to a particle at p, object units a second squared. `v` and `t` are for
+/// The acceleration of a particle at p by attractors and vortices, object units a second squared. `v` and `t` are for
 /// fields to come: none yet depends on them.
 [[nodiscard]] glm::vec3 fieldAcceleration(const AirSettings& air, const glm::vec3& p, const glm::vec3& v,
                                           float t);

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
-#include <glm/geometric.hpp>
+#include <glm/glm.hpp>
 #include <iterator>
 
 #include "runtime/gl/gl_fault.h"
@@ -23,7 +23,7 @@ struct Block {
 };
 static_assert(sizeof(Block) == (6 + 16 + 24) * 16);
 
-// What a program may be compiled without.
+// Kinds that a program may be compiled without.
 enum Kind : unsigned { kAir = 1, kFlow = 2, kCurl = 4, kAttractors = 8, kVortices = 16 };
 constexpr const char* kKindNames[] = {"AIR", "FLOW", "CURL", "ATTRACTORS", "VORTICES"};
 
@@ -61,26 +61,6 @@ Block blockOf(const AirSettings& air, const glm::vec4 (&flow)[3]) {
     return block;
 }
 
-/// Uploads to the unit that is active.
-GlTexture uploadFlow(const FlowField& flow) {
-    GLuint name = 0;
-    glGenTextures(1, &name);
-    GlTexture texture(name);
-    glBindTexture(GL_TEXTURE_3D, name);
-    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) {
-        glTexParameteri(GL_TEXTURE_3D, filter, GL_NEAREST);
-    }
-    for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) {
-        glTexParameteri(GL_TEXTURE_3D, wrap, GL_CLAMP_TO_EDGE);
-    }
-    glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAX_LEVEL, 0);
-    static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
-    glTexImage3D(GL_TEXTURE_3D, 0, GL_RGB32F, static_cast<GLsizei>(flow.size[0]),
-                 static_cast<GLsizei>(flow.size[1]), static_cast<GLsizei>(flow.size[2]), 0, GL_RGB, GL_FLOAT,
-                 flow.nodes.data());
-    return texture;
-}
-
 }  // namespace
 
 Result<AirBlock> AirBlock::create(const AirSettings& air) {
@@ -108,7 +88,9 @@ Result<AirBlock> AirBlock::create(const AirSettings& air) {
                                                " nodes along an axis, this GL takes " +
                                                std::to_string(side_max) + "; resample it");
         }
-        result.flow_ = uploadFlow(flow);
+        static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
+        result.flow_ = makeTexture3D(GL_RGB32F, {flow.size[0], flow.size[1], flow.size[2]}, GL_RGB, GL_FLOAT,
+                                     GL_NEAREST, flow.nodes.data());
         result.bytes_ = flow.nodes.size() * FlowField::kNodeBytes;
         result.flow_block_[0] = glm::vec4(flow.box_min, flow.gain);
         result.flow_block_[1] = glm::vec4(flow.box_max, flow.outside == FlowOutside::kEdge ? 1.0F : 0.0F);
@@ -145,8 +127,8 @@ void AirBlock::attach(const GlProgram& program, const Binding& binding) const {
     if (!block_) {
         return;
     }
-    glUseProgram(program.name());
-    glUniform1i(uniformLocation(program, "u_relief_flow"), binding.flow_unit);
+    program.use();
+    program.set("u_relief_flow", binding.flow_unit);
     const GLuint index = glGetUniformBlockIndex(program.name(), "ReliefAir");
     if (index != GL_INVALID_INDEX) {
         glUniformBlockBinding(program.name(), index, static_cast<GLuint>(binding.uniform_block));
@@ -158,8 +140,7 @@ void AirBlock::bind(const Binding& binding) const {
         return;
     }
     if (flow_) {
-        glActiveTexture(static_cast<GLenum>(GL_TEXTURE0 + binding.flow_unit));
-        glBindTexture(GL_TEXTURE_3D, flow_.name());
+        useTexture3D(binding.flow_unit, flow_);
     }
     glBindBufferBase(GL_UNIFORM_BUFFER, static_cast<GLuint>(binding.uniform_block), block_.name());
 }

@@ -1,4 +1,4 @@
-// AirSettings on the GPU: a uniform block and, for a flow, a 3-D texture, read by shaders/air.glsl.
+// AirSettings on the GPU: a uniform block and, for a flow, a 3-D texture, read by shaders/air/air.glsl.
 #pragma once
 
 #include <glm/vec4.hpp>
@@ -42,7 +42,7 @@ class AirBlock {
   private:
     GlBuffer block_;
     GlTexture flow_;
-    glm::vec4 flow_block_[3] = {};  // what the block says of the flow
+    glm::vec4 flow_block_[3] = {};  // of the block
     unsigned kinds_ = 0;
     std::size_t bytes_ = 0;
     std::string defines_;

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
-#include "shaders/shader_constants.h"
+#include "shaders/air/constants.h"
 
 namespace relief {
 namespace {
@@ -30,11 +30,11 @@ std::uint32_t hash(std::uint32_t x) {
     return x;
 }
 
-// What the number of a lattice point grows by along each axis of the skewed lattice. Of six thousand random
+// The increment of a lattice point's number along each axis of the skewed lattice. Of six thousand random
 // triples, this is the one whose numbers repeat farthest away: 1379 units.
 constexpr std::uint32_t kSteps[3] = {0xEBD5C9D3U, 0x3966CCC3U, 0xFE172BC7U};
 
-/// What a lattice point has: the potential near it is (a + b × d)(1/2 - |d|²)³ / 6.
+/// A lattice point's share: the potential near it is (a + b × d)(1/2 - |d|²)³ / 6.
 struct Corner {
     glm::vec3 a{0.0F};
     glm::vec3 b{0.0F};

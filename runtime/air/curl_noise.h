@@ -1,5 +1,5 @@
 // Turbulence: the curl of a random potential, which therefore has no divergence: particles neither gather nor
-// thin out. The C++ side of shaders/curl_noise.glsl.
+// thin out. The C++ side of shaders/air/curl_noise.glsl.
 //
 // The potential is noise on the simplex lattice (K. Perlin, 2001; S. Gustavson, "Simplex noise demystified",
 // 2005): the four corners of a simplex have a share in it. A corner's is (a + b × d)(1/2 - |d|²)³ / 6, where d
@@ -44,10 +44,10 @@ struct CurlNoise {
 /// however long a run takes.
 [[nodiscard]] float curlTime(const CurlNoise& noise, double seconds);
 
-/// What the shader is told: the first octave's factor of the potential's derivative.
+/// For the shader: the first octave's factor of the potential's derivative.
 [[nodiscard]] float curlGain(const CurlNoise& noise);
 
-/// What the shader is told: the first octave's units of the lattice per object unit.
+/// For the shader: the first octave's units of the lattice per object unit.
 [[nodiscard]] float curlUnits(const CurlNoise& noise);
 
 }  // namespace relief

@@ -1,4 +1,4 @@
-// Velocities on a grid over a box: the C++ side of reliefFlow() in shaders/air.glsl.
+// Velocities on a grid over a box: the C++ side of reliefFlow() in shaders/air/air.glsl.
 #pragma once
 
 #include <array>
@@ -11,10 +11,10 @@
 
 namespace relief {
 
-/// What a flow field says outside its box.
+/// The velocity outside a flow field's box.
 enum class FlowOutside : int {
-    kZero = 0,  ///< nothing: the velocity jumps to 0 at the box's faces
-    kEdge = 1,  ///< what it says at the nearest point of the box
+    kZero = 0,  ///< none: the velocity jumps to 0 at the box's faces
+    kEdge = 1,  ///< that of the nearest point of the box
 };
 
 /// Node-centred: the first and last nodes of an axis lie on the faces of the box, and between nodes the

@@ -53,7 +53,7 @@ class BareMesh {
     static Result<BareMesh> create(const PictureMesh& mesh) {
         BareMesh bare;
         for (int words = 0; words < 2; ++words) {
-            bare.program_[words] = RELIEF_TRY(makeProgram("bare_draw.vert", "bare_draw.frag",
+            bare.program_[words] = RELIEF_TRY(makeProgram("bench/bare_draw.vert", "bench/bare_draw.frag",
                                                           words == 0 ? "" : "#define RELIEF_WORDS 1\n"));
         }
         bare.corners_ = static_cast<GLsizei>(mesh.triangles.size());
@@ -89,7 +89,7 @@ class BareMesh {
             glScissor(0, y, kSize, kSize);
             clear(frame);
             const glm::mat4 clip = clipOf(frame, faces == 1 ? -1 : static_cast<int>(face));
-            glUniformMatrix4fv(uniformLocation(program, "u_clip"), 1, GL_FALSE, glm::value_ptr(clip));
+            program.set("u_clip", clip);
             for (const bool far : {false, true}) {
                 if (frame.compare == (far ? Compare::kLess : Compare::kGreater)) {
                     continue;

@@ -29,7 +29,7 @@ class BarePoints {
   public:
     static Result<BarePoints> create(std::string_view defines) {
         BarePoints bare;
-        bare.program_ = RELIEF_TRY(makeProgram("bare_points.vert", "bare_draw.frag", defines));
+        bare.program_ = RELIEF_TRY(makeProgram("bench/bare_points.vert", "bench/bare_draw.frag", defines));
         bare.array_ = makeVertexArray();
         return bare;
     }
@@ -37,11 +37,10 @@ class BarePoints {
               const RenderTarget& target) const {
         const PassState state;
         const glm::mat4 clip = camera.projection(target.aspect()) * camera.view();
-        glUseProgram(program_.name());
-        glUniformMatrix4fv(uniformLocation(program_, "u_clip"), 1, GL_FALSE, glm::value_ptr(clip));
-        glUniform1f(uniformLocation(program_, "u_pixels"),
-                    diameter * 0.5F * static_cast<float>(target.height) / camera.tanHalfFov());
-        glUniform1f(uniformLocation(program_, "u_pixels_min"), kLeastPixels);
+        program_.use();
+        program_.set("u_clip", clip);
+        program_.set("u_pixels", diameter * 0.5F * static_cast<float>(target.height) / camera.tanHalfFov());
+        program_.set("u_pixels_min", kLeastPixels);
         useTexture(0, particles.positions());
         glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
         glViewport(0, 0, target.width, target.height);

@@ -9,10 +9,10 @@
 #include "formats/container.h"
 #include "runtime/bench/bench.h"
 #include "runtime/bench/bench_scene.h"
+#include "runtime/gl/compute_units.h"
 #include "runtime/gl/gl_functions.h"
-#include "runtime/gl/image_units.h"
 #include "runtime/particles/random.h"
-#include "shaders/shader_constants.h"
+#include "shaders/particles/constants.h"
 
 namespace relief {
 namespace {
@@ -36,11 +36,10 @@ class Copy {
             copy.target_[i] = RELIEF_TRY(
                 makeFramebuffer(std::array<GLuint, 2>{copy.state_[i][0].name(), copy.state_[i][1].name()}));
         }
-        copy.program_ = RELIEF_TRY(copy.compute_ ? makeComputeProgram("copy_state.comp")
-                                                 : makeProgram("quad.vert", "copy_state.frag"));
-        copy.array_ = makeVertexArray();
-        glUseProgram(copy.program_.name());
-        glUniform1i(uniformLocation(copy.program_, "u_velocity"), 1);
+        copy.program_ = RELIEF_TRY(copy.compute_ ? makeComputeProgram("bench/copy_state.frag")
+                                                 : makeScreenProgram("bench/copy_state.frag"));
+        copy.program_.use();
+        copy.program_.set("u_velocity", 1);
         glUseProgram(0);
         return copy;
     }
@@ -58,10 +57,7 @@ class Copy {
                               static_cast<GLuint>((rows_ + kStepGroupHeight - 1) / kStepGroupHeight), 1);
             ImageUnits::finish();
         } else {
-            glBindFramebuffer(GL_FRAMEBUFFER, target_[next].name());
-            glViewport(0, 0, kWidth, rows_);
-            glBindVertexArray(array_.name());
-            glDrawArrays(GL_TRIANGLES, 0, 3);
+            program_.drawScreen(target_[next].name(), kWidth, rows_);
         }
         glUseProgram(0);  // PassState must not save it
         current_ = next;
@@ -76,7 +72,6 @@ class Copy {
     std::array<std::array<GlTexture, 2>, 2> state_;  // position and velocity
     std::array<GlFramebuffer, 2> target_;
     GlProgram program_;
-    GlVertexArray array_;
 };
 
 /// Counts who touches the collider at the end of a block.

@@ -17,21 +17,21 @@
 
 namespace relief {
 
-/// What a handle of C's type H stands for: specialised with Object, kKind and kName.
+/// The object behind a handle of C's type H: specialised with Object, kKind and kName.
 template <class H>
 struct HandleType;
 
-/// What this thread's calls have failed with.
+/// The errors of this thread's calls.
 class CallErrors {
   public:
     [[nodiscard]] const char* last() const { return shown_; }
     [[nodiscard]] std::uint64_t count() const { return count_; }
 
     void fail(const char* message) noexcept;
-    /// Making an object of this kind has failed as last() says: its NULL may be handed on.
+    /// Making an object of this kind has failed with last(): its NULL may be handed on.
     void failedToMake(HandleKind kind) noexcept;
     void made(HandleKind kind) noexcept { of(kind).clear(); }
-    /// What a NULL of this kind comes from, if it comes from a failure that nobody has read; else empty.
+    /// The unread failure that a NULL of this kind comes from; else empty.
     [[nodiscard]] const std::string& unreadOf(HandleKind kind) const {
         return unread_[static_cast<std::size_t>(kind) - 1];
     }
@@ -59,7 +59,7 @@ struct NumberRange {
     }
 };
 
-/// Where a number stands, for messages: "births[3].velocity[1]".
+/// The place of a number, for messages: "births[3].velocity[1]".
 struct NumberName {
     static constexpr std::size_t kNone = ~std::size_t{0};
     const char* argument;
@@ -90,24 +90,16 @@ class Call {
     template <class H>
     [[nodiscard]] Result<std::shared_ptr<typename HandleType<H>::Object>> shared(const H* handle,
                                                                                  const char* argument) const {
-        using Object = typename HandleType<H>::Object;
-        const auto number = reinterpret_cast<std::uintptr_t>(handle);
-        if (const auto* found = handleTable().find(HandleType<H>::kKind, number); found != nullptr) {
-            return std::static_pointer_cast<Object>(*found);
-        }
-        return faulty(HandleType<H>::kKind, number, argument, HandleType<H>::kName);
+        const std::shared_ptr<void>& found = *RELIEF_TRY(find(handle, argument));
+        return std::static_pointer_cast<typename HandleType<H>::Object>(found);
     }
     /// As shared(); the caller's handle keeps it.
     template <class H>
     [[nodiscard]] Result<typename HandleType<H>::Object*> object(const H* handle,
                                                                  const char* argument) const {
-        const auto number = reinterpret_cast<std::uintptr_t>(handle);
-        if (const auto* found = handleTable().find(HandleType<H>::kKind, number); found != nullptr) {
-            return static_cast<typename HandleType<H>::Object*>(found->get());
-        }
-        return faulty(HandleType<H>::kKind, number, argument, HandleType<H>::kName);
+        return static_cast<typename HandleType<H>::Object*>(RELIEF_TRY(find(handle, argument))->get());
     }
-    /// As shared(), null for NULL; but a NULL that a failure handed out, which nobody has read, is that failure.
+    /// As shared(), null for NULL; but a NULL of an unread failure is that failure.
     template <class H>
     [[nodiscard]] Result<std::shared_ptr<typename HandleType<H>::Object>> optional(
         const H* handle, const char* argument) const {
@@ -161,6 +153,14 @@ class Call {
     [[nodiscard]] Result<void> context() const;
 
   private:
+    template <class H>
+    [[nodiscard]] Result<const std::shared_ptr<void>*> find(const H* handle, const char* argument) const {
+        const auto number = reinterpret_cast<std::uintptr_t>(handle);
+        if (const auto* found = handleTable().find(HandleType<H>::kKind, number); found != nullptr) {
+            return found;
+        }
+        return faulty(HandleType<H>::kKind, number, argument, HandleType<H>::kName);
+    }
     [[nodiscard]] tl::unexpected<Error> faulty(HandleKind kind, std::uintptr_t handle, const char* argument,
                                                const char* type) const;
     [[nodiscard]] tl::unexpected<Error> wrongNumber(double value, const NumberRange& range,
@@ -169,7 +169,7 @@ class Call {
     const char* function_;
 };
 
-/// What body(call) returns, or `failed`; callErrors() has why.
+/// The result of body(call), or `failed`; callErrors() has the reason.
 template <class T, class F>
 T answer(const char* function, T failed, const F& body) noexcept {
     try {

@@ -1,4 +1,4 @@
-// What a handle of C means. A handle is a number in the shape of a pointer: kind, place in a table, and generation of that
+// Handles of C. A handle is a number in the shape of a pointer: kind, place in a table, and generation of that
 // place. It is looked up, never followed, so that whatever a caller passes on is answered and cannot crash:
 //
 //     64 bits:  1 | generation, 30 bits | place, 30 bits | kind, 3 bits           (32 bits: 14 and 14)
@@ -39,7 +39,7 @@ class HandleTable {
 
     /// Never 0. Throws std::bad_alloc, also where all places are taken; nothing has changed then.
     [[nodiscard]] std::uintptr_t add(HandleKind kind, std::shared_ptr<void> object);
-    /// Null: faultOf() says why.
+    /// Null: faultOf() has the reason.
     [[nodiscard]] const std::shared_ptr<void>* find(HandleKind kind, std::uintptr_t handle) const noexcept;
     /// The object, which the caller may be the last to hold; null as find().
     [[nodiscard]] std::shared_ptr<void> remove(HandleKind kind, std::uintptr_t handle) noexcept;

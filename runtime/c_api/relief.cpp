@@ -83,13 +83,15 @@ glm::vec3 pointAt(const float* points, std::size_t i) {
     return {points[3 * i], points[3 * i + 1], points[3 * i + 2]};
 }
 
-/// Frees an object whose GL names go with it: the context must be current.
+/// Frees an object. The context must be current if GL names go with it: all but colliders have some.
 template <class H>
-void freeOnGpu(const char* function, H* handle, const char* argument) noexcept {
+void release(const char* function, H* handle, const char* argument) noexcept {
     answer(function, false, [&](const Call& call) -> Result<bool> {
         if (handle != nullptr) {
             [[maybe_unused]] const auto* object = RELIEF_TRY(call.object(handle, argument));
-            RELIEF_TRY(call.context());
+            if (HandleType<H>::kKind != HandleKind::kCollider) {
+                RELIEF_TRY(call.context());
+            }
             [[maybe_unused]] const auto last =
                 handleTable().remove(HandleType<H>::kKind, reinterpret_cast<std::uintptr_t>(handle));
         }
@@ -166,7 +168,7 @@ Result<Birth> birthOf(const Call& call, const relief_birth& birth, std::size_t i
     return Birth{vec(birth.position), vec(birth.velocity), birth.lifetime, birth.type};
 }
 
-/// Where a program's own shader has the collider.
+/// The binding of the collider in a program's own shader.
 Result<ColliderTextures::Binding> bindingOf(const Call& call, const TexturesObject& textures, int first_unit,
                                             int uniform_block) {
     RELIEF_TRY(call.number(first_unit, {0.0, static_cast<double>(textures.units - 3)}, {"first_unit"}));
@@ -249,14 +251,7 @@ relief_collider* relief_collider_read(const void* bytes, size_t size) {
 }
 
 void relief_collider_free(relief_collider* collider) {
-    answer(__func__, false, [&](const Call& call) -> Result<bool> {
-        if (collider != nullptr) {
-            [[maybe_unused]] const auto* object = RELIEF_TRY(call.object(collider, "collider"));
-            [[maybe_unused]] const auto last =
-                handleTable().remove(HandleKind::kCollider, reinterpret_cast<std::uintptr_t>(collider));
-        }
-        return true;
-    });
+    release(__func__, collider, "collider");
 }
 
 void relief_collider_bounds(const relief_collider* collider, float min[3], float max[3]) {
@@ -307,7 +302,7 @@ relief_textures* relief_textures_create(const relief_collider* collider) {
                                        const Collider& field = *RELIEF_TRY(call.object(collider, "collider"));
                                        RELIEF_TRY(call.context());
                                        auto textures = RELIEF_TRY(ColliderTextures::create(field));
-                                       std::string core = RELIEF_TRY(shaderText("collider.glsl"));
+                                       std::string core = RELIEF_TRY(shaderText("collider/collider.glsl"));
                                        std::string glsl = textures.defines() + core;
                                        TexturesObject made{std::move(textures), std::move(glsl)};
                                        glGetIntegerv(GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS, &made.units);
@@ -317,7 +312,7 @@ relief_textures* relief_textures_create(const relief_collider* collider) {
 }
 
 void relief_textures_free(relief_textures* textures) {
-    freeOnGpu(__func__, textures, "textures");
+    release(__func__, textures, "textures");
 }
 
 const char* relief_textures_glsl(const relief_textures* textures) {
@@ -372,7 +367,7 @@ relief_particles* relief_particles_create(const relief_textures* textures,
 }
 
 void relief_particles_free(relief_particles* particles) {
-    freeOnGpu(__func__, particles, "particles");
+    release(__func__, particles, "particles");
 }
 
 int relief_particles_set(relief_particles* particles, const relief_particles_options* options) {
@@ -459,7 +454,7 @@ relief_picture* relief_picture_create(const relief_textures* textures, const rel
 }
 
 void relief_picture_free(relief_picture* picture) {
-    freeOnGpu(__func__, picture, "picture");
+    release(__func__, picture, "picture");
 }
 
 int relief_picture_draw(relief_picture* picture, const relief_particles* particles,

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <glm/glm.hpp>
 
-#include "shaders/shader_constants.h"
+#include "shaders/collider/constants.h"
 
 namespace relief {
 namespace {

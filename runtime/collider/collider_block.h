@@ -1,4 +1,4 @@
-// The uniform block of shaders/collider.glsl as bytes, and what that shader is compiled for.
+// The uniform block of shaders/collider/collider.glsl as bytes, and what that shader is compiled for.
 #pragma once
 
 #include <cstddef>

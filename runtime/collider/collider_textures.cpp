@@ -10,10 +10,10 @@
 #include "formats/base/finite.h"
 #include "runtime/collider/gpu_image.h"
 #include "runtime/collider/shader_texels.h"
+#include "runtime/gl/compute_units.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
-#include "runtime/gl/storage_units.h"
 
 namespace relief {
 namespace {

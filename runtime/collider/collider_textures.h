@@ -1,4 +1,4 @@
-// Colliders on the GPU: three textures and a uniform block, read by shaders/collider.glsl. One collider in
+// Colliders on the GPU: three textures and a uniform block, read by shaders/collider/collider.glsl. One collider in
 // its own object space, or several bodies with poses in a world.
 //
 // Maps of one texel layout share a 2-D texture: RGBA32F for float, RGBA8 for fixed8 and cube, RGBA16UI for
@@ -37,10 +37,10 @@ struct ColliderBody {
     float restitution = 1.0F;  ///< factor of the particle's own, 0…1
     /// ν, 0…1: what is left of the tangential speed is (1 − ν) of the particle's share.
     float friction = 0.0F;
-    bool live = false;  ///< the collider's maps say where they look; their texels are drawn later
+    bool live = false;  ///< the collider's maps have no texels yet; these are drawn later
 };
 
-/// Where the texels of a live map are.
+/// The place of the texels of a live map.
 struct LiveSlot {
     const GlTexture* texels = nullptr;  ///< the texture of its layout
     GLint x = 0;                        ///< of its texel (0, 0)
@@ -74,7 +74,7 @@ class ColliderTextures {
     void setPoses(std::span<const Pose> poses);
 
     /// One slot for each map of a live body, in their order; none for another body. The textures are this
-    /// object's: ask again after it has been moved.
+    /// object's: call again after it has been moved.
     [[nodiscard]] std::vector<LiveSlot> liveSlots(std::size_t body) const;
     /// Says that the texels of a live body have changed.
     void noteLiveUpdate() { ++revision_; }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/gl/compute_units.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
@@ -28,20 +29,9 @@ struct RestVertex {
 /// The bindings of transform feedback, which PassState leaves alone.
 class FeedbackState {
   public:
-    FeedbackState() {
-        glGetIntegerv(GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, &generic_);
-        glGetIntegeri_v(GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, 0, &first_);
-        glGetInteger64i_v(GL_TRANSFORM_FEEDBACK_BUFFER_START, 0, &offset_);
-        glGetInteger64i_v(GL_TRANSFORM_FEEDBACK_BUFFER_SIZE, 0, &size_);
-    }
+    FeedbackState() { glGetIntegerv(GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, &generic_); }
     ~FeedbackState() {
-        const auto first = static_cast<GLuint>(first_);
-        if (size_ > 0) {
-            glBindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, first, static_cast<GLintptr>(offset_),
-                              static_cast<GLsizeiptr>(size_));
-        } else {
-            glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, first);
-        }
+        first_.restore();
         glBindBuffer(GL_TRANSFORM_FEEDBACK_BUFFER, static_cast<GLuint>(generic_));
     }
     FeedbackState(const FeedbackState&) = delete;
@@ -49,14 +39,8 @@ class FeedbackState {
 
   private:
     GLint generic_ = 0;
-    GLint first_ = 0;
-    GLint64 offset_ = 0;
-    GLint64 size_ = 0;
+    SavedRange first_{GL_TRANSFORM_FEEDBACK_BUFFER, 0};
 };
-
-void setVector(const GlProgram& program, const char* name, const glm::vec3& v) {
-    glUniform3f(uniformLocation(program, name), v.x, v.y, v.z);
-}
 
 }  // namespace
 
@@ -109,7 +93,7 @@ Result<DeformPass> DeformPass::make(const std::string& defines, const std::strin
     pass.vertices_ = static_cast<GLsizei>(positions.size());
     pass.inch_ = std::max(kInch * bounds.longestSide(), std::numeric_limits<float>::min());
     pass.program_ = RELIEF_TRY(
-        makeFeedbackProgram("deform.vert", std::span(kOutputs).first(wants_normals ? 2 : 1),
+        makeFeedbackProgram("collider/deform.vert", std::span(kOutputs).first(wants_normals ? 2 : 1),
                             (wants_normals ? "#define RELIEF_DEFORM_NORMALS 1\n" : "") + defines, glsl));
     pass.rest_ = makeBuffer();
     pass.output_ = makeBuffer();
@@ -139,28 +123,27 @@ std::size_t DeformPass::bytes() const {
 void DeformPass::run(double time, const Pose& pose) {
     const PassState state;
     const FeedbackState feedback;
-    glUseProgram(program_.name());
-    const auto at = [&](const char* name) { return uniformLocation(program_, name); };
+    program_.use();
     const glm::mat3 turn = glm::mat3_cast(pose.rotation);
     std::array<glm::vec4, 3> rows;
     for (int i = 0; i < 3; ++i) {
         rows[static_cast<std::size_t>(i)] =
             glm::vec4(pose.scale * glm::vec3(turn[0][i], turn[1][i], turn[2][i]), pose.position[i]);
     }
-    glUniform4fv(at("u_row"), 3, &rows[0].x);
-    glUniform1f(at("u_time"), static_cast<float>(time));
-    glUniform1f(at("u_inch"), inch_);
+    program_.set("u_row", rows);
+    program_.set("u_time", static_cast<float>(time));
+    program_.set("u_inch", inch_);
     if (!custom_) {
         const DeformMoment moment = momentOf(deformation_, time);
-        glUniform1i(at("u_kind"), static_cast<GLint>(deformation_.kind));
-        glUniform1f(at("u_angle"), moment.angle);
-        setVector(program_, "u_phases", moment.phases);
-        glUniform1f(at("u_amplitude"), deformation_.amplitude);
-        glUniform1f(at("u_number"), 2.0F * std::numbers::pi_v<float> / deformation_.wavelength);
-        setVector(program_, "u_center", deformation_.center);
-        setVector(program_, "u_axis", deformation_.axis);
-        setVector(program_, "u_along", deformation_.along);
-        glUniform2f(at("u_range"), deformation_.range_low, deformation_.range_high);
+        program_.set("u_kind", static_cast<GLint>(deformation_.kind));
+        program_.set("u_angle", moment.angle);
+        program_.set("u_phases", moment.phases);
+        program_.set("u_amplitude", deformation_.amplitude);
+        program_.set("u_number", 2.0F * std::numbers::pi_v<float> / deformation_.wavelength);
+        program_.set("u_center", deformation_.center);
+        program_.set("u_axis", deformation_.axis);
+        program_.set("u_along", deformation_.along);
+        program_.set("u_range", glm::vec2(deformation_.range_low, deformation_.range_high));
     }
     glBindVertexArray(array_.name());
     glBindFramebuffer(GL_FRAMEBUFFER, target_.name());

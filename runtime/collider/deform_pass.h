@@ -1,4 +1,4 @@
-// Deforms the vertices of a mesh on the GPU, by shaders/deform.vert and transform feedback, into a buffer:
+// Deforms the vertices of a mesh on the GPU, by shaders/collider/deform.vert and transform feedback, into a buffer:
 // for LiveCollider::setPositions(buffer), and for the mesh's picture.
 //
 //     bytes on the GPU = 24 · vertices, and the buffers that are written: 12 or 24 a vertex
@@ -17,7 +17,7 @@ namespace relief {
 
 class DeformPass {
   public:
-    /// What of a vertex is written.
+    /// The output of a vertex.
     enum class Output : std::uint8_t {
         kPositions,           ///< three floats, tightly packed
         kPositionsAndNormals  ///< six: position and normal, as ColliderMesh's vertices

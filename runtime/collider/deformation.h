@@ -1,4 +1,4 @@
-// Deformations of a mesh in the course of time, on the CPU: the truth of shaders/deform.vert, and what a
+// Deformations of a mesh in the course of time, on the CPU: the truth of shaders/collider/deform.vert, and what a
 // scene needs to choose boxes that hold the whole motion.
 //
 //     twist   p turns about the line (center, axis) by angle · share(s)         s = (p − center)·axis
@@ -18,7 +18,7 @@
 
 #include "formats/base/result.h"
 #include "formats/collider.h"
-#include "shaders/shader_constants.h"
+#include "shaders/collider/constants.h"
 
 namespace relief {
 
@@ -36,7 +36,7 @@ struct Deformation {
     friend bool operator==(const Deformation&, const Deformation&) = default;
 };
 
-/// What of a deformation depends on the time alone, worked out in double.
+/// The part of a deformation that depends on the time alone, computed in double.
 struct DeformMoment {
     float angle = 0.0F;      ///< bend, twist: radians
     glm::vec3 phases{0.0F};  ///< wobble: of the three waves, radians, −2π…2π
@@ -49,7 +49,7 @@ struct DeformMoment {
 /// \param time  seconds.
 [[nodiscard]] DeformMoment momentOf(const Deformation& deformation, double time);
 
-/// Where a point of the mesh at rest is at that moment.
+/// The place, at that moment, of a point of the mesh at rest.
 /// \param normal  of the surface there, of length 1 or zero; wobble alone needs it.
 [[nodiscard]] glm::vec3 deform(const Deformation& deformation, const DeformMoment& moment, const glm::vec3& p,
                                const glm::vec3& normal);

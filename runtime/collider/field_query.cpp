@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <glm/glm.hpp>
 
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
@@ -14,10 +15,10 @@ constexpr GLsizei kWidth = 1024;
 constexpr std::size_t kBatch = std::size_t{kWidth} * 1024;  // points evaluated with one draw
 constexpr ColliderTextures::Binding kBinding{1, 0};         // unit 0 holds the points
 
-/// Runs a program of query.frag at each point, and hands out both of its outputs, in order.
+/// Runs a program of query.frag at each point, and passes both of its outputs to take(), in order.
 template <class Take>
-Result<void> ask(std::span<const glm::vec3> points, const GlProgram& program,
-                 const ColliderTextures& textures, const GlVertexArray& no_attributes, const Take& take) {
+Result<void> run(std::span<const glm::vec3> points, const GlProgram& program,
+                 const ColliderTextures& textures, const Take& take) {
     RELIEF_TRY(checkTextureSize(kWidth, std::min(kBatch, points.size()) / kWidth, "the points of a query",
                                 "this GL is too small for it"));
     for (std::size_t first = 0; first < points.size(); first += kBatch) {
@@ -37,13 +38,9 @@ Result<void> ask(std::span<const glm::vec3> points, const GlProgram& program,
                                   "close what else is on the GPU"));
         const std::array<GLuint, 2> targets = {normal_distance.name(), map.name()};
         const GlFramebuffer framebuffer = RELIEF_TRY(makeFramebuffer(targets));
-        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer.name());
-        glViewport(0, 0, kWidth, height);
-        glUseProgram(program.name());
         useTexture(0, input);
         textures.bind(kBinding);
-        glBindVertexArray(no_attributes.name());
-        glDrawArrays(GL_TRIANGLES, 0, 3);
+        program.drawScreen(framebuffer.name(), kWidth, height);
 
         const auto fields = RELIEF_TRY(readTextureFloats(normal_distance, kWidth, height));
         const auto maps = RELIEF_TRY(readTextureFloats(map, kWidth, height));
@@ -72,14 +69,13 @@ Result<FieldQuery> FieldQuery::create(const ColliderTextures& textures) {
     FieldQuery query;
     query.textures_ = &textures;
     query.program_ = RELIEF_TRY(query.program(""));
-    query.no_attributes_ = makeVertexArray();
     return query;
 }
 
 Result<GlProgram> FieldQuery::program(const std::string& defines) const {
-    GlProgram program = RELIEF_TRY(makeProgram("quad.vert", "query.frag", textures_->defines() + defines));
+    GlProgram program = RELIEF_TRY(makeScreenProgram("collider/query.frag", textures_->defines() + defines));
     textures_->attach(program, kBinding);
-    glUniform1i(uniformLocation(program, "u_points"), 0);
+    program.set("u_points", 0);
     return program;
 }
 
@@ -87,7 +83,7 @@ Result<std::vector<FieldSample>> FieldQuery::evaluate(std::span<const glm::vec3>
     const PassState state;
     std::vector<FieldSample> samples;
     samples.reserve(points.size());
-    RELIEF_TRY(ask(points, program_, *textures_, no_attributes_, [&](const float* field, const float* map) {
+    RELIEF_TRY(run(points, program_, *textures_, [&](const float* field, const float* map) {
         samples.push_back({field[3], {field[0], field[1], field[2]}, static_cast<int>(map[0])});
     }));
     return samples;
@@ -97,12 +93,12 @@ Result<std::vector<SurfaceSample>> FieldQuery::nearest(std::span<const glm::vec3
                                                        const Bounds& bounds) const {
     const PassState state;
     const GlProgram nearest = RELIEF_TRY(program("#define RELIEF_QUERY_NEAREST\n"));
-    glUseProgram(nearest.name());
-    glUniform3f(uniformLocation(nearest, "u_low"), bounds.min.x, bounds.min.y, bounds.min.z);
-    glUniform3f(uniformLocation(nearest, "u_high"), bounds.max.x, bounds.max.y, bounds.max.z);
+    nearest.use();
+    nearest.set("u_low", bounds.min);
+    nearest.set("u_high", bounds.max);
     std::vector<SurfaceSample> samples;
     samples.reserve(points.size());
-    RELIEF_TRY(ask(points, nearest, *textures_, no_attributes_, [&](const float* field, const float* map) {
+    RELIEF_TRY(run(points, nearest, *textures_, [&](const float* field, const float* map) {
         samples.push_back(
             {field[3], {map[1], map[2], map[3]}, {field[0], field[1], field[2]}, static_cast<int>(map[0])});
     }));

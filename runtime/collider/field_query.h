@@ -1,5 +1,5 @@
 // Evaluates a collider at many points on the GPU, with the very shader code that the simulation runs:
-// `relief query --gpu`, and the proof that shaders/collider.glsl is formats/collider.cpp.
+// `relief query --gpu`, and the proof that shaders/collider/collider.glsl is formats/collider.cpp.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -44,7 +44,6 @@ class FieldQuery {
     std::unique_ptr<ColliderTextures> own_;  // null: the caller's
     const ColliderTextures* textures_ = nullptr;
     GlProgram program_;
-    GlVertexArray no_attributes_;
 };
 
 }  // namespace relief

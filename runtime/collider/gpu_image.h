@@ -1,4 +1,4 @@
-// What ColliderTextures uploads of a collider, as bytes: for loaders of one's own (LAYOUT.md). Needs no GL.
+// The upload of ColliderTextures as bytes: for loaders of your own (LAYOUT.md). Needs no GL.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace relief {
 
-/// How a GL takes the texels of a texture.
+/// The format of the texels of a texture.
 struct TexelFormat {
     const char* sampler;            ///< that reads it in collider.glsl
     const char* name;               ///< of the internal format: "GL_RGBA32F"

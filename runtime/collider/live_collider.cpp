@@ -19,7 +19,7 @@ constexpr int kMotionZUnit = 1;
 constexpr float kPadding = 1e-4F;
 constexpr float kThinnest = 1e-2F;
 
-/// Whether a vertex is where the map looks.
+/// True if a vertex lies in the volume of the map.
 bool holds(const DepthMap& map, const glm::vec3& p) {
     const glm::vec3 q = map.object_to_map.apply(p);
     if (map.projection() == Projection::kCube) {
@@ -102,15 +102,12 @@ Result<LiveCollider> LiveCollider::create(std::span<const glm::vec3> positions,
     LiveCollider live(std::move(mesh), std::move(renderer), std::move(frames));
     RELIEF_TRY(live.createTargets());
     const PassState state;
-    live.motion_program_ = RELIEF_TRY(makeProgram("quad.vert", "live_motion.frag"));
-    glUseProgram(live.motion_program_.name());
-    glUniform1i(uniformLocation(live.motion_program_, "u_motion_xy"), kMotionXyUnit);
-    glUniform1i(uniformLocation(live.motion_program_, "u_motion_z"), kMotionZUnit);
-    live.motion_end_ = uniformLocation(live.motion_program_, "u_end");
-    live.motion_origin_ = uniformLocation(live.motion_program_, "u_origin");
+    live.motion_program_ = RELIEF_TRY(makeScreenProgram("collider/live_motion.frag"));
+    live.motion_program_.use();
+    live.motion_program_.set("u_motion_xy", kMotionXyUnit);
+    live.motion_program_.set("u_motion_z", kMotionZUnit);
     live.motion_target_ = makeFramebuffer();
     live.texel_target_ = makeFramebuffer();
-    live.no_attributes_ = makeVertexArray();
     return live;
 }
 
@@ -215,18 +212,17 @@ void LiveCollider::copyMotion(const DepthMapTarget& target, const DepthMap& map,
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, slot.motion->name(), 0);
     useTexture(kMotionXyUnit, target.motion(0));
     useTexture(kMotionZUnit, target.motion(1));
-    glUseProgram(motion_program_.name());
-    glBindVertexArray(no_attributes_.name());
+    motion_program_.use();
     const auto width = static_cast<GLsizei>(map.width);
     const auto height = static_cast<GLsizei>(map.height * map.faceCount());
     glEnable(GL_SCISSOR_TEST);
     for (int end = 0; end < (isFrontBack(map.format) ? 2 : 1); ++end) {
         const GLint y = slot.motion_y + end * height;
-        glUniform1i(motion_end_, end);
-        glUniform2i(motion_origin_, slot.motion_x, y);
+        motion_program_.set("u_end", end);
+        motion_program_.set("u_origin", glm::ivec2(slot.motion_x, y));
         glViewport(slot.motion_x, y, width, height);
         glScissor(slot.motion_x, y, width, height);
-        glDrawArrays(GL_TRIANGLES, 0, 3);
+        motion_program_.drawScreen();
     }
     glDisable(GL_SCISSOR_TEST);
 }

@@ -49,7 +49,7 @@ class LiveCollider {
     /// kInvalidInput (not finite). Nothing then changes.
     [[nodiscard]] Result<void> setPositions(std::span<const glm::vec3> positions);
     /// The same from a buffer of the GPU: tightly packed triples of floats from `offset` bytes on; copied by
-    /// the GPU when its time comes. Nobody looks at the numbers. Errors: kUsage (called twice;
+    /// the GPU in the order of commands. The numbers are not checked. Errors: kUsage (called twice;
     /// GpuMesh::setPositions).
     [[nodiscard]] Result<void> setPositions(GLuint buffer, std::size_t offset = 0);
     /// The last change was a jump, as if the vertices had always been there: the next update() has no motion.
@@ -80,9 +80,7 @@ class LiveCollider {
     std::vector<std::size_t> target_of_;
     std::vector<DepthMapTarget> targets_;
     GlProgram motion_program_;
-    GLint motion_end_ = -1, motion_origin_ = -1;
     GlFramebuffer texel_target_, motion_target_;
-    GlVertexArray no_attributes_;
     bool shown_ = false;   // by a first update
     bool moved_ = false;   // since the last update
     bool moving_ = false;  // the motion shown is not zero

@@ -63,7 +63,7 @@ Result<MapLayout> MapLayout::create(std::span<const PlacedMap> maps, GLint side_
     MapLayout layout;
     auto& textures = layout.textures;
     RELIEF_TRY(reserve(maps, side_max, textures));
-    // What was added first comes first, of packed texels as of rectangles.
+    // In the order in which they were added, packed texels as well as rectangles.
     std::array<std::size_t, kTexelKinds> packed{};
     std::array<std::size_t, kTexelKinds> rectangles{};
     for (const auto& [map, live] : maps) {

@@ -1,4 +1,4 @@
-// Where all maps of some colliders lie in the three textures of ColliderTextures. Plain arithmetic, no GL.
+// The layout of all maps of some colliders in the three textures of ColliderTextures. Plain arithmetic, no GL.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ inline constexpr std::size_t kTexelKinds = 3;
 
 [[nodiscard]] TexelKind texelKindOf(MapFormat format);
 
-/// Where one map lies.
+/// The place of one map.
 struct MapPlace {
     TexelKind kind = kFloatTexels;
     std::size_t first =

@@ -1,4 +1,4 @@
-// Where a body is: a rigid transform with one scale for all axes.
+// The pose of a body: a rigid transform with one scale for all axes.
 #pragma once
 
 #include <glm/gtc/quaternion.hpp>

@@ -14,7 +14,7 @@ struct PoseKey {
     friend bool operator==(const PoseKey&, const PoseKey&) = default;
 };
 
-/// How a rigid body moves: a point q of it goes with velocity + turn × (q − position of the pose).
+/// The motion of a rigid body: a point q of it goes with velocity + turn × (q − position of the pose).
 struct Motion {
     glm::vec3 velocity{0.0F};  ///< of the pose's position, world units a second
     glm::vec3 turn{0.0F};      ///< right-handed, radians a second
@@ -25,7 +25,7 @@ struct Motion {
 /// -180 left-handed.
 /// \param keys  at least one, their times rising.
 [[nodiscard]] Pose poseAt(std::span<const PoseKey> keys, double time);
-/// How it moves then; at a key as it goes on from there.
+/// The motion at a time; at a key that of the piece after it.
 [[nodiscard]] Motion motionAt(std::span<const PoseKey> keys, double time);
 
 }  // namespace relief

@@ -1,4 +1,4 @@
-// Texels of a stored map as shaders/collider.glsl wants them.
+// Texels of a stored map as shaders/collider/collider.glsl wants them.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Where maps lie in a texture of ColliderTextures: texels that follow each other row by row, and below them
+// The layout of maps in a texture of ColliderTextures: texels that follow each other row by row, and below them
 // rectangles that are drawn to.
 #pragma once
 
@@ -16,7 +16,7 @@ struct TexelRectangle {
     GLsizei height = 0;
 };
 
-/// Add everything, finish(), then ask.
+/// Add everything, call finish(), then query.
 class TexelLayout {
   public:
     void addPacked(std::size_t texels) { packed_ += texels; }

@@ -1,4 +1,4 @@
-// Where a rendered depth map looks from, and what it keeps (depth_map_renderer.h).
+// The frame of a rendered depth map (depth_map_renderer.h).
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace relief {
 
-/// Where a map looks from, and what it keeps.
+/// The viewpoint of a map, and the surfaces that it keeps.
 struct DepthMapFrame {
     MapFormat format = MapFormat::kFixed8;
     Compare compare = Compare::kLess;  ///< kBoth if and only if isFrontBack(format)
@@ -37,7 +37,7 @@ struct DepthMapFrame {
     double good_enough = 0.0;
 };
 
-/// The frame of a map. Its rays are taken to start in free space where `encloses` says so.
+/// The frame of a map. Its rays start in free space if `encloses` is set.
 /// \param map  valid (formats/validate.h); texels may be missing.
 [[nodiscard]] DepthMapFrame frameOf(const DepthMap& map);
 

@@ -58,7 +58,7 @@ Row mapRow(const DepthMapFrame& frame, int k) {
     return {direction, -glm::dot(direction, frame.origin)};
 }
 
-/// What depth_map.vert takes a point of object space to.
+/// Object space to the space of depth_map.vert.
 std::array<Row, 3> rowsOf(const DepthMapFrame& frame, const TexelWindow& window) {
     if (!isCube(frame)) {
         return {double(frame.width) * mapRow(frame, 0) + Row{{}, -double(window.x)},
@@ -99,7 +99,7 @@ Result<void> checkWindow(const DepthMapFrame& frame, const TexelWindow& window, 
     return {};
 }
 
-/// What a program is compiled for.
+/// The defines of a program.
 std::string definesOf(const DepthMapFrame& frame, bool motion) {
     std::string defines;
     const auto define = [&](const char* name) { defines.append("#define ").append(name).append(" 1\n"); };
@@ -136,11 +136,7 @@ std::string definesOf(const DepthMapFrame& frame, bool motion) {
     return defines;
 }
 
-void setVector(GLint location, const glm::dvec3& v) {
-    glUniform3f(location, static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
-}
-
-/// What PassState leaves alone because no other pass depends on it: the depth range, and on desktop GL the
+/// State that PassState leaves alone because no other pass depends on it: the depth range, and on desktop GL the
 /// provoking vertex and depth clamping.
 class DrawState {
   public:
@@ -217,86 +213,59 @@ Result<DepthMapRenderer> DepthMapRenderer::create() {
     return DepthMapRenderer();
 }
 
-Result<const DepthMapRenderer::Program*> DepthMapRenderer::programFor(const DepthMapFrame& frame,
-                                                                      bool motion) {
+Result<const GlProgram*> DepthMapRenderer::programFor(const DepthMapFrame& frame, bool motion) {
     const std::string defines = definesOf(frame, motion);
     const auto found = programs_.find(defines);
     if (found != programs_.end()) {
         return &found->second;
     }
-    Program program;
-    program.program = RELIEF_TRY(
-        makeProgram(frame.exact ? "depth_map_exact.vert" : "depth_map.vert", "depth_map.frag", defines));
-    const auto at = [&](const char* name) { return uniformLocation(program.program, name); };
-    program.shift = at("u_shift");
-    program.center = at("u_center");
-    program.row = at("u_row");
-    program.object = at("u_object");
-    program.window = at("u_window");
-    program.residual = at("u_residual");
-    program.origin = at("u_origin");
-    program.scale = at("u_scale");
-    program.width = at("u_width");
-    program.far = at("u_far");
-    program.starts_free = at("u_starts_free");
-    program.inside_out = at("u_inside_out");
-    program.ray = at("u_ray");
-    program.range = at("u_range");
-    program.good_enough = at("u_good_enough");
-    program.corner = at("u_corner");
-    program.reach = at("u_reach");
-    glUseProgram(program.program.name());
-    glUniform1i(at("u_positions"), kPositionUnit);
-    glUniform1i(at("u_planes"), kPlaneUnit);
-    glUniform1i(at("u_corners"), kCornerUnit);
-    glUniform1i(at("u_previous"), kPreviousUnit);
+    const char* vertex = frame.exact ? "depth_maps/depth_map_exact.vert" : "depth_maps/depth_map.vert";
+    GlProgram program = RELIEF_TRY(makeProgram(vertex, "depth_maps/depth_map.frag", defines));
+    program.use();
+    program.set("u_positions", kPositionUnit);
+    program.set("u_planes", kPlaneUnit);
+    program.set("u_corners", kCornerUnit);
+    program.set("u_previous", kPreviousUnit);
     return &programs_.emplace(defines, std::move(program)).first->second;
 }
 
-void DepthMapRenderer::setUniforms(const Program& program, const GpuMesh& mesh, const DepthMapFrame& frame,
+void DepthMapRenderer::setUniforms(const GlProgram& program, const GpuMesh& mesh, const DepthMapFrame& frame,
                                    const TexelWindow& window, std::uint32_t x, std::uint32_t y) {
-    glUniform2i(program.shift, mesh.vertexShift(), mesh.triangleShift());
-    // The middle of an orthographic volume, or a cube's, as a float: points are told from it exactly.
+    program.set("u_shift", glm::ivec2(mesh.vertexShift(), mesh.triangleShift()));
+    // The middle of an orthographic volume, or a cube's, as a float: points are relative to it exactly.
     glm::dvec3 middle = frame.origin;
     if (!isCube(frame)) {
         middle += 0.5 * (frame.axis[0] + frame.axis[1] + frame.axis[2]);
     }
     const glm::vec3 center(middle);
-    glUniform3f(program.center, center.x, center.y, center.z);
-    setVector(program.residual, glm::dvec3(center) - frame.origin);
+    program.set("u_center", center);
+    program.set("u_residual", glm::vec3(glm::dvec3(center) - frame.origin));
     const std::array<Row, 3> rows = rowsOf(frame, window);
     std::array<glm::vec4, 3> row;
     std::transform(rows.begin(), rows.end(), row.begin(),
                    [&](const Row& r) { return r.from(glm::dvec3(center)); });
-    glUniform4fv(program.row, 3, &row[0].x);
-
-    std::array<glm::vec3, 3> object;
-    if (isCube(frame)) {
-        for (int axis = 0; axis < 3; ++axis) {
-            object[static_cast<std::size_t>(axis)] = glm::vec3(faceAxis(window.face, axis));
-        }
-    } else {
-        object = {glm::vec3(frame.axis[0] / double(frame.width)),
-                  glm::vec3(frame.axis[1] / double(frame.height)), glm::vec3(frame.axis[2])};
-    }
-    glUniformMatrix3fv(program.object, 1, GL_FALSE, &object[0].x);
-    glUniform2f(program.window, static_cast<float>(window.width), static_cast<float>(window.height));
+    program.set("u_row", row);
+    program.set("u_object", isCube(frame) ? glm::mat3(faceAxis(window.face, 0), faceAxis(window.face, 1),
+                                                      faceAxis(window.face, 2))
+                                          : glm::mat3(frame.axis[0] / double(frame.width),
+                                                      frame.axis[1] / double(frame.height), frame.axis[2]));
+    program.set("u_window", glm::vec2(window.width, window.height));
     // Cube: texels count from the face's first one, which may lie outside the target.
     const double left = isCube(frame) ? double(x) - window.x : double(x);
     const double below = isCube(frame) ? double(y) - window.y : double(y);
-    glUniform2f(program.origin, static_cast<float>(left), static_cast<float>(below));
+    program.set("u_origin", glm::vec2(left, below));
     const glm::vec3 scale(glm::length(frame.axis[0]), glm::length(frame.axis[1]), glm::length(frame.axis[2]));
-    glUniform3f(program.scale, scale.x, scale.y, scale.z);
-    glUniform1f(program.width, static_cast<float>(frame.width));
-    glUniform1i(program.inside_out, frame.inside_out ? 1 : 0);
-    setVector(program.ray, glm::normalize(frame.axis[2]));
-    glUniform1f(program.range, standingRange(isCube(frame) ? Projection::kCube : Projection::kOrthographic,
-                                             scale, frame.width, frame.height));
-    glUniform2f(program.corner, static_cast<float>(x), static_cast<float>(y));
+    program.set("u_scale", scale);
+    program.set("u_width", static_cast<float>(frame.width));
+    program.set("u_inside_out", frame.inside_out);
+    program.set("u_ray", glm::vec3(glm::normalize(frame.axis[2])));
+    program.set("u_range", standingRange(isCube(frame) ? Projection::kCube : Projection::kOrthographic, scale,
+                                         frame.width, frame.height));
+    program.set("u_corner", glm::vec2(x, y));
     GLint subpixel_bits = 4;  // the least there may be
     glGetIntegerv(GL_SUBPIXEL_BITS, &subpixel_bits);
-    glUniform1f(program.reach, std::ldexp(2.0F, -std::clamp(subpixel_bits, 4, 8)));
-    glUniform1f(program.good_enough, static_cast<float>(frame.good_enough));
+    program.set("u_reach", std::ldexp(2.0F, -std::clamp(subpixel_bits, 4, 8)));
+    program.set("u_good_enough", static_cast<float>(frame.good_enough));
 }
 
 Result<void> DepthMapRenderer::render(GpuMesh& mesh, const DepthMapFrame& frame,
@@ -319,7 +288,7 @@ Result<void> DepthMapRenderer::render(GpuMesh& mesh, const DepthMapFrame& frame,
     }
     const PassState state;
     const DrawState draw_state;
-    const Program* program = RELIEF_TRY(programFor(frame, motion));
+    const GlProgram* program = RELIEF_TRY(programFor(frame, motion));
     const GLuint planes = mesh.planes();
     useTexture(kPositionUnit, mesh.positions());
     useTexture(kPlaneUnit, planes);
@@ -328,15 +297,15 @@ Result<void> DepthMapRenderer::render(GpuMesh& mesh, const DepthMapFrame& frame,
         useTexture(kPreviousUnit, mesh.previousPositions());
     }
     beginWindow(frame, window, target, x, y);
-    glUseProgram(program->program.name());
+    program->use();
     setUniforms(*program, mesh, frame, window, x, y);
     glEnable(GL_DEPTH_TEST);
     for (const bool far : {false, true}) {
         if (frame.compare == (far ? Compare::kLess : Compare::kGreater)) {
             continue;
         }
-        glUniform1i(program->far, far ? 1 : 0);
-        glUniform1i(program->starts_free, frame.starts_free[far ? 1 : 0] ? 1 : 0);
+        program->set("u_far", far);
+        program->set("u_starts_free", frame.starts_free[far ? 1 : 0]);
         const GLfloat farthest = far ? 0.0F : 1.0F;
         glClearBufferfv(GL_DEPTH, 0, &farthest);
         glDepthFunc(far ? GL_GREATER : GL_LESS);

@@ -2,7 +2,7 @@
 // `relief bake --backend raycast` makes them from one ray through the centre of each texel, to a unit of the
 // last place of the depth.
 //
-// The rasteriser only says which triangle a texel's ray meets; the depth is that of the triangle's own plane
+// The rasteriser only finds the triangle that a texel's ray meets; the depth is that of the triangle's own plane
 // at the texel's centre, because rasterisers move vertices to a grid of 1/256 pixel (see DepthMapFrame::exact
 // for what that grid still decides). Of surfaces on one ray LESS keeps the nearest, GREATER the farthest;
 // front-back maps are drawn twice into one target.
@@ -40,16 +40,11 @@ class DepthMapRenderer {
                                       const DepthMapTarget& target, std::uint32_t x = 0, std::uint32_t y = 0);
 
   private:
-    struct Program {
-        GlProgram program;
-        GLint shift, center, row, object, window, residual, origin, scale, width;
-        GLint far, starts_free, inside_out, ray, range, good_enough, corner, reach;
-    };
-    [[nodiscard]] Result<const Program*> programFor(const DepthMapFrame& frame, bool motion);
-    static void setUniforms(const Program& program, const GpuMesh& mesh, const DepthMapFrame& frame,
+    [[nodiscard]] Result<const GlProgram*> programFor(const DepthMapFrame& frame, bool motion);
+    static void setUniforms(const GlProgram& program, const GpuMesh& mesh, const DepthMapFrame& frame,
                             const TexelWindow& window, std::uint32_t x, std::uint32_t y);
 
-    std::map<std::string, Program> programs_;  // by their defines
+    std::map<std::string, GlProgram> programs_;  // by their defines
 };
 
 }  // namespace relief

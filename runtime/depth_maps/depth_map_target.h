@@ -1,4 +1,4 @@
-// What depth maps are rendered to (depth_map_renderer.h).
+// The render target of depth maps (depth_map_renderer.h).
 #pragma once
 
 #include <cstddef>
@@ -29,7 +29,7 @@ class DepthMapTarget {
     [[nodiscard]] std::uint32_t width() const { return width_; }
     [[nodiscard]] std::uint32_t height() const { return height_; }
     [[nodiscard]] GLuint texels() const { return texels_.name(); }
-    /// How far the surface has moved between the mesh's previous and its present positions, object units. Of
+    /// The motion of the surface between the mesh's previous and its present positions, object units. Of
     /// end e (0: the surface of maps that keep one, and the front; 1: the back) x is component e of texture
     /// 0, y component 2 + e of it, z component e of texture 1. 0 where the texel is empty.
     /// \param i  0 or 1.

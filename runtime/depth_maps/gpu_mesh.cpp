@@ -90,7 +90,7 @@ tl::unexpected<Error> tooLarge(const std::string& what, std::uint64_t count, std
                                        "; simplify the mesh");
 }
 
-/// Whether this GL's textures and draws have room for so many vertices and triangles.
+/// Checks that this GL's textures and draws have room for so many vertices and triangles.
 Result<void> checkSize(std::size_t vertices, std::size_t triangles) {
     GLint side = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side);
@@ -171,11 +171,11 @@ Result<void> GpuMesh::createTextures(std::span<const glm::uvec3> triangles) {
     planes_ = makeTexture2D(GL_RGBA32UI, 1 << triangle_shift_, rows, GL_RGBA_INTEGER, GL_UNSIGNED_INT);
     const std::array<GLuint, 1> planes{planes_.name()};
     planes_target_ = RELIEF_TRY(makeFramebuffer(planes));
-    planes_program_ = RELIEF_TRY(makeProgram("quad.vert", "triangle_plane.frag"));
-    glUseProgram(planes_program_.name());
-    glUniform1i(uniformLocation(planes_program_, "u_positions"), 0);
-    glUniform1i(uniformLocation(planes_program_, "u_corners"), 1);
-    glUniform1i(uniformLocation(planes_program_, "u_shift"), vertex_shift_);
+    planes_program_ = RELIEF_TRY(makeScreenProgram("depth_maps/triangle_plane.frag"));
+    planes_program_.use();
+    planes_program_.set("u_positions", 0);
+    planes_program_.set("u_corners", 1);
+    planes_program_.set("u_shift", vertex_shift_);
     no_attributes_ = makeVertexArray();
 
     slots_ = makeBuffer();
@@ -268,13 +268,10 @@ GLuint GpuMesh::previousPositions() const {
 GLuint GpuMesh::planes() {
     if (planes_revision_ != revision_) {
         planes_revision_ = revision_;
-        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, planes_target_.name());
-        glViewport(0, 0, 1 << triangle_shift_, rowsFor(triangle_count_, triangle_shift_));
-        glUseProgram(planes_program_.name());
         useTexture(0, positions());
         useTexture(1, corners());
-        glBindVertexArray(no_attributes_.name());
-        glDrawArrays(GL_TRIANGLES, 0, 3);
+        planes_program_.drawScreen(planes_target_.name(), 1 << triangle_shift_,
+                                   rowsFor(triangle_count_, triangle_shift_));
     }
     return planes_.name();
 }

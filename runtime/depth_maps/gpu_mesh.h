@@ -44,7 +44,7 @@ class GpuMesh {
     /// Errors: kUsage (another number), kInvalidInput (not finite); the mesh then stays as it was.
     [[nodiscard]] Result<void> setPositions(std::span<const glm::vec3> positions);
     /// The same from a buffer of the GPU: tightly packed triples of floats from `offset` bytes on, a multiple
-    /// of 4. Copied by the GPU when its time comes; nothing waits, and nobody looks whether they are finite:
+    /// of 4. Copied by the GPU in the order of commands; nothing waits, and finiteness is not checked:
     /// a triangle with a corner that is not is not drawn, or anywhere. Errors: kUsage (0, no buffer, an
     /// offset that is no multiple of 4, a buffer that is too short).
     [[nodiscard]] Result<void> setPositions(GLuint buffer, std::size_t offset = 0);

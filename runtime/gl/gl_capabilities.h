@@ -1,4 +1,4 @@
-// What the current context can do.
+// Capabilities of the current context.
 #pragma once
 
 namespace relief {
@@ -15,7 +15,7 @@ namespace relief {
 /// \param name  "GL_EXT_color_buffer_float"
 [[nodiscard]] bool hasGlExtension(const char* name);
 
-/// Whether the GPU still has what it was given; checkGpu() says it in words.
+/// The cause of a reset of the GPU; checkGpu() makes an error of it.
 enum class GpuReset { kNone, kGuilty, kInnocent, kUnknown };
 [[nodiscard]] GpuReset gpuReset();
 

@@ -20,7 +20,7 @@ std::string eglErrorText() {
     return text;
 }
 
-/// The attributes that ask for a context which reports resets; none if it cannot.
+/// The attributes of a context that reports resets; none where EGL has no such contexts.
 std::vector<EGLint> resetAttributes(EGLDisplay display, bool es) {
     if (es) {
         return epoxy_has_egl_extension(display, "EGL_EXT_create_context_robustness")
@@ -36,7 +36,7 @@ std::vector<EGLint> resetAttributes(EGLDisplay display, bool es) {
 
 EGLContext createContext(EGLDisplay display, EGLConfig config, bool es) {
     const std::vector<EGLint> reset = resetAttributes(display, es);
-    // The version with compute shaders first: some drivers give just what they are asked for.
+    // The version with compute shaders first: some drivers give exactly the requested version.
     const std::array<EGLint, 2> with_compute = es ? std::array<EGLint, 2>{3, 1} : std::array<EGLint, 2>{4, 3};
     const std::array<EGLint, 2> without = es ? std::array<EGLint, 2>{3, 0} : std::array<EGLint, 2>{3, 3};
     for (const auto& [major, minor] : {with_compute, without}) {
@@ -127,7 +127,7 @@ struct GlContext::Impl {
         software = isSoftwareRenderer();
     }
 
-    /// What was tried, in words; or "" once a context is there.
+    /// The failed attempts; "" once a context is open.
     std::string openPlatform(GlPlatform platform) {
         const auto attempt = [&](EGLDisplay opened, const std::string& name) {
             const std::string problem = open(opened);

@@ -12,7 +12,7 @@
 
 namespace relief {
 
-/// Where EGL looks for a GPU.
+/// The EGL platforms to search for a GPU.
 enum class GlPlatform {
     kAny,          ///< the next three in turn, until one gives a context
     kSurfaceless,  ///< Mesa's, without a display server
@@ -30,9 +30,9 @@ struct GlContextOptions {
 class GlContext {
   public:
     /// Creates a context of at least this version and makes it current on this thread: of one with compute shaders where
-    /// there is one. Where EGL can, the context is one that says when the GPU was reset (gl_fault.h).
-    /// Errors: kUnsupported, saying what was tried; also where a float texture cannot be rendered to, and
-    /// without EGL's library. kUsage: there is no such device; says how many there are.
+    /// there is one. Where EGL can, the context reports resets of the GPU (gl_fault.h).
+    /// Errors: kUnsupported, with all attempts; also where a float texture cannot be rendered to, and
+    /// without EGL's library. kUsage: there is no such device; with their number.
     [[nodiscard]] static Result<std::unique_ptr<GlContext>> create(const GlContextOptions& options);
     [[nodiscard]] static Result<std::unique_ptr<GlContext>> create(GlApi api = GlApi::kGl33Core);
     ~GlContext();
@@ -46,7 +46,7 @@ class GlContext {
     [[nodiscard]] GlApi api() const;
     /// "OpenGL 4.5 (Core Profile) Mesa 22.3.6, llvmpipe (…), surfaceless": for reports.
     [[nodiscard]] const std::string& description() const;
-    /// Whether the processor draws: slow, but nothing that could hang.
+    /// True if the processor draws: slow, but it cannot hang.
     [[nodiscard]] bool software() const;
 
   private:

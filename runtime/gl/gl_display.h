@@ -12,7 +12,7 @@
 namespace relief {
 
 /// The name of a library that EGL, or this API, needs and that cannot be loaded; "" if all are there.
-/// libepoxy ends the process where it misses one, so ask before any call of EGL or the GL.
+/// libepoxy ends the process where it misses one, so call this before EGL or the GL.
 [[nodiscard]] std::string missingGlLibrary(GlApi api);
 
 /// EGL's devices in its order; none where it does not enumerate them.
@@ -23,7 +23,7 @@ namespace relief {
 [[nodiscard]] EGLDisplay deviceDisplay(EGLDeviceEXT device);
 [[nodiscard]] EGLDisplay defaultDisplay();
 
-/// What glGetString says; "" where it says nothing.
+/// glGetString as a string; "" for null.
 [[nodiscard]] std::string glText(unsigned what);
 
 }  // namespace relief

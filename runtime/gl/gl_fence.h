@@ -1,4 +1,4 @@
-// A mark in the GPU's work, and whether it has come by.
+// A mark in the GPU's commands.
 #pragma once
 
 #include <utility>
@@ -18,18 +18,18 @@ class GlFence {
     }
     ~GlFence() { remove(); }
 
-    /// Marks the end of what has been asked of the GL so far.
+    /// Marks the end of the commands so far.
     void insert();
     void remove();
-    /// Hands what was asked for to the GPU, and waits for at most so many nanoseconds.
+    /// Flushes the commands, and waits for at most so many nanoseconds.
     /// \return whether the GPU has come by; false also where the GL reports an error.
     [[nodiscard]] bool passed(GLuint64 nanoseconds = 0) const;
-    /// Whether there is nothing to wait for: never inserted, or the GL reported an error to passed().
+    /// True if there is nothing to wait for: never inserted, or the GL reported an error to passed().
     [[nodiscard]] bool failed() const;
 
   private:
     GLsync sync_ = nullptr;
-    mutable GLenum state_ = 0;  // as the last passed() was told
+    mutable GLenum state_ = 0;  // of the last passed()
 };
 
 }  // namespace relief

@@ -6,7 +6,7 @@
 
 #include <GLES3/gl31.h>
 
-// What only desktop GL knows. isGles() is a constant there, and no call of these remains.
+// Only in desktop GL. isGles() is a constant in browsers, so no call of these remains.
 #define GL_CLAMP_READ_COLOR 0x891C
 #define GL_COLOR_LOGIC_OP 0x0BF2
 #define GL_DEPTH_CLAMP 0x864F

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <glm/glm.hpp>
+#include <glm/gtc/type_ptr.hpp>
 
 #include "runtime/gl/gl_capabilities.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
-#include "shaders/shader_constants.h"
 #include "shaders/shader_sources.h"
 
 namespace relief {
@@ -60,6 +61,7 @@ Result<GLuint> compile(GLenum stage, std::string_view file, std::string_view def
     std::string source = isGles() ? (compute ? "#version 310 es\n" : "#version 300 es\n")
                                   : (compute ? "#version 430 core\n" : "#version 330 core\n");
     source += shaderConstants();
+    source += compute ? "#define RELIEF_COMPUTE\n" : "";
     source += defines;
     source +=
         "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n"
@@ -175,6 +177,25 @@ GlTexture makeImageTexture2D(GLenum internal_format, GLsizei width, GLsizei heig
     return texture.done();
 }
 
+GlTexture makeTexture3D(GLenum internal_format, const glm::ivec3& size, GLenum format, GLenum type,
+                        GLenum filter, const void* pixels) {
+    GlTexture texture(generate([](GLsizei n, GLuint* out) { glGenTextures(n, out); }));
+    GLint bound = 0;
+    glGetIntegerv(GL_TEXTURE_BINDING_3D, &bound);
+    glBindTexture(GL_TEXTURE_3D, texture.name());
+    for (const GLenum parameter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) {
+        glTexParameteri(GL_TEXTURE_3D, parameter, static_cast<GLint>(filter));
+    }
+    for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) {
+        glTexParameteri(GL_TEXTURE_3D, wrap, GL_CLAMP_TO_EDGE);
+    }
+    glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAX_LEVEL, 0);
+    glTexImage3D(GL_TEXTURE_3D, 0, static_cast<GLint>(internal_format), size.x, size.y, size.z, 0, format,
+                 type, pixels);
+    glBindTexture(GL_TEXTURE_3D, static_cast<GLuint>(bound));
+    return texture;
+}
+
 Result<GlFramebuffer> makeFramebuffer(std::span<const GLuint> color_textures, GLuint depth_texture) {
     GlFramebuffer framebuffer = makeFramebuffer();
     GLint bound = 0;
@@ -238,6 +259,72 @@ Result<GlProgram> compileAndLink(std::string_view vertex, std::string_view fragm
 
 }  // namespace
 
+void GlProgram::use() const {
+    glUseProgram(name());
+}
+
+GLint GlProgram::location(const char* uniform) const {
+    const auto found = locations_.find(uniform);
+    return found != locations_.end()
+               ? found->second
+               : locations_.emplace(uniform, glGetUniformLocation(name(), uniform)).first->second;
+}
+
+void GlProgram::set(const char* uniform, bool value) const {
+    glUniform1i(location(uniform), value ? 1 : 0);
+}
+void GlProgram::set(const char* uniform, GLint value) const {
+    glUniform1i(location(uniform), value);
+}
+void GlProgram::set(const char* uniform, GLuint value) const {
+    glUniform1ui(location(uniform), value);
+}
+void GlProgram::set(const char* uniform, float value) const {
+    glUniform1f(location(uniform), value);
+}
+void GlProgram::set(const char* uniform, const glm::vec2& value) const {
+    glUniform2fv(location(uniform), 1, glm::value_ptr(value));
+}
+void GlProgram::set(const char* uniform, const glm::vec3& value) const {
+    glUniform3fv(location(uniform), 1, glm::value_ptr(value));
+}
+void GlProgram::set(const char* uniform, const glm::ivec2& value) const {
+    glUniform2iv(location(uniform), 1, glm::value_ptr(value));
+}
+void GlProgram::set(const char* uniform, const glm::ivec3& value) const {
+    glUniform3iv(location(uniform), 1, glm::value_ptr(value));
+}
+void GlProgram::set(const char* uniform, const glm::mat3& value) const {
+    glUniformMatrix3fv(location(uniform), 1, GL_FALSE, glm::value_ptr(value));
+}
+void GlProgram::set(const char* uniform, const glm::mat4& value) const {
+    glUniformMatrix4fv(location(uniform), 1, GL_FALSE, glm::value_ptr(value));
+}
+void GlProgram::set(const char* uniform, std::span<const GLint> values) const {
+    glUniform1iv(location(uniform), static_cast<GLsizei>(values.size()), values.data());
+}
+void GlProgram::set(const char* uniform, std::span<const float> values) const {
+    glUniform1fv(location(uniform), static_cast<GLsizei>(values.size()), values.data());
+}
+void GlProgram::set(const char* uniform, std::span<const glm::vec4> values) const {
+    glUniform4fv(location(uniform), static_cast<GLsizei>(values.size()), &values[0].x);
+}
+
+void GlProgram::drawScreen() const {
+    if (!no_attributes_) {
+        no_attributes_ = makeVertexArray();
+    }
+    use();
+    glBindVertexArray(no_attributes_.name());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void GlProgram::drawScreen(GLuint framebuffer, GLsizei width, GLsizei height) const {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glViewport(0, 0, width, height);
+    drawScreen();
+}
+
 Result<std::string> shaderText(std::string_view file) {
     std::vector<std::string> included;
     std::string text = RELIEF_TRY(resolveIncludes(file, included));
@@ -246,6 +333,10 @@ Result<std::string> shaderText(std::string_view file) {
 
 Result<GlProgram> makeProgram(std::string_view vertex, std::string_view fragment, std::string_view defines) {
     return compileAndLink(vertex, fragment, defines, {}, {});
+}
+
+Result<GlProgram> makeScreenProgram(std::string_view fragment, std::string_view defines) {
+    return makeProgram("base/quad.vert", fragment, defines);
 }
 
 Result<GlProgram> makeComputeProgram(std::string_view compute, std::string_view defines) {
@@ -258,16 +349,28 @@ Result<GlProgram> makeComputeProgram(std::string_view compute, std::string_view 
 
 Result<GlProgram> makeFeedbackProgram(std::string_view vertex, std::span<const char* const> outputs,
                                       std::string_view defines, std::string_view appended) {
-    return compileAndLink(vertex, "nothing.frag", defines, outputs, appended);
+    return compileAndLink(vertex, "base/nothing.frag", defines, outputs, appended);
+}
+
+void copyBuffer(const GlBuffer& from, const GlBuffer& to, GLsizeiptr to_offset, GLsizeiptr bytes) {
+    GLint bound[2] = {};
+    glGetIntegerv(GL_COPY_READ_BUFFER_BINDING, &bound[0]);
+    glGetIntegerv(GL_COPY_WRITE_BUFFER_BINDING, &bound[1]);
+    glBindBuffer(GL_COPY_READ_BUFFER, from.name());
+    glBindBuffer(GL_COPY_WRITE_BUFFER, to.name());
+    glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, to_offset, bytes);
+    glBindBuffer(GL_COPY_READ_BUFFER, static_cast<GLuint>(bound[0]));
+    glBindBuffer(GL_COPY_WRITE_BUFFER, static_cast<GLuint>(bound[1]));
+}
+
+void useTexture3D(int unit, const GlTexture& texture) {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    glBindTexture(GL_TEXTURE_3D, texture.name());
 }
 
 void useTexture(int unit, GLuint texture) {
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
     glBindTexture(GL_TEXTURE_2D, texture);
-}
-
-GLint uniformLocation(const GlProgram& program, const char* name) {
-    return glGetUniformLocation(program.name(), name);
 }
 
 Result<std::vector<float>> readTextureFloats(const GlTexture& texture, GLsizei width, GLsizei height) {

@@ -83,7 +83,7 @@ void GpuTimer::collect() {
         (gles_ ? glGetQueryObjectui64vEXT : glGetQueryObjectui64v)(
             query, GL_QUERY_RESULT, &nanoseconds[static_cast<std::size_t>(arrived)]);
     }
-    // The clock has jumped (the GPU changed its speed, say): all results so far and the running ones are
+    // The clock has jumped (the GPU changed its frequency): all results so far and the running ones are
     // worthless.
     GLint disjoint = 0;
     if (gles_) {

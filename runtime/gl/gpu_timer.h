@@ -1,4 +1,4 @@
-// How long each stage takes: on the CPU by its clock, on the GPU by queries of elapsed time, of which a ring
+// The duration of each stage: on the CPU by its clock, on the GPU by queries of elapsed time, of which a ring
 // is kept so that nothing waits for a result.
 #pragma once
 
@@ -14,7 +14,7 @@ namespace relief {
 /// Of one stage, since the beginning.
 struct StageTime {
     std::uint64_t runs = 0;      ///< of the stage
-    double cpu_ms = 0.0;         ///< all runs together: what the calls took, not what they asked of the GPU
+    double cpu_ms = 0.0;         ///< all runs together: of the calls, not of their commands on the GPU
     std::uint64_t gpu_runs = 0;  ///< runs that the GPU has answered for so far
     double gpu_ms = 0.0;         ///< of those together
 };
@@ -32,7 +32,7 @@ class GpuTimer : public StageTimer {
     GpuTimer(const GpuTimer&) = delete;
     GpuTimer& operator=(const GpuTimer&) = delete;
 
-    /// Whether the GPU's times are taken.
+    /// True if the GPU's times are measured.
     [[nodiscard]] bool measuresGpu() const { return measures_gpu_; }
 
     /// A stage during which the caller has a query of elapsed time of its own open is timed on the CPU alone:
@@ -40,7 +40,7 @@ class GpuTimer : public StageTimer {
     void begin(Stage stage) override;
     void end() override;
 
-    /// What is known by now. Never waits: results of the GPU arrive some frames late.
+    /// The results so far. Never waits: those of the GPU arrive some frames late.
     [[nodiscard]] const StageTimes& times();
 
   private:

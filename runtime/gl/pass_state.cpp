@@ -3,6 +3,7 @@
 #include <array>
 #include <iterator>
 
+#include "runtime/gl/compute_units.h"
 #include "runtime/gl/gl_capabilities.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/gl_object.h"
@@ -52,11 +53,6 @@ struct Unit {
     GLint texture_2d, texture_3d, sampler;
 };
 
-struct Block {
-    GLint buffer;
-    GLint64 offset, size;
-};
-
 void set(GLenum name, bool on) {
     if (on) {
         glEnable(name);
@@ -80,7 +76,7 @@ struct PassState::Saved {
     std::array<GLint, 4> viewport, scissor;
     GLint active_texture;
     std::array<Unit, kUnits> units;
-    std::array<Block, 2> blocks;
+    std::array<SavedRange, 2> blocks{SavedRange(GL_UNIFORM_BUFFER, 0), SavedRange(GL_UNIFORM_BUFFER, 1)};
     std::array<GLboolean, std::size(kSwitches)> switches;
     std::array<GLint, std::size(kPixelStores)> pixel_stores;
     GLint blend_source_rgb, blend_destination_rgb, blend_source_alpha, blend_destination_alpha;
@@ -114,11 +110,6 @@ PassState::PassState() : saved_(std::make_unique<Saved>()) {
         glBindSampler(i, 0);
     }
     glActiveTexture(static_cast<GLenum>(s.active_texture));
-    for (GLuint i = 0; i < s.blocks.size(); ++i) {
-        glGetIntegeri_v(GL_UNIFORM_BUFFER_BINDING, i, &s.blocks[i].buffer);
-        glGetInteger64i_v(GL_UNIFORM_BUFFER_START, i, &s.blocks[i].offset);
-        glGetInteger64i_v(GL_UNIFORM_BUFFER_SIZE, i, &s.blocks[i].size);
-    }
     for (std::size_t i = 0; i < s.switches.size(); ++i) {
         if (known(kSwitches[i], gles)) {
             s.switches[i] = glIsEnabled(kSwitches[i].name);
@@ -173,14 +164,8 @@ PassState::~PassState() {
         glBindSampler(i, name(s.units[i].sampler));
     }
     glActiveTexture(word(s.active_texture));
-    for (GLuint i = 0; i < s.blocks.size(); ++i) {
-        const auto& [buffer, offset, size] = s.blocks[i];
-        if (size > 0) {
-            glBindBufferRange(GL_UNIFORM_BUFFER, i, name(buffer), static_cast<GLintptr>(offset),
-                              static_cast<GLsizeiptr>(size));
-        } else {  // the whole buffer, or none
-            glBindBufferBase(GL_UNIFORM_BUFFER, i, name(buffer));
-        }
+    for (const SavedRange& block : s.blocks) {
+        block.restore();
     }
     glBindBuffer(GL_UNIFORM_BUFFER, name(s.uniform_buffer));  // binding a block sets it too
     for (std::size_t i = 0; i < s.switches.size(); ++i) {

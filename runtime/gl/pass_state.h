@@ -6,7 +6,7 @@
 namespace relief {
 
 /// On construction: saves all GL state that a pass of Relief sets or that could spoil one, and sets what the
-/// passes count on, so that a draw writes what its shader says and a transfer is tightly packed. On
+/// passes count on, so that a draw writes its shader's outputs and a transfer is tightly packed. On
 /// destruction: puts everything back. That is: current program and vertex array; array, pack and unpack buffer,
 /// uniform buffer and uniform block bindings 0 and 1; draw and read framebuffer; viewport and scissor box;
 /// active texture unit and, of the first kUnits units, 2-D texture, 3-D texture and sampler object; blending,

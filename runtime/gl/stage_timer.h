@@ -1,4 +1,4 @@
-// Where a stage of the simulation begins and ends, for whoever measures it.
+// The begin and end of stages of the simulation, for timers.
 #pragma once
 
 #include <array>

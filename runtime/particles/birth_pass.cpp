@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "runtime/gl/compute_units.h"
 #include "runtime/gl/gl_functions.h"
-#include "runtime/gl/image_units.h"
-#include "runtime/gl/storage_units.h"
-#include "shaders/shader_constants.h"
+#include "shaders/particles/constants.h"
 
 namespace relief {
 namespace {
@@ -30,13 +29,11 @@ Result<BirthPass> BirthPass::create(const glm::uvec2& size, bool verlet, StepPat
     pass.size_ = size;
     pass.newborn_ = makeBuffer();
     const char* defines = verlet ? "#define RELIEF_VERLET\n" : "";
-    pass.program_ = RELIEF_TRY(path == StepPath::kCompute ? makeComputeProgram("birth.comp", defines)
-                                                          : makeProgram("birth.vert", "birth.frag", defines));
-    pass.dt_before_ = uniformLocation(pass.program_, "u_dt_before");
-    pass.count_ = uniformLocation(pass.program_, "u_count");
-    glUseProgram(pass.program_.name());
-    glUniform2i(uniformLocation(pass.program_, "u_size"), static_cast<GLint>(size.x),
-                static_cast<GLint>(size.y));
+    pass.program_ = RELIEF_TRY(path == StepPath::kCompute
+                                   ? makeComputeProgram("particles/birth.comp", defines)
+                                   : makeProgram("particles/birth.vert", "particles/birth.frag", defines));
+    pass.program_.use();
+    pass.program_.set("u_size", glm::ivec2(size));
     if (path != StepPath::kCompute) {
         pass.makeVertexFormat();
     }
@@ -58,8 +55,8 @@ void BirthPass::makeVertexFormat() {
 }
 
 void BirthPass::run(std::span<const Newborn> newborn, const Target& target, float dt_before) const {
-    glUseProgram(program_.name());
-    glUniform1f(dt_before_, dt_before);
+    program_.use();
+    program_.set("u_dt_before", dt_before);
     if (path_ == StepPath::kCompute) {
         dispatch(newborn, target);
     } else {
@@ -88,7 +85,7 @@ void BirthPass::dispatch(std::span<const Newborn> newborn, const Target& target)
         const auto some = newborn.subspan(first, std::min(kDispatchedAtOnce, newborn.size() - first));
         upload(GL_SHADER_STORAGE_BUFFER, some);
         const auto count = static_cast<GLuint>(some.size());
-        glUniform1ui(count_, count);
+        program_.set("u_count", count);
         glDispatchCompute((count + kBirthGroup - 1) / kBirthGroup, 1, 1);
     }
     ImageUnits::finish();

@@ -22,7 +22,7 @@ class BirthPass {
         glm::vec3 velocity;
         glm::vec4 birth;  ///< time of birth, time of death, type, id modulo 2^24
     };
-    /// Where to, by either path.
+    /// The target, of either path.
     struct Target {
         GLuint framebuffer = 0;  ///< of the three textures, in their order
         const GlTexture& position;
@@ -49,8 +49,6 @@ class BirthPass {
     GlBuffer newborn_;
     GlVertexArray array_;  // of the points
     GlProgram program_;
-    GLint dt_before_ = -1;
-    GLint count_ = -1;
 };
 
 }  // namespace relief

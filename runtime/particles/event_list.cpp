@@ -1,18 +1,19 @@
 #include "runtime/particles/event_list.h"
 
 #include <algorithm>
+#include <glm/glm.hpp>
 #include <string>
 
 #include "runtime/gl/buffer_read.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
-#include "shaders/shader_constants.h"
+#include "shaders/particles/constants.h"
 
 namespace relief {
 namespace {
 
 // Texture units.
-constexpr int kWayUnit = 0;
+constexpr int kVelocityUnit = 0;
 constexpr int kSurfaceUnit = 1;
 constexpr int kBeforeUnit = 2;
 constexpr int kBirthUnit = 3;
@@ -36,15 +37,10 @@ GlTexture makeTexture(GLenum format, std::uint32_t width, std::uint32_t height) 
                          format == GL_R32F ? GL_RED : GL_RGBA, GL_FLOAT);
 }
 
-void draw(const GlFramebuffer& target, std::uint32_t width, std::uint32_t height) {
-    glBindFramebuffer(GL_FRAMEBUFFER, target.name());
-    glViewport(0, 0, static_cast<GLsizei>(width), static_cast<GLsizei>(height));
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-}
-
 /// Over the texels of `count` entries.
-void drawEntries(const GlFramebuffer& target, std::uint32_t count) {
-    draw(target, std::min(count, kWidth), rowsOf(count));
+void drawEntries(const GlProgram& program, const GlFramebuffer& target, std::uint32_t count) {
+    program.drawScreen(target.name(), static_cast<GLsizei>(std::min(count, kWidth)),
+                       static_cast<GLsizei>(rowsOf(count)));
 }
 
 }  // namespace
@@ -72,7 +68,6 @@ std::uint32_t EventList::listWidth() const {
 
 Result<void> EventList::createTextures(std::uint32_t capacity) {
     forgetGlErrors();
-    no_attributes_ = makeVertexArray();
     std::uint32_t count = capacity;
     for (Level& level : counts_) {
         count = reduced(count);
@@ -98,37 +93,29 @@ Result<void> EventList::createTextures(std::uint32_t capacity) {
 
 /// Makes the program current.
 void EventList::useFilter(const GlProgram& program) const {
-    glUseProgram(program.name());
-    glUniform1f(uniformLocation(program, "u_min_speed"), options_.min_speed);
-    glUniform3i(uniformLocation(program, "u_event_kinds"), options_.hits ? 1 : 0, options_.lasting ? 1 : 0,
-                options_.deaths ? 1 : 0);
+    program.use();
+    program.set("u_min_speed", options_.min_speed);
+    program.set("u_event_kinds", glm::ivec3(options_.hits, options_.lasting, options_.deaths));
 }
 
 Result<void> EventList::createPrograms() {
     const std::string defines = "#define RELIEF_TYPES " + std::to_string(kParticleTypesMax) + "\n";
-    count_program_ = RELIEF_TRY(makeProgram("quad.vert", "event_count.frag"));
-    sum_program_ = RELIEF_TRY(makeProgram("quad.vert", "event_sum.frag"));
-    list_program_ = RELIEF_TRY(makeProgram("quad.vert", "event_list.frag", defines));
-    count_particles_ = uniformLocation(count_program_, "u_particles");
-    sum_count_ = uniformLocation(sum_program_, "u_count");
-    list_width_ = uniformLocation(list_program_, "u_width");
-    list_radius_ = uniformLocation(list_program_, "u_radius");
-    const auto sampler = [](const GlProgram& program, const char* name, int unit) {
-        glUniform1i(uniformLocation(program, name), unit);
-    };
-    glUseProgram(sum_program_.name());
-    sampler(sum_program_, "u_counts", kCountUnit);
-    useFilter(count_program_);
-    sampler(count_program_, "u_event_surface", kSurfaceUnit);
-    useFilter(list_program_);
-    sampler(list_program_, "u_event_surface", kSurfaceUnit);
-    sampler(list_program_, "u_event_way", kWayUnit);
-    sampler(list_program_, "u_position_before", kBeforeUnit);
-    sampler(list_program_, "u_birth", kBirthUnit);
-    sampler(list_program_, "u_count_1", kCountUnit);
-    sampler(list_program_, "u_count_2", kCountUnit + 1);
-    sampler(list_program_, "u_count_3", kCountUnit + 2);
-    sampler(list_program_, "u_count_4", kCountUnit + 3);
+    count_program_ = RELIEF_TRY(makeScreenProgram("particles/event_count.frag"));
+    sum_program_ = RELIEF_TRY(makeScreenProgram("particles/event_count.frag", "#define RELIEF_EVENT_SUMS\n"));
+    list_program_ = RELIEF_TRY(makeScreenProgram("particles/event_list.frag", defines));
+    sum_program_.use();
+    sum_program_.set("u_counts", kCountUnit);
+    sum_program_.set("u_width", kEventsWidth);
+    for (const GlProgram* program : {&count_program_, &list_program_}) {
+        useFilter(*program);
+        program->set("u_event_surface", kSurfaceUnit);
+    }
+    list_program_.set("u_event_velocity", kVelocityUnit);
+    list_program_.set("u_position_before", kBeforeUnit);
+    list_program_.set("u_birth", kBirthUnit);
+    for (int level = 0; level < kEventLevels; ++level) {
+        list_program_.set(("u_count_" + std::to_string(level + 1)).c_str(), kCountUnit + level);
+    }
     return {};
 }
 
@@ -143,8 +130,7 @@ bool EventList::request(const Step& step) {
     slot.begin = step.begin;
     slot.end = step.end;
     slot.rows = rowsOf(std::min(options_.most, step.extent));
-    glBindVertexArray(no_attributes_.name());
-    if (slot.rows == 0) {  // what is on the GPU says so, too
+    if (slot.rows == 0) {  // the list on the GPU becomes empty, too
         const std::array<float, 4> zero{};
         glBindFramebuffer(GL_FRAMEBUFFER, counts_.back().target.name());
         glClearBufferfv(GL_COLOR, 0, zero.data());
@@ -158,36 +144,38 @@ bool EventList::request(const Step& step) {
 }
 
 void EventList::count(const Step& step) const {
-    glUseProgram(count_program_.name());
-    glUniform2i(count_particles_, static_cast<GLint>(step.width), static_cast<GLint>(step.extent));
+    count_program_.use();
+    count_program_.set("u_width", static_cast<GLint>(step.width));
+    count_program_.set("u_count", static_cast<GLint>(step.extent));
     useTexture(kSurfaceUnit, step.surface);
     std::uint32_t count = reduced(step.extent);
-    drawEntries(counts_.front().target, count);
-    glUseProgram(sum_program_.name());
+    drawEntries(count_program_, counts_.front().target, count);
+    sum_program_.use();
     for (std::size_t i = 1; i < counts_.size(); ++i) {
-        glUniform1i(sum_count_, static_cast<GLint>(count));
+        sum_program_.set("u_count", static_cast<GLint>(count));
         useTexture(kCountUnit, counts_[i - 1].texture);
         count = reduced(count);
-        drawEntries(counts_[i].target, count);
+        drawEntries(sum_program_, counts_[i].target, count);
     }
 }
 
 void EventList::makeList(const Step& step, std::uint32_t rows) const {
-    glUseProgram(list_program_.name());
-    glUniform1i(list_width_, static_cast<GLint>(step.width));
+    list_program_.use();
+    list_program_.set("u_width", static_cast<GLint>(step.width));
     std::array<float, kParticleTypesMax> radius{};
     for (std::size_t i = 0; i < radius.size(); ++i) {
         radius[i] = step.types[std::min(i, step.types.size() - 1)].radius;
     }
-    glUniform1fv(list_radius_, static_cast<GLsizei>(radius.size()), radius.data());
-    useTexture(kWayUnit, step.way);
+    list_program_.set("u_radius", radius);
+    useTexture(kVelocityUnit, step.velocity);
     useTexture(kSurfaceUnit, step.surface);
     useTexture(kBeforeUnit, step.position_before);
     useTexture(kBirthUnit, step.birth);
     for (std::size_t i = 0; i < counts_.size(); ++i) {
         useTexture(kCountUnit + static_cast<int>(i), counts_[i].texture);
     }
-    draw(list_target_, listWidth(), rows);
+    list_program_.drawScreen(list_target_.name(), static_cast<GLsizei>(listWidth()),
+                             static_cast<GLsizei>(rows));
 }
 
 void EventList::readInto(Slot& slot) const {
@@ -265,24 +253,24 @@ EventList::Collected EventList::decoded(const Slot& slot, const std::vector<floa
     collected.events.dropped = total - listed;
     collected.events.events.reserve(listed);
     for (std::size_t i = 0; i < listed; ++i) {
-        const float* place = &values[kFloats * i];
-        const float* surface = place + plane;
-        const float* way = surface + plane;
-        const float* who = way + plane;
-        const int flags = static_cast<int>(who[3]);
+        const float* position = &values[kFloats * i];
+        const float* surface = position + plane;
+        const float* velocity = surface + plane;
+        const float* identity = velocity + plane;
+        const int flags = static_cast<int>(identity[3]);
         ParticleEvent& event = collected.events.events.emplace_back();
-        event.index = static_cast<std::uint32_t>(who[0]);
-        event.id = static_cast<std::uint32_t>(who[1]);
-        event.type = static_cast<std::uint32_t>(who[2]);
-        event.time = slot.begin + static_cast<double>(place[3]);
-        event.position = {place[0], place[1], place[2]};
-        event.velocity = {way[0], way[1], way[2]};
+        event.index = static_cast<std::uint32_t>(identity[0]);
+        event.id = static_cast<std::uint32_t>(identity[1]);
+        event.type = static_cast<std::uint32_t>(identity[2]);
+        event.time = slot.begin + static_cast<double>(position[3]);
+        event.position = {position[0], position[1], position[2]};
+        event.velocity = {velocity[0], velocity[1], velocity[2]};
         event.hit = (flags & kEventCollision) != 0;
         event.lasts = (flags & kEventLasts) != 0;
         event.death = (flags & kEventDeath) != 0;
         event.normal = {surface[0], surface[1], surface[2]};
         event.speed = surface[3];
-        event.body = static_cast<int>(way[3]);
+        event.body = static_cast<int>(velocity[3]);
     }
     return collected;
 }

@@ -1,7 +1,7 @@
 // The events of a step as a list on the GPU, and its way back to the CPU some steps later.
 //
-// The step writes what happened to each particle into two textures (shaders/step_event.glsl). The list is made of them
-// by fragments alone, on either path: sums of kEventsCounted in kEventLevels levels say how many events lie before each
+// The step writes what happened to each particle into two textures (shaders/particles/step_event.glsl). The list is made of them
+// by fragments alone, on either path: sums of kEventsCounted in kEventLevels levels count the events before each
 // index, and every texel of the list looks its own event up (a histogram pyramid, Ziegler et al. 2006).
 #pragma once
 
@@ -21,11 +21,11 @@ namespace relief {
 
 class EventList {
   public:
-    static constexpr int kInFlightMax = 8;  ///< steps asked for and not yet collected
+    static constexpr int kInFlightMax = 8;  ///< requests not yet collected
 
     /// A step that has just been made, in the particle system's textures.
     struct Step {
-        const GlTexture& way;  ///< as step_event.glsl writes them
+        const GlTexture& velocity;  ///< as step_event.glsl writes them
         const GlTexture& surface;
         const GlTexture& position_before;
         const GlTexture& birth;
@@ -37,7 +37,7 @@ class EventList {
         double begin = 0.0;        ///< of the step, seconds
         double end = 0.0;
     };
-    /// What has come back: ids are modulo 2^24.
+    /// A list read back: ids are modulo 2^24.
     struct Collected {
         StepEvents events;
         std::uint64_t number = 0;
@@ -47,7 +47,7 @@ class EventList {
     /// Errors: kUsage (the options), kLimit, kUnsupported, kFailure.
     [[nodiscard]] static Result<EventList> create(const EventOptions& options, std::uint32_t capacity);
 
-    /// Makes the list, and asks for it. With the state of a pass (PassState).
+    /// Makes the list, and requests its read-back. With the state of a pass (PassState).
     /// \return false, and nothing is made, while kInFlightMax are under way.
     bool request(const Step& step);
     /// The oldest list, if the GPU has finished it: never waits.
@@ -60,10 +60,10 @@ class EventList {
     [[nodiscard]] std::optional<std::uint64_t> oldestNumber() const;
 
     [[nodiscard]] const EventOptions& options() const { return options_; }
-    /// The list of the last request, four textures of RGBA32F, kEventsWidth texels in a row: place, surface, way and
-    /// who of shaders/event_list.frag.
+    /// The list of the last request, four textures of RGBA32F, kEventsWidth texels in a row: position, surface,
+    /// velocity and identity of shaders/particles/event_list.frag.
     [[nodiscard]] std::span<const GlTexture, 4> textures() const { return list_; }
-    /// A texel: x says how many events there were; the list holds `most` of them.
+    /// A texel: x is the number of events; the list holds `most` of them.
     [[nodiscard]] const GlTexture& total() const { return counts_[kLevels - 1].texture; }
 
   private:
@@ -75,7 +75,7 @@ class EventList {
     struct Slot {
         GlBuffer buffer;
         GlFence fence;
-        std::uint32_t rows = 0;  // of the list that were read; 0: nobody was there
+        std::uint32_t rows = 0;  // of the list that were read; 0: there were no particles
         std::uint64_t tag = 0;
         std::uint64_t number = 0;
         double begin = 0.0;
@@ -96,14 +96,9 @@ class EventList {
     std::array<Level, kLevels> counts_;
     std::array<GlTexture, 4> list_;
     GlFramebuffer list_target_;
-    GlVertexArray no_attributes_;
     GlProgram count_program_;
     GlProgram sum_program_;
     GlProgram list_program_;
-    GLint count_particles_ = -1;
-    GLint sum_count_ = -1;
-    GLint list_width_ = -1;
-    GLint list_radius_ = -1;
     std::array<Slot, kInFlightMax> slots_;
     int oldest_ = 0;
     int in_flight_ = 0;

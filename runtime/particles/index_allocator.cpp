@@ -25,7 +25,7 @@ IndexAllocator::IndexAllocator(std::uint32_t capacity) : capacity_(capacity), li
         const std::uint32_t count = words(bits);
         any_.emplace_back(count);
         full_.emplace_back(count);
-        // What lies beyond the end counts as full, so that no walk leads there.
+        // Bits beyond the end count as full, so that no walk leads there.
         if (bits % kBits != 0) {
             full_.back().back() = kFull << (bits % kBits);
         }

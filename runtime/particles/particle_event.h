@@ -1,4 +1,4 @@
-// What happened to particles in a step: hits and deaths.
+// Events of particles in a step: hits and deaths.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ struct ParticleEvent {
     std::uint32_t index = 0;  ///< its texel
     std::uint32_t type = 0;
     double time = 0.0;  ///< seconds since the beginning, as ParticleSystem::time()
-    /// Where the particle touched the surface, or died; world space. The surface counts as flat within the step.
+    /// The contact with the surface, or the place of death; world space. The surface counts as flat within the step.
     glm::vec3 position{0.0F};
     glm::vec3 velocity{0.0F};  ///< that it came with, the forces of the step in it; world units a second
     bool hit = false;

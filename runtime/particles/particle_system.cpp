@@ -7,11 +7,10 @@
 #include <unordered_map>
 
 #include "formats/base/finite.h"
+#include "runtime/gl/compute_units.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
-#include "runtime/gl/image_units.h"
 #include "runtime/gl/pass_state.h"
-#include "runtime/gl/storage_units.h"
 
 namespace relief {
 namespace {
@@ -24,13 +23,6 @@ constexpr std::array<float, 4> kZero{};
 constexpr float kNoGround = -1e30F;
 
 constexpr std::uint32_t kIdMask = kBirthTypeMax;
-
-/// Draws quad.vert's triangle over the first rows of the bound framebuffer.
-void drawRows(const GlVertexArray& no_attributes, std::uint32_t width, std::uint32_t rows) {
-    glViewport(0, 0, static_cast<GLsizei>(width), static_cast<GLsizei>(rows));
-    glBindVertexArray(no_attributes.name());
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-}
 
 Result<void> checkTypes(std::span<const ParticleType> types) {
     const auto share = [](float value) { return value >= 0.0F && value <= 1.0F; };
@@ -95,7 +87,6 @@ GlTexture ParticleSystem::makeStateTexture() const {
 Result<void> ParticleSystem::createTextures() {
     forgetGlErrors();
     birth_ = makeStateTexture();
-    no_attributes_ = makeVertexArray();
     const int buffers = verlet() ? 3 : 2;
     for (int i = 0; i < buffers; ++i) {
         position_[i] = makeStateTexture();
@@ -123,11 +114,9 @@ Result<void> ParticleSystem::createTextures() {
 
 Result<void> ParticleSystem::createPrograms() {
     birth_pass_ = RELIEF_TRY(BirthPass::create({width_, height_}, verlet(), path_));
-    rebase_program_ = RELIEF_TRY(makeProgram("quad.vert", "rebase.frag"));
-    glUseProgram(rebase_program_.name());
-    glUniform1i(uniformLocation(rebase_program_, "u_birth"), StepPass::kBirthUnit);
-    rebase_shift_ = uniformLocation(rebase_program_, "u_shift");
-
+    rebase_program_ = RELIEF_TRY(makeScreenProgram("particles/rebase.frag"));
+    rebase_program_.use();
+    rebase_program_.set("u_birth", StepPass::kBirthUnit);
     return remakeStep(nullptr);
 }
 
@@ -245,7 +234,7 @@ Result<void> ParticleSystem::setEvents(const std::optional<EventOptions>& option
     }
     replaced_.clear();
     if (!events_) {
-        event_way_ = {};
+        event_velocity_ = {};
         event_surface_ = {};
         for (GlFramebuffer& target : event_target_) {
             target = {};
@@ -256,7 +245,7 @@ Result<void> ParticleSystem::setEvents(const std::optional<EventOptions>& option
 }
 
 Result<void> ParticleSystem::createEventTextures() {
-    if (event_way_) {
+    if (event_velocity_) {
         return {};
     }
     forgetGlErrors();
@@ -273,7 +262,7 @@ Result<void> ParticleSystem::createEventTextures() {
         textures.push_back(surface.name());
         event_target_[i] = RELIEF_TRY(makeFramebuffer(textures));
     }
-    event_way_ = std::move(way);
+    event_velocity_ = std::move(way);
     event_surface_ = std::move(surface);
     return {};
 }
@@ -284,8 +273,8 @@ bool ParticleSystem::requestEvents(std::uint64_t tag) {
     }
     const PassState state;
     const GlTexture& before = verlet() ? position_[(current_ + 2) % 3] : position_[1 - current_];
-    return events_->request({event_way_, event_surface_, before, birth_, width_, stepped_extent_, types_, tag,
-                             steps_, step_begin_, time_});
+    return events_->request({event_velocity_, event_surface_, before, birth_, width_, stepped_extent_, types_,
+                             tag, steps_, step_begin_, time_});
 }
 
 std::optional<StepEvents> ParticleSystem::pollEvents() {
@@ -431,14 +420,13 @@ void ParticleSystem::runStep(float dt, float now) {
             ImageUnits::write(1, velocity_[next]);
         }
         if (events_) {
-            ImageUnits::write(verlet() ? 1 : 2, event_way_);
+            ImageUnits::write(verlet() ? 1 : 2, event_velocity_);
             ImageUnits::write(verlet() ? 2 : 3, event_surface_);
         }
         step_.dispatch(width_, rows);
         ImageUnits::finish();
     } else {
-        glBindFramebuffer(GL_FRAMEBUFFER, (events_ ? event_target_ : step_target_)[next].name());
-        drawRows(no_attributes_, width_, rows);
+        step_.draw((events_ ? event_target_ : step_target_)[next].name(), width_, rows);
     }
     current_ = next;
 }
@@ -468,11 +456,13 @@ void ParticleSystem::setEpochForward() {
     // Made by hand, because a step cannot report an error: create() has tried this combination.
     glBindFramebuffer(GL_FRAMEBUFFER, rebase_target_.name());
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, birth_spare_.name(), 0);
-    glUseProgram(rebase_program_.name());
+    rebase_program_.use();
     useTexture(StepPass::kBirthUnit, birth_);
-    glUniform1f(rebase_shift_, shift);
-    // Those who have just died included: their events may yet be listed.
-    drawRows(no_attributes_, width_, (std::max(allocator_.extent(), stepped_extent_) + width_ - 1) / width_);
+    rebase_program_.set("u_shift", shift);
+    // Those that have just died included: their events may yet be listed.
+    const std::uint32_t rows = (std::max(allocator_.extent(), stepped_extent_) + width_ - 1) / width_;
+    rebase_program_.drawScreen(rebase_target_.name(), static_cast<GLsizei>(width_),
+                               static_cast<GLsizei>(rows));
 
     std::swap(birth_, birth_spare_);
     for (const GlFramebuffer& target : birth_target_) {
@@ -508,7 +498,7 @@ Result<RawState> ParticleSystem::readRaw() const {
             return forward(done);
         }
     }
-    // What the shader would take: step_state.glsl.
+    // As in step_state.glsl.
     for (std::size_t i = 0; verlet() && i < raw.position.size(); i += 4) {
         const float rate = rateBefore();
         for (std::size_t k = i; k < i + 3; ++k) {

@@ -9,7 +9,7 @@
 //     (96 · texels once the clock has been set back for the first time; 32 · texels more with setEvents())
 //
 // A step, in this order: births are written into the textures (birth_pass.h); one pass over the occupied rows
-// decides deaths, moves and collides (shaders/step.glsl); the CPU frees the indices of the dead.
+// decides deaths, moves and collides (shaders/particles/step.glsl); the CPU frees the indices of the dead.
 //
 // Time. The CPU counts in double. The GPU sees floats relative to an epoch that is set forward whenever
 // epoch_seconds have passed, so that a float resolves half a millisecond even after days. A particle dies at
@@ -47,10 +47,10 @@ struct Collision {
     float friction_threshold = 0.0F;
 };
 
-/// How positions follow from velocities; both are of first order, and alike but for rounding.
+/// The integration of velocities; both are of first order, and alike but for rounding.
 enum class Integrator : std::uint8_t {
-    kEuler,   ///< semi-implicit: v' = v + dt a, P' = P + dt v'
-    kVerlet,  ///< P' = P + dt/dt_before (P − P_before) + dt² a: the velocity is the way of the last step
+    kEuler,  ///< semi-implicit: v' = v + dt a, P' = P + dt v'
+    kVerlet,  ///< P' = P + dt/dt_before (P − P_before) + dt² a: the velocity is the last step's displacement
 };
 
 struct ParticleSystemOptions {
@@ -100,7 +100,7 @@ class ParticleSystem {
     /// compute shaders), kFailure.
     [[nodiscard]] static Result<ParticleSystem> create(const ParticleSystemOptions& options = {});
 
-    /// What the particles collide with from the next step on; compiles the step for it. The particles live in
+    /// The colliders from the next step on; compiles the step for it. The particles live in
     /// the object space of a single collider, or in the world of several bodies.
     /// \param collider  must outlive its use by the system; null: nothing.
     /// Errors: kFailure (the driver's compiler).
@@ -127,11 +127,11 @@ class ParticleSystem {
     /// Errors: kUsage (a height that is not finite).
     [[nodiscard]] Result<void> setGround(std::optional<float> height);
 
-    /// From the next step on, each step says what happened to every particle. nullopt: no longer, as at first; a step
+    /// From the next step on, each step records the event of every particle. nullopt: no longer, as at first; a step
     /// then costs nothing more, in time or memory. Compiles the step where that changes; what is under way is lost.
     /// Errors: kUsage (the options), kLimit, kUnsupported (a GL that draws to fewer textures), kFailure.
     [[nodiscard]] Result<void> setEvents(const std::optional<EventOptions>& options);
-    /// Lists the events of the last step on the GPU, and asks for them. Restores the GL state. Collect what you ask for:
+    /// Lists the events of the last step on the GPU, and requests their read-back. Restores the GL state. Collect each request:
     /// until then the system keeps every id that a birth takes the place of.
     /// \param tag  comes back with them, the number of the step for example.
     /// \return false, and nothing is done, while EventList::kInFlightMax lists are under way, and without setEvents().
@@ -142,17 +142,17 @@ class ParticleSystem {
     /// Errors: kFailure (the GPU has not answered for ten seconds, or its memory cannot be read).
     [[nodiscard]] Result<std::optional<StepEvents>> waitEvents();
     [[nodiscard]] int eventsInFlight() const { return events_ ? events_->inFlight() : 0; }
-    /// The list of the last request on the GPU, for shaders of one's own; null without setEvents().
+    /// The list of the last request on the GPU, for shaders of your own; null without setEvents().
     [[nodiscard]] const EventList* eventList() const { return events_.get(); }
 
     /// Gives birth at the start of the next step; what has an age then has moved freely, under the forces,
     /// since its own birth. Texels without a particle are taken in ascending order.
     /// \return how many found a place; the rest are refused and counted.
-    /// Errors: kUsage (one that isValid() is not true of, by its number; nobody is born then).
+    /// Errors: kUsage (a birth that is not isValid(), by its number; none is made then).
     Result<std::size_t> spawn(std::span<const Birth> births);
 
     /// Moves everything by `dt` seconds, > 0. Restores the GL state that it touches (runtime/INTEGRATE.md).
-    /// Errors: kUsage (another `dt`; nothing has moved then). What fails on the GPU, checkGpu() tells (gl_fault.h).
+    /// Errors: kUsage (another `dt`; nothing has moved then). checkGpu() reports failures of the GPU (gl_fault.h).
     Result<void> step(float dt);
 
     /// kFragment or kCompute.
@@ -247,13 +247,11 @@ class ParticleSystem {
     GlFramebuffer step_target_[3];   // position and velocity
     GlFramebuffer birth_target_[3];  // position, velocity or position before, birth
     GlFramebuffer rebase_target_;    // birth_spare_
-    GlVertexArray no_attributes_;
     BirthPass birth_pass_;
     GlProgram rebase_program_;
-    GLint rebase_shift_ = -1;
     StepPass step_;
     std::unique_ptr<EventList> events_;
-    GlTexture event_way_;  // as step_event.glsl writes them
+    GlTexture event_velocity_;  // as step_event.glsl writes them
     GlTexture event_surface_;
     GlFramebuffer event_target_[3];  // step_target_'s and both of these
     double step_begin_ = 0.0;

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "shaders/shader_constants.h"
+#include "shaders/particles/constants.h"
 
 namespace relief {
 

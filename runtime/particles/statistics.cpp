@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <glm/glm.hpp>
 #include <span>
 #include <string>
 
 #include "runtime/gl/buffer_read.h"
+#include "runtime/gl/compute_units.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
@@ -19,11 +21,17 @@ constexpr int kSumsUnit = 1;    // velocities
 constexpr int kBirthUnit = 2;
 
 constexpr GLsizeiptr kTexelBytes = 4 * sizeof(float);
+constexpr GLsizeiptr kBytes = 2 * kTexelBytes;  // of a sample: shaders/particles/reduce.glsl has its parts
 constexpr GLuint64 kPatience = 10'000'000'000;  // nanoseconds
 
-/// Texels after a pass over so many.
-std::uint32_t reduced(std::uint32_t side) {
-    return (side + kReducedSide - 1) / kReducedSide;
+// Storage units of reduce.glsl, and texels a side that a work group sums.
+constexpr GLuint kReducedUnit = 0;
+constexpr GLuint kReducingUnit = 1;
+constexpr std::uint32_t kGroupSide = kReducedSide * kReducedGroup;
+
+/// Texels after a pass that sums squares of `square` a side over so many.
+std::uint32_t reduced(std::uint32_t side, std::uint32_t square) {
+    return (side + square - 1) / square;
 }
 
 }  // namespace
@@ -35,31 +43,55 @@ Result<Statistics> Statistics::create(std::uint32_t capacity, StepPath path) {
                                            " particles are not possible; choose 1 to " +
                                            std::to_string(ParticleSystem::kCapacityMax));
     }
-    const StepPath chosen = RELIEF_TRY(chosenPath(path));
+    Statistics statistics;
+    statistics.path_ = RELIEF_TRY(chosenPath(path));
     const PassState state;
     forgetGlErrors();
-    Statistics statistics;
     statistics.capacity_ = capacity;
     for (Slot& slot : statistics.slots_) {
         slot.buffer = makeBuffer();
         glBindBuffer(GL_PIXEL_PACK_BUFFER, slot.buffer.name());
-        glBufferData(GL_PIXEL_PACK_BUFFER, StateSums::kBytes, nullptr, GL_STREAM_READ);
+        glBufferData(GL_PIXEL_PACK_BUFFER, kBytes, nullptr, GL_STREAM_READ);
     }
     RELIEF_TRY(checkAllocated("the statistics' buffers", "choose a smaller capacity"));
-    if (chosen == StepPath::kCompute) {
-        statistics.compute_ = RELIEF_TRY(StateSums::create(capacity));
-    } else {
-        RELIEF_TRY(statistics.createLadder());
-    }
+    RELIEF_TRY(statistics.path_ == StepPath::kCompute ? statistics.createParts() : statistics.createLadder());
+    RELIEF_TRY(statistics.createPrograms());
     return statistics;
+}
+
+Result<void> Statistics::createPrograms() {
+    const auto make = path_ == StepPath::kCompute ? makeComputeProgram : makeScreenProgram;
+    state_program_ = RELIEF_TRY(make("particles/reduce_state.frag", {}));
+    sum_program_ = RELIEF_TRY(make("particles/reduce_sum.frag", {}));
+    state_program_.use();
+    state_program_.set("u_position", kCountsUnit);
+    state_program_.set("u_velocity", kSumsUnit);
+    state_program_.set("u_birth", kBirthUnit);
+    sum_program_.use();
+    sum_program_.set("u_counts", kCountsUnit);
+    sum_program_.set("u_sums", kSumsUnit);
+    return {};
+}
+
+Result<void> Statistics::createParts() {
+    const StorageUnits storage;
+    const std::uint32_t width = std::min(capacity_, ParticleSystem::kStateWidth);
+    const std::uint32_t parts =
+        reduced(width, kGroupSide) * reduced((capacity_ + width - 1) / width, kGroupSide);
+    for (GlBuffer& buffer : parts_) {
+        buffer = StorageUnits::make(static_cast<GLsizeiptr>(parts) * kBytes);
+        RELIEF_TRY(checkAllocated("the statistics of " + std::to_string(capacity_) + " particles",
+                                  "choose a smaller capacity"));
+    }
+    return {};
 }
 
 Result<void> Statistics::createLadder() {
     std::uint32_t width = std::min(capacity_, ParticleSystem::kStateWidth);
     std::uint32_t height = (capacity_ + width - 1) / width;
     do {
-        width = reduced(width);
-        height = reduced(height);
+        width = reduced(width, kReducedSide);
+        height = reduced(height, kReducedSide);
         const auto make = [&] {
             return makeTexture2D(GL_RGBA32F, static_cast<GLsizei>(width), static_cast<GLsizei>(height),
                                  GL_RGBA, GL_FLOAT);
@@ -71,21 +103,6 @@ Result<void> Statistics::createLadder() {
         level.target = RELIEF_TRY(makeFramebuffer(textures));
         levels_.push_back(std::move(level));
     } while (width > 1 || height > 1);
-    no_attributes_ = makeVertexArray();
-
-    state_program_ = RELIEF_TRY(makeProgram("quad.vert", "reduce_state.frag"));
-    sum_program_ = RELIEF_TRY(makeProgram("quad.vert", "reduce_sum.frag"));
-    glUseProgram(state_program_.name());
-    glUniform1i(uniformLocation(state_program_, "u_position"), kCountsUnit);
-    glUniform1i(uniformLocation(state_program_, "u_velocity"), kSumsUnit);
-    glUniform1i(uniformLocation(state_program_, "u_birth"), kBirthUnit);
-    state_size_ = uniformLocation(state_program_, "u_size");
-    state_rate_ = uniformLocation(state_program_, "u_rate_before");
-    state_extent_ = uniformLocation(state_program_, "u_extent");
-    glUseProgram(sum_program_.name());
-    glUniform1i(uniformLocation(sum_program_, "u_counts"), kCountsUnit);
-    glUniform1i(uniformLocation(sum_program_, "u_sums"), kSumsUnit);
-    sum_size_ = uniformLocation(sum_program_, "u_size");
     return {};
 }
 
@@ -101,38 +118,55 @@ bool Statistics::request(const ParticleSystem& particles, std::uint64_t tag) {
         return true;
     }
     const PassState state;
-    if (compute_) {
-        compute_->sum(particles, slot.buffer);
+    const std::uint32_t width = particles.textureWidth();
+    const std::uint32_t height = (particles.extent() + width - 1) / width;
+    state_program_.use();
+    state_program_.set("u_extent", static_cast<GLint>(particles.extent()));
+    state_program_.set("u_size", glm::ivec2(width, height));
+    state_program_.set("u_rate_before", particles.rateBefore());
+    useTexture(kCountsUnit, particles.positions());
+    useTexture(kSumsUnit, particles.secondState());
+    useTexture(kBirthUnit, particles.births());
+    if (path_ == StepPath::kCompute) {
+        sumByGroups(width, height, slot.buffer);
     } else {
-        sumByLadder(particles, slot.buffer);
+        sumByLadder(width, height, slot.buffer);
     }
     slot.fence.insert();
     return true;
 }
 
-void Statistics::sumByLadder(const ParticleSystem& particles, const GlBuffer& result) const {
-    std::uint32_t width = particles.textureWidth();
-    std::uint32_t height = (particles.extent() + width - 1) / width;
-    glUseProgram(state_program_.name());
-    glUniform1i(state_extent_, static_cast<GLint>(particles.extent()));
-    glUniform2i(state_size_, static_cast<GLint>(width), static_cast<GLint>(height));
-    useTexture(kCountsUnit, particles.positions());
-    useTexture(kSumsUnit, particles.secondState());
-    useTexture(kBirthUnit, particles.births());
-    glUniform1f(state_rate_, particles.rateBefore());
-    glBindVertexArray(no_attributes_.name());
+void Statistics::sumByGroups(std::uint32_t width, std::uint32_t height, const GlBuffer& result) const {
+    const StorageUnits storage;
+    for (int pass = 0;; ++pass) {
+        width = reduced(width, kGroupSide);
+        height = reduced(height, kGroupSide);
+        const bool last = width == 1 && height == 1;
+        StorageUnits::bind(kReducingUnit, parts_[pass % 2]);
+        StorageUnits::bind(kReducedUnit, last ? result : parts_[1 - pass % 2]);
+        StorageUnits::order();
+        glDispatchCompute(width, height, 1);
+        if (last) {
+            break;
+        }
+        sum_program_.use();
+        sum_program_.set("u_size", glm::ivec2(width, height));
+    }
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);  // that the buffer may be mapped
+}
+
+void Statistics::sumByLadder(std::uint32_t width, std::uint32_t height, const GlBuffer& result) const {
     // Only the rows that hold particles: with few of them the single texel is reached early.
     for (std::size_t i = 0;; ++i) {
-        width = reduced(width);
-        height = reduced(height);
-        glBindFramebuffer(GL_FRAMEBUFFER, levels_[i].target.name());
-        glViewport(0, 0, static_cast<GLsizei>(width), static_cast<GLsizei>(height));
-        glDrawArrays(GL_TRIANGLES, 0, 3);
+        width = reduced(width, kReducedSide);
+        height = reduced(height, kReducedSide);
+        (i == 0 ? state_program_ : sum_program_)
+            .drawScreen(levels_[i].target.name(), static_cast<GLsizei>(width), static_cast<GLsizei>(height));
         if (width == 1 && height == 1) {
             break;
         }
-        glUseProgram(sum_program_.name());
-        glUniform2i(sum_size_, static_cast<GLint>(width), static_cast<GLint>(height));
+        sum_program_.use();
+        sum_program_.set("u_size", glm::ivec2(width, height));
         useTexture(kCountsUnit, levels_[i].counts);
         useTexture(kSumsUnit, levels_[i].sums);
     }
@@ -179,7 +213,7 @@ std::optional<StatisticsSample> Statistics::collect() {
     }
     slot.fence.remove();
     std::array<float, 8> values{};
-    static_assert(sizeof(values) == StateSums::kBytes);
+    static_assert(sizeof(values) == kBytes);
     if (!readBuffer(slot.buffer, std::as_writable_bytes(std::span(values)))) {
         return std::nullopt;
     }

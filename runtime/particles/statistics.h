@@ -1,6 +1,6 @@
-// What the particles do as a whole, summed up on the GPU: passes that each sum 4 × 4 texels into one, down to
-// a single texel, which is copied into a buffer; or, on StepPath::kCompute, the same sums by work groups
-// (state_sums.h). Nothing waits for the GPU but wait(): a sample is asked for
+// Sums over all particles on the GPU: passes that each sum 4 × 4 texels into one, down to
+// a single texel, which is copied into a buffer; or, on StepPath::kCompute, the same sums in the same order by work groups
+// that each sum 64 × 64 texels into one. Nothing waits for the GPU but wait(): a sample is asked for
 // after a step and collected some steps later.
 //
 //     bytes on the GPU < 32/15 · texels of the state + 1 kB (for the system's capacity); compute: 1/64 · texels + 1 kB
@@ -15,7 +15,6 @@
 #include "runtime/gl/gl_fence.h"
 #include "runtime/gl/gl_object.h"
 #include "runtime/particles/particle_system.h"
-#include "runtime/particles/state_sums.h"
 
 namespace relief {
 
@@ -35,16 +34,16 @@ struct StatisticsSample {
 
 class Statistics {
   public:
-    static constexpr int kInFlightMax = 16;  ///< samples asked for and not yet collected
+    static constexpr int kInFlightMax = 16;  ///< requests not yet collected
 
     /// For systems of this capacity. Needs a current context, as every call does.
     /// \param path  how it sums, of systems of either path: the system's, as a rule.
     /// Errors: kUsage (0 or above ParticleSystem::kCapacityMax), kLimit, kUnsupported, kFailure.
     [[nodiscard]] static Result<Statistics> create(std::uint32_t capacity, StepPath path = StepPath::kAuto);
 
-    /// Asks for a sample of the particles as they are now; restores the GL state.
+    /// Requests a sample of the particles as they are now; restores the GL state.
     /// \param tag  comes back with it, the number of the step for example.
-    /// \return false, and nothing is asked for, while kInFlightMax samples are under way, or if the system is
+    /// \return false, and nothing is requested, while kInFlightMax samples are under way, or if the system is
     ///         larger than the capacity.
     bool request(const ParticleSystem& particles, std::uint64_t tag);
 
@@ -66,27 +65,26 @@ class Statistics {
         GlBuffer buffer;
         GlFence fence;
         std::uint64_t tag = 0;
-        bool empty = false;  // nobody was there: nothing was asked of the GPU
+        bool empty = false;  // no particles, and no work of the GPU
     };
 
     Statistics() = default;
+    [[nodiscard]] Result<void> createPrograms();
     [[nodiscard]] Result<void> createLadder();
-    void sumByLadder(const ParticleSystem& particles, const GlBuffer& result) const;
+    [[nodiscard]] Result<void> createParts();
+    void sumByLadder(std::uint32_t width, std::uint32_t height, const GlBuffer& result) const;
+    void sumByGroups(std::uint32_t width, std::uint32_t height, const GlBuffer& result) const;
     [[nodiscard]] std::optional<StatisticsSample> collect();
 
     std::uint32_t capacity_ = 0;
-    std::optional<StateSums> compute_;  // instead of the ladder
+    StepPath path_ = StepPath::kFragment;
     std::array<Slot, kInFlightMax> slots_;
     int oldest_ = 0;
     int in_flight_ = 0;
-    std::vector<Level> levels_;
-    GlVertexArray no_attributes_;
-    GlProgram state_program_;
-    GlProgram sum_program_;
-    GLint state_size_ = -1;
-    GLint state_rate_ = -1;
-    GLint state_extent_ = -1;
-    GLint sum_size_ = -1;
+    std::vector<Level> levels_;  // kFragment
+    GlBuffer parts_[2];          // kCompute, in turns: a pass reads one and writes the other
+    GlProgram state_program_;    // the first pass
+    GlProgram sum_program_;      // further passes
 };
 
 }  // namespace relief

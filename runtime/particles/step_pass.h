@@ -1,4 +1,4 @@
-// The program of one simulation step, compiled for what a scene uses and no more (shaders/step.glsl).
+// The program of one simulation step, compiled for what a scene uses and no more (shaders/particles/step.glsl).
 #pragma once
 
 #include <cstdint>
@@ -19,10 +19,10 @@ struct Forces {
     float viscosity = 0.0F;   ///< above 0: Stokes drag 6π · viscosity · radius instead of `drag`
 };
 
-/// How fast a type takes on the velocity of the air, 1/s.
+/// The rate at which a type takes on the velocity of the air, 1/s.
 [[nodiscard]] float dragRate(const Forces& forces, const ParticleType& type);
 
-/// What the program is made for. A change of any of these needs another one.
+/// The features that the program is compiled for. A change of any of these needs another one.
 struct StepFeatures {
     const ColliderTextures* collider = nullptr;  ///< null: nothing solid but the floor
     const AirBlock* air = nullptr;               ///< null: still, but for the wind of Forces
@@ -32,7 +32,7 @@ struct StepFeatures {
     bool compute = false;  ///< the program is a compute shader: dispatch()
     bool masks = false;    ///< some type does not collide with all
     int types = 1;
-    bool events = false;  ///< writes what happened, too (shaders/step_event.glsl)
+    bool events = false;  ///< writes events, too (shaders/particles/step_event.glsl)
     friend bool operator==(const StepFeatures&, const StepFeatures&) = default;
 };
 
@@ -66,7 +66,9 @@ class StepPass {
     /// Makes the program current and sets its uniforms; binds the collider's textures, and where usesStorage() shader storage
     /// binding kTourStorage.
     void use(const Values& values) const;
-    /// With StepFeatures::compute, after use(): steps the particles of the first `rows` rows of `width` texels into image
+    /// After use(): steps the particles of the first `rows` rows of `width` texels into a framebuffer's textures.
+    void draw(GLuint framebuffer, std::uint32_t width, std::uint32_t rows) const;
+    /// The same with StepFeatures::compute: steps the particles of the first `rows` rows of `width` texels into image
     /// units 0 (positions), without verlet 1 (velocities), and with events the next two.
     void dispatch(std::uint32_t width, std::uint32_t rows) const;
     [[nodiscard]] const StepFeatures& features() const { return features_; }
@@ -76,8 +78,6 @@ class StepPass {
     StepFeatures features_;
     bool tours_ = false;
     GlProgram program_;
-    GLint now_ = -1, dt_ = -1, rate_before_ = -1, gravity_ = -1, wind_ = -1, still_ = -1, ground_ = -1,
-          sweep_ = -1, air_time_ = -1, types_ = -1, collides_ = -1, size_ = -1;
 };
 
 }  // namespace relief

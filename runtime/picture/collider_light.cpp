@@ -7,8 +7,7 @@
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
-#include "runtime/picture/ray_passes.h"
-#include "shaders/shader_constants.h"
+#include "shaders/picture/constants.h"
 
 namespace relief {
 namespace {
@@ -22,36 +21,11 @@ constexpr float kSunBiasTexels = 1.5F;
 
 constexpr const char* kLess = "close what else is on the GPU";
 
-GlTexture makeVolumeTexture(const glm::ivec3& size) {
-    GLuint name = 0;
-    glGenTextures(1, &name);
-    glBindTexture(GL_TEXTURE_3D, name);
-    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) {
-        glTexParameteri(GL_TEXTURE_3D, filter, GL_LINEAR);
-    }
-    for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) {
-        glTexParameteri(GL_TEXTURE_3D, wrap, GL_CLAMP_TO_EDGE);
-    }
-    glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAX_LEVEL, 0);
-    glTexImage3D(GL_TEXTURE_3D, 0, GL_R8, size.x, size.y, size.z, 0, GL_RED, GL_UNSIGNED_BYTE, nullptr);
-    glBindTexture(GL_TEXTURE_3D, 0);
-    return GlTexture(name);
-}
-
-void useVolume(int unit, const GlTexture& texture) {
-    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-    glBindTexture(GL_TEXTURE_3D, texture.name());
-}
-
-void setVector(const GlProgram& program, const char* name, const glm::vec3& v) {
-    glUniform3f(uniformLocation(program, name), v.x, v.y, v.z);
-}
-
 /// Object space to 0…1 of a volume's texture: scale · (p - shift).
 void setVolumeFrame(const GlProgram& program, const char* shift, const char* scale, const glm::vec3& first,
                     const glm::ivec3& size, float voxel) {
-    setVector(program, shift, first - glm::vec3(0.5F * voxel));
-    setVector(program, scale, 1.0F / (voxel * glm::vec3(size)));
+    program.set(shift, first - glm::vec3(0.5F * voxel));
+    program.set(scale, 1.0F / (voxel * glm::vec3(size)));
 }
 
 }  // namespace
@@ -63,7 +37,7 @@ GLsizei ColliderLight::Volume::tiles() const {
 Result<void> ColliderLight::Volume::allocate() {
     const GLsizei rows = (size.z + tiles() - 1) / tiles();
     layers = makeTexture2D(GL_R8, tiles() * size.x, rows * size.y, GL_RED, GL_UNSIGNED_BYTE);
-    texture = makeVolumeTexture(size);
+    texture = makeTexture3D(GL_R8, size, GL_RED, GL_UNSIGNED_BYTE, GL_LINEAR);
     RELIEF_TRY(checkAllocated("the light among the collider", kLess));
     target = RELIEF_TRY(makeFramebuffer(std::array<GLuint, 1>{layers.name()}));
     return {};
@@ -76,7 +50,6 @@ Result<ColliderLight> ColliderLight::create(const ColliderView& collider) {
     light.collider_ = collider;
     light.frameSun();
     light.frameVolumes();
-    light.no_attributes_ = makeVertexArray();
     RELIEF_TRY(light.createPrograms());
     return light;
 }
@@ -111,35 +84,33 @@ void ColliderLight::frameVolumes() {
 Result<void> ColliderLight::createPrograms() {
     const std::string defines = collider_.textures->defines();
     coarse_program_ =
-        RELIEF_TRY(makeProgram("quad.vert", "sun_map.frag", "#define RELIEF_COARSE 1\n" + defines));
-    sun_program_ = RELIEF_TRY(makeProgram("quad.vert", "sun_map.frag", defines));
-    occupied_.program = RELIEF_TRY(makeProgram("quad.vert", "occupancy.frag", defines));
-    sky_.program = RELIEF_TRY(makeProgram("quad.vert", "sky_share.frag"));
+        RELIEF_TRY(makeScreenProgram("picture/sun_map.frag", "#define RELIEF_COARSE 1\n" + defines));
+    sun_program_ = RELIEF_TRY(makeScreenProgram("picture/sun_map.frag", defines));
+    occupied_.program = RELIEF_TRY(makeScreenProgram("picture/occupancy.frag", defines));
+    sky_.program = RELIEF_TRY(makeScreenProgram("picture/sky_share.frag"));
     const float side = sun_texel_ * static_cast<float>(kSunSide);
     for (const GlProgram* program : {&coarse_program_, &sun_program_}) {
         collider_.textures->attach(*program, kColliderBinding);
         setLightUniforms(*program, collider_, {});
         setRayUniforms(*program, collider_);
-        setVector(*program, "u_corner", sun_corner_);
-        setVector(*program, "u_across", side * sun_across_);
-        setVector(*program, "u_along", side * sun_along_);
+        program->set("u_corner", sun_corner_);
+        program->set("u_across", side * sun_across_);
+        program->set("u_along", side * sun_along_);
     }
-    glUniform1i(uniformLocation(sun_program_, "u_coarse"), kInputUnit);
+    sun_program_.set("u_coarse", kInputUnit);
     collider_.textures->attach(occupied_.program, kColliderBinding);
     for (const Volume* volume : {&occupied_, &sky_}) {
-        glUseProgram(volume->program.name());
-        setVector(volume->program, "u_first", volume->first);
-        glUniform1f(uniformLocation(volume->program, "u_voxel"), voxel_);
-        glUniform3i(uniformLocation(volume->program, "u_size"), volume->size.x, volume->size.y,
-                    volume->size.z);
-        glUniform1i(uniformLocation(volume->program, "u_tiles"), volume->tiles());
+        volume->program.use();
+        volume->program.set("u_first", volume->first);
+        volume->program.set("u_voxel", voxel_);
+        volume->program.set("u_size", volume->size);
+        volume->program.set("u_tiles", volume->tiles());
     }
     setVolumeFrame(sky_.program, "u_occupied_shift", "u_occupied_scale", occupied_.first, occupied_.size,
                    voxel_);
-    glUniform1i(uniformLocation(sky_.program, "u_occupied"), kInputUnit);
-    glUniform1i(uniformLocation(sky_.program, "u_sky_rays"), kSkyRays);
-    glUniform1i(uniformLocation(sky_.program, "u_sky_steps"),
-                static_cast<GLint>(kSkyReach * static_cast<float>(kVoxelsOfSide)));
+    sky_.program.set("u_occupied", kInputUnit);
+    sky_.program.set("u_sky_rays", kSkyRays);
+    sky_.program.set("u_sky_steps", static_cast<GLint>(kSkyReach * static_cast<float>(kVoxelsOfSide)));
     return {};
 }
 
@@ -152,7 +123,7 @@ Result<void> ColliderLight::createTextures() {
     coarse_target_ = RELIEF_TRY(makeFramebuffer(std::array<GLuint, 1>{coarse_.name()}));
     RELIEF_TRY(occupied_.allocate());
     RELIEF_TRY(sky_.allocate());
-    // Last: that it is there says that all of them are.
+    // Last: its existence stands for that of all.
     sun_target_ = RELIEF_TRY(makeFramebuffer(std::array<GLuint, 1>{sun_map_.name()}));
     return {};
 }
@@ -165,11 +136,10 @@ Result<void> ColliderLight::update() {
     if (!sun_target_) {
         RELIEF_TRY(createTextures());
     }
-    glBindVertexArray(no_attributes_.name());
     collider_.textures->bind(kColliderBinding);
     drawSun();
     drawVolume(occupied_);
-    useVolume(kInputUnit, occupied_.texture);
+    useTexture3D(kInputUnit, occupied_.texture);
     drawVolume(sky_);
     revision_ = revision;
     ++updates_;
@@ -177,24 +147,16 @@ Result<void> ColliderLight::update() {
 }
 
 void ColliderLight::drawSun() {
-    glBindFramebuffer(GL_FRAMEBUFFER, coarse_target_.name());
-    glUseProgram(coarse_program_.name());
-    drawInBands(kSunSide / kCoarseStride, kSunSide / kCoarseStride);
+    drawInBands(coarse_program_, coarse_target_.name(), kSunSide / kCoarseStride, kSunSide / kCoarseStride);
     useTexture(kInputUnit, coarse_);
-    glBindFramebuffer(GL_FRAMEBUFFER, sun_target_.name());
-    glUseProgram(sun_program_.name());
-    drawInBands(kSunSide, kSunSide);
+    drawInBands(sun_program_, sun_target_.name(), kSunSide, kSunSide);
 }
 
 void ColliderLight::drawVolume(const Volume& volume) const {
     const GLsizei tiles = volume.tiles();
     const glm::ivec3& size = volume.size;
-    glBindFramebuffer(GL_FRAMEBUFFER, volume.target.name());
-    glUseProgram(volume.program.name());
-    glViewport(0, 0, tiles * size.x, (size.z + tiles - 1) / tiles * size.y);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-    glActiveTexture(GL_TEXTURE0 + kInputUnit);
-    glBindTexture(GL_TEXTURE_3D, volume.texture.name());
+    volume.program.drawScreen(volume.target.name(), tiles * size.x, (size.z + tiles - 1) / tiles * size.y);
+    useTexture3D(kInputUnit, volume.texture);
     for (GLint z = 0; z < size.z; ++z) {
         glCopyTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, z, z % tiles * size.x, z / tiles * size.y, size.x,
                             size.y);
@@ -206,25 +168,25 @@ float ColliderLight::sunBias() const {
 }
 
 void ColliderLight::attach(const GlProgram& program, int unit) const {
-    glUseProgram(program.name());
-    glUniform1i(uniformLocation(program, "u_sun_map"), unit);
-    glUniform1i(uniformLocation(program, "u_sky_share"), unit + 1);
+    program.use();
+    program.set("u_sun_map", unit);
+    program.set("u_sky_share", unit + 1);
     const glm::vec3 sun = sunDirection();
     const glm::vec3 across = sun_across_ / sun_texel_;
     const glm::vec3 along = sun_along_ / sun_texel_;
     const std::array<glm::vec4, 3> rows{glm::vec4(across, -glm::dot(across, sun_corner_)),
                                         glm::vec4(along, -glm::dot(along, sun_corner_)),
                                         glm::vec4(-sun, glm::dot(sun, sun_corner_))};
-    glUniform4fv(uniformLocation(program, "u_sun_rows"), 3, &rows[0].x);
-    glUniform1f(uniformLocation(program, "u_sun_bias"), sunBias());
-    glUniform1f(uniformLocation(program, "u_sun_cone"), kSunWidth / sun_texel_);
+    program.set("u_sun_rows", rows);
+    program.set("u_sun_bias", sunBias());
+    program.set("u_sun_cone", kSunWidth / sun_texel_);
     setVolumeFrame(program, "u_sky_shift", "u_sky_scale", sky_.first, sky_.size, voxel_);
-    glUniform1f(uniformLocation(program, "u_texel"), collider_.texel);
+    program.set("u_texel", collider_.texel);
 }
 
 void ColliderLight::bind(int unit) const {
     useTexture(unit, sun_map_);
-    useVolume(unit + 1, sky_.texture);
+    useTexture3D(unit + 1, sky_.texture);
 }
 
 }  // namespace relief

@@ -1,10 +1,10 @@
-// The light among a collider, kept so that a particle looks up a few texels (shaders/particle_light.glsl) instead of
+// The light among a collider, kept so that a particle looks up a few texels (shaders/picture/particle_light.glsl) instead of
 // following rays: the collider seen from the sun, and the share of the sky that each place sees. Both are made anew
 // only when the collider has moved or changed its shape.
 //
 //     bytes on the GPU ≈ 4 · kSunSide² + 2 · voxels: 1.0 MB and, of a cube, 0.9 MB
 //
-// How exact it is. Behind a sheet, however thin, the sun may shine as far as sunBias(), and the sky as far as 1.5
+// Accuracy. Behind a sheet, however thin, the sun may shine as far as sunBias(), and the sky as far as 1.5
 // voxels: voxel() is 1/40 of the collider's longest side. The sun's map misses what is thinner than four of its texels
 // across the light.
 #pragma once
@@ -46,7 +46,7 @@ class ColliderLight {
     [[nodiscard]] std::uint64_t updates() const { return updates_; }
 
   private:
-    /// Voxels that are drawn as a picture of layers (shaders/volume.glsl), then copied into a 3-D texture.
+    /// Voxels that are drawn as a picture of layers (shaders/picture/volume.glsl), then copied into a 3-D texture.
     struct Volume {
         glm::ivec3 size{0};
         glm::vec3 first{0.0F};  // the middle of voxel (0, 0, 0)
@@ -69,7 +69,6 @@ class ColliderLight {
     ColliderView collider_;
     std::optional<std::uint64_t> revision_;  // ColliderTextures::revision() of what is kept
     std::uint64_t updates_ = 0;
-    GlVertexArray no_attributes_;
 
     float sun_texel_ = 0.0F;   // object units
     glm::vec3 sun_corner_{0};  // of texel (0, 0), on the plane where the rays start

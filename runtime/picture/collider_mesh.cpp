@@ -2,7 +2,7 @@
 
 #include <array>
 #include <cstddef>
-#include <glm/gtc/type_ptr.hpp>
+#include <glm/glm.hpp>
 #include <limits>
 #include <vector>
 
@@ -41,7 +41,7 @@ Result<ColliderMesh> ColliderMesh::create(const PictureMesh& mesh) {
     const PassState state;
     forgetGlErrors();
     ColliderMesh out;
-    out.program_ = RELIEF_TRY(makeProgram("mesh.vert", "mesh.frag"));
+    out.program_ = RELIEF_TRY(makeProgram("picture/mesh.vert", "picture/mesh.frag"));
     out.vertex_bytes_ = static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex));
     out.corners_ = static_cast<GLsizei>(full.triangles.size());
     out.vertices_ = makeBuffer();
@@ -62,14 +62,7 @@ Result<ColliderMesh> ColliderMesh::create(const PictureMesh& mesh) {
 }
 
 void ColliderMesh::setVertices(const GlBuffer& buffer) {
-    GLint bound[2] = {};
-    glGetIntegerv(GL_COPY_READ_BUFFER_BINDING, &bound[0]);
-    glGetIntegerv(GL_COPY_WRITE_BUFFER_BINDING, &bound[1]);
-    glBindBuffer(GL_COPY_READ_BUFFER, buffer.name());
-    glBindBuffer(GL_COPY_WRITE_BUFFER, vertices_.name());
-    glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, vertex_bytes_);
-    glBindBuffer(GL_COPY_READ_BUFFER, static_cast<GLuint>(bound[0]));
-    glBindBuffer(GL_COPY_WRITE_BUFFER, static_cast<GLuint>(bound[1]));
+    copyBuffer(buffer, vertices_, 0, vertex_bytes_);
 }
 
 Result<ColliderMesh::View> ColliderMesh::view(const Camera& camera, GLsizei width, GLsizei height) const {
@@ -93,8 +86,8 @@ Result<ColliderMesh::View> ColliderMesh::view(const Camera& camera, GLsizei widt
     glClearBufferfv(GL_DEPTH, 0, &far);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
-    glUseProgram(program_.name());
-    glUniformMatrix4fv(uniformLocation(program_, "u_clip"), 1, GL_FALSE, glm::value_ptr(clip));
+    program_.use();
+    program_.set("u_clip", clip);
     glBindVertexArray(array_.name());
     glDrawElements(GL_TRIANGLES, corners_, GL_UNSIGNED_INT, nullptr);
     return view;

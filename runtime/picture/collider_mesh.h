@@ -22,7 +22,7 @@ class ColliderMesh {
     /// buffer of the GPU (deform_pass.h). As many as the mesh was created with, which then has normals.
     void setVertices(const GlBuffer& buffer);
 
-    /// What a camera sees of it, pixel by pixel.
+    /// A camera's view of it, pixel by pixel.
     struct View {
         GlTexture normal;  ///< RGBA16F, object space, towards the viewer
         GlTexture depth;   ///< 32-bit window depth; 1 where there is nothing

@@ -6,7 +6,6 @@
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
-#include "runtime/picture/ray_passes.h"
 
 namespace relief {
 namespace {
@@ -25,25 +24,20 @@ constexpr LightRays kLightRays{.sun = 2, .sky = 6, .sun_steps = 32, .sky_steps =
 
 constexpr const char* kSmallerPicture = "choose a smaller size";
 
-void setVector(const GlProgram& program, const char* name, const glm::vec3& v) {
-    glUniform3f(uniformLocation(program, name), v.x, v.y, v.z);
-}
-
 void setViewUniforms(const GlProgram& program, const Camera& camera, const ColliderStyle& style,
                      GLsizei width, GLsizei height) {
     const float tangent = camera.tanHalfFov();
     const float aspect = static_cast<float>(width) / static_cast<float>(height);
-    const glm::vec2 depth = camera.depthOfDistance();
-    glUseProgram(program.name());
-    setVector(program, "u_eye", camera.eye);
-    setVector(program, "u_forward", camera.forward());
-    setVector(program, "u_right", tangent * aspect * camera.right());
-    setVector(program, "u_up", tangent * camera.up());
-    glUniform2f(uniformLocation(program, "u_depth"), depth.x, depth.y);
-    glUniform1i(uniformLocation(program, "u_has_ground"), style.ground ? 1 : 0);
-    glUniform1f(uniformLocation(program, "u_ground"), style.ground.value_or(0.0F));
-    setVector(program, "u_background", linearColor(style.background));
-    setVector(program, "u_clay", linearColor(style.clay));
+    program.use();
+    program.set("u_eye", camera.eye);
+    program.set("u_forward", camera.forward());
+    program.set("u_right", tangent * aspect * camera.right());
+    program.set("u_up", tangent * camera.up());
+    program.set("u_depth", camera.depthOfDistance());
+    program.set("u_has_ground", style.ground.has_value());
+    program.set("u_ground", style.ground.value_or(0.0F));
+    program.set("u_background", linearColor(style.background));
+    program.set("u_clay", linearColor(style.clay));
 }
 
 }  // namespace
@@ -56,25 +50,22 @@ Result<ColliderRenderer> ColliderRenderer::create(const ColliderView& view, cons
     renderer.mesh_ = mesh;
     const std::string mesh_define = mesh != nullptr ? "#define RELIEF_MESH 1\n" : "";
     renderer.trace_program_ =
-        RELIEF_TRY(makeProgram("quad.vert", "collider_view.frag", mesh_define + view.textures->defines()));
-    renderer.coarse_program_ = RELIEF_TRY(makeProgram(
-        "quad.vert", "collider_view.frag", "#define RELIEF_COARSE 1\n" + view.textures->defines()));
-    renderer.copy_program_ = RELIEF_TRY(makeProgram("quad.vert", "copy_view.frag"));
-    renderer.no_attributes_ = makeVertexArray();
-    for (const GlProgram* program : {&renderer.trace_program_, &renderer.coarse_program_}) {
+        RELIEF_TRY(makeScreenProgram("picture/collider_view.frag", mesh_define + view.textures->defines()));
+    renderer.coarse_program_ = RELIEF_TRY(makeScreenProgram(
+        "picture/collider_view.frag", "#define RELIEF_COARSE 1\n" + view.textures->defines()));
+    renderer.copy_program_ = RELIEF_TRY(makeScreenProgram("picture/copy_view.frag"));
+    for (const GlProgram* program : {&renderer.coarse_program_, &renderer.trace_program_}) {
         view.textures->attach(*program, kColliderBinding);
         setLightUniforms(*program, view, kLightRays);
         setRayUniforms(*program, view);
-        glUniform1i(uniformLocation(*program, "u_normals"), kNormals);
+        program->set("u_normals", kNormals);
+        program->set("u_coarse", kCoarseUnit);
+        program->set("u_mesh_normal", kMeshNormalUnit);
+        program->set("u_mesh_depth", kMeshDepthUnit);
     }
-    glUseProgram(renderer.trace_program_.name());
-    glUniform1i(uniformLocation(renderer.trace_program_, "u_coarse"), kCoarseUnit);
-    glUniform1i(uniformLocation(renderer.trace_program_, "u_mesh_normal"), kMeshNormalUnit);
-    glUniform1i(uniformLocation(renderer.trace_program_, "u_mesh_depth"), kMeshDepthUnit);
-    glUseProgram(renderer.copy_program_.name());
-    glUniform1i(uniformLocation(renderer.copy_program_, "u_color"), kColorUnit);
-    glUniform1i(uniformLocation(renderer.copy_program_, "u_depth_texture"), kDepthUnit);
-    glUniform2i(uniformLocation(renderer.copy_program_, "u_origin"), 0, 0);
+    renderer.copy_program_.use();
+    renderer.copy_program_.set("u_color", kColorUnit);
+    renderer.copy_program_.set("u_depth_texture", kDepthUnit);
     return renderer;
 }
 
@@ -87,18 +78,15 @@ Result<void> ColliderRenderer::draw(const Camera& camera, const ColliderStyle& s
         RELIEF_TRY(trace(camera, style, target.width, target.height));
         drawn_ = wanted;
     }
-    glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
-    glViewport(0, 0, target.width, target.height);
-    glUseProgram(copy_program_.name());
-    glUniform1i(uniformLocation(copy_program_, "u_srgb"), target.srgb ? 1 : 0);
+    copy_program_.use();
+    copy_program_.set("u_srgb", target.srgb);
     useTexture(kColorUnit, color_);
     useTexture(kDepthUnit, depth_);
     // Depth is written only while its test is on.
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_ALWAYS);
     glDepthMask(GL_TRUE);
-    glBindVertexArray(no_attributes_.name());
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    copy_program_.drawScreen(target.framebuffer, target.width, target.height);
     return {};
 }
 
@@ -116,8 +104,6 @@ Result<void> ColliderRenderer::trace(const Camera& camera, const ColliderStyle& 
     setViewUniforms(trace_program_, camera, style, width, height);
     view_.textures->bind(kColliderBinding);
 
-    glBindVertexArray(no_attributes_.name());
-
     // The second pass samples the mesh's picture, or the coarse pass.
     ColliderMesh::View of_mesh;
     GlTexture coarse;
@@ -130,12 +116,10 @@ Result<void> ColliderRenderer::trace(const Camera& camera, const ColliderStyle& 
         useTexture(kCoarseUnit, coarse);
     }
 
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
-    glUseProgram(trace_program_.name());
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_ALWAYS);
     glDepthMask(GL_TRUE);
-    drawInBands(width, height);
+    drawInBands(trace_program_, framebuffer.name(), width, height);
     return {};
 }
 
@@ -147,9 +131,7 @@ Result<void> ColliderRenderer::traceCoarse(GLsizei width, GLsizei height, GlText
     RELIEF_TRY(checkAllocated("the collider's coarse picture", kSmallerPicture));
     const std::array<GLuint, 1> colors{coarse.name()};
     const auto target = RELIEF_TRY(makeFramebuffer(colors));
-    glBindFramebuffer(GL_FRAMEBUFFER, target.name());
-    glUseProgram(coarse_program_.name());
-    drawInBands(coarse_width, coarse_height);
+    drawInBands(coarse_program_, target.name(), coarse_width, coarse_height);
     return {};
 }
 

@@ -31,7 +31,7 @@ class ColliderRenderer {
     [[nodiscard]] static Result<ColliderRenderer> create(const ColliderView& view,
                                                          const ColliderMesh* mesh = nullptr);
 
-    /// Fills the target's colour, in linear light or as the target says, and its depth.
+    /// Fills the target's colour, in linear light or sRGB as the target has it, and its depth.
     /// Errors: kUnsupported, kLimit (the target's size, no room), kFailure.
     [[nodiscard]] Result<void> draw(const Camera& camera, const ColliderStyle& style,
                                     const RenderTarget& target);
@@ -59,7 +59,6 @@ class ColliderRenderer {
     GlProgram coarse_program_;
     GlProgram trace_program_;
     GlProgram copy_program_;
-    GlVertexArray no_attributes_;
     std::optional<Drawn> drawn_;  // what the textures below show
     GlTexture color_;
     GlTexture depth_;

@@ -6,6 +6,19 @@
 #include "runtime/gl/gl_functions.h"
 
 namespace relief {
+namespace {
+
+// A ray's step in texels: it hits whatever is two texels thick.
+constexpr float kStepTexels = 1.5F;
+
+// Across the diagonal of a box whose finest texel is 1/2048 of its longest side, with room for the
+// bisections.
+constexpr int kRayStepsMax = 2560;
+constexpr int kBisections = 10;
+
+constexpr GLsizei kBandRows = 64;
+
+}  // namespace
 
 float finestTexel(const Collider& collider) {
     const float longest = collider.bounds.longestSide();
@@ -37,17 +50,33 @@ glm::vec3 linearColor(const glm::vec3& srgb) {
 }
 
 void setLightUniforms(const GlProgram& program, const ColliderView& view, const LightRays& rays) {
-    glUseProgram(program.name());
-    const glm::vec3 low = view.bounds.min - glm::vec3(2.0F * view.texel);
-    const glm::vec3 high = view.bounds.max + glm::vec3(2.0F * view.texel);
-    const glm::vec3 sun = sunDirection();
-    glUniform3f(uniformLocation(program, "u_bounds_min"), low.x, low.y, low.z);
-    glUniform3f(uniformLocation(program, "u_bounds_max"), high.x, high.y, high.z);
-    glUniform1f(uniformLocation(program, "u_scale"), view.bounds.longestSide());
-    glUniform1f(uniformLocation(program, "u_texel"), view.texel);
-    glUniform3f(uniformLocation(program, "u_sun"), sun.x, sun.y, sun.z);
-    glUniform2i(uniformLocation(program, "u_rays"), rays.sun, rays.sky);
-    glUniform2i(uniformLocation(program, "u_ray_steps"), rays.sun_steps, rays.sky_steps);
+    program.use();
+    program.set("u_bounds_min", view.bounds.min - glm::vec3(2.0F * view.texel));
+    program.set("u_bounds_max", view.bounds.max + glm::vec3(2.0F * view.texel));
+    program.set("u_scale", view.bounds.longestSide());
+    program.set("u_texel", view.texel);
+    program.set("u_sun", sunDirection());
+    program.set("u_rays", glm::ivec2(rays.sun, rays.sky));
+    program.set("u_ray_steps", glm::ivec2(rays.sun_steps, rays.sky_steps));
+}
+
+void setRayUniforms(const GlProgram& program, const ColliderView& view) {
+    program.use();
+    program.set("u_step", kStepTexels * view.texel);
+    program.set("u_steps_max", kRayStepsMax);
+    program.set("u_bisections", kBisections);
+}
+
+void drawInBands(const GlProgram& program, GLuint framebuffer, GLsizei width, GLsizei height) {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glViewport(0, 0, width, height);
+    glEnable(GL_SCISSOR_TEST);
+    for (GLsizei y = 0; y < height; y += kBandRows) {
+        glScissor(0, y, width, std::min(kBandRows, height - y));
+        program.drawScreen();
+        glFlush();
+    }
+    glDisable(GL_SCISSOR_TEST);
 }
 
 }  // namespace relief

@@ -1,4 +1,5 @@
-// Links a program that includes shaders/light.glsl to a collider: its textures, bounds and the sun.
+// A collider as renderers see it, and the passes that follow rays through its field (shaders/picture/light.glsl,
+// trace.glsl).
 #pragma once
 
 #include <glm/glm.hpp>
@@ -25,7 +26,7 @@ struct ColliderView {
 /// sRGB in [0, 1] to the linear colours that shaders take.
 [[nodiscard]] glm::vec3 linearColor(const glm::vec3& srgb);
 
-/// How finely a point's light is sampled: rays, and samples of the field on each.
+/// The sampling of a point's light: rays, and samples of the field on each.
 struct LightRays {
     int sun = 1;
     int sky = 1;
@@ -35,5 +36,14 @@ struct LightRays {
 
 /// Sets light.glsl's uniforms; leaves the program current.
 void setLightUniforms(const GlProgram& program, const ColliderView& view, const LightRays& rays);
+
+/// Of the first pass every kCoarseStride-th ray of a row or column is followed.
+inline constexpr GLsizei kCoarseStride = 4;
+
+/// Sets trace.glsl's uniforms; leaves the program current.
+void setRayUniforms(const GlProgram& program, const ColliderView& view);
+
+/// GlProgram::drawScreen() band by band: a driver may take a draw of several seconds for a hang.
+void drawInBands(const GlProgram& program, GLuint framebuffer, GLsizei width, GLsizei height);
 
 }  // namespace relief

@@ -61,26 +61,18 @@ Result<void> DepthSorter::createTextures() {
         const std::array<GLuint, 1> textures{order_[i].name()};
         target_[i] = RELIEF_TRY(makeFramebuffer(textures));
     }
-    no_attributes_ = makeVertexArray();
     return {};
 }
 
 Result<void> DepthSorter::createPrograms() {
     const std::string defines = "#define RELIEF_ORDER_WIDTH " + std::to_string(kWidth) + "\n";
-    keys_.program = RELIEF_TRY(makeProgram("quad.vert", "sort_keys.frag", defines));
-    pass_.program = RELIEF_TRY(makeProgram("quad.vert", "sort_pass.frag", defines));
-    keys_.kept = uniformLocation(keys_.program, "u_kept");
-    keys_.width = uniformLocation(keys_.program, "u_width");
-    keys_.extent = uniformLocation(keys_.program, "u_extent");
-    keys_.eye = uniformLocation(keys_.program, "u_eye");
-    glUseProgram(keys_.program.name());
-    glUniform1i(uniformLocation(keys_.program, "u_order"), kOrderUnit);
-    glUniform1i(uniformLocation(keys_.program, "u_position"), kPositionUnit);
-
-    pass_.block = uniformLocation(pass_.program, "u_block");
-    pass_.stride = uniformLocation(pass_.program, "u_stride");
-    glUseProgram(pass_.program.name());
-    glUniform1i(uniformLocation(pass_.program, "u_order"), kOrderUnit);
+    keys_ = RELIEF_TRY(makeScreenProgram("picture/sort_keys.frag", defines));
+    pass_ = RELIEF_TRY(makeScreenProgram("picture/sort_pass.frag", defines));
+    keys_.use();
+    keys_.set("u_order", kOrderUnit);
+    keys_.set("u_position", kPositionUnit);
+    pass_.use();
+    pass_.set("u_order", kOrderUnit);
     return {};
 }
 
@@ -110,16 +102,15 @@ void DepthSorter::merge(const GlTexture& positions, std::uint32_t width, std::ui
         return;
     }
     const PassState state;
-    glBindVertexArray(no_attributes_.name());
-    glUseProgram(keys_.program.name());
+    keys_.use();
     useTexture(kPositionUnit, positions);
-    glUniform1i(keys_.kept, static_cast<GLint>(kept));
-    glUniform1i(keys_.width, static_cast<GLint>(width));
-    glUniform1i(keys_.extent, static_cast<GLint>(extent));
-    glUniform3f(keys_.eye, eye.x, eye.y, eye.z);
-    drawNext();
+    keys_.set("u_kept", static_cast<GLint>(kept));
+    keys_.set("u_width", static_cast<GLint>(width));
+    keys_.set("u_extent", static_cast<GLint>(extent));
+    keys_.set("u_eye", eye);
+    drawNext(keys_);
 
-    glUseProgram(pass_.program.name());
+    pass_.use();
     for (std::uint32_t i = 0; i < passes && count_ > 1; ++i) {
         drawPass();
         if (block_ > count_) {
@@ -132,9 +123,9 @@ void DepthSorter::merge(const GlTexture& positions, std::uint32_t width, std::ui
 }
 
 void DepthSorter::drawPass() {
-    glUniform1ui(pass_.block, block_);
-    glUniform1ui(pass_.stride, stride_);
-    drawNext();
+    pass_.set("u_block", block_);
+    pass_.set("u_stride", stride_);
+    drawNext(pass_);
     ++passes_done_;
     stride_ /= 2;
     if (stride_ == 0) {
@@ -143,15 +134,13 @@ void DepthSorter::drawPass() {
     }
 }
 
-/// Draws quad.vert's triangle over the sorted region of the other buffer, from this one.
-void DepthSorter::drawNext() {
+/// Draws the sorted region of the other buffer from this one.
+void DepthSorter::drawNext(const GlProgram& program) {
     const int next = 1 - current_;
-    glBindFramebuffer(GL_FRAMEBUFFER, target_[next].name());
     useTexture(kOrderUnit, order_[current_]);
     // A power of two: part of the first row, or whole rows.
-    glViewport(0, 0, static_cast<GLsizei>(std::min(count_, kWidth)),
-               static_cast<GLsizei>(std::max(count_ / kWidth, 1U)));
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    program.drawScreen(target_[next].name(), static_cast<GLsizei>(std::min(count_, kWidth)),
+                       static_cast<GLsizei>(std::max(count_ / kWidth, 1U)));
     current_ = next;
 }
 

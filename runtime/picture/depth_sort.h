@@ -8,33 +8,9 @@
 //     bytes on the GPU = 16 · texels, texels = capacity rounded up to a power of two (and to whole rows of kWidth):
 //         order  2 × RG32UI (double-buffered)    index of a particle, key
 //
-// What is sorted. The ranks 0…count()−1 of order(), a power of two, hold every index 0…count()−1 once:
-// always, also in the middle of a sequence and while births and deaths change the extent. One pass takes the
-// elements pair by pair and puts each pair in order: the larger key, of equal keys the lower index, to the
-// lower rank. The key grows with the distance to the eye; dead and absent particles have key 0, and so belong
-// to the end. A sequence of sequencePasses() = k(k+1)/2 passes sorts count() = 2^k elements.
-//
-// Frames. Every update() begins by computing all keys afresh, from where the particles and the eye are now,
-// and goes on with the sequence where the last one stopped, from the order that is there.
-//
-// Sortedness. An inversion is a pair of ranks i < j whose elements belong the other way round, by the keys of
-// the last update(). No pass ever raises the number of inversions, and every exchange lowers it: with an
-// inverted pair i < j exchanged, that inversion is gone; ranks outside i…j see the same two elements on the
-// same side as before; and an element between i and j has the one that belongs first now before it and the
-// other behind it, so that each of its two pairs can only have been put right. So stopping a sequence,
-// beginning it anew or changing keys amid it costs time, never order. (Motion of the particles or the eye
-// does raise the number: it changes the keys. In a bitonic sort half the pairs are put the other way round,
-// and it has no such property.)
-//
-// Exactness. If keys and extent do not change, the order is sorted after one whole sequence. If they change,
-// it lags behind by the motion of one to two sequences; newborn particles wait at the end, among the dead
-// whose indices they took, for about as long.
-//
-// The sorted region. When the extent grows beyond count(), the next power of two is taken at once and the
-// sequence begins anew; new ranks start with their own index. When it has fitted into half the region for one
-// whole sequence, the region shrinks at that sequence's end. That loses no index: through the sequence every
-// index from the half on was absent, thus of the least key, and higher than all others, thus after each of
-// them in the order of every pass, however the keys moved. By the 0-1 principle they have all left the half.
+// Every update() computes all keys afresh and goes on with the sequence. No pass makes an order worse, and the sorted region
+// grows and shrinks by powers of two (runtime/METHOD.md, "The depth sort", has the proofs). If keys and extent do not change,
+// the order is sorted after one whole sequence; else it lags behind by the motion of one to two sequences.
 #pragma once
 
 #include <cstdint>
@@ -94,19 +70,6 @@ class DepthSorter {
     [[nodiscard]] static std::uint32_t passesPerFrame(std::uint32_t extent, std::uint32_t frames);
 
   private:
-    struct KeysProgram {
-        GlProgram program;
-        GLint kept = -1;
-        GLint width = -1;
-        GLint extent = -1;
-        GLint eye = -1;
-    };
-    struct PassProgram {
-        GlProgram program;
-        GLint block = -1;
-        GLint stride = -1;
-    };
-
     explicit DepthSorter(std::uint32_t capacity) : capacity_(capacity) {}
     [[nodiscard]] Result<void> createTextures();
     [[nodiscard]] Result<void> createPrograms();
@@ -114,7 +77,7 @@ class DepthSorter {
                std::uint32_t passes);
     void drawPass();
     void endSequence(std::uint32_t extent);
-    void drawNext();
+    void drawNext(const GlProgram& program);
 
     std::uint32_t capacity_ = 0;
     std::uint32_t count_ = 0;
@@ -125,9 +88,8 @@ class DepthSorter {
     int current_ = 0;           // which of the two buffers holds the order
     GlTexture order_[2];
     GlFramebuffer target_[2];
-    GlVertexArray no_attributes_;
-    KeysProgram keys_;
-    PassProgram pass_;
+    GlProgram keys_;
+    GlProgram pass_;
     std::optional<RadixSort> radix_;  // instead of all the above
 };
 

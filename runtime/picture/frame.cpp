@@ -46,11 +46,10 @@ Result<Frame> Frame::create(std::uint32_t width, std::uint32_t height) {
     const std::array<GLuint, 1> finished{frame.finished_.name()};
     frame.large_ = RELIEF_TRY(makeFramebuffer(color, frame.depth_.name()));
     frame.small_ = RELIEF_TRY(makeFramebuffer(finished));
-    frame.program_ = RELIEF_TRY(makeProgram("quad.vert", "resolve.frag"));
-    frame.no_attributes_ = makeVertexArray();
-    glUseProgram(frame.program_.name());
-    glUniform1i(uniformLocation(frame.program_, "u_color"), 0);
-    glUniform1i(uniformLocation(frame.program_, "u_factor"), static_cast<GLint>(frame.factor_));
+    frame.program_ = RELIEF_TRY(makeScreenProgram("picture/resolve.frag"));
+    frame.program_.use();
+    frame.program_.set("u_color", 0);
+    frame.program_.set("u_factor", static_cast<GLint>(frame.factor_));
     return frame;
 }
 
@@ -62,12 +61,8 @@ std::vector<std::uint8_t> Frame::read() const {
     const PassState state;
     const auto width = static_cast<GLsizei>(width_);
     const auto height = static_cast<GLsizei>(height_);
-    glBindFramebuffer(GL_FRAMEBUFFER, small_.name());
-    glViewport(0, 0, width, height);
-    glUseProgram(program_.name());
     useTexture(0, color_);
-    glBindVertexArray(no_attributes_.name());
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    program_.drawScreen(small_.name(), width, height);
 
     // Every GL ES reads RGBA; its rows start at the bottom.
     std::vector<std::uint8_t> rgba(std::size_t{4} * width_ * height_);

@@ -20,7 +20,7 @@ class Frame {
     /// Errors: kUsage (0), kLimit (above kPixelsMax, or above what this GL takes), kUnsupported, kFailure.
     [[nodiscard]] static Result<Frame> create(std::uint32_t width, std::uint32_t height);
 
-    /// What to draw to.
+    /// The target to draw to.
     [[nodiscard]] RenderTarget target() const;
     /// The finished picture: 3 · width · height bytes sRGB, the top row first. Waits for the GPU.
     [[nodiscard]] std::vector<std::uint8_t> read() const;
@@ -37,7 +37,6 @@ class Frame {
     GlTexture finished_;
     GlFramebuffer large_;
     GlFramebuffer small_;
-    GlVertexArray no_attributes_;
     GlProgram program_;
 };
 

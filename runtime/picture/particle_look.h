@@ -1,4 +1,4 @@
-// What particles of a type look like over their age: key-frames, and the texture that shaders/look.glsl reads
+// What particles of a type look like over their age: key-frames, and the texture that shaders/picture/look.glsl reads
 // them from.
 //
 //     row = type     texel 0            turn, spin, first cell (-1: a round grain), number of cells
@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "formats/base/result.h"
-#include "shaders/shader_constants.h"
+#include "shaders/picture/constants.h"
 
 namespace relief {
 

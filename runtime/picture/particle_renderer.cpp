@@ -50,36 +50,31 @@ TilePainter::Vertices verticesOf(const ParticleStyle& style) {
 /// Leaves the program in use.
 void setUniforms(const GlProgram& program, const ParticleSystem& particles, const CameraMatrices& camera,
                  const ParticleStyle& style, const RenderTarget& target, bool ordered, bool soft) {
-    const auto at = [&](const char* name) { return uniformLocation(program, name); };
-    const glm::vec3 sun = glm::mat3(camera.view) * sunDirection();
-    const glm::vec3 up = glm::mat3(camera.view) * glm::vec3(0.0F, 1.0F, 0.0F);
     std::array<GLfloat, 2> sizes{1.0F, 1.0F};
     glGetFloatv(GL_ALIASED_POINT_SIZE_RANGE, sizes.data());
-    const bool quads = style.sprite == Sprite::kQuad;
-    const float largest = quads ? 1e30F : sizes[1];
+    const float largest = style.sprite == Sprite::kQuad ? 1e30F : sizes[1];
 
-    glUseProgram(program.name());
-    glUniform1i(at("u_width"), static_cast<GLint>(particles.textureWidth()));
-    glUniform1i(at("u_extent"), static_cast<GLint>(particles.extent()));
-    glUniform1f(at("u_now"), particles.clock());
-    glUniformMatrix4fv(at("u_view"), 1, GL_FALSE, glm::value_ptr(camera.view));
-    glUniformMatrix4fv(at("u_projection"), 1, GL_FALSE, glm::value_ptr(camera.projection));
-    glUniform1f(at("u_pixels_per_unit"), 0.5F * static_cast<float>(target.height) / camera.tanHalfFov());
-    glUniform2f(at("u_pixels"), std::min(kPixelsMin, largest), largest);
-    glUniform2f(at("u_target"), static_cast<float>(target.width), static_cast<float>(target.height));
-    const glm::vec2 depth = camera.depthOfDistance();
-    glUniform2f(at("u_depth"), depth.x, depth.y);
-    glUniform3f(at("u_sun_view"), sun.x, sun.y, sun.z);
-    glUniform3f(at("u_up_view"), up.x, up.y, up.z);
-    glUniform1i(at("u_ordered"), ordered ? 1 : 0);
-    glUniform1i(at("u_srgb"), target.srgb ? 1 : 0);
-    glUniform1f(at("u_soft"), soft ? style.soft : 0.0F);
+    program.use();
+    program.set("u_width", static_cast<GLint>(particles.textureWidth()));
+    program.set("u_extent", static_cast<GLint>(particles.extent()));
+    program.set("u_now", particles.clock());
+    program.set("u_view", camera.view);
+    program.set("u_projection", camera.projection);
+    program.set("u_pixels_per_unit", 0.5F * static_cast<float>(target.height) / camera.tanHalfFov());
+    program.set("u_pixels", glm::vec2(std::min(kPixelsMin, largest), largest));
+    program.set("u_target", glm::vec2(target.width, target.height));
+    program.set("u_depth", camera.depthOfDistance());
+    program.set("u_sun_view", glm::mat3(camera.view) * sunDirection());
+    program.set("u_up_view", glm::mat3(camera.view) * glm::vec3(0.0F, 1.0F, 0.0F));
+    program.set("u_ordered", ordered);
+    program.set("u_srgb", target.srgb);
+    program.set("u_soft", soft ? style.soft : 0.0F);
     if (style.atlas != nullptr) {
-        glUniform2i(at("u_cells"), style.atlas->columns(), style.atlas->rows());
-        glUniform1f(at("u_levels_max"), static_cast<float>(style.atlas->lastLevel()));
+        program.set("u_cells", glm::ivec2(style.atlas->columns(), style.atlas->rows()));
+        program.set("u_levels_max", static_cast<float>(style.atlas->lastLevel()));
     }
     if (anyStretched(style)) {
-        glUniform1f(at("u_rate_before"), particles.rateBefore());
+        program.set("u_rate_before", particles.rateBefore());
     }
 }
 
@@ -121,11 +116,11 @@ std::string ParticleRenderer::definesOf(const ParticleStyle& style) const {
 }
 
 void ParticleRenderer::setSamplers(const GlProgram& program) const {
-    glUseProgram(program.name());
+    program.use();
     for (std::size_t unit = 0; unit < kSamplers.size(); ++unit) {
-        glUniform1i(uniformLocation(program, kSamplers[unit]), static_cast<GLint>(unit));
+        program.set(kSamplers[unit], static_cast<GLint>(unit));
     }
-    glUniform1i(uniformLocation(program, "u_second"), kSecondUnit);
+    program.set("u_second", kSecondUnit);
     if (light_) {
         light_->attach(program, kLightUnit);
     }
@@ -137,7 +132,7 @@ Result<const GlProgram*> ParticleRenderer::programFor(const ParticleStyle& style
     const bool stretched = quads && anyStretched(style);
     GlProgram& program = programs_[(quads ? 1U : 0U) + (cells ? 2U : 0U) + (stretched ? 4U : 0U)];
     if (!program) {
-        program = RELIEF_TRY(makeProgram("point.vert", "point.frag", definesOf(style)));
+        program = RELIEF_TRY(makeProgram("picture/point.vert", "picture/point.frag", definesOf(style)));
         setSamplers(program);
     }
     return &program;

@@ -24,7 +24,7 @@ namespace relief {
 enum class Sprite : std::uint8_t {
     kPoint,  ///< one vertex, but no larger than the GL's points; on the fragment path some drivers drop it where its
              ///< centre leaves the picture
-    kQuad,  ///< six vertices, of any size, and stretched where a look says so
+    kQuad,  ///< six vertices, of any size, and stretched by looks
 };
 
 enum class Blend : std::uint8_t {
@@ -71,7 +71,7 @@ class ParticleRenderer {
     [[nodiscard]] static Result<ParticleRenderer> create(const std::optional<ColliderView>& collider,
                                                          StepPath path = StepPath::kAuto);
 
-    /// Draws over what the target shows, in linear light or as the target says, hidden where its depth is nearer; depth stays as it
+    /// Draws over what the target shows, in linear light or sRGB as the target has it, hidden where its depth is nearer; depth stays as it
     /// is. Nothing is read back, nothing waits for the GPU.
     /// \param order   in which they are drawn; without a texture that of their texels.
     /// \param behind  what style.soft compares with: window depths of a picture by the same camera and of the

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <string>
 
+#include "runtime/gl/compute_units.h"
 #include "runtime/gl/gl_capabilities.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
-#include "runtime/gl/image_units.h"
-#include "runtime/gl/storage_units.h"
-#include "shaders/shader_constants.h"
+#include "shaders/picture/constants.h"
 
 namespace relief {
 namespace {
@@ -85,35 +84,23 @@ Result<void> RadixSort::createPrograms(std::uint32_t width) {
     const std::string last = "#define RELIEF_RADIX_LAST\n#define RELIEF_ORDER_WIDTH " +
                              std::to_string(width) + "\n#define RELIEF_RADIX_FORMAT " +
                              (isGles() ? "rgba32ui" : "rg32ui") + "\n";
-    keys_ = RELIEF_TRY(makePart("radix_count.comp", "#define RELIEF_RADIX_FIRST\n"));
-    count_ = RELIEF_TRY(makePart("radix_count.comp", ""));
-    scan_ = RELIEF_TRY(makePart("radix_scan.comp", ""));
-    move_ = RELIEF_TRY(makePart("radix_move.comp", ""));
-    place_ = RELIEF_TRY(makePart("radix_move.comp", last));
-    glUseProgram(keys_.program.name());
-    glUniform1i(uniformLocation(keys_.program, "u_position"), kPositionUnit);
+    keys_ = RELIEF_TRY(makeComputeProgram("picture/radix_count.comp", "#define RELIEF_RADIX_FIRST\n"));
+    count_ = RELIEF_TRY(makeComputeProgram("picture/radix_count.comp"));
+    scan_ = RELIEF_TRY(makeComputeProgram("picture/radix_scan.comp"));
+    move_ = RELIEF_TRY(makeComputeProgram("picture/radix_move.comp"));
+    place_ = RELIEF_TRY(makeComputeProgram("picture/radix_move.comp", last));
+    keys_.use();
+    keys_.set("u_position", kPositionUnit);
     return {};
 }
 
-Result<RadixSort::Program> RadixSort::makePart(const char* file, const std::string& defines) {
-    Program part;
-    part.program = RELIEF_TRY(makeComputeProgram(file, defines));
-    const auto at = [&](const char* name) { return uniformLocation(part.program, name); };
-    part.count = at("u_count");
-    part.turns = at("u_turns");
-    part.blocks = at("u_blocks");
-    part.shift = at("u_shift");
-    part.width = at("u_width");
-    part.eye = at("u_eye");
-    return part;
-}
-
-void RadixSort::dispatch(const Program& program, const Cut& cut, std::uint32_t digit, std::uint32_t groups) {
-    glUseProgram(program.program.name());
-    glUniform1ui(program.count, cut.count);
-    glUniform1ui(program.turns, cut.turns);
-    glUniform1ui(program.blocks, cut.blocks);
-    glUniform1ui(program.shift, digit * kDigitBits);
+void RadixSort::dispatch(const GlProgram& program, const Cut& cut, std::uint32_t digit,
+                         std::uint32_t groups) {
+    program.use();
+    program.set("u_count", cut.count);
+    program.set("u_turns", cut.turns);
+    program.set("u_blocks", cut.blocks);
+    program.set("u_shift", digit * kDigitBits);
     glDispatchCompute(groups, 1, 1);
     StorageUnits::order();
 }
@@ -132,9 +119,9 @@ void RadixSort::sort(const GlTexture& positions, std::uint32_t width, std::uint3
     StorageUnits::bind(kTotalsUnit, totals_);
     ImageUnits::write(0, order_, orderFormat());
     useTexture(kPositionUnit, positions);
-    glUseProgram(keys_.program.name());
-    glUniform1i(keys_.width, static_cast<GLint>(width));
-    glUniform3f(keys_.eye, eye.x, eye.y, eye.z);
+    keys_.use();
+    keys_.set("u_width", static_cast<GLint>(width));
+    keys_.set("u_eye", eye);
     for (std::uint32_t digit = 0; digit < kKeyDigits; ++digit) {
         StorageUnits::bind(kFromUnit, elements_[digit % 2]);
         StorageUnits::bind(kToUnit, elements_[1 - digit % 2]);

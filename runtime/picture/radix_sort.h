@@ -1,4 +1,4 @@
-// The exact drawing order of particles by compute shaders: a radix sort, whole in each call (shaders/radix.glsl).
+// The exact drawing order of particles by compute shaders: a radix sort, whole in each call (shaders/picture/radix.glsl).
 // DepthSorter's on the compute path.
 //
 //     bytes on the GPU = 24 · capacity and up to 2 MB:
@@ -23,37 +23,31 @@ class RadixSort {
     [[nodiscard]] static Result<RadixSort> create(std::uint32_t capacity, std::uint32_t width);
 
     /// Sorts the particles of the indices below `extent`, 1…capacity; the rest as DepthSorter::update(). Leaves program and
-    /// textures as they fall, image and storage units as they were.
+    /// textures changed; restores image and storage units.
     void sort(const GlTexture& positions, std::uint32_t width, std::uint32_t extent, const glm::vec3& eye);
 
     /// x: index, y: key of the rank; `extent` of the last sort() ranks.
     [[nodiscard]] const GlTexture& order() const { return order_; }
 
   private:
-    /// A shader, and where its uniforms are; −1 for those that it does not have.
-    struct Program {
-        GlProgram program;
-        GLint count = -1, turns = -1, blocks = -1, shift = -1, width = -1, eye = -1;
-    };
-    /// How the elements are cut into blocks.
+    /// The division of the elements into blocks.
     struct Cut {
         std::uint32_t count, turns, blocks;
     };
 
     RadixSort() = default;
     [[nodiscard]] Result<void> createPrograms(std::uint32_t width);
-    [[nodiscard]] static Result<Program> makePart(const char* file, const std::string& defines);
-    static void dispatch(const Program& program, const Cut& cut, std::uint32_t digit, std::uint32_t groups);
+    static void dispatch(const GlProgram& program, const Cut& cut, std::uint32_t digit, std::uint32_t groups);
 
     GlBuffer elements_[2];
     GlBuffer counts_;
     GlBuffer totals_;
     GlTexture order_;
-    Program keys_;   // counts the first digit
-    Program count_;  // and the others
-    Program scan_;
-    Program move_;
-    Program place_;  // moves the last digit
+    GlProgram keys_;   // counts the first digit
+    GlProgram count_;  // and the others
+    GlProgram scan_;
+    GlProgram move_;
+    GlProgram place_;  // moves the last digit
 };
 
 }  // namespace relief

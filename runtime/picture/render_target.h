@@ -1,4 +1,4 @@
-// Where a renderer draws.
+// The target of a renderer.
 #pragma once
 
 #include "runtime/gl/gl_types.h"

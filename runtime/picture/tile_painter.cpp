@@ -2,15 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <glm/glm.hpp>
 #include <optional>
 #include <string>
 
+#include "runtime/gl/compute_units.h"
 #include "runtime/gl/gl_capabilities.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
-#include "runtime/gl/image_units.h"
-#include "runtime/gl/storage_units.h"
-#include "shaders/shader_constants.h"
+#include "shaders/picture/constants.h"
 
 namespace relief {
 namespace {
@@ -98,10 +98,6 @@ bool isReadable(GLuint texture) {
     return glGetError() == GL_NO_ERROR && mode == GL_DEPTH_COMPONENT;
 }
 
-void setUnsigned(const GlProgram& program, const char* name, std::uint32_t value) {
-    glUniform1ui(uniformLocation(program, name), value);
-}
-
 }  // namespace
 
 Result<TilePainter> TilePainter::create() {
@@ -112,15 +108,15 @@ Result<TilePainter> TilePainter::create() {
     }
     const std::string counted = "#define RELIEF_RADIX_COUNTED\n";
     TilePainter painter;
-    painter.scan_ = RELIEF_TRY(makeComputeProgram("tile_scan.comp"));
-    painter.entries_ = RELIEF_TRY(makeComputeProgram("tile_entries.comp"));
-    painter.bounds_ = RELIEF_TRY(makeComputeProgram("tile_bounds.comp"));
-    painter.count_ = RELIEF_TRY(makeComputeProgram("radix_count.comp", counted));
-    painter.digits_ = RELIEF_TRY(makeComputeProgram("radix_scan.comp"));
-    painter.move_ = RELIEF_TRY(makeComputeProgram("radix_move.comp", counted));
-    painter.layer_program_ = RELIEF_TRY(makeProgram("quad.vert", "tile_layer.frag"));
-    glUseProgram(painter.layer_program_.name());
-    glUniform1i(uniformLocation(painter.layer_program_, "u_layer"), 0);
+    painter.scan_ = RELIEF_TRY(makeComputeProgram("picture/tile_scan.comp"));
+    painter.entries_ = RELIEF_TRY(makeComputeProgram("picture/tile_entries.comp"));
+    painter.bounds_ = RELIEF_TRY(makeComputeProgram("picture/tile_bounds.comp"));
+    painter.count_ = RELIEF_TRY(makeComputeProgram("picture/radix_count.comp", counted));
+    painter.digits_ = RELIEF_TRY(makeComputeProgram("picture/radix_scan.comp"));
+    painter.move_ = RELIEF_TRY(makeComputeProgram("picture/radix_move.comp", counted));
+    painter.layer_program_ = RELIEF_TRY(makeScreenProgram("picture/tile_layer.frag"));
+    painter.layer_program_.use();
+    painter.layer_program_.set("u_layer", 0);
     painter.plain_ = makeSampler();
     return painter;
 }
@@ -132,10 +128,10 @@ const TilePainter::Programs* TilePainter::programs(const std::string& defines) c
 
 Result<const TilePainter::Programs*> TilePainter::makePrograms(const std::string& defines) {
     Programs made;
-    made.sprites = RELIEF_TRY(makeComputeProgram("tile_sprites.comp", defines));
-    made.paint = RELIEF_TRY(makeComputeProgram("tile_paint.comp", defines));
-    glUseProgram(made.paint.name());
-    glUniform1i(uniformLocation(made.paint, "u_hides"), kHidesUnit);
+    made.sprites = RELIEF_TRY(makeComputeProgram("picture/tile_sprites.comp", defines));
+    made.paint = RELIEF_TRY(makeComputeProgram("picture/tile_paint.comp", defines));
+    made.paint.use();
+    made.paint.set("u_hides", kHidesUnit);
     return &(programs_[defines] = std::move(made));
 }
 
@@ -221,14 +217,13 @@ void TilePainter::paint(const Programs& programs, const Vertices& vertices, bool
     const StorageUnits storage;
     const ImageUnits images;
     const std::uint32_t groups = dividedUp(count_of_sprites_, kGroup);
-    const auto columns = static_cast<GLint>(dividedUp(width_, kTileSide));
-    const auto rows = static_cast<GLint>(dividedUp(height_, kTileSide));
+    const std::uint32_t columns = dividedUp(width_, kTileSide);
+    const std::uint32_t rows = dividedUp(height_, kTileSide);
     const auto run = [&](const GlProgram& program, std::uint32_t x, std::uint32_t y) {
-        glUseProgram(program.name());
-        setUnsigned(program, "u_count", count_of_sprites_);
-        glUniform2i(uniformLocation(program, "u_tiles"), columns, rows);
-        glUniform2i(uniformLocation(program, "u_picture"), static_cast<GLint>(width_),
-                    static_cast<GLint>(height_));
+        program.use();
+        program.set("u_count", count_of_sprites_);
+        program.set("u_tiles", glm::ivec2(columns, rows));
+        program.set("u_picture", glm::ivec2(width_, height_));
         glDispatchCompute(x, y, 1);
         StorageUnits::order();
     };
@@ -238,10 +233,10 @@ void TilePainter::paint(const Programs& programs, const Vertices& vertices, bool
     StorageUnits::bind(kCounts, counts_);
     StorageUnits::bind(kWork, work_);
     run(programs.sprites, groups, 1);
-    glUseProgram(scan_.name());
-    setUnsigned(scan_, "u_blocks", groups);
-    setUnsigned(scan_, "u_vertices", vertices.count);
-    setUnsigned(scan_, "u_room", entriesFor(count_of_sprites_));
+    scan_.use();
+    scan_.set("u_blocks", groups);
+    scan_.set("u_vertices", vertices.count);
+    scan_.set("u_room", entriesFor(count_of_sprites_));
     run(scan_, 1, 1);
     run(entries_, groups, 1);
     sortEntries();
@@ -250,16 +245,16 @@ void TilePainter::paint(const Programs& programs, const Vertices& vertices, bool
     StorageUnits::bind(kPaintSprites, sprite_buffer_);
     StorageUnits::bind(kCounts, tile_bounds_);
     StorageUnits::bind(kWork, work_);
-    run(bounds_, dividedUp(static_cast<std::uint32_t>(columns * rows), kGroup), 1);
+    run(bounds_, dividedUp(columns * rows, kGroup), 1);
     ImageUnits::write(0, layer_, GL_RGBA16F);
-    glUseProgram(programs.paint.name());
-    glUniform1i(uniformLocation(programs.paint, "u_adds"), adds ? 1 : 0);
-    glUniform1i(uniformLocation(programs.paint, "u_hidden"), depth_ != 0 ? 1 : 0);
+    programs.paint.use();
+    programs.paint.set("u_adds", adds);
+    programs.paint.set("u_hidden", depth_ != 0);
     if (depth_ != 0) {
         useTexture(kHidesUnit, depth_);
         glBindSampler(kHidesUnit, plain_.name());
     }
-    run(programs.paint, static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rows));
+    run(programs.paint, columns, rows);
     ImageUnits::finish();
     if (depth_ != 0) {
         glBindSampler(kHidesUnit, 0);
@@ -268,17 +263,10 @@ void TilePainter::paint(const Programs& programs, const Vertices& vertices, bool
 }
 
 void TilePainter::sortEntries() const {
-    // How many there are is the GPU's to know: blocks for all that there is room for, of which some stay empty.
+    // Only the GPU knows their number: blocks for all that there is room for, of which some stay empty.
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    GLint bound[2] = {0, 0};
-    glGetIntegerv(GL_COPY_READ_BUFFER_BINDING, &bound[0]);
-    glGetIntegerv(GL_COPY_WRITE_BUFFER_BINDING, &bound[1]);
-    glBindBuffer(GL_COPY_READ_BUFFER, work_.name());
-    glBindBuffer(GL_COPY_WRITE_BUFFER, totals_.name());
     constexpr auto kWord = static_cast<GLsizeiptr>(kWordBytes);
-    glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, kRadixDigits * kWord, kWord);
-    glBindBuffer(GL_COPY_READ_BUFFER, static_cast<GLuint>(bound[0]));
-    glBindBuffer(GL_COPY_WRITE_BUFFER, static_cast<GLuint>(bound[1]));
+    copyBuffer(work_, totals_, kRadixDigits * kWord, kWord);
 
     const std::uint32_t lines = dividedUp(entriesFor(count_of_sprites_), kGroup);
     const std::uint32_t turns = dividedUp(lines, kBlocksMax);
@@ -289,10 +277,10 @@ void TilePainter::sortEntries() const {
         StorageUnits::bind(kFrom, entry_buffers_[digit % 2]);
         StorageUnits::bind(kTo, entry_buffers_[1 - digit % 2]);
         for (const GlProgram* part : {&count_, &digits_, &move_}) {
-            glUseProgram(part->name());
-            setUnsigned(*part, "u_turns", turns);
-            setUnsigned(*part, "u_blocks", blocks);
-            setUnsigned(*part, "u_shift", digit * kDigitBits);
+            part->use();
+            part->set("u_turns", turns);
+            part->set("u_blocks", blocks);
+            part->set("u_shift", digit * kDigitBits);
             glDispatchCompute(part == &digits_ ? kGroup : blocks, 1, 1);
             StorageUnits::order();
         }
@@ -301,12 +289,11 @@ void TilePainter::sortEntries() const {
 
 void TilePainter::show(const GlProgram& sprites, const Vertices& vertices) const {
     glDisable(GL_DEPTH_TEST);
-    glUseProgram(layer_program_.name());
     GLint bound_texture = 0;
     glActiveTexture(GL_TEXTURE0);
     glGetIntegerv(GL_TEXTURE_BINDING_2D, &bound_texture);
     useTexture(0, layer_);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    layer_program_.drawScreen();
     useTexture(0, static_cast<GLuint>(bound_texture));
 
     glEnable(GL_DEPTH_TEST);

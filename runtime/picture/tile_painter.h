@@ -1,4 +1,4 @@
-// Draws sprites by compute shaders, tile by tile (shaders/tile.glsl), where ParticleRenderer draws them as the GL's points
+// Draws sprites by compute shaders, tile by tile (shaders/picture/tile.glsl), where ParticleRenderer draws them as the GL's points
 // or triangles otherwise: GPUs that compute more than they draw are several times as fast so.
 //
 // The picture is cut into tiles of 16 × 16 pixels. Each sprite is made once; each tile that it reaches gets an entry;
@@ -30,13 +30,13 @@ namespace relief {
 class TilePainter {
   public:
     static constexpr std::uint32_t kSpritesMax = 1U << 22;
-    /// Where Programs::paint finds the target's window depths.
+    /// The unit of the target's window depths in Programs::paint.
     static constexpr int kHidesUnit = 0;
 
     /// Of sprites of one kind; their uniforms and textures are the caller's.
     struct Programs {
-        GlProgram sprites;  ///< makes them, as grain_make.glsl and grain_place.glsl say
-        GlProgram paint;    ///< paints them, as grain_paint.glsl says
+        GlProgram sprites;  ///< makes them (sprite.glsl, sprite_place.glsl)
+        GlProgram paint;    ///< paints them (sprite_paint.glsl)
     };
 
     /// Errors: kUnsupported (work groups of this GL are too small), kFailure (the driver's compiler).
@@ -51,7 +51,7 @@ class TilePainter {
     /// the caller's, or the target's depth is not a plain texture, as that of a window.
     [[nodiscard]] bool prepare(std::uint32_t sprites, const RenderTarget& target);
 
-    /// How a sprite is drawn where tiles have no room.
+    /// The draw of a sprite where tiles have no room.
     struct Vertices {
         GLenum mode;
         std::uint32_t count;

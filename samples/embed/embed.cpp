@@ -100,7 +100,7 @@ void makeContext() {
           "no OpenGL 3.3 context");
 }
 
-/// A framebuffer with colour and depth, as a program of one's own has.
+/// A framebuffer with colour and depth, as your program has one.
 relief::RenderTarget makeTarget() {
     std::array<GLuint, 2> buffers{};
     glGenRenderbuffers(2, buffers.data());
@@ -117,7 +117,7 @@ relief::RenderTarget makeTarget() {
     return target;
 }
 
-/// What a program relies on between its own draws.
+/// State that a program relies on between its own draws.
 std::map<GLenum, std::array<GLint, 4>> glState() {
     std::map<GLenum, std::array<GLint, 4>> state;
     for (const GLenum what : {GL_CURRENT_PROGRAM,
@@ -155,7 +155,7 @@ std::map<GLenum, std::array<GLint, 4>> glState() {
     return state;
 }
 
-/// A sheet of flakes above the body; a program of one's own knows better where they come from.
+/// A sheet of flakes above the body; your program has better sources.
 std::vector<relief::Birth> flakes(const relief::Bounds& bounds, relief::Pcg32& random) {
     std::vector<relief::Birth> births(100);
     for (relief::Birth& birth : births) {

@@ -10,7 +10,7 @@ export CMAKE_PREFIX_PATH=$prefix
 for file in bin/relief bin/relief-sim share/man/man1/relief.1 share/man/man1/relief-bake.1 share/man/man1/relief-sim.1 \
     share/bash-completion/completions/relief share/bash-completion/completions/relief-sim share/doc/relief/README.md share/doc/relief/formats/README.md \
     share/relief/samples/embed/embed.cpp share/relief/samples/rain.toml share/relief/schemas/bake.schema.json \
-    share/relief/shaders/collider.glsl share/relief/collider.fbs share/relief/samples/own_engine/own_engine.c include/relief/runtime/particles/particle_system.h; do
+    share/relief/shaders/collider/collider.glsl share/relief/collider.fbs share/relief/samples/own_engine/own_engine.c include/relief/runtime/particles/particle_system.h; do
     [ -s "$prefix/$file" ] || die "$file is not installed"
 done
 ! grep -rIlF "$RELIEF_SOURCE" "$prefix" --include='*.cmake' --include='*.pc' --include='*.h' --include='*.1' ||
@@ -50,13 +50,13 @@ ln -s "$prefix" plain # pkg-config puts backslashes before blanks
 PKG_CONFIG_PATH=$(find "$work/plain/" -name pkgconfig)
 export PKG_CONFIG_PATH
 shaders=$(pkg-config --variable=shaderdir relief-runtime)
-[ -s "$shaders/collider.glsl" ] || die "pkg-config has the shaders in '$shaders'"
+[ -s "$shaders/collider/collider.glsl" ] || die "pkg-config has the shaders in '$shaders'"
 mkdir shaders
 cat >shaders/CMakeLists.txt <<'C'
 cmake_minimum_required(VERSION 3.25)
 project(shaders LANGUAGES CXX)
 find_package(Relief REQUIRED)
-file(SIZE ${Relief_SHADER_DIR}/collider.glsl bytes)
+file(SIZE ${Relief_SHADER_DIR}/collider/collider.glsl bytes)
 C
 cmake -G Ninja -S shaders -B shaders/out >log 2>&1 || die "CMake finds no shaders: $(tail -20 log)"
 

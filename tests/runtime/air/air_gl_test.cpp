@@ -1,4 +1,4 @@
-// shaders/air.glsl in OpenGL 3.3 and OpenGL ES 3.0: against its C++ twin at random points, and against closed
+// shaders/air/air.glsl in OpenGL 3.3 and OpenGL ES 3.0: against its C++ twin at random points, and against closed
 // forms.
 //
 // Tolerance: both sides chain the same float operations, but a GL may fuse them, and takes a few ulp for
@@ -36,7 +36,7 @@ class AirGlTest : public GlTest {
     /// What the GPU says at points and times; `stokes` for radii of 1e-5 and up, by index.
     static std::vector<Sample> evaluate(const AirBlock& air, const std::vector<glm::vec4>& points) {
         const PassState state;
-        const auto program = makeProgram("quad.vert", "air_query.frag", air.defines());
+        const auto program = makeProgram("base/quad.vert", "air/air_query.frag", air.defines());
         EXPECT_TRUE(program) << program.error().message;
         if (!program) {
             return {};
@@ -61,10 +61,10 @@ class AirGlTest : public GlTest {
         const GlVertexArray no_attributes = makeVertexArray();
         air.attach(*program, {});
         glUseProgram(program->name());
-        glUniform1i(uniformLocation(*program, "u_points"), 0);
-        glUniform1i(uniformLocation(*program, "u_velocity"), 1);
-        glUniform1f(uniformLocation(*program, "u_viscosity"), kViscosity);
-        glUniform1f(uniformLocation(*program, "u_mass"), kMass);
+        program->set("u_points", 0);
+        program->set("u_velocity", 1);
+        program->set("u_viscosity", kViscosity);
+        program->set("u_mass", kMass);
         glActiveTexture(GL_TEXTURE0);
         glBindTexture(GL_TEXTURE_2D, input.name());
         glActiveTexture(GL_TEXTURE1);

@@ -42,7 +42,7 @@ class Stage {
         const auto bytes = writeContainer(box);
         EXPECT_TRUE(bytes);
         bytes_.assign(bytes->begin(), bytes->end());
-        auto program = makeProgram("quad.vert", "rebase.frag");
+        auto program = makeProgram("base/quad.vert", "particles/rebase.frag");
         EXPECT_TRUE(program);
         program_ = std::move(*program);
         color_ = makeTexture2D(GL_RGBA8, 16, 16, GL_RGBA, GL_UNSIGNED_BYTE);

@@ -1,4 +1,4 @@
-// shaders/collider.glsl against formats/collider.cpp, point by point. The maps are random bytes in random
+// shaders/collider/collider.glsl against formats/collider.cpp, point by point. The maps are random bytes in random
 // frames: the two must agree on whatever lies in a texture, not only on what a baker writes.
 //
 // Tolerance. Both sides evaluate the same formulas in floats, but not in the same order (the shader's rows
@@ -288,8 +288,8 @@ std::vector<InsideSample> insideByGpu(const Collider& collider, std::span<const 
         std::copy_n(&points[i].x, 3, &texels[4 * i]);
     }
     const Result<ColliderTextures> textures = ColliderTextures::create(collider);
-    const Result<GlProgram> program =
-        makeProgram("quad.vert", "query.frag", textures->defines() + "#define RELIEF_QUERY_INSIDE\n");
+    const Result<GlProgram> program = makeProgram("base/quad.vert", "collider/query.frag",
+                                                  textures->defines() + "#define RELIEF_QUERY_INSIDE\n");
     EXPECT_TRUE(program) << program.error().message;
     if (!program) {
         return samples;
@@ -303,7 +303,7 @@ std::vector<InsideSample> insideByGpu(const Collider& collider, std::span<const 
     const GlVertexArray no_attributes = makeVertexArray();
     const ColliderTextures::Binding binding{1, 0};
     textures->attach(*program, binding);
-    glUniform1i(uniformLocation(*program, "u_points"), 0);
+    program->set("u_points", 0);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer->name());
     glViewport(0, 0, kWidth, height);
     glActiveTexture(GL_TEXTURE0);

@@ -372,10 +372,10 @@ TEST_P(GlFaultTest, FramebuffersAndShadersThatTheDriverRefuses) {
         const auto frame = Frame::create(8, 8);
         ASSERT_FALSE(frame);
         EXPECT_EQ(frame.error().code, ErrorCode::kFailure);
-        EXPECT_NE(frame.error().message.find("quad.vert"), std::string::npos) << frame.error().message;
+        EXPECT_NE(frame.error().message.find("base/quad.vert"), std::string::npos) << frame.error().message;
     }
     // The driver's own words.
-    const auto program = makeProgram("quad.vert", "copy_state.frag", "no GLSL at all\n");
+    const auto program = makeProgram("base/quad.vert", "bench/copy_state.frag", "no GLSL at all\n");
     ASSERT_FALSE(program);
     EXPECT_NE(program.error().message.find("quad.vert does not compile: "), std::string::npos);
     EXPECT_NE(program.error().message.find("syntax error"), std::string::npos) << program.error().message;

@@ -6,6 +6,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <vector>
 
+#include "runtime/gl/compute_units.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/gl_object.h"
 #include "runtime/particles/particle_system.h"

@@ -12,7 +12,7 @@
 #include "runtime/collider/live_collider.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
-#include "shaders/shader_constants.h"
+#include "shaders/picture/constants.h"
 #include "tests/runtime/collider/analytic_collider.h"
 #include "tests/runtime/gl/gl_test.h"
 
@@ -58,11 +58,11 @@ class ColliderLightGlTest : public GlTest {
         const GlTexture input = makeTexture2D(GL_RGBA32F, count, 1, GL_RGBA, GL_FLOAT, texels.data());
         const GlTexture output = makeTexture2D(GL_RGBA32F, count, 1, GL_RGBA, GL_FLOAT);
         const auto target = makeFramebuffer(std::array<GLuint, 1>{output.name()});
-        const auto program = makeProgram("quad.vert", "light_query.frag");
+        const auto program = makeProgram("base/quad.vert", "picture/light_query.frag");
         EXPECT_TRUE(target && program);
         const GlVertexArray array = makeVertexArray();
         light_->attach(*program, 1);
-        glUniform1i(uniformLocation(*program, "u_points"), 0);
+        program->set("u_points", 0);
         light_->bind(1);
         useTexture(0, input);
         glBindFramebuffer(GL_FRAMEBUFFER, target->name());

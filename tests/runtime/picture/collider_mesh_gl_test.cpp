@@ -54,7 +54,7 @@ class ColliderMeshGlTest : public GlTest {
         const GlTexture copy = makeTexture2D(GL_RGBA32F, width, height, GL_RGBA, GL_FLOAT);
         const std::array<GLuint, 1> colors{copy.name()};
         const auto framebuffer = makeFramebuffer(colors);
-        const auto program = makeProgram("quad.vert", "copy_view.frag");
+        const auto program = makeProgram("base/quad.vert", "picture/copy_view.frag");
         EXPECT_TRUE(framebuffer && program);
         const GlVertexArray array = makeVertexArray();
         {

@@ -4,9 +4,8 @@
 
 #include <limits>
 
+#include "runtime/gl/compute_units.h"
 #include "runtime/gl/gl_functions.h"
-#include "runtime/gl/image_units.h"
-#include "runtime/gl/storage_units.h"
 #include "runtime/picture/frame.h"
 #include "runtime/picture/particle_renderer.h"
 #include "tests/runtime/picture/depth_sort_fixture.h"

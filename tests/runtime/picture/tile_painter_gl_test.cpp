@@ -1,12 +1,12 @@
 // Sprites painted by tiles against the same sprites drawn by the GL, in OpenGL 4.3 and in OpenGL ES 3.1: in every style,
 // before and behind a collider, at the picture's edges, of all sizes, and where the tiles have no room.
+#include "runtime/gl/compute_units.h"
 #include "runtime/picture/tile_painter.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "runtime/gl/storage_units.h"
 #include "runtime/particles/random.h"
 #include "runtime/picture/collider_renderer.h"
 #include "runtime/picture/depth_sort.h"

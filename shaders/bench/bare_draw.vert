@@ -1,0 +1,8 @@
+// The cheapest draw of a mesh into a depth map: the baseline of `relief-bench depth-maps`.
+layout(location = 0) in vec3 a_position;
+
+uniform mat4 u_clip;
+
+void main() {
+    gl_Position = u_clip * vec4(a_position, 1.0);
+}

@@ -1,0 +1,791 @@
+// The method's core: the distance of a point to a collider by its depth maps. formats/depth_map.cpp and
+// formats/collider.cpp are the same in C++, formats/README.md in words; all three change together.
+//
+// ColliderTextures compiles it (collider_block.h: RELIEF_MAP_CAPACITY and so on) and binds all below.
+//
+//     P ──T_i──▶ P'    orthographic                       cube
+//                      z'                                        ╲  dist  ╱
+//                      │  near                                 ╲   ┌──┐  ╱
+//                      │ ┌──────────┐ 0                          ╲ │ ╲│╱   P' in [−1,1]³
+//                      │ │   dist   │     f = z_scale·           ──┤  ●──┤
+//                      │ │ ~~~~~~~~~│        (dist − z')         ╱ │ ╱│╲   f = (|P'| − dist)·|s∘d|
+//                      ▼ │ ● P'     │     negative: inside     ╱   └──┘  ╲   d = P'/|P'|
+//                        └──────────┘ 1
+//
+// An orthographic map that keeps the farthest surface, and a cube that keeps the nearest, turn the sign. Those
+// are the paper's projected distances. In a map of planes f = n·(P − S) instead, with S the surface point on
+// the ray through the texel's centre; the normal points outwards, so that no sign turns. A plane along the ray has
+// no such S: its texel holds its distance from the ray.
+
+struct ReliefMap {
+    vec4 row[3];           // object space to map space, whose rows are orthogonal. Of an orthographic map x and y are
+                           // in texels here
+    vec4 column[3];        // xyz: an axis of map space in object units, so that they undo the rows; w: the shift of a
+                           // standing plane by a unit of depth; width - 1; height - 1
+    vec4 object_per_map;   // xyz; z is z_scale of an orthographic map, xyz the paper's s of a cube; w: the
+                           // largest product of an orthographic ray and the normal of a plane along it
+    ivec4 place;           // index of texel (0,0) of face 0; from row to row; from face to face; width. With
+                           // RELIEF_HAS_ROWS a texel for each row comes first, with the range of the row's texels
+    ivec4 info;            // height; format; flags: the sum of MapFlag; of a live map the index of the
+                           // texel (0,0) of its motion, in u_relief_float, whose rows are as wide as that texture
+};
+
+// Colliders with a pose of their own; 0: one collider, in its own object space.
+#if !defined(RELIEF_BODIES)
+#define RELIEF_BODIES 0
+#endif
+
+// 1: some body is live. Its maps are drawn anew before each step, with the motion of the surface beside them.
+#if !defined(RELIEF_LIVE)
+#define RELIEF_LIVE 0
+#endif
+
+#if RELIEF_BODIES > 0
+struct ReliefBody {
+    vec4 row[3];     // world to object space at the end of the step: a rotation, divided by scale
+    vec4 before[3];  // the same at its beginning
+    vec4 response;   // scale (world units of an object unit); restitution; 1 - friction
+    ivec4 maps;      // the first map; how many; 1 if they are live
+};
+#endif
+
+layout(std140) uniform ReliefCollider {
+    ivec4 u_relief_count;  // maps in use; log2 of the widths of the textures: float, fixed, front-back
+#if RELIEF_BODIES > 0
+    ReliefBody u_relief_bodies[RELIEF_BODIES];
+#endif
+    ReliefMap u_relief_maps[RELIEF_MAP_CAPACITY];
+};
+
+// In a tour (collider_tour.glsl) each lane of a warp is at a map of its own. A uniform block serves lanes at different
+// addresses one after another, shared memory nearly all at once: so maps and bodies below are the work group's copy there,
+// made from the same buffer bound as storage, since copying reads different addresses, too. The counts stay in the block.
+#if defined(RELIEF_TOUR)
+layout(std140, binding = RELIEF_TOUR_STORAGE) readonly buffer ReliefColliderStorage {
+    ivec4 b_relief_count;
+#if RELIEF_BODIES > 0
+    ReliefBody b_relief_bodies[RELIEF_BODIES];
+#endif
+    ReliefMap b_relief_maps[RELIEF_MAP_CAPACITY];
+};
+shared ReliefMap s_relief_maps[RELIEF_MAP_CAPACITY];
+#if RELIEF_BODIES > 0
+shared ReliefBody s_relief_bodies[RELIEF_BODIES];
+#endif
+
+// Called first, by every invocation of a group of so many lanes.
+void reliefShare(int lane, int lanes) {
+    for (int i = lane; i < RELIEF_MAP_CAPACITY; i += lanes) {
+        s_relief_maps[i] = b_relief_maps[i];
+    }
+#if RELIEF_BODIES > 0
+    for (int b = lane; b < RELIEF_BODIES; b += lanes) {
+        s_relief_bodies[b] = b_relief_bodies[b];
+    }
+#endif
+    memoryBarrierShared();
+    barrier();
+}
+
+#define u_relief_maps s_relief_maps
+#define u_relief_bodies s_relief_bodies
+#endif
+
+// Texels of all maps in a row, wrapped at the texture's width: texel i is at (i mod width, i / width). So maps of
+// any sizes lie together without a gap.
+uniform highp sampler2D u_relief_float;
+uniform highp sampler2D u_relief_fixed;
+uniform highp usampler2D u_relief_front_back;
+
+// 1: a texel of planes may hold one end alone. ColliderTextures gives the empty end of a stored one the plane of the other,
+// which changes no vote; the maps of live bodies are as drawn.
+#define RELIEF_HALF_EMPTY (RELIEF_LIVE == 1)
+
+// The kind of a map, constant where all are alike: a GL may otherwise run the branches of all formats for every map.
+// ColliderTextures defines RELIEF_HAS_… for the kinds present.
+bool reliefIsCube(ivec4 info) {
+#if !defined(RELIEF_HAS_CUBE)
+    return false;
+#elif defined(RELIEF_HAS_FLOAT) || defined(RELIEF_HAS_FIXED) || defined(RELIEF_HAS_FRONT_BACK)
+    return info.y == RELIEF_MAP_FORMAT_CUBE8;
+#else
+    return true;
+#endif
+}
+
+bool reliefIsFrontBack(ivec4 info) {  // of an orthographic map, as is the next one
+#if !defined(RELIEF_HAS_FRONT_BACK)
+    return false;
+#elif defined(RELIEF_HAS_FLOAT) || defined(RELIEF_HAS_FIXED)
+    return info.y == RELIEF_MAP_FORMAT_FRONT_BACK_HALF || info.y == RELIEF_MAP_FORMAT_FRONT_BACK_FIXED;
+#else
+    return true;
+#endif
+}
+
+bool reliefIsGap(ivec4 info) {  // of a front-back map
+#if !defined(RELIEF_HAS_GAP)
+    return false;
+#else
+    return (info.z & RELIEF_IS_GAP) != 0;
+#endif
+}
+
+bool reliefIsFloat(ivec4 info) {
+#if !defined(RELIEF_HAS_FLOAT)
+    return false;
+#else
+    return info.y == RELIEF_MAP_FORMAT_FLOAT32;
+#endif
+}
+
+bool reliefIsPlane(ivec4 info) {
+#if !defined(RELIEF_HAS_PLANE)
+    return false;
+#elif defined(RELIEF_HAS_PROJECTED)
+    return (info.z & RELIEF_DECODES_PLANE) != 0;
+#else
+    return true;
+#endif
+}
+
+// The flags that every map has.
+#if !defined(RELIEF_ALL)
+#define RELIEF_ALL 0
+#endif
+
+bool reliefHas(ivec4 info, int flag) {
+    return (RELIEF_ALL & flag) != 0 || (info.z & flag) != 0;
+}
+
+// The combined vote. map is the deciding map, −1 where every map abstains; normal is zero where nothing but "outside"
+// is known (distance RELIEF_FAR_OUTSIDE).
+struct ReliefField {
+    float distance;
+    vec3 normal;
+    int map;
+};
+
+bool reliefInside(ReliefField field) {
+    return field.map >= 0 && field.distance < 0.0;
+}
+
+// Rule 2 of the paper: outside as soon as one map sees P outside; the smallest positive or the largest
+// negative vote wins. A vote of 0 is outside, so that the order of the maps does not matter.
+bool reliefReplaces(float vote, float best) {
+    return (best < 0.0 && vote > best) || (vote >= 0.0 && vote < best);
+}
+
+// Equation 3: indices 0…254 in each direction to the octahedron, of which the sphere's point is reliefUnit(). In steps
+// of the index, so that all of it is exact. shaderTexels() leaves no index 255.
+vec3 reliefOctahedron(vec2 index) {
+    vec2 st = index - float(RELIEF_NORMAL_HALF_RANGE);
+    float z = float(RELIEF_NORMAL_HALF_RANGE) - abs(st.x) - abs(st.y);
+    // Below the equator both are reflected by their excess.
+    uint beyond = floatBitsToUint(max(-z, 0.0));
+    return vec3(st.x - uintBitsToFloat(beyond | (floatBitsToUint(st.x) & 0x80000000u)),
+                st.y - uintBitsToFloat(beyond | (floatBitsToUint(st.y) & 0x80000000u)), z);
+}
+
+vec3 reliefOctahedron(uint code) {
+    return reliefOctahedron(vec2(float(code >> 8), float(code & 255u)));
+}
+
+vec3 reliefUnit(vec3 v) {
+    return v * inversesqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+}
+
+float reliefRow(vec4 r, vec3 p) {
+    return r.x * p.x + (r.y * p.y + (r.z * p.z + r.w));
+}
+
+// A point of object space in the space of map i.
+vec3 reliefInMap(int i, vec3 p) {
+    return vec3(reliefRow(u_relief_maps[i].row[0], p), reliefRow(u_relief_maps[i].row[1], p),
+                reliefRow(u_relief_maps[i].row[2], p));
+}
+
+// True for a point p of an orthographic map's own space above its texels, without its rim, which is empty.
+bool reliefInWindow(int i, vec3 p) {
+    return p.x >= 1.0 && p.y >= 1.0 && p.x < u_relief_maps[i].column[1].w && p.y < u_relief_maps[i].column[2].w;
+}
+
+bool reliefInDepth(vec3 p) {
+    return p.z >= 0.0 && p.z <= 1.0;
+}
+
+// In the order of the CPU's twin: the order of dot() is the driver's choice.
+float reliefDot(vec3 a, vec3 b) {
+    return a.x * b.x + (a.y * b.y + a.z * b.z);
+}
+
+float reliefLength(vec3 v) {
+    return sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+}
+
+// The face that d meets and the place on it, OpenGL's rule; x wins over y over z among equals. By hand on
+// six layers, so that every GL picks the same texel as the CPU and no seam is filtered.
+vec3 reliefCubeCoordinates(vec3 d) {
+    vec3 a = abs(d);
+    float face, sc, tc, major;
+    if (a.x >= a.y && a.x >= a.z) {
+        face = d.x < 0.0 ? 1.0 : 0.0;
+        sc = d.x < 0.0 ? d.z : -d.z;
+        tc = -d.y;
+        major = a.x;
+    } else if (a.y >= a.z) {
+        face = d.y < 0.0 ? 3.0 : 2.0;
+        sc = d.x;
+        tc = d.y < 0.0 ? -d.z : d.z;
+        major = a.y;
+    } else {
+        face = d.z < 0.0 ? 5.0 : 4.0;
+        sc = d.z < 0.0 ? -d.x : d.x;
+        tc = -d.y;
+        major = a.z;
+    }
+    return vec3(0.5 * (sc / major + 1.0), 0.5 * (tc / major + 1.0), face);
+}
+
+// The direction, of largest component 1, through (s, t) of a face.
+vec3 reliefCubeDirection(vec3 st_face) {
+    vec2 c = 2.0 * st_face.xy - 1.0;
+    int face = int(st_face.z);
+    float way = (face & 1) == 0 ? 1.0 : -1.0;
+    vec3 d = vec3(way * c.x, -c.y, way);
+    if (face < 2) {
+        d = vec3(way, -c.y, -way * c.x);
+    } else if (face < 4) {
+        d = vec3(c.x, way, way * c.y);
+    }
+    return d;
+}
+
+// From map space to object space, directions alone.
+vec3 reliefFromMap(int i, vec3 q) {
+    return u_relief_maps[i].column[0].xyz * q.x +
+           (u_relief_maps[i].column[1].xyz * q.y + u_relief_maps[i].column[2].xyz * q.z);
+}
+
+// The vote of a plane: n·(P − S), or n·(P − O) less the stored offset where the plane stands along the ray.
+// along_normal: n times 1 / per_length; from: P − O, with O where the ray of the texel's centre has depth 0; ray: its
+// direction, for a unit of depth; standing: its length times RELIEF_STANDING_COSINE; depth: from 0 to 2 half_depth.
+float reliefPlane(int i, vec3 along_normal, float per_length, float depth, float half_depth, vec3 from, vec3 ray, float standing) {
+    float along = per_length * reliefDot(along_normal, ray);
+    float offset = abs(along) < standing ? u_relief_maps[i].column[0].w * (depth - half_depth) : depth * along;
+    return per_length * reliefDot(along_normal, from) - offset;
+}
+
+float reliefOctahedralPlane(int i, vec3 along_normal, float depth, float half_depth, vec3 from, vec3 ray, float standing) {
+    float per_length = inversesqrt(reliefDot(along_normal, along_normal));
+    return reliefPlane(i, along_normal, per_length, depth, half_depth, from, ray, standing);
+}
+
+// A half-float depth: a positive normal half, whose exponent's bias is moved from 15 to 127. By hand, since
+// GLSL 3.30 has no unpackHalf2x16.
+float reliefHalf(uint bits) {
+    return uintBitsToFloat((bits << 13) + (112u << 23));
+}
+
+float reliefFrontBackDepth(int format, uint code) {
+#if !defined(RELIEF_HAS_FRONT_BACK_FIXED)
+    return reliefHalf(code);
+#else
+    float fixed_point = (float(code) - 1.0) * (1.0 / float(RELIEF_DEPTH_STEPS));
+#if defined(RELIEF_HAS_FRONT_BACK_HALF)
+    return format == RELIEF_MAP_FORMAT_FRONT_BACK_HALF ? reliefHalf(code) : fixed_point;
+#else
+    return fixed_point;
+#endif
+#endif
+}
+
+ivec2 reliefTexel(int index, int log2_width) {
+    return ivec2(index & ((1 << log2_width) - 1), index >> log2_width);
+}
+
+// R,G: normal; B,A: 16-bit fixed-point depth, 0 where empty. Of the normal the indices.
+bool reliefFixedTexel(int index, float depth_max, out float depth, out vec2 normal) {
+    vec4 bytes = floor(texelFetch(u_relief_fixed, reliefTexel(index, u_relief_count.z), 0) * 255.0 + 0.5);
+    float code = bytes.b * 256.0 + bytes.a;
+    depth = (code - 1.0) * (depth_max / float(RELIEF_DEPTH_STEPS));
+    normal = bytes.rg;
+    return code > 0.0;
+}
+
+// The index of a texel of a front-back map, −1 where its row has none: a silhouette leaves the ends of rows empty.
+int reliefFrontBackIndex(ivec4 place, ivec4 info, ivec2 at) {
+    int index = place.x + at.y * place.y + at.x;
+    if (reliefHas(info, RELIEF_HAS_ROWS)) {
+        uvec4 row = texelFetch(u_relief_front_back, reliefTexel(place.x + at.y, u_relief_count.w), 0);
+        bool within = uint(at.x) >= row.r && uint(at.x) < row.g;
+        index = within ? place.x + int(row.b | (row.a << 16)) + at.x : -1;
+    }
+    return index;
+}
+
+// A normal as a texel holds it: of all fetched only the deciding one is decoded.
+#if defined(RELIEF_HAS_FLOAT)
+#define RELIEF_CODE vec3
+const vec3 RELIEF_NO_CODE = vec3(0.0);
+vec3 reliefCode(uint code) {
+    return reliefUnit(reliefOctahedron(code));
+}
+vec3 reliefCode(vec2 index) {
+    return reliefUnit(reliefOctahedron(index));
+}
+vec3 reliefDecode(vec3 code) {
+    return code;
+}
+#else
+#define RELIEF_CODE uint
+const uint RELIEF_NO_CODE = 0u;
+uint reliefCode(uint code) {
+    return code;
+}
+uint reliefCode(vec2 index) {
+    return (uint(index.x) << 8) | uint(index.y);
+}
+vec3 reliefDecode(uint code) {
+    return reliefUnit(reliefOctahedron(code));
+}
+#endif
+
+// The vote of one map: RELIEF_FAR_INSIDE where it abstains, which never wins.
+struct ReliefVote {
+    float distance;
+    RELIEF_CODE normal;
+};
+
+float reliefEmpty(ivec4 info) {
+    return reliefHas(info, RELIEF_EMPTY_IS_OUTSIDE) ? RELIEF_FAR_OUTSIDE : RELIEF_FAR_INSIDE;
+}
+
+// No function that every particle runs returns early: a GL may make a loop of each that does.
+
+// A point of an orthographic map relative to the ray through its texel's centre.
+struct ReliefSight {
+    int texel;   // its index; −1: it is empty
+    float z;     // depth of the point
+    bool plane;  // the map decodes planes
+    vec3 from;   // as reliefPlane() takes them
+    vec3 ray;
+    float standing;
+    float scale;  // z_scale
+};
+
+float reliefSightPlane(int i, vec3 along_normal, float depth, ReliefSight sight) {
+    return reliefOctahedralPlane(i, along_normal, depth, 0.5, sight.from, sight.ray, sight.standing);
+}
+
+float reliefSightProjected(ivec4 info, float depth, ReliefSight sight) {
+    return sight.scale * ((info.z & RELIEF_KEEPS_FARTHEST) != 0 ? sight.z - depth : depth - sight.z);
+}
+
+// The votes of a texel of each kind; without meaning where none is found.
+
+// Outside where either surface votes so; of a gap where both do.
+ReliefVote reliefVoteFrontBack(int i, ivec4 info, ReliefSight sight, bool whole, out bool found) {
+    uvec4 words = texelFetch(u_relief_front_back, reliefTexel(max(sight.texel, 0), u_relief_count.w), 0);
+    found = sight.texel >= 0 && (words.b != 0u || words.a != 0u && (!sight.plane || RELIEF_HALF_EMPTY));
+    float front = reliefFrontBackDepth(info.y, words.b);
+    float back = reliefFrontBackDepth(info.y, words.a);
+    if (sight.plane) {
+        front = reliefSightPlane(i, reliefOctahedron(words.r), front, sight);
+        back = reliefSightPlane(i, reliefOctahedron(words.g), back, sight);
+    } else {
+        front = sight.scale * (front - sight.z);
+        back = sight.scale * (sight.z - back);
+    }
+    if (!sight.plane || RELIEF_HALF_EMPTY) {
+        front = words.b != 0u ? front : RELIEF_FAR_INSIDE;
+        back = words.a != 0u ? back : RELIEF_FAR_INSIDE;
+    }
+    bool take_back = reliefIsGap(info) ? back < front : whole ? reliefReplaces(back, front) : back > front;
+    return ReliefVote(take_back ? back : front, reliefCode(take_back ? words.g : words.r));
+}
+
+ReliefVote reliefVoteFixed(int i, ivec4 info, ReliefSight sight, out bool found) {
+    float depth;
+    vec2 index;
+    found = reliefFixedTexel(sight.texel, 1.0, depth, index);
+    float distance = sight.plane ? reliefSightPlane(i, reliefOctahedron(index), depth, sight)
+                                 : reliefSightProjected(info, depth, sight);
+    return ReliefVote(distance, reliefCode(index));
+}
+
+#if defined(RELIEF_HAS_FLOAT)
+// A float map's normals count as they are.
+ReliefVote reliefVoteFloat(int i, ivec4 info, ReliefSight sight, out bool found) {
+    vec4 values = texelFetch(u_relief_float, reliefTexel(sight.texel, u_relief_count.y), 0);
+    found = values.a >= 0.0;
+    float distance = sight.plane ? reliefPlane(i, values.rgb, 1.0, values.a, 0.5, sight.from, sight.ray, sight.standing)
+                                 : reliefSightProjected(info, values.a, sight);
+    return ReliefVote(distance, values.rgb);
+}
+#else
+ReliefVote reliefVoteFloat(int i, ivec4 info, ReliefSight sight, out bool found) {
+    found = false;
+    return ReliefVote(RELIEF_FAR_INSIDE, RELIEF_NO_CODE);
+}
+#endif
+
+// Without `whole` any distance that is not below 0 stands for all of them. reliefMayHold() in collider_tour.glsl repeats when
+// the texel is not fetched: both change together.
+ReliefVote reliefVoteOrthographic(int i, vec3 p, ivec4 place, ivec4 info, bool whole) {
+    bool encloses = reliefHas(info, RELIEF_ENCLOSES);
+    ReliefVote vote = ReliefVote(encloses ? RELIEF_FAR_OUTSIDE : RELIEF_FAR_INSIDE, RELIEF_NO_CODE);
+    bool in_window = reliefInWindow(i, p);
+    bool in_depth = reliefInDepth(p);
+    // Before and behind the volume the texel gives only the distance, or that the map abstains.
+    bool sees_beyond = encloses && (whole || !reliefHas(info, RELIEF_EMPTY_IS_OUTSIDE));
+    if (in_window && (in_depth || sees_beyond)) {
+        ivec2 at = ivec2(p.xy);
+        int texel = reliefIsFrontBack(info) ? reliefFrontBackIndex(place, info, at) : place.x + at.y * place.y + at.x;
+        ReliefSight sight = ReliefSight(texel, p.z, reliefIsPlane(info),
+                                        reliefFromMap(i, vec3(p.xy - (vec2(at) + 0.5), p.z)),
+                                        u_relief_maps[i].column[2].xyz, u_relief_maps[i].object_per_map.w,
+                                        u_relief_maps[i].object_per_map.z);
+        bool found;
+        if (reliefIsFrontBack(info)) {
+            vote = reliefVoteFrontBack(i, info, sight, whole, found);
+        } else if (reliefIsFloat(info)) {
+            vote = reliefVoteFloat(i, info, sight, found);
+        } else {
+            vote = reliefVoteFixed(i, info, sight, found);
+        }
+        if (sees_beyond && !in_depth && !(vote.distance >= 0.0)) {  // nothing of the collider remains there
+            vote.distance = RELIEF_FAR_OUTSIDE;
+        }
+        vote.distance = found ? vote.distance : reliefEmpty(info);
+    }
+    return vote;
+}
+
+ReliefVote reliefVoteCube(int i, vec3 p, ivec4 place, ivec4 info) {
+    bool encloses = reliefHas(info, RELIEF_ENCLOSES);
+    ReliefVote vote = ReliefVote(encloses ? RELIEF_FAR_OUTSIDE : RELIEF_FAR_INSIDE, RELIEF_NO_CODE);
+    bool in_volume = all(lessThanEqual(abs(p), vec3(1.0)));
+    // The squares below must not overflow.
+    if (in_volume || (encloses && all(lessThanEqual(abs(p), vec3(1e15))))) {
+        float radius = reliefLength(p);
+        vec3 direction = radius > 0.0 ? p / radius : vec3(1.0, 0.0, 0.0);
+        vec3 st_face = reliefCubeCoordinates(direction);
+        ivec2 at = min(ivec2(st_face.xy * float(place.w)), ivec2(place.w - 1));
+        float depth;
+        vec2 index;
+        int texel = place.x + int(st_face.z) * place.z + at.y * place.y + at.x;
+        bool found = reliefFixedTexel(texel, RELIEF_CUBE_DEPTH_MAX, depth, index);
+        vote.normal = reliefCode(index);
+        if (reliefIsPlane(info)) {
+            vec3 ray = reliefUnit(reliefCubeDirection(vec3((vec2(at) + 0.5) / float(place.w), st_face.z)));
+            float standing = RELIEF_STANDING_COSINE * reliefLength(u_relief_maps[i].object_per_map.xyz * ray);
+            vote.distance = reliefOctahedralPlane(i, reliefOctahedron(index), depth, 0.5 * RELIEF_CUBE_DEPTH_MAX, reliefFromMap(i, p),
+                                        reliefFromMap(i, ray), standing);
+        } else {
+            float ahead = (info.z & RELIEF_KEEPS_FARTHEST) != 0 ? radius - depth : depth - radius;
+            vote.distance = ahead * reliefLength(u_relief_maps[i].object_per_map.xyz * direction);
+        }
+        if (!in_volume && !(vote.distance >= 0.0)) {
+            vote.distance = RELIEF_FAR_OUTSIDE;
+        }
+        vote.distance = found ? vote.distance : reliefEmpty(info);
+    }
+    return vote;
+}
+
+ReliefVote reliefVote(int i, vec3 p, bool whole) {
+    vec3 in_map = reliefInMap(i, p);
+    ivec4 place = u_relief_maps[i].place;
+    ivec4 info = u_relief_maps[i].info;
+    ReliefVote vote;
+    if (reliefIsCube(info)) {
+        vote = reliefVoteCube(i, in_map, place, info);
+    } else {
+        vote = reliefVoteOrthographic(i, in_map, place, info, whole);
+    }
+    return vote;
+}
+
+// The votes so far: of none the map is -1.
+struct ReliefBest {
+    float distance;
+    RELIEF_CODE normal;
+    int map;
+};
+const ReliefBest RELIEF_NO_VOTE = ReliefBest(RELIEF_FAR_INSIDE, RELIEF_NO_CODE, -1);
+
+void reliefJoin(inout ReliefBest best, int i, vec3 p, bool whole) {
+    ReliefVote vote = reliefVote(i, p, whole);
+    // Without `whole` the best one is below 0 so far.
+    if (whole ? reliefReplaces(vote.distance, best.distance) : vote.distance > best.distance) {
+        best = ReliefBest(vote.distance, vote.normal, i);
+    }
+}
+
+ReliefField reliefFieldOf(ReliefBest best) {
+    bool known = best.map >= 0 && best.distance < RELIEF_FAR_OUTSIDE;
+    return ReliefField(best.distance, known ? reliefDecode(best.normal) : vec3(0.0), best.map);
+}
+
+// The maps [first, end) alone, as reliefSolid or, with `whole`, reliefEvaluate.
+ReliefField reliefMaps(int first, int end, vec3 p, bool whole) {
+    ReliefBest best = RELIEF_NO_VOTE;
+    for (int i = first; i < end && (whole || best.distance < 0.0); ++i) {
+        reliefJoin(best, i, p, whole);
+    }
+    return reliefFieldOf(best);
+}
+
+// From p to the nearest point of the volume of map i; zero where p is in it.
+vec3 reliefToVolume(int i, vec3 p) {
+    vec3 in_map = reliefInMap(i, p);
+    vec3 low = vec3(-1.0);
+    vec3 high = vec3(1.0);
+    if (!reliefIsCube(u_relief_maps[i].info)) {  // its rim has nothing
+        low = vec3(1.0, 1.0, 0.0);
+        high = vec3(u_relief_maps[i].column[1].w, u_relief_maps[i].column[2].w, 1.0);
+    }
+    return reliefFromMap(i, clamp(in_map, low, high) - in_map);
+}
+
+// The maps [first, end) of a point that is inside; any distance that is not below 0 stands for all others. Map `start` is
+// first: it saw p from near, and most often knows that it is outside.
+ReliefBest reliefProbe(int first, int end, int start, vec3 p) {
+    ReliefBest best = RELIEF_NO_VOTE;
+    int i = start;
+    for (int k = first; k < end && best.distance < 0.0; ++k) {
+        ReliefVote vote = reliefVote(i, p, false);
+        // Of equal votes that of the first map counts, as in reliefMaps().
+        if (vote.distance > best.distance || (vote.distance == best.distance && i < best.map)) {
+            best = ReliefBest(vote.distance, vote.normal, i);
+        }
+        i = k < start ? k : k + 1;
+    }
+    return best;
+}
+
+// The surface that a ball is in or touches. Where its centre is inside, as reliefSolid() of that. Else each map that sees a
+// surface near gives the direction to it, and the point of the ball there is evaluated; the deepest such point decides, with
+// a distance below 0. Where it touches nothing: RELIEF_FAR_OUTSIDE, or where all maps abstain, no map.
+ReliefField reliefBall(int first, int end, vec3 center, float radius) {
+    ReliefBest inside = RELIEF_NO_VOTE;
+    ReliefField touched = ReliefField(RELIEF_FAR_OUTSIDE, vec3(0.0), -1);
+    for (int i = first; i < end; ++i) {
+        ReliefVote vote = reliefVote(i, center, true);
+        if (vote.distance > inside.distance) {
+            inside = ReliefBest(vote.distance, vote.normal, i);
+        }
+        // A projected distance may be some times the distance.
+        bool seen = vote.distance >= 0.0 && vote.distance < 4.0 * radius;
+        vec3 way = reliefToVolume(i, center);
+        float apart = reliefLength(way);
+        if (seen || (apart > 0.0 && apart < radius)) {
+            vec3 normal = seen ? reliefDecode(vote.normal) : -way / apart;
+            ReliefBest probe = reliefProbe(first, end, i, center - radius * normal);
+            if (probe.map >= 0 && probe.distance < 0.0 && probe.distance < touched.distance) {
+                touched = ReliefField(probe.distance, seen ? reliefDecode(probe.normal) : normal, probe.map);
+            }
+        }
+    }
+    if (inside.map >= 0 && inside.distance < 0.0) {  // WebGL has no ?: of structures
+        return reliefFieldOf(inside);
+    }
+    return touched;
+}
+
+#if RELIEF_BODIES == 0
+
+// Of all maps, in the object space that they share.
+ReliefField reliefEvaluate(vec3 p) {
+    return reliefMaps(0, u_relief_count.x, p, true);
+}
+
+#define RELIEF_VOTE_OF(n) \
+    if (n < RELIEF_MAP_CAPACITY && best.distance < 0.0) { \
+        reliefJoin(best, min(n, RELIEF_MAP_CAPACITY - 1), p, false); \
+    }
+
+// For a step of a simulation: the same as reliefEvaluate where P is inside; where it is not, the first map that sees it
+// outside ends the loop, so that most points cost one fetch however many maps there are. (Rule 2 never turns a vote ≥ 0
+// into one below.) The first maps have constant indices, so that GPUs need not index the block for them.
+ReliefField reliefSolid(vec3 p) {
+    ReliefBest best = RELIEF_NO_VOTE;
+    RELIEF_VOTE_OF(0)
+    RELIEF_VOTE_OF(1)
+    RELIEF_VOTE_OF(2)
+    RELIEF_VOTE_OF(3)
+    RELIEF_VOTE_OF(4)
+    RELIEF_VOTE_OF(5)
+    RELIEF_VOTE_OF(6)
+    RELIEF_VOTE_OF(7)
+#if RELIEF_MAP_CAPACITY > 8
+    for (int i = 8; i < u_relief_count.x && best.distance < 0.0; ++i) {
+        reliefJoin(best, i, p, false);
+    }
+#endif
+    return reliefFieldOf(best);
+}
+
+// reliefInside(reliefSolid(p)) with map `first` before the others: the map that decides nearby most often knows that p is
+// outside. With two maps the order saves nothing, and constants are cheaper.
+bool reliefSolidAt(vec3 p, int first) {
+#if RELIEF_MAP_CAPACITY <= 2
+    return reliefInside(reliefSolid(p));
+#else
+    float best = RELIEF_FAR_INSIDE;
+    int i = first;
+    for (int k = 0; k < u_relief_count.x && best < 0.0; ++k) {
+        best = max(best, reliefVote(i, p, false).distance);
+        i = k < first ? k : k + 1;
+    }
+    return best < 0.0 && best > RELIEF_FAR_INSIDE;
+#endif
+}
+
+#else
+
+vec3 reliefToObject(vec4 row0, vec4 row1, vec4 row2, vec3 p) {
+    return vec3(reliefRow(row0, p), reliefRow(row1, p), reliefRow(row2, p));
+}
+
+// A point of a body's object space in the world. (The transpose of a rotation is its inverse.)
+vec3 reliefToWorld(vec4 row0, vec4 row1, vec4 row2, float scale, vec3 q) {
+    return (scale * scale) * (row0.xyz * (q.x - row0.w) + (row1.xyz * (q.y - row1.w) + row2.xyz * (q.z - row2.w)));
+}
+
+// World to object space and back, at the beginning and at the end of the step.
+vec3 reliefBodyNow(int body, vec3 p) {
+    return reliefToObject(u_relief_bodies[body].row[0], u_relief_bodies[body].row[1], u_relief_bodies[body].row[2], p);
+}
+vec3 reliefBodyBefore(int body, vec3 p) {
+    return reliefToObject(u_relief_bodies[body].before[0], u_relief_bodies[body].before[1],
+                          u_relief_bodies[body].before[2], p);
+}
+vec3 reliefWorldNow(int body, vec3 q) {
+    return reliefToWorld(u_relief_bodies[body].row[0], u_relief_bodies[body].row[1], u_relief_bodies[body].row[2],
+                         u_relief_bodies[body].response.x, q);
+}
+vec3 reliefWorldBefore(int body, vec3 q) {
+    return reliefToWorld(u_relief_bodies[body].before[0], u_relief_bodies[body].before[1],
+                         u_relief_bodies[body].before[2], u_relief_bodies[body].response.x, q);
+}
+
+vec3 reliefWorldNormal(int body, vec3 n) {
+    return u_relief_bodies[body].response.x *
+           (u_relief_bodies[body].row[0].xyz * n.x +
+            (u_relief_bodies[body].row[1].xyz * n.y + u_relief_bodies[body].row[2].xyz * n.z));
+}
+
+// One body and a ball about a point of its object space, as reliefSolid or, with `whole`, reliefEvaluate.
+ReliefField reliefBodyField(int body, vec3 q, float radius, bool whole) {
+    int first = u_relief_bodies[body].maps.x;
+    int end = first + u_relief_bodies[body].maps.y;
+#if defined(RELIEF_RADIUS)
+    if (radius > 0.0) {
+        return reliefBall(first, end, q, radius / u_relief_bodies[body].response.x);
+    }
+#endif
+    return reliefMaps(first, end, q, whole);
+}
+
+// The union of all bodies in the world, which the nearest, inside the deepest, decides. The distance is in world
+// units. body is -1 where none votes.
+ReliefField reliefUnion(vec3 p, float radius, bool whole, out int body) {
+    ReliefField best = ReliefField(RELIEF_FAR_OUTSIDE, vec3(0.0), -1);
+    body = -1;
+    for (int b = 0; b < RELIEF_BODIES; ++b) {
+#if defined(RELIEF_MASKS)  // of a step, alone: step_mask.glsl
+        if (!collidesWith(b)) {
+            continue;
+        }
+#endif
+        float scale = u_relief_bodies[b].response.x;
+        ReliefField field = reliefBodyField(b, reliefBodyNow(b, p), radius, whole);
+        if (field.map >= 0 && scale * field.distance < best.distance) {
+            best = ReliefField(scale * field.distance, reliefWorldNormal(b, field.normal), field.map);
+            body = b;
+        }
+    }
+    return best;
+}
+
+ReliefField reliefSolid(vec3 p) {
+    int body;
+    return reliefUnion(p, 0.0, false, body);
+}
+
+ReliefField reliefEvaluate(vec3 p) {
+    int body;
+    return reliefUnion(p, 0.0, true, body);
+}
+
+#if RELIEF_LIVE
+
+// The motion of the surface of map i at a point p of object space since the update before, in object units. Of two ends it
+// is the one whose normal is more like `normal`. Zero where the map has no surface.
+vec3 reliefMotion(int i, vec3 p, vec3 normal) {
+    vec3 in_map = reliefInMap(i, p);
+    ivec4 place = u_relief_maps[i].place;
+    ivec4 info = u_relief_maps[i].info;
+    ivec2 at;
+    if (reliefIsCube(info)) {
+        float radius = reliefLength(in_map);
+        vec3 st_face = reliefCubeCoordinates(radius > 0.0 ? in_map / radius : vec3(1.0, 0.0, 0.0));
+        at = min(ivec2(st_face.xy * float(place.w)), ivec2(place.w - 1));
+        at.y += int(st_face.z) * place.w;
+    } else {
+        at = ivec2(clamp(in_map.xy, vec2(0.0), vec2(place.w - 1, info.x - 1)));
+        if (reliefIsFrontBack(info)) {
+            uvec4 words = texelFetch(u_relief_front_back,
+                                     reliefTexel(place.x + at.y * place.y + at.x, u_relief_count.w), 0);
+            float front = reliefDot(normal, reliefUnit(reliefOctahedron(words.r)));
+            float back = reliefDot(normal, reliefUnit(reliefOctahedron(words.g)));
+            at.y += words.b == 0u || (words.a != 0u && back > front) ? info.x : 0;
+        }
+    }
+    int texel = info.w + (at.y << u_relief_count.y) + at.x;
+    return texelFetch(u_relief_float, reliefTexel(texel, u_relief_count.y), 0).xyz;
+}
+
+// The same of a body; zero of one that is not live. q: its object space at the end of the step; normal: in the world.
+vec3 reliefBodyMotion(int body, int map, vec3 q, vec3 normal) {
+    if (u_relief_bodies[body].maps.z == 0 || map < 0) {
+        return vec3(0.0);
+    }
+    vec3 in_body = u_relief_bodies[body].response.x *
+                   reliefToObject(vec4(u_relief_bodies[body].row[0].xyz, 0.0), vec4(u_relief_bodies[body].row[1].xyz, 0.0),
+                                  vec4(u_relief_bodies[body].row[2].xyz, 0.0), normal);
+    return reliefMotion(map, q, in_body);
+}
+
+// The motion of a particle that rests on a live body: that of the nearest surface; zero on one that is not live. Each map
+// is evaluated alone: where one sees nothing near a silhouette, another one does.
+vec3 reliefNearestMotion(int body, vec3 q) {
+    if (u_relief_bodies[body].maps.z == 0) {
+        return vec3(0.0);
+    }
+    ReliefField nearest = ReliefField(RELIEF_FAR_OUTSIDE, vec3(0.0), -1);
+    int first = u_relief_bodies[body].maps.x;
+    for (int i = first; i < first + u_relief_bodies[body].maps.y; ++i) {
+        ReliefField one = reliefMaps(i, i + 1, q, true);
+        if (one.map >= 0 && abs(one.distance) < abs(nearest.distance)) {
+            nearest = one;
+        }
+    }
+    return nearest.map >= 0 ? reliefMotion(nearest.map, q, nearest.normal) : vec3(0.0);
+}
+
+#else
+
+vec3 reliefBodyMotion(int body, int map, vec3 q, vec3 normal) {
+    return vec3(0.0);
+}
+
+vec3 reliefNearestMotion(int body, vec3 q) {
+    return vec3(0.0);
+}
+
+#endif
+
+#endif

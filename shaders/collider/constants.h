@@ -1,0 +1,23 @@
+// Constants of colliders that C++ and GLSL share (shaders/embed.cmake).
+#pragma once
+
+#include <cstdint>
+
+namespace relief {
+
+/// Flags of a map in the block of collider.glsl: their sum.
+enum MapFlag : std::int32_t {
+    kKeepsFarthest = 1,
+    kEncloses = 2,
+    kEmptyIsOutside = 4,
+    kDecodesPlane = 8,
+    kHasRows = 16,  ///< front-back: a texel for each row holds the range of its texels
+    kIsGap = 32,    ///< front-back: outside only where both ends vote so
+};
+
+/// The shader storage binding of the collider in a tour (collider_tour.glsl).
+inline constexpr int kTourStorage = 0;
+
+enum class DeformKind : std::uint8_t { kBend = 0, kTwist = 1, kWobble = 2 };
+
+}  // namespace relief

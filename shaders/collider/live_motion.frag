@@ -1,0 +1,15 @@
+// Copies the motion of the surface in the texels of a map from DepthMapRenderer's textures (depth_map_renderer.h) to those of
+// collider.glsl.
+uniform highp sampler2D u_motion_xy;  // x of either end, then y
+uniform highp sampler2D u_motion_z;
+uniform int u_end;
+uniform ivec2 u_origin;  // of the rectangle that is drawn to
+
+layout(location = 0) out vec4 o_motion;
+
+void main() {
+    ivec2 texel = ivec2(gl_FragCoord.xy) - u_origin;
+    vec4 xy = texelFetch(u_motion_xy, texel, 0);
+    vec4 z = texelFetch(u_motion_z, texel, 0);
+    o_motion = u_end == 0 ? vec4(xy.x, xy.z, z.x, 0.0) : vec4(xy.y, xy.w, z.y, 0.0);
+}

@@ -1,9 +1,0 @@
-// Which way the mesh faces at each pixel; collider_view.frag shades it.
-in vec3 v_normal;
-
-layout(location = 0) out vec4 o_normal;
-
-void main() {
-    // A surface seen from its back is one all the same.
-    o_normal = vec4(gl_FrontFacing ? v_normal : -v_normal, 1.0);
-}

@@ -1,3 +1,0 @@
-// For programs whose vertices alone matter: OpenGL ES wants a fragment shader all the same.
-void main() {
-}

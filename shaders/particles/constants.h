@@ -1,0 +1,71 @@
+// Constants of particles that C++ and GLSL share (shaders/embed.cmake).
+#pragma once
+
+#include <cstdint>
+
+namespace relief {
+
+/// The effect of a collision on a particle; one that is caught inside always leaves first.
+enum class OnCollision : std::uint8_t {
+    kBounce = 0,  ///< the paper's reaction, by restitution and friction
+    kStop = 1,    ///< stays where it touches, and goes with what it touched (snow)
+    kSlide = 2,   ///< keeps the tangential part of its velocity alone
+    kDie = 3,     ///< out of sight at once; its place is free again at the end of its lifetime
+};
+
+/// The bit of the floor in ParticleType::collides; those below it are of bodies.
+inline constexpr int kGroundBit = 8;
+
+/// The outcome of the last step. The state texture holds kStopped for the floor and kStopped + 1 + b for body b.
+enum class Contact : std::uint8_t {
+    kNone = 0,
+    kCollided = 1,
+    kCaught = 2,
+    kStopped = 3,  ///< at rest for good (OnCollision::kStop)
+};
+
+/// The events of a particle in a step: the sum of these.
+enum EventFlag : std::int32_t {
+    kEventCollision = 1,
+    kEventLasts = 2,  ///< beside kEventCollision: the step before touched something, too
+    kEventDeath = 4,  ///< of age, or beside kEventCollision of the collision
+};
+/// The step writes flags + kEventFlags · (direction + kEventDirections · (body + 1)), as events.glsl has it.
+inline constexpr int kEventFlags = 8;
+inline constexpr int kEventDirections = 6;
+/// A count of events is that of so many counts before it; kEventLevels of them count the largest system.
+inline constexpr int kEventsCounted = 64;
+inline constexpr int kEventLevels = 4;
+/// Texels in a row of the counts and of the list of events.
+inline constexpr int kEventsWidth = 1024;
+
+/// With Verlet one float holds both counts of a particle: collisions + contact / kContactParts. Beyond 2^19 - 1 collisions it
+/// would lose the parts.
+inline constexpr float kContactParts = 16.0F;
+inline constexpr float kVerletCollisionsMax = 524287.0F;
+
+/// Dead particles: their height, out of sight, and their number of collisions.
+inline constexpr float kDeadHeight = -1e30F;
+inline constexpr float kDeadCollisions = -1.0F;
+
+/// Texels of a work group of a compute step. Textures lie in memory by squares: on an H100 8 x 8 is 6 % faster than 16 x 8
+/// or 128 x 1.
+inline constexpr int kStepGroupWidth = 8;
+inline constexpr int kStepGroupHeight = 8;
+
+/// Invocations of a work group of births.
+inline constexpr int kBirthGroup = 64;
+
+/// A pass of the statistics sums squares of so many texels a side.
+inline constexpr int kReducedSide = 4;
+/// Squares a side of a work group: those that its second pass and its third sum into one.
+inline constexpr int kReducedGroup = 16;
+static_assert(kReducedGroup == kReducedSide * kReducedSide);
+/// Sums of collisions are kept as low + kCollisionsHigh · high.
+inline constexpr int kCollisionsHigh = 4096;
+/// A type is found by the greatest of kTypeCodes - type.
+inline constexpr float kTypeCodes = 256.0F;
+/// Beyond this speed, world units a second, a particle counts as lost: the squares of 2^24 of them are still floats.
+inline constexpr float kSpeedMaxOfState = 1e15F;
+
+}  // namespace relief

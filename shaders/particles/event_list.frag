@@ -1,0 +1,89 @@
+// The list of a step's events in ascending order of index: fragment k finds the k-th event that counts, down the
+// levels of counts.
+//
+//     position  x y z   of the contact with the surface, or of the death; world space
+//               w       seconds from the step's beginning to the event
+//     surface   x y z   the normal, out of the body; 0 for a death of age
+//               w       speed of approach along it, relative to the surface
+//     velocity  x y z   of the particle before the event
+//               w       body; -1 the floor
+//     identity  x       index     y  id modulo 2^24     z  type     w  flags (EventFlag)
+//!include particles/events.glsl
+uniform highp sampler2D u_event_velocity;
+uniform highp sampler2D u_position_before;
+uniform highp sampler2D u_birth;
+uniform highp sampler2D u_count_1;  // of particles
+uniform highp sampler2D u_count_2;  // of count_1's
+uniform highp sampler2D u_count_3;
+uniform highp sampler2D u_count_4;  // of all
+uniform int u_width;  // of the particles' textures
+uniform float u_radius[RELIEF_TYPES];
+
+layout(location = 0) out vec4 o_position;
+layout(location = 1) out vec4 o_surface;
+layout(location = 2) out vec4 o_velocity;
+layout(location = 3) out vec4 o_identity;
+
+// In: the k-th event counted by the entries from `first` on, k from 0. Out: the k-th of the entry returned.
+int descended(highp sampler2D level, int first, inout float k) {
+    int i = first;
+    for (; i < first + RELIEF_EVENTS_COUNTED; ++i) {
+        float count = texelFetch(level, texelOf(i, RELIEF_EVENTS_WIDTH), 0).x;
+        if (k < count) {
+            break;
+        }
+        k -= count;
+    }
+    return i;
+}
+
+int indexOf(int first, float k) {
+    int i = first;
+    for (; i < first + RELIEF_EVENTS_COUNTED; ++i) {
+        if (counts(texelOf(i, u_width))) {
+            if (k < 1.0) {
+                break;
+            }
+            k -= 1.0;
+        }
+    }
+    return i;
+}
+
+vec3 normalOf(vec2 two, int direction) {
+    float largest = sqrt(max(1.0 - dot(two, two), 0.0)) * (direction % 2 == 0 ? 1.0 : -1.0);
+    int axis = direction / 2;
+    return axis == 0 ? vec3(largest, two) : axis == 1 ? vec3(two.y, largest, two.x) : vec3(two, largest);
+}
+
+void main() {
+    ivec2 at = ivec2(gl_FragCoord.xy);
+    float k = float(at.y * RELIEF_EVENTS_WIDTH + at.x);
+    if (k >= texelFetch(u_count_4, ivec2(0), 0).x) {
+        o_position = o_surface = o_velocity = o_identity = vec4(0.0);  // beyond, the counts are leftovers
+        return;
+    }
+    int first = descended(u_count_3, 0, k);
+    first = descended(u_count_2, first * RELIEF_EVENTS_COUNTED, k);
+    first = descended(u_count_1, first * RELIEF_EVENTS_COUNTED, k);
+    int index = indexOf(first * RELIEF_EVENTS_COUNTED, k);
+    ivec2 texel = texelOf(index, u_width);
+
+    vec4 surface = texelFetch(u_event_surface, texel, 0);
+    vec4 velocity = texelFetch(u_event_velocity, texel, 0);
+    vec4 birth = texelFetch(u_birth, texel, 0);
+    int code = int(surface.w);
+    int flags = code % RELIEF_EVENT_FLAGS;
+    int body = code / (RELIEF_EVENT_FLAGS * RELIEF_EVENT_DIRECTIONS) - 1;
+    vec3 normal = vec3(0.0);
+    float radius = 0.0;
+    if ((flags & RELIEF_EVENT_COLLISION) != 0) {
+        normal = normalOf(surface.xy, (code / RELIEF_EVENT_FLAGS) % RELIEF_EVENT_DIRECTIONS);
+        radius = u_radius[clamp(int(birth.z), 0, RELIEF_TYPES - 1)];
+    }
+    vec3 center = texelFetch(u_position_before, texel, 0).xyz + velocity.w * velocity.xyz;
+    o_position = vec4(center - radius * normal, velocity.w);
+    o_surface = vec4(normal, surface.z);
+    o_velocity = vec4(velocity.xyz, float(body));
+    o_identity = vec4(float(index), birth.w, birth.z, float(flags));
+}

@@ -1,0 +1,21 @@
+// A step among the floor and, with RELIEF_COLLIDER, colliders. As a compute shader an invocation is a particle.
+#if defined(RELIEF_MASKS)
+
+uniform int u_collides[RELIEF_TYPES];  // ParticleType::collides
+int g_collides;                        // that of this invocation's particle
+
+bool collidesWith(int body) {  // RELIEF_GROUND_BIT: the floor
+    return ((g_collides >> body) & 1) != 0;
+}
+
+#endif
+
+#if defined(RELIEF_COLLIDER)
+//!include collider/collider.glsl
+#endif
+#if defined(RELIEF_TOUR)
+//!include collider/collider_tour.glsl
+#endif
+//!include air/air.glsl
+//!include particles/step.glsl
+//!include particles/step_solid.glsl

@@ -1,0 +1,264 @@
+// One step of the simulation: age, forces, collision reaction, Euler or Verlet. A fragment is a particle, or with
+// RELIEF_COMPUTE an invocation. step_solid.glsl defines the solids.
+//!include particles/step_state.glsl
+
+uniform highp sampler2D u_birth;
+
+uniform float u_now;      // the clock at the end of this step
+uniform float u_dt;       // seconds
+uniform vec3 u_gravity;   // world units a second squared
+uniform vec3 u_wind;      // velocity of the air, world units a second
+uniform float u_still;    // a particle in contact rests at or below this speed: a thousandth of a step's gravity
+uniform float u_air_time; // seconds, as airTime() gives them
+uniform float u_ground;   // height of the floor; far below everything if there is none
+uniform vec4 u_types[2 * RELIEF_TYPES];  // as typeOf() reads them
+
+struct ParticleType {
+    float radius;
+    float restitution;
+    float slip;       // 1 - friction
+    float threshold;  // speed below which there is no friction
+    float drag;       // 1/s
+    float behaviour;  // RELIEF_ON_COLLISION_BOUNCE, RELIEF_ON_COLLISION_STOP, RELIEF_ON_COLLISION_SLIDE or RELIEF_ON_COLLISION_DIE
+    float loss;       // seconds of life that a collision costs
+    float gravity;    // factor of u_gravity
+};
+
+// A point is inside where distance is negative; then normal points out of it, map is the deciding depth map, and body the
+// body: -1 the floor.
+struct Solid {
+    float distance;
+    vec3 normal;
+    int map;
+    int body;
+    vec3 motion;  // inside a live body: of its surface in this step, in its object space; or zero
+};
+
+// True if a ball about p, where the step began, was in the body of s at that time: its centre, or its point nearest to the
+// surface hit. (Contact with another side does not count: a ball on a floor bounces off a wall.)
+bool insideBefore(vec3 p, float radius, Solid s);
+// The place of a point of the body of s at the beginning of the step.
+vec3 pointBefore(Solid s, vec3 p);
+// The place, at the end of the step, of a point of a body at its beginning.
+vec3 pointNow(int body, vec3 p);
+// Restitution and 1 - friction of a body, factors of the particle's own.
+vec2 bodyResponse(int body);
+
+// Height above the floor y < u_ground.
+float aboveGround(vec3 p, float radius) {
+    float above = p.y - radius - u_ground;
+#if defined(RELIEF_MASKS)
+    above = collidesWith(RELIEF_GROUND_BIT) ? above : RELIEF_FAR_OUTSIDE;
+#endif
+    return above;
+}
+
+// Union with the floor. Inside both, the deeper one decides.
+Solid orGround(Solid deepest, vec3 p, float radius) {
+    float above = aboveGround(p, radius);
+    if (above < deepest.distance) {
+        deepest = Solid(above, vec3(0.0, 1.0, 0.0), -1, -1, vec3(0.0));
+    }
+    return deepest;
+}
+
+// The solid, but for the floor, that a ball about p touches at the end of the step.
+Solid solid(vec3 p, float radius);
+
+#if defined(RELIEF_TOUR)
+
+// The solid that a tour has found at p.
+Solid solidOf(ReliefTour tour, vec3 p, float radius);
+
+// As solid(); in a tour of a single collider map `start` is first.
+Solid solidFrom(vec3 p, float radius, int start) {
+    ReliefTour tour;
+    reliefEnter(tour, p, start);
+    while (reliefGoesOn(tour)) {
+        reliefAdvance(tour);
+    }
+    return solidOf(tour, p, radius);
+}
+
+Solid solid(vec3 p, float radius) {
+    return solidFrom(p, radius, 0);
+}
+
+#else
+
+Solid solidFrom(vec3 p, float radius, int start) {
+    return solid(p, radius);
+}
+
+#endif
+
+Solid solidOrGround(vec3 p, float radius) {
+    return orGround(solid(p, radius), p, radius);
+}
+
+//!include particles/step_sweep.glsl
+//!include particles/step_event.glsl
+
+bool caught(vec3 p, float radius, Solid s) {
+    return s.body < 0 ? p.y - radius < u_ground : insideBefore(p, radius, s);
+}
+
+vec3 surfaceVelocity(Solid s, vec3 p) {
+    return s.body < 0 ? vec3(0.0) : (p - pointBefore(s, p)) / u_dt;
+}
+
+// At rest for good, on something that may move.
+void rest(State state) {
+    int body = int(state.contact - float(RELIEF_CONTACT_STOPPED)) - 1;
+    vec3 carried = state.position;
+    if (body >= 0) {
+        carried = pointNow(body, state.position);
+    }
+    writeState(carried, (carried - state.position) / u_dt, state.collisions, state.contact);
+}
+
+// The velocity after gravity, fields and drag. Drag is integrated implicitly, v' = v + dt (g + k (w - v')): it
+// approaches the wind for any dt, while the explicit form overshoots for dt k > 1 and grows without bound for dt k > 2.
+vec3 pushed(vec3 p, vec3 v, ParticleType type) {
+    vec3 acceleration = type.gravity * u_gravity;
+    vec3 air = u_wind;
+#if defined(RELIEF_HAS_AIR)
+    acceleration += fieldAcceleration(p, v, u_air_time);
+    air += airVelocity(p, u_air_time);
+#endif
+    return (v + u_dt * (acceleration + type.drag * air)) * (1.0 / (1.0 + u_dt * type.drag));
+}
+
+// The velocity after a bounce, relative to the surface. v_begin and `relative`, relative too, are those before
+// and after this step's forces; vn and along are the parts of `relative` across and along the surface.
+vec3 bounced(vec3 v_begin, vec3 relative, float vn, vec3 along, vec3 n, ParticleType type, vec2 response) {
+    float slide = dot(relative, relative) >= type.threshold * type.threshold ? response.y : 1.0;
+    // The particle stays at p, above the surface, so it gets back the speed that it had there, without that of this step's
+    // forces: no bounce adds energy, and bounces end. (Where texels form a step, v may enter the collider and still head
+    // outwards: no bounce.)
+    float arrives = min(max(-dot(v_begin, n), 0.0), abs(vn));
+    vec3 left = slide * along + (response.x * arrives) * n;
+    // Less than a thousandth of a step's gravity is rounding, and would creep.
+    float still = type.gravity * u_still;
+    return dot(left, left) > still * still ? left : vec3(0.0);
+}
+
+// The reaction (paper, section 3.3.2) to sweep.hit, with v split along the normal n at the end of the step:
+//
+//      p o                    o p_next           p o      ^ p_next      caught: p is inside already.
+//         \   |  outside     /                  ----\----/---------    Never pushed inwards; a velocity
+//      ----\--+-------------/----                    \  /              inwards is turned round.
+//           v p + dt v     about to collide
+void react(State state, Sweep sweep, ParticleType type) {
+    vec3 p = state.position;
+    vec3 n = sweep.hit.normal;
+    vec3 carried = surfaceVelocity(sweep.hit, sweep.to);
+    vec3 v = sweep.v;
+    vec3 relative = v - carried;
+    float vn = dot(relative, n);
+    float contact = float(RELIEF_CONTACT_COLLIDED);
+    bool dies = false;
+    if (sweep.first && caught(p, type.radius, sweep.hit)) {
+        contact = float(RELIEF_CONTACT_CAUGHT);
+        if (vn < 0.0) {
+            v -= (2.0 * vn) * n;
+        }
+    } else {
+        dies = type.behaviour == float(RELIEF_ON_COLLISION_DIE);
+        vec3 along = relative - vn * n;
+        if (type.behaviour == float(RELIEF_ON_COLLISION_STOP)) {
+            v = carried;
+            contact = float(RELIEF_CONTACT_STOPPED) + 1.0 + float(sweep.hit.body);
+        } else if (type.behaviour == float(RELIEF_ON_COLLISION_SLIDE)) {
+            v = carried + along;
+        } else {
+            vec2 response = vec2(type.restitution, type.slip);
+            response *= sweep.hit.body < 0 ? vec2(1.0) : bodyResponse(sweep.hit.body);
+            v = carried + bounced(state.velocity - carried, relative, vn, along, n, type, response);
+        }
+        writeHit(sweep, vn, state.contact != float(RELIEF_CONTACT_NONE), dies);
+    }
+    if (dies) {
+        writeDead();
+    } else {
+        writeState(sweepEnd(sweep, p, carried, v, contact, type.radius), v, state.collisions + 1.0, contact);
+    }
+}
+
+void move(State state, ParticleType type) {
+    Sweep sweep = sweepOf(state.position, pushed(state.position, state.velocity, type), type.radius);
+    if (sweep.hit.distance < 0.0) {
+        react(state, sweep, type);
+    } else {
+        writeState(sweep.to, sweep.v, state.collisions, float(RELIEF_CONTACT_NONE));
+    }
+}
+
+ParticleType typeOf(vec4 birth) {
+    int type = RELIEF_TYPES == 1 ? 0 : clamp(int(birth.z), 0, RELIEF_TYPES - 1);
+    vec4 a = u_types[2 * type];
+    vec4 b = u_types[2 * type + 1];
+#if defined(RELIEF_MASKS)
+    g_collides = u_collides[type];
+#endif
+    return ParticleType(a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w);
+}
+
+void stepAt(ivec2 texel) {
+    State state = stateAt(texel);
+    vec4 birth = texelFetch(u_birth, texel, 0);
+    ParticleType type = typeOf(birth);
+    // A mere comparison of numbers that the CPU made: both agree on the step. (Only the GPU knows a loss of life; the CPU
+    // then frees the index at its original time of death.)
+    bool spent = u_now >= birth.y || (type.loss > 0.0 && u_now >= birth.y - type.loss * state.collisions);
+    writeNoEvent();
+    if (state.collisions < 0.0 || spent) {
+        if (state.collisions >= 0.0) {
+            writeDeath(state, birth.y - type.loss * state.collisions);
+        }
+        writeDead();
+    } else if (state.contact >= float(RELIEF_CONTACT_STOPPED)) {
+        rest(state);
+    } else {
+        move(state, type);
+    }
+}
+
+#if !defined(RELIEF_COMPUTE)
+
+void main() {
+    stepAt(ivec2(gl_FragCoord.xy));
+}
+
+#else
+
+layout(local_size_x = RELIEF_STEP_GROUP_WIDTH, local_size_y = RELIEF_STEP_GROUP_HEIGHT) in;
+layout(rgba32f, binding = 0) writeonly uniform highp image2D u_position_out;
+#if !defined(RELIEF_VERLET)
+layout(rgba32f, binding = 1) writeonly uniform highp image2D u_velocity_out;
+#endif
+#if defined(RELIEF_EVENTS)
+layout(rgba32f, binding = RELIEF_EVENT_VELOCITY_OUT) writeonly uniform highp image2D u_event_velocity_out;
+layout(rgba32f, binding = RELIEF_EVENT_SURFACE_OUT) writeonly uniform highp image2D u_event_surface_out;
+#endif
+uniform ivec2 u_size;  // of the texels that hold particles
+
+void main() {
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+#if defined(RELIEF_TOUR)
+    reliefShare(int(gl_LocalInvocationIndex), RELIEF_STEP_GROUP_WIDTH * RELIEF_STEP_GROUP_HEIGHT);
+#endif
+    if (texel.x < u_size.x && texel.y < u_size.y) {
+        stepAt(texel);
+        imageStore(u_position_out, texel, o_position);
+#if !defined(RELIEF_VERLET)
+        imageStore(u_velocity_out, texel, o_velocity);
+#endif
+#if defined(RELIEF_EVENTS)
+        imageStore(u_event_velocity_out, texel, o_event_velocity);
+        imageStore(u_event_surface_out, texel, o_event_surface);
+#endif
+    }
+}
+
+#endif

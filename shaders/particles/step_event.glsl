@@ -1,0 +1,53 @@
+// For step.glsl: the event of a particle in a step, with RELIEF_EVENTS.
+//
+//     velocity texture  x y z   world units a second, in the step
+//                       w       seconds from the step's beginning to the event
+//     surface texture   x y     the smaller two of the normal's components (events.glsl)
+//                       z       speed of approach along the normal, relative to the surface, >= 0
+//                       w       flags, direction and body (kEventFlags in constants.h); 0: no event
+//
+// A path within a step is straight: the event was at position before + w * velocity.
+#if defined(RELIEF_EVENTS)
+
+RELIEF_STATE_OUT(RELIEF_EVENT_VELOCITY_OUT) vec4 o_event_velocity;
+RELIEF_STATE_OUT(RELIEF_EVENT_SURFACE_OUT) vec4 o_event_surface;
+
+void writeNoEvent() {
+    o_event_velocity = vec4(0.0);
+    o_event_surface = vec4(0.0);
+}
+
+// All but the largest component, and the index of that: 2 * axis, + 1 if it is negative.
+vec3 packedNormal(vec3 n) {
+    vec3 a = abs(n);
+    if (a.x >= a.y && a.x >= a.z) {
+        return vec3(n.y, n.z, n.x < 0.0 ? 1.0 : 0.0);
+    }
+    return a.y >= a.z ? vec3(n.z, n.x, n.y < 0.0 ? 3.0 : 2.0) : vec3(n.x, n.y, n.z < 0.0 ? 5.0 : 4.0);
+}
+
+// A hit from outside, sweep.hit.distance deep at the end of the sweep: with vn, the velocity along the normal relative to the
+// surface, depth 0 was so much earlier.
+void writeHit(Sweep sweep, float vn, bool lasts, bool dies) {
+    float after = min(vn < 0.0 ? sweep.hit.distance / vn : 0.0, sweep.share * u_dt);
+    vec3 normal = packedNormal(sweep.hit.normal);
+    float code = float(RELIEF_EVENT_COLLISION) + (lasts ? float(RELIEF_EVENT_LASTS) : 0.0) +
+                 (dies ? float(RELIEF_EVENT_DEATH) : 0.0);
+    code += float(RELIEF_EVENT_FLAGS) *
+            (normal.z + float(RELIEF_EVENT_DIRECTIONS) * (float(sweep.hit.body) + 1.0));
+    o_event_velocity = vec4(sweep.v, sweep.end * u_dt - after);
+    o_event_surface = vec4(normal.xy, max(-vn, 0.0), code);
+}
+
+void writeDeath(State state, float time) {
+    o_event_velocity = vec4(state.velocity, clamp(time - (u_now - u_dt), 0.0, u_dt));
+    o_event_surface = vec4(0.0, 0.0, 0.0, float(RELIEF_EVENT_DEATH));
+}
+
+#else
+
+void writeNoEvent() {}
+void writeHit(Sweep sweep, float vn, bool lasts, bool dies) {}
+void writeDeath(State state, float time) {}
+
+#endif

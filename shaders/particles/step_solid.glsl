@@ -1,0 +1,131 @@
+// For step.glsl: the solids of a step. Without RELIEF_COLLIDER there is the floor alone; with RELIEF_BODIES above 0 there are
+// bodies that have a pose at the step's beginning and one at its end, and may be live; else one collider in its own object
+// space.
+#if !defined(RELIEF_BODIES)
+#define RELIEF_BODIES 0
+#endif
+
+#if !defined(RELIEF_COLLIDER)
+
+Solid solid(vec3 p, float radius) {
+    return Solid(RELIEF_FAR_OUTSIDE, vec3(0.0), -1, -1, vec3(0.0));
+}
+
+bool insideBefore(vec3 p, float radius, Solid s) {
+    return false;
+}
+
+#elif RELIEF_BODIES == 0
+
+bool insideBefore(vec3 p, float radius, Solid s) {
+#if defined(RELIEF_RADIUS)
+    return reliefSolidAt(p - radius * s.normal, s.map) || reliefSolidAt(p, s.map);
+#else
+    return reliefSolidAt(p, s.map);
+#endif
+}
+
+Solid solidOf(ReliefField field) {
+    // Outside too where no map votes.
+    return Solid(reliefInside(field) ? field.distance : RELIEF_FAR_OUTSIDE, field.normal, field.map, 0, vec3(0.0));
+}
+
+#if defined(RELIEF_TOUR)
+
+Solid solidOf(ReliefTour tour, vec3 p, float radius) {
+    return solidOf(reliefToured(tour));
+}
+
+#else
+
+Solid solid(vec3 p, float radius) {
+#if defined(RELIEF_MASKS)
+    if (!collidesWith(0)) {
+        return Solid(RELIEF_FAR_OUTSIDE, vec3(0.0), -1, -1, vec3(0.0));
+    }
+#endif
+#if defined(RELIEF_RADIUS)
+    return solidOf(reliefBall(0, u_relief_count.x, p, radius));
+#else
+    return solidOf(reliefSolid(p));
+#endif
+}
+
+#endif
+
+#else
+
+Solid solidOf(ReliefField field, int body, vec3 p, float radius) {
+    bool inside = reliefInside(field);
+    vec3 motion = vec3(0.0);
+    if (inside) {
+        // A ball touches with its rim.
+        motion = reliefBodyMotion(body, field.map, reliefBodyNow(body, p - radius * field.normal), field.normal);
+    }
+    return Solid(inside ? field.distance : RELIEF_FAR_OUTSIDE, field.normal, field.map, body, motion);
+}
+
+#if defined(RELIEF_TOUR)
+
+Solid solidOf(ReliefTour tour, vec3 p, float radius) {
+    return solidOf(reliefToured(tour), tour.best_body, p, radius);
+}
+
+#else
+
+Solid solid(vec3 p, float radius) {
+    int body;
+    ReliefField field = reliefUnion(p, radius, false, body);
+    return solidOf(field, body, p, radius);
+}
+
+#endif
+
+// The maps of a live body show the surface at the end of the step alone. So the particle is moved with the piece of surface
+// that it met, and tested at the end: exact where all of the surface near it moves alike, as it does but for second order in
+// the distance of a step.
+bool insideBefore(vec3 p, float radius, Solid s) {
+    vec3 q = reliefBodyBefore(s.body, p) + s.motion;
+    bool inside = reliefInside(reliefBodyField(s.body, q, 0.0, false));
+#if defined(RELIEF_RADIUS)
+    vec3 towards = reliefBodyNow(s.body, radius * s.normal) - reliefBodyNow(s.body, vec3(0.0));
+    inside = inside || reliefInside(reliefBodyField(s.body, q - towards, 0.0, false));
+#endif
+    return inside;
+}
+
+vec3 pointBefore(Solid s, vec3 p) {
+    return reliefWorldBefore(s.body, reliefBodyNow(s.body, p) - s.motion);
+}
+
+vec3 pointNow(int body, vec3 p) {
+    vec3 now = p;
+    // A particle that stopped on a body of colliders that are no longer set stays where it is.
+    if (body < RELIEF_BODIES) {
+        vec3 q = reliefBodyBefore(body, p);
+        now = reliefWorldNow(body, q + reliefNearestMotion(body, q));
+    }
+    return now;
+}
+
+vec2 bodyResponse(int body) {
+    return u_relief_bodies[body].response.yz;
+}
+
+#endif
+
+#if RELIEF_BODIES == 0
+
+vec3 pointBefore(Solid s, vec3 p) {
+    return p;
+}
+
+vec3 pointNow(int body, vec3 p) {
+    return p;
+}
+
+vec2 bodyResponse(int body) {
+    return vec2(1.0);
+}
+
+#endif

@@ -1,0 +1,81 @@
+// The light that a point among collider and floor receives: a sun of some width, and a sky, both hidden by the collider's own
+// field along rays. For the collider's picture, which is kept; particles look the same light up (particle_light.glsl). Needs
+// collider.glsl.
+//!include picture/sky.glsl
+
+uniform vec3 u_bounds_min;    // of the collider, with a small margin
+uniform vec3 u_bounds_max;
+uniform float u_scale;        // longest side of the bounds
+uniform float u_texel;        // object units of the finest texel
+uniform vec3 u_sun;           // unit vector towards it
+
+// Uniform in [0, 1), different for every seed (PCG's output permutation).
+float noise(inout uint seed) {
+    seed = seed * 747796405u + 2891336453u;
+    uint word = ((seed >> ((seed >> 28) + 4u)) ^ seed) * 277803737u;
+    return float(((word >> 22) ^ word) >> 8) / 16777216.0;
+}
+
+// The part of a ray p + t d, t in [t_min, t_max], that lies in the bounds; empty where x > y.
+vec2 clipToBounds(vec3 p, vec3 d, float t_min, float t_max) {
+    vec3 safe = vec3(abs(d.x) < 1e-9 ? 1e-9 : d.x, abs(d.y) < 1e-9 ? 1e-9 : d.y, abs(d.z) < 1e-9 ? 1e-9 : d.z);
+    vec3 a = (u_bounds_min - p) / safe;
+    vec3 b = (u_bounds_max - p) / safe;
+    vec3 near = min(a, b);
+    vec3 far = max(a, b);
+    return vec2(max(max(near.x, near.y), max(near.z, t_min)), min(min(far.x, far.y), min(far.z, t_max)));
+}
+
+bool blocked(vec3 p, vec3 d, float reach, int steps, float jitter) {
+    vec2 span = clipToBounds(p, d, 0.0, reach);
+    if (span.x >= span.y) {
+        return false;
+    }
+    float stride = (span.y - span.x) / float(steps);
+    for (int i = 0; i < steps; ++i) {
+        if (reliefInside(reliefSolid(p + (span.x + (float(i) + jitter) * stride) * d))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Two unit vectors that stand on n and on each other (Duff et al., JCGT 2017).
+void basis(vec3 n, out vec3 a, out vec3 b) {
+    float s = n.z < 0.0 ? -1.0 : 1.0;
+    float u = -1.0 / (s + n.z);
+    float v = n.x * n.y * u;
+    a = vec3(1.0 + s * n.x * n.x * u, s * v, -s * n.x);
+    b = vec3(v, s + n.y * n.y * u, -n.y);
+}
+
+// The light on a surface of normal n at p: `sun`, the visible share of the sun's disc, and `sky`, the light of sky and
+// floor, by cosine-weighted rays as long as shade reaches. All rays go through one loop of one body, with bounds that no
+// compiler knows: drivers that inline and unroll would else compile the field dozens of times.
+uniform ivec2 u_rays;       // towards the sun, towards the sky; at least 1 each
+uniform ivec2 u_ray_steps;  // samples of the field on each
+
+void receive(vec3 p, vec3 n, inout uint seed, out float sun, out vec3 sky) {
+    float turn = noise(seed);
+    sun = 0.0;
+    sky = vec3(0.0);
+    for (int i = 0; i < u_rays.x + u_rays.y; ++i) {
+        bool to_sun = i < u_rays.x;
+        int ray = to_sun ? i : i - u_rays.x;
+        float r2 = (float(ray) + noise(seed)) / float(to_sun ? u_rays.x : u_rays.y);
+        float angle = TWO_PI * (turn + 0.618034 * float(ray));
+        vec3 axis = to_sun ? u_sun : n;
+        vec3 a, b;
+        basis(axis, a, b);
+        vec3 across = sqrt(r2) * (cos(angle) * a + sin(angle) * b);
+        vec3 d = to_sun ? normalize(axis + RELIEF_SUN_WIDTH * across) : across + sqrt(1.0 - r2) * axis;
+        bool hidden = blocked(p, d, (to_sun ? 4.0 : RELIEF_SKY_REACH) * u_scale, to_sun ? u_ray_steps.x : u_ray_steps.y, noise(seed));
+        if (to_sun) {
+            sun += hidden ? 0.0 : 1.0;
+        } else {
+            sky += (hidden ? SKY_HIDDEN : 1.0) * mix(FLOOR_COLOR, SKY_COLOR, 0.5 + 0.5 * d.y);
+        }
+    }
+    sun /= float(u_rays.x);
+    sky /= float(u_rays.y);
+}

@@ -1,0 +1,15 @@
+// The sort key of a particle: the bits of its squared distance to the eye, which grow as it does; 0 for the dead.
+//
+// As uints the keys have one order on every machine: no NaN, no flushed denormal, no fused multiply in the way.
+uniform highp sampler2D u_position;
+uniform int u_width;  // texels in a row of u_position
+uniform vec3 u_eye;
+
+uint sortKey(int index) {
+    vec4 position = texelFetch(u_position, ivec2(index % u_width, index / u_width), 0);
+    if (position.w < 0.0) {
+        return 0u;
+    }
+    vec3 away = position.xyz - u_eye;
+    return max(floatBitsToUint(dot(away, away)), 1u);
+}

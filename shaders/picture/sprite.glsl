@@ -1,0 +1,100 @@
+// Makes the sprite of the particle that is drawn i-th: its look at its age, its place in view space, and the light that it
+// receives. With RELIEF_LIT the collider shades the particles (particle_light.glsl); else they lie in the open.
+//!include picture/look.glsl
+//!include picture/sprite_shading.glsl
+//!include picture/sprite_light.glsl
+#ifdef RELIEF_LIT
+//!include picture/particle_light.glsl
+#endif
+
+uniform highp sampler2D u_position;
+uniform highp sampler2D u_birth;
+#ifdef RELIEF_STRETCH
+uniform highp sampler2D u_second;  // velocities; where u_rate_before is above 0, positions before
+uniform float u_rate_before;
+#endif
+uniform highp usampler2D u_order;  // row by row: the index of the i-th sprite; 0 where there is none
+uniform bool u_ordered;
+uniform int u_width;
+uniform int u_extent;
+uniform float u_now;
+uniform mat4 u_view;
+uniform float u_pixels_per_unit;   // pixels of a unit length at view distance 1
+uniform vec2 u_pixels;             // least and largest sprite
+uniform float u_texel;             // object units of the collider's finest texel
+
+// The particle of the i-th sprite; -1: none.
+int particleOf(int i) {
+    int width = textureSize(u_order, 0).x;
+    uvec4 rank = texelFetch(u_order, ivec2(i % width, i / width), 0);
+    return rank.y != 0u ? int(min(rank.x, 2147483647u)) : -1;
+}
+
+// The light that falls on the particle. A little above it: on a surface it would be half inside.
+void receiveLight(vec3 position, float size, float id, inout Shading shading) {
+#ifdef RELIEF_LIT
+    if (shading.lit) {
+        vec3 above = position + vec3(0.0, 1.5 * u_texel + 0.25 * size, 0.0);
+        ParticleLight light = particleLight(above, 0.5 + 0.5 * particleRandom(id, 2u), 0.5 + 0.5 * particleRandom(id, 3u));
+        shading.sun = light.sun;
+        shading.sky = light.sky;
+    }
+#endif
+}
+
+// Smaller sprites, in pixels, have one light all over: that of the middle of their half ball.
+const float SPRITE_FLAT_PIXELS = 4.0;
+const vec3 SPRITE_FLAT_NORMAL = vec3(0.0, 0.0, 0.75);
+
+struct Sprite {
+    vec3 center;     // view space
+    float size;      // diameter, object units
+    float distance;  // view distance, > 0
+    float pixels;
+    float rotation;
+    float cell;      // of the atlas; -1: a soft disc
+    Shading shading;
+#ifdef RELIEF_STRETCH
+    vec3 tail;       // view space, from the center: where a stretched sprite's other end is
+    bool stretched;
+#endif
+};
+
+// The i-th sprite; false where there is none.
+bool spriteOf(int rank, out Sprite sprite) {
+    int index = u_ordered ? particleOf(rank) : rank;
+    if (index < 0 || index >= u_extent) {
+        return false;
+    }
+    ivec2 texel = ivec2(index % u_width, index / u_width);
+    vec4 position = texelFetch(u_position, texel, 0);
+    if (position.w < 0.0) {  // dead
+        return false;
+    }
+    vec4 birth = texelFetch(u_birth, texel, 0);
+    Look look = lookOf(birth, u_now);
+    sprite.center = (u_view * vec4(position.xyz, 1.0)).xyz;
+    sprite.size = look.size;
+    sprite.distance = max(-sprite.center.z, 1e-6);
+    sprite.rotation = look.rotation;
+    sprite.cell = look.cell;
+    // Below the least size a sprite keeps its light by losing opacity instead.
+    float wanted = look.size * u_pixels_per_unit / sprite.distance;
+    sprite.pixels = clamp(wanted, u_pixels.x, u_pixels.y);
+    float cover = min(wanted / sprite.pixels, 1.0);
+    // The edge falls off over a third of the radius, and over a pixel at least.
+    float per_edge = min(1.0 / SPRITE_EDGE, 0.5 * sprite.pixels);
+    sprite.shading = Shading(look.color, look.opacity * cover * cover, 1.0, 1.0, per_edge, look.lit > 0.5);
+#ifdef RELIEF_STRETCH
+    vec3 second = texelFetch(u_second, texel, 0).xyz;
+    vec3 velocity = u_rate_before > 0.0 ? (position.xyz - second) * u_rate_before : second;
+    sprite.tail = -look.stretch * (mat3(u_view) * velocity);
+    sprite.stretched = look.stretch > 0.0;
+#endif
+    receiveLight(position.xyz, look.size, birth.w, sprite.shading);
+    if (sprite.shading.lit && sprite.pixels < SPRITE_FLAT_PIXELS) {
+        sprite.shading.color *= spriteLight(SPRITE_FLAT_NORMAL, sprite.shading.sun, sprite.shading.sky);
+        sprite.shading.lit = false;
+    }
+    return true;
+}

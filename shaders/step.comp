@@ -1,2 +1,0 @@
-// A step among the floor and colliders, where there are compute shaders.
-//!include step.frag
