@@ -70,7 +70,7 @@ struct IssueKind {
 [[nodiscard]] std::span<const IssueKind> issueKinds();  ///< by ascending code
 
 struct Issue {
-    IssueCode code;
+    IssueCode code = IssueCode::kTooShort;
     int map = -1;                         ///< −1: of the whole file
     std::optional<std::uint64_t> offset;  ///< byte of the file, where one can be named
     std::string message;                  ///< one line for a person, the map not named

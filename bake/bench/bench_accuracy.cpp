@@ -18,16 +18,17 @@
 #include "bake/plan/view.h"
 #include "bake/plan/view_planner.h"
 #include "bake/repair/winding.h"
-#include "bake/report/accuracy_report.h"
+#include "bake/report/bake_report.h"
+#include "bake/report/check_report.h"
 #include "bake/report/points_csv.h"
-#include "bake/report/shape_report.h"
+#include "bake/report/report_text.h"
 #include "bake/shape/shape.h"
 #include "formats/base/byte_count.h"
 #include "formats/base/file_io.h"
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
 #include "formats/container.h"
-#include "runtime/tool/json_text.h"
+#include "formats/fields/json.h"
 
 namespace relief {
 namespace {
@@ -149,7 +150,7 @@ AccuracyEntry measureVolume(const MeshQuery& query, const TruthSamples& samples,
             }
         }
     }
-    entry.accuracy = jsonFieldAccuracy(*best, samples.longest_side);
+    entry.accuracy = jsonOf(FieldAccuracyReport{*best, samples.longest_side});
     return entry;
 }
 
@@ -164,7 +165,7 @@ AccuracyEntry measureMaps(const MeshQuery& query, const TruthSamples& samples, c
     }
     entry.maps = collider.maps.size();
     entry.bytes = accuracy.gpu_bytes;
-    entry.accuracy = jsonColliderAccuracy(accuracy, samples.longest_side);
+    entry.accuracy = jsonOf(ColliderAccuracyReport{accuracy, samples.longest_side});
     return entry;
 }
 
@@ -292,12 +293,12 @@ Result<void> measureBudget(const PreparedMesh& imported, const Arguments& argume
     options.samples = arguments.samples;
     options.seed = arguments.seed;
     const TruthSamples samples = sampleTruth(query, options);
-    Json mesh_report = jsonSamples(samples);
+    Json mesh_report = jsonOf(samples);
     mesh_report["mesh"] = imported->name;
     mesh_report["mesh_hash"] = imported->content_hash;
     mesh_report["budget"] = budget;
     mesh_report["triangles"] = imported->triangles.size();
-    mesh_report["shape"] = jsonShape(shaped.report);
+    mesh_report["shape"] = jsonOf(madeShapes(shaped.report));
     measured.meshes.push_back(std::move(mesh_report));
     for (const std::string& method : arguments.methods) {
         AccuracyEntry entry;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -13,6 +12,7 @@
 #include "bake/pipeline/bake.h"
 #include "bake/pipeline/planned_bake.h"
 #include "bake/plan/view_planner.h"
+#include "bake/report/report_text.h"
 #include "formats/base/text.h"
 
 namespace relief {
@@ -25,32 +25,9 @@ constexpr double kCubeReach = 0.1;
 constexpr std::uint32_t kCubeSizeMin = 8;
 constexpr std::uint32_t kCubeSizeMax = 64;
 
-/// At least `bytes`, two digits.
-std::uint64_t roundBudget(std::uint64_t bytes) {
-    std::uint64_t unit = 1;
-    while (bytes / unit >= 100) {
-        unit *= 10;
-    }
-    return std::max((bytes + unit - 1) / unit * unit, kPlanBudgetMin);
-}
-
-/// As --budget reads it: "1.2MB".
-std::string budgetWord(std::uint64_t bytes) {
-    const auto scaled = [&](double unit, const char* name) {
-        char text[32];
-        std::snprintf(text, sizeof(text), "%.6g%s", static_cast<double>(bytes) / unit, name);
-        return std::string(text);
-    };
-    return bytes >= 1'000'000 ? scaled(1e6, "MB")
-           : bytes >= 10'000  ? scaled(1e3, "kB")
-                              : std::to_string(bytes);
-}
-
 /// With four digits, so that commands stay short.
 float rounded(double value) {
-    char text[32];
-    std::snprintf(text, sizeof(text), "%.4g", value);
-    return parseFloat(text).value_or(static_cast<float>(value));
+    return parseFloat(shortNumber(value)).value_or(static_cast<float>(value));
 }
 
 class Advisor {
@@ -108,7 +85,7 @@ class Advisor {
         return "relief bake " + shellWord(input_.mesh_file) + " -o " + shellWord(input_.output);
     }
     [[nodiscard]] std::string plannedBudget() const {
-        return " --budget " + budgetWord(roundBudget(input_.collider.gpuBytes())) + input_.recorded.words();
+        return " --budget " + budgetText(roundBudget(input_.collider.gpuBytes())) + input_.recorded.words();
     }
 
     /// Why a bake is not tried; empty: it is.
@@ -120,7 +97,7 @@ class Advisor {
         if (triangles > kTrialTrianglesMax) {
             return std::to_string(triangles) + " triangles would take more than a few seconds";
         }
-        return bytes > kTrialBytesMax ? budgetWord(bytes) + " would take more than a few seconds" : "";
+        return bytes > kTrialBytesMax ? budgetText(bytes) + " would take more than a few seconds" : "";
     }
 
     [[nodiscard]] BakeOptions bakeOptions() const {
@@ -158,7 +135,7 @@ class Advisor {
     }
 
     void tryBudget(std::uint64_t budget, const char* about) {
-        attempt(command() + " --budget " + budgetWord(budget) + input_.recorded.words(), about, budget, [&] {
+        attempt(command() + " --budget " + budgetText(budget) + input_.recorded.words(), about, budget, [&] {
             if (input_.shape.default_thickness > 0.0 && input_.recorded.repair.empty()) {
                 RecordedBake recorded = input_.recorded;
                 recorded.shape.thickness = defaultThickness(input_.imported->bounds, budget);
@@ -175,7 +152,7 @@ class Advisor {
         }
         const std::uint64_t budget = roundBudget(input_.collider.gpuBytes());
         constexpr std::uint32_t kMaps = 2 * kPlannedMapsMax;
-        attempt(command() + " --budget " + budgetWord(budget) + " --max-maps " + std::to_string(kMaps) +
+        attempt(command() + " --budget " + budgetText(budget) + " --max-maps " + std::to_string(kMaps) +
                     input_.recorded.words(),
                 "more maps of as many bytes, which make each step slower", budget,
                 [&] { return wrongOfPlan(input_.baked, budget, truth_, kMaps); });
@@ -258,7 +235,7 @@ class Advisor {
         const std::uint64_t budget = roundBudget(input_.collider.gpuBytes());
         recorded.shape.thickness = defaultThickness(input_.imported->bounds, budget);
         recorded.shape.thickness_by_part = true;
-        attempt(command() + " --budget " + budgetWord(budget) + recorded.words("--holes"),
+        attempt(command() + " --budget " + budgetText(budget) + recorded.words("--holes"),
                 "holes closed, and sheets made shells", budget,
                 [&] { return wrongOfShape(recorded, budget); });
     }
@@ -272,7 +249,7 @@ class Advisor {
         recorded.shape.thickness = double{thickness};
         recorded.shape.thickness_by_part = false;
         const std::uint64_t budget = roundBudget(input_.collider.gpuBytes());
-        attempt(command() + " --budget " + budgetWord(budget) + recorded.words("--thickness") +
+        attempt(command() + " --budget " + budgetText(budget) + recorded.words("--thickness") +
                     " --thickness " + shortest(thickness),
                 "sheets twice as thick", budget, [&] { return wrongOfShape(recorded, budget); });
     }

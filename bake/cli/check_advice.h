@@ -8,7 +8,7 @@
 #include "bake/cli/recorded_bake.h"
 #include "bake/measure/worst_places.h"
 #include "bake/mesh/mesh_query.h"
-#include "bake/report/places_report.h"
+#include "bake/report/check_report.h"
 
 namespace relief {
 

@@ -6,6 +6,7 @@
 #include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "formats/container_reader.h"
+#include "formats/fields/json.h"
 #include "runtime/tool/command_line.h"
 
 namespace relief {
@@ -15,8 +16,8 @@ Result<void> checkFile(const std::string& file, bool json, const ContainerLimits
     const std::string quoted = shownInput(file);
     const Inspection inspection = RELIEF_TRY(inFront(quoted, inspectContainer(bytes, limits)));
     const std::string name = inputName(file);
-    const Result<void> printed =
-        printOut(json ? inspectionJson(inspection, name) : inspectionText(inspection, name));
+    const Result<void> printed = printOut(json ? jsonText(jsonOf(InspectionReport{inspection, name}))
+                                               : inspectionText(inspection, name));
     if (!printed || !inspection.damaged()) {
         return printed;
     }

@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 
@@ -25,17 +24,15 @@
 #include "bake/plan/view_planner.h"
 #include "bake/recipe/depfile.h"
 #include "bake/repair/mesh_care.h"
-#include "bake/report/accuracy_report.h"
 #include "bake/report/bake_report.h"
 #include "bake/report/parts_report.h"
-#include "bake/report/report.h"
-#include "bake/report/size_report.h"
+#include "bake/report/report_text.h"
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
+#include "formats/fields/json.h"
 #include "runtime/tool/command_line.h"
-#include "runtime/tool/json_text.h"
 #include "runtime/tool/memory_option.h"
 #include "runtime/tool/progress.h"
 
@@ -178,30 +175,29 @@ Result<void> writePlanFile(const std::string& path, const PlanReport& plan, cons
     return writeFile(path, std::as_bytes(std::span(text)));
 }
 
-nlohmann::ordered_json jsonSettings(const BakeCommand& command, const BakeSettings& settings,
-                                    const Backend& backend, const Baked& baked,
-                                    const std::optional<PlanReport>& plan) {
-    using Json = nlohmann::ordered_json;
-    Json specs = Json::array();
+BakeSettingsReport settingsReport(const BakeCommand& command, const BakeSettings& settings,
+                                  const Backend& backend, const Baked& baked,
+                                  const std::optional<PlanReport>& plan) {
+    BakeSettingsReport report{.mesh = command.mesh, .output = command.output, .plan_file = command.plan};
     for (const MapReport& map : baked.report.maps) {
-        specs.push_back(toString(map.spec));
+        report.maps.push_back(toString(map.spec));
     }
-    const bool sized = settings.source == MapSource::kMaps || settings.source == MapSource::kPaper;
-    return {{"mesh", command.mesh},
-            {"output", command.output},
-            {"plan_file", command.plan.empty() ? Json(nullptr) : Json(command.plan)},
-            {"maps", specs},
-            {"resolution", sized ? Json(settings.bake.resolution) : Json(nullptr)},
-            {"budget", plan ? Json(plan->budget) : Json(nullptr)},
-            {"quality", qualityName(settings.bake.quality)},
-            {"prefer", preferName(settings.bake.prefer)},
-            {"backend", backend.raster ? "raster" : "raycast"},
-            {"backend_reason", backend.reason.empty() ? Json(nullptr) : Json(backend.reason)},
-            {"device", backend.raster ? Json(backend.device) : Json(nullptr)},
-            {"threads", settings.bake.threads == 0 ? tbb::info::default_concurrency()
-                                                   : static_cast<int>(settings.bake.threads)},
-            {"compress", settings.write.compression_level},
-            {"holes", command.holes == Holes::kClose ? "close" : "keep"}};
+    if (settings.source == MapSource::kMaps || settings.source == MapSource::kPaper) {
+        report.resolution = settings.bake.resolution;
+    }
+    if (plan) {
+        report.budget = plan->budget;
+    }
+    report.quality = settings.bake.quality;
+    report.prefer = settings.bake.prefer;
+    report.raster = backend.raster;
+    report.backend_reason = backend.reason;
+    report.device = backend.device;
+    report.threads = settings.bake.threads == 0 ? tbb::info::default_concurrency()
+                                                : static_cast<int>(settings.bake.threads);
+    report.compress = settings.write.compression_level;
+    report.closes_holes = command.holes == Holes::kClose;
+    return report;
 }
 
 /// A bake, and what its stages leave for the next.
@@ -421,8 +417,8 @@ void gatherWarnings(BakeRun& run) {
 void tellNotices(BakeRun& run) {
     const TriangleMesh& mesh = *run.cared.mesh;
     if (mesh.closed_holes > 0) {
-        spdlog::info("{}: closed {} hole{} for baking: the mesh is nearly closed", mesh.name,
-                     mesh.closed_holes, mesh.closed_holes == 1 ? "" : "s");
+        spdlog::info("{}: closed {} for baking: the mesh is nearly closed", mesh.name,
+                     countText(mesh.closed_holes, "hole"));
     }
     if (!run.backend.reason.empty()) {
         spdlog::info("backend {}: {}", run.backend.raster ? "raster" : "raycast", run.backend.reason);
@@ -471,12 +467,9 @@ Result<void> report(const BakeRun& run) {
                               command.common.verbose, run.parts, run.part_accuracy};
     if (command.json) {
         const ContainerInfo info = RELIEF_TRY(readContainerInfo(run.bytes));
-        auto json =
-            jsonBake(summary, info, jsonSettings(command, run.settings, run.backend, run.baked, run.plan));
-        for (const InputFile& input : run.inputs) {
-            json["inputs"].push_back({{"file", input.path}, {"hash", input.hash}});
-        }
-        return printOut(jsonText(json));
+        const BakeSettingsReport settings =
+            settingsReport(command, run.settings, run.backend, run.baked, run.plan);
+        return printOut(jsonText(jsonOf(BakeJson{summary, info, settings, run.inputs})));
     }
     if (!command.common.quiet) {
         std::fputs(bakeText(summary, command.output, run.bytes.size()).c_str(), stderr);

@@ -1,25 +1,24 @@
 // relief check: whether a container is sound, and how well a collider keeps to its mesh.
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 #include <span>
 
 #include "bake/cli/check_advice.h"
 #include "bake/cli/check_file.h"
 #include "bake/cli/command.h"
 #include "bake/cli/mesh_check.h"
+#include "bake/cli/mesh_check_report.h"
 #include "bake/cli/view_source.h"
-#include "bake/report/accuracy_report.h"
+#include "bake/report/bake_report.h"
 #include "bake/report/parts_report.h"
-#include "bake/report/places_report.h"
-#include "bake/report/shape_report.h"
+#include "bake/report/report_text.h"
 #include "formats/bake_first.h"
 #include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "formats/container.h"
 #include "formats/container_reader.h"
+#include "formats/fields/json.h"
 #include "runtime/tool/command_line.h"
-#include "runtime/tool/json_text.h"
 #include "runtime/tool/memory_option.h"
 #include "runtime/tool/option_values.h"
 
@@ -73,13 +72,6 @@ Result<void> writePage(const CheckCommand& command, std::vector<std::byte> conta
     return writeFile(command.html, std::as_bytes(std::span(page)));
 }
 
-nlohmann::ordered_json jsonCheck(const CheckCommand& command, const MeshCheck& run) {
-    nlohmann::ordered_json json = jsonMeshCheck(inputName(command.file), run, command.max_error);
-    json["times_ms"] = {{"truth", 1000.0 * run.original.samples.seconds},
-                        {"field", 1000.0 * run.original.accuracy.field.seconds}};
-    return json;
-}
-
 std::string checkText(const CheckCommand& command, const MeshCheck& run) {
     const auto& [samples, accuracy] = run.judged();
     std::string text =
@@ -118,7 +110,9 @@ Result<void> runCheck(const CheckCommand& command, FileGuard& files) {
     }
     addAdvice(command, run);
     RELIEF_TRY(writePage(command, std::move(container), run));
-    RELIEF_TRY(printOut(command.json ? jsonText(jsonCheck(command, run)) : checkText(command, run)));
+    RELIEF_TRY(printOut(
+        command.json ? jsonText(jsonOf(MeshCheckReport{run, inputName(command.file), command.max_error}))
+                     : checkText(command, run)));
     const bool passed = run.passes(command.max_error);
     if (!passed && run.original.accuracy.field.near.total() <= double{*command.max_error}) {
         return fail(ErrorCode::kDifference, *lostPartsWarning(run.part_accuracy, run.parts, run.collider) +

@@ -8,6 +8,7 @@
 #include "formats/base/file_io.h"
 #include "formats/container.h"
 #include "formats/container_reader.h"
+#include "formats/fields/json.h"
 #include "runtime/tool/command_line.h"
 #include "runtime/tool/memory_option.h"
 #include "runtime/tool/option_values.h"
@@ -58,7 +59,7 @@ Result<void> runDiff(const DiffCommand& command) {
         summary.fields = compareFields(a.collider, b.collider);
     }
     if (command.json || !command.common.quiet) {
-        RELIEF_TRY(printOut(command.json ? diffJson(summary) : diffText(summary)));
+        RELIEF_TRY(printOut(command.json ? jsonText(jsonOf(summary)) : diffText(summary)));
     }
     if (const std::string verdict = diffVerdict(summary); !verdict.empty()) {
         return fail(ErrorCode::kDifference, summary.a + " and " + summary.b + " differ: " + verdict);

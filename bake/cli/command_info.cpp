@@ -1,17 +1,17 @@
 // relief info: what is in a container.
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "bake/cli/command.h"
 #include "bake/cli/command_line.h"
-#include "bake/report/report.h"
+#include "bake/report/collider_report.h"
 #include "formats/bake_first.h"
 #include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "formats/container_reader.h"
+#include "formats/fields/json.h"
 #include "runtime/tool/command_line.h"
 #include "runtime/tool/memory_option.h"
 
@@ -52,8 +52,8 @@ std::string humanReport(const Collider& collider, const ContainerInfo& info) {
     const Provenance& from = collider.provenance;
     std::string text = "Relief container " + std::to_string(info.major) + "." + std::to_string(info.minor) +
                        ", " + bytesText(info.file_size) + "\n";
-    text += "bounds   " + vectorText(collider.bounds.min) + " to " + vectorText(collider.bounds.max) +
-            (collider.unit.empty() ? " object units" : " " + collider.unit) + "\n";
+    text += "bounds   " + vectorText(collider.bounds.min) + " to " + vectorText(collider.bounds.max) + " " +
+            unitText(collider.unit) + "\n";
     text += "mesh     " + from.mesh_name + ", " + std::to_string(from.triangles) + " triangles, XXH3-128 " +
             (from.mesh_hash.empty() ? "unknown" : from.mesh_hash) + "\n";
     text += bakedText(from);
@@ -61,11 +61,8 @@ std::string humanReport(const Collider& collider, const ContainerInfo& info) {
         {"map", "format", "projection", "keeps", "size>", "bytes>", "stored>", "encloses", "empty is"}};
     for (std::size_t i = 0; i < collider.maps.size(); ++i) {
         const DepthMap& map = collider.maps[i];
-        const std::string size = std::to_string(map.width) + "x" + std::to_string(map.height);
-        rows.push_back({std::to_string(i), mapFormatName(map.format),
-                        map.projection() == Projection::kCube ? "cube" : "orthographic",
-                        compareName(map.compare), map.faceCount() == 1 ? size : "6x" + size,
-                        bytesText(info.payloads[i].raw_size),
+        rows.push_back({std::to_string(i), mapFormatName(map.format), std::string(projectionName(map)),
+                        compareName(map.compare), sizeText(map), bytesText(info.payloads[i].raw_size),
                         bytesText(info.payloads[i].stored_size) +
                             (info.payloads[i].packing == Packing::kNone
                                  ? ""
@@ -82,7 +79,7 @@ std::string humanReport(const Collider& collider, const ContainerInfo& info) {
     return text;
 }
 
-/// A container that has been checked as a whole, payloads too: what info shows can be relied on.
+/// A container that has been checked as a whole, payloads included.
 struct Shown {
     std::string file;
     Collider collider;
@@ -97,10 +94,13 @@ Result<Shown> open(const std::string& file, const ContainerLimits& limits) {
     return Shown{file, std::move(collider), std::move(info)};
 }
 
-/// Of one file among several: what is said of it alone, under its name.
+std::string shownName(const Shown& shown) {
+    return shown.file == "-" ? "standard input" : cleanUtf8(shown.file);
+}
+
+/// The report of one file among several, under its name.
 std::string humanPart(const Shown& shown, bool first) {
-    return (first ? "" : "\n") + (shown.file == "-" ? "standard input" : cleanUtf8(shown.file)) + "\n" +
-           humanReport(shown.collider, shown.info);
+    return (first ? "" : "\n") + shownName(shown) + "\n" + humanReport(shown.collider, shown.info);
 }
 
 Result<void> runMany(const InfoCommand& command) {
@@ -116,9 +116,8 @@ Result<void> runMany(const InfoCommand& command) {
             }
             failed = Error{code, shown.error().message};
         } else if (command.json) {
-            nlohmann::ordered_json one = {{"file", file == "-" ? "standard input" : cleanUtf8(file)}};
-            one.update(jsonCollider(shown->collider, shown->info));
-            RELIEF_TRY(printOut(one.dump() + "\n"));
+            RELIEF_TRY(
+                printOut(jsonLine(jsonOf(InfoReport(shownName(*shown), shown->collider, shown->info)))));
         } else {
             RELIEF_TRY(printOut(humanPart(*shown, first)));
             first = false;
@@ -136,7 +135,7 @@ Result<void> runInfo(const InfoCommand& command) {
         return runMany(command);
     }
     const Shown shown = RELIEF_TRY(open(command.files.front(), command.limits));
-    return printOut(command.json ? colliderJson(shown.collider, shown.info)
+    return printOut(command.json ? jsonText(jsonOf(InfoReport("", shown.collider, shown.info)))
                                  : humanReport(shown.collider, shown.info));
 }
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <thread>
 
@@ -17,21 +16,20 @@
 #include "bake/recipe/recipe_run.h"
 #include "bake/recipe/recipe_stamp.h"
 #include "bake/report/recipe_report.h"
-#include "bake/report/report.h"
+#include "bake/report/report_text.h"
 #include "formats/base/file_io.h"
 #include "formats/base/preflight.h"
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
 #include "formats/config/confined_path.h"
+#include "formats/fields/json.h"
 #include "runtime/tool/command_line.h"
-#include "runtime/tool/json_text.h"
 #include "runtime/tool/option_values.h"
 
 namespace relief {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t kShardsMax = 1'000'000;
 constexpr float kTimeoutMax = 1e7F;  // seconds
@@ -114,10 +112,6 @@ std::optional<Shard> parseShard(const std::string& text) {
     return Shard{*index, *count};
 }
 
-Json jsonShard(const std::optional<Shard>& shard) {
-    return shard ? Json(std::to_string(shard->index) + "/" + std::to_string(shard->count)) : Json(nullptr);
-}
-
 Result<RecipeRun> runOf(const RecipeOptionsOfBake& options, const RecipeCall& call) {
     RecipeRun run;
     run.recipe = options.recipe;
@@ -182,7 +176,7 @@ Result<void> printDryRun(const std::vector<AssetResult>& assets, const std::vect
 Result<void> verdict(const std::vector<AssetResult>& assets, const RecipeCounts& counts) {
     for (const AssetResult& asset : assets) {
         if (asset.state == AssetState::kFailed) {
-            return fail(asset.error.code, std::to_string(counts.failed) + " of " +
+            return fail(asset.error.code, std::to_string(counts.of(AssetState::kFailed)) + " of " +
                                               std::to_string(counts.all()) + " assets failed, first " +
                                               quotedPath(asset.job.output) +
                                               "; mend what is said above and run the recipe again");
@@ -223,45 +217,18 @@ Result<RecipeWork> plan(const RecipeOptionsOfBake& options, const RecipeCall& ca
     return work;
 }
 
-void writeStart(const RecipeOptionsOfBake& options, const RecipeWork& work, RecipeEvents& events) {
-    events.write({{"event", "start"},
-                  {"tool", std::string("relief ") + RELIEF_VERSION},
-                  {"recipe", options.recipe},
-                  {"assets", work.jobs.size()},
-                  {"shard", jsonShard(options.shard)},
-                  {"at_once", work.run.at_once}});
-}
-
-const char* endEvent(AssetState state) {
-    switch (state) {
-        case AssetState::kBaked:
-            return "done";
-        case AssetState::kFailed:
-            return "failed";
-        case AssetState::kUpToDate:
-            return "skipped";
-        default:
-            return "cancelled";
-    }
-}
-
 /// Bakes what is not up to date, and shows progress.
 Result<RecipeResult> bakeAll(RecipeWork& work, bool shown, RecipeEvents& events) {
     RecipeDisplay display(work.jobs.size(), shown);
     RecipeRun run = work.run;
-    const auto event = [&](const char* name, const AssetResult& asset) {
-        Json json = {{"event", name}};
-        json.update(jsonAsset(asset));
-        events.write(json);
-    };
     run.started = [&](const AssetResult& asset) {
-        event("started", asset);
+        events.write(AssetEvent{{asset, true}});
         display.wipe();
         spdlog::debug("{}: {}", cleanUtf8(asset.job.output), asset.reason);
         display.started(asset);
     };
     run.ended = [&](const AssetResult& asset) {
-        event(endEvent(asset.state), asset);
+        events.write(AssetEvent{{asset, true}});
         display.wipe();
         if (asset.state == AssetState::kFailed) {
             spdlog::error("{}: {}", cleanUtf8(asset.job.output), asset.error.message);
@@ -287,7 +254,7 @@ Result<std::vector<PrunedOutput>> prune(const RecipeOptionsOfBake& options, cons
     if (!options.prune) {
         return std::vector<PrunedOutput>();
     }
-    if (counts.failed + counts.cancelled > 0) {
+    if (counts.of(AssetState::kFailed) + counts.of(AssetState::kCancelled) > 0) {
         spdlog::warn("--prune removes nothing, as not everything is baked");
         return std::vector<PrunedOutput>();
     }
@@ -300,9 +267,7 @@ Result<std::vector<PrunedOutput>> prune(const RecipeOptionsOfBake& options, cons
     std::vector<PrunedOutput> pruned = RELIEF_TRY(
         pruneOutputs(run.output_folder, recipeName(run.recipe, run.output_folder), wanted, options.dry_run));
     for (const PrunedOutput& output : pruned) {
-        Json event = {{"event", "pruned"}};
-        event.update(jsonPruned(output, options.dry_run));
-        events.write(event);
+        events.write(PrunedEvent{{output, options.dry_run}});
         const std::string line = cleanUtf8(output.output) + ": " + prunedReason(output, options.dry_run);
         if (!output.kept.empty()) {
             spdlog::warn(line);
@@ -313,36 +278,19 @@ Result<std::vector<PrunedOutput>> prune(const RecipeOptionsOfBake& options, cons
     return pruned;
 }
 
-void writeSummary(const RecipeResult& result, const RecipeCounts& counts, double ms, RecipeEvents& events) {
-    Json summary = {{"event", "summary"}};
-    summary.update(jsonCounts(counts));
-    summary["ms"] = ms;
-    summary["signal"] = result.signal == 0 ? Json(nullptr) : Json(result.signal);
-    events.write(summary);
-}
-
 /// Chooses what standard output carries.
 Result<void> printResult(const RecipeOptionsOfBake& options, const RecipeCall& call, const RecipeRun& run,
                          const RecipeResult& result, const std::vector<PrunedOutput>& pruned, double ms) {
     if (!call.json) {
         return options.dry_run && options.events != "-" ? printDryRun(result.assets, pruned) : Result<void>();
     }
-    Json json = {{"recipe", options.recipe},
-                 {"output", run.output_folder.string()},
-                 {"shard", jsonShard(options.shard)},
-                 {"counts", jsonCounts(countAssets(result.assets))},
-                 {"ms", ms},
-                 {"assets", Json::array()}};
-    for (const AssetResult& asset : result.assets) {
-        json["assets"].push_back(jsonAsset(asset));
-    }
+    RecipeJson report{options.recipe, run.output_folder.string(), options.shard, countAssets(result.assets),
+                      ms};
+    report.assets = viewsOf<AssetReport>(result.assets, false);
     if (options.prune) {
-        json["pruned"] = Json::array();
-        for (const PrunedOutput& output : pruned) {
-            json["pruned"].push_back(jsonPruned(output, options.dry_run));
-        }
+        report.pruned = viewsOf<PrunedReport>(pruned, options.dry_run);
     }
-    return printOut(jsonText(json));
+    return printOut(jsonText(jsonOf(report)));
 }
 
 /// The files for build systems, once everything is up to date.
@@ -416,7 +364,7 @@ Result<void> runRecipeCommand(const RecipeOptionsOfBake& options, const RecipeCa
     if (!options.events.empty()) {
         RELIEF_TRY(events.open(options.events));
     }
-    writeStart(options, work, events);
+    events.write(RecipeStart{options.recipe, work.jobs.size(), options.shard, work.run.at_once});
     RecipeResult result = RELIEF_TRY(bakeAll(work, !call.common.quiet && !options.dry_run, events));
     if (options.dry_run && call.json) {
         RELIEF_TRY(addKeys(result.assets, work.run));
@@ -427,7 +375,7 @@ Result<void> runRecipeCommand(const RecipeOptionsOfBake& options, const RecipeCa
         pruned = RELIEF_TRY(prune(options, call, work, counts, events));
     }
     const double ms = watch.ms();
-    writeSummary(result, counts, ms, events);
+    events.write(RecipeEnd{counts, ms, result.signal});
     if (!call.common.quiet) {
         const std::string slowest = slowestText(result.assets);
         std::fputs((recipeSummary(counts, ms) + (slowest.empty() ? "" : "; ") + slowest + "\n").c_str(),

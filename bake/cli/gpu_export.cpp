@@ -8,9 +8,9 @@
 #include <string_view>
 
 #include "formats/base/file_io.h"
+#include "formats/fields/json.h"
 #include "runtime/collider/gpu_image.h"
 #include "runtime/gl/gl_object.h"
-#include "runtime/tool/json_text.h"
 
 namespace relief {
 namespace {
@@ -72,15 +72,14 @@ Result<void> exportForGpu(const Collider& collider, const std::filesystem::path&
     }
     RELIEF_TRY(writeFile(folder / kBlock, image.block));
     RELIEF_TRY(writeFile(folder / kGlsl, bytesOf(image.defines + core)));
-    const Json all{
-        {"format", kFormat},
-        {"tool", collider.provenance.tool_version},
-        {"bounds", {{"min", jsonVector(collider.bounds.min)}, {"max", jsonVector(collider.bounds.max)}}},
-        {"unit", collider.unit},
-        {"maps", collider.maps.size()},
-        {"glsl", kGlsl},
-        {"block", {{"name", "ReliefCollider"}, {"file", kBlock}, {"bytes", image.block.size()}}},
-        {"textures", textures}};
+    const Json all{{"format", kFormat},
+                   {"tool", collider.provenance.tool_version},
+                   {"bounds", {{"min", jsonOf(collider.bounds.min)}, {"max", jsonOf(collider.bounds.max)}}},
+                   {"unit", collider.unit},
+                   {"maps", collider.maps.size()},
+                   {"glsl", kGlsl},
+                   {"block", {{"name", "ReliefCollider"}, {"file", kBlock}, {"bytes", image.block.size()}}},
+                   {"textures", textures}};
     return writeFile(folder / kSizes, bytesOf(jsonText(all)));
 }
 

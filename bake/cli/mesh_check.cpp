@@ -4,17 +4,13 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "bake/measure/sight.h"
 #include "bake/repair/mesh_care.h"
 #include "bake/repair/winding.h"
-#include "bake/report/accuracy_report.h"
 #include "bake/report/parts_report.h"
-#include "bake/report/shape_report.h"
 #include "formats/base/text.h"
 #include "runtime/tool/command_line.h"
-#include "runtime/tool/json_text.h"
 #include "runtime/tool/option_values.h"
 
 namespace relief {
@@ -135,16 +131,6 @@ Result<void> measure(const MeshCheckSettings& settings, MeshCheck& run) {
     return {};
 }
 
-nlohmann::ordered_json jsonRepaired(const MeshCheck& check) {
-    if (!check.repaired) {
-        return nullptr;
-    }
-    return {
-        {"repair", check.recorded.repair},
-        {"triangles", check.baked->triangles.size()},
-        {"accuracy", jsonColliderAccuracy(check.repaired->accuracy, check.repaired->samples.longest_side)}};
-}
-
 }  // namespace
 
 bool MeshCheck::passes(std::optional<float> max_error) const {
@@ -206,34 +192,6 @@ Result<MeshCheck> checkAgainstMesh(const MeshCheckSettings& settings, Collider c
     }
     RELIEF_TRY(measure(settings, run));
     return run;
-}
-
-nlohmann::ordered_json jsonMeshCheck(const std::string& name, const MeshCheck& check,
-                                     std::optional<float> max_error) {
-    const auto& [samples, accuracy] = check.original;
-    return {{"file", name},
-            {"mesh",
-             {{"name", check.mesh->name},
-              {"hash", check.mesh->content_hash},
-              {"triangles", check.mesh->sourceTriangles()},
-              {"watertight", check.watertight},
-              {"shape", jsonShape(check.shape)},
-              {"baked_from_it", check.same_file}}},
-            {"unit", check.collider.unit},
-            {"verdict",
-             {{"wrong_percent", check.wrongPercent()},
-              {"lost_parts", check.part_accuracy.countOf(PartVerdict::kLost)},
-              {"grade", gradeOf(check.wrongPercent(), check.part_accuracy)}}},
-            {"parts", jsonParts(check.part_accuracy, check.parts, check.collider)},
-            {"worst_places", jsonPlaces(check.places, check.collider)},
-            {"advice", jsonAdvice(check.advice)},
-            {"sampling", jsonSamples(samples)},
-            {"accuracy", jsonColliderAccuracy(accuracy, samples.longest_side)},
-            {"repaired", jsonRepaired(check)},
-            {"max_error_percent",
-             max_error ? nlohmann::ordered_json(jsonNumber(*max_error)) : nlohmann::ordered_json(nullptr)},
-            {"passed", check.passes(max_error)},
-            {"warnings", check.warnings}};
 }
 
 }  // namespace relief

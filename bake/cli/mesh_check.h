@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,7 +15,7 @@
 #include "bake/measure/worst_places.h"
 #include "bake/mesh/mesh_query.h"
 #include "bake/mesh/prepared_mesh.h"
-#include "bake/report/places_report.h"
+#include "bake/report/check_report.h"
 #include "bake/shape/shape.h"
 #include "formats/base/result.h"
 #include "formats/collider.h"
@@ -88,10 +87,5 @@ struct MeshCheck {
 [[nodiscard]] Result<MeshCheck> checkAgainstMesh(
     const MeshCheckSettings& settings, Collider collider, std::optional<TriangleMesh> given = {},
     const std::function<void()>& checkpoint = [] {});
-
-/// The report of `relief check --json` but for its times, which no two runs share.
-/// \param name  of the collider.
-[[nodiscard]] nlohmann::ordered_json jsonMeshCheck(const std::string& name, const MeshCheck& check,
-                                                   std::optional<float> max_error = {});
 
 }  // namespace relief

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cstdlib>
 #include <glm/geometric.hpp>
-#include <nlohmann/json.hpp>
 
 #include "bake/cli/command.h"
+#include "bake/cli/mesh_check_report.h"
 #include "bake/import/mesh_import.h"
 #include "bake/pipeline/bake.h"
 #include "bake/repair/winding.h"
@@ -16,9 +16,9 @@
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "formats/container.h"
+#include "formats/fields/json.h"
 #include "runtime/scene/loaded_scene.h"
 #include "runtime/scene/scene_pictures.h"
-#include "runtime/tool/json_text.h"
 
 namespace relief {
 namespace {
@@ -53,13 +53,14 @@ struct Page {
 
 /// The report, and what the page needs to show it.
 Result<MadePage> checkPage(Page page, const MeshCheck& check, std::optional<float> max_error) {
-    nlohmann::ordered_json report = jsonMeshCheck(page.input.name, check, max_error);
+    Json report = jsonOf(MeshCheckReport{check, page.input.name, max_error});
+    report.erase("times_ms");  // no two runs have the same
     report["verdict"]["text"] = verdictText(check.wrongPercent(), check.part_accuracy);
     report["parts"]["text"] = partsText(check.part_accuracy, check.parts, check.collider);
     for (std::size_t i = 0; i < check.places.size(); ++i) {
         const ClosestPoint closest = check.query->closest(check.places[i].position);
         const glm::dvec3 normal = planeOf(check.query->mesh(), closest.triangle).normal;
-        report["worst_places"][i]["normal"] = jsonVector(glm::vec3(glm::normalize(normal)));
+        report["worst_places"][i]["normal"] = jsonOf(glm::vec3(glm::normalize(normal)));
     }
     page.input.mesh = &*check.imported;
     page.input.check = &report;

@@ -9,6 +9,7 @@
 #include "bake/measure/truth.h"
 #include "bake/mesh/mesh_query.h"
 #include "formats/collider.h"
+#include "formats/fields/field.h"
 
 namespace relief {
 
@@ -34,6 +35,16 @@ struct WrongShare {
     double false_outside = 0.0;  ///< inside in truth
     [[nodiscard]] double total() const { return false_inside + false_outside; }
 };
+
+template <class Visitor, FieldsOf<WrongShare> W>
+void fields(Visitor& visit, W& share) {
+    visit("wrong_percent", share.total(),
+          {"Share of the points that are on the wrong side", "%", kPercentRange});
+    visit("false_inside_percent", share.false_inside,
+          {"Share of the points that are outside but classified as inside", "%", kPercentRange});
+    visit("false_outside_percent", share.false_outside,
+          {"Share of the points that are inside but classified as outside", "%", kPercentRange});
+}
 
 struct FieldAccuracy {
     WrongShare near;     ///< points near the surface

@@ -177,12 +177,6 @@ int rankOf(PartVerdict state) {
 
 }  // namespace
 
-const char* partVerdictName(PartVerdict state) {
-    constexpr std::array<const char*, kPartVerdicts> kNames = {"held",   "coarse", "lost",
-                                                               "hidden", "small",  "rest"};
-    return kNames[static_cast<std::size_t>(state)];
-}
-
 double defaultDetail(const SurfaceParts& parts, const std::string& unit) {
     double largest = 0.0;
     for (const SurfacePart& part : parts.parts) {

@@ -37,9 +37,10 @@ enum class PartVerdict : std::uint8_t {
     kSmall,   ///< below `detail`; not measured
     kRest,    ///< beyond parts_max; not measured
 };
-inline constexpr std::size_t kPartVerdicts = 6;
-/// "held", "coarse", "lost", "hidden", "small", "rest"
-[[nodiscard]] const char* partVerdictName(PartVerdict state);
+template <>
+inline constexpr std::array<std::string_view, 6> kWordsOf<PartVerdict>{"held",   "coarse", "lost",
+                                                                       "hidden", "small",  "rest"};
+inline constexpr std::size_t kPartVerdicts = kWordsOf<PartVerdict>.size();
 
 struct PartAccuracy {
     std::uint32_t part = 0;  ///< index into SurfaceParts::parts

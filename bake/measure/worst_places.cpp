@@ -222,12 +222,6 @@ WorstPlace describe(const std::vector<std::uint32_t>& points, const std::vector<
 
 }  // namespace
 
-std::string_view wrongCauseName(WrongCause cause) {
-    constexpr std::array<std::string_view, kWrongCauses> kNames = {"sheet",      "open",  "unseen",
-                                                                   "silhouette", "other", "texel"};
-    return kNames[static_cast<std::size_t>(cause)];
-}
-
 double texelAt(const DepthMap& map, const glm::vec3& p) {
     if (map.projection() == Projection::kOrthographic) {
         return std::max(double{map.object_per_map.x} / map.width, double{map.object_per_map.y} / map.height);

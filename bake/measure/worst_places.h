@@ -12,6 +12,7 @@
 #include "bake/measure/truth.h"
 #include "bake/mesh/mesh_query.h"
 #include "formats/collider.h"
+#include "formats/fields/field.h"
 
 namespace relief {
 
@@ -24,10 +25,10 @@ enum class WrongCause : std::uint8_t {
     kOther,       ///< the deciding map is wrong although one plane per texel would do: it is of another mesh
     kTexel,       ///< the surface beside it is finer than the texel of the deciding map
 };
-inline constexpr std::size_t kWrongCauses = 6;
-
-/// "sheet", "open", "unseen", "silhouette", "other", "texel"
-[[nodiscard]] std::string_view wrongCauseName(WrongCause cause);
+template <>
+inline constexpr std::array<std::string_view, 6> kWordsOf<WrongCause>{"sheet",      "open",  "unseen",
+                                                                      "silhouette", "other", "texel"};
+inline constexpr std::size_t kWrongCauses = kWordsOf<WrongCause>.size();
 
 /// A part of the surface with many points near it on the wrong side.
 struct WorstPlace {

@@ -41,12 +41,6 @@ glm::dvec3 medianOf(const std::vector<SurfacePart>& parts, double area) {
 
 }  // namespace
 
-const char* partKindName(PartKind kind) {
-    constexpr std::array<const char*, 5> kNames = {"solid", "solid with holes", "sheet", "terrain",
-                                                   "surface"};
-    return kNames[static_cast<std::size_t>(kind)];
-}
-
 SurfacePartsBuilder::SurfacePartsBuilder(const TriangleMesh& mesh)
     : mesh_(mesh), part_of_(mesh.triangles.size(), kNoLabel) {}
 

@@ -7,13 +7,15 @@
 
 #include "bake/mesh/mesh.h"
 #include "formats/collider.h"
+#include "formats/fields/field.h"
 
 namespace relief {
 
+/// kSurface: baked as it is, with the inside left to the parity of rays.
 enum class PartKind : std::uint8_t { kSolid, kSolidWithHoles, kSheet, kTerrain, kSurface };
-
-/// "solid", "solid with holes", "sheet", "terrain"; "surface": unchanged, its inside by the parity of rays.
-[[nodiscard]] const char* partKindName(PartKind kind);
+template <>
+inline constexpr std::array<std::string_view, 5> kWordsOf<PartKind>{"solid", "solid with holes", "sheet",
+                                                                    "terrain", "surface"};
 
 struct SurfacePart {
     PartKind kind = PartKind::kSurface;

@@ -19,6 +19,14 @@ struct BudgetTry {
     double wrong_percent = 0.0;  ///< of the points near the surface (FieldAccuracy::near)
 };
 
+template <class Visitor, FieldsOf<BudgetTry> T>
+void fields(Visitor& visit, T& made) {
+    visit("budget", made.budget, {"Bytes of texels planned for"});
+    visit("bytes", made.bytes, {"Bytes of texels planned"});
+    visit("wrong_percent", made.wrong_percent,
+          {"Share of the points near the surface that are on the wrong side", "%", kPercentRange});
+}
+
 struct BudgetSearchOptions {
     double max_error_percent = 1.0;
     std::uint64_t budget_min = 32'000;      ///< bytes; lowered to budget_max

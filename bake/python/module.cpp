@@ -267,7 +267,7 @@ py::list placesOf(const std::vector<WorstPlace>& found) {
             py::arg("position") = py::make_tuple(place.position.x, place.position.y, place.position.z),
             py::arg("size") = place.size(), py::arg("share_percent") = place.share_percent,
             py::arg("inside_percent") = place.inside_percent, py::arg("map") = place.map,
-            py::arg("cause") = std::string(wrongCauseName(place.cause))));
+            py::arg("cause") = std::string(wordOf(place.cause))));
     }
     return places;
 }

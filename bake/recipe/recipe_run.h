@@ -10,6 +10,7 @@
 #include "bake/recipe/bake_cache.h"
 #include "bake/recipe/recipe_jobs.h"
 #include "formats/base/result.h"
+#include "formats/fields/field.h"
 
 namespace relief {
 
@@ -20,6 +21,9 @@ enum class AssetState : std::uint8_t {
     kFailed,     ///< its output is as it was
     kCancelled,  ///< not begun, or not finished, as the run ended before
 };
+template <>
+inline constexpr std::array<std::string_view, 5> kWordsOf<AssetState>{"stale", "up to date", "baked",
+                                                                      "failed", "cancelled"};
 
 struct AssetResult {
     RecipeJob job;

@@ -9,6 +9,7 @@
 
 #include "bake/mesh/prepared_mesh.h"
 #include "formats/base/result.h"
+#include "formats/fields/field.h"
 
 namespace relief {
 
@@ -17,6 +18,12 @@ struct MeshFault {
     std::string what;    ///< "a boundary edge": with its article
     glm::vec3 at{0.0F};  ///< object space: the middle of the edge or triangle, or the vertex
 };
+
+template <class Visitor, FieldsOf<MeshFault> F>
+void fields(Visitor& visit, F& fault) {
+    visit("what", fault.what, {"Description"});
+    visit("at", fault.at, {"Middle of the edge or triangle, or the vertex", "object units"});
+}
 
 struct MeshHealth {
     std::uint64_t triangles = 0;
@@ -37,6 +44,31 @@ struct MeshHealth {
     /// Closed, manifold, wound outwards, without duplicates and known intersections. Degenerate triangles do not count.
     [[nodiscard]] bool isSolid() const { return !first_fault.has_value(); }
 };
+
+template <class Visitor, FieldsOf<MeshHealth> H>
+void fields(Visitor& visit, H& health) {
+    visit("solid", health.isSolid(),
+          {"The mesh is closed, manifold, wound outwards, and free of duplicates"});
+    visit("closed", health.closed, {"No edge belongs to an odd number of triangles"});
+    visit("inside_out", health.inside_out, {"The mesh as a whole is wound inwards"});
+    visit("triangles", health.triangles, {"Triangles with area"});
+    visit("degenerate_triangles", health.degenerate_triangles,
+          {"Triangles without area, which are left out"});
+    visit("duplicate_triangles", health.duplicate_triangles,
+          {"Triangles with the same three corners as an earlier one"});
+    visit("boundary_edges", health.boundary_edges, {"Edges of one triangle"});
+    visit("nonmanifold_edges", health.nonmanifold_edges, {"Edges of three or more triangles"});
+    visit("nonmanifold_vertices", health.nonmanifold_vertices,
+          {"Vertices whose triangles form several groups that share no edge there"});
+    visit("inconsistent_edges", health.inconsistent_edges,
+          {"Edges of two triangles that run along them in the same direction"});
+    visit("components", health.components, {"Groups of triangles connected by edges"});
+    visit("closed_components", health.closed_components, {"Components that are closed"});
+    visit("self_intersections", health.self_intersections,
+          {"Pairs of triangles that intersect; null without --check-intersections"});
+    visit("first_fault", health.first_fault,
+          {"First fault of the most serious kind; null if the mesh is solid"});
+}
 
 /// The same for any number of threads.
 /// \param intersections  count these too: some seconds for a million triangles.

@@ -1,80 +1,125 @@
 #include "bake/report/bake_report.h"
 
-#include <cstdio>
-#include <nlohmann/json.hpp>
+#include <algorithm>
+#include <cmath>
 
-#include "bake/report/accuracy_report.h"
-#include "bake/report/care_report.h"
-#include "bake/report/parts_report.h"
-#include "bake/report/report.h"
-#include "bake/report/shape_report.h"
-#include "bake/report/size_report.h"
+#include "bake/report/report_text.h"
 #include "formats/base/file_io.h"
+#include "formats/base/text.h"
 #include "formats/row_spans.h"
-#include "runtime/tool/json_text.h"
 
 namespace relief {
 namespace {
 
-using Json = nlohmann::ordered_json;
+/// Writes each field with a value as a line "  boundary edges: 12".
+class LineWriter {
+  public:
+    template <class T>
+    void operator()(std::string_view name, const T& value, const FieldInfo&) {
+        add(name, value);
+    }
+    [[nodiscard]] std::string take() { return std::move(text_); }
 
-double coverage(const MapReport& map) {
-    return static_cast<double>(map.covered) / static_cast<double>(map.texels);
+  private:
+    void add(std::string_view name, const std::string& value) {
+        std::string words(name);
+        std::replace(words.begin(), words.end(), '_', ' ');
+        text_ += "  " + words + ": " + value + "\n";
+    }
+    void add(std::string_view name, bool value) { add(name, std::string(value ? "yes" : "no")); }
+    void add(std::string_view name, std::uint64_t value) { add(name, std::to_string(value)); }
+    void add(std::string_view name, const MeshFault& fault) {
+        add(name, fault.what + " at " + shortest(fault.at));
+    }
+    template <class T>
+    void add(std::string_view name, const std::optional<T>& value) {
+        if (value) {
+            add(name, *value);
+        }
+    }
+
+    std::string text_;
+};
+
+std::string linesOf(const MeshHealth& health) {
+    LineWriter lines;
+    fields(lines, health);
+    return lines.take();
 }
 
-std::string percent(double share) {
-    char text[16];
-    std::snprintf(text, sizeof(text), "%.1f %%", 100.0 * share);
+std::string healthLine(const MeshHealth& health) {
+    std::string text = health.isSolid() ? "a closed solid" : faultsText(health);
+    text += "; " + countText(health.components, "component");
+    if (health.closed_components != health.components) {
+        text += ", " + std::to_string(health.closed_components) + " closed";
+    }
     return text;
 }
 
-std::string sizeText(const DepthMap& map) {
-    const std::string size = std::to_string(map.width) + "x" + std::to_string(map.height);
-    return map.faceCount() == 1 ? size : std::to_string(map.faceCount()) + "x" + size;
+/// Lines that end with a line feed; none if nothing was counted.
+std::string careText(const MeshCare& care, bool verbose) {
+    if (!care.health) {
+        return "";
+    }
+    std::string text =
+        "mesh: " + (care.repaired ? std::to_string(care.health->triangles) + " triangles as it came; " : "") +
+        healthLine(*care.health) + "\n";
+    text += verbose ? linesOf(*care.health) : "";
+    if (care.repaired) {
+        text += "after --repair " + care.repair + ": " + std::to_string(care.repaired->triangles) +
+                " triangles; " + healthLine(*care.repaired);
+        if (care.filled_holes + care.holes_left > 0) {
+            text += "; " + std::to_string(care.filled_holes) + " holes filled, " +
+                    std::to_string(care.holes_left) + " left";
+        }
+        text += "\n" + (verbose ? linesOf(*care.repaired) : "");
+    } else if (care.turned > 0) {
+        text += "turned " + countText(care.turned, "triangle") + " to look outwards\n";
+    }
+    return text;
 }
 
 std::string planLine(const PlanReport& report, const std::string& unit) {
     const Plan& plan = report.plan;
     std::string line = "planned for " + bytesText(report.budget) + " on the GPU, where the maps take " +
                        bytesText(plan.bytes) + ": texels of " + shortNumber(plan.texel) + " " +
-                       (unit.empty() ? "object units" : unit) + "; " + shortNumber(plan.unseen_percent) +
+                       unitText(unit) + "; " + shortNumber(plan.unseen_percent) +
                        " % of the surface is seen by no map; one more map would have "
                        "served " +
                        shortNumber(100.0 * plan.next_gain) + " % more";
     if (report.max_error) {
         line += "; " + shortNumber(report.wrong_percent) +
                 " % of the points near the surface are on the wrong side, found by " +
-                std::to_string(report.tries.size()) + (report.tries.size() == 1 ? " try" : " tries");
+                countText(report.tries.size(), "try", "tries");
     }
     return line + "\n";
 }
 
-Json jsonPlan(const PlanReport& report) {
-    Json maps = Json::array();
-    for (const PlannedMap& map : report.plan.maps) {
-        maps.push_back({{"reason", map.reason}, {"serves", map.serves}});
+}  // namespace
+
+std::string shapeText(const ShapeReport& report, const std::string& unit) {
+    std::string text = report.text();
+    if (text.empty()) {
+        return text;
     }
-    Json search = nullptr;
-    if (report.max_error) {
-        Json tries = Json::array();
-        for (const BudgetTry& made : report.tries) {
-            tries.push_back(
-                {{"budget", made.budget}, {"bytes", made.bytes}, {"wrong_percent", made.wrong_percent}});
-        }
-        search = {{"max_error_percent", jsonNumber(static_cast<float>(*report.max_error))},
-                  {"wrong_percent", report.wrong_percent},
-                  {"tries", tries}};
+    if (report.thickness > 0.0) {
+        const bool alike = report.thickness_least == report.thickness;
+        text += "; sheets are " + (alike ? "" : shortNumber(report.thickness_least) + " to ") +
+                shortNumber(report.thickness) + " " + unitText(unit) + " thick";
     }
-    return {{"budget", report.budget},
-            {"bytes", report.plan.bytes},
-            {"texel", report.plan.texel},
-            {"unseen_percent", report.plan.unseen_percent},
-            {"next_map_serves", report.plan.next_gain},
-            {"maps", maps},
-            {"search", search}};
+    if (report.coincident_triangles > 0) {
+        text += "; " + std::to_string(report.coincident_triangles) + " coincident triangles count once";
+    }
+    for (const auto& [shape, triangles] : report.named) {
+        text += "; " + shape.name + " (" + std::to_string(triangles) + " triangles) as " +
+                std::string(shapeAsName(shape.as));
+    }
+    return "shape: " + text + "\n";
 }
 
-}  // namespace
+std::optional<ShapeReport> madeShapes(const ShapeReport& report) {
+    return report.text().empty() ? std::nullopt : std::optional(report);
+}
 
 std::string bakeText(const BakeSummary& summary, const std::string& output, std::size_t file_size) {
     const Baked& baked = summary.baked;
@@ -84,8 +129,7 @@ std::string bakeText(const BakeSummary& summary, const std::string& output, std:
         text += ", " + std::to_string(summary.mesh.dropped_triangles) + " without area dropped";
     }
     if (summary.unused_vertices > 0) {
-        text += ", " + std::to_string(summary.unused_vertices) +
-                (summary.unused_vertices == 1 ? " vertex" : " vertices") + " of no triangle";
+        text += ", " + countText(summary.unused_vertices, "vertex", "vertices") + " of no triangle";
     }
     text += "\nbox " + boxText(summary.mesh.bounds, summary.mesh.unit);
     text += "\n" + careText(summary.care, summary.verbose) + shapeText(summary.shape, summary.mesh.unit);
@@ -97,31 +141,29 @@ std::string bakeText(const BakeSummary& summary, const std::string& output, std:
     for (std::size_t i = 0; i < baked.collider.maps.size(); ++i) {
         const DepthMap& map = baked.collider.maps[i];
         const MapReport& report = baked.report.maps[i];
-        rows.push_back({std::to_string(i), mapFormatName(map.format),
-                        map.projection() == Projection::kCube ? "cube" : "orthographic",
+        rows.push_back({std::to_string(i), mapFormatName(map.format), std::string(projectionName(map)),
                         compareName(map.compare), sizeText(map), bytesText(gpuBytes(map)),
-                        percent(coverage(report)),
+                        shareText(BakedMapReport{.baked = report}.coverage()),
                         summary.plan ? summary.plan->plan.maps[i].reason : toString(report.spec)});
     }
     text += table(rows);
     const BakeTimes& times = summary.times;
-    char line[256];
-    std::snprintf(line, sizeof(line), "%.0f ms: import %.0f, %s %.0f, ", times.total_ms, times.import_ms,
-                  times.search_ms > 0.0 ? "search" : "plan",
-                  times.search_ms > 0.0 ? times.search_ms : times.plan_ms);
-    text += line;
-    if (baked.report.raster_ms > 0.0) {
-        std::snprintf(line, sizeof(line), "upload %.0f, drawing %.0f, writing %.0f\n", baked.report.build_ms,
-                      baked.report.raster_ms, times.write_ms);
-        return text + line + (output == "-" ? "standard output" : quotedPath(output)) + ": " +
-               bytesText(file_size) + "\n";
+    const bool searched = times.search_ms > 0.0;
+    const auto ms = [](const std::string& what, double value) {
+        return what + " " + std::to_string(std::llround(value));
+    };
+    const BakeReport& report = baked.report;
+    text += std::to_string(std::llround(times.total_ms)) + " ms: " + ms("import", times.import_ms) + ", " +
+            ms(searched ? "search" : "plan", searched ? times.search_ms : times.plan_ms) + ", ";
+    if (report.raster_ms > 0.0) {
+        text += ms("upload", report.build_ms) + ", " + ms("drawing", report.raster_ms) + ", ";
+    } else {
+        text += (searched ? "its last bake: " : "") + ms("tree", report.build_ms) + ", " +
+                ms("rays", report.trace_ms) + ", " + ms("texels", report.encode_ms) + ", " +
+                ms("planes", report.fit_ms) + ", " + ms("refining", report.refine_ms) +
+                (searched ? "; " : ", ");
     }
-    std::snprintf(line, sizeof(line),
-                  "%stree %.0f, rays %.0f, texels %.0f, planes %.0f, refining %.0f%s writing %.0f\n",
-                  times.search_ms > 0.0 ? "its last bake: " : "", baked.report.build_ms,
-                  baked.report.trace_ms, baked.report.encode_ms, baked.report.fit_ms, baked.report.refine_ms,
-                  times.search_ms > 0.0 ? ";" : ",", times.write_ms);
-    text += line;
+    text += ms("writing", times.write_ms) + "\n";
     if (summary.wrong) {
         text += "wrong near the surface: " + shortNumber(summary.wrong->total()) + " %\n";
     }
@@ -129,32 +171,13 @@ std::string bakeText(const BakeSummary& summary, const std::string& output, std:
            "\n";
 }
 
-Json jsonBake(const BakeSummary& summary, const ContainerInfo& info, const Json& settings) {
-    const BakeReport& report = summary.baked.report;
-    const BakeTimes& times = summary.times;
-    Json json = jsonCollider(summary.baked.collider, info);
-    for (std::size_t i = 0; i < report.maps.size(); ++i) {
-        json["maps"][i]["coverage"] = coverage(report.maps[i]);
+ColliderReport<BakedMapReport> BakeJson::collider() const {
+    const Baked& baked = summary.baked;
+    ColliderReport<BakedMapReport> report{baked.collider, info};
+    for (std::size_t i = 0; i < baked.collider.maps.size(); ++i) {
+        report.maps.push_back({{i, baked.collider.maps[i], info.payloads[i]}, baked.report.maps[i]});
     }
-    json["settings"] = settings;
-    json["plan"] = summary.plan ? jsonPlan(*summary.plan) : Json(nullptr);
-    json["shape"] = jsonShape(summary.shape);
-    json["wrong_percent"] = summary.wrong ? Json(summary.wrong->total()) : Json(nullptr);
-    json["parts"] = summary.part_accuracy
-                        ? jsonParts(*summary.part_accuracy, summary.parts, summary.baked.collider)
-                        : Json(nullptr);
-    json["closed_holes"] = summary.mesh.closed_holes;
-    json["cap_triangles"] = summary.mesh.cap_triangles;
-    json["dropped_triangles"] = summary.mesh.dropped_triangles;
-    json["unused_vertices"] = summary.unused_vertices;
-    json["times_ms"] = {
-        {"import", times.import_ms}, {"plan", times.plan_ms},      {"search", times.search_ms},
-        {"build", report.build_ms},  {"trace", report.trace_ms},   {"encode", report.encode_ms},
-        {"fit", report.fit_ms},      {"raster", report.raster_ms}, {"refine", report.refine_ms},
-        {"check", times.check_ms},   {"write", times.write_ms},    {"total", times.total_ms}};
-    addCareJson(summary.care, json);
-    json["warnings"] = report.warnings;
-    return json;
+    return report;
 }
 
 }  // namespace relief

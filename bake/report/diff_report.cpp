@@ -2,16 +2,12 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <vector>
 
-#include "bake/report/report.h"
-#include "runtime/tool/json_text.h"
+#include "bake/report/report_text.h"
 
 namespace relief {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string number(double value) {
     char text[32];
@@ -65,14 +61,6 @@ std::string provenanceLines(const std::vector<Difference>& differences) {
     return text;
 }
 
-Json jsonDifferences(const std::vector<Difference>& differences) {
-    Json list = Json::array();
-    for (const Difference& one : differences) {
-        list.push_back({{"what", one.what}, {"a", one.a}, {"b", one.b}});
-    }
-    return list;
-}
-
 std::string fieldsVerdict(const DiffSummary& summary) {
     for (const Difference& one : summary.difference.structure) {
         if (one.what == "unit") {
@@ -106,33 +94,19 @@ std::string mapsVerdict(const ColliderDifference& difference) {
 }
 
 std::string pointsText(const std::string& where, const PointsDifference& points, const std::string& unit) {
-    const std::string of_length = unit.empty() ? " object units" : " " + unit;
     std::string text = "  " + where + ", " + std::to_string(points.points) +
                        " points: " + percent(points.sidesPercent()) + " on another side (" +
                        std::to_string(points.only_a) + " inside of a alone, " +
                        std::to_string(points.only_b) + " of b alone); ";
-    text += points.distances == 0 ? "no distances"
-                                  : "distances differ by " + number(points.distance.mean) +
-                                        " in the mean, 99 % by " + number(points.distance.percentile_99) +
-                                        " at most, all by " + number(points.distance.max) + of_length;
+    text += points.distances == 0
+                ? "no distances"
+                : "distances differ by " + number(points.distance.mean) + " in the mean, 99 % by " +
+                      number(points.distance.percentile_99) + " at most, all by " +
+                      number(points.distance.max) + " " + unitText(unit);
     return text +
            (points.one_known == 0 ? ""
                                   : "; at " + std::to_string(points.one_known) + " only one has a distance") +
            "\n";
-}
-
-Json jsonPoints(const PointsDifference& points) {
-    return {{"points", points.points},
-            {"only_a", points.only_a},
-            {"only_b", points.only_b},
-            {"sides_percent", points.sidesPercent()},
-            {"distances", points.distances},
-            {"one_known", points.one_known},
-            {"distance",
-             {{"differing", points.distance.differing},
-              {"max", points.distance.max},
-              {"mean", points.distance.mean},
-              {"percentile_99", points.distance.percentile_99}}}};
 }
 
 }  // namespace
@@ -174,32 +148,12 @@ std::string diffText(const DiffSummary& summary) {
     return text + (diffVerdict(summary).empty() ? "within the limits\n" : "");
 }
 
-std::string diffJson(const DiffSummary& summary) {
-    const ColliderDifference& difference = summary.difference;
-    const auto given = [](const std::optional<double>& limit) {
-        return limit ? Json(*limit) : Json(nullptr);
-    };
-    Json maps = Json::array();
+std::vector<MapDifferenceReport> DiffSummary::maps() const {
+    std::vector<MapDifferenceReport> rows;
     for (std::size_t i = 0; i < difference.maps.size(); ++i) {
-        const MapDifference& map = difference.maps[i];
-        maps.push_back(
-            {{"index", i}, {"structure", jsonDifferences(map.structure)}, {"same_texels", map.same_texels}});
+        rows.push_back({i, difference.maps[i]});
     }
-    return jsonText({{"a", summary.a},
-                     {"b", summary.b},
-                     {"identical", summary.same_bytes},
-                     {"same_collider", !difference.any()},
-                     {"within_limits", diffVerdict(summary).empty()},
-                     {"limits",
-                      {{"strict_metadata", summary.limits.strict_metadata},
-                       {"max_sides", given(summary.limits.max_sides)},
-                       {"max_distance", given(summary.limits.max_distance)}}},
-                     {"structure", jsonDifferences(difference.structure)},
-                     {"provenance", jsonDifferences(difference.provenance)},
-                     {"maps", maps},
-                     {"fields", summary.fields ? Json{{"box", jsonPoints(summary.fields->box)},
-                                                      {"near", jsonPoints(summary.fields->near)}}
-                                               : Json(nullptr)}});
+    return rows;
 }
 
 }  // namespace relief

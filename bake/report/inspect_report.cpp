@@ -1,38 +1,9 @@
 #include "bake/report/inspect_report.h"
 
-#include <cstdio>
-#include <nlohmann/json.hpp>
-
-#include "bake/report/report.h"
-#include "runtime/tool/json_text.h"
+#include "bake/report/report_text.h"
 
 namespace relief {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-std::string plural(std::size_t count, const char* what) {
-    return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
-}
-
-const char* verdict(const Inspection& inspection) {
-    return inspection.damaged() ? "damaged" : inspection.issues.empty() ? "sound" : "suspicious";
-}
-
-std::string mapText(const MapInspection& map) {
-    const DepthMap& frame = *map.frame;
-    const std::string size = std::to_string(frame.width) + "x" + std::to_string(frame.height);
-    return (frame.faceCount() == 1 ? size : "6x" + size);
-}
-
-std::string coverageText(const MapInspection& map) {
-    if (!map.coverage) {
-        return "-";
-    }
-    char text[32];
-    std::snprintf(text, sizeof(text), "%.1f %%", 100.0 * *map.coverage);
-    return text;
-}
 
 bool usable(PartState state) {
     return state == PartState::kSound || state == PartState::kSuspicious;
@@ -59,14 +30,19 @@ std::string trustText(const Inspection& inspection) {
 
 }  // namespace
 
+std::string_view inspectionVerdict(const Inspection& inspection) {
+    return inspection.damaged() ? "damaged" : inspection.issues.empty() ? "sound" : "suspicious";
+}
+
 std::string inspectionText(const Inspection& inspection, const std::string& name) {
-    std::string text = name + ": " + verdict(inspection);
+    std::string text = name + ": ";
+    text += inspectionVerdict(inspection);
     const std::pair<Severity, const char*> counted[] = {
         {Severity::kFatal, "fatal issue"}, {Severity::kError, "error"}, {Severity::kWarning, "warning"}};
     const char* separator = "; ";
     for (const auto& [severity, what] : counted) {
         if (const std::size_t count = inspection.count(severity); count > 0) {
-            text += separator + plural(count, what);
+            text += separator + countText(count, what);
             separator = ", ";
         }
     }
@@ -83,50 +59,21 @@ std::string inspectionText(const Inspection& inspection, const std::string& name
             const MapInspection& map = inspection.maps[i];
             rows.push_back({std::to_string(i), partStateName(map.state),
                             map.frame ? mapFormatName(map.frame->format) : "-",
-                            map.frame ? mapText(map) : "-",
-                            map.payload ? bytesText(map.payload->stored_size) : "-", coverageText(map)});
+                            map.frame ? sizeText(*map.frame) : "-",
+                            map.payload ? bytesText(map.payload->stored_size) : "-",
+                            map.coverage ? shareText(*map.coverage) : "-"});
         }
         text += table(rows);
     }
     return text + trustText(inspection);
 }
 
-std::string inspectionJson(const Inspection& inspection, const std::string& name) {
-    Json issues = Json::array();
-    for (const Issue& issue : inspection.issues) {
-        issues.push_back({{"code", issue.id()},
-                          {"severity", severityName(issue.severity())},
-                          {"map", issue.map >= 0 ? Json(issue.map) : Json(nullptr)},
-                          {"offset", issue.offset ? Json(*issue.offset) : Json(nullptr)},
-                          {"message", issue.message}});
-    }
-    Json maps = Json::array();
+std::vector<MapInspectionReport> InspectionReport::maps() const {
+    std::vector<MapInspectionReport> rows;
     for (std::size_t i = 0; i < inspection.maps.size(); ++i) {
-        const MapInspection& map = inspection.maps[i];
-        const auto ofFrame = [&](auto value) { return map.frame ? Json(value(*map.frame)) : Json(nullptr); };
-        maps.push_back({{"index", i},
-                        {"state", partStateName(map.state)},
-                        {"format", ofFrame([](const DepthMap& m) { return mapFormatName(m.format); })},
-                        {"width", ofFrame([](const DepthMap& m) { return m.width; })},
-                        {"height", ofFrame([](const DepthMap& m) { return m.height; })},
-                        {"offset", map.payload ? Json(map.payload->offset) : Json(nullptr)},
-                        {"stored_bytes", map.payload ? Json(map.payload->stored_size) : Json(nullptr)},
-                        {"coverage", map.coverage ? Json(*map.coverage) : Json(nullptr)}});
+        rows.push_back({i, inspection.maps[i]});
     }
-    const bool known = inspection.major != 0;
-    return jsonText(
-        {{"file", name},
-         {"file_size", inspection.file_size},
-         {"version", known ? Json(std::to_string(inspection.major) + "." + std::to_string(inspection.minor))
-                           : Json(nullptr)},
-         {"verdict", verdict(inspection)},
-         {"fatal", inspection.count(Severity::kFatal)},
-         {"errors", inspection.count(Severity::kError)},
-         {"warnings", inspection.count(Severity::kWarning)},
-         {"header", partStateName(inspection.header)},
-         {"metadata", partStateName(inspection.metadata)},
-         {"issues", issues},
-         {"maps", maps}});
+    return rows;
 }
 
 }  // namespace relief

@@ -1,17 +1,90 @@
-// What `relief check FILE` says of a container alone, as text and as JSON.
+// A container by itself, as `relief check FILE` reports it.
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "bake/report/collider_report.h"
 #include "formats/inspect.h"
 
 namespace relief {
 
-/// A line of result, a line an issue, a table of the maps, and what can be trusted.
-/// \param name  of the file, for people.
+/// "sound", "suspicious" or "damaged"
+[[nodiscard]] std::string_view inspectionVerdict(const Inspection& inspection);
+
+/// A line for the verdict, a line for each issue, a table of the maps, and which parts can be trusted.
+/// \param name  of the file, for people
 [[nodiscard]] std::string inspectionText(const Inspection& inspection, const std::string& name);
 
-/// formats/schemas/check-file.schema.json.
-[[nodiscard]] std::string inspectionJson(const Inspection& inspection, const std::string& name);
+// --- The same as fields.
+
+inline constexpr std::span<const std::string_view> kPartStateWords =
+    kWords<"sound", "suspicious", "unverified", "damaged", "unreadable">;
+
+template <class Visitor, FieldsOf<Issue> I>
+void fields(Visitor& visit, I& issue) {
+    visit("code", issue.id(),
+          {.help = "Code of the issue; codes keep their meaning", .pattern = "^RLF-[0-9]{4}$"});
+    visit("severity", severityName(issue.severity()),
+          {.help = "Severity of the code", .words = kWords<"fatal", "error", "warning">});
+    visit("map", onlyIf(issue.map >= 0, issue.map),
+          {"Index of the map; null if the issue is not about a map", {}, kFromZero});
+    visit("offset", issue.offset, {"Byte of the file; null if there is none to name"});
+    visit("message", issue.message, {"One line for people"});
+}
+
+struct MapInspectionReport {
+    std::size_t index = 0;
+    const MapInspection& map = kNone<MapInspection>;
+};
+
+template <class Visitor, FieldsOf<MapInspectionReport> R>
+void fields(Visitor& visit, R& report) {
+    const std::optional<DepthMap>& frame = report.map.frame;
+    const std::optional<PayloadInfo>& payload = report.map.payload;
+    visit("index", report.index, {"Position in the container"});
+    visit("state", partStateName(report.map.state),
+          {.help = "How far the map can be trusted", .words = kPartStateWords});
+    visit(
+        "format", frame ? std::optional(mapFormatName(frame->format)) : std::nullopt,
+        {.help = "Format of the texels; null if the map's description is invalid", .words = kMapFormatWords});
+    visit("width", frame ? std::optional(frame->width) : std::nullopt, {"Width", "texels"});
+    visit("height", frame ? std::optional(frame->height) : std::nullopt, {"Height", "texels"});
+    visit("offset", payload ? std::optional(payload->offset) : std::nullopt,
+          {"First byte of the payload, according to the metadata"});
+    visit("stored_bytes", payload ? std::optional(payload->stored_size) : std::nullopt,
+          {"Size of the payload, according to the metadata", "bytes"});
+    visit("coverage", report.map.coverage,
+          {"Share of the texels that hold a surface; null if they could not be read", {}, kShareRange});
+}
+
+/// `relief check FILE --json`
+struct InspectionReport {
+    const Inspection& inspection = kNone<Inspection>;
+    std::string name;  ///< of the file
+
+    [[nodiscard]] std::vector<MapInspectionReport> maps() const;
+};
+
+template <class Visitor, FieldsOf<InspectionReport> R>
+void fields(Visitor& visit, R& report) {
+    const Inspection& all = report.inspection;
+    visit("file", report.name, {"File name without its folder, or standard input"});
+    visit("file_size", all.file_size, {"Size of the file", "bytes"});
+    visit("version", onlyIf(all.major != 0, std::to_string(all.major) + "." + std::to_string(all.minor)),
+          {.help = "Version of the container format; null if the header is unreadable",
+           .pattern = "^[0-9]+\\.[0-9]+$"});
+    visit("verdict", inspectionVerdict(all),
+          {.help = "Readers refuse damaged files", .words = kWords<"sound", "suspicious", "damaged">});
+    visit("fatal", all.count(Severity::kFatal), {"Issues behind which nothing can be read"});
+    visit("errors", all.count(Severity::kError), {"Issues for which readers refuse the file"});
+    visit("warnings", all.count(Severity::kWarning), {"Issues that readers accept"});
+    visit("header", partStateName(all.header),
+          {.help = "State of the first 64 bytes", .words = kPartStateWords});
+    visit("metadata", partStateName(all.metadata),
+          {.help = "State of the description of the maps", .words = kPartStateWords});
+    visit("issues", all.issues, {"Issues, in the order of the file"});
+    visit("maps", report.maps(), {"Maps, as many as the metadata lists"});
+}
 
 }  // namespace relief

@@ -3,24 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <span>
 
 #include "bake/measure/worst_places.h"
-#include "bake/report/accuracy_report.h"
-#include "bake/report/places_report.h"
-#include "bake/report/report.h"
+#include "bake/report/report_text.h"
 #include "formats/base/text.h"
-#include "runtime/tool/json_text.h"
 
 namespace relief {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::size_t kShownParts = 5;
 constexpr std::size_t kShownGroups = 5;
-constexpr std::size_t kListedMax = 100;
 /// A part is kept by texels of this share of its middle extent: three across a pillar.
 constexpr double kTexelsAcross = 1.0 / 3.0;
 /// Budgets beyond are not advised for the sake of a part.
@@ -36,16 +29,6 @@ std::string megabytes(double bytes) {
                         : std::to_string((tenths + 9) / 10) + "MB";
 }
 
-/// The finest texels that the collider has at the middle of a part; 0 without maps.
-double texelOf(const SurfacePart& part, const Collider& collider) {
-    double texel = 0.0;
-    for (const DepthMap& map : collider.maps) {
-        const double here = texelAt(map, part.bounds.center());
-        texel = here > 0.0 && (texel == 0.0 || here < texel) ? here : texel;
-    }
-    return texel;
-}
-
 double middleExtent(const SurfacePart& part) {
     const glm::dvec3 size = part.bounds.size();
     std::array<double, 3> extents = {size.x, size.y, size.z};
@@ -53,33 +36,14 @@ double middleExtent(const SurfacePart& part) {
     return extents[1];
 }
 
-/// What would keep a part: a budget, a thickness, a bake of its own.
-std::string cureOf(const SurfacePart& part, const Collider& collider) {
-    std::string cure;
-    if (part.right_thickness < part.thickness) {
-        cure = "its shell is " + lengthText(part.thickness, collider.unit) + " thick; --thickness " +
-               shortest(parseFloat(roughly(part.right_thickness)).value_or(0.0F));
-    }
-    const double texel = texelOf(part, collider);
-    const double across = part.kind == PartKind::kSheet ? part.right_thickness : middleExtent(part);
-    const double needed = std::min(kTexelsAcross * across, 0.5 * texel);
-    if (!(needed > 0.0)) {
-        return cure;
-    }
-    const double bytes = static_cast<double>(collider.gpuBytes()) * (texel / needed) * (texel / needed);
-    cure += cure.empty() ? "its texels are " + lengthText(texel, collider.unit) + " wide; " : " with ";
-    cure += "texels of " + lengthText(needed, collider.unit) + " take ";
-    cure += bytes <= kBudgetAdvisedMax ? "--budget " + megabytes(bytes) + ", or " : "";
-    return cure + (part.node.empty() ? "a bake of this part by itself" : "a bake of its node by itself");
-}
-
 std::string sideText(const PartAccuracy& accuracy) {
     const double inside = accuracy.wrong.false_inside / std::max(accuracy.wrong.total(), 1e-9);
     return inside > 0.9 ? "called inside" : inside < 0.1 ? "called outside" : "called either";
 }
 
-std::string countText(std::uint64_t count, const char* what) {
-    return std::to_string(count) + (count == 1 ? " part is " : " parts are ") + what;
+/// "3 parts are"
+std::string partsAre(std::uint64_t count) {
+    return countText(count, "part") + (count == 1 ? " is " : " are ");
 }
 
 /// "27 of 82 parts are lost"
@@ -88,8 +52,8 @@ std::string ofMeasured(std::uint64_t count, const PartsAccuracy& accuracy, const
                                    accuracy.countOf(PartVerdict::kCoarse) +
                                    accuracy.countOf(PartVerdict::kLost);
     const bool all = accuracy.countOf(PartVerdict::kSmall) + accuracy.countOf(PartVerdict::kRest) == 0;
-    return std::to_string(count) + " of " + (all ? "" : "the largest ") + std::to_string(measured) +
-           (measured == 1 ? " part" : " parts") + (count == 1 ? " is " : " are ") + what;
+    return std::to_string(count) + " of " + (all ? "" : "the largest ") + countText(measured, "part") +
+           (count == 1 ? " is " : " are ") + what;
 }
 
 std::string groupsText(const PartsAccuracy& accuracy, bool materials, const std::string& unit) {
@@ -102,9 +66,8 @@ std::string groupsText(const PartsAccuracy& accuracy, bool materials, const std:
         ++shown;
         text += "  " + cleanUtf8(group.name, kNameBytesMax) + ", " +
                 lengthText(double{group.bounds.longestSide()}, unit) + " long at " +
-                positionText(group.bounds.center()) + ": " + roughly(group.wrong.total()) + " % wrong, " +
-                std::to_string(group.lost) + " of " + std::to_string(group.parts) +
-                (group.parts == 1 ? " part" : " parts") + " lost\n";
+                positionText(group.bounds.center()) + ": " + percentText(group.wrong.total()) + " wrong, " +
+                std::to_string(group.lost) + " of " + countText(group.parts, "part") + " lost\n";
     }
     return text.empty() ? "" : (materials ? "The worst materials:\n" : "The worst nodes:\n") + text;
 }
@@ -125,7 +88,7 @@ std::string verdictText(double wrong_percent, const PartsAccuracy& accuracy) {
         return verdictText(wrong_percent);
     }
     const std::uint64_t lost = accuracy.countOf(PartVerdict::kLost);
-    return roughly(wrong_percent) + " % wrong near the surface, but " +
+    return percentText(wrong_percent) + " wrong near the surface, but " +
            (lost > 0 ? ofMeasured(lost, accuracy, "lost")
                      : ofMeasured(accuracy.countOf(PartVerdict::kCoarse), accuracy, "coarse")) +
            ": " + grade;
@@ -141,11 +104,39 @@ std::string partName(const SurfacePart& part, std::size_t index) {
     return material.empty() ? node : node + " (" + material + ")";
 }
 
+double partTexel(const SurfacePart& part, const Collider& collider) {
+    double texel = 0.0;
+    for (const DepthMap& map : collider.maps) {
+        const double here = texelAt(map, part.bounds.center());
+        texel = here > 0.0 && (texel == 0.0 || here < texel) ? here : texel;
+    }
+    return texel;
+}
+
+std::string partCure(const SurfacePart& part, const Collider& collider) {
+    std::string cure;
+    if (part.right_thickness < part.thickness) {
+        cure = "its shell is " + lengthText(part.thickness, collider.unit) + " thick; --thickness " +
+               shortest(parseFloat(roughly(part.right_thickness)).value_or(0.0F));
+    }
+    const double texel = partTexel(part, collider);
+    const double across = part.kind == PartKind::kSheet ? part.right_thickness : middleExtent(part);
+    const double needed = std::min(kTexelsAcross * across, 0.5 * texel);
+    if (!(needed > 0.0)) {
+        return cure;
+    }
+    const double bytes = static_cast<double>(collider.gpuBytes()) * (texel / needed) * (texel / needed);
+    cure += cure.empty() ? "its texels are " + lengthText(texel, collider.unit) + " wide; " : " with ";
+    cure += "texels of " + lengthText(needed, collider.unit) + " take ";
+    cure += bytes <= kBudgetAdvisedMax ? "--budget " + megabytes(bytes) + ", or " : "";
+    return cure + (part.node.empty() ? "a bake of this part by itself" : "a bake of its node by itself");
+}
+
 std::string partText(const PartAccuracy& accuracy, const SurfaceParts& parts, const Collider& collider) {
     const SurfacePart& part = parts.parts[accuracy.part];
-    const std::string cure = cureOf(part, collider);
+    const std::string cure = partCure(part, collider);
     return lengthText(part.size(), collider.unit) + " long at " + positionText(part.bounds.center()) + ": " +
-           roughly(accuracy.wrong.total()) + " % of the points near it are on the wrong side, " +
+           percentText(accuracy.wrong.total()) + " of the points near it are on the wrong side, " +
            sideText(accuracy) + (cure.empty() ? "" : "; " + cure);
 }
 
@@ -168,62 +159,34 @@ std::string partsText(const PartsAccuracy& accuracy, const SurfaceParts& parts, 
     text += groupsText(accuracy, false, collider.unit) + groupsText(accuracy, true, collider.unit);
     const std::uint64_t small = accuracy.countOf(PartVerdict::kSmall);
     if (small > 0) {
-        text += countText(small, "smaller than ") + lengthText(accuracy.detail, collider.unit) +
+        text += partsAre(small) + "smaller than " + lengthText(accuracy.detail, collider.unit) +
                 " and not judged; --detail LENGTH judges them\n";
     }
     if (const std::uint64_t rest = accuracy.countOf(PartVerdict::kRest); rest > 0) {
-        text += countText(rest, "not judged: the largest ") +
+        text += partsAre(rest) + "not judged: the largest " +
                 std::to_string(accuracy.parts.size() - rest - small) + " are\n";
     }
     return text;
 }
 
-Json jsonParts(const PartsAccuracy& accuracy, const SurfaceParts& parts, const Collider& collider) {
-    Json json = {{"detail", accuracy.detail}, {"count", accuracy.parts.size()}};
-    for (std::size_t i = 0; i < kPartVerdicts; ++i) {
-        json[partVerdictName(static_cast<PartVerdict>(i))] = accuracy.count[i];
-    }
-    Json worst = Json::array();
+std::vector<PartReport> PartsReport::worst() const {
+    std::vector<PartReport> rows;
     for (const PartAccuracy& one :
-         std::span(accuracy.parts).first(std::min(accuracy.parts.size(), kListedMax))) {
-        const SurfacePart& part = parts.parts[one.part];
-        const glm::vec3 center = part.bounds.center();
-        Json row = {{"part", one.part + 1},
-                    {"node", part.node},
-                    {"material", part.material},
-                    {"kind", partKindName(part.kind)},
-                    {"state", partVerdictName(one.state)},
-                    {"size", part.size()},
-                    {"position", {jsonNumber(center.x), jsonNumber(center.y), jsonNumber(center.z)}},
-                    {"triangles", part.triangles},
-                    {"thickness", part.thickness > 0.0 ? Json(part.thickness) : Json(nullptr)},
-                    {"points", one.points},
-                    {"sigma", one.sigma}};
-        row.update(jsonWrong(one.wrong));
-        row["texel"] = texelOf(part, collider);
-        const bool wants = one.state == PartVerdict::kLost || one.state == PartVerdict::kCoarse;
-        row["cure"] = wants ? Json(cureOf(part, collider)) : Json(nullptr);
-        worst.push_back(std::move(row));
+         std::span(accuracy.parts).first(std::min(accuracy.parts.size(), kListedPartsMax))) {
+        rows.push_back({one, parts.parts[one.part], collider});
     }
-    json["worst"] = std::move(worst);
-    Json groups = Json::array();
+    return rows;
+}
+
+std::vector<GroupAccuracy> PartsReport::groups() const {
+    std::vector<GroupAccuracy> rows;
     std::array<std::size_t, 2> listed{};
     for (const GroupAccuracy& group : accuracy.groups) {
-        if (listed[group.is_material ? 1 : 0]++ >= kListedMax) {
-            continue;
+        if (listed[group.is_material ? 1 : 0]++ < kListedPartsMax) {
+            rows.push_back(group);
         }
-        const glm::vec3 center = group.bounds.center();
-        Json row = {{"name", group.name},
-                    {"of", group.is_material ? "material" : "node"},
-                    {"parts", group.parts},
-                    {"lost", group.lost},
-                    {"size", double{group.bounds.longestSide()}},
-                    {"position", {jsonNumber(center.x), jsonNumber(center.y), jsonNumber(center.z)}}};
-        row.update(jsonWrong(group.wrong));
-        groups.push_back(std::move(row));
     }
-    json["groups"] = std::move(groups);
-    return json;
+    return rows;
 }
 
 std::optional<std::string> lostPartsWarning(const PartsAccuracy& accuracy, const SurfaceParts& parts,
@@ -249,8 +212,7 @@ std::optional<std::string> strayText(const SurfaceParts& parts, const std::strin
     const std::uint32_t first = strays.parts.front();
     const SurfacePart& part = parts.parts[first];
     const std::size_t others = strays.parts.size() - 1;
-    return partName(part, first) + " (" + std::to_string(part.triangles) +
-           (part.triangles == 1 ? " triangle)" : " triangles)") +
+    return partName(part, first) + " (" + countText(part.triangles, "triangle") + ")" +
            (others > 0 ? " and " + std::to_string(others) + " more parts lie" : " lies") + " astray at " +
            positionText(part.bounds.center()) + ", far from all else, which is " +
            lengthText(double{strays.rest.longestSide()}, unit) + " long at " +
@@ -275,10 +237,10 @@ std::vector<std::string> partWarnings(const SurfaceParts& parts, const std::stri
     if (swallowed > 0) {
         const SurfacePart& part = parts.parts[largest];
         warnings.push_back("shells of --thickness " + shortest(static_cast<float>(part.thickness)) +
-                           " swallow " + std::to_string(swallowed) +
-                           (swallowed == 1 ? " sheet: " : " sheets, the largest ") + partName(part, largest) +
-                           ", " + lengthText(part.size(), unit) + " long at " +
-                           positionText(part.bounds.center()) + "; give a smaller --thickness");
+                           " swallow " + countText(swallowed, "sheet") +
+                           (swallowed == 1 ? ": " : ", the largest ") + partName(part, largest) + ", " +
+                           lengthText(part.size(), unit) + " long at " + positionText(part.bounds.center()) +
+                           "; give a smaller --thickness");
     }
     return warnings;
 }

@@ -11,34 +11,16 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <nlohmann/json.hpp>
+#include <numeric>
 #include <span>
 
-#include "bake/report/report.h"
-#include "bake/report/size_report.h"
+#include "bake/report/report_text.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
+#include "formats/fields/json.h"
 
 namespace relief {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-const char* stateName(AssetState state) {
-    switch (state) {
-        case AssetState::kStale:
-            return "stale";
-        case AssetState::kUpToDate:
-            return "up to date";
-        case AssetState::kBaked:
-            return "baked";
-        case AssetState::kFailed:
-            return "failed";
-        case AssetState::kCancelled:
-            return "cancelled";
-    }
-    return "unknown";
-}
 
 std::string seconds(double ms) {
     char text[32];
@@ -72,100 +54,79 @@ bool canRedraw() {
 
 }  // namespace
 
+std::size_t RecipeCounts::all() const {
+    return std::accumulate(of_state.begin(), of_state.end(), std::size_t{0});
+}
+
 RecipeCounts countAssets(const std::vector<AssetResult>& assets) {
     RecipeCounts counts;
     for (const AssetResult& asset : assets) {
-        switch (asset.state) {
-            case AssetState::kStale:
-                ++counts.stale;
-                break;
-            case AssetState::kUpToDate:
-                ++counts.up_to_date;
-                break;
-            case AssetState::kBaked:
-                ++counts.baked;
-                break;
-            case AssetState::kFailed:
-                ++counts.failed;
-                break;
-            case AssetState::kCancelled:
-                ++counts.cancelled;
-                break;
-        }
+        ++counts.of_state[static_cast<std::size_t>(asset.state)];
         counts.bytes += asset.bytes;
     }
     return counts;
 }
 
 std::string recipeSummary(const RecipeCounts& counts, double ms) {
-    const std::string assets = std::to_string(counts.all()) + (counts.all() == 1 ? " asset" : " assets");
-    if (counts.up_to_date == counts.all()) {
+    const std::string assets = countText(counts.all(), "asset");
+    if (counts.of(AssetState::kUpToDate) == counts.all()) {
         return assets + " up to date";
     }
     std::string text;
-    const auto add = [&](std::size_t count, const char* words) {
-        if (count > 0) {
+    const auto add = [&](AssetState state, const char* words) {
+        if (const std::size_t count = counts.of(state); count > 0) {
             text += (text.empty() ? ": " : ", ") + std::to_string(count) + " " + words;
         }
     };
-    add(counts.stale, "to bake");
-    add(counts.baked, "baked");
-    add(counts.up_to_date, "up to date");
-    add(counts.failed, "failed");
-    add(counts.cancelled, "not baked");
+    add(AssetState::kStale, "to bake");
+    add(AssetState::kBaked, "baked");
+    add(AssetState::kUpToDate, "up to date");
+    add(AssetState::kFailed, "failed");
+    add(AssetState::kCancelled, "not baked");
     return assets + text + "; " + bytesText(counts.bytes) + "; " + seconds(ms);
-}
-
-Json jsonAsset(const AssetResult& asset) {
-    Json json = {{"asset", asset.job.output}, {"mesh", asset.job.mesh}, {"state", stateName(asset.state)}};
-    if (!asset.reason.empty()) {
-        json["reason"] = asset.reason;
-    }
-    if (asset.state == AssetState::kBaked || asset.state == AssetState::kFailed) {
-        json["ms"] = asset.ms;
-    }
-    if (!asset.hash.empty()) {
-        Json inputs = Json::array();
-        for (const InputFile& input : asset.inputs) {
-            inputs.push_back({{"file", input.path}, {"hash", input.hash}});
-        }
-        json["bytes"] = asset.bytes;
-        json["hash"] = asset.hash;
-        json["inputs"] = std::move(inputs);
-    }
-    if (!asset.key.empty()) {
-        json["key"] = asset.key;
-    }
-    if (asset.state == AssetState::kFailed) {
-        json["code"] = static_cast<int>(asset.error.code);
-        json["error"] = asset.error.message;
-    }
-    if (!asset.warnings.empty()) {
-        json["warnings"] = asset.warnings;
-    }
-    return json;
-}
-
-Json jsonCounts(const RecipeCounts& counts) {
-    return {{"assets", counts.all()},  {"stale", counts.stale},
-            {"baked", counts.baked},   {"up_to_date", counts.up_to_date},
-            {"failed", counts.failed}, {"cancelled", counts.cancelled},
-            {"bytes", counts.bytes}};
-}
-
-Json jsonPruned(const PrunedOutput& output, bool dry_run) {
-    const char* const state = !output.kept.empty() ? "kept" : dry_run ? "to remove" : "removed";
-    Json json = {{"asset", output.output}, {"mesh", output.mesh}, {"state", state}, {"bytes", output.bytes}};
-    if (!output.kept.empty()) {
-        json["reason"] = output.kept;
-    }
-    return json;
 }
 
 std::string prunedReason(const PrunedOutput& output, bool dry_run) {
     return output.kept.empty()
                ? std::string(dry_run ? "to be removed" : "removed") + ", as the recipe no longer names it"
                : "the recipe no longer names it, but it stays: " + output.kept + "; remove it yourself";
+}
+
+std::optional<std::string> shardText(const std::optional<Shard>& shard) {
+    return shard ? std::optional(std::to_string(shard->index) + "/" + std::to_string(shard->count))
+                 : std::nullopt;
+}
+
+std::vector<AssetReport> AssetReport::kinds() {
+    static const auto each = [] {
+        std::array<AssetResult, kWordsOf<AssetState>.size()> assets;
+        for (std::size_t i = 0; i < assets.size(); ++i) {
+            assets[i].state = static_cast<AssetState>(i);
+        }
+        return assets;
+    }();
+    std::vector<AssetReport> reports;
+    for (const AssetResult& asset : each) {
+        reports.push_back({asset});
+    }
+    return reports;
+}
+
+std::vector<PrunedReport> PrunedReport::kinds() {
+    static const PrunedOutput kept{.output = "", .mesh = "", .kept = "changed"};
+    return {{}, {kept}};
+}
+
+std::vector<AssetEvent> AssetEvent::kinds() {
+    std::vector<AssetEvent> events;
+    for (const AssetReport& asset : AssetReport::kinds()) {
+        events.push_back({{asset.asset, true}});
+    }
+    return events;
+}
+
+std::vector<PrunedEvent> PrunedEvent::kinds() {
+    return {{{}}, {PrunedReport::kinds().back()}};
 }
 
 // --- events ---
@@ -187,11 +148,11 @@ Result<void> RecipeEvents::open(const std::string& path) {
     return {};
 }
 
-void RecipeEvents::write(const Json& event) {
+void RecipeEvents::write(const RecipeEvent& event) {
     if (fd_ < 0 || error_ != 0) {
         return;
     }
-    const std::string line = event.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+    const std::string line = jsonLine(jsonOf(event));
     error_ = writeAll(fd_, std::as_bytes(std::span(line)));
 }
 

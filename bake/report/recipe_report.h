@@ -1,50 +1,217 @@
-// What a run of a recipe says: events for machines while it runs, a display for people, and both at its end.
+// The reports of a run of a recipe: events for programs and a display for people while it runs, and both at its end.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
+#include <array>
+#include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "bake/recipe/prune.h"
 #include "bake/recipe/recipe_run.h"
+#include "bake/report/bake_report.h"
 #include "formats/base/descriptor.h"
 #include "formats/base/stopwatch.h"
 
 namespace relief {
 
 struct RecipeCounts {
-    std::size_t stale = 0;
-    std::size_t up_to_date = 0;
-    std::size_t baked = 0;
-    std::size_t failed = 0;
-    std::size_t cancelled = 0;
+    std::array<std::size_t, kWordsOf<AssetState>.size()> of_state{};
     std::uint64_t bytes = 0;  ///< of the outputs that are up to date now
 
-    [[nodiscard]] std::size_t all() const { return stale + up_to_date + baked + failed + cancelled; }
+    [[nodiscard]] std::size_t of(AssetState state) const { return of_state[static_cast<std::size_t>(state)]; }
+    [[nodiscard]] std::size_t all() const;
 };
 [[nodiscard]] RecipeCounts countAssets(const std::vector<AssetResult>& assets);
 
 /// "12 assets: 3 baked, 8 up to date, 1 failed; 1.2 MB; 4.5 s", or "12 assets up to date".
 [[nodiscard]] std::string recipeSummary(const RecipeCounts& counts, double ms);
 
-/// asset, mesh, state, reason, ms, bytes, hash, inputs, warnings, code and error: those that apply.
-[[nodiscard]] nlohmann::ordered_json jsonAsset(const AssetResult& asset);
-[[nodiscard]] nlohmann::ordered_json jsonCounts(const RecipeCounts& counts);
-
-/// asset, mesh, state, bytes, and reason where it stays.
-[[nodiscard]] nlohmann::ordered_json jsonPruned(const PrunedOutput& output, bool dry_run);
 /// "removed, as the recipe no longer names it", or why it stays.
 [[nodiscard]] std::string prunedReason(const PrunedOutput& output, bool dry_run);
+
+// --- The same as fields.
+
+/// An asset by its state.
+struct AssetReport {
+    const AssetResult& asset = kNone<AssetResult>;
+    bool event = false;  ///< in an event, which leaves out the key of an asset that was not made
+
+    [[nodiscard]] static std::vector<AssetReport> kinds();
+};
+
+template <class Visitor, FieldsOf<AssetReport> R>
+void fields(Visitor& visit, R& report) {
+    const AssetResult& asset = report.asset;
+    const AssetState state = asset.state;
+    const bool made = state == AssetState::kBaked || state == AssetState::kUpToDate;
+    const bool failed = state == AssetState::kFailed;
+    const bool tried = state == AssetState::kBaked || failed;
+    visit("asset", asset.job.output, {"Output, relative to the output folder"});
+    visit("mesh", asset.job.mesh, {"Its mesh, relative to the folder of the recipe"});
+    visit("state", wordOf(state),
+          {.help = "State of the asset", .words = {&kWordsOf<AssetState>[std::size_t(state)], 1}});
+    if (state != AssetState::kUpToDate) {
+        visit("reason", asset.reason, {"Reason why it is not up to date"});
+    }
+    if (tried) {
+        visit("ms", asset.ms, {"Time", "ms", kFromZero});
+    }
+    if (made) {
+        visit("bytes", asset.bytes, {"Size of the output", "bytes"});
+        visit("hash", asset.hash, {.help = "XXH3-128 of the output", .pattern = kHashPattern});
+        visit("inputs", asset.inputs, {.help = "All files that it was made from", .items = kFromOne});
+    }
+    if (made || !report.event) {
+        visit("key", asset.key,
+              {.help = "XXH3-128 of the program, the options and the inputs: equal keys mean equal outputs",
+               .pattern = "^[0-9a-f]{32}$",
+               .left_out = !made});
+    }
+    if (failed) {
+        visit("code", static_cast<int>(asset.error.code), {"Exit code", {}, {1.0, 7.0}});
+        visit("error", asset.error.message, {"One line for people"});
+    }
+    if (tried) {
+        visit("warnings", asset.warnings, {.help = "Warnings, one line each", .left_out = true});
+    }
+}
+
+template <class Visitor, FieldsOf<RecipeCounts> C>
+void fields(Visitor& visit, C& counts) {
+    visit("assets", counts.all(), {"All assets"});
+    visit("stale", counts.of(AssetState::kStale), {"Assets to be baked, in a dry run"});
+    visit("baked", counts.of(AssetState::kBaked), {"Assets baked"});
+    visit("up_to_date", counts.of(AssetState::kUpToDate), {"Assets not baked because nothing changed"});
+    visit("failed", counts.of(AssetState::kFailed), {"Assets that failed"});
+    visit("cancelled", counts.of(AssetState::kCancelled), {"Assets not baked because the run ended before"});
+    visit("bytes", counts.bytes, {"Size of all outputs that are up to date now", "bytes"});
+}
+
+struct PrunedReport {
+    const PrunedOutput& output = kNone<PrunedOutput>;
+    bool dry_run = false;
+
+    [[nodiscard]] static std::vector<PrunedReport> kinds();
+};
+
+template <class Visitor, FieldsOf<PrunedReport> R>
+void fields(Visitor& visit, R& report) {
+    const PrunedOutput& output = report.output;
+    const bool kept = !output.kept.empty();
+    visit("asset", output.output, {"Output, relative to the output folder"});
+    visit("mesh", output.mesh, {"Mesh that it was baked from, relative to the folder of the recipe"});
+    visit(
+        "state",
+        kept             ? "kept"
+        : report.dry_run ? "to remove"
+                         : "removed",
+        {.help = "Result of --prune",
+         .words = kept ? std::span<const std::string_view>(kWords<"kept">) : kWords<"removed", "to remove">});
+    visit("bytes", output.bytes, {"Size of the file", "bytes"});
+    if (kept) {
+        visit("reason", output.kept, {"Reason why it is kept"});
+    }
+}
+
+/// "2/4"; null without --shard.
+[[nodiscard]] std::optional<std::string> shardText(const std::optional<Shard>& shard);
+inline constexpr FieldInfo kShardField{.help = "--shard; null without it", .pattern = "^[0-9]+/[0-9]+$"};
+
+/// `relief bake --recipe --json`
+struct RecipeJson {
+    std::string recipe;
+    std::string output;
+    std::optional<Shard> shard;
+    RecipeCounts counts = {};
+    double ms = 0.0;
+    std::vector<AssetReport> assets = {};
+    std::optional<std::vector<PrunedReport>> pruned = {};  ///< of --prune
+};
+
+template <class Visitor, FieldsOf<RecipeJson> R>
+void fields(Visitor& visit, R& report) {
+    visit("recipe", report.recipe, {"Recipe as given"});
+    visit("output", report.output, {"Output folder"});
+    visit("shard", shardText(report.shard), kShardField);
+    visit("counts", report.counts, {"Numbers of assets"});
+    visit("ms", report.ms, {"Time of the whole run", "ms", kFromZero});
+    visit("assets", report.assets, {"Assets, in the order of the recipe"});
+    visit("pruned", report.pruned,
+          {.help = "Outputs that the recipe no longer names; only with --prune", .left_out = true});
+}
+
+// --- Events
+
+struct RecipeStart {
+    std::string recipe;
+    std::size_t assets = 0;
+    std::optional<Shard> shard;
+    unsigned at_once = 1;
+};
+
+template <class Visitor, FieldsOf<RecipeStart> S>
+void fields(Visitor& visit, S& start) {
+    visit("event", "start", {.help = "The first line", .words = kWords<"start">});
+    visit("tool", std::string("relief ") + RELIEF_VERSION, {"Name and version of the program"});
+    visit("recipe", start.recipe, {"Recipe as given"});
+    visit("assets", start.assets, {"All assets"});
+    visit("shard", shardText(start.shard), kShardField);
+    visit("at_once", start.at_once, {"Assets baked at the same time", {}, kFromOne});
+}
+
+struct AssetEvent {
+    AssetReport asset = {};
+
+    [[nodiscard]] static std::vector<AssetEvent> kinds();
+};
+
+template <class Visitor, FieldsOf<AssetEvent> E>
+void fields(Visitor& visit, E& event) {
+    static constexpr auto kEvents =
+        kWords<"started", "skipped", "done", "failed", "cancelled">;  // as in AssetState
+    const auto& word = kEvents[static_cast<std::size_t>(event.asset.asset.state)];
+    visit("event", word, {.help = "Kind of event", .words = {&word, 1}});
+    fields(visit, event.asset);
+}
+
+struct PrunedEvent {
+    PrunedReport output = {};
+
+    [[nodiscard]] static std::vector<PrunedEvent> kinds();
+};
+
+template <class Visitor, FieldsOf<PrunedEvent> E>
+void fields(Visitor& visit, E& event) {
+    visit("event", "pruned", {.help = "Kind of event", .words = kWords<"pruned">});
+    fields(visit, event.output);
+}
+
+struct RecipeEnd {
+    RecipeCounts counts = {};
+    double ms = 0.0;
+    int signal = 0;  ///< 0: none
+};
+
+template <class Visitor, FieldsOf<RecipeEnd> E>
+void fields(Visitor& visit, E& end) {
+    visit("event", "summary", {.help = "The last line", .words = kWords<"summary">});
+    fields(visit, end.counts);
+    visit("ms", end.ms, {"Time of the whole run", "ms", kFromZero});
+    visit("signal", onlyIf(end.signal != 0, end.signal),
+          {"Signal that ended the run; null if none did", {}, kFromOne});
+}
+
+using RecipeEvent = std::variant<RecipeStart, AssetEvent, PrunedEvent, RecipeEnd>;
 
 /// Lines of JSON, each written as it happens.
 class RecipeEvents {
   public:
-    /// \param path  a log of an earlier run is emptied; "-": standard output.
-    /// Errors: kIo; kUsage: it is another kind of file, whose contents would be lost: what meshes refer to is not known
-    /// before they are read.
+    /// \param path  a log of an earlier run is emptied; "-": standard output
+    /// Errors: kIo; kUsage: a file of another kind, whose contents would be lost.
     [[nodiscard]] Result<void> open(const std::string& path);
-    /// Does nothing if open() was not called. What cannot be written is told by finish().
-    void write(const nlohmann::ordered_json& event);
+    /// Does nothing without open(). finish() reports errors.
+    void write(const RecipeEvent& event);
     /// Errors: kIo: an event could not be written.
     [[nodiscard]] Result<void> finish() const;
 

@@ -10,7 +10,7 @@
 namespace relief {
 namespace {
 
-constexpr std::array<std::string_view, kShapeAsCount> kAsNames = {"auto", "solid", "shell", "terrain"};
+constexpr std::span kAsNames = kWordsOf<ShapeAs>;
 /// What a name is recorded by as it is, beside all beyond ASCII.
 constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._+/:,-";
 /// Before a default thickness, of which each part takes its own.
@@ -57,13 +57,11 @@ bool isNamed(const ShapeOptions& options, std::string_view name) {
 }  // namespace
 
 std::string_view shapeAsName(ShapeAs as) {
-    return kAsNames[static_cast<std::size_t>(as)];
+    return wordOf(as);
 }
 
 std::optional<ShapeAs> parseShapeAs(std::string_view name) {
-    const auto found = std::find(kAsNames.begin(), kAsNames.end(), name);
-    return found == kAsNames.end() ? std::nullopt
-                                   : std::optional(static_cast<ShapeAs>(found - kAsNames.begin()));
+    return fromWord<ShapeAs>(name);
 }
 
 std::vector<std::string> ShapeOptions::names() const {

@@ -8,15 +8,17 @@
 #include <vector>
 
 #include "formats/base/result.h"
+#include "formats/fields/field.h"
 
 namespace relief {
 
 /// What parts are taken for.
 enum class ShapeAs : std::uint8_t { kAuto, kSolid, kShell, kTerrain };
+template <>
+inline constexpr std::array<std::string_view, 4> kWordsOf<ShapeAs>{"auto", "solid", "shell", "terrain"};
+inline constexpr std::size_t kShapeAsCount = kWordsOf<ShapeAs>.size();
 
-inline constexpr std::size_t kShapeAsCount = 4;
-
-[[nodiscard]] std::string_view shapeAsName(ShapeAs as);  ///< "auto", "solid", "shell" or "terrain"
+[[nodiscard]] std::string_view shapeAsName(ShapeAs as);
 [[nodiscard]] std::optional<ShapeAs> parseShapeAs(std::string_view name);
 
 /// What the triangles of a name are taken for, by its mark (TriangleMesh::marks).

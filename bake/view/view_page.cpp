@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
-#include "bake/report/report.h"
-#include "runtime/tool/json_text.h"
+#include "bake/report/report_text.h"
+#include "formats/fields/json.h"
 
 namespace relief {
 namespace {

@@ -18,7 +18,9 @@
 // Of a report, which is only written, fields() may visit expressions as well as members.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <limits>
@@ -26,6 +28,7 @@
 #include <span>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace relief {
@@ -44,6 +47,20 @@ struct FieldRange {
 constexpr FieldRange within(double limit) {
     return {-limit, limit};
 }
+inline constexpr FieldRange kFromZero{0.0};
+inline constexpr FieldRange kFromOne{1.0};
+inline constexpr FieldRange kShareRange{0.0, 1.0};
+inline constexpr FieldRange kPercentRange{0.0, 100.0};
+
+/// A literal as an argument of a template.
+template <std::size_t kSize>
+struct FieldWord {
+    char text[kSize];
+    constexpr FieldWord(const char (&word)[kSize]) { std::copy_n(word, kSize, text); }  // NOLINT: implicit
+};
+/// The only values of a field that is text, or of a number in digits: `.words = kWords<"less", "greater">`.
+template <FieldWord... kWord>
+inline constexpr std::array<std::string_view, sizeof...(kWord)> kWords{kWord.text...};
 
 /// All that is known of a field beside its name, its type and its default, which is the value in a new struct.
 struct FieldInfo {
@@ -54,6 +71,10 @@ struct FieldInfo {
         {};  ///< the default in words, where it depends on other things: "the size of the mesh"
     std::string_view needs = {};  ///< in words, for tables: "needs drag"
     bool required = false;
+    std::span<const std::string_view> words = {};  ///< see kWords; empty: any
+    std::string_view pattern = {};                 ///< of a text, as JSON Schema takes it; empty: any
+    FieldRange items = kFromZero;                  ///< how many a vector may have
+    bool left_out = false;  ///< in JSON: without a value, or empty, it is left out instead of null or []
 };
 
 /// S is T or const T: what the second parameter of fields() is.
@@ -81,6 +102,55 @@ template <WithWords Enum>
     }
     return std::nullopt;
 }
+
+/// An object of a report that has no struct of its own, made by the next two.
+template <class Visit>
+struct FieldGroup {
+    Visit visit_fields;
+    bool nullable = false;
+    bool present = true;  ///< else it is null
+};
+/// visit("bounds", group([&](auto& visit) { visit("min", …); }), {…})
+template <class Visit>
+[[nodiscard]] FieldGroup<Visit> group(Visit visit_fields) {
+    return {std::move(visit_fields)};
+}
+/// The same or null. For its schema the fields are visited although it is not present.
+template <class Visit>
+[[nodiscard]] FieldGroup<Visit> groupIf(bool present, Visit visit_fields) {
+    return {std::move(visit_fields), true, present};
+}
+template <class Visitor, class Visit>
+void fields(Visitor& visit, const FieldGroup<Visit>& all) {
+    all.visit_fields(visit);
+}
+
+/// Null where the condition is false.
+template <class T>
+[[nodiscard]] std::optional<T> onlyIf(bool condition, T value) {
+    return condition ? std::optional<T>(std::move(value)) : std::nullopt;
+}
+/// A view of each: `viewsOf<PlaceReport>(places, collider)` makes PlaceReport{place, collider} of each place.
+template <class View, class T, class... More>
+[[nodiscard]] std::vector<View> viewsOf(const std::vector<T>& all, const More&... more) {
+    std::vector<View> views;
+    for (const T& one : all) {
+        views.push_back(View{one, more...});
+    }
+    return views;
+}
+/// Null where a number is infinite or NaN.
+[[nodiscard]] inline std::optional<double> finite(double value) {
+    return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+/// Null where a text is empty.
+[[nodiscard]] inline std::optional<std::string_view> nonEmpty(std::string_view text) {
+    return text.empty() ? std::nullopt : std::optional(text);
+}
+
+/// An empty T. References of a view are initialized with it, so that a schema can be made from the view's type alone.
+template <class T>
+inline const T kNone{};
 
 /// Takes anything: for the concept below.
 struct AnyVisitor {

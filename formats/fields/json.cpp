@@ -13,15 +13,31 @@ Json jsonNumber(float value) {
     return number;
 }
 
+std::string jsonText(const Json& json) {
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string jsonLine(const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 std::string SchemaWriter::description(const FieldInfo& info) {
     std::string text(info.help);
     return info.unit.empty() ? text : text.append(", ").append(info.unit);
 }
 
-Json numberSchema(bool whole, bool is_unsigned, const FieldRange& range) {
+Json numberSchema(bool whole, bool is_unsigned, const FieldInfo& info) {
+    if (!info.words.empty()) {
+        Json numbers = Json::array();
+        for (const std::string_view word : info.words) {
+            numbers.push_back(Json::parse(word));
+        }
+        return {{"enum", std::move(numbers)}};
+    }
+    const FieldRange& range = info.range;
     Json schema = {{"type", whole ? "integer" : "number"}};
     const auto limit = [whole](double value) {
-        return whole ? Json(static_cast<std::int64_t>(value)) : Json(value);
+        return whole || value == std::floor(value) ? Json(static_cast<std::int64_t>(value)) : Json(value);
     };
     if (std::isfinite(range.low)) {
         schema[range.low_included ? "minimum" : "exclusiveMinimum"] = limit(range.low);
@@ -32,6 +48,38 @@ Json numberSchema(bool whole, bool is_unsigned, const FieldRange& range) {
         schema["maximum"] = limit(range.high);
     }
     return schema;
+}
+
+Json textSchema(const FieldInfo& info) {
+    if (!info.words.empty()) {
+        return {{"enum", std::vector<std::string_view>(info.words.begin(), info.words.end())}};
+    }
+    Json schema = {{"type", "string"}};
+    if (!info.pattern.empty()) {
+        schema["pattern"] = info.pattern;
+    }
+    return schema;
+}
+
+Json arraySchema(Json items, const FieldRange& count) {
+    Json schema = {{"type", "array"}, {"items", std::move(items)}};
+    if (count.low > 0.0) {
+        schema["minItems"] = static_cast<std::int64_t>(count.low);
+    }
+    if (std::isfinite(count.high)) {
+        schema["maxItems"] = static_cast<std::int64_t>(count.high);
+    }
+    return schema;
+}
+
+GeneratedText schemaFile(const std::string& name, std::string_view title, std::string_view description,
+                         Json schema) {
+    Json file = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                 {"$id", "urn:relief:schema:" + name},
+                 {"title", title},
+                 {"description", description}};
+    file.update(schema);
+    return {"formats/schemas/" + name + ".schema.json", "", jsonText(file)};
 }
 
 Json nullable(Json schema) {

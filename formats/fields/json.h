@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "formats/fields/field.h"
+#include "formats/fields/generated.h"
 
 namespace relief {
 
@@ -17,6 +18,11 @@ using Json = nlohmann::ordered_json;
 
 /// The double whose shortest decimal is that of the float: 0.1F becomes 0.1.
 [[nodiscard]] Json jsonNumber(float value);
+
+/// Indented, with a line feed at the end. Bytes that are not UTF-8 are replaced.
+[[nodiscard]] std::string jsonText(const Json& json);
+/// The same in one line.
+[[nodiscard]] std::string jsonLine(const Json& json);
 
 namespace fields_detail {
 
@@ -33,7 +39,36 @@ inline constexpr bool kIsVariant = false;
 template <class... T>
 inline constexpr bool kIsVariant<std::variant<T...>> = true;
 template <class T>
+inline constexpr bool kIsGroup = false;
+template <class T>
+inline constexpr bool kIsGroup<FieldGroup<T>> = true;
+template <class T>
+inline constexpr bool kIsArray = false;
+template <class T, std::size_t kSize>
+inline constexpr bool kIsArray<std::array<T, kSize>> = true;
+template <class T>
 concept Text = std::convertible_to<const T&, std::string_view>;
+/// A struct that comes in kinds of different fields: `static std::vector<T> kinds()` returns one of each.
+template <class T>
+concept WithKinds = requires {
+    T::kinds();
+};
+
+/// Without a value, or an empty text or vector.
+template <class T>
+bool isNone(const T& value) {
+    if constexpr (kIsOptional<T>) {
+        return !value.has_value();
+    } else if constexpr (kIsGroup<T>) {
+        return !value.present;
+    } else if constexpr (Text<T>) {
+        return std::string_view(value).empty();
+    } else if constexpr (kIsVector<T>) {
+        return value.empty();
+    } else {
+        return false;
+    }
+}
 
 }  // namespace fields_detail
 
@@ -45,8 +80,10 @@ template <class T>
 class JsonWriter {
   public:
     template <class T>
-    void operator()(std::string_view name, const T& value, const FieldInfo&) {
-        json_[std::string(name)] = jsonOf(value);
+    void operator()(std::string_view name, const T& value, const FieldInfo& info) {
+        if (!info.left_out || !fields_detail::isNone(value)) {
+            json_[std::string(name)] = jsonOf(value);
+        }
     }
     [[nodiscard]] Json take() { return std::move(json_); }
 
@@ -76,6 +113,11 @@ Json jsonOf(const T& value) {
     } else if constexpr (kIsVariant<T>) {
         return std::visit([](const auto& one) { return jsonOf(one); }, value);
     } else if constexpr (WithFields<const T>) {
+        if constexpr (kIsGroup<T>) {
+            if (!value.present) {
+                return nullptr;
+            }
+        }
         JsonWriter writer;
         fields(writer, value);
         return writer.take();
@@ -88,7 +130,8 @@ Json jsonOf(const T& value) {
     }
 }
 
-/// The schema of a field of type T: type, range, description; closed objects with every field required.
+/// The schema of a field of type T: type, range, description; closed objects, of which every field is required that is
+/// not left_out. \param value  any: of a struct that visits other fields by its kind, one of that kind.
 template <class T>
 [[nodiscard]] Json schemaOf(const T& value, const FieldInfo& info = {});
 
@@ -100,7 +143,9 @@ class SchemaWriter {
         Json schema = {{"description", description(info)}};
         schema.update(schemaOf(value, info));
         properties_[std::string(name)] = std::move(schema);
-        required_.push_back(name);
+        if (!info.left_out) {
+            required_.push_back(name);
+        }
     }
     [[nodiscard]] Json take() {
         return {{"type", "object"},
@@ -116,40 +161,64 @@ class SchemaWriter {
     Json required_ = Json::array();
 };
 
-/// "type" with the limits of its range.
-[[nodiscard]] Json numberSchema(bool whole, bool is_unsigned, const FieldRange& range);
+/// "type" with the limits of its range, or the words.
+[[nodiscard]] Json numberSchema(bool whole, bool is_unsigned, const FieldInfo& info);
+/// "type" with its pattern, or the words.
+[[nodiscard]] Json textSchema(const FieldInfo& info);
+[[nodiscard]] Json arraySchema(Json items, const FieldRange& count);
 /// The same, or null.
 [[nodiscard]] Json nullable(Json schema);
+/// The file formats/schemas/NAME.schema.json: `schema` with its heading.
+[[nodiscard]] GeneratedText schemaFile(const std::string& name, std::string_view title,
+                                       std::string_view description, Json schema);
 
 template <class T>
 Json schemaOf(const T& value, const FieldInfo& info) {
     using namespace fields_detail;
+    FieldInfo inner = info;  // of what a vector holds
+    inner.items = kFromZero;
+    inner.left_out = false;
     if constexpr (std::same_as<T, bool>) {
-        return {{"type", "boolean"}};
+        return info.words.empty() ? Json{{"type", "boolean"}} : numberSchema(false, false, info);
     } else if constexpr (std::is_arithmetic_v<T>) {
-        return numberSchema(std::is_integral_v<T>, std::is_unsigned_v<T>, info.range);
+        return numberSchema(std::is_integral_v<T>, std::is_unsigned_v<T>, info);
     } else if constexpr (WithWords<T>) {
         return {{"enum", kWordsOf<T>}};
     } else if constexpr (std::same_as<T, std::filesystem::path> || Text<T>) {
-        return {{"type", "string"}};
+        return textSchema(info);
     } else if constexpr (std::same_as<T, glm::vec3>) {
-        return {{"type", "array"},
-                {"items", numberSchema(false, false, info.range)},
-                {"minItems", 3},
-                {"maxItems", 3}};
+        return arraySchema(numberSchema(false, false, info), {3.0, 3.0});
     } else if constexpr (kIsOptional<T>) {
-        return nullable(schemaOf(typename T::value_type{}, info));
+        Json schema = schemaOf(value ? *value : typename T::value_type{}, inner);
+        return info.left_out ? schema : nullable(std::move(schema));
     } else if constexpr (kIsVariant<T>) {
         return [&]<std::size_t... I>(std::index_sequence<I...>) {
-            return Json{{"oneOf", Json::array({schemaOf(std::variant_alternative_t<I, T>{}, info)...})}};
+            return Json{{"anyOf", Json::array({schemaOf(std::variant_alternative_t<I, T>{}, info)...})}};
         }
         (std::make_index_sequence<std::variant_size_v<T>>());
     } else if constexpr (WithFields<const T>) {
-        SchemaWriter writer;
-        fields(writer, value);
-        return writer.take();
+        const auto object = [](const T& one) {
+            SchemaWriter writer;
+            fields(writer, one);
+            return writer.take();
+        };
+        if constexpr (WithKinds<T>) {
+            Json kinds = Json::array();
+            for (const T& one : T::kinds()) {
+                kinds.push_back(object(one));
+            }
+            return {{"anyOf", std::move(kinds)}};
+        } else if constexpr (kIsGroup<T>) {
+            return value.nullable && !info.left_out ? nullable(object(value)) : object(value);
+        } else {
+            return object(value);
+        }
+    } else if constexpr (kIsArray<T>) {
+        constexpr double kSize = std::tuple_size_v<T>;
+        return arraySchema(schemaOf(typename T::value_type{}, inner), {kSize, kSize});
     } else {
-        return {{"type", "array"}, {"items", schemaOf(typename T::value_type{}, info)}};
+        const bool some = info.left_out && info.items.low < 1.0;
+        return arraySchema(schemaOf(typename T::value_type{}, inner), some ? kFromOne : info.items);
     }
 }
 

@@ -2,11 +2,11 @@
 #include <CLI/CLI.hpp>
 #include <array>
 
+#include "formats/fields/json.h"
 #include "runtime/bench/bench.h"
 #include "runtime/gl/gl_context.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/tool/command_line.h"
-#include "runtime/tool/json_text.h"
 #include "runtime/tool/option_values.h"
 
 namespace relief {

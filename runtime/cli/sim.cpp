@@ -8,6 +8,7 @@
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "formats/config/confined_path.h"
+#include "formats/fields/json.h"
 #include "runtime/player/report.h"
 #include "runtime/player/scene_check.h"
 #include "runtime/player/simulation.h"
@@ -151,7 +152,7 @@ Result<void> check(const SimCommand& command) {
         showWarnings(checked->warnings, command.quiet);
     }
     if (command.json) {
-        RELIEF_TRY(printOut(checked ? checkJson(*checked) : checkJson(checked.error())));
+        RELIEF_TRY(printOut(jsonText(checked ? jsonOf(*checked) : jsonOf(CheckFailure{checked.error()}))));
     } else if (checked && !command.quiet) {
         RELIEF_TRY(printOut(checkText(*checked)));
     }
@@ -187,7 +188,7 @@ Result<void> playScene(SimCommand& command) {
                      played.events_dropped, Simulation::kEventsMax);
     }
     if (command.json) {
-        return printOut(reportJson(played));
+        return printOut(jsonText(jsonOf(played)));
     }
     if (!command.quiet && (player.dump == "-" || player.stats == "-" || player.events == "-")) {
         std::fputs(reportText(played).c_str(), stderr);  // they have standard output to themselves

@@ -10,10 +10,9 @@
 #include "formats/base/result.h"
 #include "runtime/files/video.h"
 #include "runtime/gl/gpu_timer.h"
-#include "runtime/player/events_log.h"
+#include "runtime/player/logs.h"
 #include "runtime/player/player_options.h"
 #include "runtime/player/scene_picture.h"
-#include "runtime/player/statistics_log.h"
 
 namespace relief {
 

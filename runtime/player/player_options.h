@@ -33,10 +33,9 @@ struct PlayerOptions {
     std::filesystem::path dump_frames;
     DumpFormat dump_format = DumpFormat::kPly;  ///< of both
     std::filesystem::path video;                ///< of the frames, through ffmpeg (video.h); empty: none
-    std::filesystem::path stats;  ///< lines of JSON (statistics_log.h), "-" for standard output; empty: none
+    std::filesystem::path stats;  ///< lines of JSON (logs.h), "-" for standard output; empty: none
     std::optional<std::uint32_t> stats_every;  ///< steps from line to line, ≥ 1; nullopt: render.every
-    std::filesystem::path
-        events;  ///< hits as lines of JSON (events_log.h), "-" for standard output; empty: none
+    std::filesystem::path events;  ///< hits as lines of JSON (logs.h), "-" for standard output; empty: none
     std::optional<float> events_min_speed;  ///< slower hits are left out; nullopt: none
     bool time_stages = false;               ///< for the report; with stats they are timed anyway
     /// Reads the state back at the end for the report's collisions and contacts.

@@ -1,6 +1,5 @@
 #include "runtime/player/scene_check.h"
 
-#include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "formats/base/file_io.h"
@@ -8,13 +7,11 @@
 #include "runtime/picture/frame.h"
 #include "runtime/player/scene_warnings.h"
 #include "runtime/scene/scene_pictures.h"
-#include "runtime/tool/json_text.h"
 
 namespace relief {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 CheckedFile checkedFile(const fs::path& path, const char* kind) {
     std::error_code error;  // read a moment ago; a pipe has no size
@@ -66,24 +63,6 @@ std::string checkText(const CheckReport& report) {
         text += ", " + report.files[i].kind + " " + quotedPath(report.files[i].path);
     }
     return text + "\n";
-}
-
-std::string checkJson(const CheckReport& report) {
-    Json json;
-    json["valid"] = true;
-    json["steps"] = report.steps;
-    json["capacity"] = report.capacity;
-    json["maps"] = report.collider_maps;
-    json["files"] = Json::array();
-    for (const CheckedFile& file : report.files) {
-        json["files"].push_back({{"file", file.path.native()}, {"kind", file.kind}, {"bytes", file.bytes}});
-    }
-    json["warnings"] = report.warnings;
-    return jsonText(json);
-}
-
-std::string checkJson(const Error& error) {
-    return jsonText({{"valid", false}, {"code", static_cast<int>(error.code)}, {"error", error.message}});
 }
 
 }  // namespace relief

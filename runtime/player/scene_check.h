@@ -1,4 +1,4 @@
-// What can be known of a scene without a GPU: whether it and every file that it names are valid.
+// The check of a scene and of every file that it names, without a GPU.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,7 @@
 
 #include "formats/base/result.h"
 #include "formats/collider.h"
+#include "formats/fields/field.h"
 #include "runtime/player/player.h"
 #include "runtime/scene/scene.h"
 
@@ -33,9 +34,37 @@ struct CheckReport {
 
 /// "scene.toml is valid: …", one line with a newline.
 [[nodiscard]] std::string checkText(const CheckReport& report);
-/// One JSON object with a trailing newline. Keys: README.md beside this file, "Checking a scene".
-[[nodiscard]] std::string checkJson(const CheckReport& report);
-/// The same for a scene that is not valid.
-[[nodiscard]] std::string checkJson(const Error& error);
+
+// --- `relief-sim --check --json`. Keys: README.md beside this file, "Checking a scene".
+
+template <class Visitor, FieldsOf<CheckedFile> F>
+void fields(Visitor& visit, F& file) {
+    visit("file", file.path, {"Path"});
+    visit("kind", file.kind,
+          {.help = "Purpose", .words = kWords<"scene", "collider", "flow", "atlas", "mesh">});
+    visit("bytes", file.bytes, {"Size", "bytes"});
+}
+
+template <class Visitor, FieldsOf<CheckReport> R>
+void fields(Visitor& visit, R& report) {
+    visit("valid", true, {.help = "The scene is valid", .words = kWords<"true">});
+    visit("steps", report.steps, {"Steps to play"});
+    visit("capacity", report.capacity, {"Particles, at most"});
+    visit("maps", report.collider_maps, {"Maps of all colliders"});
+    visit("files", report.files, {"The input and the files that it names"});
+    visit("warnings", report.warnings, {"Probable mistakes, one line each"});
+}
+
+/// Of a scene that is not valid.
+struct CheckFailure {
+    Error error;
+};
+
+template <class Visitor, FieldsOf<CheckFailure> F>
+void fields(Visitor& visit, F& failure) {
+    visit("valid", false, {.help = "The scene is not valid", .words = kWords<"false">});
+    visit("code", static_cast<int>(failure.error.code), {"Exit code", {}, {1.0, 7.0}});
+    visit("error", failure.error.message, {"One line for people"});
+}
 
 }  // namespace relief

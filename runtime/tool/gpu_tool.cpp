@@ -6,20 +6,36 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
-#include "runtime/tool/json_text.h"
+#include "formats/fields/json.h"
 #include "runtime/tool/option_values.h"
 
 namespace relief {
-namespace {
 
-using Json = nlohmann::ordered_json;
+template <class Visitor, FieldsOf<GlDevice> D>
+void fields(Visitor& visit, D& device) {
+    visit("index", device.index, {"Number for --device"});
+    visit("name", nonEmpty(device.name), {"Name; null if unknown, as are the others"});
+    visit("drm_device", nonEmpty(device.drm_device), {"Device file"});
+    visit("vendor", nonEmpty(device.vendor), {"Vendor of the driver"});
+    visit("renderer", nonEmpty(device.renderer), {"Renderer of the driver"});
+    visit("version", nonEmpty(device.version), {"Version of OpenGL"});
+    visit("software", device.software, {"It draws on the CPU"});
+    visit("problem", nonEmpty(device.problem), {"Reason why it cannot be used"});
+}
+
+namespace {
 
 constexpr double kTimeoutMax = 1e6;  // seconds
 
-Json orNull(const std::string& text) {
-    return text.empty() ? Json(nullptr) : Json(text);
+/// --list-devices --json
+struct DevicesReport {
+    const std::vector<GlDevice>& devices;
+};
+
+template <class Visitor, FieldsOf<DevicesReport> R>
+void fields(Visitor& visit, R& report) {
+    visit("devices", report.devices, {"GPUs, by their number"});
 }
 
 std::optional<std::chrono::milliseconds> parseTimeout(const std::string& text) {
@@ -90,18 +106,7 @@ std::string devicesText(const std::vector<GlDevice>& devices) {
 }
 
 std::string devicesJson(const std::vector<GlDevice>& devices) {
-    Json list = Json::array();
-    for (const GlDevice& device : devices) {
-        list.push_back({{"index", device.index},
-                        {"name", orNull(device.name)},
-                        {"drm_device", orNull(device.drm_device)},
-                        {"vendor", orNull(device.vendor)},
-                        {"renderer", orNull(device.renderer)},
-                        {"version", orNull(device.version)},
-                        {"software", device.software},
-                        {"problem", orNull(device.problem)}});
-    }
-    return jsonText({{"devices", list}});
+    return jsonText(jsonOf(DevicesReport{devices}));
 }
 
 Watchdog::Starved endProcess(const std::string& program) {

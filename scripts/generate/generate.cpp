@@ -3,8 +3,10 @@
 #include <filesystem>
 #include <string>
 
+#include "bake/cli/schemas.h"
 #include "formats/base/file_io.h"
 #include "formats/fields/generated.h"
+#include "runtime/player/schemas.h"
 
 namespace relief {
 namespace {
@@ -19,7 +21,7 @@ Result<std::string> readText(const fs::path& path) {
 /// All that is derived. Each library that declares fields has a function of its own.
 GeneratedTexts all() {
     GeneratedTexts texts;
-    for (GeneratedTexts (*const of)() : std::initializer_list<GeneratedTexts (*)()>{}) {
+    for (GeneratedTexts (*const of)() : {bakeSchemas, playerSchemas}) {
         for (GeneratedText& text : of()) {
             texts.push_back(std::move(text));
         }

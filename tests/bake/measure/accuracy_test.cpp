@@ -13,7 +13,7 @@
 
 #include "bake/bench/distance_volume.h"
 #include "bake/mesh/inside.h"
-#include "bake/report/accuracy_report.h"
+#include "bake/report/check_report.h"
 #include "formats/base/byte_count.h"
 #include "tests/bake/meshes.h"
 
@@ -325,8 +325,9 @@ std::string everything(unsigned threads) {
         const DistanceGrid grid =
             sampleDistances(query, makeLattice(mesh.bounds, 5000, LatticeFit::kCentered));
         const DistanceVolume volume(grid, DistanceVolume::fullRange(grid));
-        text = jsonColliderAccuracy(maps, samples.longest_side).dump() +
-               jsonFieldAccuracy(measureField(samples, fieldOf(volume)), samples.longest_side).dump();
+        text =
+            jsonOf(ColliderAccuracyReport{maps, samples.longest_side}).dump() +
+            jsonOf(FieldAccuracyReport{measureField(samples, fieldOf(volume)), samples.longest_side}).dump();
         for (const TruthPoint& point : samples.near) {
             text += shortNumber(static_cast<double>(point.distance)) + " ";
         }
@@ -479,7 +480,7 @@ TEST(AccuracyReport, JsonHasEveryField) {
     const MeshQuery query = queryOf(mesh);
     const TruthSamples samples = sampleTruth(query, withSamples(1000));
     const ColliderAccuracy accuracy = measureCollider(samples, query, bakeSpecs(mesh, {"front-back"}));
-    const nlohmann::ordered_json json = jsonColliderAccuracy(accuracy, samples.longest_side);
+    const nlohmann::ordered_json json = jsonOf(ColliderAccuracyReport{accuracy, samples.longest_side});
     for (const char* group : {"near", "uniform"}) {
         for (const char* name : {"wrong_percent", "false_inside_percent", "false_outside_percent"}) {
             EXPECT_TRUE(json.at(group).at(name).is_number()) << group << "." << name;
@@ -498,7 +499,7 @@ TEST(AccuracyReport, JsonHasEveryField) {
         EXPECT_TRUE(json.at(name).is_number()) << name;
     }
     EXPECT_TRUE(json.at("normal_error_degrees").at("p99").is_number());
-    const nlohmann::ordered_json sampling = jsonSamples(samples);
+    const nlohmann::ordered_json sampling = jsonOf(samples);
     EXPECT_EQ(sampling.at("samples"), 1000);
     EXPECT_EQ(sampling.at("seed"), 1);
     EXPECT_DOUBLE_EQ(sampling.at("sigma").get<double>(), 0.02);

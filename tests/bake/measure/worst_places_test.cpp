@@ -73,7 +73,7 @@ TEST(WorstPlaces, AreWhereAMapWasTamperedWith) {
         const WorstPlace& place = found.places[i];
         EXPECT_EQ(place.map, 1);
         EXPECT_GT(place.map_percent, 95.0);
-        EXPECT_EQ(place.cause, WrongCause::kOther) << wrongCauseName(place.cause);
+        EXPECT_EQ(place.cause, WrongCause::kOther) << wordOf(place.cause);
         EXPECT_LT(place.inside_percent, 5.0);
         EXPECT_NEAR(place.texel, texel, 1e-4);
         EXPECT_NEAR(double{place.position.x}, x, 5.0 * texel);
@@ -95,7 +95,7 @@ TEST(WorstPlaces, OfTooFewTexelsAreBelowTheTexel) {
     const Measured found = measured(torus, bakeSpecs(torus, threeViews("12")));
     ASSERT_EQ(found.places.size(), 3U);
     for (const WorstPlace& place : found.places) {
-        EXPECT_EQ(place.cause, WrongCause::kTexel) << wrongCauseName(place.cause);
+        EXPECT_EQ(place.cause, WrongCause::kTexel) << wordOf(place.cause);
         ASSERT_GE(place.map, 0);
         EXPECT_GT(place.texel, 0.05);
         EXPECT_GT(place.size(), 0.0);
@@ -112,7 +112,7 @@ TEST(WorstPlaces, OfACavityAreUnseenAndACubeInItCuresThem) {
     const Measured found = measured(mesh, bakeSpecs(mesh, specs));
     ASSERT_EQ(found.places.size(), 3U);
     for (const WorstPlace& place : found.places) {
-        EXPECT_EQ(place.cause, WrongCause::kUnseen) << wrongCauseName(place.cause);
+        EXPECT_EQ(place.cause, WrongCause::kUnseen) << wordOf(place.cause);
         // But for texels that were chosen to be right in the cavity, and are wrong before it.
         EXPECT_GT(place.inside_percent, 60.0);
         EXPECT_NEAR(double{glm::length(place.position - glm::vec3(0.2F, 0.0F, 0.0F))}, 0.5, 0.05);
@@ -133,7 +133,7 @@ TEST(WorstPlaces, BehindAPlateAreBehindASilhouette) {
         measured(mesh, bakeSpecs(mesh, {std::string("front-back:dir=-y,size=64") + kPlanes,
                                         std::string("front-back:dir=-x,size=10") + kPlanes}));
     ASSERT_FALSE(found.places.empty());
-    EXPECT_EQ(found.places[0].cause, WrongCause::kSilhouette) << wrongCauseName(found.places[0].cause);
+    EXPECT_EQ(found.places[0].cause, WrongCause::kSilhouette) << wordOf(found.places[0].cause);
     EXPECT_EQ(found.places[0].map, 0);
     EXPECT_GT(found.places[0].inside_percent, 95.0);
     EXPECT_NEAR(double{found.places[0].position.y}, 0.01, 0.011);
@@ -144,7 +144,7 @@ TEST(WorstPlaces, OfASheetAndOfAnOpenShellAreCalledSo) {
     const Measured flat =
         measured(sheet, bakeSpecs(sheet, {"fixed8:dir=-y,size=32", "fixed8:dir=+y,size=32"}));
     if (!flat.places.empty()) {
-        EXPECT_EQ(flat.places[0].cause, WrongCause::kSheet) << wrongCauseName(flat.places[0].cause);
+        EXPECT_EQ(flat.places[0].cause, WrongCause::kSheet) << wordOf(flat.places[0].cause);
     }
     // A sphere that has lost its cap: most rays still find its inside, but the view from above looks in.
     TriangleMesh sphere = makeIcosphere({0, 0, 0}, 1.0, 4);
@@ -153,7 +153,7 @@ TEST(WorstPlaces, OfASheetAndOfAnOpenShellAreCalledSo) {
     const Measured open =
         measured(sphere, bakeSpecs(sphere, {std::string("front-back:dir=-y,size=64") + kPlanes}));
     ASSERT_FALSE(open.places.empty());
-    EXPECT_EQ(open.places[0].cause, WrongCause::kOpen) << wrongCauseName(open.places[0].cause);
+    EXPECT_EQ(open.places[0].cause, WrongCause::kOpen) << wordOf(open.places[0].cause);
     EXPECT_EQ(open.places[0].map, 0);
 }
 

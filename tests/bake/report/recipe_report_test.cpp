@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "bake/report/size_report.h"
+#include "bake/report/report_text.h"
 
 namespace relief {
 namespace {

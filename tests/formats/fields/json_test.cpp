@@ -60,6 +60,46 @@ TEST(FieldsAsJson, SchemaIsClosedAndHasRangesAndWords) {
     EXPECT_EQ(schema["properties"]["crowded"]["type"], "boolean");
 }
 
+/// A report: a value of it is a leaf that was found or one that was not.
+struct Search {
+    bool found = true;
+    std::string why;
+
+    [[nodiscard]] static std::vector<Search> kinds() { return {{true, ""}, {false, "dry"}}; }
+};
+
+template <class Visitor, FieldsOf<Search> S>
+void fields(Visitor& visit, S& search) {
+    visit("found", search.found,
+          {.help = "Success", .words = search.found ? kWords<"true"> : kWords<"false">});
+    if (search.found) {
+        const auto leaf = [&](auto& visit_leaf) {
+            visit_leaf("size", 2.0, {"Longest side", "m", kFromZero});
+        };
+        visit("leaf", groupIf(true, leaf), {"The leaf; null if it fell"});
+        visit("names", std::vector<std::string>{},
+              {.help = "Its names", .pattern = "^[a-z]+$", .left_out = true});
+        visit("sizes", std::array{1.5F, 2.0F}, {"Width and height", "m"});
+    } else {
+        visit("why", search.why, {"Reason"});
+    }
+}
+
+TEST(FieldsAsJson, KindsOfAReportHaveFieldsOfTheirOwn) {
+    EXPECT_EQ(jsonOf(Search{}).dump(), R"({"found":true,"leaf":{"size":2.0},"sizes":[1.5,2.0]})");
+    EXPECT_EQ(jsonOf(Search{false, "dry"}).dump(), R"({"found":false,"why":"dry"})");
+    const Json kinds = schemaOf(Search{})["anyOf"];
+    ASSERT_EQ(kinds.size(), 2U);
+    EXPECT_EQ(kinds[0]["required"], Json::array({"found", "leaf", "sizes"}));
+    EXPECT_EQ(kinds[1]["required"], Json::array({"found", "why"}));
+    const Json& found = kinds[0]["properties"];
+    EXPECT_EQ(found["found"]["enum"], Json::array({true}));
+    EXPECT_EQ(found["leaf"]["oneOf"][1], Json::parse(R"({"type":"null"})"));
+    EXPECT_EQ(found["names"]["minItems"], 1) << "an empty list is left out";
+    EXPECT_EQ(found["names"]["items"]["pattern"], "^[a-z]+$");
+    EXPECT_EQ(found["sizes"]["maxItems"], 2);
+}
+
 TEST(Words, AreFoundAndOthersAreNot) {
     EXPECT_EQ(fromWord<Mood>("wild"), Mood::kWild);
     EXPECT_EQ(fromWord<Mood>("Wild"), std::nullopt);

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "formats/fields/json.h"
 #include "runtime/player/report.h"
 #include "runtime/scene/scene.h"
 #include "runtime/scene/scene_parser.h"
@@ -170,7 +171,7 @@ TEST(SceneAir, TheReportHasWhatThePlayerPlays) {
         EXPECT_TRUE(scene);
         PlayerReport result;
         result.scene = scene.value_or(Scene{});
-        std::string json = reportJson(result);
+        std::string json = jsonText(jsonOf(result));
         std::erase_if(json, [](char c) { return c == ' ' || c == '\n'; });
         return json;
     };

@@ -1,4 +1,4 @@
-#include "bake/report/size_report.h"
+#include "bake/report/report_text.h"
 
 #include <gtest/gtest.h>
 

@@ -1,20 +1,16 @@
-#include "bake/report/places_report.h"
+#include "bake/report/check_report.h"
 
-#include <cmath>
 #include <glm/geometric.hpp>
-#include <nlohmann/json.hpp>
 
-#include "bake/report/accuracy_report.h"
+#include "bake/report/report_text.h"
 #include "formats/base/text.h"
-#include "runtime/tool/json_text.h"
 
 namespace relief {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-std::string percentText(double value) {
-    return roughly(value) + " %";
+/// "0.4123 %"
+std::string precisely(double percent) {
+    return shortNumber(percent) + " %";
 }
 
 std::string sideText(double inside_percent) {
@@ -34,9 +30,42 @@ std::string verdictText(double wrong_percent) {
     return percentText(wrong_percent) + " wrong near the surface: " + gradeOf(wrong_percent);
 }
 
-std::string positionText(const glm::vec3& p) {
-    return "(" + shortNumber(double{p.x}) + ", " + shortNumber(double{p.y}) + ", " +
-           shortNumber(double{p.z}) + ")";
+std::string accuracyText(const ColliderAccuracy& accuracy, const TruthSamples& samples,
+                         const std::string& unit) {
+    const FieldAccuracy& field = accuracy.field;
+    const std::string units = " " + unitText(unit);
+    const auto wrongRow = [](const char* where, const WrongShare& share) {
+        return std::vector<std::string>{where, precisely(share.total()), precisely(share.false_inside),
+                                        precisely(share.false_outside)};
+    };
+    const auto length = [&](double value) {
+        return shortNumber(value) + units + " (" + precisely(100.0 * value / samples.longest_side) + ")";
+    };
+    std::string text = table({{"points on the wrong side", "all>", "false inside>", "false outside>"},
+                              wrongRow("near the surface", field.near),
+                              wrongRow("anywhere in the box", field.uniform)});
+    text += "\n";
+    text +=
+        table({{"error", "mean", "99 % stay below"},
+               {"signed distance near the surface", length(field.distance_mean), length(field.distance_p99)},
+               {"normal at the surface", shortNumber(field.normal_mean) + " degrees",
+                shortNumber(field.normal_p99) + " degrees"}});
+    text += "\n";
+    std::vector<std::vector<std::string>> rows = {
+        {"near the surface, outside without a distance", precisely(field.far_percent)},
+        {"near the surface, no map votes", precisely(field.unknown_percent)},
+        {"on the surface, no normal", precisely(field.no_normal_percent)},
+        {"surface that no map sees", precisely(accuracy.unseen_percent)}};
+    if (accuracy.buried_percent > 0.0) {
+        rows.push_back({"surface inside the object, left out", precisely(accuracy.buried_percent)});
+    }
+    rows.push_back({"on the GPU", bytesText(accuracy.gpu_bytes)});
+    text += table(rows);
+    text += "\nLengths in percent are of the longest side, " + shortNumber(samples.longest_side) + units +
+            ". " + std::to_string(samples.options.samples) + " points of each kind, seed " +
+            std::to_string(samples.options.seed) + "; those near\nthe surface lie " +
+            precisely(100.0 * samples.options.sigma_share) + " of it away (standard deviation).\n";
+    return text;
 }
 
 std::string placeText(const WorstPlace& place, const std::string& unit) {
@@ -113,39 +142,6 @@ std::string adviceText(std::span<const Advice> advice, double wrong_percent) {
     }
     return (commands.empty() ? "" : "What to do:\n" + commands) +
            (vain.empty() ? "" : "Tried, and of no help: " + vain + "\n");
-}
-
-Json jsonPlaces(std::span<const WorstPlace> places, const Collider& collider) {
-    Json list = Json::array();
-    for (const WorstPlace& place : places) {
-        list.push_back(
-            {{"position",
-              {jsonNumber(place.position.x), jsonNumber(place.position.y), jsonNumber(place.position.z)}},
-             {"size", place.size()},
-             {"points", place.points},
-             {"share_percent", place.share_percent},
-             {"false_inside_percent", place.inside_percent},
-             {"map", place.map < 0 ? Json(nullptr) : Json(place.map)},
-             {"map_percent", place.map_percent},
-             {"cause", wrongCauseName(place.cause)},
-             {"cause_percent", place.cause_percent},
-             {"texel", place.map < 0 ? Json(nullptr) : Json(place.texel)},
-             {"why", causeText(place, collider)}});
-    }
-    return list;
-}
-
-Json jsonAdvice(std::span<const Advice> advice) {
-    Json list = Json::array();
-    for (const Advice& one : advice) {
-        list.push_back({{"command", one.command},
-                        {"about", one.about},
-                        {"tried", one.wrong_percent.has_value()},
-                        {"wrong_percent", one.wrong_percent ? Json(*one.wrong_percent) : Json(nullptr)},
-                        {"helps", one.helps},
-                        {"untried", one.untried.empty() ? Json(nullptr) : Json(one.untried)}});
-    }
-    return list;
 }
 
 }  // namespace relief

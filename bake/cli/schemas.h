@@ -1,0 +1,10 @@
+// The JSON Schemas of what `relief` prints.
+#pragma once
+
+#include "formats/fields/generated.h"
+
+namespace relief {
+
+[[nodiscard]] GeneratedTexts bakeSchemas();
+
+}  // namespace relief

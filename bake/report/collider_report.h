@@ -1,0 +1,108 @@
+// A collider as `relief info` and `relief bake` report it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bake/report/report_text.h"
+#include "formats/collider.h"
+#include "formats/container.h"
+#include "formats/fields/field.h"
+
+namespace relief {
+
+inline constexpr std::span<const std::string_view> kMapFormatWords =
+    kWords<"float", "fixed8", "front-back", "cube">;
+inline constexpr std::string_view kHashPattern = "^([0-9a-f]{32})?$";
+
+template <class Visitor, FieldsOf<Bounds> B>
+void fields(Visitor& visit, B& bounds) {
+    visit("min", bounds.min, {"Smallest x, y and z", "object units"});
+    visit("max", bounds.max, {"Largest x, y and z", "object units"});
+}
+
+template <class Visitor, FieldsOf<Provenance> P>
+void fields(Visitor& visit, P& from) {
+    visit("mesh_name", from.mesh_name, {"File name of the mesh, without its folder"});
+    visit("mesh_hash", from.mesh_hash,
+          {.help = "XXH3-128 of the mesh file, hexadecimal; empty if unknown", .pattern = kHashPattern});
+    visit("triangles", from.triangles, {"Triangles of the mesh"});
+    visit("tool_version", from.tool_version, {"Program that made the container"});
+    visit("options", from.options, {"Options of the bake"});
+}
+
+struct ColliderMapReport {
+    std::size_t index = 0;
+    const DepthMap& map = kNone<DepthMap>;
+    const PayloadInfo& payload = kNone<PayloadInfo>;
+};
+
+template <class Visitor, FieldsOf<ColliderMapReport> R>
+void fields(Visitor& visit, R& report) {
+    const auto& [index, map, payload] = report;
+    std::array<std::array<float, 4>, 3> rows{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const glm::vec4& row = map.object_to_map.row[i];
+        rows[i] = {row.x, row.y, row.z, row.w};
+    }
+    visit("index", index, {"Position in the container, from 0"});
+    visit("format", mapFormatName(map.format), {.help = "Format of the texels", .words = kMapFormatWords});
+    visit("projection", projectionName(map),
+          {.help = "Projection of the map", .words = kWords<"orthographic", "cube">});
+    visit("compare", compareName(map.compare),
+          {.help = "Surface kept along each ray: the nearest, the farthest, both, or the two ends of a gap",
+           .words = kWords<"less", "greater", "both", "gap">});
+    visit("width", map.width, {"Width", "texels", kFromOne});
+    visit("height", map.height, {"Height", "texels", kFromOne});
+    visit("faces", map.faceCount(), {.help = "Images: 6 of a cube", .words = kWords<"1", "6">});
+    visit("bytes", payload.raw_size, {"Size of all texels in memory", "bytes"});
+    visit("stored_bytes", payload.stored_size, {"Size in the file", "bytes"});
+    visit("compression", packingName(payload.packing),
+          {.help = "Encoding in the file: plain, a zstd frame, or rows without their empty ends",
+           .words = kWords<"none", "zstd", "rows">});
+    visit("offset", payload.offset, {"First byte in the file"});
+    visit("object_to_map", rows, {"Rows of the affine map from object space to map space"});
+    visit("object_per_map", map.object_per_map,
+          {"Length of one unit along each axis of the map", "object units"});
+    visit("encloses", map.encloses, {"The volume of the map contains the whole collider"});
+    visit("empty_is_outside", map.empty_is_outside, {"A point on a ray that meets no surface is outside"});
+}
+
+/// \tparam Map  ColliderMapReport, or more than that.
+template <class Map>
+struct ColliderReport {
+    const Collider& collider = kNone<Collider>;
+    const ContainerInfo& info = kNone<ContainerInfo>;
+    std::vector<Map> maps = {};
+};
+
+template <class Visitor, class Map>
+void fields(Visitor& visit, const ColliderReport<Map>& report) {
+    const auto& [collider, info, maps] = report;
+    visit("version", std::to_string(info.major) + "." + std::to_string(info.minor),
+          {.help = "Version of the container format", .pattern = "^[0-9]+\\.[0-9]+$"});
+    visit("file_size", info.file_size, {"Size of the file", "bytes"});
+    visit("bounds", collider.bounds, {"Box of the mesh"});
+    visit("unit", collider.unit, {"Unit of lengths: m, or empty if the source names none"});
+    visit("texel_bytes", collider.gpuBytes(), {"Size of all maps on the GPU", "bytes"});
+    visit("maps", maps, {.help = "Maps, in the order of the file", .items = kFromOne});
+    visit("provenance", collider.provenance, {"Origin of the collider"});
+}
+
+/// The report of `relief info`.
+struct InfoReport {
+    std::string file;  ///< of several; else empty
+    ColliderReport<ColliderMapReport> collider = {};
+
+    InfoReport() = default;
+    InfoReport(std::string name, const Collider& shown, const ContainerInfo& info);
+};
+
+template <class Visitor, FieldsOf<InfoReport> R>
+void fields(Visitor& visit, R& report) {
+    visit("file", report.file,
+          {.help = "File name as given; only for several files, of which each has a line", .left_out = true});
+    fields(visit, report.collider);
+}
+
+}  // namespace relief

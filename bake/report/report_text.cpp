@@ -1,0 +1,162 @@
+#include "bake/report/report_text.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "bake/plan/view_planner.h"
+#include "formats/base/text.h"
+
+namespace relief {
+namespace {
+
+std::string formatted(const char* format, double value) {
+    char text[32];
+    std::snprintf(text, sizeof(text), format, value);
+    return text;
+}
+
+/// Three digits: 1800 and not 1.8e+03.
+std::string length(float value) {
+    return shortest(parseFloat(formatted("%.3g", double{value})).value_or(value));
+}
+
+std::string sidesText(const glm::vec3& size) {
+    return length(size.x) + " x " + length(size.y) + " x " + length(size.z);
+}
+
+std::string cornerText(const glm::vec3& v) {
+    return "(" + length(v.x) + ", " + length(v.y) + ", " + length(v.z) + ")";
+}
+
+/// Characters, each one column wide: continuation bytes of UTF-8 do not count.
+std::size_t columns(const std::string& text) {
+    return static_cast<std::size_t>(std::count_if(
+        text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80; }));
+}
+
+}  // namespace
+
+std::string shortNumber(double value) {
+    return formatted("%.4g", value);
+}
+
+std::string roughly(double value) {
+    return formatted(value >= 99.5 ? "%.3g" : "%.2g", value);
+}
+
+std::string percentText(double percent) {
+    return roughly(percent) + " %";
+}
+
+std::string shareText(double share) {
+    return formatted("%.1f %%", 100.0 * share);
+}
+
+std::string countText(std::uint64_t count, std::string_view what, std::string_view plural) {
+    std::string text = std::to_string(count) + " ";
+    return count == 1 || plural.empty() ? text.append(what).append(count == 1 ? "" : "s")
+                                        : text.append(plural);
+}
+
+std::string unitText(const std::string& unit) {
+    return unit.empty() ? "object units" : unit;
+}
+
+std::string lengthText(double value, const std::string& unit) {
+    return roughly(value) + (unit.empty() ? "" : " " + unit);
+}
+
+std::string positionText(const glm::vec3& p) {
+    return "(" + shortNumber(double{p.x}) + ", " + shortNumber(double{p.y}) + ", " +
+           shortNumber(double{p.z}) + ")";
+}
+
+std::string bytesText(std::uint64_t bytes) {
+    constexpr const char* kUnits[] = {" B", " kB", " MB", " GB", " TB"};
+    auto value = static_cast<double>(bytes);
+    int unit = 0;
+    while (value >= 999.5 && unit < 4) {
+        value /= 1000.0;
+        ++unit;
+    }
+    return formatted(unit == 0 || value >= 99.95 ? "%.0f" : "%.1f", value) + kUnits[unit];
+}
+
+std::uint64_t roundBudget(std::uint64_t bytes) {
+    std::uint64_t unit = 1;
+    while (bytes / unit >= 100) {
+        unit *= 10;
+    }
+    return std::max((bytes + unit - 1) / unit * unit, kPlanBudgetMin);
+}
+
+std::string budgetText(std::uint64_t bytes) {
+    const auto value = static_cast<double>(bytes);
+    return bytes >= 1'000'000 ? formatted("%.6gMB", value / 1e6)
+           : bytes >= 10'000  ? formatted("%.6gkB", value / 1e3)
+                              : std::to_string(bytes);
+}
+
+std::string sizeText(const DepthMap& map) {
+    return (map.faceCount() == 1 ? "" : std::to_string(map.faceCount()) + "x") + std::to_string(map.width) +
+           "x" + std::to_string(map.height);
+}
+
+std::string_view projectionName(const DepthMap& map) {
+    return map.projection() == Projection::kCube ? "cube" : "orthographic";
+}
+
+std::string boxText(const Bounds& bounds, const std::string& unit) {
+    return sidesText(bounds.size()) + " " + unitText(unit) + ", from " + cornerText(bounds.min) + " to " +
+           cornerText(bounds.max);
+}
+
+std::optional<std::string> forgottenUnit(const Bounds& bounds) {
+    if (!(bounds.longestSide() >= kForgottenUnitFrom)) {
+        return std::nullopt;
+    }
+    const glm::vec3 size = bounds.size();
+    return std::string(kNoUnit) + ", and the box is " + sidesText(size) + ": with --unit cm " +
+           sidesText(size * 0.01F) + " m, with --unit mm " + sidesText(size * 0.001F) +
+           " m; say which, or --unit m if these are metres";
+}
+
+std::vector<std::string> optionList(const std::string& options) {
+    std::vector<std::string> list;
+    for (std::size_t at = 0; at < options.size();) {
+        const std::size_t end = std::min(options.find(" --", at), options.size());
+        list.push_back(options.substr(at, end - at));
+        at = end + 1;
+    }
+    return list;
+}
+
+std::string table(const std::vector<std::vector<std::string>>& rows) {
+    const std::size_t count = rows.front().size();
+    std::vector<bool> right(count);
+    std::vector<std::vector<std::string>> cells = rows;
+    std::vector<std::size_t> widths(count, 0);
+    for (std::size_t i = 0; i < count; ++i) {
+        std::string& heading = cells.front()[i];
+        right[i] = heading.ends_with('>');
+        if (right[i]) {
+            heading.pop_back();
+        }
+        for (const std::vector<std::string>& row : cells) {
+            widths[i] = std::max(widths[i], columns(row[i]));
+        }
+    }
+    std::string text;
+    for (const std::vector<std::string>& row : cells) {
+        std::string line = " ";
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::string space(widths[i] - columns(row[i]), ' ');
+            line += " " + (right[i] ? space + row[i] : row[i] + space) + " ";
+        }
+        line.erase(line.find_last_not_of(' ') + 1);
+        text += line + "\n";
+    }
+    return text;
+}
+
+}  // namespace relief

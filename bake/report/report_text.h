@@ -1,0 +1,60 @@
+// Numbers, sizes and tables as reports show them to people.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/collider.h"
+
+namespace relief {
+
+/// Four significant digits, or "0".
+[[nodiscard]] std::string shortNumber(double value);
+/// Two significant digits; three from 99.5 on.
+[[nodiscard]] std::string roughly(double value);
+/// "0.41 %": two digits.
+[[nodiscard]] std::string percentText(double percent);
+/// "41.3 %" for 0.413.
+[[nodiscard]] std::string shareText(double share);
+/// "1 hole", "3 holes". \param plural  where it is not `what` with an s: "vertices"
+[[nodiscard]] std::string countText(std::uint64_t count, std::string_view what, std::string_view plural = {});
+
+/// "m", or "object units" for "".
+[[nodiscard]] std::string unitText(const std::string& unit);
+/// "0.41 m": two digits. \param unit  "m", or "" for object units, which are left out
+[[nodiscard]] std::string lengthText(double value, const std::string& unit);
+/// "(0.1, 0.2, 0.3)": four digits.
+[[nodiscard]] std::string positionText(const glm::vec3& p);
+/// "12.3 MB", "640 B": powers of 1000.
+[[nodiscard]] std::string bytesText(std::uint64_t bytes);
+/// The next number of bytes with two digits, at least kPlanBudgetMin, for --budget.
+[[nodiscard]] std::uint64_t roundBudget(std::uint64_t bytes);
+/// As --budget takes it: "1.2MB".
+[[nodiscard]] std::string budgetText(std::uint64_t bytes);
+/// "512x256"; of a cube "6x64x64".
+[[nodiscard]] std::string sizeText(const DepthMap& map);
+/// "cube" or "orthographic".
+[[nodiscard]] std::string_view projectionName(const DepthMap& map);
+
+/// Longest sides from here on are rare in metres, and common in centimetres and millimetres.
+inline constexpr float kForgottenUnitFrom = 100.0F;
+/// Beginning of forgottenUnit().
+inline constexpr std::string_view kNoUnit = "no unit is named";
+
+/// "2 x 4 x 6 m, from (-1, -2, -3) to (1, 2, 3)"; "object units" without a unit.
+[[nodiscard]] std::string boxText(const Bounds& bounds, const std::string& unit);
+/// The size of such a box in centimetres and in millimetres, and the option for each; nullopt for a smaller one.
+/// \param bounds  of a mesh without a unit
+[[nodiscard]] std::optional<std::string> forgottenUnit(const Bounds& bounds);
+
+/// The options of a bake one by one: "--map cube:size=16", "--quality normal".
+[[nodiscard]] std::vector<std::string> optionList(const std::string& options);
+
+/// Lines of a table, columns aligned, the first row a heading. Columns whose heading ends in '>' are aligned right (the
+/// mark is not printed).
+[[nodiscard]] std::string table(const std::vector<std::vector<std::string>>& rows);
+
+}  // namespace relief

@@ -1,0 +1,424 @@
+// The effective settings of a scene, by its own keys, as `relief-sim --json` reports them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "formats/fields/field.h"
+#include "runtime/scene/scene.h"
+
+namespace relief {
+
+inline constexpr FieldInfo kPositionField{.help = "Position", .unit = "object units"};
+inline constexpr FieldInfo kAxisField{.help = "Axis of the rotation, of length 1"};
+inline constexpr FieldInfo kAngleField{.help = "Angle of the rotation", .unit = "degrees"};
+
+[[nodiscard]] inline float degreesOf(const Pose& pose) {
+    return glm::degrees(glm::angle(pose.rotation));
+}
+
+/// Of an optional field that is left out without a value.
+[[nodiscard]] constexpr FieldInfo leftOut(FieldInfo info) {
+    info.left_out = true;
+    return info;
+}
+
+struct PoseKeyTable {
+    const PoseKey& key = kNone<PoseKey>;
+};
+
+template <class Visitor, FieldsOf<PoseKeyTable> S>
+void fields(Visitor& visit, S& settings) {
+    const Pose& pose = settings.key.pose;
+    visit("time", settings.key.time, {"Time", "s"});
+    visit("position", pose.position, kPositionField);
+    visit("axis", glm::axis(pose.rotation), kAxisField);
+    visit("angle", degreesOf(pose), kAngleField);
+}
+
+inline constexpr FieldInfo kKeysField{.help = "Keys of its motion", .left_out = true};
+
+struct ColliderTable {
+    const SceneCollider& collider = kNone<SceneCollider>;
+
+    [[nodiscard]] static std::vector<ColliderTable> kinds();  ///< of a container, and of a mesh that deforms
+};
+
+template <class Visitor, FieldsOf<ColliderTable> S>
+void fields(Visitor& visit, S& settings) {
+    const SceneCollider& collider = settings.collider;
+    if (collider.live) {
+        const Deformation& d = collider.live->deformation;
+        constexpr auto kKinds = kWords<"bend", "twist", "wobble">;
+        const auto deform = [&](auto& visit_deform) {
+            visit_deform("kind", kKinds[static_cast<std::size_t>(d.kind)],
+                         {.help = "Deformation", .words = kKinds});
+            visit_deform("amplitude", d.kind == DeformKind::kWobble ? d.amplitude : glm::degrees(d.amplitude),
+                         {"Amplitude, degrees; of a wobble object units"});
+            visit_deform("frequency", d.frequency, {"Frequency", "1/s"});
+        };
+        visit("mesh", collider.path, {"Mesh of a collider that deforms"});
+        visit("deform", group(deform), {"Its deformation"});
+        visit("resolution", collider.live->resolution, {"Texels along the side of a map", {}, kFromOne});
+    } else {
+        visit("file", collider.path, {"Container"});
+    }
+    const bool posed = collider.posed;
+    visit("position", onlyIf(posed, collider.pose.position), leftOut(kPositionField));
+    visit("axis", onlyIf(posed, glm::axis(collider.pose.rotation)), leftOut(kAxisField));
+    visit("angle", onlyIf(posed, degreesOf(collider.pose)), leftOut(kAngleField));
+    visit("scale", onlyIf(posed, collider.pose.scale),
+          {.help = "Scale of object space", .range = kFromZero, .left_out = true});
+    visit("restitution", onlyIf(posed, collider.restitution),
+          {.help = "Share of the normal speed that is kept", .left_out = true});
+    visit("friction", onlyIf(posed, collider.friction),
+          {.help = "Share of the tangential speed that is lost", .left_out = true});
+    visit("key", viewsOf<PoseKeyTable>(collider.keys), kKeysField);
+}
+
+/// Of an emitter that aims.
+struct SpeedLaw {
+    float mean = 0.0F;
+    float deviation = 0.0F;
+};
+
+template <class Visitor, FieldsOf<SpeedLaw> S>
+void fields(Visitor& visit, S& law) {
+    visit("mean", law.mean, {"Mean speed", "object units per second"});
+    visit("deviation", law.deviation, {"Standard deviation", "object units per second", kFromZero});
+}
+
+struct EmitterTable {
+    const SceneEmitter& emitter = kNone<SceneEmitter>;
+
+    [[nodiscard]] std::optional<std::variant<std::array<float, 2>, SpeedLaw>> speed() const;
+};
+
+template <class Visitor, FieldsOf<EmitterTable> S>
+void fields(Visitor& visit, S& settings) {
+    constexpr auto kShapes = kWords<"box", "sphere", "shell", "disc", "points">;
+    const SceneEmitter& e = settings.emitter;
+    const bool is_box = e.shape == EmitterShape::kBox;
+    const bool is_disc = e.shape == EmitterShape::kDisc;
+    const bool is_round = is_disc || e.shape == EmitterShape::kSphere || e.shape == EmitterShape::kShell;
+    visit("shape", kShapes[static_cast<std::size_t>(e.shape)],
+          {.help = "Where particles are born", .words = kShapes});
+    visit("box_min", is_box ? e.box_min : std::nullopt,
+          {.help = "Lower corner of a box", .unit = "object units", .left_out = true});
+    visit("box_max", is_box ? e.box_max : std::nullopt,
+          {.help = "Upper corner of a box", .unit = "object units", .left_out = true});
+    visit("points", onlyIf(e.shape == EmitterShape::kPoints, e.points),
+          {.help = "File of points", .left_out = true});
+    visit("normal", onlyIf(is_disc, e.normal), {.help = "Normal of a disc", .left_out = true});
+    visit("center", onlyIf(is_round, e.center), {.help = "Centre", .unit = "object units", .left_out = true});
+    visit("radius", onlyIf(is_round, e.radius),
+          {.help = "Radius", .unit = "object units", .range = kFromZero, .left_out = true});
+    visit("start", e.start, {"Begin of the births", "s"});
+    visit("rate", e.rate.value_or(0.0), {"Births per second", {}, kFromZero});
+    visit("duration", e.duration, {"Duration of the births; null: endless", "s", kFromZero});
+    visit("burst", e.burst, {"Births at once"});
+    visit("burst_every", onlyIf(e.burst_every > 0.0, e.burst_every),
+          {.help = "Time from burst to burst", .unit = "s", .range = kFromZero, .left_out = true});
+    visit("direction", onlyIf(e.aimed, e.direction),
+          {.help = "Direction of flight; null: outwards", .left_out = true});
+    visit(
+        "cone", onlyIf(e.aimed, e.cone),
+        {.help = "Half angle about the direction", .unit = "degrees", .range = kFromZero, .left_out = true});
+    visit("speed", settings.speed(),
+          {.help = "Least and greatest speed, object units per second; or a normal distribution",
+           .left_out = true});
+    visit("velocity", e.aimed ? std::nullopt : e.velocity,
+          {.help = "Velocity", .unit = "object units per second", .left_out = true});
+    visit("velocity_spread", e.velocity_spread.value_or(glm::vec3(0.0F)),
+          {"Largest deviation from the velocity", "object units per second"});
+    visit("lifetime", std::array{e.lifetime_min, e.lifetime_max}, {"Least and greatest lifetime", "s"});
+    visit("type", e.type, {"Index of the type"});
+    visit("seed", e.seed, {"Seed of the births"});
+    visit("spread", e.spread, {"Births are spread over their step"});
+    visit("attach", e.attach, {.help = "Number of the collider in whose space it is", .left_out = true});
+    visit("key", viewsOf<PoseKeyTable>(e.keys), kKeysField);
+    visit("inherit", onlyIf(e.moves(), e.inherit),
+          {.help = "Share of its own velocity that births inherit", .range = kFromZero, .left_out = true});
+}
+
+struct SpawnTable {
+    const SceneSpawn& spawn = kNone<SceneSpawn>;
+};
+
+template <class Visitor, FieldsOf<SpawnTable> R>
+void fields(Visitor& visit, R& report) {
+    const SpawnSettings& s = report.spawn.settings;
+    const bool on_death = s.on == SpawnOn::kDeath;
+    visit("on", on_death ? "death" : "collision", {.help = "Event", .words = kWords<"collision", "death">});
+    visit("of", s.of, {"Index of the type that hits or dies; null: all"});
+    visit("type", s.type, {"Index of the type that is born"});
+    visit("count", std::array{s.count_min, s.count_max},
+          {"Least and greatest number of births for each event"});
+    visit("most", s.most, {"Births per step, at most", {}, kFromOne});
+    visit("lifetime", std::array{s.lifetime_min, s.lifetime_max},
+          {"Least and greatest lifetime", "s", kFromZero});
+    visit("inherit", s.inherit, {"Share of the parent's velocity", {}, kFromZero});
+    visit("speed", std::array{s.speed_min, s.speed_max},
+          {"Least and greatest speed", "world units per second", kFromZero});
+    visit("kick", s.kick, {"Share of the speed of the hit, added to speed", {}, kFromZero});
+    visit("cone", s.cone_degrees, {"Half angle", "degrees", {0.0, 180.0}});
+    visit("seed", report.spawn.seed, {"Seed of the births"});
+    visit("min_speed", onlyIf(!on_death, s.min_speed),
+          {.help = "Slower hits spawn nothing",
+           .unit = "world units per second",
+           .range = kFromZero,
+           .left_out = true});
+}
+
+struct CameraKeyTable {
+    const SceneCameraKey& key = kNone<SceneCameraKey>;
+    glm::vec3 target{0.0F};  ///< where the key has none
+    float fov = 0.0F;
+};
+
+template <class Visitor, FieldsOf<CameraKeyTable> S>
+void fields(Visitor& visit, S& settings) {
+    const SceneCameraKey& key = settings.key;
+    visit("time", key.time, {"Time", "s"});
+    visit("eye", key.eye, {"Position of the eye", "object units"});
+    visit("target", key.target.value_or(settings.target), {"Point looked at", "object units"});
+    visit("fov", key.fov.value_or(settings.fov), {"Vertical field of view", "degrees"});
+}
+
+struct AttractorTable {
+    const Attractor& attractor = kNone<Attractor>;
+};
+
+template <class Visitor, FieldsOf<AttractorTable> S>
+void fields(Visitor& visit, S& settings) {
+    const Attractor& a = settings.attractor;
+    visit("position", a.position, kPositionField);
+    visit("strength", a.strength, {"Acceleration at the radius"});
+    visit("radius", a.radius, {"Radius", "object units"});
+    visit("falloff", a.falloff, {"Exponent of the falloff"});
+    visit("reach", onlyIf(a.reach < std::numeric_limits<float>::max(), a.reach),
+          {.help = "Greatest distance of its effect; absent: endless",
+           .unit = "object units",
+           .left_out = true});
+}
+
+struct VortexTable {
+    const Vortex& vortex = kNone<Vortex>;
+};
+
+template <class Visitor, FieldsOf<VortexTable> S>
+void fields(Visitor& visit, S& settings) {
+    const Vortex& v = settings.vortex;
+    visit("center", v.center, {"A point of the axis", "object units"});
+    visit("axis", v.axis, {"Direction of the axis, of length 1"});
+    visit("strength", v.strength, {"Acceleration at the radius"});
+    visit("radius", v.radius, {"Radius", "object units"});
+    visit("falloff", v.falloff, {"Exponent of the falloff"});
+}
+
+enum class GroundWord : std::uint8_t { kGround };
+template <>
+inline constexpr std::array<std::string_view, 1> kWordsOf<GroundWord>{"ground"};
+
+struct TypeTable {
+    const Scene& scene = kNone<Scene>;
+    const ParticleType& type = kNone<ParticleType>;
+    const ParticleLook& look = kNone<ParticleLook>;
+    std::string name;
+
+    [[nodiscard]] std::vector<std::variant<std::size_t, GroundWord>> collides() const;
+};
+
+/// [[age, value], …]
+[[nodiscard]] std::vector<std::array<float, 2>> keysOf(const AgeTrack<float>& track);
+[[nodiscard]] std::vector<std::array<float, 4>> keysOf(const AgeTrack<glm::vec3>& track);
+
+template <class Visitor, FieldsOf<TypeTable> S>
+void fields(Visitor& visit, S& settings) {
+    constexpr auto kOnCollision = kWords<"bounce", "stop", "slide", "die">;
+    const ParticleLook& look = settings.look;
+    const ParticleType& type = settings.type;
+    const auto cells = std::array{look.cell_first.value_or(0), look.cell_last};
+    const auto fade = std::array{look.fade_in.value_or(0.0F), look.fade_out.value_or(0.0F)};
+    visit("size", keysOf(look.size),
+          {.help = "Age as a share of life, and size in object units", .left_out = true});
+    visit("color", keysOf(look.color), {.help = "Age, and red, green and blue", .left_out = true});
+    visit("opacity", keysOf(look.opacity), {.help = "Age, and opacity from 0 to 1", .left_out = true});
+    visit("rotation", keysOf(look.rotation), {.help = "Age, and angle in radians", .left_out = true});
+    visit("turn", look.turn, {"Greatest angle at birth, either way", "radians"});
+    visit("spin", look.spin, {"Greatest rate of rotation, either way", "radians per second"});
+    visit("stretch", look.stretch, {"Time over which a sprite is drawn along its path", "s", kFromZero});
+    visit("cell", onlyIf(look.cell_first.has_value(), cells),
+          {.help = "First and last cell of the atlas", .left_out = true});
+    visit("lit", look.lit, {"The light illuminates it"});
+    visit("fade", onlyIf(look.fade_in && look.fade_out, fade),
+          {.help = "Time over which opacity rises after birth and falls before death",
+           .unit = "s",
+           .left_out = true});
+    visit("name", settings.name, {.help = "Name of the type", .left_out = true});
+    visit("gravity", type.gravity, {"Factor of gravity"});
+    visit("mass", type.mass, {"Divisor of the drag"});
+    visit("radius", type.radius, {"Radius", "object units"});
+    visit("restitution", type.restitution, {"Share of the normal speed that is kept"});
+    visit("friction", type.friction, {"Share of the tangential speed that is lost"});
+    visit("friction_threshold", type.friction_threshold,
+          {"Speed below which there is no friction", "object units per second"});
+    visit("on_collision", kOnCollision[static_cast<std::size_t>(type.on_collision)],
+          {.help = "Effect of a collision", .words = kOnCollision});
+    visit("lifetime_loss", type.lifetime_loss, {"Lifetime lost in each step in contact", "s"});
+    visit("collides", settings.collides(),
+          {"Bodies that it collides with: numbers of colliders, and \"ground\""});
+}
+
+/// One, or a list of several.
+template <class View>
+using OneOrSeveral = std::variant<View, std::vector<View>>;
+
+template <class View, class T>
+[[nodiscard]] OneOrSeveral<View> oneOrSeveral(const std::vector<T>& all) {
+    return all.size() == 1 ? OneOrSeveral<View>(View{all.front()}) : OneOrSeveral<View>(viewsOf<View>(all));
+}
+
+struct SceneSettings {
+    const Scene& scene = kNone<Scene>;
+
+    [[nodiscard]] std::vector<TypeTable> types() const;
+};
+
+template <class Visitor>
+void airFields(Visitor& visit, const Scene& scene) {
+    const AirSettings& air = scene.air;
+    visit("attractor", viewsOf<AttractorTable>(air.attractors), {.help = "[[attractor]]", .left_out = true});
+    visit("vortex", viewsOf<VortexTable>(air.vortices), {.help = "[[vortex]]", .left_out = true});
+    const auto flow = [&](auto& visit_flow) {
+        const FlowFile& file = scene.flow ? *scene.flow : kNone<FlowFile>;
+        const bool raw = file.kind == FlowFileKind::kRaw;
+        visit_flow("file", onlyIf(file.kind == FlowFileKind::kImage, file.path),
+                   {.help = "One image", .left_out = true});
+        visit_flow("files", onlyIf(file.kind == FlowFileKind::kSlices, file.path),
+                   {.help = "Pattern of slices", .left_out = true});
+        visit_flow("raw", onlyIf(raw, file.path), {.help = "Raw grid", .left_out = true});
+        visit_flow("size", onlyIf(raw, file.size),
+                   {.help = "Nodes of a raw grid along x, y and z", .left_out = true});
+        visit_flow("components", onlyIf(raw, file.components),
+                   {.help = "Numbers per node", .left_out = true});
+        visit_flow("box_min", file.box_min, {"Lower corner of the box", "object units"});
+        visit_flow("box_max", file.box_max, {"Upper corner of the box", "object units"});
+        visit_flow("outside", file.outside == FlowOutside::kEdge ? "edge" : "zero",
+                   {.help = "Flow outside the box", .words = kWords<"edge", "zero">});
+        visit_flow("gain", file.gain, {"Factor of the velocity"});
+    };
+    visit("flow", groupIf(scene.flow.has_value(), flow), {.help = "[flow]", .left_out = true});
+    const auto noise = [&](auto& visit_noise) {
+        const CurlNoise curl = air.curl_noise.value_or(CurlNoise{});
+        visit_noise("amplitude", curl.amplitude, {"Root mean square speed", "object units per second"});
+        visit_noise("scale", curl.scale, {"Radius of the largest eddies", "object units"});
+        visit_noise("octaves", curl.octaves, {"Layers", {}, kFromZero});
+        visit_noise("drift", curl.drift,
+                    {"Speed at which eddies give way to others", "object units per second"});
+        visit_noise("seed", curl.seed, {"Seed of the noise"});
+    };
+    visit("curl_noise", groupIf(air.curl_noise.has_value(), noise),
+          {.help = "[curl_noise]", .left_out = true});
+}
+
+template <class Visitor>
+void cameraFields(Visitor& visit, const Scene& scene) {
+    const auto& camera = scene.camera;
+    const bool moves = !camera.keys.empty();
+    const glm::vec3 target = camera.target.value_or(glm::vec3(0.0F));
+    visit("eye", onlyIf(!moves, camera.eye.value_or(glm::vec3(0.0F))),
+          {.help = "Position of the eye", .unit = "object units", .left_out = true});
+    visit("target", target, {"Point looked at", "object units"});
+    visit("fov", camera.fov, {"Vertical field of view", "degrees"});
+    visit("path", onlyIf(moves, std::string_view(camera.curve == CameraCurve::kSmooth ? "smooth" : "linear")),
+          {.help = "Curve between keys", .words = kWords<"smooth", "linear">, .left_out = true});
+    visit("key", viewsOf<CameraKeyTable>(camera.keys, target, camera.fov),
+          {.help = "Keys of its motion", .left_out = true});
+}
+
+template <class Visitor>
+void renderFields(Visitor& visit, const Scene& scene) {
+    const auto& render = scene.render;
+    const bool has_atlas = !render.atlas.empty();
+    visit("size", std::array{render.width, render.height}, {"Width and height", "pixels"});
+    visit("point_size", render.point_size.value_or(0.0F), {"Diameter of a particle", "object units"});
+    visit("color", render.color, {"Red, green and blue, 0 to 1"});
+    visit("opacity", render.opacity, {"Opacity, 0 to 1"});
+    visit("background", render.background, {"Red, green and blue, 0 to 1"});
+    visit("every", render.every, {"Steps from frame to frame"});
+    visit("first", firstFrame(scene), {"Step of the first frame"});
+    visit("last", lastFrame(scene), {"Step of the last frame"});
+    visit("sort_frames", render.sort_frames,
+          {"Frames that sorting is spread over, on the fragment path; 0: no sorting"});
+    visit("sprite", render.sprite == Sprite::kQuad ? "quad" : "point",
+          {.help = "Primitive for a particle", .words = kWords<"point", "quad">});
+    visit("blend", render.blend == Blend::kAdditive ? "additive" : "alpha",
+          {.help = "Blending", .words = kWords<"alpha", "additive">});
+    visit("soft", render.soft, {"Distance from the collider over which sprites fade", "object units"});
+    visit("atlas", onlyIf(has_atlas, render.atlas), {.help = "Image of the atlas", .left_out = true});
+    visit("atlas_cells", onlyIf(has_atlas, std::array{render.atlas_columns, render.atlas_rows}),
+          {.help = "Columns and rows of the atlas", .left_out = true});
+    visit("mesh", onlyIf(!render.mesh.empty(), render.mesh),
+          {.help = "Mesh drawn instead of the collider", .left_out = true});
+}
+
+template <class Visitor, FieldsOf<SceneSettings> S>
+void fields(Visitor& visit, S& settings) {
+    const Scene& scene = settings.scene;
+    visit("collider", oneOrSeveral<ColliderTable>(scene.colliders),
+          {.help = "One, or several", .items = {2.0}});
+    const auto time = [&](auto& visit_time) {
+        visit_time("dt", scene.dt, {"Time step", "s", kFromZero});
+        visit_time("steps", scene.steps, {"Steps"});
+        visit_time("prewarm", scene.prewarm, {"Time played before time 0", "s", kFromZero});
+        visit_time("integrator", scene.integrator == Integrator::kVerlet ? "verlet" : "euler",
+                   {.help = "Integrator", .words = kWords<"euler", "verlet">});
+    };
+    visit("time", group(time), {"[time]"});
+    visit("particles", group([&](auto& visit_particles) {
+              visit_particles("capacity", scene.capacity, {"Particles, at most"});
+          }),
+          {"[particles]"});
+    visit("emitter", oneOrSeveral<EmitterTable>(scene.emitters), {.help = "One, or several", .items = {2.0}});
+    visit("spawn", viewsOf<SpawnTable>(scene.spawns), {.help = "[[spawn]]", .left_out = true});
+    const auto forces = [&](auto& visit_forces) {
+        const bool viscous = scene.air.viscosity.has_value();
+        visit_forces("gravity", scene.forces.gravity.value_or(glm::vec3(0.0F)),
+                     {"Gravity", "object units per second squared"});
+        visit_forces("wind", scene.forces.wind, {"Wind", "object units per second"});
+        visit_forces("drag", onlyIf(!viscous, scene.forces.drag),
+                     {.help = "Drag", .unit = "1/s", .left_out = true});
+        visit_forces("viscosity", scene.air.viscosity,
+                     {.help = "Viscosity, instead of drag", .left_out = true});
+    };
+    visit("forces", group(forces), {"[forces]"});
+    const auto collision = [&](auto& visit_collision) {
+        visit_collision("restitution", scene.collision.restitution,
+                        {"Share of the normal speed that is kept"});
+        visit_collision("friction", scene.collision.friction, {"Share of the tangential speed that is lost"});
+        visit_collision("friction_threshold", scene.collision.friction_threshold,
+                        {"Speed below which there is no friction", "object units per second"});
+        visit_collision("sweep", scene.sweep,
+                        {"Greatest distance between two tests within a step; 0: only its ends are tested",
+                         "object units"});
+    };
+    visit("collision", group(collision), {"[collision]"});
+    const auto ground = [&](auto& visit_ground) {
+        visit_ground("enabled", scene.ground.enabled, {"There is a ground"});
+        visit_ground("height", scene.ground.enabled ? scene.ground.height : std::nullopt,
+                     {.help = "Height", .unit = "object units", .left_out = true});
+    };
+    visit("ground", group(ground), {"[ground]"});
+    visit("camera", group([&](auto& visit_camera) { cameraFields(visit_camera, scene); }), {"[camera]"});
+    visit("render", group([&](auto& visit_render) { renderFields(visit_render, scene); }), {"[render]"});
+    airFields(visit, scene);
+    visit("type", settings.types(), {.help = "[[type]]", .left_out = true});
+}
+
+}  // namespace relief
