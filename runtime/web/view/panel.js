@@ -10,8 +10,6 @@ const narrow = matchMedia("(max-width: 720px)");
 // The causes of wrong places, as `relief check` names them to programs.
 const kKinds = { sheet: "thin sheet", open: "open mesh", unseen: "no map sees it", silhouette: "behind a silhouette",
                  other: "of another mesh", texel: "finer than a texel" };
-const sideText = (inside_percent) => (inside_percent >= 95 ? "called inside" : inside_percent <= 5 ? "called outside"
-    : `${Math.round(inside_percent)} % called inside`);
 const percent = (v) => `${Math.round(100 * v)} %`;
 
 export class Panel {
@@ -260,19 +258,20 @@ export class Panel {
             : [["median on the mesh", length(measured.median)], ["mean", length(measured.mean)], ["99 % below", length(measured.p99)]];
         $("measures").replaceChildren(...rows.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)]));
         $("verdict").className = check?.verdict.grade ?? "ungraded";
-        $("verdict").textContent = check?.verdict.text ?? `${shortNumber(measured.wrong_percent)} % wrong near the surface`;
+        $("verdict").textContent = check?.verdict.text ?? "How far the maps are from the mesh";
         $("parts").textContent = check?.parts.text ?? "";
         $("sheets-note").hidden = measured.depth === 0;
         $("sheets-note").textContent = `Sheets have a thickness of ${this.#length(2 * measured.depth)} round the mesh: ` +
             "white is where they lie in its middle.";
-        $("what-to-do").hidden = check?.verdict.grade === "good" || check?.advice.length > 0 || (!check && measured.places.length === 0);
-        $("check-command").textContent = `relief check ${this.app.opened.name} --mesh ${this.app.mesh.name}`;
+        $("what-to-do").hidden = check?.verdict.grade === "good" || check?.advice.length > 0;
+        $("check-command").textContent = `relief check ${this.app.opened.name} --mesh ${this.app.mesh.name} --html check.html`;
         $("advice-title").hidden = !check?.advice.length;
         $("advice").replaceChildren(...(check?.advice ?? []).map(({ command, ...one }) => element("li", {},
             ...(one.tried && !one.helps ? [] : [element("code", {}, command)]), element("p", { class: "hint" }, adviceText(one, check)))));
         $("heat-low").textContent = `${this.#length(-measured.range)} inside`;
         $("heat-high").textContent = `outside ${this.#length(measured.range)}`;
-        this.places = check?.worst_places ?? measured.places;
+        this.places = check?.worst_places ?? [];
+        $("places-title").hidden = !check;
         $("places-title").textContent = this.places.length ? "Worst places, by their share of what is wrong" : "No place is wrong";
         $("places").replaceChildren(...this.places.map((place, i) => element("li", {}, element("button", {
             onclick: () => this.goTo(i),
@@ -280,8 +279,7 @@ export class Panel {
     }
 
     #placeText(place) {
-        return [`${this.#length(place.size)} across`, kKinds[place.cause] ?? sideText(place.false_inside_percent),
-                (place.map ?? -1) < 0 ? "no map" : `map ${place.map}`].join(", ");
+        return [`${this.#length(place.size)} across`, kKinds[place.cause], place.map === null ? "no map" : `map ${place.map}`].join(", ");
     }
 
     goTo(i) {

@@ -7,28 +7,13 @@ import { built, launch, openPage } from "./browser.mjs";
 
 const kEmpty = '<script type="application/json" id="relief-page-data">null</script>';
 
-/** An OBJ file as the page's data has meshes. */
-export function meshData(file) {
-    const vertices = [];
-    const triangles = [];
-    for (const line of readFileSync(file, "utf8").split("\n")) {
-        const [kind, ...words] = line.trim().split(/\s+/);
-        if (kind === "v") {
-            vertices.push(...words.slice(0, 3).map(Number));
-        } else if (kind === "f") {
-            const corners = words.map((word) => parseInt(word, 10) - 1);
-            corners.slice(2).forEach((corner, i) => triangles.push(corners[0], corners[i + 1], corner));
-        }
-    }
-    const base64 = (array) => Buffer.from(array.buffer).toString("base64");
-    return { name: path.basename(file), vertices: base64(Float32Array.from(vertices)),
-             triangles: base64(Uint32Array.from(triangles)) };
-}
-
 /** Data of a page that shows a collider's bytes. */
 export const pageData = (name, bytes, more = {}) =>
     ({ format: 2, name, collider: bytes && Buffer.from(bytes).toString("base64"), shows: null, mesh: null, check: null, scene: null,
        files: null, serve: null, ...more });
+
+/** Data of a page that `relief view` made. */
+export const dataOf = (file) => JSON.parse(/id="relief-page-data">(.*)<\/script>/.exec(readFileSync(file, "utf8"))[1]);
 
 /** Writes the page with that data; its address. data: an object, or text as it is. */
 export function writePage(folder, name, data) {
