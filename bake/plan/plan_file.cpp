@@ -22,13 +22,11 @@ constexpr double kLengthMax = 1e15;
 constexpr std::array<std::string_view, 6> kTopKeys = {"version", "quality",   "prefer",
                                                       "budget",  "thickness", "map"};
 
-/// The index of a string among `words`.
-template <std::size_t N>
-std::optional<std::size_t> wordIn(const toml::node& node, const std::array<const char*, N>& words) {
+/// The choice that a node names; nullopt where it names none.
+template <class Choice>
+std::optional<Choice> wordIn(const toml::node& node) {
     const auto word = node.value_exact<std::string>();
-    const auto* const found = std::ranges::find_if(words, [&](const char* known) { return word == known; });
-    return found == words.end() ? std::nullopt
-                                : std::optional(static_cast<std::size_t>(found - words.begin()));
+    return word ? fromWord<Choice>(*word) : std::nullopt;
 }
 
 class Reader {
@@ -97,20 +95,20 @@ class Reader {
     }
 
     Result<void> readQuality(const toml::node& node, PlanFile& plan) const {
-        const std::optional<std::size_t> word = wordIn(node, kQualityNames);
+        const std::optional<Quality> word = wordIn<Quality>(node);
         if (!word) {
             return invalid(node.source().begin, "quality must be \"fast\", \"normal\" or \"best\"");
         }
-        plan.quality = static_cast<Quality>(*word);
+        plan.quality = *word;
         return {};
     }
 
     Result<void> readPrefer(const toml::node& node, PlanFile& plan) const {
-        const std::optional<std::size_t> word = wordIn(node, kPreferNames);
+        const std::optional<Prefer> word = wordIn<Prefer>(node);
         if (!word) {
             return invalid(node.source().begin, "prefer must be \"neither\", \"inside\" or \"outside\"");
         }
-        plan.prefer = static_cast<Prefer>(*word);
+        plan.prefer = *word;
         return {};
     }
 
@@ -205,8 +203,8 @@ std::string planText(const PlanFile& plan) {
     std::string text =
         "# The maps of a bake, to be changed by hand: relief bake MESH -o OUT.relief --plan THIS_FILE\n"
         "version = " +
-        std::to_string(kVersion) + "\nquality = \"" + qualityName(plan.quality) + "\"\nprefer = \"" +
-        preferName(plan.prefer) + "\"\n";
+        std::to_string(kVersion) + "\nquality = \"" + std::string(wordOf(plan.quality)) + "\"\nprefer = \"" +
+        std::string(wordOf(plan.prefer)) + "\"\n";
     text += plan.budget == 0 ? "" : "budget = " + std::to_string(plan.budget) + "\n";
     text += plan.thickness > 0.0 ? "thickness = " + shortest(static_cast<float>(plan.thickness)) + "\n" : "";
     for (const PlanFileMap& map : plan.maps) {
