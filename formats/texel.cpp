@@ -6,7 +6,7 @@
 #include <cstring>
 #include <glm/gtc/packing.hpp>
 
-#include "formats/indexed_texel.h"
+#include "formats/normal_index.h"
 
 namespace relief {
 namespace {

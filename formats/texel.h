@@ -96,6 +96,15 @@ inline constexpr int kDepthSteps = 65534;
 /// \param bytes  exactly texelSize(format) bytes.
 void encodeTexel(MapFormat format, const Texel& texel, std::span<std::byte> bytes);
 
+/// A surface with encodeNormal(normal) at hand. kFloat32 ignores the index, the other formats the normal.
+struct IndexedSurface {
+    Surface surface;
+    NormalIndex index;
+};
+/// The same from surfaces whose normals are encoded already.
+void encodeTexel(MapFormat format, const std::optional<IndexedSurface>& front,
+                 const std::optional<IndexedSurface>& back, std::span<std::byte> bytes);
+
 /// Reads one texel; any bytes have a meaning for the integer formats. Float texels are read as they are:
 /// the container's reader has refused those that are not finite.
 [[nodiscard]] Texel decodeTexel(MapFormat format, std::span<const std::byte> bytes);

@@ -24,7 +24,6 @@
 
 #include "bake/import/mesh_import.h"
 #include "bake/mesh/embree.h"
-#include "bake/mesh/embree_config.h"
 #include "bake/pipeline/bake.h"
 #include "bake/plan/view.h"
 #include "bake/texels/scan_convert.h"

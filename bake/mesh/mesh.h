@@ -40,7 +40,7 @@ struct SurfaceName {
 struct TriangleMesh {
     std::string name;                   ///< file name without its folder; valid UTF-8
     std::string content_hash;           ///< XXH3-128 of the file's bytes
-    std::string unit;                   ///< of lengths: "m", or "" where the source does not say
+    std::string unit;                   ///< of lengths: "m", or "" if the source has none
     std::vector<glm::vec3> positions;   ///< object space
     std::vector<glm::uvec3> triangles;  ///< counter-clockwise seen from outside, if the source keeps to that
     /// Per triangle, 1 + the index of the last of the selected names that it has, or 0. Empty: no names were selected, or

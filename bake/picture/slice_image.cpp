@@ -8,9 +8,7 @@
 #include <cstring>
 #include <memory>
 
-#include "bake/picture/color.h"
 #include "bake/picture/contour.h"
-#include "bake/picture/pixels.h"
 #include "formats/base/portable_math.h"
 #include "formats/base/text.h"
 
@@ -26,34 +24,57 @@ struct ContextDestroy {
 using Surface = std::unique_ptr<cairo_surface_t, SurfaceDestroy>;
 using Context = std::unique_ptr<cairo_t, ContextDestroy>;
 
+/// sRGB, each in [0, 1].
+struct Color {
+    double r, g, b;
+};
+
+constexpr Color kInsideColor{0.23, 0.29, 0.38};
+constexpr Color kOutsideColor{0.94, 0.945, 0.95};
 constexpr Color kPaper{1.0, 1.0, 1.0};
 constexpr Color kInk{0.13, 0.14, 0.16};
 constexpr Color kFaintInk{0.42, 0.44, 0.47};
 constexpr Color kFarColor{0.865, 0.87, 0.86};
 constexpr Color kAbstainedColor{0.80, 0.70, 0.82};
 
+double toSrgb(double linear) {
+    const double c = std::clamp(linear, 0.0, 1.0);
+    return c <= 0.0031308 ? 12.92 * c : 1.055 * portable::pow(c, 1.0 / 2.4) - 0.055;
+}
+
+/// Ottosson, "A perceptual color space for image processing" (2020). Hue in degrees; clamped to sRGB.
+Color fromOklch(double lightness, double chroma, double hue) {
+    const double a = chroma * portable::cos(hue * 3.14159265358979323846 / 180.0);
+    const double b = chroma * portable::sin(hue * 3.14159265358979323846 / 180.0);
+    const auto cube = [](double v) { return v * v * v; };
+    const double l = cube(lightness + 0.3963377774 * a + 0.2158037573 * b);
+    const double m = cube(lightness - 0.1055613458 * a - 0.0638541728 * b);
+    const double s = cube(lightness - 0.0894841775 * a - 1.2914855480 * b);
+    return {toSrgb(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s),
+            toSrgb(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
+            toSrgb(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s)};
+}
+
+/// Diverging: lightness falls evenly with |u|, blue inside and orange outside, legible in print and to the colour-blind.
+/// \param u  distance over its largest shown value, clamped to [−1, 1].
+Color distanceColor(double u) {
+    const double amount = std::min(std::abs(u), 1.0);
+    const double lightness = 0.97 - 0.56 * amount;
+    const double chroma = 0.135 * std::sqrt(amount) * (1.0 - 0.25 * amount);
+    return u < 0.0 ? fromOklch(lightness, chroma, 255.0) : fromOklch(lightness, chroma, 60.0 - 12.0 * amount);
+}
+
+/// 0xRRGGBB
+std::uint32_t toPixel(const Color& c) {
+    const auto byte = [](double v) { return static_cast<std::uint32_t>(std::lround(v * 255.0)); };
+    return byte(c.r) << 16 | byte(c.g) << 8 | byte(c.b);
+}
+
 cairo_status_t append(void* png, const unsigned char* data, unsigned length) {
     auto* bytes = static_cast<std::vector<std::byte>*>(png);
     const auto* first = reinterpret_cast<const std::byte*>(data);
     bytes->insert(bytes->end(), first, first + length);
     return CAIRO_STATUS_SUCCESS;
-}
-
-/// A surface with the picture's pixels; check its status.
-Surface surfaceOf(const RgbImage& image) {
-    Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(image.width),
-                                               static_cast<int>(image.height)));
-    if (cairo_surface_status(surface.get()) == CAIRO_STATUS_SUCCESS) {
-        cairo_surface_flush(surface.get());
-        unsigned char* to = cairo_image_surface_get_data(surface.get());
-        const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(surface.get()));
-        for (std::uint32_t y = 0; y < image.height; ++y) {
-            std::memcpy(to + y * stride, &image.pixels[std::size_t{y} * image.width],
-                        image.width * sizeof(std::uint32_t));
-        }
-        cairo_surface_mark_dirty(surface.get());
-    }
-    return surface;
 }
 
 double log10(double value) {
@@ -260,11 +281,28 @@ class Figure {
         drawAxes(panel);
     }
 
+    /// One pixel per sample; check its status.
+    [[nodiscard]] Surface surfaceOf(bool distance) const {
+        Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(slice_.width),
+                                                   static_cast<int>(slice_.height)));
+        if (cairo_surface_status(surface.get()) == CAIRO_STATUS_SUCCESS) {
+            cairo_surface_flush(surface.get());
+            unsigned char* to = cairo_image_surface_get_data(surface.get());
+            const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(surface.get()));
+            for (std::uint32_t y = 0; y < slice_.height; ++y) {
+                for (std::uint32_t x = 0; x < slice_.width; ++x) {
+                    const FieldSample& sample = slice_.sample(x, slice_.height - 1 - y);
+                    const std::uint32_t pixel = toPixel(sampleColor(sample, distance));
+                    std::memcpy(to + y * stride + x * sizeof(pixel), &pixel, sizeof(pixel));
+                }
+            }
+            cairo_surface_mark_dirty(surface.get());
+        }
+        return surface;
+    }
+
     void drawSamples(const Rect& panel, bool distance) {
-        const Surface image =
-            surfaceOf(drawPixels(slice_.width, slice_.height, [&](std::uint32_t x, std::uint32_t y) {
-                return sampleColor(slice_.sample(x, slice_.height - 1 - y), distance);
-            }));
+        const Surface image = surfaceOf(distance);
         if (cairo_surface_status(image.get()) != CAIRO_STATUS_SUCCESS) {
             return;
         }

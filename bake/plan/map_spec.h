@@ -19,7 +19,7 @@
 //     depth    unorm16, half       front-back          16-bit fixed point, or the paper's half floats
 //     decode   plane, projected    all                 the distance to a plane that was fitted to the texel's
 //                                                      footprint, or the paper's: along the ray to a flat texel
-//     box      tight, or           all                 the part of object space that the map speaks for;
+//     box      tight, or           all                 the part of object space that the map covers;
 //              x0/y0/z0/x1/y1/z1                       a cube with a box is centred on it
 // clang-format on
 #pragma once

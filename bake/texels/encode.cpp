@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "formats/indexed_texel.h"
+#include "formats/texel.h"
 
 namespace relief {
 namespace {

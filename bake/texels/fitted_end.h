@@ -5,12 +5,26 @@
 #include <cstdint>
 
 #include "bake/plan/view.h"
-#include "bake/texels/fitted_map.h"
 #include "bake/texels/plane_fit.h"
 #include "formats/depth_map.h"
 #include "formats/texel.h"
 
 namespace relief {
+
+struct FittedMapOptions {
+    std::uint32_t samples =
+        4;                ///< rays along each side of a texel's footprint, at the centres of as many parts
+    int refinements = 3;  ///< rounds of search among neighbouring normals
+    /// Object units. Free space behind a plane counts up to this length along a ray; a point farther off is hardly ever
+    /// looked up in this texel alone.
+    double reach = 1.0;
+    double good_enough =
+        0.0;  ///< mean free space behind a plane that is not improved any further, object units
+    /// Surface points half a sample beyond the texel may not lie in front of its plane either: half as many points are
+    /// outside by mistake, and half as many again inside.
+    bool cautious = false;
+    double let_back = 0.0;  ///< as PlaneFitOptions::let_back
+};
 
 /// The ring of texels that stays empty (depth_map.h).
 [[nodiscard]] inline bool isBorder(const View& view, std::uint32_t x, std::uint32_t y) {

@@ -119,7 +119,7 @@ class EndFitter {
         }
         const TexelRay centre = view_.ray(face, x, y);
         deep_.setTexel((std::size_t{face} * view_.height + y) * view_.width + x);
-        // A single ray knows no better plane than the one that it meets: facing the viewer would cut more of a slope.
+        // For a single ray no plane is better than the one that it meets: facing the viewer would cut more of a slope.
         const std::optional<FittedPlane> plane = fitSupportingPlane(
             rays_, [&] { return lookAround(here); }, edge_, end_.fromViewer(centre), centre.origin, fit_,
             samples_ > 1 || !starts_free_ || may_start_inside_ ? &deep_ : nullptr);
@@ -238,7 +238,7 @@ class EndFitter {
         });
     }
 
-    /// Where all rays of both ends start in free space, both ends meet the same edges.
+    /// All rays of both ends start in free space, so that both ends meet the same edges.
     [[nodiscard]] bool sharesEdges() const {
         return starts_free_ && other_starts_free_ && !may_start_inside_;
     }

@@ -252,7 +252,7 @@ class PlaneSearch {
     }
 
   private:
-    /// Where all rays meet one surface and are nearly parallel, the best plane is known. \return false: continue the search.
+    /// The best plane, if all rays meet one surface and are nearly parallel. \return false: continue the search.
     bool trySupported() {
         if (options_.refinements == 0 || options_.let_back > 0.0 || options_.cautious ||
             hits_ < static_cast<int>(rays_.size())) {

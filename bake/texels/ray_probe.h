@@ -35,8 +35,8 @@ class RayProbe {
     [[nodiscard]] Hit hitOf(std::uint32_t face, std::uint32_t x, std::uint32_t y, std::uint32_t triangle);
     /// The ray met the side that a closed mesh turns inwards.
     [[nodiscard]] bool metInside(const Hit& hit) const { return hit.fromBehind() != scene_.insideOut(); }
-    /// Robust or not, Embree lets some rays that are aimed exactly at a vertex or edge pass. What rays beside this one meet
-    /// before `hit` counts if this one touches it.
+    /// Even in robust mode, Embree misses some vertices and edges that a ray is aimed at exactly. A triangle that a ray beside
+    /// this one meets before `hit` counts if this one touches it.
     [[nodiscard]] Hit lookAgain(std::uint32_t face, std::uint32_t x, std::uint32_t y, const Hit& hit);
     [[nodiscard]] RTCRayHit traced(const Segment& segment) const;
     /// \param along  dot(normal, direction of growing depth)

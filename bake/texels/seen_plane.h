@@ -20,7 +20,6 @@ struct SeenPlane {
     double ahead = 0.0;  ///< dot(normal, point of the plane − origin of the rays)
 };
 
-/// Where a ray meets a plane.
 struct PlaneHit {
     double depth;
     double along;  ///< dot(normal, direction of growing depth)
