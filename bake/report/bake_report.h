@@ -219,7 +219,11 @@ void fields(Visitor& visit, R& report) {
     visit("times_ms", group(times), {"Wall-clock times"});
     fields(visit, summary.care);
     visit("warnings", summary.baked.report.warnings, {"Warnings, one line each"});
-    visit("inputs", report.inputs, {.help = "All files that were read, the mesh first", .items = kFromOne});
+    // A wrapped mesh has lost the names of its files. The schema, which is made without maps, requires them.
+    if (!report.inputs.empty() || summary.baked.collider.maps.empty()) {
+        visit("inputs", report.inputs,
+              {.help = "All files that were read, the mesh first", .items = kFromOne});
+    }
 }
 
 }  // namespace relief

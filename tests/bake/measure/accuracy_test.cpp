@@ -14,7 +14,9 @@
 #include "bake/bench/distance_volume.h"
 #include "bake/mesh/inside.h"
 #include "bake/report/check_report.h"
+#include "bake/report/report_text.h"
 #include "formats/base/byte_count.h"
+#include "formats/fields/json.h"
 #include "tests/bake/meshes.h"
 
 namespace relief::test {
