@@ -89,7 +89,7 @@ Result<std::vector<std::byte>> bakedAtRest(const SceneCollider& live, std::vecto
     files.insert(files.end(), mesh.dependencies.begin(), mesh.dependencies.end());
     const Winding winding = RELIEF_TRY(windOutwards(std::move(mesh)));
     BakeOptions options;
-    options.resolution = live.live->resolution;
+    options.resolution = live.resolution;
     const Baked baked = RELIEF_TRY(bake(winding.mesh, options));
     return writeContainer(baked.collider, {9});
 }

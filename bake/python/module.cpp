@@ -308,9 +308,8 @@ class HeadlessSimulation {
         overrides.seed = seed;
         overrides.root = root;
         loaded_ = std::make_unique<LoadedScene>(need(released([&] { return loadAll(scene, overrides); })));
-        auto emitters = need(makeEmitters(loaded_->scene.emitters));
         simulation_ = std::make_unique<Simulation>(need(released([&] {
-            return Simulation::create(*loaded_, std::move(emitters), StepPath::kAuto, nullptr, [] {
+            return Simulation::create(*loaded_, StepPath::kAuto, nullptr, [] {
                 const py::gil_scoped_acquire held;
                 raiseSignals();
             });

@@ -22,7 +22,7 @@ namespace relief {
                                                           std::string_view owner = "scene",
                                                           const std::filesystem::path& root = {});
 
-/// Whether `root` can be given to resolveInside(). Errors: kIo, "--root 'x' is no folder; …".
+/// Checks that `root` can be given to resolveInside(). Errors: kIo, "--root 'x' is no folder; …".
 [[nodiscard]] Result<void> checkRoot(const std::filesystem::path& root);
 
 }  // namespace relief

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -27,22 +28,6 @@ using Json = nlohmann::ordered_json;
 namespace fields_detail {
 
 template <class T>
-inline constexpr bool kIsOptional = false;
-template <class T>
-inline constexpr bool kIsOptional<std::optional<T>> = true;
-template <class T>
-inline constexpr bool kIsVector = false;
-template <class T>
-inline constexpr bool kIsVector<std::vector<T>> = true;
-template <class T>
-inline constexpr bool kIsVariant = false;
-template <class... T>
-inline constexpr bool kIsVariant<std::variant<T...>> = true;
-template <class T>
-inline constexpr bool kIsGroup = false;
-template <class T>
-inline constexpr bool kIsGroup<FieldGroup<T>> = true;
-template <class T>
 inline constexpr bool kIsArray = false;
 template <class T, std::size_t kSize>
 inline constexpr bool kIsArray<std::array<T, kSize>> = true;
@@ -54,16 +39,22 @@ concept WithKinds = requires {
     T::kinds();
 };
 
-/// Without a value, or an empty text or vector.
+/// Without a value, an empty text or vector, or the largest float.
 template <class T>
 bool isNone(const T& value) {
-    if constexpr (kIsOptional<T>) {
+    if constexpr (kIsForm<std::optional, T>) {
         return !value.has_value();
-    } else if constexpr (kIsGroup<T>) {
+    } else if constexpr (kIsForm<FieldSpan, T>) {
+        return isNone(value.least);
+    } else if constexpr (kIsForm<FieldPair, T>) {
+        return isNone(value.first) || isNone(value.second);
+    } else if constexpr (std::same_as<T, float>) {
+        return value == std::numeric_limits<float>::max();
+    } else if constexpr (kIsForm<FieldGroup, T>) {
         return !value.present;
     } else if constexpr (Text<T>) {
         return std::string_view(value).empty();
-    } else if constexpr (kIsVector<T>) {
+    } else if constexpr (kIsForm<std::vector, T>) {
         return value.empty();
     } else {
         return false;
@@ -72,6 +63,7 @@ bool isNone(const T& value) {
 
 }  // namespace fields_detail
 
+/// For a type of its own, a file declares Json jsonField(const T&) beside it.
 /// Enumerations are their words, an optional without a value is null, a path its bytes, a vector of three an array.
 template <class T>
 [[nodiscard]] Json jsonOf(const T& value);
@@ -94,7 +86,9 @@ class JsonWriter {
 template <class T>
 Json jsonOf(const T& value) {
     using namespace fields_detail;
-    if constexpr (std::same_as<T, Json>) {
+    if constexpr (requires { jsonField(value); }) {
+        return jsonField(value);
+    } else if constexpr (std::same_as<T, Json>) {
         return value;
     } else if constexpr (std::same_as<T, float>) {
         return jsonNumber(value);
@@ -108,12 +102,20 @@ Json jsonOf(const T& value) {
         return std::string_view(value);
     } else if constexpr (std::same_as<T, glm::vec3>) {
         return Json::array({jsonNumber(value.x), jsonNumber(value.y), jsonNumber(value.z)});
-    } else if constexpr (kIsOptional<T>) {
+    } else if constexpr (kIsForm<std::optional, T>) {
         return value ? jsonOf(*value) : Json(nullptr);
-    } else if constexpr (kIsVariant<T>) {
+    } else if constexpr (kIsForm<FieldSpan, T>) {
+        return Json::array({jsonOf(value.least), jsonOf(value.most)});
+    } else if constexpr (kIsForm<FieldPair, T>) {
+        return Json::array({jsonOf(value.first), jsonOf(value.second)});
+    } else if constexpr (kIsForm<FieldMaybe, T>) {
+        return jsonOf(value.value);
+    } else if constexpr (kIsForm<FieldFile, T>) {
+        return jsonOf(value.path);
+    } else if constexpr (kIsForm<std::variant, T>) {
         return std::visit([](const auto& one) { return jsonOf(one); }, value);
     } else if constexpr (WithFields<const T>) {
-        if constexpr (kIsGroup<T>) {
+        if constexpr (kIsForm<FieldGroup, T>) {
             if (!value.present) {
                 return nullptr;
             }
@@ -188,10 +190,10 @@ Json schemaOf(const T& value, const FieldInfo& info) {
         return textSchema(info);
     } else if constexpr (std::same_as<T, glm::vec3>) {
         return arraySchema(numberSchema(false, false, info), {3.0, 3.0});
-    } else if constexpr (kIsOptional<T>) {
+    } else if constexpr (kIsForm<std::optional, T>) {
         Json schema = schemaOf(value ? *value : typename T::value_type{}, inner);
         return info.left_out ? schema : nullable(std::move(schema));
-    } else if constexpr (kIsVariant<T>) {
+    } else if constexpr (kIsForm<std::variant, T>) {
         return [&]<std::size_t... I>(std::index_sequence<I...>) {
             return Json{{"anyOf", Json::array({schemaOf(std::variant_alternative_t<I, T>{}, info)...})}};
         }
@@ -208,7 +210,7 @@ Json schemaOf(const T& value, const FieldInfo& info) {
                 kinds.push_back(object(one));
             }
             return {{"anyOf", std::move(kinds)}};
-        } else if constexpr (kIsGroup<T>) {
+        } else if constexpr (kIsForm<FieldGroup, T>) {
             return value.nullable && !info.left_out ? nullable(object(value)) : object(value);
         } else {
             return object(value);

@@ -1,5 +1,6 @@
 #include "runtime/air/air.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <string>
@@ -43,6 +44,14 @@ Result<void> checkNoise(const CurlNoise& noise) {
 }
 
 }  // namespace
+
+std::optional<FieldFault> check(CurlNoise& noise, const GivenFields& /*given*/) {
+    noise.scale = std::max(noise.scale, 1e-9F);  // its reciprocal stays a float
+    if (noise.drift / noise.scale > CurlNoise::kRateMax) {
+        return FieldFault{"drift", "is more than 1000 times curl_noise.scale a second; lower it"};
+    }
+    return std::nullopt;
+}
 
 Result<void> checkAir(const AirSettings& air) {
     if (!isFinite(air.wind)) {

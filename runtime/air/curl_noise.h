@@ -17,6 +17,10 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <optional>
+
+#include "formats/base/field.h"
+#include "formats/base/scene_limits.h"
 
 namespace relief {
 
@@ -34,6 +38,19 @@ struct CurlNoise {
     std::uint32_t seed = 1;
     friend bool operator==(const CurlNoise&, const CurlNoise&) = default;
 };
+
+template <class Visitor, FieldsOf<CurlNoise> N>
+void fields(Visitor& visit, N& noise) {
+    visit("amplitude", noise.amplitude,
+          {"Mean speed of the turbulence", "1/s", {0.0, kSpeedMax, false}, {}, kRequired});
+    visit("scale", noise.scale, {"Size of the largest eddies", {}, kSizeRange, {}, kRequired});
+    visit("octaves", noise.octaves,
+          {"Sizes of eddies, each half as large as the one before", {}, {1.0, CurlNoise::kOctavesMax}});
+    visit("drift", noise.drift,
+          {"Speed at which eddies give way to others; up to 1000 scales a second", "1/s", kSpeedRange});
+    visit("seed", noise.seed, {"Seed of the pattern"});
+}
+[[nodiscard]] std::optional<FieldFault> check(CurlNoise& noise, const GivenFields& given);
 
 /// The velocity at p and time t, object units a second. No speed exceeds 4.4 · √2 · 15/√85 · amplitude (all
 /// numbers of all corners at their worst); in practice none exceeds 4 · amplitude.

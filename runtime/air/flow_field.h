@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "formats/base/field.h"
 #include "formats/base/result.h"
 
 namespace relief {
@@ -16,6 +17,8 @@ enum class FlowOutside : int {
     kZero = 0,  ///< none: the velocity jumps to 0 at the box's faces
     kEdge = 1,  ///< that of the nearest point of the box
 };
+template <>
+inline constexpr std::array<std::string_view, 2> kWordsOf<FlowOutside>{"zero", "edge"};
 
 /// Node-centred: the first and last nodes of an axis lie on the faces of the box, and between nodes the
 /// velocity is trilinear. An axis with a single node is constant along itself, which is how a 2-D flow, with

@@ -20,9 +20,6 @@
 namespace relief {
 namespace {
 
-constexpr std::uint32_t kStepsMax = 10'000'000;
-constexpr std::uint64_t kSeedMax = std::uint64_t{1} << 53;  // what JSON's numbers hold
-
 /// "640x480"
 std::optional<FrameSize> parseFrameSize(std::string_view text) {
     const std::vector<std::string_view> sides = split(text, 'x');

@@ -1,4 +1,4 @@
-// A way through the world: poses at moments, with straight lines and even turns between them.
+// A trajectory through the world: poses at times, with straight lines and even turns between them.
 #pragma once
 
 #include <glm/vec3.hpp>

@@ -8,18 +8,21 @@
 #include <string>
 #include <vector>
 
+#include "formats/base/field.h"
 #include "formats/base/result.h"
+#include "formats/base/scene_limits.h"
 #include "runtime/air/flow_field.h"
 
 namespace relief {
 
+/// The key of the scene that names the file, for each: file, files, raw.
 enum class FlowFileKind : int {
     kImage,   ///< one EXR image: a flow in the plane of x and y, the same at every z
     kSlices,  ///< numbered EXR images, from the lowest z up
     kRaw,     ///< little-endian 32-bit floats; x fastest, then y, then z
 };
 
-/// What a scene says of a flow.
+/// A scene's [flow].
 ///
 /// Images have float or half channels R and G, the velocity along x and y, and may have B, along z; the
 /// bottom row lies at the lowest y, as a viewer shows it.
@@ -34,6 +37,45 @@ struct FlowFile {
     FlowOutside outside = FlowOutside::kZero;
     float gain = 1.0F;
 };
+template <>
+inline constexpr std::array<std::string_view, 3> kWordsOf<FlowFileKind>{"file", "files", "raw"};
+
+template <class Visitor, FieldsOf<FlowFile> F>
+void fields(Visitor& visit, F& flow) {
+    const FieldFile path{flow.path, flow.origin};
+    visit("file", path,
+          {"EXR image: channels R, G and maybe B are the velocity along x, y, z; its bottom row lies "
+           "at the lowest y",
+           {},
+           {},
+           "one of the three is required"});
+    visit("files", path,
+          {"EXR slices, as \"flow_%03d.exr\", numbered from 0 or 1, the lowest z first",
+           {},
+           {},
+           "none",
+           {.instead_of = "file"}});
+    visit("raw", path,
+          {"Little-endian 32-bit floats, x fastest, then y, then z",
+           {},
+           {},
+           "none",
+           {.instead_of = "file files"}});
+    visit("size", flow.size,
+          {"Nodes of the raw volume, 2²⁴ at most",
+           "[nx, ny, nz]",
+           {1.0, FlowField::kSideMax},
+           "required by raw",
+           {.needs = "raw"}});
+    visit("components", flow.components, {"Floats a node", {}, {2.0, 3.0}, {}, {.needs = "raw"}});
+    visit("box_min", flow.box_min,
+          {"Lower corner of the flow's box", "[x, y, z]", kPointRange, {}, kRequired});
+    visit("box_max", flow.box_max,
+          {"Upper corner of the flow's box", "[x, y, z]", kPointRange, {}, kRequired});
+    visit("outside", flow.outside,
+          {"Velocity outside of the box: 0, or that of the nearest point of the box"});
+    visit("gain", flow.gain, {"Factor of every velocity", {}, within(1e6), {}, {.not_zero = true}});
+}
 
 /// The largest velocity taken, in either direction: object units a second.
 inline constexpr float kFlowSpeedMax = 1e6F;

@@ -21,7 +21,7 @@ struct Birth {
 
 inline constexpr std::uint32_t kBirthTypeMax = (1U << 24) - 1;  // what a float counts exactly
 
-/// Whether a particle system takes it: all numbers are finite and in the ranges above.
+/// A particle system accepts it: all numbers are finite and in the ranges above.
 [[nodiscard]] inline bool isValid(const Birth& birth) {
     return isFinite(birth.position) && isFinite(birth.velocity) && birth.lifetime > 0.0F &&
            std::isfinite(birth.lifetime) && birth.age >= 0.0F && std::isfinite(birth.age) &&

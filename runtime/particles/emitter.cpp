@@ -20,9 +20,13 @@ std::uint64_t wholeCount(double count) {
     return count > 0.0 ? static_cast<std::uint64_t>(std::min(count, kCountMax)) : 0;  // 0 for NaN
 }
 
+bool hasNormal(EmitterShape shape) {
+    return shape != EmitterShape::kBox && shape != EmitterShape::kPoint;
+}
+
 const char* problemOfAim(const EmitterSettings& s) {
     const EmitterAim& aim = *s.aim;
-    if (aim.direction ? unitVector(*aim.direction) == glm::vec3(0.0F) : s.shape == EmitterShape::kBox) {
+    if (aim.direction ? unitVector(*aim.direction) == glm::vec3(0.0F) : !hasNormal(s.shape)) {
         return "aim.direction is needed, and must not be 0";
     }
     if (!aim.direction && s.shape == EmitterShape::kPoints && s.points.normals.empty()) {
@@ -41,6 +45,7 @@ const char* problemOfAim(const EmitterSettings& s) {
 const char* problemOfPlace(const EmitterSettings& s) {
     switch (s.shape) {
         case EmitterShape::kBox:
+        case EmitterShape::kPoint:
             return isFinite(s.box_min) && isFinite(s.box_max) && s.box_min.x <= s.box_max.x &&
                            s.box_min.y <= s.box_max.y && s.box_min.z <= s.box_max.z
                        ? nullptr
@@ -192,6 +197,7 @@ void Emitter::sample(Birth& birth) {
     glm::vec3 normal{0.0F};
     switch (s.shape) {
         case EmitterShape::kBox:
+        case EmitterShape::kPoint:
             for (int axis = 0; axis < 3; ++axis) {
                 birth.position[axis] = random_.between(s.box_min[axis], s.box_max[axis]);
             }

@@ -1,4 +1,4 @@
-// Where particles come from: places, velocities and moments of birth, on the CPU. The same settings and seed
+// Births of particles: places, velocities and moments of birth, on the CPU. The same settings and seed
 // give the same births, bit for bit, on every machine (runtime/particles/random.h), however time is cut into
 // steps.
 #pragma once
@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "formats/base/field.h"
 #include "formats/base/result.h"
 #include "runtime/particles/birth.h"
 #include "runtime/particles/emitter_motion.h"
@@ -18,14 +19,18 @@
 
 namespace relief {
 
-/// Where births take place. All are uniform: in volume, over the area, or among the points.
+/// Places of birth. All are uniform: in volume, over the area, or among the points.
 enum class EmitterShape : std::uint8_t {
     kBox,     ///< box_min … box_max; a point where the two are equal
     kSphere,  ///< the ball round center
     kShell,   ///< the surface of that ball
     kDisc,    ///< round center, at right angles to normal
     kPoints,  ///< the points of a list: of a mesh's surface, say
+    kPoint,   ///< box_min, to which box_max is equal
 };
+template <>
+inline constexpr std::array<std::string_view, 6> kWordsOf<EmitterShape>{"box",  "sphere", "shell",
+                                                                        "disc", "points", "point"};
 
 /// A speed along a direction. It adds a uniform and a normal share, and where the sum is below 0 draws anew.
 struct EmitterAim {
@@ -68,7 +73,7 @@ struct EmitterSettings {
 
 class Emitter {
   public:
-    /// What is wrong with the settings, where the constructor would have to guess.
+    /// Refuses settings with which the constructor would have to guess.
     /// Errors: kUsage, naming the member.
     [[nodiscard]] static Result<void> check(const EmitterSettings& settings);
 
@@ -78,11 +83,11 @@ class Emitter {
 
     /// The births of the next `dt` seconds, in the order of time, births by rate before a burst of the same
     /// moment: after time t, with s = min(t − start, duration), burst (1 + ⌊s / burst_every⌋) + ⌊rate · s⌋
-    /// births have been asked for in all, however t was cut into steps (a burst at the end of the duration is
+    /// births are due in all, however t was cut into steps (a burst at the end of the duration is
     /// not). The n-th birth that is made is the same but for its age, too.
     /// \param room    at most so many are made: what the particle system has place for.
     /// \param births  they are added at its end.
-    /// \return how many were asked for but found no room; they are not made up for later.
+    /// \return how many were due but found no room; they are not made up for later.
     std::uint64_t emit(double dt, std::uint64_t room, std::vector<Birth>& births);
 
     [[nodiscard]] const EmitterSettings& settings() const { return settings_; }

@@ -5,7 +5,7 @@
 namespace relief {
 namespace {
 
-/// From the space of a way to the one that its poses are in.
+/// From the space that moves along a trajectory to the space of its poses.
 /// \param moved  how the place moves; `inherit` of it is taken on in the end.
 void carryAlong(std::span<const PoseKey> keys, double time, Birth& birth, glm::vec3& moved) {
     if (keys.empty()) {

@@ -9,7 +9,7 @@
 
 namespace relief {
 
-/// What an emitter's births are carried along by. Its places are then in a space of its own, that `keys` bring into the
+/// The trajectory that carries an emitter's births. Its places are then in a space of its own, which `keys` bring into the
 /// space of the body, and `body` into the world; a scale scales places, but no velocities.
 struct EmitterMotion {
     std::vector<PoseKey> keys;  ///< empty: its space is that of the body

@@ -52,6 +52,8 @@ enum class Integrator : std::uint8_t {
     kEuler,  ///< semi-implicit: v' = v + dt a, P' = P + dt v'
     kVerlet,  ///< P' = P + dt/dt_before (P − P_before) + dt² a: the velocity is the last step's displacement
 };
+template <>
+inline constexpr std::array<std::string_view, 2> kWordsOf<Integrator>{"euler", "verlet"};
 
 struct ParticleSystemOptions {
     std::uint32_t capacity = 65536;  ///< particles that may live at once, 1…kCapacityMax

@@ -1,9 +1,11 @@
-// What kinds of particles there are, and how each moves and collides.
+// Types of particles: how each moves and collides.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
+#include "formats/base/field.h"
+#include "formats/base/scene_limits.h"
 #include "shaders/particles/constants.h"
 
 namespace relief {
@@ -28,5 +30,25 @@ struct ParticleType {
 inline constexpr std::size_t kParticleTypesMax = 16;
 /// With less, drag over mass times wind is no float any more.
 inline constexpr float kParticleMassMin = 1e-15F;
+
+template <>
+inline constexpr std::array<std::string_view, 4> kWordsOf<OnCollision>{"bounce", "stop", "slide", "die"};
+
+/// All but `collides`, which names bodies.
+template <class Visitor, FieldsOf<ParticleType> T>
+void fields(Visitor& visit, T& type) {
+    visit("gravity", type.gravity, {"Factor of forces.gravity; below 0 it rises", {}, within(kFactorMax)});
+    visit("mass", type.mass, {"Divides the drag", {}, {1e-15, 1e9}});
+    visit("radius", type.radius, {"Radius of collision; size is the picture's", {}, kLengthRange});
+    visit("restitution", type.restitution,
+          {"Share of the normal speed that comes back", {}, {0.0, 1.0}, "that of [collision]"});
+    visit("friction", type.friction,
+          {"Share of the tangential speed that is lost", {}, {0.0, 1.0}, "that of [collision]"});
+    visit("friction_threshold", type.friction_threshold,
+          {"Speed below which there is no friction", "1/s", kSpeedRange, "that of [collision]"});
+    visit("on_collision", type.on_collision,
+          {"Reaction to a collision, by the method's page, section Collision"});
+    visit("lifetime_loss", type.lifetime_loss, {"Life that each step in contact costs", "s", kTimeRange});
+}
 
 }  // namespace relief

@@ -85,7 +85,7 @@ Birth Spawner::sample(const ParticleEvent& event, float radius) {
     const glm::vec3 direction = basisAbout(axis).toWorld(inCone(random_, opening_));
     const float speed =
         random_.between(settings_.speed_min, settings_.speed_max) + settings_.kick * event.speed;
-    // What is left of the velocity once the particle no longer approaches the surface.
+    // The velocity without its part towards the surface.
     const glm::vec3 along = event.velocity + event.speed * event.normal;
     Birth birth;
     birth.position = event.position + radius * event.normal;

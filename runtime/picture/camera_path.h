@@ -4,6 +4,7 @@
 #include <glm/vec3.hpp>
 #include <span>
 
+#include "formats/base/field.h"
 #include "runtime/picture/camera.h"
 
 namespace relief {
@@ -21,6 +22,8 @@ enum class CameraCurve {
               ///< it (at the ends, between the last two), so that uneven times are no jolts
     kLinear,
 };
+template <>
+inline constexpr std::array<std::string_view, 2> kWordsOf<CameraCurve>{"smooth", "linear"};
 
 /// Eye, target and fov at a time; before the first key and after the last the camera stands still. fov is
 /// kept within 1…170; an eye that comes to lie straight above or below its target, or in it, is moved a

@@ -1,7 +1,7 @@
-// What particles of a type look like over their age: key-frames, and the texture that shaders/picture/look.glsl reads
+// The look of particles of a type over their age: key-frames, and the texture that shaders/picture/look.glsl reads
 // them from.
 //
-//     row = type     texel 0            turn, spin, first cell (-1: a round grain), number of cells
+//     row = type     texel 0            turn, spin, first cell (-1: a round dot), number of cells
 //                    texel 1            lit, fade in, fade out, number of keys
 //                    texel 2            stretch
 //                    texels 3 + 2k      age, size, opacity, rotation of key k
@@ -19,7 +19,9 @@
 #include <span>
 #include <vector>
 
+#include "formats/base/field.h"
 #include "formats/base/result.h"
+#include "formats/base/scene_limits.h"
 #include "shaders/picture/constants.h"
 
 namespace relief {
@@ -43,11 +45,11 @@ struct ParticleLook {
     AgeTrack<float> rotation;   ///< radians, anticlockwise on the picture; empty: 0
     float turn = 0.0F;  ///< radians, ≥ 0: each particle starts turned by its own angle within ± turn
     float spin = 0.0F;  ///< radians a second, ≥ 0: each turns at its own speed within ± spin
-    /// Seconds, ≥ 0. Above 0 a sprite reaches along its way from where it is back to where it was so long ago at its present
+    /// Seconds, ≥ 0. Above 0 a sprite reaches along its path from where it is back to where it was so long ago at its present
     /// velocity, as in a picture exposed so long; rotation, turn and spin then do nothing. For quads alone.
     float stretch = 0.0F;
     /// The cells of the atlas played from birth to death, counted row by row from the top left; nullopt: a
-    /// round grain.
+    /// round dot.
     std::optional<std::uint32_t> cell_first;
     std::uint32_t cell_last = 0;  ///< ≥ cell_first
     bool lit = true;              ///< false: it shines in its colour whatever light falls on it
@@ -57,7 +59,50 @@ struct ParticleLook {
     friend bool operator==(const ParticleLook&, const ParticleLook&) = default;
 };
 
-/// What a look leaves open.
+template <class Visitor, FieldsOf<ParticleLook> L>
+void fields(Visitor& visit, L& look) {
+    visit("size", look.size,
+          {.help = "Diameter, over age",
+           .range = kLengthRange,
+           .fallback = "render.point_size",
+           .left_out = true});
+    visit("color", look.color,
+          {.help = "Colour, over age, in linear light",
+           .unit = "[r, g, b]",
+           .range = {0.0, 1.0},
+           .fallback = "render.color",
+           .left_out = true});
+    visit("opacity", look.opacity,
+          {.help = "Opacity, over age", .range = {0.0, 1.0}, .fallback = "render.opacity", .left_out = true});
+    visit("rotation", look.rotation,
+          {.help = "Anticlockwise turn of the sprite, over age",
+           .unit = "radians",
+           .range = within(kAngleMax),
+           .fallback = "0",
+           .left_out = true});
+    visit("turn", look.turn,
+          {"Each particle starts turned by its own angle within ± turn", "radians", {0.0, kAngleMax}});
+    visit("spin", look.spin,
+          {"Each particle turns at its own speed within ± spin", "radians/s", {0.0, kAngleMax}});
+    visit("stretch", look.stretch,
+          {"The sprite reaches back along its path to where it was so long ago, as if exposed so "
+           "long; needs render.sprite = \"quad\", and no rotation, turn or spin",
+           "s", kTimeRange});
+    visit("cell", FieldSpan{look.cell_first, look.cell_last},
+          {.help = "Cell of the atlas, or [first, last] played from birth to death; from the top left, row "
+                   "by row; needs render.atlas",
+           .fallback = "a round dot",
+           .left_out = true});
+    visit("lit", look.lit, {"False: shines in its colour, whatever light falls on it"});
+    visit("fade", FieldPair{look.fade_in, look.fade_out},
+          {.help = "Time in which opacity rises after birth and falls before death",
+           .unit = "[in, out] s",
+           .range = kTimeRange,
+           .fallback = "[0.2, 0.5]; none if opacity has several keys",
+           .left_out = true});
+}
+
+/// Values of the fields that a look leaves open.
 struct LookDefaults {
     float size = 0.01F;
     glm::vec3 color{1.0F};  ///< sRGB

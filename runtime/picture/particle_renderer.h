@@ -26,11 +26,15 @@ enum class Sprite : std::uint8_t {
              ///< centre leaves the picture
     kQuad,  ///< six vertices, of any size, and stretched by looks
 };
+template <>
+inline constexpr std::array<std::string_view, 2> kWordsOf<Sprite>{"point", "quad"};
 
 enum class Blend : std::uint8_t {
     kAlpha,     ///< over what is there: right where the farther is drawn first
     kAdditive,  ///< added to what is there, in whatever order
 };
+template <>
+inline constexpr std::array<std::string_view, 2> kWordsOf<Blend>{"alpha", "additive"};
 
 struct ParticleStyle {
     float diameter = 0.01F;               ///< object units

@@ -28,7 +28,7 @@ NumberedFiles dumpFiles(const PlayerOptions& options, std::uint32_t count) {
 
 /// The frame rate at which a video plays in the scene's time, within what players can show.
 double videoRate(const Scene& scene) {
-    return std::clamp(1.0 / (static_cast<double>(scene.dt) * scene.render.every), 1.0, 120.0);
+    return std::clamp(1.0 / (static_cast<double>(scene.time.dt) * scene.render.every), 1.0, 120.0);
 }
 
 }  // namespace
@@ -77,7 +77,8 @@ Result<void> Outputs::open() {
         timer_.emplace();
     }
     if (!options_.stats.empty()) {
-        log_ = RELIEF_TRY(StatisticsLog::create(options_.stats, scene.capacity, options_.path, *timer_));
+        log_ = RELIEF_TRY(
+            StatisticsLog::create(options_.stats, scene.particles.capacity, options_.path, *timer_));
     }
     if (!options_.events.empty()) {
         events_ = RELIEF_TRY(EventsLog::create(options_.events, options_.events_min_speed.value_or(0.0F)));

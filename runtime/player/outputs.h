@@ -1,4 +1,4 @@
-// What a run writes while it goes on: pictures, a video, dumps, statistics; each only where it is wanted.
+// The outputs of a run in progress: pictures, a video, dumps, statistics; each only if requested.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@
 
 namespace relief {
 
-/// Whether the options' outputs can be written, as far as that shows before the run, and none of them is the input or
+/// Checks that the options' outputs can be written, as far as that shows before the run, and that none is the input or
 /// another output. \param guard  gets to know them.
 /// Fails as FileGuard does, and with kUnsupported (OpenVDB).
 [[nodiscard]] Result<void> checkOutputs(const PlayerOptions& options, FileGuard& guard);
@@ -40,7 +40,7 @@ class Outputs {
     /// Makes what is wanted. Fails as ScenePicture, VideoWriter and StatisticsLog do; kIo for folders.
     [[nodiscard]] Result<void> open();
 
-    /// Whether pictures or dumps are written between steps.
+    /// Pictures or dumps are written between steps.
     [[nodiscard]] bool hasFrames() const { return picture_ || !options_.dump_frames.empty(); }
     /// A frame of every kind that is wanted, all of the same step; counts them in the report.
     [[nodiscard]] Result<void> writeFrame(const ParticleSystem& particles, PlayerReport& report);

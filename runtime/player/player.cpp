@@ -51,7 +51,7 @@ class Run {
         if (outputs_.hasFrames() && frameDue(scene_, 0)) {
             RELIEF_TRY(afterStretch());
         }
-        while (step_ < scene_.steps) {
+        while (step_ < scene_.time.steps) {
             RELIEF_TRY(playStretch(stretchEnd()));
             RELIEF_TRY(afterStretch());
         }
@@ -77,7 +77,7 @@ class Run {
     /// The step that the next stretch ends with: at a frame, if not before.
     [[nodiscard]] std::uint32_t stretchEnd() const {
         std::uint32_t end = step_ + 1;
-        const std::uint32_t most = std::min(scene_.steps, step_ + at_once_);
+        const std::uint32_t most = std::min(scene_.time.steps, step_ + at_once_);
         while (end < most && !(outputs_.hasFrames() && frameDue(scene_, end))) {
             ++end;
         }
@@ -103,7 +103,7 @@ class Run {
         while (step_ < end) {
             RELIEF_TRY(simulation_.step(outputs_.timer()));
             ++step_;
-            if (outputs_.log() != nullptr && (step_ % stats_every_ == 0 || step_ == scene_.steps)) {
+            if (outputs_.log() != nullptr && (step_ % stats_every_ == 0 || step_ == scene_.time.steps)) {
                 RELIEF_TRY(outputs_.log()->request(simulation_.particles(), step_, simulation_.refused()));
             }
         }
@@ -120,7 +120,7 @@ class Run {
             RELIEF_TRY(outputs_.log()->poll());
         }
         if (options_.progress) {
-            options_.progress(step_, scene_.steps);
+            options_.progress(step_, scene_.time.steps);
         }
         return frameDue(scene_, step_) && outputs_.hasFrames()
                    ? outputs_.writeFrame(simulation_.particles(), report_)
@@ -172,12 +172,10 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     FileGuard guard = options.guard;
     RELIEF_TRY(checkOutputs(options, guard));
     const auto loaded = RELIEF_TRY(loadAll(options.input, options.overrides));
-    auto emitters = RELIEF_TRY(makeEmitters(loaded.scene.emitters));
-    std::vector<std::string> warnings = sceneWarnings(loaded, emitters);
+    std::vector<std::string> warnings = sceneWarnings(loaded);
     RELIEF_TRY(checkFrames(options, loaded.scene, guard));
     const auto context = RELIEF_TRY(makeContext(options));
-    auto simulation =
-        RELIEF_TRY(Simulation::create(loaded, std::move(emitters), options.path, options.watchdog));
+    auto simulation = RELIEF_TRY(Simulation::create(loaded, options.path, options.watchdog));
     Outputs outputs(options, loaded, simulation.textures());
     RELIEF_TRY(outputs.open());
     if (EventsLog* events = outputs.events(); events != nullptr) {
@@ -197,7 +195,7 @@ Result<PlayerReport> play(const PlayerOptions& options) {
         RELIEF_TRY(readBack(options, simulation.particles(), report));
     }
     report.warnings = std::move(warnings);
-    if (auto refused = refusedWarning(report.counts, report.scene.capacity)) {
+    if (auto refused = refusedWarning(report.counts, report.scene.particles.capacity)) {
         report.warnings.push_back(std::move(*refused));
     }
     return report;

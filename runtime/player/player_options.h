@@ -1,4 +1,4 @@
-// What a run of the player is asked for, and what it tells in the end.
+// Options of a run of the player, and its report.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@
 
 namespace relief {
 
-/// What particles are dumped as.
+/// Format of dumped particles.
 enum class DumpFormat : std::uint8_t { kPly, kVdb };
 
 struct PlayerOptions {

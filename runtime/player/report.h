@@ -39,7 +39,7 @@ void fields(Visitor& visit, R& report) {
         visit_particles("collisions", report.collisions, {"Steps in contact of all particles"});
     };
     visit("particles", group(particles), {"Numbers of particles"});
-    visit("steps", report.scene.steps, {"Steps played"});
+    visit("steps", report.scene.time.steps, {"Steps played"});
     visit("ms_per_step", report.ms_per_step, {"Mean time of a step", "ms", kFromZero});
     visit("ms_per_step_median", report.ms_per_step_median, {"Median time of a step", "ms", kFromZero});
     visit("ms_per_stage",

@@ -29,7 +29,6 @@ Result<CheckReport> checkScene(const PlayerOptions& options) {
                                            std::to_string(Frame::kPixelsMax) +
                                            " pixels in all; choose a smaller one");
     }
-    const auto emitters = RELIEF_TRY(makeEmitters(loaded.scene.emitters));
     RELIEF_TRY(checkPictures(loaded.scene, loaded.bounds));
     CheckReport report;
     if (options.input != loaded.scene.colliders.front().path) {
@@ -49,9 +48,9 @@ Result<CheckReport> checkScene(const PlayerOptions& options) {
             report.files.push_back(checkedFile(path, kind));
         }
     }
-    report.steps = loaded.scene.steps;
-    report.capacity = loaded.scene.capacity;
-    report.warnings = sceneWarnings(loaded, emitters);
+    report.steps = loaded.scene.time.steps;
+    report.capacity = loaded.scene.particles.capacity;
+    report.warnings = sceneWarnings(loaded);
     return report;
 }
 

@@ -1,21 +1,10 @@
 #include "runtime/player/scene_picture.h"
 
-#include <algorithm>
-#include <limits>
-
 #include "runtime/gl/gl_fault.h"
 #include "runtime/scene/scene_pictures.h"
 
 namespace relief {
 namespace {
-
-ColliderView viewOf(const LoadedScene& loaded, const ColliderTextures& textures) {
-    float texel = std::numeric_limits<float>::max();
-    for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
-        texel = std::min(texel, loaded.scene.colliders[i].pose.scale * finestTexel(loaded.colliders[i]));
-    }
-    return {&textures, loaded.bounds, texel};
-}
 
 ColliderStyle colliderStyle(const Scene& scene) {
     ColliderStyle style;
@@ -29,7 +18,7 @@ ColliderStyle colliderStyle(const Scene& scene) {
 Result<ScenePicture> ScenePicture::create(const LoadedScene& loaded, const ColliderTextures& textures,
                                           StepPath path) {
     const Scene& scene = loaded.scene;
-    const ColliderView view = viewOf(loaded, textures);
+    const ColliderView view = colliderView(loaded, textures);
     auto frame = RELIEF_TRY(Frame::create(scene.render.width, scene.render.height));
     auto atlas = RELIEF_TRY(loadAtlas(scene));
     std::optional<LivePicture> live;
@@ -43,7 +32,7 @@ Result<ScenePicture> ScenePicture::create(const LoadedScene& loaded, const Colli
     auto particles = RELIEF_TRY(ParticleRenderer::create(view, picturePath(path)));
     ScenePicture picture(loaded, std::move(frame), std::move(collider), std::move(particles));
     if (scene.render.sort_frames > 0) {
-        picture.sorter_ = RELIEF_TRY(DepthSorter::create(scene.capacity, path));
+        picture.sorter_ = RELIEF_TRY(DepthSorter::create(scene.particles.capacity, path));
     }
     picture.collider_style_ = colliderStyle(scene);
     picture.particle_style_ = particleStyle(scene, atlas.get());

@@ -3,18 +3,22 @@
 namespace relief {
 
 std::vector<ColliderTable> ColliderTable::kinds() {
-    static const SceneCollider live{.path = {}, .origin = {}, .pose = {}, .live = SceneLive{}, .keys = {}};
+    static const SceneCollider live = [] {
+        SceneCollider collider;
+        collider.live.emplace();
+        return collider;
+    }();
     return {{}, {live}};
 }
 
 std::optional<std::variant<std::array<float, 2>, SpeedLaw>> EmitterTable::speed() const {
     using Speed = std::variant<std::array<float, 2>, SpeedLaw>;
-    if (!emitter.aimed) {
+    if (!emitter.aim) {
         return std::nullopt;
     }
-    const float least = *emitter.speed_min;
-    return emitter.speed_deviation > 0.0F ? Speed(SpeedLaw{least, emitter.speed_deviation})
-                                          : Speed(std::array{least, *emitter.speed_max});
+    const EmitterAim& aim = *emitter.aim;
+    return aim.speed_deviation > 0.0F ? Speed(SpeedLaw{aim.speed_min, aim.speed_deviation})
+                                      : Speed(std::array{aim.speed_min, aim.speed_max});
 }
 
 std::vector<std::variant<std::size_t, GroundWord>> TypeTable::collides() const {
@@ -48,8 +52,8 @@ std::vector<std::array<float, 4>> keysOf(const AgeTrack<glm::vec3>& track) {
 
 std::vector<TypeTable> SceneSettings::types() const {
     std::vector<TypeTable> all;
-    for (std::size_t i = 0; i < scene.render.looks.size(); ++i) {
-        all.push_back({scene, scene.types[i], scene.render.looks[i], scene.type_names[i]});
+    for (const SceneType& type : scene.types) {
+        all.push_back({scene, type, type.look, type.name});
     }
     return all;
 }

@@ -64,7 +64,7 @@ void fields(Visitor& visit, S& settings) {
         };
         visit("mesh", collider.path, {"Mesh of a collider that deforms"});
         visit("deform", group(deform), {"Its deformation"});
-        visit("resolution", collider.live->resolution, {"Texels along the side of a map", {}, kFromOne});
+        visit("resolution", collider.resolution, {"Texels along the side of a map", {}, kFromOne});
     } else {
         visit("file", collider.path, {"Container"});
     }
@@ -103,38 +103,39 @@ template <class Visitor, FieldsOf<EmitterTable> S>
 void fields(Visitor& visit, S& settings) {
     constexpr auto kShapes = kWords<"box", "sphere", "shell", "disc", "points">;
     const SceneEmitter& e = settings.emitter;
+    const EmitterAim& aim = aimOf(e);
     const bool is_box = e.shape == EmitterShape::kBox;
     const bool is_disc = e.shape == EmitterShape::kDisc;
     const bool is_round = is_disc || e.shape == EmitterShape::kSphere || e.shape == EmitterShape::kShell;
     visit("shape", kShapes[static_cast<std::size_t>(e.shape)],
           {.help = "Where particles are born", .words = kShapes});
-    visit("box_min", is_box ? e.box_min : std::nullopt,
+    visit("box_min", onlyIf(is_box, e.box_min),
           {.help = "Lower corner of a box", .unit = "object units", .left_out = true});
-    visit("box_max", is_box ? e.box_max : std::nullopt,
+    visit("box_max", onlyIf(is_box, e.box_max),
           {.help = "Upper corner of a box", .unit = "object units", .left_out = true});
-    visit("points", onlyIf(e.shape == EmitterShape::kPoints, e.points),
+    visit("points", onlyIf(e.shape == EmitterShape::kPoints, e.points_file),
           {.help = "File of points", .left_out = true});
     visit("normal", onlyIf(is_disc, e.normal), {.help = "Normal of a disc", .left_out = true});
     visit("center", onlyIf(is_round, e.center), {.help = "Centre", .unit = "object units", .left_out = true});
     visit("radius", onlyIf(is_round, e.radius),
           {.help = "Radius", .unit = "object units", .range = kFromZero, .left_out = true});
     visit("start", e.start, {"Begin of the births", "s"});
-    visit("rate", e.rate.value_or(0.0), {"Births per second", {}, kFromZero});
-    visit("duration", e.duration, {"Duration of the births; null: endless", "s", kFromZero});
+    visit("rate", e.rate, {"Births per second", {}, kFromZero});
+    visit("duration", finite(e.duration), {"Duration of the births; null: endless", "s", kFromZero});
     visit("burst", e.burst, {"Births at once"});
     visit("burst_every", onlyIf(e.burst_every > 0.0, e.burst_every),
           {.help = "Time from burst to burst", .unit = "s", .range = kFromZero, .left_out = true});
-    visit("direction", onlyIf(e.aimed, e.direction),
+    visit("direction", onlyIf(e.aim.has_value(), aim.direction),
           {.help = "Direction of flight; null: outwards", .left_out = true});
     visit(
-        "cone", onlyIf(e.aimed, e.cone),
+        "cone", onlyIf(e.aim.has_value(), aim.cone_degrees),
         {.help = "Half angle about the direction", .unit = "degrees", .range = kFromZero, .left_out = true});
     visit("speed", settings.speed(),
           {.help = "Least and greatest speed, object units per second; or a normal distribution",
            .left_out = true});
-    visit("velocity", e.aimed ? std::nullopt : e.velocity,
+    visit("velocity", onlyIf(!e.aim, e.velocity),
           {.help = "Velocity", .unit = "object units per second", .left_out = true});
-    visit("velocity_spread", e.velocity_spread.value_or(glm::vec3(0.0F)),
+    visit("velocity_spread", e.velocity_spread,
           {"Largest deviation from the velocity", "object units per second"});
     visit("lifetime", std::array{e.lifetime_min, e.lifetime_max}, {"Least and greatest lifetime", "s"});
     visit("type", e.type, {"Index of the type"});
@@ -152,7 +153,7 @@ struct SpawnTable {
 
 template <class Visitor, FieldsOf<SpawnTable> R>
 void fields(Visitor& visit, R& report) {
-    const SpawnSettings& s = report.spawn.settings;
+    const SpawnSettings& s = report.spawn;
     const bool on_death = s.on == SpawnOn::kDeath;
     visit("on", on_death ? "death" : "collision", {.help = "Event", .words = kWords<"collision", "death">});
     visit("of", s.of, {"Index of the type that hits or dies; null: all"});
@@ -374,15 +375,15 @@ void fields(Visitor& visit, S& settings) {
     visit("collider", oneOrSeveral<ColliderTable>(scene.colliders),
           {.help = "One, or several", .items = {2.0}});
     const auto time = [&](auto& visit_time) {
-        visit_time("dt", scene.dt, {"Time step", "s", kFromZero});
-        visit_time("steps", scene.steps, {"Steps"});
-        visit_time("prewarm", scene.prewarm, {"Time played before time 0", "s", kFromZero});
-        visit_time("integrator", scene.integrator == Integrator::kVerlet ? "verlet" : "euler",
+        visit_time("dt", scene.time.dt, {"Time step", "s", kFromZero});
+        visit_time("steps", scene.time.steps, {"Steps"});
+        visit_time("prewarm", scene.time.prewarm, {"Time played before time 0", "s", kFromZero});
+        visit_time("integrator", scene.time.integrator == Integrator::kVerlet ? "verlet" : "euler",
                    {.help = "Integrator", .words = kWords<"euler", "verlet">});
     };
     visit("time", group(time), {"[time]"});
     visit("particles", group([&](auto& visit_particles) {
-              visit_particles("capacity", scene.capacity, {"Particles, at most"});
+              visit_particles("capacity", scene.particles.capacity, {"Particles, at most"});
           }),
           {"[particles]"});
     visit("emitter", oneOrSeveral<EmitterTable>(scene.emitters), {.help = "One, or several", .items = {2.0}});
@@ -404,7 +405,7 @@ void fields(Visitor& visit, S& settings) {
         visit_collision("friction", scene.collision.friction, {"Share of the tangential speed that is lost"});
         visit_collision("friction_threshold", scene.collision.friction_threshold,
                         {"Speed below which there is no friction", "object units per second"});
-        visit_collision("sweep", scene.sweep,
+        visit_collision("sweep", scene.collision.sweep,
                         {"Greatest distance between two tests within a step; 0: only its ends are tested",
                          "object units"});
     };

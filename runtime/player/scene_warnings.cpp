@@ -12,10 +12,10 @@ namespace relief {
 namespace {
 
 constexpr int kGrid = 8;  // points along each side of the box, from which surfaces are looked for
-constexpr std::size_t kPlacesMin = 16;  // fewer places say nothing of a body
+constexpr std::size_t kPlacesMin = 16;  // fewer places are no sample of a body
 constexpr float kThinnest = 0x1p-14F;   // of the longest side, as are the next
 constexpr float kThickest = 2.0F;
-constexpr float kWider = 1.2F;           // from one depth that is asked about to the next
+constexpr float kWider = 1.2F;           // from one depth that is tried to the next
 constexpr std::uint64_t kBirths = 1000;  // of each emitter
 constexpr double kInsideShare = 0.05;    // of them, from which on births inside are no accident
 constexpr float kInsideDepth = 0.01F;    // of the longest side: births on a surface are none inside
@@ -50,13 +50,13 @@ struct Births {
 };
 
 Births birthsOf(Emitter emitter, const EmitterMotion& motion, const Scene& scene) {
-    const double dt{scene.dt};
+    const double dt{scene.time.dt};
     const double begin = -dt * prewarmSteps(scene);
-    const double end = dt * scene.steps;
+    const double end = dt * scene.time.steps;
     Births made;
     emitter.emit(end - begin, kBirths, made.births);
     for (Birth& birth : made.births) {
-        // What has no age is of a burst, the first of which comes at the start.
+        // Births without an age are those of a burst, the first of which comes at the start.
         const double moment = birth.age > 0.0F ? end - double{birth.age} : begin + emitter.settings().start;
         birth.age = 0.0F;
         carry(motion, moment, std::span(&birth, 1));
@@ -66,7 +66,7 @@ Births birthsOf(Emitter emitter, const EmitterMotion& motion, const Scene& scene
 }
 
 ParticleType typeOf(const Birth& birth, const Scene& scene) {
-    return birth.type < scene.types.size() ? scene.types[birth.type] : ParticleType{};
+    return birth.type < scene.types.size() ? ParticleType(scene.types[birth.type]) : ParticleType{};
 }
 
 bool meets(const ParticleType& type, std::size_t body) {
@@ -115,7 +115,9 @@ void warnOfSteps(const LoadedScene& loaded, std::span<const Births> births,
         const SceneCollider& body = scene.colliders[i];
         const Fastest fastest = fastestAt(i, loaded, births);
         const float speed = fastest.speed;
-        const float step = scene.sweep > 0.0F ? std::min(speed * scene.dt, scene.sweep) : speed * scene.dt;
+        const float step = scene.collision.sweep > 0.0F
+                               ? std::min(speed * scene.time.dt, scene.collision.sweep)
+                               : speed * scene.time.dt;
         const auto thickness = body.live ? std::nullopt : typicalThickness(loaded.colliders[i]);
         const float thick = thickness.value_or(0.0F) * body.pose.scale + 2.0F * fastest.radius;
         if (thickness && step > thick) {
@@ -200,11 +202,11 @@ std::optional<float> typicalThickness(const Collider& collider) {
     return *middle;
 }
 
-std::vector<std::string> sceneWarnings(const LoadedScene& loaded, std::span<const Emitter> emitters) {
+std::vector<std::string> sceneWarnings(const LoadedScene& loaded) {
     std::vector<Births> births;
     const auto motions = emitterMotions(loaded.scene.emitters, loaded.scene.colliders);
-    for (std::size_t i = 0; i < emitters.size(); ++i) {
-        births.push_back(birthsOf(emitters[i], motions[i], loaded.scene));
+    for (std::size_t i = 0; i < loaded.emitters.size(); ++i) {
+        births.push_back(birthsOf(loaded.emitters[i], motions[i], loaded.scene));
     }
     std::vector<std::string> warnings;
     warnOfSteps(loaded, births, warnings);

@@ -13,8 +13,8 @@
 namespace relief {
 namespace {
 
-// When a step begins, the events of the one before may still be on their way, and no others. Always: what is made of
-// them depends on no clock.
+// When a step begins, the events of the one before may still be in flight, and no others. Always: the births that they
+// cause must not depend on a clock.
 constexpr int kStepsUnderWay = 1;
 
 /// The colliders on the GPU: a single one without a pose in its own space, others in the world.
@@ -38,19 +38,19 @@ Result<void> applyScene(const Scene& scene, ParticleSystem& particles) {
                                     scene.air.viscosity.value_or(0.0F)}));
     RELIEF_TRY(particles.setCollision(scene.collision));
     if (!scene.types.empty()) {
-        RELIEF_TRY(particles.setTypes(scene.types));
+        RELIEF_TRY(particles.setTypes(particleTypes(scene)));
     }
-    RELIEF_TRY(particles.setSweep(scene.sweep));
+    RELIEF_TRY(particles.setSweep(scene.collision.sweep));
     RELIEF_TRY(particles.setAir(scene.air));
     return particles.setGround(scene.ground.enabled ? scene.ground.height : std::nullopt);
 }
 
 Result<ParticleSystem> makeParticles(const Scene& scene, const ColliderTextures& textures, StepPath path) {
     auto particles = RELIEF_TRY(ParticleSystem::create(
-        {.capacity = scene.capacity,
-         .integrator = scene.integrator,
+        {.capacity = scene.particles.capacity,
+         .integrator = scene.time.integrator,
          .path = path,
-         .start_time = -static_cast<double>(prewarmSteps(scene)) * static_cast<double>(scene.dt)}));
+         .start_time = -static_cast<double>(prewarmSteps(scene)) * static_cast<double>(scene.time.dt)}));
     RELIEF_TRY(particles.setCollider(&textures));
     RELIEF_TRY(applyScene(scene, particles));
     return particles;
@@ -66,12 +66,13 @@ std::vector<Pose> posesAt(const Scene& scene, double time) {
 
 }  // namespace
 
-Result<Simulation> Simulation::create(const LoadedScene& loaded, std::vector<Emitter> emitters, StepPath path,
-                                      Watchdog* watchdog, const std::function<void()>& checkpoint) {
+Result<Simulation> Simulation::create(const LoadedScene& loaded, StepPath path, Watchdog* watchdog,
+                                      const std::function<void()>& checkpoint) {
     Simulation made;
     const Scene& scene = loaded.scene;
     made.scene_ = &scene;
-    made.emitters_ = std::move(emitters);
+    made.emitters_ = loaded.emitters;
+    made.types_ = particleTypes(scene);
     made.motions_ = emitterMotions(scene.emitters, scene.colliders);
     made.poses_change_ = std::any_of(scene.colliders.begin(), scene.colliders.end(),
                                      [](const SceneCollider& c) { return !c.keys.empty(); });
@@ -98,7 +99,7 @@ Result<void> Simulation::prewarm(Watchdog* watchdog, const std::function<void()>
     static constexpr const char* kWhat = "warming up";
     const std::uint32_t steps = prewarmSteps(*scene_);
     for (std::uint32_t step = 0; step < steps; ++step) {
-        RELIEF_TRY(stepAs(0, scene_->dt, nullptr));
+        RELIEF_TRY(stepAs(0, scene_->time.dt, nullptr));
         if ((step + 1) % kAtOnce == 0 || step + 1 == steps) {
             RELIEF_TRY(watched(watchdog, kWhat, [] { return waitForGpu(kWhat); }));
             if (checkpoint) {
@@ -143,10 +144,9 @@ Result<void> Simulation::setEvents() {
     EventOptions options{
         .hits = false, .min_speed = event_sink_ ? sink_min_speed_ : kNone, .most = kEventsMax};
     for (const SceneSpawn& spawn : spawns_) {
-        const SpawnSettings& settings = spawn.settings;
-        const bool death = settings.on == SpawnOn::kDeath;
+        const bool death = spawn.on == SpawnOn::kDeath;
         options.deaths = options.deaths || death;
-        options.min_speed = std::min(options.min_speed, death ? kNone : settings.min_speed);
+        options.min_speed = std::min(options.min_speed, death ? kNone : spawn.min_speed);
     }
     options.hits = options.min_speed < kNone;
     options.min_speed = options.hits ? options.min_speed : 0.0F;
@@ -172,7 +172,7 @@ Result<void> Simulation::takeEvents(int in_flight) {
         for (Spawner& spawner : spawners_) {
             const std::uint64_t room =
                 particles_->room() - std::min<std::uint64_t>(particles_->room(), spawned_.size());
-            refused_ += spawner.spawn(*events, scene_->types, room, spawned_);
+            refused_ += spawner.spawn(*events, types_, room, spawned_);
         }
     }
     return {};
@@ -183,6 +183,7 @@ Result<void> Simulation::change(std::optional<std::vector<Emitter>> emitters) {
         emitters_ = std::move(*emitters);
     }
     motions_ = emitterMotions(scene_->emitters, scene_->colliders);
+    types_ = particleTypes(*scene_);
     poses_change_ = poses_change_ || posesAt(*scene_, particles_->time()) != poses_;
     RELIEF_TRY(applyScene(*scene_, *particles_));
     return setEvents();

@@ -1,4 +1,4 @@
-// What moves in a scene: emitters, particles and colliders, on the GPU and stepped together.
+// The moving parts of a scene, emitters, particles and colliders, on the GPU and stepped together.
 #pragma once
 
 #include <cstdint>
@@ -27,15 +27,15 @@ class Simulation {
     /// \param checkpoint  called between steps before time 0; what it throws comes out of here. May be empty.
     /// Fails as ColliderTextures, LiveBodies and ParticleSystem do. An error of the textures names the scene's
     /// first collider.
-    [[nodiscard]] static Result<Simulation> create(const LoadedScene& loaded, std::vector<Emitter> emitters,
-                                                   StepPath path, Watchdog* watchdog,
+    [[nodiscard]] static Result<Simulation> create(const LoadedScene& loaded, StepPath path,
+                                                   Watchdog* watchdog,
                                                    const std::function<void()>& checkpoint = {});
 
     /// Births, those of the scene's [[spawn]] by events of the step before the last, then the colliders' poses and shapes
     /// at the step's end, then the particles' step.
     /// \param stages  times births and step; may be null.
     /// Fails as LiveBodies::show and ParticleSystem::step do.
-    [[nodiscard]] Result<void> step(StageTimer* stages) { return step(scene_->dt, stages); }
+    [[nodiscard]] Result<void> step(StageTimer* stages) { return step(scene_->time.dt, stages); }
     /// \param dt  seconds, > 0, instead of the scene's.
     [[nodiscard]] Result<void> step(float dt, StageTimer* stages);
 
@@ -46,15 +46,15 @@ class Simulation {
     /// Fails as ParticleSystem's setters do.
     [[nodiscard]] Result<void> change(std::optional<std::vector<Emitter>> emitters);
 
-    /// Hands on the events of every step from the next one on, in the order of steps; each comes a few steps late, so
+    /// Passes on the events of every step from the next one on, in the order of steps; each comes a few steps late, so
     /// that nothing waits for the GPU. The tag is the number of the step, from 1.
-    /// It may hold more than hits that began: what the scene's [[spawn]] asks for. Up to kEventsMax of a step.
+    /// It may hold more than new hits: all that the scene's [[spawn]] needs. Up to kEventsMax of a step.
     /// \param min_speed  slower hits may be left out.
     /// Fails as ParticleSystem::setEvents does.
     using EventSink = std::function<Result<void>(const StepEvents&)>;
     [[nodiscard]] Result<void> listHits(float min_speed, EventSink sink);
     static constexpr std::uint32_t kEventsMax = 1U << 18;
-    /// Hands on the events that are still under way. Fails as the sink and ParticleSystem::waitEvents do.
+    /// Passes on the events that are still in flight. Fails as the sink and ParticleSystem::waitEvents do.
     [[nodiscard]] Result<void> finishEvents() { return takeEvents(0); }
 
     /// Births on top of the emitters', with the next step. Returns how many, and fails, as ParticleSystem::spawn does.
@@ -64,7 +64,7 @@ class Simulation {
 
     [[nodiscard]] const ParticleSystem& particles() const { return *particles_; }
     [[nodiscard]] const ColliderTextures& textures() const { return *textures_; }
-    /// Births that emitters and [[spawn]] did not ask the particle system for, as it had no room.
+    /// Births of emitters and [[spawn]] that were dropped because the particle system had no room.
     [[nodiscard]] std::uint64_t refused() const { return refused_; }
     /// The mesh of a collider that deforms, as it is now; null: that one does not.
     [[nodiscard]] const GpuMesh* mesh(std::size_t collider) const { return live_.mesh(collider); }
@@ -73,12 +73,12 @@ class Simulation {
     Simulation() = default;
     [[nodiscard]] Result<void> giveBirth(float dt);
     [[nodiscard]] Result<void> prewarm(Watchdog* watchdog, const std::function<void()>& checkpoint);
-    /// \param tag  of its events; 0: nobody is told of them.
+    /// \param tag  of its events; 0: not passed on.
     [[nodiscard]] Result<void> stepAs(std::uint64_t tag, float dt, StageTimer* stages);
     [[nodiscard]] Result<void> moveColliders(double time);
-    /// Lists what the scene's [[spawn]] and the sink ask for, or nothing.
+    /// Has the events listed that the scene's [[spawn]] and the sink need, if any.
     [[nodiscard]] Result<void> setEvents();
-    /// Until at most so many steps are under way.
+    /// Until the events of at most so many steps are in flight.
     [[nodiscard]] Result<void> takeEvents(int in_flight);
 
     const Scene* scene_ = nullptr;
@@ -92,6 +92,7 @@ class Simulation {
     std::vector<Birth> births_;  // of a step, kept for its memory
     std::uint64_t refused_ = 0;
     std::uint64_t steps_ = 0;
+    std::vector<ParticleType> types_;
     std::vector<SceneSpawn> spawns_;  // that the spawners are made of
     std::vector<Spawner> spawners_;
     std::vector<Birth> spawned_;  // for the next step

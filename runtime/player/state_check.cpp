@@ -19,15 +19,15 @@ std::string typeText(const std::filesystem::path& input, const Scene& scene, std
         return quotedPath(input) + ": particles";
     }
     const std::size_t index = std::min<std::size_t>(type, scene.types.size() - 1);
-    const std::string& name = scene.type_names[index];
-    return scene.type_places[index] + ": particles of " +
+    const std::string& name = scene.types[index].name;
+    return scene.types[index].place + ": particles of " +
            (name.empty() ? "type " + std::to_string(index) : "the type '" + cleanUtf8(name) + "'");
 }
 
 }  // namespace
 
 Result<StateCheck> StateCheck::create(const std::filesystem::path& input, const Scene& scene, StepPath path) {
-    Statistics statistics = RELIEF_TRY(Statistics::create(scene.capacity, path));
+    Statistics statistics = RELIEF_TRY(Statistics::create(scene.particles.capacity, path));
     return StateCheck(input, scene, std::move(statistics));
 }
 
@@ -35,7 +35,7 @@ Result<void> StateCheck::look(const ParticleSystem& particles, std::uint32_t ste
     while (const auto sample = statistics_.poll()) {
         RELIEF_TRY(judge(*sample));
     }
-    if (step - looked_ >= kStateCheckSteps || step == scene_->steps) {
+    if (step - looked_ >= kStateCheckSteps || step == scene_->time.steps) {
         looked_ = step;
         if (!statistics_.request(particles, step)) {
             RELIEF_TRY(finish());

@@ -8,10 +8,10 @@
 #include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
+#include "formats/config/toml_reader.h"
 #include "formats/container.h"
 #include "runtime/files/flow_file.h"
 #include "runtime/scene/scene_parser.h"
-#include "runtime/scene/scene_table.h"
 
 namespace relief {
 namespace {
@@ -55,7 +55,7 @@ std::vector<fs::path> filesOf(const Scene& scene) {
         files.push_back(collider.path);
     }
     for (const SceneEmitter& emitter : scene.emitters) {
-        files.push_back(emitter.points);
+        files.push_back(emitter.points_file);
     }
     if (scene.flow) {
         const std::vector<fs::path> flow = flowPaths(*scene.flow);
@@ -71,7 +71,7 @@ std::vector<fs::path> filesOf(const Scene& scene) {
 
 Result<LoadedScene> loadAll(const fs::path& input, const SceneOverrides& overrides) {
     auto scene = RELIEF_TRY(openScene(input, overrides.root));
-    scene.steps = overrides.steps.value_or(scene.steps);
+    scene.time.steps = overrides.steps.value_or(scene.time.steps);
     scene.render.width = overrides.width.value_or(scene.render.width);
     scene.render.height = overrides.height.value_or(scene.render.height);
     scene.render.every = overrides.frame_every.value_or(scene.render.every);
@@ -109,6 +109,7 @@ Result<LoadedScene> loadAll(const fs::path& input, const SceneOverrides& overrid
         loaded.colliders.push_back(std::move(collider));
     }
     loaded.scene = RELIEF_TRY(inFront(quotedPath(input), withDefaults(std::move(scene), loaded.bounds)));
+    loaded.emitters = RELIEF_TRY(makeEmitters(loaded.scene.emitters));
     if (loaded.scene.flow) {
         auto flow = RELIEF_TRY(loadFlow(*loaded.scene.flow));
         loaded.scene.air.flow = std::make_shared<const FlowField>(std::move(flow));

@@ -14,7 +14,7 @@
 
 namespace relief {
 
-/// What is taken instead of the scene's own.
+/// Values that replace the scene's own.
 struct SceneOverrides {
     std::optional<std::uint32_t> steps;
     std::optional<std::uint32_t> width;  ///< of pictures, pixels, as is the next
@@ -28,13 +28,14 @@ struct SceneOverrides {
     ContainerLimits limits;  ///< of each collider
 };
 
-/// A scene and what it names, read and complete.
+/// A scene and everything it names, read and complete: all that a Simulation plays.
 struct LoadedScene {
     Scene scene;                      ///< overridden by the options, every default filled in
     std::vector<Collider> colliders;  ///< those of the scene, in its order
     /// As many: the meshes of those that deform, whose colliders have maps without texels.
     std::vector<std::optional<LiveMesh>> live;
-    Bounds bounds;  ///< of what they occupy in the course of time, in the particles' space
+    Bounds bounds;                  ///< of what they occupy in the course of time, in the particles' space
+    std::vector<Emitter> emitters;  ///< those of the scene, which have given no birth yet
 };
 
 /// Every file that a scene names, sorted; without the scene itself.
@@ -42,7 +43,7 @@ struct LoadedScene {
 
 /// Reads a scene (.toml) or a collider (.relief), for which the default scene is made, and every file that it
 /// names. Needs no context.
-/// Fails as the readers of these files do; errors of files that a scene names begin with its line and column.
+/// Fails as the readers of these files and makeEmitters() do; errors of files that a scene names begin with its line and column.
 [[nodiscard]] Result<LoadedScene> loadAll(const std::filesystem::path& input,
                                           const SceneOverrides& overrides);
 

@@ -3,14 +3,248 @@
 #include <algorithm>
 #include <cmath>
 
+#include "formats/base/file_io.h"
+#include "formats/config/toml_reader.h"
 #include "runtime/picture/camera.h"
-#include "runtime/scene/scene_table.h"
 
 namespace relief {
+namespace {
+
+/// The fault of a camera at `eye`; nullptr: none.
+const char* cameraProblem(const glm::vec3& eye, const glm::vec3& target) {
+    const glm::vec3 d = eye - target;
+    if (!(glm::length(d) > 0.0F)) {
+        return "is at camera.target; move one of them";
+    }
+    if (std::hypot(d.x, d.z) <= 1e-4F * std::abs(d.y)) {
+        return "is straight above or below camera.target, where no side is up; move it aside";
+    }
+    return nullptr;
+}
+
+std::string nth(const char* list, std::size_t i, const char* key) {
+    return std::string(list) + "[" + std::to_string(i) + "]" + key;
+}
+
+std::optional<FieldFault> checkAirOf(Scene& scene, const GivenFields& given) {
+    scene.air.wind = scene.forces.wind;
+    scene.air.viscosity = scene.forces.viscosity;
+    const bool viscous = scene.air.viscosity.has_value();
+    const float drag = scene.air.viscosity.value_or(scene.forces.drag);
+    for (const char* table : {"flow", "curl_noise"}) {
+        if (given(table) && drag == 0.0F) {
+            return FieldFault{
+                table, std::string("does nothing without drag, which carries particles along; raise ") +
+                           (viscous ? "forces.viscosity" : "forces.drag")};
+        }
+    }
+    return std::nullopt;
+}
+
+/// The frames, which lie within the steps.
+std::optional<FieldFault> checkFrames(const Scene& scene) {
+    const SceneRender& render = scene.render;
+    for (const auto& [path, step] : {std::pair("render.first", render.first), {"render.last", render.last}}) {
+        if (step && *step > scene.time.steps) {
+            return FieldFault{path, "= " + std::to_string(*step) + " is out of range; choose 0 to " +
+                                        std::to_string(scene.time.steps)};
+        }
+    }
+    if (render.last && *render.last < render.first.value_or(0)) {
+        return FieldFault{"render.last", "comes before render.first; swap them"};
+    }
+    return std::nullopt;
+}
+
+/// render.mesh is drawn in its own space, and only once.
+std::optional<FieldFault> checkMesh(const Scene& scene) {
+    const SceneCollider& first = scene.colliders.front();
+    if (scene.render.mesh.empty()) {
+        return std::nullopt;
+    }
+    if (scene.colliders.size() > 1 || !first.keys.empty() || !(first.pose == Pose{})) {
+        return FieldFault{"render.mesh",
+                          "is drawn where it was baked, and for a single collider; remove the mesh, or the "
+                          "collider's position, angle, scale and keys"};
+    }
+    if (first.live && scene.render.mesh != first.path) {
+        return FieldFault{"render.mesh", "is not the mesh that deforms; name collider.mesh"};
+    }
+    return std::nullopt;
+}
+
+std::optional<FieldFault> checkCells(const Scene& scene) {
+    const SceneRender& render = scene.render;
+    const std::uint32_t cells = render.atlas.empty() ? 0 : render.atlas_columns * render.atlas_rows;
+    bool any = false;
+    for (std::size_t i = 0; i < scene.types.size(); ++i) {
+        const ParticleLook& look = scene.types[i].look;
+        any = any || look.cell_first;
+        if (look.cell_first && look.cell_last >= cells) {
+            return FieldFault{nth("type", i, ".cell"),
+                              cells == 0 ? "does nothing without render.atlas; name a PNG there, or remove it"
+                                         : "is out of range; choose 0 to " + std::to_string(cells - 1)};
+        }
+    }
+    if (cells > 0 && !any) {
+        return FieldFault{
+            "render.atlas",
+            "does nothing while no [[type]] has a cell; give one 'cell = 0', or remove the atlas"};
+    }
+    return std::nullopt;
+}
+
+/// The types among the scene's other tables: what they leave open is [collision]'s.
+std::optional<FieldFault> completeTypes(Scene& scene, const GivenFields& given) {
+    const std::uint32_t bodies =
+        (1U << scene.colliders.size()) - 1U + (scene.ground.enabled ? kCollidesWithGround : 0U);
+    for (std::size_t i = 0; i < scene.types.size(); ++i) {
+        SceneType& type = scene.types[i];
+        const auto inherit = [&](const char* key, float& value, float from) {
+            value = given(nth("type", i, key)) ? value : from;
+        };
+        inherit(".restitution", type.restitution, scene.collision.restitution);
+        inherit(".friction", type.friction, scene.collision.friction);
+        inherit(".friction_threshold", type.friction_threshold, scene.collision.friction_threshold);
+        // Bits of absent bodies do not matter: leaving nothing out is worth a faster step.
+        type.collides = type.collides == bodies ? kCollidesWithAll : type.collides;
+        if (type.look.stretch > 0.0F && scene.render.sprite == Sprite::kPoint) {
+            return FieldFault{nth("type", i, ".stretch"),
+                              "does nothing for points; choose render.sprite = \"quad\""};
+        }
+        for (std::size_t k = 0; k < i && !type.name.empty(); ++k) {
+            if (scene.types[k].name == type.name) {
+                return FieldFault{nth("type", i, ".name"), "is taken; choose another"};
+            }
+        }
+    }
+    return checkCells(scene);
+}
+
+}  // namespace
+
+std::optional<FieldFault> check(SceneTime& time, const GivenFields& /*given*/) {
+    if (time.prewarm > kStepsMax * static_cast<double>(time.dt)) {
+        return FieldFault{"prewarm", "is more than " + numberText(kStepsMax) +
+                                         " steps of time.dt; shorten it, or raise time.dt"};
+    }
+    return std::nullopt;
+}
+
+std::optional<FieldFault> check(SceneForces& forces, const GivenFields& /*given*/) {
+    if (forces.wind != glm::vec3(0.0F) && forces.viscosity.value_or(forces.drag) == 0.0F) {
+        return FieldFault{"wind",
+                          forces.viscosity
+                              ? "does nothing while forces.viscosity is 0; raise it or remove the wind"
+                              : "does nothing while forces.drag is 0; raise the drag or remove the wind"};
+    }
+    return std::nullopt;
+}
+
+std::optional<FieldFault> check(SceneCollision& collision, const GivenFields& /*given*/) {
+    if (collision.friction_threshold > 0.0F && collision.friction == 0.0F) {
+        return FieldFault{"friction_threshold",
+                          "does nothing while collision.friction is 0; raise the friction or remove it"};
+    }
+    return std::nullopt;
+}
+
+std::optional<FieldFault> check(SceneGround& ground, const GivenFields& /*given*/) {
+    if (ground.height && !ground.enabled) {
+        return FieldFault{"height", "does nothing while ground.enabled is false; remove one of them"};
+    }
+    return std::nullopt;
+}
+
+std::optional<FieldFault> check(SceneCamera& camera, const GivenFields& /*given*/) {
+    double before = -1.0;
+    for (std::size_t i = 0; i < camera.keys.size(); ++i) {
+        const SceneCameraKey& key = camera.keys[i];
+        if (key.time <= before) {
+            return FieldFault{nth("key", i, ".time"),
+                              "= " + numberText(key.time) + " does not rise; sort the keys by time"};
+        }
+        before = key.time;
+        const glm::vec3 target =
+            key.target.value_or(camera.target.value_or(key.eye + glm::vec3(0.0F, 0.0F, 1.0F)));
+        if (cameraProblem(key.eye, target) != nullptr) {
+            return FieldFault{nth("key", i, ".eye"),
+                              "is straight above or below its target, or in it; move it aside"};
+        }
+    }
+    const char* const problem =
+        camera.eye && camera.target ? cameraProblem(*camera.eye, *camera.target) : nullptr;
+    return problem != nullptr ? std::optional(FieldFault{"eye", problem}) : std::nullopt;
+}
+
+std::optional<FieldFault> check(SceneRender& render, const GivenFields& /*given*/) {
+    if (render.sort_frames == 1) {
+        // It would be a whole sort each frame, which spreading over frames is there to avoid.
+        return FieldFault{"sort_frames", "= 1 is out of range; choose 0, for no sort, or 2 to 200"};
+    }
+    return std::nullopt;
+}
+
+std::optional<FieldFault> check(SceneType& type, const GivenFields& given) {
+    ParticleLook& look = type.look;
+    if (given("name") && type.name.empty()) {
+        return FieldFault{"name", "is empty; give a name, or remove it"};
+    }
+    for (const char* key : {"rotation", "turn", "spin"}) {
+        if (look.stretch > 0.0F && given(key)) {
+            return FieldFault{
+                key, "does nothing for sprites that type.stretch turns along their path; remove one of them"};
+        }
+    }
+    if (look.opacity.size() > 1 && !given("fade")) {  // it is the particle's beginning and end
+        look.fade_in = 0.0F;
+        look.fade_out = 0.0F;
+    }
+    return std::nullopt;
+}
+
+std::optional<FieldFault> check(Scene& scene, const GivenFields& given) {
+    if (scene.colliders.empty()) {
+        return FieldFault{
+            "", "a scene needs collider.file, the .relief file to collide with; bake one with 'relief bake'"};
+    }
+    for (std::size_t i = 0; i < scene.emitters.size(); ++i) {
+        const std::uint32_t capacity = scene.particles.capacity;
+        if (scene.emitters[i].burst > capacity) {
+            return FieldFault{nth("emitter", i, ".burst"),
+                              "= " + std::to_string(scene.emitters[i].burst) +
+                                  " is more than particles.capacity = " + std::to_string(capacity) +
+                                  "; raise the capacity"};
+        }
+    }
+    if (auto fault = checkAirOf(scene, given)) {
+        return fault;
+    }
+    if (auto fault = checkFrames(scene)) {
+        return fault;
+    }
+    if (auto fault = checkMesh(scene)) {
+        return fault;
+    }
+    return completeTypes(scene, given);
+}
+
+std::vector<ParticleType> particleTypes(const Scene& scene) {
+    return {scene.types.begin(), scene.types.end()};
+}
+
+std::vector<ParticleLook> particleLooks(const Scene& scene) {
+    std::vector<ParticleLook> looks;
+    for (const SceneType& type : scene.types) {
+        looks.push_back(type.look);
+    }
+    return looks;
+}
 
 std::uint32_t prewarmSteps(const Scene& scene) {
-    // What is a whole number of steps but for rounding takes no further one.
-    return static_cast<std::uint32_t>(std::ceil(scene.prewarm / static_cast<double>(scene.dt) - 1e-6));
+    // Rounding must not add a step to a whole number of them.
+    return static_cast<std::uint32_t>(
+        std::ceil(scene.time.prewarm / static_cast<double>(scene.time.dt) - 1e-6));
 }
 
 std::uint32_t firstFrame(const Scene& scene) {
@@ -18,7 +252,7 @@ std::uint32_t firstFrame(const Scene& scene) {
 }
 
 std::uint32_t lastFrame(const Scene& scene) {
-    return std::min(scene.render.last.value_or(scene.steps), scene.steps);
+    return std::min(scene.render.last.value_or(scene.time.steps), scene.time.steps);
 }
 
 std::uint32_t frameCount(const Scene& scene) {
@@ -31,18 +265,6 @@ bool frameDue(const Scene& scene, std::uint32_t step) {
     const std::uint32_t first = firstFrame(scene);
     const std::uint32_t last = lastFrame(scene);
     return step >= first && step <= last && ((step - first) % scene.render.every == 0 || step == last);
-}
-
-std::string_view cameraProblem(const glm::vec3& eye, const glm::vec3& target) {
-    const glm::vec3 d = eye - target;
-    const float flat = std::hypot(d.x, d.z);
-    if (!(glm::length(d) > 0.0F)) {
-        return "camera.eye is at camera.target; move one of them";
-    }
-    if (flat <= 1e-4F * std::abs(d.y)) {
-        return "camera.eye is straight above or below camera.target, where no side is up; move it aside";
-    }
-    return {};
 }
 
 Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
@@ -58,9 +280,9 @@ Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
     const glm::vec3 center = bounds.center();
     const float away = std::max({std::abs(center.x), std::abs(center.y), std::abs(center.z)});
     const float scale = std::max({bounds.longestSide(), 1e-3F * away, 1e-6F});
-    const double run = static_cast<double>(scene.dt) *
-                       (static_cast<double>(scene.steps) + static_cast<double>(prewarmSteps(scene)));
-    RELIEF_TRY(completeEmitters(scene.emitters, bounds, scale, run, scene.capacity));
+    const double run = static_cast<double>(scene.time.dt) *
+                       (static_cast<double>(scene.time.steps) + static_cast<double>(prewarmSteps(scene)));
+    RELIEF_TRY(completeEmitters(scene.emitters, bounds, scale, run, scene.particles.capacity));
     if (!scene.forces.gravity) {
         scene.forces.gravity = glm::vec3(0.0F, -3.0F * scale, 0.0F);
     }
@@ -75,9 +297,8 @@ Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
             defaultEye(*scene.camera.target, std::max(0.5F * glm::length(bounds.size()), 0.5F * scale),
                        scene.camera.fov);
     }
-    if (const std::string_view problem = cameraProblem(*scene.camera.eye, *scene.camera.target);
-        !problem.empty()) {
-        return fail(ErrorCode::kInvalidInput, std::string(problem));
+    if (const char* problem = cameraProblem(*scene.camera.eye, *scene.camera.target); problem != nullptr) {
+        return fail(ErrorCode::kInvalidInput, std::string("camera.eye ") + problem);
     }
     if (!scene.render.point_size) {
         scene.render.point_size = 0.0065F * scale;

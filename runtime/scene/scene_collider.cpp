@@ -1,9 +1,87 @@
 #include "runtime/scene/scene_collider.h"
 
+#include <cmath>
+#include <glm/glm.hpp>
 #include <limits>
+#include <numbers>
 #include <span>
 
 namespace relief {
+
+Pose poseOf(const ScenePose& pose, const Pose& rest) {
+    Pose result = rest;
+    result.position = pose.position.value_or(rest.position);
+    if (pose.angle) {
+        // After two turns the quaternion is the same; a small angle is exact to more digits.
+        result.rotation =
+            glm::normalize(glm::angleAxis(glm::radians(std::fmod(*pose.angle, 720.0F)), pose.axis));
+    }
+    return result;
+}
+
+std::vector<PoseKey> poseKeys(const std::vector<SceneKey>& keys, const Pose& rest) {
+    std::vector<PoseKey> result;
+    for (const SceneKey& key : keys) {
+        result.push_back({key.time, poseOf(key, rest)});
+    }
+    return result;
+}
+
+std::optional<FieldFault> checkKeys(const std::vector<SceneKey>& keys, const char* instead) {
+    for (std::size_t i = 1; i < keys.size(); ++i) {
+        if (!(keys[i].time > keys[i - 1].time)) {
+            return FieldFault{"key[" + std::to_string(i) + "].time", "does not rise; order the keys by time"};
+        }
+    }
+    if (keys.size() == 1) {
+        return FieldFault{"key", std::string("alone moves nothing; give a second, or ") + instead};
+    }
+    return std::nullopt;
+}
+
+std::optional<FieldFault> check(SceneLive& live, const GivenFields& given) {
+    Deformation& d = live.deformation;
+    d.phase = glm::radians(d.phase);
+    if (d.kind == DeformKind::kWobble) {
+        return std::nullopt;
+    }
+    if (std::abs(d.amplitude) > 360.0F) {
+        return FieldFault{"amplitude", "is out of range; choose -360 to 360 degrees"};
+    }
+    d.amplitude = std::clamp(glm::radians(d.amplitude), -2.0F * std::numbers::pi_v<float>,
+                             2.0F * std::numbers::pi_v<float>);
+    live.has_range = given("range");
+    if (live.has_range && !(d.range_low < d.range_high)) {
+        return FieldFault{"range", "does not rise; give the lower end first"};
+    }
+    if (d.kind == DeformKind::kBend) {
+        // A person need not write a direction that is exactly perpendicular.
+        const glm::vec3 across = d.along - glm::dot(d.along, d.axis) * d.axis;
+        if (!(glm::length(across) > 0.7F)) {
+            return FieldFault{"along",
+                              "lies along collider.deform.axis, about which it bends; choose one across it"};
+        }
+        d.along = glm::normalize(across);
+    }
+    return std::nullopt;
+}
+
+std::optional<FieldFault> check(SceneCollider& collider, const GivenFields& given) {
+    if (given("mesh") && !collider.live) {
+        return FieldFault{
+            "mesh", "needs collider.deform; for a mesh at rest give collider.file, baked with 'relief bake'"};
+    }
+    if (collider.path.empty()) {
+        return FieldFault{
+            "", "needs collider.file, the .relief file to collide with; bake one with 'relief bake'"};
+    }
+    for (const char* key : {"position", "angle", "scale", "restitution", "friction", "key"}) {
+        collider.posed = collider.posed || given(key);
+    }
+    collider.pose = poseOf(collider.given_pose, {.scale = collider.scale});
+    collider.keys = poseKeys(collider.given_keys, collider.pose);
+    return checkKeys(collider.given_keys, "a position");
+}
 
 Pose poseAt(const SceneCollider& collider, double time) {
     return collider.keys.empty() ? collider.pose : poseAt(std::span<const PoseKey>(collider.keys), time);

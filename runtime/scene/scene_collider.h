@@ -1,4 +1,4 @@
-// The colliders of a scene: files, places, and ways through the world.
+// The colliders of a scene: files, poses, and trajectories through the world.
 #pragma once
 
 #include <cstdint>
@@ -7,37 +7,146 @@
 #include <string>
 #include <vector>
 
+#include "formats/base/field.h"
+#include "formats/base/scene_limits.h"
 #include "formats/collider.h"
+#include "runtime/collider/collider_textures.h"
 #include "runtime/collider/deformation.h"
 #include "runtime/collider/pose_keys.h"
 
 namespace relief {
 
-/// What [collider] says of `mesh` and `deform`; what is left open depends on the mesh.
+/// A pose as a table gives it.
+struct ScenePose {
+    std::optional<glm::vec3> position;
+    glm::vec3 axis{0.0F, 1.0F, 0.0F};
+    std::optional<float> angle;  ///< degrees
+};
+
+template <class Visitor, FieldsOf<ScenePose> P>
+void fields(Visitor& visit, P& pose) {
+    visit("position", pose.position,
+          {"Place of the origin", "[x, y, z]", kPointRange, "[0, 0, 0]; of a key that of its table"});
+    visit("axis", pose.axis,
+          {"Axis of rotation, of any length",
+           "[x, y, z]",
+           kPointRange,
+           {},
+           {.needs = "angle", .unit_length = true}});
+    visit("angle", pose.angle,
+          {"Rotation about the axis, right-handed", "degrees", within(kAngleMax),
+           "0; of a key that of its table"});
+}
+
+/// [[collider.key]] and [[emitter.key]].
+struct SceneKey : ScenePose {
+    double time = 0.0;  ///< seconds
+};
+
+template <class Visitor, FieldsOf<SceneKey> K>
+void fields(Visitor& visit, K& key) {
+    visit("time", key.time, {"Time since the beginning, rising", "s", {0.0, kKeySecondsMax}, {}, kRequired});
+    fields(visit, baseOf<ScenePose>(key));
+}
+
+inline constexpr std::size_t kPoseKeysMax = 1024;
+
+/// \param rest  the pose of what the table leaves open.
+[[nodiscard]] Pose poseOf(const ScenePose& pose, const Pose& rest);
+/// \param at  whatever the keys leave open.
+[[nodiscard]] std::vector<PoseKey> poseKeys(const std::vector<SceneKey>& keys, const Pose& rest);
+/// One key alone moves nothing, and times rise.
+/// \param instead  of a single key, in words.
+[[nodiscard]] std::optional<FieldFault> checkKeys(const std::vector<SceneKey>& keys, const char* instead);
+
+template <>
+inline constexpr std::array<std::string_view, 3> kWordsOf<DeformKind>{"bend", "twist", "wobble"};
+
+/// collider.deform; what it leaves open depends on the mesh.
 struct SceneLive {
     Deformation deformation;
     bool has_center = false;      ///< else the middle of the mesh's box
     bool has_range = false;       ///< else the mesh's whole extent along the axis, or along `along`
     bool has_wavelength = false;  ///< else half of the box's longest side
-    std::uint32_t resolution = 256;
 };
+
+template <class Visitor, FieldsOf<SceneLive> L>
+void fields(Visitor& visit, L& live) {
+    auto& d = live.deformation;
+    visit("kind", d.kind, {"Bends, twists or wobbles", {}, {}, {}, {.required = true, .selects = true}});
+    visit("amplitude", d.amplitude,
+          {"Largest angle, up to 360 degrees; of a wobble a length", "degrees", kPointRange, {}, kRequired});
+    visit("frequency", d.frequency, {"Oscillations a second", "1/s", {0.0, 1000.0}, {}, kRequired});
+    visit("phase", d.phase, {"Phase at time 0", "degrees", within(kAngleMax)});
+    visit("axis", d.axis,
+          {"Axis of a bend or twist, of any length",
+           "[x, y, z]",
+           kPointRange,
+           {},
+           {.only = "bend twist", .unit_length = true}});
+    visit("along", d.along,
+          {"Direction of the beam that a bend winds, across the axis",
+           "[x, y, z]",
+           kPointRange,
+           {},
+           {.only = "bend", .required = true, .unit_length = true}});
+    visit("center", FieldMaybe{d.center, live.has_center},
+          {"A point of the axis",
+           "[x, y, z]",
+           kPointRange,
+           "middle of the mesh's box",
+           {.only = "bend twist"}});
+    visit("range", FieldPair{d.range_low, d.range_high},
+          {"From the center, along the axis or, of a bend, `along`: the angle grows from 0 to all of it",
+           "[low, high]",
+           kPointRange,
+           "the whole mesh",
+           {.only = "bend twist"}});
+    visit("wavelength", FieldMaybe{d.wavelength, live.has_wavelength},
+          {"Wavelength of a wobble", {}, kSizeRange, "half the longest side", {.only = "wobble"}});
+}
+/// Angles become radians, `along` is made perpendicular to the axis.
+[[nodiscard]] std::optional<FieldFault> check(SceneLive& live, const GivenFields& given);
 
 struct SceneCollider {
     std::filesystem::path path;  ///< resolved against the scene's folder
     std::string origin;          ///< "scene.toml:3:8" of that key, for messages; empty without a scene file
-    /// Whether anything below was given: else the particles live in the collider's own object space.
+    ScenePose given_pose;
+    float scale = 1.0F;
+    float restitution = 1.0F;        ///< factor of the particles' own
+    float friction = 0.0F;           ///< on top of the particles' own
+    std::optional<SceneLive> live;   ///< deforms: `path` is a mesh, not a container
+    std::uint32_t resolution = 256;  ///< of its maps
+    std::vector<SceneKey> given_keys;
+    // Filled by check():
+    /// Any key of the table but its file is given: else the particles live in the collider's own object space.
     bool posed = false;
     Pose pose;
-    float restitution = 1.0F;       ///< factor of the particles' own
-    float friction = 0.0F;          ///< on top of the particles' own
-    std::optional<SceneLive> live;  ///< deforms: `path` is a mesh, not a container
-    std::vector<PoseKey> keys;      ///< by rising time; empty: at rest at `pose`
+    std::vector<PoseKey> keys;  ///< by rising time; empty: at rest at `pose`
 };
 
-/// Where a collider is; before the first key and after the last it rests.
+template <class Visitor, FieldsOf<SceneCollider> C>
+void fields(Visitor& visit, C& c) {
+    visit("file", FieldFile{c.path, c.origin},
+          {"The .relief file to collide with", {}, {}, "required, or mesh"});
+    visit("mesh", FieldFile{c.path, c.origin},
+          {"An .obj or .ply file that deforms; it is not baked", {}, {}, "none", {.instead_of = "file"}});
+    visit("deform", c.live, {"How the mesh deforms", {}, {}, "required by mesh", {.needs = "mesh"}});
+    visit("resolution", c.resolution,
+          {"Texels along a side of the deforming mesh's maps", {}, {16.0, 4096.0}, {}, {.needs = "mesh"}});
+    fields(visit, c.given_pose);
+    visit("scale", c.scale, {"World units of an object unit", {}, {1e-6, 1e6}});
+    visit("restitution", c.restitution, {"Factor of the particles' own", {}, {0.0, 1.0}});
+    visit("friction", c.friction,
+          {"1 − friction is a factor of the particles' own 1 − friction", {}, {0.0, 1.0}});
+    visit("key", c.given_keys, {"Poses at times, two or more", {}, {}, {}, {.most = kPoseKeysMax}});
+}
+[[nodiscard]] std::optional<FieldFault> check(SceneCollider& collider, const GivenFields& given);
+
+/// The pose of a collider; before the first key and after the last it rests.
 [[nodiscard]] Pose poseAt(const SceneCollider& collider, double time);
 
-/// The box, along the world's axes, of all places that it comes through.
+/// The box, along the world's axes, of all places that it passes through.
 [[nodiscard]] Bounds worldBounds(const SceneCollider& collider, const Bounds& object);
 
 }  // namespace relief

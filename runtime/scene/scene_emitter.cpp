@@ -2,26 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
-#include <utility>
 
 #include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
-#include "formats/base/text.h"
-#include "runtime/scene/scene_table.h"
 
 namespace relief {
 namespace {
 
 /// Seconds in which an emitter gives birth.
 double activeSeconds(const SceneEmitter& emitter, double run) {
-    const double left = std::max(run - emitter.start, 0.0);
-    return std::min(left, emitter.duration.value_or(left));
+    return std::min(std::max(run - emitter.start, 0.0), emitter.duration);
 }
 
 double burstBirths(const SceneEmitter& emitter, double seconds) {
     const double again = emitter.burst_every > 0.0 ? std::floor(seconds / emitter.burst_every) : 0.0;
-    return emitter.burst * (1.0 + again);
+    return static_cast<double>(emitter.burst) * (1.0 + again);
 }
 
 /// Emitters without a rate share the rest of the capacity: it is used up at the end of the run, never before.
@@ -30,17 +25,18 @@ Result<void> shareRates(std::span<SceneEmitter> emitters, double run, std::uint3
     double sharing = 0.0;
     for (const SceneEmitter& emitter : emitters) {
         const double seconds = activeSeconds(emitter, run);
-        room -= burstBirths(emitter, seconds) + emitter.rate.value_or(0.0) * seconds;
-        sharing += emitter.rate ? 0.0 : 1.0;
+        room -= burstBirths(emitter, seconds) + (emitter.has_rate ? emitter.rate : 0.0) * seconds;
+        sharing += emitter.has_rate ? 0.0 : 1.0;
     }
     const double share = std::max(room, 0.0) / std::max(sharing, 1.0);
     for (SceneEmitter& emitter : emitters) {
-        if (emitter.rate) {
+        if (emitter.has_rate) {
             continue;
         }
         const double seconds = activeSeconds(emitter, run);
         emitter.rate = seconds > 0.0 ? std::min(share / seconds, kRateMax) : 0.0;
-        if (seconds > 0.0 && *emitter.rate == 0.0 && emitter.burst == 0) {
+        emitter.has_rate = true;
+        if (seconds > 0.0 && emitter.rate == 0.0 && emitter.burst == 0) {
             return fail(ErrorCode::kInvalidInput,
                         "an emitter without a rate finds the capacity used up by the others; give it "
                         "emitter.rate, or raise particles.capacity");
@@ -49,69 +45,74 @@ Result<void> shareRates(std::span<SceneEmitter> emitters, double run, std::uint3
     return {};
 }
 
-Result<EmitterSettings> settingsOf(const SceneEmitter& from) {
-    EmitterSettings to;
-    to.shape = from.shape;
-    to.box_min = from.box_min.value_or(to.box_min);
-    to.box_max = from.box_max.value_or(to.box_max);
-    to.center = from.center;
-    to.radius = from.radius;
-    to.normal = from.normal;
-    to.start = from.start;
-    to.rate = from.rate.value_or(0.0);
-    to.duration = from.duration.value_or(to.duration);
-    to.burst = from.burst;
-    to.burst_every = from.burst_every;
-    to.velocity = from.velocity.value_or(to.velocity);
-    to.velocity_spread = from.velocity_spread.value_or(to.velocity_spread);
-    to.lifetime_min = from.lifetime_min;
-    to.lifetime_max = from.lifetime_max;
-    to.type = from.type;
-    to.spread = from.spread;
-    if (from.aimed) {
-        to.aim = EmitterAim{from.direction, from.cone, from.speed_min.value_or(0.0F),
-                            from.speed_max.value_or(0.0F), from.speed_deviation};
+/// Of the place.
+std::optional<FieldFault> checkPlace(SceneEmitter& emitter, const GivenFields& given) {
+    if (emitter.shape == EmitterShape::kPoint) {
+        emitter.shape = EmitterShape::kBox;
+        emitter.box_max = emitter.box_min;
+        emitter.has_box = true;
     }
-    if (from.shape == EmitterShape::kPoints) {
-        to.points = RELIEF_TRY(inFront(from.points_origin + ": emitter.points", loadPointList(from.points)));
-        if (from.aimed && !from.direction && to.points.normals.empty()) {
-            return fail(ErrorCode::kInvalidInput,
-                        from.points_origin + ": emitter.points: " + quotedPath(from.points) +
-                            " has no normals to aim along; give emitter.direction, or nx, ny and nz");
+    for (int i = 0; i < 3; ++i) {
+        if (emitter.box_min[i] > emitter.box_max[i]) {
+            return FieldFault{"box_min", "lies above emitter.box_max on the " + std::string(1, "xyz"[i]) +
+                                             " axis; swap them"};
         }
     }
-    return to;
+    if (given("attach") && emitter.shape == EmitterShape::kBox && !emitter.has_box) {
+        return FieldFault{"attach", "needs a place in the collider's space: emitter.point, for example"};
+    }
+    return std::nullopt;
+}
+
+/// Of the times of birth.
+std::optional<FieldFault> checkTimes(const SceneEmitter& emitter, const GivenFields& given) {
+    const bool no_rate = emitter.has_rate && emitter.rate == 0.0;
+    if (given("burst_every") && emitter.burst == 0) {
+        return FieldFault{"burst_every", "does nothing while emitter.burst is 0; raise it, or remove this"};
+    }
+    if (no_rate && given("duration") && !given("burst_every")) {
+        return FieldFault{"duration", "does nothing while emitter.rate is 0; raise the rate or remove it"};
+    }
+    if (no_rate && emitter.burst == 0) {
+        return FieldFault{given("burst") ? "burst" : "rate",
+                          "gives birth to nothing: raise emitter.rate or emitter.burst above 0"};
+    }
+    if (no_rate && given("spread")) {
+        return FieldFault{"spread",
+                          "does nothing while emitter.rate is 0: a burst is born at once; remove it"};
+    }
+    return std::nullopt;
 }
 
 }  // namespace
 
-Result<std::uint32_t> resolvedType(const std::string& key, const std::string& name, const std::string& origin,
-                                   std::uint32_t type, std::span<const std::string> names) {
-    if (name.empty()) {
-        if (!names.empty() && type >= names.size()) {
-            return fail(ErrorCode::kInvalidInput, origin + ": " + key + " = " + std::to_string(type) +
-                                                      " is none of the " + std::to_string(names.size()) +
-                                                      " types; the first is 0");
-        }
-        return type;
-    }
-    const std::vector<std::string_view> known(names.begin(), names.end());
-    const auto found = std::find(known.begin(), known.end(), name);
-    if (found == known.end()) {
-        const std::string hint = didYouMean(name, known);
-        return fail(ErrorCode::kInvalidInput, origin + ": " + key + " = " +
-                                                  quotedPath(std::filesystem::path(name)) + " is unknown" +
-                                                  (hint.empty() ? "; name a type of this scene" : hint));
-    }
-    return static_cast<std::uint32_t>(found - known.begin());
+SceneEmitter::SceneEmitter() {
+    lifetime_min = 30.0F;
+    lifetime_max = 30.0F;
 }
 
-Result<void> resolveEmitterTypes(std::span<SceneEmitter> emitters, std::span<const std::string> names) {
-    for (SceneEmitter& emitter : emitters) {
-        emitter.type = RELIEF_TRY(
-            resolvedType("emitter.type", emitter.type_name, emitter.type_origin, emitter.type, names));
+std::optional<FieldFault> check(SceneEmitter& emitter, const GivenFields& given) {
+    if (auto fault = checkPlace(emitter, given)) {
+        return fault;
     }
-    return {};
+    if (auto fault = checkTimes(emitter, given)) {
+        return fault;
+    }
+    const char* const by = given("direction") ? "direction" : given("cone") ? "cone" : "speed";
+    if (!given(by)) {
+        emitter.aim.reset();
+    } else if (!emitter.aim->direction && emitter.shape == EmitterShape::kBox) {
+        return FieldFault{by, "needs emitter.direction: a box or point has no normal"};
+    }
+    emitter.keys = poseKeys(emitter.given_keys, {});
+    return checkKeys(emitter.given_keys, "emitter.point");
+}
+
+std::optional<FieldFault> check(SceneSpawn& spawn, const GivenFields& given) {
+    if (!given("cone")) {
+        spawn.cone_degrees = spawn.on == SpawnOn::kCollision ? 60.0F : 180.0F;
+    }
+    return std::nullopt;
 }
 
 Result<void> completeEmitters(std::span<SceneEmitter> emitters, const Bounds& bounds, float scale,
@@ -119,20 +120,19 @@ Result<void> completeEmitters(std::span<SceneEmitter> emitters, const Bounds& bo
     const glm::vec3 center = bounds.center();
     const float aside = 1.45F * scale;
     for (SceneEmitter& emitter : emitters) {
-        if (emitter.shape == EmitterShape::kBox && !emitter.box_min) {
+        if (emitter.shape == EmitterShape::kBox && !emitter.has_box) {
             emitter.box_min = glm::vec3(center.x - aside, bounds.max.y + 0.15F * scale, center.z - aside);
             emitter.box_max = glm::vec3(center.x + aside, bounds.max.y + 0.75F * scale, center.z + aside);
         }
-        if (emitter.aimed && !emitter.speed_min) {
-            emitter.speed_min = 0.8F * scale;
-            emitter.speed_max = emitter.speed_min;
+        if (emitter.aim && !emitter.has_speed) {
+            emitter.aim->speed_min = 0.8F * scale;
+            emitter.aim->speed_max = emitter.aim->speed_min;
         }
-        if (!emitter.velocity) {
-            emitter.velocity = emitter.aimed ? glm::vec3(0.0F) : glm::vec3(0.0F, -0.8F * scale, 0.0F);
+        if (!emitter.aim && !emitter.has_velocity) {
+            emitter.velocity = glm::vec3(0.0F, -0.8F * scale, 0.0F);
         }
-        if (!emitter.velocity_spread) {
-            emitter.velocity_spread =
-                emitter.aimed ? glm::vec3(0.0F) : glm::vec3(0.12F * scale, 0.1F * scale, 0.12F * scale);
+        if (!emitter.aim && !emitter.has_velocity_spread) {
+            emitter.velocity_spread = glm::vec3(0.12F * scale, 0.1F * scale, 0.12F * scale);
         }
     }
     return shareRates(emitters, seconds, capacity);
@@ -141,9 +141,26 @@ Result<void> completeEmitters(std::span<SceneEmitter> emitters, const Bounds& bo
 Result<std::vector<Emitter>> makeEmitters(std::span<const SceneEmitter> emitters) {
     std::vector<Emitter> made;
     for (const SceneEmitter& emitter : emitters) {
-        auto settings = RELIEF_TRY(settingsOf(emitter));
+        EmitterSettings settings = emitter;
+        if (emitter.shape == EmitterShape::kPoints) {
+            const std::string key = emitter.points_origin + ": emitter.points";
+            settings.points = RELIEF_TRY(inFront(key, loadPointList(emitter.points_file)));
+            if (emitter.aim && !emitter.aim->direction && settings.points.normals.empty()) {
+                return fail(ErrorCode::kInvalidInput,
+                            key + ": " + quotedPath(emitter.points_file) +
+                                " has no normals to aim along; give emitter.direction, or nx, ny and nz");
+            }
+        }
         RELIEF_TRY(Emitter::check(settings));
         made.emplace_back(std::move(settings), emitter.seed, made.size());
+    }
+    return made;
+}
+
+std::vector<Spawner> makeSpawners(std::span<const SceneSpawn> spawns) {
+    std::vector<Spawner> made;
+    for (const SceneSpawn& spawn : spawns) {
+        made.emplace_back(spawn, spawn.seed, kEmittersMax + made.size());
     }
     return made;
 }

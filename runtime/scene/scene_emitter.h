@@ -1,5 +1,4 @@
-// The emitters of a scene: [emitter], or several [[emitter]]. Keys, units, defaults, ranges: README.md beside
-// this file.
+// The emitters of a scene, [emitter] or several [[emitter]], and its [[spawn]].
 #pragma once
 
 #include <cstdint>
@@ -12,73 +11,164 @@
 
 #include "formats/base/result.h"
 #include "formats/collider.h"
-#include "runtime/collider/pose_keys.h"
 #include "runtime/particles/emitter.h"
+#include "runtime/particles/particle_type.h"
+#include "runtime/particles/spawner.h"
 #include "runtime/scene/scene_collider.h"
 
 namespace relief {
 
-/// One emitter as its table says. What is optional and not said is filled by completeEmitters().
-struct SceneEmitter {
-    EmitterShape shape = EmitterShape::kBox;
-    std::optional<glm::vec3> box_min;  ///< a point if equal to box_max; given both or neither
-    std::optional<glm::vec3> box_max;
-    glm::vec3 center{0.0F};
-    float radius = 0.0F;
-    glm::vec3 normal{0.0F, 1.0F, 0.0F};
-    std::filesystem::path points;  ///< resolved against the scene's folder; for kPoints alone
-    std::string points_origin;     ///< "scene.toml:3:8" of that key, for messages
+/// An emitter as its table gives it. completeEmitters() fills what depends on the collider and on the run.
+struct SceneEmitter : EmitterSettings {
+    SceneEmitter();
 
-    double start = 0.0;              ///< seconds
-    std::optional<double> rate;      ///< births a second
-    std::optional<double> duration;  ///< seconds of births; nullopt: to the end
-    std::uint32_t burst = 0;
-    double burst_every = 0.0;  ///< seconds; 0: once
-
-    std::optional<glm::vec3> velocity;  ///< 0 for an aimed emitter
-    std::optional<glm::vec3> velocity_spread;
-    bool aimed = false;  ///< by any of the next keys
-    std::optional<glm::vec3> direction;
-    float cone = 0.0F;               ///< degrees
-    std::optional<float> speed_min;  ///< speed_max beside it
-    std::optional<float> speed_max;
-    float speed_deviation = 0.0F;
-
-    float lifetime_min = 30.0F;  ///< seconds
-    float lifetime_max = 30.0F;
-    std::uint32_t type = 0;   ///< 0 … kEmitterTypeMax
-    std::string type_name;    ///< where the scene names the type: resolveEmitterTypes() finds its index
-    std::string type_origin;  ///< "scene.toml:3:8" of that key
+    bool has_box = false;  ///< box_min and box_max are set, as are the next with their flags
+    bool has_rate = false;
+    bool has_velocity = false;
+    bool has_velocity_spread = false;
+    bool has_speed = false;             ///< of aim
+    std::filesystem::path points_file;  ///< resolved against the scene's folder; for kPoints alone
+    std::string points_origin;          ///< "scene.toml:3:8" of that key, for messages
     std::uint64_t seed = 1;
-    bool spread = true;
 
     std::optional<std::uint32_t> attach;  ///< the number of the collider in whose space it is, from 0
-    std::vector<PoseKey> keys;            ///< by rising time; empty: it rests there
-    float inherit = 0.0F;                 ///< share of its own velocity that births take on
+    std::vector<SceneKey> given_keys;
+    std::vector<PoseKey> keys;  ///< of those; by rising time; empty: it rests there
+    float inherit = 0.0F;       ///< share of its own velocity that births take on
     [[nodiscard]] bool moves() const { return attach.has_value() || !keys.empty(); }
 };
 
-inline constexpr std::uint32_t kEmitterTypeMax = 15;
+/// emitter.speed: a number, [least, most], or { mean, deviation }.
+template <class Aim, class Flag>
+struct EmitterSpeed {
+    Aim& aim;
+    Flag& given;
+};
+template <class Aim, class Flag>
+EmitterSpeed(Aim&, Flag&) -> EmitterSpeed<Aim, Flag>;
+struct NormalSpeed {
+    float mean = 0.0F;
+    float deviation = 0.0F;
+};
+template <class Visitor, FieldsOf<NormalSpeed> S>
+void fields(Visitor& visit, S& speed) {
+    visit("mean", speed.mean, {"Mean of a normal distribution", "1/s", kSpeedRange, {}, kRequired});
+    visit("deviation", speed.deviation, {"Its standard deviation", "1/s", kSpeedRange});
+}
+
+/// The aim of an emitter, made where there is none yet; check() removes one that no key has set.
+[[nodiscard]] inline EmitterAim& aimOf(SceneEmitter& emitter) {
+    return emitter.aim ? *emitter.aim : emitter.aim.emplace();
+}
+[[nodiscard]] inline const EmitterAim& aimOf(const SceneEmitter& emitter) {
+    static const EmitterAim none;
+    return emitter.aim ? *emitter.aim : none;
+}
+
+template <class Visitor, FieldsOf<SceneEmitter> E>
+void fields(Visitor& visit, E& e) {
+    auto& aim = aimOf(e);
+    visit("shape", e.shape,
+          {"Place of birth; a sphere is its volume, a shell its surface",
+           {},
+           {},
+           "\"point\" with point, \"points\" with points, else \"box\"",
+           {.selects = true}});
+    visit("box_min", FieldMaybe{e.box_min, e.has_box},
+          {"Lower corner",
+           "[x, y, z]",
+           kPointRange,
+           "1.45 L about the centre on x and z, 0.15 L above the top",
+           {.needs = "box_max", .only = "box"}});
+    visit("box_max", FieldMaybe{e.box_max, e.has_box},
+          {"Upper corner",
+           "[x, y, z]",
+           kPointRange,
+           "as box_min, 0.75 L above the top",
+           {.needs = "box_min", .only = "box"}});
+    visit("point", e.box_min,
+          {"Place of a point",
+           "[x, y, z]",
+           kPointRange,
+           {},
+           {.instead_of = "box_min", .only = "point", .required = true, .chooses = true}});
+    visit("center", e.center,
+          {"Centre", "[x, y, z]", kPointRange, {}, {.only = "sphere shell disc", .required = true}});
+    visit("radius", e.radius,
+          {"Radius", {}, kLengthRange, {}, {.only = "sphere shell disc", .required = true}});
+    visit("normal", e.normal,
+          {"Normal of the disc", "[x, y, z]", kPointRange, {}, {.only = "disc", .not_zero = true}});
+    visit("points", FieldFile{e.points_file, e.points_origin},
+          {"File of 1 to 2²² points, below",
+           {},
+           {},
+           {},
+           {.only = "points", .required = true, .chooses = true}});
+    visit("start", e.start, {"Time before anything is born", "s", kTimeRange});
+    visit("rate", FieldMaybe{e.rate, e.has_rate},
+          {"Births a second; several emitters without a rate share what the others leave of the capacity",
+           "1/s",
+           {0.0, kRateMax},
+           "the capacity by the end of the births"});
+    visit("duration", e.duration,
+          {"Time from the start to the last birth", "s", kLifeRange, "the whole run"});
+    visit("burst", e.burst, {"Births at the start, at most the capacity", {}, {0.0, 1 << 24}});
+    visit("burst_every", e.burst_every,
+          {"Time from burst to burst", "s", {1e-4, kSecondsMax}, "a single burst", {.needs = "burst"}});
+    visit("spread", e.spread, {"Births by rate are spread over their step"});
+    visit("velocity", FieldMaybe{e.velocity, e.has_velocity},
+          {"Velocity of every birth",
+           "[x, y, z]/s",
+           within(kSpeedMax),
+           "[0, −0.8 L, 0]; none with direction, cone or speed",
+           {.instead_of = "direction cone speed"}});
+    visit("velocity_spread", FieldMaybe{e.velocity_spread, e.has_velocity_spread},
+          {"Largest uniform deviation from the velocity, either way", "[x, y, z]/s", kSpeedRange,
+           "[0.12, 0.1, 0.12] L; none with direction, cone or speed"});
+    visit("direction", aim.direction,
+          {"Direction of births; required for a box or point",
+           "[x, y, z]",
+           kPointRange,
+           "the normal: outwards, the disc's, the point's own",
+           {.not_zero = true}});
+    visit("cone", aim.cone_degrees,
+          {"Half angle about the direction, uniform over its solid angle", "degrees", {0.0, 180.0}});
+    visit("speed", EmitterSpeed{aim, e.has_speed},
+          {"Speed along the direction: a number, [least, most], or { mean, deviation }, which is "
+           "normal and never below 0",
+           "1/s", kSpeedRange, "0.8 L"});
+    visit("lifetime", FieldSpan{e.lifetime_min, e.lifetime_max}, {"Lifetime", "s", kLifeRange});
+    visit("type", e.type,
+          {"Number or name of the type", {}, {0.0, kParticleTypesMax - 1}, {}, {.index_of = "type"}});
+    visit("seed", e.seed, {"Seed; emitter i draws from the i-th stream of its seed", {}, {0.0, kSeedMax}});
+    visit("attach", e.attach,
+          {"Number, from 0, of the collider in whose space the emitter is; needs a place",
+           {},
+           {0.0, ColliderTextures::kBodiesMax - 1},
+           "the world",
+           {.index_of = "collider"}});
+    visit("key", e.given_keys, {"Poses at times, two or more", {}, {}, {}, {.most = kPoseKeysMax}});
+    visit("inherit", e.inherit,
+          {"Share of its own velocity that births take on", {}, kFactorRange, {}, {.needs = "attach key"}});
+}
+[[nodiscard]] std::optional<FieldFault> check(SceneEmitter& emitter, const GivenFields& given);
+
 inline constexpr std::size_t kEmittersMax = 64;
+inline constexpr std::size_t kSpawnsMax = 16;
 
-/// The index of a type that a table names, by its name or its number.
-/// \param key     "emitter.type", for messages; origin is its place.
-/// \param name    empty: the number `type` was given.
-/// \param names   of the types there are, in order.
-/// Errors: kInvalidInput, "file:line:column: …", for a name or an index that is not among them; where `names` is empty, for a
-/// name alone.
-[[nodiscard]] Result<std::uint32_t> resolvedType(const std::string& key, const std::string& name,
-                                                 const std::string& origin, std::uint32_t type,
-                                                 std::span<const std::string> names);
+struct SceneSpawn : SpawnSettings {
+    std::uint64_t seed = 1;
+    friend bool operator==(const SceneSpawn&, const SceneSpawn&) = default;
+};
 
-/// Turns names of types into indices.
-/// \param names  of the types there are, in order.
-/// Errors: kInvalidInput, "file:line:column: …", for a name or an index that is not among them; where `names`
-/// is empty, for a name alone.
-[[nodiscard]] Result<void> resolveEmitterTypes(std::span<SceneEmitter> emitters,
-                                               std::span<const std::string> names);
+template <class Visitor, FieldsOf<SceneSpawn> S>
+void fields(Visitor& visit, S& spawn) {
+    fields(visit, baseOf<SpawnSettings>(spawn));
+    visit("seed", spawn.seed, {"Seed; spawn i draws from a stream of its own", {}, {0.0, kSeedMax}});
+}
+[[nodiscard]] std::optional<FieldFault> check(SceneSpawn& spawn, const GivenFields& given);
 
-/// Fills every optional: boxes above the collider, from which snow falls.
+/// Sets what no key has set: boxes above the collider, from which snow falls.
 /// \param bounds, scale  of the collider; scale > 0, its size.
 /// \param seconds, capacity  of the run: emitters without a rate share evenly what the others leave of it.
 /// Errors: kInvalidInput if they leave nothing.
@@ -91,7 +181,10 @@ inline constexpr std::size_t kEmittersMax = 64;
 /// without a direction).
 [[nodiscard]] Result<std::vector<Emitter>> makeEmitters(std::span<const SceneEmitter> emitters);
 
-/// What carries the births of each emitter along.
+/// Spawner i draws from stream i of its seed, behind those of the emitters.
+[[nodiscard]] std::vector<Spawner> makeSpawners(std::span<const SceneSpawn> spawns);
+
+/// Trajectories that carry the births of each emitter along.
 /// \param colliders  that `attach` counts; those that deform are followed by their pose alone.
 [[nodiscard]] std::vector<EmitterMotion> emitterMotions(std::span<const SceneEmitter> emitters,
                                                         std::span<const SceneCollider> colliders);

@@ -16,7 +16,7 @@ tl::unexpected<Error> failAt(const SceneCollider& from, const Error& error) {
     return fail(error.code, from.origin + ": collider.mesh: " + error.message);
 }
 
-/// What the scene leaves open.
+/// Sets the fields that the scene leaves open.
 void complete(const SceneLive& live, const PictureMesh& mesh, const Bounds& box, Deformation& d) {
     if (!live.has_center) {
         d.center = box.center();
@@ -38,7 +38,6 @@ void complete(const SceneLive& live, const PictureMesh& mesh, const Bounds& box,
 }  // namespace
 
 Result<LiveMesh> loadLiveMesh(const SceneCollider& from) {
-    const SceneLive& live = *from.live;
     auto read = loadPictureMesh(from.path);
     if (!read) {
         return failAt(from, read.error());
@@ -53,15 +52,15 @@ Result<LiveMesh> loadLiveMesh(const SceneCollider& from) {
         return failAt(
             from, {ErrorCode::kInvalidInput, quotedPath(from.path) + " has no extent; name another mesh"});
     }
-    out.deformation = live.deformation;
-    complete(live, out.mesh, box, out.deformation);
+    out.deformation = from.live->deformation;
+    complete(*from.live, out.mesh, box, out.deformation);
     if (auto good = checkDeformation(out.deformation); !good) {
-        // What the scene says was in range; flat meshes have no extent along the axis.
+        // The scene's numbers are in range; flat meshes have no extent along the axis.
         return fail(ErrorCode::kInvalidInput, from.origin + ": collider.deform does not suit " +
                                                   quotedPath(from.path) + ": " + good.error().message +
                                                   "; give collider.deform.range");
     }
-    auto frames = liveFrames(deformedBounds(out.deformation, out.mesh.positions), live.resolution);
+    auto frames = liveFrames(deformedBounds(out.deformation, out.mesh.positions), from.resolution);
     if (!frames) {
         return failAt(from, {ErrorCode::kInvalidInput, frames.error().message});
     }

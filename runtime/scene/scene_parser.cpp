@@ -1,12 +1,9 @@
 #include "runtime/scene/scene_parser.h"
 
-#include <algorithm>
-#include <exception>
-#include <limits>
+#include <array>
 
 #include "formats/base/file_io.h"
-#include "runtime/scene/scene_readers.h"
-#include "runtime/scene/scene_table.h"
+#include "formats/config/toml_reader.h"
 
 namespace relief {
 namespace {
@@ -15,156 +12,141 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kSceneBytesMax = std::uint64_t{1} << 20;
 
-constexpr double kStepsMax = 1e7;
-constexpr double kPixelsMax = 65535;
-constexpr double kSortFramesMax = 200;
-
-void readForces(SceneTable table, Scene& scene) {
-    auto& forces = scene.forces;
-    table.vector("gravity", symmetric(kAccelerationMax), forces.gravity);
-    const bool wind = table.vector("wind", symmetric(kSpeedMax), forces.wind);
-    table.number("drag", {0.0, kDragMax}, forces.drag);
-    readViscosity(table, scene);
-    table.finish();
-    if (wind && forces.wind != glm::vec3(0.0F) && forces.drag == 0.0F) {
-        table.failUseless("wind", "while forces.drag is 0; raise the drag or remove the wind");
-    }
-}
-
-void readCollision(SceneTable table, Scene& scene) {
-    Collision& collision = scene.collision;
-    table.number("restitution", {0.0, 1.0}, collision.restitution);
-    table.number("friction", {0.0, 1.0}, collision.friction);
-    table.number("friction_threshold", {0.0, kSpeedMax}, collision.friction_threshold);
-    table.number("sweep", {0.0, kLengthMax}, scene.sweep);
-    table.finish();
-    if (collision.friction_threshold > 0.0F && collision.friction == 0.0F) {
-        table.failUseless("friction_threshold",
-                          "while collision.friction is 0; raise the friction or remove it");
-    }
-}
-
-void readGround(SceneTable table, Scene& scene) {
-    table.boolean("enabled", scene.ground.enabled);
-    const bool found = table.number("height", symmetric(kLengthMax), scene.ground.height);
-    table.finish();
-    if (found && !scene.ground.enabled) {
-        table.failUseless("height", "while ground.enabled is false; remove one of them");
-    }
-}
-
-void readCamera(SceneTable table, std::string_view file, Scene& scene) {
-    auto& camera = scene.camera;
-    const bool eye = table.vector("eye", symmetric(kLengthMax), camera.eye);
-    const bool target = table.vector("target", symmetric(kLengthMax), camera.target);
-    table.number("fov", {1.0, 170.0}, camera.fov);
-    readCameraPath(table, file, scene);
-    table.finish();
-    if (eye && target) {
-        if (const std::string_view problem = cameraProblem(*camera.eye, *camera.target); !problem.empty()) {
-            table.failAt(*table.find("eye"), std::string(problem));
-        }
-    }
-}
-
-/// The steps that are drawn.
-void readFrames(SceneTable& table, Scene& scene) {
-    auto& render = scene.render;
-    table.integer("every", {1.0, kStepsMax}, render.every);
-    const SceneRange steps{0.0, static_cast<double>(scene.steps)};
-    table.integer("first", steps, render.first);
-    table.integer("last", steps, render.last);
-    if (render.last && *render.last < render.first.value_or(0)) {
-        table.failAt(*table.find("last"), "render.last comes before render.first; exchange them");
-    }
-}
-
-/// time.prewarm, after dt.
-void readPrewarm(SceneTable& time, Scene& scene) {
-    if (time.number("prewarm", {0.0, kSecondsMax}, scene.prewarm) &&
-        scene.prewarm > kStepsMax * static_cast<double>(scene.dt)) {
-        time.failAt(*time.find("prewarm"), "time.prewarm is more than " + numberText(kStepsMax) +
-                                               " steps of time.dt; shorten it, or raise time.dt");
-    }
-}
-
-void readRender(SceneTable table, const SceneFolder& folder, Scene& scene) {
-    auto& render = scene.render;
-    table.pair("size", {1.0, kPixelsMax}, "two whole numbers [width, height]", render.width, render.height);
-    if (table.number("point_size", {0.0, kLengthMax, false}, render.point_size)) {
-        render.point_size = std::max(*render.point_size, std::numeric_limits<float>::min());
-    }
-    table.vector("color", {0.0, 1.0}, render.color);
-    table.number("opacity", {0.0, 1.0, false}, render.opacity);
-    table.vector("background", {0.0, 1.0}, render.background);
-    readFrames(table, scene);
-    table.integer("sort_frames", {0.0, kSortFramesMax}, render.sort_frames);
-    // 1 would be a whole sequence each frame, which spreading over frames is there to avoid.
-    if (render.sort_frames == 1) {
-        table.failAt(*table.find("sort_frames"),
-                     table.full("sort_frames") + " = 1 is out of range; choose 0, for no sort, or 2 to 200");
-    }
-    readSprites(table, folder, scene);
-    table.finish();
-}
-
-Scene readScene(const toml::table& root, const SceneFolder& folder, std::string_view file) {
-    Scene scene;
-    SceneTable top(&root, "", file);
-    static_cast<void>(top.find("collider"));  // a table or an array: readColliders
-    SceneTable time = top.sub("time");
-    SceneTable particles = top.sub("particles");
-    static_cast<void>(top.find("emitter"));
-    SceneTable forces = top.sub("forces");
-    SceneTable collision = top.sub("collision");
-    SceneTable ground = top.sub("ground");
-    SceneTable camera = top.sub("camera");
-    SceneTable render = top.sub("render");
-    nameAirTables(top);
-    static_cast<void>(top.find("spawn"));
-    static_cast<void>(top.find("type"));  // an array: readTypes
-    top.finish();
-
-    scene.colliders = readColliders(top, file, folder);
-    time.number("dt", {1e-6, 1.0}, scene.dt);
-    time.integer("steps", {0.0, kStepsMax}, scene.steps);
-    readPrewarm(time, scene);
-    time.word("integrator", {"euler", "verlet"}, scene.integrator);
-    time.finish();
-    particles.integer("capacity", {1.0, ParticleSystem::kCapacityMax}, scene.capacity);
-    particles.finish();
-    scene.emitters = readEmitters(top, file, folder, scene.capacity, scene.colliders.size());
-    readForces(forces, scene);
-    readAir(top, folder, scene);
-    readCollision(collision, scene);
-    readGround(ground, scene);
-    readCamera(camera, file, scene);
-    readRender(render, folder, scene);
-    readTypes(top, file, scene);
-    scene.spawns = readSpawns(top, file);
-    return scene;
-}
-
 }  // namespace
 
-Result<Scene> parseScene(std::string_view text, const fs::path& path, const fs::path& root) {
-    const std::string file = oneLine(path.native());
-    try {
-        const toml::table tables = toml::parse(text, file);
-        Scene scene = readScene(tables, {path.parent_path(), root}, file);
-        RELIEF_TRY(resolveEmitterTypes(scene.emitters, scene.type_names));
-        RELIEF_TRY(resolveSpawnTypes(scene.spawns, scene.type_names));
-        return scene;
-    } catch (const toml::parse_error& error) {
-        const toml::source_position& at = error.source().begin;
-        return fail(ErrorCode::kInvalidInput, file + ":" + std::to_string(at.line) + ":" +
-                                                  std::to_string(at.column) +
-                                                  ": not TOML: " + oneLine(error.description()));
-    } catch (const SceneError& error) {
-        return fail(ErrorCode::kInvalidInput, error.message);
-    } catch (const std::exception& error) {
-        return fail(ErrorCode::kInvalidInput, file + ":1:1: cannot be read: " + oneLine(error.what()));
+/// One value, or keys [age, value…].
+template <class T>
+void readField(const TomlValue& from, std::vector<AgeKey<T>>& track, const FieldInfo& info) {
+    constexpr bool kColor = !std::is_same_v<T, float>;
+    constexpr std::size_t kParts = kColor ? 3 : 1;
+    constexpr std::string_view kWanted =
+        kColor ? "[r, g, b], or keys [[age, r, g, b], …]" : "a number, or keys [[age, value], …]";
+    const auto size = [](const TomlValue& value) {
+        return value.array() == nullptr ? 0 : value.array()->size();
+    };
+    const auto numbers = [&](const TomlValue& list, std::size_t first) {
+        const auto part = [&](std::size_t i) {
+            return static_cast<float>(list[first + i].number(info.range));
+        };
+        if constexpr (kColor) {
+            return glm::vec3{part(0), part(1), part(2)};  // in this order
+        } else {
+            return part(0);
+        }
+    };
+    if (size(from) == 0 || from[0].array() == nullptr) {
+        if constexpr (kColor) {
+            if (size(from) != kParts) {
+                from.wrongType(kWanted);
+            }
+            track = {{0.0F, numbers(from, 0)}};
+        } else {
+            if (!from.node().is_number()) {
+                from.wrongType(kWanted);
+            }
+            track = {{0.0F, static_cast<float>(from.number(info.range))}};
+        }
+        return;
     }
+    if (size(from) > kLookKeysMax) {
+        from.fail(from.name() + " has " + std::to_string(size(from)) + " keys; give " +
+                  std::to_string(kLookKeysMax) + " at most");
+    }
+    for (std::size_t i = 0; i < size(from); ++i) {
+        const TomlValue one = from[i];
+        if (size(one) != kParts + 1) {
+            one.wrongType(kWanted);
+        }
+        const auto age = static_cast<float>(one[0].number({0.0, 1.0}));
+        if (!track.empty() && age <= track.back().age) {
+            one[0].fail("the ages of " + from.name() + " do not rise; sort its keys");
+        }
+        track.push_back({age, numbers(one, 1)});
+    }
+}
+
+void readField(const TomlValue& from, EmitterSpeed<EmitterAim, bool> speed, const FieldInfo& info) {
+    speed.given = true;
+    if (from.node().is_table()) {
+        NormalSpeed normal;
+        readToml(from, normal);
+        speed.aim.speed_min = normal.mean;
+        speed.aim.speed_max = normal.mean;
+        speed.aim.speed_deviation = normal.deviation;
+        return;
+    }
+    readValue(from, FieldSpan{speed.aim.speed_min, speed.aim.speed_max}, info);
+}
+
+void readField(const TomlValue& from, CollidesList<std::uint32_t> list, const FieldInfo& /*info*/) {
+    constexpr std::string_view kWanted = "numbers of colliders and perhaps \"ground\", as in [0, \"ground\"]";
+    static constexpr std::array<std::string_view, 1> kGround{"ground"};
+    if (from.array() == nullptr) {
+        from.wrongType(kWanted);
+    }
+    const TomlValue top(*from.file().top, "", from.file());
+    const auto ground = top.find("ground.enabled");
+    const bool no_ground = ground && ground->node().value<bool>() == false;
+    std::size_t colliders = 0;
+    while (top.find("collider[" + std::to_string(colliders) + "]")) {
+        ++colliders;
+    }
+    list.bits = 0;
+    for (std::size_t i = 0; i < from.array()->size(); ++i) {
+        const TomlValue one = from[i];
+        if (one.node().is_integer()) {
+            list.bits |= 1U << one.whole({0.0, static_cast<double>(colliders) - 1.0});
+            continue;
+        }
+        if (!one.node().is_string()) {
+            one.wrongType(kWanted);
+        }
+        static_cast<void>(one.word(kGround));
+        if (no_ground) {
+            one.fail(from.name() + " names the ground, which ground.enabled = false takes away");
+        }
+        list.bits |= kCollidesWithGround;
+    }
+}
+
+/// The kind of a flow follows from the key that names its files.
+std::optional<FieldFault> check(FlowFile& flow, const GivenFields& given) {
+    std::string_view source;
+    for (const std::string_view key : kWordsOf<FlowFileKind>) {
+        source = given(std::string(key)) ? key : source;
+    }
+    if (source.empty()) {
+        return FieldFault{
+            "", "has no file; name one EXR image by file, numbered ones by files, or a raw volume by raw"};
+    }
+    flow.kind = *fromWord<FlowFileKind>(source);
+    flow.origin += ": flow." + std::string(source) + ": ";
+    if (flow.kind == FlowFileKind::kSlices && !hasSliceNumber(flow.path.filename().native())) {
+        return FieldFault{"files", "needs one number, as in 'flow_%03d.exr', in its file name"};
+    }
+    if (flow.kind == FlowFileKind::kRaw) {
+        if (!given("size")) {
+            return FieldFault{"",
+                              "needs flow.size for a raw volume, which has none of its own: [nx, ny, nz]"};
+        }
+        if (auto checked = checkFlowSize({flow.size[0], flow.size[1], flow.size[2]}); !checked) {
+            return FieldFault{"size", "is not possible: " + checked.error().message};
+        }
+    }
+    for (int i = 0; i < 3; ++i) {
+        if (!(flow.box_min[i] < flow.box_max[i])) {
+            return FieldFault{"box_min", "is not below flow.box_max on the " + std::string(1, "xyz"[i]) +
+                                             " axis; move one of them"};
+        }
+    }
+    return std::nullopt;
+}
+
+Result<Scene> parseScene(std::string_view text, const fs::path& path, const fs::path& root) {
+    Scene scene;
+    RELIEF_TRY(readTomlFile(text, {oneLine(path.native()), path.parent_path(), root, "scene"},
+                            [&](const TomlValue& top) { readToml(top, scene); }));
+    return scene;
 }
 
 Result<Scene> loadScene(const fs::path& path, const fs::path& root) {

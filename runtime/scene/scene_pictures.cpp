@@ -1,5 +1,7 @@
 #include "runtime/scene/scene_pictures.h"
 
+#include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "formats/base/error_context.h"
@@ -84,13 +86,21 @@ Result<std::unique_ptr<ColliderMesh>> loadColliderMesh(const Scene& scene, const
     return std::make_unique<ColliderMesh>(std::move(drawn));
 }
 
+ColliderView colliderView(const LoadedScene& loaded, const ColliderTextures& textures) {
+    float texel = std::numeric_limits<float>::max();
+    for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
+        texel = std::min(texel, loaded.scene.colliders[i].pose.scale * finestTexel(loaded.colliders[i]));
+    }
+    return {&textures, loaded.bounds, texel};
+}
+
 ParticleStyle particleStyle(const Scene& scene, const SpriteAtlas* atlas) {
     const auto& render = scene.render;
     ParticleStyle style;
     style.diameter = *render.point_size;
     style.color = render.color;
     style.opacity = render.opacity;
-    style.looks = render.looks;
+    style.looks = particleLooks(scene);
     style.sprite = render.sprite;
     style.blend = render.blend;
     style.soft = render.soft;

@@ -1,4 +1,4 @@
-// What a scene's pictures need besides the scene: files that it names, and where its camera is.
+// Pictures of a scene: the files that they need, the style of its particles, and its camera.
 #pragma once
 
 #include <memory>
@@ -8,11 +8,11 @@
 #include "runtime/picture/collider_mesh.h"
 #include "runtime/picture/particle_renderer.h"
 #include "runtime/picture/sprite_atlas.h"
-#include "runtime/scene/scene.h"
+#include "runtime/scene/loaded_scene.h"
 
 namespace relief {
 
-/// Reads what the pictures of a complete scene need, and needs no GPU.
+/// Reads the files that pictures of a complete scene need; without a GPU.
 /// Fails as loadAtlas and loadColliderMesh do, but for a GPU's limits.
 [[nodiscard]] Result<void> checkPictures(const Scene& scene, const Bounds& bounds);
 
@@ -27,11 +27,14 @@ namespace relief {
 [[nodiscard]] Result<std::unique_ptr<ColliderMesh>> loadColliderMesh(const Scene& scene,
                                                                      const Bounds& bounds);
 
+/// The colliders as renderers see them.
+[[nodiscard]] ColliderView colliderView(const LoadedScene& loaded, const ColliderTextures& textures);
+
 /// \param scene  complete (withDefaults).
 /// \param atlas  may be null; must outlive the style.
 [[nodiscard]] ParticleStyle particleStyle(const Scene& scene, const SpriteAtlas* atlas);
 
-/// Where the camera of a complete scene is after so many seconds.
+/// The camera of a complete scene after so many seconds.
 [[nodiscard]] Camera sceneCamera(const Scene& scene, const Bounds& bounds, double seconds);
 
 }  // namespace relief

@@ -110,31 +110,21 @@ struct Player {
     std::vector<ParticleState> read;  // kept for its memory
 };
 
-float finest(const LoadedScene& loaded) {
-    float texel = std::numeric_limits<float>::max();
-    for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
-        texel = std::min(texel, loaded.scene.colliders[i].pose.scale * finestTexel(loaded.colliders[i]));
-    }
-    return texel;
-}
-
 Result<Player*> createPlayer(const char* path, bool shaded) {
     const PassState state;
     auto player = std::make_unique<Player>();
     player->loaded = RELIEF_TRY(loadAll(path, {}));
     const Scene& scene = player->loaded.scene;
-    auto emitters = RELIEF_TRY(makeEmitters(scene.emitters));
-    auto simulation =
-        RELIEF_TRY(Simulation::create(player->loaded, std::move(emitters), StepPath::kFragment, nullptr));
+    auto simulation = RELIEF_TRY(Simulation::create(player->loaded, StepPath::kFragment, nullptr));
     player->simulation = std::make_unique<Simulation>(std::move(simulation));
     player->atlas = RELIEF_TRY(loadAtlas(scene));
     player->style = particleStyle(scene, player->atlas.get());
-    const ColliderView view{&player->simulation->textures(), player->loaded.bounds, finest(player->loaded)};
+    const ColliderView view = colliderView(player->loaded, player->simulation->textures());
     auto renderer =
         RELIEF_TRY(ParticleRenderer::create(shaded ? std::optional<ColliderView>(view) : std::nullopt));
     player->renderer = std::make_unique<ParticleRenderer>(std::move(renderer));
     if (scene.render.sort_frames > 0) {
-        auto sorter = RELIEF_TRY(DepthSorter::create(scene.capacity, StepPath::kFragment));
+        auto sorter = RELIEF_TRY(DepthSorter::create(scene.particles.capacity, StepPath::kFragment));
         player->sorter = std::make_unique<DepthSorter>(std::move(sorter));
     }
     return player.release();
@@ -177,8 +167,8 @@ Result<int> changePlayer(Player& player, const char* path, bool emitters) {
     Scene& now = player.loaded.scene;
     Scene wanted = RELIEF_TRY(loadScene(path));
     wanted = RELIEF_TRY(withDefaults(std::move(wanted), player.loaded.bounds));
-    if (wanted.capacity != now.capacity || wanted.integrator != now.integrator ||
-        wanted.colliders.size() != now.colliders.size()) {
+    if (wanted.particles.capacity != now.particles.capacity ||
+        wanted.time.integrator != now.time.integrator || wanted.colliders.size() != now.colliders.size()) {
         return fail(ErrorCode::kUsage,
                     "other colliders, another capacity or integrator need a new system; make one");
     }
@@ -192,7 +182,7 @@ Result<int> changePlayer(Player& player, const char* path, bool emitters) {
     wanted.render.atlas = now.render.atlas;
     wanted.colliders = std::move(colliders);
     if (wanted.render.sort_frames > 0 && !player.sorter) {
-        auto sorter = RELIEF_TRY(DepthSorter::create(wanted.capacity, StepPath::kFragment));
+        auto sorter = RELIEF_TRY(DepthSorter::create(wanted.particles.capacity, StepPath::kFragment));
         player.sorter = std::make_unique<DepthSorter>(std::move(sorter));
     }
     now = std::move(wanted);
@@ -385,8 +375,8 @@ EMSCRIPTEN_KEEPALIVE const char* relief_player_info(const Player* player) {
              {"extent", counts.extent},
              {"capacity", particles.capacity()},
              {"width", particles.textureWidth()},
-             {"dt", scene.dt},
-             {"steps", scene.steps},
+             {"dt", scene.time.dt},
+             {"steps", scene.time.steps},
              {"bounds", {{"min", json(bounds.min)}, {"max", json(bounds.max)}}},
              {"ground", scene.ground.enabled && scene.ground.height ? Json(*scene.ground.height) : Json()},
              {"camera", {{"eye", json(camera.eye)}, {"target", json(camera.target)}, {"fov", camera.fov}}},

@@ -121,46 +121,395 @@ export class GpuCollider {
     dispose(): void;
 }
 
-type SceneValue = string | number | boolean | readonly SceneValue[] | ArrayBufferView | { readonly [key: string]: SceneValue | undefined };
-type Table = { readonly [key: string]: SceneValue | undefined };
+// <!-- generated: scene -->
+/** How the mesh deforms. */
+export interface SceneColliderDeform {
+    /** Bends, twists or wobbles. */
+    kind: "bend" | "twist" | "wobble";
+    /** Largest angle, up to 360 degrees; of a wobble a length, degrees. */
+    amplitude: number;
+    /** Oscillations a second, 1/s. */
+    frequency: number;
+    /** Phase at time 0, degrees. */
+    phase?: number;
+    /** Axis of a bend or twist, of any length, [x, y, z]. */
+    axis?: Vec3 | Numbers;
+    /** Direction of the beam that a bend winds, across the axis, [x, y, z]. */
+    along?: Vec3 | Numbers;
+    /** A point of the axis, [x, y, z]. */
+    center?: Vec3 | Numbers;
+    /** From the center, along the axis or, of a bend, `along`: the angle grows from 0 to all of it, [low, high]. */
+    range?: [number, number];
+    /** Wavelength of a wobble. */
+    wavelength?: number;
+}
 
-/** Where a collider stands: turned by `angle` degrees about `axis`, then moved. */
-export interface ColliderPose {
-    position?: Vec3;
-    axis?: Vec3;
+/** Poses at times, two or more. */
+export interface SceneColliderKey {
+    /** Time since the beginning, rising, s. */
+    time: number;
+    /** Place of the origin, [x, y, z]. */
+    position?: Vec3 | Numbers;
+    /** Axis of rotation, of any length, [x, y, z]. */
+    axis?: Vec3 | Numbers;
+    /** Rotation about the axis, right-handed, degrees. */
     angle?: number;
 }
 
-/** A collider of a scene. What it leaves out of its pose is 0. */
-export interface SceneCollider extends ColliderPose {
+/** What particles collide with. */
+export interface SceneCollider {
+    /** The .relief file to collide with. */
     file?: string;
-    scale?: number;
-    restitution?: number;
-    friction?: number;
-    key?: readonly (ColliderPose & { time: number })[];
+    /** An .obj or .ply file that deforms; it is not baked. */
     mesh?: string;
-    deform?: Table;
+    deform?: SceneColliderDeform;
+    /** Texels along a side of the deforming mesh's maps. */
     resolution?: number;
+    /** Place of the origin, [x, y, z]. */
+    position?: Vec3 | Numbers;
+    /** Axis of rotation, of any length, [x, y, z]. */
+    axis?: Vec3 | Numbers;
+    /** Rotation about the axis, right-handed, degrees. */
+    angle?: number;
+    /** World units of an object unit. */
+    scale?: number;
+    /** Factor of the particles' own. */
+    restitution?: number;
+    /** 1 − friction is a factor of the particles' own 1 − friction. */
+    friction?: number;
+    key?: readonly SceneColliderKey[];
 }
 
-/** A scene with the keys of scene.toml, as runtime/scene/README.md of the Relief sources lists them. */
+/** Steps. */
+export interface SceneTime {
+    /** Length of a step, s. */
+    dt?: number;
+    /** Steps of the run. */
+    steps?: number;
+    /** Time that is played before time 0, in whole steps, at most 10⁷ of them, s. */
+    prewarm?: number;
+    /** Integration of positions: semi-implicit Euler, or Verlet. */
+    integrator?: "euler" | "verlet";
+}
+
+/** Room for particles. */
+export interface SceneParticles {
+    /** Particles alive at once. */
+    capacity?: number;
+}
+
+/** Poses at times, two or more. */
+export interface SceneEmitterKey {
+    /** Time since the beginning, rising, s. */
+    time: number;
+    /** Place of the origin, [x, y, z]. */
+    position?: Vec3 | Numbers;
+    /** Axis of rotation, of any length, [x, y, z]. */
+    axis?: Vec3 | Numbers;
+    /** Rotation about the axis, right-handed, degrees. */
+    angle?: number;
+}
+
+/** Births. */
+export interface SceneEmitter {
+    /** Place of birth; a sphere is its volume, a shell its surface. */
+    shape?: "box" | "sphere" | "shell" | "disc" | "points" | "point";
+    /** Lower corner, [x, y, z]. */
+    box_min?: Vec3 | Numbers;
+    /** Upper corner, [x, y, z]. */
+    box_max?: Vec3 | Numbers;
+    /** Place of a point, [x, y, z]. */
+    point?: Vec3 | Numbers;
+    /** Centre, [x, y, z]. */
+    center?: Vec3 | Numbers;
+    /** Radius. */
+    radius?: number;
+    /** Normal of the disc, [x, y, z]. */
+    normal?: Vec3 | Numbers;
+    /** File of 1 to 2²² points, below. */
+    points?: string;
+    /** Time before anything is born, s. */
+    start?: number;
+    /** Births a second; several emitters without a rate share what the others leave of the capacity, 1/s. */
+    rate?: number;
+    /** Time from the start to the last birth, s. */
+    duration?: number;
+    /** Births at the start, at most the capacity. */
+    burst?: number;
+    /** Time from burst to burst, s. */
+    burst_every?: number;
+    /** Births by rate are spread over their step. */
+    spread?: boolean;
+    /** Velocity of every birth, [x, y, z]/s. */
+    velocity?: Vec3 | Numbers;
+    /** Largest uniform deviation from the velocity, either way, [x, y, z]/s. */
+    velocity_spread?: Vec3 | Numbers;
+    /** Direction of births; required for a box or point, [x, y, z]. */
+    direction?: Vec3 | Numbers;
+    /** Half angle about the direction, uniform over its solid angle, degrees. */
+    cone?: number;
+    /** Speed along the direction: a number, [least, most], or { mean, deviation }, which is normal and never below 0, 1/s. */
+    speed?: number | [number, number] | { mean: number; deviation?: number };
+    /** Lifetime, s. */
+    lifetime?: number | [number, number];
+    /** Number or name of the type. */
+    type?: number | string;
+    /** Seed; emitter i draws from the i-th stream of its seed. */
+    seed?: number;
+    /** Number, from 0, of the collider in whose space the emitter is; needs a place. */
+    attach?: number | string;
+    key?: readonly SceneEmitterKey[];
+    /** Share of its own velocity that births take on. */
+    inherit?: number;
+}
+
+/** Births by hits and deaths. */
+export interface SceneSpawn {
+    /** The event. collision: a body or the ground was hit, and the step before touched nothing; death: of age, or of a hit. */
+    on: "collision" | "death";
+    /** Number or name of the type that hits or dies. */
+    of?: number | string;
+    /** Least speed of a hit along the normal, relative to the surface, 1/s. */
+    min_speed?: number;
+    /** Number or name of the type that is born. */
+    type?: number | string;
+    /** Births for each event. */
+    count?: number | [number, number];
+    /** Births of a step at most. */
+    most?: number;
+    /** Lifetime of what is born, s. */
+    lifetime?: number | [number, number];
+    /** Share of the parent's velocity; after a hit of the part along the surface. */
+    inherit?: number;
+    /** Speed about the normal, 1/s. */
+    speed?: number | [number, number];
+    /** Share of the hit's speed, on top of speed. */
+    kick?: number;
+    /** Half angle about the normal, degrees. */
+    cone?: number;
+    /** Seed; spawn i draws from a stream of its own. */
+    seed?: number;
+}
+
+/** Gravity, wind and drag. */
+export interface SceneForces {
+    /** Acceleration of gravity, [x, y, z]/s². */
+    gravity?: Vec3 | Numbers;
+    /** Velocity of the air everywhere; it needs drag, [x, y, z]/s. */
+    wind?: Vec3 | Numbers;
+    /** Rate at which the air carries particles along, 1/s. */
+    drag?: number;
+    /** Dynamic viscosity: drag by Stokes' law, mass/(length·s). */
+    viscosity?: number;
+}
+
+/** Points that attract or repel. */
+export interface SceneAttractor {
+    /** Centre of attraction, [x, y, z]. */
+    position: Vec3 | Numbers;
+    /** Acceleration at the radius; below 0 it repels, 1/s². */
+    strength: number;
+    /** Distance up to which the strength grows. */
+    radius: number;
+    /** Beyond the radius the strength falls with this power of the distance. */
+    falloff?: number;
+    /** Distance beyond which there is no force. */
+    reach?: number;
+}
+
+/** Axes that particles are driven round. */
+export interface SceneVortex {
+    /** A point of the axis, [x, y, z]. */
+    center: Vec3 | Numbers;
+    /** Direction of the axis, of any length, [x, y, z]. */
+    axis?: Vec3 | Numbers;
+    /** Acceleration at the radius, right-handed about the axis, 1/s². */
+    strength: number;
+    /** Distance from the axis up to which the strength grows. */
+    radius: number;
+    /** Beyond the radius the strength falls with this power of the distance. */
+    falloff?: number;
+}
+
+/** Turbulence; it needs drag. */
+export interface SceneCurlNoise {
+    /** Mean speed of the turbulence, 1/s. */
+    amplitude: number;
+    /** Size of the largest eddies. */
+    scale: number;
+    /** Sizes of eddies, each half as large as the one before. */
+    octaves?: number;
+    /** Speed at which eddies give way to others; up to 1000 scales a second, 1/s. */
+    drift?: number;
+    /** Seed of the pattern. */
+    seed?: number;
+}
+
+/** Velocities of the air on a grid; it needs drag. */
+export interface SceneFlow {
+    /** EXR image: channels R, G and maybe B are the velocity along x, y, z; its bottom row lies at the lowest y. */
+    file?: string;
+    /** EXR slices, as "flow_%03d.exr", numbered from 0 or 1, the lowest z first. */
+    files?: string;
+    /** Little-endian 32-bit floats, x fastest, then y, then z. */
+    raw?: string;
+    /** Nodes of the raw volume, 2²⁴ at most, [nx, ny, nz]. */
+    size?: Vec3 | Numbers;
+    /** Floats a node. */
+    components?: number;
+    /** Lower corner of the flow's box, [x, y, z]. */
+    box_min: Vec3 | Numbers;
+    /** Upper corner of the flow's box, [x, y, z]. */
+    box_max: Vec3 | Numbers;
+    /** Velocity outside of the box: 0, or that of the nearest point of the box. */
+    outside?: "zero" | "edge";
+    /** Factor of every velocity. */
+    gain?: number;
+}
+
+/** Collisions of particles without a type. */
+export interface SceneCollision {
+    /** Share of the normal speed that comes back. */
+    restitution?: number;
+    /** Share of the tangential speed that is lost. */
+    friction?: number;
+    /** Speed below which there is no friction, 1/s. */
+    friction_threshold?: number;
+    /** Longest distance between two tests of a step; 0: only its ends are tested. */
+    sweep?: number;
+}
+
+/** Types of particles; the first is type 0. */
+export interface SceneType {
+    /** Name for emitter.type and spawn, not taken twice. */
+    name?: string;
+    /** Factor of forces.gravity; below 0 it rises. */
+    gravity?: number;
+    /** Divides the drag. */
+    mass?: number;
+    /** Radius of collision; size is the picture's. */
+    radius?: number;
+    /** Share of the normal speed that comes back. */
+    restitution?: number;
+    /** Share of the tangential speed that is lost. */
+    friction?: number;
+    /** Speed below which there is no friction, 1/s. */
+    friction_threshold?: number;
+    /** Reaction to a collision, by the method's page, section Collision. */
+    on_collision?: "bounce" | "stop" | "slide" | "die";
+    /** Life that each step in contact costs, s. */
+    lifetime_loss?: number;
+    /** The colliders it meets, by number from 0, and "ground", as in [0, "ground"]; it passes through all others. */
+    collides?: readonly (number | "ground")[];
+    /** Diameter, over age. */
+    size?: number | readonly [number, number][];
+    /** Colour, over age, in linear light, [r, g, b]. */
+    color?: Vec3 | Numbers | readonly [number, number, number, number][];
+    /** Opacity, over age. */
+    opacity?: number | readonly [number, number][];
+    /** Anticlockwise turn of the sprite, over age, radians. */
+    rotation?: number | readonly [number, number][];
+    /** Each particle starts turned by its own angle within ± turn, radians. */
+    turn?: number;
+    /** Each particle turns at its own speed within ± spin, radians/s. */
+    spin?: number;
+    /** The sprite reaches back along its path to where it was so long ago, as if exposed so long; needs render.sprite = "quad", and no rotation, turn or spin, s. */
+    stretch?: number;
+    /** Cell of the atlas, or [first, last] played from birth to death; from the top left, row by row; needs render.atlas. */
+    cell?: number | [number, number];
+    /** False: shines in its colour, whatever light falls on it. */
+    lit?: boolean;
+    /** Time in which opacity rises after birth and falls before death, [in, out] s. */
+    fade?: [number, number];
+}
+
+/** The floor. */
+export interface SceneGround {
+    /** There is a ground. */
+    enabled?: boolean;
+    /** Its height; needs enabled. */
+    height?: number;
+}
+
+/** Places of the camera at times. */
+export interface SceneCameraKey {
+    /** Time since the beginning, rising, s. */
+    time: number;
+    /** Place of the camera, instead of camera.eye, [x, y, z]. */
+    eye: Vec3 | Numbers;
+    /** Point that it looks at, [x, y, z]. */
+    target?: Vec3 | Numbers;
+    /** Vertical field of view, degrees. */
+    fov?: number;
+}
+
+/** The camera. */
+export interface SceneCamera {
+    /** Place of the camera, [x, y, z]. */
+    eye?: Vec3 | Numbers;
+    /** Point that it looks at, not straight above or below the eye, [x, y, z]. */
+    target?: Vec3 | Numbers;
+    /** Vertical field of view, degrees. */
+    fov?: number;
+    /** Interpolation between keys: Catmull-Rom by time, or straight lines. */
+    path?: "smooth" | "linear";
+    key?: readonly SceneCameraKey[];
+}
+
+/** Pictures. */
+export interface SceneRender {
+    /** Size of the pictures, 2²⁶ pixels at most, [width, height] pixels. */
+    size?: [number, number];
+    /** Diameter of particles. */
+    point_size?: number;
+    /** Colour of particles, [r, g, b]. */
+    color?: Vec3 | Numbers;
+    /** Opacity of particles. */
+    opacity?: number;
+    /** Colour of the background, [r, g, b]. */
+    background?: Vec3 | Numbers;
+    /** Steps from frame to frame. */
+    every?: number;
+    /** Step of the first frame; 0: before the first step. */
+    first?: number;
+    /** Step of the last frame. */
+    last?: number;
+    /** Frames that a whole depth sort is spread over, 2 or more; 0: no sort. On the compute path each frame has a whole one. */
+    sort_frames?: number;
+    /** Form of particles; a quad may be of any size and turns with its corners. */
+    sprite?: "point" | "quad";
+    /** Blending of particles. */
+    blend?: "alpha" | "additive";
+    /** Distance before the collider and the floor over which sprites fade. */
+    soft?: number;
+    /** PNG with alpha, sides up to 8192; needs a type with cell. */
+    atlas?: string;
+    /** Cells of the atlas, dividing its sides, [columns, rows]. */
+    atlas_cells?: [number, number];
+    /** The .obj or .ply that the collider was baked from: it is drawn, the maps still cast the shadows. */
+    mesh?: string;
+}
+
+/** A scene with the keys of scene.toml, as runtime/scene/README.md of the Relief sources describes them. */
 export interface Scene {
     collider?: SceneCollider | readonly SceneCollider[];
-    time?: { dt?: number; steps?: number; integrator?: "euler" | "verlet" };
-    particles?: { capacity?: number };
-    emitter?: Table | readonly Table[];
-    spawn?: readonly Table[];
-    type?: readonly Table[];
-    forces?: { gravity?: Vec3; wind?: Vec3; drag?: number; viscosity?: number };
-    collision?: { restitution?: number; friction?: number; friction_threshold?: number; sweep?: number };
-    ground?: { enabled?: boolean; height?: number };
-    attractor?: readonly Table[];
-    vortex?: readonly Table[];
-    curl_noise?: Table;
-    camera?: Table;
-    render?: Table;
+    time?: SceneTime;
+    particles?: SceneParticles;
+    emitter?: SceneEmitter | readonly SceneEmitter[];
+    spawn?: readonly SceneSpawn[];
+    forces?: SceneForces;
+    attractor?: readonly SceneAttractor[];
+    vortex?: readonly SceneVortex[];
+    curl_noise?: SceneCurlNoise;
+    flow?: SceneFlow;
+    collision?: SceneCollision;
+    type?: readonly SceneType[];
+    ground?: SceneGround;
+    camera?: SceneCamera;
+    render?: SceneRender;
 }
 
+// <!-- end of scene -->
 /** A scene as the text of scene.toml, as relief-sim plays it. */
 export function toToml(scene: Scene): string;
 

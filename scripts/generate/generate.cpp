@@ -7,6 +7,7 @@
 #include "formats/base/file_io.h"
 #include "formats/fields/generated.h"
 #include "runtime/player/schemas.h"
+#include "runtime/scene/scene_reference.h"
 
 namespace relief {
 namespace {
@@ -21,7 +22,7 @@ Result<std::string> readText(const fs::path& path) {
 /// All that is derived. Each library that declares fields has a function of its own.
 GeneratedTexts all() {
     GeneratedTexts texts;
-    for (GeneratedTexts (*const of)() : {bakeSchemas, playerSchemas}) {
+    for (GeneratedTexts (*const of)() : {bakeSchemas, playerSchemas, sceneReference}) {
         for (GeneratedText& text : of()) {
             texts.push_back(std::move(text));
         }

@@ -227,3 +227,17 @@ cp stdout invalid.json
 outputs+=(sim-report:sim.json sim-report:alone.json sim-report:live.json sim-stats:stats.jsonl sim-events:hits.jsonl sim-check:valid.json sim-check:invalid.json)
 
 python3 validate.py "$RELIEF_SOURCE/formats/schemas" "${outputs[@]}" || die "schemas and outputs differ"
+
+# The schema of scenes, which editors complete them by: every sample satisfies it, and a wrong key or value does not.
+python3 - "$RELIEF_SOURCE" <<'P' || die "the schema of scenes and the samples differ"
+import json, pathlib, sys, tomllib
+from jsonschema import Draft202012Validator
+root = pathlib.Path(sys.argv[1])
+schema = json.load(open(root / 'runtime/scene/scene.schema.json'))
+Draft202012Validator.check_schema(schema)
+validator = Draft202012Validator(schema)
+for path in (root / 'samples').glob('*.toml'):
+    validator.validate(tomllib.load(open(path, 'rb')))
+for wrong in ('colider.file = "a"', 'time.dt = 2', 'emitter.speed = "fast"', 'emitter.shape = "cube"', '[[vortex]]'):
+    assert not validator.is_valid(tomllib.loads(wrong)), wrong
+P

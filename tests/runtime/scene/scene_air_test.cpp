@@ -139,7 +139,7 @@ TEST(SceneAir, MistakesOfAirAreNamed) {
     expectError("[flow]\nfile = \"a.exr\"\nbox_min = [0, 2, 0]\nbox_max = [1, 2, 3]\n", "5:11", "y axis");
     expectError("[flow]\nfile = \"a.exr\"\nsize = [1, 1, 1]\n" + kBox, "5:8", "flow.raw");
     expectError("[flow]\nfile = \"a.exr\"\ncomponents = 3\n" + kBox, "5:14", "flow.raw");
-    expectError("[flow]\nraw = \"a.raw\"\n" + kBox, "3:1", "flow.size is missing");
+    expectError("[flow]\nraw = \"a.raw\"\n" + kBox, "3:1", "needs flow.size");
     expectError("[flow]\nraw = \"a.raw\"\nsize = [1, 1]\n" + kBox, "5:8", "three whole numbers");
     expectError("[flow]\nraw = \"a.raw\"\nsize = [1, 1, 513]\n" + kBox, "5:15", "1 to 512");
     expectError("[flow]\nraw = \"a.raw\"\nsize = [512, 512, 65]\n" + kBox, "5:8", "bytes");
@@ -155,7 +155,7 @@ TEST(SceneAir, MistakesOfAirAreNamed) {
     expectError("[curl_noise]\namplitude = 1\nscale = 1\nseed = -1\n", "6:8", "out of range");
     expectError("[curl_noise]\namplitude = 1\nscale = 1\n[forces]\nviscosity = 0\n", "3:1",
                 "forces.viscosity");
-    expectError("[forces]\nviscosity = 1\ndrag = 2\n", "4:13", "two drags");
+    expectError("[forces]\nviscosity = 1\ndrag = 2\n", "4:13", "exclude each other");
     expectError("[forces]\nviscosity = -1\n", "4:13", "out of range");
     expectError("[forces]\nviscosity = 0\nwind = [1, 0, 0]\n", "5:8", "forces.viscosity is 0");
     expectError("[flwo]\n", "3:2", "'flow'");

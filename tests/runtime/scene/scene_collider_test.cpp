@@ -138,10 +138,10 @@ TEST(SceneCollider, MistakesOfKeysAreNamed) {
     expectError("key = 3\n", "3:7", "[[collider.key]]");
     expectError(key, "3:1", "moves nothing");
     expectError(key + key, "6:8", "does not rise");
-    expectError(key + "[[collider.key]]\nposition = [0, 0, 0]\n", "5:1", "needs a time");
+    expectError(key + "[[collider.key]]\nposition = [0, 0, 0]\n", "5:1", "time is missing");
     expectError("[[collider.key]]\ntime = -1\n" + key, "4:8", "out of range");
     expectError(key + "axis = [1, 0, 0]\n" + key, "5:8", "without collider.key.angle");
-    expectError(key + "axis = [0, 0, 0]\nangle = 1\n" + key, "5:8", "collider.key.axis is no direction");
+    expectError(key + "axis = [0, 0, 0]\nangle = 1\n" + key, "5:8", "collider.key.axis has no direction");
     expectError(key + "position = [nan, 0, 0]\n" + key, "5:13", "out of range");
     expectError(key + "scale = 2\n" + key, "5:1", "unknown key 'collider.key.scale'");
 }
@@ -211,8 +211,9 @@ TEST(SceneTypes, EveryPhysicalKey) {
              "[[type]]\nname = \"snow\"\non_collision = \"stop\"\n[[type]]\non_collision = \"slide\"\n"
              "[[type]]\non_collision = \"bounce\"\n");
     ASSERT_EQ(scene.types.size(), 5U);
-    EXPECT_EQ(scene.type_names, (std::vector<std::string>{"", "rain", "snow", "", ""}));
-    EXPECT_EQ(scene.render.looks.size(), 5U);
+    EXPECT_EQ(scene.types[0].name, "");
+    EXPECT_EQ(scene.types[1].name, "rain");
+    EXPECT_EQ(scene.types[1].place, "dir/scene.toml:8:1");
     const ParticleType& first = scene.types[0];
     EXPECT_EQ(first.mass, 1.0F);
     EXPECT_EQ(first.radius, 0.0F);
@@ -255,12 +256,12 @@ TEST(SceneTypes, MistakesAreNamed) {
 }
 
 TEST(SceneStep, IntegratorAndSweep) {
-    EXPECT_EQ(good(kHead).integrator, Integrator::kEuler);
-    EXPECT_EQ(good(kHead + "[time]\nintegrator = \"euler\"\n").integrator, Integrator::kEuler);
-    EXPECT_EQ(good(kHead + "[time]\nintegrator = \"verlet\"\n").integrator, Integrator::kVerlet);
+    EXPECT_EQ(good(kHead).time.integrator, Integrator::kEuler);
+    EXPECT_EQ(good(kHead + "[time]\nintegrator = \"euler\"\n").time.integrator, Integrator::kEuler);
+    EXPECT_EQ(good(kHead + "[time]\nintegrator = \"verlet\"\n").time.integrator, Integrator::kVerlet);
     expectError("[time]\nintegrator = \"rk4\"\n", "4:14", "choose one of");
-    EXPECT_EQ(good(kHead).sweep, 0.0F);
-    EXPECT_EQ(good(kHead + "[collision]\nsweep = 0.25\n").sweep, 0.25F);
+    EXPECT_EQ(good(kHead).collision.sweep, 0.0F);
+    EXPECT_EQ(good(kHead + "[collision]\nsweep = 0.25\n").collision.sweep, 0.25F);
     expectError("[collision]\nsweep = -1\n", "4:9", "out of range");
     expectError("[collision]\nsweep = \"a\"\n", "4:9", "number");
 }

@@ -29,7 +29,7 @@ TEST(SceneLooks, NothingGivenIsAsBefore) {
     EXPECT_EQ(scene.render.sprite, Sprite::kPoint);
     EXPECT_EQ(scene.render.blend, Blend::kAlpha);
     EXPECT_EQ(scene.render.soft, 0.0F);
-    EXPECT_TRUE(scene.render.atlas.empty() && scene.render.mesh.empty() && scene.render.looks.empty());
+    EXPECT_TRUE(scene.render.atlas.empty() && scene.render.mesh.empty() && scene.types.empty());
     EXPECT_TRUE(scene.camera.keys.empty());
 }
 
@@ -49,11 +49,11 @@ TEST(SceneLooks, EveryKey) {
     EXPECT_EQ(scene.render.atlas_columns, 4U);
     EXPECT_EQ(scene.render.atlas_rows, 2U);
     EXPECT_EQ(scene.render.mesh, std::filesystem::path("dir/m.obj"));
-    ASSERT_EQ(scene.render.looks.size(), 3U);
+    ASSERT_EQ(scene.types.size(), 3U);
     ParticleLook first;
     first.size = {{0.0F, 0.25F}};
     first.color = {{0.0F, {1.0F, 0.0F, 0.5F}}};
-    EXPECT_EQ(scene.render.looks[0], first);
+    EXPECT_EQ(scene.types[0].look, first);
     ParticleLook second;
     second.size = {{0.0F, 1.0F}, {0.5F, 2.0F}};
     second.color = {{0.0F, {1.0F, 0.0F, 0.0F}}, {1.0F, {0.0F, 1.0F, 0.0F}}};
@@ -66,10 +66,10 @@ TEST(SceneLooks, EveryKey) {
     second.lit = false;
     second.fade_in = 0.0F;  // opacity says itself how it comes and goes
     second.fade_out = 0.0F;
-    EXPECT_EQ(scene.render.looks[1], second);
-    EXPECT_EQ(scene.render.looks[2].cell_last, 6U);
-    EXPECT_EQ(scene.render.looks[2].fade_out, 2.0F);
-    EXPECT_EQ(scene.render.looks[2].stretch, 0.25F);
+    EXPECT_EQ(scene.types[1].look, second);
+    EXPECT_EQ(scene.types[2].look.cell_last, 6U);
+    EXPECT_EQ(scene.types[2].look.fade_out, 2.0F);
+    EXPECT_EQ(scene.types[2].look.stretch, 0.25F);
 }
 
 TEST(SceneLooks, Mistakes) {
@@ -92,7 +92,7 @@ TEST(SceneLooks, Mistakes) {
     expectError("[render]\natlas = \"a.png\"\natlas_cells = [2, 2]\n[[type]]\ncell = 4\n", "7:8",
                 "choose 0 to 3");
     expectError("[render]\natlas = \"a.png\"\natlas_cells = [2, 2]\n[[type]]\ncell = [2, 1]\n", "7:8",
-                "exchange");
+                "swap");
     expectError("[type]\nsize = 1\n", "3:1", "[[type]]");
     expectError("[[type]]\nsize = \"1\"\n", "4:8", "must be a number, or keys");
     expectError("[[type]]\nsize = -1\n", "4:8", "out of range");
@@ -118,7 +118,7 @@ TEST(SceneLooks, Mistakes) {
     expectError("[[type]]\nstretch = 0.1\n", "4:11", "choose render.sprite = \"quad\"");
     for (const char* key : {"rotation", "turn", "spin"}) {
         expectError("[render]\nsprite = \"quad\"\n[[type]]\nstretch = 0.1\n" + std::string(key) + " = 1\n",
-                    "7:" + std::to_string(std::string(key).size() + 4), "turns along their way");
+                    "7:" + std::to_string(std::string(key).size() + 4), "turns along their path");
     }
     std::string types;
     for (int i = 0; i < 17; ++i) {
@@ -152,17 +152,17 @@ TEST(SceneCamera, KeysAreFollowedAndFilledFromTheCamera) {
 TEST(SceneCamera, Mistakes) {
     const std::string key = "[[camera.key]]\ntime = 1\neye = [1, 2, 3]\n";
     EXPECT_EQ(good(key).camera.curve, CameraCurve::kSmooth);
-    expectError("[[camera.key]]\ntime = 1\n", "3:1", "needs camera.key.eye");
-    expectError("[[camera.key]]\neye = [1, 2, 3]\n", "3:1", "needs camera.key.time");
+    expectError("[[camera.key]]\ntime = 1\n", "3:1", "camera.key.eye is missing");
+    expectError("[[camera.key]]\neye = [1, 2, 3]\n", "3:1", "camera.key.time is missing");
     expectError(key + key, "7:8", "does not rise");
     expectError("[[camera.key]]\ntime = -1\neye = [1, 2, 3]\n", "4:8", "out of range");
     expectError(key + "target = [1, 0, 3]\n", "5:7", "straight above or below");
     expectError(key + "target = [1, 2, 3]\n", "5:7", "straight above or below");
     expectError(key + "fov = 171\n", "6:7", "out of range");
     expectError(key + "up = 1\n", "6:1", "unknown key 'camera.key.up'");
-    expectError("[camera]\npath = \"linear\"\n", "4:8", "does nothing without [[camera.key]]");
+    expectError("[camera]\npath = \"linear\"\n", "4:8", "does nothing without camera.key");
     expectError("[camera]\npath = \"round\"\n" + key, "4:8", "choose one of");
-    expectError("[camera]\neye = [1, 2, 3]\n" + key, "4:7", "does nothing beside [[camera.key]]");
+    expectError("[camera]\neye = [1, 2, 3]\n" + key, "4:7", "exclude each other");
     expectError("[camera]\nkey = 3\n", "4:7", "[[camera.key]]");
 }
 

@@ -34,16 +34,16 @@ TEST(SceneSpawn, EveryKeyIsRead) {
     wanted.kick = 0.5F;
     wanted.cone_degrees = 20.0F;
     wanted.min_speed = 0.75F;
-    EXPECT_TRUE(first.settings == wanted);
+    EXPECT_TRUE(SpawnSettings(first) == wanted);
     EXPECT_EQ(first.seed, 6U);
     SpawnSettings death;
     death.on = SpawnOn::kDeath;
     death.speed_min = death.speed_max = 2.0F;
-    EXPECT_TRUE(scene->spawns[1].settings == death);
-    EXPECT_EQ(scene->spawns[2].settings.of, 1U);
-    EXPECT_EQ(scene->spawns[2].settings.cone_degrees, 60.0F);
+    EXPECT_TRUE(SpawnSettings(scene->spawns[1]) == death);
+    EXPECT_EQ(scene->spawns[2].of, 1U);
+    EXPECT_EQ(scene->spawns[2].cone_degrees, 60.0F);
     for (const SceneSpawn& spawn : scene->spawns) {
-        EXPECT_TRUE(Spawner::check(spawn.settings));
+        EXPECT_TRUE(Spawner::check(spawn));
     }
     EXPECT_EQ(makeSpawners(scene->spawns).size(), 3U);
 }
@@ -61,7 +61,7 @@ TEST(SceneSpawn, MistakesAreNamedWithTheirPlace) {
     bad("on = \"death\"\ntype = 1.5", "9:8", "spawn.type");
     bad("on = \"death\"\ncount = 0", "9:9", "spawn.count");
     bad("on = \"death\"\ncount = 1.5", "9:9", "whole number");
-    bad("on = \"death\"\ncount = [5, 2]", "9:9", "exchange them");
+    bad("on = \"death\"\ncount = [5, 2]", "9:9", "swap them");
     bad("on = \"death\"\nlifetime = 0", "9:12", "spawn.lifetime");
     bad("on = \"death\"\nmin_speed = 1", "9:13", "does nothing");
     bad("on = \"death\"\ncone = 10", "9:8", "does nothing");

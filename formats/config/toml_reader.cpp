@@ -1,0 +1,327 @@
+#include "formats/config/toml_reader.h"
+
+#include <cstdio>
+#include <exception>
+
+#include "formats/base/file_io.h"
+#include "formats/base/text.h"
+#include "formats/config/confined_path.h"
+
+namespace relief {
+namespace {
+
+std::string rangeText(const FieldRange& range) {
+    const std::string low = (range.low_included ? "" : "above ") + numberText(range.low);
+    return std::isfinite(range.high) ? "choose " + low + " to " + numberText(range.high)
+                                     : "choose " + low + " or more";
+}
+
+/// The tables of an array, or a table by itself; 0 for anything else.
+std::size_t tableCount(const toml::node* node) {
+    const toml::array* array = node == nullptr ? nullptr : node->as_array();
+    return array != nullptr ? array->size() : (node != nullptr && node->is_table() ? 1 : 0);
+}
+
+std::vector<std::string_view> wordsOf(std::string_view list) {
+    return list.empty() ? std::vector<std::string_view>() : split(list, ' ');
+}
+
+bool contains(std::string_view list, std::string_view word) {
+    const std::vector<std::string_view> words = wordsOf(list);
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+}  // namespace
+
+std::string numberText(double value) {
+    char text[40];
+    std::snprintf(text, sizeof(text), "%.9g", value);
+    return text;
+}
+
+std::string oneLine(std::string_view text) {
+    std::string quoted = quotedPath(std::filesystem::path(text));
+    return quoted.substr(1, quoted.size() - 2);
+}
+
+std::string TomlValue::place() const {
+    const toml::source_position& at = node_->source().begin;
+    return file_->name + ":" + std::to_string(std::max(at.line, 1U)) + ":" +
+           std::to_string(std::max(at.column, 1U));
+}
+
+std::string TomlValue::full(std::string_view key) const {
+    return name_.empty() ? std::string(key) : name_ + "." + std::string(key);
+}
+
+void TomlValue::fail(const std::string& message) const {
+    throw TomlMistake{place() + ": " + message};
+}
+
+void TomlValue::wrongType(std::string_view wanted) const {
+    fail(name_ + " must be " + std::string(wanted));
+}
+
+std::optional<TomlValue> TomlValue::find(std::string_view path) const {
+    TomlValue at = *this;
+    while (!path.empty()) {
+        const std::size_t end = path.front() == '[' ? path.find(']') + 1 : path.find_first_of(".[");
+        const std::string_view step = path.substr(0, end);
+        path = path.substr(step.size());
+        path = path.substr(path.starts_with('.') ? 1 : 0);
+        if (step.front() == '[') {
+            const std::size_t i = parseUnsigned(step.substr(1, step.size() - 2)).value_or(0);
+            if (at.array() != nullptr ? i >= at.array()->size() : i > 0) {
+                return std::nullopt;
+            }
+            at = at.array() != nullptr ? at[i] : at;
+            continue;
+        }
+        const toml::node* next = at.node().is_table() ? at.node().as_table()->get(step) : nullptr;
+        if (next == nullptr) {
+            return std::nullopt;
+        }
+        at = TomlValue(*next, at.full(step), *file_);
+    }
+    return at;
+}
+
+double TomlValue::number(const FieldRange& range) const {
+    if (!node_->is_number()) {
+        wrongType("a number");
+    }
+    const double value = node_->is_integer() ? static_cast<double>(*node_->value_exact<std::int64_t>())
+                                             : *node_->value_exact<double>();
+    if (!range.holds(value)) {
+        fail(name_ + " = " + numberText(value) + " is out of range; " + rangeText(range));
+    }
+    return value;
+}
+
+std::int64_t TomlValue::whole(const FieldRange& range) const {
+    if (!node_->is_integer()) {
+        wrongType("a whole number");
+    }
+    const std::int64_t value = *node_->value_exact<std::int64_t>();
+    if (!range.holds(static_cast<double>(value))) {
+        fail(name_ + " = " + std::to_string(value) + " is out of range; " + rangeText(range));
+    }
+    return value;
+}
+
+bool TomlValue::boolean() const {
+    if (!node_->is_boolean()) {
+        wrongType("true or false");
+    }
+    return *node_->value_exact<bool>();
+}
+
+std::string TomlValue::text() const {
+    if (!node_->is_string()) {
+        wrongType("a string");
+    }
+    return *node_->value_exact<std::string>();
+}
+
+std::size_t TomlValue::word(std::span<const std::string_view> words) const {
+    std::string list;
+    for (const std::string_view word : words) {
+        list += (list.empty() ? "\"" : ", \"") + std::string(word) + "\"";
+    }
+    if (!node_->is_string()) {
+        wrongType("one of " + list);
+    }
+    const std::string value = text();
+    const auto found = std::find(words.begin(), words.end(), value);
+    if (found == words.end()) {
+        const std::string hint = didYouMean(value, words);
+        fail(name_ + " = '" + oneLine(value) + "' is unknown" +
+             (hint.empty() ? "; choose one of " + list : hint));
+    }
+    return static_cast<std::size_t>(found - words.begin());
+}
+
+std::filesystem::path TomlValue::path() const {
+    auto inside = resolveInside(file_->folder, text(), file_->owner, file_->root);
+    if (!inside) {
+        fail(name_ + " = " + inside.error().message);
+    }
+    return std::move(*inside);
+}
+
+std::int64_t TomlValue::indexOf(std::string_view key, const FieldRange& range) const {
+    const toml::node* tables = file_->top->get(key);
+    const std::size_t count = tableCount(tables);
+    if (node_->is_integer()) {
+        const std::int64_t value = whole(range);
+        if (count > 0 && value >= static_cast<std::int64_t>(count)) {
+            fail(name_ + " = " + std::to_string(value) + " is none of the " + std::to_string(count) + " " +
+                 std::string(key) + "s; the first is 0");
+        }
+        return value;
+    }
+    if (!node_->is_string()) {
+        wrongType("a whole number or the name of a " + std::string(key));
+    }
+    const std::string wanted = text();
+    std::vector<std::string> names;
+    for (std::size_t i = 0; tables != nullptr && tables->is_array() && i < count; ++i) {
+        const toml::table* one = tables->as_array()->get(i)->as_table();
+        const toml::node* name = one == nullptr ? nullptr : one->get("name");
+        names.push_back(name == nullptr ? "" : name->value_or(std::string()));
+    }
+    const std::vector<std::string_view> known(names.begin(), names.end());
+    const auto found = std::find(known.begin(), known.end(), wanted);
+    if (wanted.empty() || found == known.end()) {
+        const std::string hint = didYouMean(wanted, known);
+        fail(name_ + " = '" + oneLine(wanted) + "' is " + (wanted.empty() ? "an empty name" : "unknown") +
+             (hint.empty() ? "; name one of this file" : hint));
+    }
+    return found - known.begin();
+}
+
+const toml::array& TomlValue::list(std::size_t size, bool whole, std::string_view unit) const {
+    static constexpr const char* kCounts[] = {"no", "one", "two", "three", "four"};
+    if (array() == nullptr || array()->size() != size) {
+        wrongType(std::string(kCounts[size]) + (whole ? " whole numbers " : " numbers ") +
+                  std::string(unit.substr(0, unit.find(']') + 1)));
+    }
+    return *array();
+}
+
+void TomlValue::needTable() const {
+    if (!node_->is_table()) {
+        wrongType("a table, as in [" + name_ + "]");
+    }
+}
+
+std::vector<TomlValue> TomlValue::tables(const FieldInfo& info) const {
+    if (info.rules.single && node_->is_table()) {
+        return {*this};
+    }
+    const std::string several = "as in [[" + name_ + "]]";
+    const std::string wanted = info.rules.single ? "a table, as in [" + name_ + "], or several, " + several
+                                                 : "tables, each " + several;
+    if (array() == nullptr || (info.rules.single && !array()->is_array_of_tables())) {
+        wrongType(wanted);
+    }
+    std::vector<TomlValue> tables;
+    for (std::size_t i = 0; i < array()->size(); ++i) {
+        if (!(*this)[i].node().is_table()) {
+            (*this)[i].wrongType(wanted);
+        }
+        if (i == info.rules.most) {
+            (*this)[i].fail("there are " + std::to_string(array()->size()) + " of [[" + name_ +
+                            "]], more than " + std::to_string(info.rules.most) + "; remove some");
+        }
+        tables.push_back((*this)[i]);
+    }
+    return tables;
+}
+
+void TableRules::refuseUnknown(const TomlValue& table) const {
+    std::vector<std::string_view> known;
+    for (const Field& field : fields_) {
+        known.push_back(field.name);
+    }
+    for (const toml::key* key : keysInOrder(*table.node().as_table())) {
+        if (std::find(known.begin(), known.end(), key->str()) == known.end()) {
+            const toml::source_position& at = key->source().begin;
+            const std::string hint = didYouMean(key->str(), known);
+            throw TomlMistake{table.file().name + ":" + std::to_string(at.line) + ":" +
+                              std::to_string(at.column) + ": unknown " +
+                              (table.name().empty() ? "table" : "key") + " '" +
+                              oneLine(table.full(key->str())) + "'" +
+                              (hint.empty() ? "; known are " + listed(known) : hint)};
+        }
+    }
+}
+
+std::string_view TableRules::chosen(const TomlValue& table) const {
+    std::string_view word;
+    for (const Field& field : fields_) {
+        word = field.info.rules.chooses && table.find(field.name) ? field.info.rules.only : word;
+    }
+    return word;
+}
+
+std::string_view TableRules::selector() const {
+    for (const Field& field : fields_) {
+        if (field.info.rules.selects) {
+            return field.name;
+        }
+    }
+    return {};
+}
+
+void TableRules::checkTable(const TomlValue& table, std::string_view selected) const {
+    for (const Field& field : fields_) {
+        for (const std::string_view other : wordsOf(field.info.rules.instead_of)) {
+            const auto at = table.find(field.name);
+            if (at && table.find(other)) {
+                at->fail(at->name() + " and " + table.full(other) + " exclude each other; remove one");
+            }
+        }
+    }
+    for (const Field& field : fields_) {
+        if (table.find(field.name)) {
+            checkUse(table, field, selected);
+        }
+    }
+    for (const Field& field : fields_) {
+        if (!field.info.rules.required || table.find(field.name)) {
+            continue;
+        }
+        const std::string name = table.full(field.name);
+        if (field.info.rules.only.empty()) {
+            table.fail(name + " is missing; give it: " + std::string(field.info.help) +
+                       (field.info.unit.empty() ? "" : ", " + std::string(field.info.unit)));
+        }
+        if (contains(field.info.rules.only, selected)) {
+            const std::string_view by = selector();
+            table.find(by).value_or(table).fail(table.full(by) + " = \"" + std::string(selected) +
+                                                "\" needs " + name + " beside it");
+        }
+    }
+}
+
+void TableRules::checkUse(const TomlValue& table, const Field& field, std::string_view selected) const {
+    const FieldInfo& info = field.info;
+    const TomlValue at = *table.find(field.name);
+    const auto given = [&](std::string_view key) { return table.find(key).has_value(); };
+    if (!info.rules.only.empty() && !contains(info.rules.only, selected)) {
+        const std::string by = table.full(selector());
+        at.fail(at.name() + " does nothing for " + by + " = \"" + std::string(selected) +
+                "\"; remove it, or choose " + by + " = \"" + std::string(wordsOf(info.rules.only).front()) +
+                "\"");
+    }
+    const std::vector<std::string_view> needs = wordsOf(info.rules.needs);
+    if (!needs.empty() && std::none_of(needs.begin(), needs.end(), given)) {
+        std::string names;
+        for (const std::string_view other : needs) {
+            names += (names.empty() ? "" : " or ") + table.full(other);
+        }
+        at.fail(at.name() + " does nothing without " + names + "; give that too, or remove this");
+    }
+}
+
+Result<void> readTomlFile(std::string_view text, TomlFile file,
+                          const std::function<void(const TomlValue&)>& read) {
+    try {
+        const toml::table top = toml::parse(text, file.name);
+        file.top = &top;
+        read(TomlValue(top, "", file));
+        return {};
+    } catch (const toml::parse_error& error) {
+        const toml::source_position& at = error.source().begin;
+        return fail(ErrorCode::kInvalidInput, file.name + ":" + std::to_string(at.line) + ":" +
+                                                  std::to_string(at.column) +
+                                                  ": not TOML: " + oneLine(error.description()));
+    } catch (const TomlMistake& mistake) {
+        return fail(ErrorCode::kInvalidInput, mistake.message);
+    } catch (const std::exception& error) {
+        return fail(ErrorCode::kInvalidInput, file.name + ":1:1: cannot be read: " + oneLine(error.what()));
+    }
+}
+
+}  // namespace relief

@@ -1,0 +1,129 @@
+// A table read into a struct: every form of a value, and every mistake with its place and its cure.
+#include "formats/config/toml_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace relief {
+namespace {
+
+enum class Form : std::uint8_t { kBall, kBox };
+
+}  // namespace
+
+template <>
+inline constexpr std::array<std::string_view, 2> kWordsOf<Form>{"ball", "box"};
+
+namespace {
+
+struct Part {
+    float weight = 1.0F;
+};
+template <class Visitor, FieldsOf<Part> P>
+void fields(Visitor& visit, P& part) {
+    visit("weight", part.weight, {"Weight", "kg", {0.0, 10.0, false}, {}, {.required = true}});
+}
+
+struct Thing {
+    Form form = Form::kBall;
+    float radius = 1.0F;
+    std::optional<glm::vec3> side;
+    std::uint32_t least = 1;
+    std::uint32_t most = 1;
+    float low = 0.0F;
+    float high = 1.0F;
+    bool has_speed = false;
+    double speed = 0.0;
+    glm::vec3 axis{0.0F, 1.0F, 0.0F};
+    std::vector<Part> parts;
+    std::uint32_t heavy = 0;
+    std::filesystem::path file;
+    std::string origin;
+};
+template <class Visitor, FieldsOf<Thing> T>
+void fields(Visitor& visit, T& t) {
+    visit("form", t.form, {"Form", {}, {}, {}, {.selects = true}});
+    visit("radius", t.radius, {"Radius", {}, {0.0, 5.0}, {}, {.only = "ball"}});
+    visit("side", t.side, {"Sides", {}, {0.0, 5.0}, {}, {.only = "box", .required = true, .chooses = true}});
+    visit("count", FieldSpan{t.least, t.most}, {"Number", {}, {1.0, 9.0}});
+    visit("range", FieldPair{t.low, t.high}, {"Range", "[low, high] m"});
+    visit("speed", FieldMaybe{t.speed, t.has_speed},
+          {"Speed", {}, {}, {}, {.needs = "axis", .not_zero = true}});
+    visit("axis", t.axis, {"Axis", {}, {}, {}, {.unit_length = true}});
+    visit("part", t.parts, {"Parts", {}, {}, {}, {.most = 2}});
+    visit("heavy", t.heavy, {"The heaviest", {}, {}, {}, {.instead_of = "count", .index_of = "part"}});
+    visit("file", FieldFile{t.file, t.origin}, {"File"});
+}
+std::optional<FieldFault> check(Thing& thing, const GivenFields& given) {
+    if (given("part[1].weight") && thing.parts[1].weight > thing.parts[0].weight) {
+        return FieldFault{"part[1].weight", "is above the first; order the parts"};
+    }
+    return std::nullopt;
+}
+
+Result<Thing> read(const std::string& text) {
+    Thing thing;
+    RELIEF_TRY(readTomlFile(text, {"f.toml", "dir", {}, "thing", nullptr},
+                            [&](const TomlValue& top) { readToml(top, thing); }));
+    return thing;
+}
+
+std::string mistake(const std::string& text) {
+    const auto thing = read(text);
+    return thing ? "" : thing.error().message;
+}
+
+TEST(TomlReader, EveryForm) {
+    const auto thing = read(
+        "side = [1, 2, 3]\ncount = [2, 4]\nrange = [-1, 0.5]\nspeed = 3\naxis = [0, 0, -2]\nfile = "
+        "\"a.obj\"\n"
+        "[[part]]\nweight = 2\n[[part]]\nweight = 1e-60\n");
+    ASSERT_TRUE(thing) << thing.error().message;
+    EXPECT_EQ(thing->form, Form::kBox) << "by its side";
+    EXPECT_EQ(*thing->side, glm::vec3(1.0F, 2.0F, 3.0F));
+    EXPECT_EQ(thing->least, 2U);
+    EXPECT_EQ(thing->most, 4U);
+    EXPECT_EQ(thing->low, -1.0F);
+    EXPECT_EQ(thing->high, 0.5F);
+    EXPECT_TRUE(thing->has_speed);
+    EXPECT_EQ(thing->axis, glm::vec3(0.0F, 0.0F, -1.0F));
+    EXPECT_EQ(thing->file, std::filesystem::path("dir/a.obj"));
+    EXPECT_EQ(thing->origin, "f.toml:6:8");
+    ASSERT_EQ(thing->parts.size(), 2U);
+    EXPECT_GT(thing->parts[1].weight, 0.0F) << "above zero in the file, above zero as a float";
+    EXPECT_EQ(read("count = 3\n")->most, 3U);
+    EXPECT_FALSE(read("")->has_speed);
+}
+
+TEST(TomlReader, Mistakes) {
+    EXPECT_EQ(mistake("fomr = \"box\"\nradius = 9\n"),
+              "f.toml:1:1: unknown table 'fomr'; did you mean 'form'?");
+    EXPECT_EQ(mistake("radius = 9\n"), "f.toml:1:10: radius = 9 is out of range; choose 0 to 5");
+    EXPECT_EQ(mistake("radius = \"1\"\n"), "f.toml:1:10: radius must be a number");
+    EXPECT_EQ(mistake("form = \"bal\"\n"), "f.toml:1:8: form = 'bal' is unknown; did you mean 'ball'?");
+    EXPECT_EQ(mistake("form = \"box\"\n"), "f.toml:1:8: form = \"box\" needs side beside it");
+    EXPECT_EQ(mistake("side = [1, 1, 1]\nradius = 2\n"),
+              "f.toml:2:10: radius does nothing for form = \"box\"; remove it, or choose form = \"ball\"");
+    EXPECT_EQ(mistake("count = [4, 2]\n"), "f.toml:1:9: count has its least above its most; swap them");
+    EXPECT_EQ(mistake("range = [4]\n"), "f.toml:1:9: range must be two numbers [low, high]");
+    EXPECT_EQ(mistake("speed = 1\n"),
+              "f.toml:1:9: speed does nothing without axis; give that too, or remove this");
+    EXPECT_EQ(mistake("axis = [1, 0, 0]\nspeed = 0\n"),
+              "f.toml:2:9: speed does nothing as 0; raise it or remove it");
+    EXPECT_EQ(mistake("axis = [0, 0, 0]\n"), "f.toml:1:8: axis has no direction; give one, as [0, 1, 0]");
+    EXPECT_EQ(mistake("heavy = 0\ncount = 1\n"),
+              "f.toml:1:9: heavy and count exclude each other; remove one");
+    EXPECT_EQ(mistake("[[part]]\n"), "f.toml:1:1: part.weight is missing; give it: Weight, kg");
+    EXPECT_EQ(mistake("heavy = 1\n[[part]]\nweight = 1\n"),
+              "f.toml:1:9: heavy = 1 is none of the 1 parts; the first is 0");
+    EXPECT_EQ(mistake("[[part]]\nweight = 1\n[[part]]\nweight = 2\n"),
+              "f.toml:4:10: part.weight is above the first; order the parts");
+    EXPECT_EQ(mistake("part = [{ weight = 1 }, { weight = 1 }, { weight = 1 }]\n"),
+              "f.toml:1:41: there are 3 of [[part]], more than 2; remove some");
+    EXPECT_EQ(mistake("file = \"../a\"\n").substr(0, 22), "f.toml:1:8: file = '..");
+    EXPECT_NE(mistake("form = \n").find("f.toml:1:"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace relief
