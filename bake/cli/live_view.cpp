@@ -4,6 +4,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <exception>
+#include <string>
+
 namespace relief {
 
 LiveView::LiveView(ViewSource source) : source_(std::move(source)) {}
@@ -53,8 +56,15 @@ ServedPage LiveView::current() {
         return page_;
     }
     stamps_ = now;  // a failure is told once
-    if (const Result<void> made = make(std::move(now)); !made) {
-        spdlog::warn("{}; the page stays as it was", made.error().message);
+    std::string failure;
+    try {
+        const Result<void> made = make(std::move(now));
+        failure = made ? "" : made.error().message;
+    } catch (const std::exception& error) {  // no memory, for one; nobody above this thread could tell
+        failure = error.what();
+    }
+    if (!failure.empty()) {
+        spdlog::warn("{}; the page stays as it was", failure);
     } else {
         spdlog::info("made anew");
     }

@@ -65,6 +65,9 @@ struct XmlReader::State {
     template <class F>
     static void guarded(void* data, F f) {
         State& state = *static_cast<State*>(data);
+        if (state.thrown) {
+            return;  // Expat still ends an empty element
+        }
         try {
             f(state);
         } catch (...) {

@@ -2,6 +2,7 @@
 
 #include <httplib.h>
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -58,7 +59,8 @@ class Service {
         response.set_content_provider(
             page_.html->size(), "text/html; charset=utf-8",
             [html = page_.html](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
-                return sink.write(html->data() + offset, length);
+                return offset < html->size() &&
+                       sink.write(html->data() + offset, std::min(length, html->size() - offset));
             });
     }
 
@@ -104,6 +106,9 @@ httplib::Server::HandlerResponse refuse(const httplib::Request& request, httplib
         response.status = 403;
     } else if (request.method != "GET" && request.method != "HEAD") {
         response.status = 405;
+    } else if (!request.ranges.empty()) {
+        response.status =
+            416;  // this version of the library does not hold ranges against the size of the page
     } else {
         return httplib::Server::HandlerResponse::Unhandled;
     }

@@ -22,8 +22,9 @@ struct ServedPage {
 /// HTTP on 127.0.0.1, for a few windows of one person. Serves `/`, the page, and `/events?page=VERSION`, a stream of
 /// server-sent events that carries "data: VERSION" as soon as the page is another one than that.
 ///
-/// No request names a file, so none can leave a folder. Slow requests and those with long heads are dropped. A Host that is
-/// not this machine's own is refused, so that no page from elsewhere reads this one by a name that it gave to 127.0.0.1.
+/// No request names a file, so none can leave a folder. Clients that pause for two seconds within a request, lines of a head
+/// beyond 8 kB, and ranges are refused. So is a Host that is not this machine's own: no page from elsewhere reads this one by
+/// a name that it gave to 127.0.0.1.
 class PageServer {
   public:
     /// \param port  0: any that is free.

@@ -174,7 +174,7 @@ template <WithWords Enum>
     return std::nullopt;
 }
 
-/// T is Form<…>.
+/// Whether T is an instance of the template Form.
 template <template <class...> class Form, class T>
 inline constexpr bool kIsForm = false;
 template <template <class...> class Form, class... Parts>

@@ -70,7 +70,8 @@ std::optional<TomlValue> TomlValue::find(std::string_view path) const {
         path = path.substr(step.size());
         path = path.substr(path.starts_with('.') ? 1 : 0);
         if (step.front() == '[') {
-            const std::size_t i = parseUnsigned(step.substr(1, step.size() - 2)).value_or(0);
+            const auto i =
+                static_cast<std::size_t>(parseUnsigned(step.substr(1, step.size() - 2)).value_or(0));
             if (at.array() != nullptr ? i >= at.array()->size() : i > 0) {
                 return std::nullopt;
             }
@@ -319,6 +320,8 @@ Result<void> readTomlFile(std::string_view text, TomlFile file,
                                                   ": not TOML: " + oneLine(error.description()));
     } catch (const TomlMistake& mistake) {
         return fail(ErrorCode::kInvalidInput, mistake.message);
+    } catch (const std::bad_alloc&) {
+        throw;
     } catch (const std::exception& error) {
         return fail(ErrorCode::kInvalidInput, file.name + ":1:1: cannot be read: " + oneLine(error.what()));
     }

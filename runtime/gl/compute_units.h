@@ -32,8 +32,8 @@ class ImageUnits {
     ImageUnits(const ImageUnits&) = delete;
     ImageUnits& operator=(const ImageUnits&) = delete;
 
-    /// Level 0 of a texture, to be written. \param format  the texture's.
-    static void write(GLuint unit, const GlTexture& texture);  // of GL_RGBA32F
+    /// Level 0 of a texture, to be written; of GL_RGBA32F, or in the format of the texture.
+    static void write(GLuint unit, const GlTexture& texture);
     static void write(GLuint unit, const GlTexture& texture, GLenum format);
     /// Makes the writes of compute passes visible to everything.
     static void finish();

@@ -136,7 +136,9 @@ std::string parseErrorMessage(const CLI::App& app, const CLI::ParseError& error)
     if (error.get_name() == "ValidationError") {
         // CLI11 writes "--option: message". Ours are sentences that begin with the option, and they hold the cure.
         std::string text = error.what();
-        text.replace(text.find(": "), 2, " ");
+        if (const std::size_t colon = text.find(": "); colon != std::string::npos) {
+            text.replace(colon, 2, " ");
+        }
         return text;
     }
     const std::vector<std::string> unknown = called.remaining();

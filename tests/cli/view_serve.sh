@@ -129,6 +129,8 @@ assert status(port, b'\r\n\r\n') in ('400', '403')
 assert status(port, b'GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n') == '403'
 assert status(port, b'GET /events HTTP/1.1\r\nHost: evil.example:80\r\n\r\n') == '403'
 assert status(port, b'GET / HTTP/1.1\r\nX: ' + b'x' * 17000) == '400'
+for wanted in (b'0-999999999', b'99999999-', b'-99999999', b'0-1,5-999999999'):  # never beyond the page's end
+    assert status(port, b'GET / HTTP/1.1\r\n' + host + b'Range: bytes=' + wanted + b'\r\n\r\n') == '416', wanted
 head = raw(port, b'HEAD / HTTP/1.1\r\n' + host + b'\r\n')
 assert head.startswith(b'HTTP/1.1 200') and head.endswith(b'\r\n\r\n')
 

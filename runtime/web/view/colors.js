@@ -1,4 +1,4 @@
-// The false colours of `relief slice`, for scripts and shaders: bake/picture/color.cpp says what they are.
+// The false colours of `relief slice`, for scripts and shaders: as bake/picture/slice_image.cpp has them.
 
 export const kFar = [0.865, 0.87, 0.86];
 export const kAbstained = [0.8, 0.7, 0.82];
