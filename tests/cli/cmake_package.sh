@@ -184,7 +184,7 @@ grep -q 'GL state as it was' stdout || die "samples/embed says: $(cat stdout)"
 cmake -G Ninja -S "$RELIEF_SOURCE" -B runtime_only -DRELIEF_BUILD_BAKE=OFF -DRELIEF_BUILD_TESTS=OFF -DRELIEF_BUILD_OPENVDB=OFF \
     -DRELIEF_BUILD_BENCHMARKS=OFF >log 2>&1 || die "does not configure without the baker: $(tail -20 log)"
 for file in formats/librelief_formats.a runtime/librelief_runtime.a runtime/librelief_c.a lib/librelief.so.1.1 lib/librelief.so.1 lib/librelief.so bin/relief-sim \
-    install/pages/relief-sim; do
+    install/pages/relief-sim.1; do
     mkdir -p "runtime_only/$(dirname $file)"
     cp -rP "$build/$file" runtime_only/$file
 done
