@@ -109,11 +109,10 @@ Result<void> runCheck(const CheckCommand& command, FileGuard& files) {
         RELIEF_TRY(files.reads(file));
     }
     addAdvice(command, run);
-    // The report is complete without the page, which may be too large.
+    RELIEF_TRY(writePage(command, std::move(container), run));
     RELIEF_TRY(printOut(
         command.json ? jsonText(jsonOf(MeshCheckReport{run, inputName(command.file), command.max_error}))
                      : checkText(command, run)));
-    RELIEF_TRY(writePage(command, std::move(container), run));
     const bool passed = run.passes(command.max_error);
     if (!passed && run.original.accuracy.field.near.total() <= double{*command.max_error}) {
         return fail(ErrorCode::kDifference, *lostPartsWarning(run.part_accuracy, run.parts, run.collider) +

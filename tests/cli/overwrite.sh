@@ -92,9 +92,9 @@ cmp args args.copy || die "a response file is lost"
 cp box.relief slice.png
 kept "'slice.png' is the input" "$relief" slice slice.png -o slice.png
 cmp slice.png box.relief || die "slice has replaced its input"
-kept "'box.mtl' is the input" "$relief" check box.relief --mesh box.obj --samples 50 --html box.mtl
 echo '<script type="application/json" id="relief-page-data">null</script>' >page.html
 export RELIEF_VIEW_PAGE=$work/page.html
+kept "'box.mtl' is the input" "$relief" check box.relief --mesh box.obj --samples 50 --html box.mtl
 kept "'box.mtl' is the input" "$relief" view box.relief --mesh box.obj -o box.mtl
 kept "'box.mtl' is the input" "$relief" bake box.obj -o new.relief --depfile box.mtl --map cube:size=16
 kept '--json and -o would both write standard output' "$relief" bake box.obj -o - --json

@@ -179,7 +179,7 @@ test("what is given by mistake ends in a sentence, and the page goes on", { time
     await give("bad.relief", damaged, /\.$/);
     await give("alone.toml", "[collider]\nfile = \"x.relief\"\n", /needs its collider/);
     await give("none.obj", "v 0 0 0\n", /has no faces/);
-    await give("odd.obj", "v 0 0 0\nf 1 2 3\n", /names a vertex/);
+    await give("odd.obj", "v 0 0 0\nf 1 2 3\n", /vertex 3 does not exist/);
     await give("cut.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n" +
                "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n", /ends too early/);
     await page.setInputFiles("#files", file);
