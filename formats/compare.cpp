@@ -106,7 +106,7 @@ bool knowsDistance(const SurfaceSample& sample) {
     return sample.map >= 0 && std::abs(sample.distance) < kFarOutside;
 }
 
-/// What is said of points, one after the other.
+/// Differences of points, added one after the other.
 class Points {
   public:
     void add(const SurfaceSample& a, const SurfaceSample& b) {

@@ -47,7 +47,7 @@ DepthMap readFrame(const fb::Map& map) {
     return frame;
 }
 
-/// What is wrong with texels of so many bytes in a file of so many; nothing: they may be unpacked.
+/// The fault of texels of so many bytes in a file of so many; none: they may be unpacked.
 std::optional<std::string> texelsBeyond(const ContainerLimits& limits, std::uint64_t texel_bytes,
                                         std::uint64_t file_size) {
     if (texel_bytes > limits.texel_bytes) {

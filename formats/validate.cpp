@@ -28,7 +28,7 @@ std::string words(const glm::vec3& v) {
     return "(" + number(v.x) + ", " + number(v.y) + ", " + number(v.z) + ")";
 }
 
-/// What is wrong with a text of the metadata, or "".
+/// The fault of a text of the metadata, or "".
 std::string faultOfText(const char* field, std::string_view text, std::size_t size_max) {
     if (text.size() > size_max) {
         return std::string(field) + " has " + std::to_string(text.size()) + " bytes, " +

@@ -33,6 +33,18 @@ template <class T, std::size_t kSize>
 inline constexpr bool kIsArray<std::array<T, kSize>> = true;
 template <class T>
 concept Text = std::convertible_to<const T&, std::string_view>;
+/// The type that an optional holds, or T itself.
+template <class T>
+struct Held {
+    using Type = T;
+};
+template <class T>
+struct Held<std::optional<T>> {
+    using Type = T;
+};
+/// Of one part of a FieldSpan or a FieldPair.
+template <class Member>
+using PartOf = typename Held<std::remove_cvref_t<Member>>::Type;
 /// A struct that comes in kinds of different fields: `static std::vector<T> kinds()` returns one of each.
 template <class T>
 concept WithKinds = requires {
@@ -63,7 +75,7 @@ bool isNone(const T& value) {
 
 }  // namespace fields_detail
 
-/// For a type of its own, a file declares Json jsonField(const T&) beside it.
+/// For a type of its own, a file declares Json jsonField(const T&) beside it, and Json schemaField(const T&).
 /// Enumerations are their words, an optional without a value is null, a path its bytes, a vector of three an array.
 template <class T>
 [[nodiscard]] Json jsonOf(const T& value);
@@ -180,7 +192,13 @@ Json schemaOf(const T& value, const FieldInfo& info) {
     FieldInfo inner = info;  // of what a vector holds
     inner.items = kFromZero;
     inner.left_out = false;
-    if constexpr (std::same_as<T, bool>) {
+    if constexpr (requires { schemaField(value); }) {
+        return schemaField(value);
+    } else if constexpr (kIsForm<FieldSpan, T>) {
+        return arraySchema(schemaOf(PartOf<decltype(value.most)>{}, inner), {2.0, 2.0});
+    } else if constexpr (kIsForm<FieldPair, T>) {
+        return arraySchema(schemaOf(PartOf<decltype(value.second)>{}, inner), {2.0, 2.0});
+    } else if constexpr (std::same_as<T, bool>) {
         return info.words.empty() ? Json{{"type", "boolean"}} : numberSchema(false, false, info);
     } else if constexpr (std::is_arithmetic_v<T>) {
         return numberSchema(std::is_integral_v<T>, std::is_unsigned_v<T>, info);

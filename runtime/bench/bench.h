@@ -1,4 +1,4 @@
-// What the cases of relief-bench share: options, and works that are timed in turns. Nothing here is a test: machines are
+// Shared by the cases of relief-bench: options, and works that are timed in turns. Nothing here is a test: machines are
 // shared and noisy.
 #pragma once
 

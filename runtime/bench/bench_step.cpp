@@ -1,4 +1,4 @@
-// What a step costs over a bare copy of the state, and feature by feature. Before each block all particles are born anew,
+// Cost of a step over a bare copy of the state, and feature by feature. Before each block all particles are born anew,
 // so that blocks are alike; births and the first step are not timed.
 //
 // `copy` is a draw, or on the compute path a dispatch, that only copies the two state textures: it reads and writes 32

@@ -1,4 +1,4 @@
-// What the handles of colliders stand for: for other files that take handles of C.
+// Objects behind the handles of colliders and textures, shared with other files that take handles of C.
 #pragma once
 
 #include <string>

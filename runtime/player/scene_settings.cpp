@@ -11,13 +11,13 @@ std::vector<ColliderTable> ColliderTable::kinds() {
     return {{}, {live}};
 }
 
-std::optional<std::variant<std::array<float, 2>, SpeedLaw>> EmitterTable::speed() const {
-    using Speed = std::variant<std::array<float, 2>, SpeedLaw>;
+std::optional<std::variant<std::array<float, 2>, NormalSpeed>> EmitterTable::speed() const {
+    using Speed = std::variant<std::array<float, 2>, NormalSpeed>;
     if (!emitter.aim) {
         return std::nullopt;
     }
     const EmitterAim& aim = *emitter.aim;
-    return aim.speed_deviation > 0.0F ? Speed(SpeedLaw{aim.speed_min, aim.speed_deviation})
+    return aim.speed_deviation > 0.0F ? Speed(NormalSpeed{aim.speed_min, aim.speed_deviation})
                                       : Speed(std::array{aim.speed_min, aim.speed_max});
 }
 
@@ -34,26 +34,10 @@ std::vector<std::variant<std::size_t, GroundWord>> TypeTable::collides() const {
     return bodies;
 }
 
-std::vector<std::array<float, 2>> keysOf(const AgeTrack<float>& track) {
-    std::vector<std::array<float, 2>> keys;
-    for (const AgeKey<float>& key : track) {
-        keys.push_back({key.age, key.value});
-    }
-    return keys;
-}
-
-std::vector<std::array<float, 4>> keysOf(const AgeTrack<glm::vec3>& track) {
-    std::vector<std::array<float, 4>> keys;
-    for (const AgeKey<glm::vec3>& key : track) {
-        keys.push_back({key.age, key.value.x, key.value.y, key.value.z});
-    }
-    return keys;
-}
-
 std::vector<TypeTable> SceneSettings::types() const {
     std::vector<TypeTable> all;
     for (const SceneType& type : scene.types) {
-        all.push_back({scene, type, type.look, type.name});
+        all.push_back({scene, type});
     }
     return all;
 }

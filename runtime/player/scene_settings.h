@@ -3,13 +3,13 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
 
-#include "formats/fields/field.h"
+#include "formats/fields/json.h"
 #include "runtime/scene/scene.h"
 
 namespace relief {
@@ -54,10 +54,8 @@ void fields(Visitor& visit, S& settings) {
     const SceneCollider& collider = settings.collider;
     if (collider.live) {
         const Deformation& d = collider.live->deformation;
-        constexpr auto kKinds = kWords<"bend", "twist", "wobble">;
         const auto deform = [&](auto& visit_deform) {
-            visit_deform("kind", kKinds[static_cast<std::size_t>(d.kind)],
-                         {.help = "Deformation", .words = kKinds});
+            visit_deform("kind", d.kind, {"Deformation"});
             visit_deform("amplitude", d.kind == DeformKind::kWobble ? d.amplitude : glm::degrees(d.amplitude),
                          {"Amplitude, degrees; of a wobble object units"});
             visit_deform("frequency", d.frequency, {"Frequency", "1/s"});
@@ -81,34 +79,21 @@ void fields(Visitor& visit, S& settings) {
     visit("key", viewsOf<PoseKeyTable>(collider.keys), kKeysField);
 }
 
-/// Of an emitter that aims.
-struct SpeedLaw {
-    float mean = 0.0F;
-    float deviation = 0.0F;
-};
-
-template <class Visitor, FieldsOf<SpeedLaw> S>
-void fields(Visitor& visit, S& law) {
-    visit("mean", law.mean, {"Mean speed", "object units per second"});
-    visit("deviation", law.deviation, {"Standard deviation", "object units per second", kFromZero});
-}
-
 struct EmitterTable {
     const SceneEmitter& emitter = kNone<SceneEmitter>;
 
-    [[nodiscard]] std::optional<std::variant<std::array<float, 2>, SpeedLaw>> speed() const;
+    [[nodiscard]] std::optional<std::variant<std::array<float, 2>, NormalSpeed>> speed() const;
 };
 
 template <class Visitor, FieldsOf<EmitterTable> S>
 void fields(Visitor& visit, S& settings) {
-    constexpr auto kShapes = kWords<"box", "sphere", "shell", "disc", "points">;
+    constexpr std::span kShapes(kWordsOf<EmitterShape>.begin(), 5);  // a point has become a box
     const SceneEmitter& e = settings.emitter;
     const EmitterAim& aim = aimOf(e);
     const bool is_box = e.shape == EmitterShape::kBox;
     const bool is_disc = e.shape == EmitterShape::kDisc;
     const bool is_round = is_disc || e.shape == EmitterShape::kSphere || e.shape == EmitterShape::kShell;
-    visit("shape", kShapes[static_cast<std::size_t>(e.shape)],
-          {.help = "Where particles are born", .words = kShapes});
+    visit("shape", wordOf(e.shape), {.help = "Where particles are born", .words = kShapes});
     visit("box_min", onlyIf(is_box, e.box_min),
           {.help = "Lower corner of a box", .unit = "object units", .left_out = true});
     visit("box_max", onlyIf(is_box, e.box_max),
@@ -155,7 +140,7 @@ template <class Visitor, FieldsOf<SpawnTable> R>
 void fields(Visitor& visit, R& report) {
     const SpawnSettings& s = report.spawn;
     const bool on_death = s.on == SpawnOn::kDeath;
-    visit("on", on_death ? "death" : "collision", {.help = "Event", .words = kWords<"collision", "death">});
+    visit("on", s.on, {"Event"});
     visit("of", s.of, {"Index of the type that hits or dies; null: all"});
     visit("type", s.type, {"Index of the type that is born"});
     visit("count", std::array{s.count_min, s.count_max},
@@ -191,87 +176,39 @@ void fields(Visitor& visit, S& settings) {
     visit("fov", key.fov.value_or(settings.fov), {"Vertical field of view", "degrees"});
 }
 
-struct AttractorTable {
-    const Attractor& attractor = kNone<Attractor>;
-};
-
-template <class Visitor, FieldsOf<AttractorTable> S>
-void fields(Visitor& visit, S& settings) {
-    const Attractor& a = settings.attractor;
-    visit("position", a.position, kPositionField);
-    visit("strength", a.strength, {"Acceleration at the radius"});
-    visit("radius", a.radius, {"Radius", "object units"});
-    visit("falloff", a.falloff, {"Exponent of the falloff"});
-    visit("reach", onlyIf(a.reach < std::numeric_limits<float>::max(), a.reach),
-          {.help = "Greatest distance of its effect; absent: endless",
-           .unit = "object units",
-           .left_out = true});
-}
-
-struct VortexTable {
-    const Vortex& vortex = kNone<Vortex>;
-};
-
-template <class Visitor, FieldsOf<VortexTable> S>
-void fields(Visitor& visit, S& settings) {
-    const Vortex& v = settings.vortex;
-    visit("center", v.center, {"A point of the axis", "object units"});
-    visit("axis", v.axis, {"Direction of the axis, of length 1"});
-    visit("strength", v.strength, {"Acceleration at the radius"});
-    visit("radius", v.radius, {"Radius", "object units"});
-    visit("falloff", v.falloff, {"Exponent of the falloff"});
-}
-
 enum class GroundWord : std::uint8_t { kGround };
 template <>
 inline constexpr std::array<std::string_view, 1> kWordsOf<GroundWord>{"ground"};
 
 struct TypeTable {
     const Scene& scene = kNone<Scene>;
-    const ParticleType& type = kNone<ParticleType>;
-    const ParticleLook& look = kNone<ParticleLook>;
-    std::string name;
+    const SceneType& type = kNone<SceneType>;
 
     [[nodiscard]] std::vector<std::variant<std::size_t, GroundWord>> collides() const;
 };
 
-/// [[age, value], …]
-[[nodiscard]] std::vector<std::array<float, 2>> keysOf(const AgeTrack<float>& track);
-[[nodiscard]] std::vector<std::array<float, 4>> keysOf(const AgeTrack<glm::vec3>& track);
+/// A key of a track: [age, value].
+inline std::array<float, 2> partsOf(const AgeKey<float>& key) {
+    return {key.age, key.value};
+}
+inline std::array<float, 4> partsOf(const AgeKey<glm::vec3>& key) {
+    return {key.age, key.value.x, key.value.y, key.value.z};
+}
+template <class T>
+[[nodiscard]] Json jsonField(const AgeKey<T>& key) {
+    return jsonOf(partsOf(key));
+}
+template <class T>
+[[nodiscard]] Json schemaField(const AgeKey<T>& key) {
+    return schemaOf(partsOf(key));
+}
 
 template <class Visitor, FieldsOf<TypeTable> S>
 void fields(Visitor& visit, S& settings) {
-    constexpr auto kOnCollision = kWords<"bounce", "stop", "slide", "die">;
-    const ParticleLook& look = settings.look;
-    const ParticleType& type = settings.type;
-    const auto cells = std::array{look.cell_first.value_or(0), look.cell_last};
-    const auto fade = std::array{look.fade_in.value_or(0.0F), look.fade_out.value_or(0.0F)};
-    visit("size", keysOf(look.size),
-          {.help = "Age as a share of life, and size in object units", .left_out = true});
-    visit("color", keysOf(look.color), {.help = "Age, and red, green and blue", .left_out = true});
-    visit("opacity", keysOf(look.opacity), {.help = "Age, and opacity from 0 to 1", .left_out = true});
-    visit("rotation", keysOf(look.rotation), {.help = "Age, and angle in radians", .left_out = true});
-    visit("turn", look.turn, {"Greatest angle at birth, either way", "radians"});
-    visit("spin", look.spin, {"Greatest rate of rotation, either way", "radians per second"});
-    visit("stretch", look.stretch, {"Time over which a sprite is drawn along its path", "s", kFromZero});
-    visit("cell", onlyIf(look.cell_first.has_value(), cells),
-          {.help = "First and last cell of the atlas", .left_out = true});
-    visit("lit", look.lit, {"The light illuminates it"});
-    visit("fade", onlyIf(look.fade_in && look.fade_out, fade),
-          {.help = "Time over which opacity rises after birth and falls before death",
-           .unit = "s",
-           .left_out = true});
-    visit("name", settings.name, {.help = "Name of the type", .left_out = true});
-    visit("gravity", type.gravity, {"Factor of gravity"});
-    visit("mass", type.mass, {"Divisor of the drag"});
-    visit("radius", type.radius, {"Radius", "object units"});
-    visit("restitution", type.restitution, {"Share of the normal speed that is kept"});
-    visit("friction", type.friction, {"Share of the tangential speed that is lost"});
-    visit("friction_threshold", type.friction_threshold,
-          {"Speed below which there is no friction", "object units per second"});
-    visit("on_collision", kOnCollision[static_cast<std::size_t>(type.on_collision)],
-          {.help = "Effect of a collision", .words = kOnCollision});
-    visit("lifetime_loss", type.lifetime_loss, {"Lifetime lost in each step in contact", "s"});
+    const SceneType& type = settings.type;
+    fields(visit, type.look);
+    visit("name", type.name, {.help = "Name of the type", .left_out = true});
+    fields(visit, baseOf<ParticleType>(type));
     visit("collides", settings.collides(),
           {"Bodies that it collides with: numbers of colliders, and \"ground\""});
 }
@@ -294,8 +231,8 @@ struct SceneSettings {
 template <class Visitor>
 void airFields(Visitor& visit, const Scene& scene) {
     const AirSettings& air = scene.air;
-    visit("attractor", viewsOf<AttractorTable>(air.attractors), {.help = "[[attractor]]", .left_out = true});
-    visit("vortex", viewsOf<VortexTable>(air.vortices), {.help = "[[vortex]]", .left_out = true});
+    visit("attractor", air.attractors, {.help = "[[attractor]]", .left_out = true});
+    visit("vortex", air.vortices, {.help = "[[vortex]]", .left_out = true});
     const auto flow = [&](auto& visit_flow) {
         const FlowFile& file = scene.flow ? *scene.flow : kNone<FlowFile>;
         const bool raw = file.kind == FlowFileKind::kRaw;
@@ -310,22 +247,11 @@ void airFields(Visitor& visit, const Scene& scene) {
                    {.help = "Numbers per node", .left_out = true});
         visit_flow("box_min", file.box_min, {"Lower corner of the box", "object units"});
         visit_flow("box_max", file.box_max, {"Upper corner of the box", "object units"});
-        visit_flow("outside", file.outside == FlowOutside::kEdge ? "edge" : "zero",
-                   {.help = "Flow outside the box", .words = kWords<"edge", "zero">});
+        visit_flow("outside", file.outside, {"Flow outside the box"});
         visit_flow("gain", file.gain, {"Factor of the velocity"});
     };
     visit("flow", groupIf(scene.flow.has_value(), flow), {.help = "[flow]", .left_out = true});
-    const auto noise = [&](auto& visit_noise) {
-        const CurlNoise curl = air.curl_noise.value_or(CurlNoise{});
-        visit_noise("amplitude", curl.amplitude, {"Root mean square speed", "object units per second"});
-        visit_noise("scale", curl.scale, {"Radius of the largest eddies", "object units"});
-        visit_noise("octaves", curl.octaves, {"Layers", {}, kFromZero});
-        visit_noise("drift", curl.drift,
-                    {"Speed at which eddies give way to others", "object units per second"});
-        visit_noise("seed", curl.seed, {"Seed of the noise"});
-    };
-    visit("curl_noise", groupIf(air.curl_noise.has_value(), noise),
-          {.help = "[curl_noise]", .left_out = true});
+    visit("curl_noise", air.curl_noise, {.help = "[curl_noise]", .left_out = true});
 }
 
 template <class Visitor>
@@ -337,8 +263,7 @@ void cameraFields(Visitor& visit, const Scene& scene) {
           {.help = "Position of the eye", .unit = "object units", .left_out = true});
     visit("target", target, {"Point looked at", "object units"});
     visit("fov", camera.fov, {"Vertical field of view", "degrees"});
-    visit("path", onlyIf(moves, std::string_view(camera.curve == CameraCurve::kSmooth ? "smooth" : "linear")),
-          {.help = "Curve between keys", .words = kWords<"smooth", "linear">, .left_out = true});
+    visit("path", onlyIf(moves, camera.curve), {.help = "Curve between keys", .left_out = true});
     visit("key", viewsOf<CameraKeyTable>(camera.keys, target, camera.fov),
           {.help = "Keys of its motion", .left_out = true});
 }
@@ -357,10 +282,8 @@ void renderFields(Visitor& visit, const Scene& scene) {
     visit("last", lastFrame(scene), {"Step of the last frame"});
     visit("sort_frames", render.sort_frames,
           {"Frames that sorting is spread over, on the fragment path; 0: no sorting"});
-    visit("sprite", render.sprite == Sprite::kQuad ? "quad" : "point",
-          {.help = "Primitive for a particle", .words = kWords<"point", "quad">});
-    visit("blend", render.blend == Blend::kAdditive ? "additive" : "alpha",
-          {.help = "Blending", .words = kWords<"alpha", "additive">});
+    visit("sprite", render.sprite, {"Primitive for a particle"});
+    visit("blend", render.blend, {"Blending"});
     visit("soft", render.soft, {"Distance from the collider over which sprites fade", "object units"});
     visit("atlas", onlyIf(has_atlas, render.atlas), {.help = "Image of the atlas", .left_out = true});
     visit("atlas_cells", onlyIf(has_atlas, std::array{render.atlas_columns, render.atlas_rows}),
@@ -374,18 +297,8 @@ void fields(Visitor& visit, S& settings) {
     const Scene& scene = settings.scene;
     visit("collider", oneOrSeveral<ColliderTable>(scene.colliders),
           {.help = "One, or several", .items = {2.0}});
-    const auto time = [&](auto& visit_time) {
-        visit_time("dt", scene.time.dt, {"Time step", "s", kFromZero});
-        visit_time("steps", scene.time.steps, {"Steps"});
-        visit_time("prewarm", scene.time.prewarm, {"Time played before time 0", "s", kFromZero});
-        visit_time("integrator", scene.time.integrator == Integrator::kVerlet ? "verlet" : "euler",
-                   {.help = "Integrator", .words = kWords<"euler", "verlet">});
-    };
-    visit("time", group(time), {"[time]"});
-    visit("particles", group([&](auto& visit_particles) {
-              visit_particles("capacity", scene.particles.capacity, {"Particles, at most"});
-          }),
-          {"[particles]"});
+    visit("time", scene.time, {"[time]"});
+    visit("particles", scene.particles, {"[particles]"});
     visit("emitter", oneOrSeveral<EmitterTable>(scene.emitters), {.help = "One, or several", .items = {2.0}});
     visit("spawn", viewsOf<SpawnTable>(scene.spawns), {.help = "[[spawn]]", .left_out = true});
     const auto forces = [&](auto& visit_forces) {
@@ -399,17 +312,7 @@ void fields(Visitor& visit, S& settings) {
                      {.help = "Viscosity, instead of drag", .left_out = true});
     };
     visit("forces", group(forces), {"[forces]"});
-    const auto collision = [&](auto& visit_collision) {
-        visit_collision("restitution", scene.collision.restitution,
-                        {"Share of the normal speed that is kept"});
-        visit_collision("friction", scene.collision.friction, {"Share of the tangential speed that is lost"});
-        visit_collision("friction_threshold", scene.collision.friction_threshold,
-                        {"Speed below which there is no friction", "object units per second"});
-        visit_collision("sweep", scene.collision.sweep,
-                        {"Greatest distance between two tests within a step; 0: only its ends are tested",
-                         "object units"});
-    };
-    visit("collision", group(collision), {"[collision]"});
+    visit("collision", scene.collision, {"[collision]"});
     const auto ground = [&](auto& visit_ground) {
         visit_ground("enabled", scene.ground.enabled, {"There is a ground"});
         visit_ground("height", scene.ground.enabled ? scene.ground.height : std::nullopt,
