@@ -11,12 +11,10 @@
 #include <span>
 
 #include "bake/bench/distance_volume.h"
+#include "bake/director/director.h"
 #include "bake/import/mesh_import.h"
 #include "bake/measure/accuracy.h"
-#include "bake/pipeline/bake.h"
-#include "bake/pipeline/planned_bake.h"
 #include "bake/plan/view.h"
-#include "bake/plan/view_planner.h"
 #include "bake/repair/winding.h"
 #include "bake/report/bake_report.h"
 #include "bake/report/check_report.h"
@@ -60,7 +58,7 @@ Json toJson(const AccuracyEntry& entry) {
             {"accuracy", entry.accuracy}};
 }
 
-// --- the contestants ---
+// --- methods ---
 
 /// Three front-back maps along the axes on tight boxes, texels as square and as equal in size as whole
 /// numbers allow, as many as fit.
@@ -112,11 +110,11 @@ Result<Baked> bakePaper(const PreparedMesh& mesh, std::uint64_t bytes) {
     return bake(mesh, options);
 }
 
-/// What `relief bake --budget` makes.
-Result<Baked> bakeOurs(const MeshQuery& query, std::uint64_t bytes) {
-    const ViewChoice views = RELIEF_TRY(chooseViews(query, {}));
-    PlannedBake planned = RELIEF_TRY(bakePlanned(query, views, bytes, {}));
-    return std::move(planned.baked);
+/// As `relief bake --budget`.
+Result<Baked> bakeOurs(const PreparedMesh& mesh, std::uint64_t bytes) {
+    BakeRequest request;
+    request.budget = bytes;
+    return bakeSolid(request, mesh);
 }
 
 // --- measuring ---
@@ -172,8 +170,7 @@ AccuracyEntry measureMaps(const MeshQuery& query, const TruthSamples& samples, c
 Result<AccuracyEntry> bakeAndMeasure(const MeshQuery& query, const TruthSamples& samples,
                                      const std::string& method, std::uint64_t budget) {
     const Stopwatch watch;
-    const Baked baked =
-        RELIEF_TRY(method == "paper" ? bakePaper(query.prepared(), budget) : bakeOurs(query, budget));
+    const Baked baked = RELIEF_TRY((method == "paper" ? bakePaper : bakeOurs)(query.prepared(), budget));
     const double seconds = watch.seconds();
     AccuracyEntry entry = measureMaps(query, samples, method, baked.collider);
     entry.build_seconds = seconds;
@@ -270,24 +267,24 @@ struct Measured {
     Json results = Json::array();  ///< those of one mesh and budget are neighbours
 };
 
-/// What the collider that is to be measured was baked of; without one, what the parts are is found.
-Result<ShapeOptions> recordedShapeOf(const Arguments& arguments) {
-    if (arguments.collider.empty()) {
-        return ShapeOptions();
+/// Parts and thickness as the given collider records them.
+Result<BakeRequest> recordedShapeOf(const Arguments& arguments) {
+    BakeRequest request;
+    if (!arguments.collider.empty()) {
+        const Collider collider = RELIEF_TRY(loadCollider(arguments.collider));
+        BakeRequest recorded = recordedBake(collider.provenance.options).request;
+        request.as = std::move(recorded.as);
+        request.thickness = recorded.thickness;
     }
-    const Collider collider = RELIEF_TRY(loadCollider(arguments.collider));
-    return shapeOptionsOf(collider.provenance.options, {});
+    return request;
 }
 
 /// Measures one mesh at one budget with all methods.
-/// \param shape  thickness 0: the default for the budget.
-Result<void> measureBudget(const PreparedMesh& imported, const Arguments& arguments, ShapeOptions shape,
+/// \param shape  without a thickness: the default for the budget.
+Result<void> measureBudget(const PreparedMesh& imported, const Arguments& arguments, BakeRequest shape,
                            std::uint64_t budget, Measured& measured) {
-    if (!(shape.thickness > 0.0)) {
-        shape.thickness = defaultThickness(imported->bounds, budget);
-        shape.thickness_by_part = true;
-    }
-    const ShapedMesh shaped = RELIEF_TRY(shapeMesh(imported, shape));
+    shape.budget = budget;
+    const ShapedMesh shaped = RELIEF_TRY(makeSolid(shape, imported));
     const MeshQuery query = RELIEF_TRY(MeshQuery::build(shaped.mesh));
     AccuracyOptions options;
     options.samples = arguments.samples;
@@ -323,9 +320,9 @@ Result<void> run(const Arguments& arguments) {
     if (!arguments.collider.empty() && (paths.size() != 1 || budgets.size() != 1)) {
         return fail(ErrorCode::kUsage, "--collider is of one mesh; give one MESH and one --budget");
     }
-    const ShapeOptions shape = RELIEF_TRY(recordedShapeOf(arguments));
+    const BakeRequest shape = RELIEF_TRY(recordedShapeOf(arguments));
     ImportOptions import;
-    import.names = shape.names();
+    import.names = RELIEF_TRY(parseShapeOptions(shape.as)).names();
     Measured measured;
     for (const std::string& path : paths) {
         const Stopwatch watch;

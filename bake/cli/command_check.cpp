@@ -2,12 +2,12 @@
 #include <CLI/CLI.hpp>
 #include <span>
 
-#include "bake/cli/check_advice.h"
 #include "bake/cli/check_file.h"
 #include "bake/cli/command.h"
-#include "bake/cli/mesh_check.h"
-#include "bake/cli/mesh_check_report.h"
+#include "bake/cli/mesh_options.h"
 #include "bake/cli/view_source.h"
+#include "bake/director/check_advice.h"
+#include "bake/director/mesh_check_report.h"
 #include "bake/report/bake_report.h"
 #include "bake/report/parts_report.h"
 #include "bake/report/report_text.h"
@@ -28,7 +28,7 @@ namespace {
 struct CheckCommand {
     CommonOptions common;
     std::string file;
-    MeshCheckSettings settings;
+    CheckRequest request;
     ContainerLimits limits;
     std::optional<float> max_error;  // percent
     std::string html;
@@ -37,7 +37,6 @@ struct CheckCommand {
 
 /// Before the long work.
 Result<void> prepare(const CheckCommand& command, FileGuard& files) {
-    RELIEF_TRY(prepareMeshCheck(command.settings));
     if (command.html.empty()) {
         return {};
     }
@@ -45,24 +44,21 @@ Result<void> prepare(const CheckCommand& command, FileGuard& files) {
         return fail(ErrorCode::kUsage, "--html cannot be standard output, where the report goes");
     }
     RELIEF_TRY(files.reads(command.file));
-    RELIEF_TRY(files.reads(command.settings.mesh));
+    RELIEF_TRY(files.reads(command.request.mesh));
     const std::filesystem::path page = RELIEF_TRY(findViewPage());
     RELIEF_TRY(files.reads(page));
     return files.writes(command.html, "--html");
 }
 
-/// What to do about the places.
 void addAdvice(const CheckCommand& command, MeshCheck& run) {
     if (run.passes(command.max_error) && run.wrongPercent() <= kGoodPercent) {
         return;
     }
     const std::string output = command.file == "-" ? "out.relief" : command.file;
-    run.advice =
-        adviceFor({command.settings.mesh, output, run.collider, run.recorded, run.imported, run.baked,
-                   run.shape, *run.query, run.judged().samples, run.places, run.wrongPercent()});
+    run.advice = adviceFor({command.request.mesh, output, run.collider, run.recorded, run.imported, run.baked,
+                            run.shape, *run.query, run.judged().samples, run.places, run.wrongPercent()});
 }
 
-/// The page that --html asks for.
 Result<void> writePage(const CheckCommand& command, std::vector<std::byte> container, const MeshCheck& run) {
     if (command.html.empty()) {
         return {};
@@ -77,7 +73,7 @@ std::string checkText(const CheckCommand& command, const MeshCheck& run) {
     std::string text =
         inputName(command.file) + ": " + verdictText(run.wrongPercent(), run.part_accuracy) + "\n";
     if (run.repaired) {
-        text += "That is against the mesh repaired by " + run.recorded.repair + ", " +
+        text += "That is against the mesh repaired by " + run.recorded.request.repair.method + ", " +
                 std::to_string(run.baked->triangles.size()) + " triangles; against " + run.mesh->name +
                 " as it came: " + shortNumber(run.original.accuracy.field.near.total()) + " %\n";
     }
@@ -95,7 +91,7 @@ std::string checkText(const CheckCommand& command, const MeshCheck& run) {
 
 Result<void> runCheck(const CheckCommand& command, FileGuard& files) {
     startLogging(command.common);
-    if (command.settings.mesh.empty()) {
+    if (command.request.mesh.empty()) {
         return checkFile(command.file, command.json, command.limits);
     }
     RELIEF_TRY(prepare(command, files));
@@ -103,7 +99,8 @@ Result<void> runCheck(const CheckCommand& command, FileGuard& files) {
     RELIEF_TRY(refuseMesh(command.file, container));
     Collider collider =
         RELIEF_TRY(inFront(shownInput(command.file), readContainer(container, command.limits)));
-    MeshCheck run = RELIEF_TRY(checkAgainstMesh(command.settings, std::move(collider)));
+    MeshCheck run = RELIEF_TRY(check(command.request, std::move(collider)));
+    showCheckWarnings(run);
     // The files that the mesh refers to are known only now.
     for (const std::string& file : run.imported->dependencies) {
         RELIEF_TRY(files.reads(file));
@@ -146,7 +143,7 @@ void addCheck(CLI::App& app, Action& action) {
         "relief check bunny.relief --mesh bunny.obj --html bunny.html\n"
         "relief check bunny.relief --mesh bunny.obj --max-error 2 --json");
     verb.add_option("FILE", command->file, "The collider; - for standard input")->type_name("")->required();
-    CLI::Option* mesh = addMeshCheckOptions(verb, command->settings);
+    CLI::Option* mesh = addMeshOptions(verb, command->request);
     verb.add_option("--max-error", command->max_error,
                     "Exit with 7 if more than this share of the points near the surface, in percent, is on "
                     "the wrong side, or a part is lost")
@@ -158,7 +155,8 @@ void addCheck(CLI::App& app, Action& action) {
                     "what to do")
         ->option_text("OUT")
         ->needs(mesh);
-    addImportOptions(verb, command->settings.import);
+    addFields(verb, command->request.import);
+    addFields(verb, command->request.import_limits);
     addMemoryOption(verb, command->limits);
     verb.add_flag("--json", command->json, "Print JSON");
     verb.callback(

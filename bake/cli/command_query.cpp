@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "bake/cli/command.h"
-#include "bake/cli/gl_options.h"
+#include "bake/director/gl_options.h"
 #include "bake/report/points_csv.h"
 #include "formats/base/file_io.h"
 #include "formats/container.h"

@@ -9,7 +9,9 @@
 #include <set>
 #include <thread>
 
+#include "bake/cli/bake_outputs.h"
 #include "bake/cli/recipe_keys.h"
+#include "bake/director/bake_request.h"
 #include "bake/recipe/bake_cache.h"
 #include "bake/recipe/child_process.h"
 #include "bake/recipe/prune.h"
@@ -34,29 +36,25 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kShardsMax = 1'000'000;
 constexpr float kTimeoutMax = 1e7F;  // seconds
 
-/// Options of a whole run, not of an asset: they are no keys of a recipe.
-constexpr std::array<std::string_view, 20> kOfTheRun = {
-    "list-devices", "warnings-only", "help",      "quiet",      "verbose", "output", "threads",
-    "json",         "depfile",       "plan-out",  "recipe",     "events",  "shard",  "stamp",
-    "root",         "timeout",       "fail-fast", "keep-going", "dry-run", "prune"};
+/// Options of a bake that a run of a recipe has its own place for: they are no keys.
+constexpr std::array<std::string_view, 4> kOfTheRun = {"threads", "plan_out", "json", "depfile"};
 
-std::vector<RecipeKey> recipeKeys(const CLI::App& verb) {
-    std::vector<RecipeKey> keys;
-    for (const CLI::Option* option : verb.get_options()) {
-        const std::vector<std::string>& names = option->get_lnames();
-        if (names.empty() || std::find(kOfTheRun.begin(), kOfTheRun.end(), names[0]) != kOfTheRun.end()) {
-            continue;
-        }
-        const bool list = option->get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll;
-        keys.push_back({names[0], option->get_expected_max() == 0 ? RecipeKey::Kind::kFlag
-                                  : list                          ? RecipeKey::Kind::kList
-                                                                  : RecipeKey::Kind::kValue});
-    }
-    return keys;
+std::string keyOf(const FieldWords& field) {
+    return optionName(field.name).substr(2);
+}
+
+std::vector<FieldWords> fieldsOfAsset() {
+    std::vector<FieldWords> all = fieldsOf(BakeRequest());
+    std::ranges::move(fieldsOf(BakeOutputs()), std::back_inserter(all));
+    std::erase_if(all, [](const FieldWords& field) {
+        return std::ranges::find(kOfTheRun, field.name) != kOfTheRun.end();
+    });
+    return all;
 }
 
 /// Options that a recipe has its own place for.
 Result<void> checkOptions(const RecipeCall& call) {
+    const std::vector<RecipeKey> keys = recipeKeys();
     for (const CLI::Option* option : call.verb.get_options()) {
         if (option->count() == 0) {
             continue;
@@ -69,7 +67,7 @@ Result<void> checkOptions(const RecipeCall& call) {
         if (names[0] == "plan-out") {
             return fail(ErrorCode::kUsage, "--plan-out is for one mesh; leave it out beside --recipe");
         }
-        if (std::find(kOfTheRun.begin(), kOfTheRun.end(), names[0]) == kOfTheRun.end()) {
+        if (std::ranges::find(keys, names[0], &RecipeKey::name) != keys.end()) {
             return fail(ErrorCode::kUsage, "--" + names[0] + " does nothing beside --recipe; write " +
                                                names[0] + " = … under [defaults] in the recipe");
         }
@@ -77,15 +75,30 @@ Result<void> checkOptions(const RecipeCall& call) {
     return {};
 }
 
+/// Whether a bake takes these options.
+Result<void> checkAsset(const RecipeOptions& options) {
+    BakeRequest request;
+    BakeOutputs outputs;
+    for (const auto& [key, value] : options) {
+        std::string name = key;
+        std::ranges::replace(name, '-', '_');
+        for (const std::string& text : value.values) {
+            const std::string& word = text.empty() ? "true" : text;
+            RELIEF_TRY(name == "compress" ? setField(outputs, name, word) : setField(request, name, word));
+        }
+    }
+    static_cast<void>(RELIEF_TRY(settingsOf(request)));
+    return {};
+}
+
 /// Every different set of options is tried before anything is baked.
-Result<void> checkAssets(const std::vector<RecipeAsset>& assets, const RecipeCall& call) {
+Result<void> checkAssets(const std::vector<RecipeAsset>& assets) {
     std::set<std::vector<std::string>> known;
     for (const RecipeAsset& asset : assets) {
-        std::vector<std::string> arguments = recipeArguments(asset.options);
-        if (known.contains(arguments)) {
+        if (!known.insert(recipeArguments(asset.options)).second) {
             continue;
         }
-        if (const Result<void> fits = call.check(arguments); !fits) {
+        if (const Result<void> fits = checkAsset(asset.options); !fits) {
             const Error& error = fits.error();
             RecipePlace place = asset.place;
             for (const auto& [name, value] : asset.options) {
@@ -96,7 +109,6 @@ Result<void> checkAssets(const std::vector<RecipeAsset>& assets, const RecipeCal
             return fail(error.code == ErrorCode::kUsage ? ErrorCode::kInvalidInput : error.code,
                         place + ": " + error.message);
         }
-        known.insert(std::move(arguments));
     }
     return {};
 }
@@ -201,8 +213,8 @@ Result<RecipeWork> plan(const RecipeOptionsOfBake& options, const RecipeCall& ca
     if (!options.root.empty()) {
         RELIEF_TRY(checkRoot(options.root));
     }
-    const std::vector<RecipeAsset> assets = RELIEF_TRY(loadRecipe(options.recipe, recipeKeys(call.verb)));
-    RELIEF_TRY(checkAssets(assets, call));
+    const std::vector<RecipeAsset> assets = RELIEF_TRY(loadRecipe(options.recipe, recipeKeys()));
+    RELIEF_TRY(checkAssets(assets));
     RecipeJobs all =
         RELIEF_TRY(recipeJobs(assets, options.recipe, work.run.output_folder, options.root, call.files));
     work.folders = std::move(all.folders);
@@ -313,6 +325,14 @@ Result<void> writeFiles(const RecipeOptionsOfBake& options, const RecipeCall& ca
 }
 
 }  // namespace
+
+std::vector<RecipeKey> recipeKeys() {
+    std::vector<RecipeKey> keys;
+    for (const FieldWords& field : fieldsOfAsset()) {
+        keys.push_back({keyOf(field), field.kind});
+    }
+    return keys;
+}
 
 void addRecipeOptions(CLI::App& verb, RecipeOptionsOfBake& options) {
     CLI::Option* recipe = verb.add_option(

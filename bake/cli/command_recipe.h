@@ -1,7 +1,6 @@
 // relief bake --recipe: the options, and what they do.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,7 +23,7 @@ struct RecipeOptionsOfBake {
     bool prune = false;
 };
 
-/// What --recipe shares with a bake of one mesh, and who checks the options of an asset.
+/// Options that --recipe shares with a bake of one mesh.
 struct RecipeCall {
     const CLI::App& verb;  ///< parsed
     const CommonOptions& common;
@@ -33,9 +32,10 @@ struct RecipeCall {
     const std::string& depfile;
     bool json;
     FileGuard& files;  ///< knows the response files
-    /// Whether `relief bake MESH -o OUT` would take these arguments.
-    std::function<Result<void>(const std::vector<std::string>&)> check;
 };
+
+/// The options of `relief bake` that a recipe may set.
+[[nodiscard]] std::vector<RecipeKey> recipeKeys();
 
 void addRecipeOptions(CLI::App& verb, RecipeOptionsOfBake& options);
 

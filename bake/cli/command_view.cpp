@@ -5,6 +5,7 @@
 
 #include "bake/cli/command.h"
 #include "bake/cli/live_view.h"
+#include "bake/cli/mesh_options.h"
 #include "bake/cli/view_source.h"
 #include "bake/view/page_server.h"
 #include "formats/base/file_io.h"
@@ -51,7 +52,7 @@ Result<void> checkSource(const ViewSource& source) {
         return fail(ErrorCode::kUsage, "--mesh is for a collider, and " + quotedPath(source.file) +
                                            " is a scene; leave out --mesh, or view the collider");
     }
-    return prepareMeshCheck(source.check);
+    return {};
 }
 
 Result<void> serve(const ViewCommand& command) {
@@ -102,8 +103,9 @@ void addView(CLI::App& app, Action& action) {
                     "The collider, or a scene (.toml); - for a collider on standard input")
         ->type_name("")
         ->required();
-    addMeshCheckOptions(verb, command->source.check);
-    addImportOptions(verb, command->source.check.import);
+    addMeshOptions(verb, command->source.check);
+    addFields(verb, command->source.check.import);
+    addFields(verb, command->source.check.import_limits);
     addMemoryOption(verb, command->source.limits);
     CLI::Option* output =
         verb.add_option("-o,--output", command->output,

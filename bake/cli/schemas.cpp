@@ -1,7 +1,7 @@
 #include "bake/cli/schemas.h"
 
-#include "bake/cli/mesh_check_report.h"
-#include "bake/report/bake_report.h"
+#include "bake/director/bake_json.h"
+#include "bake/director/mesh_check_report.h"
 #include "bake/report/collider_report.h"
 #include "bake/report/diff_report.h"
 #include "bake/report/inspect_report.h"

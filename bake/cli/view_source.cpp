@@ -5,7 +5,8 @@
 #include <glm/geometric.hpp>
 
 #include "bake/cli/command.h"
-#include "bake/cli/mesh_check_report.h"
+#include "bake/cli/mesh_options.h"
+#include "bake/director/mesh_check_report.h"
 #include "bake/import/mesh_import.h"
 #include "bake/pipeline/bake.h"
 #include "bake/repair/winding.h"
@@ -75,7 +76,8 @@ Result<MadePage> colliderPage(const ViewSource& source, Page page) {
     if (source.check.mesh.empty()) {
         return page.make();
     }
-    const MeshCheck check = RELIEF_TRY(checkAgainstMesh(source.check, std::move(collider)));
+    const MeshCheck check = RELIEF_TRY(relief::check(source.check, std::move(collider)));
+    showCheckWarnings(check);
     for (const std::string& file : check.imported->dependencies) {
         page.files.emplace_back(file);
     }

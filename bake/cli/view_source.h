@@ -6,17 +6,17 @@
 #include <string>
 #include <vector>
 
-#include "bake/cli/mesh_check.h"
+#include "bake/director/mesh_check.h"
 #include "formats/base/result.h"
 #include "formats/container_limits.h"
 
 namespace relief {
 
 struct ViewSource {
-    std::string file;         ///< a container, "-" for standard input, or a scene (.toml)
-    MeshCheckSettings check;  ///< mesh empty: none
-    ContainerLimits limits;   ///< of the container, or of those of a scene
-    std::string events;       ///< as ViewPageInput
+    std::string file;        ///< a container, "-" for standard input, or a scene (.toml)
+    CheckRequest check;      ///< mesh empty: none
+    ContainerLimits limits;  ///< of the container, or of those of a scene
+    std::string events;      ///< as ViewPageInput
 
     [[nodiscard]] bool isScene() const;
 };

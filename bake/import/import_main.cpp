@@ -14,7 +14,7 @@
 #include <new>
 #include <span>
 
-#include "bake/import/import_job.h"
+#include "bake/import/import_fields.h"
 #include "bake/import/import_memory.h"
 #include "bake/import/import_message.h"
 #include "bake/import/import_protocol.h"
@@ -84,21 +84,17 @@ int work(std::span<char*> arguments) {
         return exitOf(code);
     }
     const std::filesystem::path path = arguments[1];
+    const std::uint64_t memory = parseUnsigned(arguments[2]).value_or(0);
+    const std::uint64_t seconds = parseUnsigned(arguments[3]).value_or(0);
+    const std::uint64_t triangles = parseUnsigned(arguments[4]).value_or(0);
     ImportOptions options;
-    if (std::string_view(arguments[2]) != "-") {
-        options.unit = arguments[2];
-    }
-    if (std::string_view(arguments[3]) != "-") {
-        const Result<UpAxis> up = parseUpAxis(arguments[3]);
-        if (!up) {
+    std::size_t next = 5;
+    for (; arguments[next] != kImportNamesFollow; next += 2) {
+        if (next + 2 >= arguments.size() || !setField(options, arguments[next], arguments[next + 1])) {
             return kImportExitArguments;
         }
-        options.up = *up;
     }
-    options.names.assign(arguments.begin() + 7, arguments.end());
-    const std::uint64_t memory = parseUnsigned(arguments[4]).value_or(0);
-    const std::uint64_t seconds = parseUnsigned(arguments[5]).value_or(0);
-    const std::uint64_t triangles = parseUnsigned(arguments[6]).value_or(0);
+    options.names.assign(arguments.begin() + static_cast<std::ptrdiff_t>(next) + 1, arguments.end());
     if (memory == 0 || seconds == 0 || seconds > UINT32_MAX || triangles == 0 || triangles > kTriangleMax) {
         return kImportExitArguments;
     }
@@ -135,7 +131,7 @@ int work(std::span<char*> arguments) {
 }  // namespace relief
 
 int main(int argc, char** argv) {
-    if (argc < 7) {
+    if (argc < 6) {
         return relief::kImportExitArguments;
     }
     mallopt(M_ARENA_MAX, 1);  // one heap, that the limit is exact for

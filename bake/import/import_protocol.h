@@ -1,13 +1,17 @@
 // Between importMeshInWorker and the program relief-import: descriptors, arguments and exit codes.
 //
-//     relief-import PATH UNIT UP MEMORY SECONDS TRIANGLES [NAME…]
+//     relief-import PATH MEMORY SECONDS TRIANGLES [FIELD VALUE]… names [NAME…]
 //
-// PATH is the mesh's as the user gave it (for messages, its name and extension); UNIT and UP as
-// ImportOptions, "-" for none; MEMORY in bytes; TRIANGLES as ImportLimits; each NAME one of ImportOptions::names.
+// PATH is the mesh's as the user gave it (for messages, its name and extension); MEMORY in bytes; TRIANGLES as
+// ImportLimits; FIELD and VALUE as fields() of ImportOptions has them; each NAME one of ImportOptions::names.
 // Nothing is read from standard input or written to standard output.
 #pragma once
 
+#include <string_view>
+
 namespace relief {
+
+inline constexpr std::string_view kImportNamesFollow = "names";  ///< the end of the fields
 
 inline constexpr int kImportMeshFd = 3;    ///< the mesh file's bytes, sealed, memfd
 inline constexpr int kImportFolderFd = 4;  ///< its folder, O_PATH; /dev/null if there is none

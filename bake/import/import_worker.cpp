@@ -17,6 +17,7 @@
 #include <string>
 #include <utility>
 
+#include "bake/import/import_fields.h"
 #include "bake/import/import_memory.h"
 #include "bake/import/import_message.h"
 #include "bake/import/import_protocol.h"
@@ -254,13 +255,13 @@ class Import {
                             Process& worker) const {
         ProcessStart start;
         start.program = program;
-        start.arguments = {kWorkerName,
-                           path_.string(),
-                           options_.unit.empty() ? "-" : options_.unit,
-                           options_.up ? std::string(upAxisName(*options_.up)) : "-",
-                           std::to_string(limits_.memory),
-                           std::to_string(limits_.seconds),
-                           std::to_string(limits_.triangles)};
+        start.arguments = {kWorkerName, path_.string(), std::to_string(limits_.memory),
+                           std::to_string(limits_.seconds), std::to_string(limits_.triangles)};
+        for (const FieldWords& option : changedFields(options_)) {
+            start.arguments.push_back(option.name);
+            start.arguments.push_back(option.words.front());
+        }
+        start.arguments.emplace_back(kImportNamesFollow);
         start.arguments.insert(start.arguments.end(), options_.names.begin(), options_.names.end());
         start.files.assign(kImportMeshFd, -1);
         start.files.insert(start.files.end(), files.begin(), files.end());

@@ -106,9 +106,9 @@ std::string effectiveOptions(const std::vector<Job>& jobs, const BakeOptions& op
     if (options.rasterize) {
         text.append(" --backend raster");
     } else if (has_planes) {
-        text.append(" --quality ").append(qualityName(options.quality));
+        text.append(" --quality ").append(wordOf(options.quality));
         if (options.prefer != Prefer::kNeither) {
-            text.append(" --prefer ").append(preferName(options.prefer));
+            text.append(" --prefer ").append(wordOf(options.prefer));
         }
     }
     if (options.planned_budget > 0 && collider.gpuBytes() <= options.planned_budget) {

@@ -1,4 +1,4 @@
-// relief._relief: what the package relief of Python is made of. relief/__init__.py documents it for users.
+// relief._relief: the compiled part of the package relief. relief/__init__.py documents it for users.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -13,9 +13,8 @@
 #include <optional>
 #include <string>
 
-#include "bake/cli/bake_in_memory.h"
-#include "bake/cli/command.h"
-#include "bake/cli/mesh_check.h"
+#include "bake/director/director.h"
+#include "bake/director/mesh_check.h"
 #include "bake/measure/worst_places.h"
 #include "bake/python/interruptible.h"
 #include "bake/report/parts_report.h"
@@ -246,18 +245,55 @@ Result<TriangleMesh> meshOf(const Floats& vertices, const Indices& triangles, co
     return finishMesh(std::move(mesh));
 }
 
-using Words = std::vector<std::string>;
+/// Names of fields, and words for them.
+using Words = std::vector<std::pair<std::string, std::string>>;
 using SharedCollider = std::shared_ptr<Collider>;
 
-/// The collider, and the warnings of its bake. \param mesh  instead of the command's.
-py::tuple bake(BakeCommand command, std::optional<TriangleMesh> mesh) {
-    const std::optional<float> seconds = command.time_limit;
-    BakedInMemory baked = need(interruptible<BakedInMemory>(
-        [command = std::move(command), mesh = std::move(mesh)](const auto& checkpoint) mutable {
-            return bakeInMemory(std::move(command), std::move(mesh), checkpoint);
+template <class Request>
+Request requestOf(const Words& words) {
+    Request request;
+    for (const auto& [name, word] : words) {
+        need(setField(request, name, word));
+    }
+    return request;
+}
+
+/// Of each field its name, kind ("flag", "value" or "list"), sentence, default and values.
+template <class Request>
+py::list describeFields() {
+    constexpr std::array<const char*, 3> kKinds = {"flag", "value", "list"};
+    py::list described;
+    for (const FieldWords& field : fieldsOf(Request())) {
+        described.append(py::make_tuple(field.name, kKinds.at(static_cast<std::size_t>(field.kind)),
+                                        std::string(field.info.help), defaultText(field), valueText(field)));
+    }
+    return described;
+}
+
+/// The collider, and the warnings of its bake. \param mesh  instead of the request's.
+py::tuple bake(BakeRequest request, std::optional<TriangleMesh> mesh) {
+    FileGuard files;
+    need(files.reads(request.mesh));
+    need(files.reads(request.plan));
+    need(files.writes(request.plan_out, "--plan-out"));
+    request.repair.examine = false;
+    const std::optional<float> seconds = request.time_limit;
+    const BakeResult baked = need(interruptible<BakeResult>(
+        [request = std::move(request), files = std::move(files),
+         mesh = std::move(mesh)](const auto& checkpoint) mutable -> Result<BakeResult> {
+            BakeWatcher watcher;
+            watcher.begin = [&](const char*) { checkpoint(); };
+            watcher.progress = [&](double) { checkpoint(); };
+            watcher.checkpoint = checkpoint;
+            watcher.files = &files;
+            BakeResult result = RELIEF_TRY(relief::bake(request, watcher, std::move(mesh)));
+            checkpoint();
+            RELIEF_TRY(writePlanOut(result));
+            return result;
         },
         seconds));
-    return py::make_tuple(std::make_shared<Collider>(std::move(baked.collider)), textsOf(baked.warnings));
+    return py::make_tuple(std::make_shared<Collider>(baked.baked.collider),
+                          textsOf(baked.baked.report.warnings));
 }
 
 py::list placesOf(const std::vector<WorstPlace>& found) {
@@ -272,13 +308,12 @@ py::list placesOf(const std::vector<WorstPlace>& found) {
     return places;
 }
 
-/// The fields of relief.Accuracy, and the warnings of the check. \param mesh  instead of the settings'.
-py::tuple check(const SharedCollider& collider, const MeshCheckSettings& settings,
+/// The fields of relief.Accuracy, and the warnings of the check. \param mesh  instead of the request's.
+py::tuple check(const SharedCollider& collider, const CheckRequest& request,
                 std::optional<TriangleMesh> mesh) {
-    need(prepareMeshCheck(settings));
-    const MeshCheck run = need(interruptible<MeshCheck>(
-        [collider, settings, mesh = std::move(mesh)](const auto& checkpoint) mutable {
-            return checkAgainstMesh(settings, *collider, std::move(mesh), checkpoint);
+    const MeshCheck run = need(
+        interruptible<MeshCheck>([collider, request, mesh = std::move(mesh)](const auto& checkpoint) mutable {
+            return relief::check(request, *collider, std::move(mesh), checkpoint);
         }));
     const FieldAccuracy& accuracy = run.judged().accuracy.field;
     py::dict out;
@@ -443,7 +478,6 @@ py::tuple vectorOf(const glm::vec3& v) {
 
 PYBIND11_MODULE(_relief, m) {
     using namespace relief;  // NOLINT: a module is one scope
-    startLogging({.quiet = true});
     m.attr("version") = RELIEF_VERSION;
 
     auto errors = std::make_unique<Errors>();
@@ -494,23 +528,26 @@ PYBIND11_MODULE(_relief, m) {
         const auto bytes = need(released([&] { return writeContainer(collider, options); }));
         return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     });
-    m.def("bake_file", [](const Words& options, const std::filesystem::path& path) {
-        BakeCommand command = need(bakeCommandOf(options));
-        command.mesh = path;
-        return bake(std::move(command), std::nullopt);
+    m.def("bake_fields", &describeFields<BakeRequest>);
+    m.def("check_fields", &describeFields<CheckRequest>);
+    m.def("bake_file", [](const Words& words, const std::filesystem::path& path) {
+        auto request = requestOf<BakeRequest>(words);
+        request.mesh = path;
+        return bake(std::move(request), std::nullopt);
     });
-    m.def("bake_mesh", [](const Words& options, const Floats& vertices, const Indices& triangles,
-                          const std::string& name) {
-        return bake(need(bakeCommandOf(options)), need(meshOf(vertices, triangles, name)));
-    });
-    m.def("check_file",
-          [](const SharedCollider& collider, const Words& options, const std::filesystem::path& path) {
-              return check(collider, need(meshCheckSettingsOf(options, path)), std::nullopt);
+    m.def("bake_mesh",
+          [](const Words& words, const Floats& vertices, const Indices& triangles, const std::string& name) {
+              return bake(requestOf<BakeRequest>(words), need(meshOf(vertices, triangles, name)));
           });
-    m.def("check_mesh", [](const SharedCollider& collider, const Words& options, const Floats& vertices,
+    m.def("check_file",
+          [](const SharedCollider& collider, const Words& words, const std::filesystem::path& path) {
+              auto request = requestOf<CheckRequest>(words);
+              request.mesh = path;
+              return check(collider, request, std::nullopt);
+          });
+    m.def("check_mesh", [](const SharedCollider& collider, const Words& words, const Floats& vertices,
                            const Indices& triangles) {
-        return check(collider, need(meshCheckSettingsOf(options, "mesh")),
-                     need(meshOf(vertices, triangles, "mesh")));
+        return check(collider, requestOf<CheckRequest>(words), need(meshOf(vertices, triangles, "mesh")));
     });
     py::class_<HeadlessSimulation>(m, "Simulation")
         .def(py::init<const std::filesystem::path&, std::optional<std::uint64_t>,

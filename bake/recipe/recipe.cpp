@@ -230,14 +230,14 @@ class Reader {
     Result<void> readOption(const toml::node& node, const RecipeKey& key, RecipeOptions& options) const {
         RecipeValue value;
         value.place = place(node.source().begin);
-        if (key.kind == RecipeKey::Kind::kFlag) {
+        if (key.kind == FieldKind::kFlag) {
             if (!node.is_boolean()) {
                 return invalid(node.source().begin, key.name + " must be true or false");
             }
             if (*node.value_exact<bool>()) {
                 value.values.emplace_back();
             }
-        } else if (key.kind == RecipeKey::Kind::kList) {
+        } else if (key.kind == FieldKind::kList) {
             RELIEF_TRY(readTexts(node, key.name, value.values));
         } else {
             std::string text = RELIEF_TRY(readText(node, key.name, true));

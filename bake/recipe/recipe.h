@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "formats/base/result.h"
+#include "formats/fields/text.h"
 
 namespace relief {
 
@@ -19,9 +20,8 @@ inline constexpr std::size_t kRecipePatternsMax = 1'000;  ///< of one `mesh` or 
 
 /// An option of `relief bake` that a recipe may set, by its long name.
 struct RecipeKey {
-    enum class Kind : std::uint8_t { kFlag, kValue, kList };
-    std::string name;  ///< without dashes
-    Kind kind = Kind::kValue;
+    std::string name;  ///< "max-error"
+    FieldKind kind = FieldKind::kValue;
 };
 
 /// A place in a recipe: "FILE:LINE:COLUMN".

@@ -57,7 +57,7 @@ std::string healthLine(const MeshHealth& health) {
 }
 
 /// Lines that end with a line feed; none if nothing was counted.
-std::string careText(const MeshCare& care, bool verbose) {
+std::string careText(const RepairReport& care, bool verbose) {
     if (!care.health) {
         return "";
     }
@@ -112,7 +112,7 @@ std::string shapeText(const ShapeReport& report, const std::string& unit) {
     }
     for (const auto& [shape, triangles] : report.named) {
         text += "; " + shape.name + " (" + std::to_string(triangles) + " triangles) as " +
-                std::string(shapeAsName(shape.as));
+                std::string(wordOf(shape.as));
     }
     return "shape: " + text + "\n";
 }
@@ -169,15 +169,6 @@ std::string bakeText(const BakeSummary& summary, const std::string& output, std:
     }
     return text + (output == "-" ? "standard output" : quotedPath(output)) + ": " + bytesText(file_size) +
            "\n";
-}
-
-ColliderReport<BakedMapReport> BakeJson::collider() const {
-    const Baked& baked = summary.baked;
-    ColliderReport<BakedMapReport> report{baked.collider, info};
-    for (std::size_t i = 0; i < baked.collider.maps.size(); ++i) {
-        report.maps.push_back({{i, baked.collider.maps[i], info.payloads[i]}, baked.report.maps[i]});
-    }
-    return report;
 }
 
 }  // namespace relief

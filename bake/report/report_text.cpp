@@ -90,13 +90,6 @@ std::uint64_t roundBudget(std::uint64_t bytes) {
     return std::max((bytes + unit - 1) / unit * unit, kPlanBudgetMin);
 }
 
-std::string budgetText(std::uint64_t bytes) {
-    const auto value = static_cast<double>(bytes);
-    return bytes >= 1'000'000 ? formatted("%.6gMB", value / 1e6)
-           : bytes >= 10'000  ? formatted("%.6gkB", value / 1e3)
-                              : std::to_string(bytes);
-}
-
 std::string sizeText(const DepthMap& map) {
     return (map.faceCount() == 1 ? "" : std::to_string(map.faceCount()) + "x") + std::to_string(map.width) +
            "x" + std::to_string(map.height);

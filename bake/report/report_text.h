@@ -32,8 +32,6 @@ namespace relief {
 [[nodiscard]] std::string bytesText(std::uint64_t bytes);
 /// The next number of bytes with two digits, at least kPlanBudgetMin, for --budget.
 [[nodiscard]] std::uint64_t roundBudget(std::uint64_t bytes);
-/// As --budget takes it: "1.2MB".
-[[nodiscard]] std::string budgetText(std::uint64_t bytes);
 /// "512x256"; of a cube "6x64x64".
 [[nodiscard]] std::string sizeText(const DepthMap& map);
 /// "cube" or "orthographic".

@@ -24,7 +24,7 @@ void forEachEdgeOfAKind(const MeshEdges& edges, std::span<const ShapeAs> kinds, 
             visit(uses);
             return;
         }
-        for (std::size_t kind = 0; kind < kShapeAsCount; ++kind) {
+        for (std::size_t kind = 0; kind < kWordsOf<ShapeAs>.size(); ++kind) {
             of_kind.clear();
             std::copy_if(uses.begin(), uses.end(), std::back_inserter(of_kind), [&](const EdgeUse& use) {
                 return kinds[use.triangle] == static_cast<ShapeAs>(kind);

@@ -392,7 +392,7 @@ class Shaper {
                 closed[i] = close(*mesh);
             }
         });
-        std::array<std::vector<Open*>, kShapeAsCount> left;  // by kind
+        std::array<std::vector<Open*>, kWordsOf<ShapeAs>.size()> left;  // by kind
         for (std::size_t i = 0; i < holed.size(); ++i) {
             const Closed part = RELIEF_TRY(std::move(closed[i]));
             if (part.mesh) {

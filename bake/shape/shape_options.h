@@ -1,4 +1,4 @@
-// What the parts of a mesh are to be taken for: as the command line says it, and as containers record it.
+// How the parts of a mesh are interpreted: --as.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,12 @@
 
 namespace relief {
 
-/// What parts are taken for.
+/// How parts are interpreted.
 enum class ShapeAs : std::uint8_t { kAuto, kSolid, kShell, kTerrain };
 template <>
 inline constexpr std::array<std::string_view, 4> kWordsOf<ShapeAs>{"auto", "solid", "shell", "terrain"};
-inline constexpr std::size_t kShapeAsCount = kWordsOf<ShapeAs>.size();
 
-[[nodiscard]] std::string_view shapeAsName(ShapeAs as);
-[[nodiscard]] std::optional<ShapeAs> parseShapeAs(std::string_view name);
-
-/// What the triangles of a name are taken for, by its mark (TriangleMesh::marks).
+/// How the triangles of a name, found by its mark (TriangleMesh::marks), are interpreted.
 struct NamedShape {
     std::string name;  ///< clean UTF-8, 1 to kAskedNameBytesMax bytes
     ShapeAs as = ShapeAs::kAuto;
@@ -34,7 +30,7 @@ struct ShapeOptions {
     /// a height field, along its flattest axis if none is better.
     ShapeAs as = ShapeAs::kAuto;
     double thickness = 0.0;  ///< of shells, object units, above 0: see defaultThickness
-    /// What goes before `as`; each name once, at most kAskedNamesMax. Where a triangle has several, the last counts.
+    /// Override `as`; each name once, at most kAskedNamesMax. Where a triangle has several, the last counts.
     std::vector<NamedShape> named = {};
     /// `thickness` is a default, of which each sheet takes what suits its own size (partThickness).
     bool thickness_by_part = false;
@@ -48,9 +44,5 @@ struct ShapeOptions {
 /// " --as shell --as glass=auto --thickness 0.01" (by part: "auto=0.01"): what is not the default, as a container records it. Of a name, all is
 /// %XX that could mean something to a shell or to who reads the record.
 [[nodiscard]] std::string recordedShape(const ShapeOptions& options);
-/// Reads one option of such a record. \return whether it is one, and its value makes sense; otherwise nothing is changed.
-[[nodiscard]] bool readRecordedShape(std::string_view option, std::string_view value, ShapeOptions& options);
-/// What a container was made with. Words that are missing or that make no sense are left as they are in `otherwise`.
-[[nodiscard]] ShapeOptions shapeOptionsOf(std::string_view container_options, const ShapeOptions& otherwise);
 
 }  // namespace relief

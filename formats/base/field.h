@@ -95,6 +95,11 @@ struct FieldInfo {
     FieldRange items = kFromZero;                  ///< how many a vector may have
     /// In JSON: without a value, empty, or as large as a float can be, it is left out instead of null or [].
     bool left_out = false;
+    std::string_view value = {};  ///< stands for the value in --help: "SECONDS"; empty: as the type has it
+    /// A valid value, for messages: "a length above 0"; empty: as type and range have it.
+    std::string_view must = {};
+    char letter = '\0';     ///< of the short option: 'j'
+    bool recorded = false;  ///< of a bake: decides the bytes of the collider, and is part of its provenance
 };
 
 /// Two members for one value of the file: a number, or [least, most].

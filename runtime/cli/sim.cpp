@@ -174,7 +174,7 @@ Result<void> playScene(SimCommand& command) {
     player.progress = [&progress](std::uint32_t step, std::uint32_t steps) {
         progress.set(steps == 0 ? 1.0 : static_cast<double>(step) / steps);
     };
-    Watchdog watchdog(command.gpu.timeout.value_or(defaultGpuTimeout(false)), endProcess("relief-sim"));
+    Watchdog watchdog(command.gpu.limit(false), endProcess("relief-sim"));
     player.watchdog = &watchdog;
     player.default_timeout = !command.gpu.timeout;
     const PlayerReport played = RELIEF_TRY(play(player));

@@ -3,12 +3,11 @@
 #include <unistd.h>
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 
 #include "formats/fields/json.h"
-#include "runtime/tool/option_values.h"
+#include "runtime/tool/field_options.h"
 
 namespace relief {
 
@@ -26,8 +25,6 @@ void fields(Visitor& visit, D& device) {
 
 namespace {
 
-constexpr double kTimeoutMax = 1e6;  // seconds
-
 /// --list-devices --json
 struct DevicesReport {
     const std::vector<GlDevice>& devices;
@@ -36,17 +33,6 @@ struct DevicesReport {
 template <class Visitor, FieldsOf<DevicesReport> R>
 void fields(Visitor& visit, R& report) {
     visit("devices", report.devices, {"GPUs, by their number"});
-}
-
-std::optional<std::chrono::milliseconds> parseTimeout(const std::string& text) {
-    double seconds = 0.0;
-    const char* end = text.data() + text.size();
-    const auto [rest, error] = std::from_chars(text.data(), end, seconds);
-    if (error != std::errc() || rest != end || !(seconds >= 0.0 && seconds <= kTimeoutMax)) {
-        return std::nullopt;
-    }
-    // Rounded up, for 0 means never.
-    return std::chrono::milliseconds(static_cast<std::int64_t>(std::ceil(seconds * 1000.0)));
 }
 
 std::string secondsText(std::chrono::milliseconds time) {
@@ -58,16 +44,11 @@ std::string secondsText(std::chrono::milliseconds time) {
 }  // namespace
 
 void addGpuOptions(CLI::App& app, GpuOptions& options) {
-    app.add_option("--device", options.device,
-                   "Use this GPU, by its number in --list-devices; default: EGL's choice")
-        ->option_text("N")
-        ->transform(wholeNumber(0, std::numeric_limits<std::uint32_t>::max(),
-                                "the number of a device; --list-devices names them"));
-    addParsed(
-        app, "--gpu-timeout", options.timeout, parseTimeout, "a number of seconds from 0 (never) to 1000000",
-        "Give up, with exit code 4, when the GPU does not answer for so long; default 60, on a software "
-        "renderer 600; 0: never")
-        ->option_text("SECONDS");
+    addFields(app, options);
+    addListDevices(app, options);
+}
+
+void addListDevices(CLI::App& app, const GpuOptions& options) {
     // CLI11 runs callbacks before it looks for what is required, as it does for --help.
     app.add_flag_callback(
         "--list-devices",
@@ -85,6 +66,11 @@ Result<std::string> devicesAnswer(const ListDevices& what) {
 
 std::chrono::milliseconds defaultGpuTimeout(bool software) {
     return std::chrono::seconds(software ? 600 : 60);
+}
+
+std::chrono::milliseconds GpuOptions::limit(bool software) const {
+    return timeout ? std::chrono::milliseconds(static_cast<std::int64_t>(std::ceil(*timeout * 1000.0)))
+                   : defaultGpuTimeout(software);
 }
 
 std::string devicesText(const std::vector<GlDevice>& devices) {

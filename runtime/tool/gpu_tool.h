@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/base/field.h"
 #include "formats/base/result.h"
 #include "runtime/gl/gl_device.h"
 #include "runtime/tool/watchdog.h"
@@ -20,16 +21,40 @@ namespace relief {
 struct GpuOptions {
     GlApi api = GlApi::kGl33Core;       ///< whose devices --list-devices lists
     std::optional<std::size_t> device;  ///< whether there is such a device shows when a context is made
-    std::optional<std::chrono::milliseconds> timeout;
+    std::optional<double> timeout;      ///< seconds; 0: never
 
+    /// In whole milliseconds, rounded up, for 0 means never; without --gpu-timeout defaultGpuTimeout().
+    [[nodiscard]] std::chrono::milliseconds limit(bool software) const;
     /// The first option that is given, or nullptr.
     [[nodiscard]] const char* given() const {
         return device ? "--device" : timeout ? "--gpu-timeout" : nullptr;
     }
 };
 
+template <class Visitor, FieldsOf<GpuOptions> Options>
+void fields(Visitor& visit, Options& options) {
+    visit("device", options.device,
+          {.help = "Use this GPU, by its number in --list-devices",
+           .range = {0.0, 4294967295.0},
+           .fallback = "EGL's choice",
+           .value = "N",
+           .must = "the number of a device; --list-devices names them"});
+    visit("gpu_timeout", options.timeout,
+          {.help = "Give up, with exit code 4, when the GPU does not answer for so long; 0: never",
+           .unit = "s",
+           .range = {0.0, 1e6},
+           .fallback = "60, on a software renderer 600",
+           .value = "SECONDS",
+           .must = "a number of seconds from 0 (never) to 1000000"});
+}
+
+/// The limit where --gpu-timeout is not given. A software renderer does not hang, it takes its time.
+[[nodiscard]] std::chrono::milliseconds defaultGpuTimeout(bool software);
+
 /// --list-devices is answered by parseCommandLine(), so that it needs no other argument.
 void addGpuOptions(CLI::App& app, GpuOptions& options);
+/// --list-devices alone. `options` must outlive the app.
+void addListDevices(CLI::App& app, const GpuOptions& options);
 
 /// What --list-devices throws out of CLI::App::parse.
 struct ListDevices {
@@ -38,9 +63,6 @@ struct ListDevices {
 };
 /// The text to print. Fails as listGlDevices.
 [[nodiscard]] Result<std::string> devicesAnswer(const ListDevices& what);
-
-/// What --gpu-timeout is where it is not given. A software renderer does not hang, it takes its time.
-[[nodiscard]] std::chrono::milliseconds defaultGpuTimeout(bool software);
 
 /// A line a device, or one that says that there is none; with a newline.
 [[nodiscard]] std::string devicesText(const std::vector<GlDevice>& devices);

@@ -63,16 +63,6 @@ CLI::Validator byteCount(std::uint64_t least, std::uint64_t most, const std::str
     return counted(least, most, must, parseByteCount);
 }
 
-std::string butMustBe(std::string_view word, const std::string& must) {
-    return "is '" + cleanUtf8(word) + "' but must be " + must;
-}
-
-std::string butMustBeOneOf(std::string_view word, const std::vector<std::string_view>& words) {
-    const std::string must = words.size() == 2 ? std::string(words[0]) + " or " + std::string(words[1])
-                                               : "one of " + listed(words);
-    return butMustBe(word, must + (word.size() > 1 ? didYouMean(word, words) : ""));
-}
-
 CLI::Validator oneOf(std::vector<std::string_view> words) {
     return {[words = std::move(words)](std::string& word) {
                 return std::ranges::find(words, word) == words.end() ? butMustBeOneOf(word, words) : "";

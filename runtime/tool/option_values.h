@@ -14,6 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "formats/fields/text.h"
+
 namespace relief {
 
 /// Decimal digits alone, from `least` to `most`.
@@ -29,11 +31,6 @@ namespace relief {
 [[nodiscard]] CLI::Validator byteCount(std::uint64_t least = 1,
                                        std::uint64_t most = std::numeric_limits<std::uint64_t>::max(),
                                        const std::string& must = "a number of bytes, such as 1MB or 512KiB");
-
-/// "is 'x' but must be MUST"
-[[nodiscard]] std::string butMustBe(std::string_view word, const std::string& must);
-/// "is 'x' but must be one of a, b, c; did you mean 'a'?", or "but must be a or b".
-[[nodiscard]] std::string butMustBeOneOf(std::string_view word, const std::vector<std::string_view>& words);
 
 /// One of some words, for a field that holds text.
 [[nodiscard]] CLI::Validator oneOf(std::vector<std::string_view> words);

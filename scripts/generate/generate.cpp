@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 
+#include "bake/cli/generated.h"
 #include "bake/cli/schemas.h"
 #include "formats/base/file_io.h"
 #include "formats/fields/generated.h"
@@ -22,7 +23,7 @@ Result<std::string> readText(const fs::path& path) {
 /// All that is derived. Each library that declares fields has a function of its own.
 GeneratedTexts all() {
     GeneratedTexts texts;
-    for (GeneratedTexts (*const of)() : {bakeSchemas, playerSchemas, sceneReference}) {
+    for (GeneratedTexts (*const of)() : {bakeTexts, bakeSchemas, playerSchemas, sceneReference}) {
         for (GeneratedText& text : of()) {
             texts.push_back(std::move(text));
         }

@@ -13,7 +13,7 @@ using relief::RecipeAsset;
 using relief::RecipeKey;
 
 const std::vector<RecipeKey>& keys() {
-    using Kind = RecipeKey::Kind;
+    using Kind = relief::FieldKind;
     static const std::vector<RecipeKey> kKeys = {{"map", Kind::kList},         {"paper", Kind::kFlag},
                                                  {"strict", Kind::kFlag},      {"plan", Kind::kValue},
                                                  {"budget", Kind::kValue},     {"max-error", Kind::kValue},

@@ -36,8 +36,28 @@ Number = Union[int, float, str]
 """As the command line has it: 1, 1.5, "1%"; of bytes 1_000_000, 1e6, "1MB"."""
 
 
+class _Field(NamedTuple):
+    """A field of a request of the baker."""
+
+    name: str
+    kind: str
+    about: str
+
+
+def _named(fields: list[tuple[str, str, str, str, str]]) -> dict[str, _Field]:
+    """Fields by the names of arguments: Python has the words "map" and "as" itself."""
+    return {{"map": "maps", "as": "as_"}.get(name, name):
+            _Field(name, kind, about + (f"; default: {default}" if default else ""))
+            for name, kind, about, default, _ in fields}
+
+
+_BAKE = _named(_relief.bake_fields())
+_CHECK = _named(_relief.check_fields())
+_ARGUMENTS = {"--" + field.name.replace("_", "-"): name for name, field in {**_BAKE, **_CHECK}.items()}
+
+
 class ReliefWarning(UserWarning):
-    """What `relief` would warn of."""
+    """A warning of `relief`."""
 
 
 class Samples(NamedTuple):
@@ -274,31 +294,27 @@ def _word(value: Any, name: str) -> str:
     return str(int(value)) if _is_whole(value) else repr(float(value))
 
 
-def _pair(option: str, word: str) -> list[str]:
-    return [f"{option}={word}"] if word else [option, ""]  # a word of its own if it is empty: else none is seen
-
-
-def _words(options: dict[str, Any]) -> list[bytes]:
-    """Arguments as the words of a command line: max_error=1 is --max-error=1."""
+def _words(fields: dict[str, _Field], arguments: dict[str, Any]) -> list[tuple[str, bytes]]:
+    """Arguments as words for the fields of a request."""
     words = []
-    for name, value in options.items():
-        option = _OPTIONS[name]
+    for name, field in fields.items():
+        value = arguments[name]
         if value is None:
             continue
-        if name in _FLAGS:
+        if field.kind == "flag":
             if not isinstance(value, (bool, np.bool_)):
                 _wrong_type(value, name, "True or False")
-            words += [option] if value else []
-        elif name in _LISTS and not isinstance(value, str):
+            texts = ["true"] if value else []
+        elif field.kind == "list" and not isinstance(value, str):
             if not isinstance(value, Sequence) or not all(isinstance(one, str) for one in value):
                 _wrong_type(value, name, "text or a list of texts")
-            for one in value:
-                words += _pair(option, one)
+            texts = list(value)
         else:
-            words += _pair(option, _word(value, name))
-    if any("\0" in word for word in words):
-        raise UsageError("an option holds a null character; leave it out")
-    return [os.fsencode(word) for word in words]
+            texts = [_word(value, name)]
+        if any("\0" in text for text in texts):
+            raise UsageError(f"{name} holds a null character; leave it out")
+        words += [(field.name, os.fsencode(text)) for text in texts]
+    return words
 
 
 def _in_python(text: str) -> str:
@@ -319,63 +335,58 @@ def _warn(texts: Sequence[str]) -> None:
         warnings.warn(_in_python(text), ReliefWarning, stacklevel=3)
 
 
-def _needs_file(options: dict[str, Any]) -> None:
-    for name in ("unit", "up", "import_memory", "import_time", "max_triangles"):
-        if options[name] is not None:
-            raise UsageError(f"{name} is for a mesh that is read from a file; leave it out")
-
-
 def bake(mesh: Any, triangles: Any = None, *, name: str = "mesh",
-         budget: Optional[Number] = None, max_error: Optional[Number] = None, max_maps: Optional[Number] = None,
-         no_check: bool = False, plan_out: Optional[Path] = None, plan: Optional[Path] = None,
-         maps: Union[str, Sequence[str], None] = None, decode: Optional[str] = None, depth: Optional[str] = None,
-         paper: bool = False, resolution: Optional[Number] = None,
-         quality: Optional[str] = None, prefer: Optional[str] = None,
-         as_: Union[str, Sequence[str], None] = None, thickness: Optional[Number] = None, holes: Optional[str] = None,
-         repair: Optional[str] = None, strict: bool = False, check_intersections: bool = False,
-         unit: Optional[str] = None, up: Optional[str] = None,
-         import_memory: Optional[Number] = None, import_time: Optional[Number] = None,
+         # generated: bake-arguments by scripts/generate.sh
+         maps: Union[str, Sequence[str], None] = None,
+         decode: Optional[str] = None,
+         depth: Optional[str] = None,
+         paper: bool = False,
+         resolution: Optional[Number] = None,
+         budget: Optional[Number] = None,
+         max_error: Optional[Number] = None,
+         max_maps: Optional[Number] = None,
+         plan_out: Optional[Path] = None,
+         plan: Optional[Path] = None,
+         quality: Optional[str] = None,
+         prefer: Optional[str] = None,
+         threads: Optional[Number] = None,
+         holes: Optional[str] = None,
+         no_check: bool = False,
+         backend: Optional[str] = None,
+         device: Optional[Number] = None,
+         gpu_timeout: Optional[Number] = None,
+         unit: Optional[str] = None,
+         up: Optional[str] = None,
+         import_memory: Optional[Number] = None,
+         import_time: Optional[Number] = None,
          max_triangles: Optional[Number] = None,
-         threads: Optional[Number] = None, time_limit: Optional[Number] = None,
-         backend: Optional[str] = None, device: Optional[Number] = None,
-         gpu_timeout: Optional[Number] = None) -> Collider:
+         strict: bool = False,
+         check_intersections: bool = False,
+         repair: Optional[str] = None,
+         as_: Union[str, Sequence[str], None] = None,
+         thickness: Optional[Number] = None,
+         time_limit: Optional[Number] = None,
+         # end of bake-arguments by scripts/generate.sh
+         ) -> Collider:
     """Bakes a mesh as `relief bake` does: the same options and defaults, the same bytes.
 
     mesh: a file's path, read in a sandbox of its own; or vertices, (n, 3), with triangles, (m, 3).
-    name: what the container calls the mesh, if it is no file.
+    name: the mesh's name in the container, if it is no file.
 
-    The rest are the tool's options (`relief bake --help`, bake/cli/README.md). Those of most use:
-    budget: bytes on the GPU, 1 MB by default. max_error: instead, the fewest bytes that leave so many percent wrong.
-    quality: "fast", "normal" or "best". prefer: "inside", "outside" or "neither".
-    as_: what the parts are, "auto", "solid", "shell", "terrain" or "NAME=KIND"; one or a list.
-    thickness: of shells, in the mesh's units. holes: "close" or "keep". repair: "wrap=0.01", "orient" or "holes".
-    maps: maps of your own instead of planned ones, "FORMAT:key=value,…"; one or a list.
-    plan_out: a file to write the plan to. time_limit: seconds, beyond which it is a LimitError.
-
-    What the tool would warn of is a ReliefWarning.
+    Warnings of the tool are ReliefWarnings. The other arguments are its options:
     """
-    options = {option: value for option, value in locals().items() if option in _OPTIONS}
+    words = _words(_BAKE, locals())
     if _is_path(mesh, triangles):
         with _python_names():
-            made, said = _relief.bake_file(_words(options), _path(mesh, "mesh"))
+            made, said = _relief.bake_file(words, _path(mesh, "mesh"))
     else:
-        _needs_file(options)
         if not isinstance(name, str):
             _wrong_type(name, "name", "text")
         arrays = _mesh(mesh, triangles, name)
         with _python_names():
-            made, said = _relief.bake_mesh(_words(options), *arrays, name.encode(errors="replace"))
+            made, said = _relief.bake_mesh(words, *arrays, name.encode(errors="replace"))
     _warn(said)
     return Collider(made)
-
-
-# The options of the command line that the arguments of bake() and check() stand for.
-_OPTIONS = {name: "--" + {"maps": "map"}.get(name, name.rstrip("_").replace("_", "-"))
-            for name in [*inspect.signature(bake).parameters, "samples", "seed"]
-            if name not in ("mesh", "triangles", "name")}
-_ARGUMENTS = {option: name for name, option in _OPTIONS.items()}
-_FLAGS = ("no_check", "paper", "strict", "check_intersections")
-_LISTS = ("maps", "as_")
 
 
 def load(source: Union[Path, bytes, bytearray, memoryview]) -> Collider:
@@ -385,28 +396,41 @@ def load(source: Union[Path, bytes, bytearray, memoryview]) -> Collider:
     return Collider(_relief.load(_path(source, "source")))
 
 
-def check(collider: Collider, mesh: Any, triangles: Any = None, *, samples: Number = 200_000, seed: Number = 1,
-          unit: Optional[str] = None, up: Optional[str] = None, import_memory: Optional[Number] = None,
-          import_time: Optional[Number] = None, max_triangles: Optional[Number] = None) -> Accuracy:
+def check(collider: Collider, mesh: Any, triangles: Any = None, *,
+          # generated: check-arguments by scripts/generate.sh
+          samples: Optional[Number] = None,
+          seed: Optional[Number] = None,
+          detail: Optional[Number] = None,
+          unit: Optional[str] = None,
+          up: Optional[str] = None,
+          import_memory: Optional[Number] = None,
+          import_time: Optional[Number] = None,
+          max_triangles: Optional[Number] = None,
+          # end of check-arguments by scripts/generate.sh
+          ) -> Accuracy:
     """How wrong a collider is, at random points about the mesh that it was baked from: a file, or vertices and triangles.
 
     The verdict is that of `relief check`, with the same options: against the solid that was baked, the repaired one if it
-    was baked with repair.
+    was baked with repair. They are:
     """
     if not isinstance(collider, Collider):
         _wrong_type(collider, "collider", "a relief.Collider")
-    options = {option: value for option, value in locals().items() if option in _OPTIONS}
+    words = _words(_CHECK, locals())
     if _is_path(mesh, triangles):
         with _python_names():
-            measured, said = _relief.check_file(collider._handle, _words(options), _path(mesh, "mesh"))
+            measured, said = _relief.check_file(collider._handle, words, _path(mesh, "mesh"))
     else:
-        _needs_file(options)
         arrays = _mesh(mesh, triangles, "mesh")
         with _python_names():
-            measured, said = _relief.check_mesh(collider._handle, _words(options), *arrays)
+            measured, said = _relief.check_mesh(collider._handle, words, *arrays)
     _warn(said)
     places = tuple(WorstPlace(**place) for place in measured.pop("places"))
     return Accuracy(**measured, places=places)
+
+
+for _function, _fields in ((bake, _BAKE), (check, _CHECK)):
+    _function.__doc__ = inspect.cleandoc(_function.__doc__ or "") + "\n\n" + "\n".join(
+        f"{_name}: {_field.about}" for _name, _field in _fields.items())
 
 
 class Hits(NamedTuple):

@@ -150,7 +150,7 @@ void expectNothingDeepOutsideOfAnyView(std::uint32_t seed, std::initializer_list
     const PreparedMesh mesh(grid.mesh());
     for (const std::vector<std::string>& specs : viewsOf(grid, *mesh, seed)) {
         for (const Quality quality : qualities) {
-            SCOPED_TRACE(std::to_string(seed) + " " + specs.front() + " " + qualityName(quality));
+            SCOPED_TRACE(std::to_string(seed) + " " + specs.front() + " " + std::string(wordOf(quality)));
             expectNothingDeepOutside(grid, baked(mesh, specs, quality), seed, quality);
         }
     }
@@ -175,7 +175,7 @@ TEST(Voxels, NothingDeepIsOutsideWhateverIsPreferred) {
         const VoxelGrid grid = VoxelGrid::random(seed);
         const PreparedMesh mesh(grid.mesh());
         for (const Prefer prefer : {Prefer::kInside, Prefer::kOutside}) {
-            SCOPED_TRACE(std::to_string(seed) + " " + preferName(prefer));
+            SCOPED_TRACE(std::to_string(seed) + " " + std::string(wordOf(prefer)));
             const std::vector<std::string> specs = {"front-back:dir=-x,size=80",
                                                     "front-back:dir=1/2/3,size=70", "cube:size=30"};
             expectNothingDeepOutside(grid, baked(mesh, specs, Quality::kNormal, prefer), seed);

@@ -77,6 +77,20 @@ WAYS = [
 ]
 
 
+def by_themselves():
+    """Fields whose values the table of fields names, and that no other way has: one way for each."""
+    tried = set().union(*(arguments for arguments, _ in WAYS))
+    for name, kind, _, _, values in relief._relief.bake_fields():
+        if name not in tried and kind == "flag":
+            yield {**PLANNED, name: True}, ["--budget", "60kB", "--" + name.replace("_", "-")]
+        elif name not in tried and "|" in values and "[" not in values:
+            yield {**PLANNED, name: values.split("|")[-1]}, ["--budget", "60kB", "--" + name.replace("_", "-"),
+                                                              values.split("|")[-1]]
+
+
+WAYS += by_themselves()
+
+
 def tool(*words):
     return subprocess.run([BIN / "relief", *words], capture_output=True, text=True)
 

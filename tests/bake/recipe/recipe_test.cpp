@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::vector<RecipeKey>& keys() {
-    using Kind = RecipeKey::Kind;
+    using Kind = FieldKind;
     static const std::vector<RecipeKey> kKeys = {{"map", Kind::kList},        {"paper", Kind::kFlag},
                                                  {"plan", Kind::kValue},      {"budget", Kind::kValue},
                                                  {"decode", Kind::kValue},    {"prefer", Kind::kValue},

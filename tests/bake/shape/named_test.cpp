@@ -221,42 +221,5 @@ TEST(ShapeOptions, AreReadFromTheCommandLine) {
     EXPECT_TRUE(parseShapeOptions(many));
 }
 
-TEST(ShapeOptions, SurviveTheRecordOfAContainer) {
-    std::string all;
-    for (char c = ' '; c < '\x7f'; ++c) {
-        all += c;
-    }
-    const ShapeOptions options{
-        ShapeAs::kSolid,
-        0.25,
-        {{all, ShapeAs::kShell}, {"caf\xc3\xa9 \xe7\xaa\x93", ShapeAs::kAuto}, {"%41", ShapeAs::kTerrain}}};
-    const std::string text = recordedShape(options);
-    EXPECT_EQ(text.find_first_of(";|&$`'\"\\<>()*?~\t\n"), std::string::npos) << text;
-    const ShapeOptions read = shapeOptionsOf("--map x" + text + " --unit mm", {});
-    EXPECT_EQ(read.as, options.as);
-    EXPECT_EQ(read.thickness, options.thickness);
-    EXPECT_EQ(read.named, options.named);
-    EXPECT_EQ(recordedShape({}), "");
-}
-
-TEST(ShapeOptions, NothingElseOfARecordIsBelieved) {
-    const std::string too_long(kAskedNameBytesMax + 1, 'x');
-    for (const std::string& value :
-         {std::string("=shell"), std::string("a=wall"), std::string("a;b=shell"), std::string("a%=shell"),
-          std::string("a%4=shell"), std::string("a%0A=shell"), std::string("a%zz=shell"),
-          std::string("a%ff=shell"), std::string("\xff=shell"), std::string("a=b=shell"),
-          too_long + "=shell"}) {
-        ShapeOptions options{ShapeAs::kTerrain, 1.0, {}};
-        EXPECT_FALSE(readRecordedShape("--as", value, options)) << value;
-        EXPECT_TRUE(options.named.empty());
-        EXPECT_EQ(options.as, ShapeAs::kTerrain);
-    }
-    ShapeOptions options;
-    for (std::size_t i = 0; i < 2 * kAskedNamesMax; ++i) {
-        EXPECT_EQ(readRecordedShape("--as", "n" + std::to_string(i) + "=solid", options), i < kAskedNamesMax);
-    }
-    EXPECT_EQ(options.named.size(), kAskedNamesMax);
-}
-
 }  // namespace
 }  // namespace relief::test

@@ -458,12 +458,6 @@ TEST(Shape, AsOverrulesWhatRaysSee) {
 TEST(Shape, AContainerTellsHowItWasShaped) {
     const ShapeReport report = shaped(makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0)), ShapeAs::kShell).report;
     EXPECT_EQ(shapeOptionsText(report), " --as shell --thickness 0.05");
-    const ShapeOptions read = shapeOptionsOf("--map x" + shapeOptionsText(report), {ShapeAs::kAuto, 1.0});
-    EXPECT_EQ(read.as, ShapeAs::kShell);
-    EXPECT_FLOAT_EQ(static_cast<float>(read.thickness), 0.05F);
-    const ShapeOptions hostile = shapeOptionsOf(" --as sponge --thickness -inf", {ShapeAs::kSolid, 1.0});
-    EXPECT_EQ(hostile.as, ShapeAs::kSolid);
-    EXPECT_EQ(hostile.thickness, 1.0);
 }
 
 /// A sheet in the plane of the other two axes, a thin box, and a single triangle.

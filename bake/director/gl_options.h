@@ -1,4 +1,4 @@
-// The GPU of the verbs of `relief` that may use one.
+// The GPU, for the verbs of `relief` that may use one.
 #pragma once
 
 #include <memory>

@@ -1,24 +1,21 @@
-#include "bake/cli/check_advice.h"
+#include "bake/director/check_advice.h"
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <optional>
 
+#include "bake/director/director.h"
 #include "bake/measure/accuracy.h"
-#include "bake/pipeline/bake.h"
-#include "bake/pipeline/planned_bake.h"
-#include "bake/plan/view_planner.h"
 #include "bake/report/report_text.h"
 #include "formats/base/text.h"
 
 namespace relief {
 namespace {
 
-/// What must be gained to speak of help.
+/// At most this share of the wrong points is left by an option that helps.
 constexpr double kHelps = 0.9;
 /// A cube at a place looks this far from the surface at most, in units of the longest side.
 constexpr double kCubeReach = 0.1;
@@ -32,11 +29,19 @@ float rounded(double value) {
 
 class Advisor {
   public:
-    explicit Advisor(const AdviceInput& input) : input_(input) {
+    explicit Advisor(const AdviceInput& input) : input_(input), planned_(input.recorded.request) {
         truth_.options = input.truth.options;
         truth_.options.samples = std::min(truth_.options.samples, kTrialSamplesMax);
         truth_.longest_side = input.truth.longest_side;
         truth_.near.assign(input.truth.near.begin(), input.truth.near.begin() + truth_.options.samples);
+        planned_.mesh = input.mesh_file;
+        planned_.map.clear();
+        planned_.backend = BackendChoice::kRaycast;
+        planned_.budget = roundBudget(input.collider.gpuBytes());
+        // A default thickness follows the budget of the next bake.
+        if (planned_.thickness && planned_.thickness->by_part) {
+            planned_.thickness.reset();
+        }
     }
 
     std::vector<Advice> run() {
@@ -46,7 +51,7 @@ class Advisor {
             tryBudget(roundBudget(2 * input_.collider.gpuBytes()), "planned maps of twice the bytes");
         }
         if (any({WrongCause::kOther})) {
-            tryBudget(roundBudget(input_.collider.gpuBytes()), "planned maps of as many bytes");
+            tryBudget(*planned_.budget, "planned maps of as many bytes");
         }
         if (input_.shape.sheets > 0 && input_.shape.thickness > 0.0) {
             tryThicker();
@@ -55,12 +60,14 @@ class Advisor {
             tryCubes();
             tryMoreMaps();
         }
-        if ((open || sheet) && input_.recorded.repair.empty()) {
+        if ((open || sheet) && !repaired()) {
             trySolid();
             if (std::none_of(advice_.begin(), advice_.end(), [](const Advice& advice) {
                     return advice.helps && *advice.wrong_percent <= kGoodPercent;
                 })) {
-                advice_.push_back({command() + plannedBudget() + " --repair wrap",
+                BakeRequest wrapped = planned_;
+                wrapped.repair.method = "wrap";
+                advice_.push_back({commandLine(wrapped, input_.output),
                                    "a closed surface wrapped round the mesh", std::nullopt,
                                    "wrapping takes up to a minute", false});
             }
@@ -80,15 +87,9 @@ class Advisor {
         const double untried = 200.0;
         return !advice.wrong_percent ? untried : *advice.wrong_percent + (advice.helps ? 0.0 : 2.0 * untried);
     }
+    [[nodiscard]] bool repaired() const { return !planned_.repair.method.empty(); }
 
-    [[nodiscard]] std::string command() const {
-        return "relief bake " + shellWord(input_.mesh_file) + " -o " + shellWord(input_.output);
-    }
-    [[nodiscard]] std::string plannedBudget() const {
-        return " --budget " + budgetText(roundBudget(input_.collider.gpuBytes())) + input_.recorded.words();
-    }
-
-    /// Why a bake is not tried; empty: it is.
+    /// The reason why a bake is not tried; empty: it is.
     [[nodiscard]] std::string tooMuch(std::uint64_t bytes) const {
         if (!input_.recorded.understood) {
             return "the collider's record of its options is not understood";
@@ -97,52 +98,40 @@ class Advisor {
         if (triangles > kTrialTrianglesMax) {
             return std::to_string(triangles) + " triangles would take more than a few seconds";
         }
-        return bytes > kTrialBytesMax ? budgetText(bytes) + " would take more than a few seconds" : "";
+        return bytes > kTrialBytesMax ? bytesWord(bytes) + " would take more than a few seconds" : "";
     }
 
-    [[nodiscard]] BakeOptions bakeOptions() const {
-        BakeOptions options;
-        options.quality = input_.recorded.quality;
-        options.prefer = input_.recorded.prefer;
-        return options;
-    }
-    [[nodiscard]] static Result<double> wrongOf(const PreparedMesh& mesh, const BakeOptions& options,
-                                                const TruthSamples& truth) {
-        const Baked baked = RELIEF_TRY(bake(mesh, options));
+    /// Percent of the points near the surface.
+    static Result<double> wrongOf(const BakeRequest& request, const PreparedMesh& solid,
+                                  const TruthSamples& truth) {
+        const Baked baked = RELIEF_TRY(bakeSolid(request, solid));
         return measureField(truth, fieldOf(baked.collider)).near.total();
     }
-    [[nodiscard]] Result<double> wrongOfPlan(const PreparedMesh& mesh, std::uint64_t budget,
-                                             const TruthSamples& truth,
-                                             std::uint32_t max_maps = kPlannedMapsMax) const {
-        const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
-        ViewOptions options;
-        options.prefer = input_.recorded.prefer;
-        options.max_maps = max_maps;
-        const ViewChoice views = RELIEF_TRY(chooseViews(query, options));
-        const PlannedBake planned = RELIEF_TRY(bakePlanned(query, views, budget, bakeOptions()));
-        return measureField(truth, fieldOf(planned.baked.collider)).near.total();
+    [[nodiscard]] Result<double> wrongOf(const BakeRequest& request) const {
+        return wrongOf(request, input_.baked, truth_);
+    }
+    /// Of another solid, against that solid.
+    [[nodiscard]] Result<double> wrongOfSolid(const BakeRequest& request) const {
+        const ShapedMesh shaped = RELIEF_TRY(makeSolid(request, input_.imported));
+        const MeshQuery query = RELIEF_TRY(MeshQuery::build(shaped.mesh));
+        return wrongOf(request, shaped.mesh, sampleTruth(query, truth_.options));
     }
 
     /// Tries, and advises if it could be tried or is too much to be.
-    void attempt(const std::string& command, const char* about, std::uint64_t bytes,
-                 const std::function<Result<double>()>& trial) {
+    void attempt(const BakeRequest& request, const char* about, std::uint64_t bytes, bool same_solid) {
+        const std::string command = commandLine(request, input_.output);
         const std::string too_much = tooMuch(bytes);
         if (!too_much.empty()) {
             advice_.push_back({command, about, std::nullopt, too_much, false});
-        } else if (const Result<double> wrong = trial()) {
+        } else if (const Result<double> wrong = same_solid ? wrongOf(request) : wrongOfSolid(request)) {
             advice_.push_back({command, about, *wrong, "", *wrong <= kHelps * input_.wrong_percent});
         }
     }
 
     void tryBudget(std::uint64_t budget, const char* about) {
-        attempt(command() + " --budget " + budgetText(budget) + input_.recorded.words(), about, budget, [&] {
-            if (input_.shape.default_thickness > 0.0 && input_.recorded.repair.empty()) {
-                RecordedBake recorded = input_.recorded;
-                recorded.shape.thickness = defaultThickness(input_.imported->bounds, budget);
-                return wrongOfShape(recorded, budget);
-            }
-            return wrongOfPlan(input_.baked, budget, truth_);
-        });
+        BakeRequest request = planned_;
+        request.budget = budget;
+        attempt(request, about, budget, !(input_.shape.default_thickness > 0.0) || repaired());
     }
 
     /// More maps than a plan has by default, where there are as many.
@@ -150,14 +139,10 @@ class Advisor {
         if (input_.collider.maps.size() != kPlannedMapsMax) {
             return;
         }
-        const std::uint64_t budget = roundBudget(input_.collider.gpuBytes());
-        constexpr std::uint32_t kMaps = 2 * kPlannedMapsMax;
-        attempt(command() + " --budget " + budgetText(budget) + " --max-maps " + std::to_string(kMaps) +
-                    input_.recorded.words(),
-                "more maps of as many bytes, which make each step slower", budget,
-                [&] { return wrongOfPlan(input_.baked, budget, truth_, kMaps); });
+        BakeRequest request = planned_;
+        request.max_maps = 2 * kPlannedMapsMax;
+        attempt(request, "more maps of as many bytes, which make each step slower", *request.budget, true);
     }
-
     /// A cube in the free space before a place, as far as its size and no wall reach. nullopt: there is none.
     [[nodiscard]] std::optional<MapSpec> cubeAt(const WorstPlace& place) const {
         const double side = input_.truth.longest_side;
@@ -194,68 +179,45 @@ class Advisor {
 
     /// The maps that there are, and a cube at each place that they do not see.
     void tryCubes() {
-        BakeOptions options = bakeOptions();
-        options.maps = input_.recorded.maps;
+        BakeRequest request = planned_;
+        request.budget.reset();
+        request.map = input_.recorded.request.map;
         std::uint64_t bytes = input_.collider.gpuBytes();
         for (const WorstPlace& place : input_.places) {
             if (place.cause != WrongCause::kUnseen && place.cause != WrongCause::kSilhouette) {
                 continue;
             }
             if (const std::optional<MapSpec> cube = cubeAt(place)) {
-                options.maps.push_back(*cube);
+                request.map.push_back(toString(*cube));
                 bytes += std::uint64_t{24} * cube->width * cube->width;
             }
         }
-        if (input_.recorded.maps.empty() || options.maps.size() == input_.recorded.maps.size()) {
-            return;
+        const std::size_t recorded = input_.recorded.request.map.size();
+        if (recorded > 0 && request.map.size() > recorded) {
+            attempt(request, "the same maps, and a cube at each place that they do not see", bytes, true);
         }
-        std::string line = command();
-        for (const MapSpec& map : options.maps) {
-            line += " --map " + toString(map);
-        }
-        attempt(line + input_.recorded.words(),
-                "the same maps, and a cube at each place that they do not see", bytes,
-                [&] { return wrongOf(input_.baked, options, truth_); });
-    }
-
-    /// Planned maps for another solid, against that solid.
-    Result<double> wrongOfShape(const RecordedBake& recorded, std::uint64_t budget) const {
-        const ShapedMesh shaped = RELIEF_TRY(shapedMesh(recorded, input_.imported));
-        const MeshQuery query = RELIEF_TRY(MeshQuery::build(shaped.mesh));
-        return wrongOfPlan(shaped.mesh, budget, sampleTruth(query, truth_.options));
     }
 
     /// A bake without --holes keep.
     void trySolid() {
-        if (!input_.recorded.keeps_holes) {
-            return;
+        if (planned_.holes == Holes::kKeep) {
+            BakeRequest request = planned_;
+            request.holes = Holes::kClose;
+            attempt(request, "holes closed, and sheets made shells", *request.budget, false);
         }
-        RecordedBake recorded = input_.recorded;
-        recorded.keeps_holes = false;
-        const std::uint64_t budget = roundBudget(input_.collider.gpuBytes());
-        recorded.shape.thickness = defaultThickness(input_.imported->bounds, budget);
-        recorded.shape.thickness_by_part = true;
-        attempt(command() + " --budget " + budgetText(budget) + recorded.words("--holes"),
-                "holes closed, and sheets made shells", budget,
-                [&] { return wrongOfShape(recorded, budget); });
     }
 
     void tryThicker() {
-        RecordedBake recorded = input_.recorded;
-        if (!recorded.repair.empty()) {
-            return;
+        if (!repaired()) {
+            BakeRequest request = planned_;
+            request.thickness = Thickness{double{rounded(2.0 * input_.shape.thickness)}, false};
+            attempt(request, "sheets twice as thick", *request.budget, false);
         }
-        const float thickness = rounded(2.0 * input_.shape.thickness);
-        recorded.shape.thickness = double{thickness};
-        recorded.shape.thickness_by_part = false;
-        const std::uint64_t budget = roundBudget(input_.collider.gpuBytes());
-        attempt(command() + " --budget " + budgetText(budget) + recorded.words("--thickness") +
-                    " --thickness " + shortest(thickness),
-                "sheets twice as thick", budget, [&] { return wrongOfShape(recorded, budget); });
     }
 
     const AdviceInput& input_;
-    TruthSamples truth_;  // near the surface alone, and fewer
+    BakeRequest planned_;  // the recorded bake, planned anew for as many bytes
+    TruthSamples truth_;   // near the surface alone, and fewer
     std::vector<Advice> advice_;
 };
 

@@ -1,17 +1,12 @@
-#include "bake/cli/mesh_check.h"
+#include "bake/director/mesh_check.h"
 
-#include <spdlog/spdlog.h>
-
-#include <CLI/CLI.hpp>
 #include <cmath>
 
+#include "bake/director/director.h"
+#include "bake/import/mesh_import.h"
 #include "bake/measure/sight.h"
-#include "bake/repair/mesh_care.h"
 #include "bake/repair/winding.h"
-#include "bake/report/parts_report.h"
 #include "formats/base/text.h"
-#include "runtime/tool/command_line.h"
-#include "runtime/tool/option_values.h"
 
 namespace relief {
 namespace {
@@ -19,10 +14,14 @@ namespace {
 constexpr std::uint64_t kSamplesMax = 100'000'000;
 /// Bounds that differ by more, in units of the longest side, are those of another mesh.
 constexpr double kBoundsTolerance = 1e-3;
+/// Of a wrap, by which it moves the bounds: see wrapMesh.
+constexpr double kWrapOffset = 1.0 / 30.0;
+/// A wrap finer than this takes minutes.
+constexpr double kWrapAlphaLeast = double{0.005F};
 
-Result<void> checkSameMesh(const Collider& collider, const TriangleMesh& mesh) {
-    const double tolerance = (kBoundsTolerance + repairReach(collider.provenance.options)) *
-                             static_cast<double>(mesh.bounds.longestSide());
+Result<void> checkSameMesh(const Collider& collider, const std::string& repair, const TriangleMesh& mesh) {
+    const double tolerance =
+        (kBoundsTolerance + kWrapOffset * wrapAlpha(repair)) * static_cast<double>(mesh.bounds.longestSide());
     for (int i = 0; i < 3; ++i) {
         // Written so that NaN fails too.
         const bool same =
@@ -41,10 +40,10 @@ Result<void> checkSameMesh(const Collider& collider, const TriangleMesh& mesh) {
 }
 
 /// The mesh, with the names that the collider was baked by.
-Result<TriangleMesh> importFor(const RecordedBake& recorded, const MeshCheckSettings& settings) {
-    ImportOptions options = settings.import.options;
-    options.names = recorded.shape.names();
-    Result<TriangleMesh> mesh = importMeshInWorker(settings.mesh, options, settings.import.limits);
+Result<TriangleMesh> importFor(const std::vector<std::string>& names, const CheckRequest& request) {
+    ImportOptions options = request.import;
+    options.names = names;
+    Result<TriangleMesh> mesh = importMeshInWorker(request.mesh, options, request.import_limits);
     if (!mesh && mesh.error().code == ErrorCode::kUsage && !options.names.empty()) {
         return invalidInput(
             mesh.error().message +
@@ -53,21 +52,26 @@ Result<TriangleMesh> importFor(const RecordedBake& recorded, const MeshCheckSett
     return mesh;
 }
 
-Result<void> readMesh(const MeshCheckSettings& settings, std::optional<TriangleMesh> given, MeshCheck& run) {
+Result<void> readMesh(const CheckRequest& request, std::optional<TriangleMesh> given, MeshCheck& run) {
     run.recorded = recordedBake(run.collider.provenance.options);
+    const BakeRequest& recorded = run.recorded.request;
+    const std::vector<std::string> names = RELIEF_TRY(parseShapeOptions(recorded.as)).names();
     if (!given) {
-        given = RELIEF_TRY(importFor(run.recorded, settings));
-    } else if (!run.recorded.shape.names().empty()) {
+        given = RELIEF_TRY(importFor(names, request));
+    } else if (const std::string option = importOptionOf(request.import, request.import_limits);
+               !option.empty()) {
+        return fail(ErrorCode::kUsage, option + " is for a mesh that is read from a file; leave it out");
+    } else if (!names.empty()) {
         return fail(ErrorCode::kUsage,
                     given->name + ": the collider was baked by names in the mesh's file; give that file");
     }
     Winding winding = RELIEF_TRY(windOutwards(std::move(*given)));
     run.imported = std::move(winding.mesh);
-    ShapedMesh shaped = RELIEF_TRY(shapedMesh(run.recorded, run.imported));
+    ShapedMesh shaped = RELIEF_TRY(makeSolid(recorded, run.imported));
     run.mesh = std::move(shaped.mesh);
     run.shape = std::move(shaped.report);
     run.parts = std::move(shaped.parts);
-    RELIEF_TRY(checkSameMesh(run.collider, *run.mesh));
+    RELIEF_TRY(checkSameMesh(run.collider, recorded.repair.method, *run.mesh));
     const Provenance& from = run.collider.provenance;
     run.same_file = from.mesh_hash == run.mesh->content_hash;
     run.warnings = run.mesh->warnings;
@@ -83,12 +87,13 @@ Result<void> readMesh(const MeshCheckSettings& settings, std::optional<TriangleM
 /// The mesh as it was baked, or as it came if the repair cannot be made again.
 void makeBakedMesh(MeshCheck& run) {
     run.baked = run.mesh;
-    if (run.recorded.repair.empty()) {
+    const std::string& repair = run.recorded.request.repair.method;
+    if (repair.empty()) {
         return;
     }
     std::string reason = "it is not the same file";
     if (run.same_file) {
-        Result<ShapedMesh> baked = repairedMesh(run.recorded, run.imported);
+        Result<ShapedMesh> baked = repairedSolid(run.recorded.request, run.imported);
         if (baked) {
             run.baked = std::move(baked->mesh);
             run.shape = std::move(baked->report);
@@ -97,17 +102,16 @@ void makeBakedMesh(MeshCheck& run) {
         }
         reason = baked.error().message;
     }
-    run.warnings.push_back("the collider is of a mesh repaired by " + run.recorded.repair +
-                           ", which is not made again (" + reason + "); all is measured against " +
-                           run.mesh->name + " as it came");
+    run.warnings.push_back("the collider is of a mesh repaired by " + repair + ", which is not made again (" +
+                           reason + "); all is measured against " + run.mesh->name + " as it came");
 }
 
-Result<void> measure(const MeshCheckSettings& settings, MeshCheck& run) {
+Result<void> measure(const CheckRequest& request, MeshCheck& run) {
     const MeshQuery query = RELIEF_TRY(MeshQuery::build(run.mesh));
     const MeshQuery baked = RELIEF_TRY(MeshQuery::build(run.baked));
     AccuracyOptions options;
-    options.samples = static_cast<std::uint32_t>(settings.samples);
-    options.seed = settings.seed;
+    options.samples = static_cast<std::uint32_t>(request.samples);
+    options.seed = request.seed;
     run.watertight = query.watertight();
     run.original.samples = sampleTruth(query, options);
     run.original.accuracy = measureCollider(run.original.samples, query, run.collider);
@@ -116,14 +120,12 @@ Result<void> measure(const MeshCheckSettings& settings, MeshCheck& run) {
         run.repaired = Measured{sampleTruth(baked, options), {}};
         run.repaired->accuracy = measureCollider(run.repaired->samples, baked, run.collider);
     }
-    spdlog::debug("truth {:.2f} s, field {:.2f} s", run.original.samples.seconds,
-                  run.original.accuracy.field.seconds);
     run.query = is_repaired ? baked : query;
     PartOptions part_options;
-    part_options.seed = settings.seed;
-    part_options.points_all = settings.samples;
-    if (settings.detail) {
-        part_options.detail = double{*settings.detail};
+    part_options.seed = request.seed;
+    part_options.points_all = request.samples;
+    if (request.detail) {
+        part_options.detail = double{*request.detail};
     }
     run.part_accuracy = measureParts(*run.query, run.parts, fieldOf(run.collider), part_options);
     const Sights sights(run.collider.maps, *run.query);
@@ -138,59 +140,30 @@ bool MeshCheck::passes(std::optional<float> max_error) const {
                           part_accuracy.countOf(PartVerdict::kLost) == 0);
 }
 
-CLI::Option* addMeshCheckOptions(CLI::App& verb, MeshCheckSettings& settings) {
-    CLI::Option* mesh =
-        verb.add_option("--mesh", settings.mesh, "The mesh that it was baked from")->option_text("MESH");
-    verb.add_option("--samples", settings.samples, "Points of each kind; default 200000")
-        ->option_text("N")
-        ->transform(wholeNumber(1, std::numeric_limits<std::uint64_t>::max(), "a whole number of at least 1"))
-        ->needs(mesh);
-    verb.add_option("--seed", settings.seed, "Of the points; default 1")
-        ->option_text("S")
-        ->transform(wholeNumber())
-        ->needs(mesh);
-    verb.add_option(
-            "--detail", settings.detail,
-            "Judge each part of the mesh that is at least so long by itself; default: a thousandth of\n"
-            "the longest part, in metres at most 0.1")
-        ->option_text("LENGTH")
-        ->transform(number(0.0F, 1e15F, "a length of at least 0, in the collider's units"))
-        ->needs(mesh);
-    return mesh;
-}
-
-Result<MeshCheckSettings> meshCheckSettingsOf(std::vector<std::string> options, const std::string& mesh) {
-    CLI::App app("", "relief check");
-    MeshCheckSettings settings;
-    addMeshCheckOptions(app, settings);
-    addImportOptions(app, settings.import);
-    options.emplace_back("--mesh=MESH");  // which others need
-    static_cast<void>(RELIEF_TRY(parseCommandLine(app, std::move(options))));
-    settings.mesh = mesh;
-    return settings;
-}
-
-Result<void> prepareMeshCheck(const MeshCheckSettings& settings) {
-    if (settings.samples > kSamplesMax) {
-        return fail(ErrorCode::kLimit, "--samples is " + std::to_string(settings.samples) +
-                                           "; the limit is " + std::to_string(kSamplesMax));
+Result<ShapedMesh> repairedSolid(const BakeRequest& recorded, const PreparedMesh& mesh) {
+    const double alpha = wrapAlpha(recorded.repair.method);
+    if (alpha > 0.0 && alpha < kWrapAlphaLeast) {
+        return fail(ErrorCode::kUnsupported, "--repair " + recorded.repair.method + " takes long");
     }
-    return {};
+    RepairOptions options = recorded.repair;
+    options.examine = false;
+    const RepairedMesh repaired = RELIEF_TRY(repairMesh(mesh, options));
+    return makeSolid(recorded, repaired.mesh);
 }
 
-Result<MeshCheck> checkAgainstMesh(const MeshCheckSettings& settings, Collider collider,
-                                   std::optional<TriangleMesh> given,
-                                   const std::function<void()>& checkpoint) {
+Result<MeshCheck> check(const CheckRequest& request, Collider collider, std::optional<TriangleMesh> given,
+                        const std::function<void()>& checkpoint) {
+    if (request.samples > kSamplesMax) {
+        return fail(ErrorCode::kLimit, "--samples is " + std::to_string(request.samples) + "; the limit is " +
+                                           std::to_string(kSamplesMax));
+    }
     MeshCheck run;
     run.collider = std::move(collider);
-    RELIEF_TRY(readMesh(settings, std::move(given), run));
+    RELIEF_TRY(readMesh(request, std::move(given), run));
     checkpoint();
     makeBakedMesh(run);
     checkpoint();
-    for (const std::string& warning : run.warnings) {
-        spdlog::warn(warning);
-    }
-    RELIEF_TRY(measure(settings, run));
+    RELIEF_TRY(measure(request, run));
     return run;
 }
 

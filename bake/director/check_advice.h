@@ -1,11 +1,11 @@
-// What to do about a collider that is wrong too often: commands, tried in memory before they are advised.
+// Commands that may help a collider that is wrong too often, tried in memory before they are advised.
 #pragma once
 
 #include <span>
 #include <string>
 #include <vector>
 
-#include "bake/cli/recorded_bake.h"
+#include "bake/director/bake_request.h"
 #include "bake/measure/worst_places.h"
 #include "bake/mesh/mesh_query.h"
 #include "bake/report/check_report.h"

@@ -1,4 +1,4 @@
-#include "bake/repair/mesh_care.h"
+#include "bake/repair/repair.h"
 
 #include <array>
 #include <string_view>
@@ -12,7 +12,6 @@ namespace relief {
 namespace {
 
 constexpr std::array<std::string_view, 3> kMethods = {"wrap", "orient", "holes"};
-constexpr std::string_view kWrapOption = "--repair wrap=";
 
 enum class Method : std::uint8_t { kWrap, kOrient, kHoles };
 
@@ -26,7 +25,7 @@ struct Repair {
     }
 };
 
-/// nullopt: none is asked for.
+/// nullopt: none.
 Result<std::optional<Repair>> parseRepair(const std::string& text) {
     if (text.empty()) {
         return std::nullopt;
@@ -58,7 +57,7 @@ Result<std::optional<Repair>> parseRepair(const std::string& text) {
     return repair;
 }
 
-Result<TriangleMesh> repaired(const TriangleMesh& mesh, const Repair& repair, MeshCare& care) {
+Result<TriangleMesh> repaired(const TriangleMesh& mesh, const Repair& repair, RepairReport& report) {
     switch (repair.method) {
         case Method::kWrap:
             return wrapMesh(mesh, double{repair.alpha});
@@ -66,74 +65,63 @@ Result<TriangleMesh> repaired(const TriangleMesh& mesh, const Repair& repair, Me
             return orientMesh(mesh);
         case Method::kHoles: {
             HoleFill fill = RELIEF_TRY(fillHoles(mesh));
-            care.filled_holes = fill.filled;
-            care.holes_left = fill.left;
+            report.filled_holes = fill.filled;
+            report.holes_left = fill.left;
             return std::move(fill.mesh);
         }
     }
     return mesh;
 }
 
-/// Looks at the mesh again, and at whether it became what was asked for.
-Result<void> checkRepaired(const PreparedMesh& mesh, const Repair& repair, const MeshCareOptions& options,
-                           MeshCare& care) {
-    care.repaired = RELIEF_TRY(inspectMesh(mesh, options.check_intersections));
+/// Examines the repaired mesh, and fails where the repair left faults.
+Result<void> checkRepaired(const PreparedMesh& mesh, const Repair& repair, const RepairOptions& options,
+                           RepairReport& report) {
+    report.repaired = RELIEF_TRY(inspectMesh(mesh, options.check_intersections));
     mesh.freeEdges();
-    if (repair.method == Method::kWrap && !care.repaired->isSolid()) {
+    if (repair.method == Method::kWrap && !report.repaired->isSolid()) {
         return fail(ErrorCode::kFailure,
-                    mesh->name + ": wrapping it left " + faultsText(*care.repaired) +
+                    mesh->name + ": wrapping it left " + faultsText(*report.repaired) +
                         "; move the mesh to the origin, or try another --repair wrap=ALPHA");
     }
-    return options.strict ? requireSolid(*care.repaired, mesh->name) : Result<void>();
+    return options.strict ? requireSolid(*report.repaired, mesh->name) : Result<void>();
 }
 
 }  // namespace
 
-Result<void> checkMeshCare(const MeshCareOptions& options) {
-    const Result<std::optional<Repair>> repair = parseRepair(options.repair);
+Result<void> checkRepair(const std::string& method) {
+    const Result<std::optional<Repair>> repair = parseRepair(method);
     return repair ? Result<void>() : forward(repair);
 }
 
-Result<CaredMesh> careFor(PreparedMesh mesh, const MeshCareOptions& options) {
-    const std::optional<Repair> repair = RELIEF_TRY(parseRepair(options.repair));
-    MeshCare care;
-    if (options.report || options.strict || options.check_intersections || repair) {
-        care.health = RELIEF_TRY(inspectMesh(mesh, options.check_intersections));
+double wrapAlpha(const std::string& method) {
+    const Result<std::optional<Repair>> repair = parseRepair(method);
+    return repair && *repair && (*repair)->method == Method::kWrap ? double{(*repair)->alpha} : 0.0;
+}
+
+Result<RepairedMesh> repairMesh(PreparedMesh mesh, const RepairOptions& options) {
+    const std::optional<Repair> repair = RELIEF_TRY(parseRepair(options.method));
+    RepairReport report;
+    if (options.examine || options.strict || options.check_intersections || repair) {
+        report.health = RELIEF_TRY(inspectMesh(mesh, options.check_intersections));
     }
     if (options.strict && !repair) {
-        RELIEF_TRY(requireSolid(*care.health, mesh->name));
+        RELIEF_TRY(requireSolid(*report.health, mesh->name));
     }
     if (repair) {
-        care.repair = repair->text();
+        report.repair = repair->text();
         mesh.freeEdges();
-        mesh = RELIEF_TRY(repaired(*mesh, *repair, care));
+        mesh = RELIEF_TRY(repaired(*mesh, *repair, report));
     }
     Winding winding = RELIEF_TRY(windOutwards(std::move(mesh)));
     mesh = std::move(winding.mesh);
-    care.turned = winding.turned;
+    report.turned = winding.turned;
     if (repair) {
         if (mesh.orientation() < 0.0) {
             mesh = std::move(mesh).woundOutwards(std::vector<bool>(mesh->triangles.size(), true));
         }
-        RELIEF_TRY(checkRepaired(mesh, *repair, options, care));
+        RELIEF_TRY(checkRepaired(mesh, *repair, options, report));
     }
-    return CaredMesh{std::move(mesh), std::move(care)};
-}
-
-std::string careOptionsText(const MeshCare& care) {
-    return care.repair.empty() ? "" : " --repair " + care.repair;
-}
-
-double repairReach(const std::string& container_options) {
-    const std::size_t at = container_options.find(kWrapOption);
-    if (at == std::string::npos) {
-        return 0.0;
-    }
-    std::string_view alpha = std::string_view(container_options).substr(at + kWrapOption.size());
-    alpha = alpha.substr(0, alpha.find(' '));
-    // Any container may say anything here.
-    const std::optional<float> value = parseFloat(alpha);
-    return value && *value > 0.0F && *value <= float(kWrapAlphaMax) ? double{*value} / 30.0 : 0.0;
+    return RepairedMesh{std::move(mesh), std::move(report)};
 }
 
 }  // namespace relief

@@ -1,4 +1,4 @@
-#include "bake/cli/gl_options.h"
+#include "bake/director/gl_options.h"
 
 namespace relief {
 
@@ -14,8 +14,7 @@ Result<WatchedContext> openGl(const GpuOptions& options) {
     GlContextOptions wanted;
     wanted.device = options.device;
     WatchedContext opened;
-    opened.watchdog =
-        std::make_unique<Watchdog>(options.timeout.value_or(defaultGpuTimeout(false)), endProcess("relief"));
+    opened.watchdog = std::make_unique<Watchdog>(options.limit(false), endProcess("relief"));
     opened.watchdog->feed("making a context");
     Result<std::unique_ptr<GlContext>> context = GlContext::create(wanted);
     opened.watchdog->rest();
@@ -23,9 +22,7 @@ Result<WatchedContext> openGl(const GpuOptions& options) {
         return forward(context);
     }
     opened.context = std::move(*context);
-    if (!options.timeout) {
-        opened.watchdog->setLimit(defaultGpuTimeout(opened.context->software()));
-    }
+    opened.watchdog->setLimit(options.limit(opened.context->software()));
     return opened;
 }
 

@@ -3,21 +3,13 @@
 
 #include <string>
 
-#include "bake/cli/gl_options.h"
-#include "bake/pipeline/bake.h"
-#include "bake/plan/prefer.h"
+#include "bake/director/bake_request.h"
+#include "bake/director/gl_options.h"
 #include "formats/base/result.h"
-
-namespace CLI {
-class App;
-}
 
 namespace relief {
 
-enum class BackendChoice : std::uint8_t { kRaycast, kRaster, kAuto };
-void addBackendOption(CLI::App& verb, BackendChoice& choice);
-
-/// What of a bake decides whether the GPU can do it.
+/// The part of a bake that decides whether the GPU can do it.
 struct BackendRequest {
     bool planned = false;                ///< maps are chosen by planning, which casts rays
     bool quality_given = false;          ///< by an option or a plan file
@@ -29,13 +21,13 @@ struct BackendRequest {
 struct Backend {
     bool raster = false;
     std::string device;  ///< of raster: GlContext::description()
-    std::string reason;  ///< of auto: why this one; else empty
+    std::string reason;  ///< of auto: for this choice; else empty
     WatchedContext gl;   ///< of raster: current, and the watchdog fed; keep it until the bake is done
 };
 
-/// Opens a GL only if it is asked for one.
-/// Fails with kUsage for a GPU option where no GPU is asked for, and for raster where it cannot bake what is requested
-/// (the message says what to leave out); with kUnsupported for raster without an OpenGL.
+/// Opens a GL only where the choice may need one.
+/// Fails with kUsage for a GPU option that does nothing, and for raster where it cannot bake the request (the message names
+/// the option to leave out); with kUnsupported for raster without an OpenGL.
 [[nodiscard]] Result<Backend> chooseBackend(BackendChoice choice, const GpuOptions& gpu,
                                             const BackendRequest& request);
 

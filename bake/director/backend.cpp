@@ -1,23 +1,19 @@
-#include "bake/cli/backend.h"
-
-#include <CLI/CLI.hpp>
-
-#include "runtime/tool/option_values.h"
+#include "bake/director/backend.h"
 
 namespace relief {
 namespace {
 
-/// What keeps the GPU from it, and the cure; empty if nothing does.
+/// The reason why the GPU cannot bake the request, and the cure; empty: it can.
 std::string obstacle(const BackendRequest& request) {
     if (request.planned) {
         return "planning the maps casts rays; name them by --map, --paper or --plan";
     }
     if (request.quality_given && request.quality != Quality::kFast) {
-        return std::string("--quality ") + qualityName(request.quality) +
+        return "--quality " + std::string(wordOf(request.quality)) +
                " fits planes to more rays than one a texel; take --quality fast";
     }
     if (request.prefer != Prefer::kNeither) {
-        return std::string("--prefer ") + preferName(request.prefer) +
+        return "--prefer " + std::string(wordOf(request.prefer)) +
                " chooses among planes that rays were fitted to; leave --prefer out";
     }
     if (request.gaps) {
@@ -27,16 +23,6 @@ std::string obstacle(const BackendRequest& request) {
 }
 
 }  // namespace
-
-void addBackendOption(CLI::App& verb, BackendChoice& choice) {
-    addWords(verb, "--backend", choice,
-             WordsFor<BackendChoice>{{"raycast", BackendChoice::kRaycast},
-                                     {"raster", BackendChoice::kRaster},
-                                     {"auto", BackendChoice::kAuto}},
-             "Who bakes maps that are named: raycast (on the CPU, default), raster (on the GPU, texels'\n"
-             "centres alone: implies --quality fast), or auto: raster where the options allow it and\n"
-             "the OpenGL is a GPU's. Only raycast gives the same bytes on every machine");
-}
 
 Result<Backend> chooseBackend(BackendChoice choice, const GpuOptions& gpu, const BackendRequest& request) {
     Backend backend;

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "bake/cli/mesh_check.h"
+#include "bake/director/mesh_check.h"
 #include "bake/report/bake_report.h"
 #include "bake/report/check_report.h"
 #include "bake/report/parts_report.h"
@@ -59,7 +59,7 @@ void fields(Visitor& visit, R& report) {
           {"Accuracy against the mesh as imported"});
     const auto repaired = [&](auto& visit_repaired) {
         const Measured& measured = run.repaired ? *run.repaired : run.original;
-        visit_repaired("repair", run.recorded.repair, {"--repair of the bake"});
+        visit_repaired("repair", run.recorded.request.repair.method, {"--repair of the bake"});
         visit_repaired("triangles", run.baked->triangles.size(), {"Triangles of the repaired mesh"});
         visit_repaired("accuracy", ColliderAccuracyReport{measured.accuracy, measured.samples.longest_side},
                        {"Accuracy against it"});

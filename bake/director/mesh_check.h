@@ -1,5 +1,5 @@
-// A collider measured against the mesh that it was baked from: what `relief check --mesh` reports and `relief view --mesh`
-// shows.
+// A collider measured against the mesh that it was baked from: for `relief check --mesh`, `relief view --mesh` and
+// relief.check() in Python.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "bake/cli/import_options.h"
-#include "bake/cli/recorded_bake.h"
+#include "bake/director/bake_request.h"
 #include "bake/measure/accuracy.h"
 #include "bake/measure/part_accuracy.h"
 #include "bake/measure/worst_places.h"
@@ -20,24 +19,38 @@
 #include "formats/base/result.h"
 #include "formats/collider.h"
 
-namespace CLI {
-class App;
-class Option;
-}  // namespace CLI
-
 namespace relief {
 
-struct MeshCheckSettings {
-    std::string mesh;
+struct CheckRequest {
+    std::string mesh;  ///< a file
     std::uint64_t samples = 200'000;
     std::uint64_t seed = 1;
     std::optional<float> detail;  ///< smaller parts do not count, object units
-    ImportSettings import;
+    ImportOptions import;
+    ImportLimits import_limits;
 };
 
-/// Adds --mesh, and --samples, --seed and --detail, which need it.
-/// \return --mesh
-CLI::Option* addMeshCheckOptions(CLI::App& verb, MeshCheckSettings& settings);
+/// Those that go without the import's.
+template <class Visitor, FieldsOf<CheckRequest> Request>
+void measurementFields(Visitor& visit, Request& request) {
+    visit("samples", request.samples,
+          {.help = "Points of each kind", .range = {1.0}, .must = "a whole number of at least 1"});
+    visit("seed", request.seed, {.help = "Of the points", .value = "S"});
+    visit("detail", request.detail,
+          {.help = "Judge each part of the mesh that is at least so long by itself",
+           .unit = "object units",
+           .range = {0.0, double{1e15F}},
+           .fallback = "a thousandth of the longest part, in metres at most 0.1",
+           .value = "LENGTH",
+           .must = "a length of at least 0, in the collider's units"});
+}
+
+template <class Visitor, FieldsOf<CheckRequest> Request>
+void fields(Visitor& visit, Request& request) {
+    measurementFields(visit, request);
+    fields(visit, request.import);
+    fields(visit, request.import_limits);
+}
 
 /// The truth of a mesh, and how far the collider is from it.
 struct Measured {
@@ -56,7 +69,7 @@ struct MeshCheck {
     PreparedMesh baked{TriangleMesh()};  ///< the same of the repaired mesh; `mesh` without a repair
     std::optional<MeshQuery> query;      ///< of what is judged: `baked`
     bool same_file = false;
-    std::vector<std::string> warnings;  ///< one line each; already logged
+    std::vector<std::string> warnings;  ///< one line each
     bool watertight = false;
     Measured original;
     std::optional<Measured> repaired;  ///< if the collider is of a repaired mesh
@@ -72,20 +85,17 @@ struct MeshCheck {
     [[nodiscard]] bool passes(std::optional<float> max_error) const;
 };
 
-/// The command of a command line. \param options  its words, without --mesh: "--samples=1000".
-/// Errors: kUsage, as `relief check` has them.
-[[nodiscard]] Result<MeshCheckSettings> meshCheckSettingsOf(std::vector<std::string> options,
-                                                            const std::string& mesh);
+/// The same of the mesh as the recorded repair leaves it.
+/// Errors: those of repairMesh and makeSolid; kUnsupported: a repair that takes too long to be made again.
+[[nodiscard]] Result<ShapedMesh> repairedSolid(const BakeRequest& recorded, const PreparedMesh& mesh);
 
-/// Before the long work. Errors: kLimit (--samples).
-[[nodiscard]] Result<void> prepareMeshCheck(const MeshCheckSettings& settings);
-
-/// Imports the mesh, measures, and looks for the worst places. Logs warnings.
-/// \param given       as finishMesh leaves it: instead of the file that the settings name.
+/// Imports the mesh, measures, and looks for the worst places.
+/// \param given       as finishMesh leaves it: instead of the file that the request names.
 /// \param checkpoint  called between stages; what it throws comes out of here and ends the check.
-/// Errors: those of importMeshInWorker, of the shapes and of Embree; kInvalidInput (the mesh of another collider).
-[[nodiscard]] Result<MeshCheck> checkAgainstMesh(
-    const MeshCheckSettings& settings, Collider collider, std::optional<TriangleMesh> given = {},
+/// Errors: kLimit (samples); those of importMeshInWorker, of the shapes and of Embree; kInvalidInput (the mesh of another
+/// collider); kUsage (options or names that need the mesh's file).
+[[nodiscard]] Result<MeshCheck> check(
+    const CheckRequest& request, Collider collider, std::optional<TriangleMesh> given = {},
     const std::function<void()>& checkpoint = [] {});
 
 }  // namespace relief

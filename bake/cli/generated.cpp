@@ -1,0 +1,55 @@
+#include "bake/cli/generated.h"
+
+#include "bake/cli/bake_outputs.h"
+#include "bake/cli/command_recipe.h"
+#include "bake/director/mesh_check.h"
+
+namespace relief {
+namespace {
+
+/// "         budget: Optional[Number] = None,"
+std::string pythonArguments(const std::vector<FieldWords>& fields, const std::string& indent) {
+    std::string text;
+    for (const FieldWords& field : fields) {
+        const std::string name = field.name == "map" ? "maps" : field.name == "as" ? "as_" : field.name;
+        const std::string type = field.kind == FieldKind::kFlag   ? "bool = False"
+                                 : field.kind == FieldKind::kList ? "Union[str, Sequence[str], None] = None"
+                                 : field.number || !field.info.unit.empty() ? "Optional[Number] = None"
+                                 : valueText(field) == "FILE"               ? "Optional[Path] = None"
+                                                                            : "Optional[str] = None";
+        text += indent + name + ": " + type + ",\n";
+    }
+    return text;
+}
+
+std::string recipeDictionary() {
+    std::string text;
+    for (const RecipeKey& key : recipeKeys()) {
+        text += "\"" + key.name + "\"\n";
+    }
+    for (const FieldWords& field : fieldsOf(BakeRequest())) {
+        for (const std::string_view choice : field.choices) {
+            text += "\"" + std::string(choice) + "\"\n";
+        }
+    }
+    return text;
+}
+
+}  // namespace
+
+GeneratedTexts bakeTexts() {
+    const std::vector<FieldWords> bake = fieldsOf(BakeRequest());
+    const std::vector<FieldWords> check = fieldsOf(CheckRequest());
+    std::vector<FieldWords> options = bake;
+    for (FieldWords& field : fieldsOf(BakeOutputs())) {
+        options.push_back(std::move(field));
+    }
+    const std::string init = "bake/python/relief/__init__.py";
+    return {{"bake/cli/README.md", "bake-options", optionTable(options)},
+            {"bake/cli/README.md", "check-options", optionTable(check)},
+            {init, "bake-arguments", pythonArguments(bake, "         ")},
+            {init, "check-arguments", pythonArguments(check, "          ")},
+            {"tests/fuzz/recipe.dict", "bake-keys", recipeDictionary()}};
+}
+
+}  // namespace relief

@@ -1,0 +1,213 @@
+#include "bake/director/bake_request.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "bake/plan/map_spec.h"
+#include "formats/base/text.h"
+
+namespace relief {
+namespace {
+
+constexpr std::string_view kByPart = "auto=";
+constexpr std::string_view kHex = "0123456789ABCDEF";
+
+/// \return the option that chooses the maps. Errors: kUsage: there are two.
+Result<MapSource> sourceOf(const BakeRequest& request) {
+    struct Chooser {
+        const char* name;
+        bool given;
+        MapSource source;
+    };
+    const std::array<Chooser, 4> choosers = {{{"--map", !request.map.empty(), MapSource::kMaps},
+                                              {"--paper", request.paper, MapSource::kPaper},
+                                              {"--plan", !request.plan.empty(), MapSource::kPlanFile},
+                                              {request.budget ? "--budget" : "--max-error",
+                                               request.budget || request.max_error, MapSource::kPlanner}}};
+    const Chooser* chosen = nullptr;
+    for (const Chooser& chooser : choosers) {
+        if (!chooser.given) {
+            continue;
+        }
+        if (chosen != nullptr) {
+            return fail(ErrorCode::kUsage, std::string(chosen->name) + " and " + chooser.name +
+                                               " are two ways to choose the maps; leave one out");
+        }
+        chosen = &chooser;
+    }
+    return chosen == nullptr ? MapSource::kPlanner : chosen->source;
+}
+
+/// The fault of options that do nothing together; empty: there is none.
+std::string conflictOf(const BakeRequest& request, const BakeSettings& settings) {
+    if (!request.plan_out.empty() && settings.source != MapSource::kPlanner) {
+        return "--plan-out writes what was planned, but the maps were named; leave it out";
+    }
+    if (request.plan_out == "-") {
+        return "--plan-out cannot be standard output; name a file";
+    }
+    if (request.map.empty() && (request.decode || request.depth)) {
+        return std::string(request.decode ? "--decode" : "--depth") +
+               " does nothing without --map; leave it out";
+    }
+    if (request.resolution && settings.source != MapSource::kMaps && settings.source != MapSource::kPaper) {
+        return "--resolution does nothing where maps are planned, each of the size that it needs; leave it "
+               "out, set --budget, or choose --map or --paper";
+    }
+    // Names need the triangles of the file, and parts that are told apart.
+    const char* const against = !request.repair.method.empty() ? "--repair, which makes another surface"
+                                : request.holes == Holes::kKeep
+                                    ? "--holes keep, which takes nothing for a solid"
+                                    : nullptr;
+    if (!settings.shape.named.empty() && against != nullptr) {
+        return "--as NAME=KIND does nothing with " + std::string(against) + "; leave one out";
+    }
+    return {};
+}
+
+Result<void> readMaps(const BakeRequest& request, BakeSettings& settings) {
+    MapSpecDefaults defaults;
+    defaults.decode = request.decode.value_or(defaults.decode);
+    if (request.depth == FrontBackDepth::kHalf) {
+        defaults.front_back = MapFormat::kFrontBackHalf;
+    }
+    for (const std::string& text : request.map) {
+        const MapSpec spec = RELIEF_TRY(parseMapSpec(text, defaults));
+        settings.bake.maps.push_back(spec);
+    }
+    if (settings.source == MapSource::kPaper) {
+        settings.bake.maps = paperMapSpecs();
+    }
+    if (request.resolution) {
+        settings.bake.resolution =
+            RELIEF_TRY(checkMapSize(*request.resolution, MapFormat::kFrontBackHalf, "--resolution"));
+    }
+    return {};
+}
+
+/// %XX as the bytes that they stand for, as the names of --as are recorded; nullopt where the record is made up.
+std::optional<std::string> decoded(std::string_view text) {
+    std::string name;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] != '%') {
+            name += text[i];
+            continue;
+        }
+        const std::string_view hex = text.substr(i, 3);
+        const std::size_t high = hex.size() == 3 ? kHex.find(hex[1]) : std::string_view::npos;
+        const std::size_t low = hex.size() == 3 ? kHex.find(hex[2]) : std::string_view::npos;
+        if (high == std::string_view::npos || low == std::string_view::npos) {
+            return std::nullopt;
+        }
+        name += static_cast<char>(16 * high + low);
+        i += 2;
+    }
+    return cleanUtf8(name) == name ? std::optional(name) : std::nullopt;
+}
+
+bool isRecorded(std::string_view name) {
+    static const std::vector<FieldWords> kFields = fieldsOf(BakeRequest());
+    return std::ranges::any_of(
+        kFields, [&](const FieldWords& field) { return field.name == name && field.info.recorded; });
+}
+
+/// Takes one option of a record. \return whether it is one that a bake records, with a value that makes sense.
+bool take(std::string_view name, std::string_view value, BakeRequest& request) {
+    BakeRequest changed = request;
+    if (!isRecorded(name) || !setField(changed, name, value) || !parseShapeOptions(changed.as) ||
+        !checkRepair(changed.repair.method) || (name == "map" && !parseMapSpec(value))) {
+        return false;
+    }
+    request = std::move(changed);
+    return true;
+}
+
+bool isPlain(std::string_view word) {
+    constexpr std::string_view kPlain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._=+/:,%-";
+    return !word.empty() && word.find_first_not_of(kPlain) == std::string_view::npos;
+}
+
+/// A word as a shell reads it back.
+std::string quoted(const std::string& word) {
+    if (isPlain(word)) {
+        return word;
+    }
+    std::string text = "'";
+    for (const char c : cleanUtf8(word)) {
+        text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    }
+    return text + "'";
+}
+
+}  // namespace
+
+bool readForm(std::string_view word, Thickness& thickness) {
+    thickness.by_part = word.starts_with(kByPart);
+    const std::optional<float> length = parseFloat(word.substr(thickness.by_part ? kByPart.size() : 0));
+    thickness.length = double{length.value_or(0.0F)};
+    return length && *length >= 1e-15F && *length <= 1e15F;
+}
+
+std::string formText(const Thickness& thickness) {
+    return std::string(thickness.by_part ? kByPart : "") + shortest(static_cast<float>(thickness.length));
+}
+
+Result<BakeSettings> settingsOf(const BakeRequest& request) {
+    BakeSettings settings;
+    settings.source = RELIEF_TRY(sourceOf(request));
+    settings.shape = RELIEF_TRY(parseShapeOptions(request.as));
+    const std::string conflict = conflictOf(request, settings);
+    if (!conflict.empty()) {
+        return fail(ErrorCode::kUsage, conflict);
+    }
+    RELIEF_TRY(readMaps(request, settings));
+    RELIEF_TRY(checkRepair(request.repair.method));
+    settings.bake.quality = request.quality.value_or(settings.bake.quality);
+    settings.bake.prefer = request.prefer.value_or(settings.bake.prefer);
+    settings.bake.threads = request.threads.value_or(settings.bake.threads);
+    return settings;
+}
+
+RecordedBake recordedBake(const std::string& options) {
+    RecordedBake bake;
+    std::string_view rest = options;
+    for (std::string_view option = takeWord(rest); !option.empty(); option = takeWord(rest)) {
+        std::string name(option.substr(std::min<std::size_t>(2, option.size())));
+        std::ranges::replace(name, '-', '_');
+        const std::string_view word = takeWord(rest);
+        const std::optional<std::string> value = name == "as" ? decoded(word) : std::string(word);
+        bake.understood =
+            option.starts_with("--") && value && take(name, *value, bake.request) && bake.understood;
+    }
+    if (bake.request.quality == Quality::kNormal) {
+        bake.request.quality.reset();
+    }
+    return bake;
+}
+
+std::string commandLine(const BakeRequest& request, const std::string& output) {
+    std::string text = "relief bake " + shellWord(request.mesh) + " -o " + shellWord(output);
+    for (const FieldWords& field : changedFields(request)) {
+        for (const std::string& word : field.words) {
+            text += " " + optionName(field.name);
+            if (field.kind != FieldKind::kFlag) {
+                text += " " + quoted(field.info.unit == "bytes" ? bytesWord(*parseUnsigned(word)) : word);
+            }
+        }
+    }
+    return text;
+}
+
+std::string importOptionOf(const ImportOptions& options, const ImportLimits& limits) {
+    std::vector<FieldWords> changed = changedFields(options);
+    std::ranges::copy(changedFields(limits), std::back_inserter(changed));
+    return changed.empty() ? "" : optionName(changed.front().name);
+}
+
+std::string shellWord(const std::string& path) {
+    return quoted(path.starts_with("-") ? "./" + path : path);  // else it is taken for an option
+}
+
+}  // namespace relief

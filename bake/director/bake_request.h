@@ -1,0 +1,210 @@
+// All that decides what a bake makes, and how it goes about it. The options of `relief bake`, the keys of recipes, the
+// arguments of relief.bake() in Python and the provenance of a collider are derived from fields().
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bake/import/import_fields.h"
+#include "bake/pipeline/bake.h"
+#include "bake/plan/prefer.h"
+#include "bake/plan/view_planner.h"
+#include "bake/repair/repair.h"
+#include "bake/shape/shape.h"
+#include "formats/base/result.h"
+#include "formats/container_limits.h"
+#include "formats/fields/text.h"
+#include "runtime/tool/gpu_tool.h"
+
+namespace relief {
+
+inline constexpr std::uint64_t kBudgetDefault = 1'000'000;  ///< bytes; where none is recorded too
+
+enum class Holes : std::uint8_t { kClose, kKeep };
+template <>
+inline constexpr std::array<std::string_view, 2> kWordsOf<Holes>{"close", "keep"};
+
+enum class BackendChoice : std::uint8_t { kRaycast, kRaster, kAuto };
+template <>
+inline constexpr std::array<std::string_view, 3> kWordsOf<BackendChoice>{"raycast", "raster", "auto"};
+
+enum class FrontBackDepth : std::uint8_t { kUnorm16, kHalf };
+template <>
+inline constexpr std::array<std::string_view, 2> kWordsOf<FrontBackDepth>{"unorm16", "half"};
+
+template <>
+inline constexpr std::array<std::string_view, 2> kWordsOf<Decode>{"projected", "plane"};
+
+/// Of shells: "0.01", or "auto=0.01" where it is a default, of which each sheet takes what suits its size.
+struct Thickness {
+    double length = 0.0;  ///< object units, above 0
+    bool by_part = false;
+};
+[[nodiscard]] bool readForm(std::string_view word, Thickness& thickness);
+[[nodiscard]] std::string formText(const Thickness& thickness);
+
+struct BakeRequest {
+    std::string mesh;                     ///< a file
+    std::vector<std::string> map;         ///< MapSpecs; empty: planned, unless paper or plan
+    std::optional<Decode> decode;         ///< of `map`
+    std::optional<FrontBackDepth> depth;  ///< of `map`
+    bool paper = false;
+    std::optional<std::uint64_t> resolution;
+    std::optional<std::uint64_t> budget;
+    std::optional<float> max_error;
+    std::uint32_t max_maps = kPlannedMapsMax;
+    std::string plan_out;
+    std::string plan;
+    std::optional<Quality> quality;
+    std::optional<Prefer> prefer;
+    std::optional<unsigned> threads;
+    Holes holes = Holes::kClose;
+    bool no_check = false;
+    BackendChoice backend = BackendChoice::kRaycast;
+    GpuOptions gpu;
+    ImportOptions import;
+    ImportLimits import_limits;
+    RepairOptions repair;
+    std::vector<std::string> as;
+    std::optional<Thickness> thickness;
+    std::optional<float> time_limit;  ///< seconds; kept by the caller, who can end the bake
+};
+
+template <class Visitor, FieldsOf<BakeRequest> Request>
+void fields(Visitor& visit, Request& request) {
+    visit("map", request.map,
+          {.help = "A map to bake instead of planned ones, once for each: FORMAT[:key=value,...] with\n"
+                   "FORMAT   float, fixed8, front-back or cube\n"
+                   "dir      direction the view looks in: +x -x +y -y +z -z or a/b/c\n"
+                   "up       direction that points upwards in the image: as dir\n"
+                   "size     texels, N or WxH (cube: N)\n"
+                   "compare  less or greater: keep the nearest or the farthest surface; of front-back\n"
+                   "         gap: both ends of what lies between solids\n"
+                   "center   a/b/c, where a cube looks from\n"
+                   "depth    of front-back maps: unorm16, or half (the paper's)\n"
+                   "decode   plane: fitted to the whole texel, or projected (the paper's)\n"
+                   "box      tight, or x0/y0/z0/x1/y1/z1: the part of space to cover",
+           .value = "SPEC",
+           .recorded = true});
+    visit("decode", request.decode,
+          {.help = "For each --map that does not set it: plane, or projected, the paper's",
+           .fallback = "plane"});
+    visit("depth", request.depth,
+          {.help = "For each --map front-back that does not set it: unorm16, or half, the paper's",
+           .fallback = "unorm16"});
+    visit(
+        "paper", request.paper,
+        {.help = "Bake the paper's maps instead of planned ones: front-back along -x, -y and -z and a cube, "
+                 "depth=half, decode=projected"});
+    visit("resolution", request.resolution,
+          {.help = "Texels along a side of --map without size, and of --paper", .fallback = "512"});
+    visit("budget", request.budget,
+          {.help =
+               "Plan for this many bytes: what all maps together take on the GPU. The file has some hundred "
+               "bytes more, or fewer with --compress. With --max-error: use no more",
+           .unit = "bytes",
+           .range = {1.0},
+           .fallback = "1MB",
+           .recorded = true});
+    visit(
+        "max_error", request.max_error,
+        {.help = "Plan for the least bytes (32kB to 64MB) that leave at most this share of the points near "
+                 "the surface, in percent, on the wrong side; measured as by relief check, on 50000 points. "
+                 "Exit with 7, and write nothing, if none do",
+         .unit = "%",
+         .range = {0.0}});
+    visit("max_maps", request.max_maps,
+          {.help = "Plan at most this many maps, each of which every step of a simulation looks at",
+           .range = {1.0, double{ContainerLimits{}.maps}}});
+    visit(
+        "plan_out", request.plan_out,
+        {.help = "Also write what was planned, as TOML, to be changed and given to --plan", .value = "FILE"});
+    visit("plan", request.plan, {.help = "Bake the maps of such a file", .value = "FILE"});
+    visit("quality", request.quality,
+          {.help = "Of planes: fast (one ray a texel), normal (16 rays) or best (36)",
+           .fallback = "normal; with --plan, the file's",
+           .recorded = true});
+    visit("prefer", request.prefer,
+          {.help = "Where planes must err: inside keeps particles out of walls, outside keeps free "
+                   "space free, neither errs least",
+           .fallback = "neither; with --plan, the file's",
+           .recorded = true});
+    visit("threads", request.threads,
+          {.help = "Threads to use. The result is the same. With --recipe: assets at once",
+           .range = {1.0, 1024.0},
+           .fallback = "all cores",
+           .letter = 'j'});
+    visit(
+        "holes", request.holes,
+        {.help = "close: make solids of what --as says; keep: bake the surface as it is", .recorded = true});
+    visit("no_check", request.no_check,
+          {.help = "Do not measure what was planned (a few percent of the time)"});
+    visit("backend", request.backend,
+          {.help = "Bakes maps that are named: raycast (on the CPU), raster (on the GPU, texels' "
+                   "centres alone: implies --quality fast), or auto: raster where the options allow it and "
+                   "the OpenGL is a GPU's. Only raycast gives the same bytes on every machine",
+           .recorded = true});
+    fields(visit, request.gpu);
+    fields(visit, request.import);
+    fields(visit, request.import_limits);
+    fields(visit, request.repair);
+    visit("as", request.as,
+          {.help = "What the parts of the mesh are: auto (each is judged by what rays see), "
+                   "solid (holes are closed), shell (a wall with two sides) or terrain (solid below). "
+                   "With NAME=, what has that name in the file: a node with all below it, a mesh, an "
+                   "OBJ group or a material; once for each, and of several that fit the last counts",
+           .fallback = "auto",
+           .value = "[NAME=]auto|solid|shell|terrain",
+           .recorded = true});
+    visit("thickness", request.thickness,
+          {.help = "Of shells, in the collider's units",
+           .unit = "object units",
+           .fallback = "a texel and a half",
+           .value = "LENGTH",
+           .must = "a length above 0, in the collider's units",
+           .recorded = true});
+    visit(
+        "time_limit", request.time_limit,
+        {.help =
+             "Seconds that the whole bake may take, the import included. Beyond them exit with 6, and write "
+             "nothing",
+         .unit = "s",
+         .range = {double{0.001F}, 1e7},
+         .fallback = "any",
+         .value = "SECONDS",
+         .must = "a number of seconds from 0.001 to 10000000"});
+}
+
+enum class MapSource : std::uint8_t { kPlanner, kMaps, kPaper, kPlanFile };
+
+/// A request, read and found consistent.
+struct BakeSettings {
+    MapSource source = MapSource::kPlanner;
+    BakeOptions bake;
+    ShapeOptions shape;  ///< without a thickness: it depends on the mesh
+};
+
+/// The rules across fields. Fails with kUsage for two ways to choose the maps, and for options that do nothing together; as
+/// parseMapSpec, checkMapSize, parseShapeOptions and checkRepair.
+[[nodiscard]] Result<BakeSettings> settingsOf(const BakeRequest& request);
+
+/// A request as a container records it: the maps that were baked, with their sizes, and all else that the bytes depend on.
+struct RecordedBake {
+    BakeRequest request;
+    /// Every option is known; otherwise another version baked it, or the record is made up.
+    bool understood = true;
+};
+
+/// \param options  Provenance::options; any text.
+[[nodiscard]] RecordedBake recordedBake(const std::string& options);
+
+/// A bake of a mesh as a command line, quoted for a shell.
+[[nodiscard]] std::string commandLine(const BakeRequest& request, const std::string& output);
+/// The first option about the import that is set; empty: none.
+[[nodiscard]] std::string importOptionOf(const ImportOptions& options, const ImportLimits& limits);
+/// A path as a word of a command line.
+[[nodiscard]] std::string shellWord(const std::string& path);
+
+}  // namespace relief

@@ -1,0 +1,434 @@
+#include "bake/director/director.h"
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+
+#include <algorithm>
+#include <span>
+
+#include "bake/director/backend.h"
+#include "bake/import/mesh_import.h"
+#include "bake/pipeline/planned_bake.h"
+#include "bake/plan/plan_file.h"
+#include "bake/report/parts_report.h"
+#include "bake/report/report_text.h"
+#include "formats/base/file_io.h"
+#include "formats/base/hash.h"
+#include "formats/base/stopwatch.h"
+#include "formats/base/text.h"
+
+namespace relief {
+namespace {
+
+/// Points that a planned bake measures itself at: one in a hundred is then known to a sixth of that.
+constexpr std::uint32_t kSelfCheckPoints = 4000;
+/// Of each part: a lost one has a quarter of its points on the wrong side.
+const PartOptions kSelfCheckParts{
+    .points = 64, .points_min = 16, .points_all = 16'384, .parts_max = 1024, .detail = {}};
+/// Percent of them on the wrong side, above which the bake warns.
+constexpr double kSelfCheckWarns = 5.0;
+/// Above this share that one more map would have served, the warning suggests more maps.
+constexpr double kMoreMapsHelp = 0.005;
+
+template <class... Arguments>
+void tell(const std::function<void(Arguments...)>& function, Arguments... arguments) {
+    if (function) {
+        function(arguments...);
+    }
+}
+
+/// The order in which maps are chosen and baked, shared by a whole bake and by bakeSolid().
+class MapMaker {
+  public:
+    MapMaker(const BakeRequest& request, const BakeSettings& settings, const BakeWatcher& watcher)
+        : request_(request), settings_(settings), watcher_(watcher) {}
+
+    /// Chooses the views, and bakes them for the budget.
+    Result<Baked> forBudget(const MeshQuery& query, PlanReport& report, double* plan_ms = nullptr) const {
+        const Stopwatch watch;
+        ViewOptions options;
+        options.prefer = settings_.bake.prefer;
+        options.max_maps = request_.max_maps;
+        const ViewChoice views = RELIEF_TRY(chooseViews(query, options));
+        if (plan_ms != nullptr) {
+            *plan_ms += watch.ms();
+        }
+        report.budget = request_.budget.value_or(kBudgetDefault);
+        PlannedBake planned = RELIEF_TRY(bakePlanned(query, views, report.budget, begin("baking the maps")));
+        report.plan = std::move(planned.plan);
+        return std::move(planned.baked);
+    }
+
+    /// The least budget that keeps --max-error.
+    /// \param truth  of the mesh whose points count: as it came, if it was repaired.
+    Result<Baked> forError(const MeshQuery& query, const MeshQuery& truth, PlanReport& report) const {
+        tell(watcher_.begin, "searching for the least budget");
+        BudgetSearchOptions options;
+        options.max_error_percent = double{*request_.max_error};
+        options.budget_max = request_.budget.value_or(options.budget_max);
+        options.bake = settings_.bake;
+        options.bake.progress = [this](double) { tell(watcher_.checkpoint); };
+        options.max_maps = request_.max_maps;
+        options.tried = watcher_.tried;
+        BudgetSearchResult found = RELIEF_TRY(bakeForError(query, truth, options));
+        report = PlanReport{std::move(found.plan), found.chosen.budget, options.max_error_percent,
+                            found.chosen.wrong_percent, std::move(found.tries)};
+        return std::move(found.baked);
+    }
+
+    Result<Baked> named(const PreparedMesh& mesh) const { return bake(mesh, begin("baking the maps")); }
+
+  private:
+    [[nodiscard]] BakeOptions begin(const char* stage) const {
+        tell(watcher_.begin, stage);
+        BakeOptions options = settings_.bake;
+        options.progress = watcher_.progress;
+        return options;
+    }
+
+    const BakeRequest& request_;
+    const BakeSettings& settings_;
+    const BakeWatcher& watcher_;
+};
+
+/// A bake, and what its stages leave for the next.
+class Director {
+  public:
+    Director(const BakeRequest& request, const BakeWatcher& watcher) : watcher_(watcher) {
+        result_.request = request;
+    }
+
+    Result<BakeResult> run(std::optional<TriangleMesh> mesh) {
+        tell(watcher_.begin, "reading its options");
+        RELIEF_TRY(readOptions(mesh.has_value()));
+        // Planning and measuring keep to --threads too.
+        std::optional<tbb::global_control> control;
+        if (request().threads) {
+            control.emplace(tbb::global_control::max_allowed_parallelism, *request().threads);
+        }
+        RELIEF_TRY(readMesh(std::move(mesh)));
+        RELIEF_TRY(protectInputs());
+        RELIEF_TRY(makeCollider());
+        RELIEF_TRY(measure());
+        gatherWarnings();
+        return std::move(result_);
+    }
+
+  private:
+    [[nodiscard]] BakeRequest& request() { return result_.request; }
+
+    /// Before anything large is read.
+    Result<void> readOptions(bool given_mesh) {
+        result_.settings = RELIEF_TRY(settingsOf(request()));
+        const std::string import = importOptionOf(request().import, request().import_limits);
+        if (given_mesh && !import.empty()) {
+            return fail(ErrorCode::kUsage, import + " is for a mesh that is read from a file; leave it out");
+        }
+        if (given_mesh && !result_.settings.shape.named.empty()) {
+            return fail(ErrorCode::kUsage,
+                        "--as NAME=KIND is for a mesh that is read from a file; leave NAME= out");
+        }
+        const bool has_quality = RELIEF_TRY(readPlan());
+        BakeOptions& options = result_.settings.bake;
+        backend_ = RELIEF_TRY(chooseBackend(
+            request().backend, request().gpu,
+            {result_.settings.source == MapSource::kPlanner, has_quality, options.quality, options.prefer,
+             std::ranges::any_of(options.maps,
+                                 [](const MapSpec& spec) { return spec.compare == Compare::kGap; })}));
+        options.rasterize = result_.raster = backend_.raster;
+        result_.device = backend_.device;
+        result_.backend_reason = backend_.reason;
+        if (backend_.raster) {
+            options.quality = Quality::kFast;
+        }
+        return {};
+    }
+
+    /// The maps of --plan, and its quality, preference and thickness where the request has none.
+    /// \return whether a quality is given.
+    Result<bool> readPlan() {
+        if (request().plan.empty()) {
+            return request().quality.has_value();
+        }
+        // Before it is read: should it change meanwhile, the hash is that of neither, or of the older one.
+        const auto bytes = readFile(request().plan);
+        plan_hash_ = bytes ? xxh3_128Hex(*bytes) : "";
+        const PlanFile plan = RELIEF_TRY(loadPlan(request().plan));
+        BakeOptions& options = result_.settings.bake;
+        options.quality = request().quality.value_or(plan.quality);
+        options.prefer = request().prefer.value_or(plan.prefer);
+        options.planned_budget = plan.budget;
+        if (!request().thickness && plan.thickness > 0.0) {
+            request().thickness = Thickness{plan.thickness, true};
+        }
+        for (const PlanFileMap& map : plan.maps) {
+            options.maps.push_back(map.spec);
+        }
+        return true;
+    }
+
+    /// \param given  instead of the file's.
+    Result<void> readMesh(std::optional<TriangleMesh> given) {
+        const Stopwatch watch;
+        tell(watcher_.begin, "reading the mesh");
+        if (!given) {
+            ImportOptions import = request().import;
+            import.names = result_.settings.shape.names();
+            given = RELIEF_TRY(importMeshInWorker(request().mesh, import, request().import_limits));
+        }
+        TriangleMesh mesh = std::move(*given);
+        result_.times.import_ms = watch.ms();
+        result_.unused_vertices = mesh.unused_vertices;
+        if (watcher_.imported) {
+            watcher_.imported(mesh);
+        }
+        const bool repairs = !request().repair.method.empty();
+        if (request().max_error && repairs) {
+            imported_ = mesh;
+        }
+        tell(watcher_.begin, repairs ? "repairing the mesh" : "examining the mesh");
+        result_.mesh = RELIEF_TRY(repairMesh(std::move(mesh), request().repair));
+        return makeSolidOf(result_.mesh.mesh);
+    }
+
+    /// Turns a non-solid mesh into a solid.
+    Result<void> makeSolidOf(PreparedMesh& mesh) {
+        const std::optional<Thickness>& thickness = request().thickness;
+        const float longest = mesh->bounds.longestSide();
+        if (request().holes == Holes::kClose && thickness && !thickness->by_part &&
+            !(thickness->length <= kThicknessMax * double{longest})) {
+            return fail(ErrorCode::kUsage,
+                        "--thickness is " + shortest(static_cast<float>(thickness->length)) + " but " +
+                            mesh->name + " is " + shortest(longest) + " long; give at most " +
+                            shortest(float(kThicknessMax)) + " of that");
+        }
+        if (request().holes == Holes::kClose) {
+            tell(watcher_.begin, "making a solid of the mesh");
+        }
+        ShapedMesh shaped = RELIEF_TRY(makeSolid(request(), mesh));
+        mesh = std::move(shaped.mesh);
+        result_.shape = std::move(shaped.report);
+        result_.parts = std::move(shaped.parts);
+        if (request().holes == Holes::kKeep) {
+            mesh.freeEdges();
+        }
+        return {};
+    }
+
+    /// None of the files that the mesh refers to, a buffer or a material, may be lost to an output.
+    Result<void> protectInputs() {
+        const TriangleMesh& mesh = *result_.mesh.mesh;
+        for (std::size_t i = 0; i < mesh.dependencies.size(); ++i) {
+            if (watcher_.files != nullptr) {
+                RELIEF_TRY(watcher_.files->reads(mesh.dependencies[i]));
+            }
+            result_.inputs.push_back({mesh.dependencies[i], mesh.dependency_hashes[i]});
+        }
+        if (!request().plan.empty()) {
+            result_.inputs.push_back({request().plan, plan_hash_});
+        }
+        return {};
+    }
+
+    /// Chooses the maps, and bakes them.
+    Result<Baked> makeMaps() {
+        const PreparedMesh& mesh = result_.mesh.mesh;
+        const MapMaker maker(request(), result_.settings, watcher_);
+        if (result_.settings.source != MapSource::kPlanner) {
+            Result<Baked> baked = maker.named(mesh);
+            if (!baked && result_.settings.source == MapSource::kPlanFile) {
+                // Faults that no single map shows: too many texels, a volume that floats cannot hold, maps that see nothing.
+                const ErrorCode code = baked.error().code;
+                return fail(code == ErrorCode::kUsage ? ErrorCode::kInvalidInput : code,
+                            quotedPath(request().plan) + ": " + baked.error().message);
+            }
+            return baked;
+        }
+        const Stopwatch watch;
+        tell(watcher_.begin, "planning the maps");
+        const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
+        PlanReport report;
+        BakeTimes& times = result_.times;
+        times.plan_ms = request().max_error ? 0.0 : watch.ms();
+        const auto search = [&]() -> Result<Baked> {
+            const MeshQuery truth = imported_ ? RELIEF_TRY(MeshQuery::build(*imported_)) : query;
+            return maker.forError(query, truth, report);
+        };
+        Result<Baked> baked = request().max_error ? search() : maker.forBudget(query, report, &times.plan_ms);
+        times.search_ms = request().max_error ? watch.ms() : 0.0;
+        result_.plan = std::move(report);
+        return baked;
+    }
+
+    Result<void> makeCollider() {
+        Result<Baked> baked = makeMaps();
+        if (backend_.raster) {
+            backend_.gl.watchdog->rest();
+        }
+        const PreparedMesh& mesh = result_.mesh.mesh;
+        if (!baked && baked.error().code != ErrorCode::kUsage) {
+            if (const auto stray = strayText(result_.parts, mesh->unit)) {
+                return fail(baked.error().code, mesh->name + ": " + *stray);
+            }
+        }
+        result_.baked = RELIEF_TRY(std::move(baked));
+        std::string& recorded = result_.baked.collider.provenance.options;
+        recorded += request().holes == Holes::kKeep ? " --holes keep" : "";
+        for (const FieldWords& field : changedFields(request().import)) {
+            recorded += " " + optionName(field.name) + " " + field.words.front();
+        }
+        recorded += result_.mesh.report.repair.empty() ? "" : " --repair " + result_.mesh.report.repair;
+        recorded += shapeOptionsText(result_.shape);
+        return {};
+    }
+
+    /// A planned bake measures itself: whoever names the maps may want what looks wrong.
+    Result<void> measure() {
+        if (!result_.plan || request().no_check) {
+            return {};
+        }
+        const Stopwatch watch;
+        tell(watcher_.begin, "measuring the collider");
+        const PreparedMesh& mesh = result_.mesh.mesh;
+        const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
+        AccuracyOptions options;
+        options.samples = kSelfCheckPoints;
+        const Field field = fieldOf(result_.baked.collider);
+        result_.wrong = measureNear(sampleNear(query, options), field);
+        if (result_.parts.parts.size() > 1) {
+            result_.part_accuracy = measureParts(query, result_.parts, field, kSelfCheckParts);
+        }
+        result_.times.check_ms = watch.ms();
+        std::vector<std::string>& warnings = result_.baked.report.warnings;
+        if (result_.wrong->total() > kSelfCheckWarns) {
+            warnings.push_back(mesh->name + ": " + shortNumber(result_.wrong->total()) +
+                               " % wrong near the surface; " + cure());
+        }
+        if (result_.part_accuracy) {
+            if (const auto lost =
+                    lostPartsWarning(*result_.part_accuracy, result_.parts, result_.baked.collider)) {
+                warnings.push_back(mesh->name + ": " + *lost);
+            }
+        }
+        return {};
+    }
+
+    /// Options that may help a bake that is wrong in many places.
+    [[nodiscard]] std::string cure() {
+        const Plan& plan = result_.plan->plan;
+        const std::uint64_t budget = request().budget.value_or(kBudgetDefault);
+        std::string more = "--budget " + std::to_string(4 * budget / 1000) + "kB";
+        if (plan.maps.size() >= request().max_maps && plan.next_gain > kMoreMapsHelp) {
+            more += " --max-maps " + std::to_string(2 * plan.maps.size());
+        }
+        if (result_.shape.sheets > 0 && result_.shape.as == ShapeAs::kAuto) {
+            return "try " + more + ", or a larger --thickness for its sheets (now " +
+                   shortNumber(result_.shape.thickness) + ")";
+        }
+        if (plan.unseen_percent > 5.0) {
+            return shortNumber(plan.unseen_percent) + " % of the surface is seen by no map; try " + more +
+                   ", --as shell if it is walls, or --repair wrap=0.01 if its insides do not matter";
+        }
+        return "try " + more;
+    }
+
+    void gatherWarnings() {
+        const TriangleMesh& mesh = *result_.mesh.mesh;
+        std::vector<std::string> warnings = mesh.warnings;
+        std::vector<std::string> parts = partWarnings(result_.parts, mesh.unit);
+        std::reverse(parts.begin(), parts.end());
+        for (const std::string& warning : parts) {
+            warnings.push_back(mesh.name + ": " + warning);
+        }
+        const auto forgotten =
+            mesh.unit.empty() ? forgottenUnit(result_.baked.collider.bounds) : std::nullopt;
+        // A terrain of hundreds of metres is nothing special.
+        if (forgotten && result_.shape.terrains == 0) {
+            warnings.push_back(mesh.name + ": " + *forgotten);
+        }
+        for (auto named = result_.shape.named.rbegin(); named != result_.shape.named.rend(); ++named) {
+            if (named->triangles == 0) {
+                warnings.push_back(mesh.name + ": --as " + named->shape.name + "=" +
+                                   std::string(wordOf(named->shape.as)) +
+                                   " changes nothing: a later --as names all its triangles too, or they have "
+                                   "no area; give it last");
+            }
+        }
+        std::vector<std::string>& all = result_.baked.report.warnings;
+        all.insert(all.begin(), warnings.begin(), warnings.end());
+        if (mesh.closed_holes > 0) {
+            result_.notices.push_back(mesh.name + ": closed " + countText(mesh.closed_holes, "hole") +
+                                      " for baking: the mesh is nearly closed");
+        }
+        if (!result_.backend_reason.empty()) {
+            result_.notices.push_back(std::string("backend ") + (result_.raster ? "raster" : "raycast") +
+                                      ": " + result_.backend_reason);
+        }
+    }
+
+    const BakeWatcher& watcher_;
+    BakeResult result_;
+    Backend backend_;
+    std::string plan_hash_;
+    std::optional<PreparedMesh> imported_;  // as it came, where --max-error looks back at it after a repair
+};
+
+}  // namespace
+
+BakeSummary BakeResult::summary(bool verbose) const {
+    return {*mesh.mesh, baked, plan, times, mesh.report, shape, wrong, unused_vertices, verbose};
+}
+
+int BakeResult::threads() const {
+    return request.threads ? static_cast<int>(*request.threads) : tbb::info::default_concurrency();
+}
+
+Result<BakeResult> bake(const BakeRequest& request, const BakeWatcher& watcher,
+                        std::optional<TriangleMesh> mesh) {
+    return Director(request, watcher).run(std::move(mesh));
+}
+
+Result<void> writePlanOut(const BakeResult& result) {
+    if (result.request.plan_out.empty()) {
+        return {};
+    }
+    const PlanReport& plan = *result.plan;
+    PlanFile file;
+    file.quality = result.settings.bake.quality;
+    file.prefer = result.settings.bake.prefer;
+    file.budget = plan.budget;
+    file.thickness = result.shape.default_thickness;
+    for (std::size_t i = 0; i < plan.plan.maps.size(); ++i) {
+        file.maps.push_back({result.baked.report.maps[i].spec, plan.plan.maps[i].reason});
+    }
+    const std::string text = planText(file);
+    return writeFile(result.request.plan_out, std::as_bytes(std::span(text)));
+}
+
+Result<ShapedMesh> makeSolid(const BakeRequest& request, const PreparedMesh& mesh) {
+    if (request.holes == Holes::kKeep) {
+        return ShapedMesh{mesh, {}, surfacePartsOf(mesh)};
+    }
+    ShapeOptions options = RELIEF_TRY(parseShapeOptions(request.as));
+    options.thickness_by_part = !request.thickness || request.thickness->by_part;
+    options.thickness =
+        request.thickness
+            ? request.thickness->length
+            : defaultThickness(mesh->bounds,
+                               request.max_error ? kBudgetDefault : request.budget.value_or(kBudgetDefault));
+    return shapeMesh(mesh, options);
+}
+
+Result<Baked> bakeSolid(const BakeRequest& request, const PreparedMesh& solid) {
+    const BakeSettings settings = RELIEF_TRY(settingsOf(request));
+    const BakeWatcher watcher;
+    const MapMaker maker(request, settings, watcher);
+    if (settings.source != MapSource::kPlanner) {
+        return maker.named(solid);
+    }
+    const MeshQuery query = RELIEF_TRY(MeshQuery::build(solid));
+    PlanReport report;
+    return maker.forBudget(query, report);
+}
+
+}  // namespace relief

@@ -1,0 +1,71 @@
+// A bake from the request to the collider: import, repair, solid, plan, maps, measurement and warnings. The command line,
+// Python, recipes, advice and benchmarks call this.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bake/director/bake_request.h"
+#include "bake/mesh/mesh_query.h"
+#include "bake/recipe/depfile.h"
+#include "bake/report/bake_report.h"
+#include "formats/base/file_guard.h"
+#include "formats/base/result.h"
+
+namespace relief {
+
+/// Follows a bake. Each function may be empty, and may throw: what it throws comes out of bake(), and ends it.
+struct BakeWatcher {
+    std::function<void(const char* stage)> begin;  ///< "planning the maps"
+    std::function<void(double share)> progress;    ///< of the stage, in [0, 1]; any thread calls it
+    std::function<void()> checkpoint;              ///< within a stage without shares; any thread calls it
+    std::function<void(const BudgetTry&)> tried;   ///< of a search for the least budget
+    std::function<void(const TriangleMesh&)> imported;  ///< as it came
+    FileGuard* files = nullptr;  ///< gets the inputs that are known only after the import
+};
+
+/// The collider, and what the stages found out.
+struct BakeResult {
+    BakeRequest request;    ///< with the choices of a plan file
+    BakeSettings settings;  ///< in effect
+    bool raster = false;
+    std::string device;                 ///< of raster
+    std::string backend_reason;         ///< of --backend auto
+    std::uint64_t unused_vertices = 0;  ///< of the mesh file; repair discards this count
+    RepairedMesh mesh;                  ///< the solid that was baked
+    ShapeReport shape;
+    SurfaceParts parts;
+    Baked baked;
+    std::optional<PlanReport> plan;
+    std::optional<WrongShare> wrong;             ///< near the surface; of a planned bake
+    std::optional<PartsAccuracy> part_accuracy;  ///< of a planned bake of several parts
+    std::vector<std::string> notices;            ///< one line each; ready to be shown
+    std::vector<InputFile> inputs;               ///< the mesh, the files that it refers to, the plan
+    BakeTimes times;
+
+    /// For bakeText. Valid as long as the result.
+    [[nodiscard]] BakeSummary summary(bool verbose) const;
+    /// --threads, or those of the machine.
+    [[nodiscard]] int threads() const;
+};
+
+/// Writes nothing. Warnings are in baked.report.
+/// \param mesh  as finishMesh leaves it: instead of a file.
+/// Errors: those of settingsOf, loadPlan, chooseBackend, importMeshInWorker, repairMesh, shapeMesh, bakeForError, bakePlanned
+/// and bake; kUsage: an option that needs the mesh's file.
+[[nodiscard]] Result<BakeResult> bake(const BakeRequest& request, const BakeWatcher& watcher = {},
+                                      std::optional<TriangleMesh> mesh = {});
+
+/// Writes --plan-out, if there is one. Errors: kIo.
+[[nodiscard]] Result<void> writePlanOut(const BakeResult& result);
+
+/// The solid of a mesh that has been wound outwards: the mesh itself with --holes keep.
+/// Errors: those of parseShapeOptions and shapeMesh.
+[[nodiscard]] Result<ShapedMesh> makeSolid(const BakeRequest& request, const PreparedMesh& mesh);
+
+/// The maps of a solid, by its names or planned for its budget (not for an error). Errors: as bake.
+[[nodiscard]] Result<Baked> bakeSolid(const BakeRequest& request, const PreparedMesh& solid);
+
+}  // namespace relief

@@ -1,0 +1,55 @@
+// The options and limits of an import as fields: of the verbs that read a mesh, and between the importer's two programs.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "bake/import/import_job.h"
+#include "formats/fields/text.h"
+
+namespace relief {
+
+/// "+x" … "-z", of any case.
+[[nodiscard]] bool readForm(std::string_view word, UpAxis& axis);
+[[nodiscard]] std::string formText(UpAxis axis);
+
+/// lengthUnits(), for as long as the program runs.
+[[nodiscard]] std::span<const std::string_view> unitWords();
+
+/// Those of a person: without names.
+template <class Visitor, FieldsOf<ImportOptions> Options>
+void fields(Visitor& visit, Options& options) {
+    visit("unit", options.unit,
+          {.help = "Unit of the mesh's lengths: m, cm, mm, um, km, in, ft, yd; they become metres",
+           .fallback = "the file's; without one, lengths stay as they are",
+           .words = unitWords(),
+           .value = "UNIT",
+           .recorded = true});
+    visit("up", options.up,
+          {.help = "The mesh's axis that points upwards: +x -x +y -y +z -z; it becomes +y",
+           .fallback = "the file's; without one, axes stay as they are",
+           .value = "AXIS",
+           .must = "one of +x, -x, +y, -y, +z, -z",
+           .recorded = true});
+}
+
+template <class Visitor, FieldsOf<ImportLimits> Limits>
+void fields(Visitor& visit, Limits& limits) {
+    visit("import_memory", limits.memory,
+          {.help = "Memory that reading the mesh may take",
+           .unit = "bytes",
+           .range = {64e6, 1e12},  // a little mesh takes less
+           .must = "64MB to 1000GB"});
+    visit("import_time", limits.seconds,
+          {.help = "Seconds that reading the mesh may take",
+           .unit = "s",
+           .range = {1.0, 86'400.0},
+           .value = "SECONDS",
+           .must = "1 to 86400 seconds"});
+    visit("max_triangles", limits.triangles,
+          {.help = "Triangles that the mesh may have, instances counted one by one",
+           .range = {1.0, double{kTriangleMax}},
+           .must = "1 to 100000000 triangles"});
+}
+
+}  // namespace relief

@@ -1,0 +1,173 @@
+#include "formats/fields/text.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdio>
+
+#include "formats/base/byte_count.h"
+#include "formats/base/text.h"
+
+namespace relief {
+namespace {
+
+bool isBytes(const FieldInfo& info) {
+    return info.unit == "bytes";
+}
+
+/// The largest whole number that the range allows.
+std::uint64_t mostOf(const FieldRange& range, std::uint64_t most) {
+    return range.high < static_cast<double>(most) ? static_cast<std::uint64_t>(range.high) : most;
+}
+
+std::string mustOf(const FieldInfo& info, std::uint64_t least, std::uint64_t most) {
+    if (!info.must.empty()) {
+        return std::string(info.must);
+    }
+    if (isBytes(info)) {
+        return "a number of bytes, such as 1MB or 512KiB";
+    }
+    const bool any = least == 0 && most == std::numeric_limits<std::uint64_t>::max();
+    return "a whole number" + (any ? "" : " from " + std::to_string(least) + " to " + std::to_string(most));
+}
+
+}  // namespace
+
+std::string butMustBe(std::string_view word, std::string_view must) {
+    return "is '" + cleanUtf8(word) + "' but must be " + std::string(must);
+}
+
+std::string butMustBeOneOf(std::string_view word, std::span<const std::string_view> words) {
+    const std::string must = words.size() == 2 ? std::string(words[0]) + " or " + std::string(words[1])
+                                               : "one of " + listed(words);
+    return butMustBe(word, must + (word.size() > 1 ? didYouMean(word, words) : ""));
+}
+
+std::string optionName(std::string_view field) {
+    std::string name = "--" + std::string(field);
+    std::ranges::replace(name, '_', '-');
+    return name;
+}
+
+std::string bytesWord(std::uint64_t bytes) {
+    const auto scaled = [&](double unit, const char* name) {
+        char text[32];
+        std::snprintf(text, sizeof(text), "%.6g%s", static_cast<double>(bytes) / unit, name);
+        return std::string(text);
+    };
+    const std::string word = bytes >= 1'000'000'000 ? scaled(1e9, "GB")
+                             : bytes >= 1'000'000   ? scaled(1e6, "MB")
+                             : bytes >= 10'000      ? scaled(1e3, "kB")
+                                                    : std::to_string(bytes);
+    return parseByteCount(word) == bytes ? word : std::to_string(bytes);
+}
+
+std::string numberWord(float value) {
+    return shortest(value);
+}
+
+std::string numberWord(double value) {
+    std::array<char, 64> text{};
+    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+namespace fields_detail {
+
+std::string readUnsigned(std::string_view word, const FieldInfo& info, std::uint64_t most,
+                         std::uint64_t& value) {
+    const auto least = info.range.low > 0.0 ? static_cast<std::uint64_t>(info.range.low) : 0;
+    most = mostOf(info.range, most);
+    const std::optional<std::uint64_t> number = isBytes(info) ? parseByteCount(word) : parseUnsigned(word);
+    if (!number || *number < least || *number > most) {
+        return butMustBe(word, mustOf(info, least, most));
+    }
+    value = *number;
+    return {};
+}
+
+std::string readFloat(std::string_view word, const FieldInfo& info, float& value) {
+    const bool percent = info.unit == "%";
+    std::string_view plain = trimmed(word);
+    plain.remove_suffix(percent && plain.ends_with('%') ? 1 : 0);
+    const std::optional<float> number = parseFloat(plain);
+    if (!number || !info.range.holds(double{*number})) {
+        return butMustBe(word, !info.must.empty() ? info.must
+                               : percent          ? "a share in percent, such as 1.5"
+                                                  : "a number");
+    }
+    value = *number;
+    return {};
+}
+
+std::string readDouble(std::string_view word, const FieldInfo& info, double& value) {
+    const std::optional<double> number = parseDouble(word);
+    if (!number || !info.range.holds(*number)) {
+        return butMustBe(word, info.must.empty() ? "a number" : info.must);
+    }
+    value = *number;
+    return {};
+}
+
+std::string readText(std::string_view word, const FieldInfo& info, std::string& value) {
+    if (word.empty()) {
+        return "is given without a value; leave it out, or give it one";
+    }
+    if (!info.words.empty() && std::ranges::find(info.words, word) == info.words.end()) {
+        return butMustBeOneOf(word, info.words);
+    }
+    value = word;
+    return {};
+}
+
+}  // namespace fields_detail
+
+Result<void> FieldSetter::result() const {
+    if (!wrong_) {
+        return fail(ErrorCode::kUsage, "unknown option " + cleanUtf8(optionName(name_), 80));
+    }
+    return wrong_->empty() ? Result<void>() : fail(ErrorCode::kUsage, optionName(name_) + " " + *wrong_);
+}
+
+std::string defaultText(const FieldWords& field) {
+    if (!field.info.fallback.empty()) {
+        return std::string(field.info.fallback);
+    }
+    if (field.kind == FieldKind::kFlag || field.words.empty() || field.words.front().empty()) {
+        return {};
+    }
+    const std::string& word = field.words.front();
+    return isBytes(field.info) ? bytesWord(*parseUnsigned(word)) : word;
+}
+
+std::string valueText(const FieldWords& field) {
+    if (!field.info.value.empty()) {
+        return std::string(field.info.value);
+    }
+    std::string text;
+    for (const std::string_view choice : field.choices) {
+        text.append(text.empty() ? "" : "|").append(choice);
+    }
+    return !text.empty() ? text : isBytes(field.info) ? "BYTES" : field.info.unit == "%" ? "PCT" : "N";
+}
+
+std::string optionTable(const std::vector<FieldWords>& fields) {
+    std::string text = "| option | meaning | default |\n| --- | --- | --- |\n";
+    const auto cell = [](const std::string& words) {
+        std::string out;
+        for (const char c : words) {
+            const bool space = c == ' ' || c == '\n';
+            if (!space || !out.ends_with(' ')) {
+                out += c == '|' ? std::string("\\|") : std::string(1, space ? ' ' : c);
+            }
+        }
+        return out;
+    };
+    for (const FieldWords& field : fields) {
+        text += "| `" + optionName(field.name) +
+                (field.kind == FieldKind::kFlag ? "" : " " + cell(valueText(field))) + "` | " +
+                cell(std::string(field.info.help)) + " | " + cell(defaultText(field)) + " |\n";
+    }
+    return text;
+}
+
+}  // namespace relief

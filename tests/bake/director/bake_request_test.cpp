@@ -1,0 +1,215 @@
+// A request and its fields: read from words, written as a command line, and read from what containers record.
+#include "bake/director/bake_request.h"
+
+#include <gtest/gtest.h>
+
+#include "bake/director/director.h"
+#include "bake/director/mesh_check.h"
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+namespace {
+
+/// The record as a command line without its mesh and output.
+std::string wordsOf(const std::string& options) {
+    BakeRequest request = recordedBake(options).request;
+    request.mesh = "m";
+    const std::string line = commandLine(request, "o");
+    EXPECT_TRUE(line.starts_with("relief bake m -o o")) << line;
+    return line.substr(std::string("relief bake m -o o").size());
+}
+
+TEST(BakeRequest, EveryFieldReadsTheWordsThatItIsWrittenAs) {
+    BakeRequest request;
+    ASSERT_TRUE(setField(request, "map", "cube:size=16,compare=less"));
+    ASSERT_TRUE(setField(request, "decode", "projected"));
+    ASSERT_TRUE(setField(request, "depth", "half"));
+    ASSERT_TRUE(setField(request, "paper", "true"));
+    ASSERT_TRUE(setField(request, "budget", "1.5MB"));
+    ASSERT_TRUE(setField(request, "max_error", "2.5%"));
+    ASSERT_TRUE(setField(request, "thickness", "auto=0.25"));
+    ASSERT_TRUE(setField(request, "up", "-Z"));
+    ASSERT_TRUE(setField(request, "backend", "raster"));
+    ASSERT_TRUE(setField(request, "gpu_timeout", "2.5"));
+    EXPECT_EQ(request.budget, 1'500'000U);
+    EXPECT_EQ(request.max_error, 2.5F);
+    EXPECT_TRUE(request.thickness && request.thickness->by_part);
+    const std::vector<FieldWords> changed = changedFields(request);
+    EXPECT_EQ(changed.size(), 10U);
+    BakeRequest again;
+    for (const FieldWords& field : changed) {
+        for (const std::string& word : field.words) {
+            EXPECT_TRUE(setField(again, field.name, word)) << field.name;
+        }
+    }
+    const std::vector<FieldWords> read = changedFields(again);
+    ASSERT_EQ(read.size(), changed.size());
+    for (std::size_t i = 0; i < read.size(); ++i) {
+        EXPECT_EQ(read[i].words, changed[i].words) << read[i].name;
+    }
+}
+
+TEST(BakeRequest, WrongValuesNameTheOptionAndTheCure) {
+    struct Case {
+        const char* name;
+        const char* word;
+        const char* message;
+    };
+    for (const Case& wrong : std::vector<Case>{
+             {"budget", "much", "--budget is 'much' but must be a number of bytes, such as 1MB or 512KiB"},
+             {"max_maps", "0", "--max-maps is '0' but must be a whole number from 1 to 1024"},
+             {"max_error", "-1", "--max-error is '-1' but must be a share in percent, such as 1.5"},
+             {"quality", "bset",
+              "--quality is 'bset' but must be one of fast, normal, best; did you mean 'best'?"},
+             {"depth", "x", "--depth is 'x' but must be unorm16 or half"},
+             {"thickness", "0", "--thickness is '0' but must be a length above 0, in the collider's units"},
+             {"unit", "mile", "--unit is 'mile' but must be one of m, cm, mm, um, km, in, ft, yd"},
+             {"up", "z", "--up is 'z' but must be one of +x, -x, +y, -y, +z, -z"},
+             {"repair", "", "--repair is given without a value; leave it out, or give it one"},
+             {"threads", "1.5", "--threads is '1.5' but must be a whole number from 1 to 1024"},
+             {"no_such", "1", "unknown option --no-such"}}) {
+        BakeRequest request;
+        const Result<void> set = setField(request, wrong.name, wrong.word);
+        ASSERT_FALSE(set) << wrong.name;
+        EXPECT_EQ(set.error().code, ErrorCode::kUsage);
+        EXPECT_EQ(set.error().message, wrong.message);
+    }
+}
+
+TEST(BakeRequest, RulesAcrossFieldsAreOneFunction) {
+    const auto fault = [](const std::vector<std::pair<std::string, std::string>>& words) {
+        BakeRequest request;
+        for (const auto& [name, word] : words) {
+            EXPECT_TRUE(setField(request, name, word)) << name;
+        }
+        const Result<BakeSettings> settings = settingsOf(request);
+        return settings ? std::string() : settings.error().message;
+    };
+    EXPECT_EQ(fault({{"budget", "1MB"}, {"max_error", "1"}}), "");
+    EXPECT_TRUE(fault({{"map", "cube"}, {"paper", "true"}}).starts_with("--map and --paper are two ways"));
+    EXPECT_TRUE(fault({{"plan", "p.toml"}, {"max_error", "1"}}).starts_with("--plan and --max-error are"));
+    EXPECT_TRUE(fault({{"decode", "plane"}}).starts_with("--decode does nothing without --map"));
+    EXPECT_TRUE(fault({{"resolution", "64"}}).starts_with("--resolution does nothing"));
+    EXPECT_TRUE(fault({{"paper", "true"}, {"plan_out", "x"}}).starts_with("--plan-out writes"));
+    EXPECT_TRUE(fault({{"as", "a=shell"}, {"holes", "keep"}}).starts_with("--as NAME=KIND does nothing"));
+    EXPECT_TRUE(fault({{"repair", "magic"}}).starts_with("--repair is 'magic'"));
+}
+
+TEST(RecordedBake, ReadsWhatBakeWrites) {
+    const RecordedBake bake = recordedBake(
+        "--map front-back:dir=+z,size=95x90,depth=unorm16,decode=plane,box=tight "
+        "--map cube:size=6,compare=less,decode=plane,box=0/0/0/1/1/1 --quality best --prefer inside "
+        "--budget 60000 --holes keep --unit mm --up +z --repair wrap=0.02 --as shell --thickness 0.25");
+    EXPECT_TRUE(bake.understood);
+    const BakeRequest& request = bake.request;
+    EXPECT_EQ(request.map.size(), 2U);
+    EXPECT_EQ(request.quality, Quality::kBest);
+    EXPECT_EQ(request.prefer, Prefer::kInside);
+    EXPECT_EQ(request.budget, 60'000U);
+    EXPECT_EQ(request.holes, Holes::kKeep);
+    EXPECT_EQ(request.import.unit, "mm");
+    EXPECT_EQ(request.repair.method, "wrap=0.02");
+    EXPECT_EQ(request.as, std::vector<std::string>{"shell"});
+    EXPECT_TRUE(request.thickness && request.thickness->length == 0.25 && !request.thickness->by_part);
+    EXPECT_EQ(wordsOf("--quality best --prefer inside --budget 60000 --holes keep --unit mm --up +z "
+                      "--repair wrap=0.02 --as shell --thickness 0.25"),
+              " --budget 60kB --quality best --prefer inside --holes keep --unit mm --up +z "
+              "--repair wrap=0.02 --as shell --thickness 0.25");
+    EXPECT_EQ(wordsOf("--quality normal"), "");
+}
+
+TEST(RecordedBake, IsOneCommandToAShell) {
+    for (const char* options : {"--unit $(reboot)", "--prefer ;reboot",  "`reboot` x",
+                                "--unit mm;reboot", "--up '+z",          "--map cube:size=6|reboot",
+                                "--unit \"mm\"",    "x > file",          "--unit a\tb\\",
+                                "--unit ~/x",       "--unit \xff",       "--plan-out x",
+                                "--threads 7",      "--from the=future", "--map cube:size=many",
+                                "--repair magic",   "--as wall",         "--as a%0Ab=shell",
+                                "--as a%zz=shell",  "--thickness -1",    "--quality"}) {
+        EXPECT_EQ(wordsOf(options), "") << options;
+        EXPECT_FALSE(recordedBake(options).understood) << options;
+    }
+    EXPECT_TRUE(recordedBake("").understood);
+    const char* const named = "--as solid --as glass%20%27top%27%3B=shell --as wheel=auto --as -x=shell";
+    EXPECT_TRUE(recordedBake(named).understood);
+    EXPECT_EQ(wordsOf(named), " --as solid --as 'glass '\\''top'\\'';=shell' --as wheel=auto --as -x=shell");
+    std::string many;
+    for (std::size_t i = 0; i < 2 * kAskedNamesMax; ++i) {
+        many += " --as n" + std::to_string(i) + "=solid";
+    }
+    EXPECT_EQ(recordedBake(many).request.as.size(), kAskedNamesMax);
+}
+
+TEST(RecordedBake, NamesSurviveTheRecord) {
+    std::string all;
+    for (char c = ' '; c < '\x7f'; ++c) {
+        all += c;
+    }
+    const ShapeOptions options{
+        ShapeAs::kSolid,
+        0.25,
+        {{all, ShapeAs::kShell}, {"caf\xc3\xa9 \xe7\xaa\x93", ShapeAs::kAuto}, {"%41", ShapeAs::kTerrain}}};
+    const std::string text = recordedShape(options);
+    EXPECT_EQ(text.find_first_of(";|&$`'\"\\<>()*?~\t\n"), std::string::npos) << text;
+    const RecordedBake read = recordedBake("--map cube:size=8" + text + " --unit mm");
+    EXPECT_TRUE(read.understood);
+    const Result<ShapeOptions> shape = parseShapeOptions(read.request.as);
+    ASSERT_TRUE(shape);
+    EXPECT_EQ(shape->as, options.as);
+    EXPECT_EQ(shape->named, options.named);
+    EXPECT_EQ(read.request.thickness->length, 0.25);
+    EXPECT_EQ(recordedShape({}), "");
+}
+
+TEST(RecordedBake, MakesTheSolidThatWasBaked) {
+    TriangleMesh box = makeBoxMesh({0, 0, 0}, {1, 1, 1});
+    box.triangles.pop_back();
+    const auto solid = [&](const char* options) { return makeSolid(recordedBake(options).request, box); };
+    const Result<ShapedMesh> closed = solid("");
+    ASSERT_TRUE(closed);
+    EXPECT_TRUE(closed->mesh.closed());
+    const Result<ShapedMesh> kept = solid("--holes keep");
+    ASSERT_TRUE(kept);
+    EXPECT_EQ(kept->mesh->triangles.size(), 11U);
+    const Result<ShapedMesh> shell = solid("--as shell --thickness 0.1");
+    ASSERT_TRUE(shell);
+    EXPECT_NEAR(shell->report.thickness, 0.1, 1e-6);
+    const Result<ShapedMesh> filled = repairedSolid(recordedBake("--holes keep --repair holes").request, box);
+    ASSERT_TRUE(filled);
+    EXPECT_EQ(filled->mesh->triangles.size(), 12U);
+    // A record like this must not make a check run for hours.
+    EXPECT_FALSE(repairedSolid(recordedBake("--repair wrap=0.001").request, box));
+}
+
+TEST(Director, BakesAMeshInMemory) {
+    BakeRequest request;
+    request.budget = 60'000;
+    const Result<BakeResult> planned = bake(request, {}, makeBoxMesh({0, 0, 0}, {1, 1, 1}));
+    ASSERT_TRUE(planned) << planned.error().message;
+    EXPECT_LE(planned->baked.collider.gpuBytes(), 60'000U);
+    EXPECT_TRUE(planned->plan && planned->wrong && planned->wrong->total() < 5.0);
+    CheckRequest fewer;
+    fewer.samples = 2000;
+    const Result<MeshCheck> checked =
+        check(fewer, planned->baked.collider, makeBoxMesh({0, 0, 0}, {1, 1, 1}));
+    ASSERT_TRUE(checked) << checked.error().message;
+    EXPECT_LT(checked->wrongPercent(), 5.0);
+    // bakeSolid() makes the same maps of a mesh that needs nothing before.
+    const Result<Baked> solid = bakeSolid(request, planned->mesh.mesh);
+    ASSERT_TRUE(solid);
+    EXPECT_EQ(solid->collider.maps, planned->baked.collider.maps);
+    request.import.unit = "mm";
+    EXPECT_FALSE(bake(request, {}, makeBoxMesh({0, 0, 0}, {1, 1, 1})));
+}
+
+TEST(ShellWord, IsOneWordToAShell) {
+    EXPECT_EQ(shellWord("a/b-1.obj"), "a/b-1.obj");
+    EXPECT_EQ(shellWord("my mesh.obj"), "'my mesh.obj'");
+    EXPECT_EQ(shellWord("it's.obj"), "'it'\\''s.obj'");
+    EXPECT_EQ(shellWord("$(reboot)"), "'$(reboot)'");
+    EXPECT_EQ(shellWord("-o"), "./-o");
+    EXPECT_EQ(shellWord(""), "''");
+}
+
+}  // namespace
+}  // namespace relief::test
