@@ -19,7 +19,7 @@ THIRD_PARTIES = {
     'embree3': ['bake/mesh'],
     'embree4': ['bake/mesh'],
     'CGAL': ['bake/mesh', 'bake/repair'],
-    'OpenEXR': ['bake/picture', 'runtime/files'],
+    'OpenEXR': ['bake/picture'],
     'cairo.h': ['bake/picture'],
     'openvdb': ['runtime/vdb_module'],
     'png.h': ['runtime/files'],

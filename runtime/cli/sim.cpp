@@ -56,12 +56,8 @@ void addOutputs(CLI::App& app, SimCommand& command) {
              WordsFor<DumpFormat>{{"ply", DumpFormat::kPly}, {"vdb", DumpFormat::kVdb}},
              "Of --dump and --dump-frames: PLY, or points of OpenVDB; default: what --dump's name ends with, "
              "else ply");
-    app.add_option(
-           "--video", player.video,
-           "Write the frames as a video (.mp4, .mkv, .mov or .webm) in the scene's time; needs ffmpeg")
-        ->option_text("OUT.mp4");
     app.add_option("--first-frame", player.overrides.first_frame,
-                   "Step of the first frame of --frames, --dump-frames and --video, instead of the scene's "
+                   "Step of the first frame of --frames and --dump-frames, instead of the scene's "
                    "render.first; 0: before the first step")
         ->option_text("N")
         ->transform(wholeNumber(0, kStepsMax));
@@ -97,7 +93,7 @@ Result<void> checkTogether(const SimCommand& command) {
         return usage("name a scene (.toml) or a collider (.relief); see relief-sim --help");
     }
     if (command.check && !(player.frames.empty() && player.dump.empty() && player.dump_frames.empty() &&
-                           player.video.empty() && player.stats.empty() && player.events.empty())) {
+                           player.stats.empty() && player.events.empty())) {
         return usage("--check plays nothing and writes nothing; remove it, or the outputs");
     }
     if (command.check && command.gpu.given() != nullptr) {
@@ -107,16 +103,16 @@ Result<void> checkTogether(const SimCommand& command) {
     if (command.check && player.path != StepPath::kAuto) {
         return usage("--path does nothing with --check, which needs no GPU; leave it out");
     }
-    if (command.size && player.frames.empty() && player.video.empty()) {
-        return usage("--size does nothing without --frames or --video; add --frames DIR");
+    if (command.size && player.frames.empty()) {
+        return usage("--size does nothing without --frames; add --frames DIR");
     }
     const SceneOverrides& scene = player.overrides;
-    const bool frames = !(player.frames.empty() && player.video.empty() && player.dump_frames.empty());
+    const bool frames = !(player.frames.empty() && player.dump_frames.empty());
     if ((scene.first_frame || scene.last_frame || scene.frame_every) && !frames) {
         return usage(std::string(scene.first_frame  ? "--first-frame"
                                  : scene.last_frame ? "--last-frame"
                                                     : "--frame-every") +
-                     " does nothing without --frames, --dump-frames or --video; add --frames DIR");
+                     " does nothing without --frames or --dump-frames; add --frames DIR");
     }
     if (scene.first_frame && scene.last_frame && *scene.first_frame > *scene.last_frame) {
         return usage("--first-frame comes after --last-frame; exchange them");

@@ -1,6 +1,5 @@
 #include "runtime/player/outputs.h"
 
-#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -26,11 +25,6 @@ NumberedFiles dumpFiles(const PlayerOptions& options, std::uint32_t count) {
     return {options.dump_frames, "particles_", ending, count};
 }
 
-/// The frame rate at which a video plays in the scene's time, within what players can show.
-double videoRate(const Scene& scene) {
-    return std::clamp(1.0 / (static_cast<double>(scene.time.dt) * scene.render.every), 1.0, 120.0);
-}
-
 }  // namespace
 
 Result<void> checkOutputs(const PlayerOptions& options, FileGuard& guard) {
@@ -40,8 +34,7 @@ Result<void> checkOutputs(const PlayerOptions& options, FileGuard& guard) {
     RELIEF_TRY(guard.reads(options.input));
     RELIEF_TRY(guard.writes(options.dump, "--dump"));
     RELIEF_TRY(guard.writes(options.stats, "--stats"));
-    RELIEF_TRY(guard.writes(options.events, "--events"));
-    return guard.writes(options.video, "--video");
+    return guard.writes(options.events, "--events");
 }
 
 Result<void> checkFrames(const PlayerOptions& options, const Scene& scene, FileGuard& guard) {
@@ -59,26 +52,21 @@ Result<void> checkFrames(const PlayerOptions& options, const Scene& scene, FileG
 Outputs::~Outputs() {
     if (options_.watchdog != nullptr) {
         options_.watchdog->rest();
-        options_.watchdog->setCleanUp({});
     }
 }
 
 Result<void> Outputs::open() {
     const Scene& scene = loaded_.scene;
-    if (!options_.frames.empty() || !options_.video.empty()) {
+    if (!options_.frames.empty()) {
         picture_ = RELIEF_TRY(watched(options_.watchdog, "the shaders of pictures", [&] {
             return ScenePicture::create(loaded_, textures_, options_.path);
         }));
-    }
-    if (!options_.video.empty()) {
-        RELIEF_TRY(openVideo());
     }
     if (options_.time_stages || !options_.stats.empty()) {
         timer_.emplace();
     }
     if (!options_.stats.empty()) {
-        log_ = RELIEF_TRY(
-            StatisticsLog::create(options_.stats, scene.particles.capacity, options_.path, *timer_));
+        log_ = RELIEF_TRY(StatisticsLog::create(options_.stats, scene.particles.capacity, options_.path, *timer_));
     }
     if (!options_.events.empty()) {
         events_ = RELIEF_TRY(EventsLog::create(options_.events, options_.events_min_speed.value_or(0.0F)));
@@ -94,16 +82,6 @@ Result<std::vector<std::byte>> encodeDump(std::span<const ParticleState> particl
     return format == DumpFormat::kVdb ? encodeVdbPoints(particles) : encodePly(particles);
 }
 
-Result<void> Outputs::openVideo() {
-    const Scene& scene = loaded_.scene;
-    video_ = RELIEF_TRY(
-        VideoWriter::create(options_.video, {scene.render.width, scene.render.height, videoRate(scene)}));
-    if (options_.watchdog != nullptr) {
-        options_.watchdog->setCleanUp([writer = video_.get()] { writer->abandon(); });
-    }
-    return {};
-}
-
 Result<void> Outputs::writeFrame(const ParticleSystem& particles, PlayerReport& report) {
     if (picture_) {
         RELIEF_TRY(writePicture(particles, report));
@@ -114,15 +92,9 @@ Result<void> Outputs::writeFrame(const ParticleSystem& particles, PlayerReport& 
 Result<void> Outputs::writePicture(const ParticleSystem& particles, PlayerReport& report) {
     const auto rgb = RELIEF_TRY(watched(options_.watchdog, "picture " + std::to_string(report.frames_written),
                                         [&] { return picture_->draw(particles, timer()); }));
-    if (!options_.frames.empty()) {
-        const auto& render = loaded_.scene.render;
-        const auto png = RELIEF_TRY(encodePng(rgb, render.width, render.height));
-        RELIEF_TRY(
-            writeFile(pictureFiles(options_, report.frames_written + 1).path(report.frames_written), png));
-    }
-    if (video_) {
-        RELIEF_TRY(video_->add(rgb));
-    }
+    const auto& render = loaded_.scene.render;
+    const auto png = RELIEF_TRY(encodePng(rgb, render.width, render.height));
+    RELIEF_TRY(writeFile(pictureFiles(options_, report.frames_written + 1).path(report.frames_written), png));
     ++report.frames_written;
     return {};
 }
@@ -144,7 +116,7 @@ Result<void> Outputs::finish() {
     if (events_) {
         RELIEF_TRY(events_->finish());
     }
-    return video_ ? video_->finish() : Result<void>{};
+    return {};
 }
 
 }  // namespace relief

@@ -1,14 +1,12 @@
-// The outputs of a run in progress: pictures, a video, dumps, statistics; each only if requested.
+// The outputs of a run in progress: pictures, dumps, statistics; each only if requested.
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "formats/base/result.h"
-#include "runtime/files/video.h"
 #include "runtime/gl/gpu_timer.h"
 #include "runtime/player/logs.h"
 #include "runtime/player/player_options.h"
@@ -32,12 +30,11 @@ class Outputs {
     /// \param options, loaded, textures  must outlive this.
     Outputs(const PlayerOptions& options, const LoadedScene& loaded, const ColliderTextures& textures)
         : options_(options), loaded_(loaded), textures_(textures) {}
-    /// The video goes, and with it what the watchdog would clean up.
     ~Outputs();
     Outputs(const Outputs&) = delete;
     Outputs& operator=(const Outputs&) = delete;
 
-    /// Makes what is wanted. Fails as ScenePicture, VideoWriter and StatisticsLog do; kIo for folders.
+    /// Makes what is wanted. Fails as ScenePicture and StatisticsLog do; kIo for folders.
     [[nodiscard]] Result<void> open();
 
     /// Pictures or dumps are written between steps.
@@ -50,11 +47,10 @@ class Outputs {
     [[nodiscard]] EventsLog* events() { return events_ ? &*events_ : nullptr; }
     /// Null where stages are not timed.
     [[nodiscard]] GpuTimer* timer() { return timer_ ? &*timer_ : nullptr; }
-    /// Ends the statistics, the events and the video.
+    /// Ends the statistics and the events.
     [[nodiscard]] Result<void> finish();
 
   private:
-    [[nodiscard]] Result<void> openVideo();
     [[nodiscard]] Result<void> writePicture(const ParticleSystem& particles, PlayerReport& report);
     [[nodiscard]] Result<void> writeParticles(const ParticleSystem& particles, PlayerReport& report);
 
@@ -62,7 +58,6 @@ class Outputs {
     const LoadedScene& loaded_;
     const ColliderTextures& textures_;
     std::optional<ScenePicture> picture_;
-    std::unique_ptr<VideoWriter> video_;
     std::optional<GpuTimer> timer_;
     std::optional<StatisticsLog> log_;
     std::optional<EventsLog> events_;

@@ -32,7 +32,6 @@ struct PlayerOptions {
     /// Folder for particles_0000.ply and so on, as often as frames; empty: none.
     std::filesystem::path dump_frames;
     DumpFormat dump_format = DumpFormat::kPly;  ///< of both
-    std::filesystem::path video;                ///< of the frames, through ffmpeg (video.h); empty: none
     std::filesystem::path stats;  ///< lines of JSON (logs.h), "-" for standard output; empty: none
     std::optional<std::uint32_t> stats_every;  ///< steps from line to line, ≥ 1; nullopt: render.every
     std::filesystem::path events;  ///< hits as lines of JSON (logs.h), "-" for standard output; empty: none
@@ -63,7 +62,7 @@ struct PlayerReport {
     /// compiles, wherever there are three or more. 0 without steps.
     double ms_per_step_median = 0.0;
     std::optional<StageTimes> stage_times;
-    std::uint32_t frames_written = 0;   ///< pictures, in files or in the video
+    std::uint32_t frames_written = 0;   ///< pictures
     std::uint32_t dumps_written = 0;    ///< of dump_frames
     std::vector<std::string> warnings;  ///< what is probably not meant; one line each
     std::uint64_t events_dropped = 0;   ///< hits that a step's list had no room for

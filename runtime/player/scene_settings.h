@@ -235,16 +235,9 @@ void airFields(Visitor& visit, const Scene& scene) {
     visit("vortex", air.vortices, {.help = "[[vortex]]", .left_out = true});
     const auto flow = [&](auto& visit_flow) {
         const FlowFile& file = scene.flow ? *scene.flow : kNone<FlowFile>;
-        const bool raw = file.kind == FlowFileKind::kRaw;
-        visit_flow("file", onlyIf(file.kind == FlowFileKind::kImage, file.path),
-                   {.help = "One image", .left_out = true});
-        visit_flow("files", onlyIf(file.kind == FlowFileKind::kSlices, file.path),
-                   {.help = "Pattern of slices", .left_out = true});
-        visit_flow("raw", onlyIf(raw, file.path), {.help = "Raw grid", .left_out = true});
-        visit_flow("size", onlyIf(raw, file.size),
-                   {.help = "Nodes of a raw grid along x, y and z", .left_out = true});
-        visit_flow("components", onlyIf(raw, file.components),
-                   {.help = "Numbers per node", .left_out = true});
+        visit_flow("raw", file.path, {"Raw grid"});
+        visit_flow("size", file.size, {"Nodes along x, y and z"});
+        visit_flow("components", file.components, {"Numbers per node"});
         visit_flow("box_min", file.box_min, {"Lower corner of the box", "object units"});
         visit_flow("box_max", file.box_max, {"Upper corner of the box", "object units"});
         visit_flow("outside", file.outside, {"Flow outside the box"});

@@ -58,8 +58,7 @@ std::vector<fs::path> filesOf(const Scene& scene) {
         files.push_back(emitter.points_file);
     }
     if (scene.flow) {
-        const std::vector<fs::path> flow = flowPaths(*scene.flow);
-        files.insert(files.end(), flow.begin(), flow.end());
+        files.push_back(scene.flow->path);
     }
     files.push_back(scene.render.atlas);
     files.push_back(scene.render.mesh);

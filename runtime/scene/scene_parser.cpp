@@ -109,29 +109,10 @@ void readField(const TomlValue& from, CollidesList<std::uint32_t> list, const Fi
     }
 }
 
-/// The kind of a flow follows from the key that names its files.
-std::optional<FieldFault> check(FlowFile& flow, const GivenFields& given) {
-    std::string_view source;
-    for (const std::string_view key : kWordsOf<FlowFileKind>) {
-        source = given(std::string(key)) ? key : source;
-    }
-    if (source.empty()) {
-        return FieldFault{
-            "", "has no file; name one EXR image by file, numbered ones by files, or a raw volume by raw"};
-    }
-    flow.kind = *fromWord<FlowFileKind>(source);
-    flow.origin += ": flow." + std::string(source) + ": ";
-    if (flow.kind == FlowFileKind::kSlices && !hasSliceNumber(flow.path.filename().native())) {
-        return FieldFault{"files", "needs one number, as in 'flow_%03d.exr', in its file name"};
-    }
-    if (flow.kind == FlowFileKind::kRaw) {
-        if (!given("size")) {
-            return FieldFault{"",
-                              "needs flow.size for a raw volume, which has none of its own: [nx, ny, nz]"};
-        }
-        if (auto checked = checkFlowSize({flow.size[0], flow.size[1], flow.size[2]}); !checked) {
-            return FieldFault{"size", "is not possible: " + checked.error().message};
-        }
+std::optional<FieldFault> check(FlowFile& flow, const GivenFields& /*given*/) {
+    flow.origin += ": flow.raw: ";
+    if (auto checked = checkFlowSize({flow.size[0], flow.size[1], flow.size[2]}); !checked) {
+        return FieldFault{"size", "is not possible: " + checked.error().message};
     }
     for (int i = 0; i < 3; ++i) {
         if (!(flow.box_min[i] < flow.box_max[i])) {

@@ -347,14 +347,10 @@ export interface SceneCurlNoise {
 
 /** Velocities of the air on a grid; it needs drag. */
 export interface SceneFlow {
-    /** EXR image: channels R, G and maybe B are the velocity along x, y, z; its bottom row lies at the lowest y. */
-    file?: string;
-    /** EXR slices, as "flow_%03d.exr", numbered from 0 or 1, the lowest z first. */
-    files?: string;
     /** Little-endian 32-bit floats, x fastest, then y, then z. */
-    raw?: string;
-    /** Nodes of the raw volume, 2²⁴ at most, [nx, ny, nz]. */
-    size?: Vec3 | Numbers;
+    raw: string;
+    /** Nodes along x, y and z, 2²⁴ at most, [nx, ny, nz]. */
+    size: Vec3 | Numbers;
     /** Floats a node. */
     components?: number;
     /** Lower corner of the flow's box, [x, y, z]. */

@@ -145,7 +145,7 @@ def sim_case(arena, random):
     """-> command, whether it must be refused"""
     scene = random.choice(sorted(SCENES))
     target = random.choice(SCENES[scene])
-    options = {"--dump": ".ply", "--stats": ".jsonl", "--events": ".jsonl", "--video": ".mp4"}
+    options = {"--dump": ".ply", "--stats": ".jsonl", "--events": ".jsonl"}
     kind = random.choice(["input", "input", "frames", "dumps", "two", "out", "fine", "folder"])
     command = ["relief-sim", scene]
     if kind == "input":

@@ -68,21 +68,6 @@ stall_fails read 'picture 0' "$relief_sim" bunny.relief --frames empty --size 16
 stall_fails read 'points 1 to 1' "$relief" query bunny.relief --points points.csv -o out.csv --gpu
 [ "$(cat out.csv)" = older ] || die "an older output was touched"
 [ -z "$(find empty -type f)" ] || die "left behind: $(find empty -type f)"
-cat >ffmpeg <<'F'
-#!/bin/sh
-# This ffmpeg takes its last argument as the output and never ends while the pipe is open.
-echo $$ >"$FFMPEG_PID"
-for last; do :; done
-echo started >"${last#file:}"
-exec cat >>"${last#file:}"
-F
-chmod +x ffmpeg
-mkdir video
-FFMPEG_PID=$PWD/pid PATH=$PWD:$PATH stall_fails read 'picture 0' "$relief_sim" bunny.relief --video video/x.mp4 --size 16x16
-[ -z "$(ls -A video)" ] || die "left behind: $(ls -A video)"
-if [ -s pid ]; then
-    gone "$(cat pid)" || die "ffmpeg still runs"
-fi
 
 # Without a limit the watchdog stays silent: `timeout` ends the run.
 code=0

@@ -1,4 +1,4 @@
-# relief-sim --check, and what relief-sim writes while it plays: dumps, videos, statistics. Readers that share no code
+# relief-sim --check, and what relief-sim writes while it plays: dumps, statistics. Readers that share no code
 # with it read each of them.
 . "$(dirname "$0")/lib.sh"
 
@@ -120,31 +120,3 @@ expect_error 1 '--dump' "$relief_sim" scene.toml --stats - --dump -
 expect_error 2 'nowhere' "$relief_sim" scene.toml --stats nowhere/s.jsonl
 expect_error 2 '/dev/full' "$relief_sim" scene.toml --stats /dev/full
 expect_error 2 'scene\.toml.*--dump-frames' "$relief_sim" scene.toml --dump-frames scene.toml
-
-# Videos go through an ffmpeg that counts what it gets.
-mkdir bin
-cat >bin/ffmpeg <<'F'
-#!/bin/sh
-for out; do :; done
-printf '%s ' "$@" >"$(dirname "$0")/../arguments"
-wc -c >"${out#file:}"
-F
-chmod +x bin/ffmpeg
-expect 0 env PATH="$PWD/bin:$PATH" "$relief_sim" scene.toml --video film.mp4 --json
-[ "$(cat film.mp4)" -eq $((3 * 33 * 21 * 3)) ] || die "ffmpeg was given $(cat film.mp4) bytes"
-grep -q -- '-f rawvideo -pix_fmt rgb24 -s 33x21 -r 6 -i pipe:0' arguments || die "arguments: $(cat arguments)"
-json stdout "d['frames'] == 3 and 'draw' in d['ms_per_stage']"
-[ -z "$(find . -maxdepth 1 -name '.relief-*')" ] || die "a temporary file is left"
-# Videos have the same pixels as the pictures.
-printf '#!/bin/sh\nfor out; do :; done\ncat >"${out#file:}"\n' >bin/ffmpeg
-PATH="$PWD/bin:$PATH" "$relief_sim" scene.toml --video film.mov --frames frames -q
-convert frames/frame_*.png -depth 8 rgb:- | cmp - film.mov || die "the video has other pixels than the pictures"
-
-echo precious >film.mp4
-printf '#!/bin/sh\necho no such encoder >&2\nexit 1\n' >bin/ffmpeg
-expect_error 4 'no such encoder' env PATH="$PWD/bin:$PATH" "$relief_sim" scene.toml --video film.mp4
-rm bin/ffmpeg
-expect_error 5 'ffmpeg.*install' env PATH="$PWD/bin" "$relief_sim" scene.toml --video film.mp4
-expect_error 1 'film\.avi' "$relief_sim" scene.toml --video film.avi
-expect_error 2 'nowhere' "$relief_sim" scene.toml --video nowhere/film.mp4
-[ "$(cat film.mp4)" = precious ] || die "an older video was touched"

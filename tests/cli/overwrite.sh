@@ -60,9 +60,7 @@ for input in "${inputs[@]}"; do
         kept "'symbolic' is the input '$input'.*--$option" "$relief_sim" scene.toml --$option symbolic
     done
     kept "'hard' is the input '$input'" "$relief_sim" scene.toml --stats hard
-    mv symbolic symbolic.mp4
-    kept "symbolic.mp4' is the input '$input'.*--video" "$relief_sim" scene.toml --video symbolic.mp4
-    rm symbolic.mp4 hard
+    rm symbolic hard
 done
 kept "'box.obj' is the input.*--dump" "$relief_sim" drawn.toml --dump box.obj
 kept "'box.relief' is the input" "$relief_sim" box.relief --dump box.relief

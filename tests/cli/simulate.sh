@@ -1,8 +1,8 @@
 # relief-sim from outside: its dependencies, its outputs, its repeatability.
 . "$(dirname "$0")/lib.sh"
 
-# The player reads flows as EXR images; a program that embeds the runtime needs only the GL and the formats.
-for library in assimp embree CGAL gmp mpfr tbb; do
+# A program that embeds the runtime needs only the GL and the formats.
+for library in assimp embree CGAL gmp mpfr tbb OpenEXR IlmImf; do
     ! ldd "$relief_sim" | matches -i "$library" || die "relief-sim needs $library"
 done
 for library in assimp embree CGAL gmp mpfr tbb OpenEXR IlmImf png json; do

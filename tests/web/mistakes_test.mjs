@@ -41,8 +41,8 @@ const kMistakes = {
     "new relief.ParticleSystem(gl, { scene: { collider: { file: '../../etc/passwd' } } })": /passwd/,
     "new relief.ParticleSystem(gl, { collider, files: { '../x': '' } })": /'\.\.\/x' is no file/,
     "new relief.ParticleSystem(gl, { collider, files: { x: 3 } })": /the file 'x' is/,
-    "new relief.ParticleSystem(gl, { collider, scene: { flow: { file: 'a.exr', box_min: [0, 0, 0], box_max: [1, 1, 1] } }, files: { 'a.exr': 'x' } })":
-        /flow fields are not read in a browser/,
+    "new relief.ParticleSystem(gl, { collider, scene: { flow: { raw: 'a.raw', size: [1, 1, 1], box_min: [0, 0, 0], box_max: [1, 1, 1] } }, files: { 'a.raw': 'x' } })":
+        /'a\.raw' has 1 bytes/,
     // stepping and drawing
     "system.step(NaN)": /step\(NaN\)/,
     "system.step(-1)": /step\(-1\)/,

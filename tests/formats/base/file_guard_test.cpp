@@ -84,7 +84,7 @@ TEST_F(FileGuardTest, NoTwoOutputsAreOne) {
     refuses("twice", "--stats and --new would both write");
     writes("real/fresh", "--events");
     refuses("linked/fresh", "--events and --new");
-    writes("/dev/null", "--video");
+    writes("/dev/null", "--table");
     writes("/dev/null", "--plan");
     fs::create_symlink("circle", folder_ / "circle");
     writes("circle", "-o");  // writing it fails

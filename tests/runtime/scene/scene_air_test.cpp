@@ -67,23 +67,21 @@ TEST(SceneAir, AttractorsAndVorticesInTheirOrder) {
     EXPECT_TRUE(checkAir(scene.air));
 }
 
-TEST(SceneAir, FlowsOfEveryKind) {
-    Scene scene = good("[flow]\nfile = \"f.exr\"\n" + kBox);
+TEST(SceneAir, Flows) {
+    Scene scene = good("[flow]\nraw = \"f.raw\"\nsize = [512, 1, 8]\n" + kBox);
     ASSERT_TRUE(scene.flow);
-    EXPECT_EQ(scene.flow->kind, FlowFileKind::kImage);
-    EXPECT_EQ(scene.flow->path, std::filesystem::path("dir/f.exr"));
-    EXPECT_EQ(scene.flow->origin, "dir/scene.toml:4:8: flow.file: ");
+    EXPECT_EQ(scene.flow->path, std::filesystem::path("dir/f.raw"));
+    EXPECT_EQ(scene.flow->origin, "dir/scene.toml:4:7: flow.raw: ");
+    EXPECT_EQ(scene.flow->size, (std::array<std::uint32_t, 3>{512, 1, 8}));
+    EXPECT_EQ(scene.flow->components, 3U);
     EXPECT_EQ(scene.flow->box_max, glm::vec3(1, 2, 3));
     EXPECT_EQ(scene.flow->outside, FlowOutside::kZero);
     EXPECT_EQ(scene.flow->gain, 1.0F);
-    scene = good("[flow]\nfiles = \"f/s_%02d.exr\"\noutside = \"edge\"\ngain = -2\n" + kBox);
-    EXPECT_EQ(scene.flow->kind, FlowFileKind::kSlices);
+    scene = good(
+        "[flow]\nraw = \"f.raw\"\nsize = [1, 1, 1]\ncomponents = 2\noutside = \"edge\"\ngain = -2\n" + kBox);
+    EXPECT_EQ(scene.flow->components, 2U);
     EXPECT_EQ(scene.flow->outside, FlowOutside::kEdge);
     EXPECT_EQ(scene.flow->gain, -2.0F);
-    scene = good("[flow]\nraw = \"f.raw\"\nsize = [512, 1, 8]\ncomponents = 2\n" + kBox);
-    EXPECT_EQ(scene.flow->kind, FlowFileKind::kRaw);
-    EXPECT_EQ(scene.flow->size, (std::array<std::uint32_t, 3>{512, 1, 8}));
-    EXPECT_EQ(scene.flow->components, 2U);
 }
 
 TEST(SceneAir, CurlNoiseAndViscosity) {
@@ -131,22 +129,22 @@ TEST(SceneAir, MistakesOfFieldsAreNamed) {
 }
 
 TEST(SceneAir, MistakesOfAirAreNamed) {
-    expectError("[flow]\n" + kBox, "3:1", "name one EXR image");
-    expectError("[flow]\nfile = \"a.exr\"\nraw = \"b.raw\"\n" + kBox, "5:7", "remove one");
-    expectError("[flow]\nfile = \"\"\n" + kBox, "4:8", "names no file");
-    expectError("[flow]\nfiles = \"a_%s.exr\"\n" + kBox, "4:9", "one number");
-    expectError("[flow]\nfile = \"a.exr\"\nbox_min = [0, 0, 0]\n", "3:1", "flow.box_max is missing");
-    expectError("[flow]\nfile = \"a.exr\"\nbox_min = [0, 2, 0]\nbox_max = [1, 2, 3]\n", "5:11", "y axis");
-    expectError("[flow]\nfile = \"a.exr\"\nsize = [1, 1, 1]\n" + kBox, "5:8", "flow.raw");
-    expectError("[flow]\nfile = \"a.exr\"\ncomponents = 3\n" + kBox, "5:14", "flow.raw");
-    expectError("[flow]\nraw = \"a.raw\"\n" + kBox, "3:1", "needs flow.size");
+    expectError("[flow]\n" + kBox, "3:1", "flow.raw is missing");
+    expectError("[flow]\nraw = \"\"\nsize = [1, 1, 1]\n" + kBox, "4:7", "names no file");
+    expectError("[flow]\nfile = \"a.exr\"\n" + kBox, "4:1", "unknown key");
+    expectError("[flow]\nraw = \"a.raw\"\nsize = [1, 1, 1]\nbox_min = [0, 0, 0]\n", "3:1",
+                "flow.box_max is missing");
+    expectError("[flow]\nraw = \"a.raw\"\nsize = [1, 1, 1]\nbox_min = [0, 2, 0]\nbox_max = [1, 2, 3]\n",
+                "6:11", "y axis");
+    expectError("[flow]\nraw = \"a.raw\"\n" + kBox, "3:1", "flow.size is missing");
     expectError("[flow]\nraw = \"a.raw\"\nsize = [1, 1]\n" + kBox, "5:8", "three whole numbers");
     expectError("[flow]\nraw = \"a.raw\"\nsize = [1, 1, 513]\n" + kBox, "5:15", "1 to 512");
     expectError("[flow]\nraw = \"a.raw\"\nsize = [512, 512, 65]\n" + kBox, "5:8", "bytes");
     expectError("[flow]\nraw = \"a.raw\"\nsize = [1, 1, 1]\ncomponents = 4\n" + kBox, "6:14", "2 to 3");
-    expectError("[flow]\nfile = \"a.exr\"\noutside = \"wrap\"\n" + kBox, "5:11", "\"edge\"");
-    expectError("[flow]\nfile = \"a.exr\"\ngain = 0\n" + kBox, "5:8", "does nothing");
-    expectError("[forces]\ndrag = 0\n[flow]\nfile = \"a.exr\"\n" + kBox, "5:1", "forces.drag");
+    expectError("[flow]\nraw = \"a.raw\"\nsize = [1, 1, 1]\noutside = \"wrap\"\n" + kBox, "6:11", "\"edge\"");
+    expectError("[flow]\nraw = \"a.raw\"\nsize = [1, 1, 1]\ngain = 0\n" + kBox, "6:8", "does nothing");
+    expectError("[forces]\ndrag = 0\n[flow]\nraw = \"a.raw\"\nsize = [1, 1, 1]\n" + kBox, "5:1",
+                "forces.drag");
     expectError("[curl_noise]\nscale = 1\n", "3:1", "amplitude is missing");
     expectError("[curl_noise]\namplitude = 1\n", "3:1", "scale is missing");
     expectError("[curl_noise]\namplitude = 0\nscale = 1\n", "4:13", "above 0");
