@@ -10,21 +10,22 @@
 namespace relief {
 namespace {
 
+// 1 / root mean square of the curl of one octave, all over space. Corners' numbers, ±1, ±3 … ±15, are independent, of variance 85; and there are two corners in each unit of space. So the mean square is
+// twice the integral of one corner's, 85 t⁴ (2r² + 3u² + 2u r² + r⁴) with t = 1/2 - r² and u = 4t/3 - 1/2, over
+// the ball t > 0: 85 · 8√2 π / 6435 = 0.469488795.
+constexpr float kUnitRms = 1.45944383F;
+
+// Units of the lattice in a `scale`. With so many, the mean square of the velocity's nine derivatives, over that
+// of the velocity, is 29.1052974 / scale²: what noise of three gradients a corner has on a cubic lattice of side
+// `scale`, with a quintic fade. In units of the lattice it is 330/7, by integrals as above.
+constexpr float kUnitsPerScale = 0.785738567F;
+
 bool positive(float x) {
     return x > 0.0F && std::isfinite(x);
 }
 
 bool knownFalloff(int falloff) {
     return falloff >= 0 && falloff <= 2;
-}
-
-/// The strength at distance r over r: a field is this times an offset that is r long.
-float profile(float r, float radius, int falloff) {
-    if (r <= radius) {
-        return 1.0F / radius;
-    }
-    const float s = radius / r;
-    return (falloff == 0 ? 1.0F : (falloff == 1 ? s : s * s)) / r;
 }
 
 tl::unexpected<Error> wrong(const char* what, std::size_t index, const char* why) {
@@ -91,34 +92,25 @@ Result<void> checkAir(const AirSettings& air) {
     return air.flow ? checkFlow(*air.flow) : Result<void>{};
 }
 
-glm::vec3 airVelocity(const AirSettings& air, const glm::vec3& p, float t) {
-    glm::vec3 velocity = air.wind;
-    if (air.flow) {
-        velocity += flowVelocity(*air.flow, p);
+float curlGain(const CurlNoise& noise) {
+    float squares = 0.0F;
+    for (int o = 0; o < noise.octaves; ++o) {
+        squares += std::ldexp(1.0F, -2 * o);
     }
-    if (air.curl_noise) {
-        velocity += curlVelocity(*air.curl_noise, p, t);
-    }
-    return velocity;
+    return noise.amplitude * kUnitRms / std::sqrt(squares);
 }
 
-glm::vec3 fieldAcceleration(const AirSettings& air, const glm::vec3& p, const glm::vec3& /*v*/, float /*t*/) {
-    glm::vec3 sum(0.0F);
-    for (const Attractor& one : air.attractors) {
-        const glm::vec3 d = one.position - p;
-        const float r = glm::length(d);
-        if (r <= one.reach) {
-            sum += (one.strength * profile(r, one.radius, one.falloff)) * d;
-        }
+float curlUnits(const CurlNoise& noise) {
+    return kUnitsPerScale / noise.scale;
+}
+
+float curlTime(const CurlNoise& noise, double seconds) {
+    if (!(noise.drift > 0.0F)) {
+        return 0.0F;
     }
-    for (const Vortex& one : air.vortices) {
-        const glm::vec3 axis = glm::normalize(one.axis);
-        const glm::vec3 d = p - one.center;
-        const glm::vec3 across = d - glm::dot(d, axis) * axis;
-        sum +=
-            (one.strength * profile(glm::length(across), one.radius, one.falloff)) * glm::cross(axis, across);
-    }
-    return sum;
+    const double period = kCurlPatterns * static_cast<double>(noise.scale) / static_cast<double>(noise.drift);
+    const double rest = std::fmod(seconds, period);
+    return static_cast<float>(rest < 0.0 ? rest + period : rest);
 }
 
 float airTime(const AirSettings& air, double seconds) {

@@ -1,6 +1,5 @@
 // Forces on a particle besides collision and gravity: moving air, which acts through drag, and fields,
-// which accelerate. Plain settings, and on the CPU what shaders/air/air.glsl computes on the GPU; air_block.h
-// puts the settings there.
+// which accelerate. Plain settings; shaders/air/air.glsl computes with them, and air_block.h brings them there.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -115,16 +114,7 @@ void fields(Visitor& visit, A& air) {
 /// Fails as checkFlow does, and with kUsage (a number out of the range given above, too many).
 [[nodiscard]] Result<void> checkAir(const AirSettings& air);
 
-/// Wind, flow and noise together at point p, object units a second.
-/// \param t  seconds, as airTime() gives them.
-[[nodiscard]] glm::vec3 airVelocity(const AirSettings& air, const glm::vec3& p, float t);
-
-/// The acceleration of a particle at p by attractors and vortices, object units a second squared. `v` and `t` are for
-/// fields to come: none yet depends on them.
-[[nodiscard]] glm::vec3 fieldAcceleration(const AirSettings& air, const glm::vec3& p, const glm::vec3& v,
-                                          float t);
-
-/// The time to hand to the functions above and to the shader, from seconds since the start. Count them
+/// The time to hand to the shader, from seconds since the start. Count them
 /// in a double, and not by a particle system's own clock, which is set back now and then.
 [[nodiscard]] float airTime(const AirSettings& air, double seconds);
 

@@ -1,5 +1,5 @@
 // Turbulence: the curl of a random potential, which therefore has no divergence: particles neither gather nor
-// thin out. The C++ side of shaders/air/curl_noise.glsl.
+// thin out. Settings of shaders/air/curl_noise.glsl.
 //
 // The potential is noise on the simplex lattice (K. Perlin, 2001; S. Gustavson, "Simplex noise demystified",
 // 2005): the four corners of a simplex have a share in it. A corner's is (a + b × d)(1/2 - |d|²)³ / 6, where d
@@ -51,11 +51,6 @@ void fields(Visitor& visit, N& noise) {
     visit("seed", noise.seed, {"Seed of the pattern"});
 }
 [[nodiscard]] std::optional<FieldFault> check(CurlNoise& noise, const GivenFields& given);
-
-/// The velocity at p and time t, object units a second. No speed exceeds 4.4 · √2 · 15/√85 · amplitude (all
-/// numbers of all corners at their worst); in practice none exceeds 4 · amplitude.
-/// \param t  seconds, as curlTime() gives them.
-[[nodiscard]] glm::vec3 curlVelocity(const CurlNoise& noise, const glm::vec3& p, float t);
 
 /// Seconds since the start, taken back by whole periods of the noise: a float then holds them finely enough
 /// however long a run takes.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 #include <string>
 
 #include "formats/base/finite.h"
@@ -73,34 +72,6 @@ glm::vec3 flowNodesPerUnit(const FlowField& flow) {
                       (flow.box_max[axis] - flow.box_min[axis]);
     }
     return scale;
-}
-
-glm::vec3 flowVelocity(const FlowField& flow, const glm::vec3& p) {
-    const glm::vec3 scale = flowNodesPerUnit(flow);
-    std::array<std::size_t, 3> low{};
-    std::array<std::size_t, 3> high{};
-    glm::vec3 f;
-    for (int axis = 0; axis < 3; ++axis) {
-        const bool within = p[axis] >= flow.box_min[axis] && p[axis] <= flow.box_max[axis];
-        if (flow.outside == FlowOutside::kZero && !within) {
-            return glm::vec3(0.0F);
-        }
-        const auto a = static_cast<std::size_t>(axis);
-        const auto last = static_cast<float>(flow.size[a] - 1);
-        const float u = (p[axis] - flow.box_min[axis]) * scale[axis];
-        const float in = u > 0.0F ? std::min(u, last) : 0.0F;  // 0 for NaN too
-        // The last node has no neighbour beyond it, so the far end of the cell before it is used.
-        low[a] =
-            std::min(static_cast<std::size_t>(in), static_cast<std::size_t>(std::max(flow.size[a], 2U)) - 2);
-        high[a] = std::min(low[a] + 1, static_cast<std::size_t>(flow.size[a]) - 1);
-        f[axis] = in - static_cast<float>(low[a]);
-    }
-    const auto row = [&](std::size_t y, std::size_t z) {
-        const glm::vec3* first = &flow.nodes[(z * flow.size[1] + y) * flow.size[0]];
-        return glm::mix(first[low[0]], first[high[0]], f.x);
-    };
-    const auto slice = [&](std::size_t z) { return glm::mix(row(low[1], z), row(high[1], z), f.y); };
-    return flow.gain * glm::mix(slice(low[2]), slice(high[2]), f.z);
 }
 
 }  // namespace relief

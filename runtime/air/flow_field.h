@@ -1,4 +1,4 @@
-// Velocities on a grid over a box: the C++ side of reliefFlow() in shaders/air/air.glsl.
+// Velocities on a grid over a box: for reliefFlow() in shaders/air/air.glsl.
 #pragma once
 
 #include <array>
@@ -45,10 +45,6 @@ struct FlowField {
 /// Fails as checkFlowSize does, and with kInvalidInput (too few or too many nodes, an empty box, NaN or
 /// infinity: the message names the first such node).
 [[nodiscard]] Result<void> checkFlow(const FlowField& flow);
-
-/// The velocity at p, object units a second, by the operations of the shader in their order.
-/// \param flow  as checkFlow has it.
-[[nodiscard]] glm::vec3 flowVelocity(const FlowField& flow, const glm::vec3& p);
 
 /// Nodes per object unit on every axis, 0 where there is but one: what the shader multiplies with.
 [[nodiscard]] glm::vec3 flowNodesPerUnit(const FlowField& flow);

@@ -19,11 +19,6 @@ std::uint32_t dayOf(float time) {
 
 }  // namespace
 
-DeathQueue::DeathQueue(std::uint32_t capacity) : days_(kDays) {
-    // All blocks but one of each day are full, and one is in hand while a day is sorted.
-    blocks_.reserve(capacity / kBlockSize + std::min(capacity, kDays) + 1);
-}
-
 void DeathQueue::push(float time, std::uint32_t index) {
     file({time, index});
     ++size_;
@@ -31,28 +26,9 @@ void DeathQueue::push(float time, std::uint32_t index) {
 
 void DeathQueue::file(const Death& death) {
     Day& day = days_[std::max(dayOf(death.time), today_) % kDays];
-    if (day.first == kNone) {
-        day.earliest = death.time;
-    }
-    if (day.first == kNone || blocks_[day.first].count == kBlockSize) {
-        const std::uint32_t block = takeBlock();
-        blocks_[block].next = day.first;
-        day.first = block;
-    }
-    Block& block = blocks_[day.first];
-    block.deaths[block.count++] = death;
     // Never above the earliest time; where NaN makes it NaN the day is opened whenever it is met.
-    day.earliest = death.time < day.earliest ? death.time : day.earliest;
-}
-
-std::uint32_t DeathQueue::takeBlock() {
-    if (free_ == kNone) {
-        blocks_.emplace_back();
-        return static_cast<std::uint32_t>(blocks_.size() - 1);
-    }
-    const std::uint32_t block = std::exchange(free_, blocks_[free_].next);
-    blocks_[block].count = 0;
-    return block;
+    day.earliest = day.deaths.empty() || death.time < day.earliest ? death.time : day.earliest;
+    day.deaths.push_back(death);
 }
 
 void DeathQueue::popUntil(float now, std::vector<std::uint32_t>& dead) {
@@ -66,39 +42,26 @@ void DeathQueue::popUntil(float now, std::vector<std::uint32_t>& dead) {
 }
 
 void DeathQueue::openDay(std::uint32_t day, float now, std::vector<std::uint32_t>& dead) {
-    if (days_[day].first == kNone || now < days_[day].earliest) {
+    if (days_[day].deaths.empty() || now < days_[day].earliest) {
         return;
     }
-    std::uint32_t at = std::exchange(days_[day].first, kNone);
-    while (at != kNone) {
-        const Block block = blocks_[at];
-        blocks_[at].next = std::exchange(free_, at);
-        for (std::uint32_t i = 0; i < block.count; ++i) {
-            if (now >= block.deaths[i].time) {
-                dead.push_back(block.deaths[i].index);
-                --size_;
-            } else {
-                file(block.deaths[i]);
-            }
+    for (const Death& death : std::exchange(days_[day].deaths, {})) {
+        if (now >= death.time) {
+            dead.push_back(death.index);
+            --size_;
+        } else {
+            file(death);
         }
-        at = block.next;
     }
 }
 
 void DeathQueue::rebase(float shift) {
-    std::vector<Death> all;
-    all.reserve(size_);
-    for (Day& day : days_) {
-        for (std::uint32_t at = day.first; at != kNone; at = blocks_[at].next) {
-            all.insert(all.end(), blocks_[at].deaths, blocks_[at].deaths + blocks_[at].count);
-        }
-        day.first = kNone;
-    }
-    blocks_.clear();
-    free_ = kNone;
+    std::vector<Day> days = std::exchange(days_, std::vector<Day>(kDays));
     today_ = 0;  // nothing is lost by beginning early: the days up to now are empty
-    for (const Death& death : all) {
-        file({death.time - shift, death.index});
+    for (const Day& day : days) {
+        for (const Death& death : day.deaths) {
+            file({death.time - shift, death.index});
+        }
     }
 }
 

@@ -8,14 +8,10 @@
 
 namespace relief {
 
-/// The calendar has kDays days of 1 / kDaysPerSecond, used in turn: a death beyond the last waits on its day
-/// for the turn that is its own. Each day is a chain of blocks from one pool, read from front to back. The
-/// pool is set aside on construction, 8 to 9 bytes a particle and at most 1 MB more, and touched as it is
-/// used.
+/// The calendar has kDays days of 1 / 64 s, used in turn: a death beyond the last waits on its day for the turn that is its own.
 class DeathQueue {
   public:
-    /// \param capacity  deaths that may wait at once; more are taken, but move the pool.
-    explicit DeathQueue(std::uint32_t capacity);
+    DeathQueue() : days_(kDays) {}
 
     /// \param time  seconds, any float: one that has passed is due at once, NaN and infinity never are.
     void push(float time, std::uint32_t index);
@@ -32,28 +28,18 @@ class DeathQueue {
 
   private:
     static constexpr std::uint32_t kDays = 4096;
-    static constexpr std::uint32_t kBlockSize = 31;
-    static constexpr std::uint32_t kNone = ~std::uint32_t{0};
     struct Death {
         float time;
         std::uint32_t index;
     };
-    struct Block {
-        std::uint32_t count = 0;
-        std::uint32_t next = kNone;
-        Death deaths[kBlockSize];
-    };
     struct Day {
-        std::uint32_t first = kNone;  // block
-        float earliest = 0.0F;        // of its deaths
+        std::vector<Death> deaths;
+        float earliest = 0.0F;  // of them
     };
 
     void file(const Death& death);
-    [[nodiscard]] std::uint32_t takeBlock();
     void openDay(std::uint32_t day, float now, std::vector<std::uint32_t>& dead);
 
-    std::vector<Block> blocks_;
-    std::uint32_t free_ = kNone;  // the first block without a day
     std::vector<Day> days_;
     std::uint32_t today_ = 0;  // since time 0: the first that may hold deaths that are due
     std::uint32_t size_ = 0;

@@ -190,7 +190,7 @@ class ParticleSystem {
     [[nodiscard]] Result<RawState> readRaw() const;
 
   private:
-    explicit ParticleSystem(std::uint32_t capacity) : allocator_(capacity), deaths_(capacity) {}
+    explicit ParticleSystem(std::uint32_t capacity) : allocator_(capacity) {}
     [[nodiscard]] Result<void> createTextures();
     [[nodiscard]] Result<void> createPrograms();
     [[nodiscard]] StepFeatures featuresFor(const ColliderTextures* collider) const;

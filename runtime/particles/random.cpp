@@ -2,34 +2,10 @@
 
 #include <cmath>
 
-#include "formats/base/bits.h"
 #include "formats/base/finite.h"
+#include "formats/base/portable_math.h"
 
 namespace relief {
-namespace {
-
-constexpr double kArtanh[] = {1.0 / 19.0, 1.0 / 17.0, 1.0 / 15.0, 1.0 / 13.0, 1.0 / 11.0,
-                              1.0 / 9.0,  1.0 / 7.0,  1.0 / 5.0,  1.0 / 3.0,  1.0};
-
-/// ln x for a normal x > 0: the exponent, and the series of 2 artanh z for the mantissa, |z| < 0.172.
-double logarithm(double x) {
-    const auto bits = bitCast<std::uint64_t>(x);
-    auto exponent = static_cast<double>(static_cast<std::int64_t>(bits >> 52) - 1023);
-    auto mantissa = bitCast<double>((bits & 0xfffffffffffffU) | 0x3ff0000000000000U);
-    if (mantissa > 1.4142135623730951) {
-        mantissa *= 0.5;
-        exponent += 1.0;
-    }
-    const double z = (mantissa - 1.0) / (mantissa + 1.0);
-    const double z2 = z * z;
-    double sum = 0.0;
-    for (const double coefficient : kArtanh) {
-        sum = sum * z2 + coefficient;
-    }
-    return 2.0 * z * sum + exponent * 0.6931471805599453;
-}
-
-}  // namespace
 
 std::uint32_t Pcg32::below(std::uint32_t count) {
     std::uint64_t product = std::uint64_t{next()} * count;
@@ -71,18 +47,12 @@ float standardNormal(Pcg32& random) {
     const double x = static_cast<double>(p.x);
     const double y = static_cast<double>(p.y);
     const double square = x * x + y * y;
-    return static_cast<float>(x * std::sqrt(-2.0 * logarithm(square) / square));
+    return static_cast<float>(x * std::sqrt(-2.0 * portable::log(square) / square));
 }
 
 double oneMinusCosine(double degrees) {
-    // 2 sin²(a/2), with a/2 up to π/2, where the Taylor series to the 21st power is exact to a double.
-    const double half = degrees * (3.14159265358979323846 / 360.0);
-    const double square = half * half;
-    double sum = 1.0;
-    for (int n = 20; n >= 2; n -= 2) {
-        sum = 1.0 - sum * square / (n * (n + 1.0));
-    }
-    const double sine = half * sum;
+    // 2 sin²(a/2): the difference itself is rounded away where the angle is small.
+    const double sine = portable::sin(degrees * (3.14159265358979323846 / 360.0));
     return 2.0 * sine * sine;
 }
 

@@ -1,4 +1,5 @@
-// Turbulence without divergence; explained in its C++ twin, runtime/air/curl_noise.cpp. Casts between int and uint keep
+// Turbulence without divergence; runtime/air/curl_noise.h explains it, and tests/runtime/air/air_reference.cpp is the same
+// in C++. Casts between int and uint keep
 // the bits; uint arithmetic wraps at 2^32.
 
 uint curlHash(uint x) {

@@ -15,6 +15,7 @@
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 #include "runtime/particles/emitter.h"
+#include "tests/runtime/air/air_reference.h"
 #include "tests/runtime/gl/gl_test.h"
 
 namespace relief {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "runtime/particles/emitter.h"
+#include "tests/runtime/air/air_reference.h"
 
 namespace relief {
 namespace {

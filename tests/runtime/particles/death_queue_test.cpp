@@ -31,7 +31,7 @@ class DeathQueueRun : public testing::TestWithParam<Pace> {};
 // Breaks with a day forgotten, a turn too early, a block lost or taken twice.
 TEST_P(DeathQueueRun, AgreesWithASortedReference) {
     const Pace& run = GetParam();
-    DeathQueue queue(500);
+    DeathQueue queue;
     std::multimap<float, std::uint32_t> reference;
     Pcg32 random(5);
     float now = 0.0F;
@@ -81,7 +81,7 @@ INSTANTIATE_TEST_SUITE_P(Paces, DeathQueueRun,
                          [](const auto& run) { return std::string(run.param.name); });
 
 TEST(DeathQueue, OneFloatDecides) {
-    DeathQueue queue(4);
+    DeathQueue queue;
     const float due = 1.7F;
     queue.push(due, 7);
     EXPECT_TRUE(pop(queue, std::nextafter(due, 0.0F)).empty());
@@ -90,7 +90,7 @@ TEST(DeathQueue, OneFloatDecides) {
 }
 
 TEST(DeathQueue, WhatIsNeverDueHidesNothingThatIs) {
-    DeathQueue queue(8);
+    DeathQueue queue;
     queue.push(std::numeric_limits<float>::quiet_NaN(), 1);
     queue.push(std::numeric_limits<float>::infinity(), 2);
     queue.push(3e38F, 3);

@@ -1,5 +1,7 @@
-#include "runtime/air/curl_noise.h"
+#include "tests/runtime/air/air_reference.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -10,16 +12,14 @@
 namespace relief {
 namespace {
 
-// 1 / root mean square of the curl of one octave, as octave() has it, all over space. Corners' numbers, ±1, ±3 …
-// ±15, are independent, of variance 85; and there are two corners in each unit of space. So the mean square is
-// twice the integral of one corner's, 85 t⁴ (2r² + 3u² + 2u r² + r⁴) with t = 1/2 - r² and u = 4t/3 - 1/2, over
-// the ball t > 0: 85 · 8√2 π / 6435 = 0.469488795.
-constexpr float kUnitRms = 1.45944383F;
-
-// Units of the lattice in a `scale`. With so many, the mean square of the velocity's nine derivatives, over that
-// of the velocity, is 29.1052974 / scale²: what noise of three gradients a corner has on a cubic lattice of side
-// `scale`, with a quintic fade. In units of the lattice it is 330/7, by integrals as above.
-constexpr float kUnitsPerScale = 0.785738567F;
+/// The strength at distance r over r: a field is this times an offset that is r long.
+float profile(float r, float radius, int falloff) {
+    if (r <= radius) {
+        return 1.0F / radius;
+    }
+    const float s = radius / r;
+    return (falloff == 0 ? 1.0F : (falloff == 1 ? s : s * s)) / r;
+}
 
 std::uint32_t hash(std::uint32_t x) {
     x ^= x >> 16U;
@@ -105,27 +105,6 @@ glm::vec3 octave(const glm::vec3& point, const std::uint32_t (&keys)[2], const g
 
 }  // namespace
 
-float curlGain(const CurlNoise& noise) {
-    float squares = 0.0F;
-    for (int o = 0; o < noise.octaves; ++o) {
-        squares += std::ldexp(1.0F, -2 * o);
-    }
-    return noise.amplitude * kUnitRms / std::sqrt(squares);
-}
-
-float curlUnits(const CurlNoise& noise) {
-    return kUnitsPerScale / noise.scale;
-}
-
-float curlTime(const CurlNoise& noise, double seconds) {
-    if (!(noise.drift > 0.0F)) {
-        return 0.0F;
-    }
-    const double period = kCurlPatterns * static_cast<double>(noise.scale) / static_cast<double>(noise.drift);
-    const double rest = std::fmod(seconds, period);
-    return static_cast<float>(rest < 0.0 ? rest + period : rest);
-}
-
 glm::vec3 curlVelocity(const CurlNoise& noise, const glm::vec3& p, float t) {
     glm::vec3 sum(0.0F);
     const float per_unit = curlUnits(noise);
@@ -144,6 +123,64 @@ glm::vec3 curlVelocity(const CurlNoise& noise, const glm::vec3& p, float t) {
         sum += octave(p * (per_unit * twice), keys, share) / twice;
     }
     return gain * sum;
+}
+
+glm::vec3 flowVelocity(const FlowField& flow, const glm::vec3& p) {
+    const glm::vec3 scale = flowNodesPerUnit(flow);
+    std::array<std::size_t, 3> low{};
+    std::array<std::size_t, 3> high{};
+    glm::vec3 f;
+    for (int axis = 0; axis < 3; ++axis) {
+        const bool within = p[axis] >= flow.box_min[axis] && p[axis] <= flow.box_max[axis];
+        if (flow.outside == FlowOutside::kZero && !within) {
+            return glm::vec3(0.0F);
+        }
+        const auto a = static_cast<std::size_t>(axis);
+        const auto last = static_cast<float>(flow.size[a] - 1);
+        const float u = (p[axis] - flow.box_min[axis]) * scale[axis];
+        const float in = u > 0.0F ? std::min(u, last) : 0.0F;  // 0 for NaN too
+        // The last node has no neighbour beyond it, so the far end of the cell before it is used.
+        low[a] =
+            std::min(static_cast<std::size_t>(in), static_cast<std::size_t>(std::max(flow.size[a], 2U)) - 2);
+        high[a] = std::min(low[a] + 1, static_cast<std::size_t>(flow.size[a]) - 1);
+        f[axis] = in - static_cast<float>(low[a]);
+    }
+    const auto row = [&](std::size_t y, std::size_t z) {
+        const glm::vec3* first = &flow.nodes[(z * flow.size[1] + y) * flow.size[0]];
+        return glm::mix(first[low[0]], first[high[0]], f.x);
+    };
+    const auto slice = [&](std::size_t z) { return glm::mix(row(low[1], z), row(high[1], z), f.y); };
+    return flow.gain * glm::mix(slice(low[2]), slice(high[2]), f.z);
+}
+
+glm::vec3 airVelocity(const AirSettings& air, const glm::vec3& p, float t) {
+    glm::vec3 velocity = air.wind;
+    if (air.flow) {
+        velocity += flowVelocity(*air.flow, p);
+    }
+    if (air.curl_noise) {
+        velocity += curlVelocity(*air.curl_noise, p, t);
+    }
+    return velocity;
+}
+
+glm::vec3 fieldAcceleration(const AirSettings& air, const glm::vec3& p, const glm::vec3& /*v*/, float /*t*/) {
+    glm::vec3 sum(0.0F);
+    for (const Attractor& one : air.attractors) {
+        const glm::vec3 d = one.position - p;
+        const float r = glm::length(d);
+        if (r <= one.reach) {
+            sum += (one.strength * profile(r, one.radius, one.falloff)) * d;
+        }
+    }
+    for (const Vortex& one : air.vortices) {
+        const glm::vec3 axis = glm::normalize(one.axis);
+        const glm::vec3 d = p - one.center;
+        const glm::vec3 across = d - glm::dot(d, axis) * axis;
+        sum +=
+            (one.strength * profile(glm::length(across), one.radius, one.falloff)) * glm::cross(axis, across);
+    }
+    return sum;
 }
 
 }  // namespace relief
