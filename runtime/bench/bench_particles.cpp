@@ -157,17 +157,15 @@ Result<Json> benchStatistics(const Bench& bench) {
     Json tables = Json::array();
     for (const std::uint32_t count : bench.particlesOr({1U << 16, 1U << 18, 1U << 20})) {
         const ParticleSystem particles = RELIEF_TRY(flyingParticles(count));
-        std::vector<Work> works;
-        for (const StepPath path : paths()) {
-            const auto sums = std::make_shared<Statistics>(RELIEF_TRY(Statistics::create(count, path)));
-            works.push_back({named("sample", path), [sums, &particles]() -> Result<void> {
-                                 const bool full = sums->inFlight() == Statistics::kInFlightMax;
-                                 if ((full && !sums->wait()) || !sums->request(particles, 0)) {
-                                     return fail(ErrorCode::kFailure, "the GPU's statistics cannot be read");
-                                 }
-                                 return {};
-                             }});
-        }
+        const auto sums = std::make_shared<Statistics>(RELIEF_TRY(Statistics::create(count)));
+        const std::vector<Work> works{{"sample", [sums, &particles]() -> Result<void> {
+                                           const bool full = sums->inFlight() == Statistics::kInFlightMax;
+                                           if ((full && !sums->wait()) || !sums->request(particles, 0)) {
+                                               return fail(ErrorCode::kFailure,
+                                                           "the GPU's statistics cannot be read");
+                                           }
+                                           return {};
+                                       }}};
         tables.push_back({{"particles", count}, {"rows", RELIEF_TRY(timeInTurns(bench, works, {}))}});
     }
     return tables;

@@ -23,15 +23,14 @@ void upload(GLenum target, std::span<const BirthPass::Newborn> newborn) {
 
 }  // namespace
 
-Result<BirthPass> BirthPass::create(const glm::uvec2& size, bool verlet, StepPath path) {
+Result<BirthPass> BirthPass::create(const glm::uvec2& size, StepPath path) {
     BirthPass pass;
     pass.path_ = path;
     pass.size_ = size;
     pass.newborn_ = makeBuffer();
-    const char* defines = verlet ? "#define RELIEF_VERLET\n" : "";
-    pass.program_ = RELIEF_TRY(path == StepPath::kCompute
-                                   ? makeComputeProgram("particles/birth.comp", defines)
-                                   : makeProgram("particles/birth.vert", "particles/birth.frag", defines));
+    pass.program_ =
+        RELIEF_TRY(path == StepPath::kCompute ? makeComputeProgram("particles/birth.comp")
+                                              : makeProgram("particles/birth.vert", "particles/birth.frag"));
     pass.program_.use();
     pass.program_.set("u_size", glm::ivec2(size));
     if (path != StepPath::kCompute) {
@@ -54,9 +53,8 @@ void BirthPass::makeVertexFormat() {
     }
 }
 
-void BirthPass::run(std::span<const Newborn> newborn, const Target& target, float dt_before) const {
+void BirthPass::run(std::span<const Newborn> newborn, const Target& target) const {
     program_.use();
-    program_.set("u_dt_before", dt_before);
     if (path_ == StepPath::kCompute) {
         dispatch(newborn, target);
     } else {
@@ -77,7 +75,7 @@ void BirthPass::dispatch(std::span<const Newborn> newborn, const Target& target)
     const ImageUnits images;
     const StorageUnits storage;
     ImageUnits::write(0, target.position);
-    ImageUnits::write(1, target.second);
+    ImageUnits::write(1, target.velocity);
     ImageUnits::write(2, target.birth);
     StorageUnits::bind(0, newborn_);
     StorageUnits::order();  // renderers may still read the textures

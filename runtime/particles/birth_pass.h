@@ -26,18 +26,17 @@ class BirthPass {
     struct Target {
         GLuint framebuffer = 0;  ///< of the three textures, in their order
         const GlTexture& position;
-        const GlTexture& second;  ///< velocity; with Verlet the position before
+        const GlTexture& velocity;
         const GlTexture& birth;
     };
 
     BirthPass() = default;
     /// \param size  of the state textures, texels. \param path  not kAuto.
     /// Errors: kFailure (the driver's compiler).
-    [[nodiscard]] static Result<BirthPass> create(const glm::uvec2& size, bool verlet, StepPath path);
+    [[nodiscard]] static Result<BirthPass> create(const glm::uvec2& size, StepPath path);
 
     /// With the state of a pass (PassState).
-    /// \param dt_before  seconds, Verlet's alone.
-    void run(std::span<const Newborn> newborn, const Target& target, float dt_before) const;
+    void run(std::span<const Newborn> newborn, const Target& target) const;
 
   private:
     void makeVertexFormat();

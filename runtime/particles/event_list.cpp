@@ -4,7 +4,6 @@
 #include <glm/glm.hpp>
 #include <string>
 
-#include "runtime/gl/buffer_read.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
 #include "shaders/particles/constants.h"
@@ -19,8 +18,7 @@ constexpr int kBeforeUnit = 2;
 constexpr int kBirthUnit = 3;
 constexpr int kCountUnit = 4;  // and those of the further levels
 
-constexpr std::size_t kFloats = 4;              // of a texel
-constexpr GLuint64 kPatience = 10'000'000'000;  // nanoseconds
+constexpr std::size_t kFloats = 4;  // of a texel
 constexpr std::uint32_t kMostMax = 1U << 24;
 constexpr auto kWidth = static_cast<std::uint32_t>(kEventsWidth);
 
@@ -78,9 +76,6 @@ Result<void> EventList::createTextures(std::uint32_t capacity) {
         list_[i] = makeTexture(GL_RGBA32F, listWidth(), rowsOf(options_.most));
         names[i] = list_[i].name();
     }
-    for (Slot& slot : slots_) {
-        slot.buffer = makeBuffer();
-    }
     RELIEF_TRY(
         checkAllocated("a list of " + std::to_string(options_.most) + " events", "choose a shorter one"));
     for (Level& level : counts_) {
@@ -120,26 +115,21 @@ Result<void> EventList::createPrograms() {
 }
 
 bool EventList::request(const Step& step) {
-    if (in_flight_ == kInFlightMax) {
+    if (lists_.full()) {
         return false;
     }
-    Slot& slot = slots_[static_cast<std::size_t>((oldest_ + in_flight_) % kInFlightMax)];
-    ++in_flight_;
-    slot.tag = step.tag;
-    slot.number = step.number;
-    slot.begin = step.begin;
-    slot.end = step.end;
-    slot.rows = rowsOf(std::min(options_.most, step.extent));
-    if (slot.rows == 0) {  // the list on the GPU becomes empty, too
+    const std::uint32_t rows = rowsOf(std::min(options_.most, step.extent));
+    const std::size_t floats = rows == 0 ? 0 : kFloats * (list_.size() * listWidth() * rows + 1);
+    lists_.request({step.tag, step.number, step.begin, step.end}, floats, [&] {
+        count(step);
+        makeList(step, rows);
+        read(rows);
+    });
+    if (rows == 0) {  // the list on the GPU becomes empty, too
         const std::array<float, 4> zero{};
         glBindFramebuffer(GL_FRAMEBUFFER, counts_.back().target.name());
         glClearBufferfv(GL_COLOR, 0, zero.data());
-        return true;
     }
-    count(step);
-    makeList(step, slot.rows);
-    readInto(slot);
-    slot.fence.insert();
     return true;
 }
 
@@ -178,76 +168,38 @@ void EventList::makeList(const Step& step, std::uint32_t rows) const {
                              static_cast<GLsizei>(rows));
 }
 
-void EventList::readInto(Slot& slot) const {
-    const auto width = static_cast<GLsizei>(listWidth());
-    const auto rows = static_cast<GLsizei>(slot.rows);
-    const std::size_t plane = kFloats * sizeof(float) * listWidth() * slot.rows;
-    glBindBuffer(GL_PIXEL_PACK_BUFFER, slot.buffer.name());
-    glBufferData(GL_PIXEL_PACK_BUFFER,
-                 static_cast<GLsizeiptr>(list_.size() * plane + kFloats * sizeof(float)), nullptr,
-                 GL_STREAM_READ);
+void EventList::read(std::uint32_t rows) const {
+    const std::size_t plane = kFloats * sizeof(float) * listWidth() * rows;
     for (std::size_t i = 0; i < list_.size(); ++i) {
         glReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i));
-        glReadPixels(0, 0, width, rows, GL_RGBA, GL_FLOAT, reinterpret_cast<void*>(i * plane));
+        glReadPixels(0, 0, static_cast<GLsizei>(listWidth()), static_cast<GLsizei>(rows), GL_RGBA, GL_FLOAT,
+                     reinterpret_cast<void*>(i * plane));
     }
     glReadBuffer(GL_COLOR_ATTACHMENT0);
     glBindFramebuffer(GL_FRAMEBUFFER, counts_.back().target.name());
     glReadPixels(0, 0, 1, 1, GL_RGBA, GL_FLOAT, reinterpret_cast<void*>(list_.size() * plane));
 }
 
-std::optional<std::uint64_t> EventList::oldestNumber() const {
-    return in_flight_ == 0 ? std::nullopt : std::optional(slots_[static_cast<std::size_t>(oldest_)].number);
-}
-
 std::optional<EventList::Collected> EventList::poll() {
-    if (in_flight_ == 0) {
-        return std::nullopt;
-    }
-    const Slot& slot = slots_[static_cast<std::size_t>(oldest_)];
-    return slot.rows == 0 || slot.fence.passed() ? collect() : std::nullopt;
+    const auto done = lists_.poll();
+    return done ? std::optional(decoded(*done)) : std::nullopt;
 }
 
 Result<std::optional<EventList::Collected>> EventList::wait() {
-    if (in_flight_ == 0) {
-        return std::optional<Collected>();
-    }
-    const Slot& slot = slots_[static_cast<std::size_t>(oldest_)];
-    if (slot.rows > 0 && !waitToRead(slot.fence, kPatience)) {
-        RELIEF_TRY(checkGpu("listing events"));
-        return fail(ErrorCode::kFailure, "the GPU has not finished its list of events within ten seconds");
-    }
-    auto collected = collect();
-    RELIEF_TRY(checkGpu("listing events"));
-    if (!collected) {
-        return fail(ErrorCode::kFailure,
-                    "the GPU's list of events cannot be read; choose a smaller capacity");
-    }
-    return collected;
+    const auto done = RELIEF_TRY(lists_.wait("the list of events"));
+    return done ? std::optional(decoded(*done)) : std::nullopt;
 }
 
-std::optional<EventList::Collected> EventList::collect() {
-    Slot& slot = slots_[static_cast<std::size_t>(oldest_)];
-    oldest_ = (oldest_ + 1) % kInFlightMax;
-    --in_flight_;
-    std::vector<float> values(slot.rows == 0 ? 0 : kFloats * (4 * std::size_t{listWidth()} * slot.rows + 1));
-    if (slot.rows > 0) {
-        slot.fence.remove();
-        if (!readBuffer(slot.buffer, std::as_writable_bytes(std::span(values)))) {
-            return std::nullopt;
-        }
-    }
-    return decoded(slot, values);
-}
-
-EventList::Collected EventList::decoded(const Slot& slot, const std::vector<float>& values) const {
+EventList::Collected EventList::decoded(const Lists::Done& done) const {
+    const std::vector<float>& values = done.values;
     Collected collected;
-    collected.number = slot.number;
-    collected.events.tag = slot.tag;
-    collected.events.time = slot.end;
-    if (slot.rows == 0) {
+    collected.number = done.tag.number;
+    collected.events.tag = done.tag.tag;
+    collected.events.time = done.tag.end;
+    if (values.empty()) {
         return collected;
     }
-    const std::size_t plane = kFloats * listWidth() * slot.rows;
+    const std::size_t plane = (values.size() - kFloats) / list_.size();
     const auto total = static_cast<std::uint32_t>(values[4 * plane]);
     const std::uint32_t listed = std::min(total, options_.most);
     collected.events.dropped = total - listed;
@@ -262,7 +214,7 @@ EventList::Collected EventList::decoded(const Slot& slot, const std::vector<floa
         event.index = static_cast<std::uint32_t>(identity[0]);
         event.id = static_cast<std::uint32_t>(identity[1]);
         event.type = static_cast<std::uint32_t>(identity[2]);
-        event.time = slot.begin + static_cast<double>(position[3]);
+        event.time = done.tag.begin + static_cast<double>(position[3]);
         event.position = {position[0], position[1], position[2]};
         event.velocity = {velocity[0], velocity[1], velocity[2]};
         event.hit = (flags & kEventCollision) != 0;

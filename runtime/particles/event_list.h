@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "formats/base/result.h"
-#include "runtime/gl/gl_fence.h"
 #include "runtime/gl/gl_object.h"
+#include "runtime/gl/readbacks.h"
 #include "runtime/particles/particle_event.h"
 #include "runtime/particles/particle_type.h"
 
@@ -55,9 +55,11 @@ class EventList {
     /// The oldest list, which the GPU is waited for; nullopt if none is under way.
     /// Errors: kFailure (the GPU has not answered for ten seconds, or its memory cannot be read).
     [[nodiscard]] Result<std::optional<Collected>> wait();
-    [[nodiscard]] int inFlight() const { return in_flight_; }
+    [[nodiscard]] int inFlight() const { return lists_.inFlight(); }
     /// The number of the oldest step under way.
-    [[nodiscard]] std::optional<std::uint64_t> oldestNumber() const;
+    [[nodiscard]] std::optional<std::uint64_t> oldestNumber() const {
+        return lists_.oldest() == nullptr ? std::nullopt : std::optional(lists_.oldest()->number);
+    }
 
     [[nodiscard]] const EventOptions& options() const { return options_; }
     /// The list of the last request, four textures of RGBA32F, kEventsWidth texels in a row: position, surface,
@@ -72,15 +74,13 @@ class EventList {
         GlTexture texture;
         GlFramebuffer target;
     };
-    struct Slot {
-        GlBuffer buffer;
-        GlFence fence;
-        std::uint32_t rows = 0;  // of the list that were read; 0: there were no particles
+    struct Tag {
         std::uint64_t tag = 0;
         std::uint64_t number = 0;
         double begin = 0.0;
         double end = 0.0;
     };
+    using Lists = Readbacks<Tag, kInFlightMax>;
     EventList() = default;
     [[nodiscard]] Result<void> createTextures(std::uint32_t capacity);
     [[nodiscard]] Result<void> createPrograms();
@@ -88,9 +88,8 @@ class EventList {
     void useFilter(const GlProgram& program) const;
     void count(const Step& step) const;
     void makeList(const Step& step, std::uint32_t rows) const;
-    void readInto(Slot& slot) const;
-    [[nodiscard]] std::optional<Collected> collect();
-    [[nodiscard]] Collected decoded(const Slot& slot, const std::vector<float>& values) const;
+    void read(std::uint32_t rows) const;
+    [[nodiscard]] Collected decoded(const Lists::Done& done) const;
 
     EventOptions options_;
     std::array<Level, kLevels> counts_;
@@ -99,9 +98,7 @@ class EventList {
     GlProgram count_program_;
     GlProgram sum_program_;
     GlProgram list_program_;
-    std::array<Slot, kInFlightMax> slots_;
-    int oldest_ = 0;
-    int in_flight_ = 0;
+    Lists lists_;
 };
 
 }  // namespace relief

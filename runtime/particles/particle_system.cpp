@@ -87,33 +87,26 @@ GlTexture ParticleSystem::makeStateTexture() const {
 Result<void> ParticleSystem::createTextures() {
     forgetGlErrors();
     birth_ = makeStateTexture();
-    const int buffers = verlet() ? 3 : 2;
-    for (int i = 0; i < buffers; ++i) {
+    for (int i = 0; i < 2; ++i) {
         position_[i] = makeStateTexture();
-        if (!verlet()) {
-            velocity_[i] = makeStateTexture();
-        }
+        velocity_[i] = makeStateTexture();
     }
     RELIEF_TRY(checkAllocated("the state of " + std::to_string(ids_.size()) + " particles",
                               "choose a smaller capacity"));
-    for (int i = 0; i < buffers; ++i) {
-        // Verlet reads the two positions before, and a birth writes both.
-        const GlTexture& second = verlet() ? position_[(i + 2) % 3] : velocity_[i];
-        const std::array<GLuint, 3> textures{position_[i].name(), second.name(), birth_.name()};
-        step_target_[i] = RELIEF_TRY(makeFramebuffer(std::span(textures).first(verlet() ? 1 : 2)));
+    for (int i = 0; i < 2; ++i) {
+        const std::array<GLuint, 3> textures{position_[i].name(), velocity_[i].name(), birth_.name()};
+        step_target_[i] = RELIEF_TRY(makeFramebuffer(std::span(textures).first(2)));
         birth_target_[i] = RELIEF_TRY(makeFramebuffer(textures));
-    }
-    for (int i = 0; i < buffers; ++i) {
         glBindFramebuffer(GL_FRAMEBUFFER, birth_target_[i].name());
         glClearBufferfv(GL_COLOR, 0, kDeadPosition.data());
-        glClearBufferfv(GL_COLOR, 1, verlet() ? kDeadPosition.data() : kZero.data());
+        glClearBufferfv(GL_COLOR, 1, kZero.data());
         glClearBufferfv(GL_COLOR, 2, kZero.data());
     }
     return {};
 }
 
 Result<void> ParticleSystem::createPrograms() {
-    birth_pass_ = RELIEF_TRY(BirthPass::create({width_, height_}, verlet(), path_));
+    birth_pass_ = RELIEF_TRY(BirthPass::create({width_, height_}, path_));
     rebase_program_ = RELIEF_TRY(makeScreenProgram("particles/rebase.frag"));
     rebase_program_.use();
     rebase_program_.set("u_birth", StepPass::kBirthUnit);
@@ -125,7 +118,7 @@ StepFeatures ParticleSystem::featuresFor(const ColliderTextures* collider) const
         std::any_of(types_.begin(), types_.end(), [](const ParticleType& t) { return t.radius > 0.0F; });
     return {collider,
             air_.get(),
-            verlet(),
+            integrator_ == Integrator::kVerlet,
             sweep_ > 0.0F,
             radius && collider != nullptr,
             path_ == StepPath::kCompute,
@@ -253,14 +246,9 @@ Result<void> ParticleSystem::createEventTextures() {
     GlTexture surface = makeStateTexture();
     RELIEF_TRY(checkAllocated("the events of " + std::to_string(ids_.size()) + " particles",
                               "choose a smaller capacity"));
-    for (int i = 0; i < (verlet() ? 3 : 2); ++i) {
-        std::vector<GLuint> textures{position_[i].name()};
-        if (!verlet()) {
-            textures.push_back(velocity_[i].name());
-        }
-        textures.push_back(way.name());
-        textures.push_back(surface.name());
-        event_target_[i] = RELIEF_TRY(makeFramebuffer(textures));
+    for (int i = 0; i < 2; ++i) {
+        event_target_[i] = RELIEF_TRY(makeFramebuffer(
+            std::array<GLuint, 4>{position_[i].name(), velocity_[i].name(), way.name(), surface.name()}));
     }
     event_velocity_ = std::move(way);
     event_surface_ = std::move(surface);
@@ -272,9 +260,8 @@ bool ParticleSystem::requestEvents(std::uint64_t tag) {
         return false;
     }
     const PassState state;
-    const GlTexture& before = verlet() ? position_[(current_ + 2) % 3] : position_[1 - current_];
-    return events_->request({event_velocity_, event_surface_, before, birth_, width_, stepped_extent_, types_,
-                             tag, steps_, step_begin_, time_});
+    return events_->request({event_velocity_, event_surface_, position_[1 - current_], birth_, width_,
+                             stepped_extent_, types_, tag, steps_, step_begin_, time_});
 }
 
 std::optional<StepEvents> ParticleSystem::pollEvents() {
@@ -354,9 +341,6 @@ Result<void> ParticleSystem::step(float dt) {
         return fail(ErrorCode::kUsage, "a step takes more than 0 seconds, and is finite");
     }
     const PassState state;
-    if (dt_before_ == 0.0F) {
-        dt_before_ = dt;
-    }
     // Lists are of the step before this one, or older and under way.
     const std::uint64_t oldest = events_ ? events_->oldestNumber().value_or(steps_ + 1) : 0;
     while (!replaced_.empty() && replaced_.front().step < oldest) {
@@ -364,7 +348,7 @@ Result<void> ParticleSystem::step(float dt) {
     }
     ++steps_;
     step_begin_ = time_;
-    runBirths();
+    runBirths(dt);
     time_ += static_cast<double>(dt);
     const float now = clock();
     runStep(dt, now);
@@ -380,12 +364,18 @@ float ParticleSystem::clock() const {
     return clockOf(time_);
 }
 
-void ParticleSystem::runBirths() {
+void ParticleSystem::runBirths(float dt) {
     if (newborn_.empty()) {
         return;
     }
-    birth_pass_.run(newborn_, {birth_target_[current_].name(), position_[current_], secondState(), birth_},
-                    dt_before_);
+    if (integrator_ == Integrator::kVerlet) {  // as if they had moved so during the step before
+        const float rate = 1.0F / dt;
+        for (BirthPass::Newborn& newborn : newborn_) {
+            const glm::vec3 before = newborn.position - dt * newborn.velocity;
+            newborn.velocity = (newborn.position - before) * rate;
+        }
+    }
+    birth_pass_.run(newborn_, {birth_target_[current_].name(), position_[current_], velocities(), birth_});
     newborn_.clear();
 }
 
@@ -395,9 +385,9 @@ void ParticleSystem::runStep(float dt, float now) {
     if (extent == 0) {
         return;
     }
-    const int next = verlet() ? (current_ + 1) % 3 : 1 - current_;
+    const int next = 1 - current_;
     useTexture(StepPass::kPositionUnit, position_[current_]);
-    useTexture(StepPass::kVelocityUnit, verlet() ? position_[(current_ + 2) % 3] : velocity_[current_]);
+    useTexture(StepPass::kVelocityUnit, velocity_[current_]);
     useTexture(StepPass::kBirthUnit, birth_);
     std::optional<StorageUnits> storage;
     if (step_.usesStorage()) {
@@ -407,21 +397,17 @@ void ParticleSystem::runStep(float dt, float now) {
     if (air_) {
         forces.wind = glm::vec3(0.0F);  // its own is among the rest
     }
-    step_.use({now, dt, dt_before_, ground_.value_or(kNoGround), sweep_, airTime(air_settings_, time_),
-               forces, types_});
-    dt_before_ = dt;
+    step_.use({now, dt, ground_.value_or(kNoGround), sweep_, airTime(air_settings_, time_), forces, types_});
     // Rows beyond the extent keep what they held in either buffer. That is sound: an index beyond it is only
     // reached again through a birth, which overwrites it, and an index below it has been stepped ever since.
     const std::uint32_t rows = (extent + width_ - 1) / width_;
     if (path_ == StepPath::kCompute) {
         const ImageUnits units;
         ImageUnits::write(0, position_[next]);
-        if (!verlet()) {
-            ImageUnits::write(1, velocity_[next]);
-        }
+        ImageUnits::write(1, velocity_[next]);
         if (events_) {
-            ImageUnits::write(verlet() ? 1 : 2, event_velocity_);
-            ImageUnits::write(verlet() ? 2 : 3, event_surface_);
+            ImageUnits::write(2, event_velocity_);
+            ImageUnits::write(3, event_surface_);
         }
         step_.dispatch(width_, rows);
         ImageUnits::finish();
@@ -466,9 +452,6 @@ void ParticleSystem::setEpochForward() {
 
     std::swap(birth_, birth_spare_);
     for (const GlFramebuffer& target : birth_target_) {
-        if (!target) {  // Euler has two
-            continue;
-        }
         glBindFramebuffer(GL_FRAMEBUFFER, target.name());
         glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT2, GL_TEXTURE_2D, birth_.name(), 0);
     }
@@ -493,20 +476,10 @@ Result<RawState> ParticleSystem::readRaw() const {
         return {};
     };
     for (auto done :
-         {read(positions(), raw.position), read(secondState(), raw.velocity), read(births(), raw.birth)}) {
+         {read(positions(), raw.position), read(velocities(), raw.velocity), read(births(), raw.birth)}) {
         if (!done) {
             return forward(done);
         }
-    }
-    // As in step_state.glsl.
-    for (std::size_t i = 0; verlet() && i < raw.position.size(); i += 4) {
-        const float rate = rateBefore();
-        for (std::size_t k = i; k < i + 3; ++k) {
-            raw.velocity[k] = (raw.position[k] - raw.velocity[k]) * rate;
-        }
-        const float collisions = std::floor(raw.position[i + 3]);
-        raw.velocity[i + 3] = kContactParts * (raw.position[i + 3] - collisions);
-        raw.position[i + 3] = collisions;
     }
     return raw;
 }

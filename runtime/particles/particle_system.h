@@ -4,7 +4,6 @@
 //     bytes on the GPU = 80 · texels, texels = capacity rounded up to whole rows of kStateWidth:
 //         position  2 × RGBA32F (double-buffered)      xyz, collisions (−1: dead)
 //         velocity  2 × RGBA32F (double-buffered)      xyz, contact of the last step
-//         (with Verlet: a third position instead; 64 · texels in all)
 //         birth     1 × RGBA32F                        time of birth, time of death, type, id mod 2^24
 //     (96 · texels once the clock has been set back for the first time; 32 · texels more with setEvents())
 //
@@ -84,7 +83,7 @@ struct ParticleState {
     Contact contact = Contact::kNone;  ///< of the last step
 };
 
-/// The state textures as they are (velocities of Verlet worked out), four floats a texel, index after index
+/// The state textures as they are, four floats a texel, index after index
 /// up to the extent. (Texels beyond it hold leftovers, which no renderer may draw.)
 struct RawState {
     std::vector<float> position;
@@ -169,14 +168,7 @@ class ParticleSystem {
     // For renderers: particle i < extent() lies at texel (i mod width, i / width). Births since the last step
     // are not in the textures yet.
     [[nodiscard]] const GlTexture& positions() const { return position_[current_]; }
-    /// Euler: the velocities. Verlet: the positions before.
-    [[nodiscard]] const GlTexture& secondState() const {
-        return verlet() ? position_[(current_ + 2) % 3] : velocity_[current_];
-    }
-    /// Verlet: 1 / seconds of the last step, to make velocities of the two positions. Euler: 0.
-    [[nodiscard]] float rateBefore() const {
-        return verlet() && dt_before_ > 0.0F ? 1.0F / dt_before_ : 0.0F;
-    }
+    [[nodiscard]] const GlTexture& velocities() const { return velocity_[current_]; }
     [[nodiscard]] const GlTexture& births() const { return birth_; }
     [[nodiscard]] std::uint32_t textureWidth() const { return width_; }
     [[nodiscard]] std::uint32_t extent() const { return drawn_extent_; }
@@ -197,10 +189,9 @@ class ParticleSystem {
     [[nodiscard]] Result<void> remakeStep(const ColliderTextures* collider);
     /// After a change of anything but the collider and the air, which may be other ones at the same place.
     [[nodiscard]] Result<void> remakeStepIfNeeded();
-    [[nodiscard]] bool verlet() const { return integrator_ == Integrator::kVerlet; }
     [[nodiscard]] float clockOf(double time) const { return static_cast<float>(time - epoch_); }
     void setEpochForward();
-    void runBirths();
+    void runBirths(float dt);
     [[nodiscard]] GlTexture makeStateTexture() const;
     void runStep(float dt, float now);
     void freeDead(float now);
@@ -236,18 +227,17 @@ class ParticleSystem {
     AirSettings air_settings_;
     std::unique_ptr<AirBlock> air_;  // at one place: StepPass points to it
     std::optional<float> ground_;
-    float dt_before_ = 0.0F;  // of the last step; 0 before the first
 
     std::uint32_t width_ = 0;
     std::uint32_t height_ = 0;
     std::uint32_t drawn_extent_ = 0;  // the extent after the last step
     int current_ = 0;                 // which of the buffers holds the state
-    GlTexture position_[3];           // the third is Verlet's
-    GlTexture velocity_[2];           // Euler's
+    GlTexture position_[2];
+    GlTexture velocity_[2];
     GlTexture birth_;
     GlTexture birth_spare_;          // made when the clock is first set back
-    GlFramebuffer step_target_[3];   // position and velocity
-    GlFramebuffer birth_target_[3];  // position, velocity or position before, birth
+    GlFramebuffer step_target_[2];   // position and velocity
+    GlFramebuffer birth_target_[2];  // position, velocity, birth
     GlFramebuffer rebase_target_;    // birth_spare_
     BirthPass birth_pass_;
     GlProgram rebase_program_;
@@ -255,7 +245,7 @@ class ParticleSystem {
     std::unique_ptr<EventList> events_;
     GlTexture event_velocity_;  // as step_event.glsl writes them
     GlTexture event_surface_;
-    GlFramebuffer event_target_[3];  // step_target_'s and both of these
+    GlFramebuffer event_target_[2];  // step_target_'s and both of these
     double step_begin_ = 0.0;
 };
 

@@ -1,19 +1,16 @@
-// Sums over all particles on the GPU: passes that each sum 4 × 4 texels into one, down to
-// a single texel, which is copied into a buffer; or, on StepPath::kCompute, the same sums in the same order by work groups
-// that each sum 64 × 64 texels into one. Nothing waits for the GPU but wait(): a sample is asked for
-// after a step and collected some steps later.
+// Sums over all particles on the GPU: passes that each sum 4 × 4 texels into one, down to a single texel, which is copied into a
+// buffer. Nothing waits for the GPU but wait(): a sample is asked for after a step and collected some steps later.
 //
-//     bytes on the GPU < 32/15 · texels of the state + 1 kB (for the system's capacity); compute: 1/64 · texels + 1 kB
+//     bytes on the GPU < 32/15 · texels of the state + 1 kB (for the system's capacity)
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "formats/base/result.h"
-#include "runtime/gl/gl_fence.h"
 #include "runtime/gl/gl_object.h"
+#include "runtime/gl/readbacks.h"
 #include "runtime/particles/particle_system.h"
 
 namespace relief {
@@ -37,9 +34,8 @@ class Statistics {
     static constexpr int kInFlightMax = 16;  ///< requests not yet collected
 
     /// For systems of this capacity. Needs a current context, as every call does.
-    /// \param path  how it sums, of systems of either path: the system's, as a rule.
     /// Errors: kUsage (0 or above ParticleSystem::kCapacityMax), kLimit, kUnsupported, kFailure.
-    [[nodiscard]] static Result<Statistics> create(std::uint32_t capacity, StepPath path = StepPath::kAuto);
+    [[nodiscard]] static Result<Statistics> create(std::uint32_t capacity);
 
     /// Requests a sample of the particles as they are now; restores the GL state.
     /// \param tag  comes back with it, the number of the step for example.
@@ -53,38 +49,25 @@ class Statistics {
     /// Errors: kFailure (the GPU has not answered for ten seconds, or its memory cannot be read).
     [[nodiscard]] Result<std::optional<StatisticsSample>> wait();
 
-    [[nodiscard]] int inFlight() const { return in_flight_; }
+    [[nodiscard]] int inFlight() const { return readbacks_.inFlight(); }
 
   private:
-    struct Level {  // of the ladder
+    struct Level {
         GlTexture counts;
         GlTexture sums;
         GlFramebuffer target;
     };
-    struct Slot {
-        GlBuffer buffer;
-        GlFence fence;
-        std::uint64_t tag = 0;
-        bool empty = false;  // no particles, and no work of the GPU
-    };
 
     Statistics() = default;
     [[nodiscard]] Result<void> createPrograms();
-    [[nodiscard]] Result<void> createLadder();
-    [[nodiscard]] Result<void> createParts();
-    void sumByLadder(std::uint32_t width, std::uint32_t height, const GlBuffer& result) const;
-    void sumByGroups(std::uint32_t width, std::uint32_t height, const GlBuffer& result) const;
-    [[nodiscard]] std::optional<StatisticsSample> collect();
+    [[nodiscard]] Result<void> createLevels();
+    void sum(std::uint32_t width, std::uint32_t height) const;
 
     std::uint32_t capacity_ = 0;
-    StepPath path_ = StepPath::kFragment;
-    std::array<Slot, kInFlightMax> slots_;
-    int oldest_ = 0;
-    int in_flight_ = 0;
-    std::vector<Level> levels_;  // kFragment
-    GlBuffer parts_[2];          // kCompute, in turns: a pass reads one and writes the other
-    GlProgram state_program_;    // the first pass
-    GlProgram sum_program_;      // further passes
+    Readbacks<std::uint64_t, kInFlightMax> readbacks_;
+    std::vector<Level> levels_;
+    GlProgram state_program_;  // the first pass
+    GlProgram sum_program_;    // further passes
 };
 
 }  // namespace relief

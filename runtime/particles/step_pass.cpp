@@ -54,7 +54,7 @@ Result<StepPass> StepPass::create(const StepFeatures& features) {
                                                 : makeScreenProgram("particles/step.frag", defines));
     pass.program_.use();
     pass.program_.set("u_position", kPositionUnit);
-    pass.program_.set(features.verlet ? "u_position_before" : "u_velocity", kVelocityUnit);
+    pass.program_.set("u_velocity", kVelocityUnit);
     pass.program_.set("u_birth", kBirthUnit);
     if (features.collider != nullptr) {
         features.collider->attach(pass.program_, kColliderBinding);
@@ -79,7 +79,7 @@ void StepPass::use(const Values& values) const {
     const Forces& forces = values.forces;
     program_.set("u_now", values.now);
     program_.set("u_dt", values.dt);
-    program_.set("u_rate_before", values.dt_before > 0.0F ? 1.0F / values.dt_before : 0.0F);
+    program_.set("u_rate", 1.0F / values.dt);
     program_.set("u_gravity", forces.gravity);
     program_.set("u_wind", forces.wind);
     program_.set("u_still", 1e-3F * values.dt * glm::length(forces.gravity));

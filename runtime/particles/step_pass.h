@@ -43,7 +43,7 @@ class StepPass {
 
     // Texture units of the inputs; the collider's follow.
     static constexpr int kPositionUnit = 0;
-    static constexpr int kVelocityUnit = 1;  ///< with verlet: the position before
+    static constexpr int kVelocityUnit = 1;
     static constexpr int kBirthUnit = 2;
     static constexpr ColliderTextures::Binding kColliderBinding{3, 0};
     static constexpr AirBlock::Binding kAirBinding{6, 1};
@@ -51,7 +51,6 @@ class StepPass {
     struct Values {
         float now = 0.0F;  ///< seconds on the GPU's clock, at the end of the step
         float dt = 0.0F;
-        float dt_before = 0.0F;  ///< verlet alone
         float ground = 0.0F;
         float sweep = 0.0F;
         float air_time = 0.0F;  ///< as airTime() gives it
@@ -69,7 +68,7 @@ class StepPass {
     /// After use(): steps the particles of the first `rows` rows of `width` texels into a framebuffer's textures.
     void draw(GLuint framebuffer, std::uint32_t width, std::uint32_t rows) const;
     /// The same with StepFeatures::compute: steps the particles of the first `rows` rows of `width` texels into image
-    /// units 0 (positions), without verlet 1 (velocities), and with events the next two.
+    /// units 0 (positions) and 1 (velocities), and with events the next two.
     void dispatch(std::uint32_t width, std::uint32_t rows) const;
     [[nodiscard]] const StepFeatures& features() const { return features_; }
     [[nodiscard]] bool usesStorage() const { return tours_; }

@@ -17,8 +17,8 @@ constexpr std::array<const char*, 6> kSamplers{"u_position", "u_birth", "u_looks
                                                "u_order",    "u_atlas", "u_behind"};
 // The atlas is behind a program of cells alone, and velocities are of stretched ones alone.
 constexpr int kLightUnit = kSamplers.size();  // of two
-constexpr int kSecondUnit = kLightUnit + 2;
-static_assert(kSecondUnit + 1 <= PassState::kUnits);
+constexpr int kVelocityUnit = kLightUnit + 2;
+static_assert(kVelocityUnit + 1 <= PassState::kUnits);
 
 // A smaller sprite would miss the centres of most pixels.
 constexpr float kPixelsMin = 1.5F;
@@ -73,9 +73,6 @@ void setUniforms(const GlProgram& program, const ParticleSystem& particles, cons
         program.set("u_cells", glm::ivec2(style.atlas->columns(), style.atlas->rows()));
         program.set("u_levels_max", static_cast<float>(style.atlas->lastLevel()));
     }
-    if (anyStretched(style)) {
-        program.set("u_rate_before", particles.rateBefore());
-    }
 }
 
 }  // namespace
@@ -120,7 +117,7 @@ void ParticleRenderer::setSamplers(const GlProgram& program) const {
     for (std::size_t unit = 0; unit < kSamplers.size(); ++unit) {
         program.set(kSamplers[unit], static_cast<GLint>(unit));
     }
-    program.set("u_second", kSecondUnit);
+    program.set("u_velocity", kVelocityUnit);
     if (light_) {
         light_->attach(program, kLightUnit);
     }
@@ -197,7 +194,7 @@ void ParticleRenderer::bindTextures(const ParticleSystem& particles, const Parti
         light_->bind(kLightUnit);
     }
     if (anyStretched(style)) {
-        useTexture(kSecondUnit, particles.secondState());
+        useTexture(kVelocityUnit, particles.velocities());
     }
 }
 

@@ -62,8 +62,8 @@ Result<void> EventsLog::write(const StepEvents& step) {
 // --- statistics ---
 
 Result<StatisticsLog> StatisticsLog::create(const std::filesystem::path& path, std::uint32_t capacity,
-                                            StepPath steps, GpuTimer& timer) {
-    auto statistics = RELIEF_TRY(Statistics::create(capacity, steps));
+                                            GpuTimer& timer) {
+    auto statistics = RELIEF_TRY(Statistics::create(capacity));
     auto log = RELIEF_TRY(LineLog::create(path, "--stats"));
     return StatisticsLog(std::move(log), std::move(statistics), timer);
 }

@@ -69,8 +69,7 @@ class StatisticsLog {
     /// \param timer  of the stages; must outlive this
     /// Errors: kIo, and those of Statistics::create.
     [[nodiscard]] static Result<StatisticsLog> create(const std::filesystem::path& path,
-                                                      std::uint32_t capacity, StepPath steps,
-                                                      GpuTimer& timer);
+                                                      std::uint32_t capacity, GpuTimer& timer);
 
     /// A line about the particles after this step, once the GPU has summed them up. Waits only where the GPU
     /// lies Statistics::kInFlightMax lines behind.

@@ -66,7 +66,7 @@ Result<void> Outputs::open() {
         timer_.emplace();
     }
     if (!options_.stats.empty()) {
-        log_ = RELIEF_TRY(StatisticsLog::create(options_.stats, scene.particles.capacity, options_.path, *timer_));
+        log_ = RELIEF_TRY(StatisticsLog::create(options_.stats, scene.particles.capacity, *timer_));
     }
     if (!options_.events.empty()) {
         events_ = RELIEF_TRY(EventsLog::create(options_.events, options_.events_min_speed.value_or(0.0F)));

@@ -189,7 +189,7 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     report.path = simulation.particles().path();
     report.collider_maps = static_cast<std::size_t>(simulation.textures().mapCount());
     report.collider_bytes = simulation.textures().bytes();
-    auto check = RELIEF_TRY(StateCheck::create(options.input, report.scene, report.path));
+    auto check = RELIEF_TRY(StateCheck::create(options.input, report.scene));
     RELIEF_TRY(Run(options, simulation, check, outputs, report).play());
     if (options.count_collisions || !options.dump.empty()) {
         RELIEF_TRY(readBack(options, simulation.particles(), report));

@@ -26,8 +26,8 @@ std::string typeText(const std::filesystem::path& input, const Scene& scene, std
 
 }  // namespace
 
-Result<StateCheck> StateCheck::create(const std::filesystem::path& input, const Scene& scene, StepPath path) {
-    Statistics statistics = RELIEF_TRY(Statistics::create(scene.particles.capacity, path));
+Result<StateCheck> StateCheck::create(const std::filesystem::path& input, const Scene& scene) {
+    Statistics statistics = RELIEF_TRY(Statistics::create(scene.particles.capacity));
     return StateCheck(input, scene, std::move(statistics));
 }
 

@@ -17,8 +17,7 @@ class StateCheck {
     /// \param input, scene  the scene as played, and its file; must outlive this.
     /// \param path  how the sums are made: that of the steps.
     /// Errors: those of Statistics::create.
-    [[nodiscard]] static Result<StateCheck> create(const std::filesystem::path& input, const Scene& scene,
-                                                   StepPath path);
+    [[nodiscard]] static Result<StateCheck> create(const std::filesystem::path& input, const Scene& scene);
 
     /// Looks at the particles after this step, if the last look is some steps ago or the run is at its end, and judges
     /// what the GPU has answered.

@@ -385,11 +385,11 @@ EMSCRIPTEN_KEEPALIVE const char* relief_player_info(const Player* player) {
             .dump());
 }
 
-/// The names of the state textures: which 0: positions, 1: velocities (of Verlet: positions before), 2: births.
+/// The names of the state textures: which 0: positions, 1: velocities, 2: births.
 EMSCRIPTEN_KEEPALIVE int relief_player_texture(const Player* player, int which) {
     const ParticleSystem& particles = player->simulation->particles();
     const GlTexture& texture = which == 0   ? particles.positions()
-                               : which == 1 ? particles.secondState()
+                               : which == 1 ? particles.velocities()
                                             : particles.births();
     return static_cast<int>(texture.name());
 }

@@ -1,9 +1,7 @@
 // Births, where there are compute shaders: an invocation for one particle.
-//!include particles/birth.glsl
-
 layout(local_size_x = RELIEF_BIRTH_GROUP) in;
 layout(rgba32f, binding = 0) writeonly uniform highp image2D u_position_out;
-layout(rgba32f, binding = 1) writeonly uniform highp image2D u_second_out;
+layout(rgba32f, binding = 1) writeonly uniform highp image2D u_velocity_out;
 layout(rgba32f, binding = 2) writeonly uniform highp image2D u_birth_out;
 
 // As birth.vert's attributes: index, position, velocity, and the four of a_birth.
@@ -23,9 +21,8 @@ void main() {
     }
     uint word = gl_GlobalInvocationID.x * kWords;
     int index = int(b_words[word]);
-    vec3 position = threeAt(word + 1u);
     ivec2 texel = ivec2(index % u_size.x, index / u_size.x);
-    imageStore(u_position_out, texel, bornPosition(position));
-    imageStore(u_second_out, texel, bornSecond(position, threeAt(word + 4u)));
+    imageStore(u_position_out, texel, vec4(threeAt(word + 1u), 0.0));
+    imageStore(u_velocity_out, texel, vec4(threeAt(word + 4u), 0.0));
     imageStore(u_birth_out, texel, vec4(threeAt(word + 7u), uintBitsToFloat(b_words[word + 10u])));
 }

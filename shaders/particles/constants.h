@@ -39,11 +39,6 @@ inline constexpr int kEventLevels = 4;
 /// Texels in a row of the counts and of the list of events.
 inline constexpr int kEventsWidth = 1024;
 
-/// With Verlet one float holds both counts of a particle: collisions + contact / kContactParts. Beyond 2^19 - 1 collisions it
-/// would lose the parts.
-inline constexpr float kContactParts = 16.0F;
-inline constexpr float kVerletCollisionsMax = 524287.0F;
-
 /// Dead particles: their height, out of sight, and their number of collisions.
 inline constexpr float kDeadHeight = -1e30F;
 inline constexpr float kDeadCollisions = -1.0F;
@@ -58,9 +53,6 @@ inline constexpr int kBirthGroup = 64;
 
 /// A pass of the statistics sums squares of so many texels a side.
 inline constexpr int kReducedSide = 4;
-/// Squares a side of a work group: those that its second pass and its third sum into one.
-inline constexpr int kReducedGroup = 16;
-static_assert(kReducedGroup == kReducedSide * kReducedSide);
 /// Sums of collisions are kept as low + kCollisionsHigh · high.
 inline constexpr int kCollisionsHigh = 4096;
 /// A type is found by the greatest of kTypeCodes - type.

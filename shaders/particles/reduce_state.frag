@@ -2,9 +2,8 @@
 //!include particles/reduce.glsl
 
 uniform highp sampler2D u_position;
-uniform highp sampler2D u_velocity;  // or, where u_rate_before is above 0, the position before
+uniform highp sampler2D u_velocity;
 uniform highp sampler2D u_birth;
-uniform float u_rate_before;         // 1 / seconds of the last step
 uniform int u_extent;  // particles; texels beyond hold leftovers
 
 // By its bits: a compiler may take it for granted that there is no NaN.
@@ -26,11 +25,6 @@ Sums sumsAt(ivec2 texel) {
     vec4 velocity = texelFetch(u_velocity, texel, 0);
     if (!finite(position) || !finite(velocity)) {
         return lostAt(texel);
-    }
-    if (u_rate_before > 0.0) {  // Verlet: step_state.glsl
-        float collisions = floor(position.w);
-        velocity = vec4((position.xyz - velocity.xyz) * u_rate_before, RELIEF_CONTACT_PARTS * (position.w - collisions));
-        position.w = collisions;
     }
     float speed2 = dot(velocity.xyz, velocity.xyz);
     if (!finite(vec4(speed2)) || speed2 > RELIEF_SPEED_MAX_OF_STATE * RELIEF_SPEED_MAX_OF_STATE) {

@@ -108,13 +108,13 @@ vec3 surfaceVelocity(Solid s, vec3 p) {
 }
 
 // At rest for good, on something that may move.
-void rest(State state) {
+State rested(State state) {
     int body = int(state.contact - float(RELIEF_CONTACT_STOPPED)) - 1;
     vec3 carried = state.position;
     if (body >= 0) {
         carried = pointNow(body, state.position);
     }
-    writeState(carried, (carried - state.position) / u_dt, state.collisions, state.contact);
+    return State(carried, (carried - state.position) / u_dt, state.collisions, state.contact);
 }
 
 // The velocity after gravity, fields and drag. Drag is integrated implicitly, v' = v + dt (g + k (w - v')): it
@@ -149,7 +149,7 @@ vec3 bounced(vec3 v_begin, vec3 relative, float vn, vec3 along, vec3 n, Particle
 //         \   |  outside     /                  ----\----/---------    Never pushed inwards; a velocity
 //      ----\--+-------------/----                    \  /              inwards is turned round.
 //           v p + dt v     about to collide
-void react(State state, Sweep sweep, ParticleType type) {
+State reacted(State state, Sweep sweep, ParticleType type, out bool dies) {
     vec3 p = state.position;
     vec3 n = sweep.hit.normal;
     vec3 carried = surfaceVelocity(sweep.hit, sweep.to);
@@ -157,7 +157,7 @@ void react(State state, Sweep sweep, ParticleType type) {
     vec3 relative = v - carried;
     float vn = dot(relative, n);
     float contact = float(RELIEF_CONTACT_COLLIDED);
-    bool dies = false;
+    dies = false;
     if (sweep.first && caught(p, type.radius, sweep.hit)) {
         contact = float(RELIEF_CONTACT_CAUGHT);
         if (vn < 0.0) {
@@ -178,20 +178,18 @@ void react(State state, Sweep sweep, ParticleType type) {
         }
         writeHit(sweep, vn, state.contact != float(RELIEF_CONTACT_NONE), dies);
     }
-    if (dies) {
-        writeDead();
-    } else {
-        writeState(sweepEnd(sweep, p, carried, v, contact, type.radius), v, state.collisions + 1.0, contact);
-    }
+    vec3 to = dies ? p : sweepEnd(sweep, p, carried, v, contact, type.radius);
+    return State(to, v, state.collisions + 1.0, contact);
 }
 
-void move(State state, ParticleType type) {
+State moved(State state, ParticleType type, out bool dies) {
     Sweep sweep = sweepOf(state.position, pushed(state.position, state.velocity, type), type.radius);
+    State after = State(sweep.to, sweep.v, state.collisions, float(RELIEF_CONTACT_NONE));
+    dies = false;
     if (sweep.hit.distance < 0.0) {
-        react(state, sweep, type);
-    } else {
-        writeState(sweep.to, sweep.v, state.collisions, float(RELIEF_CONTACT_NONE));
+        after = reacted(state, sweep, type, dies);
     }
+    return after;
 }
 
 ParticleType typeOf(vec4 birth) {
@@ -212,15 +210,21 @@ void stepAt(ivec2 texel) {
     // then frees the index at its original time of death.)
     bool spent = u_now >= birth.y || (type.loss > 0.0 && u_now >= birth.y - type.loss * state.collisions);
     writeNoEvent();
-    if (state.collisions < 0.0 || spent) {
+    State after = state;
+    bool dies = state.collisions < 0.0 || spent;
+    if (dies) {
         if (state.collisions >= 0.0) {
             writeDeath(state, birth.y - type.loss * state.collisions);
         }
-        writeDead();
     } else if (state.contact >= float(RELIEF_CONTACT_STOPPED)) {
-        rest(state);
+        after = rested(state);
     } else {
-        move(state, type);
+        after = moved(state, type, dies);
+    }
+    if (dies) {
+        writeDead();
+    } else {
+        writeState(state, after);
     }
 }
 
@@ -234,12 +238,10 @@ void main() {
 
 layout(local_size_x = RELIEF_STEP_GROUP_WIDTH, local_size_y = RELIEF_STEP_GROUP_HEIGHT) in;
 layout(rgba32f, binding = 0) writeonly uniform highp image2D u_position_out;
-#if !defined(RELIEF_VERLET)
 layout(rgba32f, binding = 1) writeonly uniform highp image2D u_velocity_out;
-#endif
 #if defined(RELIEF_EVENTS)
-layout(rgba32f, binding = RELIEF_EVENT_VELOCITY_OUT) writeonly uniform highp image2D u_event_velocity_out;
-layout(rgba32f, binding = RELIEF_EVENT_SURFACE_OUT) writeonly uniform highp image2D u_event_surface_out;
+layout(rgba32f, binding = 2) writeonly uniform highp image2D u_event_velocity_out;
+layout(rgba32f, binding = 3) writeonly uniform highp image2D u_event_surface_out;
 #endif
 uniform ivec2 u_size;  // of the texels that hold particles
 
@@ -251,9 +253,7 @@ void main() {
     if (texel.x < u_size.x && texel.y < u_size.y) {
         stepAt(texel);
         imageStore(u_position_out, texel, o_position);
-#if !defined(RELIEF_VERLET)
         imageStore(u_velocity_out, texel, o_velocity);
-#endif
 #if defined(RELIEF_EVENTS)
         imageStore(u_event_velocity_out, texel, o_event_velocity);
         imageStore(u_event_surface_out, texel, o_event_surface);

@@ -9,8 +9,8 @@
 // A path within a step is straight: the event was at position before + w * velocity.
 #if defined(RELIEF_EVENTS)
 
-RELIEF_STATE_OUT(RELIEF_EVENT_VELOCITY_OUT) vec4 o_event_velocity;
-RELIEF_STATE_OUT(RELIEF_EVENT_SURFACE_OUT) vec4 o_event_surface;
+RELIEF_STATE_OUT(2) vec4 o_event_velocity;
+RELIEF_STATE_OUT(3) vec4 o_event_surface;
 
 void writeNoEvent() {
     o_event_velocity = vec4(0.0);

@@ -10,9 +10,12 @@
 //                        z       type
 //                        w       id modulo 2^24
 //
-// With RELIEF_VERLET there is no velocity texture. The velocity is the displacement from the position before, and the
-// position's w holds both counts: collisions + contact / RELIEF_CONTACT_PARTS.
+// With RELIEF_VERLET the velocity is the displacement of the last step over its duration, whatever moved the particle.
 uniform highp sampler2D u_position;
+uniform highp sampler2D u_velocity;
+#if defined(RELIEF_VERLET)
+uniform float u_rate;  // 1 / seconds of this step
+#endif
 
 // Outputs of a step: a fragment's colours, or for compute variables that step.glsl stores in images.
 #if defined(RELIEF_COMPUTE)
@@ -20,6 +23,8 @@ uniform highp sampler2D u_position;
 #else
 #define RELIEF_STATE_OUT(i) layout(location = i) out
 #endif
+RELIEF_STATE_OUT(0) vec4 o_position;
+RELIEF_STATE_OUT(1) vec4 o_velocity;
 
 struct State {
     vec3 position;
@@ -28,54 +33,22 @@ struct State {
     float contact;
 };
 
-#if defined(RELIEF_VERLET)
-
-// Locations of the events, behind the state.
-#define RELIEF_EVENT_VELOCITY_OUT 1
-#define RELIEF_EVENT_SURFACE_OUT 2
-uniform highp sampler2D u_position_before;
-uniform float u_rate_before;  // 1 / seconds of the last step
-
-RELIEF_STATE_OUT(0) vec4 o_position;
-
-State stateAt(ivec2 texel) {
-    vec4 position = texelFetch(u_position, texel, 0);
-    vec3 v = (position.xyz - texelFetch(u_position_before, texel, 0).xyz) * u_rate_before;
-    float collisions = floor(position.w);
-    return State(position.xyz, v, collisions, (position.w - collisions) * RELIEF_CONTACT_PARTS);
-}
-
-void writeState(vec3 p, vec3 v, float collisions, float contact) {
-    o_position = vec4(p, min(collisions, RELIEF_VERLET_COLLISIONS_MAX) + contact / RELIEF_CONTACT_PARTS);
-}
-
-void writeDead() {
-    o_position = vec4(0.0, RELIEF_DEAD_HEIGHT, 0.0, RELIEF_DEAD_COLLISIONS);
-}
-
-#else
-
-#define RELIEF_EVENT_VELOCITY_OUT 2
-#define RELIEF_EVENT_SURFACE_OUT 3
-uniform highp sampler2D u_velocity;
-
-RELIEF_STATE_OUT(0) vec4 o_position;
-RELIEF_STATE_OUT(1) vec4 o_velocity;
-
 State stateAt(ivec2 texel) {
     vec4 position = texelFetch(u_position, texel, 0);
     vec4 velocity = texelFetch(u_velocity, texel, 0);
     return State(position.xyz, velocity.xyz, position.w, velocity.w);
 }
 
-void writeState(vec3 p, vec3 v, float collisions, float contact) {
-    o_position = vec4(p, collisions);
-    o_velocity = vec4(v, contact);
+// The state after a step from `before`.
+void writeState(State before, State after) {
+#if defined(RELIEF_VERLET)
+    after.velocity = (after.position - before.position) * u_rate;
+#endif
+    o_position = vec4(after.position, after.collisions);
+    o_velocity = vec4(after.velocity, after.contact);
 }
 
 void writeDead() {
     o_position = vec4(0.0, RELIEF_DEAD_HEIGHT, 0.0, RELIEF_DEAD_COLLISIONS);
     o_velocity = vec4(0.0);
 }
-
-#endif

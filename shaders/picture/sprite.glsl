@@ -10,8 +10,7 @@
 uniform highp sampler2D u_position;
 uniform highp sampler2D u_birth;
 #ifdef RELIEF_STRETCH
-uniform highp sampler2D u_second;  // velocities; where u_rate_before is above 0, positions before
-uniform float u_rate_before;
+uniform highp sampler2D u_velocity;
 #endif
 uniform highp usampler2D u_order;  // row by row: the index of the i-th sprite; 0 where there is none
 uniform bool u_ordered;
@@ -86,9 +85,7 @@ bool spriteOf(int rank, out Sprite sprite) {
     float per_edge = min(1.0 / SPRITE_EDGE, 0.5 * sprite.pixels);
     sprite.shading = Shading(look.color, look.opacity * cover * cover, 1.0, 1.0, per_edge, look.lit > 0.5);
 #ifdef RELIEF_STRETCH
-    vec3 second = texelFetch(u_second, texel, 0).xyz;
-    vec3 velocity = u_rate_before > 0.0 ? (position.xyz - second) * u_rate_before : second;
-    sprite.tail = -look.stretch * (mat3(u_view) * velocity);
+    sprite.tail = -look.stretch * (mat3(u_view) * texelFetch(u_velocity, texel, 0).xyz);
     sprite.stretched = look.stretch > 0.0;
 #endif
     receiveLight(position.xyz, look.size, birth.w, sprite.shading);
