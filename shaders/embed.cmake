@@ -12,7 +12,7 @@ if(NOT CMAKE_SCRIPT_MODE_FILE)
         endif()
         file(GLOB headers CONFIGURE_DEPENDS ${folder}/*/constants.h)
         list(APPEND headers ${PROJECT_SOURCE_DIR}/formats/texel.h ${PROJECT_SOURCE_DIR}/formats/depth_map.h
-             ${PROJECT_SOURCE_DIR}/formats/normal_index.h ${PROJECT_SOURCE_DIR}/formats/nearest_surface.h)
+             ${PROJECT_SOURCE_DIR}/formats/normal_index.h)
         add_custom_command(
             OUTPUT ${output}
             COMMAND ${CMAKE_COMMAND} -DOUTPUT=${output} -DFOLDER=${folder} "-DFILES=${files}" "-DHEADERS=${headers}"

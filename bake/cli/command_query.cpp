@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <iterator>
+#include <optional>
 
 #include "bake/cli/command.h"
 #include "bake/director/gl_options.h"
@@ -20,8 +20,7 @@ namespace relief {
 namespace {
 
 // Between two feedings of the watchdog.
-constexpr std::size_t kPlanesAtOnce = std::size_t{1} << 20;
-constexpr std::size_t kSearchesAtOnce = std::size_t{1} << 16;
+constexpr std::size_t kAtOnce = std::size_t{1} << 20;
 
 enum class DistanceTo : std::uint8_t { kNearest, kPlane };
 
@@ -31,11 +30,9 @@ struct QueryCommand {
     std::string points;
     ContainerLimits limits;
     std::string output;
-    DistanceTo distance = DistanceTo::kNearest;
+    std::optional<DistanceTo> distance;
     bool gpu = false;
     GpuOptions gpu_options;
-
-    [[nodiscard]] bool plane() const { return distance == DistanceTo::kPlane; }
 };
 
 /// What is printed of the nearest surface: its distance, normal and map.
@@ -59,19 +56,13 @@ Result<std::vector<FieldSample>> askGpu(const Collider& collider, std::span<cons
     const FieldQuery query = RELIEF_TRY(FieldQuery::create(collider));
     std::vector<FieldSample> samples;
     samples.reserve(points.size());
-    const std::size_t at_once = command.plane() ? kPlanesAtOnce : kSearchesAtOnce;
-    for (std::size_t first = 0; first < points.size(); first += at_once) {
+    for (std::size_t first = 0; first < points.size(); first += kAtOnce) {
         const std::span<const glm::vec3> some =
-            points.subspan(first, std::min(at_once, points.size() - first));
+            points.subspan(first, std::min(kAtOnce, points.size() - first));
         gl.watchdog->feed("points " + std::to_string(first + 1) + " to " +
                           std::to_string(first + some.size()));
-        if (command.plane()) {
-            const std::vector<FieldSample> evaluated = RELIEF_TRY(query.evaluate(some));
-            samples.insert(samples.end(), evaluated.begin(), evaluated.end());
-        } else {
-            const std::vector<SurfaceSample> nearest = RELIEF_TRY(query.nearest(some, collider.bounds));
-            std::transform(nearest.begin(), nearest.end(), std::back_inserter(samples), toSample);
-        }
+        const std::vector<FieldSample> evaluated = RELIEF_TRY(query.evaluate(some));
+        samples.insert(samples.end(), evaluated.begin(), evaluated.end());
     }
     gl.watchdog->rest();
     return samples;
@@ -81,6 +72,8 @@ Result<void> runQuery(const QueryCommand& command, FileGuard& files) {
     startLogging(command.common);
     if (!command.gpu) {
         RELIEF_TRY(refuseGpuOptions(command.gpu_options, "--gpu"));
+    } else if (command.distance == DistanceTo::kNearest) {
+        return fail(ErrorCode::kUsage, "--gpu evaluates planes; leave out --gpu, or take --distance plane");
     }
     if (command.file == "-" && command.points == "-") {
         return fail(ErrorCode::kUsage,
@@ -94,8 +87,9 @@ Result<void> runQuery(const QueryCommand& command, FileGuard& files) {
     const std::vector<glm::vec3> points =
         RELIEF_TRY(parsePoints({reinterpret_cast<const char*>(text.data()), text.size()},
                                command.points == "-" ? "standard input" : command.points));
-    const std::vector<FieldSample> samples = RELIEF_TRY(
-        command.gpu ? askGpu(collider, points, command) : askCpu(collider, points, command.plane()));
+    const std::vector<FieldSample> samples =
+        RELIEF_TRY(command.gpu ? askGpu(collider, points, command)
+                               : askCpu(collider, points, command.distance == DistanceTo::kPlane));
     const std::string csv = formatSamples(points, samples);
     return writeFile(command.output, std::as_bytes(std::span(csv)));
 }
@@ -111,7 +105,7 @@ void addQuery(CLI::App& app, Action& action) {
         "is outside and no more is known, and empty where no map votes.\nWith --distance plane they are "
         "those of the plane that decides the side; the side is the same",
         "relief query bunny.relief --points in.csv -o out.csv\n"
-        "echo 0,0.1,0 | relief query bunny.relief --points - -o - --gpu");
+        "echo 0,0.1,0 | relief query bunny.relief --points - -o - --distance plane");
     verb.add_option("FILE", command->file, "The collider; - for standard input")->type_name("")->required();
     verb.add_option("--points", command->points, "Lines x,y,z in object space; - for standard input")
         ->option_text("IN.csv")
@@ -124,7 +118,7 @@ void addQuery(CLI::App& app, Action& action) {
              "To the nearest surface, which is searched for (default), or to the plane that decides\n"
              "the side, which is what particles collide with");
     verb.add_flag("--gpu", command->gpu,
-                  "Evaluate with the simulation's shader (OpenGL 3.3; llvmpipe will do)");
+                  "Evaluate planes with the simulation's shader (OpenGL 3.3; llvmpipe will do)");
     addGpuOptions(verb, command->gpu_options);
     addMemoryOption(verb, command->limits);
     verb.callback(

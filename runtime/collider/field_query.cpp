@@ -15,10 +15,33 @@ constexpr GLsizei kWidth = 1024;
 constexpr std::size_t kBatch = std::size_t{kWidth} * 1024;  // points evaluated with one draw
 constexpr ColliderTextures::Binding kBinding{1, 0};         // unit 0 holds the points
 
-/// Runs a program of query.frag at each point, and passes both of its outputs to take(), in order.
-template <class Take>
-Result<void> run(std::span<const glm::vec3> points, const GlProgram& program,
-                 const ColliderTextures& textures, const Take& take) {
+}  // namespace
+
+Result<FieldQuery> FieldQuery::create(const Collider& collider) {
+    ColliderTextures textures = RELIEF_TRY(ColliderTextures::create(collider));
+    auto own = std::make_unique<ColliderTextures>(std::move(textures));
+    auto query = create(*own);
+    if (query) {
+        query->own_ = std::move(own);
+    }
+    return query;
+}
+
+Result<FieldQuery> FieldQuery::create(const ColliderTextures& textures) {
+    RELIEF_TRY(checkContext());
+    const PassState state;
+    FieldQuery query;
+    query.textures_ = &textures;
+    query.program_ = RELIEF_TRY(makeScreenProgram("collider/query.frag", textures.defines()));
+    textures.attach(query.program_, kBinding);
+    query.program_.set("u_points", 0);
+    return query;
+}
+
+Result<std::vector<FieldSample>> FieldQuery::evaluate(std::span<const glm::vec3> points) const {
+    const PassState state;
+    std::vector<FieldSample> samples;
+    samples.reserve(points.size());
     RELIEF_TRY(checkTextureSize(kWidth, std::min(kBatch, points.size()) / kWidth, "the points of a query",
                                 "this GL is too small for it"));
     for (std::size_t first = 0; first < points.size(); first += kBatch) {
@@ -39,69 +62,16 @@ Result<void> run(std::span<const glm::vec3> points, const GlProgram& program,
         const std::array<GLuint, 2> targets = {normal_distance.name(), map.name()};
         const GlFramebuffer framebuffer = RELIEF_TRY(makeFramebuffer(targets));
         useTexture(0, input);
-        textures.bind(kBinding);
-        program.drawScreen(framebuffer.name(), kWidth, height);
+        textures_->bind(kBinding);
+        program_.drawScreen(framebuffer.name(), kWidth, height);
 
         const auto fields = RELIEF_TRY(readTextureFloats(normal_distance, kWidth, height));
         const auto maps = RELIEF_TRY(readTextureFloats(map, kWidth, height));
         for (std::size_t i = 0; i < batch.size(); ++i) {
-            take(&fields[4 * i], &maps[4 * i]);
+            const float* field = &fields[4 * i];
+            samples.push_back({field[3], {field[0], field[1], field[2]}, static_cast<int>(maps[4 * i])});
         }
     }
-    return {};
-}
-
-}  // namespace
-
-Result<FieldQuery> FieldQuery::create(const Collider& collider) {
-    ColliderTextures textures = RELIEF_TRY(ColliderTextures::create(collider));
-    auto own = std::make_unique<ColliderTextures>(std::move(textures));
-    auto query = create(*own);
-    if (query) {
-        query->own_ = std::move(own);
-    }
-    return query;
-}
-
-Result<FieldQuery> FieldQuery::create(const ColliderTextures& textures) {
-    RELIEF_TRY(checkContext());
-    const PassState state;
-    FieldQuery query;
-    query.textures_ = &textures;
-    query.program_ = RELIEF_TRY(query.program(""));
-    return query;
-}
-
-Result<GlProgram> FieldQuery::program(const std::string& defines) const {
-    GlProgram program = RELIEF_TRY(makeScreenProgram("collider/query.frag", textures_->defines() + defines));
-    textures_->attach(program, kBinding);
-    program.set("u_points", 0);
-    return program;
-}
-
-Result<std::vector<FieldSample>> FieldQuery::evaluate(std::span<const glm::vec3> points) const {
-    const PassState state;
-    std::vector<FieldSample> samples;
-    samples.reserve(points.size());
-    RELIEF_TRY(run(points, program_, *textures_, [&](const float* field, const float* map) {
-        samples.push_back({field[3], {field[0], field[1], field[2]}, static_cast<int>(map[0])});
-    }));
-    return samples;
-}
-
-Result<std::vector<SurfaceSample>> FieldQuery::nearest(std::span<const glm::vec3> points,
-                                                       const Bounds& bounds) const {
-    const PassState state;
-    const GlProgram nearest = RELIEF_TRY(program("#define RELIEF_QUERY_NEAREST\n"));
-    nearest.use();
-    nearest.set("u_low", bounds.min);
-    nearest.set("u_high", bounds.max);
-    std::vector<SurfaceSample> samples;
-    samples.reserve(points.size());
-    RELIEF_TRY(run(points, nearest, *textures_, [&](const float* field, const float* map) {
-        samples.push_back(
-            {field[3], {map[1], map[2], map[3]}, {field[0], field[1], field[2]}, static_cast<int>(map[0])});
-    }));
     return samples;
 }
 

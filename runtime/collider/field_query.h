@@ -5,12 +5,10 @@
 #include <glm/vec3.hpp>
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "formats/base/result.h"
 #include "formats/collider.h"
-#include "formats/nearest_surface.h"
 #include "runtime/collider/collider_textures.h"
 #include "runtime/gl/gl_object.h"
 
@@ -30,16 +28,8 @@ class FieldQuery {
     /// Errors: kLimit (no room on the GPU), kUnsupported, kFailure.
     [[nodiscard]] Result<std::vector<FieldSample>> evaluate(std::span<const glm::vec3> points) const;
 
-    /// nearestSurface() of each point, in order: of one collider, not of bodies. Waits for the GPU; makes its program
-    /// anew with each call.
-    /// \param bounds  the collider's.
-    /// Errors: those of evaluate, and of makeProgram.
-    [[nodiscard]] Result<std::vector<SurfaceSample>> nearest(std::span<const glm::vec3> points,
-                                                             const Bounds& bounds) const;
-
   private:
     FieldQuery() = default;
-    [[nodiscard]] Result<GlProgram> program(const std::string& defines) const;
 
     std::unique_ptr<ColliderTextures> own_;  // null: the caller's
     const ColliderTextures* textures_ = nullptr;

@@ -1,18 +1,11 @@
 // Evaluates a collider at the points of a texture, one a texel: `relief query --gpu`, and the tests of
 // collider.glsl against its C++ twin. With RELIEF_QUERY_INSIDE by reliefSolid: the distance then is −1 inside and 1
-// outside. With RELIEF_QUERY_NEAREST by reliefNearest.
+// outside.
 //!include collider/collider.glsl
-#ifdef RELIEF_QUERY_NEAREST
-//!include collider/nearest_surface.glsl
-#endif
 uniform highp sampler2D u_points;  // xyz: object space
-#ifdef RELIEF_QUERY_NEAREST
-uniform vec3 u_low;  // the collider's bounds
-uniform vec3 u_high;
-#endif
 
 layout(location = 0) out vec4 o_normal_distance;
-layout(location = 1) out vec4 o_map;  // x: deciding map, −1 for none; yzw: the nearest point, with RELIEF_QUERY_NEAREST
+layout(location = 1) out vec4 o_map;  // x: deciding map, −1 for none
 
 void main() {
     vec3 p = texelFetch(u_points, ivec2(gl_FragCoord.xy), 0).xyz;
@@ -21,10 +14,6 @@ void main() {
     bool inside = reliefInside(field);
     o_normal_distance = vec4(inside ? field.normal : vec3(0.0), inside ? -1.0 : 1.0);
     o_map = vec4(float(field.map), 0.0, 0.0, 0.0);
-#elif defined(RELIEF_QUERY_NEAREST)
-    ReliefSurface nearest = reliefNearest(p, u_low, u_high);
-    o_normal_distance = vec4(nearest.normal, nearest.distance);
-    o_map = vec4(float(nearest.map), nearest.point);
 #else
     ReliefField field = reliefEvaluate(p);
     o_normal_distance = vec4(field.normal, field.distance);

@@ -3,8 +3,7 @@
 #
 # Tolerance: distance within 1e-5 of the box's longest side and normal within 1e-5 on all points but one in 10,000;
 # those may lie on a texel's edge and have fallen to the neighbour (tests/runtime/collider/field_query_gl_test.cpp looks
-# at such points one by one). On llvmpipe no point differs. A search for the nearest surface asks at many points, of which
-# one may fall to the neighbour: one in 200 may differ by more, and one in 1000 by more than 1 % of the side.
+# at such points one by one). On llvmpipe no point differs.
 . "$(dirname "$0")/lib.sh"
 
 export RELIEF_QUERY_POINTS=${RELIEF_QUERY_POINTS:-20000}
@@ -23,6 +22,7 @@ with open('points.csv', 'w') as out:
 open('side', 'w').write(repr(max(hi[i] - lo[i] for i in range(3))))
 P
 
+expect_error 1 'gpu evaluates planes' "$relief" query b.relief --points points.csv -o gpu.csv --gpu --distance nearest
 i=0
 while read -r specs; do
     i=$((i + 1))
@@ -30,9 +30,6 @@ while read -r specs; do
     "$relief" bake "$bunny" -o "$i.relief" -q $specs
     "$relief" query "$i.relief" --points points.csv -o cpu.csv --distance plane
     "$relief" query "$i.relief" --points points.csv -o gpu.csv --distance plane --gpu
-    head -$((RELIEF_QUERY_POINTS / 5 + 1)) points.csv >some.csv
-    "$relief" query "$i.relief" --points some.csv -o near_cpu.csv
-    "$relief" query "$i.relief" --points some.csv -o near_gpu.csv --gpu --distance nearest
     python3 - "$specs" <<'P' || die "CPU and GPU disagree: $specs"
 import csv, os, sys
 points = int(os.environ['RELIEF_QUERY_POINTS'])
@@ -48,17 +45,8 @@ for a, b in zip(cpu, gpu):
         same = a['f'] == b['f'] or abs(float(a['f']) - float(b['f'])) <= 1e-5 * side
         same = same and all(abs(float(a[k]) - float(b[k])) <= 1e-5 for k in ('nx', 'ny', 'nz'))
     bad += not same
-near_cpu, near_gpu = (list(csv.DictReader(open(name))) for name in ('near_cpu.csv', 'near_gpu.csv'))
-assert len(near_cpu) == len(near_gpu) == points // 5
-gaps = []
-for vote, a, b in zip(gpu, near_cpu, near_gpu):
-    assert (vote['f'] == '') == (b['f'] == '') and vote['f'].startswith('-') == b['f'].startswith('-')
-    if a['f'] != '' and b['f'] != '' and a['f'] != b['f']:
-        gaps.append(abs(float(a['f']) - float(b['f'])) / side)
-differing, far = sum(gap > 1e-5 for gap in gaps), sum(gap > 1e-2 for gap in gaps)
-print(f"{sys.argv[1] or 'planned':40s} votes {votes}  inside {inside}  differing {bad}  nearest: {differing}, far {far}")
-sys.exit(0 if bad <= points / 10_000 and votes > points / 100 and inside > points / 100 and differing <= points / 1000 and
-         far <= points / 5000 else 1)
+print(f"{sys.argv[1] or 'planned':40s} votes {votes}  inside {inside}  differing {bad}")
+sys.exit(0 if bad <= points / 10_000 and votes > points / 100 and inside > points / 100 else 1)
 P
 done <<'S'
 
