@@ -1,5 +1,5 @@
-// The nearest surface of a collider, found by asking its maps again and again. CPU truth of reliefNearest in
-// shaders/collider/nearest_surface.glsl; README.md, "The nearest surface", in words.
+// The nearest surface of a collider, found by asking its maps again and again; README.md, "The nearest surface", in
+// words.
 //
 // A vote knows one plane: that of the texel that P falls on. Its distance is the surface's where the surface is that
 // plane, and wrong beside a silhouette, off an edge, or in a pocket, where another part is nearer. So the search
@@ -33,7 +33,7 @@ struct SurfaceSample {
     [[nodiscard]] bool inside() const { return map >= 0 && distance < 0.0F; }
 };
 
-/// The numbers of the search, shared with the shader (shaders/embed.cmake); nearest_surface.cpp uses each.
+/// The numbers of the search, of which nearest_surface.cpp uses each.
 struct NearestSearch {
     /// No search asks a collider about more points. Near the surface it asks about 20 in the mean; outside, most of them
     /// cost one vote.

@@ -77,7 +77,7 @@ Result<Json> benchSize(const Stage& stage, GLsizei width, GLsizei height, bool s
     };
     const GlTexture depth = depthTexture();
     const GlTexture behind = depthTexture();
-    const auto framebuffer = RELIEF_TRY(makeFramebuffer(std::array<GLuint, 1>{color.name()}, depth.name()));
+    const auto framebuffer = RELIEF_TRY(makeFramebuffer({color.name()}, depth.name()));
     const RenderTarget target{framebuffer.name(), width, height};
     Camera camera;
     camera.target = stage.view.bounds.center();

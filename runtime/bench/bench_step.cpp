@@ -33,8 +33,8 @@ class Copy {
             for (GlTexture& texture : copy.state_[i]) {
                 texture = makeTexture2D(GL_RGBA32F, kWidth, copy.rows_, GL_RGBA, GL_FLOAT, texels.data());
             }
-            copy.target_[i] = RELIEF_TRY(
-                makeFramebuffer(std::array<GLuint, 2>{copy.state_[i][0].name(), copy.state_[i][1].name()}));
+            copy.target_[i] =
+                RELIEF_TRY(makeFramebuffer({copy.state_[i][0].name(), copy.state_[i][1].name()}));
         }
         copy.program_ = RELIEF_TRY(copy.compute_ ? makeComputeProgram("bench/copy_state.frag")
                                                  : makeScreenProgram("bench/copy_state.frag"));

@@ -1,7 +1,6 @@
 #include "runtime/collider/collider_textures.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <span>
 #include <string>
@@ -9,7 +8,6 @@
 
 #include "formats/base/finite.h"
 #include "runtime/collider/gpu_image.h"
-#include "runtime/collider/shader_texels.h"
 #include "runtime/gl/compute_units.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
@@ -17,38 +15,6 @@
 
 namespace relief {
 namespace {
-
-/// Uploads texels that follow each other, from index `first` on; the texture is bound.
-void uploadTexels(const TexelFormat& format, const TexelLayout& wrapped, std::size_t first,
-                  std::span<const std::byte> bytes) {
-    const auto width = static_cast<std::size_t>(wrapped.width());
-    std::size_t left = bytes.size() / format.texel_size;
-    const std::byte* from = bytes.data();
-    while (left > 0) {
-        const std::size_t x = first % width;
-        // The rest of a row, or as many whole rows as there are.
-        const std::size_t columns = std::min(left, width - x);
-        const std::size_t rows = x == 0 && left >= width ? left / width : 1;
-        glTexSubImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(x), static_cast<GLint>(first / width),
-                        static_cast<GLsizei>(columns), static_cast<GLsizei>(rows), format.format, format.type,
-                        from);
-        first += columns * rows;
-        left -= columns * rows;
-        from += columns * rows * format.texel_size;
-    }
-}
-
-/// The same texel all over a rectangle; the texture is bound.
-void fillRectangle(const TexelFormat& format, const TexelRectangle& at, std::span<const std::byte> texel) {
-    const auto texels = static_cast<std::size_t>(at.width) * static_cast<std::size_t>(at.height);
-    std::vector<std::byte> bytes;
-    bytes.reserve(texels * texel.size());
-    for (std::size_t i = 0; i < texels; ++i) {
-        bytes.insert(bytes.end(), texel.begin(), texel.end());
-    }
-    glTexSubImage2D(GL_TEXTURE_2D, 0, at.x, at.y, at.width, at.height, format.format, format.type,
-                    bytes.data());
-}
 
 GLint integer(GLenum what) {
     GLint value = 0;
@@ -143,47 +109,20 @@ Result<ColliderTextures> ColliderTextures::upload(std::span<const PlacedMap> map
 
     const PassState state;  // row lengths and skips among it: texels are tightly packed
     forgetGlErrors();
-    result.makeTextures(layout);
-    for (std::size_t m = 0; m < maps.size(); ++m) {
-        if (maps[m].live) {
-            result.clearLive(*maps[m].map, layout.places[m]);
-        } else {
-            result.uploadStored(*maps[m].map, layout.places[m], layout);
-        }
+    const auto textures = mapTextures(maps, layout);
+    for (std::size_t kind = 0; kind < kTexelKinds; ++kind) {
+        const TexelFormat& format = texelFormat(static_cast<TexelKind>(kind));
+        const GpuTexture& texture = textures[kind];
+        result.textures_[kind] = makeTexture2D(format.internal_format, static_cast<GLsizei>(texture.width),
+                                               static_cast<GLsizei>(texture.height), format.format,
+                                               format.type, texture.texels.data());
+        // One texel stands for a texture that no map uses.
+        result.bytes_ += layout.textures[kind].height() == 0 ? 0 : texture.texels.size();
     }
     result.makeBlock(colliderBlock(result.bodies_, maps, layout));
     RELIEF_TRY(checkAllocated("the collider's " + std::to_string(result.bytes_) + " bytes of maps",
                               "bake it with fewer"));
     return result;
-}
-
-void ColliderTextures::makeTextures(const MapLayout& layout) {
-    for (std::size_t kind = 0; kind < kTexelKinds; ++kind) {
-        const TexelFormat& format = texelFormat(static_cast<TexelKind>(kind));
-        const GLsizei width = layout.textures[kind].width();
-        const GLsizei height = layout.textures[kind].height();
-        // A layout that no map uses still gets one texel, for a sampler must have something bound.
-        textures_[kind] = makeTexture2D(format.internal_format, width, std::max(height, 1), format.format,
-                                        format.type, nullptr);
-        bytes_ += format.texel_size * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-    }
-    glActiveTexture(GL_TEXTURE0);
-}
-
-void ColliderTextures::uploadStored(const DepthMap& map, const MapPlace& place, const MapLayout& layout) {
-    glBindTexture(GL_TEXTURE_2D, textures_[place.kind].name());
-    uploadTexels(texelFormat(place.kind), layout.textures[place.kind], place.first, shaderTexels(map));
-}
-
-void ColliderTextures::clearLive(const DepthMap& map, const MapPlace& place) {
-    const TexelFormat& format = texelFormat(place.kind);
-    std::vector<std::byte> empty(format.texel_size);
-    encodeTexel(map.format, {}, empty);
-    glBindTexture(GL_TEXTURE_2D, textures_[place.kind].name());
-    fillRectangle(format, place.texels, empty);
-    const std::array<std::byte, 16> still{};
-    glBindTexture(GL_TEXTURE_2D, textures_[kFloatTexels].name());
-    fillRectangle(texelFormat(kFloatTexels), place.motion, still);
 }
 
 void ColliderTextures::makeBlock(std::span<const std::byte> bytes) {

@@ -2,7 +2,7 @@
 // its own object space, or several bodies with poses in a world.
 //
 // Maps of one texel layout share a 2-D texture: RGBA32F for float, RGBA8 for fixed8 and cube, RGBA16UI for
-// front-back of either depth. Their texels, as shaderTexels() makes them, follow each other as they do in the
+// front-back of either depth. Their texels (gpu_image.h) follow each other as they do in the
 // container, wrapped at the texture's width. So a texture takes the bytes of its maps and less than a row more:
 //
 //     bytes on the GPU < Σ texel bytes + Σ over the textures: width · texel size
@@ -11,7 +11,7 @@
 //
 // The maps of a live body (live_collider.h) have no texels yet: each gets a rectangle of its texture to be
 // drawn to, below what is packed, and one of the float texture, of RGBA32F, for how the surface in each of
-// its texels moves: a rectangle for the front and one above it for the back, or six for a cube's faces.
+// its texels moves: a rectangle for the front and one above it for the back.
 #pragma once
 
 #include <array>
@@ -100,10 +100,6 @@ class ColliderTextures {
   private:
     [[nodiscard]] static Result<ColliderTextures> upload(std::span<const PlacedMap> maps,
                                                          std::vector<BlockBody> bodies);
-    void makeTextures(const MapLayout& layout);
-    void uploadStored(const DepthMap& map, const MapPlace& place, const MapLayout& layout);
-    /// A live map before its first update: nothing on any ray, and nothing moves.
-    void clearLive(const DepthMap& map, const MapPlace& place);
     void makeBlock(std::span<const std::byte> bytes);
 
     std::vector<MapPlace> places_;  // of the maps

@@ -51,26 +51,6 @@ Result<DeformPass> DeformPass::create(const Deformation& deformation, std::span<
     if (deformation.kind == DeformKind::kWobble && normals.empty()) {
         return fail(ErrorCode::kUsage, "a wobble goes along the normals of the mesh; give them");
     }
-    auto pass = make({}, {}, positions, normals, output);
-    if (pass) {
-        pass->deformation_ = deformation;
-    }
-    return pass;
-}
-
-Result<DeformPass> DeformPass::create(const std::string& glsl, std::span<const glm::vec3> positions,
-                                      std::span<const glm::vec3> normals, Output output) {
-    RELIEF_TRY(checkContext());
-    auto pass = make("#define RELIEF_DEFORM_CUSTOM 1\n", glsl, positions, normals, output);
-    if (pass) {
-        pass->custom_ = true;
-    }
-    return pass;
-}
-
-Result<DeformPass> DeformPass::make(const std::string& defines, const std::string& glsl,
-                                    std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
-                                    Output output) {
     if (positions.empty() || positions.size() > std::numeric_limits<std::int32_t>::max()) {
         return fail(ErrorCode::kUsage, "a deformation needs 1 to 2^31 - 1 vertices");
     }
@@ -89,18 +69,18 @@ Result<DeformPass> DeformPass::make(const std::string& defines, const std::strin
     const PassState state;
     constexpr std::array<const char*, 2> kOutputs{"v_position", "v_normal"};
     DeformPass pass;
+    pass.deformation_ = deformation;
     pass.what_ = output;
     pass.vertices_ = static_cast<GLsizei>(positions.size());
     pass.inch_ = std::max(kInch * bounds.longestSide(), std::numeric_limits<float>::min());
-    pass.program_ = RELIEF_TRY(
-        makeFeedbackProgram("collider/deform.vert", std::span(kOutputs).first(wants_normals ? 2 : 1),
-                            (wants_normals ? "#define RELIEF_DEFORM_NORMALS 1\n" : "") + defines, glsl));
+    pass.program_ = RELIEF_TRY(makeFeedbackProgram("collider/deform.vert",
+                                                   std::span(kOutputs).first(wants_normals ? 2 : 1),
+                                                   wants_normals ? "#define RELIEF_DEFORM_NORMALS 1\n" : ""));
     pass.rest_ = makeBuffer();
     pass.output_ = makeBuffer();
     pass.array_ = makeVertexArray();
     pass.pixel_ = makeTexture2D(GL_RGBA8, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE);
-    const std::array<GLuint, 1> colors{pass.pixel_.name()};
-    pass.target_ = RELIEF_TRY(makeFramebuffer(colors));
+    pass.target_ = RELIEF_TRY(makeFramebuffer({pass.pixel_.name()}));
     glBindVertexArray(pass.array_.name());
     glBindBuffer(GL_ARRAY_BUFFER, pass.output_.name());
     glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(pass.bytes()), nullptr, GL_DYNAMIC_COPY);
@@ -131,20 +111,17 @@ void DeformPass::run(double time, const Pose& pose) {
             glm::vec4(pose.scale * glm::vec3(turn[0][i], turn[1][i], turn[2][i]), pose.position[i]);
     }
     program_.set("u_row", rows);
-    program_.set("u_time", static_cast<float>(time));
     program_.set("u_inch", inch_);
-    if (!custom_) {
-        const DeformMoment moment = momentOf(deformation_, time);
-        program_.set("u_kind", static_cast<GLint>(deformation_.kind));
-        program_.set("u_angle", moment.angle);
-        program_.set("u_phases", moment.phases);
-        program_.set("u_amplitude", deformation_.amplitude);
-        program_.set("u_number", 2.0F * std::numbers::pi_v<float> / deformation_.wavelength);
-        program_.set("u_center", deformation_.center);
-        program_.set("u_axis", deformation_.axis);
-        program_.set("u_along", deformation_.along);
-        program_.set("u_range", glm::vec2(deformation_.range_low, deformation_.range_high));
-    }
+    const DeformMoment moment = momentOf(deformation_, time);
+    program_.set("u_kind", static_cast<GLint>(deformation_.kind));
+    program_.set("u_angle", moment.angle);
+    program_.set("u_phases", moment.phases);
+    program_.set("u_amplitude", deformation_.amplitude);
+    program_.set("u_number", 2.0F * std::numbers::pi_v<float> / deformation_.wavelength);
+    program_.set("u_center", deformation_.center);
+    program_.set("u_axis", deformation_.axis);
+    program_.set("u_along", deformation_.along);
+    program_.set("u_range", glm::vec2(deformation_.range_low, deformation_.range_high));
     glBindVertexArray(array_.name());
     glBindFramebuffer(GL_FRAMEBUFFER, target_.name());
     glEnable(GL_RASTERIZER_DISCARD);

@@ -6,7 +6,6 @@
 
 #include <glm/vec3.hpp>
 #include <span>
-#include <string>
 
 #include "formats/base/result.h"
 #include "runtime/collider/deformation.h"
@@ -33,14 +32,6 @@ class DeformPass {
                                                    std::span<const glm::vec3> positions,
                                                    std::span<const glm::vec3> normals,
                                                    Output output = Output::kPositions);
-    /// A deformation of the caller's own.
-    /// \param glsl  GLSL ES 3.00 that defines `vec3 reliefDeform(vec3 p, float time)`: where the point p of
-    ///              the mesh at rest is at a time in seconds.
-    /// Fails as above; the driver's log counts lines from the beginning of `glsl`.
-    [[nodiscard]] static Result<DeformPass> create(const std::string& glsl,
-                                                   std::span<const glm::vec3> positions,
-                                                   std::span<const glm::vec3> normals,
-                                                   Output output = Output::kPositions);
 
     /// Writes all vertices as they are at `time`, in seconds, into buffer(). Does not wait. Restores the GL
     /// state; no transform feedback of the caller's may be active.
@@ -52,12 +43,7 @@ class DeformPass {
     [[nodiscard]] std::size_t bytes() const;
 
   private:
-    [[nodiscard]] static Result<DeformPass> make(const std::string& defines, const std::string& glsl,
-                                                 std::span<const glm::vec3> positions,
-                                                 std::span<const glm::vec3> normals, Output output);
-
     Deformation deformation_;
-    bool custom_ = false;
     Output what_ = Output::kPositions;
     GLsizei vertices_ = 0;
     float inch_ = 0.0F;

@@ -59,8 +59,7 @@ Result<std::vector<FieldSample>> FieldQuery::evaluate(std::span<const glm::vec3>
         const GlTexture map = makeTexture2D(GL_RGBA32F, kWidth, height, GL_RGBA, GL_FLOAT);
         RELIEF_TRY(checkAllocated("a query of " + std::to_string(batch.size()) + " points",
                                   "close what else is on the GPU"));
-        const std::array<GLuint, 2> targets = {normal_distance.name(), map.name()};
-        const GlFramebuffer framebuffer = RELIEF_TRY(makeFramebuffer(targets));
+        const GlFramebuffer framebuffer = RELIEF_TRY(makeFramebuffer({normal_distance.name(), map.name()}));
         useTexture(0, input);
         textures_->bind(kBinding);
         program_.drawScreen(framebuffer.name(), kWidth, height);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,10 @@ struct GpuImage {
     std::vector<std::byte> block;                  ///< ReliefCollider, std140
     std::string defines;                           ///< lines that collider.glsl is compiled with
 };
+
+/// The textures of maps in their places. Of a live one: nothing on any ray, and nothing moves.
+[[nodiscard]] std::array<GpuTexture, kTexelKinds> mapTextures(std::span<const PlacedMap> maps,
+                                                              const MapLayout& layout);
 
 /// A collider by itself, in its own object space, as ColliderTextures::create(collider) has it.
 /// \param side_max  of a texture, texels.

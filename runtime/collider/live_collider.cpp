@@ -22,22 +22,16 @@ constexpr float kThinnest = 1e-2F;
 /// True if a vertex lies in the volume of the map.
 bool holds(const DepthMap& map, const glm::vec3& p) {
     const glm::vec3 q = map.object_to_map.apply(p);
-    if (map.projection() == Projection::kCube) {
-        return std::max({std::abs(q.x), std::abs(q.y), std::abs(q.z)}) <= 1.0F;
-    }
     const glm::vec3 rim(1.0F / static_cast<float>(map.width), 1.0F / static_cast<float>(map.height), 0.0F);
-    // A texel's rounding.
-    constexpr float kSlack = 1e-5F;
-    for (int i = 0; i < 3; ++i) {
-        if (!(q[i] >= rim[i] - kSlack && q[i] <= 1.0F - rim[i] + kSlack)) {
-            return false;
-        }
-    }
-    return true;
+    constexpr float kSlack = 1e-5F;  // a texel's rounding
+    return glm::all(glm::greaterThanEqual(q, rim - kSlack)) &&
+           glm::all(glm::lessThanEqual(q, 1.0F - rim + kSlack));
 }
 
-bool sameTarget(const DepthMap& a, const DepthMap& b) {
-    return a.format == b.format && a.width == b.width && a.height == b.height;
+/// As liveFrames() makes them.
+bool isLiveMap(const DepthMap& map, const DepthMap& first) {
+    return map.format == MapFormat::kFrontBackFixed && map.compare == Compare::kBoth &&
+           map.decode == Decode::kPlane && map.width == first.width && map.height == first.height;
 }
 
 }  // namespace
@@ -91,16 +85,18 @@ Result<Collider> liveFrames(const Bounds& box, std::uint32_t resolution) {
 Result<LiveCollider> LiveCollider::create(std::span<const glm::vec3> positions,
                                           std::span<const glm::uvec3> triangles, Collider frames) {
     RELIEF_TRY(checkContext());
-    if (frames.maps.empty()) {
-        return fail(ErrorCode::kUsage, "a live collider needs maps; liveFrames() makes some");
+    if (frames.maps.empty() || !std::all_of(frames.maps.begin(), frames.maps.end(), [&](const DepthMap& map) {
+            return isLiveMap(map, frames.maps.front());
+        })) {
+        return fail(ErrorCode::kUsage, "a live collider needs maps as liveFrames() makes them");
     }
     auto mesh = RELIEF_TRY(GpuMesh::create(positions, triangles, {.keep_previous = true}));
     auto renderer = RELIEF_TRY(DepthMapRenderer::create());
+    auto target = RELIEF_TRY(DepthMapTarget::create(frameOf(frames.maps.front()), true));
     for (DepthMap& map : frames.maps) {
         map.texels.clear();
     }
-    LiveCollider live(std::move(mesh), std::move(renderer), std::move(frames));
-    RELIEF_TRY(live.createTargets());
+    LiveCollider live(std::move(mesh), std::move(renderer), std::move(target), std::move(frames));
     const PassState state;
     live.motion_program_ = RELIEF_TRY(makeScreenProgram("collider/live_motion.frag"));
     live.motion_program_.use();
@@ -109,25 +105,6 @@ Result<LiveCollider> LiveCollider::create(std::span<const glm::vec3> positions,
     live.motion_target_ = makeFramebuffer();
     live.texel_target_ = makeFramebuffer();
     return live;
-}
-
-Result<void> LiveCollider::createTargets() {
-    for (std::size_t m = 0; m < frames_.maps.size(); ++m) {
-        const DepthMap& map = frames_.maps[m];
-        views_.push_back(frameOf(map));
-        std::size_t same = 0;
-        while (same < m && !sameTarget(frames_.maps[same], map)) {
-            ++same;
-        }
-        if (same < m) {
-            target_of_.push_back(target_of_[same]);
-            continue;
-        }
-        auto target = RELIEF_TRY(DepthMapTarget::create(views_.back(), true));
-        target_of_.push_back(targets_.size());
-        targets_.push_back(std::move(target));
-    }
-    return {};
 }
 
 Result<void> LiveCollider::refuseSecondChange() const {
@@ -183,10 +160,9 @@ Result<void> LiveCollider::update(ColliderTextures& textures, std::size_t body) 
     }
     const PassState state;
     for (std::size_t m = 0; m < slots.size(); ++m) {
-        const DepthMapTarget& target = targets_[target_of_[m]];
-        RELIEF_TRY(renderer_.render(mesh_, views_[m], target));
-        copyTexels(target, frames_.maps[m], slots[m]);
-        copyMotion(target, frames_.maps[m], slots[m]);
+        RELIEF_TRY(renderer_.render(mesh_, frameOf(frames_.maps[m]), target_));
+        copyTexels(slots[m]);
+        copyMotion(slots[m]);
     }
     moving_ = shown_ && moved_;
     shown_ = true;
@@ -195,28 +171,28 @@ Result<void> LiveCollider::update(ColliderTextures& textures, std::size_t body) 
     return {};
 }
 
-void LiveCollider::copyTexels(const DepthMapTarget& target, const DepthMap& map, const LiveSlot& slot) const {
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, target.framebuffer());
+void LiveCollider::copyTexels(const LiveSlot& slot) const {
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, target_.framebuffer());
     glReadBuffer(GL_COLOR_ATTACHMENT0);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, texel_target_.name());
     glFramebufferTexture2D(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, slot.texels->name(), 0);
     // Not glCopyTexSubImage2D: an H200's driver took integers by way of the CPU, 13 ms a map.
-    const auto width = static_cast<GLint>(map.width);
-    const auto height = static_cast<GLint>(map.height * map.faceCount());
+    const auto width = static_cast<GLint>(target_.width());
+    const auto height = static_cast<GLint>(target_.height());
     glBlitFramebuffer(0, 0, width, height, slot.x, slot.y, slot.x + width, slot.y + height,
                       GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 
-void LiveCollider::copyMotion(const DepthMapTarget& target, const DepthMap& map, const LiveSlot& slot) const {
+void LiveCollider::copyMotion(const LiveSlot& slot) const {
     glBindFramebuffer(GL_FRAMEBUFFER, motion_target_.name());
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, slot.motion->name(), 0);
-    useTexture(kMotionXyUnit, target.motion(0));
-    useTexture(kMotionZUnit, target.motion(1));
+    useTexture(kMotionXyUnit, target_.motion(0));
+    useTexture(kMotionZUnit, target_.motion(1));
     motion_program_.use();
-    const auto width = static_cast<GLsizei>(map.width);
-    const auto height = static_cast<GLsizei>(map.height * map.faceCount());
+    const auto width = static_cast<GLsizei>(target_.width());
+    const auto height = static_cast<GLsizei>(target_.height());
     glEnable(GL_SCISSOR_TEST);
-    for (int end = 0; end < (isFrontBack(map.format) ? 2 : 1); ++end) {
+    for (int end = 0; end < 2; ++end) {
         const GLint y = slot.motion_y + end * height;
         motion_program_.set("u_end", end);
         motion_program_.set("u_origin", glm::ivec2(slot.motion_x, y));

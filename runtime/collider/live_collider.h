@@ -7,14 +7,12 @@
 //     ColliderTextures textures = *ColliderTextures::create({&body, 1});   // static bodies may stand beside
 //     it each step:  live.setPositions(…);  live.update(textures, 0);  particles.step(dt);
 //
-//     bytes on the GPU = those of GpuMesh and of ColliderTextures, and 44 to 56 a texel of a target for each
-//                        size and format of maps
+//     bytes on the GPU = those of GpuMesh and of ColliderTextures, and 44 a texel of a map
 #pragma once
 
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <span>
-#include <vector>
 
 #include "formats/base/result.h"
 #include "formats/collider.h"
@@ -36,10 +34,9 @@ class LiveCollider {
     /// Needs a current context, as every call does; every call restores the GL state that it touches, and
     /// none waits.
     /// \param positions, triangles  as GpuMesh::create wants them: the mesh before its first change.
-    /// \param frames  what maps to render: format, compare, decode, size and place of each; their texels are
-    ///                ignored. A map's box must hold the mesh at all times: what leaves it is cut off, and a
-    ///                map that encloses everything then calls that free.
-    /// Fails as GpuMesh, DepthMapTarget and DepthMapRenderer do, and with kUsage (no map).
+    /// \param frames  maps as liveFrames() makes them, all of one size. A map's box must hold the mesh at all times: what
+    ///                leaves it is cut off, and a map that encloses everything then calls that free.
+    /// Fails as GpuMesh, DepthMapTarget and DepthMapRenderer do, and with kUsage (other maps).
     [[nodiscard]] static Result<LiveCollider> create(std::span<const glm::vec3> positions,
                                                      std::span<const glm::uvec3> triangles, Collider frames);
 
@@ -66,19 +63,19 @@ class LiveCollider {
     [[nodiscard]] const GpuMesh& mesh() const { return mesh_; }
 
   private:
-    LiveCollider(GpuMesh mesh, DepthMapRenderer renderer, Collider frames)
-        : mesh_(std::move(mesh)), renderer_(std::move(renderer)), frames_(std::move(frames)) {}
-    [[nodiscard]] Result<void> createTargets();
+    LiveCollider(GpuMesh mesh, DepthMapRenderer renderer, DepthMapTarget target, Collider frames)
+        : mesh_(std::move(mesh)),
+          renderer_(std::move(renderer)),
+          target_(std::move(target)),
+          frames_(std::move(frames)) {}
     [[nodiscard]] Result<void> refuseSecondChange() const;
-    void copyTexels(const DepthMapTarget& target, const DepthMap& map, const LiveSlot& slot) const;
-    void copyMotion(const DepthMapTarget& target, const DepthMap& map, const LiveSlot& slot) const;
+    void copyTexels(const LiveSlot& slot) const;
+    void copyMotion(const LiveSlot& slot) const;
 
     GpuMesh mesh_;
     DepthMapRenderer renderer_;
+    DepthMapTarget target_;  // of one map after another
     Collider frames_;
-    std::vector<DepthMapFrame> views_;  // of the maps
-    std::vector<std::size_t> target_of_;
-    std::vector<DepthMapTarget> targets_;
     GlProgram motion_program_;
     GlFramebuffer texel_target_, motion_target_;
     bool shown_ = false;   // by a first update

@@ -1,20 +1,12 @@
 #include "runtime/collider/map_layout.h"
 
+#include <algorithm>
 #include <string>
 
 #include "formats/row_spans.h"
 
 namespace relief {
 namespace {
-
-GLsizei stackedHeight(const DepthMap& map) {
-    return static_cast<GLsizei>(map.height * map.faceCount());
-}
-
-/// A live map moves at its front and at its back, or on each face.
-GLsizei motionHeight(const DepthMap& map) {
-    return isFrontBack(map.format) ? 2 * stackedHeight(map) : stackedHeight(map);
-}
 
 std::size_t texelCount(const DepthMap& map) {
     return static_cast<std::size_t>(gpuBytes(map)) / texelSize(map.format);
@@ -26,8 +18,9 @@ Result<void> reserve(std::span<const PlacedMap> maps, GLint side_max,
         TexelLayout& texture = textures[texelKindOf(map->format)];
         if (live) {
             const auto width = static_cast<GLsizei>(map->width);
-            texture.addRectangle(width, stackedHeight(*map));
-            textures[kFloatTexels].addRectangle(width, motionHeight(*map));
+            const auto height = static_cast<GLsizei>(map->height);
+            texture.addRectangle(width, height);
+            textures[kFloatTexels].addRectangle(width, 2 * height);  // how its front moves, and its back
         } else {
             texture.addPacked(texelCount(*map));
         }
@@ -44,6 +37,50 @@ Result<void> reserve(std::span<const PlacedMap> maps, GLint side_max,
 }
 
 }  // namespace
+
+std::size_t TexelLayout::texels() const {
+    std::size_t sum = packed_;
+    for (const TexelRectangle& r : rectangles_) {
+        sum += static_cast<std::size_t>(r.width) * static_cast<std::size_t>(r.height);
+    }
+    return sum;
+}
+
+bool TexelLayout::finish(GLint side_max) {
+    for (log2_width_ = 0; width() <= side_max && log2_width_ < 30; ++log2_width_) {
+        height_ = place(side_max);
+        if (height_ <= width()) {
+            return true;
+        }
+    }
+    return false;
+}
+
+GLint TexelLayout::place(GLint side_max) {
+    const GLint full = side_max + 1;
+    const auto row_texels = static_cast<std::size_t>(width());
+    const std::size_t rows = (packed_ + row_texels - 1) >> log2_width_;
+    if (rows > static_cast<std::size_t>(side_max)) {
+        return full;
+    }
+    GLint x = 0;
+    auto shelf = static_cast<GLint>(rows);
+    GLint top = shelf;
+    for (TexelRectangle& r : rectangles_) {
+        if (x + r.width > width()) {
+            x = 0;
+            shelf = top;
+        }
+        if (r.width > width() || r.height > side_max - shelf) {
+            return full;
+        }
+        r.x = x;
+        r.y = shelf;
+        x += r.width;
+        top = std::max(top, shelf + r.height);
+    }
+    return top;
+}
 
 TexelKind texelKindOf(MapFormat format) {
     switch (format) {

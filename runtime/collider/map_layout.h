@@ -8,7 +8,7 @@
 
 #include "formats/base/result.h"
 #include "formats/depth_map.h"
-#include "runtime/collider/texel_layout.h"
+#include "runtime/gl/gl_types.h"
 
 namespace relief {
 
@@ -16,6 +16,45 @@ namespace relief {
 struct PlacedMap {
     const DepthMap* map = nullptr;
     bool live = false;
+};
+
+/// A part of a texture that is drawn to.
+struct TexelRectangle {
+    GLint x = 0;
+    GLint y = 0;
+    GLsizei width = 0;
+    GLsizei height = 0;
+};
+
+/// The layout of one texture: texels that follow each other row by row, and below them rectangles. Add everything, call
+/// finish(), then query.
+class TexelLayout {
+  public:
+    void addPacked(std::size_t texels) { packed_ += texels; }
+    void addRectangle(GLsizei width, GLsizei height) { rectangles_.push_back({0, 0, width, height}); }
+    /// Chooses the least power of two as width that holds it all no higher than wide. False where that is
+    /// above `side_max`.
+    [[nodiscard]] bool finish(GLint side_max);
+
+    [[nodiscard]] GLint log2Width() const { return log2_width_; }
+    [[nodiscard]] GLint width() const { return GLint{1} << log2_width_; }
+    [[nodiscard]] GLint height() const { return height_; }  ///< 0: nothing in it
+    [[nodiscard]] std::size_t texels() const;               ///< of what was added
+    /// The i-th that was added.
+    [[nodiscard]] const TexelRectangle& rectangle(std::size_t i) const { return rectangles_[i]; }
+    /// Of its texel (0, 0), counted row by row.
+    [[nodiscard]] std::size_t index(const TexelRectangle& r) const {
+        return (static_cast<std::size_t>(r.y) << log2_width_) + static_cast<std::size_t>(r.x);
+    }
+
+  private:
+    /// On shelves from left to right; the height, or side_max + 1 where it does not fit.
+    GLint place(GLint side_max);
+
+    std::size_t packed_ = 0;
+    std::vector<TexelRectangle> rectangles_;
+    GLint log2_width_ = 0;
+    GLint height_ = 0;
 };
 
 /// The textures: one for each layout of texels, in the order of the block's widths.
@@ -28,7 +67,7 @@ inline constexpr std::size_t kTexelKinds = 3;
 struct MapPlace {
     TexelKind kind = kFloatTexels;
     std::size_t first =
-        0;  ///< index of its texel (0, 0), or of its first row's span (shader_texels.h), counted row by
+        0;  ///< index of its texel (0, 0), or of its first row's span (gpu_image.cpp), counted row by
             ///< row of the texture
     GLint pitch = 0;        ///< texels from one of its rows to the next; of no use where rows have spans
     TexelRectangle texels;  ///< of a live map: where it is drawn to

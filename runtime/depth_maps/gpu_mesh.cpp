@@ -169,8 +169,7 @@ Result<void> GpuMesh::createTextures(std::span<const glm::uvec3> triangles) {
     corners_ = makeTexture2D(GL_RGBA32UI, 1 << triangle_shift_, rows, GL_RGBA_INTEGER, GL_UNSIGNED_INT,
                              texels.data());
     planes_ = makeTexture2D(GL_RGBA32UI, 1 << triangle_shift_, rows, GL_RGBA_INTEGER, GL_UNSIGNED_INT);
-    const std::array<GLuint, 1> planes{planes_.name()};
-    planes_target_ = RELIEF_TRY(makeFramebuffer(planes));
+    planes_target_ = RELIEF_TRY(makeFramebuffer({planes_.name()}));
     planes_program_ = RELIEF_TRY(makeScreenProgram("depth_maps/triangle_plane.frag"));
     planes_program_.use();
     planes_program_.set("u_positions", 0);

@@ -128,45 +128,27 @@ struct GlContext::Impl {
     }
 
     /// The failed attempts; "" once a context is open.
-    std::string openPlatform(GlPlatform platform) {
-        const auto attempt = [&](EGLDisplay opened, const std::string& name) {
+    std::string openAny() {
+        std::string tried;
+        const auto opens = [&](EGLDisplay opened, const std::string& name) {
             const std::string problem = open(opened);
             if (problem.empty()) {
                 describe(name);
-                return problem;
+                return true;
             }
-            return name + ": " + problem;
+            tried += (tried.empty() ? "" : "; ") + name + ": " + problem;
+            return false;
         };
-        switch (platform) {
-            case GlPlatform::kSurfaceless:
-                return attempt(surfacelessDisplay(), "surfaceless");
-            case GlPlatform::kDefault:
-                return attempt(defaultDisplay(), "default");
-            case GlPlatform::kDevice: {
-                std::string tried;
-                const std::vector<EGLDeviceEXT> devices = eglDevices();
-                for (std::size_t i = 0; i < devices.size(); ++i) {
-                    const std::string problem =
-                        attempt(deviceDisplay(devices[i]), "device " + std::to_string(i));
-                    if (problem.empty()) {
-                        return {};
-                    }
-                    tried += (tried.empty() ? "" : "; ") + problem;
-                }
-                return devices.empty() ? "device: not available" : tried;
-            }
-            case GlPlatform::kAny:
-                break;
+        if (opens(surfacelessDisplay(), "surfaceless")) {
+            return {};
         }
-        std::string tried;
-        for (const GlPlatform one : {GlPlatform::kSurfaceless, GlPlatform::kDevice, GlPlatform::kDefault}) {
-            const std::string problem = openPlatform(one);
-            if (problem.empty()) {
+        const std::vector<EGLDeviceEXT> devices = eglDevices();
+        for (std::size_t i = 0; i < devices.size(); ++i) {
+            if (opens(deviceDisplay(devices[i]), "device " + std::to_string(i))) {
                 return {};
             }
-            tried += (tried.empty() ? "" : "; ") + problem;
         }
-        return tried;
+        return opens(defaultDisplay(), "default") ? "" : tried;
     }
 
     Result<void> openDevice(std::size_t index) {
@@ -215,7 +197,7 @@ Result<std::unique_ptr<GlContext>> GlContext::create(const GlContextOptions& opt
         RELIEF_TRY(impl.openDevice(*options.device));
         return context;
     }
-    if (const std::string tried = impl.openPlatform(options.platform); !tried.empty()) {
+    if (const std::string tried = impl.openAny(); !tried.empty()) {
         return fail(ErrorCode::kUnsupported,
                     "no " + impl.apiName() + " context through EGL (" + tried + ")" + kCure);
     }
@@ -223,7 +205,7 @@ Result<std::unique_ptr<GlContext>> GlContext::create(const GlContextOptions& opt
 }
 
 Result<std::unique_ptr<GlContext>> GlContext::create(GlApi api) {
-    return create(GlContextOptions{.api = api, .platform = GlPlatform::kAny, .device = std::nullopt});
+    return create(GlContextOptions{.api = api, .device = std::nullopt});
 }
 
 Result<void> GlContext::makeCurrent() {

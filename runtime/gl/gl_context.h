@@ -12,18 +12,10 @@
 
 namespace relief {
 
-/// The EGL platforms to search for a GPU.
-enum class GlPlatform {
-    kAny,          ///< the next three in turn, until one gives a context
-    kSurfaceless,  ///< Mesa's, without a display server
-    kDevice,       ///< the first of EGL's devices that gives a context
-    kDefault,      ///< EGL's default display: what EGL_PLATFORM, DISPLAY and WAYLAND_DISPLAY make of it
-};
-
 struct GlContextOptions {
     GlApi api = GlApi::kGl33Core;
-    GlPlatform platform = GlPlatform::kAny;
-    /// Index into listGlDevices (gl_device.h): this device alone is tried, and `platform` is not looked at.
+    /// Index into listGlDevices (gl_device.h): this device alone is tried. nullopt: Mesa's platform without a display server,
+    /// EGL's devices and its default display in turn, until one gives a context.
     std::optional<std::size_t> device;
 };
 

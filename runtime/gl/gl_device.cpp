@@ -52,7 +52,7 @@ GlDevice describe(EGLDeviceEXT device, std::size_t index, GlApi api) {
             result.drm_device = deviceString(device, EGL_DRM_DEVICE_FILE_EXT);
         }
     }
-    const auto context = GlContext::create({.api = api, .platform = GlPlatform::kAny, .device = index});
+    const auto context = GlContext::create({.api = api, .device = index});
     if (!context) {
         result.problem = context.error().message;
         return result;

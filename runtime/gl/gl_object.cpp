@@ -52,8 +52,7 @@ std::string infoLog(GLuint name, bool is_program) {
     return log;
 }
 
-Result<GLuint> compile(GLenum stage, std::string_view file, std::string_view defines,
-                       std::string_view appended = {}) {
+Result<GLuint> compile(GLenum stage, std::string_view file, std::string_view defines) {
     std::vector<std::string> included;
     const std::string body = RELIEF_TRY(resolveIncludes(file, included));
     // highp everywhere: state and depth are 32-bit floats, and ES 3.0 requires highp in fragment shaders.
@@ -68,11 +67,6 @@ Result<GLuint> compile(GLenum stage, std::string_view file, std::string_view def
         "precision highp usampler2D;\nprecision highp sampler3D;\n";
     source += "#line 1\n";
     source += body;
-    if (!appended.empty()) {
-        source += "\n#line 1\n";
-        source += appended;
-        source += "\n";
-    }
 
     const GLuint shader = glCreateShader(stage);
     const char* text = source.c_str();
@@ -238,8 +232,8 @@ Result<GlProgram> linked(GlProgram program, const std::string& name) {
 
 /// \param outputs  of the vertex shader that transform feedback writes, interleaved; empty: none.
 Result<GlProgram> compileAndLink(std::string_view vertex, std::string_view fragment, std::string_view defines,
-                                 std::span<const char* const> outputs, std::string_view appended) {
-    const GLuint vertex_shader = RELIEF_TRY(compile(GL_VERTEX_SHADER, vertex, defines, appended));
+                                 std::span<const char* const> outputs) {
+    const GLuint vertex_shader = RELIEF_TRY(compile(GL_VERTEX_SHADER, vertex, defines));
     const Result<GLuint> fragment_shader = compile(GL_FRAGMENT_SHADER, fragment, defines);
     if (!fragment_shader) {
         glDeleteShader(vertex_shader);
@@ -332,7 +326,7 @@ Result<std::string> shaderText(std::string_view file) {
 }
 
 Result<GlProgram> makeProgram(std::string_view vertex, std::string_view fragment, std::string_view defines) {
-    return compileAndLink(vertex, fragment, defines, {}, {});
+    return compileAndLink(vertex, fragment, defines, {});
 }
 
 Result<GlProgram> makeScreenProgram(std::string_view fragment, std::string_view defines) {
@@ -348,8 +342,8 @@ Result<GlProgram> makeComputeProgram(std::string_view compute, std::string_view 
 }
 
 Result<GlProgram> makeFeedbackProgram(std::string_view vertex, std::span<const char* const> outputs,
-                                      std::string_view defines, std::string_view appended) {
-    return compileAndLink(vertex, "base/nothing.frag", defines, outputs, appended);
+                                      std::string_view defines) {
+    return compileAndLink(vertex, "base/nothing.frag", defines, outputs);
 }
 
 void copyBuffer(const GlBuffer& from, const GlBuffer& to, GLsizeiptr to_offset, GLsizeiptr bytes) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glm/fwd.hpp>
+#include <initializer_list>
 #include <map>
 #include <span>
 #include <string>
@@ -110,6 +111,10 @@ class GlProgram : public GlName<gl_detail::deleteProgram> {
 /// Errors: kUnsupported, with the status, if the GL does not render to that combination.
 [[nodiscard]] Result<GlFramebuffer> makeFramebuffer(std::span<const GLuint> color_textures,
                                                     GLuint depth_texture = 0);
+[[nodiscard]] inline Result<GlFramebuffer> makeFramebuffer(std::initializer_list<GLuint> color_textures,
+                                                           GLuint depth_texture = 0) {
+    return makeFramebuffer(std::span(color_textures.begin(), color_textures.size()), depth_texture);
+}
 
 /// A file of shaders/, "collider/collider.glsl", with its includes, behind shaderConstants(): for programs of one's own,
 /// between whose version line and text it goes. Fails with kFailure (no such file).
@@ -131,13 +136,10 @@ class GlProgram : public GlName<gl_detail::deleteProgram> {
 [[nodiscard]] Result<GlProgram> makeComputeProgram(std::string_view compute, std::string_view defines = {});
 
 /// A program of a vertex shader alone, whose outputs transform feedback writes, interleaved in their order.
-/// \param appended  GLSL of the caller's that is put behind the vertex shader; the log's lines count from its
-///                  beginning.
 /// Fails as makeProgram does.
 [[nodiscard]] Result<GlProgram> makeFeedbackProgram(std::string_view vertex,
                                                     std::span<const char* const> outputs,
-                                                    std::string_view defines = {},
-                                                    std::string_view appended = {});
+                                                    std::string_view defines = {});
 
 /// Reads a texture (level 0 of a 2-D texture of a float format) back as RGBA floats, 4 · width · height.
 [[nodiscard]] Result<std::vector<float>> readTextureFloats(const GlTexture& texture, GLsizei width,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/quaternion.hpp>
 #include <string>
 #include <utility>
 
@@ -86,6 +87,20 @@ const char* problemOf(const EmitterSettings& s) {
         return "lifetime_min must be above 0 and not above lifetime_max, which is finite";
     }
     return s.aim ? problemOfAim(s) : nullptr;
+}
+
+/// From the space that moves along a trajectory to the space of its poses.
+/// \param moved  how the place moves; `inherit` of it is taken on in the end.
+void carryAlong(std::span<const PoseKey> keys, double time, Birth& birth, glm::vec3& moved) {
+    if (keys.empty()) {
+        return;
+    }
+    const Pose pose = poseAt(keys, time);
+    const Motion motion = motionAt(keys, time);
+    const glm::vec3 arm = pose.scale * (pose.rotation * birth.position);
+    birth.position = pose.position + arm;
+    birth.velocity = pose.rotation * birth.velocity;
+    moved = motion.velocity + glm::cross(motion.turn, arm) + pose.scale * (pose.rotation * moved);
 }
 
 }  // namespace
@@ -251,6 +266,19 @@ glm::vec3 Emitter::aimed(const glm::vec3& normal) {
         }
     } while (speed < 0.0F);
     return speed * direction;
+}
+
+void carry(const EmitterMotion& motion, double time, std::span<Birth> births) {
+    if (motion.none()) {
+        return;
+    }
+    for (Birth& birth : births) {
+        const double moment = time - static_cast<double>(birth.age);
+        glm::vec3 moved(0.0F);
+        carryAlong(motion.keys, moment, birth, moved);
+        carryAlong(motion.body, moment, birth, moved);
+        birth.velocity += motion.inherit * moved;
+    }
 }
 
 std::uint64_t emitAll(std::span<Emitter> emitters, double dt, std::uint64_t room, std::vector<Birth>& births,

@@ -12,8 +12,8 @@
 
 #include "formats/base/field.h"
 #include "formats/base/result.h"
+#include "runtime/collider/pose_keys.h"
 #include "runtime/particles/birth.h"
-#include "runtime/particles/emitter_motion.h"
 #include "runtime/particles/point_list.h"
 #include "runtime/particles/random.h"
 
@@ -110,6 +110,19 @@ class Emitter {
     std::uint64_t steady_ = 0;
     std::uint64_t bursts_ = 0;
 };
+
+/// The trajectory that carries an emitter's births. Its places are then in a space of its own, which `keys` bring into the
+/// space of the body, and `body` into the world; a scale scales places, but no velocities.
+struct EmitterMotion {
+    std::vector<PoseKey> keys;  ///< empty: its space is that of the body
+    std::vector<PoseKey> body;  ///< one key: a body at rest; empty: the space of the body is the world
+    float inherit = 0.0F;       ///< share of the velocity of its place that a birth takes on
+    [[nodiscard]] bool none() const { return keys.empty() && body.empty(); }
+};
+
+/// Brings births into the world: each from where the emitter is at its own moment, `age` before `time`.
+/// \param time  when they enter a step: its beginning, seconds on the clock of the keys.
+void carry(const EmitterMotion& motion, double time, std::span<Birth> births);
 
 /// emit() of each in turn: where there is too little room, the earlier ones take it.
 /// \param motions  of as many, or none: they carry the births along, at once.

@@ -79,8 +79,7 @@ Result<void> EventList::createTextures(std::uint32_t capacity) {
     RELIEF_TRY(
         checkAllocated("a list of " + std::to_string(options_.most) + " events", "choose a shorter one"));
     for (Level& level : counts_) {
-        const GLuint name = level.texture.name();
-        level.target = RELIEF_TRY(makeFramebuffer(std::span(&name, 1)));
+        level.target = RELIEF_TRY(makeFramebuffer({level.texture.name()}));
     }
     list_target_ = RELIEF_TRY(makeFramebuffer(names));
     return {};

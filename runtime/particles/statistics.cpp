@@ -85,8 +85,7 @@ Result<void> Statistics::createLevels() {
         Level level{make(), make(), {}};
         RELIEF_TRY(checkAllocated("the statistics of " + std::to_string(capacity_) + " particles",
                                   "choose a smaller capacity"));
-        const std::array<GLuint, 2> textures{level.counts.name(), level.sums.name()};
-        level.target = RELIEF_TRY(makeFramebuffer(textures));
+        level.target = RELIEF_TRY(makeFramebuffer({level.counts.name(), level.sums.name()}));
         levels_.push_back(std::move(level));
     } while (width > 1 || height > 1);
     return {};

@@ -39,7 +39,7 @@ Result<void> ColliderLight::Volume::allocate() {
     layers = makeTexture2D(GL_R8, tiles() * size.x, rows * size.y, GL_RED, GL_UNSIGNED_BYTE);
     texture = makeTexture3D(GL_R8, size, GL_RED, GL_UNSIGNED_BYTE, GL_LINEAR);
     RELIEF_TRY(checkAllocated("the light among the collider", kLess));
-    target = RELIEF_TRY(makeFramebuffer(std::array<GLuint, 1>{layers.name()}));
+    target = RELIEF_TRY(makeFramebuffer({layers.name()}));
     return {};
 }
 
@@ -120,11 +120,11 @@ Result<void> ColliderLight::createTextures() {
     coarse_ = makeTexture2D(GL_R32F, kCoarseSide, kCoarseSide, GL_RED, GL_FLOAT);
     sun_map_ = makeTexture2D(GL_R32F, kSunSide, kSunSide, GL_RED, GL_FLOAT);
     RELIEF_TRY(checkAllocated("the sun's map of the collider", kLess));
-    coarse_target_ = RELIEF_TRY(makeFramebuffer(std::array<GLuint, 1>{coarse_.name()}));
+    coarse_target_ = RELIEF_TRY(makeFramebuffer({coarse_.name()}));
     RELIEF_TRY(occupied_.allocate());
     RELIEF_TRY(sky_.allocate());
     // Last: its existence stands for that of all.
-    sun_target_ = RELIEF_TRY(makeFramebuffer(std::array<GLuint, 1>{sun_map_.name()}));
+    sun_target_ = RELIEF_TRY(makeFramebuffer({sun_map_.name()}));
     return {};
 }
 

@@ -74,8 +74,7 @@ Result<ColliderMesh::View> ColliderMesh::view(const Camera& camera, GLsizei widt
     view.normal = makeTexture2D(GL_RGBA16F, width, height, GL_RGBA, GL_HALF_FLOAT);
     view.depth = makeTexture2D(GL_DEPTH_COMPONENT32F, width, height, GL_DEPTH_COMPONENT, GL_FLOAT);
     RELIEF_TRY(checkAllocated("the mesh's picture", "choose a smaller size"));
-    const std::array<GLuint, 1> colors{view.normal.name()};
-    const auto framebuffer = RELIEF_TRY(makeFramebuffer(colors, view.depth.name()));
+    const auto framebuffer = RELIEF_TRY(makeFramebuffer({view.normal.name()}, view.depth.name()));
     const float aspect = static_cast<float>(width) / static_cast<float>(height);
     const glm::mat4 clip = camera.projection(aspect) * camera.view();
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());

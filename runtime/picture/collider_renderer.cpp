@@ -98,8 +98,7 @@ Result<void> ColliderRenderer::trace(const Camera& camera, const ColliderStyle& 
     color_ = makeTexture2D(GL_RGBA16F, width, height, GL_RGBA, GL_HALF_FLOAT);
     depth_ = makeTexture2D(GL_DEPTH_COMPONENT32F, width, height, GL_DEPTH_COMPONENT, GL_FLOAT);
     RELIEF_TRY(checkAllocated("the collider's picture", kSmallerPicture));
-    const std::array<GLuint, 1> colors{color_.name()};
-    auto framebuffer = RELIEF_TRY(makeFramebuffer(colors, depth_.name()));
+    auto framebuffer = RELIEF_TRY(makeFramebuffer({color_.name()}, depth_.name()));
     setViewUniforms(coarse_program_, camera, style, width, height);
     setViewUniforms(trace_program_, camera, style, width, height);
     view_.textures->bind(kColliderBinding);

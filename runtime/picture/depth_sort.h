@@ -1,7 +1,7 @@
 // The order in which particles are to be drawn so that they blend: farthest from the viewer first. Nothing is read
 // back and nothing waits for the GPU.
 //
-// On StepPath::kCompute it is exact after every update(): a radix sort (radix_sort.h). What follows is about the other
+// On StepPath::kCompute it is exact after every update(): a radix sort. What follows is about the other
 // path, Batcher's odd-even merge sort in fragment passes, spread over as many frames as one likes (paper, section 3.4).
 // Where that has ended a sequence both give the same order.
 //
@@ -15,17 +15,22 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
-#include <optional>
+#include <memory>
 
 #include "formats/base/result.h"
 #include "runtime/gl/gl_object.h"
 #include "runtime/particles/step_path.h"
-#include "runtime/picture/radix_sort.h"
 
 namespace relief {
 
+class RadixSort;
+
 class DepthSorter {
   public:
+    ~DepthSorter();
+    DepthSorter(DepthSorter&&) noexcept;
+    DepthSorter& operator=(DepthSorter&&) noexcept;
+
     static constexpr std::uint32_t kWidth = 1024;  ///< texels in a row of order()
     static constexpr std::uint32_t kCapacityMax = 1U << 24;
 
@@ -57,7 +62,7 @@ class DepthSorter {
     /// i / kWidth) holds x: the particle's index, and y: its key as of the last update(), 0 where there is
     /// nothing to draw. A renderer draws all count() ranks and drops those of key 0: until a sequence has
     /// ended, live particles may lie at any of them. Valid until the next update() or the sorter's end.
-    [[nodiscard]] const GlTexture& order() const { return radix_ ? radix_->order() : order_[current_]; }
+    [[nodiscard]] const GlTexture& order() const;
     /// The ranks that hold an order. On the compute path the extent; on the other the least power of two not below the extent, or a larger one for up to
     /// two sequences after the extent has fallen; 0 before the first particle.
     [[nodiscard]] std::uint32_t count() const { return count_; }
@@ -70,7 +75,7 @@ class DepthSorter {
     [[nodiscard]] static std::uint32_t passesPerFrame(std::uint32_t extent, std::uint32_t frames);
 
   private:
-    explicit DepthSorter(std::uint32_t capacity) : capacity_(capacity) {}
+    explicit DepthSorter(std::uint32_t capacity);
     [[nodiscard]] Result<void> createTextures();
     [[nodiscard]] Result<void> createPrograms();
     void merge(const GlTexture& positions, std::uint32_t width, std::uint32_t extent, const glm::vec3& eye,
@@ -90,7 +95,7 @@ class DepthSorter {
     GlFramebuffer target_[2];
     GlProgram keys_;
     GlProgram pass_;
-    std::optional<RadixSort> radix_;  // instead of all the above
+    std::unique_ptr<RadixSort> radix_;  // instead of all the above
 };
 
 }  // namespace relief

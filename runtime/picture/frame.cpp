@@ -42,10 +42,8 @@ Result<Frame> Frame::create(std::uint32_t width, std::uint32_t height) {
     frame.finished_ = makeTexture2D(GL_RGBA8, static_cast<GLsizei>(width), static_cast<GLsizei>(height),
                                     GL_RGBA, GL_UNSIGNED_BYTE);
     RELIEF_TRY(checkAllocated("a picture of " + size + " pixels", "choose a smaller size"));
-    const std::array<GLuint, 1> color{frame.color_.name()};
-    const std::array<GLuint, 1> finished{frame.finished_.name()};
-    frame.large_ = RELIEF_TRY(makeFramebuffer(color, frame.depth_.name()));
-    frame.small_ = RELIEF_TRY(makeFramebuffer(finished));
+    frame.large_ = RELIEF_TRY(makeFramebuffer({frame.color_.name()}, frame.depth_.name()));
+    frame.small_ = RELIEF_TRY(makeFramebuffer({frame.finished_.name()}));
     frame.program_ = RELIEF_TRY(makeScreenProgram("picture/resolve.frag"));
     frame.program_.use();
     frame.program_.set("u_color", 0);

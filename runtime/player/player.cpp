@@ -142,7 +142,7 @@ class Run {
 
 Result<std::unique_ptr<GlContext>> makeContext(const PlayerOptions& options) {
     auto context = watched(options.watchdog, "making a context", [&] {
-        return GlContext::create({options.api, GlPlatform::kAny, options.device});
+        return GlContext::create({options.api, options.device});
     });
     if (context && options.watchdog != nullptr && options.default_timeout) {
         options.watchdog->setLimit(defaultGpuTimeout((*context)->software()));

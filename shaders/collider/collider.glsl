@@ -728,22 +728,11 @@ vec3 reliefMotion(int i, vec3 p, vec3 normal) {
     vec3 in_map = reliefInMap(i, p);
     ivec4 place = u_relief_maps[i].place;
     ivec4 info = u_relief_maps[i].info;
-    ivec2 at;
-    if (reliefIsCube(info)) {
-        float radius = reliefLength(in_map);
-        vec3 st_face = reliefCubeCoordinates(radius > 0.0 ? in_map / radius : vec3(1.0, 0.0, 0.0));
-        at = min(ivec2(st_face.xy * float(place.w)), ivec2(place.w - 1));
-        at.y += int(st_face.z) * place.w;
-    } else {
-        at = ivec2(clamp(in_map.xy, vec2(0.0), vec2(place.w - 1, info.x - 1)));
-        if (reliefIsFrontBack(info)) {
-            uvec4 words = texelFetch(u_relief_front_back,
-                                     reliefTexel(place.x + at.y * place.y + at.x, u_relief_count.w), 0);
-            float front = reliefDot(normal, reliefUnit(reliefOctahedron(words.r)));
-            float back = reliefDot(normal, reliefUnit(reliefOctahedron(words.g)));
-            at.y += words.b == 0u || (words.a != 0u && back > front) ? info.x : 0;
-        }
-    }
+    ivec2 at = ivec2(clamp(in_map.xy, vec2(0.0), vec2(place.w - 1, info.x - 1)));
+    uvec4 words = texelFetch(u_relief_front_back, reliefTexel(place.x + at.y * place.y + at.x, u_relief_count.w), 0);
+    float front = reliefDot(normal, reliefUnit(reliefOctahedron(words.r)));
+    float back = reliefDot(normal, reliefUnit(reliefOctahedron(words.g)));
+    at.y += words.b == 0u || (words.a != 0u && back > front) ? info.x : 0;
     int texel = info.w + (at.y << u_relief_count.y) + at.x;
     return texelFetch(u_relief_float, reliefTexel(texel, u_relief_count.y), 0).xyz;
 }

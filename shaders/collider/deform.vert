@@ -1,9 +1,8 @@
 // Deforms the vertices of a mesh at rest, for transform feedback; nothing is rasterised. The C++ twin is
-// runtime/collider/deformation.cpp, explained in its header. With RELIEF_DEFORM_CUSTOM the caller's reliefDeform() follows this file.
+// runtime/collider/deformation.cpp, explained in its header.
 layout(location = 0) in vec3 a_position;  // object space, at rest
 layout(location = 1) in vec3 a_normal;    // of length 1, or zero
 
-uniform float u_time;    // seconds
 uniform vec4 u_row[3];   // of an affine map after the deformation: the identity, or object to world
 uniform float u_inch;    // reach of the differences for normals, object units
 
@@ -11,16 +10,6 @@ out vec3 v_position;
 #if defined(RELIEF_DEFORM_NORMALS)
 out vec3 v_normal;
 #endif
-
-#if defined(RELIEF_DEFORM_CUSTOM)
-
-vec3 reliefDeform(vec3 p, float time);
-
-vec3 deformed(vec3 p) {
-    return reliefDeform(p, u_time);
-}
-
-#else
 
 uniform int u_kind;  // DeformKind
 uniform float u_angle;      // radians, at this moment
@@ -60,8 +49,6 @@ vec3 deformed(vec3 p) {
     vec3 waves = sin(u_number * p + u_phases);
     return p + u_amplitude / 3.0 * (waves.x + waves.y + waves.z) * a_normal;
 }
-
-#endif
 
 vec3 placed(vec3 p) {
     return vec3(dot(u_row[0].xyz, p) + u_row[0].w, dot(u_row[1].xyz, p) + u_row[1].w,

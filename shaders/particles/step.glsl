@@ -178,7 +178,7 @@ State reacted(State state, Sweep sweep, ParticleType type, out bool dies) {
         }
         writeHit(sweep, vn, state.contact != float(RELIEF_CONTACT_NONE), dies);
     }
-    vec3 to = dies ? p : sweepEnd(sweep, p, carried, v, contact, type.radius);
+    vec3 to = dies ? p : sweepEnd(sweep, carried, v, contact, type.radius);
     return State(to, v, state.collisions + 1.0, contact);
 }
 

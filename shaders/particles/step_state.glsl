@@ -10,7 +10,8 @@
 //                        z       type
 //                        w       id modulo 2^24
 //
-// With RELIEF_VERLET the velocity is the displacement of the last step over its duration, whatever moved the particle.
+// With RELIEF_VERLET the velocity is the displacement of the last step over its duration; after a hit of a swept step, whose
+// path ends early, that of the reaction.
 uniform highp sampler2D u_position;
 uniform highp sampler2D u_velocity;
 #if defined(RELIEF_VERLET)
@@ -42,7 +43,12 @@ State stateAt(ivec2 texel) {
 // The state after a step from `before`.
 void writeState(State before, State after) {
 #if defined(RELIEF_VERLET)
-    after.velocity = (after.position - before.position) * u_rate;
+    vec3 displaced = (after.position - before.position) * u_rate;
+#if defined(RELIEF_SWEEP)
+    after.velocity = after.contact == float(RELIEF_CONTACT_NONE) ? displaced : after.velocity;
+#else
+    after.velocity = displaced;
+#endif
 #endif
     o_position = vec4(after.position, after.collisions);
     o_velocity = vec4(after.velocity, after.contact);

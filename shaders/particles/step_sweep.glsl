@@ -18,7 +18,7 @@ Sweep sweepOf(vec3 p, vec3 v, float radius) {
     return Sweep(v, p, to, 1.0, true, 1.0, solidOrGround(to, radius));
 }
 
-vec3 sweepEnd(Sweep sweep, vec3 p, vec3 carried, vec3 v, float contact, float radius) {
+vec3 sweepEnd(Sweep sweep, vec3 carried, vec3 v, float contact, float radius) {
     return sweep.from + (sweep.share * u_dt) * v;
 }
 
@@ -93,38 +93,8 @@ vec3 goneOnOutside(Sweep sweep, vec3 carried, vec3 v, float radius) {
     return to;
 }
 
-#if !defined(RELIEF_VERLET)
-
-vec3 sweepEnd(Sweep sweep, vec3 p, vec3 carried, vec3 v, float contact, float radius) {
+vec3 sweepEnd(Sweep sweep, vec3 carried, vec3 v, float contact, float radius) {
     return contact == float(RELIEF_CONTACT_CAUGHT) ? goneOn(sweep, carried, v) : goneOnOutside(sweep, carried, v, radius);
 }
-
-#else
-
-// Verlet's velocity is the displacement of the last step, so after a reaction the whole displacement is made, and tested: from
-// p, where the surface has carried the particle, with the velocity relative to it, up to the first piece that would end
-// inside. A particle that is not free yet may first come out.
-vec3 sweptFrom(vec3 p, vec3 v, bool free, float radius) {
-    float pieces = clamp(ceil(u_dt * length(v) / u_sweep), 1.0, float(RELIEF_SWEEP));
-    vec3 reached = p;
-    for (int i = 1; i <= RELIEF_SWEEP && float(i) <= pieces; ++i) {
-        vec3 q = p + (float(i) / pieces * u_dt) * v;
-        bool inside = solidOrGround(q, radius).distance < 0.0;
-        if (inside && free) {
-            break;
-        }
-        free = free || !inside;
-        reached = q;
-    }
-    return reached;
-}
-
-vec3 sweepEnd(Sweep sweep, vec3 p, vec3 carried, vec3 v, float contact, float radius) {
-    return contact < float(RELIEF_CONTACT_STOPPED)
-               ? sweptFrom(p + u_dt * carried, v - carried, contact == float(RELIEF_CONTACT_COLLIDED), radius)
-               : goneOnOutside(sweep, carried, v, radius);
-}
-
-#endif
 
 #endif

@@ -140,25 +140,6 @@ TEST_P(DeformPassGlTest, NormalsAreThoseOfTheDeformedSurface) {
     }
 }
 
-TEST_P(DeformPassGlTest, ACallersOwn) {
-    const Points points = somePoints(300);
-    auto pass = DeformPass::create("vec3 reliefDeform(vec3 p, float time) { return 2.0 * p.zxy + time; }",
-                                   points.positions, {});
-    ASSERT_TRUE(pass) << pass.error().message;
-    pass->run(1.25);
-    const std::vector<glm::vec3> gpu = read(*pass);
-    for (std::size_t i = 0; i < gpu.size(); ++i) {
-        const glm::vec3 p = points.positions[i];
-        EXPECT_LE(glm::length(gpu[i] - (2.0F * glm::vec3(p.z, p.x, p.y) + 1.25F)), 1e-6F);
-    }
-    for (const char* wrong :
-         {"", "vec3 reliefDeform(vec3 p) { return p; }", "vec3 reliefDeform(vec3 p, float time) {"}) {
-        const auto refused = DeformPass::create(wrong, points.positions, {});
-        ASSERT_FALSE(refused) << wrong;
-        EXPECT_EQ(refused.error().code, ErrorCode::kFailure);
-    }
-}
-
 TEST_P(DeformPassGlTest, WhatMakesNoSenseIsRefused) {
     const Points points = somePoints(3);
     const auto refused = [&](DeformKind kind, std::span<const glm::vec3> positions,

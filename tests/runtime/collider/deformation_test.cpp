@@ -10,7 +10,7 @@
 #include <numbers>
 #include <random>
 
-#include "runtime/collider/texel_layout.h"
+#include "runtime/collider/map_layout.h"
 
 namespace relief {
 namespace {

@@ -160,36 +160,6 @@ class LiveColliderGlTest : public CollisionTest {
 };
 RELIEF_INSTANTIATE_STEP_TESTS(LiveColliderGlTest);
 
-/// Maps of one format that enclose a cube about the origin and together see a convex mesh from all sides.
-Collider framesOf(MapFormat format, Decode decode, float half, std::uint32_t resolution) {
-    Collider frames = *liveFrames(cube(half), resolution);
-    if (format == MapFormat::kCube8) {
-        DepthMap map;
-        map.compare = Compare::kGreater;
-        map.width = map.height = resolution;
-        for (int i = 0; i < 3; ++i) {
-            map.object_to_map.row[i][i] = 1.0F / half;
-            map.object_per_map[i] = half;
-        }
-        frames.maps = {map};
-    } else if (!isFrontBack(format)) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            frames.maps[i].compare = Compare::kLess;
-            frames.maps.push_back(frames.maps[i]);
-            frames.maps.back().compare = Compare::kGreater;
-        }
-    }
-    for (DepthMap& map : frames.maps) {
-        map.format = format;
-        map.decode = decode;
-    }
-    return frames;
-}
-
-constexpr MapFormat kFormats[] = {MapFormat::kFloat32, MapFormat::kFixed8, MapFormat::kFrontBackHalf,
-                                  MapFormat::kFrontBackFixed, MapFormat::kCube8};
-constexpr Decode kDecodes[] = {Decode::kProjected, Decode::kPlane};
-
 std::vector<glm::vec3> randomPoints(std::size_t count, float half) {
     std::mt19937 random(5);
     std::uniform_real_distribution<float> in(-half, half);
@@ -202,64 +172,40 @@ std::vector<glm::vec3> randomPoints(std::size_t count, float half) {
 
 // What the shader reads from the rectangles is what the CPU says of the same maps rendered one by one and
 // read back; and it is a sphere.
-TEST_P(LiveColliderGlTest, MapsOfEveryFormatAreThoseOfAStaticBakeOfTheMesh) {
+TEST_P(LiveColliderGlTest, MapsAreThoseOfAStaticBakeOfTheMesh) {
     const Mesh mesh = sphere(0.5F, 64, 32);
     auto gpu_mesh = GpuMesh::create(mesh.positions, mesh.triangles);
     auto renderer = DepthMapRenderer::create();
     ASSERT_TRUE(gpu_mesh && renderer);
     const std::vector<glm::vec3> points = randomPoints(20'000, 0.7F);
-    for (const MapFormat format : kFormats) {
-        for (const Decode decode : kDecodes) {
-            SCOPED_TRACE(std::string(mapFormatName(format)) + " " + depthEncodingName(format) + " " +
-                         decodeName(decode));
-            makeLive(mesh, framesOf(format, decode, 0.6F, 96));
-            update();
-            Collider baked = live_->frames();
-            for (DepthMap& map : baked.maps) {
-                const DepthMapFrame frame = frameOf(map);
-                const auto target = DepthMapTarget::create(frame);
-                ASSERT_TRUE(target && renderer->render(*gpu_mesh, frame, *target));
-                map.texels.resize(map.texelBytes());
-                ASSERT_TRUE(target->read(0, 0, map.width, map.height * map.faceCount(), map.texels));
-            }
-            const std::vector<FieldSample> live = field(points);
-            std::size_t inside = 0;
-            std::size_t other = 0;
-            for (std::size_t i = 0; i < points.size(); ++i) {
-                const FieldSample cpu = evaluate(baked, points[i]);
-                const bool same =
-                    cpu.inside() == live[i].inside() &&
-                    (cpu.distance >= 1e29F || std::abs(cpu.distance - live[i].distance) < 1.2F / 65534.0F);
-                other += same ? 0 : 1;
-                inside += live[i].inside() ? 1 : 0;
-                // To a texel's sagitta, where no silhouette is near.
-                const float truth = glm::length(points[i]) - 0.5F;
-                if (std::abs(truth) > 0.02F) {
-                    EXPECT_EQ(live[i].inside(), truth < 0.0F) << i << " " << truth;
-                }
-            }
-            EXPECT_LE(other, 20U);  // on the border of two texels the CPU may take the other
-            EXPECT_GT(inside, 2000U);
+    makeLive(mesh, cube(0.6F), 96);
+    update();
+    Collider baked = live_->frames();
+    for (DepthMap& map : baked.maps) {
+        const DepthMapFrame frame = frameOf(map);
+        const auto target = DepthMapTarget::create(frame);
+        ASSERT_TRUE(target && renderer->render(*gpu_mesh, frame, *target));
+        map.texels.resize(map.texelBytes());
+        ASSERT_TRUE(target->read(0, 0, map.width, map.height * map.faceCount(), map.texels));
+    }
+    const std::vector<FieldSample> live = field(points);
+    std::size_t inside = 0;
+    std::size_t other = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const FieldSample cpu = evaluate(baked, points[i]);
+        const bool same =
+            cpu.inside() == live[i].inside() &&
+            (cpu.distance >= 1e29F || std::abs(cpu.distance - live[i].distance) < 1.2F / 65534.0F);
+        other += same ? 0 : 1;
+        inside += live[i].inside() ? 1 : 0;
+        // To a texel's sagitta, where no silhouette is near.
+        const float truth = glm::length(points[i]) - 0.5F;
+        if (std::abs(truth) > 0.02F) {
+            EXPECT_EQ(live[i].inside(), truth < 0.0F) << i << " " << truth;
         }
     }
-}
-
-// The motion beside the texels of every format: a plate that rises with speed w sends off what it meets
-// with 1.5 w.
-TEST_P(LiveColliderGlTest, MapsOfEveryFormatThrow) {
-    const Mesh plate = gridBox({0.4F, 0.05F, 0.4F}, 1);
-    constexpr float kRise = 0.01F;  // a step
-    for (const MapFormat format : kFormats) {
-        for (const Decode decode : kDecodes) {
-            SCOPED_TRACE(std::string(mapFormatName(format)) + " " + depthEncodingName(format) + " " +
-                         decodeName(decode));
-            ParticleType type;
-            type.restitution = 0.5F;
-            makePlateAndParticle(plate, framesOf(format, decode, 0.6F, 128), type, {0.1F, 0.055F, -0.07F});
-            stepWith(plate, {0.0F, kRise, 0.0F});
-            expectThrown(type.restitution, kRise / kDt);
-        }
-    }
+    EXPECT_LE(other, 20U);  // on the border of two texels the CPU may take the other
+    EXPECT_GT(inside, 2000U);
 }
 
 // Closed form: a plate that rises with speed w meets a particle at rest, which leaves with (1 + e) w.
@@ -505,6 +451,9 @@ TEST_P(LiveColliderGlTest, MisuseIsRefused) {
     EXPECT_FALSE(live_->setPositions(std::span(plate.positions).first(3)));
     EXPECT_FALSE(live_->setPositions(GLuint{0}));
     EXPECT_FALSE(LiveCollider::create(plate.positions, plate.triangles, {}));
+    Collider other = *liveFrames(cube(0.5F), 32);
+    other.maps[1].format = MapFormat::kFrontBackHalf;
+    EXPECT_FALSE(LiveCollider::create(plate.positions, plate.triangles, other));
     EXPECT_FALSE(liveFrames(cube(0.5F), 2));
     EXPECT_FALSE(liveFrames({}, 64));
     EXPECT_FALSE(liveFrames({glm::vec3(1.0F), glm::vec3(1.0F)}, 64));

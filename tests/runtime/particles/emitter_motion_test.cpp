@@ -1,5 +1,5 @@
 // Emitters that move: births lie where the emitter was at their own moment, and take on a share of its velocity.
-#include "runtime/particles/emitter_motion.h"
+#include "runtime/particles/emitter.h"
 
 #include <gtest/gtest.h>
 
