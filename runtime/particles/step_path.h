@@ -1,4 +1,4 @@
-// The GPU path of the work on particles: steps, births, statistics, the depth sort, their pictures.
+// The GPU path of the work on particles: steps, births, the depth sort, their pictures.
 #pragma once
 
 #include <cstdint>
