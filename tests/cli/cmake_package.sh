@@ -180,7 +180,7 @@ cmake -G Ninja -S "$prefix/share/relief/samples/embed" -B embed_build >log 2>&1 
 expect 0 embed_build/relief-embed-sample out/bunny.relief
 grep -q 'GL state as it was' stdout || die "samples/embed says: $(cat stdout)"
 
-# Without the baker. What both builds compile alike is copied, not compiled again (scripts/soak.sh package does that).
+# Without the baker. What both builds compile alike is copied, not compiled again (tests/long/soak.sh package does that).
 cmake -G Ninja -S "$RELIEF_SOURCE" -B runtime_only -DRELIEF_BUILD_BAKE=OFF -DRELIEF_BUILD_TESTS=OFF -DRELIEF_BUILD_OPENVDB=OFF \
     -DRELIEF_BUILD_BENCHMARKS=OFF >log 2>&1 || die "does not configure without the baker: $(tail -20 log)"
 for file in formats/librelief_formats.a runtime/librelief_runtime.a runtime/librelief_c.a lib/librelief.so.1.1 lib/librelief.so.1 lib/librelief.so bin/relief-sim \

@@ -1,6 +1,6 @@
 # Threads, locale, time zone, folder, umask and processor do not change the bytes.
 . "$(dirname "$0")/lib.sh"
-"$RELIEF_SOURCE/scripts/determinism.sh" --quick
+"$RELIEF_SOURCE/tests/long/determinism.sh" --quick
 
 # Library random numbers, functions whose last bits vary, and clocks must not reach outputs: portable_math.cpp replaces
 # the functions. Benchmarks, stopwatches (std::chrono) and progress bars reach none.

@@ -1,4 +1,4 @@
-# `query` and `query --gpu` on RELIEF_QUERY_POINTS points of the bunny's box (20,000; scripts/soak.sh query: 100,000), for
+# `query` and `query --gpu` on RELIEF_QUERY_POINTS points of the bunny's box (20,000; tests/long/soak.sh query: 100,000), for
 # every format and compare: the simulation's own shader against the C++ that defines it.
 #
 # Tolerance: distance within 1e-5 of the box's longest side and normal within 1e-5 on all points but one in 10,000;

@@ -3,7 +3,7 @@
 # RELIEF_ATOMIC_ROUNDS rounds (20 by default); and kills and fails its import worker (tests/cli/import_faults.sh). Prints
 # what it counted; with --page also into bake/measure/trust.md.
 set -euo pipefail
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/../.."
 
 counts=$(mktemp) faults=$(mktemp)
 trap 'rm -f "$counts" "$faults"' EXIT
@@ -13,6 +13,6 @@ export RELIEF_BIN RELIEF_SOURCE=$PWD RELIEF_ATOMIC_PAGE=$counts RELIEF_ATOMIC_RO
 bash tests/cli/atomic_outputs.sh
 bash tests/cli/import_faults.sh
 if [ "${1:-}" = --page ]; then
-    { printf 'Written by `scripts/all_or_nothing.sh --page`.\n\n' && cat "$counts" && echo && cat "$faults"; } |
-        scripts/page_part.sh bake/measure/trust.md 'all or nothing'
+    { printf 'Written by `tests/long/all_or_nothing.sh --page`.\n\n' && cat "$counts" && echo && cat "$faults"; } |
+        tests/long/page_part.sh bake/measure/trust.md 'all or nothing'
 fi

@@ -1,37 +1,37 @@
 #!/usr/bin/env bash
-# Long runs, for a night and not for CI: scripts/soak.sh [RUN]…, all of these by default. Ends with 0 if all pass.
+# Long runs, for a night and not for CI: tests/long/soak.sh [RUN]…, all of these by default. Ends with 0 if all pass.
 #
 #   sweep   a million particles take a thousand swept steps in a closed hollow box, and none gets out; without the
 #           sweep most do. In OpenGL 3.3 and in OpenGL ES 3.0. An hour or so on llvmpipe.
 #   rest    snow falls on the bunny: after it has come to rest, no bit of a position changes from step 5,000 to step
 #           100,000 (RELIEF_SOAK_SETTLED and RELIEF_SOAK_STEPS say others).
 #   import  every file of assimp-testmodels is read or refused, and none crashes the worker.
-#   mutants 2,000 broken mesh files and every file of assimp-testmodels are baked soundly or refused (scripts/mutants.sh)
+#   mutants 2,000 broken mesh files and every file of assimp-testmodels are baked soundly or refused (tests/long/mutants.sh)
 #   package a build without the baker, from nothing, installs a runtime that samples/embed builds with.
 #   headers a build of each file alone, without precompiled headers: every file includes what it uses, and no warning of
 #           GCC is off.
-#   bytes   204 bakes of ten meshes in surroundings that must not matter give one hash each (scripts/determinism.sh)
+#   bytes   204 bakes of ten meshes in surroundings that must not matter give one hash each (tests/long/determinism.sh)
 #   corpus  536 meshes as artists make them are baked at 1 MB and measured, or refused in one line. An hour or so.
-#   fuzz    libFuzzer looks at all that tests/fuzz has a target for, ten minutes each (scripts/fuzz.sh)
+#   fuzz    libFuzzer looks at all that tests/fuzz has a target for, ten minutes each (tests/long/fuzz.sh)
 #   seeds   the generated cases of the tests are others: of seed RELIEF_TEST_SEED, by default the day's date, and solids of
 #           unit cubes of the nine seeds after it too
 #   cases   more than 500 random inputs of the generators in tests/cases, by the same seed: none is silently wrong, hangs or
 #           crashes
-#   level   a terrain of a kilometre with 200 pieces of furniture (scripts/level.py): its verdict names what is lost
+#   level   a terrain of a kilometre with 200 pieces of furniture (tests/long/level.py): its verdict names what is lost
 #   clang   everything is built by clang too, without a warning, and passes its tests.
 #   load    the release tests pass five times while stress-ng keeps processors, memory and disk busy.
 #   bare    .ci/run, from nothing, in a minimal Debian 12 that mmdebstrap makes; scripts/test.sh there without root; and
 #           what the tools do there without a GL. Needs root, and takes more than an hour.
 #   blender the add-on of samples/blender bakes, shows errors and plays particles in Debian's Blender, without a window
 #   packages  cpack's .deb files pass lintian, and their users' programs and commands work in a minimal Debian 12 that has
-#           nothing else (scripts/install/try_packages.sh). Needs root.
+#           nothing else (tests/long/try_packages.sh). Needs root.
 #   query   `relief query` and `--gpu` agree at 100,000 points of each map format (tests/cli/query_gpu.sh)
 #   embree4 a build for Embree 4's functions, done by Embree 3 (tests/bake/mesh/embree4), bakes the same bytes.
 #   slurm   samples/slurm bakes the models of sweethome3d-furniture on a cluster of one node, with a task that is begun again,
 #           one that is killed, and broken meshes; a second run bakes the rest, and a third nothing. Needs root.
-#   outputs 20 rounds of kills, errors, signals and eight writers leave no torn file (scripts/all_or_nothing.sh)
+#   outputs 20 rounds of kills, errors, signals and eight writers leave no torn file (tests/long/all_or_nothing.sh)
 set -euo pipefail
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/../.."
 
 scripts/setup.sh
 all_runs=(sweep rest import mutants package headers bytes seeds cases level clang load bare packages query embree4 outputs blender slurm
@@ -137,11 +137,11 @@ print(f"import: {test['tried']} files, {test['read']} of them read, the others r
 P
 }
 
-bytes() { scripts/determinism.sh; }
+bytes() { tests/long/determinism.sh; }
 
-mutants() { scripts/mutants.sh 2000; }
+mutants() { tests/long/mutants.sh 2000; }
 
-outputs() { scripts/all_or_nothing.sh; }
+outputs() { tests/long/all_or_nothing.sh; }
 
 query() {
     local bin
@@ -248,14 +248,14 @@ blender() {
     bin=$(scripts/build.sh release relief relief-sim relief_python) || return 1
     mkdir -p "$work/blender"
     PYTHONPATH=$PWD/build/release/python logged blender env blender -b --factory-startup --python-exit-code 1 \
-        -P samples/blender/test_addon.py -- "$PWD/samples/blender/relief_collider.py" "$bin/relief" "$bin/relief-sim" \
+        -P tests/samples/blender_addon.py -- "$PWD/samples/blender/relief_collider.py" "$bin/relief" "$bin/relief-sim" \
         "$work/blender" "$work/blender/errors.png" || return 1
     [ -s "$work/blender/errors.png" ] && grep '^blender: ' "$work/blender.log"
 }
 
 corpus() { scripts/accuracy.sh --corpus --all --csv "$work/corpus.csv" | sed 's/^/corpus: /'; }
 
-fuzz() { scripts/fuzz.sh 600; }
+fuzz() { tests/long/fuzz.sh 600; }
 
 seeds() {
     local seed=${RELIEF_TEST_SEED:-$(date +%Y%m%d)}
@@ -285,7 +285,7 @@ level() {
     local bin
     scripts/setup.sh sweethome3d-furniture || return 1
     bin=$(scripts/build.sh release relief) || return 1
-    python3 scripts/level.py "$work/level.glb" &&
+    python3 tests/long/level.py "$work/level.glb" &&
         "$bin/relief" bake "$work/level.glb" -o "$work/level.relief" --budget 16MB -q &&
         "$bin/relief" check "$work/level.relief" --mesh "$work/level.glb" --json >"$work/level.json" || return 1
     python3 - "$work/level.json" <<'P'
@@ -408,7 +408,7 @@ packages() {
     names=$(cd build/packages/deb && echo *.deb)
     echo "packages: $names: lintian has no errors"
     cp build/packages/deb/*.deb "$room/"
-    cp scripts/install/try_packages.sh /usr/share/glmark2/models/bunny.obj "$room/"
+    cp tests/long/try_packages.sh /usr/share/glmark2/models/bunny.obj "$room/"
     cp --parents README.md bake/python/README.md "$room/doc/"
     # First what users of the tools have, without a compiler or documentation; then what programmers have; then nothing.
     logged packages in_bare 'cd /srv/relief

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Looks for bugs with libFuzzer, under the sanitizers: scripts/fuzz.sh [SECONDS [TARGET…]], by default 60 seconds a
+# Looks for bugs with libFuzzer, under the sanitizers: tests/long/fuzz.sh [SECONDS [TARGET…]], by default 60 seconds a
 # target and all of tests/fuzz. What it finds is in out/fuzz/: fix the bug, and put the input into tests/fuzz/corpus/.
 set -euo pipefail
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/../.."
 
 seconds=${1:-60}
 targets=("${@:2}")

@@ -14,7 +14,7 @@ import struct
 import sys
 import zipfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '../samples'))
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '../../samples'))
 from meshes import smooth_noise  # noqa: E402
 
 FURNITURE = '/usr/share/sweethome3d/furniture'

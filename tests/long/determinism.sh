@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Bakes meshes in surroundings that must not matter, and compares the bytes: scripts/determinism.sh [--quick | --page].
+# Bakes meshes in surroundings that must not matter, and compares the bytes: tests/long/determinism.sh [--quick | --page].
 # Prints a table of SHA-256 and ends with 0 if no mesh has two; 7 if one has.
 #
 #   (nothing)   204 bakes: ten meshes, the paper's maps and planned ones; threads, locale, time zone, folder, umask,
@@ -7,7 +7,7 @@
 #   --quick     two meshes in six cells, with the executables in RELIEF_BIN alone
 #   --page      the full run, and its table into bake/measure/trust.md
 set -euo pipefail
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/../.."
 
 mode=${1:-full}
 case $mode in
@@ -158,9 +158,9 @@ two = sum(len(digests) > 1 for digests in table.values())
 summary = f'{len(rows)} bakes of {len(table)} mesh and map choices in {len(cells)} surroundings: {two} with two hashes.'
 print('\n'.join(lines + ['', summary]))
 if sys.argv[2] == '--page':
-    body = '\n'.join(['Written by `scripts/determinism.sh --page`; “planned” is `--budget 100kB`, “paper” is `--paper --resolution 128`.',
+    body = '\n'.join(['Written by `tests/long/determinism.sh --page`; “planned” is `--budget 100kB`, “paper” is `--paper --resolution 128`.',
                       '', summary, '', 'Surroundings: ' + '; '.join(cells) + '.', ''] + lines)
     open(sys.argv[3], 'w').write(body + '\n')
 P
-[ "$mode" != --page ] || scripts/page_part.sh bake/measure/trust.md determinism <"$work/page"
+[ "$mode" != --page ] || tests/long/page_part.sh bake/measure/trust.md determinism <"$work/page"
 [ "$failed" = 0 ] || exit 7

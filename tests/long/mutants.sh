@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Gives relief broken meshes (tests/cli/mutants.sh) and every file of assimp-testmodels, and prints what became of them:
-# scripts/mutants.sh [COUNT] [--page], 2000 by default; with --page also into bake/measure/trust.md.
+# tests/long/mutants.sh [COUNT] [--page], 2000 by default; with --page also into bake/measure/trust.md.
 set -euo pipefail
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/../.."
 
 count=2000
 page=
@@ -24,7 +24,7 @@ export RELIEF_MUTANTS_MODELS=/usr/share/assimp/models
 status=0
 bash tests/cli/mutants.sh || status=$?
 if [ -n "$page" ] && [ -s "$counts" ]; then
-    printf 'Written by `scripts/mutants.sh %s --page`.\n\n' "$count" | cat - "$counts" |
-        scripts/page_part.sh bake/measure/trust.md mutants
+    printf 'Written by `tests/long/mutants.sh %s --page`.\n\n' "$count" | cat - "$counts" |
+        tests/long/page_part.sh bake/measure/trust.md mutants
 fi
 exit $status
