@@ -93,7 +93,7 @@ struct FieldInfo {
     std::span<const std::string_view> words = {};  ///< see kWords; empty: any
     std::string_view pattern = {};                 ///< of a text, as JSON Schema takes it; empty: any
     FieldRange items = kFromZero;                  ///< how many a vector may have
-    /// In JSON: without a value, empty, or as large as a float can be, it is left out instead of null or [].
+    /// In JSON it is left out without a value, empty, out of its range, or without any of the keys that it needs.
     bool left_out = false;
     std::string_view value = {};  ///< stands for the value in --help: "SECONDS"; empty: as the type has it
     /// A valid value, for messages: "a length above 0"; empty: as type and range have it.
@@ -101,6 +101,11 @@ struct FieldInfo {
     char letter = '\0';     ///< of the short option: 'j'
     bool recorded = false;  ///< of a bake: decides the bytes of the collider, and is part of its provenance
 };
+
+[[nodiscard]] constexpr FieldInfo leftOut(FieldInfo info) {
+    info.left_out = true;
+    return info;
+}
 
 /// Two members for one value of the file: a number, or [least, most].
 template <class A, class B = A>

@@ -142,6 +142,15 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
     }
 }
 
+std::vector<std::string_view> listWords(std::string_view list) {
+    return list.empty() ? std::vector<std::string_view>() : split(list, ' ');
+}
+
+bool listHas(std::string_view list, std::string_view word) {
+    const std::vector<std::string_view> words = listWords(list);
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
+
 std::string_view trimmed(std::string_view text) {
     const std::size_t first = text.find_first_not_of(" \t\r");
     if (first == std::string_view::npos) {

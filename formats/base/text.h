@@ -27,6 +27,9 @@ void appendShortest(std::string& out, float value);
 
 /// "a,b,,c" by ',' -> a b "" c. An empty text has one empty part.
 [[nodiscard]] std::vector<std::string_view> split(std::string_view text, char separator);
+/// The words of a list with a space between two, as FieldRules has them; an empty list has none.
+[[nodiscard]] std::vector<std::string_view> listWords(std::string_view list);
+[[nodiscard]] bool listHas(std::string_view list, std::string_view word);
 /// Without spaces, tabs and a carriage return at both ends.
 [[nodiscard]] std::string_view trimmed(std::string_view text);
 /// `bytes` without a byte order mark of UTF-8 in front.

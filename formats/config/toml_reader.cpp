@@ -22,15 +22,6 @@ std::size_t tableCount(const toml::node* node) {
     return array != nullptr ? array->size() : (node != nullptr && node->is_table() ? 1 : 0);
 }
 
-std::vector<std::string_view> wordsOf(std::string_view list) {
-    return list.empty() ? std::vector<std::string_view>() : split(list, ' ');
-}
-
-bool contains(std::string_view list, std::string_view word) {
-    const std::vector<std::string_view> words = wordsOf(list);
-    return std::find(words.begin(), words.end(), word) != words.end();
-}
-
 }  // namespace
 
 std::string numberText(double value) {
@@ -257,7 +248,7 @@ std::string_view TableRules::selector() const {
 
 void TableRules::checkTable(const TomlValue& table, std::string_view selected) const {
     for (const Field& field : fields_) {
-        for (const std::string_view other : wordsOf(field.info.rules.instead_of)) {
+        for (const std::string_view other : listWords(field.info.rules.instead_of)) {
             const auto at = table.find(field.name);
             if (at && table.find(other)) {
                 at->fail(at->name() + " and " + table.full(other) + " exclude each other; remove one");
@@ -278,7 +269,7 @@ void TableRules::checkTable(const TomlValue& table, std::string_view selected) c
             table.fail(name + " is missing; give it: " + std::string(field.info.help) +
                        (field.info.unit.empty() ? "" : ", " + std::string(field.info.unit)));
         }
-        if (contains(field.info.rules.only, selected)) {
+        if (listHas(field.info.rules.only, selected)) {
             const std::string_view by = selector();
             table.find(by).value_or(table).fail(table.full(by) + " = \"" + std::string(selected) +
                                                 "\" needs " + name + " beside it");
@@ -290,13 +281,13 @@ void TableRules::checkUse(const TomlValue& table, const Field& field, std::strin
     const FieldInfo& info = field.info;
     const TomlValue at = *table.find(field.name);
     const auto given = [&](std::string_view key) { return table.find(key).has_value(); };
-    if (!info.rules.only.empty() && !contains(info.rules.only, selected)) {
+    if (!info.rules.only.empty() && !listHas(info.rules.only, selected)) {
         const std::string by = table.full(selector());
         at.fail(at.name() + " does nothing for " + by + " = \"" + std::string(selected) +
-                "\"; remove it, or choose " + by + " = \"" + std::string(wordsOf(info.rules.only).front()) +
+                "\"; remove it, or choose " + by + " = \"" + std::string(listWords(info.rules.only).front()) +
                 "\"");
     }
-    const std::vector<std::string_view> needs = wordsOf(info.rules.needs);
+    const std::vector<std::string_view> needs = listWords(info.rules.needs);
     if (!needs.empty() && std::none_of(needs.begin(), needs.end(), given)) {
         std::string names;
         for (const std::string_view other : needs) {

@@ -1,5 +1,6 @@
 #include "formats/fields/json.h"
 
+#include <algorithm>
 #include <charconv>
 
 #include "formats/base/text.h"
@@ -19,6 +20,17 @@ std::string jsonText(const Json& json) {
 
 std::string jsonLine(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Json JsonWriter::take() {
+    for (const auto& [name, keys] : needs_) {
+        const std::vector<std::string_view> needs = listWords(keys);
+        if (std::none_of(needs.begin(), needs.end(),
+                         [&](std::string_view key) { return json_.contains(std::string(key)); })) {
+            json_.erase(name);
+        }
+    }
+    return std::move(json_);
 }
 
 std::string SchemaWriter::description(const FieldInfo& info) {

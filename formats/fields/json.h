@@ -8,8 +8,11 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <variant>
+#include <vector>
 
+#include "formats/base/text.h"
 #include "formats/fields/field.h"
 #include "formats/fields/generated.h"
 
@@ -51,17 +54,21 @@ concept WithKinds = requires {
     T::kinds();
 };
 
-/// Without a value, an empty text or vector, or the largest float.
+/// Without a value, an empty text or vector, or a number out of its range.
 template <class T>
-bool isNone(const T& value) {
+bool isNone(const T& value, const FieldInfo& info) {
     if constexpr (kIsForm<std::optional, T>) {
         return !value.has_value();
     } else if constexpr (kIsForm<FieldSpan, T>) {
-        return isNone(value.least);
+        return isNone(value.least, info);
     } else if constexpr (kIsForm<FieldPair, T>) {
-        return isNone(value.first) || isNone(value.second);
-    } else if constexpr (std::same_as<T, float>) {
-        return value == std::numeric_limits<float>::max();
+        return isNone(value.first, info) || isNone(value.second, info);
+    } else if constexpr (kIsForm<FieldMaybe, T>) {
+        return !value.given;
+    } else if constexpr (kIsForm<FieldFile, T>) {
+        return value.path.empty();
+    } else if constexpr (std::is_arithmetic_v<T>) {
+        return !info.range.holds(static_cast<double>(value));
     } else if constexpr (kIsForm<FieldGroup, T>) {
         return !value.present;
     } else if constexpr (Text<T>) {
@@ -80,19 +87,37 @@ bool isNone(const T& value) {
 template <class T>
 [[nodiscard]] Json jsonOf(const T& value);
 
-/// Writes each field as a member of an object, in the order of the visits.
+/// Writes each field as a member of an object, in the order of the visits: those for the word of the selecting field, and a
+/// single table without its list where it may stand so.
 class JsonWriter {
   public:
     template <class T>
     void operator()(std::string_view name, const T& value, const FieldInfo& info) {
-        if (!info.left_out || !fields_detail::isNone(value)) {
-            json_[std::string(name)] = jsonOf(value);
+        if constexpr (WithWords<T>) {
+            selected_ = info.rules.selects ? wordOf(value) : selected_;
         }
+        if ((info.left_out && fields_detail::isNone(value, info)) ||
+            (!info.rules.only.empty() && !listHas(info.rules.only, selected_))) {
+            return;
+        }
+        if (info.left_out && !info.rules.needs.empty()) {
+            needs_.emplace_back(name, info.rules.needs);
+        }
+        if constexpr (kIsForm<std::vector, T>) {
+            if (info.rules.single && value.size() == 1) {
+                json_[std::string(name)] = jsonOf(value.front());
+                return;
+            }
+        }
+        json_[std::string(name)] = jsonOf(value);
     }
-    [[nodiscard]] Json take() { return std::move(json_); }
+    [[nodiscard]] Json take();
 
   private:
     Json json_ = Json::object();
+    std::string_view selected_;
+    std::vector<std::pair<std::string, std::string_view>>
+        needs_;  // keys, and those without any of which they go
 };
 
 template <class T>
@@ -149,6 +174,14 @@ Json jsonOf(const T& value) {
 template <class T>
 [[nodiscard]] Json schemaOf(const T& value, const FieldInfo& info = {});
 
+/// "type" with the limits of its range, or the words.
+[[nodiscard]] Json numberSchema(bool whole, bool is_unsigned, const FieldInfo& info);
+/// "type" with its pattern, or the words.
+[[nodiscard]] Json textSchema(const FieldInfo& info);
+[[nodiscard]] Json arraySchema(Json items, const FieldRange& count);
+/// The same, or null.
+[[nodiscard]] Json nullable(Json schema);
+
 /// Collects the schema of an object.
 class SchemaWriter {
   public:
@@ -156,8 +189,13 @@ class SchemaWriter {
     void operator()(std::string_view name, const T& value, const FieldInfo& info) {
         Json schema = {{"description", description(info)}};
         schema.update(schemaOf(value, info));
+        if (info.rules.single) {
+            const Json one = schema["items"];
+            schema = {{"description", description(info)},
+                      {"anyOf", Json::array({one, arraySchema(one, {2.0})})}};
+        }
         properties_[std::string(name)] = std::move(schema);
-        if (!info.left_out) {
+        if (!info.left_out && info.rules.only.empty()) {
             required_.push_back(name);
         }
     }
@@ -175,13 +213,6 @@ class SchemaWriter {
     Json required_ = Json::array();
 };
 
-/// "type" with the limits of its range, or the words.
-[[nodiscard]] Json numberSchema(bool whole, bool is_unsigned, const FieldInfo& info);
-/// "type" with its pattern, or the words.
-[[nodiscard]] Json textSchema(const FieldInfo& info);
-[[nodiscard]] Json arraySchema(Json items, const FieldRange& count);
-/// The same, or null.
-[[nodiscard]] Json nullable(Json schema);
 /// The file formats/schemas/NAME.schema.json: `schema` with its heading.
 [[nodiscard]] GeneratedText schemaFile(const std::string& name, std::string_view title,
                                        std::string_view description, Json schema);
@@ -198,10 +229,19 @@ Json schemaOf(const T& value, const FieldInfo& info) {
         return arraySchema(schemaOf(PartOf<decltype(value.most)>{}, inner), {2.0, 2.0});
     } else if constexpr (kIsForm<FieldPair, T>) {
         return arraySchema(schemaOf(PartOf<decltype(value.second)>{}, inner), {2.0, 2.0});
+    } else if constexpr (kIsForm<FieldMaybe, T>) {
+        return schemaOf(value.value, inner);
+    } else if constexpr (kIsForm<FieldFile, T>) {
+        return textSchema(info);
     } else if constexpr (std::same_as<T, bool>) {
         return info.words.empty() ? Json{{"type", "boolean"}} : numberSchema(false, false, info);
     } else if constexpr (std::is_arithmetic_v<T>) {
-        return numberSchema(std::is_integral_v<T>, std::is_unsigned_v<T>, info);
+        Json schema = numberSchema(std::is_integral_v<T>, std::is_unsigned_v<T>, info);
+        // JSON has no infinity.
+        const auto number = static_cast<double>(value);
+        return number == std::numeric_limits<double>::infinity() && !info.range.holds(number)
+                   ? nullable(std::move(schema))
+                   : schema;
     } else if constexpr (WithWords<T>) {
         return {{"enum", kWordsOf<T>}};
     } else if constexpr (std::same_as<T, std::filesystem::path> || Text<T>) {

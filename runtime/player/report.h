@@ -5,7 +5,7 @@
 
 #include "runtime/player/logs.h"
 #include "runtime/player/player.h"
-#include "runtime/player/scene_settings.h"
+#include "runtime/scene/scene_json.h"
 
 namespace relief {
 
@@ -20,7 +20,7 @@ namespace relief {
 /// `relief-sim --json`. Keys: README.md beside this file, "The report".
 template <class Visitor, FieldsOf<PlayerReport> R>
 void fields(Visitor& visit, R& report) {
-    visit("settings", SceneSettings{report.scene}, {"Effective scene, by its own keys"});
+    visit("settings", report.scene, {"Effective scene, by its own keys"});
     visit("device", report.device, {"OpenGL version, renderer and platform"});
     visit("path", stepPathName(report.path),
           {.help = "Shaders that moved the particles", .words = kWords<"fragment", "compute">});

@@ -94,10 +94,13 @@ std::optional<FieldFault> checkCells(const Scene& scene) {
     return std::nullopt;
 }
 
+/// As ParticleType::collides.
+std::uint32_t bodiesOf(const Scene& scene) {
+    return (1U << scene.colliders.size()) - 1U + (scene.ground.enabled ? kCollidesWithGround : 0U);
+}
+
 /// The types among the scene's other tables: what they leave open is [collision]'s.
 std::optional<FieldFault> completeTypes(Scene& scene, const GivenFields& given) {
-    const std::uint32_t bodies =
-        (1U << scene.colliders.size()) - 1U + (scene.ground.enabled ? kCollidesWithGround : 0U);
     for (std::size_t i = 0; i < scene.types.size(); ++i) {
         SceneType& type = scene.types[i];
         const auto inherit = [&](const char* key, float& value, float from) {
@@ -106,8 +109,7 @@ std::optional<FieldFault> completeTypes(Scene& scene, const GivenFields& given) 
         inherit(".restitution", type.restitution, scene.collision.restitution);
         inherit(".friction", type.friction, scene.collision.friction);
         inherit(".friction_threshold", type.friction_threshold, scene.collision.friction_threshold);
-        // Bits of absent bodies do not matter: leaving nothing out is worth a faster step.
-        type.collides = type.collides == bodies ? kCollidesWithAll : type.collides;
+        type.collides &= bodiesOf(scene);
         if (type.look.stretch > 0.0F && scene.render.sprite == Sprite::kPoint) {
             return FieldFault{nth("type", i, ".stretch"),
                               "does nothing for points; choose render.sprite = \"quad\""};
@@ -132,6 +134,7 @@ std::optional<FieldFault> check(SceneTime& time, const GivenFields& /*given*/) {
 }
 
 std::optional<FieldFault> check(SceneForces& forces, const GivenFields& /*given*/) {
+    forces.has_drag = !forces.viscosity;
     if (forces.wind != glm::vec3(0.0F) && forces.viscosity.value_or(forces.drag) == 0.0F) {
         return FieldFault{"wind",
                           forces.viscosity
@@ -230,7 +233,12 @@ std::optional<FieldFault> check(Scene& scene, const GivenFields& given) {
 }
 
 std::vector<ParticleType> particleTypes(const Scene& scene) {
-    return {scene.types.begin(), scene.types.end()};
+    std::vector<ParticleType> types(scene.types.begin(), scene.types.end());
+    for (ParticleType& type : types) {
+        // Bits of absent bodies do not matter: leaving nothing out is worth a faster step.
+        type.collides = type.collides == bodiesOf(scene) ? kCollidesWithAll : type.collides;
+    }
+    return types;
 }
 
 std::vector<ParticleLook> particleLooks(const Scene& scene) {
@@ -292,17 +300,25 @@ Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
     if (!scene.camera.target) {
         scene.camera.target = center + glm::vec3(0.0F, 0.04F * scale, 0.0F);
     }
-    if (!scene.camera.eye) {
+    for (SceneCameraKey& key : scene.camera.keys) {
+        key.target = key.target.value_or(*scene.camera.target);
+        key.fov = key.fov.value_or(scene.camera.fov);
+    }
+    if (!scene.camera.eye && scene.camera.keys.empty()) {
         scene.camera.eye =
             defaultEye(*scene.camera.target, std::max(0.5F * glm::length(bounds.size()), 0.5F * scale),
                        scene.camera.fov);
     }
-    if (const char* problem = cameraProblem(*scene.camera.eye, *scene.camera.target); problem != nullptr) {
+    const char* const problem =
+        scene.camera.eye ? cameraProblem(*scene.camera.eye, *scene.camera.target) : nullptr;
+    if (problem != nullptr) {
         return fail(ErrorCode::kInvalidInput, std::string("camera.eye ") + problem);
     }
     if (!scene.render.point_size) {
         scene.render.point_size = 0.0065F * scale;
     }
+    scene.render.first = firstFrame(scene);
+    scene.render.last = lastFrame(scene);
     return scene;
 }
 

@@ -53,6 +53,7 @@ struct SceneForces {
     std::optional<glm::vec3> gravity;
     glm::vec3 wind{0.0F};
     float drag = 2.5F;
+    bool has_drag = true;  ///< else viscosity
     std::optional<float> viscosity;
 };
 
@@ -62,13 +63,14 @@ void fields(Visitor& visit, F& forces) {
           {"Acceleration of gravity", "[x, y, z]/s²", within(kAccelerationMax), "[0, −3 L, 0]"});
     visit("wind", forces.wind,
           {"Velocity of the air everywhere; it needs drag", "[x, y, z]/s", within(kSpeedMax)});
-    visit("drag", forces.drag, {"Rate at which the air carries particles along", "1/s", {0.0, kDragMax}});
+    visit("drag", FieldMaybe{forces.drag, forces.has_drag},
+          leftOut({"Rate at which the air carries particles along", "1/s", {0.0, kDragMax}}));
     visit("viscosity", forces.viscosity,
-          {"Dynamic viscosity: drag by Stokes' law",
-           "mass/(length·s)",
-           {0.0, 1e6},
-           "none",
-           {.instead_of = "drag"}});
+          leftOut({"Dynamic viscosity: drag by Stokes' law",
+                   "mass/(length·s)",
+                   {0.0, 1e6},
+                   "none",
+                   {.instead_of = "drag"}}));
 }
 [[nodiscard]] std::optional<FieldFault> check(SceneForces& forces, const GivenFields& given);
 
@@ -96,7 +98,8 @@ struct SceneGround {
 template <class Visitor, FieldsOf<SceneGround> G>
 void fields(Visitor& visit, G& ground) {
     visit("enabled", ground.enabled, {"There is a ground"});
-    visit("height", ground.height, {"Its height; needs enabled", {}, kPointRange, "lower end of the bounds"});
+    visit("height", ground.height,
+          leftOut({"Its height; needs enabled", {}, kPointRange, "lower end of the bounds"}));
 }
 [[nodiscard]] std::optional<FieldFault> check(SceneGround& ground, const GivenFields& given);
 
@@ -128,19 +131,22 @@ struct SceneCamera {
 template <class Visitor, FieldsOf<SceneCamera> C>
 void fields(Visitor& visit, C& camera) {
     visit("eye", camera.eye,
-          {"Place of the camera",
-           "[x, y, z]",
-           kPointRange,
-           "in front and above, framing the bounds",
-           {.instead_of = "key"}});
+          leftOut({"Place of the camera",
+                   "[x, y, z]",
+                   kPointRange,
+                   "in front and above, framing the bounds",
+                   {.instead_of = "key"}}));
     visit("target", camera.target,
           {"Point that it looks at, not straight above or below the eye", "[x, y, z]", kPointRange,
            "middle of the bounds"});
     visit("fov", camera.fov, {"Vertical field of view", "degrees", kFovRange});
-    visit(
-        "path", camera.curve,
-        {"Interpolation between keys: Catmull-Rom by time, or straight lines", {}, {}, {}, {.needs = "key"}});
-    visit("key", camera.keys, {"Places of the camera at times", {}, {}, {}, {.most = 10'000}});
+    visit("path", camera.curve,
+          leftOut({"Interpolation between keys: Catmull-Rom by time, or straight lines",
+                   {},
+                   {},
+                   {},
+                   {.needs = "key"}}));
+    visit("key", camera.keys, leftOut({"Places of the camera at times", {}, {}, {}, {.most = 10'000}}));
 }
 [[nodiscard]] std::optional<FieldFault> check(SceneCamera& camera, const GivenFields& given);
 
@@ -188,16 +194,19 @@ void fields(Visitor& visit, R& r) {
     visit("soft", r.soft,
           {"Distance before the collider and the floor over which sprites fade", {}, kLengthRange});
     visit("atlas", FieldFile{r.atlas, r.atlas_origin},
-          {"PNG with alpha, sides up to 8192; needs a type with cell", {}, {}, "none"});
-    visit(
-        "atlas_cells", FieldPair{r.atlas_columns, r.atlas_rows},
-        {"Cells of the atlas, dividing its sides", "[columns, rows]", {1.0, 4096.0}, {}, {.needs = "atlas"}});
+          leftOut({"PNG with alpha, sides up to 8192; needs a type with cell", {}, {}, "none"}));
+    visit("atlas_cells", FieldPair{r.atlas_columns, r.atlas_rows},
+          leftOut({"Cells of the atlas, dividing its sides",
+                   "[columns, rows]",
+                   {1.0, 4096.0},
+                   {},
+                   {.needs = "atlas"}}));
     visit("mesh", FieldFile{r.mesh, r.mesh_origin},
-          {"The .obj or .ply that the collider was baked from: it is drawn, the maps still cast the "
-           "shadows",
-           {},
-           {},
-           "none: the maps are drawn"});
+          leftOut({"The .obj or .ply that the collider was baked from: it is drawn, the maps still cast the "
+                   "shadows",
+                   {},
+                   {},
+                   "none: the maps are drawn"}));
 }
 [[nodiscard]] std::optional<FieldFault> check(SceneRender& render, const GivenFields& given);
 
@@ -218,7 +227,7 @@ struct SceneType : ParticleType {
 
 template <class Visitor, FieldsOf<SceneType> T>
 void fields(Visitor& visit, T& type) {
-    visit("name", type.name, {"Name for emitter.type and spawn, not taken twice", {}, {}, "none"});
+    visit("name", type.name, leftOut({"Name for emitter.type and spawn, not taken twice", {}, {}, "none"}));
     fields(visit, baseOf<ParticleType>(type));
     visit("collides", CollidesList{type.collides},
           {"The colliders it meets, by number from 0, and \"ground\", as in [0, \"ground\"]; it "
@@ -256,12 +265,13 @@ void fields(Visitor& visit, S& scene) {
     visit("time", scene.time, {"Steps"});
     visit("particles", scene.particles, {"Room for particles"});
     visit("emitter", scene.emitters, {"Births", {}, {}, {}, {.most = kEmittersMax, .single = true}});
-    visit("spawn", scene.spawns, {"Births by hits and deaths", {}, {}, {}, {.most = kSpawnsMax}});
+    visit("spawn", scene.spawns, leftOut({"Births by hits and deaths", {}, {}, {}, {.most = kSpawnsMax}}));
     visit("forces", scene.forces, {"Gravity, wind and drag"});
     fields(visit, scene.air);
-    visit("flow", scene.flow, {"Velocities of the air on a grid; it needs drag"});
+    visit("flow", scene.flow, leftOut({"Velocities of the air on a grid; it needs drag"}));
     visit("collision", scene.collision, {"Collisions of particles without a type"});
-    visit("type", scene.types, {"Types of particles; the first is type 0", {}, {}, {}, {.most = kLooksMax}});
+    visit("type", scene.types,
+          leftOut({"Types of particles; the first is type 0", {}, {}, {}, {.most = kLooksMax}}));
     visit("ground", scene.ground, {"The floor"});
     visit("camera", scene.camera, {"The camera"});
     visit("render", scene.render, {"Pictures"});

@@ -3,26 +3,26 @@
 #include <cmath>
 #include <glm/glm.hpp>
 #include <limits>
-#include <numbers>
 #include <span>
 
 namespace relief {
 
-Pose poseOf(const ScenePose& pose, const Pose& rest) {
+Pose completePose(ScenePose& pose, const Pose& rest) {
     Pose result = rest;
     result.position = pose.position.value_or(rest.position);
     if (pose.angle) {
         // After two turns the quaternion is the same; a small angle is exact to more digits.
-        result.rotation =
-            glm::normalize(glm::angleAxis(glm::radians(std::fmod(*pose.angle, 720.0F)), pose.axis));
+        result.rotation = glm::normalize(glm::angleAxis(glm::radians(std::fmod(*pose.angle, 720.0F)),
+                                                        pose.axis.value_or(glm::vec3(0.0F, 1.0F, 0.0F))));
     }
+    pose = {result.position, glm::axis(result.rotation), glm::degrees(glm::angle(result.rotation))};
     return result;
 }
 
-std::vector<PoseKey> poseKeys(const std::vector<SceneKey>& keys, const Pose& rest) {
+std::vector<PoseKey> completeKeys(std::vector<SceneKey>& keys, const Pose& rest) {
     std::vector<PoseKey> result;
-    for (const SceneKey& key : keys) {
-        result.push_back({key.time, poseOf(key, rest)});
+    for (SceneKey& key : keys) {
+        result.push_back({key.time, completePose(key, rest)});
     }
     return result;
 }
@@ -39,18 +39,14 @@ std::optional<FieldFault> checkKeys(const std::vector<SceneKey>& keys, const cha
     return std::nullopt;
 }
 
-std::optional<FieldFault> check(SceneLive& live, const GivenFields& given) {
+std::optional<FieldFault> check(SceneLive& live, const GivenFields& /*given*/) {
     Deformation& d = live.deformation;
-    d.phase = glm::radians(d.phase);
     if (d.kind == DeformKind::kWobble) {
         return std::nullopt;
     }
     if (std::abs(d.amplitude) > 360.0F) {
         return FieldFault{"amplitude", "is out of range; choose -360 to 360 degrees"};
     }
-    d.amplitude = std::clamp(glm::radians(d.amplitude), -2.0F * std::numbers::pi_v<float>,
-                             2.0F * std::numbers::pi_v<float>);
-    live.has_range = given("range");
     if (live.has_range && !(d.range_low < d.range_high)) {
         return FieldFault{"range", "does not rise; give the lower end first"};
     }
@@ -75,11 +71,11 @@ std::optional<FieldFault> check(SceneCollider& collider, const GivenFields& give
         return FieldFault{
             "", "needs collider.file, the .relief file to collide with; bake one with 'relief bake'"};
     }
-    for (const char* key : {"position", "angle", "scale", "restitution", "friction", "key"}) {
-        collider.posed = collider.posed || given(key);
-    }
-    collider.pose = poseOf(collider.given_pose, {.scale = collider.scale});
-    collider.keys = poseKeys(collider.given_keys, collider.pose);
+    ScenePose pose = collider.given_pose;
+    collider.posed = collider.posed || pose.position || pose.angle || given("key");
+    collider.pose = completePose(pose, {.scale = collider.scale});
+    collider.given_pose = collider.posed ? pose : ScenePose{};
+    collider.keys = completeKeys(collider.given_keys, collider.pose);
     return checkKeys(collider.given_keys, "a position");
 }
 

@@ -19,23 +19,24 @@ namespace relief {
 /// A pose as a table gives it.
 struct ScenePose {
     std::optional<glm::vec3> position;
-    glm::vec3 axis{0.0F, 1.0F, 0.0F};
+    std::optional<glm::vec3> axis;
     std::optional<float> angle;  ///< degrees
 };
 
 template <class Visitor, FieldsOf<ScenePose> P>
 void fields(Visitor& visit, P& pose) {
-    visit("position", pose.position,
-          {"Place of the origin", "[x, y, z]", kPointRange, "[0, 0, 0]; of a key that of its table"});
+    visit(
+        "position", pose.position,
+        leftOut({"Place of the origin", "[x, y, z]", kPointRange, "[0, 0, 0]; of a key that of its table"}));
     visit("axis", pose.axis,
-          {"Axis of rotation, of any length",
-           "[x, y, z]",
-           kPointRange,
-           {},
-           {.needs = "angle", .unit_length = true}});
+          leftOut({"Axis of rotation, of any length",
+                   "[x, y, z]",
+                   kPointRange,
+                   "[0, 1, 0]",
+                   {.needs = "angle", .unit_length = true}}));
     visit("angle", pose.angle,
-          {"Rotation about the axis, right-handed", "degrees", within(kAngleMax),
-           "0; of a key that of its table"});
+          leftOut({"Rotation about the axis, right-handed", "degrees", within(kAngleMax),
+                   "0; of a key that of its table"}));
 }
 
 /// [[collider.key]] and [[emitter.key]].
@@ -51,10 +52,10 @@ void fields(Visitor& visit, K& key) {
 
 inline constexpr std::size_t kPoseKeysMax = 1024;
 
-/// \param rest  the pose of what the table leaves open.
-[[nodiscard]] Pose poseOf(const ScenePose& pose, const Pose& rest);
-/// \param at  whatever the keys leave open.
-[[nodiscard]] std::vector<PoseKey> poseKeys(const std::vector<SceneKey>& keys, const Pose& rest);
+/// Completes what the table leaves open from `rest`. \return it as a pose.
+[[nodiscard]] Pose completePose(ScenePose& pose, const Pose& rest);
+/// The same of each key.
+[[nodiscard]] std::vector<PoseKey> completeKeys(std::vector<SceneKey>& keys, const Pose& rest);
 /// One key alone moves nothing, and times rise.
 /// \param instead  of a single key, in words.
 [[nodiscard]] std::optional<FieldFault> checkKeys(const std::vector<SceneKey>& keys, const char* instead);
@@ -64,7 +65,7 @@ inline constexpr std::array<std::string_view, 3> kWordsOf<DeformKind>{"bend", "t
 
 /// collider.deform; what it leaves open depends on the mesh.
 struct SceneLive {
-    Deformation deformation;
+    Deformation deformation;      ///< angles in degrees
     bool has_center = false;      ///< else the middle of the mesh's box
     bool has_range = false;       ///< else the mesh's whole extent along the axis, or along `along`
     bool has_wavelength = false;  ///< else half of the box's longest side
@@ -73,6 +74,7 @@ struct SceneLive {
 template <class Visitor, FieldsOf<SceneLive> L>
 void fields(Visitor& visit, L& live) {
     auto& d = live.deformation;
+    FieldPair range{d.range_low, d.range_high};
     visit("kind", d.kind, {"Bends, twists or wobbles", {}, {}, {}, {.required = true, .selects = true}});
     visit("amplitude", d.amplitude,
           {"Largest angle, up to 360 degrees; of a wobble a length", "degrees", kPointRange, {}, kRequired});
@@ -91,21 +93,22 @@ void fields(Visitor& visit, L& live) {
            {},
            {.only = "bend", .required = true, .unit_length = true}});
     visit("center", FieldMaybe{d.center, live.has_center},
-          {"A point of the axis",
-           "[x, y, z]",
-           kPointRange,
-           "middle of the mesh's box",
-           {.only = "bend twist"}});
-    visit("range", FieldPair{d.range_low, d.range_high},
-          {"From the center, along the axis or, of a bend, `along`: the angle grows from 0 to all of it",
-           "[low, high]",
-           kPointRange,
-           "the whole mesh",
-           {.only = "bend twist"}});
+          leftOut({"A point of the axis",
+                   "[x, y, z]",
+                   kPointRange,
+                   "middle of the mesh's box",
+                   {.only = "bend twist"}}));
+    visit("range", FieldMaybe{range, live.has_range},
+          leftOut(
+              {"From the center, along the axis or, of a bend, `along`: the angle grows from 0 to all of it",
+               "[low, high]",
+               kPointRange,
+               "the whole mesh",
+               {.only = "bend twist"}}));
     visit("wavelength", FieldMaybe{d.wavelength, live.has_wavelength},
-          {"Wavelength of a wobble", {}, kSizeRange, "half the longest side", {.only = "wobble"}});
+          leftOut({"Wavelength of a wobble", {}, kSizeRange, "half the longest side", {.only = "wobble"}}));
 }
-/// Angles become radians, `along` is made perpendicular to the axis.
+/// `along` is made perpendicular to the axis.
 [[nodiscard]] std::optional<FieldFault> check(SceneLive& live, const GivenFields& given);
 
 struct SceneCollider {
@@ -118,7 +121,7 @@ struct SceneCollider {
     std::optional<SceneLive> live;   ///< deforms: `path` is a mesh, not a container
     std::uint32_t resolution = 256;  ///< of its maps
     std::vector<SceneKey> given_keys;
-    // Filled by check():
+    // Filled by check(), which also completes the pose and the keys above:
     /// Any key of the table but its file is given: else the particles live in the collider's own object space.
     bool posed = false;
     Pose pose;
@@ -127,19 +130,27 @@ struct SceneCollider {
 
 template <class Visitor, FieldsOf<SceneCollider> C>
 void fields(Visitor& visit, C& c) {
-    visit("file", FieldFile{c.path, c.origin},
-          {"The .relief file to collide with", {}, {}, "required, or mesh"});
-    visit("mesh", FieldFile{c.path, c.origin},
-          {"An .obj or .ply file that deforms; it is not baked", {}, {}, "none", {.instead_of = "file"}});
-    visit("deform", c.live, {"How the mesh deforms", {}, {}, "required by mesh", {.needs = "mesh"}});
-    visit("resolution", c.resolution,
-          {"Texels along a side of the deforming mesh's maps", {}, {16.0, 4096.0}, {}, {.needs = "mesh"}});
+    const FieldFile path{c.path, c.origin};
+    bool live = c.live.has_value();
+    bool baked = !live;
+    visit("file", FieldMaybe{path, baked},
+          leftOut({"The .relief file to collide with", {}, {}, "required, or mesh"}));
+    visit(
+        "mesh", FieldMaybe{path, live},
+        leftOut(
+            {"An .obj or .ply file that deforms; it is not baked", {}, {}, "none", {.instead_of = "file"}}));
+    visit("deform", c.live, leftOut({"How the mesh deforms", {}, {}, "required by mesh", {.needs = "mesh"}}));
+    visit(
+        "resolution", c.resolution,
+        leftOut(
+            {"Texels along a side of the deforming mesh's maps", {}, {16.0, 4096.0}, {}, {.needs = "mesh"}}));
     fields(visit, c.given_pose);
-    visit("scale", c.scale, {"World units of an object unit", {}, {1e-6, 1e6}});
-    visit("restitution", c.restitution, {"Factor of the particles' own", {}, {0.0, 1.0}});
-    visit("friction", c.friction,
-          {"1 − friction is a factor of the particles' own 1 − friction", {}, {0.0, 1.0}});
-    visit("key", c.given_keys, {"Poses at times, two or more", {}, {}, {}, {.most = kPoseKeysMax}});
+    visit("scale", FieldMaybe{c.scale, c.posed}, leftOut({"World units of an object unit", {}, {1e-6, 1e6}}));
+    visit("restitution", FieldMaybe{c.restitution, c.posed},
+          leftOut({"Factor of the particles' own", {}, {0.0, 1.0}}));
+    visit("friction", FieldMaybe{c.friction, c.posed},
+          leftOut({"1 − friction is a factor of the particles' own 1 − friction", {}, {0.0, 1.0}}));
+    visit("key", c.given_keys, leftOut({"Poses at times, two or more", {}, {}, {}, {.most = kPoseKeysMax}}));
 }
 [[nodiscard]] std::optional<FieldFault> check(SceneCollider& collider, const GivenFields& given);
 

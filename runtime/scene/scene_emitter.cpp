@@ -99,12 +99,13 @@ std::optional<FieldFault> check(SceneEmitter& emitter, const GivenFields& given)
         return fault;
     }
     const char* const by = given("direction") ? "direction" : given("cone") ? "cone" : "speed";
-    if (!given(by)) {
+    emitter.has_aim = emitter.has_aim || emitter.has_speed;
+    if (!emitter.has_aim) {
         emitter.aim.reset();
     } else if (!emitter.aim->direction && emitter.shape == EmitterShape::kBox) {
         return FieldFault{by, "needs emitter.direction: a box or point has no normal"};
     }
-    emitter.keys = poseKeys(emitter.given_keys, {});
+    emitter.keys = completeKeys(emitter.given_keys, {});
     return checkKeys(emitter.given_keys, "emitter.point");
 }
 
@@ -127,9 +128,11 @@ Result<void> completeEmitters(std::span<SceneEmitter> emitters, const Bounds& bo
         if (emitter.aim && !emitter.has_speed) {
             emitter.aim->speed_min = 0.8F * scale;
             emitter.aim->speed_max = emitter.aim->speed_min;
+            emitter.has_speed = true;
         }
         if (!emitter.aim && !emitter.has_velocity) {
             emitter.velocity = glm::vec3(0.0F, -0.8F * scale, 0.0F);
+            emitter.has_velocity = true;
         }
         if (!emitter.aim && !emitter.has_velocity_spread) {
             emitter.velocity_spread = glm::vec3(0.12F * scale, 0.1F * scale, 0.12F * scale);

@@ -26,6 +26,7 @@ struct SceneEmitter : EmitterSettings {
     bool has_rate = false;
     bool has_velocity = false;
     bool has_velocity_spread = false;
+    bool has_aim = false;
     bool has_speed = false;             ///< of aim
     std::filesystem::path points_file;  ///< resolved against the scene's folder; for kPoints alone
     std::string points_origin;          ///< "scene.toml:3:8" of that key, for messages
@@ -39,13 +40,12 @@ struct SceneEmitter : EmitterSettings {
 };
 
 /// emitter.speed: a number, [least, most], or { mean, deviation }.
-template <class Aim, class Flag>
+template <class Aim>
 struct EmitterSpeed {
     Aim& aim;
-    Flag& given;
 };
-template <class Aim, class Flag>
-EmitterSpeed(Aim&, Flag&) -> EmitterSpeed<Aim, Flag>;
+template <class Aim>
+EmitterSpeed(Aim&) -> EmitterSpeed<Aim>;
 struct NormalSpeed {
     float mean = 0.0F;
     float deviation = 0.0F;
@@ -68,6 +68,7 @@ void fields(Visitor& visit, S& speed) {
 template <class Visitor, FieldsOf<SceneEmitter> E>
 void fields(Visitor& visit, E& e) {
     auto& aim = aimOf(e);
+    const EmitterSpeed speed{aim};
     visit("shape", e.shape,
           {"Place of birth; a sphere is its volume, a shell its surface",
            {},
@@ -114,42 +115,47 @@ void fields(Visitor& visit, E& e) {
           {"Time from the start to the last birth", "s", kLifeRange, "the whole run"});
     visit("burst", e.burst, {"Births at the start, at most the capacity", {}, {0.0, 1 << 24}});
     visit("burst_every", e.burst_every,
-          {"Time from burst to burst", "s", {1e-4, kSecondsMax}, "a single burst", {.needs = "burst"}});
+          leftOut(
+              {"Time from burst to burst", "s", {1e-4, kSecondsMax}, "a single burst", {.needs = "burst"}}));
     visit("spread", e.spread, {"Births by rate are spread over their step"});
     visit("velocity", FieldMaybe{e.velocity, e.has_velocity},
-          {"Velocity of every birth",
-           "[x, y, z]/s",
-           within(kSpeedMax),
-           "[0, −0.8 L, 0]; none with direction, cone or speed",
-           {.instead_of = "direction cone speed"}});
+          leftOut({"Velocity of every birth",
+                   "[x, y, z]/s",
+                   within(kSpeedMax),
+                   "[0, −0.8 L, 0]; none with direction, cone or speed",
+                   {.instead_of = "direction cone speed"}}));
     visit("velocity_spread", FieldMaybe{e.velocity_spread, e.has_velocity_spread},
           {"Largest uniform deviation from the velocity, either way", "[x, y, z]/s", kSpeedRange,
            "[0.12, 0.1, 0.12] L; none with direction, cone or speed"});
-    visit("direction", aim.direction,
-          {"Direction of births; required for a box or point",
-           "[x, y, z]",
-           kPointRange,
-           "the normal: outwards, the disc's, the point's own",
-           {.not_zero = true}});
-    visit("cone", aim.cone_degrees,
-          {"Half angle about the direction, uniform over its solid angle", "degrees", {0.0, 180.0}});
-    visit("speed", EmitterSpeed{aim, e.has_speed},
-          {"Speed along the direction: a number, [least, most], or { mean, deviation }, which is "
-           "normal and never below 0",
-           "1/s", kSpeedRange, "0.8 L"});
+    visit("direction", FieldMaybe{aim.direction, e.has_aim},
+          leftOut({"Direction of births; required for a box or point",
+                   "[x, y, z]",
+                   kPointRange,
+                   "the normal: outwards, the disc's, the point's own",
+                   {.not_zero = true}}));
+    visit("cone", FieldMaybe{aim.cone_degrees, e.has_aim},
+          leftOut({"Half angle about the direction, uniform over its solid angle", "degrees", {0.0, 180.0}}));
+    visit("speed", FieldMaybe{speed, e.has_speed},
+          leftOut({"Speed along the direction: a number, [least, most], or { mean, deviation }, which is "
+                   "normal and never below 0",
+                   "1/s", kSpeedRange, "0.8 L"}));
     visit("lifetime", FieldSpan{e.lifetime_min, e.lifetime_max}, {"Lifetime", "s", kLifeRange});
     visit("type", e.type,
           {"Number or name of the type", {}, {0.0, kParticleTypesMax - 1}, {}, {.index_of = "type"}});
     visit("seed", e.seed, {"Seed; emitter i draws from the i-th stream of its seed", {}, {0.0, kSeedMax}});
     visit("attach", e.attach,
-          {"Number, from 0, of the collider in whose space the emitter is; needs a place",
-           {},
-           {0.0, ColliderTextures::kBodiesMax - 1},
-           "the world",
-           {.index_of = "collider"}});
-    visit("key", e.given_keys, {"Poses at times, two or more", {}, {}, {}, {.most = kPoseKeysMax}});
+          leftOut({"Number, from 0, of the collider in whose space the emitter is; needs a place",
+                   {},
+                   {0.0, ColliderTextures::kBodiesMax - 1},
+                   "the world",
+                   {.index_of = "collider"}}));
+    visit("key", e.given_keys, leftOut({"Poses at times, two or more", {}, {}, {}, {.most = kPoseKeysMax}}));
     visit("inherit", e.inherit,
-          {"Share of its own velocity that births take on", {}, kFactorRange, {}, {.needs = "attach key"}});
+          leftOut({"Share of its own velocity that births take on",
+                   {},
+                   kFactorRange,
+                   {},
+                   {.needs = "attach key"}}));
 }
 [[nodiscard]] std::optional<FieldFault> check(SceneEmitter& emitter, const GivenFields& given);
 

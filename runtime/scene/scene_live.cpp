@@ -16,8 +16,9 @@ tl::unexpected<Error> failAt(const SceneCollider& from, const Error& error) {
     return fail(error.code, from.origin + ": collider.mesh: " + error.message);
 }
 
-/// Sets the fields that the scene leaves open.
-void complete(const SceneLive& live, const PictureMesh& mesh, const Bounds& box, Deformation& d) {
+/// With the fields that the scene leaves open.
+Deformation complete(const SceneLive& live, const PictureMesh& mesh, const Bounds& box) {
+    Deformation d = deformationOf(live);
     if (!live.has_center) {
         d.center = box.center();
     }
@@ -33,9 +34,20 @@ void complete(const SceneLive& live, const PictureMesh& mesh, const Bounds& box,
             d.range_high = std::max(d.range_high, glm::dot(p - d.center, line));
         }
     }
+    return d;
 }
 
 }  // namespace
+
+Deformation deformationOf(const SceneLive& live) {
+    constexpr float kTurn = 2.0F * std::numbers::pi_v<float>;
+    Deformation d = live.deformation;
+    d.phase = glm::radians(d.phase);
+    if (d.kind != DeformKind::kWobble) {
+        d.amplitude = std::clamp(glm::radians(d.amplitude), -kTurn, kTurn);
+    }
+    return d;
+}
 
 Result<LiveMesh> loadLiveMesh(const SceneCollider& from) {
     auto read = loadPictureMesh(from.path);
@@ -52,8 +64,7 @@ Result<LiveMesh> loadLiveMesh(const SceneCollider& from) {
         return failAt(
             from, {ErrorCode::kInvalidInput, quotedPath(from.path) + " has no extent; name another mesh"});
     }
-    out.deformation = from.live->deformation;
-    complete(*from.live, out.mesh, box, out.deformation);
+    out.deformation = complete(*from.live, out.mesh, box);
     if (auto good = checkDeformation(out.deformation); !good) {
         // The scene's numbers are in range; flat meshes have no extent along the axis.
         return fail(ErrorCode::kInvalidInput, from.origin + ": collider.deform does not suit " +

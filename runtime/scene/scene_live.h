@@ -17,6 +17,9 @@ struct LiveMesh {
     Collider frames;          ///< bounds of the whole motion, and three maps without texels
 };
 
+/// With angles in radians; what the scene leaves open is not filled in.
+[[nodiscard]] Deformation deformationOf(const SceneLive& live);
+
 /// Reads the mesh, completes its deformation, and chooses maps that hold its whole motion.
 /// \param from  with `live`.
 /// Fails as loadPictureMesh does, and with kInvalidInput (a mesh without extent); messages begin with the place in the scene.

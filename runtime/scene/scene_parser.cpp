@@ -65,8 +65,7 @@ void readField(const TomlValue& from, std::vector<AgeKey<T>>& track, const Field
     }
 }
 
-void readField(const TomlValue& from, EmitterSpeed<EmitterAim, bool> speed, const FieldInfo& info) {
-    speed.given = true;
+void readField(const TomlValue& from, EmitterSpeed<EmitterAim> speed, const FieldInfo& info) {
     if (from.node().is_table()) {
         NormalSpeed normal;
         readToml(from, normal);

@@ -118,8 +118,7 @@ Camera sceneCamera(const Scene& scene, const Bounds& bounds, double seconds) {
     } else {
         std::vector<CameraKey> keys;
         for (const SceneCameraKey& key : given.keys) {
-            keys.push_back(
-                {key.time, key.eye, key.target.value_or(*given.target), key.fov.value_or(given.fov)});
+            keys.push_back({key.time, key.eye, *key.target, *key.fov});
         }
         camera = cameraAt(keys, given.curve, seconds);
     }

@@ -1,7 +1,7 @@
 #include "runtime/scene/scene_reference.h"
 
 #include "formats/fields/reference.h"
-#include "runtime/scene/scene.h"
+#include "runtime/scene/scene_json.h"
 
 namespace relief {
 namespace {
@@ -31,8 +31,8 @@ FieldType fieldType(const AgeTrack<glm::vec3>& /*track*/) {
             {}};
 }
 
-template <class Aim, class Flag>
-FieldType fieldType(const EmitterSpeed<Aim, Flag>& /*speed*/) {
+template <class Aim>
+FieldType fieldType(const EmitterSpeed<Aim>& /*speed*/) {
     return {"number | [number, number] | { mean: number; deviation?: number }",
             {{"oneOf", {kNumber, listOf(kNumber, 2, 2), fileSchema(referenceOf(NormalSpeed{}))}}},
             {}};

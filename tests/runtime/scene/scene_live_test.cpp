@@ -40,7 +40,7 @@ TEST(SceneLive, Bend) {
     const SceneLive live = good(
         "deform = { kind = \"bend\", amplitude = 90, frequency = 0.5, phase = 180, axis = [0, 0, -2], "
         "along = [3, 0, 0.1], center = [1, 2, 3], range = [-1, 4] }\nresolution = 100\n");
-    const Deformation& d = live.deformation;
+    const Deformation d = deformationOf(live);
     EXPECT_EQ(d.kind, DeformKind::kBend);
     EXPECT_FLOAT_EQ(d.amplitude, 0.5F * std::numbers::pi_v<float>);
     EXPECT_FLOAT_EQ(d.frequency, 0.5F);
@@ -59,7 +59,8 @@ TEST(SceneLive, Defaults) {
     EXPECT_EQ(live.deformation.kind, DeformKind::kWobble);
     EXPECT_FALSE(live.has_wavelength);
     EXPECT_TRUE(
-        good("deform = { kind = \"twist\", amplitude = 360, frequency = 0 }\n").deformation.amplitude > 6.0F);
+        deformationOf(good("deform = { kind = \"twist\", amplitude = 360, frequency = 0 }\n")).amplitude >
+        6.0F);
 }
 
 TEST(SceneLive, Mistakes) {
@@ -107,7 +108,7 @@ TEST(SceneLive, TheMeshIsReadAndItsMapsHoldTheMotion) {
     collider.live.emplace();
     collider.live->deformation.kind = DeformKind::kTwist;
     collider.live->deformation.axis = glm::vec3(1.0F, 0.0F, 0.0F);
-    collider.live->deformation.amplitude = std::numbers::pi_v<float>;
+    collider.live->deformation.amplitude = 180.0F;
     const auto live = loadLiveMesh(collider);
     ASSERT_TRUE(live) << live.error().message;
     EXPECT_EQ(live->mesh.positions.size(), 5U) << "no vertex is doubled";

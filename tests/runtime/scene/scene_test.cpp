@@ -101,10 +101,10 @@ TEST(Scene, ATypesGravityAndBodies) {
     const auto collides = [&](const std::string& list, const std::string& more = "") {
         const auto scene = parse(two + more + "[[type]]\ncollides = " + list + "\n");
         EXPECT_TRUE(scene) << list << "\n" << scene.error().message;
-        return scene ? scene->types.at(0).collides : 0U;
+        return scene ? particleTypes(*scene).at(0).collides : 0U;
     };
     EXPECT_EQ(good("[[type]]\ngravity = -0.5\n").types.at(0).gravity, -0.5F);
-    EXPECT_EQ(good("[[type]]\n").types.at(0).collides, kCollidesWithAll);
+    EXPECT_EQ(particleTypes(good("[[type]]\n")).at(0).collides, kCollidesWithAll);
     EXPECT_EQ(collides("[]"), 0U);
     EXPECT_EQ(collides("[1]"), 2U);
     EXPECT_EQ(collides("[0, \"ground\"]"), 1U + kCollidesWithGround);
