@@ -5,7 +5,6 @@
   scripts/bench.py --save OLD.json           nine rounds of the ratios of bakes and steps
   scripts/bench.py --against OLD.json        the same of this build, and the verdict on it; with --save also kept
   scripts/bench.py --compare OLD.json NEW.json   the verdict on two files
-  scripts/bench.py --growth DIR [MESH]       time against triangles, bytes and particles: DIR/growth.png and .csv
 
 Nothing here is a test, because machines are shared and noisy. RELIEF_BENCH_LARGE=1 takes the sizes for a GPU (a million
 particles and more) even where there is none.
@@ -14,22 +13,14 @@ The verdict: a figure is a ratio within one round, so that a busy machine meets 
 slower or faster where its median has changed by at least 3 % and the rounds of the two files are too far apart for chance:
 the exact one-sided test of Mann and Whitney, once in a thousand for all figures together (Bonferroni). Exit code: 0 nothing
 is slower; 1 something is slower, or a figure is gone; 2 the files cannot be compared.
-
-Growth is measured by the clock, whole processes but for particles: the median of --repeats runs, of which the next size is
-taken only where the last ended within --limit seconds. The exponents are the slopes of time over size, both as logarithms,
-of the larger half of the sizes. vdb_tool's level sets stand beside the bakes: at 128 voxels by triangles, and of as many
-bytes of 2 a voxel.
 """
 import argparse
-import array
-import csv
 import functools
 import json
 import math
 import os
 import platform
 import statistics
-import struct
 import subprocess
 import sys
 import tempfile
@@ -40,7 +31,6 @@ BUNNY = "/usr/share/glmark2/models/bunny.obj"
 LARGE = os.environ.get("RELIEF_BENCH_LARGE") == "1"
 LEAST_CHANGE = 0.03
 CHANCE = 0.001
-SIZES = {"triangles": "triangles of the mesh", "bytes": "bytes of the collider", "particles": "particles"}
 # Six orthographic ends, as texels that cost one ray each.
 SIX_MAPS = [word for way in ("-x", "-y", "-z")
             for word in ("--map", f"front-back:dir={way},depth=half,decode=projected")]
@@ -56,9 +46,9 @@ def printed(command):
     return json.loads(subprocess.run(command, check=True, capture_output=True).stdout)
 
 
-def seconds(command, limit=None):
+def seconds(command):
     start = time.perf_counter()
-    subprocess.run(command, check=True, capture_output=True, timeout=limit)
+    subprocess.run(command, check=True, capture_output=True)
     return time.perf_counter() - start
 
 
@@ -68,8 +58,8 @@ class Tools:
     def __init__(self, binaries, mesh, folder):
         self.binaries, self.mesh, self.folder = binaries, mesh, folder
 
-    def bake(self, name, options, mesh=None):
-        return [f"{self.binaries}/relief", "bake", mesh or self.mesh, "-o", f"{self.folder}/{name}.relief", "-q", *options]
+    def bake(self, name, options):
+        return [f"{self.binaries}/relief", "bake", self.mesh, "-o", f"{self.folder}/{name}.relief", "-q", *options]
 
     def bench(self, case, *options):
         return printed([f"{self.binaries}/relief-bench", case, *options, *(["--large"] if LARGE else [])])
@@ -212,15 +202,9 @@ def print_tables(report):
 
 
 def print_report(tools):
-    bench = printed([f"{tools.binaries}/relief-bench-raycast", tools.mesh])
-    ms = bench["median_ms"]
-    print(f"mesh {bench['mesh']}, {bench['triangles']} triangles; medians of {bench['repeats']} runs, ms")
-    for name, value in ms.items():
-        print(f"  {name:16s} {value:8.1f}")
     # The bake's floor is measured as cold as its process: a fresh one each time, in turns.
     floors, bakes = zip(*[(tools.floor(), seconds(tools.bake("six", SIX_MAPS))) for _ in range(15)])
     floor, bake = statistics.median(floors), statistics.median(bakes)
-    print(f"trace / bare rtcIntersect16 loop                   {ms['trace'] / ms['bare_loop']:.2f}   (at most 1.5)")
     print(f"relief bake / (import + build + bare loop + write) {bake / floor:.2f}   (at most 1.3; {1000 * bake:.1f} / "
           f"{1000 * floor:.1f} ms)")
 
@@ -244,156 +228,6 @@ def print_report(tools):
         print_tables(tools.bench("depth-maps", tools.mesh))
 
 
-# Growth.
-
-def exponent(points):
-    """Of the larger half of the points (x, seconds), two at least; None of one point."""
-    points = sorted(points)
-    upper = points[len(points) // 2:] if len(points) > 3 else points
-    if len(upper) < 2:
-        return None
-    return statistics.linear_regression([math.log(x) for x, _ in upper], [math.log(y) for _, y in upper]).slope
-
-
-def write_solid(path, triangles):
-    """A bumpy ball as PLY, closed; returns how many triangles it has."""
-    rings = max(round(math.sqrt(triangles / 4.0)), 3)
-    around = 2 * rings
-    vertices = array.array("f", (0.0, 0.0, 1.0))
-    for ring in range(1, rings):
-        across = math.pi * ring / rings
-        sine, cosine = math.sin(across), math.cos(across)
-        for i in range(around):
-            turn = 2.0 * math.pi * i / around
-            r = 1.0 + 0.15 * math.sin(5.0 * turn) * sine ** 5 * math.cos(4.0 * across) + 0.02 * math.sin(
-                40.0 * across) * sine ** 9 * math.cos(36.0 * turn)
-            vertices.extend((r * sine * math.cos(turn), r * sine * math.sin(turn), r * cosine))
-    last = len(vertices) // 3
-    vertices.extend((0.0, 0.0, -1.0))
-    count = 2 * around * (rings - 1)
-    face = struct.Struct("<Biii")
-    with open(path, "wb") as file:
-        file.write(f"ply\nformat binary_little_endian 1.0\nelement vertex {len(vertices) // 3}\nproperty float x\n"
-                   f"property float y\nproperty float z\nelement face {count}\n"
-                   "property list uchar int vertex_indices\nend_header\n".encode())
-        file.write(vertices.tobytes())
-        for i in range(around):
-            j = (i + 1) % around
-            below = last - around
-            file.write(face.pack(3, 0, 1 + i, 1 + j) + face.pack(3, last, below + j, below + i))
-        for ring in range(rings - 2):
-            a = 1 + ring * around
-            b = a + around
-            for i in range(around):
-                j = (i + 1) % around
-                file.write(face.pack(3, a + i, b + i, b + j) + face.pack(3, a + i, b + j, a + j))
-    return count
-
-
-class Growth:
-    """Rows (size, series, x, seconds), as they are measured."""
-
-    def __init__(self, tools, options):
-        self.tools, self.options = tools, options
-        self.rows = []
-        self.ended = set()  # series that failed, or took longer than the limit
-
-    def add(self, size, series, x, command):
-        if series in self.ended:
-            return
-        taken = []
-        try:
-            for _ in range(self.options.repeats):
-                taken.append(seconds(command, 2.0 * self.options.limit))
-                if taken[-1] > self.options.limit / self.options.repeats:
-                    break
-        except (subprocess.CalledProcessError, subprocess.TimeoutExpired) as error:
-            print(f"  {series}: {x} {SIZES[size]}: {error}", file=sys.stderr, flush=True)
-        if not taken or statistics.median(taken) > self.options.limit:
-            self.ended.add(series)
-        if taken:
-            self.put(size, series, x, statistics.median(taken))
-
-    def put(self, size, series, x, taken):
-        self.rows.append((size, series, x, taken))
-        print(f"  {series}: {x} {SIZES[size]}, {taken:.4g} s", file=sys.stderr, flush=True)
-
-    def level_set(self, mesh, voxels):
-        return ["vdb_tool", "-read", mesh, "-mesh2ls", f"dim={voxels}", "width=3", "-write", f"{self.tools.folder}/out.vdb"]
-
-    def of_triangles(self):
-        mesh = f"{self.tools.folder}/solid.ply"  # one at a time: large ones fill disks
-        for wanted in self.options.triangles:
-            triangles = write_solid(mesh, wanted)
-            self.add("triangles", "relief bake, 1 MB", triangles, self.tools.bake("out", ["--budget", "1MB"], mesh))
-            self.add("triangles", "vdb_tool mesh2ls, 128 voxels", triangles, self.level_set(mesh, 128))
-
-    def of_bytes(self):
-        for size in self.options.bytes:
-            self.add("bytes", "relief bake", size, self.tools.bake("out", ["--budget", str(size)]))
-            self.add("bytes", "vdb_tool mesh2ls, 2 bytes a voxel", size,
-                     self.level_set(self.tools.mesh, round((size / 2.0) ** (1.0 / 3.0))))
-
-    def of_particles(self):
-        seconds(self.tools.bake("planned", ["--budget", "1MB"]))
-        names = {"copy": "bare copy", "no_collider": "step without collider", "collider": "step", "radius": "step of balls"}
-        for count in self.options.particles:
-            start = time.perf_counter()
-            _, rows = self.tools.step("planned", "--path", self.options.path, "--only", "radius", "--particles", str(count))
-            for name, series in names.items():
-                self.put("particles", series, count, rows[name]["ms"] / 1000.0)
-            if time.perf_counter() - start > self.options.limit:
-                break
-
-    def curves(self, size):
-        found = {}
-        for of, series, x, taken in self.rows:
-            if of == size:
-                found.setdefault(series, []).append((x, taken))
-        return found
-
-    def write(self, target):
-        with open(target + ".csv.part", "w", encoding="utf-8", newline="") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerows([("size", "series", "x", "seconds"), *self.rows])
-        os.replace(target + ".csv.part", target + ".csv")
-
-    def draw(self, target):
-        import matplotlib
-        matplotlib.use("Agg")
-        from matplotlib import pyplot
-        sizes = [size for size in SIZES if self.curves(size)]
-        figure, plots = pyplot.subplots(1, len(sizes), figsize=(6.5 * len(sizes), 6.0), squeeze=False)
-        for plot, size in zip(plots[0], sizes):
-            for series, points in self.curves(size).items():
-                power = exponent(points)
-                grows = "" if power is None else f": ∝ n^{power:.2f}"
-                print(f"{size:10s} {series}{grows}, {points[0][0]:g} to {points[-1][0]:g}")
-                plot.loglog([x for x, _ in points], [y for _, y in points], marker="o", markersize=4, label=series + grows)
-            plot.set_xlabel(SIZES[size])
-            plot.set_ylabel("seconds a step" if size == "particles" else "seconds")
-            plot.grid(True, which="major", alpha=0.3)
-            plot.legend(fontsize="small")
-        figure.tight_layout()
-        figure.savefig(target + ".png", dpi=110)
-
-
-def grow(tools, options):
-    os.makedirs(options.growth, exist_ok=True)
-    growth = Growth(tools, options)
-    for measure in (growth.of_triangles, growth.of_bytes, growth.of_particles):
-        measure()
-        growth.write(os.path.join(options.growth, "growth"))  # these rows remain where a later part fails
-    growth.draw(os.path.join(options.growth, "growth"))
-
-
-def numbers(text):
-    values = [int(word) for word in text.split(",") if word]
-    if any(value <= 0 for value in values):
-        raise argparse.ArgumentTypeError("numbers above 0 are needed")
-    return sorted(values)
-
-
 def above_zero(text):
     value = int(text)
     if value <= 0:
@@ -409,15 +243,6 @@ def parse(arguments):
     parser.add_argument("--against", metavar="FILE")
     parser.add_argument("--rounds", type=above_zero, default=9)
     parser.add_argument("--compare", nargs=2, metavar="FILE")
-    growth = parser.add_argument_group("growth")
-    growth.add_argument("--growth", metavar="DIR")
-    growth.add_argument("--triangles", type=numbers, metavar="N,N…", help="none: ''",
-                        default=[10 ** 3, 10 ** 4, 10 ** 5, 10 ** 6, 10 ** 7])
-    growth.add_argument("--bytes", type=numbers, metavar="N,N…", default=[1 << k for k in range(16, 27, 2)])
-    growth.add_argument("--particles", type=numbers, metavar="N,N…, of 1024", default=[1 << k for k in range(12, 25, 2)])
-    growth.add_argument("--path", choices=["fragment", "compute"], default="compute")
-    growth.add_argument("--repeats", type=above_zero, default=3)
-    growth.add_argument("--limit", type=float, default=300.0, help="seconds")
     return parser.parse_args(arguments)
 
 
@@ -434,13 +259,11 @@ def main(arguments):
             return compare(*options.compare)
         if options.against:
             load(options.against)  # before the hours that the rest may take
-        built("setup.sh", *(["libopenvdb-tools", "python3-matplotlib"] if options.growth else []))
+        built("setup.sh")
         binaries = built("build.sh", "release", "relief", "relief-bench", "relief-bench-raycast")
         with tempfile.TemporaryDirectory() as folder:
             tools = Tools(binaries, options.mesh, folder)
-            if options.growth:
-                grow(tools, options)
-            elif options.save or options.against:
+            if options.save or options.against:
                 saved = options.save or f"{folder}/new.json"
                 save_rounds(tools, options.rounds, saved)
                 return compare(options.against, saved) if options.against else 0

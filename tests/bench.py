@@ -96,27 +96,6 @@ class Compare(unittest.TestCase):
             self.assertGreater(below(most + 1), 0.025)
 
 
-class Growth(unittest.TestCase):
-    def test_the_exponent_is_that_of_a_power(self):
-        for power in (0.5, 1.0, 1.7):
-            points = [(float(x), 3.0 * x ** power) for x in (10, 100, 1000, 10000)]
-            self.assertAlmostEqual(bench.exponent(points), power)
-
-    def test_the_exponent_is_of_the_upper_half(self):
-        # What a start costs hides the growth of small ones.
-        points = [(float(2 ** k), 5.0 + 2.0 ** k) for k in range(0, 25)]
-        self.assertAlmostEqual(bench.exponent(points), 1.0, delta=0.02)
-
-    def test_one_point_has_none(self):
-        self.assertIsNone(bench.exponent([(1.0, 1.0)]))
-
-    def test_the_terrain_has_the_triangles_asked_for(self):
-        with tempfile.TemporaryDirectory() as folder:
-            for wanted in (1000, 100000):
-                made = bench.write_solid(os.path.join(folder, "mesh.ply"), wanted)
-                self.assertAlmostEqual(made / wanted, 1.0, delta=0.05)
-
-
 def contest(mesh, closed, budget, ours, took=1.0):
     return {"mesh": mesh, "closed": closed, "budget": budget, "ours/volume": ours, "paper/volume": 2.0 * ours,
             "ours": {"build_seconds": took}}

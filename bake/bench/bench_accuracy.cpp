@@ -18,7 +18,6 @@
 #include "bake/repair/winding.h"
 #include "bake/report/bake_report.h"
 #include "bake/report/check_report.h"
-#include "bake/report/points_csv.h"
 #include "bake/report/report_text.h"
 #include "bake/shape/shape.h"
 #include "formats/base/byte_count.h"
@@ -198,29 +197,7 @@ struct Arguments {
     std::vector<std::string> methods = {"volume", "paper", "ours"};
     std::vector<std::string> only;  ///< stems of meshes; empty: all
     std::string collider;
-    std::string values;
 };
-
-/// For the cross-check against other tools: what the volume knows of given points, one line for each:
-/// x,y,z, the exact signed distance that its nodes are made of, and its own lookup.
-Result<void> printValues(const MeshQuery& query, std::uint64_t budget, const std::string& path) {
-    const std::vector<std::byte> text = RELIEF_TRY(readFile(path));
-    const std::vector<glm::vec3> points =
-        RELIEF_TRY(parsePoints({reinterpret_cast<const char*>(text.data()), text.size()}, path));
-    const DistanceGrid grid = sampleDistances(
-        query, makeLattice(query.mesh().bounds, budget / sizeof(std::int16_t), LatticeFit::kCentered));
-    const DistanceVolume volume(grid, DistanceVolume::fullRange(grid));
-    std::string out;
-    for (const glm::vec3& p : points) {
-        const float values[5] = {p.x, p.y, p.z, static_cast<float>(query.signedDistance(p)),
-                                 volume.at(p).distance};
-        for (int i = 0; i < 5; ++i) {
-            appendShortest(out, values[i]);
-            out += i == 4 ? '\n' : ',';
-        }
-    }
-    return writeFile("-", std::as_bytes(std::span(out)));
-}
 
 /// The meshes of the command line that --only names, in the command line's order.
 Result<std::vector<std::string>> chosenMeshes(const Arguments& arguments) {
@@ -327,10 +304,6 @@ Result<void> run(const Arguments& arguments) {
     for (const std::string& path : paths) {
         const Stopwatch watch;
         TriangleMesh mesh = RELIEF_TRY(importMeshInWorker(path, import));
-        if (!arguments.values.empty()) {
-            const MeshQuery query = RELIEF_TRY(MeshQuery::build(std::move(mesh)));
-            return printValues(query, budgets.front(), arguments.values);
-        }
         const auto winding = RELIEF_TRY(windOutwards(std::move(mesh)));
         for (const std::uint64_t budget : budgets) {
             RELIEF_TRY(measureBudget(winding.mesh, arguments, shape, budget, measured));
@@ -368,8 +341,6 @@ int main(int argc, char** argv) {
     app.add_option(
         "--collider", arguments.collider,
         "Measure this file of `relief bake` as ours, and bake nothing; for one mesh and one budget");
-    app.add_option("--values", arguments.values,
-                   "Only print x,y,z, exact distance, volume's distance for the points of this CSV file");
     CLI11_PARSE(app, argc, argv);
     try {
         const Result<void> done = run(arguments);
