@@ -13,5 +13,5 @@ mkdir -p "$out"
     echo "OUTPUT_DIRECTORY = $out"
     echo "PROJECT_NUMBER = $(sed -n 's/^project(Relief VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)"
 } | doxygen -
-python3 scripts/docs/links.py "$out/html"
+python3 tests/html_links.py "$out/html"
 echo "$out/html/index.html"
