@@ -21,7 +21,7 @@ THIRD_PARTIES = {
     'CGAL': ['bake/mesh', 'bake/repair'],
     'OpenEXR': ['bake/picture'],
     'cairo.h': ['bake/picture'],
-    'openvdb': ['runtime/vdb_module'],
+    'openvdb': ['runtime/vdb'],
     'png.h': ['runtime/files'],
     'flatbuffers': ['formats', 'bake/import'],
     'zstd.h': ['formats'],
