@@ -88,43 +88,39 @@ void addOutputs(CLI::App& app, SimCommand& command) {
 /// Options that do nothing together.
 Result<void> checkTogether(const SimCommand& command) {
     const PlayerOptions& player = command.player;
-    const auto usage = [](const std::string& message) { return fail(ErrorCode::kUsage, message); };
-    if (player.input.empty()) {
-        return usage("name a scene (.toml) or a collider (.relief); see relief-sim --help");
-    }
-    if (command.check && !(player.frames.empty() && player.dump.empty() && player.dump_frames.empty() &&
-                           player.stats.empty() && player.events.empty())) {
-        return usage("--check plays nothing and writes nothing; remove it, or the outputs");
-    }
-    if (command.check && command.gpu.given() != nullptr) {
-        return usage(std::string(command.gpu.given()) +
-                     " does nothing with --check, which needs no GPU; leave it out");
-    }
-    if (command.check && player.path != StepPath::kAuto) {
-        return usage("--path does nothing with --check, which needs no GPU; leave it out");
-    }
-    if (command.size && player.frames.empty()) {
-        return usage("--size does nothing without --frames; add --frames DIR");
-    }
     const SceneOverrides& scene = player.overrides;
-    const bool frames = !(player.frames.empty() && player.dump_frames.empty());
-    if ((scene.first_frame || scene.last_frame || scene.frame_every) && !frames) {
-        return usage(std::string(scene.first_frame  ? "--first-frame"
-                                 : scene.last_frame ? "--last-frame"
-                                                    : "--frame-every") +
-                     " does nothing without --frames or --dump-frames; add --frames DIR");
-    }
-    if (scene.first_frame && scene.last_frame && *scene.first_frame > *scene.last_frame) {
-        return usage("--first-frame comes after --last-frame; exchange them");
-    }
-    if (player.stats_every && player.stats.empty()) {
-        return usage("--stats-every does nothing without --stats; add --stats OUT.jsonl");
-    }
-    if (command.dump_format && player.dump.empty() && player.dump_frames.empty()) {
-        return usage("--dump-format does nothing without --dump or --dump-frames; add --dump-frames DIR");
-    }
-    if (player.events_min_speed && player.events.empty()) {
-        return usage("--events-min-speed does nothing without --events; add --events OUT.jsonl");
+    const bool pictures = !player.frames.empty();
+    const bool dumps = !(player.dump.empty() && player.dump_frames.empty());
+    const bool frames = pictures || !player.dump_frames.empty();
+    const bool outputs = pictures || dumps || !player.stats.empty() || !player.events.empty();
+    const char* const gpu = command.gpu.given()              ? command.gpu.given()
+                            : player.path != StepPath::kAuto ? "--path"
+                                                             : nullptr;
+    const char* const frame = scene.first_frame   ? "--first-frame"
+                              : scene.last_frame  ? "--last-frame"
+                              : scene.frame_every ? "--frame-every"
+                                                  : nullptr;
+    const auto text = [](const char* option) { return std::string(option == nullptr ? "" : option); };
+    const std::pair<bool, std::string> faults[] = {
+        {player.input.empty(), "name a scene (.toml) or a collider (.relief); see relief-sim --help"},
+        {command.check && outputs, "--check plays nothing and writes nothing; remove it, or the outputs"},
+        {command.check && gpu != nullptr,
+         text(gpu) + " does nothing with --check, which needs no GPU; leave it out"},
+        {command.size && !pictures, "--size does nothing without --frames; add --frames DIR"},
+        {frame != nullptr && !frames,
+         text(frame) + " does nothing without --frames or --dump-frames; add --frames DIR"},
+        {scene.first_frame && scene.last_frame && *scene.first_frame > *scene.last_frame,
+         "--first-frame comes after --last-frame; swap them"},
+        {player.stats_every && player.stats.empty(),
+         "--stats-every does nothing without --stats; add --stats OUT.jsonl"},
+        {command.dump_format && !dumps,
+         "--dump-format does nothing without --dump or --dump-frames; add --dump-frames DIR"},
+        {player.events_min_speed && player.events.empty(),
+         "--events-min-speed does nothing without --events; add --events OUT.jsonl"}};
+    for (const auto& [found, message] : faults) {
+        if (found) {
+            return fail(ErrorCode::kUsage, message);
+        }
     }
     return {};
 }

@@ -29,41 +29,10 @@ struct FlowFile {
 template <class Visitor, FieldsOf<FlowFile> F>
 void fields(Visitor& visit, F& flow) {
     const FieldFile path{flow.path, flow.origin};
-<<<<<<< HEAD
     visit("raw", path, {"Little-endian 32-bit floats, x fastest, then y, then z", {}, {}, {}, kRequired});
     visit("size", flow.size,
           {"Nodes along x, y and z, 2²⁴ at most", "[nx, ny, nz]", {1.0, FlowField::kSideMax}, {}, kRequired});
     visit("components", flow.components, {"Floats a node", {}, {2.0, 3.0}});
-=======
-    bool image = flow.kind == FlowFileKind::kImage;
-    bool slices = flow.kind == FlowFileKind::kSlices;
-    bool raw = flow.kind == FlowFileKind::kRaw;
-    visit("file", FieldMaybe{path, image},
-          leftOut({"EXR image: channels R, G and maybe B are the velocity along x, y, z; its bottom row lies "
-                   "at the lowest y",
-                   {},
-                   {},
-                   "one of the three is required"}));
-    visit("files", FieldMaybe{path, slices},
-          leftOut({"EXR slices, as \"flow_%03d.exr\", numbered from 0 or 1, the lowest z first",
-                   {},
-                   {},
-                   "none",
-                   {.instead_of = "file"}}));
-    visit("raw", FieldMaybe{path, raw},
-          leftOut({"Little-endian 32-bit floats, x fastest, then y, then z",
-                   {},
-                   {},
-                   "none",
-                   {.instead_of = "file files"}}));
-    visit("size", flow.size,
-          leftOut({"Nodes of the raw volume, 2²⁴ at most",
-                   "[nx, ny, nz]",
-                   {1.0, FlowField::kSideMax},
-                   "required by raw",
-                   {.needs = "raw"}}));
-    visit("components", flow.components, leftOut({"Floats a node", {}, {2.0, 3.0}, {}, {.needs = "raw"}}));
->>>>>>> 7acd184 (Report a scene by the fields of its file)
     visit("box_min", flow.box_min,
           {"Lower corner of the flow's box", "[x, y, z]", kPointRange, {}, kRequired});
     visit("box_max", flow.box_max,
