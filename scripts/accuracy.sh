@@ -44,7 +44,7 @@ if [ "${1:-}" = --page ]; then
         echo 'Written by `scripts/accuracy.sh --page`. For each mesh and budget: a dense 16-bit signed distance volume on the'
         echo 'tight box, with exact values and trilinear lookup; the maps of the paper; the maps that `relief bake` plans.'
         echo
-        "$bin/relief-accuracy" "${meshes[@]}" "$@" | python3 scripts/accuracy_table.py --markdown
+        "$bin/relief-accuracy" "${meshes[@]}" "$@" | python3 scripts/accuracy_table.py
     } >"$folder/accuracy.md"
     mv "$folder/accuracy.md" bake/measure/accuracy.md
     exit 0

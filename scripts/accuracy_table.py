@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What scripts/accuracy.sh prints of relief-accuracy's JSON: accuracy_table.py [--markdown] <REPORT.json
+"""What scripts/accuracy.sh prints of relief-accuracy's JSON: accuracy_table.py <REPORT.json
 
 A row for each mesh and budget; then, for each budget, ratios, geometric means over meshes, and the verdict on the claims of
 bake/measure/README.md.
@@ -114,27 +114,17 @@ def legend(mesh):
             "number of triangles."]
 
 
-def plain(rows):
-    widths = [max(len(of[i].rstrip(">")) for of in rows) for i in range(len(HEAD))]
-    return "".join("  ".join(cell.rstrip(">").rjust(width) if head.endswith(">") else cell.ljust(width)
-                             for cell, width, head in zip(of, widths, HEAD)) + "\n" for of in rows)
-
-
 def markdown(rows):
     rule = ["---:" if head.endswith(">") else "---" for head in HEAD]
     return "".join(f"| {' | '.join(cell.rstrip('>') for cell in of)} |\n" for of in (rows[0], rule, *rows[1:]))
 
 
-def main(arguments):
+def main():
     report = json.load(sys.stdin)
     found = contests(report)
-    rows = [HEAD, *map(row, found)]
-    lines = legend(report["meshes"][0])
-    if arguments == ["--markdown"]:
-        print(markdown(rows) + "\n" + "<br>\n".join(lines) + "\n\n```text\n" + summary_text(found) + "```")
-    else:
-        print(plain(rows) + "\n" + "\n".join(lines) + "\n\n" + summary_text(found), end="")
+    print(markdown([HEAD, *map(row, found)]) + "\n" + "<br>\n".join(legend(report["meshes"][0])) + "\n\n```text\n" +
+          summary_text(found) + "```")
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()
