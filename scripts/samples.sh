@@ -70,6 +70,20 @@ prepare() {
     cp "samples/$name.toml" "$out/"
 }
 
+# sheet: six frames spread over the run, and below them the slices if there are any.
+sheet() {
+    local frames=("$out"/frames/frame_*.png) chosen=() paper='#f4f5f7' i
+    for i in 1 2 3 4 5 6; do
+        chosen+=("${frames[$(((${#frames[@]} - 1) * i / 6))]}")
+    done
+    {
+        montage "${chosen[@]}" -tile 3x2 -geometry 640x480+6+6 -background "$paper" miff:-
+        [ ! -f "$out/slice_x.png" ] ||
+            montage "$out"/slice_[xyz].png -tile 3x1 -geometry '640x>+6+6' -background "$paper" miff:-
+    } | convert miff:- -background "$paper" -gravity center -append \
+        -bordercolor "$paper" -border 12 -depth 8 -strip "$out/contact_sheet.png"
+}
+
 # play: frames and the sheet of them.
 play() {
     rm -rf "$out/frames"
@@ -79,7 +93,7 @@ play() {
         done
     fi
     "$bin/relief-sim" "$out/$name.toml" --frames "$out/frames"
-    scripts/contact_sheet.sh "$out"
+    sheet
     convert "$out/contact_sheet.png" -resize 1200x -define jpeg:extent=150kB "$out/contact_sheet.jpg"
     echo "Look at $out/contact_sheet.png"
 }
