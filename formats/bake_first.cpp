@@ -12,9 +12,9 @@ namespace relief {
 namespace {
 
 /// What `relief bake` reads and people have; formats that nobody mixes up with a collider are left out.
-constexpr std::array<std::string_view, 16> kMeshExtensions = {
-    ".3ds",  ".ac",  ".ase", ".b3d", ".blend", ".dae", ".fbx", ".glb",
-    ".gltf", ".lwo", ".obj", ".off", ".ms3d",  ".ply", ".stl", ".x"};
+constexpr std::array<std::string_view, 14> kMeshExtensions = {".3ds",  ".b3d",  ".blend", ".dae", ".fbx",
+                                                              ".glb",  ".gltf", ".lwo",   ".obj", ".off",
+                                                              ".ms3d", ".ply",  ".stl",   ".x"};
 
 /// The first byte of every container (formats/README.md, "Bytes"): no letter, and not the beginning of any mesh above.
 constexpr std::byte kContainerBegins{0xAB};

@@ -19,7 +19,8 @@ packages=(
     flatbuffers-compiler libexpected-dev libflatbuffers-dev libglm-dev libxxhash-dev libzstd-dev
     # bake
     libassimp-dev libcairo2-dev libcgal-dev libcli11-dev libcpp-httplib-dev libdraco-dev libeigen3-dev libembree-dev
-    libexpat1-dev libopenexr-dev libopenvdb-dev libopenvdb-tools libseccomp-dev libspdlog-dev libtbb-dev nlohmann-json3-dev zlib1g-dev
+    libopenexr-dev libopenvdb-dev libopenvdb-tools libpugixml-dev libseccomp-dev libspdlog-dev libtbb-dev libzip-dev
+    nlohmann-json3-dev
     fonts-dejavu-core
     # runtime: libepoxy, and Mesa's llvmpipe for machines without a GPU
     libegl-dev libepoxy-dev libgl-dev libgles-dev libpng-dev libtomlplusplus-dev libegl1 libegl-mesa0 libgl1-mesa-dri

@@ -2,13 +2,13 @@
 // as "meshes[0].primitives[2].mode", and no file.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "formats/base/result.h"
@@ -19,71 +19,80 @@ namespace relief {
 /// Errors: kInvalidInput, kLimit.
 [[nodiscard]] Result<nlohmann::json> parseGltfJson(std::string_view text);
 
-class GltfList;
+/// Takes a value of a type. \return what is wrong of it ("[3] is no number"), or "".
+[[nodiscard]] std::string takeGltf(const nlohmann::json& json, bool& value);
+[[nodiscard]] std::string takeGltf(const nlohmann::json& json, float& value);
+[[nodiscard]] std::string takeGltf(const nlohmann::json& json,
+                                   std::uint64_t& value);  ///< up to 2⁵³; 24.0 is whole
+[[nodiscard]] std::string takeGltf(const nlohmann::json& json, std::string& value);
+template <class T>
+[[nodiscard]] std::string takeGltf(const nlohmann::json& json, std::vector<T>& values) {
+    if (!json.is_array()) {
+        return " is not an array";
+    }
+    for (std::size_t i = 0; i < json.size(); ++i) {
+        if (std::string fault = takeGltf(json[i], values.emplace_back()); !fault.empty()) {
+            return "[" + std::to_string(i) + "]" + fault;
+        }
+    }
+    return "";
+}
 
-/// An object of the document, which must outlive it. A member that is there but of another type than asked for is an error
-/// (kInvalidInput), and so is null.
+/// An object of the document. A member that is there but of another type than asked for is an error (kInvalidInput), and so
+/// is null.
 class GltfValue {
   public:
-    explicit GltfValue(const nlohmann::json& document) : json_(&document) {}
+    /// \param document  an object; borrowed.
+    explicit GltfValue(const nlohmann::json& document) : document_(&document), json_(&document) {}
 
-    /// "the document" for all of it.
-    [[nodiscard]] std::string path() const;
     /// "PATH WHAT". \param code  kInvalidInput by default.
     [[nodiscard]] tl::unexpected<Error> wrong(const std::string& what,
                                               ErrorCode code = ErrorCode::kInvalidInput) const;
 
-    [[nodiscard]] bool isObject() const { return json_->is_object(); }
-    [[nodiscard]] bool has(const char* name) const { return json_->is_object() && json_->contains(name); }
+    [[nodiscard]] bool has(const char* name) const { return json_->contains(name); }
+    /// Its place in the list that it is of.
+    [[nodiscard]] std::uint64_t index() const { return index_; }
+
+    /// bool, std::uint64_t, std::string, or a vector of float or these; nullopt where there is none.
+    template <class T>
+    [[nodiscard]] Result<std::optional<T>> get(const char* name) const {
+        std::optional<T> value;
+        if (const auto found = json_->find(name); found != json_->end()) {
+            if (const std::string fault = takeGltf(*found, value.emplace()); !fault.empty()) {
+                return invalidInput(pathOf(name) + fault);
+            }
+        }
+        return value;
+    }
+    /// \param otherwise  where there is none.
+    template <class T>
+    [[nodiscard]] Result<T> get(const char* name, T otherwise) const {
+        return RELIEF_TRY(get<T>(name)).value_or(std::move(otherwise));
+    }
+    /// Errors: also where there is none.
+    [[nodiscard]] Result<std::uint64_t> number(const char* name) const;
+    /// A list of `count` numbers; empty where there is none.
+    [[nodiscard]] Result<std::vector<float>> numbers(const char* name, std::size_t count) const;
+
     [[nodiscard]] Result<std::optional<GltfValue>> object(const char* name) const;
     /// A list of objects; empty where there is none.
-    [[nodiscard]] Result<GltfList> objects(const char* name) const;
-    /// Up to 2⁵³; 24.0 is whole.
-    [[nodiscard]] Result<std::optional<std::uint64_t>> whole(const char* name) const;
-    [[nodiscard]] Result<std::uint64_t> neededWhole(const char* name) const;
-    /// A list of whole numbers; empty where there is none.
-    [[nodiscard]] Result<std::vector<std::uint64_t>> wholes(const char* name) const;
-    /// false where there is none.
-    [[nodiscard]] Result<bool> flag(const char* name) const;
-    [[nodiscard]] Result<std::optional<std::string>> text(const char* name) const;
-    [[nodiscard]] Result<std::vector<std::string>> texts(const char* name) const;
-    /// A list of as many numbers as `out` holds, which stay where there is none. \return whether there is one.
-    [[nodiscard]] Result<bool> numbers(const char* name, std::span<float> out) const;
+    [[nodiscard]] Result<std::vector<GltfValue>> objects(const char* name) const;
+    /// The object in a list of the document that a member names by its number; nullopt where there is no member.
+    [[nodiscard]] Result<std::optional<GltfValue>> named(const char* member, const char* list) const;
+    /// Errors: also where there is no member.
+    [[nodiscard]] Result<GltfValue> needed(const char* member, const char* list) const;
+    /// The index'th of a list of the document. \param member  of this object, that names it.
+    [[nodiscard]] Result<GltfValue> at(std::uint64_t index, const char* list, const char* member) const;
 
   private:
-    friend class GltfList;
-    struct Step {
-        const char* name = nullptr;
-        std::optional<std::size_t> index;
-    };
-    /// Names are literals.
-    [[nodiscard]] GltfValue step(const nlohmann::json& json, const char* name,
-                                 std::optional<std::size_t> index = std::nullopt) const;
-    [[nodiscard]] const nlohmann::json* member(const char* name) const;
-    [[nodiscard]] Result<const nlohmann::json*> array(const char* name) const;
+    [[nodiscard]] std::string pathOf(const char* name) const;
+    [[nodiscard]] Result<GltfValue> child(const nlohmann::json& json, std::string path,
+                                          std::uint64_t index = 0) const;
 
+    const nlohmann::json* document_;
     const nlohmann::json* json_;
-    std::array<Step, 8> steps_{};
-    std::size_t depth_ = 0;
-};
-
-/// A list of objects of the document.
-class GltfList {
-  public:
-    GltfList(const GltfValue& owner, const char* name, const nlohmann::json* array)
-        : owner_(owner), name_(name), array_(array) {}
-
-    [[nodiscard]] std::size_t size() const { return array_ == nullptr ? 0 : array_->size(); }
-    /// \param index  below size().
-    [[nodiscard]] Result<GltfValue> at(std::size_t index) const;
-    /// The one that a member of `from` names. Errors: kInvalidInput (it does not exist).
-    [[nodiscard]] Result<GltfValue> named(std::uint64_t index, const GltfValue& from,
-                                          const char* member) const;
-
-  private:
-    GltfValue owner_;
-    const char* name_;
-    const nlohmann::json* array_;
+    std::string path_;  // "" for the document
+    std::uint64_t index_ = 0;
 };
 
 }  // namespace relief

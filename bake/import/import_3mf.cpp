@@ -1,16 +1,15 @@
-#include "bake/import/import_readers.h"
+#include <zip.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <deque>
 #include <map>
+#include <memory>
+#include <pugixml.hpp>
 #include <set>
 #include <utility>
 
-#include "bake/import/import_numbers.h"
-#include "bake/import/import_xml.h"
-#include "bake/import/import_zip.h"
+#include "bake/import/import_readers.h"
 #include "formats/base/text.h"
 
 namespace relief {
@@ -25,120 +24,157 @@ constexpr std::array<std::string_view, 4> kKnownExtensions = {
     "http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07"};
 constexpr std::size_t kQuotedMax = 80;  // bytes of the file shown in a message
 
-/// A model or another part of the archive. \param path  from the archive's root.
-Result<std::vector<std::byte>> partOf(const ZipArchive& archive, std::string_view path) {
-    return archive.read(path.substr(path.starts_with('/') ? 1 : 0));
+// --- the archive ---
+
+class Archive {
+  public:
+    /// \param bytes  borrowed.
+    explicit Archive(std::span<const std::byte> bytes) : zip_(nullptr, zip_discard) {
+        zip_source_t* const source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, nullptr);
+        zip_.reset(zip_open_from_source(source, ZIP_RDONLY, nullptr));
+        if (zip_ == nullptr) {
+            zip_source_free(source);
+        }
+    }
+
+    [[nodiscard]] bool isOpen() const { return zip_ != nullptr; }
+
+    /// A file of the archive. \param path  from its root.
+    [[nodiscard]] Result<std::string> read(std::string_view path) const {
+        const std::string name(path.substr(path.starts_with('/') ? 1 : 0));
+        const std::string shown = "'" + cleanUtf8(name, kQuotedMax) + "' of its archive ";
+        const zip_int64_t index = zip_name_locate(zip_.get(), name.c_str(), ZIP_FL_NOCASE);
+        if (index < 0) {
+            return invalidInput(shown + "does not exist");
+        }
+        const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> file(
+            zip_fopen_index(zip_.get(), static_cast<zip_uint64_t>(index), 0), zip_fclose);
+        std::string bytes;
+        std::array<char, 1 << 16> block{};
+        zip_int64_t got = file == nullptr ? -1 : 1;
+        while (got > 0) {
+            got = zip_fread(file.get(), block.data(), block.size());
+            bytes.append(block.data(), static_cast<std::size_t>(std::max<zip_int64_t>(got, 0)));
+        }
+        // The checksum is looked at behind the last byte.
+        return got == 0 ? Result<std::string>(std::move(bytes))
+                        : invalidInput(shown + "is damaged, encrypted, or packed in a way that is not read");
+    }
+
+  private:
+    std::unique_ptr<zip_t, void (*)(zip_t*)> zip_;
+};
+
+// --- models ---
+
+std::string_view local(std::string_view name) {
+    return name.substr(name.find(':') + 1);  // npos + 1 is 0
 }
 
-/// An object by the model that it is in and its id there.
-using Place = std::pair<std::string, std::string>;
+/// Whatever its prefix is. nullptr without one.
+const char* attribute(pugi::xml_node node, std::string_view name) {
+    for (const pugi::xml_attribute& one : node.attributes()) {
+        if (local(one.name()) == name && !std::string_view(one.name()).starts_with("xmlns:")) {
+            return one.value();
+        }
+    }
+    return nullptr;
+}
+
+std::string textOf(pugi::xml_node node, std::string_view name, const char* otherwise = "") {
+    const char* const text = attribute(node, name);
+    return text != nullptr ? text : otherwise;
+}
+
+/// The children of that name, whatever their prefix is.
+std::vector<pugi::xml_node> all(pugi::xml_node parent, std::string_view name) {
+    std::vector<pugi::xml_node> found;
+    for (const pugi::xml_node child : parent.children()) {
+        if (local(child.name()) == name) {
+            found.push_back(child);
+        }
+    }
+    return found;
+}
+
+pugi::xml_node only(pugi::xml_node parent, std::string_view name) {
+    return parent.find_child([name](pugi::xml_node child) { return local(child.name()) == name; });
+}
 
 /// Gathered over all models.
 struct Models {
-    AssemblyFile file;
-    std::map<Place, std::size_t> objects;
+    using Place = std::pair<std::string, std::string>;  ///< of an object: its model and its id there
+
+    ImportScene scene;
+    std::map<Place, std::uint32_t> objects;  ///< nodes
     struct Use {
-        std::optional<std::size_t> in;  ///< an object; nullopt: the scene
+        std::optional<std::uint32_t> in;  ///< an object; nullopt: the scene
         Place of;
-        Transform transform;
+        std::optional<Transform> transform;
     };
     std::vector<Use> uses;
-    bool support = false;  ///< some is left out
+    bool support = false;  ///< some is left out, as is the next
+    bool beams = false;
 };
-
-/// Twelve numbers, row by row, of a matrix that a row vector is multiplied with.
-Result<Transform> transformOf(std::string_view text) {
-    std::array<double, 12> m{};
-    std::string_view rest = text;
-    for (double& value : m) {
-        const std::string_view word = takeWord(rest);
-        const std::optional<double> number = finiteNumber(word);
-        if (word.empty()) {
-            return invalidInput("a transform has fewer than 12 numbers");
-        }
-        if (!number) {
-            return invalidInput(noFiniteNumber(word));
-        }
-        value = *number;
-    }
-    if (!takeWord(rest).empty()) {
-        return invalidInput("a transform has more than 12 numbers");
-    }
-    return Transform{{{m[0], m[1], m[2]}, {m[3], m[4], m[5]}, {m[6], m[7], m[8]}}, {m[9], m[10], m[11]}};
-}
 
 /// Reads one model of the archive.
 class ModelReader {
   public:
     /// \param path  of the model. \param root  whether its <build> is the scene.
-    ModelReader(std::span<const std::byte> model, std::string path, bool root, Models& models)
-        : xml_(model), path_(std::move(path)), root_(root), models_(models) {}
+    ModelReader(const std::string& text, const std::string& path, bool root, Models& models)
+        : text_(text), path_(path), root_(root), models_(models) {}
 
     Result<void> run() {
-        for (;;) {
-            const XmlReader::Event event = RELIEF_TRY(xml_.next());
-            if (event == XmlReader::Event::kDone) {
-                return {};
-            }
-            if (event == XmlReader::Event::kBegin) {
-                RELIEF_TRY(begin());
+        pugi::xml_document document;
+        const pugi::xml_parse_result parsed = document.load_buffer(text_.data(), text_.size());
+        if (!parsed) {
+            return wrong(parsed.offset, std::string("its XML is damaged (") + parsed.description() + ")");
+        }
+        const pugi::xml_node model = document.document_element();
+        RELIEF_TRY(readHead(model));
+        const pugi::xml_node resources = only(model, "resources");
+        for (const pugi::xml_node group : all(resources, "basematerials")) {
+            for (const pugi::xml_node base : all(group, "base")) {
+                materials_[textOf(group, "id")].push_back(textOf(base, "name"));
             }
         }
-    }
-
-  private:
-    [[nodiscard]] tl::unexpected<Error> wrong(const std::string& what) const {
-        return invalidInput(cleanUtf8(path_, kQuotedMax) + ", " + xml_.where() + what);
-    }
-
-    Result<void> begin() {
-        if (xml_.depth() == 1) {
-            return beginModel();
+        for (const pugi::xml_node object : all(resources, "object")) {
+            RELIEF_TRY(readObject(object));
         }
-        if (xml_.at({"model", "resources", "object"})) {
-            return beginObject();
-        }
-        if (xml_.at({"model", "resources", "object", "mesh", "vertices", "vertex"})) {
-            const double x = RELIEF_TRY(number("x"));
-            const double y = RELIEF_TRY(number("y"));
-            const double z = RELIEF_TRY(number("z"));
-            if (!is_support_) {
-                object().positions.emplace_back(x, y, z);
+        if (root_) {
+            for (const pugi::xml_node item : all(only(model, "build"), "item")) {
+                RELIEF_TRY(addUse(item, std::nullopt));
             }
-        } else if (xml_.at({"model", "resources", "object", "mesh", "triangles", "triangle"})) {
-            return addTriangle();
-        } else if (xml_.at({"model", "resources", "object", "components", "component"})) {
-            return addUse(object_);
-        } else if (root_ && xml_.at({"model", "build", "item"})) {
-            return addUse(std::nullopt);
-        } else if (xml_.at({"model", "resources", "basematerials"})) {
-            materials_ = xml_.attribute("id").value_or("");
-        } else if (xml_.at({"model", "resources", "basematerials", "base"})) {
-            names_[materials_].push_back(xml_.attribute("name").value_or(""));
-        } else if (xml_.name() == "beamlattice" && !beams_) {
-            beams_ = true;
-            models_.file.warnings.emplace_back("left out its beam lattices: only triangles have a surface");
         }
         return {};
     }
 
-    Result<void> beginModel() {
-        if (xml_.name() != "model") {
-            return wrong("the root is <" + cleanUtf8(xml_.name(), kQuotedMax) + ">, not <model>");
+  private:
+    [[nodiscard]] tl::unexpected<Error> wrong(std::ptrdiff_t offset, const std::string& what) const {
+        const auto line = std::count(text_.begin(), text_.begin() + offset, '\n') + 1;
+        return invalidInput(cleanUtf8(path_, kQuotedMax) + ", line " + std::to_string(line) + ": " + what);
+    }
+    [[nodiscard]] tl::unexpected<Error> wrong(pugi::xml_node node, const std::string& what) const {
+        return wrong(
+            std::clamp<std::ptrdiff_t>(node.offset_debug(), 0, static_cast<std::ptrdiff_t>(text_.size())),
+            what);
+    }
+
+    Result<void> readHead(pugi::xml_node model) {
+        if (local(model.name()) != "model") {
+            return wrong(model, "the root is <" + cleanUtf8(model.name(), kQuotedMax) + ">, not <model>");
         }
+        const SourceFrame frame = frameOfUnitName(textOf(model, "unit", "millimeter"));
         if (root_) {
-            models_.file.frame = frameOfUnitName(xml_.attribute("unit").value_or("millimeter"));
-        } else if (frameOfUnitName(xml_.attribute("unit").value_or("millimeter")).metres !=
-                   models_.file.frame.metres) {
-            return wrong("the models have different units; export it again in one model");
+            models_.scene.frame = frame;
+        } else if (frame.metres != models_.scene.frame.metres) {
+            return wrong(model, "the models have different units; export it again in one model");
         }
-        const std::string required = xml_.attribute("requiredextensions").value_or("");
+        const std::string required = textOf(model, "requiredextensions");
         std::string_view rest = required;
         for (std::string_view prefix = takeWord(rest); !prefix.empty(); prefix = takeWord(rest)) {
-            std::string uri(prefix);
-            for (const XmlReader::Attribute& attribute : xml_.attributes()) {
-                uri = attribute.name == "xmlns:" + std::string(prefix) ? attribute.value : uri;
-            }
+            const std::string uri = model.attribute(("xmlns:" + std::string(prefix)).c_str())
+                                        .as_string(std::string(prefix).c_str());
             if (std::find(kKnownExtensions.begin(), kKnownExtensions.end(), uri) == kKnownExtensions.end()) {
                 return fail(ErrorCode::kUnsupported,
                             "its extension '" + cleanUtf8(uri, kQuotedMax) +
@@ -148,155 +184,196 @@ class ModelReader {
         return {};
     }
 
-    Result<void> beginObject() {
-        const std::string id = xml_.attribute("id").value_or("");
-        object_ = models_.file.assembly.objects.size();
-        if (!models_.objects.emplace(Place(path_, id), object_).second) {
-            return wrong("there is another object with the id '" + cleanUtf8(id, kQuotedMax) + "'");
+    Result<void> readObject(pugi::xml_node object) {
+        const std::string id = textOf(object, "id");
+        const auto index = static_cast<std::uint32_t>(models_.scene.nodes.size());
+        if (!models_.objects.emplace(Models::Place(path_, id), index).second) {
+            return wrong(object, "there is another object with the id '" + cleanUtf8(id, kQuotedMax) + "'");
         }
-        AssemblyObject object;
-        object.names = {id, xml_.attribute("name").value_or(""), xml_.attribute("partnumber").value_or("")};
-        models_.file.assembly.objects.push_back(std::move(object));
-        const std::string type = xml_.attribute("type").value_or("model");
-        is_support_ = type == "support" || type == "solidsupport";
-        material_ = Material(xml_.attribute("pid").value_or(""), xml_.attribute("pindex").value_or("0"));
-        parts_.clear();
-        return {};
-    }
-
-    Result<void> addTriangle() {
-        glm::uvec3 corners;
-        for (int i = 0; i < 3; ++i) {
-            constexpr const char* kNames[] = {"v1", "v2", "v3"};
-            const std::string word = xml_.attribute(kNames[i]).value_or("");
-            const std::optional<std::uint64_t> index = parseUnsigned(word);
-            if (!index || *index > 0xFFFFFFFE) {
-                return wrong("a triangle's " + std::string(kNames[i]) + " is '" +
-                             cleanUtf8(word, kQuotedMax) + "', which is no index of a vertex");
-            }
-            corners[i] = static_cast<std::uint32_t>(*index);
-        }
-        if (is_support_) {
+        SceneNode& node = models_.scene.nodes.emplace_back();
+        node.names = {id, textOf(object, "name"), textOf(object, "partnumber")};
+        node.shown = node.names[1].empty() ? id : node.names[1];
+        const std::string type = textOf(object, "type");
+        if (type == "support" || type == "solidsupport") {
             models_.support = true;
-            return {};
+        } else {
+            RELIEF_TRY(readMesh(object, index));
         }
-        Material material = material_;
-        if (const std::optional<std::string> index = xml_.attribute("p1")) {
-            material = Material(xml_.attribute("pid").value_or(material_.first), *index);
+        for (const pugi::xml_node component : all(only(object, "components"), "component")) {
+            RELIEF_TRY(addUse(component, index));
         }
-        if (!names_.contains(material.first)) {
-            material = Material();  // a colour, or a place of a texture
-        }
-        const auto [found, added] = parts_.emplace(material, object().parts.size());
-        if (added) {
-            AssemblyPart part;
-            const auto names = names_.find(material.first);
-            const std::uint64_t index = parseUnsigned(material.second).value_or(0);
-            if (names != names_.end() && index < names->second.size()) {
-                part.names.push_back(names->second[index]);
-            }
-            object().parts.push_back(std::move(part));
-        }
-        object().parts[found->second].triangles.push_back(corners);
         return {};
     }
 
-    Result<void> addUse(std::optional<std::size_t> in) {
-        Models::Use use;
-        use.in = in;
-        // The path of the production extension; without it, the object is in the same model.
-        use.of = {xml_.attribute("path").value_or(path_), xml_.attribute("objectid").value_or("")};
-        use.of.first.insert(0, use.of.first.starts_with('/') ? "" : "/");
-        if (const std::optional<std::string> text = xml_.attribute("transform")) {
-            const Result<Transform> transform = transformOf(*text);
-            if (!transform) {
-                return wrong(transform.error().message);
+    Result<void> readMesh(pugi::xml_node object, std::uint32_t node) {
+        const pugi::xml_node mesh = only(object, "mesh");
+        if (only(mesh, "beamlattice") && !std::exchange(models_.beams, true)) {
+            models_.scene.warnings.emplace_back("left out its beam lattices: only triangles have a surface");
+        }
+        std::vector<glm::vec3> positions;
+        for (const pugi::xml_node vertex : all(only(mesh, "vertices"), "vertex")) {
+            const double x = RELIEF_TRY(number(vertex, "x"));
+            const double y = RELIEF_TRY(number(vertex, "y"));
+            const double z = RELIEF_TRY(number(vertex, "z"));
+            positions.emplace_back(x, y, z);
+        }
+        constexpr std::array<const char*, 3> kNames = {"v1", "v2", "v3"};
+        std::vector<bool> used(positions.size());
+        std::map<std::string, ScenePart> parts;
+        std::vector<std::string> order;
+        for (const pugi::xml_node triangle : all(only(mesh, "triangles"), "triangle")) {
+            const std::string name = materialOf(triangle, object);
+            const auto [part, added] = parts.try_emplace(name);
+            if (added) {
+                order.push_back(name);
             }
-            use.transform = *transform;
+            glm::uvec3& corners = part->second.triangles.emplace_back();
+            for (int i = 0; i < 3; ++i) {
+                corners[i] = RELIEF_TRY(corner(triangle, kNames.at(static_cast<std::size_t>(i)), used));
+            }
+        }
+        for (const std::string& name : order) {
+            ScenePart& part = parts[name];
+            models_.scene.counts.polygons += part.triangles.size();
+            compact(positions, part);
+            part.material = name;
+            part.names = {name};
+            models_.scene.nodes[node].parts.push_back(static_cast<std::uint32_t>(models_.scene.parts.size()));
+            models_.scene.parts.push_back(std::move(part));
+        }
+        const auto unused = static_cast<std::uint64_t>(std::count(used.begin(), used.end(), false));
+        models_.scene.counts.vertices += used.size();
+        models_.scene.counts.unused += unused;
+        models_.scene.counts.loose += unused;
+        return {};
+    }
+
+    Result<std::uint32_t> corner(pugi::xml_node triangle, const char* name, std::vector<bool>& used) const {
+        const std::string word = textOf(triangle, name);
+        const std::optional<std::uint64_t> index = parseUnsigned(word);
+        if (!index) {
+            return wrong(triangle, "a triangle's " + std::string(name) + " is '" +
+                                       cleanUtf8(word, kQuotedMax) + "', which is no index of a vertex");
+        }
+        if (*index >= used.size()) {
+            return wrong(triangle, "a triangle uses vertex " + std::to_string(*index) + " of " +
+                                       std::to_string(used.size()) + " from 0 on; export it again");
+        }
+        used[*index] = true;
+        return static_cast<std::uint32_t>(*index);
+    }
+
+    /// The name of a triangle's material; "" for a colour, or a place of a texture.
+    std::string materialOf(pugi::xml_node triangle, pugi::xml_node object) const {
+        const char* const own = attribute(triangle, "p1");
+        const char* const group = own != nullptr ? attribute(triangle, "pid") : nullptr;
+        const auto names = materials_.find(group != nullptr ? group : textOf(object, "pid"));
+        const std::uint64_t index =
+            parseUnsigned(own != nullptr ? own : textOf(object, "pindex", "0")).value_or(0);
+        return names != materials_.end() && index < names->second.size() ? names->second[index]
+                                                                         : std::string();
+    }
+
+    Result<void> addUse(pugi::xml_node place, std::optional<std::uint32_t> in) {
+        // The path of the production extension; without it, the object is in the same model.
+        Models::Use use{in, {textOf(place, "path", path_.c_str()), textOf(place, "objectid")}, {}};
+        use.of.first.insert(0, use.of.first.starts_with('/') ? "" : "/");
+        if (attribute(place, "transform") != nullptr) {
+            use.transform = RELIEF_TRY(transformOf(place));
         }
         models_.uses.push_back(std::move(use));
         return {};
     }
 
-    [[nodiscard]] Result<double> number(const char* name) const {
-        const std::optional<std::string> text = xml_.attribute(name);
-        if (!text) {
-            return wrong("a vertex has no " + std::string(name));
+    /// Twelve numbers, row by row, of a matrix that a row vector is multiplied with.
+    Result<Transform> transformOf(pugi::xml_node place) const {
+        const std::string text = textOf(place, "transform");
+        std::string_view rest = text;
+        std::array<double, 12> m{};
+        for (double& value : m) {
+            const std::string_view word = takeWord(rest);
+            const std::optional<double> number = finiteNumber(word);
+            if (!number) {
+                return wrong(place,
+                             word.empty() ? "a transform has fewer than 12 numbers" : noFiniteNumber(word));
+            }
+            value = *number;
         }
-        const std::optional<double> value = finiteNumber(*text);
-        return value ? Result<double>(*value) : wrong(noFiniteNumber(*text));
+        if (!takeWord(rest).empty()) {
+            return wrong(place, "a transform has more than 12 numbers");
+        }
+        return Transform{{{m[0], m[1], m[2]}, {m[3], m[4], m[5]}, {m[6], m[7], m[8]}}, {m[9], m[10], m[11]}};
     }
-    [[nodiscard]] AssemblyObject& object() { return models_.file.assembly.objects.back(); }
 
-    using Material = std::pair<std::string, std::string>;  // group and index
+    [[nodiscard]] Result<double> number(pugi::xml_node vertex, const char* name) const {
+        const char* const text = attribute(vertex, name);
+        if (text == nullptr) {
+            return wrong(vertex, "a vertex has no " + std::string(name));
+        }
+        const std::optional<double> value = finiteNumber(text);
+        return value ? Result<double>(*value) : wrong(vertex, noFiniteNumber(text));
+    }
 
-    XmlReader xml_;
-    std::string path_;
+    const std::string& text_;
+    const std::string& path_;
     bool root_;
     Models& models_;
-    std::size_t object_ = 0;
-    bool is_support_ = false;
-    bool beams_ = false;
-    Material material_;
-    std::map<Material, std::size_t> parts_;  // of the object
-    std::string materials_;
-    std::map<std::string, std::vector<std::string>> names_;  // of groups of materials
+    std::map<std::string, std::vector<std::string>> materials_;  // names, by their groups
 };
 
 /// The path of the model that the archive begins with.
-Result<std::string> rootModel(const ZipArchive& archive) {
-    const std::vector<std::byte> relations = RELIEF_TRY(partOf(archive, "_rels/.rels"));
-    XmlReader xml(relations);
-    for (;;) {
-        const XmlReader::Event event = RELIEF_TRY(xml.next());
-        if (event == XmlReader::Event::kDone) {
-            return invalidInput("its archive names no model");
-        }
-        if (event == XmlReader::Event::kBegin && xml.at({"Relationships", "Relationship"}) &&
-            xml.attribute("Type") == kModelRelation) {
-            std::string target = xml.attribute("Target").value_or("");
+Result<std::string> rootModel(const Archive& archive) {
+    const std::string relations = RELIEF_TRY(archive.read("_rels/.rels"));
+    pugi::xml_document document;
+    document.load_buffer(relations.data(), relations.size());
+    for (const pugi::xml_node relation : document.document_element().children()) {
+        if (local(relation.name()) == "Relationship" && textOf(relation, "Type") == kModelRelation) {
+            const std::string target = textOf(relation, "Target");
             return target.starts_with('/') ? target : "/" + target;
         }
     }
+    return invalidInput("its archive names no model");
 }
 
-Result<void> connect(Models& models) {
-    std::vector<AssemblyObject>& objects = models.file.assembly.objects;
+/// Places the objects, which may be named before they are there.
+Result<ImportScene> connected(Models& models) {
+    ImportScene& scene = models.scene;
     for (const Models::Use& use : models.uses) {
         const auto found = models.objects.find(use.of);
         if (found == models.objects.end()) {
             return invalidInput("the object '" + cleanUtf8(use.of.second, kQuotedMax) + "', which " +
                                 cleanUtf8(use.of.first, kQuotedMax) + " should have, does not exist");
         }
-        std::vector<AssemblyUse>& uses = use.in ? objects[*use.in].uses : models.file.assembly.roots;
-        uses.push_back({found->second, use.transform});
+        const auto place = static_cast<std::uint32_t>(scene.nodes.size());
+        (use.in ? scene.nodes[*use.in].children : scene.roots).push_back(place);
+        scene.nodes.push_back({.transform = use.transform, .children = {found->second}});
     }
     if (models.support) {
-        models.file.warnings.emplace_back("left out what supports it while it is printed");
+        scene.warnings.emplace_back("left out what supports it while it is printed");
     }
-    return {};
+    return std::move(scene);
 }
 
 }  // namespace
 
-Result<AssemblyFile> read3mf(std::span<const std::byte> bytes) {
-    const ZipArchive archive = RELIEF_TRY(ZipArchive::open(bytes));
+Result<ImportScene> read3mf(std::span<const std::byte> bytes) {
+    const Archive archive(bytes);
+    if (!archive.isOpen()) {
+        return invalidInput("it is no ZIP archive, or was cut off; copy or export it again");
+    }
     std::deque<std::string> paths = {RELIEF_TRY(rootModel(archive))};
     std::set<std::string> known(paths.begin(), paths.end());
     Models models;
-    bool root = true;
     for (std::size_t uses = 0; !paths.empty(); paths.pop_front()) {
-        const std::vector<std::byte> model = RELIEF_TRY(partOf(archive, paths.front()));
-        RELIEF_TRY(ModelReader(model, paths.front(), root, models).run());
-        root = false;
+        const std::string model = RELIEF_TRY(archive.read(paths.front()));
+        RELIEF_TRY(ModelReader(model, paths.front(), known.size() == 1, models).run());
         for (; uses < models.uses.size(); ++uses) {
             if (known.insert(models.uses[uses].of.first).second) {
                 paths.push_back(models.uses[uses].of.first);
             }
         }
     }
-    RELIEF_TRY(connect(models));
-    return std::move(models.file);
+    return connected(models);
 }
 
 }  // namespace relief

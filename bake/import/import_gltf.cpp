@@ -1,29 +1,25 @@
-#include "bake/import/import_gltf.h"
-
 #include <algorithm>
 #include <array>
-#include <limits>
+#include <cmath>
+#include <glm/mat4x4.hpp>
+#include <glm/vec4.hpp>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
-#include "bake/import/gltf_buffers.h"
+#include "bake/import/gltf_data.h"
 #include "bake/import/gltf_json.h"
-#include "bake/import/gltf_meshes.h"
-#include "bake/import/gltf_nodes.h"
-#include "bake/import/gltf_skin.h"
-#include "bake/import/import_instances.h"
-#include "bake/import/import_names.h"
-#include "bake/import/import_parts.h"
-#include "bake/import/polygon_mesh.h"
+#include "bake/import/import_readers.h"
 #include "formats/base/text.h"
 
 namespace relief {
 namespace {
+
+// --- the document ---
 
 // Required extensions that are read, or that change no position.
 constexpr std::array<std::string_view, 9> kKnown = {
@@ -31,29 +27,22 @@ constexpr std::array<std::string_view, 9> kKnown = {
     "KHR_technique_webgl",   "KHR_techniques_webgl",       "KHR_texture_basisu",
     "KHR_lights_punctual",   "EXT_texture_webp",           "MSFT_texture_dds"};
 
-/// "2.0" -> 2, 0; nullopt for what is no version.
-std::optional<std::pair<std::uint64_t, std::uint64_t>> versionOf(std::string_view text) {
-    const std::vector<std::string_view> parts = split(text, '.');
-    const std::optional<std::uint64_t> major = parseUnsigned(parts[0]);
-    const std::optional<std::uint64_t> minor = parts.size() == 2 ? parseUnsigned(parts[1]) : std::nullopt;
-    return major && minor ? std::optional(std::pair(*major, *minor)) : std::nullopt;
-}
-
 Result<void> checkVersion(const GltfValue& document) {
     const std::optional<GltfValue> asset = RELIEF_TRY(document.object("asset"));
-    const std::optional<std::string> version = asset ? RELIEF_TRY(asset->text("version")) : std::nullopt;
+    const auto version = asset ? RELIEF_TRY(asset->get<std::string>("version")) : std::nullopt;
     if (!version) {
         return invalidInput("it names no glTF version");
     }
-    const std::string least = RELIEF_TRY(asset->text("minVersion")).value_or("2.0");
-    const std::uint64_t any = std::numeric_limits<std::uint64_t>::max();
-    for (const auto& [text, minor_max] : {std::pair(*version, any), std::pair(least, std::uint64_t{0})}) {
-        const auto number = versionOf(text);
-        if (!number) {
+    const std::string least = RELIEF_TRY(asset->get<std::string>("minVersion", "2.0"));
+    for (const auto& [text, any_minor] : {std::pair(*version, true), std::pair(least, false)}) {
+        const std::vector<std::string_view> parts = split(text, '.');
+        const std::optional<std::uint64_t> major = parseUnsigned(parts[0]);
+        const std::optional<std::uint64_t> minor = parts.size() == 2 ? parseUnsigned(parts[1]) : std::nullopt;
+        if (!major || !minor) {
             return asset->wrong("has '" + cleanUtf8(text, 20) +
                                 "' where a version belongs; save it as glTF 2.0");
         }
-        if (number->first != 2 || number->second > minor_max) {
+        if (*major != 2 || (*minor > 0 && !any_minor)) {
             return fail(ErrorCode::kUnsupported,
                         "glTF of version '" + cleanUtf8(text, 20) + "' is not read; save it as glTF 2.0");
         }
@@ -62,7 +51,8 @@ Result<void> checkVersion(const GltfValue& document) {
 }
 
 Result<void> checkExtensions(const GltfValue& document, std::vector<std::string>& warnings) {
-    for (const std::string& name : RELIEF_TRY(document.texts("extensionsRequired"))) {
+    using Names = std::vector<std::string>;
+    for (const std::string& name : RELIEF_TRY(document.get<Names>("extensionsRequired", {}))) {
         const bool known = name.starts_with("KHR_materials_") || name.starts_with("KHR_xmp") ||
                            std::find(kKnown.begin(), kKnown.end(), name) != kKnown.end();
         if (!known) {
@@ -71,7 +61,7 @@ Result<void> checkExtensions(const GltfValue& document, std::vector<std::string>
         }
     }
     // Optional extensions that change the surface.
-    for (const std::string& name : RELIEF_TRY(document.texts("extensionsUsed"))) {
+    for (const std::string& name : RELIEF_TRY(document.get<Names>("extensionsUsed", {}))) {
         if (name == "EXT_mesh_gpu_instancing") {
             warnings.emplace_back("instances by EXT_mesh_gpu_instancing are left out; export them as nodes");
         } else if (name == "KHR_node_visibility") {
@@ -82,224 +72,579 @@ Result<void> checkExtensions(const GltfValue& document, std::vector<std::string>
     return {};
 }
 
-/// A node that shows a mesh.
-struct Use {
-    std::uint64_t node;
-    std::uint64_t mesh;
-    std::optional<std::uint64_t> skin;
-    Transform transform;
-};
+// --- nodes ---
 
-/// All uses below the roots, parents before children. No recursion.
-std::vector<Use> usesOf(const std::vector<GltfNode>& nodes, const std::vector<std::uint64_t>& roots,
-                        const Transform& root) {
-    std::vector<Use> uses;
-    std::vector<std::pair<std::uint64_t, Transform>> pending;
-    const auto push = [&pending](const std::vector<std::uint64_t>& below, const Transform& parent) {
-        for (auto it = below.rbegin(); it != below.rend(); ++it) {
-            pending.emplace_back(*it, parent);
+/// How far the length of a rotation may be from 1, as in the Khronos validator: rounding to bytes gives as much.
+constexpr double kUnitTolerance = 0.00674;
+/// Of the last row of a matrix, which is 0 0 0 1.
+constexpr float kRowTolerance = 1e-5F;
+
+/// \param m  16 numbers, by columns. \return nullopt if its last row is not 0 0 0 1.
+std::optional<Transform> affine(const float* m) {
+    for (const int i : {3, 7, 11, 15}) {
+        if (!(std::abs(m[i] - (i == 15 ? 1.0F : 0.0F)) <= kRowTolerance)) {
+            return std::nullopt;
         }
-    };
-    push(roots, root);
-    while (!pending.empty()) {
-        const auto [index, parent] = pending.back();
-        pending.pop_back();
-        const GltfNode& node = nodes[index];
-        const Transform transform = parent * node.transform;
-        if (node.mesh) {
-            uses.push_back({index, *node.mesh, node.skin, node.skin ? root : transform});
-        }
-        push(node.children, transform);
     }
-    return uses;
+    return Transform{glm::dmat3(m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]),
+                     {m[12], m[13], m[14]}};
 }
 
-/// Marks of triangles by their names.
-class GltfNames {
-  public:
-    /// \param nodes  borrowed, and so is the job.
-    GltfNames(const std::vector<GltfNode>& nodes, const ImportJob& job)
-        : nodes_(nodes),
-          marks_(job.options.names, job.file_name),
-          of_node_(marks_.any() ? nodes.size() : 0) {}
-
-    [[nodiscard]] const NameMarks& marks() const { return marks_; }
-
-    std::uint8_t of(std::uint64_t node, const GltfMesh& mesh, const GltfPrimitive& primitive) {
-        if (!marks_.any()) {
-            return 0;
-        }
-        std::vector<std::uint64_t> chain;
-        std::optional<std::uint64_t> above = node;
-        for (; above && !of_node_[*above]; above = nodes_[*above].parent) {
-            chain.push_back(*above);
-        }
-        std::uint8_t mark = above ? *of_node_[*above] : std::uint8_t{0};
-        for (auto it = chain.rbegin(); it != chain.rend(); ++it) {
-            mark = std::max(mark, marks_.meet(nodes_[*it].name));
-            of_node_[*it] = mark;
-        }
-        mark = std::max(mark, marks_.meet(mesh.name));
-        return std::max(mark, marks_.meet(primitive.material));
-    }
-
-  private:
-    const std::vector<GltfNode>& nodes_;
-    NameMarks marks_;
-    std::vector<std::optional<std::uint8_t>> of_node_;  // with those above it
-};
-
-std::vector<glm::uvec3> turned(std::vector<glm::uvec3> triangles) {
-    for (glm::uvec3& t : triangles) {
-        std::swap(t.y, t.z);
-    }
-    return triangles;
+glm::dmat3 rotationOf(const glm::dvec3& v, double w) {
+    const double x = v.x;
+    const double y = v.y;
+    const double z = v.z;
+    return {{1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)},
+            {2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)},
+            {2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)}};
 }
 
-/// All that is wrong with the document, or its mesh. Errors of this class name no file: readGltf does.
+Result<Transform> transformOf(const GltfValue& node) {
+    const std::vector<float> matrix = RELIEF_TRY(node.numbers("matrix", 16));
+    const std::vector<float> t = RELIEF_TRY(node.numbers("translation", 3));
+    std::vector<float> q = RELIEF_TRY(node.numbers("rotation", 4));
+    const std::vector<float> scale = RELIEF_TRY(node.numbers("scale", 3));
+    if (!matrix.empty()) {
+        if (!t.empty() || !q.empty() || !scale.empty()) {
+            return node.wrong("has a matrix and a translation, rotation or scale; only one may be");
+        }
+        const std::optional<Transform> transform = affine(matrix.data());
+        return transform ? Result<Transform>(*transform)
+                         : node.wrong("has a matrix whose last row is not 0 0 0 1 (is it transposed?)");
+    }
+    if (q.empty()) {
+        q = {0, 0, 0, 1};
+    }
+    const double length =
+        std::sqrt(double{q[0]} * q[0] + double{q[1]} * q[1] + double{q[2]} * q[2] + double{q[3]} * q[3]);
+    if (!(std::abs(length - 1.0) <= kUnitTolerance)) {
+        return node.wrong("has a rotation that is no unit quaternion: its length is " +
+                          shortest(static_cast<float>(length)));
+    }
+    Transform transform{rotationOf(glm::dvec3(q[0], q[1], q[2]) / length, q[3] / length), glm::dvec3(0.0)};
+    for (int i = 0; i < 3; ++i) {
+        transform.linear[i] *= scale.empty() ? 1.0F : scale[static_cast<std::size_t>(i)];
+        transform.offset[i] = t.empty() ? 0.0F : t[static_cast<std::size_t>(i)];
+    }
+    return transform;
+}
+
+// --- primitives ---
+
+enum Mode : std::uint64_t { kPoints, kLines, kLineLoop, kLineStrip, kTriangles, kStrip, kFan };
+constexpr std::uint8_t kByTriangle = 1;
+constexpr std::uint8_t kByOther = 2;
+constexpr std::uint64_t kJointsMax = 65536;
+/// Sets of joints: a vertex has at most sixteen.
+constexpr std::size_t kSetsMax = 4;
+
+std::uint64_t linesOf(std::uint64_t mode, std::uint64_t corners) {
+    return mode == kLines ? corners / 2 : corners < 2 ? 0 : mode == kLineLoop ? corners : corners - 1;
+}
+
+/// The corners of a triangle, by number in its primitive. Of strips every other one is turned over.
+glm::uvec3 cornersOf(std::uint64_t mode, std::uint32_t i) {
+    return mode == kFan         ? glm::uvec3(0, i + 1, i + 2)
+           : mode == kTriangles ? glm::uvec3(3 * i, 3 * i + 1, 3 * i + 2)
+           : i % 2 == 0         ? glm::uvec3(i, i + 1, i + 2)
+                                : glm::uvec3(i + 1, i, i + 2);
+}
+
+/// A joint that moves a vertex.
+struct Influence {
+    std::uint32_t joint;
+    float weight;  ///< 0 or more
+};
+
+/// The joints of a primitive's vertices.
+struct Influences {
+    std::size_t per_vertex = 0;
+    std::vector<Influence> all;  ///< per_vertex for each vertex; the weights of each are more than 0 in sum
+};
+
+/// Whether the weights of every vertex are 0 or more, and more than 0 in sum.
+bool weigh(const Influences& influences) {
+    for (std::size_t at = 0; at < influences.all.size(); at += influences.per_vertex) {
+        double sum = 0.0;
+        for (std::size_t k = at; k < at + influences.per_vertex; ++k) {
+            const float weight = influences.all[k].weight;
+            sum += weight >= 0.0F && weight <= 1e6F ? double{weight} : std::nan("");
+        }
+        if (!(sum >= 1e-6)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// Reads JOINTS_0, WEIGHTS_0, JOINTS_1, … \param vertices  as many as the primitive has.
+/// \return nullopt where there are none.
+Result<std::optional<Influences>> readInfluences(const GltfValue& attributes, GltfBuffers& buffers,
+                                                 std::uint64_t vertices) {
+    std::vector<std::pair<std::vector<glm::vec4>, std::vector<glm::vec4>>> sets;
+    for (std::size_t i = 0; i < kSetsMax; ++i) {
+        const std::string joints = "JOINTS_" + std::to_string(i);
+        const std::string weights = "WEIGHTS_" + std::to_string(i);
+        const auto of_joints = RELIEF_TRY(attributes.named(joints.c_str(), "accessors"));
+        const auto of_weights = RELIEF_TRY(attributes.named(weights.c_str(), "accessors"));
+        if (!of_joints && !of_weights) {
+            break;
+        }
+        if (!of_joints || !of_weights) {
+            return attributes.wrong("have only one of " + joints + " and " + weights);
+        }
+        auto& [joint, weight] = sets.emplace_back();
+        joint = RELIEF_TRY(readAccessor<glm::vec4>(*of_joints, GltfUse::kJoints, buffers, vertices));
+        weight = RELIEF_TRY(readAccessor<glm::vec4>(*of_weights, GltfUse::kWeights, buffers, vertices));
+        if (joint.size() != vertices || weight.size() != vertices) {
+            return attributes.wrong("have other counts of " + joints + ", " + weights + " and positions");
+        }
+    }
+    if (sets.empty()) {
+        return std::nullopt;
+    }
+    Influences influences{4 * sets.size(), {}};
+    for (std::uint64_t vertex = 0; vertex < vertices; ++vertex) {
+        for (const auto& [joint, weight] : sets) {
+            for (int k = 0; k < 4; ++k) {
+                influences.all.push_back({static_cast<std::uint32_t>(joint[vertex][k]), weight[vertex][k]});
+            }
+        }
+    }
+    return weigh(influences)
+               ? Result<std::optional<Influences>>(std::move(influences))
+               : attributes.wrong(
+                     "have weights that are less than 0, no numbers, or 0 for all joints of a vertex");
+}
+
+/// The part in that pose: turned over where most of it is mirrored.
+ScenePart posed(ScenePart part, const Influences& influences, const std::vector<Transform>& joints) {
+    double mirrored = 0.0;
+    std::vector<bool> mirrors;
+    for (const Transform& joint : joints) {
+        mirrors.push_back(joint.mirrors());
+    }
+    const Influence* by = influences.all.data();
+    for (glm::vec3& position : part.positions) {
+        glm::dvec3 sum(0.0);
+        double weights = 0.0;
+        for (std::size_t k = 0; k < influences.per_vertex; ++k, ++by) {
+            if (by->weight > 0.0F) {
+                sum += double{by->weight} * joints[by->joint].apply(position);
+                weights += double{by->weight};
+                mirrored += mirrors[by->joint] ? double{by->weight} : -double{by->weight};
+            }
+        }
+        position = sum / weights;
+    }
+    for (glm::uvec3& t : part.triangles) {
+        t = mirrored > 0.0 ? glm::uvec3(t.x, t.z, t.y) : t;
+    }
+    return part;
+}
+
 class GltfReader {
   public:
-    GltfReader(const ImportJob& job, ImportFiles& files, const glm::dmat3& linear)
-        : job_(job), files_(files), root_{linear, glm::dvec3(0.0)} {}
+    GltfReader(const ImportJob& job, const GltfChunks& chunks, const GltfValue& document, ImportFiles& files)
+        : triangle_max_(job.triangle_max), document_(document), buffers_(chunks, files) {}
 
-    Result<void> open() {
-        chunks_ = RELIEF_TRY(gltfChunks(job_.bytes));
-        json_ = RELIEF_TRY(parseGltfJson(chunks_.json));
-        const GltfValue document(json_);
-        if (!document.isObject()) {
-            return invalidInput("its JSON is no object");
-        }
-        warnings_ = chunks_.warnings;
-        RELIEF_TRY(checkVersion(document));
-        RELIEF_TRY(checkExtensions(document, warnings_));
-        GltfBuffers buffers = RELIEF_TRY(GltfBuffers::open(document, chunks_, files_));
-        nodes_ = RELIEF_TRY(readGltfNodes(document));
-        const std::vector<std::uint64_t> roots = RELIEF_TRY(gltfRoots(document, nodes_));
-        uses_ = usesOf(nodes_, roots, root_);
-        RELIEF_TRY(readMeshes(document, buffers));
-        return {};
-    }
-
-    /// Behind open().
-    Result<TriangleMesh> flatten(TriangleMesh mesh) {
-        mesh.warnings.insert(mesh.warnings.end(), warnings_.begin(), warnings_.end());
-        mesh.unused_vertices = parts_.unused;
-        MeshInstances instances(job_.shown, job_.triangle_max, std::move(mesh));
-        for (const Use& use : uses_) {
-            for (const GltfPrimitive& part : meshes_.at(use.mesh).primitives) {
-                if (!instances.count(part.positions.size(), part.triangles.size(), use.transform)) {
-                    return instances.tooMany();
-                }
-            }
-        }
-        GltfNames names(nodes_, job_);
-        instances.begin(names.marks().any());
-        for (const Use& use : uses_) {
-            const GltfMesh& source = meshes_.at(use.mesh);
-            for (const GltfPrimitive& part : source.primitives) {
-                const std::uint8_t mark = names.of(use.node, source, part);
-                instances.surface(
-                    {static_cast<std::uint32_t>(use.node), nodes_[use.node].name, part.material});
-                if (use.skin && part.influences) {
-                    const GltfPose pose = posed(part.positions, *part.influences, skins_.at(*use.skin));
-                    instances.add(pose.positions, pose.mirrored ? turned(part.triangles) : part.triangles,
-                                  use.transform, mark);
-                } else {
-                    instances.add(part.positions, part.triangles, use.transform, mark);
-                }
-            }
-        }
-        return instances.finish(names.marks());
-    }
-
-  private:
-    /// Those that are shown.
-    Result<void> readMeshes(const GltfValue& document, GltfBuffers& buffers) {
-        const GltfList list = RELIEF_TRY(document.objects("meshes"));
-        GltfMeshes meshes(document, buffers, job_.triangle_max);
-        std::set<std::uint64_t> skinned;
-        for (const Use& use : uses_) {
-            if (use.skin) {
-                skinned.insert(use.mesh);
-            }
-        }
-        for (const Use& use : uses_) {
-            if (!meshes_.contains(use.mesh)) {
-                const GltfValue place = RELIEF_TRY(list.at(use.mesh));
-                meshes_[use.mesh] = RELIEF_TRY(meshes.read(place, skinned.contains(use.mesh)));
-            }
-        }
-        const std::uint64_t unplaced = list.size() - meshes_.size();
-        parts_ = meshes.parts();
-        if (const std::optional<std::string> refusal = partsRefusal(parts_)) {
-            return invalidInput(*refusal);
-        }
-        warnings_.insert(warnings_.end(), meshes.warnings().begin(), meshes.warnings().end());
-        RELIEF_TRY(readSkins(document, buffers));
-        if (unplaced > 0) {
-            warnings_.push_back("left out " + std::to_string(unplaced) + " of its " +
-                                std::to_string(list.size()) + " meshes: its scene does not show them");
-        }
-        warnOfParts(parts_, warnings_);
-        return {};
-    }
-
-    /// Those of meshes that are shown.
-    Result<void> readSkins(const GltfValue& document, GltfBuffers& buffers) {
-        bool whole = true;
-        std::set<std::pair<std::uint64_t, std::uint64_t>> seen;
-        for (const Use& use : uses_) {
-            if (!use.skin || !seen.insert({use.mesh, *use.skin}).second) {
-                continue;
-            }
-            if (!skins_.contains(*use.skin)) {
-                skins_[*use.skin] = RELIEF_TRY(readSkin(document, *use.skin, nodes_, buffers));
-            }
-            const std::size_t joints = skins_[*use.skin].size();
-            for (const GltfPrimitive& part : meshes_.at(use.mesh).primitives) {
-                whole = whole && part.influences;
-                const auto lost = [joints](const GltfInfluence& by) {
-                    return by.weight > 0.0F && by.joint >= joints;
-                };
-                if (part.influences &&
-                    std::any_of(part.influences->all.begin(), part.influences->all.end(), lost)) {
-                    return invalidInput("meshes[" + std::to_string(use.mesh) +
-                                        "] has vertices that are moved by a joint which its skin, skins[" +
-                                        std::to_string(*use.skin) + "], does not have");
-                }
+    Result<ImportScene> run() {
+        scene_.frame = {1.0, UpAxis::kPlusY};
+        RELIEF_TRY(checkVersion(document_));
+        RELIEF_TRY(checkExtensions(document_, scene_.warnings));
+        RELIEF_TRY(readNodes());
+        RELIEF_TRY(readRoots());
+        RELIEF_TRY(readShown());
+        for (const auto& [key, vertices] : vertices_) {
+            scene_.counts.vertices += vertices.uses.size();
+            for (const std::uint8_t use : vertices.uses) {
+                scene_.counts.unused += (use & kByTriangle) == 0 ? 1 : 0;
+                scene_.counts.loose += use == 0 ? 1 : 0;
             }
         }
         if (!skins_.empty()) {
-            warnings_.emplace_back(
-                whole ? "it is skinned; baked in the pose that its nodes have"
-                      : "it is skinned; parts without joints, or compressed by Draco, are baked as "
-                        "they are modelled, without their skeleton");
+            warn(all_jointed_ ? "it is skinned; baked in the pose that its nodes have"
+                              : "it is skinned; parts without joints, or compressed by Draco, are baked as "
+                                "they are modelled, without their skeleton");
+        }
+        return std::move(scene_);
+    }
+
+  private:
+    /// What a node is beside a SceneNode.
+    struct Node {
+        std::optional<std::uint32_t> parent;
+        std::optional<GltfValue> mesh;
+        std::optional<GltfValue> skin;
+    };
+    struct Primitive {
+        ScenePart part;
+        std::optional<Influences>
+            influences;  ///< of the part's positions; read only where a skin asks for them
+        std::map<std::uint64_t, std::uint32_t>
+            placed;  ///< index of a scene's part, by skin + 1, or 0 for none
+    };
+    /// What tells the vertices of one accessor from those of another: exporters make many accessors of one view.
+    using Key = std::tuple<std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t, bool, std::uint64_t>;
+    struct Vertices {
+        std::vector<glm::vec3> positions;
+        std::vector<std::uint8_t> uses;
+    };
+
+    void warn(const std::string& text) {
+        if (std::find(scene_.warnings.begin(), scene_.warnings.end(), text) == scene_.warnings.end()) {
+            scene_.warnings.push_back(text);
+        }
+    }
+
+    Result<void> readNodes() {
+        const std::vector<GltfValue> places = RELIEF_TRY(document_.objects("nodes"));
+        nodes_.resize(places.size());
+        scene_.nodes.resize(places.size());
+        for (const GltfValue& place : places) {
+            const auto index = static_cast<std::uint32_t>(place.index());
+            SceneNode& node = scene_.nodes[index];
+            node.index = index;
+            node.shown = RELIEF_TRY(place.get<std::string>("name", ""));
+            node.names = {node.shown};
+            node.transform = RELIEF_TRY(transformOf(place));
+            nodes_[index].mesh = RELIEF_TRY(place.named("mesh", "meshes"));
+            nodes_[index].skin = RELIEF_TRY(place.named("skin", "skins"));
+            for (const std::uint64_t child :
+                 RELIEF_TRY(place.get<std::vector<std::uint64_t>>("children", {}))) {
+                const std::string name = "nodes[" + std::to_string(child) + "]";
+                if (child >= places.size()) {
+                    return place.wrong("names a child, " + name + ", that does not exist");
+                }
+                // It would be there twice for each node on the way, 2ⁿ times in n nodes.
+                if (std::exchange(nodes_[child].parent, index)) {
+                    return invalidInput(name + " has two parents; nodes must form trees");
+                }
+                node.children.push_back(static_cast<std::uint32_t>(child));
+            }
+        }
+        // Each node has at most one parent, so a node that no root leads to is part of a ring.
+        std::vector<std::uint32_t> open;
+        for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
+            if (!nodes_[i].parent) {
+                open.push_back(i);
+            }
+        }
+        std::size_t reached = 0;
+        for (; !open.empty(); ++reached) {
+            const std::vector<std::uint32_t>& children = scene_.nodes[open.back()].children;
+            open.pop_back();
+            open.insert(open.end(), children.begin(), children.end());
+        }
+        return reached == nodes_.size()
+                   ? Result<void>()
+                   : invalidInput("its nodes are their own parents; nodes must form trees");
+    }
+
+    /// Of the scene that the file shows: of its first one if it names none.
+    Result<void> readRoots() {
+        const std::vector<GltfValue> scenes = RELIEF_TRY(document_.objects("scenes"));
+        const std::uint64_t shown = RELIEF_TRY(document_.get<std::uint64_t>("scene", 0));
+        if (scenes.empty()) {
+            return invalidInput("it has no scene, and so shows nothing; export it with a scene");
+        }
+        const GltfValue scene = RELIEF_TRY(document_.at(shown, "scenes", "scene"));
+        std::set<std::uint64_t> seen;
+        for (const std::uint64_t root : RELIEF_TRY(scene.get<std::vector<std::uint64_t>>("nodes", {}))) {
+            if (root >= nodes_.size() || nodes_[root].parent || !seen.insert(root).second) {
+                return scene.wrong("names nodes[" + std::to_string(root) +
+                                   "], which does not exist, has a parent or is named twice");
+            }
+            scene_.roots.push_back(static_cast<std::uint32_t>(root));
         }
         return {};
     }
 
-    const ImportJob& job_;
-    ImportFiles& files_;
-    Transform root_;
-    GltfChunks chunks_;
-    nlohmann::json json_;
-    std::vector<GltfNode> nodes_;
-    std::vector<Use> uses_;
-    std::map<std::uint64_t, GltfMesh> meshes_;
-    std::map<std::uint64_t, std::vector<Transform>> skins_;  // what their joints do
-    MeshParts parts_;
-    std::vector<std::string> warnings_;
+    /// The meshes of the nodes below the roots, in the order in which the scene shows them.
+    Result<void> readShown() {
+        std::vector<std::uint32_t> shown;
+        std::set<std::uint64_t> skinned;
+        std::vector<std::uint32_t> pending(scene_.roots.rbegin(), scene_.roots.rend());
+        while (!pending.empty()) {
+            const std::uint32_t index = pending.back();
+            pending.pop_back();
+            const std::vector<std::uint32_t>& children = scene_.nodes[index].children;
+            pending.insert(pending.end(), children.rbegin(), children.rend());
+            if (nodes_[index].mesh) {
+                shown.push_back(index);
+                if (nodes_[index].skin) {
+                    skinned.insert(nodes_[index].mesh->index());
+                }
+            }
+        }
+        for (const std::uint32_t index : shown) {
+            const GltfValue& mesh = *nodes_[index].mesh;
+            if (!meshes_.contains(mesh.index())) {
+                RELIEF_TRY(readMesh(mesh, skinned.contains(mesh.index())));
+            }
+        }
+        for (const std::uint32_t index : shown) {
+            RELIEF_TRY(placeMesh(nodes_[index], scene_.nodes[index]));
+        }
+        scene_.counts.meshes = RELIEF_TRY(document_.objects("meshes")).size();
+        scene_.counts.unplaced = scene_.counts.meshes - meshes_.size();
+        return {};
+    }
+
+    Result<void> placeMesh(const Node& from, SceneNode& node) {
+        const std::uint64_t key = from.skin ? from.skin->index() + 1 : 0;
+        node.posed = from.skin.has_value();
+        if (from.skin && !skins_.contains(key)) {
+            skins_[key] = RELIEF_TRY(readSkin(*from.skin));
+        }
+        for (Primitive& primitive : meshes_[from.mesh->index()]) {
+            all_jointed_ = all_jointed_ && (!from.skin || primitive.influences);
+            const auto [found, added] =
+                primitive.placed.try_emplace(key, static_cast<std::uint32_t>(scene_.parts.size()));
+            node.parts.push_back(found->second);
+            if (!added) {
+                continue;
+            }
+            if (!from.skin || !primitive.influences) {
+                scene_.parts.push_back(primitive.part);
+                continue;
+            }
+            const std::vector<Transform>& joints = skins_[key];
+            for (const Influence& by : primitive.influences->all) {
+                if (by.weight > 0.0F && by.joint >= joints.size()) {
+                    return from.mesh->wrong("has vertices that are moved by a joint which its skin, skins[" +
+                                            std::to_string(from.skin->index()) + "], does not have");
+                }
+            }
+            scene_.parts.push_back(posed(primitive.part, *primitive.influences, joints));
+        }
+        return {};
+    }
+
+    /// What each joint of a skin does to vertices as they are modelled.
+    Result<std::vector<Transform>> readSkin(const GltfValue& skin) {
+        const auto joints = RELIEF_TRY(skin.get<std::vector<std::uint64_t>>("joints", {}));
+        if (joints.empty() || joints.size() > kJointsMax) {
+            return skin.wrong("has no joints, or more than " + std::to_string(kJointsMax));
+        }
+        // Without them, each joint leaves vertices where it stands.
+        std::vector<glm::mat4> bounds(joints.size(), glm::mat4(1.0F));
+        if (const auto inverse = RELIEF_TRY(skin.named("inverseBindMatrices", "accessors"))) {
+            bounds = RELIEF_TRY(readAccessor<glm::mat4>(*inverse, GltfUse::kMatrices, buffers_, kJointsMax));
+        }
+        if (bounds.size() < joints.size()) {
+            return skin.wrong("has fewer inverseBindMatrices than joints");
+        }
+        std::vector<Transform> transforms;
+        for (std::size_t i = 0; i < joints.size(); ++i) {
+            static_cast<void>(RELIEF_TRY(skin.at(joints[i], "nodes", "joints")));
+            const std::optional<Transform> bound = affine(&bounds[i][0][0]);
+            if (!bound) {
+                return skin.wrong("has inverseBindMatrices whose last row is not 0 0 0 1");
+            }
+            Transform place = *scene_.nodes[joints[i]].transform;
+            for (auto above = nodes_[joints[i]].parent; above; above = nodes_[*above].parent) {
+                place = *scene_.nodes[*above].transform * place;
+            }
+            transforms.push_back(place * *bound);
+        }
+        return transforms;
+    }
+
+    /// \param skinned  whether a skin asks for it.
+    Result<void> readMesh(const GltfValue& mesh, bool skinned) {
+        std::vector<Primitive>& primitives = meshes_[mesh.index()];
+        const std::string name = RELIEF_TRY(mesh.get<std::string>("name", ""));
+        for (const GltfValue& place : RELIEF_TRY(mesh.objects("primitives"))) {
+            Primitive primitive = RELIEF_TRY(readPrimitive(place, skinned));
+            if (!primitive.part.triangles.empty()) {
+                primitive.part.names = {name, primitive.part.material};
+                primitives.push_back(std::move(primitive));
+            }
+        }
+        return {};
+    }
+
+    Result<Primitive> readPrimitive(const GltfValue& place, bool skinned) {
+        const std::optional<GltfValue> attributes = RELIEF_TRY(place.object("attributes"));
+        const std::uint64_t mode = RELIEF_TRY(place.get<std::uint64_t>("mode", kTriangles));
+        if (!attributes || mode > kFan) {
+            return place.wrong(attributes ? "has a mode that is not 0 to 6" : "has no attributes");
+        }
+        if (!RELIEF_TRY(place.objects("targets")).empty()) {
+            warn("it is morphed; baked as it is modelled, without its targets");
+        }
+        Primitive out;
+        if (const auto material = RELIEF_TRY(place.named("material", "materials"))) {
+            out.part.material = RELIEF_TRY(material->get<std::string>("name", ""));
+        }
+        const std::optional<GltfValue> accessor = RELIEF_TRY(attributes->named("POSITION", "accessors"));
+        if (!accessor) {
+            warn("a primitive without positions is left out");
+            return out;
+        }
+        const std::optional<GltfValue> extensions = RELIEF_TRY(place.object("extensions"));
+        if (extensions && extensions->has("KHR_draco_mesh_compression")) {
+            RELIEF_TRY(readDracoTriangles(place, mode, *extensions, *accessor, out.part));
+            return out;
+        }
+        Vertices& used = *RELIEF_TRY(vertices(*accessor));
+        RELIEF_TRY(readTriangles(place, mode, used, out.part));
+        const std::vector<std::uint32_t> kept = compact(used.positions, out.part);
+        if (skinned) {
+            const std::optional<Influences> all =
+                RELIEF_TRY(readInfluences(*attributes, buffers_, used.positions.size()));
+            if (all) {
+                out.influences.emplace().per_vertex = all->per_vertex;
+            }
+            for (std::size_t i = 0; all && i < kept.size(); ++i) {
+                const auto from = all->all.begin() + static_cast<std::ptrdiff_t>(all->per_vertex * kept[i]);
+                out.influences->all.insert(out.influences->all.end(), from,
+                                           from + static_cast<std::ptrdiff_t>(all->per_vertex));
+            }
+        }
+        return out;
+    }
+
+    Result<Vertices*> vertices(const GltfValue& accessor) {
+        const bool plain = accessor.has("bufferView") && !accessor.has("sparse");
+        const std::uint64_t view = plain ? RELIEF_TRY(accessor.number("bufferView")) : 0;
+        const std::uint64_t offset = RELIEF_TRY(accessor.get<std::uint64_t>("byteOffset", 0));
+        const std::uint64_t count = RELIEF_TRY(accessor.number("count"));
+        const std::uint64_t type = RELIEF_TRY(accessor.number("componentType"));
+        const bool normalized = RELIEF_TRY(accessor.get("normalized", false));
+        const auto [found, added] =
+            vertices_.try_emplace({view, offset, count, type, normalized, plain ? 0 : accessor.index() + 1});
+        if (added) {
+            found->second.positions = RELIEF_TRY(readAccessor<glm::vec3>(
+                accessor, GltfUse::kPositions, buffers_, 3 * triangle_max_ - vertex_count_));
+            found->second.uses.resize(found->second.positions.size(), 0);
+            vertex_count_ += found->second.positions.size();
+        }
+        return &found->second;
+    }
+
+    Result<void> countTriangles(const GltfValue& place, std::uint64_t count) {
+        if (count > triangle_max_ - scene_.counts.polygons) {
+            return place.wrong("is beyond the limit of " + std::to_string(triangle_max_) +
+                                   " triangles for all meshes; simplify the mesh, or raise --max-triangles",
+                               ErrorCode::kLimit);
+        }
+        scene_.counts.polygons += count;
+        return {};
+    }
+
+    /// Of the vertices that are given.
+    Result<void> readTriangles(const GltfValue& place, std::uint64_t mode, Vertices& vertices,
+                               ScenePart& part) {
+        // Without indices, the vertices as they come.
+        const std::optional<GltfValue> accessor = RELIEF_TRY(place.named("indices", "accessors"));
+        std::vector<std::uint32_t> indices;
+        if (accessor) {
+            indices = RELIEF_TRY(
+                readAccessor<std::uint32_t>(*accessor, GltfUse::kIndices, buffers_, 3 * triangle_max_));
+            RELIEF_TRY(checkIndices(*accessor, indices, vertices.positions.size()));
+        }
+        const std::uint64_t corners = accessor ? indices.size() : vertices.positions.size();
+        const auto vertexOf = [&](std::uint32_t corner) { return accessor ? indices[corner] : corner; };
+        const bool surface = mode >= kTriangles;
+        for (std::uint32_t i = 0; i < corners; ++i) {
+            vertices.uses[vertexOf(i)] |= surface ? kByTriangle : kByOther;
+        }
+        scene_.counts.points += mode == kPoints ? corners : 0;
+        scene_.counts.lines += surface || mode == kPoints ? 0 : linesOf(mode, corners);
+        if (!surface) {
+            return {};
+        }
+        if (mode == kTriangles && corners % 3 != 0) {
+            return place.wrong("has " + std::to_string(corners) + " corners, which is no multiple of 3");
+        }
+        const std::uint64_t count = mode == kTriangles ? corners / 3 : corners < 3 ? 0 : corners - 2;
+        RELIEF_TRY(countTriangles(place, count));
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const glm::uvec3 corner = cornersOf(mode, i);
+            part.triangles.emplace_back(vertexOf(corner.x), vertexOf(corner.y), vertexOf(corner.z));
+        }
+        return {};
+    }
+
+    static Result<void> checkIndices(const GltfValue& accessor, const std::vector<std::uint32_t>& indices,
+                                     std::size_t vertices) {
+        const std::uint64_t type = RELIEF_TRY(accessor.number("componentType"));
+        const std::uint32_t restart = type == 5121 ? 0xFF : type == 5123 ? 0xFFFF : 0xFFFFFFFF;
+        for (const std::uint32_t vertex : indices) {
+            if (vertex == restart) {
+                return accessor.wrong(
+                    "holds the index " + std::to_string(restart) +
+                    ", which is not allowed: it means a restart; export it with wider indices");
+            }
+            if (vertex >= vertices) {
+                return accessor.wrong("holds the index " + std::to_string(vertex) +
+                                      " of a vertex that does not exist: there are " +
+                                      std::to_string(vertices));
+            }
+        }
+        return {};
+    }
+
+    Result<void> readDracoTriangles(const GltfValue& place, std::uint64_t mode, const GltfValue& extensions,
+                                    const GltfValue& positions, ScenePart& part) {
+        if (mode != kTriangles && mode != kStrip) {
+            return place.wrong("is compressed by Draco, which holds triangles, but its mode is another");
+        }
+        const GltfValue draco = *RELIEF_TRY(extensions.object("KHR_draco_mesh_compression"));
+        const GltfView view = RELIEF_TRY(buffers_.view(draco));
+        const std::optional<GltfValue> attributes = RELIEF_TRY(draco.object("attributes"));
+        if (!attributes) {
+            return draco.wrong("has no attributes");
+        }
+        const std::uint64_t attribute = RELIEF_TRY(attributes->number("POSITION"));
+        const std::uint64_t count = RELIEF_TRY(positions.number("count"));
+        const std::optional<GltfValue> indices = RELIEF_TRY(place.named("indices", "accessors"));
+        const std::uint64_t corners = indices ? RELIEF_TRY(indices->number("count")) : 0;
+        std::optional<ScenePart> mesh =
+            readDraco(view.bytes, attribute, triangle_max_ - scene_.counts.polygons);
+        // Its accessors tell what it must hold.
+        if (!mesh || mesh->positions.size() != count ||
+            (indices && mode == kTriangles && corners != 3 * mesh->triangles.size())) {
+            return draco.wrong(
+                "holds no mesh of Draco as its primitive announces it; export it without Draco");
+        }
+        RELIEF_TRY(countTriangles(place, mesh->triangles.size()));
+        part.triangles = std::move(mesh->triangles);
+        compact(mesh->positions, part);
+        scene_.counts.vertices += count;
+        scene_.counts.unused += count - part.positions.size();
+        scene_.counts.loose += count - part.positions.size();
+        return {};
+    }
+
+    std::uint64_t triangle_max_;
+    const GltfValue& document_;
+    GltfBuffers buffers_;
+    ImportScene scene_;
+    std::vector<Node> nodes_;  // beside those of the scene
+    std::map<std::uint64_t, std::vector<Primitive>> meshes_;
+    std::map<std::uint64_t, std::vector<Transform>> skins_;  // what their joints do, by number + 1
+    bool all_jointed_ = true;
+    std::map<Key, Vertices> vertices_;
+    std::uint64_t vertex_count_ = 0;
 };
 
 }  // namespace
 
-Result<TriangleMesh> readGltf(const ImportJob& job, ImportFiles& files, const glm::dmat3& linear,
-                              TriangleMesh mesh) {
-    GltfReader reader(job, files, linear);
-    if (const Result<void> opened = reader.open(); !opened) {
-        return unreadable(job.shown, opened.error());
+Result<ImportScene> readGltf(const ImportJob& job, ImportFiles& files) {
+    GltfChunks chunks = RELIEF_TRY(gltfChunks(job.bytes));
+    const nlohmann::json json = RELIEF_TRY(parseGltfJson(chunks.json));
+    if (!json.is_object()) {
+        return invalidInput("its JSON is no object");
     }
-    return reader.flatten(std::move(mesh));
+    const GltfValue document(json);
+    Result<ImportScene> scene = GltfReader(job, chunks, document, files).run();
+    if (scene) {
+        scene->warnings.insert(scene->warnings.begin(), chunks.warnings.begin(), chunks.warnings.end());
+    }
+    return scene;
 }
 
 }  // namespace relief

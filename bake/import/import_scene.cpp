@@ -1,298 +1,499 @@
 #include "bake/import/import_scene.h"
 
 #include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
 #include <map>
 #include <set>
 #include <span>
 #include <string_view>
 #include <utility>
 
-#include "bake/import/import_instances.h"
 #include "bake/import/polygon_cutter.h"
+#include "formats/base/text.h"
 
 namespace relief {
 namespace {
 
-/// What assimp adds to nodes of FBX that it splits.
-constexpr std::string_view kHelperNode = "_$AssimpFbx$_";
+/// A transform whose determinant is this small, relative to the product of its columns' lengths, leaves no volume.
+constexpr double kFlat = 1e-9;
+/// One vertex in this many may lie loose before that is worth a warning.
+constexpr std::uint64_t kLooseShare = 10;
 
-Transform transformOf(const aiMatrix4x4& m) {
-    return {glm::dmat3(m.a1, m.b1, m.c1, m.a2, m.b2, m.c2, m.a3, m.b3, m.c3), {m.a4, m.b4, m.c4}};
+double determinant(const glm::dmat3& m) {
+    return m[0][0] * (m[1][1] * m[2][2] - m[2][1] * m[1][2]) -
+           m[1][0] * (m[0][1] * m[2][2] - m[2][1] * m[0][2]) +
+           m[2][0] * (m[0][1] * m[1][2] - m[1][1] * m[0][2]);
 }
 
-/// Calls visit(mesh, transform, node) for every use of a mesh, parents before children. No recursion.
-/// \return false as soon as visit does.
-template <class Visit>
-bool forEachUse(const aiScene& scene, const Transform& root, const Visit& visit) {
-    struct Pending {
-        const aiNode* node;
-        Transform parent;
+/// "1 line, 3 points and 2 free-form curves or surfaces"; "" where there are none of these.
+std::string othersText(const MeshParts& parts) {
+    std::vector<std::string> words;
+    const auto add = [&words](std::uint64_t count, const char* one, const char* many) {
+        if (count > 0) {
+            words.push_back(std::to_string(count) + " " + (count == 1 ? one : many));
+        }
     };
-    std::vector<Pending> pending{{scene.mRootNode, root}};
-    while (!pending.empty()) {
-        const Pending next = pending.back();
-        pending.pop_back();
-        const Transform transform = next.parent * transformOf(next.node->mTransformation);
-        for (unsigned i = 0; i < next.node->mNumMeshes; ++i) {
-            const unsigned index = next.node->mMeshes[i];
-            if (index < scene.mNumMeshes && scene.mMeshes[index]->HasPositions() &&
-                !visit(*scene.mMeshes[index], transform, next.node)) {
-                return false;
-            }
-        }
-        for (unsigned i = next.node->mNumChildren; i > 0; --i) {
-            // Some importers (RAW in assimp 5.2) leave children out.
-            if (const aiNode* child = next.node->mChildren[i - 1]; child != nullptr) {
-                pending.push_back({child, transform});
-            }
-        }
+    add(parts.lines, "line", "lines");
+    add(parts.points, "point", "points");
+    add(parts.free_forms, "free-form curve or surface", "free-form curves or surfaces");
+    std::string text;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        text += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
     }
-    return true;
+    return text;
 }
 
-std::size_t unplacedMeshes(const aiScene& scene) {
-    std::set<const aiMesh*> placed;
-    if (scene.mRootNode != nullptr) {
-        forEachUse(scene, {},
-                   [&](const aiMesh& mesh, const Transform& /*transform*/, const aiNode* /*node*/) {
-                       placed.insert(&mesh);
-                       return true;
-                   });
-    }
-    const std::span meshes(scene.mMeshes, scene.mNumMeshes);
-    return static_cast<std::size_t>(std::count_if(meshes.begin(), meshes.end(), [&](const aiMesh* mesh) {
-        return mesh->HasPositions() && mesh->mNumFaces > 0 && placed.count(mesh) == 0;
-    }));
-}
-
-std::string_view textOf(const aiString& text) {
-    return {text.data, std::min<std::size_t>(text.length, sizeof(text.data))};
-}
-
-/// What assimp calls what has no name.
-bool isMadeUp(std::string_view name) {
-    return name == AI_DEFAULT_MATERIAL_NAME || (name.starts_with('<') && name.ends_with('>')) ||
-           name.find(kHelperNode) != std::string_view::npos;
-}
-
-/// Tells NameMarks the names of a scene's triangles.
-class SceneNames {
+/// Cuts polygons into triangles, one run of them after the other.
+class PolygonRuns {
   public:
-    /// \param scene  borrowed, and so is the job.
-    SceneNames(const aiScene& scene, const ImportJob& job)
-        : scene_(scene), marks_(job.options.names, job.file_name) {}
+    PolygonRuns(const PolygonMesh& polygons, bool apart)
+        : polygons_(polygons),
+          apart_(apart),
+          has_polygons_(std::any_of(polygons.sizes.begin(), polygons.sizes.end(),
+                                    [](std::uint32_t size) { return size > 3; })) {}
 
-    [[nodiscard]] const NameMarks& marks() const { return marks_; }
-
-    /// As TriangleMesh::marks has it, for the triangles of a mesh. \param node  that uses it.
-    std::uint8_t of(const aiMesh& mesh, const aiNode* node) {
-        std::vector<const aiNode*> chain;
-        const aiNode* above = node;
-        for (; above != nullptr && !nodes_.contains(above); above = above->mParent) {
-            chain.push_back(above);
+    /// The next polygons. \param end  index. \param other  whether they are of another surface than those before.
+    ScenePart upTo(std::size_t end, bool other) {
+        ScenePart part;
+        std::vector<glm::vec3> places;
+        for (; next_ < end; first_ += polygons_.sizes[next_++]) {
+            const auto corners = std::span(polygons_.corners).subspan(first_, polygons_.sizes[next_]);
+            if (corners.size() < 3) {
+                continue;
+            }
+            held_ = other || held_ > kHeldMax ? 0 : held_;
+            other = false;
+            places.clear();
+            for (const std::uint32_t corner : corners) {
+                places.push_back(polygons_.positions[corner]);
+            }
+            const std::size_t begin = part.triangles.size();
+            for (const glm::uvec3& t : cutter_.cut(places)) {
+                part.triangles.push_back(apart_ ? t + held_
+                                                : glm::uvec3(corners[t.x], corners[t.y], corners[t.z]));
+            }
+            const std::span triangles = std::span(part.triangles).subspan(begin);
+            if (has_polygons_) {
+                starts_.turn(triangles);
+            }
+            if (apart_) {
+                for (glm::uvec3& t : triangles) {
+                    t += static_cast<std::uint32_t>(part.positions.size()) - held_;
+                }
+                held_ += static_cast<std::uint32_t>(places.size());
+                part.positions.insert(part.positions.end(), places.begin(), places.end());
+            }
         }
-        std::uint8_t mark = above != nullptr ? nodes_.at(above) : std::uint8_t{0};
-        for (auto it = chain.rbegin(); it != chain.rend(); ++it) {
-            mark = std::max(mark, meet(textOf((*it)->mName)));
-            nodes_[*it] = mark;
+        if (!apart_ && !part.triangles.empty()) {
+            part.positions = polygons_.positions;
         }
-        return std::max({mark, meet(textOf(mesh.mName)), meetMaterial(mesh)});
-    }
-
-    /// The node, or what bears a name above it, and the material. \param node  null: none uses the mesh.
-    SurfaceName surfaceOf(const aiMesh& mesh, const aiNode* node) {
-        SurfaceName name;
-        name.node_index =
-            indices_.try_emplace(node, static_cast<std::uint32_t>(indices_.size())).first->second;
-        const auto unnamed = [](std::string_view text) { return text.empty() || isMadeUp(text); };
-        while (node != nullptr && unnamed(textOf(node->mName)) && node->mParent != nullptr) {
-            node = node->mParent;
-        }
-        if (node != nullptr && node->mParent != nullptr) {  // the topmost is the file
-            name.node = textOf(node->mName);
-        }
-        if (const std::string material = materialOf(mesh); !isMadeUp(material)) {
-            name.material = material;
-        }
-        return name;
+        return part;
     }
 
   private:
-    std::uint8_t meet(std::string_view name) { return marks_.meet(name, !isMadeUp(name)); }
+    /// Triangles are turned (TriangleStarts) by indices that begin again behind so many, as bakes have always had it.
+    static constexpr std::uint32_t kHeldMax = 100'000;
 
-    std::uint8_t meetMaterial(const aiMesh& mesh) {
-        const std::string name = materialOf(mesh);
-        return name.empty() ? std::uint8_t{0} : meet(name);
-    }
-
-    /// "" without one.
-    [[nodiscard]] std::string materialOf(const aiMesh& mesh) const {
-        aiString name;
-        return mesh.mMaterialIndex < scene_.mNumMaterials &&
-                       scene_.mMaterials[mesh.mMaterialIndex]->Get(AI_MATKEY_NAME, name) == AI_SUCCESS
-                   ? std::string(textOf(name))
-                   : std::string();
-    }
-
-    const aiScene& scene_;
-    NameMarks marks_;
-    std::map<const aiNode*, std::uint8_t> nodes_;     // with those above them
-    std::map<const aiNode*, std::uint32_t> indices_;  // of nodes that use a mesh
+    const PolygonMesh& polygons_;
+    bool apart_;
+    bool has_polygons_;
+    PolygonCutter cutter_;
+    TriangleStarts starts_;
+    std::size_t next_ = 0;   // polygon
+    std::size_t first_ = 0;  // of its corners
+    std::uint32_t held_ = 0;
 };
 
-/// \param out  is cleared.
-void trianglesOf(const aiMesh& mesh, std::vector<glm::uvec3>& out) {
-    out.clear();
-    for (const aiFace& face : std::span(mesh.mFaces, mesh.mNumFaces)) {
-        if (face.mNumIndices == 3) {
-            out.emplace_back(face.mIndices[0], face.mIndices[1], face.mIndices[2]);
+/// The names of a file's triangles, and the marks of those that --as asks for.
+class NameMarks {
+  public:
+    /// \param job  borrowed.
+    explicit NameMarks(const ImportJob& job) : job_(job) {
+        for (std::size_t i = 0; i < std::min(job.options.names.size(), kAskedNamesMax); ++i) {
+            marks_[job.options.names[i]] = static_cast<std::uint8_t>(i + 1);
         }
     }
-}
 
-/// \param out  is cleared.
-void positionsOf(const aiMesh& mesh, std::vector<glm::vec3>& out) {
-    out.clear();
-    for (const aiVector3D& v : std::span(mesh.mVertices, mesh.mNumVertices)) {
-        out.emplace_back(v.x, v.y, v.z);
+    [[nodiscard]] bool any() const { return !marks_.empty(); }
+
+    /// \param names  of some triangles, as the file has them.
+    /// \return what TriangleMesh::marks has of them: of several names, the largest counts.
+    std::uint8_t meet(const std::vector<std::string>& names) {
+        std::uint8_t mark = 0;
+        for (std::size_t i = 0; any() && i < names.size(); ++i) {
+            const std::string name = cleanUtf8(names[i], kAskedNameBytesMax);
+            // The file's own name, which some readers give to the topmost node, is listed by no message.
+            if (!name.empty() && name != job_.file_name && names_.size() < kNamesMax &&
+                known_.insert(name).second) {
+                names_.push_back(name);
+            }
+            if (const auto found = marks_.find(name); found != marks_.end()) {
+                mark = std::max(mark, found->second);
+                met_.insert(found->second);
+            }
+        }
+        return mark;
     }
-}
+
+    /// Whether every name was met. Errors: kUsage, with the names that were.
+    [[nodiscard]] Result<void> allMet() const {
+        const std::vector<std::string>& asked = job_.options.names;
+        const auto unmet = std::find_if(asked.begin(), asked.end(), [&](const std::string& name) {
+            return !met_.contains(marks_.at(name));
+        });
+        if (unmet == asked.end()) {
+            return {};
+        }
+        std::string text = "it names no triangles '" + cleanUtf8(*unmet, kAskedNameBytesMax) + "'";
+        const std::vector<std::string_view> known(names_.begin(), names_.end());
+        text += didYouMean(*unmet, known);
+        if (known.empty()) {
+            return fail(ErrorCode::kUsage, text + ", nor anything else; leave the name out");
+        }
+        text += text.ends_with("?") ? " It has " : "; it has ";
+        for (std::size_t i = 0; i < std::min(known.size(), kListedMax); ++i) {
+            text += (i == 0 ? "'" : ", '") + cleanUtf8(known[i], kListedBytesMax) + "'";
+        }
+        return fail(ErrorCode::kUsage, text + (known.size() > kListedMax ? " and more" : ""));
+    }
+
+  private:
+    /// Names that are remembered, to find the nearest to a wrong one, and those that a message lists.
+    static constexpr std::size_t kNamesMax = 1000;
+    static constexpr std::size_t kListedMax = 20;
+    static constexpr std::size_t kListedBytesMax = 80;
+
+    const ImportJob& job_;
+    std::map<std::string, std::uint8_t, std::less<>> marks_;  // of the names that are asked for
+    std::set<std::uint8_t> met_;                              // of these
+    std::vector<std::string> names_;            // that were met, in that order, the first of them
+    std::set<std::string, std::less<>> known_;  // the same
+};
+
+class Flattener {
+  public:
+    Flattener(ImportScene scene, const ImportJob& job) : scene_(std::move(scene)), job_(job), marks_(job) {}
+
+    Result<TriangleMesh> run() {
+        states_.resize(scene_.nodes.size());
+        placed_.resize(scene_.parts.size());
+        for (const std::uint32_t root : scene_.roots) {
+            static_cast<void>(RELIEF_TRY(look(root)));
+        }
+        mesh_.warnings = std::move(scene_.warnings);
+        RELIEF_TRY(countParts());
+        RELIEF_TRY(takeFrame());
+        if (!forEachUse([this](const SceneNode& node, const Transform& transform, std::uint8_t /*mark*/) {
+                return count(node, transform);
+            })) {
+            return tooManyTriangles(job_);
+        }
+        mesh_.positions.reserve(vertices_);
+        mesh_.triangles.reserve(triangles_);
+        mesh_.marks.reserve(marks_.any() ? triangles_ : 0);
+        forEachUse([this](const SceneNode& node, const Transform& transform, std::uint8_t mark) {
+            ++uses_;
+            for (const std::uint32_t part : node.parts) {
+                add(node, scene_.parts[part], transform, mark);
+            }
+            return true;
+        });
+        if (mesh_.triangles.empty()) {
+            return invalidInput("no triangles; export the surface as polygons, not as points or lines");
+        }
+        RELIEF_TRY(marks_.allMet());
+        if (mesh_.surface_names.size() < 2) {
+            mesh_.surface_names.clear();
+            mesh_.labels.clear();
+        }
+        if (flat_ > 0) {
+            mesh_.warnings.push_back(
+                std::to_string(flat_) +
+                " of its parts are scaled to nothing in some direction, and hold no volume");
+        }
+        return std::move(mesh_);
+    }
+
+  private:
+    enum class State : std::uint8_t { kUnseen, kOpen, kEmpty, kShown };
+
+    /// Whether there are triangles at a node or below. It recurses: importers run on a deep stack.
+    Result<bool> look(std::uint32_t index) {
+        if (states_[index] == State::kOpen) {
+            return invalidInput("an object is placed within itself; export it again");
+        }
+        if (states_[index] == State::kUnseen) {
+            states_[index] = State::kOpen;
+            const SceneNode& node = scene_.nodes[index];
+            bool shown = false;
+            for (const std::uint32_t part : node.parts) {
+                placed_[part] = true;
+                shown = shown || !scene_.parts[part].triangles.empty();
+            }
+            for (const std::uint32_t child : node.children) {
+                shown = RELIEF_TRY(look(child)) || shown;
+            }
+            states_[index] = shown ? State::kShown : State::kEmpty;
+        }
+        return states_[index] == State::kShown;
+    }
+
+    Result<void> countParts() {
+        MeshParts& counts = scene_.counts;
+        const bool counted = counts.meshes > 0;
+        for (std::size_t i = 0; i < scene_.parts.size() && !counted; ++i) {
+            const bool filled = !scene_.parts[i].triangles.empty();
+            counts.meshes += filled ? 1 : 0;
+            counts.unplaced += filled && !placed_[i] ? 1 : 0;
+        }
+        if (const std::optional<std::string> refusal = partsRefusal(counts)) {
+            return invalidInput(*refusal);
+        }
+        mesh_.unused_vertices = counts.unused;
+        warnOfParts(counts, mesh_.warnings);
+        return {};
+    }
+
+    Result<void> takeFrame() {
+        const ImportOptions& options = job_.options;
+        RELIEF_TRY(checkFrame(scene_.frame, options.unit, options.up));
+        const FrameChange change = changeOf(scene_.frame, options.unit, options.up);
+        mesh_.unit = change.unit;
+        mesh_.warnings.insert(mesh_.warnings.end(), change.warnings.begin(), change.warnings.end());
+        root_.linear = change.scale * change.turn;
+        return {};
+    }
+
+    /// Visits the nodes that show something, parents before children: visit(node, transform of its parts, mark) -> whether
+    /// to go on. \return whether it got to the end.
+    template <class Visit>
+    bool forEachUse(const Visit& visit) {
+        struct Pending {
+            std::uint32_t node;
+            Transform parent;
+            std::uint8_t mark;
+        };
+        std::vector<Pending> pending;
+        const auto push = [&](const std::vector<std::uint32_t>& nodes, const Transform& parent,
+                              std::uint8_t mark) {
+            for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) {
+                if (states_[*node] == State::kShown) {
+                    pending.push_back({*node, parent, mark});
+                }
+            }
+        };
+        push(scene_.roots, root_, 0);
+        while (!pending.empty()) {
+            const Pending next = pending.back();
+            pending.pop_back();
+            const SceneNode& node = scene_.nodes[next.node];
+            const Transform transform = node.transform ? next.parent * *node.transform : next.parent;
+            const std::uint8_t mark = std::max(next.mark, marks_.meet(node.names));
+            if (!node.parts.empty() && !visit(node, node.posed ? root_ : transform, mark)) {
+                return false;
+            }
+            push(node.children, transform, mark);
+        }
+        return true;
+    }
+
+    bool count(const SceneNode& node, const Transform& transform) {
+        for (const std::uint32_t part : node.parts) {
+            triangles_ += scene_.parts[part].triangles.size();
+            vertices_ += scene_.parts[part].triangles.empty() ? 0 : scene_.parts[part].positions.size();
+            flat_ += transform.flattens() ? 1 : 0;
+        }
+        return triangles_ <= job_.triangle_max && vertices_ <= 3 * job_.triangle_max;
+    }
+
+    /// Triangles are turned over where the transform mirrors.
+    void add(const SceneNode& node, const ScenePart& part, const Transform& transform, std::uint8_t mark) {
+        if (part.triangles.empty()) {
+            return;
+        }
+        const auto base = static_cast<std::uint32_t>(mesh_.positions.size());
+        for (const glm::vec3& position : part.positions) {
+            mesh_.positions.emplace_back(transform.apply(position));
+        }
+        const bool mirrors = transform.mirrors();
+        for (const glm::uvec3& t : part.triangles) {
+            mesh_.triangles.emplace_back(base + t.x, base + (mirrors ? t.z : t.y),
+                                         base + (mirrors ? t.y : t.z));
+        }
+        mesh_.marks.resize(marks_.any() ? mesh_.triangles.size() : 0,
+                           std::max(mark, marks_.meet(part.names)));
+        mesh_.labels.resize(mesh_.triangles.size(),
+                            labelOf({node.index.value_or(uses_), cleanUtf8(node.shown, kAskedNameBytesMax),
+                                     cleanUtf8(part.material, kAskedNameBytesMax)}));
+    }
+
+    std::uint32_t labelOf(const SurfaceName& name) {
+        std::vector<SurfaceName>& names = mesh_.surface_names;
+        const auto next = static_cast<std::uint32_t>(names.size());
+        if (const auto found = labels_.find(name); found != labels_.end() || next == kSurfaceNamesMax) {
+            return found != labels_.end() ? found->second : kSurfaceNamesMax - 1;
+        }
+        names.push_back(next + 1 < kSurfaceNamesMax ? name : SurfaceName());
+        return labels_[name] = next;
+    }
+
+    ImportScene scene_;
+    const ImportJob& job_;
+    NameMarks marks_;
+    Transform root_;
+    std::vector<State> states_;  // of the nodes
+    std::vector<bool> placed_;   // of the parts
+    TriangleMesh mesh_;
+    std::uint64_t vertices_ = 0;
+    std::uint64_t triangles_ = 0;
+    std::uint64_t flat_ = 0;
+    std::uint32_t uses_ = 0;
+    std::map<SurfaceName, std::uint32_t> labels_;  // of TriangleMesh::surface_names
+};
 
 }  // namespace
 
-bool indicesExist(const aiScene& scene) {
-    for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
-        const aiMesh& mesh = *scene.mMeshes[m];
-        for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
-            const aiFace& face = mesh.mFaces[f];
-            for (unsigned i = 0; i < face.mNumIndices; ++i) {
-                if (face.mIndices[i] >= mesh.mNumVertices) {
-                    return false;
-                }
-            }
-        }
-    }
-    return true;
+bool Transform::mirrors() const {
+    return determinant(linear) < 0.0;
 }
 
-MeshParts partsOf(const aiScene& scene) {
-    constexpr std::uint8_t kByPolygon = 1;
-    constexpr std::uint8_t kByOther = 2;
-    MeshParts parts;
-    parts.meshes = scene.mNumMeshes;
-    parts.unplaced = unplacedMeshes(scene);
-    for (const aiMesh* mesh : std::span(scene.mMeshes, scene.mNumMeshes)) {
-        if (!mesh->HasPositions()) {
-            continue;
+bool Transform::flattens() const {
+    const double lengths = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
+    return std::abs(determinant(linear)) <= kFlat * lengths;
+}
+
+Transform operator*(const Transform& outer, const Transform& inner) {
+    return {outer.linear * inner.linear, outer.apply(inner.offset)};
+}
+
+std::vector<std::uint32_t> compact(const std::vector<glm::vec3>& positions, ScenePart& part) {
+    std::uint32_t low = 0xFFFFFFFF;
+    std::uint32_t high = 0;
+    for (const glm::uvec3& t : part.triangles) {
+        low = std::min({low, t.x, t.y, t.z});
+        high = std::max({high, t.x, t.y, t.z});
+    }
+    std::vector<std::uint32_t> used;
+    std::vector<std::uint32_t> place(low <= high ? high - low + std::size_t{1} : 0);
+    for (const glm::uvec3& t : part.triangles) {
+        place[t.x - low] = place[t.y - low] = place[t.z - low] = 1;
+    }
+    for (std::size_t i = 0; i < place.size(); ++i) {
+        if (std::exchange(place[i], static_cast<std::uint32_t>(used.size())) != 0) {
+            used.push_back(low + static_cast<std::uint32_t>(i));
+            part.positions.push_back(positions[used.back()]);
         }
-        std::vector<std::uint8_t> used(mesh->mNumVertices, 0);
-        for (const aiFace& face : std::span(mesh->mFaces, mesh->mNumFaces)) {
-            const bool polygon = face.mNumIndices >= 3;
-            parts.polygons += polygon ? 1 : 0;
-            parts.lines += face.mNumIndices == 2 ? 1 : 0;
-            parts.points += face.mNumIndices == 1 ? 1 : 0;
-            for (const unsigned index : std::span(face.mIndices, face.mNumIndices)) {
-                used[index] |= polygon ? kByPolygon : kByOther;
-            }
+    }
+    for (glm::uvec3& t : part.triangles) {
+        t = {place[t.x - low], place[t.y - low], place[t.z - low]};
+    }
+    return used;
+}
+
+MeshParts partsOf(const PolygonMesh& mesh) {
+    MeshParts parts = mesh.others;
+    constexpr std::uint8_t kByOther = 1;
+    constexpr std::uint8_t kByPolygon = 2;
+    std::vector<std::uint8_t> used = mesh.in_others;
+    used.resize(mesh.positions.size(), 0);
+    auto corner = mesh.corners.begin();
+    for (const std::uint32_t size : mesh.sizes) {
+        parts.polygons += size >= 3 ? 1 : 0;
+        parts.lines += size == 2 ? 1 : 0;
+        parts.points += size == 1 ? 1 : 0;
+        for (std::uint32_t i = 0; i < size; ++i, ++corner) {
+            used[*corner] |= size >= 3 ? kByPolygon : kByOther;
         }
-        parts.vertices += used.size();
-        for (const std::uint8_t use : used) {
-            parts.unused += (use & kByPolygon) == 0 ? 1 : 0;
-            parts.loose += use == 0 ? 1 : 0;
-        }
+    }
+    parts.vertices = used.size();
+    for (const std::uint8_t use : used) {
+        parts.unused += (use & kByPolygon) == 0 ? 1 : 0;
+        parts.loose += use == 0 ? 1 : 0;
     }
     return parts;
 }
 
-void warnOfScene(const aiScene& scene, std::vector<std::string>& warnings) {
-    bool skinned = false;
-    bool morphed = false;
-    for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
-        skinned = skinned || scene.mMeshes[m]->HasBones();
-        morphed = morphed || scene.mMeshes[m]->mNumAnimMeshes > 0;
+Result<void> addPolygons(const PolygonMesh& polygons, bool apart, const ImportJob& job, ImportScene& scene) {
+    std::uint64_t triangles = 0;
+    for (const std::uint32_t size : polygons.sizes) {
+        triangles += size >= 3 ? size - 2 : 0;
     }
-    for (const auto& [holds, warning] :
-         {std::pair{skinned, "it is skinned; baked as it is modelled, without its skeleton"},
-          std::pair{morphed, "it is morphed; baked as it is modelled, without its targets"}}) {
-        if (holds && std::find(warnings.begin(), warnings.end(), warning) == warnings.end()) {
-            warnings.emplace_back(warning);
-        }
+    if (triangles > job.triangle_max) {
+        return tooManyTriangles(job);
     }
-}
-
-void triangulate(aiScene& scene) {
-    PolygonCutter cutter;
-    std::vector<glm::vec3> corners;
-    std::vector<glm::uvec3> triangles;
-    for (aiMesh* mesh : std::span(scene.mMeshes, scene.mNumMeshes)) {
-        const std::span faces(mesh->mFaces, mesh->mNumFaces);
-        std::size_t count = 0;
-        for (const aiFace& face : faces) {
-            count += face.mNumIndices > 3 ? face.mNumIndices - 2 : 1;
-        }
-        if (count == faces.size()) {
+    scene.counts = partsOf(polygons);
+    scene.warnings = polygons.warnings;
+    scene.roots = {0};
+    scene.nodes.push_back({.names = {job.file_name}});
+    PolygonRuns runs(polygons, apart);
+    std::map<std::string_view, std::uint32_t> indices;  // one of a name is one node
+    const PolygonGroup unnamed;
+    const PolygonGroup* last = nullptr;
+    for (std::size_t i = 0; i <= polygons.groups.size(); ++i) {
+        const PolygonGroup& group = i == 0 ? unnamed : polygons.groups[i - 1];
+        const bool other = last == nullptr || last->node != group.node || last->material != group.material;
+        ScenePart part =
+            runs.upTo(i < polygons.groups.size() ? polygons.groups[i].begin : polygons.sizes.size(), other);
+        if (part.triangles.empty()) {
             continue;
         }
-        auto* const cut = new aiFace[count];
-        aiFace* next = cut;
-        TriangleStarts starts;
-        for (aiFace& face : faces) {
-            if (face.mNumIndices < 3) {
-                next->mNumIndices = face.mNumIndices;
-                next->mIndices = std::exchange(face.mIndices, nullptr);
-                ++next;
-                continue;
-            }
-            corners.clear();
-            for (const unsigned index : std::span(face.mIndices, face.mNumIndices)) {
-                const aiVector3D& v = mesh->mVertices[index];
-                corners.emplace_back(v.x, v.y, v.z);
-            }
-            triangles.clear();
-            for (const glm::uvec3& t : cutter.cut(corners)) {
-                triangles.emplace_back(face.mIndices[t.x], face.mIndices[t.y], face.mIndices[t.z]);
-            }
-            starts.turn(triangles);
-            for (const glm::uvec3& t : triangles) {
-                next->mNumIndices = 3;
-                next->mIndices = new unsigned[3]{t.x, t.y, t.z};
-                ++next;
-            }
-        }
-        delete[] mesh->mFaces;
-        mesh->mFaces = cut;
-        mesh->mNumFaces = static_cast<unsigned>(count);
-        mesh->mPrimitiveTypes &= ~static_cast<unsigned>(aiPrimitiveType_POLYGON);
-        mesh->mPrimitiveTypes |= aiPrimitiveType_TRIANGLE;
+        const auto next = static_cast<std::uint32_t>(indices.size() + 1);
+        const std::uint32_t index = i == 0 ? 0 : indices.try_emplace(group.node, next).first->second;
+        last = i == 0 ? nullptr : &group;
+        part.material = group.material;
+        part.names = group.names;
+        scene.nodes[0].children.push_back(static_cast<std::uint32_t>(scene.nodes.size()));
+        scene.nodes.push_back(
+            {.shown = group.node, .index = index, .parts = {static_cast<std::uint32_t>(scene.parts.size())}});
+        scene.parts.push_back(std::move(part));
+    }
+    return {};
+}
+
+ScenePart cutPolygons(const PolygonMesh& polygons) {
+    return PolygonRuns(polygons, false).upTo(polygons.sizes.size(), false);
+}
+
+std::optional<std::string> partsRefusal(const MeshParts& parts) {
+    if (parts.polygons > 0) {
+        return std::nullopt;
+    }
+    if (const std::string others = othersText(parts); !others.empty()) {
+        return "no triangles, but " + others + "; export the surface as polygons";
+    }
+    if (parts.vertices > 0) {
+        return std::to_string(parts.vertices) + (parts.vertices == 1 ? " vertex" : " vertices") +
+               " but no faces; if it is a scan, make a surface of its points first, for example in MeshLab";
+    }
+    return std::nullopt;
+}
+
+void warnOfParts(const MeshParts& parts, std::vector<std::string>& warnings) {
+    if (const std::string others = othersText(parts); !others.empty()) {
+        warnings.push_back("left out " + others + ": only polygons have a surface");
+    }
+    if (parts.unplaced > 0) {
+        warnings.push_back("left out " + std::to_string(parts.unplaced) + " of its " +
+                           std::to_string(parts.meshes) + " meshes: no node of its scene places them");
+    }
+    if (parts.loose > parts.vertices / kLooseShare) {
+        warnings.push_back(std::to_string(parts.loose) + " of its " + std::to_string(parts.vertices) +
+                           (parts.loose == 1 ? " vertices belongs" : " vertices belong") +
+                           " to no polygon: faces may be missing; compare the count of "
+                           "triangles with that of the program that wrote it");
     }
 }
 
-Result<TriangleMesh> flatten(const aiScene& scene, const glm::dmat3& linear, const ImportJob& job,
-                             TriangleMesh mesh) {
-    const Transform root{linear, glm::dvec3(0.0)};
-    MeshInstances instances(job.shown, job.triangle_max, std::move(mesh));
-    const bool counted = forEachUse(
-        scene, root, [&](const aiMesh& source, const Transform& transform, const aiNode* /*node*/) {
-            return instances.count(source.mNumVertices, source.mNumFaces, transform);
-        });
-    if (!counted) {
-        return instances.tooMany();
-    }
-    SceneNames names(scene, job);
-    instances.begin(names.marks().any());
-    std::vector<glm::vec3> positions;
-    std::vector<glm::uvec3> triangles;
-    forEachUse(scene, root, [&](const aiMesh& source, const Transform& transform, const aiNode* node) {
-        positionsOf(source, positions);
-        trianglesOf(source, triangles);
-        const std::uint8_t mark = names.marks().any() && !triangles.empty() ? names.of(source, node) : 0;
-        if (!triangles.empty()) {
-            instances.surface(names.surfaceOf(source, node));
-        }
-        instances.add(positions, triangles, transform, mark);
-        return true;
-    });
-    return instances.finish(names.marks());
+Result<TriangleMesh> flatten(ImportScene scene, const ImportJob& job) {
+    return Flattener(std::move(scene), job).run();
+}
+
+tl::unexpected<Error> tooManyTriangles(const ImportJob& job) {
+    return fail(ErrorCode::kLimit,
+                "it has more than " + std::to_string(job.triangle_max) +
+                    " triangles or thrice as many vertices, instances counted one by one; simplify the mesh" +
+                    (job.triangle_max < kTriangleMax ? ", or raise --max-triangles" : ""));
 }
 
 }  // namespace relief

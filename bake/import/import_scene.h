@@ -1,38 +1,93 @@
-// assimp's scene as one TriangleMesh.
+// A mesh file as its reader leaves it, surfaces and the nodes that place them, and the TriangleMesh of what it shows.
 #pragma once
-
-#include <assimp/scene.h>
 
 #include <cstdint>
 #include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bake/import/import_job.h"
-#include "bake/import/import_parts.h"
+#include "bake/import/import_units.h"
 #include "bake/mesh/mesh.h"
 #include "formats/base/result.h"
+#include "formats/polygons/polygon_mesh.h"
 
 namespace relief {
 
-/// Whether every face uses vertices that exist. Ask before anything walks over the faces: some readers of assimp keep
-/// whatever index the file holds.
-[[nodiscard]] bool indicesExist(const aiScene& scene);
+static_assert(kPolygonTrianglesMax == kTriangleMax);
 
-/// Warns of what the scene holds that a rigid surface is not: bones, and targets of a morph.
-void warnOfScene(const aiScene& scene, std::vector<std::string>& warnings);
+/// p -> linear · p + offset
+struct Transform {
+    glm::dmat3 linear{1.0};
+    glm::dvec3 offset{0.0};
 
-/// \param scene  one whose indices exist.
-[[nodiscard]] MeshParts partsOf(const aiScene& scene);
+    [[nodiscard]] glm::dvec3 apply(const glm::dvec3& p) const { return linear * p + offset; }
+    [[nodiscard]] bool mirrors() const;
+    /// A scale of 0 along some direction.
+    [[nodiscard]] bool flattens() const;
+};
+/// First `inner`, then `outer`.
+[[nodiscard]] Transform operator*(const Transform& outer, const Transform& inner);
 
-/// Cuts the scene's polygons into triangles; lines and points stay. \param scene  one whose indices exist.
-void triangulate(aiScene& scene);
+/// Triangles of one material.
+struct ScenePart {
+    std::vector<glm::vec3> positions;   ///< may be no numbers
+    std::vector<glm::uvec3> triangles;  ///< of positions that exist
+    std::string material{};             ///< of SurfaceName
+    std::vector<std::string> names{};   ///< that --as can select it by: of its mesh, group, material
+};
 
-/// Adds every use of every mesh to `mesh`, with the transforms of its nodes applied and then `linear`. A triangle has the
-/// names of its material, of its mesh, and of the node that uses it and of all above that.
-/// \param mesh  has marks then if the job asks for names.
-/// Errors: kLimit (more triangles than the job allows), kInvalidInput (none), kUsage (a name that no triangle has).
-[[nodiscard]] Result<TriangleMesh> flatten(const aiScene& scene, const glm::dmat3& linear,
-                                           const ImportJob& job, TriangleMesh mesh);
+/// Gives the part those of the positions that its triangles use, in their order. \return them, by their index.
+std::vector<std::uint32_t> compact(const std::vector<glm::vec3>& positions, ScenePart& part);
+
+/// A place of parts and of other nodes, which may have several places themselves.
+struct SceneNode {
+    std::optional<Transform> transform{};  ///< to its parent
+    bool posed = false;                    ///< its parts stand in the scene, whatever places the node
+    std::vector<std::string> names{};      ///< that --as can select all below it by
+    std::string shown{};                   ///< of SurfaceName, as is the next
+    std::optional<std::uint32_t> index{};  ///< nullopt: each place of the node counts for itself
+    std::vector<std::uint32_t> parts{};
+    std::vector<std::uint32_t> children{};
+};
+
+struct ImportScene {
+    std::vector<ScenePart> parts;
+    std::vector<SceneNode> nodes;
+    std::vector<std::uint32_t> roots;
+    SourceFrame frame;
+    MeshParts
+        counts;  ///< of the whole file; flatten() counts `meshes` and those that no node places, if they are 0
+    std::vector<std::string> warnings;
+};
+
+/// Counts what the mesh holds. \param mesh  whose corners exist.
+[[nodiscard]] MeshParts partsOf(const PolygonMesh& mesh);
+
+/// Counts the polygons, cuts them into triangles, and adds these as parts below a node of the file's name.
+/// \param apart  whether each corner becomes a vertex of its own; true for a mesh that has groups.
+/// Errors: kLimit (more triangles than the job allows).
+[[nodiscard]] Result<void> addPolygons(const PolygonMesh& polygons, bool apart, const ImportJob& job,
+                                       ImportScene& scene);
+
+/// The polygons in triangles, as one part without names.
+[[nodiscard]] ScenePart cutPolygons(const PolygonMesh& polygons);
+
+/// The refusal of a file that has vertices or lines, but no polygon. \return nullopt for all others.
+[[nodiscard]] std::optional<std::string> partsRefusal(const MeshParts& parts);
+/// Lines, points, free forms and meshes that are left out, and many loose vertices: each a line without the file's name.
+void warnOfParts(const MeshParts& parts, std::vector<std::string>& warnings);
+
+/// Everything that the scene shows, in metres and +y up where the frame or the job tells how, with warnings of what it
+/// leaves out, and with marks if the job asks for names. Nothing is allocated before the sum of all triangles is known: a
+/// small file can place one mesh very often.
+/// Errors: kInvalidInput (nothing to see, a node within itself, a frame that cannot be meant), kUsage (a name that no
+/// triangle has), kLimit (more triangles than the job allows, or thrice as many vertices). They name no file.
+[[nodiscard]] Result<TriangleMesh> flatten(ImportScene scene, const ImportJob& job);
+
+/// "it has more than N triangles…", kLimit.
+[[nodiscard]] tl::unexpected<Error> tooManyTriangles(const ImportJob& job);
 
 }  // namespace relief

@@ -36,12 +36,8 @@ Result<ImportSource> ImportSource::open(const fs::path& path) {
     std::vector<std::byte> bytes = RELIEF_TRY(readFile(path));
     const std::string extension = lowerCase(path.extension().string());
     if (extension.empty() || meshFormat(extension.substr(1)) == nullptr) {
-        std::vector<std::string_view> known;
-        for (const MeshFormat& format : meshFormats().first(kNamedFormats)) {
-            known.push_back(format.extension);
-        }
         return fail(ErrorCode::kUnsupported, quotedPath(path) + ": no mesh format has the extension '" +
-                                                 cleanUtf8(extension) + "'; use one of " + listed(known));
+                                                 cleanUtf8(extension) + "'; convert it to glTF, OBJ or PLY");
     }
     if (bytes.empty()) {
         return fail(ErrorCode::kInvalidInput,

@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
-#include <limits>
+#include <pugixml.hpp>
 
-#include "bake/import/import_numbers.h"
-#include "bake/import/import_xml.h"
 #include "formats/base/text.h"
 
 namespace relief {
@@ -33,42 +30,6 @@ constexpr std::size_t kQuotedMax = 40;  // bytes of the file shown in a message
 
 std::string number(double value) {
     return shortest(static_cast<float>(value));
-}
-
-/// \param text  behind the name of a property: its type, label and flags, each as 'S', length and bytes; then a letter for
-///              the type of the value, and that.
-FbxUnit binaryFbxUnit(std::string_view text) {
-    const auto take = [&text](auto value) {
-        if (text.size() >= sizeof(value)) {
-            std::memcpy(&value, text.data(), sizeof(value));
-        }
-        text.remove_prefix(std::min(text.size(), sizeof(value)));
-        return value;
-    };
-    for (int i = 0; i < 3 && take('\0') == 'S'; ++i) {
-        text.remove_prefix(std::min<std::size_t>(take(std::uint32_t{0}), text.size()));
-    }
-    double value = std::numeric_limits<double>::quiet_NaN();
-    switch (take('\0')) {
-        case 'D':
-            value = take(value);
-            break;
-        case 'F':
-            value = double{take(0.0F)};
-            break;
-        case 'I':
-            value = take(std::int32_t{0});
-            break;
-        case 'Y':
-            value = take(std::int16_t{0});
-            break;
-        case 'L':
-            value = static_cast<double>(take(std::int64_t{0}));
-            break;
-        default:
-            break;
-    }
-    return {number(value), std::isfinite(value) ? std::optional(value) : std::nullopt};
 }
 
 }  // namespace
@@ -154,19 +115,14 @@ FrameChange changeOf(const SourceFrame& source, std::string_view unit, std::opti
 }
 
 SourceFrame frameOfUnitName(std::string_view name) {
-    struct Name {
-        std::string_view name;
-        double metres;
-    };
-    constexpr std::array<Name, 7> kNames = {{{"micron", 1e-6},
+    constexpr std::array<Unit, 6> kNames = {{{"micron", 1e-6},
                                              {"millimeter", 0.001},
                                              {"centimeter", 0.01},
                                              {"meter", 1.0},
                                              {"inch", 0.0254},
-                                             {"foot", 0.3048},
-                                             {"feet", 0.3048}}};
+                                             {"foot", 0.3048}}};
     SourceFrame frame;
-    for (const Name& known : kNames) {
+    for (const Unit& known : kNames) {
         if (known.name == name) {
             frame.metres = known.metres;
         }
@@ -187,107 +143,24 @@ Result<void> checkFrame(const SourceFrame& source, std::string_view unit, std::o
     return {};
 }
 
-SourceFrame dxfFrame(std::span<const std::byte> document) {
-    // By the code of $INSUNITS: unitless, in, ft, mi, mm, cm, m, km, µin, mil, yd, Å, nm, µm, dm, dam, hm, Gm, au, light
-    // years, parsecs; then feet, inches, yards and miles of the US survey.
-    constexpr std::array<double, 25> kMetres = {0.0,
-                                                0.0254,
-                                                0.3048,
-                                                1609.344,
-                                                0.001,
-                                                0.01,
-                                                1.0,
-                                                1e3,
-                                                2.54e-8,
-                                                2.54e-5,
-                                                0.9144,
-                                                1e-10,
-                                                1e-9,
-                                                1e-6,
-                                                0.1,
-                                                10.0,
-                                                100.0,
-                                                1e9,
-                                                149597870700.0,
-                                                9460730472580800.0,
-                                                3.0856775814913673e16,
-                                                1200.0 / 3937.0,
-                                                100.0 / 3937.0,
-                                                3600.0 / 3937.0,
-                                                6336000.0 / 3937.0};
-    SourceFrame frame{std::nullopt, UpAxis::kPlusZ, false, true};
-    std::string_view text(reinterpret_cast<const char*>(document.data()), document.size());
-    const std::size_t at = text.find("$INSUNITS");
-    if (at == std::string_view::npos) {
-        return frame;
-    }
-    text.remove_prefix(at);
-    static_cast<void>(takeLine(text));
-    const std::string_view group = trimmed(takeLine(text));
-    const std::string_view code = trimmed(takeLine(text));
-    const std::optional<std::uint64_t> index = parseUnsigned(code);
-    if (group != "70" || !index || *index >= kMetres.size()) {
-        frame.unit_fault =
-            "its $INSUNITS is '" + cleanUtf8(code.substr(0, kQuotedMax)) + "', which is no unit of DXF";
-    } else if (*index > 0) {
-        frame.metres = kMetres[*index];
-    }
-    return frame;
-}
-
-std::optional<FbxUnit> fbxUnit(std::span<const std::byte> document) {
-    using namespace std::string_view_literals;
-    const std::string_view text(reinterpret_cast<const char*>(document.data()), document.size());
-    if (text.starts_with("Kaydara")) {
-        constexpr std::string_view kName = "S\x0f\0\0\0UnitScaleFactor"sv;
-        const std::size_t at = text.find(kName);
-        return at == std::string_view::npos ? std::nullopt
-                                            : std::optional(binaryFbxUnit(text.substr(at + kName.size())));
-    }
-    const std::size_t at = text.find("\"UnitScaleFactor\"");
-    if (at == std::string_view::npos) {
-        return std::nullopt;
-    }
-    // P: "name", "type", "label", "flags", value; in older files Property: "name", "type", "flags", value
-    const std::size_t begin = text.rfind('\n', at) + 1;  // npos + 1 is 0
-    const bool older = trimmed(text.substr(begin, at - begin)).starts_with("Property");
-    std::string_view rest = text.substr(at);
-    rest = takeLine(rest);
-    for (int field = 0; field < (older ? 3 : 4); ++field) {
-        rest.remove_prefix(std::min(rest.find(','), rest.size() - 1) + 1);
-    }
-    return FbxUnit{cleanUtf8(trimmed(rest).substr(0, kQuotedMax)), finiteNumber(rest)};
-}
-
-Result<SourceFrame> colladaFrame(std::span<const std::byte> document) {
+SourceFrame colladaFrame(std::span<const std::byte> document) {
     SourceFrame frame{1.0, UpAxis::kPlusY};
-    XmlReader xml(document);
-    std::string up;
-    for (;;) {
-        const XmlReader::Event event = RELIEF_TRY(xml.next());
-        if (event == XmlReader::Event::kDone ||
-            (event == XmlReader::Event::kEnd && xml.at({"COLLADA", "asset"}))) {
-            break;
-        }
-        if (event == XmlReader::Event::kBegin && xml.at({"COLLADA", "asset", "unit"})) {
-            const std::string meter = xml.attribute("meter").value_or("1");
-            // Programs of some countries write a comma, and assimp reads it as a point.
-            std::string point = meter;
-            if (const std::size_t comma = point.find(','); comma != std::string::npos) {
-                point[comma] = '.';
-            }
-            frame.metres = finiteNumber(point);
-            if (!frame.metres || !(*frame.metres > 0.0)) {
-                frame.metres.reset();
-                frame.unit_fault = "its unit is '" +
-                                   cleanUtf8(std::string_view(meter).substr(0, kQuotedMax)) +
-                                   "' metres, which is no length";
-            }
-        } else if (event == XmlReader::Event::kText && xml.at({"COLLADA", "asset", "up_axis"})) {
-            up += xml.text();
-        }
+    pugi::xml_document xml;
+    xml.load_buffer(document.data(), document.size());
+    const pugi::xml_node asset = xml.child("COLLADA").child("asset");
+    const std::string meter = asset.child("unit").attribute("meter").as_string("1");
+    // Programs of some countries write a comma, and assimp reads it as a point.
+    std::string point = meter;
+    if (const std::size_t comma = point.find(','); comma != std::string::npos) {
+        point[comma] = '.';
     }
-    std::string_view rest = up;
+    frame.metres = finiteNumber(point);
+    if (!frame.metres || !(*frame.metres > 0.0)) {
+        frame.metres.reset();
+        frame.unit_fault = "its unit is '" + cleanUtf8(std::string_view(meter).substr(0, kQuotedMax)) +
+                           "' metres, which is no length";
+    }
+    std::string_view rest = asset.child("up_axis").child_value();
     const std::string_view axis = takeWord(rest);
     if (axis == "X_UP" || axis == "Z_UP") {
         frame.up = axis == "X_UP" ? UpAxis::kPlusX : UpAxis::kPlusZ;
@@ -296,6 +169,19 @@ Result<SourceFrame> colladaFrame(std::span<const std::byte> document) {
         frame.up_fault = "its up_axis '" + cleanUtf8(axis.substr(0, kQuotedMax)) + "' is none of COLLADA";
     }
     return frame;
+}
+
+std::optional<double> finiteNumber(std::string_view text) {
+    const std::string_view word = takeWord(text);
+    const std::optional<double> value = takeWord(text).empty() ? parseDouble(word) : std::nullopt;
+    return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+std::string noFiniteNumber(std::string_view text) {
+    std::string point(text);
+    std::replace(point.begin(), point.end(), ',', '.');
+    return "'" + oneCleanLine(text.substr(0, kQuotedMax)) + "' is no " +
+           (finiteNumber(point) ? "number; write a point for the comma" : "finite number");
 }
 
 }  // namespace relief

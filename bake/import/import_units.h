@@ -43,7 +43,7 @@ struct SourceFrame {
     std::string up_fault{};
 };
 
-/// Of a unit by its name, as 3MF and AMF have it: micron, millimeter, centimeter, inch, foot (or feet) or meter.
+/// Of a unit by its name, as 3MF has it: micron, millimeter, centimeter, inch, foot or meter.
 [[nodiscard]] SourceFrame frameOfUnitName(std::string_view name);
 
 /// Whether the frame can be taken: where it has a fault, the caller's word has to stand in for it.
@@ -65,19 +65,13 @@ struct FrameChange {
 [[nodiscard]] FrameChange changeOf(const SourceFrame& source, std::string_view unit,
                                    std::optional<UpAxis> up);
 
-/// Of the $INSUNITS in the header of a DXF file in text; +z points upwards there.
-[[nodiscard]] SourceFrame dxfFrame(std::span<const std::byte> document);
-
-/// The UnitScaleFactor of a FBX file, binary or text, of whatever type of number it is.
-struct FbxUnit {
-    std::string text;             ///< as it stands there
-    std::optional<double> value;  ///< nullopt: it is no finite number
-};
-/// \return nullopt: there is none.
-[[nodiscard]] std::optional<FbxUnit> fbxUnit(std::span<const std::byte> document);
-
 /// Of the <asset> of a COLLADA document, where metres and +y are what it says where it says nothing. Of any encoding.
-/// Errors: kInvalidInput (damaged XML before its end), without the file's name.
-[[nodiscard]] Result<SourceFrame> colladaFrame(std::span<const std::byte> document);
+[[nodiscard]] SourceFrame colladaFrame(std::span<const std::byte> document);
+
+/// The whole of the text, white space at its ends left out, as a finite number.
+[[nodiscard]] std::optional<double> finiteNumber(std::string_view text);
+
+/// Of a text that is no finite number: "'10,5' is no number; write a point for the comma".
+[[nodiscard]] std::string noFiniteNumber(std::string_view text);
 
 }  // namespace relief

@@ -1,4 +1,4 @@
-// Numbers of the text formats that are read here: OBJ, OFF, STL and RAW.
+// Numbers of the text formats that are read here: OBJ, OFF and STL.
 #pragma once
 
 #include <optional>

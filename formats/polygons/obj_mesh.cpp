@@ -167,7 +167,11 @@ class ObjReader {
         renamed_ = false;
         PolygonGroup group;
         group.begin = mesh_.sizes.size();
-        group.words_names.push_back(name_);
+        group.names.push_back(name_);
+        std::string_view rest = name_;
+        for (std::string_view word = takeWord(rest); !word.empty(); word = takeWord(rest)) {
+            group.names.emplace_back(word);
+        }
         group.names.push_back(by_material_ && !group_.empty() ? group_ : name_);
         group.names.push_back(material_);
         group.node = name_;

@@ -1,4 +1,4 @@
-// The surface of a file in polygons: what the readers of OBJ, OFF, PLY, RAW and STL make of it.
+// The surface of a file in polygons: what the readers of OBJ, OFF, PLY and STL make of it.
 #pragma once
 
 #include <cstddef>
@@ -29,11 +29,10 @@ struct MeshParts {
 
 /// Polygons in a row that have the same names.
 struct PolygonGroup {
-    std::size_t begin = 0;                 ///< index of the first; it ends where the next group begins
-    std::vector<std::string> names;        ///< as the file has them
-    std::vector<std::string> words_names;  ///< the same, but each of their words is a name as well
-    std::string node;      ///< of SurfaceName: the group, object or solid; one of a name is one node
-    std::string material;  ///< of SurfaceName
+    std::size_t begin = 0;             ///< index of the first; it ends where the next group begins
+    std::vector<std::string> names{};  ///< as the file has them
+    std::string node{};      ///< of SurfaceName: the group, object or solid; one of a name is one node
+    std::string material{};  ///< of SurfaceName
 };
 
 struct PolygonMesh {

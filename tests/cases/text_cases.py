@@ -13,7 +13,7 @@ import subprocess
 
 import cases
 
-FORMATS = ["obj", "off", "ply", "raw", "stl"]
+FORMATS = ["obj", "off", "ply", "stl"]
 
 
 # --- the tool ---
@@ -130,24 +130,6 @@ def read_ply(text):
     return [[vertices[int(next(numbers))] for _ in range(int(next(numbers)))] for _ in range(counts["face"])]
 
 
-def read_raw(text):
-    groups = {}  # in the order of the file; the last one comes first
-    name = ""
-    for line in re.sub(r"\r\n?", "\n", text).split("\n"):
-        words = line.split("#")[0].split()
-        if not words:
-            continue
-        if re.match(r"[-+.\d]", words[0]) is None:
-            name = words[0]
-            continue
-        texture = words.pop() if len(words) in (10, 13) else "" if len(words) == 12 else None
-        numbers = [float(word) for word in words[-9:]]
-        corners = [numbers[i : i + 3] for i in (0, 3, 6)]
-        groups.setdefault(name, {}).setdefault(texture, []).append(corners)
-    order = list(groups.values())
-    return [corners for group in order[-1:] + order[:-1] for part in group.values() for corners in part]
-
-
 def read_stl(text):
     text = re.sub(r"(?im)^[ \t]*(end)?solid\b.*$", "", re.sub(r"\r\n?", "\n", text))
     numbers = re.findall(r"(?i)\bvertex\s+(\S+)\s+(\S+)\s+(\S+)", text)
@@ -155,7 +137,7 @@ def read_stl(text):
     return [vertices[i : i + 3] for i in range(0, len(vertices), 3)]
 
 
-READERS = {"obj": read_obj, "off": read_off, "ply": read_ply, "raw": read_raw, "stl": read_stl}
+READERS = {"obj": read_obj, "off": read_off, "ply": read_ply, "stl": read_stl}
 
 
 # --- files at random ---
@@ -297,18 +279,6 @@ def write_ply(w, vertices, polygons):
         w.put(gap()) if loose else w.newline()
 
 
-def write_raw(w, vertices, polygons):
-    for polygon in polygons:
-        if w.random.random() < 0.2:
-            w.put(w.random.choice(["lid", "body", "a-b"]))
-            w.newline()
-        w.indent()
-        colour = w.random.choice([[], [0.5, 0.5, 0.5]])
-        w.numbers(colour + [x for corner in polygon for x in vertices[corner]])
-        w.put(w.random.choice(["", "", " wood.png", "\tbrick.jpg"]))
-        w.newline()
-
-
 def write_stl(w, vertices, polygons):
     case = w.random.choice([str, str, str.upper, str.capitalize])
     loose = w.random.random() < 0.3
@@ -345,7 +315,7 @@ def write_stl(w, vertices, polygons):
     w.newline()
 
 
-WRITERS = {"obj": write_obj, "off": write_off, "ply": write_ply, "raw": write_raw, "stl": write_stl}
+WRITERS = {"obj": write_obj, "off": write_off, "ply": write_ply, "stl": write_stl}
 
 
 # --- the comparison ---
@@ -395,7 +365,7 @@ def main():
     for number, folder in run.each():
         kind = FORMATS[number % len(FORMATS)]
         writer = Writer(run.random)
-        vertices, polygons = polygons_of(run.random, 3 if kind in ("raw", "stl") else 8)
+        vertices, polygons = polygons_of(run.random, 3 if kind == "stl" else 8)
         WRITERS[kind](writer, vertices, polygons)
         text = writer.text
         spoilt = number // len(FORMATS) % 4 == 3

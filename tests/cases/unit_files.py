@@ -24,23 +24,6 @@ def lines(points, number):
     return "".join(" ".join(map(number, point)) + "\n" for point in points)
 
 
-def amf(box, unit=None, constellations="", number=repr, more=""):
-    """`constellations` stands behind the object 1."""
-    vertices = "".join("<vertex><coordinates><x>%s</x><y>%s</y><z>%s</z></coordinates></vertex>" % tuple(map(number, p))
-                       for p in corners(box))
-    triangles = "".join("<triangle><v1>%d</v1><v2>%d</v2><v3>%d</v3></triangle>" % t for t in TRIANGLES)
-    stated = "" if unit is None else f' unit="{unit}"'
-    return (f'<?xml version="1.0" encoding="UTF-8"?>\n<amf{stated} version="1.1">'
-            f"{more}<object id='1'><mesh><vertices>{vertices}</vertices><volume>{triangles}</volume></mesh></object>"
-            f"{constellations}</amf>\n").encode()
-
-
-def instance(of, delta=(0, 0, 0), degrees=(0, 0, 0)):
-    """Of an AMF constellation."""
-    parts = zip(("deltax", "deltay", "deltaz", "rx", "ry", "rz"), (*delta, *degrees))
-    return f"<instance objectid='{of}'>{''.join(f'<{k}>{v!r}</{k}>' for k, v in parts)}</instance>"
-
-
 CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 PRODUCTION = "http://schemas.microsoft.com/3dmanufacturing/production/2015/06"
 RELATION = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
@@ -91,11 +74,11 @@ def dae(box, asset="", number=repr):
             'url="#s"/></scene></COLLADA>\n').encode()
 
 
-def fbx(box, unit="1", up="1", sign="1", kind='"double", "Number"', number=repr):
+def fbx(box, unit="1", up="1", sign="1", number=repr):
     """In text. `unit`: what stands as UnitScaleFactor; None: nothing does."""
     whole = '"int", "Integer"'
     settings = f'P: "UpAxis", {whole}, "",{up}\nP: "UpAxisSign", {whole}, "",{sign}\n'
-    settings += "" if unit is None else f'P: "UnitScaleFactor", {kind}, "",{unit}\n'
+    settings += "" if unit is None else f'P: "UnitScaleFactor", "double", "Number", "",{unit}\n'
     polygons = ",".join("%d,%d,%d" % (a, b, -c - 1) for a, b, c in TRIANGLES)
     return ("; FBX 7.3.0 project file\nFBXHeaderExtension:  {\nFBXHeaderVersion: 1003\nFBXVersion: 7300\n}\n"
             f"GlobalSettings:  {{\nVersion: 1000\nProperties70:  {{\n{settings}}}\n}}\nObjects:  {{\n"
@@ -113,23 +96,6 @@ def three_ds(box, master_scale=None):
     mesh += chunk(0x4120, struct.pack("<H", 12) + b"".join(struct.pack("<4H", *t, 0) for t in TRIANGLES))
     scale = b"" if master_scale is None else chunk(0x0100, struct.pack("<f", master_scale))
     return chunk(0x4D4D, chunk(0x3D3D, scale + chunk(0x4000, b"t\0" + chunk(0x4100, mesh))))
-
-
-def dxf(box, insunits=None, number=repr):
-    points = corners(box)
-    header = "" if insunits is None else f"9\n$INSUNITS\n70\n{insunits}\n"
-    faces = "".join("0\n3DFACE\n8\n0\n" + "".join(f"{10 * (axis + 1) + k}\n{number(points[i][axis])}\n"
-                                                  for k, i in enumerate(quad) for axis in range(3)) for quad in QUADS)
-    return (f"0\nSECTION\n2\nHEADER\n{header}0\nENDSEC\n0\nSECTION\n2\nENTITIES\n{faces}0\nENDSEC\n0\nEOF\n").encode()
-
-
-def ase(box, number=repr):
-    vertices = "".join("\t\t\t*MESH_VERTEX %d\t%s\t%s\t%s\n" % (i, *map(number, p)) for i, p in enumerate(corners(box)))
-    faces = "".join("\t\t\t*MESH_FACE %d:    A: %d B: %d C: %d AB: 1 BC: 1 CA: 1\t *MESH_SMOOTHING 0 \t*MESH_MTLID 0\n"
-                    % (i, *t) for i, t in enumerate(TRIANGLES))
-    return ('*3DSMAX_ASCIIEXPORT\t200\n*GEOMOBJECT {\n\t*NODE_NAME "b"\n\t*MESH {\n\t\t*TIMEVALUE 0\n\t\t*MESH_NUMVERTEX 8\n'
-            f"\t\t*MESH_NUMFACES 12\n\t\t*MESH_VERTEX_LIST {{\n{vertices}\t\t}}\n\t\t*MESH_FACE_LIST {{\n{faces}\t\t}}\n\t}}\n"
-            "}\n").encode()
 
 
 def x(box):
@@ -175,18 +141,6 @@ def smd(box, number=repr):
                         for t in TRIANGLES)
     return ('version 1\nnodes\n0 "root" -1\nend\nskeleton\ntime 0\n0 0 0 0 0 0 0\nend\ntriangles\n'
             f"{triangles}end\n").encode()
-
-
-def nff(box, number=repr):
-    points = corners(box)
-    return ("v\nfrom 0 0 10\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\nresolution 100 100\nf 1 1 1 1 0 0 0 0\n"
-            + "".join("p 4\n" + lines([points[i] for i in quad], number) for quad in QUADS)).encode()
-
-
-def ac(box):
-    surfaces = "".join("SURF 0x0\nmat 0\nrefs 3\n" + "".join(f"{i} 0 0\n" for i in t) for t in TRIANGLES)
-    return ('AC3Db\nMATERIAL "" rgb 1 1 1 amb 1 1 1 emis 0 0 0 spec 0 0 0 shi 0 trans 0\nOBJECT world\nkids 1\nOBJECT poly\n'
-            f'name "b"\nnumvert 8\n{lines(corners(box), repr)}numsurf 12\n{surfaces}kids 0\n').encode()
 
 
 def obj(box):

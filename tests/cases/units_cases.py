@@ -10,7 +10,6 @@ import unit_files as files
 
 UNITS = {"m": 1, "cm": 0.01, "mm": 0.001, "um": 1e-6, "km": 1000, "in": 0.0254, "ft": 0.3048, "yd": 0.9144}
 NAMED = {"micron": 1e-6, "millimeter": 0.001, "inch": 0.0254, "meter": 1}
-INSUNITS = {1: 0.0254, 2: 0.3048, 4: 0.001, 5: 0.01, 6: 1, 7: 1000, 10: 0.9144, 13: 1e-6, 14: 0.1}
 UP = {"+x": lambda p: (-p[1], p[0], p[2]), "-x": lambda p: (p[1], -p[0], p[2]), "+y": files.AS_IS,
       "-y": lambda p: (p[0], -p[1], -p[2]), "+z": files.Z_UP, "-z": lambda p: (p[0], -p[2], p[1])}
 
@@ -27,16 +26,6 @@ def matrix_3mf(random):
     rows = [[scale[i] if axes[i] == column else 0 for column in range(3)] for i in range(3)]
     text = " ".join(repr(v) for row in (*rows, shift) for v in row)
     return text, lambda p: tuple(sum(p[i] * rows[i][c] for i in range(3)) + shift[c] for c in range(3))
-
-
-def turned(degrees, point):
-    """About x, then y, then z."""
-    p = list(point)
-    for axis in range(3):
-        a, b = (axis + 1) % 3, (axis + 2) % 3
-        sine, cosine = math.sin(math.radians(degrees[axis])), math.cos(math.radians(degrees[axis]))
-        p[a], p[b] = cosine * p[a] - sine * p[b], sine * p[a] + cosine * p[b]
-    return tuple(p)
 
 
 class Units(cases.Cases):
@@ -91,7 +80,7 @@ class Units(cases.Cases):
 
 def main():
     run = Units("units", 100)
-    kinds = [amf, threemf, threemf_parts, dae, fbx, three_ds, dxf, left_handed, z_up, nothing, wrong, commas]
+    kinds = [threemf, threemf_parts, dae, fbx, three_ds, left_handed, nothing, wrong, commas]
     for number, folder in run.each():
         kinds[number % len(kinds)](run, folder)
     run.finish()
@@ -101,28 +90,6 @@ def write(folder, name, data):
     path = folder / name
     path.write_bytes(data)
     return path
-
-
-def amf(run, folder):
-    unit, metres = run.random.choice([(None, 0.001), *NAMED.items(), ("feet", 0.3048)])
-    box = run.box()
-    points = files.corners(box)
-    if run.random.random() < 0.3:
-        run.told(write(folder, "a.amf", files.amf(box, unit)), points, metres)
-        return
-    # Constellations within constellations.
-    text, shown, below = "", [points], "1"
-    for level in range(run.random.randint(1, 3)):
-        instances, above = "", []
-        for _ in range(run.random.randint(1, 3)):
-            delta = [run.random.uniform(-20, 20) for _ in range(3)]
-            degrees = [run.random.choice((0, 90, -90, 180, 450, run.random.uniform(-180, 180))) for _ in range(3)]
-            instances += files.instance(below, delta, degrees)
-            above += [[tuple(v + d for v, d in zip(turned(degrees, p), delta)) for p in one] for one in shown]
-        below, shown = f"c{level}", above
-        text += f"<constellation id='{below}'>{instances}</constellation>"
-    run.expect_box(write(folder, "a.amf", files.amf(box, unit, text)),
-                   [tuple(metres * v for v in p) for one in shown for p in one], "m")
 
 
 def threemf(run, folder):
@@ -166,8 +133,7 @@ def fbx(run, folder):
     factor = run.random.choice((None, 1, 2.54, 100, 100000, run.random.uniform(0.1, 300)))
     axis = run.random.randrange(3)
     sign = run.random.choice((1, -1))
-    kind = '"int", "Integer"' if factor in (1, 100) and run.random.random() < 0.5 else '"double", "Number"'
-    data = files.fbx(box, None if factor is None else repr(factor), axis, sign, kind)
+    data = files.fbx(box, None if factor is None else repr(factor), axis, sign)
     run.told(write(folder, "a.fbx", data), files.corners(box), 0.01 * (factor or 1),
              UP[("+" if sign > 0 else "-") + "xyz"[axis]])
 
@@ -179,25 +145,14 @@ def three_ds(run, folder):
     run.told(write(folder, "a.3ds", files.three_ds(box, scale)), points, None, files.Z_UP)
 
 
-def dxf(run, folder):
-    box = run.box()
-    code, metres = run.random.choice([(None, None), (0, None), *INSUNITS.items()])
-    run.told(write(folder, "a.dxf", files.dxf(box, code)), files.corners(box), metres, files.Z_UP)
-
-
 def left_handed(run, folder):
     name = run.random.choice(("x", "b3d", "lwo"))
     box = run.box()
     run.told(write(folder, "a." + name, getattr(files, name)(box)), files.corners(box), None, files.Z_MIRRORED)
 
 
-def z_up(run, folder):
-    box = run.box()
-    run.told(write(folder, "a.ase", files.ase(box)), files.corners(box), None, files.Z_UP)
-
-
 def nothing(run, folder):
-    name = run.random.choice(("obj", "ac", "nff", "smd", "ms3d"))
+    name = run.random.choice(("obj", "smd", "ms3d"))
     box = run.box()
     run.told(write(folder, "a." + name, getattr(files, name)(box)), files.corners(box), None)
 
@@ -208,29 +163,26 @@ def wrong(run, folder):
     number = run.random.choice(("-1", "0", "nan", "inf", "0,0,1", "-100", "1e999"))
     name, data = run.random.choice([
         ("a.dae", files.dae(box, f'<unit meter="{number}"/>')),
-        ("a.fbx", files.fbx(box, run.random.choice(("-100", "nan", "10,5", "-1e-9")))),
-        ("a.amf", files.amf(box, run.random.choice(("parsec", "", "Inch")))),
+        ("a.fbx", files.fbx(box, run.random.choice(("-100", "nan", "-1e-9")))),
         ("a.3mf", files.threemf(box, run.random.choice(("parsec", "", "mm")))),
-        ("a.dxf", files.dxf(box, run.random.choice(("-1", "99", "m")))),
         ("a.3ds", files.three_ds(box, run.random.choice((-1.0, float("nan"), float("inf"), -0.5))))])
     path = write(folder, name, data)
     run.expect_refused(path, "--unit")
     unit = run.random.choice(list(UNITS))
-    turn = files.Z_UP if name in ("a.dxf", "a.3ds") else files.AS_IS
+    turn = files.Z_UP if name == "a.3ds" else files.AS_IS
     run.expect_box(path, [tuple(UNITS[unit] * v for v in turn(p)) for p in files.corners(box)], "m", "--unit", unit)
 
 
 def commas(run, folder):
     """Decimal commas: read as points, or refused; never cut off."""
     box = run.box()
-    name = run.random.choice(("amf", "threemf", "dae", "dxf", "ase", "nff", "smd"))
+    name = run.random.choice(("threemf", "dae", "smd"))
     extension = {"threemf": "3mf"}.get(name, name)
     path = write(folder, "a." + extension, getattr(files, name)(box, number=files.comma))
     baked = run.bake(path)
     if isinstance(baked, tuple):
-        metres = {"amf": 0.001, "threemf": 0.001}.get(name, 1)
-        turn = files.Z_UP if name in ("dxf", "ase") else files.AS_IS
-        wanted = bounds([tuple(metres * v for v in turn(p)) for p in files.corners(box)])
+        metres = 0.001 if name == "threemf" else 1
+        wanted = bounds([tuple(metres * v for v in p) for p in files.corners(box)])
         room = 1e-5 * max(map(abs, wanted))
         run.expect(all(abs(a - b) <= room for a, b in zip(baked[0], wanted)), f"{path.name}: {baked} instead of {wanted}")
     else:

@@ -22,7 +22,7 @@ const kSentences = {
 };
 
 const kOpens = ".relief, .toml, .obj and .ply files";
-const kOtherMesh = /\.(3ds|3mf|ac|amf|ase|b3d|blend|dae|dxf|fbx|glb|gltf|lwo|lxo|ms3d|nff|off|raw|smd|stl|x)$/i;
+const kOtherMesh = /\.(3ds|3mf|b3d|blend|dae|fbx|glb|gltf|lwo|lxo|ms3d|off|smd|stl|x)$/i;
 
 function unknownFile(name) {
     return `"${name}": this page opens ${kOpens}` +

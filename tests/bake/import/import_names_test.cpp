@@ -1,6 +1,4 @@
 // Which triangles have the names that somebody asks for, in files as exporters write them and as nobody should.
-#include "bake/import/import_names.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>

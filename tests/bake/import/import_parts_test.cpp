@@ -1,12 +1,11 @@
 // What a mesh file holds beside triangles: counted, named or refused; never left out without a word.
-#include "bake/import/import_parts.h"
+#include "bake/import/import_scene.h"
 
 #include <gtest/gtest.h>
 #include <cstdio>
 #include <random>
 
 #include "bake/import/mesh_import.h"
-#include "bake/import/polygon_mesh.h"
 #include "formats/polygons/obj_mesh.h"
 #include "tests/bake/import/import_meshes.h"
 #include "tests/bake/meshes.h"
@@ -212,7 +211,6 @@ TEST(ImportParts, ContentsDecideWhereTheNameIsWrong) {
               Lines{"its contents are those of a .ply, not of a .obj, and are read so; rename it"});
     const Result<TriangleMesh> json = load("a.glb", tetrahedronGltf({}));
     ASSERT_TRUE(json) << json.error().message;
-    EXPECT_EQ(warningsOf(json).size(), 1U);
     EXPECT_TRUE(warningsOf(load("a.ply", tetrahedronPly())).empty());
     // What names nothing beyond doubt is read as its name says.
     EXPECT_FALSE(load("b.obj", "glTF and other words\n"));
@@ -295,23 +293,17 @@ TEST(ImportParts, FreeFormSurfacesAreNamed) {
 }
 
 TEST(ImportParts, MeshesThatNoNodePlaces) {
-    // glTF shows what its scene names; the rest is told. RAW has no scene: all its groups are the surface.
+    // glTF shows what its scene names; the rest is told.
     const std::string second =
         R"(}]},{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],"accessors")";
     std::string gltf = tetrahedronGltf();
     gltf.replace(gltf.find(R"(}]}],"accessors")"), 16, second);
     EXPECT_EQ(warningsOf(load("two.gltf", gltf)),
-              Lines{"left out 1 of its 2 meshes: its scene does not show them"});
+              Lines{"left out 1 of its 2 meshes: no node of its scene places them"});
     EXPECT_EQ(warningsOf(
                   load("all.gltf", gltf.replace(gltf.find(R"({"mesh":0})"), 10,
                                                 R"({"children":[1]},{"mesh":1,"children":[2]},{"mesh":0})"))),
               Lines());
-    const Result<TriangleMesh> raw =
-        load("groups.raw",
-             "a\n0 0 0 1 0 0 0 1 0\nb\n0 0 1 1 0 1 0 1 1\n0 0 2 1 0 2 0 1 2\nc\n0 0 3 1 0 3 0 1 3\n");
-    EXPECT_EQ(warningsOf(raw), Lines());
-    EXPECT_EQ(raw->triangles.size(), 4U);
-    EXPECT_EQ(raw->bounds.max, glm::vec3(1, 1, 3));
 }
 
 TEST(ImportParts, LargePolygonsOfOff) {

@@ -8,8 +8,8 @@
 #include <cstring>
 #include <limits>
 
+#include "bake/import/import_scene.h"
 #include "bake/import/mesh_import.h"
-#include "bake/import/polygon_mesh.h"
 #include "bake/mesh/triangle_plane.h"
 #include "tests/bake/import/import_meshes.h"
 #include "tests/bake/meshes.h"
@@ -107,8 +107,7 @@ double signedVolume(const TriangleMesh& mesh) {
 }
 
 Result<PolygonMesh> read(const std::string& text) {
-    Result<PolygonMesh> mesh = readPly(std::as_bytes(std::span(text)));
-    return mesh ? std::move(mesh) : unreadable("'a.ply'", mesh.error());
+    return readPly(std::as_bytes(std::span(text)));
 }
 
 void expectError(const Result<PolygonMesh>& mesh, const std::string& says,
@@ -117,8 +116,6 @@ void expectError(const Result<PolygonMesh>& mesh, const std::string& says,
     const std::string& message = mesh.error().message;
     EXPECT_EQ(mesh.error().code, code) << message;
     EXPECT_NE(message.find(says), std::string::npos) << message;
-    EXPECT_TRUE(message.starts_with("cannot read the mesh 'a.ply': ")) << message;
-    EXPECT_NE(message.find("; "), std::string::npos) << "no cure: " << message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
 }
 

@@ -192,16 +192,6 @@ TEST(ImportText, BinaryStlOfAnyLength) {
     expectRefused("a.stl", stl.substr(0, stl.size() - 1), "announces 4 triangles, but it holds 3");
 }
 
-TEST(ImportText, Raw) {
-    const std::string raw =
-        "0 0 0 0 1 0 1 0 0\n0 0 0 1 0 0 0 0 1\nlid\n.5 .5 .5 1 0 0 0 1 0 0 0 1\n0 0 0 0 0 1 0 1 0 a.png\n";
-    expectTetrahedron("a.raw", raw);
-    expectTetrahedron("a.raw", replaced(raw, "\n", "\r"));
-    expectTetrahedron("a.raw", replaced(raw, " 1 0", "\t+1. -.0"));
-    expectRefused("a.raw", raw.substr(0, 27), "line 2: 5 numbers are no triangle");
-    expectRefused("a.raw", replaced(raw, "0 1 0 1 0 0\n", "0 1 0 1 0 0 7\n"), "line 1: 10 numbers are no");
-}
-
 TEST(ImportText, PlyInAnyLinesButWithTrueCounts) {
     const std::string head =
         "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
@@ -217,19 +207,6 @@ TEST(ImportText, PlyInAnyLinesButWithTrueCounts) {
     }
     expectRefused("a.ply", replaced(head, "face 4", "face 5") + body, "line 17: it ends too early");
     expectRefused("a.ply", replaced(head, "face 4", "face 3") + body, "line 17: it holds more numbers");
-}
-
-TEST(ImportText, Ac3dUnderBothItsNames) {
-    const std::string ac =
-        "AC3Db\nMATERIAL \"\" rgb 1 1 1 amb .2 .2 .2 emis 0 0 0 spec .2 .2 .2 shi 9 trans 0\nOBJECT "
-        "world\nkids 1\n"
-        "OBJECT poly\nname \"t\"\nnumvert 4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\nnumsurf 4\n"
-        "SURF 0x10\nmat 0\nrefs 3\n0 0 0\n2 0 0\n1 0 0\nSURF 0x10\nmat 0\nrefs 3\n0 0 0\n1 0 0\n3 0 0\n"
-        "SURF 0x10\nmat 0\nrefs 3\n1 0 0\n2 0 0\n3 0 0\nSURF 0x10\nmat 0\nrefs 3\n0 0 0\n3 0 0\n2 0 0\nkids "
-        "0\n";
-    expectTetrahedron("a.ac", ac);
-    expectTetrahedron("a.acc", ac);
-    expectRefused("a.acc", ac.substr(0, ac.size() - 20), "cut off");
 }
 
 }  // namespace

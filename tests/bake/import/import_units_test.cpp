@@ -158,9 +158,7 @@ TEST(ImportUnits, AnOptionWinsOverTheFileAndSaysSo) {
 TEST(ImportUnits, ColladaHeadersAreReadAsWritten) {
     const auto frame = [](const std::string& asset, const char* begin = "<asset>") {
         const std::string text = "<COLLADA>" + (begin + asset) + "</asset></COLLADA>";
-        const Result<SourceFrame> read = colladaFrame(std::as_bytes(std::span(text)));
-        EXPECT_TRUE(read) << read.error().message;
-        return read.value_or(SourceFrame{});
+        return colladaFrame(std::as_bytes(std::span(text)));
     };
     EXPECT_EQ(frame("<up_axis> Z_UP\n</up_axis>").up, UpAxis::kPlusZ);
     EXPECT_EQ(frame("<up_axis>X_UP</up_axis>").up, UpAxis::kPlusX);
@@ -206,7 +204,7 @@ TEST(ImportUnits, UnitsThatCannotBeMeantAreRefusedUntilToldOtherwise) {
         expectCured(folder.write("t" + meter + ".dae", tetrahedronDae("<unit meter=\"" + meter + "\"/>")),
                     "'" + meter + "' metres", "--unit", options("cm"), low, high);
     }
-    for (const std::string factor : {"-100", "nan", "10,5"}) {
+    for (const std::string factor : {"-100", "nan"}) {
         expectCured(folder.write("t" + factor + ".fbx", tetrahedronFbx(1, 1, factor)), factor, "--unit",
                     options("cm"), low, high);
     }
@@ -231,50 +229,6 @@ TEST(ImportUnits, MasterScalesOf3dsDivide) {
     const TemporaryFolder folder;
     expectLiesAt(importMesh(folder.write("t.3ds", tetrahedron3ds(0.5F))), {0, 0, -4}, {2, 6, 0}, "");
     expectLiesAt(importMesh(folder.write("t.3ds", tetrahedron3ds(0.0F))), {0, 0, -2}, {1, 3, 0}, "");
-}
-
-TEST(ImportUnits, ANumberOfFbxMayBeWhole) {
-    const TemporaryFolder folder;
-    std::string text = tetrahedronFbx(1, 1, "100");
-    const std::string type = R"("double", "Number")";
-    text.replace(text.find(type), type.size(), R"("int", "Integer")");
-    expectLiesAt(importMesh(folder.write("whole.fbx", text)), {0, 0, 0}, {1, 2, 3}, "m");
-}
-
-TEST(ImportUnits, FbxSaysItInTextAndInBytes) {
-    const auto unit = [](const std::string& document) { return fbxUnit(std::as_bytes(std::span(document))); };
-    EXPECT_EQ(
-        unit("; FBX\n P: \"UnitScaleFactor\", \"double\", \"Number\", \"\", 2.54\r\n P: 1").value().value,
-        2.54);
-    EXPECT_EQ(unit("; FBX\nProperty: \"UnitScaleFactor\", \"double\", \"\",100\n").value().value, 100.0);
-    EXPECT_EQ(unit("; FBX\n P: \"UnitScaleFactor\", \"double\", \"Number\", \"\",10,5").value().text, "10,5");
-    EXPECT_FALSE(unit("; FBX\n P: \"UnitScaleFactor\", \"double\", \"Number\", \"\",10,5").value().value);
-    EXPECT_FALSE(unit("; FBX\n P: \"UnitScaleFactor\"").value().value);
-    EXPECT_FALSE(unit("; FBX\n P: \"OriginalUnitScaleFactor\", \"double\", \"Number\", \"\",7"));
-    using namespace std::string_literals;
-    const std::string head =
-        "Kaydara FBX Binary  S\x0f\0\0\0UnitScaleFactorS\x06\0\0\0doubleS\x06\0\0\0NumberS\0\0\0\0"s;
-    EXPECT_EQ(unit(head + "D\0\0\0\0\0\0\x59\x40"s).value().value, 100.0);
-    EXPECT_EQ(unit(head + "I\x64\0\0\0"s).value().value, 100.0);
-    EXPECT_EQ(unit(head + "F\0\0\xc8\xc2"s).value().value, -100.0);
-    EXPECT_FALSE(unit(head + "D\0\0\0\0\0\0\xf8\x7f"s).value().value);
-    EXPECT_FALSE(unit(head + "X").value().value);
-    EXPECT_FALSE(unit(head).value().value);
-    EXPECT_FALSE(unit("Kaydara FBX Binary  "));
-}
-
-TEST(ImportUnits, DxfSaysItByCode) {
-    const auto frame = [](const std::string& header) { return dxfFrame(std::as_bytes(std::span(header))); };
-    EXPECT_FALSE(frame("0\nSECTION\n2\nHEADER\n0\nENDSEC\n").metres);
-    EXPECT_EQ(frame("  9\r\n$INSUNITS\r\n 70\r\n     4\r\n").metres, 0.001);
-    EXPECT_EQ(frame("9\n$INSUNITS\n70\n1\n").metres, 0.0254);
-    EXPECT_FALSE(frame("9\n$INSUNITS\n70\n0\n").metres);
-    EXPECT_EQ(frame("9\n$INSUNITS\n70\n0\n").unit_fault, "");
-    for (const char* code : {"25", "-1", "1.5", "99999999999999999999", ""}) {
-        const SourceFrame faulty = frame("9\n$INSUNITS\n70\n" + std::string(code) + "\n");
-        EXPECT_FALSE(faulty.metres);
-        EXPECT_EQ(faulty.unit_fault, "its $INSUNITS is '" + std::string(code) + "', which is no unit of DXF");
-    }
 }
 
 // What a left-handed file calls z is turned round when it is asked for.

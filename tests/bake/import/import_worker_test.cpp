@@ -163,7 +163,7 @@ TEST(ImportWorker, BuffersOfGltfStayBelowTheFolder) {
         expectRefused(with(uri), ErrorCode::kInvalidInput, "t.gltf");
     }
     EXPECT_FALSE(watch.opened());
-    expectRefused(with("../outside.bin"), ErrorCode::kInvalidInput, "below its folder");
+    expectRefused(with("../outside.bin"), ErrorCode::kInvalidInput, "below the mesh's folder");
     expectRefused(with("pipe.bin"), ErrorCode::kInvalidInput, "pipe.bin");
 }
 

@@ -1,0 +1,78 @@
+// The bytes of a glTF file, and the numbers in them: the chunks of a GLB, the buffers in it, in the JSON or beside it, and
+// accessors, sparse, quantised and compressed ones too. Errors name a place in the document, and no file.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bake/import/gltf_json.h"
+#include "bake/import/import_files.h"
+#include "bake/import/import_scene.h"
+#include "formats/base/result.h"
+
+namespace relief {
+
+/// What a file holds, borrowed.
+struct GltfChunks {
+    std::string_view json;
+    std::optional<std::span<const std::byte>> binary;  ///< of a GLB
+    std::vector<std::string> warnings;                 ///< without the file's name
+};
+
+/// Takes a GLB apart; any other file is JSON. Errors: kInvalidInput, kUnsupported (another version).
+[[nodiscard]] Result<GltfChunks> gltfChunks(std::span<const std::byte> bytes);
+
+/// The bytes that a data URI holds. \param uri  "data:…". Errors, without a place: kInvalidInput.
+[[nodiscard]] Result<std::vector<std::byte>> dataUriBytes(std::string_view uri);
+
+/// Of a bufferView.
+struct GltfView {
+    std::span<const std::byte> bytes;
+    std::optional<std::uint64_t> stride;  ///< bytes, more than 0
+};
+
+/// Buffers are read when a view of theirs is asked for.
+class GltfBuffers {
+  public:
+    /// All is borrowed.
+    GltfBuffers(const GltfChunks& chunks, ImportFiles& files) : chunks_(chunks), files_(files) {}
+
+    /// The view that `from` names by its bufferView. Errors: kInvalidInput, kUnsupported (it is compressed).
+    [[nodiscard]] Result<GltfView> view(const GltfValue& from);
+
+  private:
+    [[nodiscard]] Result<std::vector<std::byte>> read(const std::string& uri);
+
+    const GltfChunks& chunks_;
+    ImportFiles& files_;
+    std::map<std::uint64_t, std::vector<std::byte>> read_;  // buffers
+};
+
+enum class GltfUse : std::uint8_t {
+    kPositions,  ///< glm::vec3, of floats or whole numbers of 8 or 16 bits (KHR_mesh_quantization)
+    kIndices,    ///< std::uint32_t
+    kJoints,     ///< glm::vec4 of whole numbers
+    kWeights,    ///< glm::vec4
+    kMatrices,   ///< glm::mat4
+};
+
+/// The elements of an accessor. Floats may be no numbers.
+/// \tparam T  of the use. \param count_max  more is an error. Errors: kInvalidInput, kUnsupported, kLimit.
+template <class T>
+[[nodiscard]] Result<std::vector<T>> readAccessor(const GltfValue& accessor, GltfUse use,
+                                                  GltfBuffers& buffers, std::uint64_t count_max);
+
+/// Triangles that are compressed by Draco (KHR_draco_mesh_compression).
+/// \param attribute  Draco's number for the positions. \param triangles_max  more is an error, and so are thrice as many
+/// positions.
+/// \return nullopt if these bytes hold nothing like that.
+[[nodiscard]] std::optional<ScenePart> readDraco(std::span<const std::byte> bytes, std::uint64_t attribute,
+                                                 std::uint64_t triangles_max);
+
+}  // namespace relief

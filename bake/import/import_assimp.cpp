@@ -1,0 +1,406 @@
+#include <assimp/BaseImporter.h>
+#include <assimp/config.h>
+#include <assimp/importerdesc.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <array>
+#include <assimp/DefaultLogger.hpp>
+#include <assimp/IOStream.hpp>
+#include <assimp/IOSystem.hpp>
+#include <assimp/Importer.hpp>
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "bake/import/import_readers.h"
+#include "formats/base/text.h"
+
+namespace relief {
+namespace {
+
+// --- files and log ---
+
+/// A file in memory.
+class MemoryStream final : public Assimp::IOStream {
+  public:
+    explicit MemoryStream(std::span<const std::byte> bytes) : bytes_(bytes) {}
+    explicit MemoryStream(std::vector<std::byte> owned) : owned_(std::move(owned)), bytes_(owned_) {}
+
+    std::size_t Read(void* buffer, std::size_t size, std::size_t count) override {
+        const std::size_t whole = size == 0 ? 0 : std::min(count, (bytes_.size() - at_) / size);
+        if (whole > 0) {
+            std::memcpy(buffer, bytes_.data() + at_, whole * size);
+        }
+        at_ += whole * size;
+        return whole;
+    }
+    std::size_t Write(const void* /*buffer*/, std::size_t /*size*/, std::size_t /*count*/) override {
+        return 0;
+    }
+    aiReturn Seek(std::size_t offset, aiOrigin origin) override {
+        const std::size_t base = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? at_ : bytes_.size();
+        // Negative offsets arrive as huge ones; the sum wraps round as it should.
+        const std::size_t target = base + offset;
+        if (target > bytes_.size()) {
+            return aiReturn_FAILURE;
+        }
+        at_ = target;
+        return aiReturn_SUCCESS;
+    }
+    [[nodiscard]] std::size_t Tell() const override { return at_; }
+    [[nodiscard]] std::size_t FileSize() const override { return bytes_.size(); }
+    void Flush() override {}
+
+  private:
+    std::vector<std::byte> owned_;
+    std::span<const std::byte> bytes_;
+    std::size_t at_ = 0;
+};
+
+/// The mesh from memory, and whatever it refers to (material libraries) as ImportFiles allows. Nothing can be written.
+class ReadOnlyFiles final : public Assimp::IOSystem {
+  public:
+    explicit ReadOnlyFiles(ImportFiles& files) : files_(files) {}
+
+    bool Exists(const char* path) const override { return path != nullptr && files_.exists(path); }
+    [[nodiscard]] char getOsSeparator() const override { return '/'; }
+    Assimp::IOStream* Open(const char* path, const char* mode) override {
+        if (path == nullptr || (mode != nullptr && std::strpbrk(mode, "wa+") != nullptr)) {
+            return nullptr;
+        }
+        if (files_.isMesh(path)) {
+            return new MemoryStream(files_.meshBytes());
+        }
+        std::optional<std::vector<std::byte>> bytes = files_.open(path);
+        return bytes ? new MemoryStream(std::move(*bytes)) : nullptr;
+    }
+    void Close(Assimp::IOStream* stream) override { delete stream; }
+    // assimp's own would touch the disk.
+    bool CreateDirectory(const std::string& /*path*/) override { return false; }
+    bool ChangeDirectory(const std::string& /*path*/) override { return false; }
+    bool DeleteFile(const std::string& /*file*/) override { return false; }
+
+  private:
+    ImportFiles& files_;
+};
+
+thread_local std::vector<std::string>* errors_of_thread = nullptr;
+
+bool hasAny(std::string_view text, std::span<const std::string_view> words) {
+    return std::any_of(words.begin(), words.end(),
+                       [text](std::string_view word) { return text.find(word) != std::string_view::npos; });
+}
+
+/// Words of the warnings of its readers (BLEND, LWO, FBX) that a part of the surface is left out.
+constexpr std::array<std::string_view, 7> kLeftOut = {
+    "type is unsupported",   "unsupported primitive chunk", "unknown polygon type",   "unsupported ID",
+    "unrecognized geometry", "not enough vertices",         "unexpected vertex setup"};
+/// About what an import leaves out anyway.
+constexpr std::array<std::string_view, 5> kNoSurface = {"aterial", "exture", "nimation", "angent", "inormal"};
+
+class Listener final : public Assimp::Logger {
+  public:
+    bool attachStream(Assimp::LogStream* /*stream*/, unsigned /*severity*/) override { return false; }
+    bool detachStream(Assimp::LogStream* /*stream*/, unsigned /*severity*/) override { return false; }
+
+  protected:
+    void OnVerboseDebug(const char* /*message*/) override {}
+    void OnDebug(const char* /*message*/) override {}
+    void OnInfo(const char* /*message*/) override {}
+    void OnWarn(const char* message) override {
+        if (hasAny(message, kLeftOut)) {
+            OnError(message);
+        }
+    }
+    void OnError(const char* message) override {
+        constexpr std::size_t kErrorsMax = 4;
+        std::vector<std::string>* const errors = errors_of_thread;
+        const std::string line = oneCleanLine(message);
+        if (errors != nullptr && errors->size() < kErrorsMax && !hasAny(line, kNoSurface) &&
+            std::find(errors->begin(), errors->end(), line) == errors->end()) {
+            errors->push_back(line);
+        }
+    }
+};
+
+/// The errors that assimp logs on this thread while this lives, the first few, and the warnings that a part of the surface
+/// is left out. Where one of its readers mends a file, such as an index out of range, that is all it says.
+class LoggedErrors {
+  public:
+    LoggedErrors() {
+        static const bool kInstalled = [] {
+            Assimp::DefaultLogger::set(new Listener);  // kept by assimp for the life of the process
+            return true;
+        }();
+        static_cast<void>(kInstalled);
+        errors_of_thread = &errors_;
+    }
+    LoggedErrors(const LoggedErrors&) = delete;
+    LoggedErrors& operator=(const LoggedErrors&) = delete;
+    ~LoggedErrors() { errors_of_thread = nullptr; }
+
+    [[nodiscard]] const std::vector<std::string>& errors() const { return errors_; }
+    [[nodiscard]] bool say(std::string_view words) const {
+        return std::any_of(errors_.begin(), errors_.end(),
+                           [&](const std::string& error) { return error.find(words) != std::string::npos; });
+    }
+
+  private:
+    std::vector<std::string> errors_;
+};
+
+// --- units and axes ---
+
+template <class T>
+std::optional<T> metadata(const aiScene& scene, const char* key) {
+    T value{};
+    if (scene.mMetaData == nullptr || !scene.mMetaData->Get(key, value)) {
+        return std::nullopt;
+    }
+    return value;
+}
+
+/// FBX has its unit in centimetres, and its axes by number and sign; assimp applies neither.
+SourceFrame fbxFrame(const aiScene& scene) {
+    SourceFrame frame{std::nullopt, std::nullopt};
+    // assimp has made a float of the file's double, whose digits the shortest form has again.
+    const std::string text = shortest(metadata<float>(scene, "UnitScaleFactor").value_or(1.0F));
+    const double factor = finiteNumber(text).value_or(0.0);
+    if (factor > 0.0) {
+        frame.metres = 0.01 * factor;
+    } else {
+        frame.unit_fault = "its UnitScaleFactor is " + text + ", which is no length";
+    }
+    const int axis = metadata<std::int32_t>(scene, "UpAxis").value_or(1);
+    const int sign = metadata<std::int32_t>(scene, "UpAxisSign").value_or(1);
+    if (axis >= 0 && axis <= 2) {
+        frame.up = static_cast<UpAxis>(2 * axis + (sign < 0 ? 1 : 0));
+    } else {
+        frame.up_fault = "its UpAxis is " + std::to_string(axis) + ", which is none of 0, 1 and 2";
+    }
+    return frame;
+}
+
+/// assimp scales the root by the document's unit as it understands it. \param scene  loses that scale where it is another.
+SourceFrame daeFrame(const ImportJob& job, aiScene& scene) {
+    SourceFrame frame = colladaFrame(job.bytes);
+    const double applied = double{scene.mRootNode->mTransformation.a1};  // as it was rounded
+    frame.scaled = frame.metres && std::abs(applied / *frame.metres - 1.0) < 1e-5;
+    if (frame.scaled) {
+        frame.metres = applied;
+    } else {
+        scene.mRootNode->mTransformation = aiMatrix4x4();
+    }
+    return frame;
+}
+
+/// assimp turns the root, and divides it by the file's master scale, whatever that is. \param scene  loses that scale where
+/// it is none.
+SourceFrame frameOf3ds(aiScene& scene) {
+    SourceFrame frame{std::nullopt, UpAxis::kPlusZ, false, true};
+    const float scale = scene.mRootNode->mTransformation.a1;
+    if (!(scale > 0.0F && std::isfinite(scale))) {
+        frame.unit_fault = "its master scale is " + shortest(1.0F / scale) + ", which is none";
+        scene.mRootNode->mTransformation = {1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1};
+    }
+    return frame;
+}
+
+/// \param scene  may lose what a reader has applied of it.
+SourceFrame frameOf(AssimpFrame format, const ImportJob& job, aiScene& scene) {
+    SourceFrame frame;
+    switch (format) {
+        case AssimpFrame::k3ds:
+            return frameOf3ds(scene);
+        case AssimpFrame::kDae:
+            return daeFrame(job, scene);
+        case AssimpFrame::kFbx:
+            return fbxFrame(scene);
+        default:
+            frame.mirrored = format == AssimpFrame::kMirrored;
+            return frame;
+    }
+}
+
+// --- the scene ---
+
+std::string nameOf(const aiString& text) {
+    const std::string_view name(text.data, std::min<std::size_t>(text.length, sizeof(text.data)));
+    // What assimp calls what has no name, and what it adds to nodes of FBX that it splits.
+    const bool made_up = name == AI_DEFAULT_MATERIAL_NAME || (name.starts_with('<') && name.ends_with('>')) ||
+                         name.find("_$AssimpFbx$_") != std::string_view::npos;
+    return made_up ? std::string() : std::string(name);
+}
+
+/// Some readers of assimp keep whatever index the file holds. \return nullopt: a face uses a vertex that does not exist.
+std::optional<PolygonMesh> polygonsOf(const aiMesh& mesh) {
+    PolygonMesh polygons;
+    if (!mesh.HasPositions()) {
+        return polygons;
+    }
+    for (const aiVector3D& v : std::span(mesh.mVertices, mesh.mNumVertices)) {
+        polygons.positions.emplace_back(v.x, v.y, v.z);
+    }
+    for (const aiFace& face : std::span(mesh.mFaces, mesh.mNumFaces)) {
+        if (face.mNumIndices > 0) {
+            polygons.sizes.push_back(face.mNumIndices);
+        }
+        for (const unsigned index : std::span(face.mIndices, face.mNumIndices)) {
+            if (index >= mesh.mNumVertices) {
+                return std::nullopt;
+            }
+            polygons.corners.push_back(index);
+        }
+    }
+    return polygons;
+}
+
+/// Gives each corner a vertex of its own, as meshes beside lines or points have always had it.
+void unshare(ScenePart& part) {
+    std::vector<glm::vec3> positions;
+    for (glm::uvec3& t : part.triangles) {
+        const auto base = static_cast<std::uint32_t>(positions.size());
+        positions.insert(positions.end(), {part.positions[t.x], part.positions[t.y], part.positions[t.z]});
+        t = {base, base + 1, base + 2};
+    }
+    part.positions = std::move(positions);
+}
+
+/// \return false: a face uses a vertex that does not exist.
+bool addMeshes(const aiScene& source, ImportScene& scene) {
+    for (const aiMesh* mesh : std::span(source.mMeshes, source.mNumMeshes)) {
+        const std::optional<PolygonMesh> polygons = polygonsOf(*mesh);
+        if (!polygons) {
+            return false;
+        }
+        const MeshParts counts = partsOf(*polygons);
+        scene.counts.polygons += counts.polygons;
+        scene.counts.lines += counts.lines;
+        scene.counts.points += counts.points;
+        scene.counts.vertices += counts.vertices;
+        scene.counts.unused += counts.unused;
+        scene.counts.loose += counts.loose;
+        ScenePart part = cutPolygons(*polygons);
+        if (counts.lines + counts.points > 0) {
+            unshare(part);
+        }
+        aiString material;
+        if (mesh->mMaterialIndex < source.mNumMaterials) {
+            source.mMaterials[mesh->mMaterialIndex]->Get(AI_MATKEY_NAME, material);
+        }
+        part.material = nameOf(material);
+        part.names = {nameOf(mesh->mName), part.material};
+        scene.parts.push_back(std::move(part));
+    }
+    return true;
+}
+
+void addNodes(const aiScene& source, ImportScene& scene) {
+    std::vector<std::pair<const aiNode*, std::uint32_t>> pending{{source.mRootNode, 0}};
+    while (!pending.empty()) {
+        const auto [from, parent] = pending.back();
+        pending.pop_back();
+        const auto index = static_cast<std::uint32_t>(scene.nodes.size());
+        const aiMatrix4x4& m = from->mTransformation;
+        SceneNode node{
+            Transform{glm::dmat3(m.a1, m.b1, m.c1, m.a2, m.b2, m.c2, m.a3, m.b3, m.c3), {m.a4, m.b4, m.c4}}};
+        node.names = {nameOf(from->mName)};
+        node.index = index;
+        if (index > 0) {  // the topmost is the file
+            node.shown = node.names[0].empty() ? scene.nodes[parent].shown : node.names[0];
+            scene.nodes[parent].children.push_back(index);
+        }
+        for (const unsigned mesh : std::span(from->mMeshes, from->mNumMeshes)) {
+            if (mesh < scene.parts.size()) {
+                node.parts.push_back(mesh);
+            }
+        }
+        scene.nodes.push_back(std::move(node));
+        for (unsigned i = from->mNumChildren; i > 0; --i) {
+            if (from->mChildren[i - 1] != nullptr) {
+                pending.emplace_back(from->mChildren[i - 1], index);
+            }
+        }
+    }
+    scene.roots = {0};
+}
+
+/// Leaves only the readers that claim the extension: which one reads a file does not depend on its contents.
+void keepReadersOf(const std::string& extension, Assimp::Importer& importer) {
+    std::vector<Assimp::BaseImporter*> others;
+    for (std::size_t i = 0; i < importer.GetImporterCount(); ++i) {
+        const std::string_view claimed = importer.GetImporterInfo(i)->mFileExtensions;
+        const std::vector<std::string_view> extensions = split(claimed, ' ');
+        if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end()) {
+            others.push_back(importer.GetImporter(i));
+        }
+    }
+    for (Assimp::BaseImporter* other : others) {
+        importer.UnregisterLoader(other);
+        delete other;
+    }
+}
+
+/// assimp's words, with the files that it was not given. Throws std::bad_alloc where it has run out of memory.
+tl::unexpected<Error> notRead(const Assimp::Importer& importer, const ImportFiles& files) {
+    if (const std::exception_ptr& thrown = importer.GetException(); thrown != nullptr) {
+        try {
+            std::rethrow_exception(thrown);
+        } catch (const std::bad_array_new_length&) {
+            // A size that is no size: the file is wrong.
+        } catch (const std::bad_alloc&) {
+            throw;
+        } catch (...) {
+            // Its words follow.
+        }
+    }
+    const std::string words = oneCleanLine(importer.GetErrorString());
+    std::string text = words.empty() ? "its contents are not what its extension says" : words;
+    for (const std::string& refused : files.refused()) {
+        text += "; it refers to " + refused;
+    }
+    return invalidInput(text + "; repair the file or export it again");
+}
+
+}  // namespace
+
+Result<ImportScene> readWithAssimp(AssimpFrame format, const ImportJob& job, ImportFiles& files) {
+    const LoggedErrors logged;
+    Assimp::Importer importer;
+    keepReadersOf(job.extension, importer);
+    importer.SetIOHandler(new ReadOnlyFiles(files));  // owned by the importer
+    // Without it, files that hold bones alone get a made-up mesh.
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);  // turned here
+    // The importer's own, and no constant.
+    auto* const source = const_cast<aiScene*>(importer.ReadFile(job.file_name, 0));
+    if (logged.say("UnitScaleFactor must be non-zero")) {
+        return invalidInput("its UnitScaleFactor is 0, which is no length; export it again with a unit");
+    }
+    if (source == nullptr || source->mRootNode == nullptr) {
+        return notRead(importer, files);
+    }
+    ImportScene scene;
+    if (!addMeshes(*source, scene) || logged.say("out of range") || logged.say("out-of-range")) {
+        return invalidInput("a face uses a vertex that does not exist");
+    }
+    scene.frame = frameOf(format, job, *source);
+    addNodes(*source, scene);
+    const std::span meshes(source->mMeshes, source->mNumMeshes);
+    if (std::any_of(meshes.begin(), meshes.end(), [](const aiMesh* mesh) { return mesh->HasBones(); })) {
+        scene.warnings.emplace_back("it is skinned; baked as it is modelled, without its skeleton");
+    }
+    if (std::any_of(meshes.begin(), meshes.end(),
+                    [](const aiMesh* mesh) { return mesh->mNumAnimMeshes > 0; })) {
+        scene.warnings.emplace_back("it is morphed; baked as it is modelled, without its targets");
+    }
+    for (const std::string& error : logged.errors()) {
+        scene.warnings.push_back("its importer says: " + error);
+    }
+    return scene;
+}
+
+}  // namespace relief
