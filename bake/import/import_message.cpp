@@ -2,6 +2,8 @@
 
 #include <flatbuffers/flatbuffers.h>
 
+#include <algorithm>
+#include <array>
 #include <cstring>
 #include <string>
 
@@ -32,12 +34,20 @@ std::string textOf(const flatbuffers::String* text) {
     return text == nullptr ? std::string() : text->str();
 }
 
+/// The arrays behind the table.
+std::array<std::span<const std::byte>, 4> arraysOf(const TriangleMesh& mesh) {
+    return {std::as_bytes(std::span(mesh.positions)), std::as_bytes(std::span(mesh.triangles)),
+            std::as_bytes(std::span(mesh.marks)), std::as_bytes(std::span(mesh.labels))};
+}
+
+/// Takes an array of that many off the bytes, which hold it.
 template <class T>
-void copyArray(std::span<const std::byte> bytes, std::vector<T>& out) {
-    out.resize(bytes.size() / sizeof(T));
-    if (!bytes.empty()) {
-        std::memcpy(static_cast<void*>(out.data()), bytes.data(), bytes.size());
+void takeArray(std::span<const std::byte>& bytes, std::uint64_t count, std::vector<T>& out) {
+    out.resize(count);
+    if (count > 0) {
+        std::memcpy(static_cast<void*>(out.data()), bytes.data(), count * sizeof(T));
     }
+    bytes = bytes.subspan(count * sizeof(T));
 }
 
 using Surfaces = flatbuffers::Vector<flatbuffers::Offset<import_fb::Surface>>;
@@ -50,52 +60,6 @@ flatbuffers::Offset<Surfaces> writeSurfaces(flatbuffers::FlatBufferBuilder& buil
                                                           name.material.c_str()));
     }
     return builder.CreateVector(surfaces);
-}
-
-/// Runs of equal labels.
-struct LabelRuns {
-    std::vector<std::uint32_t> labels;
-    std::vector<std::uint64_t> triangles;
-};
-LabelRuns runsOf(const std::vector<std::uint32_t>& labels) {
-    LabelRuns runs;
-    for (std::size_t i = 0; i < labels.size(); ++i) {
-        if (i == 0 || labels[i] != labels[i - 1]) {
-            runs.labels.push_back(labels[i]);
-            runs.triangles.push_back(0);
-        }
-        ++runs.triangles.back();
-    }
-    return runs;
-}
-
-/// \return whether the runs are those of the mesh's triangles.
-bool readLabels(const import_fb::Message& message, TriangleMesh& raw) {
-    const auto* surfaces = message.surfaces();
-    const auto* labels = message.run_labels();
-    const auto* triangles = message.run_triangles();
-    if (labels == nullptr || labels->size() == 0) {
-        return true;
-    }
-    if (surfaces == nullptr || triangles == nullptr || triangles->size() != labels->size() ||
-        surfaces->size() > kSurfaceNamesMax) {
-        return false;
-    }
-    for (const import_fb::Surface* surface : *surfaces) {
-        raw.surface_names.push_back({surface->node_index(),
-                                     cleanUtf8(textOf(surface->node()), kAskedNameBytesMax),
-                                     cleanUtf8(textOf(surface->material()), kAskedNameBytesMax)});
-    }
-    std::uint64_t left = message.triangles();
-    raw.labels.reserve(left);
-    for (flatbuffers::uoffset_t i = 0; i < labels->size(); ++i) {
-        if (labels->Get(i) >= surfaces->size() || triangles->Get(i) > left) {
-            return false;
-        }
-        raw.labels.insert(raw.labels.end(), triangles->Get(i), labels->Get(i));
-        left -= triangles->Get(i);
-    }
-    return left == 0;
 }
 
 }  // namespace
@@ -119,9 +83,6 @@ ImportMessage makeImportMessage(const Result<TriangleMesh>& raw) {
         }
         const auto files = builder.CreateVector(list);
         const auto surfaces = writeSurfaces(builder, *raw);
-        const LabelRuns runs = runsOf(raw->labels);
-        const auto run_labels = builder.CreateVector(runs.labels);
-        const auto run_triangles = builder.CreateVector(runs.triangles);
         import_fb::MessageBuilder message(builder);
         message.add_unit(unit);
         message.add_warnings(warnings);
@@ -131,10 +92,11 @@ ImportMessage makeImportMessage(const Result<TriangleMesh>& raw) {
         message.add_unused_vertices(raw->unused_vertices);
         message.add_marks(raw->marks.size());
         message.add_surfaces(surfaces);
-        message.add_run_labels(run_labels);
-        message.add_run_triangles(run_triangles);
+        message.add_labels(raw->labels.size());
         import_fb::FinishMessageBuffer(builder, message.Finish());
-        arrays = 12 * (raw->positions.size() + raw->triangles.size()) + raw->marks.size();
+        for (const std::span<const std::byte> array : arraysOf(*raw)) {
+            arrays += array.size();
+        }
     }
     ImportMessage made;
     const std::uint64_t table = builder.GetSize();
@@ -147,21 +109,12 @@ ImportMessage makeImportMessage(const Result<TriangleMesh>& raw) {
 
 void writeImportMessage(const ImportMessage& message, const Result<TriangleMesh>& raw,
                         std::span<std::byte> target) {
-    std::memcpy(target.data(), message.head.data(), message.head.size());
-    if (!raw) {
-        return;
-    }
-    std::byte* const arrays = target.data() + message.head.size();
-    const std::size_t positions = 12 * raw->positions.size();
-    const std::size_t triangles = 12 * raw->triangles.size();
-    if (positions != 0) {
-        std::memcpy(arrays, raw->positions.data(), positions);
-    }
-    if (triangles != 0) {
-        std::memcpy(arrays + positions, raw->triangles.data(), triangles);
-    }
-    if (!raw->marks.empty()) {
-        std::memcpy(arrays + positions + triangles, raw->marks.data(), raw->marks.size());
+    std::copy(message.head.begin(), message.head.end(), target.begin());
+    target = target.subspan(message.head.size());
+    for (const std::span<const std::byte> array :
+         raw ? arraysOf(*raw) : std::array<std::span<const std::byte>, 4>()) {
+        std::copy(array.begin(), array.end(), target.begin());
+        target = target.subspan(array.size());
     }
 }
 
@@ -192,7 +145,9 @@ Result<TriangleMesh> readImportMessage(std::span<const std::byte> bytes, std::ui
     if (message.positions() > 3 * triangle_max || message.triangles() > triangle_max ||
         message.unused_vertices() > kImportBytesMax ||  // a vertex takes more than a byte
         !(message.marks() == 0 || message.marks() == message.triangles()) ||
-        head + 12 * (message.positions() + message.triangles()) + message.marks() != bytes.size()) {
+        !(message.labels() == 0 || message.labels() == message.triangles()) ||
+        head + 12 * (message.positions() + message.triangles()) + message.marks() + 4 * message.labels() !=
+            bytes.size()) {
         return noMessage();
     }
     TriangleMesh raw;
@@ -215,12 +170,24 @@ Result<TriangleMesh> readImportMessage(std::span<const std::byte> bytes, std::ui
             raw.dependency_hashes.push_back(file->hash()->str());
         }
     }
-    const std::uint64_t triangles = head + 12 * message.positions();
-    const std::uint64_t marks = triangles + 12 * message.triangles();
-    copyArray(bytes.subspan(head, triangles - head), raw.positions);
-    copyArray(bytes.subspan(triangles, marks - triangles), raw.triangles);
-    copyArray(bytes.subspan(marks, message.marks()), raw.marks);
-    return readLabels(message, raw) ? Result<TriangleMesh>(std::move(raw)) : noMessage();
+    if (const auto* surfaces = message.surfaces(); surfaces != nullptr) {
+        if (surfaces->size() > kSurfaceNamesMax) {
+            return noMessage();
+        }
+        for (const import_fb::Surface* surface : *surfaces) {
+            raw.surface_names.push_back({surface->node_index(),
+                                         cleanUtf8(textOf(surface->node()), kAskedNameBytesMax),
+                                         cleanUtf8(textOf(surface->material()), kAskedNameBytesMax)});
+        }
+    }
+    bytes = bytes.subspan(head);
+    takeArray(bytes, message.positions(), raw.positions);
+    takeArray(bytes, message.triangles(), raw.triangles);
+    takeArray(bytes, message.marks(), raw.marks);
+    takeArray(bytes, message.labels(), raw.labels);
+    const bool named = std::all_of(raw.labels.begin(), raw.labels.end(),
+                                   [&raw](std::uint32_t label) { return label < raw.surface_names.size(); });
+    return named ? Result<TriangleMesh>(std::move(raw)) : noMessage();
 }
 
 }  // namespace relief

@@ -2,7 +2,7 @@
 // file.
 //
 //     u64 size of the table   u64 0   the table (import_message.fbs), padded to a multiple of 16
-//     positions, 12 bytes each        triangles, 12 bytes each        marks, a byte each        and no byte more
+//     positions and triangles, 12 bytes each        marks, a byte each        labels, 4 bytes each        and no byte more
 #pragma once
 
 #include <cstddef>
@@ -29,7 +29,7 @@ void writeImportMessage(const ImportMessage& message, const Result<TriangleMesh>
                         std::span<std::byte> target);
 
 /// Reads a message that may hold anything. Indices and coordinates are left to finishMesh, and what marks mean to
-/// ImportSource::finish; there are none, or one for each triangle.
+/// ImportSource::finish; there are none of these and of labels, or one for each triangle.
 /// \param bytes  aligned to 16 bytes, and not changed meanwhile.
 /// \param triangle_max  at most kTriangleMax. More, or more than thrice as many positions, are no message: nothing is
 /// allocated for them.

@@ -13,11 +13,9 @@
 namespace relief {
 namespace {
 
-enum class OffLayout : std::uint8_t { kLines, kWords };
-
 class OffReader {
   public:
-    OffReader(std::string_view text, OffLayout layout) : text_(text, {'#', false}), layout_(layout) {}
+    explicit OffReader(std::string_view text) : text_(text, {'#', false}) {}
 
     Result<PolygonMesh> read() {
         RELIEF_TRY(readHeader());
@@ -39,25 +37,10 @@ class OffReader {
   private:
     Result<void> readHeader() {
         std::string_view word = text_.anyWord();
-        std::string name = lowerCase(word);
+        const std::string name = lowerCase(word);
         if (name.ends_with("off")) {
-            name.resize(name.size() - 3);
-            if (name.starts_with("st")) {
-                more_ += 2;
-                name.erase(0, 2);
-            }
-            if (name.starts_with('c')) {
-                has_colours_ = true;
-                name.erase(0, 1);
-            }
-            if (name.starts_with('n')) {
-                more_ += 3;
-                name.erase(0, 1);
-            }
-            has_weight_ = name.starts_with('4');
-            name.erase(0, has_weight_ ? 1 : 0);
-            // NOFF has normals, nOFF any number of dimensions.
-            if (!name.empty() || word.ends_with("nOFF")) {
+            // Colours, normals and the like stand behind a vertex's coordinates; nOFF has any number of these, 4OFF four.
+            if (name.find_first_not_of("stcnof") != std::string::npos || word.ends_with("nOFF")) {
                 return wrongLine(text_.line(),
                                  quotedWord(word) + " is no OFF of three dimensions; save it as OFF");
             }
@@ -112,21 +95,8 @@ class OffReader {
         for (int i = 0; i < 3; ++i) {
             position[i] = RELIEF_TRY(number(text_.anyWord(), "vertex", index));
         }
-        if (has_weight_) {
-            const float weight = RELIEF_TRY(number(text_.anyWord(), "vertex", index));
-            if (weight == 0.0F) {
-                return wrongLine(text_.line(), "a vertex of weight 0 lies nowhere; save the mesh as OFF");
-            }
-            position = {position.x / weight, position.y / weight, position.z / weight};
-        }
         mesh_.positions.push_back(position);
-        if (layout_ == OffLayout::kLines) {
-            return passLine("vertex", index);
-        }
-        for (int i = 0; i < more_ + (has_colours_ ? 4 : 0); ++i) {
-            (void)RELIEF_TRY(number(text_.anyWord(), "vertex", index));
-        }
-        return {};
+        return passLine("vertex", index);
     }
 
     /// \return how many triangles it becomes.
@@ -156,9 +126,7 @@ class OffReader {
             mesh_.corners.push_back(static_cast<std::uint32_t>(*vertex));
         }
         mesh_.sizes.push_back(static_cast<std::uint32_t>(*corners));
-        if (layout_ == OffLayout::kLines) {
-            RELIEF_TRY(passLine("face", index));
-        }
+        RELIEF_TRY(passLine("face", index));
         return *corners < 3 ? 0 : *corners - 2;
     }
 
@@ -171,10 +139,6 @@ class OffReader {
     }
 
     TextScanner text_;
-    OffLayout layout_;
-    int more_ = 0;  // numbers of a vertex, beside its place and its colour
-    bool has_colours_ = false;
-    bool has_weight_ = false;
     std::uint64_t vertices_ = 0;
     std::uint64_t faces_ = 0;
     PolygonMesh mesh_;
@@ -183,13 +147,7 @@ class OffReader {
 }  // namespace
 
 Result<PolygonMesh> readOff(std::span<const std::byte> bytes) {
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    Result<PolygonMesh> mesh = OffReader(text, OffLayout::kLines).read();
-    if (!mesh && mesh.error().code == ErrorCode::kInvalidInput) {
-        Result<PolygonMesh> words = OffReader(text, OffLayout::kWords).read();
-        return words ? std::move(words) : std::move(mesh);
-    }
-    return mesh;
+    return OffReader({reinterpret_cast<const char*>(bytes.data()), bytes.size()}).read();
 }
 
 }  // namespace relief

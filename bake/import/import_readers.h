@@ -14,9 +14,9 @@ namespace relief {
 
 /// OFF, the Object File Format of Geomview, as text.
 ///
-/// Reads the header OFF, with the prefixes ST, C, N and 4 in this order or without it, and the counts of vertices, faces and,
-/// if it is there, edges. Each vertex begins a line, and each face too, which may go on over several; what else stands on
-/// their last line, colours mostly, is passed over. Files that keep to no lines are read word by word.
+/// Reads the header OFF, with the prefixes ST, C and N or without it, and the counts of vertices, faces and, if it is there,
+/// edges. Each vertex begins a line, and each face too, which may go on over several; what else stands on their last line,
+/// colours mostly, is passed over.
 [[nodiscard]] Result<PolygonMesh> readOff(std::span<const std::byte> bytes);
 
 /// STL, as text and binary.

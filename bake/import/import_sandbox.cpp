@@ -1,7 +1,12 @@
 #include "bake/import/import_sandbox.h"
 
+#include <fcntl.h>
 #include <linux/landlock.h>
+#include <linux/seccomp.h>
+#include <sched.h>
+#include <seccomp.h>
 #include <signal.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
@@ -11,9 +16,12 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <initializer_list>
+#include <memory>
 #include <string>
+#include <type_traits>
+#include <utility>
 
-#include "bake/import/import_seccomp.h"
 #include "formats/base/descriptor.h"
 
 namespace relief {
@@ -74,6 +82,175 @@ Result<void> enterLandlock(int folder) {
         return cannot("enter Landlock");
     }
     return {};
+}
+
+// --- system calls ---
+
+/// Of no harm, whatever they are called with.
+constexpr int kAllowed[] = {
+    // memory
+    SCMP_SYS(brk),
+    SCMP_SYS(munmap),
+    SCMP_SYS(mremap),
+    SCMP_SYS(madvise),
+    // descriptors that it has
+    SCMP_SYS(read),
+    SCMP_SYS(readv),
+    SCMP_SYS(pread64),
+    SCMP_SYS(lseek),
+    SCMP_SYS(close),
+    SCMP_SYS(fstat),
+    SCMP_SYS(poll),
+    SCMP_SYS(ppoll),
+    // threads and signals
+    SCMP_SYS(futex),
+    SCMP_SYS(set_robust_list),
+    SCMP_SYS(rseq),
+    SCMP_SYS(sched_yield),
+    SCMP_SYS(sched_getaffinity),
+    SCMP_SYS(rt_sigaction),
+    SCMP_SYS(rt_sigprocmask),
+    SCMP_SYS(rt_sigreturn),
+    SCMP_SYS(restart_syscall),
+    SCMP_SYS(getpid),
+    SCMP_SYS(gettid),
+    SCMP_SYS(exit),
+    SCMP_SYS(exit_group),
+    // what time it is and how large the machine; sorting in libc asks
+    SCMP_SYS(clock_gettime),
+    SCMP_SYS(gettimeofday),
+    SCMP_SYS(clock_nanosleep),
+    SCMP_SYS(nanosleep),
+    SCMP_SYS(sysinfo),
+    SCMP_SYS(uname),
+    SCMP_SYS(getrandom),
+#ifdef __SANITIZE_ADDRESS__
+    // The sanitizers look at memory through pipes, give each thread a stack for signals, and write what they find.
+    SCMP_SYS(pipe),
+    SCMP_SYS(pipe2),
+    SCMP_SYS(write),
+    SCMP_SYS(sigaltstack),
+    SCMP_SYS(getrusage),
+#endif
+};
+
+struct Refused {
+    int call;
+    int error;
+};
+
+/// Libraries try these and can do without. glibc takes clone, whose flags are seen, where there is no clone3.
+constexpr Refused kRefused[] = {
+    {SCMP_SYS(clone3), ENOSYS},   {SCMP_SYS(open), EACCES},       {SCMP_SYS(openat), EACCES},
+    {SCMP_SYS(stat), EACCES},     {SCMP_SYS(lstat), EACCES},      {SCMP_SYS(statx), EACCES},
+    {SCMP_SYS(access), EACCES},   {SCMP_SYS(faccessat), EACCES},  {SCMP_SYS(faccessat2), EACCES},
+    {SCMP_SYS(readlink), EACCES}, {SCMP_SYS(readlinkat), EACCES}, {SCMP_SYS(getcwd), EACCES},
+    {SCMP_SYS(ioctl), ENOTTY},    {SCMP_SYS(writev), EPERM},
+#ifndef __SANITIZE_ADDRESS__
+    {SCMP_SYS(write), EPERM},
+#endif
+};
+
+constexpr auto kThread = static_cast<scmp_datum_t>(CLONE_VM | CLONE_SIGHAND | CLONE_THREAD);
+/// What glibc and musl give a thread besides.
+constexpr auto kThreadMay =
+    static_cast<scmp_datum_t>(CLONE_FS | CLONE_FILES | CLONE_SYSVSEM | CLONE_SETTLS | CLONE_PARENT_SETTID |
+                              CLONE_CHILD_SETTID | CLONE_CHILD_CLEARTID | CLONE_DETACHED);
+
+using Filter = std::unique_ptr<std::remove_pointer_t<scmp_filter_ctx>, void (*)(scmp_filter_ctx)>;
+
+class Rules {
+  public:
+    explicit Rules(scmp_filter_ctx filter) : filter_(filter) {}
+
+    /// Argument `index`, masked, is `value`.
+    static scmp_arg_cmp masked(unsigned index, scmp_datum_t mask, scmp_datum_t value) {
+        return {index, SCMP_CMP_MASKED_EQ, mask, value};
+    }
+    static scmp_arg_cmp is(unsigned index, scmp_datum_t value) { return {index, SCMP_CMP_EQ, value, 0}; }
+
+    void allow(int call, std::initializer_list<scmp_arg_cmp> where = {}) { add(SCMP_ACT_ALLOW, call, where); }
+    void refuse(const Refused& refused) {
+        add(SCMP_ACT_ERRNO(static_cast<unsigned>(refused.error)), refused.call, {});
+    }
+    /// \return 0 or the errno of the first rule that could not be added.
+    [[nodiscard]] int failure() const { return failure_; }
+
+  private:
+    void add(std::uint32_t action, int call, std::initializer_list<scmp_arg_cmp> where) {
+        const int code = ::seccomp_rule_add_array(filter_, action, call, static_cast<unsigned>(where.size()),
+                                                  where.begin());
+        if (code != 0 && failure_ == 0) {
+            failure_ = -code;
+        }
+    }
+
+    scmp_filter_ctx filter_;
+    int failure_ = 0;
+};
+
+void addRules(Rules& rules, int folder, int result) {
+    for (const int call : kAllowed) {
+        rules.allow(call);
+    }
+    for (const Refused& refused : kRefused) {
+        rules.refuse(refused);
+    }
+    // Memory that is read and written, never run; shared with others only as the result.
+    const auto shared = static_cast<scmp_datum_t>(MAP_SHARED);
+    rules.allow(SCMP_SYS(mmap), {Rules::masked(2, PROT_EXEC, 0), Rules::masked(3, shared, 0)});
+    rules.allow(SCMP_SYS(mprotect), {Rules::masked(2, PROT_EXEC, 0)});
+    if (folder >= 0) {
+        // The path is not seen from here: Landlock judges it.
+        rules.allow(SCMP_SYS(openat2), {Rules::is(0, static_cast<scmp_datum_t>(folder))});
+    }
+    if (result >= 0) {
+        const auto file = static_cast<scmp_datum_t>(result);
+        rules.allow(SCMP_SYS(mmap),
+                    {Rules::masked(2, PROT_EXEC, 0), Rules::masked(3, shared, shared), Rules::is(4, file)});
+        rules.allow(SCMP_SYS(ftruncate), {Rules::is(0, file)});
+        rules.allow(SCMP_SYS(fallocate), {Rules::is(0, file), Rules::is(1, 0)});
+        rules.allow(SCMP_SYS(fcntl), {Rules::is(0, file), Rules::is(1, F_ADD_SEALS)});
+    }
+    // fstat of glibc.
+    rules.allow(SCMP_SYS(newfstatat), {Rules::is(3, AT_EMPTY_PATH)});
+    // What has been given up may be asked for, and not taken back.
+    for (const int question : {PR_GET_DUMPABLE, PR_GET_NO_NEW_PRIVS, PR_GET_PDEATHSIG}) {
+        rules.allow(SCMP_SYS(prctl), {Rules::is(0, static_cast<scmp_datum_t>(question))});
+    }
+    rules.allow(SCMP_SYS(prlimit64), {Rules::is(0, 0), Rules::is(2, 0)});
+    rules.allow(SCMP_SYS(getrlimit));
+    rules.allow(SCMP_SYS(clone), {Rules::masked(0, ~kThreadMay, kThread)});
+    // abort() of this process, and of no other.
+    rules.allow(SCMP_SYS(tgkill), {Rules::is(0, static_cast<scmp_datum_t>(::getpid()))});
+}
+
+/// Takes from this process all system calls but those that reading a mesh needs: memory that is not executable, threads of
+/// its own, reading of descriptors, files opened by openat2 (where Landlock keeps them below a folder and for reading),
+/// clocks, and its end. Calls that libraries try and can do without fail (EACCES, EPERM, ENOSYS, ENOTTY); all others end
+/// the process by SIGSYS. Comes after PR_SET_NO_NEW_PRIVS. A kernel without seccomp leaves the process as it is.
+Result<void> enterSeccomp(int folder, int result) {
+    // The kernel has filters if it misses the one that is given.
+    if (::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, nullptr) == 0 || errno != EFAULT) {
+        return {};
+    }
+    const Filter filter(::seccomp_init(SCMP_ACT_KILL_PROCESS), ::seccomp_release);
+    if (filter == nullptr) {
+        errno = ENOMEM;
+        return cannot("limit its system calls");
+    }
+    // The kernel's own errno, and not one for all; another architecture's calls are as forbidden.
+    for (const auto& [attribute, value] : {std::pair{SCMP_FLTATR_API_SYSRAWRC, 1U},
+                                           std::pair{SCMP_FLTATR_ACT_BADARCH, SCMP_ACT_KILL_PROCESS}}) {
+        errno = -::seccomp_attr_set(filter.get(), attribute, value);
+        if (errno != 0) {
+            return cannot("limit its system calls");
+        }
+    }
+    Rules rules(filter.get());
+    addRules(rules, folder, result);
+    errno = rules.failure() != 0 ? rules.failure() : -::seccomp_load(filter.get());
+    return errno == 0 ? Result<void>() : cannot("limit its system calls");
 }
 
 }  // namespace

@@ -17,8 +17,8 @@ struct SandboxLimits {
 
 /// Limits this process for good: its address space, stack and processor time; no core file, no writing or growing of
 /// files, no new privileges, no debugger; it ends with the parent thread. Where the kernel has Landlock, it can
-/// open nothing but files below `folder`, for reading. Where it has seccomp, only the system calls of
-/// import_seccomp.h are left. Call it while there is one thread.
+/// open nothing but files below `folder`, for reading. Where it has seccomp, few system calls are left: any other ends it by
+/// SIGSYS. Call it while there is one thread.
 /// \param folder  descriptor; -1 for none.
 /// \param result  descriptor of the memory that may still be shared, cut and sealed; -1 for none.
 /// Errors: kFailure.

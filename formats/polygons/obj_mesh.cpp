@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string_view>
@@ -30,7 +29,6 @@ class ObjReader {
         if (furthest_ >= mesh_.positions.size() && furthest_line_ > 0) {
             return noVertex(furthest_line_, std::to_string(furthest_ + 1));
         }
-        RELIEF_TRY(checkFinite());
         for (const std::uint32_t vertex : in_others_) {
             mesh_.in_others.resize(mesh_.positions.size(), 0);
             mesh_.in_others[vertex] = 1;
@@ -98,12 +96,6 @@ class ObjReader {
                 return wrongLine(line, "a vertex of weight 0 lies nowhere; leave the weight out");
             }
             position = {numbers[0] / numbers[3], numbers[1] / numbers[3], numbers[2] / numbers[3]};
-        }
-        const bool finite =
-            std::isfinite(position.x) && std::isfinite(position.y) && std::isfinite(position.z);
-        if (!finite && nowhere_line_ == 0) {
-            nowhere_ = mesh_.positions.size();
-            nowhere_line_ = line;
         }
         if (mesh_.positions.size() == 3 * kPolygonTrianglesMax) {
             return fail(ErrorCode::kLimit, "it has more than " + std::to_string(3 * kPolygonTrianglesMax) +
@@ -191,19 +183,6 @@ class ObjReader {
         return {};
     }
 
-    Result<void> checkFinite() const {
-        if (nowhere_line_ == 0) {
-            return {};
-        }
-        const bool used = std::any_of(mesh_.corners.begin(), mesh_.corners.end(), [&](std::uint32_t corner) {
-            const glm::vec3& p = mesh_.positions[corner];
-            return !std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z);
-        });
-        return used ? wrongLine(nowhere_line_, "vertex " + std::to_string(nowhere_ + 1) +
-                                                   " has a coordinate that is not finite; repair the mesh")
-                    : Result<void>();
-    }
-
     static constexpr std::int64_t kIndexMax = std::numeric_limits<std::uint32_t>::max();
 
     TextScanner text_;
@@ -219,8 +198,6 @@ class ObjReader {
     std::uint64_t triangles_ = 0;
     std::uint64_t furthest_ = 0;  // index that a face names
     std::size_t furthest_line_ = 0;
-    std::size_t nowhere_ = 0;  // the first vertex that is not finite
-    std::size_t nowhere_line_ = 0;
 };
 
 }  // namespace

@@ -61,12 +61,11 @@ class PlyImport {
         if (std::none_of(header.elements.begin(), header.elements.end(), isSurface)) {
             return noFaces(header);
         }
-        if (const Result<void> read = readElements(header, data); !read || divided_) {
-            if (header.encoding == PlyEncoding::kAscii) {
-                RELIEF_TRY(checkVertexLines(header, data));
-            }
-            RELIEF_TRY(read);
+        PlyNumbers numbers(data, header.encoding, header.lines);
+        for (const PlyElement& element : header.elements) {
+            RELIEF_TRY(readElement(element, numbers));
         }
+        RELIEF_TRY(checkRest(numbers));
         if (mesh_.sizes.empty()) {
             return noFaces(header);
         }
@@ -92,54 +91,15 @@ class PlyImport {
         return checkAnnounced(vertices_);
     }
 
-    Result<void> readElements(const PlyHeader& header, std::string_view data) {
-        PlyNumbers numbers(data, header.encoding, header.lines);
-        for (const PlyElement& element : header.elements) {
-            RELIEF_TRY(readElement(element, numbers));
-        }
-        return checkRest(numbers);
-    }
-
-    /// In text, numbers stand in any lines, so that a count of vertices that is wrong only shifts those behind. Where each
-    /// element has a line, as programs write them, the lines tell.
-    static Result<void> checkVertexLines(const PlyHeader& header, std::string_view data) {
-        const PlyElement& vertices = header.elements.front();
-        std::uint64_t others = 0;  // elements that should follow
-        for (const PlyElement& element : header.elements) {
-            others += &element != &vertices && !element.properties.empty() ? element.count : 0;
-        }
-        const auto fits = [](std::string_view line, const PlyElement& element) {
-            PlyNumbers numbers(line, PlyEncoding::kAscii);
-            for (const PlyProperty& property : element.properties) {
-                if (!passPlyProperty(property, numbers)) {
-                    return false;
-                }
-            }
-            return numbers.atLineEnd();
-        };
-        std::uint64_t begun = 0;   // lines of a vertex each, in front
-        std::uint64_t behind = 0;  // the other lines
-        bool all_fit = true;       // some element of the others each
-        while (!data.empty()) {
-            const std::string_view line = trimmed(takeLine(data));
-            if (line.empty()) {
-                continue;
-            }
-            if (behind == 0 && fits(line, vertices)) {
-                ++begun;
-                continue;
-            }
-            ++behind;
-            all_fit = all_fit && std::any_of(header.elements.begin() + 1, header.elements.end(),
-                                             [&](const PlyElement& other) { return fits(line, other); });
-        }
-        const bool too_many = begun < vertices.count && behind > 0 && all_fit;
-        const bool too_few = begun > vertices.count && behind == others && all_fit;
-        return vertices.name == "vertex" && begun > 0 && (too_many || too_few)
-                   ? invalidInput("its header announces " + std::to_string(vertices.count) +
-                                  " vertices, but " + std::to_string(begun) +
-                                  " lines of one follow; correct the count, or export it again")
-                   : Result<void>();
+    /// In text, each element has a line: one of more or fewer numbers would shift all behind it.
+    static Result<void> endLine(const PlyElement& element, std::uint64_t index, PlyNumbers& numbers) {
+        return !numbers.isText() || numbers.atLineEnd()
+                   ? Result<void>()
+                   : invalidInput(
+                         numbers.where() + "element " + cleanUtf8(element.name, kNameMax) + " " +
+                         std::to_string(index) +
+                         " does not end with its line, by the header; correct the counts and properties "
+                         "there, or export it again");
     }
 
     Result<void> readElement(const PlyElement& element, PlyNumbers& numbers) {
@@ -164,7 +124,7 @@ class PlyImport {
                     RELIEF_TRY(readFace(property, i, numbers));
                 }
             }
-            divided_ = divided_ || (numbers.isText() && !numbers.atLineEnd());
+            RELIEF_TRY(endLine(element, i, numbers));
         }
         return {};
     }
@@ -175,8 +135,8 @@ class PlyImport {
         for (std::uint64_t i = 0; i < element.count; ++i) {
             RELIEF_TRY(columns.read(numbers, place));
             mesh_.positions.emplace_back(place[0], place[1], place[2]);
+            RELIEF_TRY(endLine(element, i, numbers));
         }
-        divided_ = divided_ || (numbers.isText() && !numbers.atLineEnd());
         return {};
     }
 
@@ -249,7 +209,6 @@ class PlyImport {
         return checkTriangleCount(triangles_);
     }
 
-    /// In text, a line of more numbers than its element has shifts all behind it: that must not pass for a mesh.
     Result<void> checkRest(PlyNumbers& numbers) {
         if (numbers.isText()) {
             static_cast<void>(numbers.next(PlyType::kFloat64));
@@ -286,7 +245,6 @@ class PlyImport {
     std::uint64_t vertices_ = 0;  // the header's count: faces may come first
     std::uint64_t triangles_ = 0;
     std::vector<PlyElement> unread_;  // that look like faces
-    bool divided_ = false;            // an element of a text ends within a line
 };
 
 }  // namespace

@@ -13,28 +13,6 @@
 namespace relief {
 namespace {
 
-/// One line of a header. It borrows from the file's bytes.
-struct PlyHeaderLine {
-    enum class Kind : std::uint8_t { kPly, kFormat, kElement, kProperty, kEnd, kOther };
-
-    Kind kind = Kind::kOther;             ///< by its first word
-    std::string_view name;                ///< of an element or a property; empty if the line has another form
-    std::optional<PlyEncoding> encoding;  ///< of a format that is known
-    std::optional<std::uint64_t> count;   ///< of an element
-    bool list = false;                    ///< a property that is a list
-    std::optional<PlyType> type;          ///< of a property, or of a list's items; nullopt if unknown
-    std::optional<PlyType> length_type;   ///< of a list's length
-};
-
-template <class T>
-using Words = std::span<const std::pair<std::string_view, T>>;
-
-constexpr std::pair<std::string_view, PlyHeaderLine::Kind> kKinds[] = {
-    {"ply", PlyHeaderLine::Kind::kPly},
-    {"format", PlyHeaderLine::Kind::kFormat},
-    {"element", PlyHeaderLine::Kind::kElement},
-    {"property", PlyHeaderLine::Kind::kProperty},
-    {"end_header", PlyHeaderLine::Kind::kEnd}};
 constexpr std::pair<std::string_view, PlyEncoding> kEncodings[] = {
     {"ascii", PlyEncoding::kAscii},
     {"binary_little_endian", PlyEncoding::kLittle},
@@ -47,8 +25,8 @@ constexpr std::pair<std::string_view, PlyType> kTypes[] = {
     {"float", PlyType::kFloat32},  {"float32", PlyType::kFloat32}, {"double", PlyType::kFloat64},
     {"float64", PlyType::kFloat64}};
 
-template <class T>
-std::optional<T> find(Words<T> words, std::string_view word) {
+template <class T, std::size_t N>
+std::optional<T> find(const std::pair<std::string_view, T> (&words)[N], std::string_view word) {
     for (const auto& [name, value] : words) {
         if (name == word) {
             return value;
@@ -62,95 +40,69 @@ std::size_t sizeOf(PlyType type) {
     return kSizes[static_cast<std::size_t>(type)];
 }
 
-std::optional<std::uint64_t> parseCount(std::string_view word) {
-    std::uint64_t count = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), count);
-    return error == std::errc() && end == word.data() + word.size() ? std::optional(count) : std::nullopt;
-}
-
-Result<void> addElement(const PlyHeaderLine& line, PlyHeader& header) {
-    if (!line.count || header.elements.size() == kPlyElementsMax) {
+/// \param words  of its line.
+Result<void> addElement(std::span<const std::string_view> words, PlyHeader& header) {
+    const std::optional<std::uint64_t> count = words.size() == 3 ? parseUnsigned(words[2]) : std::nullopt;
+    if (!count || header.elements.size() == kPlyElementsMax) {
         return invalidInput("an element of its header is not understood");
     }
-    header.elements.push_back({line.name, *line.count, {}});
+    header.elements.push_back({words[1], *count, {}});
     return {};
 }
 
-Result<void> addProperty(const PlyHeaderLine& line, PlyHeader& header) {
+/// \param words  of its line.
+Result<void> addProperty(std::span<const std::string_view> words, PlyHeader& header) {
     if (header.elements.empty() || header.elements.back().properties.size() == kPlyPropertiesMax) {
         return invalidInput("a property of its header belongs to no element, or to a crowded one");
     }
-    if (line.name.empty()) {
+    const bool list = words.size() == 5 && words[1] == "list";
+    if (!list && words.size() != 3) {
         return invalidInput("a property of its header is not understood");
     }
-    if (!line.type || (line.list && !line.length_type)) {
+    const std::optional<PlyType> type = find(kTypes, words[words.size() - 2]);
+    const std::optional<PlyType> length_type = list ? find(kTypes, words[2]) : std::nullopt;
+    if (!type || (list && !length_type)) {
         return invalidInput("a property of its header has an unknown type");
     }
-    header.elements.back().properties.push_back({line.name, *line.type, line.length_type});
+    header.elements.back().properties.push_back({words.back(), *type, length_type});
     return {};
-}
-
-/// Cuts the next line off `data`. \return nullopt at the end of the data.
-std::optional<PlyHeaderLine> takeHeaderLine(std::string_view& data) {
-    if (data.empty()) {
-        return std::nullopt;
-    }
-    std::string_view rest = takeLine(data);
-    std::array<std::string_view, 6> words;  // the longest line has five
-    std::size_t count = 0;
-    while (count < words.size() && !(words[count] = takeWord(rest)).empty()) {
-        ++count;
-    }
-    PlyHeaderLine line;
-    line.kind = find(Words<PlyHeaderLine::Kind>(kKinds), words[0]).value_or(PlyHeaderLine::Kind::kOther);
-    if (line.kind == PlyHeaderLine::Kind::kFormat) {
-        line.encoding = find(Words<PlyEncoding>(kEncodings), words[1]);
-    } else if (line.kind == PlyHeaderLine::Kind::kElement && count == 3) {
-        line.name = words[1];
-        line.count = parseCount(words[2]);
-    } else if (line.kind == PlyHeaderLine::Kind::kProperty) {
-        line.list = count == 5 && words[1] == "list";
-        if (line.list || count == 3) {
-            line.name = words[count - 1];
-            line.type = find(Words<PlyType>(kTypes), words[count - 2]);
-            line.length_type = line.list ? find(Words<PlyType>(kTypes), words[2]) : std::nullopt;
-        }
-    }
-    return line;
 }
 
 }  // namespace
 
 Result<PlyHeader> takePlyHeader(std::string_view& data) {
-    using Kind = PlyHeaderLine::Kind;
     PlyHeader header;
     std::optional<PlyEncoding> encoding;
     // Behind a header whose lines end with a carriage return alone, a line feed belongs to the numbers.
     bool returns = false;
-    for (bool first = true;; first = false) {
+    for (;;) {
         const std::string_view before = data;
-        const std::optional<PlyHeaderLine> line = takeHeaderLine(data);
+        std::string_view line = takeLine(data);
         const std::string_view taken = before.substr(0, before.size() - data.size());
-        returns = first ? taken.ends_with('\r') : returns;
-        ++header.lines;
-        if (!line) {
+        std::vector<std::string_view> words;
+        for (std::string_view word = takeWord(line); !word.empty() && words.size() < 6;
+             word = takeWord(line)) {
+            words.push_back(word);
+        }
+        const std::string_view kind = words.empty() ? std::string_view() : words[0];
+        if (before.empty()) {
             return invalidInput("its header does not end");
         }
-        if (first && line->kind != Kind::kPly) {
-            return invalidInput("it is no PLY file");
-        }
-        if (line->kind == Kind::kEnd) {
-            if (returns && taken.ends_with("\r\n")) {
-                data = before.substr(taken.size() - 1);
+        if (++header.lines == 1) {
+            returns = taken.ends_with('\r');
+            if (kind != "ply") {
+                return invalidInput("it is no PLY file");
             }
-            break;
         }
-        if (line->kind == Kind::kFormat) {
-            encoding = line->encoding;
-        } else if (line->kind == Kind::kElement) {
-            RELIEF_TRY(addElement(*line, header));
-        } else if (line->kind == Kind::kProperty) {
-            RELIEF_TRY(addProperty(*line, header));
+        if (kind == "format" && words.size() > 1) {
+            encoding = find(kEncodings, words[1]);
+        } else if (kind == "element") {
+            RELIEF_TRY(addElement(words, header));
+        } else if (kind == "property") {
+            RELIEF_TRY(addProperty(words, header));
+        } else if (kind == "end_header") {
+            data = returns && taken.ends_with("\r\n") ? before.substr(taken.size() - 1) : data;
+            break;
         }
     }
     if (!encoding) {

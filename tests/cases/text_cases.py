@@ -263,20 +263,15 @@ def write_ply(w, vertices, polygons):
                  *[f"property float {name}" for name in names], f"element face {len(polygons)}",
                  "property list uchar int vertex_indices", "end_header"]:
         w.put(line + (w.end or "\n"))
-    loose = w.random.random() < 0.5
-
-    def gap():
-        return w.random.choice([" ", "\t", "\n", "\r\n", " \n\n "]) if loose else w.blank()
-
     for vertex in vertices:
-        w.numbers(vertex + [0.25] * len(more), gap)
-        w.put(gap()) if loose else w.newline()
+        w.numbers(vertex + [0.25] * len(more))
+        w.newline()
     for polygon in polygons:
         w.put(str(len(polygon)))
         for corner in polygon:
-            w.put(gap())
+            w.put(w.blank())
             w.word(str(corner))
-        w.put(gap()) if loose else w.newline()
+        w.newline()
 
 
 def write_stl(w, vertices, polygons):

@@ -125,7 +125,8 @@ TEST(PointList, WrongPly) {
     expectError("ply\nformat ascii 1.0\nelement face 2\nelement vertex 1\nend_header\n",
                 "p: ", "first element");
     expectError(header("ascii", "-1", kXyz), "p: an element of its header");
-    expectError(header("ascii", "99999999999999999999999", kXyz), "p: an element of its header");
+    expectError(header("ascii", "99999999999999999999999", kXyz), "p: 18446744073709551615 points are more",
+                "", ErrorCode::kLimit);
     expectError(header("ascii", "4194305", kXyz), "p: 4194305 points", "leave some out", ErrorCode::kLimit);
     expectError(header("ascii", "2", kXyz) + "0 0 0\n0 0\n", "p: vertex 1: line 12: it ends too early");
     expectError(header("ascii", "2", kXyz) + "0 0 0\n", "p:", "ends too early");
