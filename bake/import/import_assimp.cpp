@@ -87,7 +87,9 @@ class ReadOnlyFiles final : public Assimp::IOSystem {
     ImportFiles& files_;
 };
 
-thread_local std::vector<std::string>* errors_of_thread = nullptr;
+/// The first errors of an import on this thread, and warnings that a part of the surface is left out. Where one of assimp's
+/// readers mends a file, such as an index out of range, that is all it says.
+thread_local std::vector<std::string> logged;
 
 bool hasAny(std::string_view text, std::span<const std::string_view> words) {
     return std::any_of(words.begin(), words.end(),
@@ -117,40 +119,27 @@ class Listener final : public Assimp::Logger {
     }
     void OnError(const char* message) override {
         constexpr std::size_t kErrorsMax = 4;
-        std::vector<std::string>* const errors = errors_of_thread;
         const std::string line = oneCleanLine(message);
-        if (errors != nullptr && errors->size() < kErrorsMax && !hasAny(line, kNoSurface) &&
-            std::find(errors->begin(), errors->end(), line) == errors->end()) {
-            errors->push_back(line);
+        if (logged.size() < kErrorsMax && !hasAny(line, kNoSurface) &&
+            std::find(logged.begin(), logged.end(), line) == logged.end()) {
+            logged.push_back(line);
         }
     }
 };
 
-/// The errors that assimp logs on this thread while this lives, the first few, and the warnings that a part of the surface
-/// is left out. Where one of its readers mends a file, such as an index out of range, that is all it says.
-class LoggedErrors {
-  public:
-    LoggedErrors() {
-        static const bool kInstalled = [] {
-            Assimp::DefaultLogger::set(new Listener);  // kept by assimp for the life of the process
-            return true;
-        }();
-        static_cast<void>(kInstalled);
-        errors_of_thread = &errors_;
-    }
-    LoggedErrors(const LoggedErrors&) = delete;
-    LoggedErrors& operator=(const LoggedErrors&) = delete;
-    ~LoggedErrors() { errors_of_thread = nullptr; }
+void beginLogging() {
+    static const bool kInstalled = [] {
+        Assimp::DefaultLogger::set(new Listener);  // kept by assimp for the life of the process
+        return true;
+    }();
+    static_cast<void>(kInstalled);
+    logged.clear();
+}
 
-    [[nodiscard]] const std::vector<std::string>& errors() const { return errors_; }
-    [[nodiscard]] bool say(std::string_view words) const {
-        return std::any_of(errors_.begin(), errors_.end(),
-                           [&](const std::string& error) { return error.find(words) != std::string::npos; });
-    }
-
-  private:
-    std::vector<std::string> errors_;
-};
+bool hasLogged(std::string_view words) {
+    return std::any_of(logged.begin(), logged.end(),
+                       [words](const std::string& error) { return error.find(words) != std::string::npos; });
+}
 
 // --- units and axes ---
 
@@ -184,27 +173,26 @@ SourceFrame fbxFrame(const aiScene& scene) {
     return frame;
 }
 
-/// assimp scales the root by the document's unit as it understands it. \param scene  loses that scale where it is another.
-SourceFrame daeFrame(const ImportJob& job, aiScene& scene) {
+/// assimp scales the root by the document's unit as it understands it. \param root  loses that scale.
+SourceFrame daeFrame(const ImportJob& job, aiMatrix4x4& root) {
     SourceFrame frame = colladaFrame(job.bytes);
-    const double applied = double{scene.mRootNode->mTransformation.a1};  // as it was rounded
-    frame.scaled = frame.metres && std::abs(applied / *frame.metres - 1.0) < 1e-5;
-    if (frame.scaled) {
+    const double applied = double{root.a1};  // as it was rounded
+    if (frame.metres && std::abs(applied / *frame.metres - 1.0) < 1e-5) {
         frame.metres = applied;
-    } else {
-        scene.mRootNode->mTransformation = aiMatrix4x4();
     }
+    root = aiMatrix4x4();
     return frame;
 }
 
-/// assimp turns the root, and divides it by the file's master scale, whatever that is. \param scene  loses that scale where
-/// it is none.
-SourceFrame frameOf3ds(aiScene& scene) {
-    SourceFrame frame{std::nullopt, UpAxis::kPlusZ, false, true};
-    const float scale = scene.mRootNode->mTransformation.a1;
+/// assimp turns the root, and divides it by the file's master scale, whatever that is. \param root  loses that turn, and that
+/// scale where it is none.
+SourceFrame frameOf3ds(aiMatrix4x4& root) {
+    SourceFrame frame{std::nullopt, UpAxis::kPlusZ};
+    const float scale = root.a1;
+    root = aiMatrix4x4(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1) * root;
     if (!(scale > 0.0F && std::isfinite(scale))) {
         frame.unit_fault = "its master scale is " + shortest(1.0F / scale) + ", which is none";
-        scene.mRootNode->mTransformation = {1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1};
+        root = aiMatrix4x4();
     }
     return frame;
 }
@@ -214,9 +202,9 @@ SourceFrame frameOf(AssimpFrame format, const ImportJob& job, aiScene& scene) {
     SourceFrame frame;
     switch (format) {
         case AssimpFrame::k3ds:
-            return frameOf3ds(scene);
+            return frameOf3ds(scene.mRootNode->mTransformation);
         case AssimpFrame::kDae:
-            return daeFrame(job, scene);
+            return daeFrame(job, scene.mRootNode->mTransformation);
         case AssimpFrame::kFbx:
             return fbxFrame(scene);
         default:
@@ -368,7 +356,7 @@ tl::unexpected<Error> notRead(const Assimp::Importer& importer, const ImportFile
 }  // namespace
 
 Result<ImportScene> readWithAssimp(AssimpFrame format, const ImportJob& job, ImportFiles& files) {
-    const LoggedErrors logged;
+    beginLogging();
     Assimp::Importer importer;
     keepReadersOf(job.extension, importer);
     importer.SetIOHandler(new ReadOnlyFiles(files));  // owned by the importer
@@ -377,14 +365,14 @@ Result<ImportScene> readWithAssimp(AssimpFrame format, const ImportJob& job, Imp
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);  // turned here
     // The importer's own, and no constant.
     auto* const source = const_cast<aiScene*>(importer.ReadFile(job.file_name, 0));
-    if (logged.say("UnitScaleFactor must be non-zero")) {
+    if (hasLogged("UnitScaleFactor must be non-zero")) {
         return invalidInput("its UnitScaleFactor is 0, which is no length; export it again with a unit");
     }
     if (source == nullptr || source->mRootNode == nullptr) {
         return notRead(importer, files);
     }
     ImportScene scene;
-    if (!addMeshes(*source, scene) || logged.say("out of range") || logged.say("out-of-range")) {
+    if (!addMeshes(*source, scene) || hasLogged("out of range") || hasLogged("out-of-range")) {
         return invalidInput("a face uses a vertex that does not exist");
     }
     scene.frame = frameOf(format, job, *source);
@@ -397,7 +385,7 @@ Result<ImportScene> readWithAssimp(AssimpFrame format, const ImportJob& job, Imp
                     [](const aiMesh* mesh) { return mesh->mNumAnimMeshes > 0; })) {
         scene.warnings.emplace_back("it is morphed; baked as it is modelled, without its targets");
     }
-    for (const std::string& error : logged.errors()) {
+    for (const std::string& error : logged) {
         scene.warnings.push_back("its importer says: " + error);
     }
     return scene;

@@ -109,18 +109,8 @@ std::optional<std::vector<std::byte>> ImportFiles::open(std::string_view path) {
     }
     bytes.resize(size);
     left_ -= size;
-    read_.push_back({name, xxh3_128Hex(bytes)});
+    read_.emplace(name, xxh3_128Hex(bytes));
     return bytes;
-}
-
-std::vector<ImportedFile> ImportFiles::read() const {
-    std::vector<ImportedFile> files = read_;
-    std::stable_sort(files.begin(), files.end(),
-                     [](const ImportedFile& a, const ImportedFile& b) { return a.path < b.path; });
-    files.erase(std::unique(files.begin(), files.end(),
-                            [](const ImportedFile& a, const ImportedFile& b) { return a.path == b.path; }),
-                files.end());
-    return files;
 }
 
 }  // namespace relief

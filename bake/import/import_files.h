@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -16,12 +17,6 @@ namespace relief {
 
 /// Limit of all files of a mesh together, in bytes.
 inline constexpr std::uint64_t kImportBytesMax = std::uint64_t{4} << 30;
-
-/// A file that was read.
-struct ImportedFile {
-    std::string path;  ///< relative to the folder, without ".."
-    std::string hash;  ///< XXH3-128
-};
 
 class ImportFiles {
   public:
@@ -41,8 +36,8 @@ class ImportFiles {
     /// below the folder or exceeds the limit of all files.
     [[nodiscard]] std::optional<std::vector<std::byte>> open(std::string_view path);
 
-    /// Without the mesh itself; by path, each once.
-    [[nodiscard]] std::vector<ImportedFile> read() const;
+    /// The XXH3-128 of each file that was read, without the mesh itself, by its path below the folder.
+    [[nodiscard]] const std::map<std::string, std::string>& read() const { return read_; }
     /// Names that led nowhere, with why; in the order they were asked for, each once, the first few only.
     [[nodiscard]] const std::vector<std::string>& refused() const { return refused_; }
 
@@ -55,7 +50,7 @@ class ImportFiles {
     std::string name_;
     std::span<const std::byte> bytes_;
     std::uint64_t left_;
-    std::vector<ImportedFile> read_;
+    std::map<std::string, std::string> read_;
     std::vector<std::string> refused_;
 };
 

@@ -59,7 +59,7 @@ class OffReader {
         } else {
             static_cast<void>(RELIEF_TRY(countOf(text_.word())));
         }
-        return checkAnnounced(vertices_);
+        return checkVertexCount(vertices_);
     }
 
     Result<std::uint64_t> countOf(std::string_view word) const {

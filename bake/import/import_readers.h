@@ -21,7 +21,7 @@ namespace relief {
 
 /// STL, as text and binary.
 ///
-/// Text begins with "solid", words in any case and over any lines; several solids may follow each other, and a triangle has
+/// Text begins with "solid" and the rest of its line; then words in any case and over any lines. Several solids may follow each other, and a triangle has
 /// the first word of its solid's name. Normals are not looked at. A file that is at least as long as the count of its
 /// header needs is binary, whatever it begins with; a warning counts the bytes behind its last triangle.
 [[nodiscard]] Result<PolygonMesh> readStl(std::span<const std::byte> bytes);

@@ -68,29 +68,19 @@ class StlText {
 
     Result<PolygonMesh> read() {
         for (std::string word = next(); !word.empty(); word = next()) {
-            if (word.starts_with('#')) {
-                static_cast<void>(text_.restOfLine());
-            } else if (word == "solid") {
-                RELIEF_TRY(readSolid());
-            } else if (word == "endsolid") {
-                RELIEF_TRY(passName());  // once more, as some writers have it
-            } else {
+            if (word != "solid") {
                 return unexpected("'solid'");
             }
+            RELIEF_TRY(readSolid());
         }
         return std::move(mesh_);
     }
 
   private:
-    /// The next word in lower case; "endfacet" for "end facet". Its first form stays in word_.
+    /// The next word in lower case. Its first form stays in word_.
     std::string next() {
         word_ = text_.anyWord();
-        std::string word = lowerCase(word_);
-        if (word == "end") {
-            word_ = text_.word();
-            word += lowerCase(word_);
-        }
-        return word;
+        return lowerCase(word_);
     }
 
     [[nodiscard]] tl::unexpected<Error> unexpected(const char* wanted) const {
@@ -106,52 +96,22 @@ class StlText {
         return next() == wanted ? Result<void>() : unexpected(("'" + std::string(wanted) + "'").c_str());
     }
 
-    /// Where everything stands on one line, the name ends before its first facet.
-    void readName() {
+    /// Names are the first word behind "solid" on its line.
+    Result<void> readSolid() {
         PolygonGroup group;
         group.begin = mesh_.sizes.size();
-        for (bool first = true;; first = false) {
-            const TextScanner before = text_;
-            const std::string_view word = text_.word();
-            if (word.empty()) {
-                break;
-            }
-            if (lowerCase(word) == "facet" && lowerCase(text_.word()) == "normal") {
-                text_ = before;
-                break;
-            }
-            if (first) {
-                group.names.emplace_back(word);
-            }
-        }
-        group.node = group.names.empty() ? std::string() : group.names.front();
+        group.node = text_.word();
+        group.names = {group.node};
         mesh_.groups.push_back(std::move(group));
-    }
-
-    Result<void> readSolid() {
-        readName();
-        for (;;) {
-            const std::string word = next();
-            if (word == "facet") {
-                RELIEF_TRY(readFacet());
-            } else if (word == "endsolid") {
-                return passName();
-            } else if (word.starts_with('#') || word == "color") {
-                static_cast<void>(text_.restOfLine());
-            } else {
-                return unexpected("'facet' or 'endsolid'");
-            }
+        static_cast<void>(text_.restOfLine());
+        std::string word = next();
+        for (; word == "facet"; word = next()) {
+            RELIEF_TRY(readFacet());
         }
-    }
-
-    /// Behind endsolid.
-    Result<void> passName() {
-        for (std::string word = lowerCase(text_.word()); !word.empty(); word = lowerCase(text_.word())) {
-            if (word == "facet" && lowerCase(text_.word()) == "normal") {
-                word_ = "facet";
-                return unexpected("the end of the solid's line");
-            }
+        if (word != "endsolid") {
+            return unexpected("'facet' or 'endsolid'");
         }
+        static_cast<void>(text_.restOfLine());
         return {};
     }
 

@@ -87,7 +87,7 @@ FrameChange changeOf(const SourceFrame& source, std::string_view unit, std::opti
     FrameChange change;
     const std::optional<double> given = metresPer(unit);
     if (const std::optional<double> metres = given ? given : source.metres) {
-        change.scale = source.scaled && source.metres ? *metres / *source.metres : *metres;
+        change.scale = *metres;
         change.unit = "m";
     }
     if (given && source.metres && std::abs(*given / *source.metres - 1.0) > 1e-6) {
@@ -101,10 +101,8 @@ FrameChange changeOf(const SourceFrame& source, std::string_view unit, std::opti
                : axis == UpAxis::kPlusZ                  ? UpAxis::kMinusZ
                                                          : UpAxis::kPlusZ;
     };
-    const glm::dmat3 undone =
-        source.turned && source.up ? glm::transpose(turnUpwards(*source.up)) : glm::dmat3(1.0);
     if (up || source.up) {
-        change.turn = turnUpwards(now(up ? *up : *source.up)) * undone;
+        change.turn = turnUpwards(now(up ? *up : *source.up));
     }
     if (up && source.up && *up != *source.up) {
         change.warnings.push_back("--up " + std::string(upAxisName(*up)) +

@@ -30,12 +30,10 @@ enum class UpAxis : std::uint8_t { kPlusX, kMinusX, kPlusY, kMinusY, kPlusZ, kMi
 /// about the x axis from ±z, half a turn about x from −y.
 [[nodiscard]] glm::dmat3 turnUpwards(UpAxis up);
 
-/// What a file says of its lengths and axes, and what its importer has already applied.
+/// What a file states of its lengths and axes.
 struct SourceFrame {
     std::optional<double> metres;  ///< in one unit of the file
     std::optional<UpAxis> up;
-    bool scaled = false;  ///< lengths are in metres already
-    bool turned = false;  ///< up is +Y already
     /// The file's axes are left-handed, and its z is ours turned round.
     bool mirrored = false;
     /// What the file says instead of a length or an axis, each as a clause: "its unit is -1 m". "" if it says none.

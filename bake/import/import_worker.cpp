@@ -14,6 +14,7 @@
 #include <chrono>
 #include <cstring>
 #include <ctime>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -39,28 +40,6 @@ constexpr int kAttempts = 3;
 /// Sizes of files are signed.
 constexpr std::uint64_t kMemoryMax = std::uint64_t{1} << 46;
 
-/// Bytes of a file in memory, for as long as this lives.
-class Mapping {
-  public:
-    Mapping(int file, std::size_t size, int protection)
-        : size_(size),
-          pages_(size == 0 ? MAP_FAILED
-                           : ::mmap(nullptr, size, protection, MAP_SHARED | MAP_POPULATE, file, 0)) {}
-    Mapping(const Mapping&) = delete;
-    Mapping& operator=(const Mapping&) = delete;
-    ~Mapping() {
-        if (pages_ != MAP_FAILED) {
-            ::munmap(pages_, size_);
-        }
-    }
-    explicit operator bool() const { return pages_ != MAP_FAILED; }
-    [[nodiscard]] std::span<std::byte> bytes() const { return {static_cast<std::byte*>(pages_), size_}; }
-
-  private:
-    std::size_t size_;
-    void* pages_;
-};
-
 /// Empty where it cannot be had; errno then says why.
 Descriptor memoryFile(std::uint64_t size) {
     Descriptor file;
@@ -81,22 +60,13 @@ std::uint64_t largestFile(std::uint64_t wanted) {
 
 /// The mesh's bytes where the worker can read, and not change, them. Empty where they cannot be had, as above.
 Descriptor sharedBytes(std::span<const std::byte> bytes) {
-    Descriptor file = memoryFile(bytes.size());
+    Descriptor file = memoryFile(0);
     if (!file) {
         return file;
     }
-    errno = reserveMemory(file.get(), bytes.size());
-    if (errno != 0) {
-        return Descriptor();
-    }
-    {
-        const Mapping pages(file.get(), bytes.size(), PROT_READ | PROT_WRITE);
-        if (!pages) {
-            return Descriptor();
-        }
-        std::memcpy(pages.bytes().data(), bytes.data(), bytes.size());
-    }
-    errno = addSeals(file.get(), F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL);
+    errno = writeAll(file.get(), bytes);
+    errno =
+        errno != 0 ? errno : addSeals(file.get(), F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL);
     return errno == 0 ? std::move(file) : Descriptor();
 }
 
@@ -346,16 +316,20 @@ class Import {
         struct stat status {};
         // Unsealed, it could change under our eyes.
         const int seals = ::fcntl(result, F_GET_SEALS);
-        if (seals < 0 || (seals & kSeals) != kSeals || ::fstat(result, &status) != 0) {
+        if (seals < 0 || (seals & kSeals) != kSeals || ::fstat(result, &status) != 0 || status.st_size == 0) {
             return error(ErrorCode::kFailure,
                          "the importer gave no answer; try again, or export the mesh in another format");
         }
-        const Mapping pages(result, static_cast<std::size_t>(status.st_size), PROT_READ);
-        if (!pages) {
+        const auto size = static_cast<std::size_t>(status.st_size);
+        const auto unmap = [size](void* pages) { ::munmap(pages, size); };
+        const std::unique_ptr<void, decltype(unmap)> pages(
+            ::mmap(nullptr, size, PROT_READ, MAP_SHARED | MAP_POPULATE, result, 0), unmap);
+        if (pages.get() == MAP_FAILED) {
             return error(ErrorCode::kLimit, std::string("its triangles do not fit into memory (") +
                                                 std::strerror(errno) + "); simplify it, or free memory");
         }
-        Result<TriangleMesh> raw = readImportMessage(pages.bytes(), limits_.triangles);
+        Result<TriangleMesh> raw =
+            readImportMessage({static_cast<const std::byte*>(pages.get()), size}, limits_.triangles);
         if (!raw && raw.error().message.find(quotedPath(path_)) == std::string::npos) {
             return error(raw.error().code, raw.error().message + "; export the mesh again");
         }

@@ -91,9 +91,9 @@ Result<TriangleMesh> importWhatItIs(const ImportJob& job) {
     for (const std::string& refused : files.refused()) {
         mesh.warnings.push_back("left out " + refused);
     }
-    for (const ImportedFile& file : files.read()) {
-        mesh.dependencies.push_back(file.path);
-        mesh.dependency_hashes.push_back(file.hash);
+    for (const auto& [path, hash] : files.read()) {
+        mesh.dependencies.push_back(path);
+        mesh.dependency_hashes.push_back(hash);
     }
     return mesh;
 }

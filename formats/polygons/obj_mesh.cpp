@@ -97,12 +97,8 @@ class ObjReader {
             }
             position = {numbers[0] / numbers[3], numbers[1] / numbers[3], numbers[2] / numbers[3]};
         }
-        if (mesh_.positions.size() == 3 * kPolygonTrianglesMax) {
-            return fail(ErrorCode::kLimit, "it has more than " + std::to_string(3 * kPolygonTrianglesMax) +
-                                               " vertices; simplify the mesh");
-        }
         mesh_.positions.push_back(position);
-        return {};
+        return checkVertexCount(mesh_.positions.size());
     }
 
     /// The vertex that a corner names; it may come later in the file.

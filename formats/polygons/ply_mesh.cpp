@@ -28,20 +28,11 @@ bool isSurface(const PlyElement& element) {
 
 /// An element that is not read may hold faces. Range grids hold points in rows and columns, no faces.
 bool looksLikeFaces(const PlyElement& element) {
-    const auto hasWord = [](std::string_view name, auto words) {
-        const std::string lower = lowerCase(name);
-        return std::any_of(words.begin(), words.end(),
-                           [&](const char* word) { return lower.find(word) != std::string::npos; });
-    };
-    constexpr std::array<const char*, 6> kElements = {"face", "poly", "strip", "triang", "quad", "patch"};
-    constexpr std::array<const char*, 3> kLists = {"vert", "index", "indic"};
-    constexpr std::array<const char*, 2> kOthers = {"texture", "range_grid"};
-    if (element.count == 0 || element.name == "vertex" || hasWord(element.name, kOthers)) {
-        return false;
-    }
-    return hasWord(element.name, kElements) ||
+    const bool other = element.name == "vertex" || element.name == "range_grid" ||
+                       element.name.find("texture") != std::string_view::npos;
+    return element.count > 0 && !other &&
            std::any_of(element.properties.begin(), element.properties.end(),
-                       [&](const PlyProperty& list) { return list.isList() && hasWord(list.name, kLists); });
+                       [](const PlyProperty& property) { return property.isList(); });
 }
 
 /// "its element 'polygon' is not read, …"
@@ -88,7 +79,7 @@ class PlyImport {
             return invalidInput("its vertices do not have x, y and z");
         }
         vertices_ = element.count;
-        return checkAnnounced(vertices_);
+        return checkVertexCount(vertices_);
     }
 
     /// In text, each element has a line: one of more or fewer numbers would shift all behind it.

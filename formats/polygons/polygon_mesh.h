@@ -50,12 +50,22 @@ struct PolygonMesh {
 };
 
 /// "line 12: WHAT", kInvalidInput.
-[[nodiscard]] tl::unexpected<Error> wrongLine(std::size_t line, const std::string& what);
+[[nodiscard]] inline tl::unexpected<Error> wrongLine(std::size_t line, const std::string& what) {
+    return invalidInput("line " + std::to_string(line) + ": " + what);
+}
 
-/// kLimit where a file has more than kPolygonTrianglesMax triangles.
-[[nodiscard]] Result<void> checkTriangleCount(std::uint64_t triangles);
-
-/// kLimit where a header announces more than 3 kPolygonTrianglesMax vertices.
-[[nodiscard]] Result<void> checkAnnounced(std::uint64_t vertices);
+/// kLimit where a file has, or its header announces, more than so many "triangles" or "vertices".
+[[nodiscard]] inline Result<void> checkCount(std::uint64_t count, std::uint64_t most, const char* things) {
+    return count <= most ? Result<void>()
+                         : fail(ErrorCode::kLimit, "it has " + std::to_string(count) + " " + things +
+                                                       ", more than the limit of " + std::to_string(most) +
+                                                       "; simplify the mesh");
+}
+[[nodiscard]] inline Result<void> checkTriangleCount(std::uint64_t triangles) {
+    return checkCount(triangles, kPolygonTrianglesMax, "triangles");
+}
+[[nodiscard]] inline Result<void> checkVertexCount(std::uint64_t vertices) {
+    return checkCount(vertices, 3 * kPolygonTrianglesMax, "vertices");
+}
 
 }  // namespace relief

@@ -207,7 +207,7 @@ TEST(ImportPly, HostileStripsAreRefused) {
     expectError(
         read("ply\nformat ascii 1.0\nelement vertex 99999999999\nproperty float x\nproperty float y\n"
              "property float z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n"),
-        "announces 99999999999 vertices", ErrorCode::kLimit);
+        "it has 99999999999 vertices", ErrorCode::kLimit);
     expectError(
         read("ply\nformat ascii 1.0\nelement vertex 200000000\nproperty float x\nproperty float y\n"
              "property float z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n"),

@@ -150,14 +150,13 @@ TEST(ImportText, Stl) {
     stl += "endsolid t\n";
     expectTetrahedron("a.stl", stl);
     expectTetrahedron("a.stl", replaced(stl, "\n", "\r"));
-    expectTetrahedron("a.stl", replaced(stl, "\n", " "));
+    expectRefused("a.stl", replaced(stl, "\n", " "), "it ends without 'facet' or 'endsolid'");
     expectTetrahedron("a.stl",
                       "solid t\n" + replaced(stl.substr(8, stl.size() - 19), " ", "\n\t") + "endsolid t");
     expectTetrahedron("a.stl", replaced(stl, "solid t", "solid vertex of a facet"));
     expectTetrahedron("a.stl", replaced(stl, "solid t", "solid"));
     expectTetrahedron("a.stl", replaced(stl, "normal 0 0 1", "normal -nan(ind) 1.#QNAN nan"));
     expectTetrahedron("a.stl", replaced(stl, "facet normal 0 0 1", "facet"));
-    expectTetrahedron("a.stl", replaced(stl, "endfacet", "end facet"));
     expectTetrahedron("a.stl", replaced(stl, "1 0 0\nvertex", "1. +0 -.0\nvertex"));
     expectTetrahedron("a.stl", "solid empty\nendsolid empty\n" + stl);
     expectRefused("a.stl", replaced(stl, "vertex 0 0 1\nendloop", "endloop"),
