@@ -1,7 +1,7 @@
 // `relief`: the offline tool. Verbs are in bake/cli/command_VERB.cpp; exit codes are those of formats/base/result.h.
 #include "bake/cli/command_line.h"
 #include "formats/base/heap.h"
-#include "runtime/tool/command_line.h"
+#include "runtime/command_line/command_line.h"
 
 int main(int argc, char** argv) {
     relief::prepareHeap(relief::kBakeHeapBytes);

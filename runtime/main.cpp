@@ -1,6 +1,6 @@
 // `relief-sim`: plays scenes; exit codes are those of formats/base/result.h.
 #include "runtime/cli/sim.h"
-#include "runtime/tool/command_line.h"
+#include "runtime/command_line/command_line.h"
 
 int main(int argc, char** argv) {
     return relief::runProgram(

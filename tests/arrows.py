@@ -28,10 +28,10 @@ THIRD_PARTIES = {
     'xxhash.h': ['formats/base'],
     'pybind11': ['bake/python'],
     'toml++': ['formats/config'],
-    'CLI': ['runtime/tool', 'runtime/cli', 'runtime/bench', 'bake/cli', 'bake/bench'],
-    'spdlog': ['runtime/tool', 'runtime/cli', 'bake/cli'],
+    'CLI': ['runtime/command_line', 'runtime/cli', 'runtime/bench', 'bake/cli', 'bake/bench'],
+    'spdlog': ['runtime/command_line', 'runtime/cli', 'bake/cli'],
     'httplib.h': ['bake/view'],
-    'nlohmann': ['formats/fields', 'bake/import', 'bake/recipe', 'bake/report', 'bake/view', 'bake/cli', 'bake/bench', 'runtime/tool',
+    'nlohmann': ['formats/fields', 'bake/import', 'bake/recipe', 'bake/report', 'bake/view', 'bake/cli', 'bake/bench', 'runtime/command_line',
                  'runtime/player', 'runtime/web', 'runtime/bench'],
     'epoxy': ['runtime/gl', 'runtime/collider', 'runtime/picture'],
 }

@@ -7,7 +7,7 @@
 #include "formats/base/file_io.h"
 #include "formats/container_reader.h"
 #include "formats/fields/json.h"
-#include "runtime/tool/command_line.h"
+#include "runtime/command_line/command_line.h"
 
 namespace relief {
 

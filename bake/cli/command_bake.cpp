@@ -18,10 +18,10 @@
 #include "formats/base/stopwatch.h"
 #include "formats/container.h"
 #include "formats/fields/json.h"
-#include "runtime/tool/command_line.h"
-#include "runtime/tool/field_options.h"
-#include "runtime/tool/memory_option.h"
-#include "runtime/tool/progress.h"
+#include "runtime/command_line/command_line.h"
+#include "runtime/command_line/field_options.h"
+#include "runtime/command_line/memory_option.h"
+#include "runtime/command_line/progress.h"
 
 namespace relief {
 namespace {

@@ -18,9 +18,9 @@
 #include "formats/container.h"
 #include "formats/container_reader.h"
 #include "formats/fields/json.h"
-#include "runtime/tool/command_line.h"
-#include "runtime/tool/memory_option.h"
-#include "runtime/tool/option_values.h"
+#include "runtime/command_line/command_line.h"
+#include "runtime/command_line/memory_option.h"
+#include "runtime/command_line/option_values.h"
 
 namespace relief {
 namespace {

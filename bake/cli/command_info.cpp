@@ -12,8 +12,8 @@
 #include "formats/base/text.h"
 #include "formats/container_reader.h"
 #include "formats/fields/json.h"
-#include "runtime/tool/command_line.h"
-#include "runtime/tool/memory_option.h"
+#include "runtime/command_line/command_line.h"
+#include "runtime/command_line/memory_option.h"
 
 namespace relief {
 namespace {

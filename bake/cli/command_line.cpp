@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "bake/cli/response_file.h"
-#include "runtime/tool/command_line.h"
+#include "runtime/command_line/command_line.h"
 
 namespace relief {
 void defineRelief(CLI::App& app, Action& action) {

@@ -13,8 +13,8 @@
 #include "formats/container.h"
 #include "formats/nearest_surface.h"
 #include "runtime/collider/field_query.h"
-#include "runtime/tool/memory_option.h"
-#include "runtime/tool/option_values.h"
+#include "runtime/command_line/memory_option.h"
+#include "runtime/command_line/option_values.h"
 
 namespace relief {
 namespace {

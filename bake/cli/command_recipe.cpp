@@ -25,8 +25,8 @@
 #include "formats/base/text.h"
 #include "formats/config/confined_path.h"
 #include "formats/fields/json.h"
-#include "runtime/tool/command_line.h"
-#include "runtime/tool/option_values.h"
+#include "runtime/command_line/command_line.h"
+#include "runtime/command_line/option_values.h"
 
 namespace relief {
 namespace {

@@ -10,9 +10,9 @@
 #include "bake/view/page_server.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
-#include "runtime/tool/command_line.h"
-#include "runtime/tool/memory_option.h"
-#include "runtime/tool/option_values.h"
+#include "runtime/command_line/command_line.h"
+#include "runtime/command_line/memory_option.h"
+#include "runtime/command_line/option_values.h"
 
 namespace relief {
 namespace {

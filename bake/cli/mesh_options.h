@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bake/director/mesh_check.h"
-#include "runtime/tool/field_options.h"
+#include "runtime/command_line/field_options.h"
 
 namespace relief {
 

@@ -16,7 +16,7 @@
 #include "formats/base/result.h"
 #include "formats/container_limits.h"
 #include "formats/fields/text.h"
-#include "runtime/tool/gpu_tool.h"
+#include "runtime/command_line/gpu_tool.h"
 
 namespace relief {
 

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "formats/base/result.h"
+#include "runtime/command_line/gpu_tool.h"
 #include "runtime/gl/gl_context.h"
-#include "runtime/tool/gpu_tool.h"
 
 namespace relief {
 

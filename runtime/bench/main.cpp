@@ -4,10 +4,10 @@
 
 #include "formats/fields/json.h"
 #include "runtime/bench/bench.h"
+#include "runtime/command_line/command_line.h"
+#include "runtime/command_line/option_values.h"
 #include "runtime/gl/gl_context.h"
 #include "runtime/gl/gl_functions.h"
-#include "runtime/tool/command_line.h"
-#include "runtime/tool/option_values.h"
 
 namespace relief {
 namespace {

@@ -9,13 +9,13 @@
 #include "formats/base/text.h"
 #include "formats/config/confined_path.h"
 #include "formats/fields/json.h"
+#include "runtime/command_line/command_line.h"
+#include "runtime/command_line/memory_option.h"
+#include "runtime/command_line/option_values.h"
+#include "runtime/command_line/progress.h"
 #include "runtime/player/report.h"
 #include "runtime/player/scene_check.h"
 #include "runtime/player/simulation.h"
-#include "runtime/tool/command_line.h"
-#include "runtime/tool/memory_option.h"
-#include "runtime/tool/option_values.h"
-#include "runtime/tool/progress.h"
 
 namespace relief {
 namespace {

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "formats/base/result.h"
+#include "runtime/command_line/gpu_tool.h"
 #include "runtime/player/player.h"
-#include "runtime/tool/gpu_tool.h"
 
 namespace relief {
 

@@ -7,13 +7,13 @@
 
 #include "formats/base/file_io.h"
 #include "formats/base/stopwatch.h"
+#include "runtime/command_line/gpu_tool.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/player/outputs.h"
 #include "runtime/player/scene_warnings.h"
 #include "runtime/player/simulation.h"
 #include "runtime/player/state_check.h"
 #include "runtime/player/watched.h"
-#include "runtime/tool/gpu_tool.h"
 
 namespace relief {
 namespace {

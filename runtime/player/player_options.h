@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "formats/base/file_guard.h"
+#include "runtime/command_line/watchdog.h"
 #include "runtime/gl/gl_context.h"
 #include "runtime/gl/gpu_timer.h"
 #include "runtime/particles/particle_system.h"
 #include "runtime/scene/loaded_scene.h"
-#include "runtime/tool/watchdog.h"
 
 namespace relief {
 

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "formats/base/result.h"
+#include "runtime/command_line/watchdog.h"
 #include "runtime/gl/stage_timer.h"
 #include "runtime/particles/emitter.h"
 #include "runtime/particles/particle_system.h"
 #include "runtime/player/live_bodies.h"
 #include "runtime/scene/loaded_scene.h"
-#include "runtime/tool/watchdog.h"
 
 namespace relief {
 

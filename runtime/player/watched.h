@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "runtime/tool/watchdog.h"
+#include "runtime/command_line/watchdog.h"
 
 namespace relief {
 

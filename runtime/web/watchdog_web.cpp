@@ -1,5 +1,5 @@
 // A browser watches over its GPU itself: there is never a Watchdog.
-#include "runtime/tool/watchdog.h"
+#include "runtime/command_line/watchdog.h"
 
 namespace relief {
 

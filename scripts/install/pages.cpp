@@ -8,7 +8,7 @@
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "runtime/cli/sim.h"
-#include "runtime/tool/command_line.h"
+#include "runtime/command_line/command_line.h"
 #ifdef RELIEF_WITH_BAKE
 #include "bake/cli/command_line.h"
 #endif

@@ -8,8 +8,8 @@
 
 #include "formats/base/field.h"
 #include "formats/base/result.h"
+#include "runtime/command_line/watchdog.h"
 #include "runtime/gl/gl_device.h"
-#include "runtime/tool/watchdog.h"
 
 namespace CLI {
 class App;

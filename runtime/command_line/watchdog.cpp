@@ -1,4 +1,4 @@
-#include "runtime/tool/watchdog.h"
+#include "runtime/command_line/watchdog.h"
 
 #include <condition_variable>
 #include <mutex>

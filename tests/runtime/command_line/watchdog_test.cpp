@@ -1,6 +1,6 @@
 // The watchdog barks once it starves, and not before. Nothing here depends on how fast the machine is: times
 // are either none or for ever, next to each other.
-#include "runtime/tool/watchdog.h"
+#include "runtime/command_line/watchdog.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <future>
 #include <thread>
 
-#include "runtime/tool/command_line.h"
-#include "runtime/tool/gpu_tool.h"
+#include "runtime/command_line/command_line.h"
+#include "runtime/command_line/gpu_tool.h"
 
 namespace relief {
 namespace {

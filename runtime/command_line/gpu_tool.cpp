@@ -1,4 +1,4 @@
-#include "runtime/tool/gpu_tool.h"
+#include "runtime/command_line/gpu_tool.h"
 
 #include <unistd.h>
 
@@ -7,7 +7,7 @@
 #include <cstdio>
 
 #include "formats/fields/json.h"
-#include "runtime/tool/field_options.h"
+#include "runtime/command_line/field_options.h"
 
 namespace relief {
 

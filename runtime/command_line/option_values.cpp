@@ -1,4 +1,4 @@
-#include "runtime/tool/option_values.h"
+#include "runtime/command_line/option_values.h"
 
 #include <algorithm>
 

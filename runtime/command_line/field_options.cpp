@@ -1,4 +1,4 @@
-#include "runtime/tool/field_options.h"
+#include "runtime/command_line/field_options.h"
 
 namespace relief {
 namespace {

@@ -1,4 +1,4 @@
-#include "runtime/tool/progress.h"
+#include "runtime/command_line/progress.h"
 
 #include <unistd.h>
 

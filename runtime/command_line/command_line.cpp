@@ -1,4 +1,4 @@
-#include "runtime/tool/command_line.h"
+#include "runtime/command_line/command_line.h"
 
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
@@ -14,7 +14,7 @@
 #include "formats/base/ending_signals.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
-#include "runtime/tool/gpu_tool.h"
+#include "runtime/command_line/gpu_tool.h"
 
 namespace relief {
 namespace {

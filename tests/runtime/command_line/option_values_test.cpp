@@ -1,9 +1,9 @@
 // What options take, and what they say of what they do not take.
-#include "runtime/tool/option_values.h"
+#include "runtime/command_line/option_values.h"
 
 #include <gtest/gtest.h>
 
-#include "runtime/tool/command_line.h"
+#include "runtime/command_line/command_line.h"
 
 namespace relief {
 namespace {

@@ -1,8 +1,8 @@
-#include "runtime/tool/memory_option.h"
+#include "runtime/command_line/memory_option.h"
 
 #include <CLI/CLI.hpp>
 
-#include "runtime/tool/option_values.h"
+#include "runtime/command_line/option_values.h"
 
 namespace relief {
 
