@@ -60,7 +60,7 @@ void mustBeAsset(const RecipeAsset& asset) {
     for (const auto& [name, value] : asset.options) {
         mustBePlace(value.place);
         for (const RecipeKey& key : keys()) {
-            mustHold(key.name != name || key.kind != RecipeKey::Kind::kValue || value.values.size() == 1,
+            mustHold(key.name != name || key.kind != relief::FieldKind::kValue || value.values.size() == 1,
                      "a value is one");
         }
     }

@@ -84,9 +84,9 @@ TEST(GpuTool, OptionsAndTheirErrors) {
         ASSERT_FALSE(gpuOptions("--device", word)) << word;
         EXPECT_EQ(gpuOptions("--device", word).error().code, ErrorCode::kUsage);
     }
-    EXPECT_EQ(gpuOptions("--gpu-timeout", "0")->timeout, 0ms);
-    EXPECT_EQ(gpuOptions("--gpu-timeout", "2.5")->timeout, 2500ms);
-    EXPECT_EQ(gpuOptions("--gpu-timeout", "0.0001")->timeout, 1ms) << "not never";
+    EXPECT_EQ(gpuOptions("--gpu-timeout", "0")->limit(false), 0ms);
+    EXPECT_EQ(gpuOptions("--gpu-timeout", "2.5")->limit(false), 2500ms);
+    EXPECT_EQ(gpuOptions("--gpu-timeout", "0.0001")->limit(false), 1ms) << "not never";
     for (const char* word : {"", "-1", "nan", "inf", "1e7", "soon", "5s"}) {
         ASSERT_FALSE(gpuOptions("--gpu-timeout", word)) << word;
         EXPECT_EQ(gpuOptions("--gpu-timeout", word).error().code, ErrorCode::kUsage);
