@@ -13,7 +13,7 @@ class App;
 
 namespace relief {
 
-/// The work of a verb, after the command line is parsed. \param files  knows the response files.
+/// The work of a verb, after the command line is parsed.
 using Action = std::function<Result<void>(FileGuard& files)>;
 
 struct CommonOptions {

@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "bake/cli/response_file.h"
 #include "runtime/command_line/command_line.h"
 
 namespace relief {
@@ -23,8 +22,7 @@ Result<void> runRelief(int argc, char** argv) {
     Action action;
     defineRelief(app, action);
     FileGuard files;
-    std::vector<std::string> arguments = RELIEF_TRY(expandArguments(argumentsOf(argc, argv), files));
-    return RELIEF_TRY(parseCommandLine(app, std::move(arguments))) ? action(files) : Result<void>();
+    return RELIEF_TRY(parseCommandLine(app, argumentsOf(argc, argv))) ? action(files) : Result<void>();
 }
 
 }  // namespace relief

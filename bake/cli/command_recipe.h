@@ -31,7 +31,7 @@ struct RecipeCall {
     std::optional<unsigned> threads;  ///< -j
     const std::string& depfile;
     bool json;
-    FileGuard& files;  ///< knows the response files
+    FileGuard& files;
 };
 
 /// The options of `relief bake` that a recipe may set.

@@ -331,17 +331,3 @@ grep -qE '^\[1/2\] a.relief: baked, .* s$' stderr && grep -qE '^\[2/2\] b.relief
 expect 0 "$relief" bake warned/a.gltf -o warned/c.relief --warnings-only
 [ "$(wc -l <stderr)" = 1 ] && grep -q 'it is skinned' stderr || die "one mesh: $(cat stderr)"
 expect_error 1 'quiet|warnings-only' "$relief" bake warned/a.gltf -o warned/c.relief --warnings-only -q
-
-# Response files, for any verb.
-printf -- "--map cube:size=16 # small\n'--map' \"fixed8:dir=-y,size=16\"\n@more.txt\n" >args.txt
-echo '-o response.relief' >more.txt
-expect 0 "$relief" bake bunny.obj @args.txt -q
-expect 0 "$relief" bake bunny.obj -o plain.relief --map cube:size=16 --map fixed8:dir=-y,size=16 -q
-cmp response.relief plain.relief || die "a response file gives other bytes than its options"
-echo '--json' >json.txt
-expect 0 "$relief" info plain.relief @json.txt
-json stdout "len(d['maps']) == 2"
-expect_error 2 'gone\.txt' "$relief" info @gone.txt
-echo '@loop.txt' >loop.txt
-expect_error 6 'loop\.txt' "$relief" info @loop.txt
-expect_error 2 "'@plain.relief'" "$relief" info @@plain.relief
