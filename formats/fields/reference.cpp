@@ -89,15 +89,6 @@ std::string row(const FieldReference& field, const std::string& key) {
 
 constexpr std::string_view kTableHead = "| key | meaning | default | range |\n| --- | --- | --- | --- |\n";
 
-std::string camel(std::string_view name) {
-    std::string text;
-    for (const std::string_view part : split(name, '_')) {
-        text += static_cast<char>(part.front() - 'a' + 'A');
-        text += part.substr(1);
-    }
-    return text;
-}
-
 void addWords(const std::vector<FieldReference>& fields, std::set<std::string>& words) {
     for (const FieldReference& field : fields) {
         words.emplace(field.name);
@@ -109,12 +100,7 @@ void addWords(const std::vector<FieldReference>& fields, std::set<std::string>& 
 }  // namespace
 
 FieldType numbersType(std::size_t count, bool whole, const FieldInfo& info) {
-    std::string list;
-    for (std::size_t i = 0; i < count; ++i) {
-        list += i == 0 ? "number" : ", number";
-    }
-    return {count == 3 ? "Vec3 | Numbers" : "[" + list + "]",
-            {{"type", "array"},
+    return {{{"type", "array"},
              {"items", numberSchema(whole, false, info)},
              {"minItems", count},
              {"maxItems", count}},
@@ -123,7 +109,7 @@ FieldType numbersType(std::size_t count, bool whole, const FieldInfo& info) {
 
 FieldType spanType(const FieldInfo& info, bool whole) {
     const Json number = numberSchema(whole, false, info);
-    return {"number | [number, number]", {{"oneOf", {number, numbersType(2, whole, info).schema}}}, {}};
+    return {{{"oneOf", {number, numbersType(2, whole, info).schema}}}, {}};
 }
 
 std::string markdownTable(const std::vector<FieldReference>& fields) {
@@ -159,27 +145,6 @@ std::string markdownTables(const std::vector<FieldReference>& fields,
         }
     }
     return text;
-}
-
-std::string typescriptOf(const std::vector<FieldReference>& fields, const std::string& name,
-                         std::string_view help) {
-    std::string before;
-    std::string text = "/** " + std::string(help) + ". */\nexport interface " + name + " {\n";
-    for (const FieldReference& field : fields) {
-        std::string type = field.type.typescript;
-        if (!field.fields.empty()) {
-            const std::string nested = name + camel(field.name);
-            before += typescriptOf(field.fields, nested, field.info.help);
-            type = field.several ? "readonly " + nested + "[]" : nested;
-            type = field.info.rules.single ? nested + " | " + type : type;
-        } else {
-            text += "    /** " + std::string(field.info.help) +
-                    (field.info.unit.empty() ? "" : ", " + std::string(field.info.unit)) + ". */\n";
-        }
-        const bool required = field.info.rules.required && field.info.rules.only.empty();
-        text += "    " + std::string(field.name) + (required ? ": " : "?: ") + type + ";\n";
-    }
-    return before + text + "}\n\n";
 }
 
 Json fileSchema(const std::vector<FieldReference>& fields) {

@@ -1,5 +1,5 @@
 // A struct that is read from files (formats/config/toml_reader.h), described for people, editors and fuzzers: tables of
-// Markdown, TypeScript, JSON Schema and dictionaries. All are made of one tree.
+// Markdown, JSON Schema and dictionaries. All are made of one tree.
 #pragma once
 
 #include <array>
@@ -15,7 +15,6 @@ namespace relief {
 
 /// The type of a value in the file.
 struct FieldType {
-    std::string typescript;
     Json schema;
     std::vector<std::string_view> words;  ///< of an enumeration
 };
@@ -68,9 +67,6 @@ template <class T>
 /// The same of all tables in `fields`, each key with its table in front; \param names  of those; others are left out.
 [[nodiscard]] std::string markdownTables(const std::vector<FieldReference>& fields,
                                          std::span<const std::string_view> names);
-/// Interfaces: NAME with the fields, and before it one for each table in it.
-[[nodiscard]] std::string typescriptOf(const std::vector<FieldReference>& fields, const std::string& name,
-                                       std::string_view help);
 /// A JSON Schema of the file.
 [[nodiscard]] Json fileSchema(const std::vector<FieldReference>& fields);
 /// Keys, words and tables, for libFuzzer.
@@ -89,20 +85,15 @@ FieldType typeOf(const T& value, const FieldInfo& info) {
     } else if constexpr (kIsForm<FieldPair, T>) {
         return numbersType(2, std::is_integral_v<std::remove_cvref_t<decltype(value.first)>>, info);
     } else if constexpr (kIsForm<FieldFile, T> || std::same_as<T, std::string>) {
-        return {"string", {{"type", "string"}}, {}};
+        return {{{"type", "string"}}, {}};
     } else if constexpr (std::same_as<T, bool>) {
-        return {"boolean", {{"type", "boolean"}}, {}};
+        return {{{"type", "boolean"}}, {}};
     } else if constexpr (WithWords<T>) {
-        std::string words;
-        for (const std::string_view word : kWordsOf<T>) {
-            words += (words.empty() ? "\"" : " | \"") + std::string(word) + "\"";
-        }
-        return {words, {{"enum", kWordsOf<T>}}, {kWordsOf<T>.begin(), kWordsOf<T>.end()}};
+        return {{{"enum", kWordsOf<T>}}, {kWordsOf<T>.begin(), kWordsOf<T>.end()}};
     } else if constexpr (std::is_arithmetic_v<T>) {
         const Json schema = numberSchema(std::is_integral_v<T>, std::is_unsigned_v<T>, info);
-        return info.rules.index_of.empty()
-                   ? FieldType{"number", schema, {}}
-                   : FieldType{"number | string", {{"oneOf", {schema, {{"type", "string"}}}}}, {}};
+        return info.rules.index_of.empty() ? FieldType{schema, {}}
+                                           : FieldType{{{"oneOf", {schema, {{"type", "string"}}}}}, {}};
     } else {
         return numbersType(sizeof(T) / sizeof(value[0]),
                            std::is_integral_v<std::remove_cvref_t<decltype(value[0])>>, info);

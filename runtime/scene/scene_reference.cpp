@@ -20,28 +20,21 @@ const FieldReference& tableOf(const std::vector<FieldReference>& fields, std::st
 }  // namespace
 
 FieldType fieldType(const AgeTrack<float>& /*track*/) {
-    return {"number | readonly [number, number][]",
-            {{"oneOf", {kNumber, listOf(listOf(kNumber, 2, 2), 1, kLookKeysMax)}}},
-            {}};
+    return {{{"oneOf", {kNumber, listOf(listOf(kNumber, 2, 2), 1, kLookKeysMax)}}}, {}};
 }
 
 FieldType fieldType(const AgeTrack<glm::vec3>& /*track*/) {
-    return {"Vec3 | Numbers | readonly [number, number, number, number][]",
-            {{"oneOf", {listOf(kNumber, 3, 3), listOf(listOf(kNumber, 4, 4), 1, kLookKeysMax)}}},
-            {}};
+    return {{{"oneOf", {listOf(kNumber, 3, 3), listOf(listOf(kNumber, 4, 4), 1, kLookKeysMax)}}}, {}};
 }
 
 template <class Aim>
 FieldType fieldType(const EmitterSpeed<Aim>& /*speed*/) {
-    return {"number | [number, number] | { mean: number; deviation?: number }",
-            {{"oneOf", {kNumber, listOf(kNumber, 2, 2), fileSchema(referenceOf(NormalSpeed{}))}}},
-            {}};
+    return {{{"oneOf", {kNumber, listOf(kNumber, 2, 2), fileSchema(referenceOf(NormalSpeed{}))}}}, {}};
 }
 
 template <class Bits>
 FieldType fieldType(const CollidesList<Bits>& /*list*/) {
-    return {"readonly (number | \"ground\")[]",
-            {{"type", "array"}, {"items", {{"oneOf", {{{"type", "integer"}}, {{"const", "ground"}}}}}}},
+    return {{{"type", "array"}, {"items", {{"oneOf", {{{"type", "integer"}}, {{"const", "ground"}}}}}}},
             {"ground"}};
 }
 
@@ -58,11 +51,6 @@ GeneratedTexts sceneReference() {
     const FieldReference& collider = tableOf(fields, "collider");
     texts.push_back({readme, "key", markdownTable(tableOf(collider.fields, "key").fields)});
     texts.push_back({readme, "deform", markdownTable(tableOf(collider.fields, "deform").fields)});
-    texts.push_back(
-        {"runtime/web/relief.d.ts", "scene",
-         typescriptOf(fields, "Scene",
-                      "A scene with the keys of scene.toml, as runtime/scene/README.md of the Relief "
-                      "sources describes them")});
     Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
                    {"title", "A scene of relief-sim"}};
     schema.update(fileSchema(fields));

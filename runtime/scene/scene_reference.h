@@ -5,8 +5,7 @@
 
 namespace relief {
 
-/// The tables of README.md beside this file, the types of runtime/web/relief.d.ts, the schema for editors, and the dictionary
-/// of the fuzzer.
+/// The tables of README.md beside this file, the schema for editors, and the dictionary of the fuzzer.
 [[nodiscard]] GeneratedTexts sceneReference();
 
 }  // namespace relief

@@ -5,6 +5,7 @@
 
 README.md keeps its words; a link to the scene's keys goes to SCENE.md, which comes along, and any other link out of the
 package becomes its text. package.json gets the version, and `homepage` and `repository` where there are addresses.
+relief.d.ts gets the types of a scene, made of its JSON Schema.
 """
 import json
 import pathlib
@@ -12,6 +13,37 @@ import re
 import sys
 
 SCENE = "../scene/README.md"
+TYPES = re.compile(r"^// Scene, with the keys of scene\.toml: package\.py .*\n", flags=re.M)
+
+
+def typescript(schema, name, interfaces):
+    """The type of a JSON Schema. An object becomes an interface of that name."""
+    if "oneOf" in schema:
+        return " | ".join(typescript(one, name, interfaces) for one in schema["oneOf"])
+    if "enum" in schema or "const" in schema:
+        return " | ".join(json.dumps(one) for one in schema.get("enum") or [schema["const"]])
+    if schema["type"] == "array":
+        item = typescript(schema["items"], name, interfaces)
+        size = schema.get("minItems")
+        if size is None or size != schema.get("maxItems"):
+            return f"readonly ({item})[]" if " | " in item else f"readonly {item}[]"
+        return "Vec3 | Numbers" if (item, size) == ("number", 3) else f"[{', '.join([item] * size)}]"
+    if schema["type"] == "object":
+        lines = []
+        for key, field in schema["properties"].items():
+            kind = typescript(field, name + key.title().replace("_", ""), interfaces)
+            optional = "" if key in schema["required"] else "?"
+            description = f"    /** {field['description']}. */\n" if "description" in field else ""
+            lines.append(f"{description}    {key}{optional}: {kind};\n")
+        interfaces[name] = f"export interface {name} {{\n{''.join(lines)}}}\n"
+        return name
+    return schema["type"].replace("integer", "number")
+
+
+def scene_types(schema):
+    interfaces = {}
+    typescript(schema, "Scene", interfaces)
+    return "\n".join(interfaces.values())
 
 
 def within(text, files, renamed):
@@ -37,7 +69,10 @@ def main():
     if repository:
         about["repository"] = {"type": "git", "url": repository, "directory": "runtime/web"}
     files = {*about["files"], "package.json"}
+    schema = json.loads((source / "../scene/scene.schema.json").read_text(encoding="utf-8"))
+    types = (source / "relief.d.ts").read_text(encoding="utf-8")
     texts = {
+        "relief.d.ts": TYPES.sub(lambda _: scene_types(schema), types),
         "README.md": within((source / "README.md").read_text(encoding="utf-8"), files, {SCENE: "SCENE.md"}),
         "SCENE.md": within((source / SCENE).read_text(encoding="utf-8"), files, {}),
         "package.json": json.dumps(about, indent=4, ensure_ascii=False) + "\n",

@@ -38,15 +38,6 @@ TEST(Reference, Markdown) {
               "| `[[place]]` `at` | Point, [x, y, z] | required | ±10⁹ |\n");
 }
 
-TEST(Reference, Typescript) {
-    EXPECT_EQ(typescriptOf(referenceOf<Thing>(), "Thing", "A thing"),
-              "/** Places. */\nexport interface ThingPlace {\n    /** Point, [x, y, z]. */\n"
-              "    at: Vec3 | Numbers;\n}\n\n"
-              "/** A thing. */\nexport interface Thing {\n    /** Diameter, m. */\n    size?: number;\n"
-              "    /** Number. */\n    count?: number | [number, number];\n    place?: readonly "
-              "ThingPlace[];\n}\n\n");
-}
-
 TEST(Reference, SchemaAndDictionary) {
     const Json schema = fileSchema(referenceOf<Thing>());
     EXPECT_EQ(schema["required"], Json::array());
