@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <mutex>
 
 #include "runtime/gl/gl_fault.h"
 
@@ -14,7 +15,62 @@ std::string numberText(double value) {
     return text;
 }
 
+constexpr int kKindBits = 3;
+constexpr std::uintptr_t kHighest = ~(~std::uintptr_t{0} >> 1);
+
+/// 0: of none.
+std::uintptr_t kindOf(std::uintptr_t handle) {
+    const std::uintptr_t kind = handle & ((1U << kKindBits) - 1);
+    return (handle & kHighest) != 0 && kind <= kHandleKinds ? kind : 0;
+}
+
 }  // namespace
+
+std::uintptr_t HandleTable::add(HandleKind kind, std::shared_ptr<void> object) {
+    const std::lock_guard lock(mutex_);
+    if (given_ + 1 == kHighest >> kKindBits) {
+        throw std::bad_alloc();
+    }
+    const std::uintptr_t handle = kHighest | (given_ + 1) << kKindBits | static_cast<std::uintptr_t>(kind);
+    objects_.emplace(handle, std::move(object));
+    ++given_;
+    return handle;
+}
+
+const std::shared_ptr<void>* HandleTable::find(HandleKind kind, std::uintptr_t handle) const {
+    if (kindOf(handle) != static_cast<std::uintptr_t>(kind)) {
+        return nullptr;
+    }
+    const std::shared_lock lock(mutex_);
+    const auto found = objects_.find(handle);
+    return found == objects_.end() ? nullptr : &found->second;
+}
+
+std::shared_ptr<void> HandleTable::remove(HandleKind kind, std::uintptr_t handle) {
+    if (find(kind, handle) == nullptr) {
+        return nullptr;
+    }
+    const std::lock_guard lock(mutex_);
+    const auto removed = objects_.extract(handle);
+    return removed ? removed.mapped() : nullptr;
+}
+
+HandleFault HandleTable::faultOf(std::uintptr_t handle) const {
+    if (handle == 0) {
+        return HandleFault::kNull;
+    }
+    const std::shared_lock lock(mutex_);
+    const std::uintptr_t number = (handle & ~kHighest) >> kKindBits;
+    if (kindOf(handle) == 0 || number == 0 || number > given_) {
+        return HandleFault::kNever;
+    }
+    return objects_.contains(handle) ? HandleFault::kOtherKind : HandleFault::kFreed;
+}
+
+HandleTable& handleTable() {
+    static auto* const table = new HandleTable;
+    return *table;
+}
 
 void CallErrors::fail(const char* message) noexcept {
     ++count_;
@@ -62,15 +118,6 @@ std::string NumberName::text() const {
     return text;
 }
 
-bool copyKnown(std::span<std::byte> all, const void* given, std::size_t size,
-               std::span<const std::size_t> versions) {
-    if (std::find(versions.begin(), versions.end(), size) == versions.end() || size > all.size()) {
-        return false;
-    }
-    std::memcpy(all.data(), given, size);
-    return true;
-}
-
 Result<void> Call::notNull(const void* pointer, const char* argument) const {
     if (pointer == nullptr) {
         return refuse(std::string(argument) + " is NULL");
@@ -87,7 +134,7 @@ Result<void> Call::context() const {
 
 tl::unexpected<Error> Call::faulty(HandleKind kind, std::uintptr_t handle, const char* argument,
                                    const char* type) const {
-    switch (handleTable().faultOf(kind, handle)) {
+    switch (handleTable().faultOf(handle)) {
         case HandleFault::kNull:
             if (const std::string& cause = callErrors().unreadOf(kind); !cause.empty()) {
                 return fail(ErrorCode::kUsage, cause);
@@ -103,8 +150,7 @@ tl::unexpected<Error> Call::faulty(HandleKind kind, std::uintptr_t handle, const
     return refuse(std::string(argument) + " is no handle of this library; it must be a " + type);
 }
 
-tl::unexpected<Error> Call::wrongNumber(double value, const NumberRange& range,
-                                        const NumberName& name) const {
+tl::unexpected<Error> Call::wrongNumber(double value, const FieldRange& range, const NumberName& name) const {
     return refuse(name.text() + " is " + numberText(value) + "; it must be " +
                   (range.low_included ? "from " : "above ") + numberText(range.low) +
                   (range.low_included ? " to " : " and at most ") + numberText(range.high));

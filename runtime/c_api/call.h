@@ -8,14 +8,52 @@
 #include <exception>
 #include <memory>
 #include <new>
-#include <span>
+#include <shared_mutex>
 #include <string>
+#include <unordered_map>
 #include <utility>
 
+#include "formats/base/field.h"
 #include "formats/base/result.h"
-#include "runtime/c_api/handles.h"
 
 namespace relief {
+
+enum class HandleKind : std::uint8_t { kCollider = 1, kTextures, kParticles, kPicture };
+inline constexpr std::size_t kHandleKinds = 4;
+
+/// Why a handle means nothing.
+enum class HandleFault : std::uint8_t {
+    kNull,
+    kFreed,
+    kOtherKind,  ///< alive, but of another kind
+    kNever,      ///< no such handle has been given out
+};
+
+/// Handles of C. A handle is a number in the shape of a pointer: the highest bit, which no address of a program has, a
+/// running number, and the kind, by which it is no address of an aligned object. It is looked up, never followed, so that
+/// whatever a caller passes on is answered and cannot crash. No number is given out twice.
+///
+/// All calls may be made by several threads at once. Whoever removes an object while another thread uses it has a race, as
+/// with any object.
+class HandleTable {
+  public:
+    /// Never 0. Throws std::bad_alloc, also where all numbers are used up; nothing has changed then.
+    [[nodiscard]] std::uintptr_t add(HandleKind kind, std::shared_ptr<void> object);
+    /// Null: faultOf() has the reason.
+    [[nodiscard]] const std::shared_ptr<void>* find(HandleKind kind, std::uintptr_t handle) const;
+    /// The object, which the caller may be the last to hold; null as find().
+    [[nodiscard]] std::shared_ptr<void> remove(HandleKind kind, std::uintptr_t handle);
+    /// Of one that find() does not find.
+    [[nodiscard]] HandleFault faultOf(std::uintptr_t handle) const;
+
+  private:
+    mutable std::shared_mutex mutex_;
+    std::unordered_map<std::uintptr_t, std::shared_ptr<void>> objects_;
+    std::uintptr_t given_ = 0;  // how many so far
+};
+
+/// The process's own. It is never destroyed: what the program does not free goes with the process.
+[[nodiscard]] HandleTable& handleTable();
 
 /// The object behind a handle of C's type H: specialised with Object, kKind and kName.
 template <class H>
@@ -48,17 +86,6 @@ class CallErrors {
 
 [[nodiscard]] CallErrors& callErrors();
 
-/// A number may be anything from low to high.
-struct NumberRange {
-    double low;
-    double high;
-    bool low_included = true;
-
-    [[nodiscard]] bool holds(double value) const {  // false of NaN
-        return (low_included ? value >= low : value > low) && value <= high;
-    }
-};
-
 /// The place of a number, for messages: "births[3].velocity[1]".
 struct NumberName {
     static constexpr std::size_t kNone = ~std::size_t{0};
@@ -69,14 +96,6 @@ struct NumberName {
 
     [[nodiscard]] std::string text() const;
 };
-
-/// The part of a caller's structure that its version knew; what came later stays 0.
-/// \param all       of this version, all 0.
-/// \param size      that the caller states.
-/// \param versions  the sizes that the structure has had.
-/// \return whether it had that size.
-[[nodiscard]] bool copyKnown(std::span<std::byte> all, const void* given, std::size_t size,
-                             std::span<const std::size_t> versions);
 
 /// The checks of arguments; an error names the function, the argument and the cure.
 class Call {
@@ -120,27 +139,24 @@ class Call {
         }
         return count == 0 ? Result<void>() : notNull(items, argument);
     }
-    /// A structure that begins with its size.
+    /// A structure that begins with its size. All have had one size so far.
     /// \param name  the structure's.
-    template <class T, std::size_t N>
-    [[nodiscard]] Result<T> structure(const T* given, const char* argument, const char* name,
-                                      const std::array<std::size_t, N>& versions) const {
-        T all{};
+    template <class T>
+    [[nodiscard]] Result<T> structure(const T* given, const char* argument, const char* name) const {
         std::size_t size = 0;
         std::memcpy(&size, given, sizeof(size));
-        if (!copyKnown(std::as_writable_bytes(std::span(&all, 1)), given, size, versions)) {
+        if (size != sizeof(T)) {
             return refuse(std::string(argument) + "->size is " + std::to_string(size) +
                           "; set it to sizeof(" + name + "), which is " + std::to_string(sizeof(T)));
         }
-        return all;
+        return *given;
     }
 
-    [[nodiscard]] Result<void> number(double value, const NumberRange& range, const NumberName& name) const {
+    [[nodiscard]] Result<void> number(double value, const FieldRange& range, const NumberName& name) const {
         return range.holds(value) ? Result<void>() : wrongNumber(value, range, name);
     }
     template <class T, std::size_t N>
-    [[nodiscard]] Result<void> numbers(const T (&values)[N], const NumberRange& range,
-                                       NumberName name) const {
+    [[nodiscard]] Result<void> numbers(const T (&values)[N], const FieldRange& range, NumberName name) const {
         for (std::size_t i = 0; i < N; ++i) {
             if (!range.holds(static_cast<double>(values[i]))) {
                 name.component = i;
@@ -163,7 +179,7 @@ class Call {
     }
     [[nodiscard]] tl::unexpected<Error> faulty(HandleKind kind, std::uintptr_t handle, const char* argument,
                                                const char* type) const;
-    [[nodiscard]] tl::unexpected<Error> wrongNumber(double value, const NumberRange& range,
+    [[nodiscard]] tl::unexpected<Error> wrongNumber(double value, const FieldRange& range,
                                                     const NumberName& name) const;
 
     const char* function_;

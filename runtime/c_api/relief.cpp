@@ -56,19 +56,13 @@ using namespace relief;  // NOLINT: what C sees has C's names
 
 namespace {
 
-// The sizes that each structure has had, in each version that changed it. A structure that grows must grow by more than the
-// bytes that fill up its end.
-constexpr std::array kParticlesOptionsSizes{sizeof(relief_particles_options)};
-constexpr std::array kPictureOptionsSizes{sizeof(relief_picture_options)};
-constexpr std::array kViewSizes{sizeof(relief_view)};
-
 // As relief.h has them. Speeds beyond 10^15 are those of particles that are lost (particles/statistics.h).
-constexpr NumberRange kAny{-1e15, 1e15};
-constexpr NumberRange kNotNegative{0.0, 1e15};
-constexpr NumberRange kShare{0.0, 1.0};
-constexpr NumberRange kLifetime{0.0, 1e15, false};
-constexpr NumberRange kStep{0.0, 1e9, false};
-constexpr NumberRange kPixels{0.0, 65536.0};
+constexpr FieldRange kAny{-1e15, 1e15};
+constexpr FieldRange kNotNegative{0.0, 1e15};
+constexpr FieldRange kShare{0.0, 1.0};
+constexpr FieldRange kLifetime{0.0, 1e15, false};
+constexpr FieldRange kStep{0.0, 1e9, false};
+constexpr FieldRange kPixels{0.0, 65536.0};
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 glm::vec3 vec(const float (&v)[3]) {
@@ -134,8 +128,7 @@ Result<relief_particles_options> optionsOf(const Call& call, const relief_partic
     if (given == nullptr) {
         return relief_particles_options{};
     }
-    const auto all =
-        RELIEF_TRY(call.structure(given, "options", "relief_particles_options", kParticlesOptionsSizes));
+    const auto all = RELIEF_TRY(call.structure(given, "options", "relief_particles_options"));
     const auto name = [](const char* field) { return NumberName{.argument = "options", .field = field}; };
     RELIEF_TRY(call.number(all.capacity, {0.0, ParticleSystem::kCapacityMax}, name("capacity")));
     RELIEF_TRY(call.numbers(all.gravity, kAny, name("gravity")));
@@ -181,7 +174,7 @@ Result<ParticleStyle> styleOf(const Call& call, const relief_picture_options* gi
                               const PictureObject& picture) {
     relief_picture_options all{};
     if (given != nullptr) {
-        all = RELIEF_TRY(call.structure(given, "options", "relief_picture_options", kPictureOptionsSizes));
+        all = RELIEF_TRY(call.structure(given, "options", "relief_picture_options"));
     }
     const auto name = [](const char* field) { return NumberName{.argument = "options", .field = field}; };
     RELIEF_TRY(call.number(all.diameter, kNotNegative, name("diameter")));
@@ -197,7 +190,7 @@ Result<ParticleStyle> styleOf(const Call& call, const relief_picture_options* gi
 
 Result<relief_view> viewOf(const Call& call, const relief_view* given) {
     RELIEF_TRY(call.notNull(given, "view"));
-    const auto all = RELIEF_TRY(call.structure(given, "view", "relief_view", kViewSizes));
+    const auto all = RELIEF_TRY(call.structure(given, "view", "relief_view"));
     const auto name = [](const char* field) { return NumberName{.argument = "view", .field = field}; };
     RELIEF_TRY(call.numbers(all.view, kAny, name("view")));
     RELIEF_TRY(call.numbers(all.projection, kAny, name("projection")));

@@ -1,4 +1,4 @@
-// The handles' table and the sizes of structures, by themselves.
+// The handles' table by itself.
 #include "runtime/c_api/call.h"
 
 #include <gtest/gtest.h>
@@ -27,12 +27,12 @@ TEST(Handles, NoneIsGivenOutTwiceAndOldOnesStayFreed) {
         EXPECT_TRUE(all.insert(live[at]).second) << "given out before";
         if (i % 2 == 0) {
             EXPECT_EQ(table.find(HandleKind::kCollider, live[at]), nullptr);
-            EXPECT_EQ(table.faultOf(HandleKind::kCollider, live[at]), HandleFault::kOtherKind);
+            EXPECT_EQ(table.faultOf(live[at]), HandleFault::kOtherKind);
             EXPECT_NE(table.remove(HandleKind::kParticles, live[at]), nullptr);
             live[at] = table.add(HandleKind::kCollider, std::make_shared<int>(i));
             all.insert(live[at]);
         }
-        EXPECT_EQ(table.faultOf(HandleKind::kCollider, old), HandleFault::kFreed);
+        EXPECT_EQ(table.faultOf(old), HandleFault::kFreed);
     }
     for (std::size_t i = 7; i < live.size(); ++i) {
         ASSERT_NE(table.find(HandleKind::kCollider, live[i]), nullptr);
@@ -40,32 +40,6 @@ TEST(Handles, NoneIsGivenOutTwiceAndOldOnesStayFreed) {
     }
     for (const std::uintptr_t one : all) {
         EXPECT_NE(one & 7U, 0U) << "an aligned pointer could be one";
-    }
-}
-
-// A structure that has grown twice, from a program of each version, and from some that never were.
-TEST(Sizes, OlderOnesAreReadAsFarAsTheyGo) {
-    struct Third {
-        std::size_t size = 0;
-        float first = 0.0F;
-        float second = 0.0F;
-        double third = 0.0;
-    };
-    constexpr std::array<std::size_t, 3> kVersions{offsetof(Third, second), offsetof(Third, third),
-                                                   sizeof(Third)};
-    Third given{0, 1.0F, 2.0F, 3.0};
-    for (std::size_t version = 0; version < kVersions.size(); ++version) {
-        given.size = kVersions[version];
-        Third all;
-        ASSERT_TRUE(copyKnown(std::as_writable_bytes(std::span(&all, 1)), &given, given.size, kVersions));
-        EXPECT_EQ(all.first, 1.0F);
-        EXPECT_EQ(all.second, version >= 1 ? 2.0F : 0.0F);
-        EXPECT_EQ(all.third, version >= 2 ? 3.0 : 0.0);
-    }
-    for (const std::size_t size : {std::size_t{0}, std::size_t{3}, sizeof(std::size_t), sizeof(Third) - 1,
-                                   sizeof(Third) + 8, std::size_t{4096}, ~std::size_t{0}}) {
-        Third all;
-        EXPECT_FALSE(copyKnown(std::as_writable_bytes(std::span(&all, 1)), &given, size, kVersions)) << size;
     }
 }
 
