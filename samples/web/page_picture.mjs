@@ -15,9 +15,9 @@ try {
     run("relief", "view", file, "--mesh", bunny, "-o", path.join(folder, "page.html"));
     const { page } = await openPage(browser, pathToFileURL(path.join(folder, "page.html")).href,
                                     { viewport: { width: 1440, height: 900 }, colorScheme: "dark" });
-    await page.waitForFunction("window.reliefView?.ready && reliefView.body.triangles > 30000");
+    await page.waitForFunction("window.reliefView?.ready && reliefView.body");
     await page.click("#tab-particles");
-    await page.click("[data-value=rain]");
+    await page.click("[value=rain] + span");
     await page.click("#pause");
     await page.evaluate(() => {
         for (let i = 0; i < 230; ++i) {

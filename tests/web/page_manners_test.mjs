@@ -1,5 +1,5 @@
-// How the page of `relief view` behaves without being told: it snows, keeps up on a slow machine, covers none of its own words,
-// and shows no control that does nothing.
+// How the page of `relief view` behaves without being told: it snows, keeps up on a slow machine, and shows
+// no control that does nothing.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import path from "node:path";
@@ -29,12 +29,12 @@ test("it snows at once, unless motion is unwanted; nothing that plays, no contro
     const { page, said } = await open(data, { viewport: { width: 500, height: 700 } });
     assert.equal(await page.evaluate("reliefView.particles.system"), null);
     await page.click("#tab-particles");
-    const controls = "#sheet-particles :is(input, button):not(#preset button)";
+    const controls = "#sheet-particles :is(input, button):not(#preset input)";
     assert.deepEqual(await page.locator(controls).evaluateAll((all) => all.filter((one) => one.offsetParent).map((one) => one.id)), []);
     assert.match(await page.locator("#scene-note").textContent(), /Nothing falls/);
-    await page.click("[data-value=rain]");
-    assert.equal(await page.locator(controls).evaluateAll((all) => all.filter((one) => one.offsetParent && !one.disabled).length), 11);
-    await page.click("[data-value=none]");
+    await page.click("[value=rain] + span");
+    assert.equal(await page.locator(controls).evaluateAll((all) => all.filter((one) => one.offsetParent && !one.disabled).length), 9);
+    await page.click("[value=none] + span");
     assert.ok(!await page.isVisible("#sliders"));
     assert.deepEqual(said, []);
 });
@@ -45,14 +45,14 @@ test("rain is streaks along its way", { timeout: 300_000 }, async (t) => {
     const { page, said } = await open(data, { viewport: { width: 500, height: 500 }, colorScheme: "dark" });
     await page.evaluate(() => (reliefView.particles.paused = true));
     await page.click("#tab-particles");
-    await page.click("[data-value=rain]");
+    await page.click("[value=rain] + span");
     const shape = await page.evaluate(() => {
-        const { view, camera, panel, particles, look } = reliefView;
+        const { view, camera, particles, look } = reliefView;
         const picture = () => {
             view.dirty = true;
             return reliefView.pixelsNow();
         };
-        panel.setCount(1024);
+        particles.change({ count: 1024 });
         look.floor = null;
         view.bodies = [];
         camera.pitch = 0;
@@ -91,9 +91,9 @@ test("where frames take 50 ms the page draws less, says so, and draws all of it 
         window.requestAnimationFrame = (f) => setTimeout(() => f((now += 50)), 0);
         reliefView.startPreset("snow");
     });
-    await page.waitForFunction("reliefView.particles.settings.count < 65536", undefined, { timeout: 200_000 });
+    await page.waitForFunction("reliefView.quality.pixels === 0.5", undefined, { timeout: 200_000 });
     assert.ok(await drawn() <= 0.51, `${await drawn()} of the pixels each way`);
-    assert.match(await page.locator("#quality").textContent(), /^Coarser, to keep up: 50 % of the pixels each way, \d+,\d+ particles$/);
+    assert.match(await page.locator("#quality").textContent(), /^Coarser, to keep up: 50 % of the pixels each way$/);
     assert.ok(await page.isVisible("#quality"));
     await page.evaluate(() => (reliefView.particles.paused = true));
     await page.waitForFunction("document.getElementById('quality').hidden", undefined, { timeout: 60_000 });
@@ -101,61 +101,32 @@ test("where frames take 50 ms the page draws less, says so, and draws all of it 
     assert.deepEqual(said, []);
 });
 
-test("finer pixels come back where frames are quick, and are tried more and more seldom", () => {
+test("finer pixels come back where frames are quick, and are not tried where they would be slow", () => {
     const quality = new Quality();
     let now = 0;
     const frames = (took, ms) => {
         const seen = new Set();
         for (const end = now + ms; now < end;) {
-            quality.frame((now += typeof took === "number" ? took : took(quality.pixels)), true, () => {});
+            quality.frame((now += took(quality.pixels)), true);
             seen.add(quality.pixels);
         }
         return seen;
     };
-    frames(50, 3000);
+    frames(() => 50, 3000);
     assert.equal(quality.pixels, 0.5);
-    frames(16, 20_000);
+    frames(() => 16, 20_000);
     assert.equal(quality.pixels, 1);
-    // Where full pixels are too many, it is not for ever that they are tried every few seconds.
-    const slow = (pixels) => (pixels === 1 ? 60 : 16);
+    // A machine that needs its time for pixels: full ones take 60 ms.
+    const slow = (pixels) => Math.max(60 * pixels ** 2, 16.7);
     frames(slow, 10_000);
-    let tries = 0;
-    for (let i = 0; i < 60; ++i) {
-        tries += frames(slow, 2000).has(1);
-    }
-    assert.ok(tries > 0 && tries < 8, `${tries} tries in two minutes`);
+    assert.deepEqual(frames(slow, 60_000), new Set([0.71]));
     frames(() => 1500, 20_000); // a page that slept
-    assert.notEqual(quality.pixels, 0.5);
+    assert.equal(quality.pixels, 0.71);
 });
 
-test("no tip covers a word, and a tab of a folded panel unfolds it", { timeout: 300_000 }, async (t) => {
+test("a tab of a folded panel unfolds it", { timeout: 300_000 }, async (t) => {
     const { folder, data } = cube(t);
     const open = await viewer(t, folder);
-    for (const viewport of [{ width: 800, height: 460 }, { width: 500, height: 560 }]) {
-        const { page, close } = await open(data, { viewport });
-        await page.evaluate(() => (reliefView.particles.paused = true));
-        await page.click("#tab-particles");
-        await page.click("[data-value=rain]");
-        for (const button of await page.locator("[data-tip]:visible").all()) {
-            await button.scrollIntoViewIfNeeded();
-            await button.hover();
-            const found = await page.evaluate(() => {
-                const tip = [...document.querySelectorAll("#tip")].find((one) => !one.hidden);
-                const at = tip?.getBoundingClientRect();
-                return at && { text: tip.textContent, whole: at.left >= 0 && at.top >= 0 && at.right <= innerWidth && at.bottom <= innerHeight,
-                               covers: [...document.querySelectorAll("#panel *, #title *")].filter((one) => {
-                                   const box = one.getBoundingClientRect();
-                                   const seen = one.closest("#sheets")?.getBoundingClientRect(); // the rest is scrolled away
-                                   if (seen && (box.bottom <= seen.top || box.top >= seen.bottom)) return false;
-                                   return one.checkVisibility() && one.children.length === 0 && one.textContent.trim() &&
-                                       box.left < at.right && box.right > at.left && box.top < at.bottom && box.bottom > at.top;
-                               }).map((one) => one.textContent) };
-            });
-            assert.ok(found, `${await button.getAttribute("id")} has no tip`);
-            assert.deepEqual([found.whole, found.covers], [true, []], found.text);
-        }
-        await close();
-    }
     const { page, said } = await open(data, phone);
     await page.tap("#fold");
     assert.ok(!await page.isVisible("#sheets"));

@@ -53,7 +53,7 @@ test("each feature of the page shows", { timeout: 300_000 }, async (t) => {
 
     await page.click("#tab-maps");
     await changed("a map", 0.01, () => page.locator("#maps button").first().click());
-    assert.ok(await page.evaluate("reliefView.view.segments.length >= 12"), "its view is drawn");
+    assert.ok(await page.evaluate("reliefView.view.lines.count >= 24"), "its view is drawn");
     await page.waitForFunction("reliefView.panel.picturesDone");
     const drawn = await page.evaluate(() => [...document.querySelectorAll("#maps canvas")].every((canvas) =>
         canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data.some((v) => v > 0)));
@@ -63,20 +63,19 @@ test("each feature of the page shows", { timeout: 300_000 }, async (t) => {
     await changed("the heat map", 0.02, () => page.evaluate(() => reliefView.panel.setShow("mesh")));
     const before = await page.evaluate("reliefView.camera.distance");
     await page.locator("#places button").first().click();
-    await page.waitForFunction("reliefView.camera.flight === null");
     assert.notEqual(await page.evaluate("reliefView.camera.distance"), before);
-    assert.equal(await page.locator("#pin").textContent(), made.check.worst_places[0].why);
+    assert.equal(await page.locator("#why").textContent(), made.check.worst_places[0].why);
 
     await page.click("#tab-particles");
     await page.evaluate(() => {
-        reliefView.panel.dropPin();
+        reliefView.panel.letGo();
         reliefView.panel.setShow("surface");
         Object.assign(reliefView.camera, { yaw: 0.6, pitch: 0.32 }); // the place may be seen from above, as drops are small
         reliefView.panel.frame();
     });
     for (const preset of ["rain", "snow", "fountain", "smoke"]) {
         await page.evaluate(() => (reliefView.particles.paused = true));
-        await page.click(`[data-value=${preset}]`);
+        await page.click(`[value=${preset}] + span`);
         await page.evaluate(() => reliefView.panel.sliders.count.input.dispatchEvent(new Event("input")));
         await changed(preset, 0.001, () => page.evaluate(() => {
             for (let i = 0; i < 45; ++i) {
@@ -89,16 +88,15 @@ test("each feature of the page shows", { timeout: 300_000 }, async (t) => {
     assert.deepEqual(said, []);
 });
 
-test("particles follow the sliders, leave marks, and are copied as a scene", { timeout: 300_000 }, async (t) => {
+test("particles follow the sliders, and are copied as a scene", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     const bytes = readFileSync(bake(folder));
     const open = await viewer(t, folder);
     const { page, said } = await open(pageData("bunny.relief", bytes), { viewport: { width: 420, height: 800 } });
     await page.evaluate(() => (reliefView.particles.paused = true));
     await page.click("#tab-particles");
-    await page.click("[data-value=rain]");
+    await page.click("[value=rain] + span");
     await page.evaluate(() => {
-        document.getElementById("marks").click();
         const set = (id, at) => {
             const { input } = reliefView.panel.sliders[id];
             input.value = at;
@@ -107,18 +105,17 @@ test("particles follow the sliders, leave marks, and are copied as a scene", { t
         set("count", 0.25);
         set("bounce", 0.5);
         set("wind", 0.75);
-        set("rate", 0.5);
     });
     const settings = await page.evaluate("reliefView.particles.settings");
     assert.equal(settings.count, 4096);
     assert.equal(settings.bounce, 0.5);
-    const marks = await page.evaluate(() => {
+    const contacts = await page.evaluate(() => {
         for (let i = 0; i < 60; ++i) {
             reliefView.particles.step();
         }
-        return reliefView.particles.markCount();
+        return reliefView.particles.system.read().filter((value, i) => i % 12 === 9 && value > 0).length;
     });
-    assert.ok(marks > 20, `${marks} marks of contacts`);
+    assert.ok(contacts > 20, `${contacts} have met the body`);
     const time = await page.evaluate("reliefView.particles.system.info.time");
     await page.click("#step");
     const later = await page.evaluate("reliefView.particles.system.info.time");

@@ -2,7 +2,7 @@
 import { GpuCollider } from "relief-particles";
 import { add, identity, inverseSimilarity, boxOf, sub, transform } from "./math.js";
 import { cellsOf } from "./cells.js";
-import { Geometry, program } from "./gl.js";
+import { Geometry, bindTexture, program } from "./gl.js";
 import { kBodyVertex, kHeatFragment, kSliceFragment, kSurfaceFragment } from "./body_shaders.js";
 
 const kSlack = 0.0035; // round the bounds, in longest sides: what a map calls inside farther out is not the body
@@ -14,10 +14,10 @@ export class Body {
     #programs = {};
 
     /** @param name  of its file */
-    constructor(gl, collider, name, model = identity()) {
-        Object.assign(this, { gl, collider, name, model });
+    constructor(gl, collider, name) {
+        Object.assign(this, { gl, collider, name });
+        this.place(identity());
         this.box = boxOf(collider.bounds);
-        this.toObject = inverseSimilarity(model);
         this.gpu = new GpuCollider(gl, collider);
         const slack = [0, 0, 0].fill(kSlack * this.box.longest);
         this.drawn = { min: sub(this.box.min, slack), max: add(this.box.max, slack) };
@@ -33,7 +33,7 @@ export class Body {
         gl.texParameteri(gl.TEXTURE_3D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
         gl.texParameteri(gl.TEXTURE_3D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
         gl.bindTexture(gl.TEXTURE_3D, null);
-        this.sides = new Geometry(gl, { a_position: Float32Array.from(corners) }, Uint32Array.from(kBoxSides));
+        this.sides = new Geometry(gl, Float32Array.from(corners), Uint32Array.from(kBoxSides));
     }
 
     /** A program with the field's functions in it, ready to be drawn with. */
@@ -48,11 +48,11 @@ export class Body {
     }
 
     /** What the maps call inside, up to the texel. values: what all bodies have in common. */
-    drawSurface(eye, values) {
+    draw(eye, values) {
         const { gl, box, drawn } = this;
         const { maps, finest_texel: texel } = this.collider.info;
         this.use("surface").set({
-            ...values, u_model: this.model, u_eye_object: this.eyeInObject(eye), u_box_min: drawn.min, u_box_max: drawn.max,
+            ...values, u_model: this.model, u_eye_object: transform(this.toObject, eye).slice(0, 3), u_box_min: drawn.min, u_box_max: drawn.max,
             u_deep: kDeep * box.longest, u_tiny: Math.max(1e-3 * texel, 1e-6 * box.longest),
             u_far: { int: kFarUnit }, u_cells_from: this.cells.from, u_cell: this.cells.side,
             // A ray crosses each row and each column of a map once.
@@ -69,12 +69,8 @@ export class Body {
     }
 
     place(model) {
-        this.model = model;
-        this.toObject = inverseSimilarity(model);
-    }
-
-    eyeInObject(eye) {
-        return transform(this.toObject, eye).slice(0, 3);
+        this.model = Float32Array.from(model);
+        this.toObject = inverseSimilarity(this.model);
     }
 
     dispose() {
@@ -83,4 +79,30 @@ export class Body {
         Object.values(this.#programs).forEach((one) => this.gl.deleteProgram(one.name));
         this.gpu.dispose();
     }
+}
+
+/** A body that deforms. mesh(): its LiveMesh of relief.d.ts. */
+export class LiveBody {
+    constructor(gl, program, mesh) {
+        Object.assign(this, { gl, program, mesh });
+    }
+
+    place(model) {
+        this.model = Float32Array.from(model);
+    }
+
+    draw(eye, { u_map, ...values }) {
+        const { gl } = this;
+        const { positions, corners, vertexShift, triangleShift, triangles } = this.mesh();
+        bindTexture(gl, 0, positions);
+        bindTexture(gl, 1, corners);
+        this.program.set({ ...values, u_model: this.model, u_positions: { int: 0 }, u_corners: { int: 1 },
+                           u_vertex_shift: { int: vertexShift }, u_triangle_shift: { int: triangleShift } });
+        gl.bindVertexArray(null);
+        gl.drawArrays(gl.TRIANGLES, 0, 3 * triangles);
+        bindTexture(gl, 0, null);
+        bindTexture(gl, 1, null);
+    }
+
+    dispose() {}
 }

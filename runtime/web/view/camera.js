@@ -1,12 +1,11 @@
 // A camera that goes round a point: by mouse, by touch with two fingers, by keys.
-import { add, boxOf, clamp, cross, length, lookAt, mix, multiply, normalize, perspective, scale, sub } from "./math.js";
+import { add, boxOf, clamp, cross, length, lookAt, multiply, normalize, perspective, scale, sub } from "./math.js";
 
 const kFov = 36 * Math.PI / 180;
-const kFlight = 450; // ms
 
 export class Camera {
     constructor(changed) {
-        Object.assign(this, { changed, yaw: 0.6, pitch: 0.32, distance: 4, target: [0, 0, 0], flight: null });
+        Object.assign(this, { changed, yaw: 0.6, pitch: 0.32, distance: 4, target: [0, 0, 0] });
         this.box = boxOf({ min: [-1, -1, -1], max: [1, 1, 1] });
         this.fov = kFov;
         this.shift = [0, 0]; // of the picture's middle, for what lies under a panel
@@ -16,7 +15,6 @@ export class Camera {
     frame(box, room = 1) {
         this.box = box;
         const half = Math.atan(Math.tan(kFov / 2) * Math.min(1, room));
-        this.stop();
         this.fov = kFov;
         this.target = [...box.center];
         this.distance = 1.02 * box.radius / Math.sin(half);
@@ -26,7 +24,6 @@ export class Camera {
     /** From an eye to a target, as a scene says. */
     look(eye, target, fov) {
         const away = sub(eye, target);
-        this.stop();
         this.distance = length(away) || 1;
         this.yaw = Math.atan2(away[0], away[2]);
         this.pitch = Math.asin(clamp(away[1] / this.distance, -1, 1));
@@ -51,26 +48,19 @@ export class Camera {
         return { view, projection, camera: multiply(projection, view), eye: this.eye };
     }
 
-    stop() {
-        this.flight = null;
-    }
-
     orbit(dx, dy) {
-        this.stop();
         this.yaw -= dx;
         this.pitch = clamp(this.pitch + dy, -1.55, 1.55);
         this.changed();
     }
 
     zoom(factor) {
-        this.stop();
         this.distance = clamp(this.distance * factor, 0.02 * this.box.radius, 20 * this.box.radius);
         this.changed();
     }
 
     /** In heights of the picture. */
     pan(dx, dy) {
-        this.stop();
         const back = normalize(sub(this.eye, this.target));
         const right = normalize(cross([0, 1, 0], back));
         const span = 2 * this.distance * Math.tan(this.fov / 2);
@@ -78,34 +68,13 @@ export class Camera {
         this.changed();
     }
 
-    /** To look at a place from its normal's side. */
-    flyTo(place, normal, distance, now = performance.now()) {
+    /** At a place, from its normal's side. */
+    lookAt(place, normal, distance) {
         const n = normalize(normal);
-        const yaw = Math.hypot(n[0], n[2]) > 0.2 ? Math.atan2(n[0], n[2]) : this.yaw;
-        const turns = Math.round((this.yaw - yaw) / (2 * Math.PI));
-        const to = { yaw: yaw + 2 * Math.PI * turns, pitch: clamp(Math.asin(clamp(n[1], -1, 1)), -1.3, 1.3), distance,
-                     target: [...place] };
-        const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
-        const { yaw: y, pitch, distance: d, target } = this;
-        this.flight = { from: { yaw: y, pitch, distance: d, target }, to, start: now, length: calm ? 1 : kFlight };
-        this.changed();
-    }
-
-    /** Goes on with a flight. */
-    advance(now) {
-        if (!this.flight) {
-            return;
-        }
-        const { from, to, start, length: lasts } = this.flight;
-        const t = clamp((now - start) / lasts, 0, 1);
-        const s = t * t * (3 - 2 * t);
-        this.yaw = from.yaw + (to.yaw - from.yaw) * s;
-        this.pitch = from.pitch + (to.pitch - from.pitch) * s;
-        this.distance = from.distance * (to.distance / from.distance) ** s;
-        this.target = mix(from.target, to.target, s);
-        if (t === 1) {
-            this.flight = null;
-        }
+        this.yaw = Math.hypot(n[0], n[2]) > 0.2 ? Math.atan2(n[0], n[2]) : this.yaw;
+        this.pitch = clamp(Math.asin(clamp(n[1], -1, 1)), -1.3, 1.3);
+        this.distance = distance;
+        this.target = [...place];
         this.changed();
     }
 }

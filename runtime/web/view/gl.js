@@ -9,9 +9,6 @@ export function drawnBySoftware(gl) {
     return /llvmpipe|softpipe|swrast|SwiftShader|Software|Basic Render/i.test(info ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : name);
 }
 
-/** The attributes a_… get their places in this order. */
-const kAttributes = ["a_position", "a_normal", "a_other", "a_color"];
-
 export function program(gl, vertex, fragment, prefix = "") {
     const made = gl.createProgram();
     for (const [type, text] of [[gl.VERTEX_SHADER, `#version 300 es\nprecision highp float;\n${vertex}`],
@@ -23,7 +20,7 @@ export function program(gl, vertex, fragment, prefix = "") {
         gl.attachShader(made, shader);
         gl.deleteShader(shader);
     }
-    kAttributes.forEach((name, i) => gl.bindAttribLocation(made, i, name));
+    gl.bindAttribLocation(made, 0, "a_position");
     gl.linkProgram(made);
     if (!gl.getProgramParameter(made, gl.LINK_STATUS) && !gl.isContextLost()) {
         const logs = gl.getAttachedShaders(made).map((shader) => gl.getShaderInfoLog(shader)).join(" ").trim();
@@ -57,44 +54,33 @@ export function program(gl, vertex, fragment, prefix = "") {
     };
 }
 
-/** Triangles or points of the attributes { a_position: Float32Array, … }, three numbers each, and indices. */
+/** Triangles or lines of points, three numbers each, and their indices. */
 export class Geometry {
-    constructor(gl, attributes, indices = null) {
+    constructor(gl, positions, indices) {
         this.gl = gl;
         this.array = gl.createVertexArray();
-        this.buffers = [];
+        this.count = indices.length;
         gl.bindVertexArray(this.array);
-        for (const [name, values] of Object.entries(attributes)) {
-            const at = kAttributes.indexOf(name);
-            this.fill(gl.ARRAY_BUFFER, values);
-            gl.enableVertexAttribArray(at);
-            gl.vertexAttribPointer(at, 3, gl.FLOAT, false, 0, 0);
-            this.count = values.length / 3;
-        }
-        if (indices) {
-            this.fill(gl.ELEMENT_ARRAY_BUFFER, indices);
-            this.count = indices.length;
-        }
-        this.indexed = indices !== null;
+        this.buffers = [[gl.ARRAY_BUFFER, positions], [gl.ELEMENT_ARRAY_BUFFER, indices]].map(([target, values]) => {
+            const buffer = gl.createBuffer();
+            gl.bindBuffer(target, buffer);
+            gl.bufferData(target, values, gl.STATIC_DRAW);
+            return buffer;
+        });
+        gl.enableVertexAttribArray(0);
+        gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);
         gl.bindVertexArray(null);
     }
 
-    fill(target, values) {
-        const buffer = this.gl.createBuffer();
-        this.buffers.push(buffer);
-        this.gl.bindBuffer(target, buffer);
-        this.gl.bufferData(target, values, this.gl.STATIC_DRAW);
+    move(positions) {
+        this.gl.bindBuffer(this.gl.ARRAY_BUFFER, this.buffers[0]);
+        this.gl.bufferData(this.gl.ARRAY_BUFFER, positions, this.gl.DYNAMIC_DRAW);
     }
 
     draw(mode = this.gl.TRIANGLES) {
-        const { gl } = this;
-        gl.bindVertexArray(this.array);
-        if (this.indexed) {
-            gl.drawElements(mode, this.count, gl.UNSIGNED_INT, 0);
-        } else {
-            gl.drawArrays(mode, 0, this.count);
-        }
-        gl.bindVertexArray(null);
+        this.gl.bindVertexArray(this.array);
+        this.gl.drawElements(mode, this.count, this.gl.UNSIGNED_INT, 0);
+        this.gl.bindVertexArray(null);
     }
 
     dispose() {
@@ -117,20 +103,16 @@ function texture(gl, internal, width, height, format, type) {
     return made;
 }
 
-/** A framebuffer with textures for colour and, but for `float`, depth. */
+/** A framebuffer with textures for colour and depth. */
 export class Target {
-    constructor(gl, width, height, float = false) {
+    constructor(gl, width, height) {
         Object.assign(this, { gl, width, height });
-        this.color = float ? texture(gl, gl.RGBA32F, width, height, gl.RGBA, gl.FLOAT)
-                           : texture(gl, gl.RGBA8, width, height, gl.RGBA, gl.UNSIGNED_BYTE);
-        this.depth = float ? null
-                           : texture(gl, gl.DEPTH_COMPONENT24, width, height, gl.DEPTH_COMPONENT, gl.UNSIGNED_INT);
+        this.color = texture(gl, gl.RGBA8, width, height, gl.RGBA, gl.UNSIGNED_BYTE);
+        this.depth = texture(gl, gl.DEPTH_COMPONENT24, width, height, gl.DEPTH_COMPONENT, gl.UNSIGNED_INT);
         this.name = gl.createFramebuffer();
         gl.bindFramebuffer(gl.FRAMEBUFFER, this.name);
         gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, this.color, 0);
-        if (this.depth) {
-            gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, this.depth, 0);
-        }
+        gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, this.depth, 0);
         gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     }
 

@@ -4,19 +4,12 @@ import { $, element, say } from "./controls.js";
 const kTurn = 0.09;
 
 export function followKeys(app, panel) {
-    const toggle = (id) => {
-        if (!$(id).disabled) {
-            $(id).click();
-        }
-    };
+    const toggle = (id) => $(id).click();
     const sliceBy = (by) => panel.setSlice(panel.axis, Math.min(Math.max(Number($("slice-at").value) + by, 0), 1));
-    const across = (axis) => {
-        const { slice } = app.look;
-        panel.setSlice(slice?.axis === axis ? null : axis);
-    };
+    const across = (axis) => panel.setSlice(app.look.slice?.axis === axis ? null : axis);
+    const turn = (x, y) => (event) => (event.shiftKey ? app.camera.pan(x * 0.05, y * 0.05) : app.camera.orbit(x * kTurn, y * kTurn));
     const keys = [
-        ["← ↑ → ↓", "turn", null],
-        ["Shift ← ↑ → ↓", "move", null],
+        ["← ↑ → ↓", "turn; with Shift: move", { ArrowLeft: turn(1, 0), ArrowRight: turn(-1, 0), ArrowUp: turn(0, 1), ArrowDown: turn(0, -1) }],
         ["+  −", "nearer, farther", { "+": () => app.camera.zoom(0.85), "=": () => app.camera.zoom(0.85),
                                        "-": () => app.camera.zoom(1 / 0.85) }],
         ["F", "frame the body", { f: () => panel.frame() }],
@@ -29,39 +22,22 @@ export function followKeys(app, panel) {
         ["Space", "pause, play", { " ": () => app.particles?.system && panel.pause() }],
         [".", "one step", { ".": () => panel.step() }],
         ["R", "particles from the beginning", { r: () => panel.restart() }],
-        ["O", "open a file", { o: () => $("files").click() }],
-        ["T", "dark or light", { t: () => toggle("theme") }],
+        ["O", "open a file", { o: () => toggle("files") }],
         ["P", "fold the panel", { p: () => panel.fold() }],
-        ["Esc", "let go of a map or a place", { Escape: () => (say(null), panel.dropPin()) }],
+        ["Esc", "let go of a map or a place", { Escape: () => (say(null), panel.letGo()) }],
         ["?", "this list", { "?": () => $("keys").showModal() }],
     ];
     const gestures = [["Drag", "turn"], ["Shift or right drag", "move"], ["Wheel, pinch", "nearer, farther"]];
     $("key-list").append(...[...gestures, ...keys].flatMap(([name, what]) =>
         [element("dt", {}, element("kbd", {}, name)), element("dd", {}, what)]));
-    const table = Object.assign({}, ...keys.map(([, , does]) => does ?? {}));
+    const table = Object.assign({}, ...keys.map(([, , does]) => does));
     addEventListener("keydown", (event) => {
-        const inField = event.target.closest?.("input[type=range], textarea, dialog");
-        if (event.ctrlKey || event.metaKey || event.altKey || $("keys").open) {
-            return;
-        }
-        const way = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
-        if (way && !inField) {
-            event.preventDefault();
-            if (event.shiftKey) {
-                app.camera.pan(way[0] * 0.05, way[1] * 0.05);
-            } else {
-                app.camera.orbit(way[0] * kTurn, way[1] * kTurn);
-            }
-            return;
-        }
-        const onButton = event.target.closest?.("button, input[type=checkbox]");
-        if (event.key === " " && onButton) {
-            return;
-        }
         const does = table[event.key.length === 1 ? event.key.toLowerCase() : event.key];
-        if (does && app.opened) {
+        // Controls have the arrows and the space bar for themselves.
+        const taken = /^( |Arrow.*)$/.test(event.key) && event.target.closest?.("input, button");
+        if (does && app.opened && !taken && !event.ctrlKey && !event.metaKey && !event.altKey && !$("keys").open) {
             event.preventDefault();
-            does();
+            does(event);
         }
     });
 }

@@ -1,6 +1,6 @@
 // The page of `relief view`: what is open, and the loop that draws it.
 import { init, load, readMesh } from "relief-particles";
-import { Body } from "./body.js";
+import { Body, LiveBody } from "./body.js";
 import { Camera, followPointers } from "./camera.js";
 import { $, say } from "./controls.js";
 import { Geometry } from "./gl.js";
@@ -10,7 +10,7 @@ import { followDrops, readPageData, readWasm } from "./page_data.js";
 import { Panel } from "./panel.js";
 import { Particles } from "./particles.js";
 import { Quality } from "./quality.js";
-import { View, project } from "./view.js";
+import { View } from "./view.js";
 
 const canvas = $("canvas");
 const kSentences = {
@@ -30,6 +30,7 @@ function unknownFile(name) {
 }
 
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
+const dark = matchMedia("(prefers-color-scheme: dark)");
 
 const sentenceOf = (error) => {
     const text = error instanceof RangeError && /alloc|memory|length/i.test(error.message) ? kSentences.memory
@@ -39,19 +40,18 @@ const sentenceOf = (error) => {
 
 class App {
     constructor() {
-        this.look = { theme: "dark", show: "surface", split: 0.5, map: -1, heat: 0, depth: 0, slice: null, floor: null,
+        this.look = { show: "surface", split: 0.5, map: -1, heat: 0, depth: 0, slice: null, floor: null,
                       box: null };
         this.floorWanted = true;
         this.opened = null; // { name, file (the name of its bytes), bytes, mesh, check, scene, files }
         this.camera = new Camera(() => this.changed());
         this.quality = new Quality();
-        this.thinned = null; // particles of a preset, once they were made fewer to keep up
         this.lastChange = 0;
         this.lastFrame = 0;
         this.frames = 0;
         this.asked = false;
         this.panel = new Panel(this);
-        this.setTheme(localTheme());
+        dark.addEventListener("change", () => this.changed());
     }
 
     /** Runs f; a failure is said on the page, which goes on. */
@@ -141,7 +141,7 @@ class App {
         let bounds = mesh && boundsOf(mesh.vertices);
         if (bytes) {
             const collider = await load(bytes);
-            this.body = new Body(this.gl, collider, file);
+            this.body = this.view.body = new Body(this.gl, collider, file);
             this.view.bodies = [this.body];
             bounds = collider.bounds;
         }
@@ -149,7 +149,7 @@ class App {
         this.setFloor(this.floorWanted);
         this.camera.frame(this.look.box, this.panel.room());
         if (mesh) {
-            this.view.mesh = new Geometry(this.gl, { a_position: mesh.vertices }, mesh.triangles);
+            this.view.mesh = new Geometry(this.gl, mesh.vertices, mesh.triangles);
             this.look.show = this.body ? "split" : "mesh";
             this.mesh = mesh;
         }
@@ -220,61 +220,45 @@ class App {
     /** The scene's bodies, each where it stands; the first of the page's own file stays the one that is asked. */
     async #placeBodies(files) {
         const { system } = this.particles;
-        const { bodies } = this.particles.info;
-        const kept = [];
-        const live = [];
+        const { bodies, bounds } = this.particles.info;
+        const placed = [];
         for (const [i, { file, deforms, matrix }] of bodies.entries()) {
-            if (deforms) {
-                live.push({ index: i, mesh: () => system.mesh(i), model: Float32Array.from(matrix) });
-                kept.push(null);
-            } else if (this.body && file === this.opened.file && !kept.includes(this.body)) {
-                this.body.place(Float32Array.from(matrix));
-                kept.push(this.body);
-            } else {
-                kept.push(new Body(this.gl, await load(files[file]), file, Float32Array.from(matrix)));
-            }
+            const own = this.body && file === this.opened.file && !placed.includes(this.body);
+            placed.push(deforms ? new LiveBody(this.gl, this.view.programs.live, () => system.mesh(i))
+                : own ? this.body : new Body(this.gl, await load(files[file]), file));
+            placed[i].place(matrix);
         }
-        this.view.bodies.filter((one) => one !== this.body && !kept.includes(one)).forEach((one) => one.dispose());
-        this.placed = kept;
-        this.view.live = live;
-        this.view.bodies = [...kept.filter((one) => one === this.body), ...kept.filter((one) => one && one !== this.body)];
-        const { min, max } = this.particles.info.bounds;
-        this.look.box = boxOf({ min, max });
+        this.#unplaceBodies();
+        this.placed = placed;
+        this.view.bodies = placed;
+        this.look.box = boxOf(bounds);
         this.changed();
     }
 
     /** Where moving bodies are by now. */
     #moveBodies() {
-        const bodies = this.particles.system?.info.bodies ?? [];
-        bodies.forEach(({ moves, matrix }, i) => {
-            if (moves && this.placed?.[i]) {
-                this.placed[i].place(Float32Array.from(matrix));
+        this.particles.system?.info.bodies.forEach(({ moves, deforms, matrix }, i) => {
+            if (this.placed && (moves || deforms)) {
+                this.placed[i].place(matrix);
                 this.view.dirty = true;
             }
         });
-        for (const one of this.view.live) {
-            one.model = Float32Array.from(bodies[one.index].matrix);
-            this.view.dirty = true;
-        }
     }
 
-    /** The body alone again, in its own space. */
+    /** The body alone again. */
     #unplaceBodies() {
-        if (this.placed) {
-            this.view.bodies.filter((one) => one !== this.body).forEach((one) => one.dispose());
-            this.view.live = [];
-            this.body?.place(identity());
-            this.view.bodies = this.body ? [this.body] : [];
-            this.look.box = this.body?.box ?? this.look.box;
-            this.placed = null;
-            this.setFloor(this.floorWanted);
-            this.changed();
-        }
+        this.view.bodies.filter((one) => one !== this.body).forEach((one) => one.dispose());
+        this.view.bodies = this.body ? [this.body] : [];
+        this.placed = null;
     }
 
     startPreset(preset) {
-        this.thinned = null;
-        this.#unplaceBodies();
+        if (this.placed) {
+            this.#unplaceBodies();
+            this.body?.place(identity());
+            this.look.box = this.body?.box ?? this.look.box;
+            this.setFloor(this.floorWanted);
+        }
         if (preset === "none") {
             this.particles.stop();
         } else {
@@ -288,12 +272,6 @@ class App {
         this.floorWanted = wanted;
         const ground = this.particles?.preset === "scene" ? this.particles.info.ground : this.look.box?.min[1];
         this.look.floor = wanted ? ground ?? null : null;
-        this.changed();
-    }
-
-    setTheme(theme) {
-        this.look.theme = theme;
-        document.documentElement.dataset.theme = theme;
         this.changed();
     }
 
@@ -313,15 +291,6 @@ class App {
         return Boolean(this.particles.system) && !this.particles.paused;
     }
 
-    /** Half as many particles of a preset, unless it has few. */
-    #fewer(least) {
-        const { settings } = this.particles;
-        if (this.playing && settings?.count > least) {
-            this.panel.setCount(settings.count / 2);
-            this.thinned = settings.count / 2;
-        }
-    }
-
     #frame(now) {
         this.asked = false;
         if (!this.gl || !this.view || this.gl.isContextLost()) {
@@ -338,8 +307,8 @@ class App {
     /** sharp: with all pixels, whatever moves. */
     #drawFrame(now, sharp = false) {
         const still = now - this.lastChange > 180;
-        const moving = this.playing || !still || Boolean(this.camera.flight);
-        this.quality.frame(now, moving, (least) => this.#fewer(least));
+        const moving = this.playing || !still;
+        this.quality.frame(now, moving);
         const share = moving && !sharp ? this.quality.pixels : 1;
         const pixels = share * Math.min(devicePixelRatio || 1, 2.5);
         const width = Math.max(1, Math.round(canvas.clientWidth * pixels));
@@ -349,9 +318,8 @@ class App {
             canvas.height = height;
             this.view.dirty = true;
         }
-        this.panel.tellQuality(share, this.playing ? this.thinned : null);
+        this.panel.tellQuality(share);
         this.camera.shift = this.panel.shift();
-        this.camera.advance(now);
         this.particles.advance(Math.min((now - this.lastFrame) / 1000, 0.1));
         this.lastFrame = now;
         if (this.particles.steps !== this.movedAt && this.particles.preset === "scene") {
@@ -359,13 +327,10 @@ class App {
             this.#moveBodies();
         }
         const matrices = this.camera.matrices(width, height);
-        this.view.drawBodies(matrices, width, height, this.look, still && share === 1);
+        this.view.drawBodies(matrices, width, height, { ...this.look, theme: dark.matches ? "dark" : "light" }, still && share === 1);
         this.view.copyBodies(width, height);
-        const size = 0.007 * (this.look.box?.longest ?? 1);
-        const tint = this.look.theme === "dark" ? [1, 0.72, 0.3] : [0.85, 0.38, 0.02];
-        this.particles.draw(matrices, width, height, tint, size);
-        this.view.drawLines(matrices.camera, width, height, pixels);
-        this.panel.place((p) => project(matrices.camera, p, canvas));
+        this.particles.draw(matrices, width, height);
+        this.view.drawLines(matrices.camera, width, height);
         this.frames += 1;
         this.panel.tick(now);
         if (moving || share < 1) {
@@ -396,11 +361,6 @@ class App {
     }
 }
 
-function localTheme() {
-    return matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
-}
-
 const app = new App();
 window.reliefView = app;
-matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => app.setTheme(localTheme()));
 app.start();

@@ -53,8 +53,8 @@ function texelColor(texels, at, what, [low, span]) {
     return [value, value, value, 255];
 }
 
-/** Lines round what a map sees: [from, to, color]. */
-export function frustum(map, color) {
+/** Lines round what a map sees: [from, to]. */
+export function frustum(map) {
     const toObject = inverseRows(map.rows);
     const cube = map.projection === "cube";
     const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) =>
@@ -63,25 +63,23 @@ export function frustum(map, color) {
     for (let i = 0; i < 8; ++i) {
         for (const bit of [1, 2, 4]) {
             if (!(i & bit)) {
-                lines.push([corners[i], corners[i | bit], color]);
+                lines.push([corners[i], corners[i | bit]]);
             }
         }
     }
     if (cube) {
         const eye = toObject([0, 0, 0]);
-        corners.forEach((corner) => lines.push([eye, corner, color]));
+        corners.forEach((corner) => lines.push([eye, corner]));
     } else {
-        lines.push(...arrow(toObject, color));
+        lines.push(...arrow(toObject));
     }
     return lines;
 }
 
 /** In the middle of the near side, the way the view looks. */
-function arrow(toObject, color) {
-    const at = (x, y, z) => toObject([x, y, z]);
-    const tip = at(0.5, 0.5, 0.3);
-    return [[at(0.5, 0.5, 0), tip, color], [at(0.45, 0.5, 0.22), tip, color], [at(0.55, 0.5, 0.22), tip, color],
-            [at(0.5, 0.45, 0.22), tip, color], [at(0.5, 0.55, 0.22), tip, color]];
+function arrow(toObject) {
+    const tip = toObject([0.5, 0.5, 0.3]);
+    return [[0.5, 0.5, 0], [0.45, 0.5, 0.22], [0.55, 0.5, 0.22], [0.5, 0.45, 0.22], [0.5, 0.55, 0.22]].map((from) => [toObject(from), tip]);
 }
 
 /** Of a unit axis: "+x", or two digits of each. */

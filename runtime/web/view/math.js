@@ -6,7 +6,6 @@ export const scale = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
 export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 export const length = (a) => Math.hypot(a[0], a[1], a[2]);
-export const mix = (a, b, t) => a.map((v, i) => v + (b[i] - v) * t);
 export const clamp = (v, low, high) => Math.min(Math.max(v, low), high);
 export const identity = () => new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
 
@@ -80,18 +79,6 @@ export function boxOf(bounds) {
         center: scale(add(bounds.min, bounds.max), 0.5),
         longest: Math.max(...size) || 1,
         radius: 0.5 * length(size) || 1,
-    };
-}
-
-/** Numbers in [0, 1), the same on each visit. */
-export function random(seed) {
-    let state = seed >>> 0;
-    return () => {
-        state = (state + 0x9e3779b9) >>> 0;
-        let z = state;
-        z = Math.imul(z ^ (z >>> 16), 0x85ebca6b);
-        z = Math.imul(z ^ (z >>> 13), 0xc2b2ae35);
-        return ((z ^ (z >>> 16)) >>> 0) / 4294967296;
     };
 }
 

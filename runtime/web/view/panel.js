@@ -1,6 +1,6 @@
 // The panel and the title: what the buttons and sliders do.
 import { css, mapColor } from "./colors.js";
-import { $, choice, element, followTips, legend, linear, powers, say, slider, tabs } from "./controls.js";
+import { $, choice, element, fillLegends, linear, powersOfTwo, say, slider } from "./controls.js";
 import { drawMap, frustum, mapTitle } from "./map_images.js";
 import { add, lengthText, scale, shortNumber } from "./math.js";
 import { followKeys } from "./keys.js";
@@ -15,36 +15,38 @@ const percent = (v) => `${Math.round(100 * v)} %`;
 export class Panel {
     #map = -1;
     #picture = "depth";
-    #place = null;
     #queue = 0;
     #lastTick = 0;
     #heatSeen = false;
-    #told = "";
 
     constructor(app) {
         this.app = app;
-        this.tabs = tabs((tab) => {
-            this.#setFolded(false);
-            if (tab === "errors" && !this.#heatSeen && this.app.measured) {
-                this.#heatSeen = true;
-                $("heat").checked = true;
-                this.#heat();
-            }
-            this.app.changed();
-        });
+        fillLegends();
+        this.#title();
+        this.tabs = choice("tab", (tab) => this.show(tab));
+        $("tabs").onclick = () => this.#setFolded(false);
         this.#viewSheet();
         this.#sliceFields();
-        this.#mapSheet();
-        this.#errorSheet();
+        this.mapChoice = choice("picture", (value) => {
+            this.#picture = value;
+            this.#pictures();
+        });
+        $("heat").onchange = () => this.#heat();
         this.#particleSheet();
-        this.#title();
-        this.#splitBar();
         followKeys(app, this);
-        followTips();
     }
 
     show(tab) {
-        $(`tab-${tab}`).click();
+        this.tabs.show(tab);
+        for (const section of $("sheets").children) {
+            section.hidden = section.id !== `sheet-${tab}`;
+        }
+        if (tab === "errors" && !this.#heatSeen && this.app.measured) {
+            this.#heatSeen = true;
+            $("heat").checked = true;
+            this.#heat();
+        }
+        this.app.changed();
     }
 
     /** How far the picture's middle moves out from under the panel. */
@@ -66,7 +68,6 @@ export class Panel {
     }
 
     #title() {
-        $("theme").onclick = () => this.app.setTheme(this.app.look.theme === "dark" ? "light" : "dark");
         $("help").onclick = () => $("keys").showModal();
         $("open").onclick = $("pick").onclick = () => $("files").click();
         $("frame").onclick = () => this.frame();
@@ -85,7 +86,6 @@ export class Panel {
     #setFolded(folded) {
         $("panel").classList.toggle("folded", folded);
         $("fold").setAttribute("aria-expanded", !folded);
-        $("fold").setAttribute("aria-label", folded ? "Unfold the panel" : "Fold the panel");
         this.app.changed();
     }
 
@@ -111,20 +111,22 @@ export class Panel {
             look.map = tint ? -2 : -1;
         };
         $("floor").onchange = () => this.app.setFloor($("floor").checked);
+        $("split-at").oninput = () => {
+            look.split = Number($("split-at").value);
+            this.app.changed();
+        };
     }
 
     setShow(value) {
         this.app.look.show = value;
         this.showChoice.show(value);
-        $("split-bar").hidden = value !== "split" || !this.app.mesh || !this.app.body;
+        $("split-at").hidden = value !== "split" || !this.app.mesh || !this.app.body;
         this.app.changed();
     }
 
     // --- the slice
 
     #sliceFields() {
-        legend("slice-legend");
-        legend("heat-legend");
         this.axis = 2;
         this.axisChoice = choice("axis", (value) => {
             this.axis = Number(value);
@@ -147,49 +149,33 @@ export class Panel {
     #slice() {
         const { look, body } = this.app;
         const on = $("slice-on").checked && Boolean(body);
-        $("slice-fields").setAttribute("aria-disabled", !on);
-        if (!on) {
-            look.slice = null;
-            this.app.changed();
-            return;
-        }
-        const { min, size } = body.box;
-        const at = min[this.axis] + Number($("slice-at").value) * size[this.axis];
-        const key = `${this.axis}`;
-        if (look.slice?.key !== key) {
+        $("slice-fields").disabled = !on;
+        if (on) {
+            const { min, size } = body.box;
+            const at = min[this.axis] + Number($("slice-at").value) * size[this.axis];
             // One range for an axis, so that the colours keep their meaning while the slice moves.
-            this.range = sliceRange(body.collider, body.box, this.axis, min[this.axis] + 0.5 * size[this.axis]);
+            const range = look.slice?.axis === this.axis ? look.slice.range
+                : sliceRange(body.collider, body.box, this.axis, min[this.axis] + 0.5 * size[this.axis]);
+            look.slice = { axis: this.axis, at, range };
+            $("slice-value").textContent = this.#length(at);
+            this.#legend("slice", range);
+        } else {
+            look.slice = null;
         }
-        look.slice = { axis: this.axis, at, range: this.range, key };
-        $("slice-value").textContent = this.#length(at);
-        $("slice-low").textContent = `${this.#length(-this.range)} inside`;
-        $("slice-high").textContent = `outside ${this.#length(this.range)}`;
         this.app.changed();
+    }
+
+    #legend(name, range) {
+        $(`${name}-low`).textContent = `${this.#length(-range)} inside`;
+        $(`${name}-high`).textContent = `outside ${this.#length(range)}`;
     }
 
     // --- maps
 
-    #mapSheet() {
-        this.mapChoice = choice("picture", (value) => {
-            this.#picture = value;
-            this.#pictures();
-        });
-        $("maps").addEventListener("keydown", (event) => {
-            const way = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
-            const buttons = [...$("maps").children];
-            const next = buttons[buttons.indexOf(document.activeElement) + way];
-            if (way && next) {
-                event.preventDefault();
-                event.stopPropagation();
-                next.focus();
-            }
-        });
-    }
-
     #fillMaps() {
         const maps = this.app.body?.collider.info.maps ?? [];
         $("maps").replaceChildren(...maps.map((map, i) => element("button", {
-            role: "option", "aria-selected": false, "data-map": i, onclick: () => this.selectMap(this.#map === i ? -1 : i),
+            "aria-pressed": false, "data-map": i, onclick: () => this.selectMap(this.#map === i ? -1 : i),
         }, element("span", { class: "frame" }, element("canvas", { role: "img", "aria-label": `Map ${i}` })),
            element("span", { class: "what" }, element("i", { style: `background:${css(mapColor(i))}` }),
                    element("b", {}, `${i}`), ` ${mapTitle(map)}, ${map.format}`))));
@@ -214,23 +200,19 @@ export class Panel {
     selectMap(i) {
         const { look, view, body } = this.app;
         this.#map = i;
-        [...$("maps").children].forEach((button, k) => button.setAttribute("aria-selected", k === i));
+        [...$("maps").children].forEach((button, k) => button.setAttribute("aria-pressed", k === i));
         look.map = i;
         $("tint").checked = false;
         if (i >= 0 && look.show === "mesh") {
             this.setShow("surface");
         }
         if (view && body) {
-            view.setLines(i >= 0 ? frustum(body.collider.info.maps[i], mapColor(i)) : []);
+            view.setLines(i >= 0 ? frustum(body.collider.info.maps[i]) : [], mapColor(i));
         }
         this.app.changed();
     }
 
     // --- errors
-
-    #errorSheet() {
-        $("heat").onchange = () => this.#heat();
-    }
 
     #heat() {
         const { look, measured } = this.app;
@@ -243,10 +225,9 @@ export class Panel {
         const { measured, body } = this.app;
         $("errors-none").hidden = Boolean(measured);
         $("errors-some").hidden = !measured;
-        this.#place = null;
         this.#heatSeen = false;
         $("heat").checked = false;
-        $("pin").hidden = true;
+        $("why").textContent = "";
         this.#heat();
         if (!measured) {
             return;
@@ -268,13 +249,12 @@ export class Panel {
         $("advice-title").hidden = !check?.advice.length;
         $("advice").replaceChildren(...(check?.advice ?? []).map(({ command, ...one }) => element("li", {},
             ...(one.tried && !one.helps ? [] : [element("code", {}, command)]), element("p", { class: "hint" }, adviceText(one, check)))));
-        $("heat-low").textContent = `${this.#length(-measured.range)} inside`;
-        $("heat-high").textContent = `outside ${this.#length(measured.range)}`;
-        this.places = check?.worst_places ?? [];
+        this.#legend("heat", measured.range);
+        const places = check?.worst_places ?? [];
         $("places-title").hidden = !check;
-        $("places-title").textContent = this.places.length ? "Worst places, by their share of what is wrong" : "No place is wrong";
-        $("places").replaceChildren(...this.places.map((place, i) => element("li", {}, element("button", {
-            onclick: () => this.goTo(i),
+        $("places-title").textContent = places.length ? "Worst places, by their share of what is wrong" : "No place is wrong";
+        $("places").replaceChildren(...places.map((place) => element("li", {}, element("button", {
+            onclick: (event) => this.#goTo(place, event.currentTarget),
         }, element("b", {}, `${shortNumber(place.share_percent)} %`), element("span", {}, this.#placeText(place))))));
     }
 
@@ -282,113 +262,52 @@ export class Panel {
         return [`${this.#length(place.size)} across`, kKinds[place.cause], place.map === null ? "no map" : `map ${place.map}`].join(", ");
     }
 
-    goTo(i) {
-        const place = this.places[i];
-        const { camera, look, view, body } = this.app;
-        this.#place = place;
-        [...$("places").querySelectorAll("button")].forEach((button, k) => button.setAttribute("aria-current", k === i));
-        camera.flyTo(place.position, place.normal, 0.9 * body.box.longest);
-        const tint = look.theme === "dark" ? [1, 0.85, 0.3] : [0.75, 0.1, 0.05];
-        const to = add(place.position, scale(place.normal, 0.12 * body.box.longest));
-        view.setLines([[place.position, to, tint], ...cross(place.position, 0.02 * body.box.longest, tint)]);
-        $("pin").textContent = place.why;
-        $("pin").hidden = false;
+    #goTo({ position, normal, why }, button) {
+        const { camera, view, body } = this.app;
+        const side = body.box.longest;
+        this.letGo();
+        button.setAttribute("aria-current", true);
+        camera.lookAt(position, normal, 0.9 * side);
+        const arms = [0, 1, 2].map((i) => [0, 0, 0].with(i, 0.02 * side));
+        view.setLines([[position, add(position, scale(normal, 0.12 * side))],
+                       ...arms.map((arm) => [add(position, arm), add(position, scale(arm, -1))])], [1, 0.75, 0.2]);
+        $("why").textContent = why;
     }
 
-    /** What hangs on places in space. */
-    place(project) {
-        const bar = $("split-bar");
-        bar.style.left = `${100 * this.app.look.split}%`;
-        const at = this.#place && project(this.#place.position);
-        $("pin").hidden = !at;
-        if (at) {
-            const pin = $("pin");
-            const x = Math.min(Math.max(at[0] + 18, 8), innerWidth - pin.offsetWidth - 8);
-            const y = Math.min(Math.max(at[1] + 18, 8), innerHeight - pin.offsetHeight - 8);
-            pin.style.transform = `translate(${Math.round(x)}px, ${Math.round(y)}px)`;
-        }
-    }
-
-    dropPin() {
-        this.#place = null;
-        $("pin").hidden = true;
+    letGo() {
+        $("why").textContent = "";
         [...$("places").querySelectorAll("button")].forEach((button) => button.removeAttribute("aria-current"));
         this.selectMap(-1);
-    }
-
-    #splitBar() {
-        const bar = $("split-bar");
-        const move = (share) => {
-            this.app.look.split = Math.min(Math.max(share, 0.02), 0.98);
-            bar.setAttribute("aria-valuenow", Math.round(100 * this.app.look.split));
-            this.app.changed();
-        };
-        bar.addEventListener("pointerdown", (event) => bar.setPointerCapture(event.pointerId));
-        bar.addEventListener("pointermove", (event) => event.buttons && move(event.clientX / innerWidth));
-        bar.addEventListener("keydown", (event) => {
-            const way = { ArrowLeft: -0.02, ArrowRight: 0.02 }[event.key];
-            if (way) {
-                event.preventDefault();
-                event.stopPropagation();
-                move(this.app.look.split + way);
-            }
-        });
     }
 
     // --- particles
 
     #particleSheet() {
-        const change = (key) => (value) => this.#change({ [key]: value });
         const lengths = (v) => this.#length(v * (this.app.look.box?.longest ?? 1));
         const parts = [
             { id: "bounce", name: "Bounce", scale: linear(0, 1), text: percent },
             { id: "friction", name: "Friction", scale: linear(0, 1), text: percent },
             { id: "radius", name: "Radius", scale: linear(0, 0.03), text: lengths },
             { id: "wind", name: "Wind", scale: linear(-1.5, 1.5), text: (v) => (Math.abs(v) < 0.02 ? "0" : `${lengths(v)}/s`) },
-            { id: "rate", name: "Rate", scale: powers(50, 120000, Math.round), text: (v) => `${Math.round(v).toLocaleString("en")}/s` },
-            { id: "count", name: "Count", scale: powers(1024, 262144, (v) => 2 ** Math.round(Math.log2(v))),
-              text: (v) => v.toLocaleString("en") },
+            { id: "count", name: "Count", scale: powersOfTwo(1024, 262144), text: (v) => v.toLocaleString("en") },
         ];
+        const change = (key) => (value) => {
+            this.app.attempt(() => this.app.particles.change({ [key]: value }));
+            this.app.changed(false);
+        };
         this.sliders = Object.fromEntries(parts.map((part) => [part.id, slider({ ...part, changed: change(part.id) })]));
         $("sliders").append(...Object.values(this.sliders).map((one) => one.label));
         this.presetChoice = choice("preset", (value) => this.app.attempt(() => this.app.startPreset(value)));
         $("pause").onclick = () => this.pause();
         $("step").onclick = () => this.step();
         $("restart").onclick = () => this.restart();
-        $("marks").onchange = () => {
-            this.app.particles.marking = $("marks").checked;
-            this.app.changed(false);
-        };
         $("copy").onclick = () => this.copy();
     }
 
-    #change(settings) {
-        const { particles } = this.app;
-        if (settings.count) {
-            this.app.thinned = null;
-            // As many births as keep that many alive.
-            settings.rate = Math.min(settings.count / particles.settings.seconds, 120000);
-            this.sliders.rate.show(settings.rate);
-        }
-        this.app.attempt(() => particles.change(settings));
-        this.app.changed(false);
-    }
-
-    setCount(count) {
-        this.sliders.count.show(count);
-        this.#change({ count });
-    }
-
-    /** share: of the pixels of each side that are drawn; particles: of how many there are, where they are fewer; or null. */
-    tellQuality(share, particles) {
-        const parts = [...(share < 1 ? [`${Math.round(100 * share)} % of the pixels each way`] : []),
-                       ...(particles ? [`${particles.toLocaleString("en")} particles`] : [])];
-        const told = parts.length ? `Coarser, to keep up: ${parts.join(", ")}` : "";
-        if (told !== this.#told) {
-            this.#told = told;
-            $("quality").hidden = !told;
-            $("quality").textContent = told;
-        }
+    /** share: of the pixels of each side that are drawn. */
+    tellQuality(share) {
+        $("quality").hidden = share === 1;
+        $("quality").textContent = `Coarser, to keep up: ${percent(share)} of the pixels each way`;
     }
 
     pause() {
@@ -416,24 +335,8 @@ export class Panel {
     }
 
     async copy() {
-        const { particles } = this.app;
-        if (!particles.system) {
-            return;
-        }
-        const text = particles.system.toToml();
-        this.copiedText = text;
-        let told = "copied";
-        try {
-            await navigator.clipboard.writeText(text);
-        } catch {
-            // No clipboard for a page opened from disk: by hand.
-            const area = element("textarea", { style: "position:fixed;opacity:0" });
-            area.value = text;
-            document.body.append(area);
-            area.select();
-            told = document.execCommand("copy") ? "copied" : "this browser lets no page copy";
-            area.remove();
-        }
+        this.copiedText = this.app.particles.system.toToml();
+        const told = await navigator.clipboard.writeText(this.copiedText).then(() => "copied", () => "this browser lets no page copy");
         $("copied").textContent = `${told}; save beside ${this.app.opened.file}`;
         setTimeout(() => ($("copied").textContent = ""), 4000);
     }
@@ -442,7 +345,7 @@ export class Panel {
         const { particles } = this.app;
         const running = Boolean(particles?.system);
         const free = running && particles.preset !== "scene";
-        this.presetChoice.show(running ? (free ? particles.preset : "") : "none");
+        this.presetChoice.show(running ? particles.preset : "none");
         $("playing").hidden = !running;
         $("sliders").hidden = !free;
         for (const [key, one] of Object.entries(free ? this.sliders : {})) {
@@ -452,9 +355,6 @@ export class Panel {
         $("scene-note").textContent = running ? "A scene of its own is playing; a preset above takes its place."
             : this.app.body ? "Nothing falls. Choose rain, snow, a fountain or smoke." : "Particles need a collider: drop a .relief here.";
         $("pause").textContent = particles?.paused ? "Play" : "Pause";
-        if (particles) {
-            particles.marking = $("marks").checked;
-        }
         $("alive").textContent = "";
     }
 
@@ -476,11 +376,11 @@ export class Panel {
         this.showChoice.allow("split", Boolean(mesh && body));
         this.showChoice.allow("surface", Boolean(body));
         $("slice-on").disabled = !body;
-        $("preset").querySelectorAll("button").forEach((one) => (one.disabled = !body));
+        $("preset").querySelectorAll("input").forEach((one) => (one.disabled = !body));
         this.#fillMaps();
         this.#fillErrors();
         this.setShow(look.show);
-        look.split = 0.5 - 0.5 * this.shift()[0];
+        look.split = $("split-at").value = 0.5 - 0.5 * this.shift()[0];
         $("slice-on").checked = false;
         $("tint").checked = false;
         this.#slice();
@@ -508,12 +408,4 @@ function adviceText({ about, tried, helps, wrong_percent: left, untried }, { ver
     return !tried ? `${about}; not tried: ${untried}` : helps
         ? `${about}; tried: ${shortNumber(left)} % wrong instead of ${shortNumber(verdict.wrong_percent)} %`
         : `Tried, and of no help: ${about} (${shortNumber(left)} %)`;
-}
-
-function cross(p, r, tint) {
-    return [0, 1, 2].map((i) => {
-        const arm = [0, 0, 0];
-        arm[i] = r;
-        return [add(p, arm), add(p, scale(arm, -1)), tint];
-    });
 }

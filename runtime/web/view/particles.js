@@ -1,12 +1,10 @@
 // The particles on the page: one system of Relief, of a preset or of a scene that was dropped in.
 import { ParticleSystem } from "relief-particles";
-import { Marks } from "./marks.js";
 import { kDefaults, presetScene } from "./presets.js";
 
 const kStepsAFrame = 3; // where the page is slow, time goes slower
 
 export class Particles {
-    #marks;
     #owed = 0;
 
     constructor(gl) {
@@ -15,16 +13,13 @@ export class Particles {
         this.preset = null; // "scene": a dropped one
         this.settings = null;
         this.paused = false;
-        this.marking = false;
         this.steps = 0; // grows with whatever the system does
-        this.#marks = new Marks(gl);
     }
 
     /** @param body  of body.js */
     startPreset(preset, body, settings) {
         this.body = body;
-        const wanted = settings ?? { ...kDefaults[preset] };
-        wanted.rate ??= wanted.count / wanted.seconds;
+        const wanted = settings ?? kDefaults[preset];
         const scene = presetScene(preset, body.name, body.box, wanted);
         this.#replace(() => new ParticleSystem(this.gl, { scene, files: { [body.name]: body.collider } }), preset);
         this.settings = wanted;
@@ -47,7 +42,6 @@ export class Particles {
         this.system?.dispose();
         this.system = null;
         this.preset = null;
-        this.#marks.clear();
         this.#owed = 0;
     }
 
@@ -68,7 +62,6 @@ export class Particles {
 
     restart() {
         this.system?.restart();
-        this.#marks.clear();
         this.info = this.system?.info;
         this.steps += 1;
     }
@@ -76,13 +69,6 @@ export class Particles {
     step() {
         this.system.step();
         this.steps += 1;
-        if (this.marking && this.keepsContacts) {
-            this.#marks.keep(this.system.textures(), this.system.info);
-        }
-    }
-
-    get keepsContacts() {
-        return !/integrator\s*=\s*"verlet"/.test(this.preset === "scene" ? this.system.toToml() : "");
     }
 
     /** As many steps as `seconds` ask for. */
@@ -98,23 +84,12 @@ export class Particles {
         }
     }
 
-    draw(matrices, width, height, tint, size) {
-        if (!this.system) {
-            return;
-        }
-        if (this.marking) {
-            this.#marks.draw(matrices, height, this.system.info.time, size, tint);
-        }
-        this.gl.bindFramebuffer(this.gl.FRAMEBUFFER, null);
-        this.system.draw({ view: matrices.view, projection: matrices.projection, framebuffer: null, width, height });
+    draw({ view, projection }, width, height) {
+        this.system?.draw({ view, projection, framebuffer: null, width, height });
     }
 
     /** How many live: told by the CPU's books, now and then. */
     get alive() {
         return this.system?.info.alive ?? 0;
-    }
-
-    markCount() {
-        return this.#marks.count();
     }
 }

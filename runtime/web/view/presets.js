@@ -1,7 +1,5 @@
 // Four scenes that suit a body of any size, as scene.toml has them. L: its longest side.
 
-export const kPresets = ["rain", "snow", "fountain", "smoke"];
-
 /** What the sliders begin with; lengths are in L, the wind in L a second. */
 export const kDefaults = {
     rain: { bounce: 0.35, friction: 0.1, radius: 0.004, wind: 0, count: 65536, seconds: 2.4 },
@@ -16,7 +14,7 @@ const nears = (list) => list.map(near);
 /**
  * @param file      of the collider, as the scene names it
  * @param box       of the body
- * @param settings  as kDefaults has them, and rate: births a second
+ * @param settings  as kDefaults has them
  */
 export function presetScene(preset, file, box, settings) {
     const { center: c, min, max, longest: L, size } = box;
@@ -25,7 +23,7 @@ export function presetScene(preset, file, box, settings) {
         time: { dt: 0.016666667, steps: 600 },
         particles: { capacity: settings.count },
     };
-    const emitter = { rate: near(settings.rate), duration: 100000 };
+    const emitter = { rate: near(settings.count / settings.seconds), duration: 100000 }; // as keeps that many alive
     const top = max[1];
     const over = (low, high, wide) => ({
         box_min: nears([c[0] - wide * size[0] - 0.05 * L, top + low * L, c[2] - wide * size[2] - 0.05 * L]),

@@ -1,9 +1,8 @@
 // Draws all there is. The bodies are drawn when something about them changes, and kept: particles fall before the kept
 // picture, by its depths.
 import { Geometry, Target, bindTexture, drawScreen, drawnBySoftware, kScreenVertex, program } from "./gl.js";
-import { kBodyVertex, kCopyFragment, kFloorFragment, kLiveVertex, kMeshFragment, kSkyFragment } from "./body_shaders.js";
-import { add, identity, normalize, scale, transform } from "./math.js";
-import { Lines } from "./lines.js";
+import { kBodyVertex, kCopyFragment, kFloorFragment, kLineFragment, kLiveVertex, kMeshFragment, kSkyFragment } from "./body_shaders.js";
+import { add, identity, multiply, normalize, scale } from "./math.js";
 
 const kThemes = {
     dark: {
@@ -17,7 +16,7 @@ const kThemes = {
 };
 
 function quad(gl) {
-    return new Geometry(gl, { a_position: new Float32Array(12) }, new Uint32Array([0, 1, 2, 0, 2, 3]));
+    return new Geometry(gl, new Float32Array(12), new Uint32Array([0, 1, 2, 0, 2, 3]));
 }
 
 export class View {
@@ -27,26 +26,22 @@ export class View {
     constructor(gl) {
         this.gl = gl;
         this.software = drawnBySoftware(gl); // twice as fine would take seconds
-        this.bodies = [];
-        this.live = []; // { mesh(), model }: meshes that deform (LiveMesh of relief.d.ts)
-        this.mesh = null; // Geometry, in the object space of the first body
-        this.lines = new Lines(gl);
-        this.segments = [];
+        this.bodies = []; // all that are drawn
+        this.body = null; // the one that is asked
+        this.mesh = null; // Geometry, in its object space
+        this.lines = null; // Geometry
+        this.tint = [1, 1, 1]; // of the lines
         this.dirty = true;
         this.programs = {
             mesh: program(gl, kBodyVertex, kMeshFragment),
             live: program(gl, kLiveVertex, kMeshFragment),
             floor: program(gl, kBodyVertex, kFloorFragment),
+            line: program(gl, kBodyVertex, kLineFragment),
             sky: program(gl, kScreenVertex, kSkyFragment),
             copy: program(gl, kScreenVertex, kCopyFragment),
         };
         this.floor = quad(gl);
         this.plane = quad(gl);
-    }
-
-    #corners(geometry, corners) {
-        this.gl.bindBuffer(this.gl.ARRAY_BUFFER, geometry.buffers[0]);
-        this.gl.bufferData(this.gl.ARRAY_BUFFER, Float32Array.from(corners.flat()), this.gl.DYNAMIC_DRAW);
     }
 
     /** All of a frame but what moves. look: main.js's; still: as fine as the machine can. */
@@ -84,8 +79,8 @@ export class View {
             if (what === "mesh") {
                 this.#drawMesh(common, theme, look);
             } else {
-                this.#drawSurfaces(common, theme, look, matrices.eye);
-                this.live.forEach((one) => this.#drawLive(common, theme, one.mesh(), one.model));
+                this.bodies.forEach((body) => body.draw(matrices.eye, {
+                    ...common, u_base: theme.base, u_map: { int: body === this.body ? look.map : -1 } }));
             }
         }
         gl.disable(gl.SCISSOR_TEST);
@@ -114,7 +109,7 @@ export class View {
     }
 
     #drawMesh(common, theme, look) {
-        const body = this.bodies[0];
+        const { body } = this;
         const heat = look.heat > 0 && body;
         const program = heat ? body.use("heat") : this.programs.mesh;
         program.set({ ...common, u_base: theme.mesh, u_model: body?.model ?? identity(),
@@ -122,26 +117,8 @@ export class View {
         this.mesh.draw();
     }
 
-    #drawSurfaces(common, theme, look, eye) {
-        for (const body of this.bodies) {
-            body.drawSurface(eye, { ...common, u_base: theme.base, u_map: { int: body === this.bodies[0] ? look.map : -1 } });
-        }
-    }
-
-    #drawLive(common, theme, mesh, model) {
-        const { gl } = this;
-        bindTexture(gl, 0, mesh.positions);
-        bindTexture(gl, 1, mesh.corners);
-        this.programs.live.set({ ...common, u_base: theme.base, u_model: model, u_positions: { int: 0 }, u_corners: { int: 1 },
-                                 u_vertex_shift: { int: mesh.vertexShift }, u_triangle_shift: { int: mesh.triangleShift } });
-        gl.bindVertexArray(null);
-        gl.drawArrays(gl.TRIANGLES, 0, 3 * mesh.triangles);
-        bindTexture(gl, 0, null);
-        bindTexture(gl, 1, null);
-    }
-
     #drawSlice(camera, { axis, at, range }) {
-        const body = this.bodies[0];
+        const { body } = this;
         if (!body) {
             return;
         }
@@ -153,7 +130,7 @@ export class View {
                 (p[i] = side[k] ? body.box.max[i] + margin : body.box.min[i] - margin));
             return p;
         });
-        this.#corners(this.plane, corners);
+        this.plane.move(Float32Array.from(corners.flat()));
         body.use("slice").set({ u_camera: camera, u_model: body.model, u_range: range });
         this.plane.draw();
     }
@@ -162,8 +139,8 @@ export class View {
         const { gl } = this;
         const { center, radius, longest } = look.box;
         const r = 5 * radius;
-        this.#corners(this.floor, [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([x, z]) =>
-            [center[0] + r * x, look.floor - 1e-3 * longest, center[2] + r * z]));
+        this.floor.move(Float32Array.from([[-1, -1], [1, -1], [1, 1], [-1, 1]].flatMap(([x, z]) =>
+            [center[0] + r * x, look.floor - 1e-3 * longest, center[2] + r * z])));
         gl.enable(gl.BLEND);
         gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
         this.programs.floor.set({ u_camera: camera, u_model: identity(), u_background: theme.low, u_line: theme.line,
@@ -195,23 +172,38 @@ export class View {
     }
 
     dispose() {
-        [this.mesh, this.floor, this.plane, this.lines.geometry, this.#kept].forEach((one) => one?.dispose());
-        [this.lines.program, ...Object.values(this.programs)].forEach((one) => this.gl.deleteProgram(one.name));
+        [this.mesh, this.floor, this.plane, this.lines, this.#kept].forEach((one) => one?.dispose());
+        Object.values(this.programs).forEach((one) => this.gl.deleteProgram(one.name));
     }
 
-    setLines(segments) {
-        this.segments = segments;
-        this.lines.set(segments);
+    /** @param segments  [from, to] each, in the world */
+    setLines(segments, tint) {
+        this.lines?.dispose();
+        const points = Float32Array.from(segments.flat(2));
+        this.lines = segments.length > 0 ? new Geometry(this.gl, points, Uint32Array.from(points.keys()).slice(0, 2 * segments.length)) : null;
+        this.tint = tint;
     }
 
-    drawLines(camera, width, height, pixels) {
-        this.lines.draw(camera, [width, height], 1.6 * pixels);
+    /** Two pixels wide, by lines beside each other; what is hidden shows faintly. */
+    drawLines(camera, width, height) {
+        if (!this.lines) {
+            return;
+        }
+        const { gl } = this;
+        gl.enable(gl.BLEND);
+        gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+        gl.depthMask(false);
+        for (const [test, u_opacity] of [[gl.LEQUAL, 0.8], [gl.GREATER, 0.15]]) {
+            gl.depthFunc(test);
+            for (const [x, y] of [[0, 0], [1, 0], [0, 1]]) {
+                const aside = identity();
+                [aside[12], aside[13], aside[14]] = [2 * x / width, 2 * y / height, -1e-4];
+                this.programs.line.set({ u_camera: multiply(aside, camera), u_model: identity(), u_tint: this.tint, u_opacity });
+                this.lines.draw(gl.LINES);
+            }
+        }
+        gl.depthFunc(gl.LEQUAL);
+        gl.depthMask(true);
+        gl.disable(gl.BLEND);
     }
-}
-
-/** Where a point is on the canvas, in CSS pixels; null behind the eye. */
-export function project(camera, p, canvas) {
-    const q = transform(camera, p);
-    return q[3] <= 0 ? null : [(0.5 + 0.5 * q[0] / q[3]) * canvas.clientWidth,
-                               (0.5 - 0.5 * q[1] / q[3]) * canvas.clientHeight];
 }
