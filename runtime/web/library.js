@@ -19,6 +19,15 @@ mergeInto(LibraryManager.library, {
         return /llvmpipe|softpipe|swrast|SwiftShader|Software|Basic Render/i.test(name) ? 1 : 0;
     },
 
+    // --- pass_state_web.cpp: of pass_state.js
+    relief_js_save_state: function (units) {
+        GLctx.savePassState(units);
+    },
+
+    relief_js_restore_state: function () {
+        GLctx.restorePassState();
+    },
+
     // --- buffer_read_web.cpp
     relief_js_read_buffer: function (buffer, out, bytes) {
         const bound = GLctx.getParameter(GLctx.PIXEL_PACK_BUFFER_BINDING);

@@ -1,283 +1,152 @@
-// PassState in a browser: what pass_state_web.cpp calls.
+// PassState in a browser: a WebGL2 context as the WebAssembly sees it, which leaves the page's state as it was.
 //
 // A browser answers some questions about the state at once (bindings, switches) and others only after a round trip to its
 // GPU process, which costs as much as a whole step. The latter are the pieces below. They are asked for when a pass first
-// sets them, not before; from then on this file knows their values, since passes set them by its own functions only.
-mergeInto(LibraryManager.library, {
-    $reliefState: {
-        levels: [], // of passes within passes; the context is the same throughout
-        known: {}, // values of pieces, as long as a pass runs
+// sets them, not before; from then on their values are known, since passes set them by this object only.
+const kPack = ["PACK_ALIGNMENT", "PACK_ROW_LENGTH", "PACK_SKIP_ROWS", "PACK_SKIP_PIXELS"];
+const kPieces = { // function that sets it: parameters that it is asked for by
+    scissor: ["SCISSOR_BOX"],
+    blendFuncSeparate: ["BLEND_SRC_RGB", "BLEND_DST_RGB", "BLEND_SRC_ALPHA", "BLEND_DST_ALPHA"],
+    blendEquationSeparate: ["BLEND_EQUATION_RGB", "BLEND_EQUATION_ALPHA"],
+    depthFunc: ["DEPTH_FUNC"],
+    depthMask: ["DEPTH_WRITEMASK"],
+    depthRange: ["DEPTH_RANGE"],
+    colorMask: ["COLOR_WRITEMASK"],
+    clearColor: ["COLOR_CLEAR_VALUE"],
+    pack: kPack,
+};
+const kBuffers = ["ARRAY_BUFFER", "COPY_READ_BUFFER", "COPY_WRITE_BUFFER", "PIXEL_PACK_BUFFER", "PIXEL_UNPACK_BUFFER",
+                  "UNIFORM_BUFFER"];
+const kSwitches = ["BLEND", "DEPTH_TEST", "CULL_FACE", "SCISSOR_TEST", "STENCIL_TEST", "DITHER", "SAMPLE_ALPHA_TO_COVERAGE",
+                   "SAMPLE_COVERAGE", "RASTERIZER_DISCARD", "POLYGON_OFFSET_FILL"]; // off in a pass
+const kStores = { UNPACK_ALIGNMENT: 1, UNPACK_ROW_LENGTH: 0, UNPACK_SKIP_ROWS: 0, UNPACK_SKIP_PIXELS: 0, UNPACK_IMAGE_HEIGHT: 0,
+                  UNPACK_SKIP_IMAGES: 0, UNPACK_FLIP_Y_WEBGL: false, UNPACK_PREMULTIPLY_ALPHA_WEBGL: false,
+                  UNPACK_COLORSPACE_CONVERSION_WEBGL: 0 };
+// emscripten's own, of the program and of pixel buffers
+const kNotes = ["currentProgram", "currentPixelPackBufferBinding", "currentPixelUnpackBufferBinding"];
 
-        // name: [read, write]
-        pieces: {
-            scissor: [(gl) => gl.getParameter(gl.SCISSOR_BOX), (gl, v) => gl.scissor(...v)],
-            blend: [
-                (gl) => [gl.BLEND_SRC_RGB, gl.BLEND_DST_RGB, gl.BLEND_SRC_ALPHA, gl.BLEND_DST_ALPHA]
-                    .map((one) => gl.getParameter(one)),
-                (gl, v) => gl.blendFuncSeparate(...v),
-            ],
-            equation: [
-                (gl) => [gl.BLEND_EQUATION_RGB, gl.BLEND_EQUATION_ALPHA].map((one) => gl.getParameter(one)),
-                (gl, v) => gl.blendEquationSeparate(...v),
-            ],
-            depthFunc: [(gl) => [gl.getParameter(gl.DEPTH_FUNC)], (gl, v) => gl.depthFunc(...v)],
-            depthMask: [(gl) => [gl.getParameter(gl.DEPTH_WRITEMASK)], (gl, v) => gl.depthMask(...v)],
-            depthRange: [(gl) => gl.getParameter(gl.DEPTH_RANGE), (gl, v) => gl.depthRange(...v)],
-            colorMask: [(gl) => gl.getParameter(gl.COLOR_WRITEMASK), (gl, v) => gl.colorMask(...v)],
-            clearColor: [(gl) => gl.getParameter(gl.COLOR_CLEAR_VALUE), (gl, v) => gl.clearColor(...v)],
-            pack: [
-                (gl) => [gl.PACK_ALIGNMENT, gl.PACK_ROW_LENGTH, gl.PACK_SKIP_ROWS, gl.PACK_SKIP_PIXELS]
-                    .map((one) => gl.getParameter(one)),
-                (gl, v) => [gl.PACK_ALIGNMENT, gl.PACK_ROW_LENGTH, gl.PACK_SKIP_ROWS, gl.PACK_SKIP_PIXELS]
-                    .forEach((one, i) => gl.pixelStorei(one, v[i])),
-            ],
-        },
+export function withPassState(gl) {
+    const levels = []; // of passes within passes: { kept, undo }
+    let known = {}; // values of pieces, as long as a pass runs
+    const get = (name) => gl.getParameter(gl[name]);
+    const own = {};
+    for (const key in gl) {
+        own[key] = typeof gl[key] === "function" ? gl[key].bind(gl) : gl[key];
+    }
 
-        set: function (name, value) {
-            const self = reliefState;
-            const [read, write] = self.pieces[name];
-            if (self.levels.length > 0) {
-                const before = self.known[name] || read(GLctx);
-                self.levels.forEach((level) => (level.kept[name] = level.kept[name] || before));
-                self.known[name] = value;
-            }
-            write(GLctx, value);
-        },
+    const write = (piece, values) =>
+        (piece === "pack" ? kPack.forEach((name, i) => gl.pixelStorei(gl[name], values[i])) : gl[piece](...values));
+    const set = (piece, values) => {
+        if (levels.length > 0) {
+            const before = known[piece] ?? kPieces[piece].map(get).flatMap((one) => (one.length === undefined ? one : [...one]));
+            levels.forEach(({ kept }) => (kept[piece] ??= before));
+            known[piece] = values;
+        }
+        write(piece, values);
+    };
+    // What a pass counts on; asked for only where it matters.
+    const need = (piece, values) => known[piece] ?? set(piece, values);
+    const needPack = () => need("pack", [1, 0, 0, 0]);
+    const needDepth = (matters) => matters && need("depthMask", [true]);
 
-        // What a pass counts on; asked for only where it matters.
-        setOnce: function (name, value) {
-            if (!reliefState.known[name]) {
-                reliefState.set(name, value);
-            }
-        },
+    for (const piece of Object.keys(kPieces)) {
+        own[piece] = (...values) => set(piece, values);
+    }
+    own.blendFunc = (from, to) => own.blendFuncSeparate(from, to, from, to);
+    own.blendEquation = (mode) => own.blendEquationSeparate(mode, mode);
+    own.enable = (what) => (needDepth(what === gl.DEPTH_TEST), gl.enable(what));
+    own.clear = (what) => (needDepth(what & gl.DEPTH_BUFFER_BIT), gl.clear(what));
+    own.clearBufferfv = (buffer, ...rest) => (needDepth(buffer === gl.DEPTH), gl.clearBufferfv(buffer, ...rest));
+    own.readPixels = (...all) => (needPack(), gl.readPixels(...all));
+    own.pixelStorei = (what, value) => {
+        if (kPack.some((name) => gl[name] === what)) {
+            needPack();
+            set("pack", known.pack.map((one, i) => (gl[kPack[i]] === what ? value : one)));
+        } else {
+            gl.pixelStorei(what, value);
+        }
+    };
 
-        // Bindings and switches, which cost nothing to ask for; and what a pass counts on.
-        save: function (units) {
-            const gl = GLctx;
-            const get = (what) => gl.getParameter(what);
-            const self = reliefState;
-            if (self.levels.length === 0) {
-                self.known = {};
-            }
-            const saved = {
-                kept: {},
-                current: gl.currentProgram, // emscripten's own notes, of the program and of pixel buffers
-                packNote: gl.currentPixelPackBufferBinding,
-                unpackNote: gl.currentPixelUnpackBufferBinding,
-                program: get(gl.CURRENT_PROGRAM),
-                vertexArray: get(gl.VERTEX_ARRAY_BINDING),
-                buffers: [[gl.ARRAY_BUFFER, gl.ARRAY_BUFFER_BINDING], [gl.COPY_READ_BUFFER, gl.COPY_READ_BUFFER_BINDING],
-                          [gl.COPY_WRITE_BUFFER, gl.COPY_WRITE_BUFFER_BINDING],
-                          [gl.PIXEL_PACK_BUFFER, gl.PIXEL_PACK_BUFFER_BINDING],
-                          [gl.PIXEL_UNPACK_BUFFER, gl.PIXEL_UNPACK_BUFFER_BINDING],
-                          [gl.UNIFORM_BUFFER, gl.UNIFORM_BUFFER_BINDING]].map(([to, one]) => [to, get(one)]),
-                drawTo: get(gl.DRAW_FRAMEBUFFER_BINDING),
-                readFrom: get(gl.READ_FRAMEBUFFER_BINDING),
-                viewport: get(gl.VIEWPORT),
-                active: get(gl.ACTIVE_TEXTURE),
-                units: [],
-                blocks: [0, 1].map((i) => self.saveBlock(i)),
-                switches: [gl.BLEND, gl.DEPTH_TEST, gl.CULL_FACE, gl.SCISSOR_TEST, gl.STENCIL_TEST, gl.DITHER,
-                           gl.SAMPLE_ALPHA_TO_COVERAGE, gl.SAMPLE_COVERAGE, gl.RASTERIZER_DISCARD,
-                           gl.POLYGON_OFFSET_FILL].map((one) => [one, gl.isEnabled(one)]),
-                stores: [[gl.UNPACK_ALIGNMENT, 1], [gl.UNPACK_ROW_LENGTH, 0], [gl.UNPACK_SKIP_ROWS, 0],
-                         [gl.UNPACK_SKIP_PIXELS, 0], [gl.UNPACK_IMAGE_HEIGHT, 0], [gl.UNPACK_SKIP_IMAGES, 0],
-                         [gl.UNPACK_FLIP_Y_WEBGL, false], [gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false],
-                         [gl.UNPACK_COLORSPACE_CONVERSION_WEBGL, gl.NONE]]
-                    .map(([one, wanted]) => [one, get(one), wanted]),
-                feedback: self.levels.length === 0 ? self.saveFeedback() : null,
-            };
-            for (let i = 0; i < units; ++i) {
-                gl.activeTexture(gl.TEXTURE0 + i);
-                saved.units.push([get(gl.TEXTURE_BINDING_2D), get(gl.TEXTURE_BINDING_3D), get(gl.SAMPLER_BINDING)]);
-                gl.bindSampler(i, null);
-            }
-            gl.activeTexture(gl.TEXTURE0); // what makes a texture binds it where it can be put back
-            saved.switches.forEach(([one]) => gl.disable(one));
-            saved.stores.forEach(([one, , wanted]) => gl.pixelStorei(one, wanted));
-            gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
-            gl.bindBuffer(gl.PIXEL_UNPACK_BUFFER, null);
-            gl.currentPixelPackBufferBinding = gl.currentPixelUnpackBufferBinding = 0;
-            self.levels.push(saved);
-            self.set("colorMask", [true, true, true, true]);
-            if (self.known.depthMask) {
-                self.set("depthMask", [true]);
-            }
-        },
-
-        restore: function () {
-            const gl = GLctx;
-            const self = reliefState;
-            const saved = self.levels.pop();
-            gl.useProgram(saved.program);
-            gl.currentProgram = saved.current;
-            gl.bindVertexArray(saved.vertexArray);
-            gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, saved.drawTo);
-            gl.bindFramebuffer(gl.READ_FRAMEBUFFER, saved.readFrom);
-            gl.viewport(...saved.viewport);
-            saved.units.forEach(([flat, solid, sampler], i) => {
-                gl.activeTexture(gl.TEXTURE0 + i);
-                gl.bindTexture(gl.TEXTURE_2D, flat);
-                gl.bindTexture(gl.TEXTURE_3D, solid);
-                gl.bindSampler(i, sampler);
-            });
-            gl.activeTexture(saved.active);
-            saved.blocks.forEach((block, i) => self.restoreBlock(i, block));
-            saved.buffers.forEach(([to, buffer]) => gl.bindBuffer(to, buffer)); // after the blocks, which bind one too
-            gl.currentPixelPackBufferBinding = saved.packNote;
-            gl.currentPixelUnpackBufferBinding = saved.unpackNote;
-            saved.switches.forEach(([one, on]) => (on ? gl.enable(one) : gl.disable(one)));
-            saved.stores.forEach(([one, value]) => gl.pixelStorei(one, value));
-            Object.entries(saved.kept).forEach(([name, value]) => {
-                self.pieces[name][1](gl, value);
-                self.known[name] = value;
-            });
-            if (saved.feedback) {
-                self.restoreFeedback(saved.feedback);
-            }
-        },
-
-        saveBlock: function (i) {
-            const gl = GLctx;
-            const buffer = gl.getIndexedParameter(gl.UNIFORM_BUFFER_BINDING, i);
-            return buffer === null
-                ? { buffer, start: 0, size: 0 }
-                : {
-                      buffer,
-                      start: gl.getIndexedParameter(gl.UNIFORM_BUFFER_START, i),
-                      size: gl.getIndexedParameter(gl.UNIFORM_BUFFER_SIZE, i),
-                  };
-        },
-
-        restoreBlock: function (i, { buffer, start, size }) {
-            if (size > 0) {
-                GLctx.bindBufferRange(GLctx.UNIFORM_BUFFER, i, buffer, start, size);
-            } else {
-                GLctx.bindBufferBase(GLctx.UNIFORM_BUFFER, i, buffer);
-            }
-        },
-
-        // A page that captures vertices does so with a buffer bound, and can use no other program until it pauses.
-        saveFeedback: function () {
-            const gl = GLctx;
-            const saved = {
-                object: gl.getParameter(gl.TRANSFORM_FEEDBACK_BINDING),
-                buffer: gl.getParameter(gl.TRANSFORM_FEEDBACK_BUFFER_BINDING),
-                pauses: gl.getIndexedParameter(gl.TRANSFORM_FEEDBACK_BUFFER_BINDING, 0) !== null &&
-                    gl.getParameter(gl.TRANSFORM_FEEDBACK_ACTIVE) && !gl.getParameter(gl.TRANSFORM_FEEDBACK_PAUSED),
-            };
-            if (saved.pauses) {
-                gl.pauseTransformFeedback();
-            }
-            reliefState.ownFeedback(gl);
-            return saved;
-        },
-
-        // One of Relief's own: the default one may be the page's, and busy.
-        ownFeedback: function (gl) {
-            gl.reliefFeedback = gl.reliefFeedback || gl.createTransformFeedback();
-            gl.bindTransformFeedback(gl.TRANSFORM_FEEDBACK, gl.reliefFeedback);
-        },
-
-        restoreFeedback: function ({ object, buffer, pauses }) {
-            const gl = GLctx;
+    // A page that captures vertices does so with a buffer bound, and can use no other program until it pauses. A pass has an
+    // object of its own: the default one may be the page's, and busy.
+    const leaveFeedback = () => {
+        const [object, buffer] = [get("TRANSFORM_FEEDBACK_BINDING"), get("TRANSFORM_FEEDBACK_BUFFER_BINDING")];
+        const pauses = gl.getIndexedParameter(gl.TRANSFORM_FEEDBACK_BUFFER_BINDING, 0) !== null &&
+            get("TRANSFORM_FEEDBACK_ACTIVE") && !get("TRANSFORM_FEEDBACK_PAUSED");
+        if (pauses) {
+            gl.pauseTransformFeedback();
+        }
+        const instead = gl.createTransformFeedback();
+        gl.bindTransformFeedback(gl.TRANSFORM_FEEDBACK, instead);
+        return () => {
             gl.bindTransformFeedback(gl.TRANSFORM_FEEDBACK, object);
+            gl.deleteTransformFeedback(instead);
             gl.bindBuffer(gl.TRANSFORM_FEEDBACK_BUFFER, buffer);
             if (pauses) {
                 gl.resumeTransformFeedback();
             }
-        },
-    },
+        };
+    };
 
-    relief_js_save_state__deps: ["$reliefState"],
-    relief_js_save_state: function (units) {
-        reliefState.save(units);
-    },
-    relief_js_restore_state__deps: ["$reliefState"],
-    relief_js_restore_state: function () {
-        reliefState.restore();
-    },
+    /** Bindings and switches, which cost nothing to ask for, are kept; what a pass counts on is set. */
+    own.savePassState = (units) => {
+        const undo = [];
+        const keep = (value, put) => undo.push(() => put(value));
+        if (levels.length === 0) {
+            known = {};
+        }
+        kNotes.forEach((note) => keep(own[note], (value) => (own[note] = value)));
+        keep(get("CURRENT_PROGRAM"), (program) => gl.useProgram(program));
+        keep(get("VERTEX_ARRAY_BINDING"), (array) => gl.bindVertexArray(array));
+        for (const target of ["DRAW_FRAMEBUFFER", "READ_FRAMEBUFFER"]) {
+            keep(get(`${target}_BINDING`), (framebuffer) => gl.bindFramebuffer(gl[target], framebuffer));
+        }
+        keep(get("VIEWPORT"), (box) => gl.viewport(...box));
+        const active = get("ACTIVE_TEXTURE");
+        for (let unit = units - 1; unit >= 0; --unit) { // the first stays active: what makes a texture binds it there
+            gl.activeTexture(gl.TEXTURE0 + unit);
+            keep([get("TEXTURE_BINDING_2D"), get("TEXTURE_BINDING_3D"), get("SAMPLER_BINDING")], ([flat, solid, sampler]) => {
+                gl.activeTexture(gl.TEXTURE0 + unit);
+                gl.bindTexture(gl.TEXTURE_2D, flat);
+                gl.bindTexture(gl.TEXTURE_3D, solid);
+                gl.bindSampler(unit, sampler);
+            });
+            gl.bindSampler(unit, null);
+        }
+        keep(active, (unit) => gl.activeTexture(unit));
+        for (const block of [0, 1]) {
+            keep(["BINDING", "START", "SIZE"].map((part) => gl.getIndexedParameter(gl[`UNIFORM_BUFFER_${part}`], block)),
+                 ([buffer, start, size]) => (size > 0 ? gl.bindBufferRange(gl.UNIFORM_BUFFER, block, buffer, start, size)
+                                                      : gl.bindBufferBase(gl.UNIFORM_BUFFER, block, buffer)));
+        }
+        for (const target of kBuffers) { // after the blocks, which bind one too
+            keep(get(`${target}_BINDING`), (buffer) => gl.bindBuffer(gl[target], buffer));
+        }
+        for (const name of kSwitches) {
+            keep(gl.isEnabled(gl[name]), (on) => (on ? gl.enable(gl[name]) : gl.disable(gl[name])));
+            gl.disable(gl[name]);
+        }
+        for (const [name, wanted] of Object.entries(kStores)) {
+            keep(get(name), (value) => gl.pixelStorei(gl[name], value));
+            gl.pixelStorei(gl[name], wanted);
+        }
+        gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
+        gl.bindBuffer(gl.PIXEL_UNPACK_BUFFER, null);
+        own.currentPixelPackBufferBinding = own.currentPixelUnpackBufferBinding = 0;
+        if (levels.length === 0) {
+            undo.push(leaveFeedback());
+        }
+        levels.push({ kept: {}, undo });
+        set("colorMask", [true, true, true, true]);
+        if (known.depthMask) {
+            set("depthMask", [true]);
+        }
+    };
 
-    // --- the functions of GLES that set pieces, or need them
-    glScissor__deps: ["$reliefState"],
-    glScissor: function (x, y, width, height) {
-        reliefState.set("scissor", [x, y, width, height]);
-    },
-    glBlendFunc__deps: ["$reliefState"],
-    glBlendFunc: function (from, to) {
-        reliefState.set("blend", [from, to, from, to]);
-    },
-    glBlendFuncSeparate__deps: ["$reliefState"],
-    glBlendFuncSeparate: function (fromColor, toColor, fromAlpha, toAlpha) {
-        reliefState.set("blend", [fromColor, toColor, fromAlpha, toAlpha]);
-    },
-    glBlendEquation__deps: ["$reliefState"],
-    glBlendEquation: function (mode) {
-        reliefState.set("equation", [mode, mode]);
-    },
-    glBlendEquationSeparate__deps: ["$reliefState"],
-    glBlendEquationSeparate: function (color, alpha) {
-        reliefState.set("equation", [color, alpha]);
-    },
-    glDepthFunc__deps: ["$reliefState"],
-    glDepthFunc: function (compare) {
-        reliefState.set("depthFunc", [compare]);
-    },
-    glDepthMask__deps: ["$reliefState"],
-    glDepthMask: function (on) {
-        reliefState.set("depthMask", [Boolean(on)]);
-    },
-    glDepthRangef__deps: ["$reliefState"],
-    glDepthRangef: function (near, far) {
-        reliefState.set("depthRange", [near, far]);
-    },
-    glColorMask__deps: ["$reliefState"],
-    glColorMask: function (red, green, blue, alpha) {
-        reliefState.set("colorMask", [red, green, blue, alpha].map(Boolean));
-    },
-    glClearColor__deps: ["$reliefState"],
-    glClearColor: function (red, green, blue, alpha) {
-        reliefState.set("clearColor", [red, green, blue, alpha]);
-    },
-    glEnable__deps: ["$reliefState"],
-    glEnable: function (what) {
-        if (what === 0x0b71 /* GL_DEPTH_TEST */) {
-            reliefState.setOnce("depthMask", [true]);
-        }
-        GLctx.enable(what);
-    },
-    glClear__deps: ["$reliefState"],
-    glClear: function (what) {
-        if (what & 0x100 /* GL_DEPTH_BUFFER_BIT */) {
-            reliefState.setOnce("depthMask", [true]);
-        }
-        GLctx.clear(what);
-    },
-    glClearBufferfv__deps: ["$reliefState"],
-    glClearBufferfv: function (buffer, which, value) {
-        if (buffer === 0x1801 /* GL_DEPTH */) {
-            reliefState.setOnce("depthMask", [true]);
-        }
-        GLctx.clearBufferfv(buffer, which, HEAPF32, value >> 2);
-    },
-    glPixelStorei__deps: ["$reliefState"],
-    glPixelStorei: function (what, value) {
-        const packs = [0x0d05, 0x0d02, 0x0d03, 0x0d04]; // GL_PACK_ALIGNMENT and the rest, as the piece has them
-        if (packs.includes(what)) {
-            reliefState.setOnce("pack", [1, 0, 0, 0]);
-            reliefState.set("pack", reliefState.known.pack.map((one, i) => (packs[i] === what ? value : one)));
-        } else {
-            GLctx.pixelStorei(what, value);
-        }
-    },
-    glReadPixels__deps: ["$reliefState", "$heapObjectForWebGLType", "$heapAccessShiftForWebGLHeap"],
-    glReadPixels: function (x, y, width, height, format, type, pixels) {
-        reliefState.setOnce("pack", [1, 0, 0, 0]);
-        if (GLctx.currentPixelPackBufferBinding) {
-            GLctx.readPixels(x, y, width, height, format, type, pixels);
-        } else {
-            const heap = heapObjectForWebGLType(type);
-            GLctx.readPixels(x, y, width, height, format, type, heap, pixels >> heapAccessShiftForWebGLHeap(heap));
-        }
-    },
-});
+    own.restorePassState = () => {
+        const { kept, undo } = levels.pop();
+        Object.entries(kept).forEach(([piece, values]) => write(piece, known[piece] = values));
+        undo.forEach((put) => put());
+    };
+    return own;
+}

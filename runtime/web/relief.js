@@ -3,6 +3,7 @@
 // One WebAssembly instance serves all contexts of a page. Whatever draws or steps leaves the context's state as it was.
 import { decompress } from "fzstd";
 
+import { withPassState } from "./pass_state.js";
 import createReliefWasm from "./relief_wasm.mjs";
 
 export class ReliefError extends Error {
@@ -114,13 +115,12 @@ function know(gl) {
                 ? "this browser gave no WebGL2 context; try another browser, or newer drivers"
                 : "particles need a WebGL2 context, as canvas.getContext('webgl2') gives it");
         }
-        const handle = wasm.GL.registerContext(gl, { majorVersion: 2, minorVersion: 0, enableExtensionsByDefault: false });
+        const handle = wasm.GL.registerContext(withPassState(gl), { majorVersion: 2, enableExtensionsByDefault: false });
         known = { handle, losses: 0, ready: false };
         contexts.set(gl, known);
         gl.canvas.addEventListener("webglcontextlost", () => {
             known.losses += 1;
             known.ready = false;
-            gl.reliefFeedback = null; // pass_state.js's
         });
     }
     return known;
