@@ -1,7 +1,6 @@
-// The functions of JavaScript that the C++ of this folder calls. emscripten puts them into its module, whose GLctx is the
+// The functions of JavaScript that stand_ins.cpp calls. emscripten puts them into its module, whose GLctx is the
 // current context.
 mergeInto(LibraryManager.library, {
-    // --- gl_web.cpp
     relief_js_has_extension: function (name) {
         return GLctx.getSupportedExtensions().includes(UTF8ToString(name).replace(/^GL_/, "")) ? 1 : 0;
     },
@@ -19,7 +18,7 @@ mergeInto(LibraryManager.library, {
         return /llvmpipe|softpipe|swrast|SwiftShader|Software|Basic Render/i.test(name) ? 1 : 0;
     },
 
-    // --- pass_state_web.cpp: of pass_state.js
+    // --- of pass_state.js
     relief_js_save_state: function (units) {
         GLctx.savePassState(units);
     },
@@ -28,7 +27,6 @@ mergeInto(LibraryManager.library, {
         GLctx.restorePassState();
     },
 
-    // --- buffer_read_web.cpp
     relief_js_read_buffer: function (buffer, out, bytes) {
         const bound = GLctx.getParameter(GLctx.PIXEL_PACK_BUFFER_BINDING);
         GLctx.bindBuffer(GLctx.PIXEL_PACK_BUFFER, GL.buffers[buffer]);
@@ -36,7 +34,7 @@ mergeInto(LibraryManager.library, {
         GLctx.bindBuffer(GLctx.PIXEL_PACK_BUFFER, bound);
     },
 
-    // --- compression_web.cpp: how many bytes it decompressed to; -1: it is no frame
+    // How many bytes it decompressed to; -1: it is no frame.
     relief_js_decompress: function (stored, storedSize, raw, rawSize) {
         try {
             const bytes = Module.decompress(HEAPU8.slice(stored, stored + storedSize), rawSize);

@@ -485,6 +485,7 @@ export class ParticleSystem {
         this.#shaded = options.shaded ?? true;
         this.#folder = `/scene${folders++}`;
         wasm.FS.mkdir(this.#folder);
+        wasm.FS.mount(wasm.FS.filesystems.MEMFS, {}, this.#folder); // to be given back as a whole
         const files = { ...options.files };
         let scene = options.scene ?? {};
         if (typeof scene !== "string") {
@@ -696,19 +697,9 @@ export class ParticleSystem {
 
     dispose() {
         this.#free();
-        const remove = (folder) => {
-            for (const name of wasm.FS.readdir(folder).filter((one) => one !== "." && one !== "..")) {
-                const path = `${folder}/${name}`;
-                if (wasm.FS.isDir(wasm.FS.stat(path).mode)) {
-                    remove(path);
-                } else {
-                    wasm.FS.unlink(path);
-                }
-            }
-            wasm.FS.rmdir(folder);
-        };
-        if (this.#folder !== null && wasm.FS.analyzePath(this.#folder).exists) {
-            remove(this.#folder);
+        if (this.#folder !== null) {
+            wasm.FS.unmount(this.#folder);
+            wasm.FS.rmdir(this.#folder);
         }
         this.#folder = null;
     }

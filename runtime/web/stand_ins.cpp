@@ -1,0 +1,103 @@
+// Stand-ins for files of the desktop: what a WebGL2 context can do, the state around a pass, reading back, zstd by the
+// page's decoder; and the calls of OpenGL ES 3.1 that a context has not: hasCompute() is false, and nothing reaches them.
+#include <cstdlib>
+#include <string>
+
+#include "formats/compression.h"
+#include "runtime/command_line/watchdog.h"
+#include "runtime/gl/buffer_read.h"
+#include "runtime/gl/gl_capabilities.h"
+#include "runtime/gl/gl_functions.h"
+#include "runtime/gl/pass_state.h"
+
+extern "C" {
+int relief_js_has_extension(const char* name);
+int relief_js_is_lost();
+int relief_js_is_software();
+void relief_js_save_state(int units);
+void relief_js_restore_state();
+void relief_js_read_buffer(unsigned buffer, void* out, unsigned bytes);
+int relief_js_decompress(const void* stored, int stored_size, void* raw, int raw_size);
+}
+
+namespace relief {
+
+bool isGles() {
+    return true;
+}
+
+bool isSoftwareRenderer() {
+    return relief_js_is_software() != 0;
+}
+
+bool hasCompute() {
+    return false;
+}
+
+bool hasGlExtension(const char* name) {
+    return relief_js_has_extension(name) != 0;
+}
+
+GpuReset gpuReset() {
+    return relief_js_is_lost() != 0 ? GpuReset::kUnknown : GpuReset::kNone;
+}
+
+// The state belongs to a page whose textures and buffers have no names here: pass_state.js keeps the objects themselves.
+struct PassState::Saved {};
+
+PassState::PassState() {
+    relief_js_save_state(kUnits);
+}
+
+PassState::~PassState() {
+    relief_js_restore_state();
+}
+
+// WebGL2 maps no buffers and lets nobody wait: getBufferSubData() does both.
+bool waitToRead(const GlFence&, GLuint64) {
+    return true;
+}
+
+bool readBuffer(const GlBuffer& buffer, std::span<std::byte> out) {
+    relief_js_read_buffer(buffer.name(), out.data(), static_cast<unsigned>(out.size()));
+    return true;
+}
+
+Result<std::vector<std::byte>> compress(std::span<const std::byte>, int) {
+    return fail(ErrorCode::kUnsupported, "a browser compresses nothing; write the collider without zstd");
+}
+
+Result<std::vector<std::byte>> decompress(std::span<const std::byte> stored, std::uint64_t raw_size) {
+    std::vector<std::byte> raw(static_cast<std::size_t>(raw_size));
+    const int size = relief_js_decompress(stored.data(), static_cast<int>(stored.size()), raw.data(),
+                                          static_cast<int>(raw.size()));
+    if (size < 0) {
+        return invalidInput("its payload is no zstd frame, or does not decompress");
+    }
+    if (static_cast<std::size_t>(size) != raw.size()) {
+        return invalidInput("its payload decompresses to " + std::to_string(size) + " bytes, not " +
+                            std::to_string(raw_size));
+    }
+    return raw;
+}
+
+// A browser watches over its GPU itself: there is never a Watchdog.
+void Watchdog::feed(const std::string&) {}
+void Watchdog::rest() {}
+
+}  // namespace relief
+
+extern "C" {
+void glDispatchCompute(GLuint, GLuint, GLuint) {
+    std::abort();
+}
+void glMemoryBarrier(GLbitfield) {
+    std::abort();
+}
+void glDrawArraysIndirect(GLenum, const void*) {
+    std::abort();
+}
+void glBindImageTexture(GLuint, GLuint, GLint, GLboolean, GLint, GLenum, GLenum) {
+    std::abort();
+}
+}
