@@ -1,14 +1,14 @@
 // The false colours of `relief slice`, for scripts and shaders: as bake/picture/slice_image.cpp has them.
 
-export const kFar = [0.865, 0.87, 0.86];
-export const kAbstained = [0.8, 0.7, 0.82];
+const kFar = [0.865, 0.87, 0.86];
+const kAbstained = [0.8, 0.7, 0.82];
 
 const toSrgb = (c) => {
     const v = Math.min(Math.max(c, 0), 1);
     return v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055;
 };
 
-export function fromOklch(lightness, chroma, hue) {
+function fromOklch(lightness, chroma, hue) {
     const a = chroma * Math.cos(hue * Math.PI / 180);
     const b = chroma * Math.sin(hue * Math.PI / 180);
     const l = (lightness + 0.3963377774 * a + 0.2158037573 * b) ** 3;

@@ -1,7 +1,5 @@
 // What every pass needs of WebGL2: programs, targets, buffers.
 
-export class GlFailure extends Error {}
-
 /** Whether no GPU draws. */
 export function drawnBySoftware(gl) {
     const name = gl.getParameter(gl.RENDERER);
@@ -24,7 +22,7 @@ export function program(gl, vertex, fragment, prefix = "") {
     gl.linkProgram(made);
     if (!gl.getProgramParameter(made, gl.LINK_STATUS) && !gl.isContextLost()) {
         const logs = gl.getAttachedShaders(made).map((shader) => gl.getShaderInfoLog(shader)).join(" ").trim();
-        throw new GlFailure(`this browser's WebGL2 refuses a shader of this page: ${logs || gl.getProgramInfoLog(made)}`);
+        throw new Error(`this browser's WebGL2 refuses a shader of this page: ${logs || gl.getProgramInfoLog(made)}`);
     }
     const places = new Map();
     return {

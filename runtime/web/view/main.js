@@ -40,15 +40,13 @@ const sentenceOf = (error) => {
 
 class App {
     constructor() {
-        this.look = { show: "surface", split: 0.5, map: -1, heat: 0, depth: 0, slice: null, floor: null,
-                      box: null };
+        this.look = { show: "surface", split: 0.5, map: -1, heat: 0, depth: 0, slice: null, floor: null, box: null };
         this.floorWanted = true;
         this.opened = null; // { name, file (the name of its bytes), bytes, mesh, check, scene, files }
         this.camera = new Camera(() => this.changed());
         this.quality = new Quality();
         this.lastChange = 0;
         this.lastFrame = 0;
-        this.frames = 0;
         this.asked = false;
         this.panel = new Panel(this);
         dark.addEventListener("change", () => this.changed());
@@ -331,7 +329,6 @@ class App {
         this.view.copyBodies(width, height);
         this.particles.draw(matrices, width, height);
         this.view.drawLines(matrices.camera, width, height);
-        this.frames += 1;
         this.panel.tick(now);
         if (moving || share < 1) {
             this.asked = true;

@@ -1,6 +1,6 @@
 // What `relief view` put into the page, and what people drop onto it.
 
-export function fromBase64(text) {
+function fromBase64(text) {
     const raw = atob(text);
     const bytes = new Uint8Array(raw.length);
     for (let i = 0; i < raw.length; ++i) {
@@ -9,13 +9,11 @@ export function fromBase64(text) {
     return bytes;
 }
 
-export class PageFailure extends Error {}
-
 function decoded(text, what) {
     try {
         return fromBase64(text);
     } catch {
-        throw new PageFailure(`this page is damaged: its ${what} cannot be decoded; make the page again with 'relief view'`);
+        throw new Error(`this page is damaged: its ${what} cannot be decoded; make the page again with 'relief view'`);
     }
 }
 
@@ -25,13 +23,13 @@ export function readPageData() {
     try {
         data = JSON.parse(document.getElementById("relief-page-data").textContent);
     } catch {
-        throw new PageFailure("this page is damaged: its data cannot be read; make the page again with 'relief view'");
+        throw new Error("this page is damaged: its data cannot be read; make the page again with 'relief view'");
     }
     if (data === null) {
         return null;
     }
     if (data.format !== 2) {
-        throw new PageFailure(`this page's data has the format ${data.format}, and the page understands 2; make it again ` +
+        throw new Error(`this page's data has the format ${data.format}, and the page understands 2; make it again ` +
                               "with the 'relief view' of one release");
     }
     const files = {};
@@ -50,11 +48,11 @@ function meshOf(mesh) {
     const vertices = decoded(mesh.vertices, "mesh");
     const triangles = decoded(mesh.triangles, "mesh");
     if (vertices.length % 12 !== 0 || triangles.length % 12 !== 0) {
-        throw new PageFailure("this page is damaged: its mesh is cut off; make the page again with 'relief view'");
+        throw new Error("this page is damaged: its mesh is cut off; make the page again with 'relief view'");
     }
     const corners = new Uint32Array(triangles.buffer);
     if (corners.some((i) => i >= vertices.length / 12)) {
-        throw new PageFailure("this page is damaged: its mesh names a vertex that is not there; make the page again with " +
+        throw new Error("this page is damaged: its mesh names a vertex that is not there; make the page again with " +
                               "'relief view'");
     }
     return { vertices: new Float32Array(vertices.buffer), triangles: corners };
@@ -64,7 +62,7 @@ function meshOf(mesh) {
 export async function readWasm() {
     const packed = fromBase64(document.getElementById("relief-wasm").textContent.trim());
     if (typeof DecompressionStream === "undefined") {
-        throw new PageFailure("this browser is too old for this page (no DecompressionStream); try one of 2023 or later");
+        throw new Error("this browser is too old for this page (no DecompressionStream); try one of 2023 or later");
     }
     const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
     return new Uint8Array(await new Response(stream).arrayBuffer());

@@ -27,7 +27,7 @@ export class Panel {
         $("tabs").onclick = () => this.#setFolded(false);
         this.#viewSheet();
         this.#sliceFields();
-        this.mapChoice = choice("picture", (value) => {
+        choice("picture", (value) => {
             this.#picture = value;
             this.#pictures();
         });
