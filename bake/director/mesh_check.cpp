@@ -52,6 +52,13 @@ Result<TriangleMesh> importFor(const std::vector<std::string>& names, const Chec
     return mesh;
 }
 
+/// A thickness is recorded with every sheet that was baked. Sheets that a repair has replaced take that of the default
+/// budget, whatever the bake's: the repaired mesh is compared with the same solid at each.
+Result<ShapedMesh> recordedSolid(BakeRequest recorded, const PreparedMesh& mesh) {
+    recorded.budget.reset();
+    return makeSolid(recorded, mesh);
+}
+
 Result<void> readMesh(const CheckRequest& request, std::optional<TriangleMesh> given, MeshCheck& run) {
     run.recorded = recordedBake(run.collider.provenance.options);
     const BakeRequest& recorded = run.recorded.request;
@@ -67,7 +74,7 @@ Result<void> readMesh(const CheckRequest& request, std::optional<TriangleMesh> g
     }
     Winding winding = RELIEF_TRY(windOutwards(std::move(*given)));
     run.imported = std::move(winding.mesh);
-    ShapedMesh shaped = RELIEF_TRY(makeSolid(recorded, run.imported));
+    ShapedMesh shaped = RELIEF_TRY(recordedSolid(recorded, run.imported));
     run.mesh = std::move(shaped.mesh);
     run.shape = std::move(shaped.report);
     run.parts = std::move(shaped.parts);
@@ -148,7 +155,7 @@ Result<ShapedMesh> repairedSolid(const BakeRequest& recorded, const PreparedMesh
     RepairOptions options = recorded.repair;
     options.examine = false;
     const RepairedMesh repaired = RELIEF_TRY(repairMesh(mesh, options));
-    return makeSolid(recorded, repaired.mesh);
+    return recordedSolid(recorded, repaired.mesh);
 }
 
 Result<MeshCheck> check(const CheckRequest& request, Collider collider, std::optional<TriangleMesh> given,

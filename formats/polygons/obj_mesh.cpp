@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string_view>
@@ -29,6 +30,7 @@ class ObjReader {
         if (furthest_ >= mesh_.positions.size() && furthest_line_ > 0) {
             return noVertex(furthest_line_, std::to_string(furthest_ + 1));
         }
+        RELIEF_TRY(checkFinite());
         for (const std::uint32_t vertex : in_others_) {
             mesh_.in_others.resize(mesh_.positions.size(), 0);
             mesh_.in_others[vertex] = 1;
@@ -96,6 +98,10 @@ class ObjReader {
                 return wrongLine(line, "a vertex of weight 0 lies nowhere; leave the weight out");
             }
             position = {numbers[0] / numbers[3], numbers[1] / numbers[3], numbers[2] / numbers[3]};
+        }
+        if (!isFinite(position) && nowhere_line_ == 0) {
+            nowhere_ = mesh_.positions.size();
+            nowhere_line_ = line;
         }
         mesh_.positions.push_back(position);
         return checkVertexCount(mesh_.positions.size());
@@ -179,6 +185,21 @@ class ObjReader {
         return {};
     }
 
+    static bool isFinite(const glm::vec3& p) {
+        return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+    }
+
+    /// Vertices that no face uses may be anywhere.
+    Result<void> checkFinite() const {
+        const bool used = nowhere_line_ != 0 &&
+                          std::any_of(mesh_.corners.begin(), mesh_.corners.end(), [&](std::uint32_t corner) {
+                              return !isFinite(mesh_.positions[corner]);
+                          });
+        return used ? wrongLine(nowhere_line_, "vertex " + std::to_string(nowhere_ + 1) +
+                                                   " has a coordinate that is not finite; repair the mesh")
+                    : Result<void>();
+    }
+
     static constexpr std::int64_t kIndexMax = std::numeric_limits<std::uint32_t>::max();
 
     TextScanner text_;
@@ -194,6 +215,8 @@ class ObjReader {
     std::uint64_t triangles_ = 0;
     std::uint64_t furthest_ = 0;  // index that a face names
     std::size_t furthest_line_ = 0;
+    std::size_t nowhere_ = 0;  // the first vertex that is not finite
+    std::size_t nowhere_line_ = 0;
 };
 
 }  // namespace

@@ -61,7 +61,7 @@ ply() {
     printf 'property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n'
 }
 ply 99999999999 >count.ply
-expect_error 6 'count\.ply.*announces 99999999999 vertices' "$relief" bake count.ply -o x.relief
+expect_error 6 'count\.ply.*has 99999999999 vertices, more than the limit' "$relief" bake count.ply -o x.relief
 ply 300000000 >count.ply
 expect_error 3 'count\.ply.*ends too early' "$relief" bake count.ply -o x.relief --import-memory 64MB
 expect_error 6 'OutOfMemory\.off.*353535235358 vertices.*simplify' "$relief" bake "$models/invalid/OutOfMemory.off" -o x.relief
