@@ -91,6 +91,8 @@ class GlProgram : public GlName<gl_detail::deleteProgram> {
 
 [[nodiscard]] GlFramebuffer makeFramebuffer();
 [[nodiscard]] GlBuffer makeBuffer();
+/// Binds it as GL_PIXEL_PACK_BUFFER, made if it is empty, with new memory that the GPU writes and the CPU reads once.
+void bindPackBuffer(GlBuffer& buffer, GLsizeiptr bytes);
 [[nodiscard]] GlVertexArray makeVertexArray();
 /// Nearest filter, clamped, and no comparing: to read a texture of the caller's as it is.
 [[nodiscard]] GlSampler makeSampler();

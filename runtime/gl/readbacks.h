@@ -12,7 +12,6 @@
 #include "formats/base/result.h"
 #include "runtime/gl/buffer_read.h"
 #include "runtime/gl/gl_fault.h"
-#include "runtime/gl/gl_functions.h"
 
 namespace relief {
 
@@ -40,12 +39,7 @@ class Readbacks {
         if (floats == 0) {
             return;
         }
-        if (!slot.buffer) {
-            slot.buffer = makeBuffer();
-        }
-        glBindBuffer(GL_PIXEL_PACK_BUFFER, slot.buffer.name());
-        glBufferData(GL_PIXEL_PACK_BUFFER, static_cast<GLsizeiptr>(floats * sizeof(float)), nullptr,
-                     GL_STREAM_READ);
+        bindPackBuffer(slot.buffer, static_cast<GLsizeiptr>(floats * sizeof(float)));
         write();
         slot.fence.insert();
     }
