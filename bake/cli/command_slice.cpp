@@ -6,7 +6,6 @@
 
 #include "bake/cli/command.h"
 #include "bake/picture/slice.h"
-#include "bake/picture/slice_image.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "formats/container.h"

@@ -4,38 +4,15 @@
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStdIO.h>
 #include <OpenEXR/ImfStringAttribute.h>
 
-#include <algorithm>
-#include <cstring>
 #include <exception>
 
 namespace relief {
 namespace {
-
-/// Seekable, as OpenEXR writes its table of offsets last, at the front.
-class MemoryStream final : public Imf::OStream {
-  public:
-    MemoryStream() : Imf::OStream("memory") {}
-
-    void write(const char c[], int n) override {
-        const auto count = static_cast<std::size_t>(n);
-        bytes_.resize(std::max(bytes_.size(), at_ + count));
-        std::memcpy(bytes_.data() + at_, c, count);
-        at_ += count;
-    }
-    std::uint64_t tellp() override { return at_; }
-    void seekp(std::uint64_t position) override { at_ = static_cast<std::size_t>(position); }
-
-    [[nodiscard]] std::vector<std::byte> take() { return std::move(bytes_); }
-
-  private:
-    std::vector<std::byte> bytes_;
-    std::size_t at_ = 0;
-};
 
 Imath::M44f rowVectorMatrix(const glm::dmat4& m) {
     Imath::M44f out;
@@ -70,13 +47,15 @@ std::vector<std::byte> encode(const FloatImage& image) {
         frame_buffer.insert(channel.name,
                             Imf::Slice(Imf::FLOAT, base, sizeof(float), sizeof(float) * image.width));
     }
-    MemoryStream stream;
+    Imf::StdOSStream stream;
     {
         Imf::OutputFile file(stream, header);
         file.setFrameBuffer(frame_buffer);
         file.writePixels(height);
     }
-    return stream.take();
+    const std::string file = stream.str();
+    const auto* first = reinterpret_cast<const std::byte*>(file.data());
+    return {first, first + file.size()};
 }
 
 }  // namespace

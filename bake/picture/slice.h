@@ -1,10 +1,12 @@
 // The combined field of a collider on a plane across an axis.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "bake/picture/exr.h"
@@ -46,6 +48,15 @@ struct Slice {
 /// Channels: distance (object units, positive outside; +inf outside without a distance, NaN where no map
 /// votes), inside (1 or 0), map (deciding map, −1 where none), N.X N.Y N.Z.
 [[nodiscard]] FloatImage sliceImage(const Slice& slice, const std::string& unit);
+
+struct SliceFigureOptions {
+    std::string name;  ///< of the collider, for the title
+    std::string unit;  ///< of lengths: "m", or "" for object units
+};
+
+/// A PNG: inside and outside on the left, the signed distance in false colours with isolines on the right, the zero contour on
+/// both, a colour bar and a legend. The same slice gives the same bytes. Errors: kFailure with Cairo's message.
+[[nodiscard]] Result<std::vector<std::byte>> drawSlice(const Slice& slice, const SliceFigureOptions& options);
 
 [[nodiscard]] constexpr char axisName(int axis) {
     return "xyz"[axis];

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstring>
 
-#include "bake/picture/slice_image.h"
 #include "tests/bake/meshes.h"
 
 namespace relief::test {
