@@ -8,7 +8,7 @@
 
 #include "bake/director/backend.h"
 #include "bake/import/mesh_import.h"
-#include "bake/pipeline/planned_bake.h"
+#include "bake/pipeline/budget_search.h"
 #include "bake/plan/plan_file.h"
 #include "bake/report/parts_report.h"
 #include "bake/report/report_text.h"

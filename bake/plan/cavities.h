@@ -25,30 +25,17 @@ struct Cavity {
     [[nodiscard]] double width() const;
 };
 
-class CavitySearch {
-  public:
-    /// \param query, points  borrowed; must outlive it.
-    CavitySearch(const MeshQuery& query, const std::vector<PlanPoint>& points)
-        : query_(query), points_(points) {}
+/// Places that bestCavity() tries, with seeds from `seed` on.
+inline constexpr std::size_t kCavityCandidates = 100;
 
-    /// Places that best() tries, with seeds from `seed` on.
-    static constexpr std::size_t kCandidates = 100;
-
-    /// The best of some places near badly served points.
-    /// \param unserved  the indices of these points
-    /// \param served    the service of all points so far
-    /// \param others_area  bytes for texels of side 1 of the views from outside, part of the price of a place
-    [[nodiscard]] std::optional<Cavity> best(const std::vector<std::size_t>& unserved,
-                                             const std::vector<float>& served, double others_area,
-                                             std::uint64_t seed) const;
-
-  private:
-    [[nodiscard]] glm::dvec3 placeWithin(const std::vector<std::size_t>& unserved, std::uint64_t seed) const;
-    [[nodiscard]] Cavity lookFromWithin(const std::vector<std::size_t>& points,
-                                        const std::vector<float>& served, const glm::dvec3& center) const;
-
-    const MeshQuery& query_;
-    const std::vector<PlanPoint>& points_;
-};
+/// The best of some places near badly served points.
+/// \param points    of the plan
+/// \param unserved  the indices of the badly served ones
+/// \param served    the service of all points so far
+/// \param others_area  bytes for texels of side 1 of the views from outside, part of the price of a place
+[[nodiscard]] std::optional<Cavity> bestCavity(const MeshQuery& query, const std::vector<PlanPoint>& points,
+                                               const std::vector<std::size_t>& unserved,
+                                               const std::vector<float>& served, double others_area,
+                                               std::uint64_t seed);
 
 }  // namespace relief

@@ -29,7 +29,18 @@ std::array<glm::dvec3, 3> orthographicFrame(const glm::vec3& direction, const st
     return {right, cross(right, d), d};
 }
 
-std::array<Range, 3> projectedRanges(const Bounds& box, const std::array<glm::dvec3, 3>& frame);
+std::array<Range, 3> projectedRanges(const Bounds& box, const std::array<glm::dvec3, 3>& frame) {
+    std::array<Range, 3> ranges;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 p((corner & 1) != 0 ? box.max.x : box.min.x,
+                           (corner & 2) != 0 ? box.max.y : box.min.y,
+                           (corner & 4) != 0 ? box.max.z : box.min.z);
+        for (std::size_t i = 0; i < 3; ++i) {
+            ranges[i].add(dot(frame[i], p));
+        }
+    }
+    return ranges;
+}
 
 std::array<Range, 3> projectedRanges(const TriangleMesh& mesh, const VertexBlocks* blocks,
                                      const std::array<glm::dvec3, 3>& frame) {
@@ -47,19 +58,6 @@ std::array<Range, 3> projectedRanges(const TriangleMesh& mesh, const VertexBlock
         return ranges;
     }
     for (const glm::vec3& p : mesh.positions) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            ranges[i].add(dot(frame[i], p));
-        }
-    }
-    return ranges;
-}
-
-std::array<Range, 3> projectedRanges(const Bounds& box, const std::array<glm::dvec3, 3>& frame) {
-    std::array<Range, 3> ranges;
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 p((corner & 1) != 0 ? box.max.x : box.min.x,
-                           (corner & 2) != 0 ? box.max.y : box.min.y,
-                           (corner & 4) != 0 ? box.max.z : box.min.z);
         for (std::size_t i = 0; i < 3; ++i) {
             ranges[i].add(dot(frame[i], p));
         }

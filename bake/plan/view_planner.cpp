@@ -63,7 +63,7 @@ struct RatedView : OuterView {
 class Planner {
   public:
     Planner(const MeshQuery& query, const ViewOptions& options)
-        : mesh_(query.mesh()), query_(query), options_(options), cavities_(query, points_) {
+        : mesh_(query.mesh()), query_(query), options_(options) {
         choice_.mesh_name = mesh_.name;
     }
 
@@ -181,8 +181,8 @@ class Planner {
             }
             const std::vector<std::size_t> unserved = unservedPoints();
             const std::optional<Cavity> cavity =
-                cavities_.best(unserved, served_, outer_area_,
-                               options_.seed * 1'000'003 + round * CavitySearch::kCandidates);
+                bestCavity(query_, points_, unserved, served_, outer_area_,
+                           options_.seed * 1'000'003 + round * kCavityCandidates);
             if (choice_.views.size() != gaps_after) {  // else unchanged
                 gaps_after = choice_.views.size();
                 gaps = bestGaps(views, unserved);
@@ -416,19 +416,10 @@ class Planner {
     const ViewOptions& options_;
     std::vector<PlanPoint> points_;
     std::vector<float> served_;  // by point, 0…1
-    CavitySearch cavities_;
     ViewChoice choice_;
     std::vector<GapGrid> gap_grids_;  // of the maps of gaps
     double outer_area_ = 0.0;
 };
-
-Result<void> checkBudget(std::uint64_t bytes) {
-    if (bytes < kPlanBudgetMin) {
-        return fail(ErrorCode::kUsage, "a budget of " + std::to_string(bytes) +
-                                           " bytes is below the least of " + std::to_string(kPlanBudgetMin));
-    }
-    return {};
-}
 
 /// The maps with texels of this size, within the limits of maps.
 Plan sizedPlan(const ViewChoice& choice, double texel) {
@@ -507,18 +498,15 @@ Error budgetTooSmall(const ViewChoice& choice, std::uint64_t budget_bytes) {
 }
 
 Result<Plan> planSizes(const ViewChoice& choice, std::uint64_t budget_bytes) {
-    RELIEF_TRY(checkBudget(budget_bytes));
+    if (budget_bytes < kPlanBudgetMin) {
+        return fail(ErrorCode::kUsage, "a budget of " + std::to_string(budget_bytes) +
+                                           " bytes is below the least of " + std::to_string(kPlanBudgetMin));
+    }
     std::optional<Plan> plan = sizesWithin(choice, budget_bytes);
     if (!plan) {
         return tl::unexpected<Error>(budgetTooSmall(choice, budget_bytes));
     }
     return std::move(*plan);
-}
-
-Result<Plan> planViews(const MeshQuery& query, const PlanOptions& options) {
-    RELIEF_TRY(checkBudget(options.budget_bytes));
-    const ViewChoice choice = RELIEF_TRY(chooseViews(query, options.views));
-    return planSizes(choice, options.budget_bytes);
 }
 
 }  // namespace relief

@@ -82,13 +82,4 @@ struct Plan {
 /// The error of planSizes in that case.
 [[nodiscard]] Error budgetTooSmall(const ViewChoice& choice, std::uint64_t budget_bytes);
 
-struct PlanOptions {
-    std::uint64_t budget_bytes = std::uint64_t{1} << 20;  ///< as planSizes has it
-    ViewOptions views;
-};
-
-/// Views and sizes. bakePlanned() (bake/pipeline/planned_bake.h) also keeps to the budget. Errors: those of chooseViews and
-/// planSizes.
-[[nodiscard]] Result<Plan> planViews(const MeshQuery& query, const PlanOptions& options);
-
 }  // namespace relief

@@ -10,8 +10,8 @@
 
 #include "bake/measure/accuracy.h"
 #include "bake/plan/view.h"
-#include "bake/plan/view_planner.h"
 #include "tests/bake/meshes.h"
+#include "tests/bake/plan_views.h"
 
 namespace relief::test {
 namespace {

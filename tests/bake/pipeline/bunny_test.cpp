@@ -5,10 +5,10 @@
 #include "bake/import/mesh_import.h"
 #include "bake/measure/truth.h"
 #include "bake/mesh/inside.h"
-#include "bake/plan/view_planner.h"
 #include "formats/container.h"
 #include "formats/nearest_surface.h"
 #include "tests/bake/meshes.h"
+#include "tests/bake/plan_views.h"
 
 namespace relief::test {
 namespace {

@@ -8,12 +8,12 @@
 
 #include "bake/measure/accuracy.h"
 #include "bake/mesh/triangle_plane.h"
-#include "bake/pipeline/planned_bake.h"
+#include "bake/pipeline/budget_search.h"
 #include "bake/plan/outer_views.h"
-#include "bake/plan/view_planner.h"
 #include "bake/texels/plane_fit.h"
 #include "formats/container.h"
 #include "tests/bake/meshes.h"
+#include "tests/bake/plan_views.h"
 
 namespace relief::test {
 namespace {

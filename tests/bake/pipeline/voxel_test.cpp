@@ -15,8 +15,8 @@
 
 #include "bake/mesh/mesh_query.h"
 #include "bake/mesh/triangle_plane.h"
-#include "bake/plan/view_planner.h"
 #include "tests/bake/meshes.h"
+#include "tests/bake/plan_views.h"
 #include "tests/bake/voxels.h"
 #include "tests/seeds.h"
 

@@ -10,9 +10,9 @@
 #include "bake/measure/accuracy.h"
 #include "bake/mesh/surface_sampler.h"
 #include "bake/pipeline/bake.h"
-#include "bake/plan/view_planner.h"
 #include "bake/repair/winding.h"
 #include "tests/bake/meshes.h"
+#include "tests/bake/plan_views.h"
 #include "tests/bake/voxels.h"
 #include "tests/seeds.h"
 

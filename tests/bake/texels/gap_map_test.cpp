@@ -10,7 +10,7 @@
 
 #include "bake/measure/accuracy.h"
 #include "bake/measure/sight.h"
-#include "bake/pipeline/planned_bake.h"
+#include "bake/pipeline/budget_search.h"
 #include "bake/plan/gap_grid.h"
 #include "formats/validate.h"
 #include "tests/bake/meshes.h"

@@ -7,8 +7,8 @@
 #include "bake/measure/accuracy.h"
 #include "bake/mesh/surface_sampler.h"
 #include "bake/pipeline/bake.h"
-#include "bake/plan/view_planner.h"
 #include "tests/bake/meshes.h"
+#include "tests/bake/plan_views.h"
 
 namespace relief::test {
 namespace {
