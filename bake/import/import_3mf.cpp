@@ -150,14 +150,15 @@ class ModelReader {
     }
 
   private:
+    /// \param offset  of the text, or -1.
     [[nodiscard]] tl::unexpected<Error> wrong(std::ptrdiff_t offset, const std::string& what) const {
-        const auto line = std::count(text_.begin(), text_.begin() + offset, '\n') + 1;
-        return invalidInput(cleanUtf8(path_, kQuotedMax) + ", line " + std::to_string(line) + ": " + what);
+        const std::string before =
+            text_.substr(0, static_cast<std::size_t>(std::max<std::ptrdiff_t>(offset, 0)));
+        return invalidInput(cleanUtf8(path_, kQuotedMax) + ", line " +
+                            std::to_string(std::count(before.begin(), before.end(), '\n') + 1) + ": " + what);
     }
     [[nodiscard]] tl::unexpected<Error> wrong(pugi::xml_node node, const std::string& what) const {
-        return wrong(
-            std::clamp<std::ptrdiff_t>(node.offset_debug(), 0, static_cast<std::ptrdiff_t>(text_.size())),
-            what);
+        return wrong(node.offset_debug(), what);
     }
 
     Result<void> readHead(pugi::xml_node model) {
@@ -325,7 +326,9 @@ class ModelReader {
 Result<std::string> rootModel(const Archive& archive) {
     const std::string relations = RELIEF_TRY(archive.read("_rels/.rels"));
     pugi::xml_document document;
-    document.load_buffer(relations.data(), relations.size());
+    if (!document.load_buffer(relations.data(), relations.size())) {
+        return invalidInput("the XML of its _rels/.rels is damaged; export it again");
+    }
     for (const pugi::xml_node relation : document.document_element().children()) {
         if (local(relation.name()) == "Relationship" && textOf(relation, "Type") == kModelRelation) {
             const std::string target = textOf(relation, "Target");

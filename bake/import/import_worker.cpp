@@ -64,7 +64,8 @@ Descriptor sharedBytes(std::span<const std::byte> bytes) {
     if (!file) {
         return file;
     }
-    errno = writeAll(file.get(), bytes);
+    errno = reserveMemory(file.get(), bytes.size());
+    errno = errno != 0 ? errno : writeAll(file.get(), bytes);
     errno =
         errno != 0 ? errno : addSeals(file.get(), F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL);
     return errno == 0 ? std::move(file) : Descriptor();

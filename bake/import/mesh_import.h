@@ -1,4 +1,4 @@
-// Mesh files of every format of meshFormats(), as one TriangleMesh: imported by a process of their own
+// Mesh files of every format of import_format.cpp, as one TriangleMesh: imported by a process of their own
 // (importMeshInWorker), as every tool does, or in this one (importMesh), for files that one trusts.
 #pragma once
 
@@ -24,7 +24,7 @@ namespace relief {
 /// Reads a mesh file in this process, which a hostile file may crash. In the library bake_assimp.
 ///
 /// The transforms of its nodes are applied, a mesh used n times is there n times, polygons are
-/// triangulated, points and lines are left out with a warning (import_parts.h), and where a transform
+/// triangulated, points and lines are left out with a warning (import_scene.h), and where a transform
 /// mirrors, the winding is turned. Cameras and animation are not looked at, and of materials only the
 /// names that ImportOptions asks for; skinned meshes of glTF come in the pose of the file's nodes, those of
 /// other formats and morphed ones as they were modelled, with a warning. Only files below the mesh's folder are read, and only regular ones (import_files.h).

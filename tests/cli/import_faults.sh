@@ -153,7 +153,7 @@ parent() {
     [ "$code" -ne 0 ] || endured=$((endured + 1))
 }
 # Once, it passes.
-for injection in memfd_create:error=ENFILE memfd_create:error=ENOMEM write:error=EINTR \
+for injection in memfd_create:error=ENFILE memfd_create:error=ENOMEM fallocate:error=EINTR fallocate:error=ENOMEM \
     clone:error=EAGAIN clone:error=ENOMEM vfork:error=EAGAIN poll:error=ENOMEM poll:error=EINTR; do
     grep -q "^${injection%%:*}(" trace 2>/dev/null || strace -o trace "$relief" bake "${bake[@]}" out/a.relief
     grep -q "^${injection%%:*}(" trace || continue
@@ -165,7 +165,7 @@ parent 4 'importer could not be started \(Resource temporarily unavailable\); en
 parent 4 'importer could not be started \(Cannot allocate memory\); free memory' clone:error=ENOMEM
 parent 4 'importer could not be started \(Too many open files\); close files.*ulimit -n' memfd_create:error=EMFILE
 parent 4 'importer could not be started \(Too many open files in system\); the whole system' memfd_create:error=ENFILE
-parent 4 'importer could not be started \(No space left on device\); free memory' write:error=ENOSPC:when=1
+parent 4 'importer could not be started \(No space left on device\); free memory' fallocate:error=ENOSPC
 
 # With few descriptors; without a tracer, which needs some itself.
 few=0
