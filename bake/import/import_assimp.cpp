@@ -152,16 +152,15 @@ std::optional<T> metadata(const aiScene& scene, const char* key) {
     return value;
 }
 
-/// FBX has its unit in centimetres, and its axes by number and sign; assimp applies neither.
-SourceFrame fbxFrame(const aiScene& scene) {
+/// FBX has its unit in centimetres, and its axes by number and sign; assimp applies neither, and takes 10 of 10,5 and nothing
+/// but a number of the type double.
+SourceFrame fbxFrame(const ImportJob& job, const aiScene& scene) {
     SourceFrame frame{std::nullopt, std::nullopt};
-    // assimp has made a float of the file's double, whose digits the shortest form has again.
-    const std::string text = shortest(metadata<float>(scene, "UnitScaleFactor").value_or(1.0F));
-    const double factor = finiteNumber(text).value_or(0.0);
-    if (factor > 0.0) {
-        frame.metres = 0.01 * factor;
+    const FbxUnit unit = fbxUnit(job.bytes).value_or(FbxUnit{"1", 1.0});
+    if (unit.value && *unit.value > 0.0) {
+        frame.metres = 0.01 * *unit.value;
     } else {
-        frame.unit_fault = "its UnitScaleFactor is " + text + ", which is no length";
+        frame.unit_fault = "its UnitScaleFactor is " + unit.text + ", which is no length";
     }
     const int axis = metadata<std::int32_t>(scene, "UpAxis").value_or(1);
     const int sign = metadata<std::int32_t>(scene, "UpAxisSign").value_or(1);
@@ -206,7 +205,7 @@ SourceFrame frameOf(AssimpFrame format, const ImportJob& job, aiScene& scene) {
         case AssimpFrame::kDae:
             return daeFrame(job, scene.mRootNode->mTransformation);
         case AssimpFrame::kFbx:
-            return fbxFrame(scene);
+            return fbxFrame(job, scene);
         default:
             frame.mirrored = format == AssimpFrame::kMirrored;
             return frame;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
+#include <limits>
 #include <pugixml.hpp>
 
 #include "formats/base/text.h"
@@ -30,6 +32,42 @@ constexpr std::size_t kQuotedMax = 40;  // bytes of the file shown in a message
 
 std::string number(double value) {
     return shortest(static_cast<float>(value));
+}
+
+/// \param text  behind the name of a property: its type, label and flags, each as 'S', length and bytes; then a letter for
+///              the type of the value, and that.
+FbxUnit binaryFbxUnit(std::string_view text) {
+    const auto take = [&text](auto value) {
+        if (text.size() >= sizeof(value)) {
+            std::memcpy(&value, text.data(), sizeof(value));
+        }
+        text.remove_prefix(std::min(text.size(), sizeof(value)));
+        return value;
+    };
+    for (int i = 0; i < 3 && take('\0') == 'S'; ++i) {
+        text.remove_prefix(std::min<std::size_t>(take(std::uint32_t{0}), text.size()));
+    }
+    double value = std::numeric_limits<double>::quiet_NaN();
+    switch (take('\0')) {
+        case 'D':
+            value = take(value);
+            break;
+        case 'F':
+            value = double{take(0.0F)};
+            break;
+        case 'I':
+            value = take(std::int32_t{0});
+            break;
+        case 'Y':
+            value = take(std::int16_t{0});
+            break;
+        case 'L':
+            value = static_cast<double>(take(std::int64_t{0}));
+            break;
+        default:
+            break;
+    }
+    return {number(value), std::isfinite(value) ? std::optional(value) : std::nullopt};
 }
 
 }  // namespace
@@ -139,6 +177,30 @@ Result<void> checkFrame(const SourceFrame& source, std::string_view unit, std::o
         return invalidInput(source.up_fault + "; say which axis points upwards (--up +y, +z, …)");
     }
     return {};
+}
+
+std::optional<FbxUnit> fbxUnit(std::span<const std::byte> document) {
+    using namespace std::string_view_literals;
+    const std::string_view text(reinterpret_cast<const char*>(document.data()), document.size());
+    if (text.starts_with("Kaydara")) {
+        constexpr std::string_view kName = "S\x0f\0\0\0UnitScaleFactor"sv;
+        const std::size_t at = text.find(kName);
+        return at == std::string_view::npos ? std::nullopt
+                                            : std::optional(binaryFbxUnit(text.substr(at + kName.size())));
+    }
+    const std::size_t at = text.find("\"UnitScaleFactor\"");
+    if (at == std::string_view::npos) {
+        return std::nullopt;
+    }
+    // P: "name", "type", "label", "flags", value; in older files Property: "name", "type", "flags", value
+    const std::size_t begin = text.rfind('\n', at) + 1;  // npos + 1 is 0
+    const bool older = trimmed(text.substr(begin, at - begin)).starts_with("Property");
+    std::string_view rest = text.substr(at);
+    rest = takeLine(rest);
+    for (int field = 0; field < (older ? 3 : 4); ++field) {
+        rest.remove_prefix(std::min(rest.find(','), rest.size() - 1) + 1);
+    }
+    return FbxUnit{cleanUtf8(trimmed(rest).substr(0, kQuotedMax)), finiteNumber(rest)};
 }
 
 SourceFrame colladaFrame(std::span<const std::byte> document) {

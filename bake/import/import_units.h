@@ -30,7 +30,7 @@ enum class UpAxis : std::uint8_t { kPlusX, kMinusX, kPlusY, kMinusY, kPlusZ, kMi
 /// about the x axis from ±z, half a turn about x from −y.
 [[nodiscard]] glm::dmat3 turnUpwards(UpAxis up);
 
-/// What a file states of its lengths and axes.
+/// Lengths and axes of a file, as it states them.
 struct SourceFrame {
     std::optional<double> metres;  ///< in one unit of the file
     std::optional<UpAxis> up;
@@ -62,6 +62,14 @@ struct FrameChange {
 /// \param up    nullopt for the file's own.
 [[nodiscard]] FrameChange changeOf(const SourceFrame& source, std::string_view unit,
                                    std::optional<UpAxis> up);
+
+/// The UnitScaleFactor of an FBX file, binary or text, of any type of number.
+struct FbxUnit {
+    std::string text;             ///< as it stands there
+    std::optional<double> value;  ///< nullopt: it is no finite number
+};
+/// \return nullopt: there is none.
+[[nodiscard]] std::optional<FbxUnit> fbxUnit(std::span<const std::byte> document);
 
 /// Of the <asset> of a COLLADA document, where metres and +y are what it says where it says nothing. Of any encoding.
 [[nodiscard]] SourceFrame colladaFrame(std::span<const std::byte> document);

@@ -204,7 +204,7 @@ TEST(ImportUnits, UnitsThatCannotBeMeantAreRefusedUntilToldOtherwise) {
         expectCured(folder.write("t" + meter + ".dae", tetrahedronDae("<unit meter=\"" + meter + "\"/>")),
                     "'" + meter + "' metres", "--unit", options("cm"), low, high);
     }
-    for (const std::string factor : {"-100", "nan"}) {
+    for (const std::string factor : {"-100", "nan", "10,5"}) {
         expectCured(folder.write("t" + factor + ".fbx", tetrahedronFbx(1, 1, factor)), factor, "--unit",
                     options("cm"), low, high);
     }
@@ -229,6 +229,36 @@ TEST(ImportUnits, MasterScalesOf3dsDivide) {
     const TemporaryFolder folder;
     expectLiesAt(importMesh(folder.write("t.3ds", tetrahedron3ds(0.5F))), {0, 0, -4}, {2, 6, 0}, "");
     expectLiesAt(importMesh(folder.write("t.3ds", tetrahedron3ds(0.0F))), {0, 0, -2}, {1, 3, 0}, "");
+}
+
+TEST(ImportUnits, ANumberOfFbxMayBeWhole) {
+    const TemporaryFolder folder;
+    std::string text = tetrahedronFbx(1, 1, "100");
+    const std::string type = R"("double", "Number")";
+    text.replace(text.find(type), type.size(), R"("int", "Integer")");
+    expectLiesAt(importMesh(folder.write("whole.fbx", text)), {0, 0, 0}, {1, 2, 3}, "m");
+}
+
+TEST(ImportUnits, FbxSaysItInTextAndInBytes) {
+    const auto unit = [](const std::string& document) { return fbxUnit(std::as_bytes(std::span(document))); };
+    EXPECT_EQ(
+        unit("; FBX\n P: \"UnitScaleFactor\", \"double\", \"Number\", \"\", 2.54\r\n P: 1").value().value,
+        2.54);
+    EXPECT_EQ(unit("; FBX\nProperty: \"UnitScaleFactor\", \"double\", \"\",100\n").value().value, 100.0);
+    EXPECT_EQ(unit("; FBX\n P: \"UnitScaleFactor\", \"double\", \"Number\", \"\",10,5").value().text, "10,5");
+    EXPECT_FALSE(unit("; FBX\n P: \"UnitScaleFactor\", \"double\", \"Number\", \"\",10,5").value().value);
+    EXPECT_FALSE(unit("; FBX\n P: \"UnitScaleFactor\"").value().value);
+    EXPECT_FALSE(unit("; FBX\n P: \"OriginalUnitScaleFactor\", \"double\", \"Number\", \"\",7"));
+    using namespace std::string_literals;
+    const std::string head =
+        "Kaydara FBX Binary  S\x0f\0\0\0UnitScaleFactorS\x06\0\0\0doubleS\x06\0\0\0NumberS\0\0\0\0"s;
+    EXPECT_EQ(unit(head + "D\0\0\0\0\0\0\x59\x40"s).value().value, 100.0);
+    EXPECT_EQ(unit(head + "I\x64\0\0\0"s).value().value, 100.0);
+    EXPECT_EQ(unit(head + "F\0\0\xc8\xc2"s).value().value, -100.0);
+    EXPECT_FALSE(unit(head + "D\0\0\0\0\0\0\xf8\x7f"s).value().value);
+    EXPECT_FALSE(unit(head + "X").value().value);
+    EXPECT_FALSE(unit(head).value().value);
+    EXPECT_FALSE(unit("Kaydara FBX Binary  "));
 }
 
 // What a left-handed file calls z is turned round when it is asked for.
