@@ -190,6 +190,18 @@ inline constexpr bool kIsForm = false;
 template <template <class...> class Form, class... Parts>
 inline constexpr bool kIsForm<Form, Form<Parts...>> = true;
 
+/// The type that an optional holds, or T itself.
+template <class T>
+struct HeldType {
+    using Type = T;
+};
+template <class T>
+struct HeldType<std::optional<T>> {
+    using Type = T;
+};
+template <class T>
+using Held = typename HeldType<T>::Type;
+
 /// Takes anything: for the concept below.
 struct AnyVisitor {
     template <class T>

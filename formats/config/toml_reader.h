@@ -122,14 +122,6 @@ void readToml(const TomlValue& from, T& value);
 namespace toml_detail {
 
 template <class T>
-struct Unwrapped {
-    using Type = T;
-};
-template <class T>
-struct Unwrapped<std::optional<T>> {
-    using Type = T;
-};
-template <class T>
 inline constexpr bool kIsNumbers = std::is_same_v<T, glm::vec3>;
 template <class T, std::size_t N>
 inline constexpr bool kIsNumbers<std::array<T, N>> = true;
@@ -183,7 +175,7 @@ void readNumbers(const TomlValue& from, T& value, const FieldInfo& info) {
 
 template <class A, class B>
 void readSpan(const TomlValue& from, FieldSpan<A, B> span, const FieldInfo& info) {
-    using Number = typename Unwrapped<A>::Type;
+    using Number = Held<A>;
     const toml::array* both = from.array();
     if (both == nullptr ? !from.node().is_number() : both->size() != 2) {
         from.wrongType(std::is_integral_v<Number> ? "a whole number, or two [least, most]"
@@ -202,7 +194,7 @@ void readSpan(const TomlValue& from, FieldSpan<A, B> span, const FieldInfo& info
 
 template <class T>
 void readPair(const TomlValue& from, FieldPair<T> pair, const FieldInfo& info) {
-    using Number = typename Unwrapped<T>::Type;
+    using Number = Held<T>;
     static_cast<void>(from.list(2, std::is_integral_v<Number>, info.unit));
     Number both[2]{};
     readNumber(from[0], both[0], info);

@@ -36,18 +36,9 @@ template <class T, std::size_t kSize>
 inline constexpr bool kIsArray<std::array<T, kSize>> = true;
 template <class T>
 concept Text = std::convertible_to<const T&, std::string_view>;
-/// The type that an optional holds, or T itself.
-template <class T>
-struct Held {
-    using Type = T;
-};
-template <class T>
-struct Held<std::optional<T>> {
-    using Type = T;
-};
 /// Of one part of a FieldSpan or a FieldPair.
 template <class Member>
-using PartOf = typename Held<std::remove_cvref_t<Member>>::Type;
+using PartOf = Held<std::remove_cvref_t<Member>>;
 /// A struct that comes in kinds of different fields: `static std::vector<T> kinds()` returns one of each.
 template <class T>
 concept WithKinds = requires {
