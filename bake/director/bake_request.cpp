@@ -10,9 +10,6 @@
 namespace relief {
 namespace {
 
-constexpr std::string_view kByPart = "auto=";
-constexpr std::string_view kHex = "0123456789ABCDEF";
-
 /// \return the option that chooses the maps. Errors: kUsage: there are two.
 Result<MapSource> sourceOf(const BakeRequest& request) {
     struct Chooser {
@@ -86,26 +83,6 @@ Result<void> readMaps(const BakeRequest& request, BakeSettings& settings) {
     return {};
 }
 
-/// %XX as the bytes that they stand for, as the names of --as are recorded; nullopt where the record is made up.
-std::optional<std::string> decoded(std::string_view text) {
-    std::string name;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        if (text[i] != '%') {
-            name += text[i];
-            continue;
-        }
-        const std::string_view hex = text.substr(i, 3);
-        const std::size_t high = hex.size() == 3 ? kHex.find(hex[1]) : std::string_view::npos;
-        const std::size_t low = hex.size() == 3 ? kHex.find(hex[2]) : std::string_view::npos;
-        if (high == std::string_view::npos || low == std::string_view::npos) {
-            return std::nullopt;
-        }
-        name += static_cast<char>(16 * high + low);
-        i += 2;
-    }
-    return cleanUtf8(name) == name ? std::optional(name) : std::nullopt;
-}
-
 bool isRecorded(std::string_view name) {
     static const std::vector<FieldWords> kFields = fieldsOf(BakeRequest());
     return std::ranges::any_of(
@@ -143,17 +120,6 @@ std::string quoted(const std::string& word) {
 
 }  // namespace
 
-bool readForm(std::string_view word, Thickness& thickness) {
-    thickness.by_part = word.starts_with(kByPart);
-    const std::optional<float> length = parseFloat(word.substr(thickness.by_part ? kByPart.size() : 0));
-    thickness.length = double{length.value_or(0.0F)};
-    return length && *length >= 1e-15F && *length <= 1e15F;
-}
-
-std::string formText(const Thickness& thickness) {
-    return std::string(thickness.by_part ? kByPart : "") + shortest(static_cast<float>(thickness.length));
-}
-
 Result<BakeSettings> settingsOf(const BakeRequest& request) {
     BakeSettings settings;
     settings.source = RELIEF_TRY(sourceOf(request));
@@ -177,7 +143,7 @@ RecordedBake recordedBake(const std::string& options) {
         std::string name(option.substr(std::min<std::size_t>(2, option.size())));
         std::ranges::replace(name, '-', '_');
         const std::string_view word = takeWord(rest);
-        const std::optional<std::string> value = name == "as" ? decoded(word) : std::string(word);
+        const std::optional<std::string> value = name == "as" ? recordedName(word) : std::string(word);
         bake.understood =
             option.starts_with("--") && value && take(name, *value, bake.request) && bake.understood;
     }

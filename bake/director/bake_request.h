@@ -37,14 +37,6 @@ inline constexpr std::array<std::string_view, 2> kWordsOf<FrontBackDepth>{"unorm
 template <>
 inline constexpr std::array<std::string_view, 2> kWordsOf<Decode>{"projected", "plane"};
 
-/// Of shells: "0.01", or "auto=0.01" where it is a default, of which each sheet takes what suits its size.
-struct Thickness {
-    double length = 0.0;  ///< object units, above 0
-    bool by_part = false;
-};
-[[nodiscard]] bool readForm(std::string_view word, Thickness& thickness);
-[[nodiscard]] std::string formText(const Thickness& thickness);
-
 struct BakeRequest {
     std::string mesh;                     ///< a file
     std::vector<std::string> map;         ///< MapSpecs; empty: planned, unless paper or plan

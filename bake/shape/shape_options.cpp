@@ -37,6 +37,17 @@ bool isNamed(const ShapeOptions& options, std::string_view name) {
 
 }  // namespace
 
+bool readForm(std::string_view word, Thickness& thickness) {
+    thickness.by_part = word.starts_with(kByPart);
+    const std::optional<float> length = parseFloat(word.substr(thickness.by_part ? kByPart.size() : 0));
+    thickness.length = double{length.value_or(0.0F)};
+    return length && *length >= 1e-15F && *length <= 1e15F;
+}
+
+std::string formText(const Thickness& thickness) {
+    return std::string(thickness.by_part ? kByPart : "") + shortest(static_cast<float>(thickness.length));
+}
+
 std::vector<std::string> ShapeOptions::names() const {
     std::vector<std::string> names;
     for (const NamedShape& shape : named) {
@@ -100,10 +111,28 @@ std::string recordedShape(const ShapeOptions& options) {
         text.append(" --as ").append(encoded(named.name)).append("=").append(wordOf(named.as));
     }
     if (options.thickness > 0.0) {
-        text += " --thickness " + std::string(options.thickness_by_part ? kByPart : "") +
-                shortest(static_cast<float>(options.thickness));
+        text += " --thickness " + formText({options.thickness, options.thickness_by_part});
     }
     return text;
+}
+
+std::optional<std::string> recordedName(std::string_view word) {
+    std::string name;
+    for (std::size_t i = 0; i < word.size(); ++i) {
+        if (word[i] != '%') {
+            name += word[i];
+            continue;
+        }
+        const std::string_view hex = word.substr(i, 3);
+        const std::size_t high = hex.size() == 3 ? kHex.find(hex[1]) : std::string_view::npos;
+        const std::size_t low = hex.size() == 3 ? kHex.find(hex[2]) : std::string_view::npos;
+        if (high == std::string_view::npos || low == std::string_view::npos) {
+            return std::nullopt;
+        }
+        name += static_cast<char>(16 * high + low);
+        i += 2;
+    }
+    return cleanUtf8(name) == name ? std::optional(name) : std::nullopt;
 }
 
 }  // namespace relief

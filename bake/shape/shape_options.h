@@ -17,6 +17,14 @@ enum class ShapeAs : std::uint8_t { kAuto, kSolid, kShell, kTerrain };
 template <>
 inline constexpr std::array<std::string_view, 4> kWordsOf<ShapeAs>{"auto", "solid", "shell", "terrain"};
 
+/// Of shells: "0.01", or "auto=0.01" where it is a default, of which each sheet takes what suits its size.
+struct Thickness {
+    double length = 0.0;  ///< object units, above 0
+    bool by_part = false;
+};
+[[nodiscard]] bool readForm(std::string_view word, Thickness& thickness);
+[[nodiscard]] std::string formText(const Thickness& thickness);
+
 /// How the triangles of a name, found by its mark (TriangleMesh::marks), are interpreted.
 struct NamedShape {
     std::string name;  ///< clean UTF-8, 1 to kAskedNameBytesMax bytes
@@ -44,5 +52,7 @@ struct ShapeOptions {
 /// " --as shell --as glass=auto --thickness 0.01" (by part: "auto=0.01"): what is not the default, as a container records it. Of a name, all is
 /// %XX that could mean something to a shell or to who reads the record.
 [[nodiscard]] std::string recordedShape(const ShapeOptions& options);
+/// The value of --as that a record has as this word; nullopt where the record is made up.
+[[nodiscard]] std::optional<std::string> recordedName(std::string_view word);
 
 }  // namespace relief
