@@ -155,9 +155,8 @@ std::string optionTable(const std::vector<FieldWords>& fields) {
     const auto cell = [](const std::string& words) {
         std::string out;
         for (const char c : words) {
-            const bool space = c == ' ' || c == '\n';
-            if (!space || !out.ends_with(' ')) {
-                out += c == '|' ? std::string("\\|") : std::string(1, space ? ' ' : c);
+            if (c != ' ' || !out.ends_with(' ')) {
+                out += c == '|' ? "\\|" : c == '\n' ? "<br>" : std::string(1, c);
             }
         }
         return out;
