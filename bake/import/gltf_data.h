@@ -18,7 +18,7 @@
 
 namespace relief {
 
-/// What a file holds, borrowed.
+/// The contents of a file, borrowed.
 struct GltfChunks {
     std::string_view json;
     std::optional<std::span<const std::byte>> binary;  ///< of a GLB

@@ -271,7 +271,7 @@ class GltfReader {
     }
 
   private:
-    /// What a node is beside a SceneNode.
+    /// The members of a node that a SceneNode has no place for.
     struct Node {
         std::optional<std::uint32_t> parent;
         std::optional<GltfValue> mesh;

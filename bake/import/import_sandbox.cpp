@@ -214,7 +214,7 @@ void addRules(Rules& rules, int folder, int result) {
     }
     // fstat of glibc.
     rules.allow(SCMP_SYS(newfstatat), {Rules::is(3, AT_EMPTY_PATH)});
-    // What has been given up may be asked for, and not taken back.
+    // Rights that were given up may be queried, not regained.
     for (const int question : {PR_GET_DUMPABLE, PR_GET_NO_NEW_PRIVS, PR_GET_PDEATHSIG}) {
         rules.allow(SCMP_SYS(prctl), {Rules::is(0, static_cast<scmp_datum_t>(question))});
     }

@@ -19,7 +19,7 @@ struct PlannedBake {
     Baked baked;
 };
 
-/// What the rows of a map of gaps take up is known to some per cent before it is baked: where all maps together take more
+/// The size of a map of gaps is known to some per cent before it is baked: where all maps together take more
 /// than the budget, they are baked again with larger texels.
 /// \param query    of the mesh that the views were chosen for
 /// \param options  its maps and planned_budget do not count

@@ -72,7 +72,7 @@ std::uint32_t regionFor(std::uint32_t extent) {
 ///         order     RG32UI (on OpenGL ES, whose shaders cannot store into that, RGBA32UI of 16 bytes)
 class RadixSort {
   public:
-    /// Where hasCompute(), with the state of a pass (PassState).
+    /// Needs hasCompute(), and the state of a pass (PassState).
     /// \param capacity  1…2^24. \param width  texels in a row of order().
     /// Errors: kLimit (above what this GL takes), kFailure.
     [[nodiscard]] static Result<RadixSort> create(std::uint32_t capacity, std::uint32_t width);
