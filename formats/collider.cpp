@@ -2,9 +2,33 @@
 
 #include <algorithm>
 
+#include "formats/base/text.h"
 #include "formats/row_spans.h"
 
 namespace relief {
+namespace {
+
+/// The %XX of a name in a recorded text; empty: malformed.
+std::string decoded(std::string_view word) {
+    std::string text;
+    for (std::size_t i = 0; i < word.size(); ++i) {
+        if (word[i] != '%') {
+            text += word[i];
+            continue;
+        }
+        constexpr std::string_view kHex = "0123456789ABCDEF";
+        const std::size_t high = i + 2 < word.size() ? kHex.find(word[i + 1]) : std::string_view::npos;
+        const std::size_t low = i + 2 < word.size() ? kHex.find(word[i + 2]) : std::string_view::npos;
+        if (high == std::string_view::npos || low == std::string_view::npos) {
+            return {};
+        }
+        text += static_cast<char>(16 * high + low);
+        i += 2;
+    }
+    return cleanUtf8(text) == text ? text : "";
+}
+
+}  // namespace
 
 void Bounds::add(const glm::vec3& p) {
     min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
@@ -14,6 +38,31 @@ void Bounds::add(const glm::vec3& p) {
 float Bounds::longestSide() const {
     const glm::vec3 s = size();
     return std::max({s.x, s.y, s.z});
+}
+
+std::string RecordedOption::text() const {
+    std::string option = "--" + name;
+    std::replace(option.begin(), option.end(), '_', '-');
+    return option + " " + shellQuoted(value);
+}
+
+std::vector<RecordedOption> readRecordedOptions(std::string_view text) {
+    std::vector<RecordedOption> options;
+    for (std::string_view word = takeWord(text); !word.empty(); word = takeWord(text)) {
+        std::string name(word.starts_with("--") ? word.substr(2) : word);
+        std::replace(name.begin(), name.end(), '-', '_');
+        const std::string_view value = takeWord(text);
+        options.push_back({name, name == "as" ? decoded(value) : std::string(value)});
+    }
+    return options;
+}
+
+std::string Provenance::optionsText() const {
+    std::string text;
+    for (const RecordedOption& option : options) {
+        text.append(text.empty() ? "" : " ").append(option.text());
+    }
+    return text;
 }
 
 std::uint64_t Collider::texelBytes() const {

@@ -6,6 +6,7 @@
 #include <glm/vec3.hpp>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "formats/depth_map.h"
@@ -24,13 +25,28 @@ struct Bounds {
     friend bool operator==(const Bounds&, const Bounds&) = default;
 };
 
+/// An option of the bake: a field of BakeRequest, and its value as `relief bake` takes it.
+struct RecordedOption {
+    std::string name;   ///< "max_error"
+    std::string value;  ///< "2"; clean UTF-8
+
+    /// "--max-error 2", quoted for a shell.
+    [[nodiscard]] std::string text() const;
+    friend bool operator==(const RecordedOption&, const RecordedOption&) = default;
+};
+/// Options as containers before version 1.3 have them, in one text; any text.
+[[nodiscard]] std::vector<RecordedOption> readRecordedOptions(std::string_view text);
+
 /// Where a collider comes from. Nothing in it depends on time, machine or folder.
 struct Provenance {
     std::string mesh_name;  ///< file name without its folder; UTF-8
     std::string mesh_hash;  ///< XXH3-128 of the mesh file's bytes, 32 lower-case hexadecimal digits; or ""
     std::uint64_t triangles = 0;
-    std::string tool_version;  ///< "relief 0.1.0"
-    std::string options;       ///< the effective options, such as "--map front-back:dir=+x,size=512x512,…"
+    std::string tool_version;             ///< "relief 0.1.0"
+    std::vector<RecordedOption> options;  ///< the effective ones; a list has one for each element
+
+    /// "--map front-back:dir=+x,size=512x512,… --quality normal", quoted for a shell.
+    [[nodiscard]] std::string optionsText() const;
     friend bool operator==(const Provenance&, const Provenance&) = default;
 };
 

@@ -82,7 +82,7 @@ std::vector<Difference> provenanceDifferences(const Provenance& a, const Provena
     all.check("mesh_hash", a.mesh_hash, b.mesh_hash, quoted);
     all.check("triangles", a.triangles, b.triangles, [](std::uint64_t n) { return std::to_string(n); });
     all.check("tool_version", a.tool_version, b.tool_version, quoted);
-    all.check("options", a.options, b.options, quoted);
+    all.check("options", a.optionsText(), b.optionsText(), quoted);
     return all.found;
 }
 

@@ -82,12 +82,20 @@ std::vector<std::byte> writeMetadata(const Collider& collider, std::span<const f
     const Provenance& from = collider.provenance;
     // One by one: a compiler chooses in which order it evaluates the arguments of a call, and each string is
     // written as it is made.
-    const auto options = builder.CreateString(from.options);
+    std::vector<flatbuffers::Offset<fb::Option>> options;
+    for (const RecordedOption& option : from.options) {
+        const auto value = builder.CreateString(option.value);
+        const auto name = builder.CreateString(option.name);
+        options.push_back(fb::CreateOption(builder, name, value));
+    }
+    const flatbuffers::Offset<flatbuffers::Vector<flatbuffers::Offset<fb::Option>>> option_vector =
+        options.empty() ? 0 : builder.CreateVector(options);
+    const auto no_text = builder.CreateString("");
     const auto tool_version = builder.CreateString(from.tool_version);
     const auto mesh_hash = builder.CreateString(from.mesh_hash);
     const auto mesh_name = builder.CreateString(from.mesh_name);
-    const auto provenance =
-        fb::CreateProvenance(builder, mesh_name, mesh_hash, from.triangles, tool_version, options);
+    const auto provenance = fb::CreateProvenance(builder, mesh_name, mesh_hash, from.triangles, tool_version,
+                                                 no_text, option_vector);
     const fb::Vec3 bounds_min = toFb(collider.bounds.min);
     const fb::Vec3 bounds_max = toFb(collider.bounds.max);
     const auto unit = builder.CreateString(collider.unit);
@@ -140,7 +148,7 @@ Result<std::vector<std::byte>> writeChecked(const Collider& collider, const Cont
                                   [](const PackedPayload& one) { return one.packing == Packing::kRows; });
     const bool gaps = std::any_of(collider.maps.begin(), collider.maps.end(),
                                   [](const DepthMap& map) { return map.compare == Compare::kGap; });
-    header.minor = gaps ? 2 : rows ? 1 : 0;
+    header.minor = !collider.provenance.options.empty() ? 3 : gaps ? 2 : rows ? 1 : 0;
     header.metadata_size = writeMetadata(collider, payloads, packed).size();
     std::uint64_t end = header.metadata_offset + header.metadata_size;
     for (fb::Payload& payload : payloads) {

@@ -259,7 +259,13 @@ bool ContainerReader::readMetadata() {
     collider.unit = metadata.unit()->str();
     const fb::Provenance& from = *metadata.provenance();
     collider.provenance = {from.mesh_name()->str(), from.mesh_hash()->str(), from.triangles(),
-                           from.tool_version()->str(), from.options()->str()};
+                           from.tool_version()->str(),
+                           readRecordedOptions(from.options_text()->string_view())};
+    if (from.options() != nullptr) {
+        for (const fb::Option* option : *from.options()) {
+            collider.provenance.options.push_back({option->name()->str(), option->value()->str()});
+        }
+    }
     for (const fb::Map* map : stored) {
         const fb::Payload& payload = *map->payload();
         maps.push_back({readFrame(*map),

@@ -60,6 +60,14 @@ std::string faultOfHash(std::string_view hash) {
                : "provenance.mesh_hash is neither empty nor 32 lower-case hexadecimal digits";
 }
 
+std::string faultOfOptions(const std::vector<RecordedOption>& options) {
+    std::string all;
+    for (const RecordedOption& option : options) {
+        all.append(option.name).append(option.value);
+    }
+    return faultOfText("provenance.options", all, kOptionsMax);
+}
+
 Result<void> validateSize(const DepthMap& map) {
     const std::string size = std::to_string(map.width) + "x" + std::to_string(map.height);
     if (map.width > kMapSizeMax || map.height > kMapSizeMax) {
@@ -166,7 +174,7 @@ std::vector<Issue> descriptionIssues(const Collider& collider) {
         {kProvenance, -1, {}, faultOfName(from.mesh_name)},
         {kProvenance, -1, {}, faultOfHash(from.mesh_hash)},
         {kProvenance, -1, {}, faultOfText("provenance.tool_version", from.tool_version, kToolVersionMax)},
-        {kProvenance, -1, {}, faultOfText("provenance.options", from.options, kOptionsMax)},
+        {kProvenance, -1, {}, faultOfOptions(from.options)},
     };
     std::erase_if(issues, [](const Issue& issue) { return issue.message.empty(); });
     return issues;

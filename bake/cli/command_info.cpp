@@ -38,12 +38,13 @@ std::string vectorText(const glm::vec3& v) {
 /// A line, or one for each option where that would be long.
 std::string bakedText(const Provenance& from) {
     const std::string by = "baked    by " + from.tool_version + " with";
-    if (from.options.size() <= kLineMost) {
-        return by + " " + from.options + "\n";
+    const std::string options = from.optionsText();
+    if (options.size() <= kLineMost) {
+        return by + " " + options + "\n";
     }
     std::string text = by;
-    for (const std::string& option : optionList(from.options)) {
-        text += "\n         " + option;
+    for (const RecordedOption& option : from.options) {
+        text += "\n         " + option.text();
     }
     return text + "\n";
 }

@@ -100,24 +100,6 @@ bool take(std::string_view name, std::string_view value, BakeRequest& request) {
     return true;
 }
 
-bool isPlain(std::string_view word) {
-    constexpr std::string_view kPlain =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._=+/:,%-";
-    return !word.empty() && word.find_first_not_of(kPlain) == std::string_view::npos;
-}
-
-/// A word as a shell reads it back.
-std::string quoted(const std::string& word) {
-    if (isPlain(word)) {
-        return word;
-    }
-    std::string text = "'";
-    for (const char c : cleanUtf8(word)) {
-        text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    }
-    return text + "'";
-}
-
 }  // namespace
 
 Result<BakeSettings> settingsOf(const BakeRequest& request) {
@@ -136,16 +118,10 @@ Result<BakeSettings> settingsOf(const BakeRequest& request) {
     return settings;
 }
 
-RecordedBake recordedBake(const std::string& options) {
+RecordedBake recordedBake(const std::vector<RecordedOption>& options) {
     RecordedBake bake;
-    std::string_view rest = options;
-    for (std::string_view option = takeWord(rest); !option.empty(); option = takeWord(rest)) {
-        std::string name(option.substr(std::min<std::size_t>(2, option.size())));
-        std::ranges::replace(name, '-', '_');
-        const std::string_view word = takeWord(rest);
-        const std::optional<std::string> value = name == "as" ? recordedName(word) : std::string(word);
-        bake.understood =
-            option.starts_with("--") && value && take(name, *value, bake.request) && bake.understood;
+    for (const RecordedOption& option : options) {
+        bake.understood = take(option.name, option.value, bake.request) && bake.understood;
     }
     if (bake.request.quality == Quality::kNormal) {
         bake.request.quality.reset();
@@ -159,7 +135,8 @@ std::string commandLine(const BakeRequest& request, const std::string& output) {
         for (const std::string& word : field.words) {
             text += " " + optionName(field.name);
             if (field.kind != FieldKind::kFlag) {
-                text += " " + quoted(field.info.unit == "bytes" ? bytesWord(*parseUnsigned(word)) : word);
+                text +=
+                    " " + shellQuoted(field.info.unit == "bytes" ? bytesWord(*parseUnsigned(word)) : word);
             }
         }
     }
@@ -173,7 +150,7 @@ std::string importOptionOf(const ImportOptions& options, const ImportLimits& lim
 }
 
 std::string shellWord(const std::string& path) {
-    return quoted(path.starts_with("-") ? "./" + path : path);  // else it is taken for an option
+    return shellQuoted(path.starts_with("-") ? "./" + path : path);  // else it is taken for an option
 }
 
 }  // namespace relief

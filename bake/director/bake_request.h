@@ -189,8 +189,7 @@ struct RecordedBake {
     bool understood = true;
 };
 
-/// \param options  Provenance::options; any text.
-[[nodiscard]] RecordedBake recordedBake(const std::string& options);
+[[nodiscard]] RecordedBake recordedBake(const std::vector<RecordedOption>& options);
 
 /// A bake of a mesh as a command line, quoted for a shell.
 [[nodiscard]] std::string commandLine(const BakeRequest& request, const std::string& output);

@@ -272,13 +272,18 @@ class Director {
             }
         }
         result_.baked = RELIEF_TRY(std::move(baked));
-        std::string& recorded = result_.baked.collider.provenance.options;
-        recorded += request().holes == Holes::kKeep ? " --holes keep" : "";
-        for (const FieldWords& field : changedFields(request().import)) {
-            recorded += " " + optionName(field.name) + " " + field.words.front();
+        // The maps have recorded themselves; beside them, the mesh as it was made.
+        BakeRequest made;
+        made.holes = request().holes;
+        made.import = request().import;
+        made.repair.method = result_.mesh.report.repair;
+        made.as = asWords(result_.shape);
+        made.thickness = thicknessOf(result_.shape);
+        for (const FieldWords& field : changedFields(made)) {
+            for (const std::string& word : field.words) {
+                result_.baked.collider.provenance.options.push_back({field.name, word});
+            }
         }
-        recorded += result_.mesh.report.repair.empty() ? "" : " --repair " + result_.mesh.report.repair;
-        recorded += shapeOptionsText(result_.shape);
         return {};
     }
 

@@ -95,26 +95,26 @@ Result<std::vector<Job>> planJobs(const PreparedMesh& mesh, const BakeOptions& o
     return jobs;
 }
 
-std::string effectiveOptions(const std::vector<Job>& jobs, const BakeOptions& options,
-                             const Collider& collider) {
-    std::string text;
+std::vector<RecordedOption> effectiveOptions(const std::vector<Job>& jobs, const BakeOptions& options,
+                                             const Collider& collider) {
+    std::vector<RecordedOption> recorded;
     bool has_planes = false;
     for (const Job& job : jobs) {
-        text.append(text.empty() ? "" : " ").append("--map ").append(toString(job.spec));
+        recorded.push_back({"map", toString(job.spec)});
         has_planes = has_planes || job.spec.decode == Decode::kPlane;
     }
     if (options.rasterize) {
-        text.append(" --backend raster");
+        recorded.push_back({"backend", "raster"});
     } else if (has_planes) {
-        text.append(" --quality ").append(wordOf(options.quality));
+        recorded.push_back({"quality", std::string(wordOf(options.quality))});
         if (options.prefer != Prefer::kNeither) {
-            text.append(" --prefer ").append(wordOf(options.prefer));
+            recorded.push_back({"prefer", std::string(wordOf(options.prefer))});
         }
     }
     if (options.planned_budget > 0 && collider.gpuBytes() <= options.planned_budget) {
-        text.append(" --budget ").append(std::to_string(options.planned_budget));
+        recorded.push_back({"budget", std::to_string(options.planned_budget)});
     }
-    return text;
+    return recorded;
 }
 
 void warnAbout(const PreparedMesh& mesh, const std::vector<Job>& jobs, BakeReport& report) {

@@ -503,7 +503,7 @@ PYBIND11_MODULE(_relief, m) {
             [](const Collider& c) { return py::make_tuple(vectorOf(c.bounds.min), vectorOf(c.bounds.max)); })
         .def_property_readonly("unit", [](const Collider& c) { return c.unit; })
         .def_property_readonly("mesh_name", [](const Collider& c) { return c.provenance.mesh_name; })
-        .def_property_readonly("options", [](const Collider& c) { return c.provenance.options; })
+        .def_property_readonly("options", [](const Collider& c) { return c.provenance.optionsText(); })
         .def_property_readonly("gpu_bytes", &Collider::gpuBytes)
         .def_property_readonly("map_count", [](const Collider& c) { return c.maps.size(); })
         .def("describe_map", &describe)

@@ -28,7 +28,7 @@ void fields(Visitor& visit, P& from) {
           {.help = "XXH3-128 of the mesh file, hexadecimal; empty if unknown", .pattern = kHashPattern});
     visit("triangles", from.triangles, {"Triangles of the mesh"});
     visit("tool_version", from.tool_version, {"Program that made the container"});
-    visit("options", from.options, {"Options of the bake"});
+    visit("options", from.optionsText(), {"Options of the bake, as words of a shell"});
 }
 
 struct ColliderMapReport {

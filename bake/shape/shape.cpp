@@ -523,13 +523,21 @@ void append(std::string& text, std::uint64_t count, const char* one, const char*
 
 }  // namespace
 
-std::string shapeOptionsText(const ShapeReport& report) {
-    const bool by_part = report.default_thickness > 0.0;
-    ShapeOptions options{report.as, by_part ? report.default_thickness : report.thickness, {}, by_part};
-    for (const NamedTriangles& named : report.named) {
-        options.named.push_back(named.shape);
+std::vector<std::string> asWords(const ShapeReport& report) {
+    std::vector<std::string> words;
+    if (report.as != ShapeAs::kAuto) {
+        words.emplace_back(wordOf(report.as));
     }
-    return recordedShape(options);
+    for (const NamedTriangles& named : report.named) {
+        words.push_back(named.shape.name + "=" + std::string(wordOf(named.shape.as)));
+    }
+    return words;
+}
+
+std::optional<Thickness> thicknessOf(const ShapeReport& report) {
+    const bool by_part = report.default_thickness > 0.0;
+    const double length = by_part ? report.default_thickness : report.thickness;
+    return length > 0.0 ? std::optional(Thickness{length, by_part}) : std::nullopt;
 }
 
 std::string ShapeReport::text() const {

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -76,8 +77,9 @@ void fields(Visitor& visit, R& report) {
           {"--thickness was given; otherwise each shell suits the size of its part"});
 }
 
-/// " --as shell --as glass=auto --thickness 0.01", as containers record it.
-[[nodiscard]] std::string shapeOptionsText(const ShapeReport& report);
+/// The values of --as, and of --thickness where there are shells, that make the same solid again.
+[[nodiscard]] std::vector<std::string> asWords(const ShapeReport& report);
+[[nodiscard]] std::optional<Thickness> thicknessOf(const ShapeReport& report);
 
 struct ShapedMesh {
     PreparedMesh mesh;  ///< the source if it is solid already

@@ -11,24 +11,8 @@ namespace relief {
 namespace {
 
 constexpr const auto& kAsNames = kWordsOf<ShapeAs>;
-/// What a name is recorded by as it is, beside all beyond ASCII.
-constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._+/:,-";
 /// Before a default thickness, of which each part takes its own.
 constexpr std::string_view kByPart = "auto=";
-constexpr std::string_view kHex = "0123456789ABCDEF";
-
-bool isPlain(char c) {
-    return static_cast<unsigned char>(c) >= 0x80 || kPlain.find(c) != std::string_view::npos;
-}
-
-std::string encoded(std::string_view name) {
-    std::string text;
-    for (const char c : name) {
-        const auto byte = static_cast<unsigned char>(c);
-        text += isPlain(c) ? std::string(1, c) : std::string{'%', kHex[byte / 16], kHex[byte % 16]};
-    }
-    return text;
-}
 
 bool isNamed(const ShapeOptions& options, std::string_view name) {
     return std::any_of(options.named.begin(), options.named.end(),
@@ -100,39 +84,6 @@ Result<ShapeOptions> parseShapeOptions(const std::vector<std::string>& words) {
         options.named.push_back({name, *as});
     }
     return options;
-}
-
-std::string recordedShape(const ShapeOptions& options) {
-    std::string text;
-    if (options.as != ShapeAs::kAuto) {
-        text.append(" --as ").append(wordOf(options.as));
-    }
-    for (const NamedShape& named : options.named) {
-        text.append(" --as ").append(encoded(named.name)).append("=").append(wordOf(named.as));
-    }
-    if (options.thickness > 0.0) {
-        text += " --thickness " + formText({options.thickness, options.thickness_by_part});
-    }
-    return text;
-}
-
-std::optional<std::string> recordedName(std::string_view word) {
-    std::string name;
-    for (std::size_t i = 0; i < word.size(); ++i) {
-        if (word[i] != '%') {
-            name += word[i];
-            continue;
-        }
-        const std::string_view hex = word.substr(i, 3);
-        const std::size_t high = hex.size() == 3 ? kHex.find(hex[1]) : std::string_view::npos;
-        const std::size_t low = hex.size() == 3 ? kHex.find(hex[2]) : std::string_view::npos;
-        if (high == std::string_view::npos || low == std::string_view::npos) {
-            return std::nullopt;
-        }
-        name += static_cast<char>(16 * high + low);
-        i += 2;
-    }
-    return cleanUtf8(name) == name ? std::optional(name) : std::nullopt;
 }
 
 }  // namespace relief

@@ -49,10 +49,4 @@ struct ShapeOptions {
 /// The values of --as: KIND at most once, and NAME=KIND, split at the last "=". Errors: kUsage, kLimit.
 [[nodiscard]] Result<ShapeOptions> parseShapeOptions(const std::vector<std::string>& words);
 
-/// " --as shell --as glass=auto --thickness 0.01" (by part: "auto=0.01"): what is not the default, as a container records it. Of a name, all is
-/// %XX that could mean something to a shell or to who reads the record.
-[[nodiscard]] std::string recordedShape(const ShapeOptions& options);
-/// The value of --as that a record has as this word; nullopt where the record is made up.
-[[nodiscard]] std::optional<std::string> recordedName(std::string_view word);
-
 }  // namespace relief

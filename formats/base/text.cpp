@@ -172,6 +172,19 @@ std::string_view takeLine(std::string_view& text) {
     return line;
 }
 
+std::string shellQuoted(const std::string& word) {
+    constexpr std::string_view kPlain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._=+/:,%-";
+    if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) {
+        return word;
+    }
+    std::string text = "'";
+    for (const char c : cleanUtf8(word)) {
+        text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    }
+    return text + "'";
+}
+
 std::string_view takeWord(std::string_view& text) {
     const auto is_space = [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
     const char* const begin = std::find_if_not(text.data(), text.data() + text.size(), is_space);

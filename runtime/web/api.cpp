@@ -72,7 +72,7 @@ Json describe(const Collider& collider) {
             {"unit", collider.unit},
             {"mesh", {{"name", from.mesh_name}, {"hash", from.mesh_hash}, {"triangles", from.triangles}}},
             {"tool", from.tool_version},
-            {"options", from.options},
+            {"options", from.optionsText()},
             {"bytes", collider.texelBytes()},
             {"gpu_bytes", collider.gpuBytes()},
             {"finest_texel", finestTexel(collider)},

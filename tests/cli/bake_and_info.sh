@@ -24,7 +24,7 @@ expect 0 "$relief" bake box.obj -o box.relief --paper --resolution 64 -q
 expect 0 "$relief" info box.relief --json
 cp stdout info.json
 json info.json "[m['format'] for m in d['maps']] == ['front-back'] * 3 + ['cube']"
-json info.json "d['version'] == '1.1'"
+json info.json "d['version'] == '1.3'"
 json info.json "d['bounds']['min'] == [-1, -2, -3] and d['bounds']['max'] == [1, 2, 3]"
 json info.json "d['provenance']['mesh_name'] == 'box.obj' and len(d['provenance']['mesh_hash']) == 32"
 json info.json "d['provenance']['triangles'] == 12"

@@ -12,7 +12,7 @@ for file in "${files[@]}"; do
     compile 4 "$file" || die "$file does not compile with Embree 4: $(head -5 log)"
 done
 ! compile 5 bake/mesh/embree_mesh.cpp || die "Embree 5 is taken"
-grep -q 'RELIEF_EMBREE is 3 or 4' log || die "the wrong number is not named: $(head -5 log)"
+grep -q 'RELIEF_EMBREE must be 3 or 4' log || die "the wrong number is not named: $(head -5 log)"
 # What only Embree 3 has would be found.
 echo '#include "bake/mesh/embree.h"
 RTCIntersectContext context;' >old.cpp

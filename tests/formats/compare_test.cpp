@@ -49,7 +49,7 @@ TEST(Compare, StructureIsNamed) {
     b.maps[3].width = b.maps[3].height = 5;
     b.maps[3].texels.resize(b.maps[3].texelBytes());
     b.provenance.mesh_hash = "";
-    b.provenance.options += ",x";
+    b.provenance.options[0].value += ",x";
     const ColliderDifference d = compareColliders(a, b);
     EXPECT_EQ(names(d.structure), (Names{"maps", "bounds", "unit"}));
     EXPECT_EQ(d.structure[0], (Difference{"maps", "5", "4"}));

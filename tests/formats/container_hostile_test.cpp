@@ -131,7 +131,7 @@ std::vector<std::byte> metadataOf(const Recipe& recipe, const std::vector<fb::Pa
     provenance.offset(fb::Provenance::VT_MESH_HASH, mesh_hash);
     provenance.scalar<std::uint64_t>(fb::Provenance::VT_TRIANGLES, 12);
     provenance.offset(fb::Provenance::VT_TOOL_VERSION, tool_version);
-    provenance.offset(fb::Provenance::VT_OPTIONS, options);
+    provenance.offset(fb::Provenance::VT_OPTIONS_TEXT, options);
     const flatbuffers::Offset<fb::Provenance> provenance_at(provenance.end());
     const auto unit = builder.CreateString(recipe.unit);
     Table collider(builder, recipe.omitted);
@@ -245,7 +245,7 @@ TEST(Crafted, Versions) {
                       r.header = [](ContainerHeader& h) { h.major = 256; };
                       r.bytes = [](std::vector<std::byte>& b) { b[60] ^= std::byte{1}; };
                   }),
-                  "container version 256.2", ErrorCode::kUnsupported);
+                  "container version 256.3", ErrorCode::kUnsupported);
 }
 
 TEST(Crafted, HeaderFields) {
@@ -285,7 +285,7 @@ TEST(Crafted, MetadataThatIsNoTable) {
         expectRefused(with([&](Recipe& r) { r.omitted = {field}; }), words);
     }
     for (const voffset_t field : {fb::Provenance::VT_MESH_NAME, fb::Provenance::VT_MESH_HASH,
-                                  fb::Provenance::VT_TOOL_VERSION, fb::Provenance::VT_OPTIONS}) {
+                                  fb::Provenance::VT_TOOL_VERSION, fb::Provenance::VT_OPTIONS_TEXT}) {
         expectRefused(with([&](Recipe& r) { r.provenance_omitted = {field}; }), words);
     }
     for (const voffset_t field :

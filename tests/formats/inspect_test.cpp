@@ -83,8 +83,8 @@ Collider soundCollider() {
     Collider collider;
     collider.bounds = {glm::vec3(-1.0F), glm::vec3(1.0F)};
     collider.unit = "m";
-    collider.provenance = {"sphere.obj", "00112233445566778899aabbccddeeff", 12, "relief 0.1.0",
-                           "--map fixed8"};
+    collider.provenance = {
+        "sphere.obj", "00112233445566778899aabbccddeeff", 12, "relief 0.1.0", {{"map", "fixed8"}}};
     collider.maps.push_back(sphereMap(2.5));
     return collider;
 }
@@ -164,17 +164,17 @@ std::vector<Case> casesOfEveryCode() {
         {IssueCode::kMapLimit, good, {.maps = 0}},
         {IssueCode::kNoMap, patched(0x80, 0)},
         {IssueCode::kBounds, patched(0x5c, 0x7fc00000)},
-        {IssueCode::kUnit, patched(0x8c, 0x000e0007)},
-        {IssueCode::kProvenance, patched(0xd0, 0x58585858)},
-        {IssueCode::kFrame, patched(0x13c, 2)},
-        {IssueCode::kMapSizeLimit, patched(0x13c, 16385)},
-        {IssueCode::kPayloadSize, patched(0x190, 40)},
+        {IssueCode::kUnit, patched(0x8c, 0x00000007)},
+        {IssueCode::kProvenance, patched(0xd4, 0x58585858)},
+        {IssueCode::kFrame, patched(0x164, 2)},
+        {IssueCode::kMapSizeLimit, patched(0x164, 16385)},
+        {IssueCode::kPayloadSize, patched(0x1b8, 40)},
         {IssueCode::kTexelLimit, good, {.texel_bytes = 35}},
-        {IssueCode::kPayloadPlace, patched(0x180, 384)},
-        {IssueCode::kPayloadEnd, patched(0x180, 512)},
-        {IssueCode::kPadding, flipped(0x1a0)},
+        {IssueCode::kPayloadPlace, patched(0x1a8, 448)},
+        {IssueCode::kPayloadEnd, patched(0x1a8, 576)},
+        {IssueCode::kPadding, flipped(0x1c8)},
         {IssueCode::kBytesBehind, resized(good.size() + 1)},
-        {IssueCode::kPayloadChecksum, flipped(0x1d0)},
+        {IssueCode::kPayloadChecksum, flipped(0x210)},
         {IssueCode::kPayloadUnpack, zstd},
         {IssueCode::kTexels,
          [] {
@@ -184,7 +184,7 @@ std::vector<Case> casesOfEveryCode() {
              put(bytes, bytes.size() - 16, 7.0F);  // the last texel, empty, gets a normal
              return bytes;
          }()},
-        {IssueCode::kLaterMinor, patched([](Bytes& bytes) { put<std::uint16_t>(bytes, 14, 3); })},
+        {IssueCode::kLaterMinor, patched([](Bytes& bytes) { put<std::uint16_t>(bytes, 14, 4); })},
         {IssueCode::kNoMeshHash, changed([](Collider& c) { c.provenance.mesh_hash.clear(); })},
         {IssueCode::kNoToolVersion, changed([](Collider& c) { c.provenance.options.clear(); })},
         {IssueCode::kNoTriangles, changed([](Collider& c) { c.provenance.triangles = 0; })},

@@ -88,7 +88,7 @@ std::string pinnedText(const Collider& collider) {
     const Provenance& from = collider.provenance;
     std::string text = "unit '" + collider.unit + "'\nmesh '" + from.mesh_name + "' " + from.mesh_hash +
                        " of " + std::to_string(from.triangles) + " triangles\nby '" + from.tool_version +
-                       "' '" + from.options + "'\n";
+                       "' '" + from.optionsText() + "'\n";
     add(text, "bounds_min", collider.bounds.min);
     add(text, "bounds_max", collider.bounds.max);
     for (const DepthMap& map : collider.maps) {

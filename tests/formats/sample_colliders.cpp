@@ -18,8 +18,11 @@ Collider oneMapOfEveryFormat() {
     Collider collider;
     collider.bounds = {{-0.125F, -0.375F, -1.125F}, {1.125F, 0.875F, 0.125F}};
     collider.unit = "m";
-    collider.provenance = {"Kugel – 球.obj", "0123456789abcdef0123456789abcdef", 1'234'567'890'123,
-                           "relief 0.1.0", "--map float:dir=+x,size=8x7"};
+    collider.provenance = {"Kugel – 球.obj",
+                           "0123456789abcdef0123456789abcdef",
+                           1'234'567'890'123,
+                           "relief 0.1.0",
+                           {{"map", "float:dir=+x,size=8x7"}}};
     collider.maps.push_back(makeMap(*sphere, frame, MapFormat::kFloat32, Compare::kGreater, 8, 7));
     collider.maps.push_back(makeMap(*sphere, frame, MapFormat::kFixed8, Compare::kLess, 7, 8));
     collider.maps.push_back(makeMap(*sphere, frame, MapFormat::kFrontBackHalf, Compare::kBoth, 8, 8));
@@ -39,8 +42,8 @@ Collider readmeExample() {
     Collider collider;
     collider.bounds = {{-0.5F, -0.5F, -0.5F}, {0.5F, 0.5F, 0.5F}};
     collider.unit = "m";
-    collider.provenance = {"cube.obj", "00112233445566778899aabbccddeeff", 12, "relief 0.1.0",
-                           "--map fixed8"};
+    collider.provenance = {
+        "cube.obj", "00112233445566778899aabbccddeeff", 12, "relief 0.1.0", {{"map", "fixed8"}}};
     // [−2, 2]² × [−1, 1], seen along +z: the middle texel holds the plane z = −½.
     const OrthographicFrame frame = centeredFrame({0, 0, 0}, glm::dmat3(1.0), {4, 4, 2});
     DepthMap map = emptyMap(frame, MapFormat::kFixed8, Compare::kLess, 3, 3);

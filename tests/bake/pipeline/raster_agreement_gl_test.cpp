@@ -262,8 +262,8 @@ TEST_F(RasterBakeGlTest, TheContainerSaysWhoBakedIt) {
     options.maps = {*parseMapSpec("front-back")};
     const Result<Baked> baked = bake(mesh, options);
     ASSERT_TRUE(baked) << baked.error().message;
-    EXPECT_NE(baked->collider.provenance.options.find(" --backend raster"), std::string::npos);
-    EXPECT_EQ(baked->collider.provenance.options.find("--quality"), std::string::npos);
+    EXPECT_NE(baked->collider.provenance.optionsText().find(" --backend raster"), std::string::npos);
+    EXPECT_EQ(baked->collider.provenance.optionsText().find("--quality"), std::string::npos);
     EXPECT_TRUE(writeContainer(baked->collider)) << "a reader would refuse it";
     // The same machine gives the same bytes twice.
     const Result<Baked> again = bake(mesh, options);

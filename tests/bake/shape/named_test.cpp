@@ -80,11 +80,13 @@ TEST(NamedShape, EachPartIsWhatItsNameSays) {
     ASSERT_EQ(told.report.named.size(), 2U);
     EXPECT_EQ(told.report.named[0].triangles, 10U);
     EXPECT_EQ(told.report.named[1].triangles, 12U);
-    EXPECT_EQ(shapeOptionsText(told.report), " --as tub=solid --as block=shell --thickness 0.1");
+    EXPECT_EQ(asWords(told.report), (std::vector<std::string>{"tub=solid", "block=shell"}));
+    EXPECT_EQ(formText(thicknessOf(told.report).value()), "0.1");
     // What has no name goes by the default.
     const ShapedMesh rest = shaped(makeTwoBoxes(), {{"tub", ShapeAs::kAuto}}, ShapeAs::kShell);
     expectKinds(rest.report, 0, 0, 2, 0);
-    EXPECT_EQ(shapeOptionsText(rest.report), " --as shell --as tub=auto --thickness 0.1");
+    EXPECT_EQ(asWords(rest.report), (std::vector<std::string>{"shell", "tub=auto"}));
+    EXPECT_EQ(formText(thicknessOf(rest.report).value()), "0.1");
 }
 
 TEST(NamedShape, AWallIsCutOutOfTheSurfaceThatItSharesEdgesWith) {

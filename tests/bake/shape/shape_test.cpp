@@ -170,7 +170,7 @@ TEST(Shape, ASolidStaysAsItIs) {
     EXPECT_EQ(shape.mesh->triangles, ball.triangles);
     EXPECT_EQ(shape.mesh->positions, ball.positions);
     EXPECT_EQ(shape.report.thickness, 0.0);
-    EXPECT_EQ(shapeOptionsText(shape.report), "");
+    EXPECT_TRUE(asWords(shape.report).empty() && !thicknessOf(shape.report));
 }
 
 TEST(Shape, AMissingTriangleIsAHole) {
@@ -188,7 +188,8 @@ TEST(Shape, WhatIsSeenFromBothSidesIsASheet) {
         const ShapedMesh shape = shaped(mesh);
         expectKinds(shape.report, 0, 0, 1, 0);
         EXPECT_EQ(shape.report.thickness, kThickness);
-        EXPECT_EQ(shapeOptionsText(shape.report), " --thickness 0.05");
+        EXPECT_TRUE(asWords(shape.report).empty());
+        EXPECT_EQ(formText(thicknessOf(shape.report).value()), "0.05");
     }
 }
 
@@ -457,7 +458,8 @@ TEST(Shape, AsOverrulesWhatRaysSee) {
 
 TEST(Shape, AContainerTellsHowItWasShaped) {
     const ShapeReport report = shaped(makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0)), ShapeAs::kShell).report;
-    EXPECT_EQ(shapeOptionsText(report), " --as shell --thickness 0.05");
+    EXPECT_EQ(asWords(report), std::vector<std::string>{"shell"});
+    EXPECT_EQ(formText(thicknessOf(report).value()), "0.05");
 }
 
 /// A sheet in the plane of the other two axes, a thin box, and a single triangle.
